@@ -1,0 +1,3 @@
+//! The `stratavox` program.
+
+fn main() {}

@@ -1,0 +1,1 @@
+//! f32 or f64: the twins are written once for both.

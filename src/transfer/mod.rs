@@ -1,0 +1,51 @@
+//! Value to colour and opacity.
+//!
+//! With opacity `a0` per reference length `d0`, linear between control points (`algorithms.md` 1.4):
+//!
+//! ```text
+//! sigma = -ln(1 - min(a0, 1 - 2^-12)) / d0        extinction, per world length
+//! alpha = 1 - exp(-sigma d)                       opacity of a segment of length d
+//! ```
+//!
+//! Colour is linear between its points in sRGB numbers and decoded afterwards.
+
+/// A one-dimensional transfer function: colour and opacity have control points of their own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TransferFunction {
+    /// By ascending value; constant beyond the ends; not empty.
+    pub color: Vec<ColorPoint>,
+    /// By ascending value; constant beyond the ends; not empty.
+    pub opacity: Vec<OpacityPoint>,
+    /// World length that opacities are for; `None`: the smallest voxel spacing.
+    pub reference_length: Option<f64>,
+    /// What lies between two points.
+    pub interpolation: Interpolation,
+}
+
+/// sRGB colour at a value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ColorPoint {
+    /// After rescale.
+    pub value: f64,
+    /// sRGB numbers, 0 to 1.
+    pub srgb: [f64; 3],
+}
+
+/// Opacity at a value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OpacityPoint {
+    /// After rescale.
+    pub value: f64,
+    /// Per reference length, 0 to 1.
+    pub opacity: f64,
+}
+
+/// What lies between two control points.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Interpolation {
+    /// A straight line.
+    #[default]
+    Linear,
+    /// The left point's value; at equal values the later point wins.
+    Step,
+}

@@ -1,0 +1,62 @@
+//! Voxels on the CPU: where they come from ([`Source`]) and one box of one time in memory ([`Volume`]).
+//!
+//! A value is what the file means by a stored voxel:
+//!
+//! ```text
+//! value = stored * slope + intercept
+//! ```
+//!
+//! Knows nothing of Vulkan.
+
+mod source;
+mod voxels;
+
+pub use source::{Format, Header, Limits, Pick, Problem, ReadError, Rescale, Source, VoxelBox};
+pub use voxels::{VoxelType, Voxels};
+
+use glam::DAffine3;
+
+/// One box of one time of one component in memory. A `Volume` cannot be wrong: there are as many voxels
+/// as `dims` say, the affine can be inverted, and every stored number is finite.
+#[derive(Clone, Debug)]
+pub struct Volume {
+    /// Voxels along x, y, z.
+    pub dims: [u32; 3],
+    /// Voxel space to world.
+    pub world_from_voxel: DAffine3,
+    /// Stored numbers; a hole holds the nearest valid number.
+    pub voxels: Voxels,
+    /// Stored number to value.
+    pub rescale: Rescale,
+    /// One byte a voxel, 1 = valid, 0 = no data. `None` where all are valid.
+    pub validity: Option<Vec<u8>>,
+    /// True where values are Hounsfield units.
+    pub hounsfield: bool,
+    /// Smallest and largest valid value; `[0.0, 0.0]` where none is valid.
+    pub value_range: [f64; 2],
+}
+
+impl Volume {
+    /// Length of each column of `world_from_voxel`: the voxel's size in world length.
+    pub fn spacing(&self) -> [f64; 3] {
+        let m = self.world_from_voxel.matrix3;
+        [m.x_axis.length(), m.y_axis.length(), m.z_axis.length()]
+    }
+
+    /// The smallest spacing, axes of one voxel left out (unless all are).
+    pub fn smallest_spacing(&self) -> f64 {
+        let spacing = self.spacing();
+        let smallest = |counts: &dyn Fn(usize) -> bool| {
+            (0..3)
+                .filter(|&k| counts(k))
+                .map(|k| spacing[k])
+                .fold(f64::INFINITY, f64::min)
+        };
+        let smallest_of_extended = smallest(&|k| self.dims[k] > 1);
+        if smallest_of_extended.is_finite() {
+            smallest_of_extended
+        } else {
+            smallest(&|_| true)
+        }
+    }
+}

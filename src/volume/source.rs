@@ -1,0 +1,225 @@
+//! Where voxels come from: a header that promises, and a `read` that keeps the promise.
+
+use super::{VoxelType, Voxels};
+use glam::DAffine3;
+use std::path::PathBuf;
+
+/// A volume that can be read in parts: a file, a folder, or a formula.
+pub trait Source: Send + Sync {
+    /// What the source holds, checked once when it was opened.
+    fn header(&self) -> &Header;
+
+    /// The stored numbers of `region` at one time and component, x fastest.
+    ///
+    /// `pick` and `region` lie inside the header; integers of 32 and 64 bits and f64 are rounded to f32.
+    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Voxels, ReadError>;
+}
+
+/// Which of several volumes in one source.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Pick {
+    /// Index of the time step.
+    pub time: u32,
+    /// Index of the component of a voxel.
+    pub component: u32,
+}
+
+/// What a source holds. Nothing in it can be wrong: dims are not zero, the affine can be inverted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Header {
+    /// The kind of file.
+    pub format: Format,
+    /// Voxels along x, y, z.
+    pub dims: [u32; 3],
+    /// Numbers per voxel.
+    pub components: u32,
+    /// Time steps.
+    pub times: u32,
+    /// The type in the file.
+    pub stored: VoxelType,
+    /// Voxel space (corner of the grid at 0, centres at +0.5) to world, RAS+ for medical files.
+    pub world_from_voxel: DAffine3,
+    /// Stored number to value.
+    pub rescale: Rescale,
+    /// The stored number that means "no data".
+    pub fill: Option<f64>,
+    /// True where the file says that values are Hounsfield units (or the format's way of saying so).
+    pub hounsfield: bool,
+    /// Names of the variables in the file; the one this source reads comes first. Empty where the format has no names.
+    pub variables: Vec<String>,
+    /// What a person should know about how the file was understood, one sentence each.
+    pub notes: Vec<String>,
+}
+
+impl Header {
+    /// Voxels of one time and component.
+    pub fn voxel_count(&self) -> u64 {
+        self.dims.iter().map(|&n| u64::from(n)).product()
+    }
+
+    /// The box of all voxels.
+    pub fn whole(&self) -> VoxelBox {
+        VoxelBox {
+            min: [0; 3],
+            max: self.dims,
+        }
+    }
+}
+
+/// `value = stored * slope + intercept`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rescale {
+    /// Value per stored unit; finite and not zero.
+    pub slope: f64,
+    /// Value of stored zero; finite.
+    pub intercept: f64,
+}
+
+impl Default for Rescale {
+    fn default() -> Self {
+        Self {
+            slope: 1.0,
+            intercept: 0.0,
+        }
+    }
+}
+
+/// Voxels from `min` (included) to `max` (excluded).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the line above says it")]
+pub struct VoxelBox {
+    pub min: [u32; 3],
+    pub max: [u32; 3],
+}
+
+impl VoxelBox {
+    /// Voxels along x, y, z.
+    pub fn dims(&self) -> [u32; 3] {
+        std::array::from_fn(|k| self.max[k] - self.min[k])
+    }
+}
+
+/// The kind of a source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum Format {
+    Nifti1,
+    Nifti2,
+    Nrrd,
+    MetaImage,
+    Raw,
+    Phantom,
+}
+
+impl Format {
+    /// The word of `info --json`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Nifti1 => "nifti1",
+            Self::Nifti2 => "nifti2",
+            Self::Nrrd => "nrrd",
+            Self::MetaImage => "metaimage",
+            Self::Raw => "raw",
+            Self::Phantom => "phantom",
+        }
+    }
+}
+
+/// What went wrong with a source, and with which one.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot read {}: {problem}", path.display())]
+pub struct ReadError {
+    /// The file, folder or phantom.
+    pub path: PathBuf,
+    /// What was found there.
+    #[source]
+    pub problem: Problem,
+}
+
+/// What can be wrong with a source. Texts taken from a file are escaped before they get here.
+#[derive(Debug, thiserror::Error)]
+pub enum Problem {
+    /// The system would not let us.
+    #[error("{doing}")]
+    Io {
+        /// What was being done.
+        doing: &'static str,
+        /// The system's word.
+        #[source]
+        cause: std::io::Error,
+    },
+    /// No reader knows these bytes.
+    #[error("unknown format{0}")]
+    UnknownFormat(String),
+    /// A field that must be there is not.
+    #[error("the {format} header has no `{field}`")]
+    Missing {
+        /// The kind of file.
+        format: &'static str,
+        /// The field.
+        field: String,
+    },
+    /// A field says something that cannot be.
+    #[error("{format} field `{field}`: wanted {wanted}, found {found}")]
+    Invalid {
+        /// The kind of file.
+        format: &'static str,
+        /// The field.
+        field: String,
+        /// What would do.
+        wanted: String,
+        /// What stands there.
+        found: String,
+    },
+    /// Fewer (or more) bytes than promised.
+    #[error(
+        "{format} data: the header promises {wanted_bytes} bytes of voxels, found {found_bytes}"
+    )]
+    Size {
+        /// The kind of file.
+        format: &'static str,
+        /// What the header promises.
+        wanted_bytes: u64,
+        /// What is there.
+        found_bytes: u64,
+    },
+    /// A valid file that we do not read yet; says what.
+    #[error("{format}: {what} is not supported")]
+    Unsupported {
+        /// The kind of file.
+        format: &'static str,
+        /// The feature.
+        what: String,
+    },
+    /// More than the limits allow.
+    #[error("{what} needs {wanted_bytes} bytes, the limit is {limit_bytes}")]
+    Limit {
+        /// What is too large.
+        what: String,
+        /// What it needs.
+        wanted_bytes: u64,
+        /// What is allowed.
+        limit_bytes: u64,
+    },
+}
+
+/// What a reader may use. Checked against declared sizes before anything is allocated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Memory that one volume may take.
+    pub max_bytes: u64,
+    /// Files that one header may name.
+    pub max_files: usize,
+    /// Bytes of a text header.
+    pub max_header_bytes: usize,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            max_bytes: 4 << 30,
+            max_files: 65_536,
+            max_header_bytes: 1 << 20,
+        }
+    }
+}
