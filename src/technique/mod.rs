@@ -37,3 +37,82 @@ pub enum Filter {
     #[default]
     Linear,
 }
+
+/// Which samples a ray caster takes (`sampling.md` 3). Slicers have a lattice of their own.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Lattice {
+    /// Equal steps from where the ray enters the domain.
+    #[default]
+    Ray,
+    /// Where the ray meets the planes that a view-aligned slicer draws.
+    Planes,
+}
+
+/// In which order a slicer blends.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Order {
+    /// The over operator.
+    #[default]
+    BackToFront,
+    /// The under operator.
+    FrontToBack,
+}
+
+/// Keeps the world points with `normal . x >= offset`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the line above says it")]
+pub struct ClipPlane {
+    pub normal: glam::DVec3,
+    pub offset: f64,
+}
+
+/// What to compute. Words of the command line, once checked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Where samples lie.
+    pub technique: Technique,
+    /// What is done with them.
+    pub mode: Mode,
+    /// How values between voxels are made.
+    pub filter: Filter,
+    /// Which samples the ray caster takes.
+    pub lattice: Lattice,
+    /// How slicers blend.
+    pub order: Order,
+    /// Samples per smallest voxel spacing; positive. 2D stacks have one a slice.
+    pub samples_per_voxel: f64,
+    /// Rays per pixel is the square of this; at least 1.
+    pub rays_per_side: u32,
+    /// The ray ends after the sample at which transmittance falls under this; 0: never.
+    pub termination: f32,
+    /// In which numbers colours are blended.
+    pub color_space: crate::picture::ColorSpace,
+    /// Voxel space box to keep, min and max; fractions allowed. `None`: all of it.
+    pub crop: Option<[glam::DVec3; 2]>,
+    /// At most [`MAX_CLIP_PLANES`].
+    pub clip_planes: Vec<ClipPlane>,
+    /// Float targets, no early termination, filtering by texel fetch, control points searched exactly.
+    pub conformance: bool,
+}
+
+/// How many clip planes a scene may have.
+pub const MAX_CLIP_PLANES: usize = 8;
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            technique: Technique::default(),
+            mode: Mode::default(),
+            filter: Filter::default(),
+            lattice: Lattice::default(),
+            order: Order::default(),
+            samples_per_voxel: 1.0,
+            rays_per_side: 1,
+            termination: 0.0,
+            color_space: crate::picture::ColorSpace::default(),
+            crop: None,
+            clip_planes: Vec::new(),
+            conformance: false,
+        }
+    }
+}
