@@ -9,10 +9,24 @@ pub struct Shader {
     pub name: &'static str,
     /// Compute, vertex or fragment; its entry point is called `main`.
     pub stage: Stage,
-    /// SPIR-V 1.3 or later.
-    pub spirv: &'static [u32],
+    /// First word and count in the file of all modules.
+    words: (usize, usize),
     /// In order of `binding`; all of them in descriptor set 0.
     pub bindings: &'static [BindingSlot],
+}
+
+impl Shader {
+    /// SPIR-V 1.5.
+    pub fn spirv(&self) -> &'static [u32] {
+        let (first, count) = self.words;
+        &bytemuck::cast_slice(&SPIRV.bytes)[first..first + count]
+    }
+}
+
+/// The variant of that name. A name that `build.rs` has no row for is our own mistake.
+pub fn shader(name: &str) -> &'static Shader {
+    let found = SHADERS.binary_search_by(|shader| shader.name.cmp(name));
+    &SHADERS[found.unwrap_or_else(|_| panic!("build.rs has no shader {name}"))]
 }
 
 /// The stage of an entry point.
@@ -54,3 +68,17 @@ pub enum BindingKind {
     /// A storage image.
     StorageImage,
 }
+
+/// `include_bytes!` alone is aligned to one byte.
+#[repr(C)]
+struct Aligned<Bytes: ?Sized> {
+    align: [u32; 0],
+    bytes: Bytes,
+}
+
+static SPIRV: &Aligned<[u8]> = &Aligned {
+    align: [],
+    bytes: *include_bytes!(concat!(env!("OUT_DIR"), "/shaders.spv")),
+};
+
+include!(concat!(env!("OUT_DIR"), "/shaders.rs"));

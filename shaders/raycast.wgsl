@@ -1,0 +1,19 @@
+// Ray casting: one ray a pixel, emission and absorption from front to back (Levoy 1988).
+// Twin: src/technique/raycast/reference.rs.
+
+#import march
+
+// Premultiplied colour and alpha.
+@group(0) @binding(6) var picture: texture_storage_2d<rgba32float, write>;
+// 0, depth (negative: none), transmittance, samples.
+@group(0) @binding(7) var layers: texture_storage_2d<rgba32float, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if any(id.xy >= frame.extent_pixels) {
+        return;
+    }
+    let found = march(vec2<f32>(id.xy) + 0.5);
+    textureStore(picture, id.xy, vec4(found.color, 1.0 - found.transmittance));
+    textureStore(layers, id.xy, vec4(0.0, found.depth, found.transmittance, found.samples));
+}
