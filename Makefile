@@ -20,26 +20,26 @@ LAYER_FOLDERS := /usr/share/vulkan/explicit_layer.d /etc/vulkan/explicit_layer.d
 
 driver:
 	@mkdir -p "$$MESA_SHADER_CACHE_DIR"
-	@if [ -n "$$VK_ICD_FILENAMES$$VK_DRIVER_FILES" ] || ls $(addsuffix /*.json,$(ICD_FOLDERS)) >/dev/null 2>&1; then \
+	@if [ -n "$$VK_ICD_FILENAMES$$VK_DRIVER_FILES" ] || find $(ICD_FOLDERS) -name '*.json' 2>/dev/null | grep -q .; then \
 	    wanted=""; else wanted="mesa-vulkan-drivers"; fi; \
 	ldconfig -p 2>/dev/null | grep -q libvulkan.so.1 || wanted="$$wanted libvulkan1"; \
-	$(call install,a Vulkan driver)
+	$(call install,Vulkan driver)
 
 layers:
-	@ls $(addsuffix /*khronos_validation*.json,$(LAYER_FOLDERS)) >/dev/null 2>&1 \
+	@find $(LAYER_FOLDERS) -name '*khronos_validation*.json' 2>/dev/null | grep -q . \
 	    && wanted="" || wanted="vulkan-validationlayers"; \
 	command -v spirv-val >/dev/null || wanted="$$wanted spirv-tools"; \
-	$(call install,the Vulkan validation layers)
+	$(call install,Vulkan validation layers)
 
 # $(call install,what): installs the Debian packages in $$wanted, or says what to install by hand.
 define install
 if [ -n "$$wanted" ]; then \
     if ! command -v apt-get >/dev/null; then \
-        echo "$(1) is missing and there is no apt-get: please install it (Debian calls it$$wanted)" >&2; exit 1; fi; \
-    echo "installing $(1): $$wanted"; \
+        echo "no $(1) found, and no apt-get to install it: please install what Debian calls$$wanted" >&2; exit 1; fi; \
+    echo "installing the $(1):$$wanted"; \
     { $(APT) install -y --no-install-recommends $$wanted >/dev/null 2>&1 \
         || { $(APT) update -qq && $(APT) install -y --no-install-recommends $$wanted >/dev/null; }; } \
-        || { echo "could not install $(1): please run: $(APT) install $$wanted" >&2; exit 1; }; \
+        || { echo "could not install the $(1): please run: $(APT) install $$wanted" >&2; exit 1; }; \
 fi
 endef
 
