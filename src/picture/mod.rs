@@ -1,5 +1,7 @@
 //! What a renderer gives: linear premultiplied colour, and layers beside it.
 
+pub use crate::color::ColorSpace;
+
 /// A picture, rows from the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
@@ -13,16 +15,6 @@ pub struct Picture {
     pub color_space: ColorSpace,
     /// Further numbers for each pixel.
     pub layers: Vec<Layer>,
-}
-
-/// In which numbers colours are blended and kept (`sampling.md` 4 and 8).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ColorSpace {
-    /// Linear light.
-    #[default]
-    Linear,
-    /// sRGB numbers blended as they are, as VTK and Slicer do.
-    Display,
 }
 
 /// One kind of number for each pixel.

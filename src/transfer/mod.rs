@@ -9,12 +9,20 @@
 //!
 //! Colour is linear between its points in sRGB numbers and decoded afterwards.
 
+mod law;
+mod points;
+mod table;
+
+pub use law::{Absorption, MAX_OPACITY, extinction, opacity_over};
+pub use points::{Points, classify_by_points};
+pub use table::{MAX_ENTRIES, MIN_ENTRIES, Table, classify_by_table};
+
 /// A one-dimensional transfer function: colour and opacity have control points of their own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TransferFunction {
-    /// By ascending value; constant beyond the ends; not empty.
+    /// By ascending value; constant beyond the ends; no point: black.
     pub color: Vec<ColorPoint>,
-    /// By ascending value; constant beyond the ends; not empty.
+    /// By ascending value; constant beyond the ends; no point: transparent.
     pub opacity: Vec<OpacityPoint>,
     /// World length that opacities are for; `None`: the smallest voxel spacing.
     pub reference_length: Option<f64>,
