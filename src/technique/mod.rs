@@ -1,10 +1,15 @@
 //! The closed list of techniques (where samples lie) and modes (what is done with them).
 
-mod composite;
+pub mod blend;
+pub mod composite;
 mod frame;
 mod march;
+pub mod projection;
+pub mod raycast;
+pub mod slices_2d;
+pub mod slices_3d;
 
-pub use frame::{Coding, TransferLayout, View};
+pub use frame::{Coding, TransferLayout, View, frame};
 
 /// Where samples lie.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -123,6 +128,13 @@ pub enum Error {
         /// How many there may be.
         limit: usize,
     },
+}
+
+impl Mode {
+    /// True where one value a ray is projected and classified once.
+    pub fn is_projection(self) -> bool {
+        self != Self::Composite
+    }
 }
 
 impl Default for Settings {
