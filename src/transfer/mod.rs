@@ -9,13 +9,28 @@
 //!
 //! Colour is linear between its points in sRGB numbers and decoded afterwards.
 
+mod automatic;
+#[cfg(feature = "json")]
+mod file;
 mod law;
 mod points;
+mod preset;
+mod summary;
 mod table;
+mod window;
 
+pub use automatic::{Kind, automatic};
+#[cfg(feature = "json")]
+pub use file::{
+    FileError, FileProblem, MAX_FILE_BYTES, MAX_POINTS, read_transfer_function,
+    transfer_function_from_json, transfer_function_to_json,
+};
 pub use law::{Absorption, MAX_OPACITY, extinction, opacity_over};
 pub use points::{Points, classify_by_points};
+pub use preset::Preset;
+pub use summary::ValueSummary;
 pub use table::{MAX_ENTRIES, MIN_ENTRIES, Table, classify_by_table};
+pub use window::{Classified, Window};
 
 /// A one-dimensional transfer function: colour and opacity have control points of their own.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,0 +1,209 @@
+//! Transfer functions in files: the JSON of `cli.md`, "Transfer function file".
+
+use super::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
+use serde::Deserialize;
+use serde_json::Value;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// The largest file that is read.
+pub const MAX_FILE_BYTES: u64 = 1 << 20;
+/// A shader searches the points one by one.
+pub const MAX_POINTS: usize = 4096;
+const VERSION: u64 = 1;
+
+/// What went wrong with a transfer function file, and with which one.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot read transfer function {}: {problem}", path.display())]
+pub struct FileError {
+    /// The file.
+    pub path: PathBuf,
+    /// What was found there.
+    #[source]
+    pub problem: FileProblem,
+}
+
+/// What can be wrong with a transfer function file.
+#[derive(Debug, thiserror::Error)]
+pub enum FileProblem {
+    /// The system would not let us.
+    #[error("the file cannot be read")]
+    Io(#[source] std::io::Error),
+    /// Longer than any transfer function is.
+    #[error("the file has more than {MAX_FILE_BYTES} bytes")]
+    TooLong,
+    /// Not JSON, or a key that is unknown, doubled or missing; with line and column.
+    #[error("{0}")]
+    Json(String),
+    /// A field says something that cannot be.
+    #[error("field `{field}`: wanted {wanted}, found {found}")]
+    Field {
+        /// As in `opacity[3][1]`.
+        field: String,
+        /// What would do.
+        wanted: &'static str,
+        /// What stands there.
+        found: String,
+    },
+}
+
+/// The transfer function in the file at `path`.
+pub fn read_transfer_function(path: &Path) -> Result<TransferFunction, FileError> {
+    let of_file = |problem| FileError {
+        path: path.to_owned(),
+        problem,
+    };
+    let mut text = Vec::new();
+    File::open(path)
+        .and_then(|file| file.take(MAX_FILE_BYTES + 1).read_to_end(&mut text))
+        .map_err(|cause| of_file(FileProblem::Io(cause)))?;
+    if text.len() as u64 > MAX_FILE_BYTES {
+        return Err(of_file(FileProblem::TooLong));
+    }
+    transfer_function_from_json(&text).map_err(of_file)
+}
+
+/// The transfer function that `text` states.
+pub fn transfer_function_from_json(text: &[u8]) -> Result<TransferFunction, FileProblem> {
+    let keys: Keys =
+        serde_json::from_slice(text).map_err(|cause| FileProblem::Json(cause.to_string()))?;
+    if keys.stratavox_transfer_function.as_u64() != Some(VERSION) {
+        let found = &keys.stratavox_transfer_function;
+        return Err(wrong(
+            "stratavox_transfer_function",
+            "1, the only version",
+            found,
+        ));
+    }
+    let color = points("color", "[value, r, g, b]", &keys.color)?;
+    let color = color.into_iter().map(|[value, r, g, b]| ColorPoint {
+        value,
+        srgb: [r, g, b],
+    });
+    let opacity = points("opacity", "[value, opacity]", &keys.opacity)?;
+    let opacity = opacity
+        .into_iter()
+        .map(|[value, opacity]| OpacityPoint { value, opacity });
+    let reference_length = match keys.reference_length {
+        None => None,
+        Some(found) => match found.as_f64().filter(|&x| x > 0.0 && x.is_finite()) {
+            None => return Err(wrong("reference_length", "a positive number", &found)),
+            length => length,
+        },
+    };
+    let interpolation = match keys.interpolation {
+        None => Interpolation::Linear,
+        Some(found) => match found.as_str() {
+            Some("linear") => Interpolation::Linear,
+            Some("step") => Interpolation::Step,
+            _ => return Err(wrong("interpolation", "\"linear\" or \"step\"", &found)),
+        },
+    };
+    Ok(TransferFunction {
+        color: color.collect(),
+        opacity: opacity.collect(),
+        reference_length,
+        interpolation,
+    })
+}
+
+/// The text of a file that states `function`; reading it gives the same function back.
+pub fn transfer_function_to_json(function: &TransferFunction) -> String {
+    let row = |numbers: &[f64]| format!("    {}", Value::from(numbers));
+    let color = function.color.iter();
+    let color = color.map(|p| row(&[p.value, p.srgb[0], p.srgb[1], p.srgb[2]]));
+    let opacity = function.opacity.iter().map(|p| row(&[p.value, p.opacity]));
+    let length = function.reference_length;
+    let length = length.map(|length| format!("  \"reference_length\": {},\n", Value::from(length)));
+    let interpolation = match function.interpolation {
+        Interpolation::Linear => "linear",
+        Interpolation::Step => "step",
+    };
+    format!(
+        "{{\n  \"stratavox_transfer_function\": {VERSION},\n  \"color\": [\n{}\n  ],\n  \"opacity\": \
+         [\n{}\n  ],\n{}  \"interpolation\": \"{interpolation}\"\n}}\n",
+        color.collect::<Vec<_>>().join(",\n"),
+        opacity.collect::<Vec<_>>().join(",\n"),
+        length.unwrap_or_default(),
+    )
+}
+
+/// serde refuses unknown, doubled and missing keys; what stands behind them is checked here, by name.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Keys {
+    stratavox_transfer_function: Value,
+    color: Value,
+    opacity: Value,
+    #[serde(default)]
+    reference_length: Option<Value>,
+    #[serde(default)]
+    interpolation: Option<Value>,
+}
+
+/// Rows of a value and `N - 1` numbers from 0 to 1, by ascending value.
+fn points<const N: usize>(
+    field: &str,
+    row_wanted: &'static str,
+    found: &Value,
+) -> Result<Vec<[f64; N]>, FileProblem> {
+    let rows = found.as_array().filter(|rows| !rows.is_empty());
+    let Some(rows) = rows else {
+        return Err(wrong(field, "a list of at least one point", found));
+    };
+    if rows.len() > MAX_POINTS {
+        return Err(FileProblem::Field {
+            field: field.to_owned(),
+            wanted: "at most 4096 points",
+            found: rows.len().to_string(),
+        });
+    }
+    let mut points: Vec<[f64; N]> = Vec::with_capacity(rows.len());
+    for (i, row) in rows.iter().enumerate() {
+        let row_field = || format!("{field}[{i}]");
+        let Some(numbers) = row.as_array().filter(|numbers| numbers.len() == N) else {
+            return Err(wrong(&row_field(), row_wanted, row));
+        };
+        let mut point = [0.0; N];
+        for (c, (number, found)) in point.iter_mut().zip(numbers).enumerate() {
+            let (fits, wanted): (fn(f64) -> bool, _) = match c {
+                0 => (is_value, "a number that a 32-bit float can hold"),
+                _ => (is_fraction, "a number from 0 to 1"),
+            };
+            *number = match found.as_f64() {
+                Some(x) if fits(x) => x,
+                _ => return Err(wrong(&format!("{field}[{i}][{c}]"), wanted, found)),
+            };
+        }
+        if points.last().is_some_and(|last| last[0] > point[0]) {
+            let found = Value::from(point[0]);
+            let field = format!("{field}[{i}][0]");
+            return Err(wrong(&field, "a value not below the one before", &found));
+        }
+        points.push(point);
+    }
+    Ok(points)
+}
+
+fn is_value(x: f64) -> bool {
+    x.abs() <= f64::from(f32::MAX)
+}
+
+fn is_fraction(x: f64) -> bool {
+    (0.0..=1.0).contains(&x)
+}
+
+fn wrong(field: &str, wanted: &'static str, found: &Value) -> FileProblem {
+    // A field can be as long as the file; its beginning says enough. JSON escapes what is not text.
+    let mut text: String = found.to_string().chars().take(61).collect();
+    if text.chars().count() > 60 {
+        text.pop();
+        text.push_str("...");
+    }
+    FileProblem::Field {
+        field: field.to_owned(),
+        wanted,
+        found: text,
+    }
+}
