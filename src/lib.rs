@@ -7,7 +7,7 @@
 //!
 //! | floor | modules | what they know |
 //! |---|---|---|
-//! | 0 | [`shaders`], [`real`], [`ray`], [`color`] | arithmetic shared with the shaders, free of Vulkan |
+//! | 0 | [`shaders`], [`real`], [`ray`], [`lattice`], [`color`] | arithmetic shared with the shaders, free of Vulkan |
 //! | 1 | [`gpu`], [`volume`], [`transfer`], [`camera`], [`picture`] | Vulkan objects, or data; never both |
 //! | 2 | `resident`, `format` | data put on a device; bytes of files turned into a [`volume::Source`] |
 //! | 3 | [`technique`], `resolve` | `new`, `bind`, `record`, and the CPU twins |
@@ -34,6 +34,7 @@ pub mod color;
 #[cfg(feature = "files")]
 pub mod format;
 pub mod gpu;
+pub mod lattice;
 pub mod picture;
 pub mod ray;
 pub mod real;

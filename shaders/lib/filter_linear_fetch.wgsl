@@ -8,21 +8,21 @@
 fn value_at(voxel: vec3<f32>) -> f32 {
     let taps = footprint_of(voxel);
     let weight = fract(voxel - 0.5);
-    let front = mix(
+    let front = lerp(
         row(taps, weight.x, taps.min.y, taps.min.z),
         row(taps, weight.x, taps.max.y, taps.min.z),
         weight.y,
     );
-    let back = mix(
+    let back = lerp(
         row(taps, weight.x, taps.min.y, taps.max.z),
         row(taps, weight.x, taps.max.y, taps.max.z),
         weight.y,
     );
-    return value_from_code(mix(front, back, weight.z));
+    return value_from_code(lerp(front, back, weight.z));
 }
 
 fn row(taps: Footprint, weight: f32, y: i32, z: i32) -> f32 {
-    return mix(code_at(vec3(taps.min.x, y, z)), code_at(vec3(taps.max.x, y, z)), weight);
+    return lerp(code_at(vec3(taps.min.x, y, z)), code_at(vec3(taps.max.x, y, z)), weight);
 }
 
 fn code_at(index: vec3<i32>) -> f32 {

@@ -8,9 +8,9 @@ fn value_at(voxel: vec3<f32>, slice: i32) -> f32 {
     let low = vec2<i32>(in_slice(vec3<f32>(taps.min)));
     let high = vec2<i32>(in_slice(vec3<f32>(taps.max)));
     let weight = fract(in_slice(voxel) - 0.5);
-    let above = mix(code_at(low, slice), code_at(vec2(high.x, low.y), slice), weight.x);
-    let below = mix(code_at(vec2(low.x, high.y), slice), code_at(high, slice), weight.x);
-    return value_from_code(mix(above, below, weight.y));
+    let above = lerp(code_at(low, slice), code_at(vec2(high.x, low.y), slice), weight.x);
+    let below = lerp(code_at(vec2(low.x, high.y), slice), code_at(high, slice), weight.x);
+    return value_from_code(lerp(above, below, weight.y));
 }
 
 fn code_at(pixel: vec2<i32>, slice: i32) -> f32 {

@@ -16,3 +16,8 @@ fn code_from_mixed_texels(texel: f32) -> f32 {
 fn value_from_code(code: f32) -> f32 {
     return code * frame.slope + frame.intercept;
 }
+
+// Exact where both ends are equal, unlike `mix`.
+fn lerp(a: f32, b: f32, part: f32) -> f32 {
+    return a + part * (b - a);
+}

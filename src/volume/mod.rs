@@ -8,9 +8,11 @@
 //!
 //! Knows nothing of Vulkan.
 
+mod grid;
 mod source;
 mod voxels;
 
+pub use grid::Grid;
 pub use source::{Format, Header, Limits, Pick, Problem, ReadError, Rescale, Source, VoxelBox};
 pub use voxels::{VoxelType, Voxels};
 
@@ -37,26 +39,11 @@ pub struct Volume {
 }
 
 impl Volume {
-    /// Length of each column of `world_from_voxel`: the voxel's size in world length.
-    pub fn spacing(&self) -> [f64; 3] {
-        let m = self.world_from_voxel.matrix3;
-        [m.x_axis.length(), m.y_axis.length(), m.z_axis.length()]
-    }
-
-    /// The smallest spacing, axes of one voxel left out (unless all are).
-    pub fn smallest_spacing(&self) -> f64 {
-        let spacing = self.spacing();
-        let smallest = |counts: &dyn Fn(usize) -> bool| {
-            (0..3)
-                .filter(|&k| counts(k))
-                .map(|k| spacing[k])
-                .fold(f64::INFINITY, f64::min)
-        };
-        let smallest_of_extended = smallest(&|k| self.dims[k] > 1);
-        if smallest_of_extended.is_finite() {
-            smallest_of_extended
-        } else {
-            smallest(&|_| true)
+    /// Where the voxels lie.
+    pub fn grid(&self) -> Grid {
+        Grid {
+            dims: self.dims,
+            world_from_voxel: self.world_from_voxel,
         }
     }
 }

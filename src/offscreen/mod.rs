@@ -1,0 +1,3 @@
+//! A scene to a picture, on either side.
+
+pub mod reference;

@@ -1,0 +1,3 @@
+//! What a technique left behind to linear premultiplied colour.
+
+pub mod reference;

@@ -1,0 +1,6 @@
+//! View-aligned slicing: planes parallel to the picture, cut in the vertex shader, blended in hardware.
+
+mod planes;
+pub mod reference;
+
+pub use planes::set_planes;
