@@ -7,11 +7,11 @@ use crate::scene::{Scene, positions_in_pixel};
 use crate::shaders::Frame;
 use crate::technique::blend::{blend, clear_color};
 use crate::technique::{
-    Coding, Error, Filter, Mode, Technique, TransferLayout, View, frame, projection, raycast, slices_2d,
-    slices_3d,
+    Error, Filter, Mode, Technique, View, frame, projection, raycast, slices_2d, slices_3d,
 };
+use crate::resident::{Coding, TransferLayout};
 use crate::transfer::{
-    Absorption, Points, Table, TransferFunction, classify_by_points, classify_by_table, preset,
+    Absorption, Classified, Points, Table, TransferFunction, Window, classify_by_points, classify_by_table,
 };
 use crate::volume::{Grid, Volume, linear, linear_in_slice, nearest, nearest_in_slice};
 
@@ -65,7 +65,7 @@ pub fn render<R: Real>(scene: &Scene) -> Result<Picture, Error> {
 fn grey_of_picture<R: Real>(mode: Mode, gathered: &[Gathered<R>]) -> TransferFunction {
     let values = gathered.iter().filter_map(|g| projected_value(mode, g.accumulation)).map(R::to_f64);
     let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)]);
-    preset::grey_of_range(range, mode)
+    Window::of_range(range).grey(Classified::Projection)
 }
 
 fn layers<R: Real>(scene: &Scene, gathered: &[Gathered<R>]) -> Vec<Layer> {

@@ -1,4 +1,4 @@
-//! What a blending unit does with the fragments of one pixel: twin of the fixed-function operators.
+//! What a blending unit does with the fragments of one pixel, and its twin on the CPU.
 //!
 //! ```text
 //! over    back to front   C = s + (1 - alpha_s) C
@@ -8,7 +8,8 @@
 //!
 //! All colours are premultiplied (Porter and Duff 1984); `algorithms.md` 1.6.
 
-use super::{Mode, Order};
+use super::{Mode, Order, Words};
+use crate::gpu::Blend;
 use crate::real::Real;
 use crate::transfer::opacity_over;
 
@@ -18,6 +19,39 @@ use crate::transfer::opacity_over;
 pub struct Fragment<R> {
     pub value: R,
     pub length: R,
+}
+
+/// What slices are drawn for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Drawn {
+    /// The picture of a mode.
+    Picture(Mode),
+    /// How many samples each pixel took.
+    Count,
+}
+
+impl Drawn {
+    /// The fragment shader of a slicer.
+    pub fn shader_name(self, slicer: &str, words: &Words) -> String {
+        let Words { filter, holes, transfer, .. } = words;
+        match self {
+            Self::Picture(Mode::Composite) => format!("{slicer}.composite.{filter}.{holes}.{transfer}"),
+            Self::Picture(Mode::Mip | Mode::Minip) => format!("{slicer}.extreme.{filter}.{holes}"),
+            Self::Picture(Mode::Average | Mode::Xray) => format!("{slicer}.sum.{filter}.{holes}"),
+            Self::Count => format!("{slicer}.count.nearest.none"),
+        }
+    }
+}
+
+/// The fixed-function operator.
+pub fn operator(drawn: Drawn, order: Order) -> Blend {
+    match (drawn, order) {
+        (Drawn::Picture(Mode::Composite), Order::BackToFront) => Blend::Over,
+        (Drawn::Picture(Mode::Composite), Order::FrontToBack) => Blend::Under,
+        (Drawn::Picture(Mode::Mip), _) => Blend::Max,
+        (Drawn::Picture(Mode::Minip), _) => Blend::Min,
+        (Drawn::Picture(Mode::Average | Mode::Xray) | Drawn::Count, _) => Blend::Add,
+    }
 }
 
 /// What the target holds before the first fragment: where nothing is drawn, the second number of a

@@ -7,6 +7,7 @@
 use super::{MAX_SAMPLES_PER_RAY, Settings};
 use crate::camera::{Camera, Rays};
 use crate::picture::ColorSpace;
+use crate::resident::{Coding, TransferLayout};
 use crate::shaders::{Frame, FrameFields, MAX_CLIP_PLANES};
 use crate::technique::Error;
 use crate::transfer::Interpolation;
@@ -26,31 +27,6 @@ pub struct View<'a> {
     pub in_pixel: [f64; 2],
     /// The words of the picture.
     pub settings: &'a Settings,
-}
-
-/// How texels become values: `(texel * scale + offset) * slope + intercept`, `texel * scale` rounded where
-/// codes are integers and nothing has mixed them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(missing_docs, reason = "the line above says it")]
-pub struct Coding {
-    pub scale: f32,
-    pub offset: f32,
-    pub slope: f32,
-    pub intercept: f32,
-    pub is_integer: bool,
-}
-
-/// How a transfer function lies in its table and its points.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(missing_docs, reason = "see `transfer::Table` and `transfer::Points`")]
-pub struct TransferLayout {
-    pub table_first: f32,
-    pub table_scale: f32,
-    pub table_count: u32,
-    pub color_point_count: u32,
-    pub opacity_point_count: u32,
-    pub interpolation: Interpolation,
-    pub reference_length: f32,
 }
 
 impl View<'_> {

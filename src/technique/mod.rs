@@ -3,13 +3,15 @@
 pub mod blend;
 pub mod composite;
 mod frame;
+mod inputs;
 mod march;
 pub mod projection;
 pub mod raycast;
 pub mod slices_2d;
 pub mod slices_3d;
 
-pub use frame::{Coding, TransferLayout, View, frame};
+pub use frame::{View, frame};
+pub use inputs::{GpuVoxels, Inputs, Words};
 
 /// Where samples lie.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -120,6 +122,9 @@ pub enum Error {
         /// What a ray may take.
         limit: u32,
     },
+    /// Compositing classifies every sample.
+    #[error("compositing needs a transfer function")]
+    NoTransferFunction,
     /// The parameters hold a fixed number of planes.
     #[error("{wanted} clip planes, the limit is {limit}")]
     TooManyClipPlanes {
