@@ -22,7 +22,8 @@ const FLOORS: &[&[&str]] = &[
 
 /// Modules that hold data and must build where there is no Vulkan.
 const FREE_OF_VULKAN: &[&str] = &[
-    "shaders", "real", "ray", "lattice", "color", "volume", "transfer", "camera", "picture", "format", "scene",
+    "shaders", "real", "ray", "lattice", "color", "volume", "transfer", "camera", "picture",
+    "format", "scene",
 ];
 
 fn floor_of(module: &str) -> usize {
