@@ -6,7 +6,7 @@ pub use planes::set_planes;
 
 use super::blend::{Drawn, operator};
 use super::{Inputs, Order, Words};
-use crate::gpu::{Bindings, Error, Gpu, RasterDesc, RasterPipeline};
+use crate::gpu::{Bindings, Error, Gpu, RasterDesc, RasterPipeline, set_area};
 use crate::shaders::shader;
 use ash::vk;
 use std::sync::Arc;
@@ -67,7 +67,7 @@ impl Slices3d {
     ) {
         // SAFETY: the caller's promises; the bindings come from `bind`.
         unsafe {
-            self.pipeline.set_area(cmd, extent);
+            set_area(&self.gpu, cmd, extent);
             self.pipeline.draw(cmd, bindings, &[offset], VERTICES, count);
         }
     }
