@@ -18,6 +18,8 @@ pub enum Use {
     ComputeWrite,
     /// A fragment shader reads a texture.
     FragmentSampled,
+    /// Any shader reads a texture.
+    Sampled,
     /// A vertex or fragment shader reads a storage buffer.
     DrawRead,
     /// A color target, blended or not.
@@ -48,6 +50,11 @@ impl Use {
             Self::ComputeWrite => (Stage::COMPUTE_SHADER, STORAGE, Layout::GENERAL),
             Self::FragmentSampled => (
                 Stage::FRAGMENT_SHADER,
+                Access::SHADER_SAMPLED_READ,
+                Layout::SHADER_READ_ONLY_OPTIMAL,
+            ),
+            Self::Sampled => (
+                Stage::from_raw(DRAW.as_raw() | Stage::COMPUTE_SHADER.as_raw()),
                 Access::SHADER_SAMPLED_READ,
                 Layout::SHADER_READ_ONLY_OPTIMAL,
             ),

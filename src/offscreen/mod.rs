@@ -2,8 +2,8 @@
 //!
 //! The only place that submits and waits.
 
-pub mod reference;
 mod passes;
+pub mod reference;
 mod renderer;
 mod targets;
 mod upload;

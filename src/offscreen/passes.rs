@@ -56,7 +56,12 @@ pub struct Submission<'a> {
 impl Passes {
     /// Compiles for such pictures.
     pub fn new(gpu: &Arc<Gpu>, settings: &Settings, words: &Words) -> Result<Self, Error> {
-        let Settings { technique, mode, order, .. } = *settings;
+        let Settings {
+            technique,
+            mode,
+            order,
+            ..
+        } = *settings;
         let slicer = |drawn| match technique {
             Technique::Slices3d => {
                 Slices3d::new(gpu, drawn, order, words, FORMAT).map(Gather::Slices3d)
@@ -73,7 +78,12 @@ impl Passes {
             }
         };
         let resolve = Resolve::new(gpu, mode, Blend::Add, FORMAT)?;
-        Ok(Self { key: (technique, mode, order, *words), gather, count, resolve })
+        Ok(Self {
+            key: (technique, mode, order, *words),
+            gather,
+            count,
+            resolve,
+        })
     }
 
     /// What these pipelines were made for.
@@ -91,7 +101,9 @@ impl Passes {
 
     /// Counts a slicer's samples into `layers`; the ray caster has counted them already.
     pub fn count(&self, submission: Submission) -> Result<Option<f64>, Error> {
-        let Some(count) = &self.count else { return Ok(None) };
+        let Some(count) = &self.count else {
+            return Ok(None);
+        };
         let into = &submission.targets.layers;
         submission.run(count, into, [0.0; 4])
     }
@@ -133,7 +145,14 @@ impl Submission<'_> {
         into: &crate::gpu::Image,
         clear: [f32; 4],
     ) -> Result<Option<f64>, Error> {
-        let Self { device, inputs, targets, offset, slices, timer } = self;
+        let Self {
+            device,
+            inputs,
+            targets,
+            offset,
+            slices,
+            timer,
+        } = self;
         let extent = targets.extent;
         let bindings = match gather {
             Gather::Raycast(pass) => pass.bind(inputs, into, &targets.layers)?,
@@ -181,6 +200,6 @@ impl Submission<'_> {
             }
             Ok(())
         })?;
-        timer.map_or(Ok(None), |timer| timer.milliseconds().map(Some))
+        timer.map_or(Ok(None), Timer::elapsed_ms)
     }
 }

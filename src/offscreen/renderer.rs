@@ -91,13 +91,18 @@ impl<'v> Renderer<'v> {
         if scene.settings.technique == Technique::Slices2d {
             let axis = stack_axis(&scene.view(&grid, [0.0; 2]));
             if self.stacks[axis].is_none() {
-                self.stacks[axis] = Some(upload::upload_stack(&mut self.device, self.volume, axis)?);
+                self.stacks[axis] =
+                    Some(upload::upload_stack(&mut self.device, self.volume, axis)?);
             }
         } else if self.brick.is_none() {
             self.brick = Some(upload::upload_volume(&mut self.device, self.volume)?);
         }
         if let (Some(validity), None) = (&self.volume.validity, &self.mask) {
-            self.mask = Some(upload::upload_mask(&mut self.device, self.volume, validity)?);
+            self.mask = Some(upload::upload_mask(
+                &mut self.device,
+                self.volume,
+                validity,
+            )?);
         }
         Ok(())
     }
@@ -133,20 +138,46 @@ impl<'v> Renderer<'v> {
         let layers = self.read_layers(scene, layers)?;
         let [width, height] = scene.extent_pixels;
         let color_space = scene.settings.color_space;
-        let picture = Picture { width, height, pixels, color_space, layers };
-        Ok(Rendered { picture, gpu_ms: clock.0 })
+        let picture = Picture {
+            width,
+            height,
+            pixels,
+            color_space,
+            layers,
+        };
+        Ok(Rendered {
+            picture,
+            gpu_ms: clock.0,
+        })
     }
 
     /// Targets and pipelines for the picture.
     fn prepare(&mut self, scene: &Scene) -> Result<(), Error> {
         let gpu = Arc::clone(self.device.gpu());
-        if self.targets.as_ref().is_none_or(|targets| targets.extent != scene.extent_pixels) {
+        if self
+            .targets
+            .as_ref()
+            .is_none_or(|targets| targets.extent != scene.extent_pixels)
+        {
             self.targets = Some(Targets::new(&gpu, scene.extent_pixels)?);
         }
-        let words = Words::of(scene.settings, self.voxels(scene).texel(), self.mask.is_some());
-        let Settings { technique, mode, order, .. } = *scene.settings;
+        let words = Words::of(
+            scene.settings,
+            self.voxels(scene).texel(),
+            self.mask.is_some(),
+        );
+        let Settings {
+            technique,
+            mode,
+            order,
+            ..
+        } = *scene.settings;
         let key = (technique, mode, order, words);
-        if self.passes.as_ref().is_none_or(|passes| *passes.key() != key) {
+        if self
+            .passes
+            .as_ref()
+            .is_none_or(|passes| *passes.key() != key)
+        {
             self.passes = Some(Passes::new(&gpu, scene.settings, &words)?);
         }
         Ok(())
@@ -171,7 +202,11 @@ impl<'v> Renderer<'v> {
         let made = GpuTransfer::new(self.device.gpu(), function, length, space)?;
         // SAFETY: recorded outside rendering; `run` waits, and `made` lives meanwhile.
         self.device.run(|cmd| unsafe { made.record_upload(cmd) })?;
-        self.transfer = Some(Uploaded { function: function.clone(), space, made });
+        self.transfer = Some(Uploaded {
+            function: function.clone(),
+            space,
+            made,
+        });
         Ok(())
     }
 
@@ -207,7 +242,12 @@ impl<'v> Renderer<'v> {
         fields.weight = 1.0 / (per_side * per_side);
         fields.extreme_sign = extreme_sign(scene.settings.mode);
         self.ring.write(0, bytemuck::bytes_of(&frame(fields)))?;
-        let inputs = Inputs { ring: &self.ring, voxels, mask: self.mask.as_ref(), transfer };
+        let inputs = Inputs {
+            ring: &self.ring,
+            voxels,
+            mask: self.mask.as_ref(),
+            transfer,
+        };
         let submission = Submission {
             device: &mut self.device,
             inputs: &inputs,
@@ -225,38 +265,61 @@ impl<'v> Renderer<'v> {
         let targets = self.targets.as_ref().expect("prepared");
         let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
         let offset = self.ring.offset(0)?;
-        Ok(passes.resolve(&mut self.device, &self.ring, offset, targets, transfer, is_first)?)
+        Ok(passes.resolve(
+            &mut self.device,
+            &self.ring,
+            offset,
+            targets,
+            transfer,
+            is_first,
+        )?)
     }
 
     /// The default window of a projecting mode without a transfer function: the range of this picture.
     fn grey_of_picture(&mut self, scene: &Scene) -> Result<TransferFunction, Error> {
         let targets = self.targets.as_ref().expect("prepared");
-        let found = targets.read(&mut self.device, &targets.accumulation, Use::FragmentSampled)?;
-        let values = found.iter().filter_map(|&left| projected_value(scene.settings.mode, left));
-        let [low, high] = values
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
-                [low.min(v.into()), high.max(v.into())]
-            });
+        let found = targets.read(
+            &mut self.device,
+            &targets.accumulation,
+            Use::FragmentSampled,
+        )?;
+        let values = found
+            .iter()
+            .filter_map(|&left| projected_value(scene.settings.mode, left));
+        let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
+            [low.min(v.into()), high.max(v.into())]
+        });
         Ok(Window::of_range([low, high]).grey(Classified::Projection))
     }
 
     /// The layers of the rays through pixel centres, which were gathered last.
     fn read_layers(&mut self, scene: &Scene, wanted: &[LayerKind]) -> Result<Vec<Layer>, Error> {
-        let Settings { technique, mode, .. } = *scene.settings;
+        let Settings {
+            technique, mode, ..
+        } = *scene.settings;
         if wanted.is_empty() {
             return Ok(Vec::new());
         }
         let is_slicer = technique != Technique::Raycast;
         let targets = self.targets.as_ref().expect("prepared");
-        let left = targets.read(&mut self.device, &targets.accumulation, Use::FragmentSampled)?;
+        let left = targets.read(
+            &mut self.device,
+            &targets.accumulation,
+            Use::FragmentSampled,
+        )?;
         // (value, depth, transmittance, samples) of each pixel, as far as the technique has them.
         let beside = if is_slicer {
             self.submit(scene, [0.0; 2], Passes::count)?;
             let targets = self.targets.as_ref().expect("prepared");
             let counts = targets.read(&mut self.device, &targets.layers, Use::FragmentSampled)?;
-            counts.into_iter().map(|[n, ..]| [0.0, -1.0, 0.0, n]).collect()
+            counts
+                .into_iter()
+                .map(|[n, ..]| [0.0, -1.0, 0.0, n])
+                .collect()
         } else if mode.is_projection() {
-            left.iter().map(|&[_, _, depth, samples]| [0.0, depth, 0.0, samples]).collect()
+            left.iter()
+                .map(|&[_, _, depth, samples]| [0.0, depth, 0.0, samples])
+                .collect()
         } else {
             targets.read(&mut self.device, &targets.layers, Use::FragmentSampled)?
         };
@@ -268,7 +331,10 @@ impl<'v> Renderer<'v> {
                 LayerKind::Transmittance => 1.0 - left[3],
                 LayerKind::Samples => beside[3],
             };
-            Layer { kind, values: left.iter().zip(&beside).map(number).collect() }
+            Layer {
+                kind,
+                values: left.iter().zip(&beside).map(number).collect(),
+            }
         };
         Ok(wanted.iter().map(|&kind| layer(kind)).collect())
     }
@@ -276,7 +342,9 @@ impl<'v> Renderer<'v> {
 
 /// Blending keeps no depth, a projection no transmittance, and a composite has no one value.
 fn check_layers(settings: &Settings, wanted: &[LayerKind]) -> Result<(), Error> {
-    let Settings { technique, mode, .. } = *settings;
+    let Settings {
+        technique, mode, ..
+    } = *settings;
     for &layer in wanted {
         let is_there = match layer {
             LayerKind::Value => mode.is_projection(),
@@ -285,7 +353,11 @@ fn check_layers(settings: &Settings, wanted: &[LayerKind]) -> Result<(), Error> 
             LayerKind::Samples => true,
         };
         if !is_there {
-            return Err(Error::NoLayer { technique, mode, layer });
+            return Err(Error::NoLayer {
+                technique,
+                mode,
+                layer,
+            });
         }
     }
     Ok(())

@@ -34,7 +34,16 @@ impl Targets {
                 | vk::ImageUsageFlags::TRANSFER_SRC;
             let [width, height] = extent;
             let extent = [width, height, 1];
-            Image::new(gpu, &ImageDesc { kind: ImageKind::D2, extent, format: FORMAT, usage, name })
+            Image::new(
+                gpu,
+                &ImageDesc {
+                    kind: ImageKind::D2,
+                    extent,
+                    format: FORMAT,
+                    usage,
+                    name,
+                },
+            )
         };
         let bytes = u64::from(extent[0]) * u64::from(extent[1]) * 16;
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
@@ -48,7 +57,12 @@ impl Targets {
     }
 
     /// The pixels of one of the images, rows from the top. `before` is what was last done with it.
-    pub fn read(&self, device: &mut Headless, image: &Image, before: Use) -> Result<Vec<[f32; 4]>, Error> {
+    pub fn read(
+        &self,
+        device: &mut Headless,
+        image: &Image,
+        before: Use,
+    ) -> Result<Vec<[f32; 4]>, Error> {
         let gpu = Arc::clone(device.gpu());
         // SAFETY: recorded outside rendering; `run` waits, and `self` lives meanwhile.
         device.run(|cmd| unsafe {
@@ -57,7 +71,8 @@ impl Targets {
         })?;
         let count = self.extent.map(|n| n as usize).iter().product();
         let mut pixels = vec![[0.0; 4]; count];
-        self.readback.read(0, bytemuck::cast_slice_mut(&mut pixels))?;
+        self.readback
+            .read(0, bytemuck::cast_slice_mut(&mut pixels))?;
         Ok(pixels)
     }
 }

@@ -13,19 +13,27 @@ pub fn upload_volume(device: &mut Headless, volume: &Volume) -> Result<GpuVolume
     let made = GpuVolume::new(device.gpu(), volume)?;
     let slab = |z: [u32; 2]| {
         let [x, y, _] = volume.dims;
-        VoxelBox { min: [0, 0, z[0]], max: [x, y, z[1]] }
+        VoxelBox {
+            min: [0, 0, z[0]],
+            max: [x, y, z[1]],
+        }
     };
-    slabs(device, volume.dims[2], made.staging_bytes(slab([0, 1])), |z, before| {
-        let record = {
-            let made = &made;
-            move |cmd, staging: &Buffer| {
-                // SAFETY: `slabs` records outside rendering, has filled the staging buffer with these bytes,
-                // and waits before anything is dropped.
-                unsafe { made.record_upload(cmd, staging, slab(z), before) }
-            }
-        };
-        (made.staged(volume, slab(z)), record)
-    })?;
+    slabs(
+        device,
+        volume.dims[2],
+        made.staging_bytes(slab([0, 1])),
+        |z, before| {
+            let record = {
+                let made = &made;
+                move |cmd, staging: &Buffer| {
+                    // SAFETY: `slabs` records outside rendering, has filled the staging buffer with these bytes,
+                    // and waits before anything is dropped.
+                    unsafe { made.record_upload(cmd, staging, slab(z), before) }
+                }
+            };
+            (made.staged(volume, slab(z)), record)
+        },
+    )?;
     Ok(made)
 }
 
@@ -38,7 +46,10 @@ pub fn upload_mask(
     let made = GpuMask::new(device.gpu(), volume)?;
     let slab = |z: [u32; 2]| {
         let [x, y, _] = volume.dims;
-        VoxelBox { min: [0, 0, z[0]], max: [x, y, z[1]] }
+        VoxelBox {
+            min: [0, 0, z[0]],
+            max: [x, y, z[1]],
+        }
     };
     let slice_bytes = u64::from(volume.dims[0]) * u64::from(volume.dims[1]);
     slabs(device, volume.dims[2], slice_bytes, |z, before| {
@@ -55,18 +66,27 @@ pub fn upload_mask(
 }
 
 /// Uploads the stack along one axis.
-pub fn upload_stack(device: &mut Headless, volume: &Volume, axis: usize) -> Result<GpuStack, Error> {
+pub fn upload_stack(
+    device: &mut Headless,
+    volume: &Volume,
+    axis: usize,
+) -> Result<GpuStack, Error> {
     let made = GpuStack::new(device.gpu(), volume, axis)?;
-    slabs(device, volume.dims[axis], made.staging_bytes(&(0..1)), |[first, end], before| {
-        let record = {
-            let made = &made;
-            move |cmd, staging: &Buffer| {
-                // SAFETY: as in `upload_volume`.
-                unsafe { made.record_upload(cmd, staging, first..end, before) }
-            }
-        };
-        (made.staged(volume, first..end), record)
-    })?;
+    slabs(
+        device,
+        volume.dims[axis],
+        made.staging_bytes(&(0..1)),
+        |[first, end], before| {
+            let record = {
+                let made = &made;
+                move |cmd, staging: &Buffer| {
+                    // SAFETY: as in `upload_volume`.
+                    unsafe { made.record_upload(cmd, staging, first..end, before) }
+                }
+            };
+            (made.staged(volume, first..end), record)
+        },
+    )?;
     Ok(made)
 }
 
@@ -85,7 +105,11 @@ where
     let usage = vk::BufferUsageFlags::TRANSFER_SRC;
     let staging = Buffer::new(device.gpu(), bytes, usage, Memory::Upload, "staging")?;
     for first in (0..slices).step_by(per_slab as usize) {
-        let before = if first == 0 { Use::Nothing } else { Use::Sampled };
+        let before = if first == 0 {
+            Use::Nothing
+        } else {
+            Use::Sampled
+        };
         let (texels, record) = stage([first, (first + per_slab).min(slices)], before);
         staging.write(0, &texels)?;
         device.run(|cmd| record(cmd, &staging))?;

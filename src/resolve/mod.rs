@@ -3,7 +3,8 @@
 pub mod reference;
 
 use crate::gpu::{
-    Bindings, Blend, Error, Gpu, Image, ParameterRing, RasterDesc, RasterPipeline, Resource, set_area,
+    Bindings, Blend, Error, Gpu, Image, ParameterRing, RasterDesc, RasterPipeline, Resource,
+    set_area,
 };
 use crate::resident::GpuTransfer;
 use crate::shaders::shader;
@@ -26,7 +27,12 @@ impl Resolve {
     ///
     /// # Errors
     /// Where the device does not blend that format, by its name.
-    pub fn new(gpu: &Arc<Gpu>, mode: Mode, blend: Blend, format: vk::Format) -> Result<Self, Error> {
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        mode: Mode,
+        blend: Blend,
+        format: vk::Format,
+    ) -> Result<Self, Error> {
         let fragment = match mode {
             Mode::Composite => "resolve.picture",
             Mode::Mip | Mode::Minip | Mode::Xray => "resolve.value",
@@ -38,7 +44,10 @@ impl Resolve {
             color_formats: &[format],
             blend,
         };
-        Ok(Self { gpu: Arc::clone(gpu), pipeline: RasterPipeline::new(gpu, &desc)? })
+        Ok(Self {
+            gpu: Arc::clone(gpu),
+            pipeline: RasterPipeline::new(gpu, &desc)?,
+        })
     }
 
     /// Binds what a technique left. Projecting modes need the transfer function.
@@ -52,9 +61,19 @@ impl Resolve {
         transfer: Option<&GpuTransfer>,
     ) -> Result<Bindings, Error> {
         let left = Resource::sampled(accumulation);
-        let mut given = vec![("frame", Resource::Uniform(ring)), ("picture", left), ("accumulation", left)];
+        let mut given = vec![
+            ("frame", Resource::Uniform(ring)),
+            ("picture", left),
+            ("accumulation", left),
+        ];
         given.extend(transfer.map(|transfer| ("points", Resource::Storage(transfer.points()))));
-        given.retain(|(name, _)| self.pipeline.layout().slots().iter().any(|slot| slot.name == *name));
+        given.retain(|(name, _)| {
+            self.pipeline
+                .layout()
+                .slots()
+                .iter()
+                .any(|slot| slot.name == *name)
+        });
         Bindings::new(&self.gpu, self.pipeline.layout(), &given)
     }
 

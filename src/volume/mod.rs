@@ -9,6 +9,7 @@
 //! Knows nothing of Vulkan.
 
 mod grid;
+pub mod sample;
 mod source;
 mod voxels;
 

@@ -1,6 +1,7 @@
 //! 2D texture slicing: three stacks of axis-aligned slices, blended in hardware.
 
-pub mod reference;nmod stack;
+pub mod reference;
+mod stack;
 
 pub use stack::{set_slices, stack_axis};
 
@@ -39,7 +40,10 @@ impl Slices2d {
             color_formats: &[format],
             blend: operator(drawn, order),
         };
-        Ok(Self { gpu: Arc::clone(gpu), pipeline: RasterPipeline::new(gpu, &desc)? })
+        Ok(Self {
+            gpu: Arc::clone(gpu),
+            pipeline: RasterPipeline::new(gpu, &desc)?,
+        })
     }
 
     /// Binds the inputs.
@@ -68,7 +72,8 @@ impl Slices2d {
         // SAFETY: the caller's promises; the bindings come from `bind`.
         unsafe {
             set_area(&self.gpu, cmd, extent);
-            self.pipeline.draw(cmd, bindings, &[offset], VERTICES, count);
+            self.pipeline
+                .draw(cmd, bindings, &[offset], VERTICES, count);
         }
     }
 }

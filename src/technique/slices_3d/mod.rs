@@ -1,6 +1,7 @@
 //! View-aligned slicing: planes parallel to the picture, cut in the vertex shader, blended in hardware.
 
-mod planes;npub mod reference;
+mod planes;
+pub mod reference;
 
 pub use planes::set_planes;
 
@@ -39,7 +40,10 @@ impl Slices3d {
             color_formats: &[format],
             blend: operator(drawn, order),
         };
-        Ok(Self { gpu: Arc::clone(gpu), pipeline: RasterPipeline::new(gpu, &desc)? })
+        Ok(Self {
+            gpu: Arc::clone(gpu),
+            pipeline: RasterPipeline::new(gpu, &desc)?,
+        })
     }
 
     /// Binds the inputs.
@@ -68,7 +72,8 @@ impl Slices3d {
         // SAFETY: the caller's promises; the bindings come from `bind`.
         unsafe {
             set_area(&self.gpu, cmd, extent);
-            self.pipeline.draw(cmd, bindings, &[offset], VERTICES, count);
+            self.pipeline
+                .draw(cmd, bindings, &[offset], VERTICES, count);
         }
     }
 }
