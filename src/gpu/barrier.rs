@@ -33,13 +33,13 @@ pub enum Use {
 }
 
 impl Use {
-    /// The one table.
+    /// The one table. Sampling is `SHADER_READ`: the layer's best practices do not know the finer word.
     pub const fn state(self) -> (Stage, Access, Layout) {
         match self {
             Self::Nothing => (Stage::NONE, Access::NONE, Layout::UNDEFINED),
             Self::ComputeSampled => (
                 Stage::COMPUTE_SHADER,
-                Access::SHADER_SAMPLED_READ,
+                Access::SHADER_READ,
                 Layout::SHADER_READ_ONLY_OPTIMAL,
             ),
             Self::ComputeRead => (
@@ -50,7 +50,7 @@ impl Use {
             Self::ComputeWrite => (Stage::COMPUTE_SHADER, STORAGE, Layout::GENERAL),
             Self::FragmentSampled => (
                 Stage::FRAGMENT_SHADER,
-                Access::SHADER_SAMPLED_READ,
+                Access::SHADER_READ,
                 Layout::SHADER_READ_ONLY_OPTIMAL,
             ),
             Self::Sampled => (
