@@ -1,6 +1,27 @@
-//! What a renderer gives: linear premultiplied colour, and layers beside it.
+//! What a renderer gives: linear premultiplied colour, and layers beside it; files of both; and how far two
+//! pictures are apart.
+
+mod background;
+pub mod compare;
+#[cfg(feature = "exr")]
+mod exr;
+#[cfg(feature = "files")]
+mod npy;
+#[cfg(feature = "files")]
+mod place;
+#[cfg(feature = "png")]
+mod png;
+#[cfg(feature = "files")]
+mod read;
+mod straight;
+#[cfg(feature = "files")]
+mod write;
 
 pub use crate::color::ColorSpace;
+#[cfg(feature = "files")]
+pub use read::{MAX_PICTURE_BYTES, PictureError, PictureProblem, read_image};
+#[cfg(feature = "files")]
+pub use write::{BitDepth, OutputError, OutputProblem, PictureFormat, WriteOptions, write_picture};
 
 /// A picture, rows from the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,4 +58,19 @@ pub enum LayerKind {
     Transmittance,
     /// Samples taken.
     Samples,
+}
+
+impl LayerKind {
+    /// All of them, in the order of `--aov`'s help.
+    pub const ALL: [Self; 4] = [Self::Value, Self::Depth, Self::Transmittance, Self::Samples];
+
+    /// The word of `--aov`, the name of the EXR channel, and the `NAME` of `OUT.NAME.npy`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Value => "value",
+            Self::Depth => "depth",
+            Self::Transmittance => "transmittance",
+            Self::Samples => "samples",
+        }
+    }
 }
