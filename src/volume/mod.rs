@@ -11,7 +11,9 @@
 mod source;
 mod voxels;
 
-pub use source::{Format, Header, Limits, Pick, Problem, ReadError, Rescale, Source, VoxelBox};
+pub use source::{
+    Format, Header, Limits, Loss, Pick, Piece, Problem, ReadError, Rescale, Source, VoxelBox,
+};
 pub use voxels::{VoxelType, Voxels};
 
 use glam::DAffine3;
