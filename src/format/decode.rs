@@ -41,9 +41,8 @@ impl Encoding {
             Self::Gzip => encoded_bytes.saturating_mul(1032),
             // A block of 900 000 bytes after run-length coding of 4 + 255 bytes in 5, in about 40 bytes.
             Self::Bzip2 => encoded_bytes.saturating_mul(1_200_000),
-            // A digit and a space each, and no space after the last.
+            // A digit and a space each.
             Self::Ascii => encoded_bytes
-                .saturating_add(1)
                 .saturating_div(2)
                 .saturating_mul(to_u64(stored.bytes())),
             Self::Hex => encoded_bytes.saturating_div(2),

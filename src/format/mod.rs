@@ -26,9 +26,14 @@
 mod convert;
 mod data;
 mod decode;
+mod file_source;
+mod geometry;
+mod metaimage;
+mod nrrd;
 mod place;
 mod problem;
 mod select;
+mod sequence;
 mod stream;
 mod text;
 mod textual;
@@ -47,8 +52,20 @@ const FIRST_BYTES: u64 = 4096;
 /// there are bytes. The error names the file, the field, what was wanted and what was found.
 pub fn open(path: &Path, limits: &Limits) -> Result<Box<dyn Source>, ReadError> {
     let first = first_bytes(path).map_err(at(path))?;
-    let _ = limits;
-    Err(at(path)(unknown(path, &first)))
+    let extension = path.extension().and_then(|extension| extension.to_str());
+    let extension = extension.unwrap_or("").to_ascii_lowercase();
+    // The content decides. Where it is no format's, the name does, and that reader says what is wrong.
+    if nrrd::recognizes(&first) {
+        Ok(Box::new(nrrd::open(path, limits)?))
+    } else if metaimage::recognizes(&first) {
+        Ok(Box::new(metaimage::open(path, limits)?))
+    } else if matches!(extension.as_str(), "nrrd" | "nhdr") {
+        Ok(Box::new(nrrd::open(path, limits)?))
+    } else if matches!(extension.as_str(), "mha" | "mhd") {
+        Ok(Box::new(metaimage::open(path, limits)?))
+    } else {
+        Err(at(path)(unknown(&first)))
+    }
 }
 
 fn first_bytes(path: &Path) -> Result<Vec<u8>, Problem> {
@@ -59,15 +76,14 @@ fn first_bytes(path: &Path) -> Result<Vec<u8>, Problem> {
     place::first_bytes(&mut file, FIRST_BYTES)
 }
 
-fn unknown(path: &Path, first: &[u8]) -> Problem {
-    let _ = path;
+fn unknown(first: &[u8]) -> Problem {
     let shown: Vec<String> = first
         .iter()
         .take(8)
         .map(|byte| format!("{byte:02x}"))
         .collect();
     Problem::UnknownFormat(format!(
-        ": the file begins with bytes {}, which none of nrrd, metaimage does",
+        ": the file begins with the bytes {}; we read nrrd and metaimage",
         shown.join(" ")
     ))
 }

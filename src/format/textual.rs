@@ -30,13 +30,18 @@ impl<R: BufRead> Numbers<R> {
         }
     }
 
-    /// The next word, empty at the end.
+    /// The next word, empty at the end. A last word that nothing follows may have lost digits.
     fn word(&mut self) -> io::Result<String> {
         let mut word = String::new();
         loop {
             let input = self.input.fill_buf()?;
             let Some(&byte) = input.first() else {
-                return Ok(word);
+                return match word.as_str() {
+                    "" => Ok(word),
+                    _ => Err(damaged(
+                        "the file ends within the last number, or its line end is missing",
+                    )),
+                };
             };
             self.input.consume(1);
             match byte {
@@ -164,21 +169,28 @@ mod tests {
             ("nan", VoxelType::I32),
             ("0x10", VoxelType::F32),
         ] {
-            let error = numbers(word, stored).expect_err(word).to_string();
+            let line = format!("{word}\n");
+            let error = numbers(&line, stored).expect_err(word).to_string();
             assert!(error.contains(word), "{error}");
         }
         assert_eq!(
-            numbers("18446744073709551615", VoxelType::U64).unwrap(),
+            numbers("18446744073709551615 ", VoxelType::U64).unwrap(),
             [255; 8]
         );
         assert!(numbers(&"9".repeat(100_000), VoxelType::F64).is_err());
     }
 
     #[test]
+    fn a_last_number_that_nothing_follows_is_not_believed() {
+        assert!(numbers("10 12", VoxelType::U8).is_err());
+        assert_eq!(numbers("10 12\n", VoxelType::U8).unwrap(), [10, 12]);
+    }
+
+    #[test]
     fn words_stand_between_white_space_and_commas_and_may_be_written_as_floats() {
         let found = numbers("1,2 , 3\n\t4.0\r\n 5e0 ", VoxelType::U8).unwrap();
         assert_eq!(found, [1, 2, 3, 4, 5]);
-        let found = numbers("-inf nan 0.25", VoxelType::F32).unwrap();
+        let found = numbers("-inf nan 0.25\n", VoxelType::F32).unwrap();
         assert_eq!(found[..4], f32::NEG_INFINITY.to_le_bytes());
         assert_eq!(found[8..], 0.25_f32.to_le_bytes());
     }
