@@ -141,9 +141,9 @@ impl Book {
         self.spirv
             .extend(words.iter().flat_map(|word| word.to_le_bytes()));
         let line = format!(
-            "Shader {{ name: {name:?}, stage: {}, words: ({first}, {}), bindings: &[{}] }}",
+            "Shader {{ name: {name:?}, stage: {}, spirv: &words[{first}..{}], bindings: &[{}] }}",
             stage(&module),
-            words.len(),
+            first + words.len(),
             bindings(&module)
         );
         assert!(
@@ -170,13 +170,13 @@ impl Book {
         }
         writeln!(
             text,
-            "/// Every variant, by name.\npub static SHADERS: &[Shader] = &["
+            "/// Every variant, by name, from the words of all modules.\nfn shaders(words: &'static [u32]) -> Vec<Shader> {{\n    vec!["
         )
         .unwrap();
         for line in self.table.values() {
             writeln!(text, "    {line},").unwrap();
         }
-        writeln!(text, "];").unwrap();
+        writeln!(text, "    ]\n}}").unwrap();
         text
     }
 }

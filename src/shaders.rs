@@ -2,6 +2,8 @@
 //!
 //! Free of Vulkan: kinds of binding are words of our own that [`crate::gpu`] maps.
 
+use std::sync::LazyLock;
+
 /// One entry point, compiled.
 #[derive(Clone, Copy, Debug)]
 pub struct Shader {
@@ -9,19 +11,15 @@ pub struct Shader {
     pub name: &'static str,
     /// Compute, vertex or fragment; its entry point is called `main`.
     pub stage: Stage,
-    /// First word and count in the file of all modules.
-    words: (usize, usize),
+    /// SPIR-V 1.5.
+    pub spirv: &'static [u32],
     /// In order of `binding`; all of them in descriptor set 0.
     pub bindings: &'static [BindingSlot],
 }
 
-impl Shader {
-    /// SPIR-V 1.5.
-    pub fn spirv(&self) -> &'static [u32] {
-        let (first, count) = self.words;
-        &bytemuck::cast_slice(&SPIRV.bytes)[first..first + count]
-    }
-}
+/// Every variant that `build.rs` has made, by name.
+pub static SHADERS: LazyLock<Vec<Shader>> =
+    LazyLock::new(|| shaders(bytemuck::cast_slice(&SPIRV.bytes)));
 
 /// The variant of that name. A name that `build.rs` has no row for is our own mistake.
 pub fn shader(name: &str) -> &'static Shader {

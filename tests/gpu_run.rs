@@ -67,7 +67,8 @@ fn box_through_an_image(kind: ImageKind) {
     let mut headless = headless();
     let gpu = Arc::clone(headless.gpu());
     let extent = [7, 5, 4];
-    let usage = vk::ImageUsageFlags::TRANSFER_DST | vk::ImageUsageFlags::TRANSFER_SRC;
+    use vk::ImageUsageFlags as Usage;
+    let usage = Usage::SAMPLED | Usage::TRANSFER_DST | Usage::TRANSFER_SRC;
     let desc = ImageDesc {
         kind,
         extent,
@@ -136,7 +137,8 @@ fn a_box_of_texels_arrives_in_the_layers_of_an_array() {
 fn copies_outside_of_image_or_buffer_are_refused() {
     let mut headless = headless();
     let gpu = Arc::clone(headless.gpu());
-    let usage = vk::ImageUsageFlags::TRANSFER_DST | vk::ImageUsageFlags::TRANSFER_SRC;
+    use vk::ImageUsageFlags as Usage;
+    let usage = Usage::SAMPLED | Usage::TRANSFER_DST | Usage::TRANSFER_SRC;
     let format = vk::Format::R16_UNORM;
     let desc = ImageDesc {
         kind: ImageKind::D3,

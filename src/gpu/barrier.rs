@@ -18,6 +18,8 @@ pub enum Use {
     ComputeWrite,
     /// A fragment shader reads a texture.
     FragmentSampled,
+    /// Any shader reads a texture.
+    Sampled,
     /// A vertex or fragment shader reads a storage buffer.
     DrawRead,
     /// A color target, blended or not.
@@ -31,13 +33,13 @@ pub enum Use {
 }
 
 impl Use {
-    /// The one table.
+    /// The one table. Sampling is `SHADER_READ`: the layer's best practices do not know the finer word.
     pub const fn state(self) -> (Stage, Access, Layout) {
         match self {
             Self::Nothing => (Stage::NONE, Access::NONE, Layout::UNDEFINED),
             Self::ComputeSampled => (
                 Stage::COMPUTE_SHADER,
-                Access::SHADER_SAMPLED_READ,
+                Access::SHADER_READ,
                 Layout::SHADER_READ_ONLY_OPTIMAL,
             ),
             Self::ComputeRead => (
@@ -48,6 +50,11 @@ impl Use {
             Self::ComputeWrite => (Stage::COMPUTE_SHADER, STORAGE, Layout::GENERAL),
             Self::FragmentSampled => (
                 Stage::FRAGMENT_SHADER,
+                Access::SHADER_READ,
+                Layout::SHADER_READ_ONLY_OPTIMAL,
+            ),
+            Self::Sampled => (
+                Stage::from_raw(DRAW.as_raw() | Stage::COMPUTE_SHADER.as_raw()),
                 Access::SHADER_SAMPLED_READ,
                 Layout::SHADER_READ_ONLY_OPTIMAL,
             ),

@@ -3,6 +3,13 @@
 use super::{Error, Gpu, ImageDesc, ImageKind, error::Doing, error::within, texel_bytes};
 use ash::vk;
 
+/// An image of ours has a view, which Vulkan allows for these usages.
+const VIEWED: vk::ImageUsageFlags = vk::ImageUsageFlags::from_raw(
+    vk::ImageUsageFlags::SAMPLED.as_raw()
+        | vk::ImageUsageFlags::STORAGE.as_raw()
+        | vk::ImageUsageFlags::COLOR_ATTACHMENT.as_raw(),
+);
+
 impl Gpu {
     /// Refuses a buffer that this device cannot hold or bind whole with this usage.
     pub fn check_buffer(
@@ -60,6 +67,13 @@ impl Gpu {
                 }
                 .into(),
                 found: format!("{width}x{height}x{depth}"),
+            });
+        }
+        if !desc.usage.intersects(VIEWED) {
+            return Err(Error::Argument {
+                doing: doing(),
+                wanted: "a usage that needs a view: sampled, storage or color".into(),
+                found: "none of them".into(),
             });
         }
         let (side_limit, side_allowed) = match desc.kind {

@@ -192,9 +192,14 @@ impl Headless {
         let device = self.gpu.device();
         let begin = vk::CommandBufferBeginInfo::default()
             .flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
+        // All by which a recording can write to mapped buffers.
         let to_host = [vk::MemoryBarrier2::default()
-            .src_stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
-            .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
+            .src_stage_mask(
+                vk::PipelineStageFlags2::COMPUTE_SHADER | vk::PipelineStageFlags2::ALL_TRANSFER,
+            )
+            .src_access_mask(
+                vk::AccessFlags2::SHADER_STORAGE_WRITE | vk::AccessFlags2::TRANSFER_WRITE,
+            )
             .dst_stage_mask(vk::PipelineStageFlags2::HOST)
             .dst_access_mask(vk::AccessFlags2::HOST_READ)];
         let to_host = vk::DependencyInfo::default().memory_barriers(&to_host);
@@ -216,19 +221,18 @@ impl Headless {
     /// Submits what was recorded and waits for it.
     fn submit(&mut self, value: u64) -> Result<(), Error> {
         let device = self.gpu.device();
-        let commands = [vk::CommandBufferSubmitInfo::default().command_buffer(self.cmd)];
-        let signals = [vk::SemaphoreSubmitInfo::default()
-            .semaphore(self.timeline.get())
-            .value(value)
-            .stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)];
-        let submit = vk::SubmitInfo2::default()
-            .command_buffer_infos(&commands)
-            .signal_semaphore_infos(&signals);
+        // Not vkQueueSubmit2: after it, GPU-assisted validation 1.3.239 waits ten seconds for the timeline, in vain.
+        let (commands, semaphores, values) = ([self.cmd], [self.timeline.get()], [value]);
+        let mut timeline =
+            vk::TimelineSemaphoreSubmitInfo::default().signal_semaphore_values(&values);
+        let submit = vk::SubmitInfo::default()
+            .command_buffers(&commands)
+            .signal_semaphores(&semaphores)
+            .push_next(&mut timeline);
         // SAFETY: the recording has ended; the queue is ours, and `&mut self` makes us its only user.
-        unsafe { device.queue_submit2(self.queue, &[submit], vk::Fence::null()) }
+        unsafe { device.queue_submit(self.queue, &[submit], vk::Fence::null()) }
             .doing(|| "submit".into())?;
         self.submitted = value;
-        let (semaphores, values) = ([self.timeline.get()], [value]);
         let wait = vk::SemaphoreWaitInfo::default()
             .semaphores(&semaphores)
             .values(&values);

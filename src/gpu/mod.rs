@@ -58,7 +58,7 @@ pub use layout::Layout;
 pub use parameters::ParameterRing;
 pub use pipeline::ComputePipeline;
 pub use raster::{Blend, RasterDesc, RasterPipeline};
-pub use rendering::{Load, begin_rendering, end_rendering};
+pub use rendering::{Load, begin_rendering, end_rendering, set_area};
 pub use sampler::Sampler;
 pub use timer::Timer;
 pub use validation::{Message, VARIABLE as VALIDATION_VARIABLE, Validation, ValidationMode};

@@ -109,7 +109,7 @@ impl RasterPipeline {
         &self.layout
     }
 
-    /// Binds pipeline and bindings and draws `vertices`, three a triangle, as instance 0.
+    /// Binds pipeline and bindings and draws `vertices`, three a triangle, `instances` times.
     ///
     /// `offsets` are the dynamic offsets ([`super::ParameterRing::offset`]) of the uniform bindings, in order of
     /// their numbers.
@@ -126,6 +126,7 @@ impl RasterPipeline {
         bindings: &Bindings,
         offsets: &[u32],
         vertices: u32,
+        instances: u32,
     ) {
         let device = self.raw.gpu().device();
         let point = vk::PipelineBindPoint::GRAPHICS;
@@ -134,7 +135,7 @@ impl RasterPipeline {
         unsafe {
             device.cmd_bind_pipeline(cmd, point, self.raw());
             device.cmd_bind_descriptor_sets(cmd, point, self.layout.raw(), 0, &sets, offsets);
-            device.cmd_draw(cmd, vertices, 1, 0, 0);
+            device.cmd_draw(cmd, vertices, instances, 0, 0);
         }
     }
 }

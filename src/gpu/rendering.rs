@@ -12,7 +12,7 @@ pub enum Load {
     Clear([f32; 4]),
 }
 
-/// Begins rendering to `targets`, in order of location, and sets viewport and scissor to all of `extent`.
+/// Begins rendering to `targets`, in order of location. Viewport and scissor are set by [`set_area`].
 ///
 /// # Safety
 ///
@@ -29,17 +29,20 @@ pub unsafe fn begin_rendering(
         .iter()
         .map(|&(view, load)| attachment(view, load))
         .collect();
-    let area = vk::Rect2D {
-        offset: vk::Offset2D::default(),
-        extent: vk::Extent2D {
-            width: extent[0],
-            height: extent[1],
-        },
-    };
     let info = vk::RenderingInfo::default()
-        .render_area(area)
+        .render_area(area(extent))
         .layer_count(1)
         .color_attachments(&attachments);
+    // SAFETY: the caller's promises; dynamicRendering was required of the device.
+    unsafe { gpu.device().cmd_begin_rendering(cmd, &info) };
+}
+
+/// Sets viewport and scissor to all of `extent`.
+///
+/// # Safety
+///
+/// `cmd` is recording on `gpu`'s device.
+pub unsafe fn set_area(gpu: &Gpu, cmd: vk::CommandBuffer, extent: [u32; 2]) {
     let viewport = vk::Viewport {
         x: 0.0,
         y: 0.0,
@@ -48,12 +51,17 @@ pub unsafe fn begin_rendering(
         min_depth: 0.0,
         max_depth: 1.0,
     };
-    let device = gpu.device();
-    // SAFETY: the caller's promises; dynamicRendering was required of the device.
+    // SAFETY: the caller's promise.
     unsafe {
-        device.cmd_begin_rendering(cmd, &info);
-        device.cmd_set_viewport(cmd, 0, &[viewport]);
-        device.cmd_set_scissor(cmd, 0, &[area]);
+        gpu.device().cmd_set_viewport(cmd, 0, &[viewport]);
+        gpu.device().cmd_set_scissor(cmd, 0, &[area(extent)]);
+    }
+}
+
+fn area([width, height]: [u32; 2]) -> vk::Rect2D {
+    vk::Rect2D {
+        offset: vk::Offset2D::default(),
+        extent: vk::Extent2D { width, height },
     }
 }
 

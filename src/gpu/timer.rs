@@ -8,6 +8,9 @@ use super::{Error, Gpu, error::Doing, owned::Own};
 use ash::vk;
 use std::sync::Arc;
 
+/// A mark is passed when all that was recorded before it has ended.
+const END_OF_WORK: vk::PipelineStageFlags2 = vk::PipelineStageFlags2::BOTTOM_OF_PIPE;
+
 /// Two timestamps around a part of one recording.
 #[derive(Debug)]
 pub struct Timer {
@@ -43,7 +46,7 @@ impl Timer {
         // SAFETY: the caller's promises; synchronization2 was required of the device.
         unsafe {
             device.cmd_reset_query_pool(cmd, self.raw(), 0, 2);
-            device.cmd_write_timestamp2(cmd, vk::PipelineStageFlags2::ALL_COMMANDS, self.raw(), 0);
+            device.cmd_write_timestamp2(cmd, END_OF_WORK, self.raw(), 0);
         }
     }
 
@@ -55,12 +58,10 @@ impl Timer {
     pub unsafe fn stop(&self, cmd: vk::CommandBuffer) {
         // SAFETY: the caller's promises; synchronization2 was required of the device.
         unsafe {
-            self.pool.gpu().device().cmd_write_timestamp2(
-                cmd,
-                vk::PipelineStageFlags2::ALL_COMMANDS,
-                self.raw(),
-                1,
-            );
+            self.pool
+                .gpu()
+                .device()
+                .cmd_write_timestamp2(cmd, END_OF_WORK, self.raw(), 1);
         }
     }
 

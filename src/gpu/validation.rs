@@ -21,7 +21,10 @@ pub(super) const LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 const MOST_KEPT: usize = 256;
 
 /// What best practices ask for and we knowingly do not do, with the reason. Other modes allow nothing.
-const ALLOWED_BEST_PRACTICES: &[(&str, &str)] = &[];
+const ALLOWED_BEST_PRACTICES: &[(&str, &str)] = &[(
+    "UNASSIGNED-BestPractices-vkCreateInstance-specialuse-extension-debugging",
+    "the extensions by which the layer itself is asked for",
+)];
 
 /// Whether a [`super::Headless`] is validated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

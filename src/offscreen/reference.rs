@@ -2,6 +2,7 @@
 
 use crate::picture::{Layer, LayerKind, Picture};
 use crate::real::Real;
+use crate::resident::{Coding, TransferLayout};
 use crate::resolve::reference::{premultiplied, projected_value};
 use crate::scene::{Scene, positions_in_pixel};
 use crate::shaders::Frame;
@@ -9,11 +10,12 @@ use crate::technique::blend::{blend, clear_color};
 use crate::technique::{
     Error, Filter, Mode, Technique, View, frame, projection, raycast, slices_2d, slices_3d,
 };
-use crate::resident::{Coding, TransferLayout};
 use crate::transfer::{
-    Absorption, Classified, Points, Table, TransferFunction, Window, classify_by_points, classify_by_table,
+    Absorption, Classified, Points, Table, TransferFunction, Window, classify_by_points,
+    classify_by_table,
 };
-use crate::volume::{Grid, Volume, linear, linear_in_slice, nearest, nearest_in_slice};
+use crate::volume::sample::{linear, linear_in_slice, nearest};
+use crate::volume::{Grid, Volume};
 
 /// What a technique leaves for one pixel, before it is resolved.
 #[derive(Clone, Copy, Debug)]
@@ -39,13 +41,18 @@ pub fn render<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     };
     let space = scene.settings.color_space;
     let points = Points::new(&transfer, Absorption::Opacity, space);
-    let resolve = |g: &Gathered<R>| premultiplied(mode, g.accumulation, |v| classify_by_points(&points, v));
+    let resolve =
+        |g: &Gathered<R>| premultiplied(mode, g.accumulation, |v| classify_by_points(&points, v));
 
     let per_side = scene.settings.rays_per_side;
     let weight = R::from_f64(1.0 / f64::from(per_side * per_side));
     let mut pixels = vec![[R::from_f64(0.0); 4]; centers.len()];
     for in_pixel in positions_in_pixel(per_side) {
-        let found = if in_pixel == [0.0; 2] { centers.clone() } else { gathered(in_pixel)? };
+        let found = if in_pixel == [0.0; 2] {
+            centers.clone()
+        } else {
+            gathered(in_pixel)?
+        };
         for (pixel, found) in pixels.iter_mut().zip(&found) {
             let color = resolve(found);
             *pixel = std::array::from_fn(|c| pixel[c] + weight * color[c]);
@@ -63,8 +70,13 @@ pub fn render<R: Real>(scene: &Scene) -> Result<Picture, Error> {
 
 /// The default window of a projecting mode without a transfer function: the range of this picture.
 fn grey_of_picture<R: Real>(mode: Mode, gathered: &[Gathered<R>]) -> TransferFunction {
-    let values = gathered.iter().filter_map(|g| projected_value(mode, g.accumulation)).map(R::to_f64);
-    let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)]);
+    let values = gathered
+        .iter()
+        .filter_map(|g| projected_value(mode, g.accumulation))
+        .map(R::to_f64);
+    let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
+        [low.min(v), high.max(v)]
+    });
     Window::of_range(range).grey(Classified::Projection)
 }
 
@@ -77,9 +89,13 @@ fn layers<R: Real>(scene: &Scene, gathered: &[Gathered<R>]) -> Vec<Layer> {
     let number = |found: Option<R>| found.map_or(f32::NAN, R::to_f32);
     let mut layers = vec![layer(LayerKind::Samples, &|g| g.samples as f32)];
     if mode.is_projection() {
-        layers.push(layer(LayerKind::Value, &|g| number(projected_value(mode, g.accumulation))));
+        layers.push(layer(LayerKind::Value, &|g| {
+            number(projected_value(mode, g.accumulation))
+        }));
     } else {
-        layers.push(layer(LayerKind::Transmittance, &|g| 1.0 - g.accumulation[3].to_f32()));
+        layers.push(layer(LayerKind::Transmittance, &|g| {
+            1.0 - g.accumulation[3].to_f32()
+        }));
     }
     if scene.settings.technique == Technique::Raycast {
         layers.push(layer(LayerKind::Depth, &|g| number(g.depth)));
@@ -120,23 +136,38 @@ impl<'a, R: Real> Walk<'a, R> {
             None => return Err(Error::NoTransferFunction),
         };
         let (frame, slices) = parameters(&view)?;
-        Ok(Self { scene, frame, slices, classifier, real: std::marker::PhantomData })
+        Ok(Self {
+            scene,
+            frame,
+            slices,
+            classifier,
+            real: std::marker::PhantomData,
+        })
     }
 
     /// All pixels, rows shared out among the machine's cores.
     fn gather_all(&self) -> Vec<Gathered<R>> {
         let [width, height] = self.scene.extent_pixels;
-        let threads = std::thread::available_parallelism().map_or(1, |n| n.get() as u32).min(height.max(1));
+        let threads = std::thread::available_parallelism()
+            .map_or(1, |n| n.get() as u32)
+            .min(height.max(1));
         let rows = |first: u32| {
             let mine = (first..height).step_by(threads as usize);
-            mine.map(|y| (0..width).map(|x| self.gather(x, y)).collect::<Vec<_>>()).collect::<Vec<_>>()
+            mine.map(|y| (0..width).map(|x| self.gather(x, y)).collect::<Vec<_>>())
+                .collect::<Vec<_>>()
         };
         let mut shares = std::thread::scope(|scope| {
-            let workers: Vec<_> = (0..threads).map(|first| scope.spawn(move || rows(first))).collect();
-            let joined = workers.into_iter().map(|worker| worker.join().expect("a pixel does not panic"));
+            let workers: Vec<_> = (0..threads)
+                .map(|first| scope.spawn(move || rows(first)))
+                .collect();
+            let joined = workers
+                .into_iter()
+                .map(|worker| worker.join().expect("a pixel does not panic"));
             joined.map(Vec::into_iter).collect::<Vec<_>>()
         });
-        (0..height as usize).flat_map(|y| shares[y % threads as usize].next().expect("every row")).collect()
+        (0..height as usize)
+            .flat_map(|y| shares[y % threads as usize].next().expect("every row"))
+            .collect()
     }
 
     fn gather(&self, x: u32, y: u32) -> Gathered<R> {
@@ -146,19 +177,37 @@ impl<'a, R: Real> Walk<'a, R> {
         let value_at = |p| filtered(volume, settings.filter, p);
         match settings.technique {
             Technique::Raycast if settings.mode.is_projection() => {
-                let (found, samples) =
-                    projection::reference::project(frame, settings.lattice, settings.mode, pixel, value_at);
+                let (found, samples) = projection::reference::project(
+                    frame,
+                    settings.lattice,
+                    settings.mode,
+                    pixel,
+                    value_at,
+                );
                 let zero = R::from_f64(0.0);
                 let accumulation = [found.value, found.weight, zero, zero];
-                Gathered { accumulation, depth: found.depth, samples }
+                Gathered {
+                    accumulation,
+                    depth: found.depth,
+                    samples,
+                }
             }
             Technique::Raycast => {
                 let classify = |value| self.classify(value);
-                let (found, samples) =
-                    raycast::reference::radiance(frame, settings.lattice, pixel, value_at, classify);
+                let (found, samples) = raycast::reference::radiance(
+                    frame,
+                    settings.lattice,
+                    pixel,
+                    value_at,
+                    classify,
+                );
                 let [r, g, b] = found.color;
                 let accumulation = [r, g, b, R::from_f64(1.0) - found.transmittance];
-                Gathered { accumulation, depth: found.depth, samples }
+                Gathered {
+                    accumulation,
+                    depth: found.depth,
+                    samples,
+                }
             }
             Technique::Slices3d => self.blend_all(|instance| {
                 let plane = frame.slice_first + instance as i32 * frame.slice_direction;
@@ -167,7 +216,8 @@ impl<'a, R: Real> Walk<'a, R> {
             Technique::Slices2d => self.blend_all(|instance| {
                 let slice = slices_2d::reference::slice_of(frame, instance);
                 let axis = frame.slice_axis as usize;
-                let value_at = |p| filtered_in_slice(volume, settings.filter, axis, slice as u32, p);
+                let value_at =
+                    |p| filtered_in_slice(volume, settings.filter, axis, slice as u32, p);
                 slices_2d::reference::fragment(frame, pixel, slice, value_at)
             }),
         }
@@ -187,7 +237,11 @@ impl<'a, R: Real> Walk<'a, R> {
                 target = blend(mode, order, target, fragment, |value| self.classify(value));
             }
         }
-        Gathered { accumulation: target, depth: None, samples }
+        Gathered {
+            accumulation: target,
+            depth: None,
+            samples,
+        }
     }
 
     fn classify(&self, value: R) -> [R; 4] {
@@ -201,13 +255,21 @@ impl<'a, R: Real> Walk<'a, R> {
 
 /// The parameters of a view on the CPU, where values need no decoding, and how many slices it draws.
 fn parameters(view: &View) -> Result<(Frame, u32), Error> {
-    let coding = Coding { scale: 1.0, offset: 0.0, slope: 1.0, intercept: 0.0, is_integer: false };
+    let coding = Coding {
+        scale: 1.0,
+        offset: 0.0,
+        slope: 1.0,
+        intercept: 0.0,
+        is_integer: false,
+    };
     let transfer = TransferLayout::default();
     let mut fields = view.fields(&coding, &transfer)?;
     let slices = match view.settings.technique {
         Technique::Raycast => 0,
         Technique::Slices3d => slices_3d::set_planes(view, &mut fields),
-        Technique::Slices2d => slices_2d::set_slices(view, slices_2d::stack_axis(view), &mut fields),
+        Technique::Slices2d => {
+            slices_2d::set_slices(view, slices_2d::stack_axis(view), &mut fields)
+        }
     };
     Ok((frame(fields), slices))
 }
@@ -224,10 +286,13 @@ fn filtered_in_slice<R: Real>(
     filter: Filter,
     axis: usize,
     slice: u32,
-    p: [R; 3],
+    mut p: [R; 3],
 ) -> Option<R> {
     match filter {
-        Filter::Nearest => nearest_in_slice(volume, axis, slice, p),
+        Filter::Nearest => {
+            p[axis] = R::from_f64(f64::from(slice) + 0.5);
+            nearest(volume, p)
+        }
         Filter::Linear => linear_in_slice(volume, axis, slice, p),
     }
 }

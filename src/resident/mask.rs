@@ -1,7 +1,9 @@
 //! Which voxels have a value, on the device: made only for a volume with holes, read by fetches only.
 
 use super::volume::indices;
-use crate::gpu::{Buffer, Error, Gpu, Image, ImageDesc, ImageKind, Region, Use, buffer_to_image, image_barrier};
+use crate::gpu::{
+    Buffer, Error, Gpu, Image, ImageDesc, ImageKind, Region, Use, buffer_to_image, image_barrier,
+};
 use crate::volume::{Volume, VoxelBox};
 use ash::vk;
 use std::sync::Arc;
@@ -26,7 +28,10 @@ impl GpuMask {
             usage: vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST,
             name: "validity",
         };
-        Ok(Self { gpu: Arc::clone(gpu), validity: Image::new(gpu, &desc)? })
+        Ok(Self {
+            gpu: Arc::clone(gpu),
+            validity: Image::new(gpu, &desc)?,
+        })
     }
 
     /// The mask, in [`Use::Sampled`] after an upload.
@@ -55,12 +60,21 @@ impl GpuMask {
         region: VoxelBox,
         before: Use,
     ) -> Result<(), Error> {
-        let part = Region { origin: region.min, extent: region.dims() };
+        let part = Region {
+            origin: region.min,
+            extent: region.dims(),
+        };
         // SAFETY: the caller's promises; the two barriers put the copy between earlier and later uses.
         unsafe {
             image_barrier(&self.gpu, cmd, &self.validity, before, Use::TransferWrite);
             buffer_to_image(&self.gpu, cmd, staging, 0, &self.validity, part)?;
-            image_barrier(&self.gpu, cmd, &self.validity, Use::TransferWrite, Use::Sampled);
+            image_barrier(
+                &self.gpu,
+                cmd,
+                &self.validity,
+                Use::TransferWrite,
+                Use::Sampled,
+            );
         }
         Ok(())
     }

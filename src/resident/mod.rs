@@ -9,8 +9,8 @@ mod texel;
 mod transfer;
 mod volume;
 
-pub use stacks::GpuStack;
 pub use mask::GpuMask;
+pub use stacks::GpuStack;
 pub use texel::{Coding, TexelFormat};
 pub use transfer::{GpuTransfer, TransferLayout};
 pub use volume::GpuVolume;

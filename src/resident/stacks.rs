@@ -5,7 +5,8 @@
 
 use super::TexelFormat;
 use crate::gpu::{
-    Buffer, Error, Gpu, Image, ImageDesc, ImageKind, Region, Sampler, Use, buffer_to_image, image_barrier,
+    Buffer, Error, Gpu, Image, ImageDesc, ImageKind, Region, Sampler, Use, buffer_to_image,
+    image_barrier,
 };
 use crate::volume::Volume;
 use ash::vk;
@@ -70,9 +71,8 @@ impl GpuStack {
         let [nx, ny, _] = volume.dims.map(|n| n as usize);
         let strides = [1, nx, nx * ny];
         let [across, down] = [1, 2].map(|step| (self.axis + step) % 3);
-        let along = move |axis: usize| {
-            (0..volume.dims[axis] as usize).map(move |i| i * strides[axis])
-        };
+        let along =
+            move |axis: usize| (0..volume.dims[axis] as usize).map(move |i| i * strides[axis]);
         let indices = slices.clone().flat_map(|slice| {
             let start = slice as usize * strides[self.axis];
             along(down).flat_map(move |v| along(across).map(move |u| start + v + u))
@@ -113,7 +113,13 @@ impl GpuStack {
         unsafe {
             image_barrier(&self.gpu, cmd, &self.slices, before, Use::TransferWrite);
             buffer_to_image(&self.gpu, cmd, staging, 0, &self.slices, region)?;
-            image_barrier(&self.gpu, cmd, &self.slices, Use::TransferWrite, Use::Sampled);
+            image_barrier(
+                &self.gpu,
+                cmd,
+                &self.slices,
+                Use::TransferWrite,
+                Use::Sampled,
+            );
         }
         Ok(())
     }

@@ -51,11 +51,17 @@ impl TexelFormat {
         };
         let wanted = match stored {
             VoxelType::U8 | VoxelType::I8 if !gpu.is_cpu() => vk::Format::R8_UNORM,
-            VoxelType::U8 | VoxelType::I8 | VoxelType::U16 | VoxelType::I16 => vk::Format::R16_UNORM,
+            VoxelType::U8 | VoxelType::I8 | VoxelType::U16 | VoxelType::I16 => {
+                vk::Format::R16_UNORM
+            }
             VoxelType::F16 => vk::Format::R16_SFLOAT,
             _ => vk::Format::R32_SFLOAT,
         };
-        let format = if is_filtered(wanted) { wanted } else { vk::Format::R32_SFLOAT };
+        let format = if is_filtered(wanted) {
+            wanted
+        } else {
+            vk::Format::R32_SFLOAT
+        };
         let (scale, offset) = match (format, stored) {
             (vk::Format::R8_UNORM | vk::Format::R16_UNORM, VoxelType::U8) => (255.0, 0.0),
             (vk::Format::R8_UNORM | vk::Format::R16_UNORM, VoxelType::I8) => (255.0, -128.0),
@@ -70,7 +76,11 @@ impl TexelFormat {
             intercept: rescale.intercept as f32,
             is_integer: scale != 1.0,
         };
-        Self { format, coding, is_filtered: is_filtered(format) }
+        Self {
+            format,
+            coding,
+            is_filtered: is_filtered(format),
+        }
     }
 
     /// Bytes of one texel.
@@ -83,7 +93,12 @@ impl TexelFormat {
     }
 
     /// Writes the texels of the voxels at `indices`, in that order, to the end of `texels`.
-    pub fn encode(&self, voxels: &Voxels, indices: impl Iterator<Item = usize>, texels: &mut Vec<u8>) {
+    pub fn encode(
+        &self,
+        voxels: &Voxels,
+        indices: impl Iterator<Item = usize>,
+        texels: &mut Vec<u8>,
+    ) {
         fn put<const N: usize>(
             texels: &mut Vec<u8>,
             indices: impl Iterator<Item = usize>,
@@ -100,9 +115,13 @@ impl TexelFormat {
             (vk::Format::R16_UNORM, Voxels::I8(v)) => put(texels, indices, |i| [unsigned(v[i]); 2]),
             (vk::Format::R16_UNORM, Voxels::U16(v)) => put(texels, indices, |i| v[i].to_le_bytes()),
             (vk::Format::R16_UNORM, Voxels::I16(v)) => {
-                put(texels, indices, |i| (v[i].wrapping_sub(i16::MIN) as u16).to_le_bytes());
+                put(texels, indices, |i| {
+                    (v[i].wrapping_sub(i16::MIN) as u16).to_le_bytes()
+                });
             }
-            (vk::Format::R16_SFLOAT, Voxels::F16(v)) => put(texels, indices, |i| v[i].to_le_bytes()),
+            (vk::Format::R16_SFLOAT, Voxels::F16(v)) => {
+                put(texels, indices, |i| v[i].to_le_bytes())
+            }
             (_, voxels) => put(texels, indices, |i| voxels.stored(i).to_le_bytes()),
         }
     }
@@ -113,8 +132,18 @@ mod tests {
     use super::*;
 
     fn format(format: vk::Format) -> TexelFormat {
-        let coding = Coding { scale: 1.0, offset: 0.0, slope: 1.0, intercept: 0.0, is_integer: true };
-        TexelFormat { format, coding, is_filtered: true }
+        let coding = Coding {
+            scale: 1.0,
+            offset: 0.0,
+            slope: 1.0,
+            intercept: 0.0,
+            is_integer: true,
+        };
+        TexelFormat {
+            format,
+            coding,
+            is_filtered: true,
+        }
     }
 
     #[test]
@@ -125,7 +154,10 @@ mod tests {
             0..4,
             &mut texels,
         );
-        let codes: Vec<_> = texels.chunks(2).map(|b| u16::from_le_bytes([b[0], b[1]])).collect();
+        let codes: Vec<_> = texels
+            .chunks(2)
+            .map(|b| u16::from_le_bytes([b[0], b[1]]))
+            .collect();
         assert_eq!(codes, [0, 32767, 32768, 65535]);
     }
 
@@ -133,8 +165,10 @@ mod tests {
     fn eight_bit_codes_fill_sixteen_bits_with_the_same_fraction() {
         let mut texels = Vec::new();
         format(vk::Format::R16_UNORM).encode(&Voxels::U8(vec![0, 1, 200, 255]), 0..4, &mut texels);
-        let fractions: Vec<_> =
-            texels.chunks(2).map(|b| f64::from(u16::from_le_bytes([b[0], b[1]])) / 65535.0).collect();
+        let fractions: Vec<_> = texels
+            .chunks(2)
+            .map(|b| f64::from(u16::from_le_bytes([b[0], b[1]])) / 65535.0)
+            .collect();
         assert_eq!(fractions, [0.0, 1.0 / 255.0, 200.0 / 255.0, 1.0]);
     }
 }

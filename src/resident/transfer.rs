@@ -1,7 +1,8 @@
 //! A transfer function on the device: a table for speed, its control points for exactness.
 
 use crate::gpu::{
-    Buffer, Error, Gpu, Image, ImageDesc, ImageKind, Memory, Region, Use, buffer_to_image, image_barrier,
+    Buffer, Error, Gpu, Image, ImageDesc, ImageKind, Memory, Region, Use, buffer_to_image,
+    image_barrier,
 };
 use crate::picture::ColorSpace;
 use crate::shaders::TABLE_WIDTH;
@@ -66,8 +67,18 @@ impl GpuTransfer {
                 reference_length: reference_length as f32,
             },
             table: Image::new(gpu, &desc)?,
-            staging: filled(gpu, &table.entries, vk::BufferUsageFlags::TRANSFER_SRC, "transfer staging")?,
-            points: filled(gpu, &points.entries, vk::BufferUsageFlags::STORAGE_BUFFER, "transfer points")?,
+            staging: filled(
+                gpu,
+                &table.entries,
+                vk::BufferUsageFlags::TRANSFER_SRC,
+                "transfer staging",
+            )?,
+            points: filled(
+                gpu,
+                &points.entries,
+                vk::BufferUsageFlags::STORAGE_BUFFER,
+                "transfer points",
+            )?,
         })
     }
 
@@ -97,9 +108,21 @@ impl GpuTransfer {
         let region = Region::whole(&self.table);
         // SAFETY: the caller's promises; the table is new and the staging buffer is full.
         unsafe {
-            image_barrier(&self.gpu, cmd, &self.table, Use::Nothing, Use::TransferWrite);
+            image_barrier(
+                &self.gpu,
+                cmd,
+                &self.table,
+                Use::Nothing,
+                Use::TransferWrite,
+            );
             buffer_to_image(&self.gpu, cmd, &self.staging, 0, &self.table, region)?;
-            image_barrier(&self.gpu, cmd, &self.table, Use::TransferWrite, Use::Sampled);
+            image_barrier(
+                &self.gpu,
+                cmd,
+                &self.table,
+                Use::TransferWrite,
+                Use::Sampled,
+            );
         }
         Ok(())
     }

@@ -2,7 +2,8 @@
 
 use super::TexelFormat;
 use crate::gpu::{
-    Buffer, Error, Gpu, Image, ImageDesc, ImageKind, Region, Sampler, Use, buffer_to_image, image_barrier,
+    Buffer, Error, Gpu, Image, ImageDesc, ImageKind, Region, Sampler, Use, buffer_to_image,
+    image_barrier,
 };
 use crate::volume::{Grid, Volume, VoxelBox};
 use ash::vk;
@@ -64,7 +65,8 @@ impl GpuVolume {
     /// Texels of `region`, as [`GpuVolume::record_upload`] wants them in a staging buffer.
     pub fn staged(&self, volume: &Volume, region: VoxelBox) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(self.staging_bytes(region) as usize);
-        self.texel.encode(&volume.voxels, indices(volume, region), &mut bytes);
+        self.texel
+            .encode(&volume.voxels, indices(volume, region), &mut bytes);
         bytes
     }
 
@@ -90,12 +92,21 @@ impl GpuVolume {
         region: VoxelBox,
         before: Use,
     ) -> Result<(), Error> {
-        let part = Region { origin: region.min, extent: region.dims() };
+        let part = Region {
+            origin: region.min,
+            extent: region.dims(),
+        };
         // SAFETY: the caller's promises; the two barriers put the copy between earlier and later uses.
         unsafe {
             image_barrier(&self.gpu, cmd, &self.values, before, Use::TransferWrite);
             buffer_to_image(&self.gpu, cmd, staging, 0, &self.values, part)?;
-            image_barrier(&self.gpu, cmd, &self.values, Use::TransferWrite, Use::Sampled);
+            image_barrier(
+                &self.gpu,
+                cmd,
+                &self.values,
+                Use::TransferWrite,
+                Use::Sampled,
+            );
         }
         Ok(())
     }
@@ -107,6 +118,7 @@ pub(super) fn indices(volume: &Volume, region: VoxelBox) -> impl Iterator<Item =
     let [x, y, z] = [0, 1, 2].map(|k| region.min[k] as usize..region.max[k] as usize);
     z.flat_map(move |z| {
         let x = x.clone();
-        y.clone().flat_map(move |y| x.clone().map(move |x| (z * ny + y) * nx + x))
+        y.clone()
+            .flat_map(move |y| x.clone().map(move |x| (z * ny + y) * nx + x))
     })
 }

@@ -13,7 +13,11 @@ pub fn projected_value<R: Real>(mode: Mode, [value, weight, ..]: [R; 4]) -> Opti
     if weight == R::from_f64(0.0) {
         return None;
     }
-    Some(if mode == Mode::Average { value / weight } else { value })
+    Some(if mode == Mode::Average {
+        value / weight
+    } else {
+        value
+    })
 }
 
 /// Premultiplied colour of what a technique left. `classify_once` gives (red, green, blue, opacity).

@@ -33,9 +33,16 @@ pub enum Drawn {
 impl Drawn {
     /// The fragment shader of a slicer.
     pub fn shader_name(self, slicer: &str, words: &Words) -> String {
-        let Words { filter, holes, transfer, .. } = words;
+        let Words {
+            filter,
+            holes,
+            transfer,
+            ..
+        } = words;
         match self {
-            Self::Picture(Mode::Composite) => format!("{slicer}.composite.{filter}.{holes}.{transfer}"),
+            Self::Picture(Mode::Composite) => {
+                format!("{slicer}.composite.{filter}.{holes}.{transfer}")
+            }
             Self::Picture(Mode::Mip | Mode::Minip) => format!("{slicer}.extreme.{filter}.{holes}"),
             Self::Picture(Mode::Average | Mode::Xray) => format!("{slicer}.sum.{filter}.{holes}"),
             Self::Count => format!("{slicer}.count.nearest.none"),

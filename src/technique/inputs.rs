@@ -100,7 +100,11 @@ impl Words {
                 Lattice::Ray => "ray",
                 Lattice::Planes => "planes",
             },
-            transfer: if settings.conformance { "points" } else { "table" },
+            transfer: if settings.conformance {
+                "points"
+            } else {
+                "table"
+            },
         }
     }
 }

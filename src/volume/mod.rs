@@ -9,11 +9,14 @@
 //! Knows nothing of Vulkan.
 
 mod grid;
+pub mod sample;
 mod source;
 mod voxels;
 
 pub use grid::Grid;
-pub use source::{Format, Header, Limits, Pick, Problem, ReadError, Rescale, Source, VoxelBox};
+pub use source::{
+    Format, Header, Limits, Loss, Pick, Piece, Problem, ReadError, Rescale, Source, VoxelBox,
+};
 pub use voxels::{VoxelType, Voxels};
 
 use glam::DAffine3;

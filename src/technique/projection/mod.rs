@@ -22,9 +22,17 @@ impl Projection {
     /// # Errors
     /// Where the device refuses.
     pub fn new(gpu: &Arc<Gpu>, mode: Mode, words: &Words) -> Result<Self, Error> {
-        let Words { filter, holes, lattice, .. } = words;
+        let Words {
+            filter,
+            holes,
+            lattice,
+            ..
+        } = words;
         let name = format!("projection.{}.{lattice}.{filter}.{holes}", mode_word(mode));
-        Ok(Self { gpu: Arc::clone(gpu), pipeline: ComputePipeline::new(gpu, shader(&name))? })
+        Ok(Self {
+            gpu: Arc::clone(gpu),
+            pipeline: ComputePipeline::new(gpu, shader(&name))?,
+        })
     }
 
     /// Binds inputs and the image that a recording fills, an R32G32B32A32_SFLOAT storage image:

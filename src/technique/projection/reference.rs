@@ -26,7 +26,11 @@ pub struct Projected<R> {
 
 impl<R: Real> Default for Projected<R> {
     fn default() -> Self {
-        Self { value: R::from_f64(0.0), weight: R::from_f64(0.0), depth: None }
+        Self {
+            value: R::from_f64(0.0),
+            weight: R::from_f64(0.0),
+            depth: None,
+        }
     }
 }
 
@@ -44,7 +48,11 @@ impl<R: Real> Projected<R> {
             }
         };
         if is_first || wins {
-            *self = Self { value, weight: R::from_f64(1.0), depth: Some(segment.t) };
+            *self = Self {
+                value,
+                weight: R::from_f64(1.0),
+                depth: Some(segment.t),
+            };
         }
     }
 }

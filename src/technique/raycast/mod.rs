@@ -21,9 +21,17 @@ impl Raycast {
     /// # Errors
     /// Where the device refuses.
     pub fn new(gpu: &Arc<Gpu>, words: &Words) -> Result<Self, Error> {
-        let Words { filter, holes, lattice, transfer } = words;
+        let Words {
+            filter,
+            holes,
+            lattice,
+            transfer,
+        } = words;
         let name = format!("raycast.composite.{lattice}.{filter}.{holes}.{transfer}");
-        Ok(Self { gpu: Arc::clone(gpu), pipeline: ComputePipeline::new(gpu, shader(&name))? })
+        Ok(Self {
+            gpu: Arc::clone(gpu),
+            pipeline: ComputePipeline::new(gpu, shader(&name))?,
+        })
     }
 
     /// Binds inputs and the two images that a recording fills, both R32G32B32A32_SFLOAT storage images:
@@ -31,8 +39,16 @@ impl Raycast {
     ///
     /// # Errors
     /// Where an input is missing.
-    pub fn bind(&self, inputs: &Inputs, picture: &Image, layers: &Image) -> Result<Bindings, Error> {
-        let outputs = [("picture", Resource::written(picture)), ("layers", Resource::written(layers))];
+    pub fn bind(
+        &self,
+        inputs: &Inputs,
+        picture: &Image,
+        layers: &Image,
+    ) -> Result<Bindings, Error> {
+        let outputs = [
+            ("picture", Resource::written(picture)),
+            ("layers", Resource::written(layers)),
+        ];
         inputs.bind(&self.gpu, self.pipeline.layout(), &outputs)
     }
 

@@ -2,9 +2,9 @@
 
 use crate::real::Real;
 use crate::shaders::Frame;
+use crate::technique::Lattice;
 use crate::technique::composite::Composite;
 use crate::technique::march::march;
-use crate::technique::Lattice;
 use std::ops::ControlFlow;
 
 /// What one ray gathers, and how many samples it took. `value_at` filters the volume at a position in voxel

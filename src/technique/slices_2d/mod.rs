@@ -1,12 +1,13 @@
 //! 2D texture slicing: three stacks of axis-aligned slices, blended in hardware.
 
-pub mod reference;nmod stack;
+pub mod reference;
+mod stack;
 
 pub use stack::{set_slices, stack_axis};
 
 use super::blend::{Drawn, operator};
 use super::{Inputs, Order, Words};
-use crate::gpu::{Bindings, Error, Gpu, RasterDesc, RasterPipeline};
+use crate::gpu::{Bindings, Error, Gpu, RasterDesc, RasterPipeline, set_area};
 use crate::shaders::shader;
 use ash::vk;
 use std::sync::Arc;
@@ -39,7 +40,10 @@ impl Slices2d {
             color_formats: &[format],
             blend: operator(drawn, order),
         };
-        Ok(Self { gpu: Arc::clone(gpu), pipeline: RasterPipeline::new(gpu, &desc)? })
+        Ok(Self {
+            gpu: Arc::clone(gpu),
+            pipeline: RasterPipeline::new(gpu, &desc)?,
+        })
     }
 
     /// Binds the inputs.
@@ -67,8 +71,9 @@ impl Slices2d {
     ) {
         // SAFETY: the caller's promises; the bindings come from `bind`.
         unsafe {
-            self.pipeline.set_area(cmd, extent);
-            self.pipeline.draw(cmd, bindings, &[offset], VERTICES, count);
+            set_area(&self.gpu, cmd, extent);
+            self.pipeline
+                .draw(cmd, bindings, &[offset], VERTICES, count);
         }
     }
 }

@@ -16,13 +16,18 @@ pub fn stack_axis(view: &View) -> usize {
     let forward = view.rays().forward;
     let towards = match view.camera.projection {
         Projection::Orthographic { .. } => forward,
-        Projection::Perspective { .. } => {
-            (view.grid.center() - view.camera.eye).try_normalize().unwrap_or(forward)
-        }
+        Projection::Perspective { .. } => (view.grid.center() - view.camera.eye)
+            .try_normalize()
+            .unwrap_or(forward),
     };
-    let facing = view.grid.voxel_rows().map(|row| row.normalize().dot(towards).abs());
+    let facing = view
+        .grid
+        .voxel_rows()
+        .map(|row| row.normalize().dot(towards).abs());
     let largest = facing.into_iter().fold(0.0, f64::max);
-    (0..3).find(|&k| facing[k] >= largest - TIE).expect("one of three is the largest")
+    (0..3)
+        .find(|&k| facing[k] >= largest - TIE)
+        .expect("one of three is the largest")
 }
 
 /// Fills in the slice parameters for one stack and returns how many slices to draw.
@@ -55,7 +60,11 @@ pub fn set_slices(view: &View, axis: usize, fields: &mut FrameFields) -> u32 {
 fn first_slice_above_eye(view: &View, axis: usize) -> i32 {
     match view.camera.projection {
         Projection::Perspective { .. } => {
-            let eye = view.grid.world_from_voxel.inverse().transform_point3(view.camera.eye);
+            let eye = view
+                .grid
+                .world_from_voxel
+                .inverse()
+                .transform_point3(view.camera.eye);
             // Outside i32 the cast goes to its ends, which is where such an eye is.
             (eye[axis] - 0.5).floor() as i32 + 1
         }

@@ -34,5 +34,8 @@ fn plane_range(view: &View) -> [i32; 2] {
     let eye = forward.dot(view.camera.eye - view.grid.center());
     let lowest = (0..8).map(height).fold(f64::INFINITY, f64::min).max(eye);
     let plane_at = |height: f64| height / step - 0.5;
-    [plane_at(lowest).floor() as i32, plane_at(highest).ceil() as i32]
+    [
+        plane_at(lowest).floor() as i32,
+        plane_at(highest).ceil() as i32,
+    ]
 }
