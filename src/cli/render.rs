@@ -108,14 +108,15 @@ impl Render {
         let load_ms = ms_since(start);
 
         progress.stage("prepare", 0, 1);
-        let mut renderer = Renderer::new(Job {
+        let job = Job {
             volume: &volume,
             classification: &classification,
             settings: &settings,
             extent_pixels,
             layers: &layers,
             device: scene.device.as_deref(),
-        })?;
+        };
+        let mut renderer = Renderer::new(job, &camera)?;
         let mut frames = Vec::new();
         let mut last = None;
         for done in 0..self.repeat {
@@ -148,8 +149,8 @@ impl Render {
         }
         if let Some(path) = &self.timings {
             let timings = Timings {
-                device: renderer.device.clone(),
-                driver: renderer.driver.clone(),
+                device: renderer.device(),
+                driver: renderer.driver(),
                 load_ms,
                 upload_ms: renderer.upload_ms,
                 prepare_ms: renderer.prepare_ms,
@@ -157,7 +158,7 @@ impl Render {
                 frames,
                 samples: samples(&picture),
                 peak_rss_bytes: peak_rss_bytes(),
-                device_bytes: renderer.device_bytes,
+                device_bytes: renderer.device_bytes(),
             };
             write_whole(path, timings.json().as_bytes(), self.force, gate)?;
         }
