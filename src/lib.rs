@@ -30,6 +30,8 @@
 //! `format` and `picture` touch files. There is no global state. The same inputs give the same bytes.
 
 pub mod camera;
+#[cfg(feature = "cli")]
+pub mod cli;
 pub mod color;
 #[cfg(feature = "files")]
 pub mod format;
