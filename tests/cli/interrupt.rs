@@ -1,10 +1,7 @@
 //! An interrupt ends the program at once, with exit code 130 and without half a file; a bug of ours ends it
 //! with a sentence.
-#![cfg(all(feature = "cli", unix))]
 
-mod cli_shared;
-
-use cli_shared::Folder;
+use crate::person::Folder;
 use std::{
     io::{BufRead, BufReader},
     process::{Command, Stdio},
@@ -43,12 +40,12 @@ fn a_program_with_a_bug() {
 #[test]
 fn a_bug_says_so_with_the_version_and_where_to_take_it() {
     let output = Command::new(std::env::current_exe().expect("this test"))
-        .args(["--ignored", "--exact", "a_program_with_a_bug", "--nocapture"])
+        .args(["--ignored", "--exact", "interrupt::a_program_with_a_bug", "--nocapture"])
         .output()
         .expect("the test runs itself");
     let err = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(101), "{err}");
-    for word in [env!("CARGO_PKG_VERSION"), "bug in stratavox", "please report", "the roof", "cli_interrupt.rs"] {
+    for word in [env!("CARGO_PKG_VERSION"), "bug in stratavox", "please report", "the roof", "interrupt.rs"] {
         assert!(err.contains(word), "no {word:?} in {err}");
     }
     for word in ["panicked at", "RUST_BACKTRACE", "\u{1b}"] {

@@ -1,9 +1,6 @@
 //! Words that cannot be followed are refused by name, with exit code 2, before anything is read.
-#![cfg(feature = "cli")]
 
-mod cli_shared;
-
-use cli_shared::Folder;
+use crate::person::Folder;
 
 #[test]
 fn a_word_that_is_not_built_exits_2_and_is_named() {

@@ -1,9 +1,6 @@
 //! Inputs that cannot be read and outputs that cannot be written: their exit codes, and nothing half done.
-#![cfg(feature = "cli")]
 
-mod cli_shared;
-
-use cli_shared::Folder;
+use crate::person::Folder;
 use std::{fs, process::Stdio};
 
 const SMALL: &str = "--size 8x8 --device reference";
@@ -48,7 +45,7 @@ fn an_existing_output_is_kept_unless_forced() {
     folder.run(&words).assert_refused(4, &["a.png", "exists", "--force"]);
     assert_eq!(fs::read(folder.path("a.png")).expect("a file"), b"mine");
     folder.run(&format!("{words} --force")).assert_done();
-    cli_shared::assert_begins(&folder.path("a.png"), b"\x89PNG");
+    crate::person::assert_begins(&folder.path("a.png"), b"\x89PNG");
     assert_eq!(folder.names(), ["a.png"]);
 }
 
