@@ -8,10 +8,17 @@
 //!
 //! Knows nothing of Vulkan.
 
+pub mod field;
+mod holes;
+pub mod phantom;
+mod read;
+pub mod sample;
 mod source;
+mod statistics;
 mod voxels;
 
 pub use source::{Format, Header, Limits, Pick, Problem, ReadError, Rescale, Source, VoxelBox};
+pub use statistics::{Histogram, Statistics};
 pub use voxels::{VoxelType, Voxels};
 
 use glam::DAffine3;
@@ -37,6 +44,12 @@ pub struct Volume {
 }
 
 impl Volume {
+    /// How many voxels hold no data.
+    pub fn no_data_count(&self) -> u64 {
+        let count = |mask: &Vec<u8>| mask.iter().filter(|&&valid| valid == 0).count() as u64;
+        self.validity.as_ref().map_or(0, count)
+    }
+
     /// Length of each column of `world_from_voxel`: the voxel's size in world length.
     pub fn spacing(&self) -> [f64; 3] {
         let m = self.world_from_voxel.matrix3;
