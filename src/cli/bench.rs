@@ -108,6 +108,7 @@ impl Bench {
             extent_pixels: scene.picture.extent_pixels()?,
             layers: &[],
             device: scene.device.as_deref(),
+            first_camera: &cameras[0],
         })?;
         // Pipelines are made on first use: that is not what is measured.
         renderer.draw(&cameras[0])?;
@@ -163,6 +164,7 @@ impl Bench {
                 extent_pixels,
                 layers: &[],
                 device: scene.device.as_deref(),
+                first_camera: &camera,
             })?;
             renderer.draw(&camera)?;
             let frames = (0..self.repeat).map(|_| timed(&mut renderer, &camera));

@@ -115,6 +115,7 @@ impl Render {
             extent_pixels,
             layers: &layers,
             device: scene.device.as_deref(),
+            first_camera: &camera,
         })?;
         let mut frames = Vec::new();
         let mut last = None;

@@ -1,14 +1,16 @@
 //! A renderer for a volume, on a Vulkan device or on the CPU alone: the one place of the program that makes one.
 
-use super::{Error, flags::Classification};
+use super::{Error, flags::Classification, timings::ms_since};
 use crate::{
     camera::Camera,
+    gpu::{DeviceChoice, Headless, Options},
     offscreen,
     picture::{LayerKind, Picture},
     scene::Scene,
     technique::Settings,
     volume::Volume,
 };
+use std::time::Instant;
 
 /// What stays the same from picture to picture.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +27,23 @@ pub struct Job<'a> {
     pub layers: &'a [LayerKind],
     /// The word of `--device`.
     pub device: Option<&'a str>,
+    /// The camera of the first picture: what it needs is brought to the device at once.
+    pub first_camera: &'a Camera,
+}
+
+impl<'a> Job<'a> {
+    fn scene(&self, camera: &'a Camera) -> Scene<'a> {
+        Scene {
+            volume: self.volume,
+            transfer: match self.classification {
+                Classification::Function(function) => Some(function),
+                Classification::RangeOfPicture => None,
+            },
+            camera,
+            extent_pixels: self.extent_pixels,
+            settings: self.settings,
+        }
+    }
 }
 
 /// A renderer that is ready to draw.
@@ -60,7 +79,7 @@ impl<'a> Renderer<'a> {
         if job.device == Some(REFERENCE) {
             return Ok(Self::reference(job));
         }
-        Err(Error::NotBuilt("drawing with Vulkan".to_owned()))
+        Self::vulkan(job)
     }
 
     /// The picture that this camera sees, in memory when the call returns.
@@ -68,18 +87,39 @@ impl<'a> Renderer<'a> {
         (self.draw)(camera)
     }
 
+    fn vulkan(job: Job<'a>) -> Result<Self, Error> {
+        let start = Instant::now();
+        let choice = job.device.map(DeviceChoice::from).unwrap_or_default();
+        let headless = Headless::new(&choice, &Options::default())?;
+        let identity = headless.gpu().identity();
+        let device = identity.name.clone();
+        let driver = format!("{} {}", identity.driver_name, identity.driver_info);
+        let mut renderer = offscreen::Renderer::new(headless, job.volume)?;
+        let prepare_ms = ms_since(start);
+        let start = Instant::now();
+        renderer.upload(&job.scene(job.first_camera))?;
+        let upload_ms = ms_since(start);
+        let device_bytes = renderer.device().gpu().device_bytes();
+        let draw = move |camera: &Camera| {
+            let rendered = renderer.render(&job.scene(camera), job.layers)?;
+            Ok(Frame {
+                picture: rendered.picture,
+                gpu_ms: rendered.gpu_ms,
+            })
+        };
+        Ok(Self {
+            device,
+            driver,
+            upload_ms,
+            prepare_ms,
+            device_bytes,
+            draw: Box::new(draw),
+        })
+    }
+
     fn reference(job: Job<'a>) -> Self {
         let draw = move |camera: &Camera| {
-            let scene = Scene {
-                volume: job.volume,
-                transfer: match job.classification {
-                    Classification::Function(function) => Some(function),
-                    Classification::RangeOfPicture => None,
-                },
-                camera,
-                extent_pixels: job.extent_pixels,
-                settings: job.settings,
-            };
+            let scene = job.scene(camera);
             let mut picture = offscreen::reference::render::<f32>(&scene)
                 .map_err(|error| Error::Limit(error.to_string()))?;
             keep_layers(&mut picture, job.layers)?;
