@@ -343,7 +343,8 @@ fn every_blend_is_its_formula() {
             .run(|cmd| unsafe {
                 target.enter(&gpu, cmd, Use::ColorTarget);
                 begin_rendering(&gpu, cmd, &[(target.view, Load::Clear(old))], target.extent);
-                pipeline.draw(cmd, &bindings, &[0], 3);
+                set_area(&gpu, cmd, target.extent);
+                pipeline.draw(cmd, &bindings, &[0], 3, 1);
                 end_rendering(&gpu, cmd);
                 target.leave(&gpu, cmd, Use::ColorTarget);
                 image_to_buffer(&gpu, cmd, &image, Region::whole(&image), &back, 0)

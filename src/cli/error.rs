@@ -13,7 +13,7 @@
 //! | 130 | interrupted |
 
 use crate::{
-    gpu,
+    gpu, offscreen,
     picture::{OutputError, PictureError},
     volume::{Problem, ReadError},
 };
@@ -72,6 +72,16 @@ pub enum Error {
     /// More than there is, or than is allowed.
     #[error("{0}")]
     Limit(String),
+}
+
+impl From<offscreen::Error> for Error {
+    fn from(error: offscreen::Error) -> Self {
+        match error {
+            offscreen::Error::Gpu(error) => Self::Device(error),
+            offscreen::Error::Technique(error) => Self::Limit(error.to_string()),
+            offscreen::Error::NoLayer { .. } => Self::NotBuilt(error.to_string()),
+        }
+    }
 }
 
 impl Error {

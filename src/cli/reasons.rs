@@ -171,6 +171,7 @@ mod tests {
                 rescale: Rescale::default(),
                 validity: None,
                 hounsfield: false,
+                loss: Default::default(),
                 value_range: [0.0, 7.0],
             },
             camera: Camera {

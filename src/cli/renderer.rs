@@ -68,10 +68,10 @@ impl<'a> Renderer<'a> {
         let start = Instant::now();
         let choice = job.device.map(DeviceChoice::from).unwrap_or_default();
         let device = Headless::new(&choice, &Options::default())?;
-        let mut renderer = offscreen::Renderer::new(device, job.volume).map_err(refused)?;
+        let mut renderer = offscreen::Renderer::new(device, job.volume)?;
         let prepare_ms = ms_since(start);
         let start = Instant::now();
-        renderer.upload(&job.scene(camera)).map_err(refused)?;
+        renderer.upload(&job.scene(camera))?;
         Ok(Self {
             job,
             on_device: Some(Box::new(renderer)),
@@ -84,14 +84,14 @@ impl<'a> Renderer<'a> {
     pub fn draw(&mut self, camera: &Camera) -> Result<Frame, Error> {
         let scene = self.job.scene(camera);
         if let Some(renderer) = &mut self.on_device {
-            let rendered = renderer.render(&scene, self.job.layers).map_err(refused)?;
+            let rendered = renderer.render(&scene, self.job.layers)?;
             return Ok(Frame {
                 picture: rendered.picture,
                 gpu_ms: rendered.gpu_ms,
             });
         }
-        let mut picture = reference::render::<f32>(&scene)
-            .map_err(|error| refused(offscreen::Error::Technique(error)))?;
+        let mut picture =
+            reference::render::<f32>(&scene).map_err(offscreen::Error::Technique)?;
         let mut made = std::mem::take(&mut picture.layers);
         for kind in self.job.layers {
             let at = made.iter().position(|layer| layer.kind == *kind);
@@ -168,11 +168,4 @@ fn check_layers(job: &Job) -> Result<(), Error> {
         });
     }
     Ok(())
-}
-
-fn refused(error: offscreen::Error) -> Error {
-    match error {
-        offscreen::Error::Gpu(error) => Error::Device(error),
-        error => Error::Limit(error.to_string()),
-    }
 }

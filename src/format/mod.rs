@@ -32,6 +32,7 @@ mod metaimage;
 mod nrrd;
 mod place;
 mod problem;
+pub mod raw;
 mod select;
 mod sequence;
 mod stream;

@@ -8,15 +8,21 @@
 //!
 //! Knows nothing of Vulkan.
 
+pub mod field;
 mod grid;
+mod holes;
+pub mod phantom;
+mod read;
 pub mod sample;
 mod source;
+mod statistics;
 mod voxels;
 
 pub use grid::Grid;
 pub use source::{
     Format, Header, Limits, Loss, Pick, Piece, Problem, ReadError, Rescale, Source, VoxelBox,
 };
+pub use statistics::{Histogram, Statistics};
 pub use voxels::{VoxelType, Voxels};
 
 use glam::DAffine3;
@@ -37,11 +43,19 @@ pub struct Volume {
     pub validity: Option<Vec<u8>>,
     /// True where values are Hounsfield units.
     pub hounsfield: bool,
+    /// What rounding stored numbers to f32 changed.
+    pub loss: Loss,
     /// Smallest and largest valid value; `[0.0, 0.0]` where none is valid.
     pub value_range: [f64; 2],
 }
 
 impl Volume {
+    /// How many voxels hold no data.
+    pub fn no_data_count(&self) -> u64 {
+        let count = |mask: &Vec<u8>| mask.iter().filter(|&&valid| valid == 0).count() as u64;
+        self.validity.as_ref().map_or(0, count)
+    }
+
     /// Where the voxels lie.
     pub fn grid(&self) -> Grid {
         Grid {

@@ -71,6 +71,8 @@ pub struct Pick {
 /// What a source holds. Nothing in it can be wrong: dims are not zero, the affine can be inverted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Header {
+    /// The file, folder or phantom, as errors name it.
+    pub path: PathBuf,
     /// The kind of file.
     pub format: Format,
     /// Voxels along x, y, z.

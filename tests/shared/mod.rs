@@ -35,20 +35,8 @@ pub fn volume_of(dims: [u32; 3], affine: DAffine3, field: impl Fn(DVec3) -> f64)
     let at = |x: u32, y: u32, z: u32| field(dvec3(x.into(), y.into(), z.into()) + 0.5) as f32;
     let voxels = (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| (x, y, z))));
     let values: Vec<f32> = voxels.map(|(x, y, z)| at(x, y, z)).collect();
-    let range = values
-        .iter()
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &v| {
-            [low.min(v.into()), high.max(v.into())]
-        });
-    Volume {
-        dims,
-        world_from_voxel: affine,
-        voxels: Voxels::F32(values),
-        rescale: Rescale::default(),
-        validity: None,
-        hounsfield: false,
-        value_range: range,
-    }
+    Volume::from_voxels(dims, affine, Voxels::F32(values), Rescale::default(), None)
+        .expect("a right volume")
 }
 
 /// A field that varies along every axis, between about 0 and 1.

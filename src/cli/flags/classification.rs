@@ -186,6 +186,7 @@ mod tests {
             rescale: Rescale::default(),
             validity: None,
             hounsfield: false,
+            loss: Default::default(),
             value_range: [0.0, 70.0],
         }
     }
