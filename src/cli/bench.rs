@@ -208,7 +208,10 @@ fn window_of(job: Job, camera: &Camera) -> Result<Option<Classification>, Error>
         ..job
     };
     let picture = Renderer::new(job, camera)?.draw(camera)?.picture;
-    let values = picture.layers[0].values.iter().filter(|value| !value.is_nan());
+    let values = picture.layers[0]
+        .values
+        .iter()
+        .filter(|value| !value.is_nan());
     let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| {
         [low.min(value.into()), high.max(value.into())]
     });

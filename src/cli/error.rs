@@ -132,7 +132,9 @@ impl Error {
                 _ => None,
             },
             Self::Device(gpu::Error::Limit { .. } | gpu::Error::OutOfMemory { .. }) => None,
-            Self::Device(gpu::Error::Format { .. }) => Some("--technique raycast needs no blending"),
+            Self::Device(gpu::Error::Format { .. }) => {
+                Some("--technique raycast needs no blending")
+            }
             Self::Device(_) => Some(
                 "`stratavox devices` says what is here; --device reference draws without Vulkan",
             ),

@@ -1,6 +1,11 @@
 //! `stratavox info`: what a volume is, before anything is drawn.
 
-use super::{Error, error::visible, flags::InputFlags, output::say};
+use super::{
+    Error,
+    error::visible,
+    flags::InputFlags,
+    output::{say, say_aside},
+};
 use crate::volume::{Grid, Header, Limits, Statistics};
 use clap::Args;
 use glam::DVec3;
@@ -56,7 +61,7 @@ impl Info {
         let report = report(header, &statistics);
         if self.json {
             for note in &header.notes {
-                eprint!("stratavox: {}\n", visible(note));
+                say_aside(note);
             }
             let json = serde_json::to_string_pretty(&report).expect("numbers as JSON");
             say(&format!("{json}\n"))

@@ -207,7 +207,18 @@ pub fn load(scene: &SceneFlags, progress: &Progress) -> Result<Volume, Error> {
         progress.note(note);
     }
     let whole = source.header().whole();
-    Ok(Volume::read(source.as_ref(), pick, whole, &limits)?)
+    let volume = Volume::read(source.as_ref(), pick, whole, &limits)?;
+    if !volume.loss.is_none() {
+        let crate::volume::Loss { changed, worst } = volume.loss;
+        progress.note(&format!(
+            "{changed} voxels were rounded to 32-bit floats, by at most {worst}"
+        ));
+    }
+    let no_data = volume.no_data_count();
+    if no_data > 0 {
+        progress.note(&format!("{no_data} voxels hold no data"));
+    }
+    Ok(volume)
 }
 
 /// Samples that a picture took, where they were counted.

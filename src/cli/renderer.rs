@@ -90,8 +90,7 @@ impl<'a> Renderer<'a> {
                 gpu_ms: rendered.gpu_ms,
             });
         }
-        let mut picture =
-            reference::render::<f32>(&scene).map_err(offscreen::Error::Technique)?;
+        let mut picture = reference::render::<f32>(&scene).map_err(offscreen::Error::Technique)?;
         let mut made = std::mem::take(&mut picture.layers);
         for kind in self.job.layers {
             let at = made.iter().position(|layer| layer.kind == *kind);
@@ -157,7 +156,9 @@ fn check_layers(job: &Job) -> Result<(), Error> {
     } = *job.settings;
     for layer in job.layers {
         let missing = match layer {
-            LayerKind::Value if mode == Mode::Composite => "a mode that projects, such as --mode mip",
+            LayerKind::Value if mode == Mode::Composite => {
+                "a mode that projects, such as --mode mip"
+            }
             LayerKind::Transmittance if mode != Mode::Composite => "--mode composite",
             LayerKind::Depth if technique != Technique::Raycast => "--technique raycast",
             _ => continue,

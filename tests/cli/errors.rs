@@ -14,11 +14,23 @@ fn an_input_that_is_not_there_or_not_a_volume_exits_3() {
         ("info nowhere.nrrd".to_owned(), "nowhere.nrrd"),
         ("info text.nrrd".to_owned(), "text.nrrd"),
         ("info phantom:nobody".to_owned(), "nobody"),
-        (format!("render nowhere.nrrd -o a.png {SMALL}"), "nowhere.nrrd"),
-        (format!("render phantom:fog,n=8 -o a.png {SMALL} --tf nowhere.json"), "nowhere.json"),
-        (format!("render --scene nowhere.json -o a.png {SMALL}"), "nowhere.json"),
+        (
+            format!("render nowhere.nrrd -o a.png {SMALL}"),
+            "nowhere.nrrd",
+        ),
+        (
+            format!("render phantom:fog,n=8 -o a.png {SMALL} --tf nowhere.json"),
+            "nowhere.json",
+        ),
+        (
+            format!("render --scene nowhere.json -o a.png {SMALL}"),
+            "nowhere.json",
+        ),
         (format!("render --scene bad.json -o a.png {SMALL}"), "fow"),
-        ("bench phantom:fog,n=8 --cameras nowhere.json".to_owned(), "nowhere.json"),
+        (
+            "bench phantom:fog,n=8 --cameras nowhere.json".to_owned(),
+            "nowhere.json",
+        ),
         ("compare a.png b.png".to_owned(), "a.png"),
     ] {
         folder.run(&words).assert_refused(3, &[name]);
@@ -42,7 +54,9 @@ fn an_existing_output_is_kept_unless_forced() {
     let folder = Folder::new();
     folder.file("a.png", "mine");
     let words = format!("render phantom:fog,n=8 -o a.png {SMALL}");
-    folder.run(&words).assert_refused(4, &["a.png", "exists", "--force"]);
+    folder
+        .run(&words)
+        .assert_refused(4, &["a.png", "exists", "--force"]);
     assert_eq!(fs::read(folder.path("a.png")).expect("a file"), b"mine");
     folder.run(&format!("{words} --force")).assert_done();
     crate::person::assert_begins(&folder.path("a.png"), b"\x89PNG");
@@ -72,7 +86,10 @@ fn an_input_is_never_overwritten() {
     let words = format!("render a.npy -o ./a.npy --force --raw 1x1x4,u8 {SMALL}");
     folder.run(&words).assert_refused(4, &["it is an input"]);
     assert_eq!(fs::read(npy).expect("a file"), b"mine");
-    folder.file("s.json", "{\"stratavox_scene\":1,\"input\":{\"path\":\"phantom:fog,n=8\"}}");
+    folder.file(
+        "s.json",
+        "{\"stratavox_scene\":1,\"input\":{\"path\":\"phantom:fog,n=8\"}}",
+    );
     let words = format!("render --scene s.json --save-scene s.json -o b.png --force {SMALL}");
     folder.run(&words).assert_refused(4, &["it is an input"]);
 }
@@ -99,8 +116,15 @@ fn a_folder_that_may_not_be_written_exits_4_and_leaves_nothing() {
 fn a_closed_standard_output_exits_4() {
     let folder = Folder::new();
     for words in ["info phantom:fog,n=8 --json", "--help"] {
-        let full = fs::OpenOptions::new().write(true).open("/dev/full").expect("/dev/full");
-        let status = folder.command(words).stdout(full).stderr(Stdio::null()).status();
+        let full = fs::OpenOptions::new()
+            .write(true)
+            .open("/dev/full")
+            .expect("/dev/full");
+        let status = folder
+            .command(words)
+            .stdout(full)
+            .stderr(Stdio::null())
+            .status();
         assert_eq!(status.expect("the program runs").code(), Some(4), "{words}");
 
         let mut child = folder
@@ -124,7 +148,10 @@ fn a_file_size_limit_exits_4_and_leaves_no_half_file() {
         "ulimit -f 1; exec {program} render phantom:fog,n=8 -o {}/a.npy --size 64x64 --device reference",
         folder.path("").display()
     );
-    let output = std::process::Command::new("sh").args(["-c", &script]).output().expect("a shell");
+    let output = std::process::Command::new("sh")
+        .args(["-c", &script])
+        .output()
+        .expect("a shell");
     let err = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(4), "{err}");
     assert!(err.contains("a.npy"), "{err}");

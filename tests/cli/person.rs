@@ -42,7 +42,11 @@ impl Folder {
     pub fn names(&self) -> Vec<String> {
         let entries = std::fs::read_dir(self.0.path()).expect("a folder");
         let name = |entry: std::io::Result<std::fs::DirEntry>| {
-            entry.expect("an entry").file_name().to_string_lossy().into_owned()
+            entry
+                .expect("an entry")
+                .file_name()
+                .to_string_lossy()
+                .into_owned()
         };
         let mut names: Vec<String> = entries.map(name).collect();
         names.sort();
@@ -57,7 +61,9 @@ impl Folder {
     /// The program with words separated by spaces, not yet started.
     pub fn command(&self, words: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_stratavox"));
-        command.args(words.split_whitespace()).current_dir(self.0.path());
+        command
+            .args(words.split_whitespace())
+            .current_dir(self.0.path());
         command
     }
 }

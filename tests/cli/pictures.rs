@@ -19,7 +19,9 @@ fn each_kind_of_picture_is_written_with_its_own_first_bytes() {
         ("a.exr", &b"\x76\x2f\x31\x01"[..]),
         ("a.npy", &b"\x93NUMPY"[..]),
     ] {
-        folder.run(&format!("render phantom:fog,n=8 -o {name} {SMALL}")).assert_done();
+        folder
+            .run(&format!("render phantom:fog,n=8 -o {name} {SMALL}"))
+            .assert_done();
         assert_begins(&folder.path(name), begins);
     }
 }
@@ -27,19 +29,28 @@ fn each_kind_of_picture_is_written_with_its_own_first_bytes() {
 #[test]
 fn layers_go_beside_an_array_under_their_names() {
     let folder = Folder::new();
-    let words = format!("render phantom:gauss,n=8 -o a.npy --mode mip --aov value,depth,samples {SMALL}");
+    let words =
+        format!("render phantom:gauss,n=8 -o a.npy --mode mip --aov value,depth,samples {SMALL}");
     folder.run(&words).assert_done();
-    assert_eq!(folder.names(), ["a.depth.npy", "a.npy", "a.samples.npy", "a.value.npy"]);
+    assert_eq!(
+        folder.names(),
+        ["a.depth.npy", "a.npy", "a.samples.npy", "a.value.npy"]
+    );
     // Each is a picture that `compare` reads: 24 x 16 numbers of 4 bytes and a header.
     let bytes = fs::read(folder.path("a.value.npy")).expect("a file").len();
-    assert!(bytes > 24 * 16 * 4 && bytes < 24 * 16 * 4 + 200, "{bytes} bytes");
+    assert!(
+        bytes > 24 * 16 * 4 && bytes < 24 * 16 * 4 + 200,
+        "{bytes} bytes"
+    );
 }
 
 #[test]
 fn a_layer_that_a_mode_does_not_have_is_a_usage_error() {
     let folder = Folder::new();
     let words = format!("render phantom:fog,n=8 -o a.npy --aov value {SMALL}");
-    folder.run(&words).assert_refused(2, &["--aov value needs", "--mode mip"]);
+    folder
+        .run(&words)
+        .assert_refused(2, &["--aov value needs", "--mode mip"]);
 }
 
 #[test]
@@ -51,7 +62,9 @@ fn a_saved_scene_draws_the_same_picture_and_flags_win_over_it() {
     );
     let words = "render phantom:gauss,n=12 --tf tf.json --azimuth 33.3 --elevation 0.1 --zoom 1.1 \
         --projection orthographic --samples-per-voxel 0.7 --clip 1,0.5,0.25,-3 --background 0.1,0.2,0.3 --aa 4";
-    folder.run(&format!("{words} -o a.png --save-scene s.json {SMALL}")).assert_done();
+    folder
+        .run(&format!("{words} -o a.png --save-scene s.json {SMALL}"))
+        .assert_done();
     fs::remove_file(folder.path("tf.json")).expect("the file is there");
 
     folder.run("render --scene s.json -o b.png").assert_done();
@@ -61,7 +74,9 @@ fn a_saved_scene_draws_the_same_picture_and_flags_win_over_it() {
     let same = fs::read(folder.path("a.png")).ok() == fs::read(folder.path("b.png")).ok();
     assert!(same, "the bytes differ");
 
-    folder.run("render --scene s.json -o c.png --zoom 2").assert_done();
+    folder
+        .run("render --scene s.json -o c.png --zoom 2")
+        .assert_done();
     let compared = folder.run("compare a.png c.png --at-most 0");
     compared.assert_refused(1, &["off by"]);
 }
@@ -69,38 +84,75 @@ fn a_saved_scene_draws_the_same_picture_and_flags_win_over_it() {
 #[test]
 fn timings_have_a_frame_for_each_repeat() {
     let folder = Folder::new();
-    let words = format!("render phantom:fog,n=8 -o a.npy --aov samples --repeat 3 --timings t.json {SMALL}");
+    let words = format!(
+        "render phantom:fog,n=8 -o a.npy --aov samples --repeat 3 --timings t.json {SMALL}"
+    );
     folder.run(&words).assert_done();
     let timings = json(&fs::read_to_string(folder.path("t.json")).expect("a file"));
-    assert_eq!(timings["frames"].as_array().map(Vec::len), Some(3), "{timings}");
+    assert_eq!(
+        timings["frames"].as_array().map(Vec::len),
+        Some(3),
+        "{timings}"
+    );
     assert!(timings["samples"].as_u64() > Some(0), "{timings}");
-    assert!(timings["device"].as_str().is_some_and(|name| name.contains("reference")), "{timings}");
+    assert!(
+        timings["device"]
+            .as_str()
+            .is_some_and(|name| name.contains("reference")),
+        "{timings}"
+    );
 }
 
 #[test]
 fn progress_as_json_is_one_object_a_line() {
     let folder = Folder::new();
-    let ran = folder.run(&format!("render phantom:fog,n=8 -o a.png --progress json --repeat 2 {SMALL}"));
+    let ran = folder.run(&format!(
+        "render phantom:fog,n=8 -o a.png --progress json --repeat 2 {SMALL}"
+    ));
     ran.assert_done();
-    let stages: Vec<String> = ran.err.lines().map(|line| json(line)["stage"].to_string()).collect();
-    assert_eq!(stages, ["\"read\"", "\"prepare\"", "\"draw\"", "\"draw\"", "\"write\""]);
+    let stages: Vec<String> = ran
+        .err
+        .lines()
+        .map(|line| json(line)["stage"].to_string())
+        .collect();
+    assert_eq!(
+        stages,
+        [
+            "\"read\"",
+            "\"prepare\"",
+            "\"draw\"",
+            "\"draw\"",
+            "\"write\""
+        ]
+    );
 }
 
 #[test]
 fn an_empty_picture_is_written_and_its_reason_said() {
     let folder = Folder::new();
     for (at, (words, reason)) in [
-        ("--eye 0,0,9000 --target 0,0,9999 --up 0,1,0", "camera sees no volume"),
+        (
+            "--eye 0,0,9000 --target 0,0,9999 --up 0,1,0",
+            "camera sees no volume",
+        ),
         ("--clip 1,0,0,100000", "cut away"),
         ("--crop 900,901,900,901,900,901", "cut away"),
-        ("--preset grey --window 1000000,2000000", "covers no value of this volume"),
+        (
+            "--preset grey --window 1000000,2000000",
+            "covers no value of this volume",
+        ),
     ]
     .into_iter()
     .enumerate()
     {
-        let ran = folder.run(&format!("render phantom:gauss,n=8 -o {at}.png {words} {SMALL}"));
+        let ran = folder.run(&format!(
+            "render phantom:gauss,n=8 -o {at}.png {words} {SMALL}"
+        ));
         ran.assert_done();
-        assert!(ran.err.contains("the picture is empty") && ran.err.contains(reason), "{words}: {ran:#?}");
+        assert!(
+            ran.err.contains("the picture is empty") && ran.err.contains(reason),
+            "{words}: {ran:#?}"
+        );
         assert_begins(&folder.path(&format!("{at}.png")), b"\x89PNG");
     }
     let ran = folder.run(&format!("render phantom:gauss,n=8 -o full.png {SMALL}"));
@@ -112,22 +164,36 @@ fn an_empty_picture_is_written_and_its_reason_said() {
 fn compare_says_how_far_and_fails_over_its_limit() {
     let folder = Folder::new();
     for (name, preset) in [("a.png", "grey"), ("b.png", "mri")] {
-        folder.run(&format!("render phantom:gauss,n=8 --preset {preset} -o {name} {SMALL}")).assert_done();
+        folder
+            .run(&format!(
+                "render phantom:gauss,n=8 --preset {preset} -o {name} {SMALL}"
+            ))
+            .assert_done();
     }
     let same = folder.run("compare a.png a.png --json --at-most 0");
     same.assert_done();
     let same = json(&same.out);
-    assert_eq!((&same["max"], &same["rmse"]), (&0.0.into(), &0.0.into()), "{same}");
+    assert_eq!(
+        (&same["max"], &same["rmse"]),
+        (&0.0.into(), &0.0.into()),
+        "{same}"
+    );
     assert!(same["psnr"].is_null(), "{same}");
 
     let apart = folder.run("compare a.png b.png --diff d.png --json");
     apart.assert_done();
     assert_begins(&folder.path("d.png"), b"\x89PNG");
     assert!(json(&apart.out)["max"].as_f64() > Some(0.0), "{apart:?}");
-    folder.run("compare a.png b.png --at-most 0").assert_refused(1, &["a.png", "b.png", "off by"]);
+    folder
+        .run("compare a.png b.png --at-most 0")
+        .assert_refused(1, &["a.png", "b.png", "off by"]);
 
-    folder.run("render phantom:gauss,n=8 -o c.png --size 8x8 --device reference").assert_done();
-    folder.run("compare a.png c.png").assert_refused(1, &["24x16", "8x8"]);
+    folder
+        .run("render phantom:gauss,n=8 -o c.png --size 8x8 --device reference")
+        .assert_done();
+    folder
+        .run("compare a.png c.png")
+        .assert_refused(1, &["24x16", "8x8"]);
 }
 
 #[test]
@@ -140,16 +206,24 @@ fn bench_over_cameras_gives_a_frame_for_each_view() {
     );
     for mode in ["composite", "xray"] {
         let words = "bench phantom:gauss,n=8 --cameras views.json --json t.json --force";
-        folder.run(&format!("{words} --mode {mode} {SMALL}")).assert_done();
+        folder
+            .run(&format!("{words} --mode {mode} {SMALL}"))
+            .assert_done();
         let timings = json(&fs::read_to_string(folder.path("t.json")).expect("a file"));
-        assert_eq!(timings["frames"].as_array().map(Vec::len), Some(2), "{timings}");
+        assert_eq!(
+            timings["frames"].as_array().map(Vec::len),
+            Some(2),
+            "{timings}"
+        );
     }
 }
 
 #[test]
 fn bench_without_views_measures_every_technique() {
     let folder = Folder::new();
-    let ran = folder.run(&format!("bench phantom:gauss,n=8 --repeat 1 --json t.json {SMALL}"));
+    let ran = folder.run(&format!(
+        "bench phantom:gauss,n=8 --repeat 1 --json t.json {SMALL}"
+    ));
     ran.assert_done();
     for name in ["raycast composite", "slices-3d mip", "slices-2d composite"] {
         assert!(ran.out.contains(name), "no {name}: {ran:#?}");
