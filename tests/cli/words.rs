@@ -135,6 +135,26 @@ fn help_and_version_are_answers_on_standard_output() {
 }
 
 #[test]
+fn several_variables_are_an_error_that_lists_them() {
+    let folder = Folder::new();
+    let words = "render phantom:storm,n=8 -o a.png --size 8x8 --device reference";
+    let refused = folder.run(words);
+    refused.assert_refused(2, &["several variables", "--variable"]);
+    let listed = refused
+        .err
+        .split("several variables: ")
+        .nth(1)
+        .expect("a list");
+    let first = listed.split([',', '\n']).next().expect("a name");
+    let ran = folder.run(&format!("{words} --variable {first}"));
+    ran.assert_done();
+    assert!(
+        ran.err.contains("the first of"),
+        "the choice of a time is not said: {ran:#?}"
+    );
+}
+
+#[test]
 fn a_flag_without_effect_is_mentioned_and_no_skip_is_always_taken() {
     let folder = Folder::new();
     let ran = folder.run(
