@@ -208,20 +208,22 @@ fn a_host_submits_what_we_record_and_gets_its_device_back_clean() {
     }
 }
 
+type Change = fn(&mut HostDevice<'_>);
+
 #[test]
 fn what_a_host_did_not_enable_is_named() {
     // SAFETY: nothing is made on the device.
     unsafe {
         let host = Host::new();
         let whole = host.handles();
-        let without = |change: fn(&mut HostDevice<'_>)| {
+        let without = |change: Change| {
             let mut handles = whole;
             change(&mut handles);
             Gpu::from_host(handles)
                 .expect_err("something is missing")
                 .to_string()
         };
-        let cases: [(fn(&mut HostDevice<'_>), &str); 5] = [
+        let cases: [(Change, &str); 5] = [
             (
                 |host| host.features.dynamic_rendering = false,
                 "lacks dynamicRendering",
