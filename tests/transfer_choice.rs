@@ -1,5 +1,6 @@
 //! Presets, windows, and the transfer function that a volume gets when nothing is asked for.
 
+#[allow(dead_code, reason = "each file of tests uses some of it")]
 mod transfer_shared;
 
 use std::path::PathBuf;

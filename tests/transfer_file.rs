@@ -2,6 +2,7 @@
 
 #![cfg(feature = "json")]
 
+#[allow(dead_code, reason = "each file of tests uses some of it")]
 mod transfer_shared;
 
 use stratavox::transfer::{
