@@ -138,6 +138,10 @@ pub fn write_picture(
 }
 
 /// The files of `picture` and what stands in them.
+#[cfg_attr(
+    not(feature = "png"),
+    expect(unused_variables, reason = "only PNG has options")
+)]
 fn encode(
     picture: &Picture,
     path: &Path,
