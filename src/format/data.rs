@@ -37,8 +37,8 @@ pub(crate) struct Part {
 pub(crate) enum Start {
     /// `file_bytes` into the file, and then `decoded_bytes` into what is decoded from there.
     Skip { file_bytes: u64, decoded_bytes: u64 },
-    /// So that `after_bytes` follow them in the file.
-    End { after_bytes: u64 },
+    /// So that `after_bytes` follow them in the file, and never before `earliest`: a header is no voxels.
+    End { after_bytes: u64, earliest: u64 },
 }
 
 /// Voxels in files, checked to be there.
@@ -140,13 +140,17 @@ impl Data {
                 file_bytes,
                 decoded_bytes,
             } => (file_bytes, decoded_bytes),
-            Start::End { after_bytes } => {
+            Start::End {
+                after_bytes,
+                earliest,
+            } => {
                 let encoded = part.encoded_bytes.map_or(self.part_bytes, |(n, _)| n);
                 let wanted = encoded.saturating_add(after_bytes);
-                let offset = file_bytes
-                    .checked_sub(wanted)
-                    .ok_or_else(|| self.too_short(wanted, file_bytes))?;
-                (offset, 0)
+                let present = file_bytes.saturating_sub(earliest);
+                if wanted > present {
+                    return Err(self.too_short(wanted, present));
+                }
+                (file_bytes.saturating_sub(wanted), 0)
             }
         };
         let encoded_bytes = file_bytes
