@@ -1,9 +1,10 @@
 //! A volume in memory: what is read, what is refused, how holes are filled.
 
 use glam::{DAffine3, DMat3, DVec3};
+use std::path::Path;
 use stratavox::volume::{
-    Format, Header, Limits, Pick, Problem, ReadError, Rescale, Source, Volume, VoxelBox, VoxelType,
-    Voxels, phantom,
+    Format, Header, Limits, Pick, Piece, Problem, ReadError, Rescale, Source, Volume, VoxelBox,
+    VoxelType, Voxels, phantom,
 };
 
 /// Two times of one number each, or a trap for who reads what should have been refused.
@@ -13,18 +14,21 @@ struct Given {
 }
 
 impl Source for Given {
+    fn path(&self) -> &Path {
+        Path::new("given")
+    }
+
     fn header(&self) -> &Header {
         &self.header
     }
 
-    fn read(&self, pick: Pick, _region: VoxelBox) -> Result<Voxels, ReadError> {
-        Ok(self.times[pick.time as usize].clone())
+    fn read(&self, pick: Pick, _region: VoxelBox) -> Result<Piece, ReadError> {
+        Ok(self.times[pick.time as usize].clone().into())
     }
 }
 
 fn header(dims: [u32; 3], stored: VoxelType) -> Header {
     Header {
-        path: "given".into(),
         format: Format::Raw,
         dims,
         components: 1,

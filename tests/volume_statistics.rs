@@ -2,9 +2,10 @@
 
 use glam::DAffine3;
 use half::f16;
+use std::path::Path;
 use stratavox::volume::{
-    Format, Header, Histogram, Limits, Pick, ReadError, Rescale, Source, Statistics, VoxelBox,
-    VoxelType, Voxels,
+    Format, Header, Histogram, Limits, Pick, Piece, ReadError, Rescale, Source, Statistics,
+    VoxelBox, VoxelType, Voxels,
 };
 
 struct Given {
@@ -13,18 +14,21 @@ struct Given {
 }
 
 impl Source for Given {
+    fn path(&self) -> &Path {
+        Path::new("given")
+    }
+
     fn header(&self) -> &Header {
         &self.header
     }
 
-    fn read(&self, pick: Pick, _region: VoxelBox) -> Result<Voxels, ReadError> {
-        Ok(self.times[pick.time as usize].clone())
+    fn read(&self, pick: Pick, _region: VoxelBox) -> Result<Piece, ReadError> {
+        Ok(self.times[pick.time as usize].clone().into())
     }
 }
 
 fn given(times: Vec<Voxels>, rescale: Rescale, fill: Option<f64>) -> Given {
     let header = Header {
-        path: "given".into(),
         format: Format::Raw,
         dims: [times[0].len() as u32, 1, 1],
         components: 1,

@@ -17,7 +17,9 @@ mod source;
 mod statistics;
 mod voxels;
 
-pub use source::{Format, Header, Limits, Pick, Problem, ReadError, Rescale, Source, VoxelBox};
+pub use source::{
+    Format, Header, Limits, Loss, Pick, Piece, Problem, ReadError, Rescale, Source, VoxelBox,
+};
 pub use statistics::{Histogram, Statistics};
 pub use voxels::{VoxelType, Voxels};
 

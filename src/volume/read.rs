@@ -20,12 +20,12 @@ impl Volume {
     ) -> Result<Self, ReadError> {
         let header = source.header();
         let failed = |problem| ReadError {
-            path: header.path.clone(),
+            path: source.path().to_owned(),
             problem,
         };
         check_inside(header, pick, region).map_err(failed)?;
         check_memory(header, region, limits).map_err(failed)?;
-        let voxels = source.read(pick, region)?;
+        let voxels = source.read(pick, region)?.voxels;
         let corner = DVec3::from_array(region.min.map(f64::from));
         let grid = Grid {
             dims: region.dims(),

@@ -20,11 +20,13 @@ pub use spec::NAMES;
 use super::field::{Ball, Field, Fog, Gaussian, MarschnerLobb, Shells};
 use super::read::check_memory;
 use super::{
-    Format, Header, Limits, Pick, Problem, ReadError, Rescale, Source, VoxelBox, VoxelType, Voxels,
+    Format, Header, Limits, Pick, Piece, Problem, ReadError, Rescale, Source, VoxelBox, VoxelType,
+    Voxels,
 };
 use glam::{DAffine3, DMat3, DVec3};
 use spec::Spec;
 use std::num::NonZero;
+use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 /// The phantom that `spec` names, with or without `phantom:` in front.
@@ -43,25 +45,31 @@ pub fn open(spec: &str, limits: &Limits) -> Result<Box<dyn Source>, ReadError> {
 
 /// A field for each time, and where its voxels lie.
 struct Phantom {
+    spec: PathBuf,
     header: Header,
     field_at: Box<dyn Fn(u32) -> Box<dyn Field> + Send + Sync>,
 }
 
 impl Source for Phantom {
+    fn path(&self) -> &Path {
+        &self.spec
+    }
+
     fn header(&self) -> &Header {
         &self.header
     }
 
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Voxels, ReadError> {
+    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
         let field = (self.field_at)(pick.time);
         let Rescale { slope, intercept } = self.header.rescale;
         // A cast goes to the nearest end where a number does not fit.
         let code = |value: f64| ((value - intercept) / slope).round();
-        Ok(match self.header.stored {
+        let voxels = match self.header.stored {
             VoxelType::U8 => Voxels::U8(self.sample(&*field, region, |v| code(v) as u8)),
             VoxelType::U16 => Voxels::U16(self.sample(&*field, region, |v| code(v) as u16)),
             _ => Voxels::F32(self.sample(&*field, region, |v| v as f32)),
-        })
+        };
+        Ok(voxels.into())
     }
 }
 
@@ -200,7 +208,6 @@ fn build(text: &str) -> Result<Phantom, Problem> {
     let spacing = (design.max.x - design.min.x) / f64::from(n);
     let size = design.max - design.min;
     let header = Header {
-        path: text.into(),
         format: Format::Phantom,
         dims: size
             .to_array()
@@ -218,7 +225,11 @@ fn build(text: &str) -> Result<Phantom, Problem> {
         variables,
         notes: Vec::new(),
     };
-    Ok(Phantom { header, field_at })
+    Ok(Phantom {
+        spec: text.into(),
+        header,
+        field_at,
+    })
 }
 
 fn rescale(design: &Design, stored: VoxelType) -> Rescale {
