@@ -410,6 +410,13 @@ fn files_that_do_not_fit_the_array_are_refused() {
         format!("{text}byte skip: -1\ndata file: s%d 1 3 1\n"),
     );
     assert!(error.contains("byte skip"), "{error}");
+    // The voxels stand last in the file, but a header is no voxels.
+    let cut = attached(&(SMALL.to_owned() + "byte skip: -1\n"), &[1, 2, 3, 4, 5]);
+    let error = folder.refused("a.nrrd", cut);
+    assert!(
+        error.contains("promises 6 bytes of voxels, found 5"),
+        "{error}"
+    );
     let few = Limits {
         max_files: 2,
         ..Limits::default()

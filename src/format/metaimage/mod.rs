@@ -149,6 +149,10 @@ fn header(
 }
 
 /// `world = offset + sum of index[k] * spacing[k] * row[k]`, LPS, to voxel space and RAS+.
+#[allow(
+    clippy::arithmetic_side_effects,
+    reason = "vectors of f64: nothing wraps or panics"
+)]
 fn affine(fields: &Fields, dimension: usize, notes: &mut Vec<String>) -> Result<DAffine3, Problem> {
     let spacing = match fields.numbers(&["ElementSize", "ElementSpacing"], dimension)? {
         Some(spacing) => spacing,
