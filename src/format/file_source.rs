@@ -145,6 +145,10 @@ const BELIEVED_NUMBERS: usize = 1 << 24;
 const CHUNK_BYTES: u64 = 1 << 18;
 
 impl Source for FileSource {
+    fn path(&self) -> &Path {
+        &self.path
+    }
+
     fn header(&self) -> &Header {
         &self.header
     }
