@@ -108,15 +108,15 @@ impl Render {
         let load_ms = ms_since(start);
 
         progress.stage("prepare", 0, 1);
-        let mut renderer = Renderer::new(Job {
+        let job = Job {
             volume: &volume,
             classification: &classification,
             settings: &settings,
             extent_pixels,
             layers: &layers,
             device: scene.device.as_deref(),
-            first_camera: &camera,
-        })?;
+        };
+        let mut renderer = Renderer::new(job, &camera)?;
         let mut frames = Vec::new();
         let mut last = None;
         for done in 0..self.repeat {
@@ -149,8 +149,8 @@ impl Render {
         }
         if let Some(path) = &self.timings {
             let timings = Timings {
-                device: renderer.device.clone(),
-                driver: renderer.driver.clone(),
+                device: renderer.device(),
+                driver: renderer.driver(),
                 load_ms,
                 upload_ms: renderer.upload_ms,
                 prepare_ms: renderer.prepare_ms,
@@ -158,7 +158,7 @@ impl Render {
                 frames,
                 samples: samples(&picture),
                 peak_rss_bytes: peak_rss_bytes(),
-                device_bytes: renderer.device_bytes,
+                device_bytes: renderer.device_bytes(),
             };
             write_whole(path, timings.json().as_bytes(), self.force, gate)?;
         }
@@ -207,7 +207,18 @@ pub fn load(scene: &SceneFlags, progress: &Progress) -> Result<Volume, Error> {
         progress.note(note);
     }
     let whole = source.header().whole();
-    Ok(Volume::read(source.as_ref(), pick, whole, &limits)?)
+    let volume = Volume::read(source.as_ref(), pick, whole, &limits)?;
+    if !volume.loss.is_none() {
+        let crate::volume::Loss { changed, worst } = volume.loss;
+        progress.note(&format!(
+            "{changed} voxels were rounded to 32-bit floats, by at most {worst}"
+        ));
+    }
+    let no_data = volume.no_data_count();
+    if no_data > 0 {
+        progress.note(&format!("{no_data} voxels hold no data"));
+    }
+    Ok(volume)
 }
 
 /// Samples that a picture took, where they were counted.
