@@ -147,7 +147,7 @@ fn extents_that_no_device_takes_are_refused_without_overflow() {
     );
     assert_eq!(
         refused_by(gpu, gpu.check_image(&largest)).1,
-        u32::MAX.into()
+        u64::from(u32::MAX)
     );
     for (kind, extent) in [
         (ImageKind::D3, [0, 1, 1]),
