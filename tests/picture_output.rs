@@ -112,16 +112,21 @@ fn a_file_that_finds_no_room_leaves_the_old_one_and_nothing_else() {
     let path = folder.path().join("a.npy");
     std::fs::write(&path, "mine").unwrap();
     // The limit ends a write early and then refuses it, as a full disk does.
-    let status = Command::new("sh")
+    let output = Command::new("sh")
         .args([
             "-c",
             "trap '' XFSZ; ulimit -f 16; exec \"$0\" --exact write_where_told",
         ])
         .arg(std::env::current_exe().unwrap())
         .env("STRATAVOX_TEST_WRITE_TO", &path)
-        .status()
+        // Through pipes: the limit would hold for a log file too.
+        .output()
         .unwrap();
-    assert!(status.success(), "the write did not fail as it should");
+    assert!(
+        output.status.success(),
+        "the write did not fail as it should: {}",
+        String::from_utf8_lossy(&output.stdout)
+    );
     assert_eq!(std::fs::read(&path).unwrap(), b"mine");
     assert_eq!(names(folder.path()), ["a.npy"]);
 }
