@@ -2,8 +2,8 @@
 
 use super::targets::{FORMAT, Targets};
 use crate::gpu::{
-    Blend, Error, Gpu, Headless, Load, ParameterRing, Timer, Use, begin_rendering, end_rendering,
-    image_barrier,
+    Bindings, Blend, Error, Gpu, Headless, Image, Load, ParameterRing, Timer, Use, begin_rendering,
+    end_rendering, image_barrier,
 };
 use crate::resident::GpuTransfer;
 use crate::resolve::Resolve;
@@ -13,6 +13,7 @@ use crate::technique::raycast::Raycast;
 use crate::technique::slices_2d::Slices2d;
 use crate::technique::slices_3d::Slices3d;
 use crate::technique::{Inputs, Mode, Order, Settings, Technique, Words};
+use ash::vk;
 use std::sync::Arc;
 
 /// What pipelines depend on.
@@ -36,21 +37,28 @@ enum Gather {
     Slices2d(Slices2d),
 }
 
-/// One submission: the device, what it reads, where it writes, and its clock.
+/// One submission: the device, where it writes, what is drawn, and its clock.
 #[derive(Debug)]
 pub struct Submission<'a> {
     /// Submits and waits.
     pub device: &'a mut Headless,
-    /// What a technique reads.
-    pub inputs: &'a Inputs<'a>,
     /// The images.
     pub targets: &'a Targets,
+    /// In the order in which they are recorded.
+    pub bricks: &'a [Recording<'a>],
+    /// The device's clock, if it has one.
+    pub timer: Option<&'a Timer>,
+}
+
+/// What one brick adds to a picture.
+#[derive(Debug)]
+pub struct Recording<'a> {
+    /// What a technique reads.
+    pub inputs: Inputs<'a>,
     /// Of the parameters in the ring.
     pub offset: u32,
     /// Slices to draw.
     pub slices: u32,
-    /// The device's clock, if it has one.
-    pub timer: Option<&'a Timer>,
 }
 
 impl Passes {
@@ -139,67 +147,96 @@ impl Passes {
 }
 
 impl Submission<'_> {
-    fn run(
-        self,
-        gather: &Gather,
-        into: &crate::gpu::Image,
-        clear: [f32; 4],
-    ) -> Result<Option<f64>, Error> {
+    fn run(self, gather: &Gather, into: &Image, clear: [f32; 4]) -> Result<Option<f64>, Error> {
         let Self {
             device,
-            inputs,
             targets,
-            offset,
-            slices,
+            bricks,
             timer,
         } = self;
-        let extent = targets.extent;
-        let bindings = match gather {
-            Gather::Raycast(pass) => pass.bind(inputs, into, &targets.layers)?,
-            Gather::Projection(pass) => pass.bind(inputs, into)?,
-            Gather::Slices3d(pass) => pass.bind(inputs)?,
-            Gather::Slices2d(pass) => pass.bind(inputs)?,
-        };
+        let bound = bricks
+            .iter()
+            .map(|brick| gather.bind(&brick.inputs, into, &targets.layers));
+        let bound = bound.collect::<Result<Vec<_>, Error>>()?;
         let gpu = Arc::clone(device.gpu());
+        let is_drawn = matches!(gather, Gather::Slices3d(_) | Gather::Slices2d(_));
+        let images = if matches!(gather, Gather::Raycast(_)) {
+            &[into, &targets.layers][..]
+        } else {
+            &[into]
+        };
+        let used = if is_drawn {
+            Use::ColorTarget
+        } else {
+            Use::ComputeWrite
+        };
         // SAFETY: recorded in order, with barriers between; `run` waits, and all that is bound lives meanwhile.
         device.run(|cmd| unsafe {
+            let barriers = |before, after| {
+                images
+                    .iter()
+                    .for_each(|image| image_barrier(&gpu, cmd, image, before, after));
+            };
             if let Some(timer) = timer {
                 timer.start(cmd);
             }
-            let draws = |draw: &dyn Fn()| {
-                image_barrier(&gpu, cmd, into, Use::Nothing, Use::ColorTarget);
-                begin_rendering(&gpu, cmd, &[(into.view(), Load::Clear(clear))], extent);
-                draw();
-                end_rendering(&gpu, cmd);
-                image_barrier(&gpu, cmd, into, Use::ColorTarget, Use::FragmentSampled);
-            };
-            match gather {
-                Gather::Raycast(pass) => {
-                    for image in [into, &targets.layers] {
-                        image_barrier(&gpu, cmd, image, Use::Nothing, Use::ComputeWrite);
-                    }
-                    pass.record(cmd, &bindings, offset, extent)?;
-                    for image in [into, &targets.layers] {
-                        image_barrier(&gpu, cmd, image, Use::ComputeWrite, Use::FragmentSampled);
-                    }
-                }
-                Gather::Projection(pass) => {
-                    image_barrier(&gpu, cmd, into, Use::Nothing, Use::ComputeWrite);
-                    pass.record(cmd, &bindings, offset, extent)?;
-                    image_barrier(&gpu, cmd, into, Use::ComputeWrite, Use::FragmentSampled);
-                }
-                Gather::Slices3d(pass) => {
-                    draws(&|| pass.record(cmd, &bindings, offset, extent, slices));
-                }
-                Gather::Slices2d(pass) => {
-                    draws(&|| pass.record(cmd, &bindings, offset, extent, slices));
-                }
+            barriers(Use::Nothing, used);
+            if is_drawn {
+                begin_rendering(
+                    &gpu,
+                    cmd,
+                    &[(into.view(), Load::Clear(clear))],
+                    targets.extent,
+                );
             }
+            for (i, (brick, bindings)) in bricks.iter().zip(&bound).enumerate() {
+                if i > 0 && !is_drawn {
+                    barriers(used, used);
+                }
+                gather.record(cmd, bindings, brick, targets.extent)?;
+            }
+            if is_drawn {
+                end_rendering(&gpu, cmd);
+            }
+            barriers(used, Use::FragmentSampled);
             if let Some(timer) = timer {
                 timer.stop(cmd);
             }
             Ok(())
         })?;
         timer.map_or(Ok(None), Timer::elapsed_ms)
+    }
+}
+
+impl Gather {
+    fn bind(&self, inputs: &Inputs, into: &Image, layers: &Image) -> Result<Bindings, Error> {
+        match self {
+            Self::Raycast(pass) => pass.bind(inputs, into, layers),
+            Self::Projection(pass) => pass.bind(inputs, into),
+            Self::Slices3d(pass) => pass.bind(inputs),
+            Self::Slices2d(pass) => pass.bind(inputs),
+        }
+    }
+
+    /// # Safety
+    /// As `record` of each technique.
+    unsafe fn record(
+        &self,
+        cmd: vk::CommandBuffer,
+        bindings: &Bindings,
+        brick: &Recording,
+        extent: [u32; 2],
+    ) -> Result<(), Error> {
+        let Recording { offset, slices, .. } = *brick;
+        // SAFETY: the caller's promises.
+        unsafe {
+            match self {
+                Self::Raycast(pass) => pass.record(cmd, bindings, offset, extent)?,
+                Self::Projection(pass) => pass.record(cmd, bindings, offset, extent)?,
+                Self::Slices3d(pass) => pass.record(cmd, bindings, offset, extent, slices),
+                Self::Slices2d(pass) => pass.record(cmd, bindings, offset, extent, slices),
+            }
+        }
+        Ok(())
     }
 }

@@ -49,6 +49,8 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, PictureProblem> {
     let size = reader.output_buffer_size();
     let (width, height) = reader.info().size();
     PictureProblem::check_size("PNG", width.into(), height.into())?;
+    let raw_bytes = reader.info().raw_bytes() as u64;
+    PictureProblem::check_expansion("PNG", raw_bytes, bytes.len())?;
     let Some(size) = size.filter(|&size| size as u64 <= MAX_PICTURE_BYTES) else {
         return Err(PictureProblem::too_large(
             "PNG",

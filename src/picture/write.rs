@@ -148,6 +148,10 @@ pub fn write_file(path: &Path, bytes: &[u8], force: bool) -> Result<(), OutputEr
 }
 
 /// The files of `picture` and what stands in them.
+#[cfg_attr(
+    not(feature = "png"),
+    expect(unused_variables, reason = "only PNG has options")
+)]
 fn encode(
     picture: &Picture,
     path: &Path,

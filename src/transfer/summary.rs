@@ -99,9 +99,10 @@ impl ValueSummary {
         below as f64 / total.max(1) as f64
     }
 
-    /// The middle of the fullest bin: the background, where there is one.
-    pub fn mode(&self) -> f64 {
+    /// The middle of the fullest bin among those below `limit`: the background, where there is one.
+    pub fn mode_below(&self, limit: f64) -> f64 {
         let bins = self.histogram.iter().enumerate();
+        let bins = bins.filter(|&(bin, _)| bin == 0 || self.at_bin(bin as f64 + 0.5) < limit);
         // `max_by_key` takes the last of equals; the lowest value is wanted.
         let fullest = bins.rev().max_by_key(|&(_, &count)| count);
         self.at_bin(fullest.map_or(0.0, |(bin, _)| bin as f64 + 0.5))

@@ -5,13 +5,19 @@
 
 use glam::{DAffine3, DMat3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
-use stratavox::gpu::{DeviceChoice, Headless, Options, PipelineCache};
+use stratavox::gpu::{Caps, DeviceChoice, Headless, Options, PipelineCache};
 use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
 use stratavox::volume::{Rescale, Volume, Voxels};
 
 /// A device without a pipeline cache; dropping it panics on a validation message.
 pub fn device() -> Headless {
+    device_with(Caps::UNLIMITED)
+}
+
+/// The same with stricter limits.
+pub fn device_with(caps: Caps) -> Headless {
     let options = Options {
+        caps,
         pipeline_cache: PipelineCache::Off,
         ..Options::default()
     };

@@ -82,7 +82,7 @@ impl InputFlags {
         }
         let source = match &self.raw {
             Some(layout) => {
-                let layout = format::raw::Layout::parse(layout).map_err(|problem| {
+                let layout = format::raw::RawSpec::parse(layout).map_err(|problem| {
                     Error::usage(
                         format!("--raw {layout}: {problem}"),
                         "--raw 256x256x109,i16,0.9x0.9x1.5,le",

@@ -93,7 +93,7 @@ impl Head {
         const COMPACT: f64 = 1350.0;
         let reach = painting.reach;
         // No bone lies bare.
-        let under_skin = skin + 2.5;
+        let under_skin = skin + 1.5 + reach;
         let skull = bone::skull(p, room, self.face.at(p, bone::face)).max(under_skin);
         if skull < reach {
             painting.over(skull, COMPACT - 150.0 * smoothstep(0.0, 20.0, p.z));
