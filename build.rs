@@ -1,1 +1,442 @@
-fn main() {}
+//! Compiles `shaders/*.wgsl` to SPIR-V and writes what Rust must know about them.
+//!
+//! Every file directly under `shaders/` is one entry point called `main`. A line `#import name` stands
+//! for `shaders/lib/name.wgsl`, each file once. In a name, `{slot}` is replaced by each word that
+//! [`ENTRIES`] gives for that slot: every combination of words becomes a variant of its own, because
+//! naga writes no specialization constants.
+//!
+//! Written to `OUT_DIR`: `shaders.spv` (all words, one module after the other) and `shaders.rs` (the
+//! table of modules with their bindings, a `#[repr(C)]` struct for each uniform, and the constants).
+
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+/// A slot of `#import` names and the words that fill it.
+type Slot = (&'static str, &'static [&'static str]);
+
+const FILTER: Slot = ("filter", &["nearest", "linear", "linear_fetch"]);
+const HOLES: Slot = ("holes", &["none", "mask"]);
+const LATTICE: Slot = ("lattice", &["ray", "planes"]);
+const TRANSFER: Slot = ("transfer", &["table", "points"]);
+
+/// The wanted combinations. Order of the slots is the order of words in a variant's name.
+const ENTRIES: &[(&str, &[Slot])] = &[
+    (
+        "raycast",
+        &[("mode", &["composite"]), LATTICE, FILTER, HOLES, TRANSFER],
+    ),
+    (
+        "projection",
+        &[("mode", &["mip", "minip", "sum"]), LATTICE, FILTER, HOLES],
+    ),
+    (
+        "slices_3d",
+        &[("blend", &["composite"]), FILTER, HOLES, TRANSFER],
+    ),
+    (
+        "slices_3d",
+        &[("blend", &["extreme", "sum"]), FILTER, HOLES],
+    ),
+    (
+        "slices_3d",
+        &[
+            ("blend", &["count"]),
+            ("filter", &["nearest"]),
+            ("holes", &["none"]),
+        ],
+    ),
+    ("slices_3d_cover", &[]),
+    (
+        "slices_2d",
+        &[("blend", &["composite"]), FILTER, HOLES, TRANSFER],
+    ),
+    (
+        "slices_2d",
+        &[("blend", &["extreme", "sum"]), FILTER, HOLES],
+    ),
+    (
+        "slices_2d",
+        &[
+            ("blend", &["count"]),
+            ("filter", &["nearest"]),
+            ("holes", &["none"]),
+        ],
+    ),
+    ("slices_2d_cover", &[]),
+    ("resolve", &[("source", &["picture", "value", "mean"])]),
+    ("resolve_cover", &[]),
+];
+
+fn main() {
+    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
+    println!("cargo:rerun-if-changed=build.rs");
+    println!("cargo:rerun-if-changed=shaders");
+    let mut book = Book::default();
+    for (file, slots) in ENTRIES {
+        for words in combinations(slots) {
+            book.add(file, slots, &words);
+        }
+    }
+    fs::write(out.join("shaders.spv"), &book.spirv).expect("OUT_DIR can be written");
+    fs::write(out.join("shaders.rs"), book.rust()).expect("OUT_DIR can be written");
+}
+
+/// Every way to take one word from each slot.
+fn combinations(slots: &[Slot]) -> Vec<Vec<&'static str>> {
+    slots.iter().fold(vec![Vec::new()], |sets, (_, words)| {
+        let extended = |set: &Vec<&'static str>| {
+            let set = set.clone();
+            words.iter().map(move |word| [&set[..], &[*word]].concat())
+        };
+        sets.iter().flat_map(extended).collect()
+    })
+}
+
+/// What has been compiled so far.
+#[derive(Default)]
+struct Book {
+    spirv: Vec<u8>,
+    /// One line of the Rust table for each variant, by name.
+    table: BTreeMap<String, String>,
+    /// Rust text of each uniform struct, by name.
+    structs: BTreeMap<String, String>,
+    constants: BTreeMap<String, String>,
+}
+
+impl Book {
+    fn add(&mut self, file: &str, slots: &[Slot], words: &[&str]) {
+        let name = [&[file], words].concat().join(".");
+        let fills: BTreeMap<_, _> = slots
+            .iter()
+            .map(|slot| slot.0)
+            .zip(words.iter().copied())
+            .collect();
+        let source = Source::read(
+            Path::new("shaders").join(file).with_extension("wgsl"),
+            &fills,
+        );
+        let module = naga::front::wgsl::parse_str(&source.text).unwrap_or_else(|e| {
+            source.fail(
+                &name,
+                e.location(&source.text),
+                &e.emit_to_string(&source.text),
+            )
+        });
+        // No capability beyond the core: a shader that needs more is a build error.
+        let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+            .validate(&module)
+            .unwrap_or_else(|e| {
+                source.fail(
+                    &name,
+                    e.location(&source.text),
+                    &e.emit_to_string(&source.text),
+                )
+            });
+
+        let words = spirv(&module, &info);
+        let first = self.spirv.len() / 4;
+        self.spirv
+            .extend(words.iter().flat_map(|word| word.to_le_bytes()));
+        let line = format!(
+            "Shader {{ name: {name:?}, stage: {}, spirv: &words[{first}..{}], bindings: &[{}] }}",
+            stage(&module),
+            first + words.len(),
+            bindings(&module)
+        );
+        assert!(
+            self.table.insert(name.clone(), line).is_none(),
+            "{name} stands twice in ENTRIES"
+        );
+        for (name, text) in uniform_structs(&module) {
+            let known = self
+                .structs
+                .entry(name.clone())
+                .or_insert_with(|| text.clone());
+            assert!(*known == text, "struct {name} has two layouts");
+        }
+        self.constants.extend(constants(&module));
+    }
+
+    fn rust(&self) -> String {
+        let mut text = String::new();
+        for constant in self.constants.values() {
+            writeln!(text, "{constant}").unwrap();
+        }
+        for definition in self.structs.values() {
+            writeln!(text, "{definition}").unwrap();
+        }
+        writeln!(
+            text,
+            "/// Every variant, by name, from the words of all modules.\nfn shaders(words: &'static [u32]) -> Vec<Shader> {{\n    vec!["
+        )
+        .unwrap();
+        for line in self.table.values() {
+            writeln!(text, "    {line},").unwrap();
+        }
+        writeln!(text, "    ]\n}}").unwrap();
+        text
+    }
+}
+
+/// One entry file with its imports, and where each of its lines came from.
+struct Source {
+    text: String,
+    lines: Vec<(PathBuf, usize)>,
+}
+
+impl Source {
+    fn read(path: PathBuf, fills: &BTreeMap<&str, &str>) -> Self {
+        let mut source = Self {
+            text: String::new(),
+            lines: Vec::new(),
+        };
+        source.append(path, fills, &mut BTreeSet::new());
+        source
+    }
+
+    fn append(
+        &mut self,
+        path: PathBuf,
+        fills: &BTreeMap<&str, &str>,
+        seen: &mut BTreeSet<PathBuf>,
+    ) {
+        if !seen.insert(path.clone()) {
+            return;
+        }
+        let text = fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        for (number, line) in text.lines().enumerate() {
+            if let Some(name) = line.strip_prefix("#import ") {
+                let filled = fills.iter().fold(name.to_owned(), |name, (slot, word)| {
+                    name.replace(&format!("{{{slot}}}"), word)
+                });
+                self.append(
+                    Path::new("shaders/lib").join(filled).with_extension("wgsl"),
+                    fills,
+                    seen,
+                );
+            } else {
+                self.text.push_str(line);
+                self.text.push('\n');
+                self.lines.push((path.clone(), number + 1));
+            }
+        }
+    }
+
+    /// Stops the build with naga's picture and the place in the file that a person edits.
+    fn fail<T>(&self, variant: &str, location: Option<naga::SourceLocation>, picture: &str) -> T {
+        let place = location
+            .and_then(|l| self.lines.get(l.line_number as usize - 1))
+            .map_or_else(String::new, |(path, line)| {
+                format!("{}:{line}: ", path.display())
+            });
+        panic!("{place}in variant {variant}\n{picture}");
+    }
+}
+
+fn spirv(module: &naga::Module, info: &naga::valid::ModuleInfo) -> Vec<u32> {
+    use naga::back::spv;
+    let options = spv::Options {
+        lang_version: (1, 5),
+        // The default also flips y and clamps depth, which is not Vulkan's way.
+        flags: spv::WriterFlags::LABEL_VARYINGS,
+        // Group is set and binding is binding, unchanged.
+        fake_missing_bindings: true,
+        capabilities: Some(
+            [spirv::Capability::Shader, spirv::Capability::ImageQuery]
+                .into_iter()
+                .collect(),
+        ),
+        zero_initialize_workgroup_memory: spv::ZeroInitializeWorkgroupMemoryMode::None,
+        // Our loops are bounded by construction: counters would only cost.
+        force_loop_bounding: false,
+        emit_int_div_checks: false,
+        use_storage_input_output_16: false,
+        ..Default::default()
+    };
+    let entry = spv::PipelineOptions {
+        shader_stage: module.entry_points[0].stage,
+        entry_point: "main".into(),
+    };
+    spv::write_vec(module, info, &options, Some(&entry)).expect("a valid module can be written")
+}
+
+fn stage(module: &naga::Module) -> String {
+    let [entry] = &module.entry_points[..] else {
+        panic!("an entry file has one entry point")
+    };
+    match entry.stage {
+        naga::ShaderStage::Compute => {
+            format!("Stage::Compute {{ workgroup: {:?} }}", entry.workgroup_size)
+        }
+        naga::ShaderStage::Vertex => "Stage::Vertex".into(),
+        naga::ShaderStage::Fragment => "Stage::Fragment".into(),
+        other => panic!("{other:?} shaders are not used"),
+    }
+}
+
+/// The Rust text of a module's bindings, by ascending number.
+fn bindings(module: &naga::Module) -> String {
+    use naga::{AddressSpace, ImageClass, TypeInner};
+    let mut slots = BTreeMap::new();
+    for (_, variable) in module.global_variables.iter() {
+        let Some(place) = variable.binding else {
+            continue;
+        };
+        assert_eq!(place.group, 0, "all bindings are in group 0");
+        let kind = match (variable.space, &module.types[variable.ty].inner) {
+            (AddressSpace::Uniform, TypeInner::Struct { span, .. }) => format!("Uniform({span})"),
+            // A struct around the array, so that the validation layers can follow the access.
+            (AddressSpace::Storage { .. }, TypeInner::Struct { .. }) => "Storage".into(),
+            (
+                _,
+                TypeInner::Image {
+                    class: ImageClass::Storage { .. },
+                    ..
+                },
+            ) => "StorageImage".into(),
+            (_, TypeInner::Image { .. }) => "Texture".into(),
+            (_, TypeInner::Sampler { .. }) => "Sampler".into(),
+            other => panic!(
+                "binding {:?} is of a kind that we do not use: {other:?}",
+                variable.name
+            ),
+        };
+        let name = variable.name.as_deref().expect("a global has a name");
+        slots.insert(
+            place.binding,
+            format!(
+                "BindingSlot {{ name: {name:?}, binding: {}, kind: BindingKind::{kind} }}",
+                place.binding
+            ),
+        );
+    }
+    slots.into_values().collect::<Vec<_>>().join(", ")
+}
+
+/// Whole and float constants that a file gives as plain literals.
+fn constants(module: &naga::Module) -> Vec<(String, String)> {
+    let literal = |(_, constant): (_, &naga::Constant)| {
+        let name = constant.name.clone()?;
+        let naga::Expression::Literal(value) = module.global_expressions[constant.init] else {
+            return None;
+        };
+        let (kind, value) = match value {
+            naga::Literal::U32(v) => ("u32", v.to_string()),
+            naga::Literal::I32(v) => ("i32", v.to_string()),
+            naga::Literal::F32(v) => ("f32", format!("{v:?}")),
+            _ => return None,
+        };
+        let text =
+            format!("/// The shaders' constant of that name.\npub const {name}: {kind} = {value};");
+        Some((name, text))
+    };
+    module.constants.iter().filter_map(literal).collect()
+}
+
+/// `#[repr(C)]` twins of the uniform structs. Padding is private and made by `new`, so a field added in
+/// WGSL is a compile error wherever the struct is filled.
+fn uniform_structs(module: &naga::Module) -> Vec<(String, String)> {
+    let uniforms = module
+        .global_variables
+        .iter()
+        .filter(|(_, variable)| variable.space == naga::AddressSpace::Uniform);
+    uniforms
+        .map(|(_, variable)| rust_struct(module, variable.ty))
+        .collect()
+}
+
+fn rust_struct(module: &naga::Module, handle: naga::Handle<naga::Type>) -> (String, String) {
+    let ty = &module.types[handle];
+    let naga::TypeInner::Struct { members, span } = &ty.inner else {
+        panic!("a uniform is a struct")
+    };
+    let name = ty.name.clone().expect("a struct has a name");
+    let (mut fields, mut asserts, mut padding) = (String::new(), String::new(), String::new());
+    let (mut end, mut pads) = (0, 0);
+    let mut pad_to = |fields: &mut String, offset: u32, end: u32| {
+        if offset > end {
+            writeln!(fields, "    pad{pads}: [u8; {}],", offset - end).unwrap();
+            writeln!(padding, "            pad{pads}: [0; {}],", offset - end).unwrap();
+            pads += 1;
+        }
+    };
+    let mut names = Vec::new();
+    for member in members {
+        let field = member.name.clone().expect("a field has a name");
+        pad_to(&mut fields, member.offset, end);
+        let (rust, size) = rust_type(module, member.ty);
+        writeln!(
+            fields,
+            "    /// See `shaders/lib`.\n    pub {field}: {rust},"
+        )
+        .unwrap();
+        writeln!(
+            asserts,
+            "    assert!(std::mem::offset_of!({name}, {field}) == {});",
+            member.offset
+        )
+        .unwrap();
+        end = member.offset + size;
+        names.push((field, rust));
+    }
+    pad_to(&mut fields, *span, end);
+    // A plain-old-data twin without padding: what a host fills.
+    let public: String = names
+        .iter()
+        .map(|(f, t)| format!("    /// See `shaders/lib`.\n    pub {f}: {t},\n"))
+        .collect();
+    let copies: String = names
+        .iter()
+        .map(|(f, _)| format!("            {f}: fields.{f},\n"))
+        .collect();
+    let text = format!(
+        "/// Uniform `{name}` of the shaders, byte for byte.\n#[repr(C)]\n\
+         #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]\npub struct {name} {{\n{fields}}}\n\
+         /// The fields of [`{name}`]: filled by name, none can be forgotten.\n\
+         #[derive(Clone, Copy, Debug, PartialEq)]\npub struct {name}Fields {{\n{public}}}\n\
+         impl From<{name}Fields> for {name} {{\n    fn from(fields: {name}Fields) -> Self {{\n        Self {{\n{copies}{padding}        }}\n    }}\n}}\n\
+         const _: () = {{\n{asserts}    assert!(std::mem::size_of::<{name}>() == {span});\n}};"
+    );
+    (name, text)
+}
+
+/// Rust type and its size. Vectors are arrays; a matrix is an array of its columns.
+fn rust_type(module: &naga::Module, handle: naga::Handle<naga::Type>) -> (String, u32) {
+    use naga::{ArraySize, ScalarKind, TypeInner};
+    let scalar = |scalar: naga::Scalar| match (scalar.kind, scalar.width) {
+        (ScalarKind::Float, 4) => "f32",
+        (ScalarKind::Uint, 4) => "u32",
+        (ScalarKind::Sint, 4) => "i32",
+        other => panic!("uniform fields have four bytes, not {other:?}"),
+    };
+    match module.types[handle].inner {
+        TypeInner::Scalar(s) => (scalar(s).into(), 4),
+        TypeInner::Vector { size, scalar: s } => {
+            (format!("[{}; {}]", scalar(s), size as u32), size as u32 * 4)
+        }
+        TypeInner::Matrix {
+            columns,
+            rows: naga::VectorSize::Quad,
+            scalar: s,
+        } => (
+            format!("[[{}; 4]; {}]", scalar(s), columns as u32),
+            columns as u32 * 16,
+        ),
+        TypeInner::Array {
+            base,
+            size: ArraySize::Constant(count),
+            stride,
+        } => {
+            let (element, size) = rust_type(module, base);
+            assert_eq!(
+                size, stride,
+                "array elements of a uniform fill their stride"
+            );
+            (format!("[{element}; {count}]"), stride * count.get())
+        }
+        ref other => panic!("uniform fields are numbers, not {other:?}"),
+    }
+}

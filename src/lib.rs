@@ -7,7 +7,7 @@
 //!
 //! | floor | modules | what they know |
 //! |---|---|---|
-//! | 0 | [`shaders`], [`real`], [`ray`], [`color`] | arithmetic shared with the shaders, free of Vulkan |
+//! | 0 | [`shaders`], [`real`], [`ray`], [`lattice`], [`color`] | arithmetic shared with the shaders, free of Vulkan |
 //! | 1 | [`gpu`], [`volume`], [`transfer`], [`camera`], [`picture`] | Vulkan objects, or data; never both |
 //! | 2 | `resident`, `format` | data put on a device; bytes of files turned into a [`volume::Source`] |
 //! | 3 | [`technique`], `resolve` | `new`, `bind`, `record`, and the CPU twins |
@@ -30,14 +30,26 @@
 //! `format` and `picture` touch files. There is no global state. The same inputs give the same bytes.
 
 pub mod camera;
+#[cfg(feature = "cli")]
+pub mod cli;
 pub mod color;
 #[cfg(feature = "files")]
 pub mod format;
 pub mod gpu;
+pub mod lattice;
+pub mod offscreen;
 pub mod picture;
 pub mod ray;
 pub mod real;
+pub mod resident;
+pub mod resolve;
+pub mod scene;
 pub mod shaders;
 pub mod technique;
 pub mod transfer;
 pub mod volume;
+
+/// The example of the README compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,3 +1,7 @@
 //! The `stratavox` program.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    ExitCode::from(stratavox::cli::run(std::env::args_os()))
+}

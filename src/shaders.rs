@@ -2,6 +2,8 @@
 //!
 //! Free of Vulkan: kinds of binding are words of our own that [`crate::gpu`] maps.
 
+use std::sync::LazyLock;
+
 /// One entry point, compiled.
 #[derive(Clone, Copy, Debug)]
 pub struct Shader {
@@ -9,10 +11,20 @@ pub struct Shader {
     pub name: &'static str,
     /// Compute, vertex or fragment; its entry point is called `main`.
     pub stage: Stage,
-    /// SPIR-V 1.3 or later.
+    /// SPIR-V 1.5.
     pub spirv: &'static [u32],
     /// In order of `binding`; all of them in descriptor set 0.
     pub bindings: &'static [BindingSlot],
+}
+
+/// Every variant that `build.rs` has made, by name.
+pub static SHADERS: LazyLock<Vec<Shader>> =
+    LazyLock::new(|| shaders(bytemuck::cast_slice(&SPIRV.bytes)));
+
+/// The variant of that name. A name that `build.rs` has no row for is our own mistake.
+pub fn shader(name: &str) -> &'static Shader {
+    let found = SHADERS.binary_search_by(|shader| shader.name.cmp(name));
+    &SHADERS[found.unwrap_or_else(|_| panic!("build.rs has no shader {name}"))]
 }
 
 /// The stage of an entry point.
@@ -54,3 +66,17 @@ pub enum BindingKind {
     /// A storage image.
     StorageImage,
 }
+
+/// `include_bytes!` alone is aligned to one byte.
+#[repr(C)]
+struct Aligned<Bytes: ?Sized> {
+    align: [u32; 0],
+    bytes: Bytes,
+}
+
+static SPIRV: &Aligned<[u8]> = &Aligned {
+    align: [],
+    bytes: *include_bytes!(concat!(env!("OUT_DIR"), "/shaders.spv")),
+};
+
+include!(concat!(env!("OUT_DIR"), "/shaders.rs"));

@@ -1,1 +1,364 @@
-//! Being built.
+//! Thin owners over Vulkan. Knows nothing of volumes.
+//!
+//! A [`Gpu`] is a device, the host's or that of [`Headless`], and what we add to it: limits that are
+//! compared before each call, an allocator, and the queue of what waits to be destroyed. Each owner
+//! ([`Buffer`], [`Image`], [`Sampler`], [`ComputePipeline`], [`RasterPipeline`], [`Bindings`],
+//! [`ParameterRing`], [`Timer`]) holds an `Arc<Gpu>`, has `raw()`, and never waits when it is dropped:
+//!
+//! ```text
+//! gpu.announce(n)      what is recorded from now on is done when the timeline reaches n
+//! drop(owner)          its raw objects wait for n
+//! gpu.retire(n)        the timeline has reached n: they are destroyed
+//! ```
+//!
+//! A host without a timeline counts its submissions and calls `retire` after its own fence.
+//! Recording (`unsafe fn`s that take a command buffer) creates, destroys and waits for nothing.
+
+mod barrier;
+mod bindings;
+mod buffer;
+mod cache;
+mod caps;
+mod check;
+mod choice;
+mod copy;
+mod devices;
+mod error;
+mod format;
+mod headless;
+mod host;
+mod identity;
+mod image;
+mod instance;
+mod layout;
+mod owned;
+mod parameters;
+mod pipeline;
+mod raster;
+mod rendering;
+mod sampler;
+mod timer;
+mod validation;
+
+pub use barrier::{Target, TargetState, Use, buffer_barrier, image_barrier};
+pub use bindings::{Bindings, Resource};
+pub use buffer::{Buffer, Memory};
+pub use cache::PipelineCache;
+pub use caps::Caps;
+pub use choice::DeviceChoice;
+pub use copy::{Region, buffer_to_image, image_to_buffer};
+pub use devices::{Ability, DeviceReport, list_devices};
+pub use error::Error;
+pub use format::{FormatFeatures, texel_bytes};
+pub use headless::{Headless, Options};
+pub use host::{Features, HostDevice};
+pub use identity::{DeviceKind, Identity};
+pub use image::{Image, ImageDesc, ImageKind};
+pub use layout::Layout;
+pub use parameters::ParameterRing;
+pub use pipeline::ComputePipeline;
+pub use raster::{Blend, RasterDesc, RasterPipeline};
+pub use rendering::{Load, begin_rendering, end_rendering, set_area};
+pub use sampler::Sampler;
+pub use timer::Timer;
+pub use validation::{Message, VARIABLE as VALIDATION_VARIABLE, Validation, ValidationMode};
+
+use ash::vk;
+use error::Doing;
+use gpu_allocator::{
+    AllocationSizes, AllocatorDebugSettings,
+    vulkan::{Allocator, AllocatorCreateDesc},
+};
+use identity::version_text;
+use owned::Store;
+use std::{
+    any::Any,
+    collections::BTreeMap,
+    ffi::CString,
+    fmt,
+    sync::{
+        Arc, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicU32, Ordering},
+    },
+};
+
+/// The Vulkan version that everything here is written for.
+pub const API_VERSION: u32 = vk::API_VERSION_1_3;
+
+/// Memory is taken from the driver in blocks: small ones first, so that a small host pays little.
+const SMALLEST_BLOCK_BYTES: u64 = 4 << 20;
+const LARGEST_BLOCK_BYTES: u64 = 64 << 20;
+
+/// A device and what we add to it. Lives until its last owner is gone, and then destroys what we made.
+pub struct Gpu {
+    instance: ash::Instance,
+    device: ash::Device,
+    physical_device: vk::PhysicalDevice,
+    queue_family: u32,
+    timestamp_bits: u32,
+    identity: Identity,
+    features: Features,
+    limits: Caps,
+    debug_utils: Option<ash::ext::debug_utils::Device>,
+    pipeline_cache: vk::PipelineCache,
+    pipelines_made: AtomicU32,
+    store: Mutex<Store>,
+    /// A device of our own; last, because fields are dropped in this order.
+    own_device: Option<Box<dyn Any + Send + Sync>>,
+}
+
+impl Gpu {
+    /// Takes a host's device into use. It stays the host's: we destroy only what we made on it.
+    ///
+    /// # Errors
+    ///
+    /// What the device is too old for, or what is not enabled on it, by name.
+    ///
+    /// # Safety
+    ///
+    /// - The handles are valid, belong together, and live until the last owner made on this `Gpu` and the
+    ///   `Gpu` itself are dropped;
+    /// - by then, the device has finished everything recorded with it;
+    /// - `features`, `debug_utils` and `api_version` say no more than what was enabled.
+    pub unsafe fn from_host(host: HostDevice<'_>) -> Result<Arc<Self>, Error> {
+        // SAFETY: the caller's promises.
+        unsafe { Self::new(host, None) }
+    }
+
+    /// # Safety
+    /// As [`Gpu::from_host`], where `own_device` may be what keeps the handles alive.
+    unsafe fn new(
+        host: HostDevice<'_>,
+        own_device: Option<Box<dyn Any + Send + Sync>>,
+    ) -> Result<Arc<Self>, Error> {
+        if host.api_version < API_VERSION {
+            return Err(too_old("the host's instance", host.api_version));
+        }
+        let entry = ash::StaticFn {
+            get_instance_proc_addr: host.get_instance_proc_addr,
+        };
+        // SAFETY: the handles are valid and belong together (the caller's promise).
+        let (instance, device, properties, families) = unsafe {
+            let instance = ash::Instance::load(&entry, host.instance);
+            let device = ash::Device::load(instance.fp_v1_0(), host.device);
+            let properties = instance.get_physical_device_properties(host.physical_device);
+            let families =
+                instance.get_physical_device_queue_family_properties(host.physical_device);
+            (instance, device, properties, families)
+        };
+        if properties.api_version < API_VERSION {
+            let name = identity::text(properties.device_name_as_c_str());
+            return Err(too_old(&name, properties.api_version));
+        }
+        // SAFETY: instance and device speak Vulkan 1.3, which was just checked.
+        let (identity, limits) = unsafe {
+            let identity = Identity::of(&instance, host.physical_device);
+            (
+                identity,
+                Caps::of(&instance, host.physical_device).clamped_to(&host.caps),
+            )
+        };
+        host.features.require(&identity.name)?;
+        let family = families.get(host.queue_family as usize);
+        let family = family
+            .filter(|family| family.queue_flags.contains(QUEUE_WORK))
+            .ok_or_else(|| {
+                let name =
+                    "a queue family with graphics and compute, which `queue_family` must name";
+                Error::MissingFeature {
+                    device: identity.name.clone(),
+                    name,
+                }
+            })?;
+        let allocator = Allocator::new(&AllocatorCreateDesc {
+            instance: instance.clone(),
+            device: device.clone(),
+            physical_device: host.physical_device,
+            debug_settings: AllocatorDebugSettings::default(),
+            buffer_device_address: false,
+            allocation_sizes: AllocationSizes::new(SMALLEST_BLOCK_BYTES, SMALLEST_BLOCK_BYTES)
+                .with_max_device_memblock_size(LARGEST_BLOCK_BYTES)
+                .with_max_host_memblock_size(LARGEST_BLOCK_BYTES),
+        });
+        let allocator = allocator.map_err(|cause| Error::Allocation {
+            doing: "set up the memory allocator".into(),
+            cause,
+        })?;
+        let mut gpu = Self {
+            debug_utils: host
+                .debug_utils
+                .then(|| ash::ext::debug_utils::Device::new(&instance, &device)),
+            instance,
+            device,
+            physical_device: host.physical_device,
+            queue_family: host.queue_family,
+            timestamp_bits: family.timestamp_valid_bits,
+            identity,
+            features: host.features,
+            limits,
+            pipeline_cache: vk::PipelineCache::null(),
+            pipelines_made: AtomicU32::new(0),
+            store: Mutex::new(Store::new(allocator)),
+            own_device,
+        };
+        let data = if is_pipeline_cache_of(&gpu.identity, host.pipeline_cache) {
+            host.pipeline_cache
+        } else {
+            &[]
+        };
+        let info = vk::PipelineCacheCreateInfo::default().initial_data(data);
+        // SAFETY: the device is valid; the data was made by this very driver.
+        gpu.pipeline_cache = unsafe { gpu.device.create_pipeline_cache(&info, None) }
+            .doing(|| "make a pipeline cache".into())?;
+        Ok(Arc::new(gpu))
+    }
+
+    /// What is recorded from now on is done when the timeline reaches `value`. Values only rise.
+    pub fn announce(&self, value: u64) {
+        self.store().announce(value);
+    }
+
+    /// Destroys what was dropped and waited for `completed` or less.
+    ///
+    /// # Safety
+    ///
+    /// The device has finished all that was recorded under announced values up to `completed`.
+    pub unsafe fn retire(&self, completed: u64) {
+        // SAFETY: the caller's promise.
+        unsafe { self.store().retire(&self.device, completed) };
+    }
+
+    /// How many raw objects of each kind exist: those with an owner and those that wait to be destroyed.
+    pub fn live_objects(&self) -> BTreeMap<&'static str, usize> {
+        self.store().live()
+    }
+
+    /// Bytes of memory taken from the driver, in use or kept for later.
+    pub fn device_bytes(&self) -> u64 {
+        self.store().reserved_bytes()
+    }
+
+    /// The functions of the device.
+    pub fn device(&self) -> &ash::Device {
+        &self.device
+    }
+
+    /// The functions of the instance.
+    pub fn instance(&self) -> &ash::Instance {
+        &self.instance
+    }
+
+    /// The physical device.
+    pub fn physical_device(&self) -> vk::PhysicalDevice {
+        self.physical_device
+    }
+
+    /// The family of the queues that our recordings are for.
+    pub fn queue_family(&self) -> u32 {
+        self.queue_family
+    }
+
+    /// Which device and driver this is.
+    pub fn identity(&self) -> &Identity {
+        &self.identity
+    }
+
+    /// The device's name.
+    pub fn device_name(&self) -> &str {
+        &self.identity.name
+    }
+
+    /// True where the "GPU" is a driver that computes on the CPU.
+    pub fn is_cpu(&self) -> bool {
+        self.identity.kind == DeviceKind::Cpu
+    }
+
+    /// The limits that every size is compared with.
+    pub fn limits(&self) -> &Caps {
+        &self.limits
+    }
+
+    /// What is enabled on the device.
+    pub fn features(&self) -> Features {
+        self.features
+    }
+
+    /// Pipelines made so far: after a warm-up this number stays.
+    pub fn pipelines_made(&self) -> u32 {
+        self.pipelines_made.load(Ordering::Relaxed)
+    }
+
+    /// What the driver has compiled so far, for [`HostDevice::pipeline_cache`] of a later run.
+    pub fn pipeline_cache_data(&self) -> Result<Vec<u8>, Error> {
+        // SAFETY: the cache was made on this device.
+        unsafe { self.device.get_pipeline_cache_data(self.pipeline_cache) }
+            .doing(|| "read the pipeline cache".into())
+    }
+
+    /// Names an object for validation messages and debuggers, where the instance can.
+    fn name(&self, handle: impl vk::Handle, name: &str) {
+        let Some(debug_utils) = &self.debug_utils else {
+            return;
+        };
+        let Ok(name) = CString::new(name) else { return };
+        let info = vk::DebugUtilsObjectNameInfoEXT::default()
+            .object_handle(handle)
+            .object_name(&name);
+        // SAFETY: the handle was made on this device. A name is a courtesy: its failure changes nothing.
+        let _ = unsafe { debug_utils.set_debug_utils_object_name(&info) };
+    }
+
+    fn store(&self) -> MutexGuard<'_, Store> {
+        // A panic elsewhere leaves the store consistent: every step under the lock is a push or a pop.
+        self.store.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl fmt::Debug for Gpu {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Gpu")
+            .field("device", &self.identity.name)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Drop for Gpu {
+    fn drop(&mut self) {
+        // SAFETY: the host promised that its device has finished; on our own we wait for it. No owner is left,
+        // each holds an Arc of us. The cache may be null.
+        unsafe {
+            if self.own_device.is_some() {
+                // A lost device has nothing left to finish, and destroying stays legal.
+                let _ = self.device.device_wait_idle();
+            }
+            self.device
+                .destroy_pipeline_cache(self.pipeline_cache, None);
+            let store = self.store.get_mut().unwrap_or_else(PoisonError::into_inner);
+            store.destroy_all(&self.device);
+        }
+    }
+}
+
+/// What the queue of a recording must be able to do.
+const QUEUE_WORK: vk::QueueFlags =
+    vk::QueueFlags::from_raw(vk::QueueFlags::GRAPHICS.as_raw() | vk::QueueFlags::COMPUTE.as_raw());
+
+fn too_old(what: &str, found: u32) -> Error {
+    Error::ApiVersion {
+        what: what.into(),
+        wanted: version_text(API_VERSION),
+        found: version_text(found),
+    }
+}
+
+/// Reads the header that every pipeline cache starts with (`VkPipelineCacheHeaderVersionOne`).
+fn is_pipeline_cache_of(identity: &Identity, data: &[u8]) -> bool {
+    let word = |k: usize| {
+        data.get(4 * k..4 * k + 4)
+            .map(|bytes| u32::from_le_bytes(bytes.try_into().unwrap()))
+    };
+    word(1) == Some(1)
+        && word(2) == Some(identity.vendor_id)
+        && word(3) == Some(identity.device_id)
+        && data.get(16..32) == Some(&identity.pipeline_cache_uuid)
+}

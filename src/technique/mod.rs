@@ -1,5 +1,18 @@
 //! The closed list of techniques (where samples lie) and modes (what is done with them).
 
+pub mod blend;
+pub mod composite;
+mod frame;
+mod inputs;
+mod march;
+pub mod projection;
+pub mod raycast;
+pub mod slices_2d;
+pub mod slices_3d;
+
+pub use frame::{View, frame};
+pub use inputs::{Inputs, Words};
+
 /// Where samples lie.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Technique {
@@ -89,14 +102,45 @@ pub struct Settings {
     pub color_space: crate::picture::ColorSpace,
     /// Voxel space box to keep, min and max; fractions allowed. `None`: all of it.
     pub crop: Option<[glam::DVec3; 2]>,
-    /// At most [`MAX_CLIP_PLANES`].
+    /// At most [`crate::shaders::MAX_CLIP_PLANES`].
     pub clip_planes: Vec<ClipPlane>,
     /// Float targets, no early termination, filtering by texel fetch, control points searched exactly.
     pub conformance: bool,
 }
 
-/// How many clip planes a scene may have.
-pub const MAX_CLIP_PLANES: usize = 8;
+/// Samples that one ray may take: no wish of a host makes a shader run without end.
+pub const MAX_SAMPLES_PER_RAY: u32 = 1 << 20;
+
+/// Why a picture cannot be made as asked.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// The step is too small for the volume.
+    #[error("a ray through the volume would take {wanted:.0} samples, the limit is {limit}")]
+    TooManySamples {
+        /// What the longest ray would take.
+        wanted: f64,
+        /// What a ray may take.
+        limit: u32,
+    },
+    /// Compositing classifies every sample.
+    #[error("compositing needs a transfer function")]
+    NoTransferFunction,
+    /// The parameters hold a fixed number of planes.
+    #[error("{wanted} clip planes, the limit is {limit}")]
+    TooManyClipPlanes {
+        /// How many were asked for.
+        wanted: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+}
+
+impl Mode {
+    /// True where one value a ray is projected and classified once.
+    pub fn is_projection(self) -> bool {
+        self != Self::Composite
+    }
+}
 
 impl Default for Settings {
     fn default() -> Self {

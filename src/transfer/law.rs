@@ -9,7 +9,8 @@
 //! In f32 the first form loses three digits at x = 1e-4; the series is off by x^3/24 < 5e-8 of alpha.
 
 use super::{Interpolation, TransferFunction};
-use crate::color::{ColorSpace, Number, decode_srgb};
+use crate::color::{ColorSpace, decode_srgb};
+use crate::real::Real;
 
 /// Opacities above this count as this: one sample never makes an infinite extinction.
 pub const MAX_OPACITY: f64 = 1.0 - 1.0 / 4096.0;
@@ -28,7 +29,7 @@ pub enum Absorption {
 
 impl Absorption {
     /// Extinction of `opacity`, or `opacity` itself.
-    pub fn of<N: Number>(self, opacity: N) -> N {
+    pub fn of<N: Real>(self, opacity: N) -> N {
         match self {
             Self::Extinction { reference_length } => {
                 extinction(opacity, N::from_f64(reference_length))
@@ -61,14 +62,14 @@ impl TransferFunction {
 }
 
 /// Extinction per world length of an opacity per `reference_length`.
-pub fn extinction<N: Number>(opacity: N, reference_length: N) -> N {
+pub fn extinction<N: Real>(opacity: N, reference_length: N) -> N {
     let limit = N::from_f64(MAX_OPACITY);
     let opacity = if opacity < limit { opacity } else { limit };
     -(N::from_f64(1.0) - opacity).ln() / reference_length
 }
 
 /// Opacity of a segment of world length `length`.
-pub fn opacity_over<N: Number>(extinction: N, length: N) -> N {
+pub fn opacity_over<N: Real>(extinction: N, length: N) -> N {
     let n = N::from_f64;
     let x = extinction * length;
     if x < n(0.01) {

@@ -4,7 +4,8 @@
 //! and mixes with the next one computes the law of `sampling.md` 4.
 
 use super::{Absorption, Interpolation, TransferFunction};
-use crate::color::{ColorSpace, Number, decode_srgb};
+use crate::color::{ColorSpace, decode_srgb};
+use crate::real::Real;
 
 /// Control points for a shader.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,7 +48,7 @@ impl Points {
 }
 
 /// (red, green, blue, absorption) at `value`; colour as it is blended.
-pub fn classify_by_points<N: Number>(points: &Points, value: N) -> [N; 4] {
+pub fn classify_by_points<N: Real>(points: &Points, value: N) -> [N; 4] {
     let (color_count, opacity_count) = (points.color_count as usize, points.opacity_count as usize);
     let [r, g, b] = at(points, 0, color_count, value);
     let [opacity, _, _] = at(points, color_count, opacity_count, value);
@@ -56,7 +57,7 @@ pub fn classify_by_points<N: Number>(points: &Points, value: N) -> [N; 4] {
 }
 
 /// What the `count` points from `first` on say of `value`.
-fn at<N: Number>(points: &Points, first: usize, count: usize, value: N) -> [N; 3] {
+fn at<N: Real>(points: &Points, first: usize, count: usize, value: N) -> [N; 3] {
     let n = |x: f32| N::from_f64(x.into());
     let entry = |i: usize| points.entries[first + i].map(n);
     // How many points stand at or below the value.

@@ -14,7 +14,8 @@
 //! most) counted in. Only the entry that holds a jump between multiples of w is off by more.
 
 use super::{Absorption, ColorPoint, Interpolation, OpacityPoint, TransferFunction};
-use crate::color::{ColorSpace, Number};
+use crate::color::ColorSpace;
+use crate::real::Real;
 
 /// Entries of the smallest table.
 pub const MIN_ENTRIES: usize = 1024;
@@ -89,7 +90,7 @@ impl Table {
 }
 
 /// (red, green, blue, absorption) at `value`; colour as it is blended.
-pub fn classify_by_table<N: Number>(table: &Table, value: N) -> [N; 4] {
+pub fn classify_by_table<N: Real>(table: &Table, value: N) -> [N; 4] {
     let n = |x: f32| N::from_f64(x.into());
     let cell = ((value - n(table.first)) * n(table.scale)).floor().to_f64();
     let last = table.entries.len() - 1;

@@ -8,10 +8,21 @@
 //!
 //! Knows nothing of Vulkan.
 
+pub mod field;
+mod grid;
+mod holes;
+pub mod phantom;
+mod read;
+pub mod sample;
 mod source;
+mod statistics;
 mod voxels;
 
-pub use source::{Format, Header, Limits, Pick, Problem, ReadError, Rescale, Source, VoxelBox};
+pub use grid::Grid;
+pub use source::{
+    Format, Header, Limits, Loss, Pick, Piece, Problem, ReadError, Rescale, Source, VoxelBox,
+};
+pub use statistics::{Histogram, Statistics};
 pub use voxels::{VoxelType, Voxels};
 
 use glam::DAffine3;
@@ -32,31 +43,24 @@ pub struct Volume {
     pub validity: Option<Vec<u8>>,
     /// True where values are Hounsfield units.
     pub hounsfield: bool,
+    /// What rounding stored numbers to f32 changed.
+    pub loss: Loss,
     /// Smallest and largest valid value; `[0.0, 0.0]` where none is valid.
     pub value_range: [f64; 2],
 }
 
 impl Volume {
-    /// Length of each column of `world_from_voxel`: the voxel's size in world length.
-    pub fn spacing(&self) -> [f64; 3] {
-        let m = self.world_from_voxel.matrix3;
-        [m.x_axis.length(), m.y_axis.length(), m.z_axis.length()]
+    /// How many voxels hold no data.
+    pub fn no_data_count(&self) -> u64 {
+        let count = |mask: &Vec<u8>| mask.iter().filter(|&&valid| valid == 0).count() as u64;
+        self.validity.as_ref().map_or(0, count)
     }
 
-    /// The smallest spacing, axes of one voxel left out (unless all are).
-    pub fn smallest_spacing(&self) -> f64 {
-        let spacing = self.spacing();
-        let smallest = |counts: &dyn Fn(usize) -> bool| {
-            (0..3)
-                .filter(|&k| counts(k))
-                .map(|k| spacing[k])
-                .fold(f64::INFINITY, f64::min)
-        };
-        let smallest_of_extended = smallest(&|k| self.dims[k] > 1);
-        if smallest_of_extended.is_finite() {
-            smallest_of_extended
-        } else {
-            smallest(&|_| true)
+    /// Where the voxels lie.
+    pub fn grid(&self) -> Grid {
+        Grid {
+            dims: self.dims,
+            world_from_voxel: self.world_from_voxel,
         }
     }
 }

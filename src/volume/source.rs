@@ -2,17 +2,64 @@
 
 use super::{VoxelType, Voxels};
 use glam::DAffine3;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A volume that can be read in parts: a file, a folder, or a formula.
 pub trait Source: Send + Sync {
+    /// The file, folder or phantom, as errors name it.
+    fn path(&self) -> &Path;
+
     /// What the source holds, checked once when it was opened.
     fn header(&self) -> &Header;
 
     /// The stored numbers of `region` at one time and component, x fastest.
     ///
-    /// `pick` and `region` lie inside the header; integers of 32 and 64 bits and f64 are rounded to f32.
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Voxels, ReadError>;
+    /// `pick` and `region` lie inside the header; integers of 32 and 64 bits and f64 are rounded to f32,
+    /// and [`Piece::loss`] says what that cost.
+    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError>;
+}
+
+/// What one [`Source::read`] brings.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Piece {
+    /// The stored numbers, x fastest.
+    pub voxels: Voxels,
+    /// What rounding them to f32 changed.
+    pub loss: Loss,
+}
+
+impl From<Voxels> for Piece {
+    /// Voxels that needed no rounding.
+    fn from(voxels: Voxels) -> Self {
+        Self {
+            voxels,
+            loss: Loss::default(),
+        }
+    }
+}
+
+/// What rounding 32- and 64-bit integers and f64 to f32 changed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Loss {
+    /// How many numbers are not what the file holds. A NaN that stays NaN is not changed.
+    pub changed: u64,
+    /// The largest distance between a number in the file and the one kept; infinite where one left the range of f32.
+    pub worst: f64,
+}
+
+impl Loss {
+    /// True where every number is exactly that of the file.
+    pub fn is_none(&self) -> bool {
+        self.changed == 0
+    }
+
+    /// The loss of two pieces together.
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            changed: self.changed.saturating_add(other.changed),
+            worst: self.worst.max(other.worst),
+        }
+    }
 }
 
 /// Which of several volumes in one source.
@@ -182,6 +229,34 @@ pub enum Problem {
         wanted_bytes: u64,
         /// What is there.
         found_bytes: u64,
+    },
+    /// So few encoded bytes cannot hold so many voxels.
+    #[error(
+        "{format} data: the header promises {wanted_bytes} bytes of voxels, which {encoded_bytes} bytes of {encoding} cannot hold"
+    )]
+    TooFewEncoded {
+        /// The kind of file.
+        format: &'static str,
+        /// How the voxels are written.
+        encoding: &'static str,
+        /// What the header promises.
+        wanted_bytes: u64,
+        /// What is there, encoded.
+        encoded_bytes: u64,
+    },
+    /// The encoded voxels cannot be decoded.
+    #[error(
+        "{format} data: the {encoding} voxels are damaged after {decoded_bytes} good bytes: {cause}"
+    )]
+    Damaged {
+        /// The kind of file.
+        format: &'static str,
+        /// How the voxels are written.
+        encoding: &'static str,
+        /// How many bytes of voxels came out before.
+        decoded_bytes: u64,
+        /// What the decoder says.
+        cause: String,
     },
     /// A valid file that we do not read yet; says what.
     #[error("{format}: {what} is not supported")]

@@ -47,6 +47,11 @@ impl VoxelType {
         }
     }
 
+    /// True for f16, f32 and f64.
+    pub fn is_float(self) -> bool {
+        matches!(self, Self::F16 | Self::F32 | Self::F64)
+    }
+
     /// True where [`Voxels`] keeps every value of this type exactly.
     pub fn is_kept_exactly(self) -> bool {
         !matches!(
@@ -110,3 +115,60 @@ impl Voxels {
         }
     }
 }
+
+/// A type of number that [`Voxels`] keeps.
+pub(super) trait Stored: Copy + Default + PartialEq {
+    fn to_f32(self) -> f32;
+    /// `fill` as this type; `None` where no voxel of this type can be equal to it.
+    fn from_fill(fill: f64) -> Option<Self>;
+}
+
+macro_rules! stored_integer {
+    ($($integer:ident)*) => {$(
+        impl Stored for $integer {
+            fn to_f32(self) -> f32 {
+                self.into()
+            }
+            fn from_fill(fill: f64) -> Option<Self> {
+                let nearest = fill as $integer;
+                (f64::from(nearest) == fill).then_some(nearest)
+            }
+        }
+    )*};
+}
+
+stored_integer!(u8 i8 u16 i16);
+
+impl Stored for f16 {
+    fn to_f32(self) -> f32 {
+        self.to_f32()
+    }
+    fn from_fill(fill: f64) -> Option<Self> {
+        Some(Self::from_f64(fill)).filter(|fill| fill.is_finite())
+    }
+}
+
+// Numbers of 32 and 64 bits were rounded to f32; the fill is rounded in the same way to meet them.
+impl Stored for f32 {
+    fn to_f32(self) -> f32 {
+        self
+    }
+    fn from_fill(fill: f64) -> Option<Self> {
+        Some(fill as f32).filter(|fill| fill.is_finite())
+    }
+}
+
+/// `$body` with `$numbers` bound to the vector inside, whatever its type.
+macro_rules! with_numbers {
+    ($voxels:expr, $numbers:ident => $body:expr) => {
+        match $voxels {
+            $crate::volume::Voxels::U8($numbers) => $body,
+            $crate::volume::Voxels::I8($numbers) => $body,
+            $crate::volume::Voxels::U16($numbers) => $body,
+            $crate::volume::Voxels::I16($numbers) => $body,
+            $crate::volume::Voxels::F16($numbers) => $body,
+            $crate::volume::Voxels::F32($numbers) => $body,
+        }
+    };
+}
+pub(super) use with_numbers;

@@ -1,0 +1,72 @@
+# make test    everything that must hold, on whatever Vulkan device is here (a software driver is installed
+#              by apt where there is none)
+# make demo    the built-in head with each technique, and with DATA=path a file of yours, into target/demo
+# make bench   frame times of each technique on this device
+
+SHELL := /bin/bash
+.DEFAULT_GOAL := test
+.PHONY: test demo bench driver layers
+
+CARGO ?= cargo
+ROOT := $(if $(filter 0,$(shell id -u)),,sudo )
+APT := $(ROOT)env DEBIAN_FRONTEND=noninteractive apt-get
+# Mesa compiles shaders on the CPU and keeps the result, and we keep pipelines: here, so that nothing is left
+# behind elsewhere.
+export MESA_SHADER_CACHE_DIR ?= $(CURDIR)/target/mesa-shader-cache
+export XDG_CACHE_HOME ?= $(CURDIR)/target/cache
+export DATA
+
+# A Vulkan driver is a manifest in one of the loader's folders; the loader is libvulkan.so.1.
+ICD_FOLDERS := /usr/share/vulkan/icd.d /etc/vulkan/icd.d /usr/local/share/vulkan/icd.d $(HOME)/.local/share/vulkan/icd.d
+LAYER_FOLDERS := /usr/share/vulkan/explicit_layer.d /etc/vulkan/explicit_layer.d /usr/local/share/vulkan/explicit_layer.d $(VK_LAYER_PATH)
+
+driver:
+	@mkdir -p "$$MESA_SHADER_CACHE_DIR"
+	@if [ -n "$$VK_ICD_FILENAMES$$VK_DRIVER_FILES" ] || find $(ICD_FOLDERS) -name '*.json' 2>/dev/null | grep -q .; then \
+	    wanted=""; else wanted="mesa-vulkan-drivers"; fi; \
+	ldconfig -p 2>/dev/null | grep -q libvulkan.so.1 || wanted="$$wanted libvulkan1"; \
+	$(call install,Vulkan driver)
+
+layers:
+	@find $(LAYER_FOLDERS) -name '*khronos_validation*.json' 2>/dev/null | grep -q . \
+	    && wanted="" || wanted="vulkan-validationlayers"; \
+	command -v spirv-val >/dev/null || wanted="$$wanted spirv-tools"; \
+	$(call install,Vulkan validation layers)
+
+# $(call install,what): installs the Debian packages in $$wanted, or says what to install by hand.
+define install
+if [ -n "$$wanted" ]; then \
+    if ! command -v apt-get >/dev/null; then \
+        echo "no $(1) found, and no apt-get to install it: please install what Debian calls$$wanted" >&2; exit 1; fi; \
+    echo "installing the $(1):$$wanted"; \
+    { $(APT) install -y --no-install-recommends $$wanted >/dev/null 2>&1 \
+        || { $(APT) update -qq && $(APT) install -y --no-install-recommends $$wanted >/dev/null; }; } \
+        || { echo "could not install the $(1): please run: $(APT) install $$wanted" >&2; exit 1; }; \
+fi
+endef
+
+test: driver layers
+	$(CARGO) fmt --check
+	$(CARGO) clippy --locked --all-targets -- -D warnings
+	$(CARGO) clippy --locked --all-targets --no-default-features -- -D warnings
+	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --locked --no-deps
+	$(CARGO) test --locked
+	STRATAVOX_VALIDATION=sync $(CARGO) test --locked
+
+demo: driver
+	$(CARGO) build --locked --release
+	@mkdir -p target/demo; set -e; \
+	draw() { target/release/stratavox render --force --progress none "$$@"; }; \
+	for input in phantom:head "$$DATA"; do \
+	    [ -n "$$input" ] || continue; \
+	    name=$$(basename "$${input#*:}"); name=target/demo/$${name%%.*}; \
+	    for technique in raycast slices-3d slices-2d; do \
+	        draw "$$input" --technique $$technique -o $$name-$$technique.png; \
+	    done; \
+	    draw "$$input" --mode mip -o $$name-mip.png; \
+	done; \
+	echo "the pictures:"; ls -1 $(CURDIR)/target/demo/*.png
+
+bench: driver
+	$(CARGO) build --locked --release
+	target/release/stratavox bench

@@ -1,0 +1,69 @@
+// The parameters of one recording: rays, grid, domain, values, transfer function, slices.
+//
+// World here is the file's world moved so that the centre of the uncropped grid box is its origin:
+// f32 then keeps the same precision wherever the patient lay. Matrices hold their rows one after
+// another and are applied as `vec4(position, 1) * rows`.
+
+const MAX_CLIP_PLANES: u32 = 8u;
+
+struct Frame {
+    // A pixel's ray: origin + x * origin_dx + y * origin_dy, and the same for its direction, which is
+    // then made a unit vector. Pixel centres lie at +0.5.
+    origin: vec3<f32>,
+    step_world: f32,
+    origin_dx: vec3<f32>,
+    termination: f32,
+    origin_dy: vec3<f32>,
+    code_scale: f32,
+    direction: vec3<f32>,
+    code_offset: f32,
+    direction_dx: vec3<f32>,
+    slope: f32,
+    direction_dy: vec3<f32>,
+    intercept: f32,
+    // The camera's forward direction: normal of the planes.
+    forward: vec3<f32>,
+    codes_are_integers: u32,
+    // The same as a covector of voxel space: which way each grid axis runs away from the eye.
+    forward_voxel: vec3<f32>,
+    weight: f32,
+    // What is kept of the grid, in voxel space, and the cover that slicers draw.
+    domain_min: vec3<f32>,
+    clip_plane_count: u32,
+    domain_max: vec3<f32>,
+    table_count: u32,
+    cover_min: vec3<f32>,
+    table_first: f32,
+    cover_max: vec3<f32>,
+    table_scale: f32,
+    dims: vec3<f32>,
+    reference_length: f32,
+    // The brick of this recording: the samples that are its own, and where its texture lies in voxel space.
+    brick_min: vec3<f32>,
+    is_first_brick: u32,
+    brick_max: vec3<f32>,
+    is_only_brick: u32,
+    brick_origin: vec3<f32>,
+    slice_first: i32,
+    brick_dims: vec3<f32>,
+    slice_direction: i32,
+    voxel_from_world: mat3x4<f32>,
+    world_from_voxel: mat3x4<f32>,
+    clip_from_world: mat4x4<f32>,
+    // Keeps the world points with dot(xyz, point) >= w.
+    clip_planes: array<vec4<f32>, MAX_CLIP_PLANES>,
+    extent_pixels: vec2<u32>,
+    color_point_count: u32,
+    opacity_point_count: u32,
+    interpolation_is_step: u32,
+    color_space_is_display: u32,
+    // Slices: instance i shows slice (or plane) slice_first + i * slice_direction; in a 2D stack that
+    // is seen from inside, the instances from slice_turn on start at the other end.
+    slice_turn: u32,
+    slice_first_after_turn: i32,
+    slice_axis: u32,
+    // +1 for a maximum, -1 for a minimum.
+    extreme_sign: f32,
+}
+
+@group(0) @binding(0) var<uniform> frame: Frame;

@@ -1,0 +1,37 @@
+// Samples where the ray meets the planes that a view-aligned slicer draws. Twin: src/lattice.rs.
+
+#import ray
+
+struct Lattice {
+    first: i32,
+    count: i32,
+    t0: f32,
+    t1: f32,
+}
+
+struct Segment {
+    t: f32,
+    length: f32,
+}
+
+// One plane more at each end: rounding may not lose one, and `segment_of` has the last word.
+fn lattice_of(world: Ray, interval: vec2<f32>) -> Lattice {
+    let origin = dot(frame.forward, world.origin);
+    let slope = dot(frame.forward, world.direction);
+    let first = i32(floor((origin + interval.x * slope) / frame.step_world - 0.5));
+    let last = i32(ceil((origin + interval.y * slope) / frame.step_world - 0.5));
+    return Lattice(first, last - first + 1, interval.x, interval.y);
+}
+
+// A segment of no length is outside.
+fn segment_of(lattice: Lattice, world: Ray, k: i32) -> Segment {
+    let t = plane_t(world, k);
+    let inside = lattice.t0 <= t && t < lattice.t1;
+    return Segment(t, select(0.0, plane_length(world), inside));
+}
+
+// Which sample lies at t, as a fraction.
+fn index_at(lattice: Lattice, world: Ray, t: f32) -> f32 {
+    let height = dot(frame.forward, world.origin) + t * dot(frame.forward, world.direction);
+    return height / frame.step_world - 0.5;
+}

@@ -1,0 +1,37 @@
+// Emission and absorption, front to back (Max 1995; `sampling.md` 5), with T the transmittance so far:
+//
+//     C += T alpha c        T *= 1 - alpha
+//
+// Twin: src/technique/composite.rs.
+
+#import opacity
+#import transfer_{transfer}
+
+struct Accumulator {
+    color: vec3<f32>,
+    transmittance: f32,
+    // Where opacity reached one half; negative before that.
+    depth: f32,
+    samples: f32,
+}
+
+fn begin() -> Accumulator {
+    return Accumulator(vec3(0.0), 1.0, -1.0, 0.0);
+}
+
+fn add(so_far: Accumulator, value: f32, segment: Segment) -> Accumulator {
+    let material = classify(value);
+    let opacity = opacity_over(material.extinction, segment.length);
+    var next = so_far;
+    next.color += so_far.transmittance * opacity * material.color;
+    next.transmittance *= 1.0 - opacity;
+    if so_far.depth < 0.0 && next.transmittance <= 0.5 {
+        next.depth = segment.t;
+    }
+    return next;
+}
+
+// The ray ends after the sample at which transmittance falls under the threshold.
+fn is_finished(so_far: Accumulator) -> bool {
+    return so_far.transmittance < frame.termination;
+}

@@ -1,0 +1,49 @@
+// The transfer function by its control points, exactly (`sampling.md` 4): opacity per reference length,
+// and colour, linear between points in sRGB numbers. At equal values the later point wins.
+// Twin: src/transfer/points.rs.
+
+#import frame
+#import color
+
+struct Points {
+    // First the colour points (value, red, green, blue), then the opacity points (value, opacity, 0, 0).
+    d: array<vec4<f32>>,
+}
+
+@group(0) @binding(5) var<storage, read> points: Points;
+
+fn opacity_at(value: f32) -> f32 {
+    return between_points(value, frame.color_point_count, frame.opacity_point_count).y;
+}
+
+fn color_at(value: f32) -> vec3<f32> {
+    let srgb = between_points(value, 0u, frame.color_point_count).yzw;
+    if frame.color_space_is_display != 0u {
+        return srgb;
+    }
+    return linear_from_srgb(srgb);
+}
+
+// Interpolates points[first .. first + count] at a value.
+fn between_points(value: f32, first: u32, count: u32) -> vec4<f32> {
+    // Invariant: points before `low` are at or below the value, points from `high` on are above it.
+    var low = first;
+    var high = first + count;
+    while low < high {
+        let middle = (low + high) / 2u;
+        if points.d[middle].x <= value {
+            low = middle + 1u;
+        } else {
+            high = middle;
+        }
+    }
+    if low == first {
+        return points.d[first];
+    }
+    let left = points.d[low - 1u];
+    if low == first + count || frame.interpolation_is_step != 0u {
+        return left;
+    }
+    let right = points.d[low];
+    return mix(left, right, (value - left.x) / (right.x - left.x));
+}

@@ -1,0 +1,69 @@
+// Rays and the part of them that lies in the domain (`sampling.md` 3).
+//
+// One parameter t, world length, in every space: directions are transformed and never normalized again.
+// Twin: src/ray.rs.
+
+#import frame
+
+struct Ray {
+    origin: vec3<f32>,
+    direction: vec3<f32>,
+}
+
+// The world ray through a pixel position; the centre of pixel (0, 0) is (0.5, 0.5).
+fn pixel_ray(pixel: vec2<f32>) -> Ray {
+    return Ray(
+        frame.origin + pixel.x * frame.origin_dx + pixel.y * frame.origin_dy,
+        normalize(frame.direction + pixel.x * frame.direction_dx + pixel.y * frame.direction_dy),
+    );
+}
+
+// The same ray in voxel space.
+fn voxel_ray(world: Ray) -> Ray {
+    return Ray(
+        vec4(world.origin, 1.0) * frame.voxel_from_world,
+        vec4(world.direction, 0.0) * frame.voxel_from_world,
+    );
+}
+
+// Where the ray is in the domain: t from x (included) to y (excluded), x >= 0; empty unless x < y.
+// Slabs: t = (face - origin) / direction on each axis (Kay and Kajiya 1986).
+fn domain_interval(world: Ray, voxel: Ray) -> vec2<f32> {
+    // 0 / 0 must not happen: a parallel ray gets a slope too small to matter.
+    let tiny = vec3(1e-20);
+    let direction = select(voxel.direction, tiny, abs(voxel.direction) < tiny);
+    let at_min = (frame.domain_min - voxel.origin) / direction;
+    let at_max = (frame.domain_max - voxel.origin) / direction;
+    let enter = min(at_min, at_max);
+    let leave = max(at_min, at_max);
+    var interval = vec2(
+        max(max(enter.x, enter.y), max(enter.z, 0.0)),
+        min(min(leave.x, leave.y), leave.z),
+    );
+    for (var i = 0u; i < frame.clip_plane_count; i++) {
+        interval = clip_interval(interval, frame.clip_planes[i], world);
+    }
+    return interval;
+}
+
+// Keeps the part of the interval with dot(plane.xyz, point) >= plane.w.
+fn clip_interval(interval: vec2<f32>, plane: vec4<f32>, world: Ray) -> vec2<f32> {
+    let height = dot(plane.xyz, world.origin) - plane.w;
+    let slope = dot(plane.xyz, world.direction);
+    if abs(slope) < 1e-20 {
+        return select(vec2(interval.x, interval.x), interval, height >= 0.0);
+    }
+    let t = -height / slope;
+    return select(vec2(interval.x, min(interval.y, t)), vec2(max(interval.x, t), interval.y), slope > 0.0);
+}
+
+// Where plane k of the view-aligned lattice meets the ray: forward . x = (k + 1/2) step.
+fn plane_t(world: Ray, k: i32) -> f32 {
+    return ((f32(k) + 0.5) * frame.step_world - dot(frame.forward, world.origin))
+        / dot(frame.forward, world.direction);
+}
+
+// The length that a sample of the view-aligned lattice stands for.
+fn plane_length(world: Ray) -> f32 {
+    return frame.step_world / dot(frame.forward, world.direction);
+}

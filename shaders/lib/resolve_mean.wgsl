@@ -1,0 +1,15 @@
+// The mean over the ray, sum of v d over sum of d, classified once. No valid sample: transparent.
+
+#import points
+
+@group(0) @binding(1) var accumulation: texture_2d<f32>;
+
+fn premultiplied(pixel: vec2<i32>) -> vec4<f32> {
+    let found = textureLoad(accumulation, pixel, 0);
+    if found.y == 0.0 {
+        return vec4(0.0);
+    }
+    let value = found.x / found.y;
+    let opacity = opacity_at(value);
+    return vec4(opacity * color_at(value), opacity);
+}

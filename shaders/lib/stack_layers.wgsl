@@ -1,0 +1,16 @@
+// A stack's images: slice s of axis k is layer s, with axis (k + 1) mod 3 across and (k + 2) mod 3 down.
+
+#import value
+
+@group(0) @binding(1) var stack: texture_2d_array<f32>;
+
+// A vector of voxel space by the axes of the stack's images: across, down, layer.
+fn in_stack(voxel: vec3<f32>) -> vec3<f32> {
+    let axis = frame.slice_axis;
+    return vec3(voxel[(axis + 1u) % 3u], voxel[(axis + 2u) % 3u], voxel[axis]);
+}
+
+// Where a voxel lies in the images of the brick.
+fn texel_of(index: vec3<i32>) -> vec3<i32> {
+    return vec3<i32>(in_stack(vec3<f32>(index) - frame.brick_origin));
+}

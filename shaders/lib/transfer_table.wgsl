@@ -1,0 +1,22 @@
+// Classification by table: the nearest of `table_count` entries between the first and the last control
+// point; each holds colour and extinction at the middle of its cell. Twin: src/transfer/table.rs.
+
+#import frame
+
+// The table is folded into rows of this many entries.
+const TABLE_WIDTH: i32 = 4096;
+
+@group(0) @binding(4) var transfer_table: texture_2d<f32>;
+
+struct Classified {
+    color: vec3<f32>,
+    extinction: f32,
+}
+
+fn classify(value: f32) -> Classified {
+    // Clamped before it becomes a whole number: a float out of range has no defined one.
+    let cell = clamp((value - frame.table_first) * frame.table_scale, 0.0, f32(frame.table_count - 1u));
+    let index = i32(cell);
+    let entry = textureLoad(transfer_table, vec2(index & (TABLE_WIDTH - 1), index / TABLE_WIDTH), 0);
+    return Classified(entry.xyz, entry.w);
+}

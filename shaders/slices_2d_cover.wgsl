@@ -1,0 +1,41 @@
+// 2D texture slicing, the cover: one rectangle a slice, as large as the enlarged domain.
+//
+// Seen from inside, both halves of the stack run towards the eye: the instances from `slice_turn` on
+// start again at the other end, so every pixel meets its slices in order.
+
+#import frame
+
+const CORNERS = array<vec2<f32>, 6>(
+    vec2(0.0, 0.0),
+    vec2(1.0, 0.0),
+    vec2(1.0, 1.0),
+    vec2(0.0, 0.0),
+    vec2(1.0, 1.0),
+    vec2(0.0, 1.0),
+);
+
+struct Vertex {
+    @builtin(position) position: vec4<f32>,
+    @location(0) @interpolate(flat) slice: i32,
+}
+
+@vertex
+fn main(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Vertex {
+    var corners = CORNERS;
+    let slice = slice_of(instance);
+    let axis = frame.slice_axis;
+    var part = vec3(0.0);
+    part[(axis + 1u) % 3u] = corners[index].x;
+    part[(axis + 2u) % 3u] = corners[index].y;
+    var voxel = mix(frame.cover_min, frame.cover_max, part);
+    voxel[axis] = f32(slice) + 0.5;
+    let world = vec4(voxel, 1.0) * frame.world_from_voxel;
+    return Vertex(vec4(world, 1.0) * frame.clip_from_world, slice);
+}
+
+fn slice_of(instance: u32) -> i32 {
+    if instance < frame.slice_turn {
+        return frame.slice_first + i32(instance) * frame.slice_direction;
+    }
+    return frame.slice_first_after_turn - i32(instance - frame.slice_turn) * frame.slice_direction;
+}

@@ -1,0 +1,248 @@
+//! `stratavox bench`: what a picture costs on this device.
+//!
+//! Without `--cameras`: the median of some pictures for each technique, composite and MIP. With it: one
+//! scene from a list of views, each picture finished before the next.
+
+use super::{
+    Error, cameras_file,
+    flags::{Classification, Depth, NotBuilt, SceneFlags},
+    output::{self, say, write_whole},
+    progress::{Progress, ProgressWord},
+    render::load,
+    renderer::{Job, Renderer},
+    scene_file,
+    signals::Gate,
+    timings::{FrameTime, Timings, median, ms_since, peak_rss_bytes},
+};
+use crate::{
+    camera::{BoundingSphere, Camera},
+    picture::LayerKind,
+    technique::{Mode, Settings, Technique},
+    transfer::{Classified, Window},
+};
+use clap::Args;
+use serde_json::json;
+use std::{fmt::Write, path::PathBuf, time::Instant};
+
+/// Measure what pictures cost on this device
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:\n  \
+    stratavox bench\n  \
+    stratavox bench phantom:shells,n=128 --size 512x512 --json times.json")]
+pub struct Bench {
+    #[command(flatten)]
+    scene: SceneFlags,
+    /// Flags from a file; those of the command line win
+    #[arg(long = "scene", value_name = "FILE.json", help_heading = "Run")]
+    scene_file: Option<PathBuf>,
+    /// Views to draw, one after the other
+    #[arg(long, value_name = "FILE.json", help_heading = "Run")]
+    cameras: Option<PathBuf>,
+    /// Write the times into a file
+    #[arg(long, value_name = "FILE", help_heading = "Run")]
+    json: Option<PathBuf>,
+    /// Pictures to take the median of, for each technique
+    #[arg(long, value_name = "N", default_value_t = 9, value_parser = clap::value_parser!(u32).range(1..), help_heading = "Run")]
+    repeat: u32,
+    /// Say on stderr how far the work is
+    #[arg(long, value_enum, default_value_t, help_heading = "Run")]
+    progress: ProgressWord,
+    /// Replace files that exist
+    #[arg(long, help_heading = "Run")]
+    force: bool,
+    /// No empty-space skipping: the picture is the same without
+    #[arg(long)]
+    no_skip: bool,
+    #[command(flatten)]
+    not_built: NotBuilt,
+}
+
+/// What is drawn where no INPUT is given.
+const DEFAULT_INPUT: &str = "phantom:head";
+
+impl Bench {
+    /// Measures, prints, writes.
+    pub fn run(mut self, gate: &Gate) -> Result<(), Error> {
+        self.not_built.refuse()?;
+        self.scene.classification.inline_file()?;
+        let mut scene = match &self.scene_file {
+            Some(path) => scene_file::overlay(scene_file::read(path)?, &self.scene),
+            None => self.scene.clone(),
+        };
+        if scene.input.path.is_none() {
+            scene.input.path = Some(DEFAULT_INPUT.to_owned());
+        }
+        let mut inputs = scene_file::inputs(&scene, self.scene_file.as_deref());
+        inputs.extend(self.cameras.clone());
+        output::check(self.json.as_slice(), &inputs, self.force)?;
+        scene.classification.check()?;
+        let cameras = self
+            .cameras
+            .as_deref()
+            .map(cameras_file::read)
+            .transpose()?;
+        let text = match cameras {
+            Some(cameras) => self.views(&scene, &cameras)?,
+            None => self.techniques(&scene)?,
+        };
+        match &self.json {
+            Some(path) => write_whole(path, text.as_bytes(), self.force, gate),
+            None => Ok(()),
+        }
+    }
+
+    /// One scene from each of the views.
+    fn views(&self, scene: &SceneFlags, cameras: &[Camera]) -> Result<String, Error> {
+        let progress = Progress::new(self.progress);
+        progress.stage("read", 0, 1);
+        let start = Instant::now();
+        let settings = scene.sampling.settings(Depth::Eight)?;
+        let volume = load(scene, &progress)?;
+        let classification = scene
+            .classification
+            .classification(&volume, settings.mode)?;
+        let load_ms = ms_since(start);
+        progress.stage("prepare", 0, 1);
+        let mut job = Job {
+            volume: &volume,
+            classification: &classification,
+            settings: &settings,
+            extent_pixels: scene.picture.extent_pixels()?,
+            layers: &[],
+            device: scene.device.as_deref(),
+        };
+        // The window of an X-ray is the range of the first view, in all views.
+        let of_first = window_of(job, &cameras[0])?;
+        job.classification = of_first.as_ref().unwrap_or(&classification);
+        let mut renderer = Renderer::new(job, &cameras[0])?;
+        // Pipelines are made on first use: that is not what is measured.
+        renderer.draw(&cameras[0])?;
+        let mut frames = Vec::new();
+        for (done, camera) in cameras.iter().enumerate() {
+            progress.stage("draw", done, cameras.len());
+            frames.push(timed(&mut renderer, camera)?);
+        }
+        let timings = Timings {
+            device: renderer.device(),
+            driver: renderer.driver(),
+            load_ms,
+            upload_ms: renderer.upload_ms,
+            prepare_ms: renderer.prepare_ms,
+            first_frame_ms: frames[0].wall_ms,
+            frames,
+            samples: None,
+            peak_rss_bytes: peak_rss_bytes(),
+            device_bytes: renderer.device_bytes(),
+        };
+        say(&format!(
+            "{}: median of {} views {:.3} ms\n",
+            timings.device,
+            timings.frames.len(),
+            median_wall(&timings.frames),
+        ))?;
+        Ok(timings.json())
+    }
+
+    /// Each technique, as a table.
+    fn techniques(&self, scene: &SceneFlags) -> Result<String, Error> {
+        let progress = Progress::new(self.progress);
+        progress.stage("read", 0, 1);
+        let base = scene.sampling.settings(Depth::Eight)?;
+        let volume = load(scene, &progress)?;
+        let extent_pixels = scene.picture.extent_pixels()?;
+        let bounds = BoundingSphere::of_grid(&volume.world_from_voxel, volume.dims);
+        let camera = scene.camera.camera(&bounds, extent_pixels)?;
+        let mut rows = Vec::new();
+        let mut device = String::new();
+        for (done, (name, technique, mode)) in MEASURED.into_iter().enumerate() {
+            progress.stage("measure", done, MEASURED.len());
+            let settings = Settings {
+                technique,
+                mode,
+                ..base.clone()
+            };
+            let classification = scene.classification.classification(&volume, mode)?;
+            let job = Job {
+                volume: &volume,
+                classification: &classification,
+                settings: &settings,
+                extent_pixels,
+                layers: &[],
+                device: scene.device.as_deref(),
+            };
+            let mut renderer = Renderer::new(job, &camera)?;
+            renderer.draw(&camera)?;
+            let frames = (0..self.repeat).map(|_| timed(&mut renderer, &camera));
+            let frames = frames.collect::<Result<Vec<_>, _>>()?;
+            rows.push((name, median_gpu(&frames), median_wall(&frames)));
+            device = format!("{}, {}", renderer.device(), renderer.driver());
+        }
+        drop(progress);
+        let [width, height] = extent_pixels;
+        let mut table = format!(
+            "{device}\n{width}x{height}, median of {}\n{:<20} {:>10} {:>10}\n",
+            self.repeat, "", "gpu ms", "wall ms"
+        );
+        for (name, gpu_ms, wall_ms) in &rows {
+            let gpu_ms = gpu_ms.map_or("-".to_owned(), |ms| format!("{ms:.3}"));
+            let _ = writeln!(table, "{name:<20} {gpu_ms:>10} {wall_ms:>10.3}");
+        }
+        say(&table)?;
+        let rows: Vec<_> = rows
+            .iter()
+            .map(|(name, gpu_ms, wall_ms)| json!({ "name": name, "gpu_ms": gpu_ms, "wall_ms": wall_ms }))
+            .collect();
+        let value =
+            json!({ "device": device, "size": extent_pixels, "repeat": self.repeat, "rows": rows });
+        Ok(format!("{value:#}\n"))
+    }
+}
+
+/// Preset `grey` over the range of what the first view projects, where nothing else says how to classify.
+fn window_of(job: Job, camera: &Camera) -> Result<Option<Classification>, Error> {
+    if *job.classification != Classification::RangeOfPicture {
+        return Ok(None);
+    }
+    let job = Job {
+        layers: &[LayerKind::Value],
+        ..job
+    };
+    let picture = Renderer::new(job, camera)?.draw(camera)?.picture;
+    let values = picture.layers[0]
+        .values
+        .iter()
+        .filter(|value| !value.is_nan());
+    let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| {
+        [low.min(value.into()), high.max(value.into())]
+    });
+    let function = Window::of_range(range).grey(Classified::Projection);
+    Ok(Some(Classification::Function(function)))
+}
+
+/// The rows of the table.
+const MEASURED: [(&str, Technique, Mode); 6] = [
+    ("raycast composite", Technique::Raycast, Mode::Composite),
+    ("slices-3d composite", Technique::Slices3d, Mode::Composite),
+    ("slices-2d composite", Technique::Slices2d, Mode::Composite),
+    ("raycast mip", Technique::Raycast, Mode::Mip),
+    ("slices-3d mip", Technique::Slices3d, Mode::Mip),
+    ("slices-2d mip", Technique::Slices2d, Mode::Mip),
+];
+
+fn timed(renderer: &mut Renderer, camera: &Camera) -> Result<FrameTime, Error> {
+    let start = Instant::now();
+    let frame = renderer.draw(camera)?;
+    Ok(FrameTime {
+        gpu_ms: frame.gpu_ms,
+        wall_ms: ms_since(start),
+    })
+}
+
+fn median_wall(frames: &[FrameTime]) -> f64 {
+    median(frames.iter().map(|frame| frame.wall_ms).collect())
+}
+
+fn median_gpu(frames: &[FrameTime]) -> Option<f64> {
+    let times: Option<Vec<f64>> = frames.iter().map(|frame| frame.gpu_ms).collect();
+    times.map(median)
+}

@@ -1,0 +1,100 @@
+//! `stratavox devices`: what is here to draw with, and what it lacks.
+
+use super::{Error, error::visible, output::say};
+use crate::gpu::{DeviceReport, list_devices};
+use clap::Args;
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// List the Vulkan devices, what they can do for us and what they lack
+#[derive(Args, Debug)]
+#[command(after_help = "Example:\n  stratavox devices --json")]
+pub struct Devices {
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+impl Devices {
+    /// Prints one report a device.
+    pub fn run(self) -> Result<(), Error> {
+        let devices = list_devices()?;
+        if self.json {
+            let devices: Vec<_> = devices.iter().enumerate().map(json_of).collect();
+            return say(&format!("{:#}\n", json!({ "devices": devices })));
+        }
+        let text: String = devices.iter().enumerate().map(text_of).collect();
+        say(if text.is_empty() {
+            "no Vulkan device\n"
+        } else {
+            &text
+        })
+    }
+}
+
+fn uuid_text(uuid: &[u8; 16]) -> String {
+    uuid.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+fn json_of((index, device): (usize, &DeviceReport)) -> Value {
+    let identity = &device.identity;
+    let [major, minor, patch] = identity.api_version;
+    let abilities: Vec<_> = device
+        .abilities
+        .iter()
+        .map(|ability| {
+            json!({
+                "name": ability.name,
+                "present": ability.is_present,
+                "required": ability.is_required,
+                "without": ability.without,
+            })
+        })
+        .collect();
+    json!({
+        "index": index,
+        "name": identity.name,
+        "kind": identity.kind.name(),
+        "uuid": uuid_text(&identity.uuid),
+        "vulkan": format!("{major}.{minor}.{patch}"),
+        "driver": identity.driver_name,
+        "driver_info": identity.driver_info,
+        "memory_bytes": device.memory_bytes,
+        "usable": device.is_usable(),
+        "abilities": abilities,
+    })
+}
+
+fn text_of((index, device): (usize, &DeviceReport)) -> String {
+    let identity = &device.identity;
+    let [major, minor, patch] = identity.api_version;
+    let mut text = String::new();
+    let _ = writeln!(
+        text,
+        "{index}  {} ({})",
+        visible(&identity.name),
+        identity.kind.name()
+    );
+    let _ = writeln!(text, "   uuid    {}", uuid_text(&identity.uuid));
+    let _ = writeln!(
+        text,
+        "   driver  {} {}, Vulkan {major}.{minor}.{patch}",
+        visible(&identity.driver_name),
+        visible(&identity.driver_info),
+    );
+    let _ = writeln!(text, "   memory  {} MiB", device.memory_bytes >> 20);
+    let verdict = if device.is_usable() {
+        "can draw"
+    } else {
+        "cannot draw"
+    };
+    let _ = writeln!(text, "   {verdict}");
+    for ability in device
+        .abilities
+        .iter()
+        .filter(|ability| !ability.is_present)
+    {
+        let _ = writeln!(text, "   lacks {}: {}", ability.name, ability.without);
+    }
+    text
+}

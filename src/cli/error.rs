@@ -1,0 +1,258 @@
+//! What can stop the program, the number it exits with, and the few lines that say so.
+//!
+//! | code | meaning |
+//! |---|---|
+//! | 0 | done |
+//! | 1 | a comparison failed |
+//! | 2 | the words of the command line cannot be followed |
+//! | 3 | an input cannot be read |
+//! | 4 | an output cannot be written |
+//! | 5 | no Vulkan device can do it |
+//! | 6 | a limit, or memory |
+//! | 101 | a bug of ours (see [`super::bug`]) |
+//! | 130 | interrupted |
+
+use crate::{
+    gpu, offscreen,
+    picture::{OutputError, PictureError},
+    volume::{Problem, ReadError},
+};
+use std::{error::Error as Cause, fmt::Write, io, path::PathBuf};
+
+/// Why a command did not do what it was asked.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// Two pictures are further apart than allowed.
+    #[error("{0}")]
+    Differs(String),
+    /// The words are no command; the text says so at length and in colours of its own.
+    #[error("{0}")]
+    Words(String),
+    /// The words cannot be followed.
+    #[error("{message}")]
+    Usage {
+        /// What is wrong with them.
+        message: String,
+        /// What to write instead.
+        hint: &'static str,
+    },
+    /// A word that will be understood one day.
+    #[error("{0} is not built yet")]
+    NotBuilt(String),
+    /// A volume cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// A picture cannot be read.
+    #[error(transparent)]
+    ReadPicture(#[from] PictureError),
+    /// Another input file cannot be read.
+    #[error("cannot read {}: {problem}", path.display())]
+    Input {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// A picture cannot be written.
+    #[error(transparent)]
+    WritePicture(#[from] OutputError),
+    /// Another file or the standard output cannot be written.
+    #[error("cannot write {}: {problem}", path.display())]
+    Output {
+        /// The file.
+        path: PathBuf,
+        /// What stands in the way.
+        problem: String,
+        /// What to do, where that is plain.
+        hint: Option<&'static str>,
+    },
+    /// No device, or one that cannot do it.
+    #[error(transparent)]
+    Device(#[from] gpu::Error),
+    /// More than there is, or than is allowed.
+    #[error("{0}")]
+    Limit(String),
+}
+
+impl From<offscreen::Error> for Error {
+    fn from(error: offscreen::Error) -> Self {
+        match error {
+            offscreen::Error::Gpu(error) => Self::Device(error),
+            offscreen::Error::Technique(error) => Self::Limit(error.to_string()),
+            offscreen::Error::NoLayer { .. } => Self::NotBuilt(error.to_string()),
+        }
+    }
+}
+
+impl Error {
+    /// A usage error with a hint.
+    pub fn usage(message: impl Into<String>, hint: &'static str) -> Self {
+        Self::Usage {
+            message: message.into(),
+            hint,
+        }
+    }
+
+    /// The system would not let us write `path`.
+    pub fn output(path: impl Into<PathBuf>, cause: &io::Error) -> Self {
+        Self::Output {
+            path: path.into(),
+            problem: cause.to_string(),
+            hint: None,
+        }
+    }
+
+    /// What the process exits with.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Differs(_) => 1,
+            Self::Words(_) | Self::Usage { .. } | Self::NotBuilt(_) => 2,
+            Self::Read(ReadError {
+                problem: Problem::Limit { .. },
+                ..
+            }) => 6,
+            Self::Read(_) | Self::ReadPicture(_) | Self::Input { .. } => 3,
+            Self::WritePicture(_) | Self::Output { .. } => 4,
+            Self::Device(gpu::Error::Limit { .. } | gpu::Error::OutOfMemory { .. }) => 6,
+            Self::Device(_) => 5,
+            Self::Limit(_) => 6,
+        }
+    }
+
+    /// One line that says what to do, where something can be done.
+    pub fn hint(&self) -> Option<&'static str> {
+        match self {
+            Self::Usage { hint, .. } => Some(hint),
+            Self::NotBuilt(_) => Some("`stratavox help` lists what is there"),
+            Self::Output { hint, .. } => *hint,
+            Self::Read(ReadError { problem, .. }) => match problem {
+                Problem::UnknownFormat(_) => {
+                    Some("a file without a header needs its layout: --raw 256x256x109,i16")
+                }
+                _ => None,
+            },
+            Self::Device(gpu::Error::Limit { .. } | gpu::Error::OutOfMemory { .. }) => None,
+            Self::Device(gpu::Error::Format { .. }) => {
+                Some("--technique raycast needs no blending")
+            }
+            Self::Device(_) => Some(
+                "`stratavox devices` says what is here; --device reference draws without Vulkan",
+            ),
+            Self::Words(_)
+            | Self::Differs(_)
+            | Self::ReadPicture(_)
+            | Self::Input { .. }
+            | Self::WritePicture(_)
+            | Self::Limit(_) => None,
+        }
+    }
+
+    /// The lines for a person: what happened, what caused it, what to do. Nothing that came from a file or
+    /// a name can steer the terminal.
+    pub fn lines(&self) -> String {
+        if let Self::Words(text) = self {
+            return text.clone();
+        }
+        let mut lines = format!("stratavox: {}\n", visible(&self.to_string()));
+        let mut last = self.to_string();
+        let mut cause = self.source();
+        while let Some(error) = cause {
+            let text = error.to_string();
+            // A transparent or summarizing error has already said what its cause says.
+            if !last.contains(&text) {
+                let _ = writeln!(lines, "  because: {}", visible(&text));
+                last = text;
+            }
+            cause = error.source();
+        }
+        if let Some(hint) = self.hint() {
+            let _ = writeln!(lines, "  hint: {hint}");
+        }
+        lines
+    }
+}
+
+/// `text` on one line, with control characters spelled out and of bounded length.
+pub fn visible(text: &str) -> String {
+    const LONGEST: usize = 600;
+    let mut shown = String::new();
+    for c in text.chars() {
+        if shown.len() >= LONGEST {
+            shown.push_str(" ...");
+            break;
+        }
+        match c {
+            c if c.is_control() => shown.extend(c.escape_default()),
+            // Marks that change the direction of text could make a line read as another one.
+            '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => {
+                shown.extend(c.escape_unicode());
+            }
+            c => shown.push(c),
+        }
+    }
+    shown
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn unreadable(problem: Problem) -> Error {
+        Error::Read(ReadError {
+            path: "a\u{1b}[2Jb.nrrd".into(),
+            problem,
+        })
+    }
+
+    #[test]
+    fn an_error_says_what_why_and_what_to_do_on_three_lines() {
+        let lines = Error::Device(gpu::Error::NoDriver).lines();
+        assert!(lines.starts_with("stratavox: no Vulkan device"), "{lines}");
+        assert!(lines.contains("\n  hint: "), "{lines}");
+        let io = Problem::Io {
+            doing: "opening it",
+            cause: io::Error::other("the cable is out"),
+        };
+        let lines = unreadable(io).lines();
+        assert!(lines.contains("\n  because: the cable is out\n"), "{lines}");
+        assert_eq!(lines.lines().count(), 2, "{lines}");
+    }
+
+    #[test]
+    fn a_cause_that_was_said_is_not_said_again() {
+        let error = unreadable(Problem::Missing {
+            format: "nrrd",
+            field: "sizes".to_owned(),
+        });
+        let lines = error.lines();
+        assert_eq!(lines.matches("has no `sizes`").count(), 1, "{lines}");
+    }
+
+    #[test]
+    fn a_hostile_name_cannot_steer_the_terminal() {
+        let lines = unreadable(Problem::UnknownFormat(String::new())).lines();
+        assert!(!lines.contains('\u{1b}'), "{lines:?}");
+        assert!(lines.contains("a\\u{1b}[2Jb.nrrd"), "{lines:?}");
+        assert!(visible(&"x".repeat(100_000)).len() < 700);
+    }
+
+    #[test]
+    fn every_kind_of_error_has_the_exit_code_of_its_kind() {
+        let limit = Problem::Limit {
+            what: "the volume".to_owned(),
+            wanted_bytes: 2,
+            limit_bytes: 1,
+        };
+        for (error, code) in [
+            (Error::Differs(String::new()), 1),
+            (Error::usage("", ""), 2),
+            (Error::NotBuilt("`--mode iso`".to_owned()), 2),
+            (unreadable(Problem::UnknownFormat(String::new())), 3),
+            (unreadable(limit), 6),
+            (Error::output("x", &io::Error::other("full")), 4),
+            (Error::Limit(String::new()), 6),
+        ] {
+            assert_eq!(error.exit_code(), code, "{error:?}");
+        }
+    }
+}

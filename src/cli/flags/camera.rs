@@ -1,0 +1,308 @@
+//! Where the picture is seen from: flags to a [`Camera`], once the volume's box is known.
+
+use super::{Error, Numbers, finite, positive};
+use crate::camera::{self, BoundingSphere, Camera, Lens, Orbit, View, up_for};
+use clap::{Args, ValueEnum};
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// The flags, none of them filled in.
+#[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct CameraFlags {
+    /// How rays spread [default: perspective]
+    #[arg(long, help_heading = "Camera")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub projection: Option<ProjectionWord>,
+    /// Vertical angle of a perspective view [default: 30]
+    #[arg(long, value_name = "DEG", value_parser = positive, help_heading = "Camera")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fov: Option<f64>,
+    /// 1: the bounding sphere fits; more is nearer [default: 1]
+    #[arg(long, value_name = "F", value_parser = positive, help_heading = "Camera")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub zoom: Option<f64>,
+    /// Stand on this side [default: anterior]
+    #[arg(long, value_name = "SIDE", conflicts_with_all = ["azimuth", "elevation"], help_heading = "Camera")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub view: Option<ViewWord>,
+    /// Stand at this angle around +z, from +x towards +y
+    #[arg(long, value_name = "DEG", value_parser = finite, allow_negative_numbers = true, help_heading = "Camera")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub azimuth: Option<f64>,
+    /// Stand at this angle above the plane of x and y
+    #[arg(long, value_name = "DEG", value_parser = finite, allow_negative_numbers = true, help_heading = "Camera")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub elevation: Option<f64>,
+    /// Turn the picture clockwise
+    #[arg(long, value_name = "DEG", value_parser = finite, allow_negative_numbers = true, help_heading = "Camera")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub roll: Option<f64>,
+    /// Stand here, in world space
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true,
+          conflicts_with_all = ["view", "azimuth", "elevation", "roll"], help_heading = "Camera")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub eye: Option<Numbers<3>>,
+    /// Look at this point [default: the middle of the grid box]
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        allow_hyphen_values = true,
+        help_heading = "Camera"
+    )]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub target: Option<Numbers<3>>,
+    /// This direction is up in the picture [default: +z, looking along z +y]
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        allow_hyphen_values = true,
+        help_heading = "Camera"
+    )]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub up: Option<Numbers<3>>,
+    /// World height of an orthographic picture [default: the bounding sphere fits]
+    #[arg(long, value_name = "H", value_parser = positive, help_heading = "Camera")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub view_height: Option<f64>,
+}
+
+/// Full vertical angle of a perspective view.
+const DEFAULT_FOV_DEGREES: f64 = 30.0;
+
+impl CameraFlags {
+    /// The camera on a volume whose uncropped grid box lies in `bounds`.
+    pub fn camera(
+        &self,
+        bounds: &BoundingSphere,
+        extent_pixels: [u32; 2],
+    ) -> Result<Camera, Error> {
+        let lens = match self.projection.unwrap_or_default() {
+            ProjectionWord::Perspective => Lens::Perspective {
+                fov_degrees: self.fov.unwrap_or(DEFAULT_FOV_DEGREES),
+            },
+            ProjectionWord::Orthographic => Lens::Orthographic {
+                view_height: self.view_height,
+            },
+        };
+        let target = self.target.map_or(bounds.center, |Numbers(p)| p.into());
+        let up = self.up.map(|Numbers(v)| DVec3::from(v));
+        let camera = match self.eye {
+            Some(Numbers(eye)) => {
+                let eye = DVec3::from(eye);
+                Camera {
+                    eye,
+                    target,
+                    up: up.unwrap_or_else(|| up_for(target - eye)),
+                    projection: lens.projection(bounds, extent_pixels),
+                    zoom: 1.0,
+                }
+            }
+            None => Camera::orbit(bounds, target, self.orbit(), up, lens, extent_pixels)
+                .map_err(refused)?,
+        };
+        let camera = Camera {
+            zoom: self.zoom.unwrap_or(1.0),
+            ..camera
+        };
+        camera.check().map_err(refused)?;
+        Ok(camera)
+    }
+
+    fn orbit(&self) -> Orbit {
+        let side = match (self.view, self.azimuth, self.elevation) {
+            (Some(view), _, _) => view.view().orbit(),
+            (None, None, None) => View::Anterior.orbit(),
+            (None, azimuth, elevation) => Orbit {
+                azimuth_degrees: azimuth.unwrap_or(0.0),
+                elevation_degrees: elevation.unwrap_or(0.0),
+                roll_degrees: 0.0,
+            },
+        };
+        Orbit {
+            roll_degrees: self.roll.unwrap_or(0.0),
+            ..side
+        }
+    }
+
+    /// Takes out what `stronger` excludes, so that both can be put together.
+    pub fn give_way_to(&mut self, stronger: &Self) {
+        let stronger_orbits = stronger.azimuth.is_some() || stronger.elevation.is_some();
+        if stronger.eye.is_some() || stronger.view.is_some() || stronger_orbits {
+            if !stronger_orbits || self.eye.is_some() {
+                (self.azimuth, self.elevation) = (None, None);
+            }
+            (self.view, self.eye) = (None, None);
+        }
+        if stronger.eye.is_some() {
+            self.roll = None;
+        }
+        if stronger.roll.is_some() {
+            self.eye = None;
+        }
+    }
+
+    /// Flags that change nothing under the others, a sentence each.
+    pub fn idle(&self) -> Vec<&'static str> {
+        let mut notes = Vec::new();
+        match self.projection.unwrap_or_default() {
+            ProjectionWord::Perspective if self.view_height.is_some() => {
+                notes.push("--view-height has no effect without --projection orthographic");
+            }
+            ProjectionWord::Orthographic if self.fov.is_some() => {
+                notes.push("--fov has no effect with --projection orthographic");
+            }
+            _ => {}
+        }
+        notes
+    }
+}
+
+fn refused(error: camera::Error) -> Error {
+    Error::usage(
+        error.to_string(),
+        "a camera stands at --eye, looks at --target, and --up points elsewhere",
+    )
+}
+
+/// Every word of `--projection`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum ProjectionWord {
+    #[default]
+    Perspective,
+    Orthographic,
+}
+
+/// Every word of `--view`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum ViewWord {
+    Anterior,
+    Posterior,
+    Left,
+    Right,
+    Superior,
+    Inferior,
+}
+
+impl ViewWord {
+    fn view(self) -> View {
+        match self {
+            Self::Anterior => View::Anterior,
+            Self::Posterior => View::Posterior,
+            Self::Left => View::Left,
+            Self::Right => View::Right,
+            Self::Superior => View::Superior,
+            Self::Inferior => View::Inferior,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::Projection;
+
+    const BOUNDS: BoundingSphere = BoundingSphere {
+        center: DVec3::new(10.0, 20.0, 30.0),
+        radius: 5.0,
+    };
+
+    fn camera(change: impl FnOnce(&mut CameraFlags)) -> Camera {
+        let mut flags = CameraFlags::default();
+        change(&mut flags);
+        flags.camera(&BOUNDS, [1024, 768]).expect("a camera")
+    }
+
+    #[test]
+    fn without_a_flag_the_whole_volume_is_seen_from_the_front() {
+        let found = camera(|_| {});
+        // 5 / sin(15 degrees) = 19.318516525781366 in front of the middle.
+        let off = (found.eye - DVec3::new(10.0, 39.318_516_525_781_37, 30.0)).length();
+        assert!(off < 1e-12, "{found:?}");
+        assert_eq!(found.target, BOUNDS.center);
+        assert_eq!(
+            found.projection,
+            Projection::Perspective { fov_degrees: 30.0 }
+        );
+    }
+
+    #[test]
+    fn azimuth_alone_leaves_the_elevation_at_zero() {
+        let found = camera(|f| f.azimuth = Some(180.0));
+        assert!(found.eye.x < 0.0 && found.eye.z == 30.0, "{found:?}");
+        assert_eq!(found, camera(|f| f.view = Some(ViewWord::Left)));
+    }
+
+    #[test]
+    fn an_orthographic_eye_stands_two_radii_off_and_the_height_fits() {
+        let found = camera(|f| f.projection = Some(ProjectionWord::Orthographic));
+        assert!((found.eye.y - 30.0).abs() < 1e-12, "{found:?}");
+        assert_eq!(
+            found.projection,
+            Projection::Orthographic { view_height: 10.0 }
+        );
+    }
+
+    #[test]
+    fn zoom_applies_to_an_explicit_eye_too() {
+        let found = camera(|f| {
+            f.eye = Some(Numbers([10.0, 20.0, 99.0]));
+            f.zoom = Some(2.0);
+        });
+        assert_eq!(found.zoom, 2.0);
+        assert_eq!(found.eye, DVec3::new(10.0, 20.0, 99.0));
+        // Straight down: +z cannot be up.
+        assert_eq!(found.up, DVec3::Y);
+    }
+
+    #[test]
+    fn a_camera_inside_its_own_target_is_a_usage_error() {
+        let flags = CameraFlags {
+            eye: Some(Numbers([10.0, 20.0, 30.0])),
+            ..CameraFlags::default()
+        };
+        let error = flags.camera(&BOUNDS, [8, 8]).expect_err("refused");
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains("same point"), "{error}");
+    }
+
+    #[test]
+    fn a_stronger_eye_takes_the_place_of_a_view() {
+        let mut weak = CameraFlags {
+            view: Some(ViewWord::Left),
+            roll: Some(5.0),
+            zoom: Some(2.0),
+            ..CameraFlags::default()
+        };
+        let strong = CameraFlags {
+            eye: Some(Numbers([0.0; 3])),
+            ..CameraFlags::default()
+        };
+        weak.give_way_to(&strong);
+        let wanted = CameraFlags {
+            zoom: Some(2.0),
+            ..CameraFlags::default()
+        };
+        assert_eq!(weak, wanted);
+    }
+
+    #[test]
+    fn a_stronger_azimuth_keeps_the_elevation() {
+        let mut weak = CameraFlags {
+            azimuth: Some(1.0),
+            elevation: Some(2.0),
+            ..CameraFlags::default()
+        };
+        let strong = CameraFlags {
+            azimuth: Some(3.0),
+            ..CameraFlags::default()
+        };
+        weak.give_way_to(&strong);
+        assert_eq!(weak.elevation, Some(2.0));
+        assert_eq!(weak.view, None);
+    }
+}

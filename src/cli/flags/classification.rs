@@ -1,0 +1,256 @@
+//! Value to colour and opacity: flags to a transfer function, once the volume is known.
+
+use super::{Error, Numbers};
+use crate::{
+    technique::Mode,
+    transfer::{
+        Classified, Preset, TransferFunction, ValueSummary, Window, automatic,
+        read_transfer_function, transfer_function_from_json, transfer_function_to_json,
+    },
+    volume::Volume,
+};
+use clap::Args;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// The flags, none of them filled in.
+#[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ClassificationFlags {
+    /// A transfer function of ours: ct-bone, ct-soft-tissue, ct-lung, mri, microscopy, grey [default: by the values]
+    #[arg(long, value_name = "NAME", value_parser = preset, conflicts_with = "tf", help_heading = "Colour")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub preset: Option<String>,
+    /// A transfer function file
+    #[arg(long, value_name = "FILE", help_heading = "Colour")]
+    #[serde(skip)]
+    pub tf: Option<PathBuf>,
+    /// What stood in that file: a scene carries it with it.
+    #[arg(skip)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub transfer_function: Option<serde_json::Value>,
+    /// The values that the function is spread over (xray: of the integral)
+    #[arg(
+        long,
+        value_name = "LO,HI",
+        allow_hyphen_values = true,
+        help_heading = "Colour"
+    )]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub window: Option<Numbers<2>>,
+}
+
+/// How values become colour.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Classification {
+    /// By this function.
+    Function(TransferFunction),
+    /// By preset `grey` over the range of the integrals that the (first) picture holds.
+    RangeOfPicture,
+}
+
+impl ClassificationFlags {
+    /// Reads the file of `--tf` into `transfer_function`; what a scene says in its place is gone.
+    pub fn inline_file(&mut self) -> Result<(), Error> {
+        let Some(path) = &self.tf else { return Ok(()) };
+        let function = read_transfer_function(path).map_err(|error| Error::Input {
+            path: path.clone(),
+            problem: with_causes(&error.problem),
+        })?;
+        let text = transfer_function_to_json(&function);
+        let value = serde_json::from_str(&text).expect("what we have just written as JSON");
+        self.transfer_function = Some(value);
+        Ok(())
+    }
+
+    /// Takes out what `stronger` excludes, so that both can be put together.
+    pub fn give_way_to(&mut self, stronger: &Self) {
+        if stronger.preset.is_some() || stronger.transfer_function.is_some() {
+            self.preset = None;
+            self.transfer_function = None;
+        }
+    }
+
+    /// What can be said wrong without a volume.
+    pub fn check(&self) -> Result<(), Error> {
+        self.window()?;
+        self.function_of_file()?;
+        if let Some(name) = &self.preset {
+            preset(name).map_err(|problem| Error::usage(problem, "--preset ct-bone"))?;
+        }
+        Ok(())
+    }
+
+    /// The function for this volume and what `mode` classifies.
+    pub fn classification(&self, volume: &Volume, mode: Mode) -> Result<Classification, Error> {
+        let window = self.window()?;
+        let classified = match mode {
+            Mode::Composite => Classified::Samples,
+            Mode::Mip | Mode::Minip | Mode::Average | Mode::Xray => Classified::Projection,
+        };
+        let preset = self.preset.as_deref().and_then(Preset::from_name);
+        let function = match (self.function_of_file()?, preset) {
+            (Some(function), _) => match window {
+                Some(window) => function.spread_over(window),
+                None => function,
+            },
+            // The range of the volume says nothing about that of integrals.
+            (None, None | Some(Preset::Grey)) if mode == Mode::Xray && window.is_none() => {
+                return Ok(Classification::RangeOfPicture);
+            }
+            (None, Some(preset)) => preset.function(&summary(volume), classified, window),
+            (None, None) => automatic(&summary(volume), classified, window),
+        };
+        Ok(Classification::Function(function))
+    }
+
+    fn window(&self) -> Result<Option<Window>, Error> {
+        let Some(Numbers([low, high])) = self.window else {
+            return Ok(None);
+        };
+        let window = Window::new(low, high).ok_or_else(|| {
+            Error::usage(
+                format!("--window {low},{high}: wanted a low value and a higher one"),
+                "--window -200,300",
+            )
+        })?;
+        Ok(Some(window))
+    }
+
+    fn function_of_file(&self) -> Result<Option<TransferFunction>, Error> {
+        let Some(value) = &self.transfer_function else {
+            return Ok(None);
+        };
+        transfer_function_from_json(value.to_string().as_bytes())
+            .map(Some)
+            .map_err(|problem| Error::Input {
+                path: Path::new("the scene's transfer_function").to_owned(),
+                problem: with_causes(&problem),
+            })
+    }
+}
+
+/// A sentence with all its causes.
+fn with_causes(error: &dyn std::error::Error) -> String {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        text = format!("{text}: {error}");
+        cause = error.source();
+    }
+    text
+}
+
+fn preset(name: &str) -> Result<String, String> {
+    let names = Preset::ALL.map(Preset::name);
+    if names.contains(&name) {
+        Ok(name.to_owned())
+    } else {
+        Err(format!(
+            "no preset {name:?}; there are {}",
+            names.join(", ")
+        ))
+    }
+}
+
+fn summary(volume: &Volume) -> ValueSummary {
+    let [x, y, z] = volume.dims.map(f64::from);
+    let diagonal = volume
+        .world_from_voxel
+        .transform_vector3(DVec3::new(x, y, z));
+    let is_valid = |i: usize| volume.validity.as_ref().is_none_or(|valid| valid[i] != 0);
+    let value = |i: usize| {
+        f64::from(volume.voxels.stored(i)) * volume.rescale.slope + volume.rescale.intercept
+    };
+    ValueSummary::of(
+        volume.voxels.len(),
+        volume.value_range,
+        diagonal.length(),
+        volume.hounsfield,
+        |i| is_valid(i).then(|| value(i)),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::volume::{Rescale, Voxels};
+    use glam::DAffine3;
+
+    fn volume() -> Volume {
+        Volume {
+            dims: [2, 2, 2],
+            world_from_voxel: DAffine3::IDENTITY,
+            voxels: Voxels::U8(vec![0, 10, 20, 30, 40, 50, 60, 70]),
+            rescale: Rescale::default(),
+            validity: None,
+            hounsfield: false,
+            loss: Default::default(),
+            value_range: [0.0, 70.0],
+        }
+    }
+
+    fn of(flags: &ClassificationFlags, mode: Mode) -> Classification {
+        flags.classification(&volume(), mode).expect("a function")
+    }
+
+    #[test]
+    fn a_maximum_is_grey_over_the_range_of_the_volume() {
+        let wanted = Window::of_range([0.0, 70.0]).grey(Classified::Projection);
+        let found = of(&ClassificationFlags::default(), Mode::Mip);
+        assert_eq!(found, Classification::Function(wanted));
+    }
+
+    #[test]
+    fn the_window_of_an_xray_comes_from_its_picture_unless_it_is_given() {
+        let mut flags = ClassificationFlags::default();
+        assert_eq!(of(&flags, Mode::Xray), Classification::RangeOfPicture);
+        flags.window = Some(Numbers([1.0, 9.0]));
+        let wanted = Window::of_range([1.0, 9.0]).grey(Classified::Projection);
+        assert_eq!(of(&flags, Mode::Xray), Classification::Function(wanted));
+    }
+
+    #[test]
+    fn a_window_upside_down_is_a_usage_error() {
+        let flags = ClassificationFlags {
+            window: Some(Numbers([5.0, 5.0])),
+            ..ClassificationFlags::default()
+        };
+        let error = flags.check().expect_err("refused");
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains("--window 5,5"), "{error}");
+    }
+
+    #[test]
+    fn a_function_inside_a_scene_is_used_and_a_wrong_one_is_an_input_error() {
+        let json =
+            r#"{"stratavox_transfer_function":1,"color":[[0,1,0,0]],"opacity":[[0,0],[9,1]]}"#;
+        let mut flags = ClassificationFlags {
+            transfer_function: Some(serde_json::from_str(json).expect("JSON")),
+            ..ClassificationFlags::default()
+        };
+        let Classification::Function(function) = of(&flags, Mode::Composite) else {
+            panic!("no function");
+        };
+        assert_eq!(function.color[0].srgb, [1.0, 0.0, 0.0]);
+        flags.transfer_function = Some(serde_json::json!({"stratavox_transfer_function": 2}));
+        assert_eq!(flags.check().expect_err("refused").exit_code(), 3);
+    }
+
+    #[test]
+    fn a_stronger_preset_takes_the_place_of_a_function() {
+        let mut weak = ClassificationFlags {
+            transfer_function: Some(serde_json::json!({})),
+            window: Some(Numbers([0.0, 1.0])),
+            ..ClassificationFlags::default()
+        };
+        let strong = ClassificationFlags {
+            preset: Some("mri".to_owned()),
+            ..ClassificationFlags::default()
+        };
+        weak.give_way_to(&strong);
+        assert_eq!(weak.transfer_function, None);
+        assert!(weak.window.is_some());
+    }
+}

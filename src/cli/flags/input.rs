@@ -1,0 +1,237 @@
+//! Which volume: the words, and the source they name.
+
+use super::Error;
+use crate::{
+    format,
+    volume::{Header, Limits, Pick, Source, phantom},
+};
+use clap::Args;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// The words, none of them filled in.
+#[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct InputFlags {
+    /// A volume file, or phantom:NAME[,n=256][,type=u8|u16|f32] with NAME of sphere, gauss, marschner-lobb, head, fog, shells, storm
+    #[arg(value_name = "INPUT")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub path: Option<String>,
+    /// The layout of a file without a header: 256x256x109,i16[,0.9x0.9x1.5][,le|be]
+    #[arg(long, value_name = "LAYOUT", help_heading = "Input")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub raw: Option<String>,
+    /// One of several variables
+    #[arg(long, value_name = "NAME", help_heading = "Input")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub variable: Option<String>,
+    /// One of several times, counted from 0 [default: the first]
+    #[arg(long, value_name = "N", help_heading = "Input")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time: Option<String>,
+    /// One of several numbers of a voxel, counted from 0
+    #[arg(long, value_name = "N", help_heading = "Input")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub component: Option<u32>,
+    /// One of several DICOM series
+    #[arg(long, value_name = "UID", help_heading = super::not_built::HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub series: Option<String>,
+}
+
+/// How a built-in volume begins.
+const PHANTOM: &str = "phantom:";
+
+/// Endings of files that are promised and not built yet.
+const LATER: &[&str] = &[
+    "vti", "vtk", "tif", "tiff", "nc", "h5", "grib", "grib2", "npy", "zarr", "dcm",
+];
+
+impl InputFlags {
+    /// The file, where the input is one.
+    pub fn file(&self) -> Option<&Path> {
+        self.path
+            .as_deref()
+            .filter(|path| !path.starts_with(PHANTOM))
+            .map(Path::new)
+    }
+
+    /// Opens what the words name; reads its header alone.
+    pub fn open(&self, limits: &Limits) -> Result<Box<dyn Source>, Error> {
+        let Some(path) = self.path.as_deref() else {
+            return Err(Error::usage(
+                "no INPUT is given",
+                "name a volume file, or phantom:head",
+            ));
+        };
+        if self.series.is_some() {
+            return Err(Error::NotBuilt("`--series`".to_owned()));
+        }
+        if path.starts_with(PHANTOM) {
+            if self.raw.is_some() {
+                return Err(Error::usage(
+                    "--raw is the layout of a file, and the input is a built-in volume",
+                    "leave out --raw",
+                ));
+            }
+            return Ok(phantom::open(&self.phantom_spec(path), limits)?);
+        }
+        let path = Path::new(path);
+        if path.exists() && self.raw.is_none() {
+            refuse_later_formats(path)?;
+        }
+        let source = match &self.raw {
+            Some(layout) => {
+                let layout = format::raw::RawSpec::parse(layout).map_err(|problem| {
+                    Error::usage(
+                        format!("--raw {layout}: {problem}"),
+                        "--raw 256x256x109,i16,0.9x0.9x1.5,le",
+                    )
+                })?;
+                format::raw::open(path, &layout, limits)?
+            }
+            None => format::open(path, limits)?,
+        };
+        if let Some(name) = &self.variable {
+            check_variable(name, source.header())?;
+        }
+        Ok(source)
+    }
+
+    fn phantom_spec(&self, path: &str) -> String {
+        match &self.variable {
+            Some(variable) => format!("{path},variable={variable}"),
+            None => path.to_owned(),
+        }
+    }
+
+    /// Which of the volumes in the source to draw, and what a person should know about the choice.
+    pub fn pick(&self, header: &Header) -> Result<(Pick, Option<String>), Error> {
+        self.check_one_variable(header)?;
+        let (time, note) = self.time(header)?;
+        let component = match self.component {
+            Some(component) if component < header.components => component,
+            Some(component) => {
+                return Err(Error::usage(
+                    format!(
+                        "--component {component}: a voxel has {} of them, counted from 0",
+                        header.components
+                    ),
+                    "--component 0",
+                ));
+            }
+            None if header.components == 1 => 0,
+            None => {
+                return Err(Error::usage(
+                    format!(
+                        "a voxel holds {} numbers, components 0 to {}",
+                        header.components,
+                        header.components - 1
+                    ),
+                    "choose one: --component 0",
+                ));
+            }
+        };
+        Ok((Pick { time, component }, note))
+    }
+
+    fn check_one_variable(&self, header: &Header) -> Result<(), Error> {
+        let in_path = |path: &str| path.starts_with(PHANTOM) && path.contains(",variable=");
+        let is_chosen = self.variable.is_some() || self.path.as_deref().is_some_and(in_path);
+        if is_chosen || header.variables.len() < 2 {
+            return Ok(());
+        }
+        Err(Error::usage(
+            format!(
+                "the input holds several variables: {}",
+                header.variables.join(", ")
+            ),
+            "choose one with --variable NAME",
+        ))
+    }
+
+    fn time(&self, header: &Header) -> Result<(u32, Option<String>), Error> {
+        let times = header.times;
+        let Some(word) = &self.time else {
+            let note = (times > 1)
+                .then(|| format!("the first of {times} times is taken; --time N takes another"));
+            return Ok((0, note));
+        };
+        match word.parse::<u32>() {
+            Ok(time) if time < times => Ok((time, None)),
+            Ok(time) => Err(Error::usage(
+                format!("--time {time}: the input has {times}, counted from 0"),
+                "--time 0",
+            )),
+            Err(_) if word.contains(['-', ':', 'T']) => {
+                Err(Error::NotBuilt(format!("`--time {word}` (a date)")))
+            }
+            Err(_) => Err(Error::usage(
+                format!("--time {word}: wanted a number, counted from 0"),
+                "--time 0",
+            )),
+        }
+    }
+
+    /// The same words with a file's path from the folder of a scene file, as text.
+    pub fn relative_to(&self, folder: &Path) -> Self {
+        let Some(path) = self.file() else {
+            return self.clone();
+        };
+        let absolute = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let (path, folder) = (absolute(path), absolute(folder));
+        let shown = path.strip_prefix(&folder).unwrap_or(&path);
+        Self {
+            path: Some(shown.to_string_lossy().into_owned()),
+            ..self.clone()
+        }
+    }
+
+    /// The words of a scene file in `folder`, as they are from here.
+    pub fn found_in(&self, folder: &Path) -> Self {
+        let found: Option<PathBuf> = self.file().map(|path| folder.join(path));
+        match found {
+            Some(path) => Self {
+                path: Some(path.to_string_lossy().into_owned()),
+                ..self.clone()
+            },
+            None => self.clone(),
+        }
+    }
+}
+
+fn refuse_later_formats(path: &Path) -> Result<(), Error> {
+    if path.is_dir() {
+        let is_zarr = path.extension().is_some_and(|ending| ending == "zarr");
+        let what = if is_zarr {
+            "reading `.zarr` folders"
+        } else {
+            "reading folders (DICOM, TIFF stacks)"
+        };
+        return Err(Error::NotBuilt(what.to_owned()));
+    }
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    match ending.map(str::to_ascii_lowercase) {
+        Some(ending) if LATER.contains(&ending.as_str()) => {
+            Err(Error::NotBuilt(format!("reading `.{ending}` files")))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn check_variable(name: &str, header: &Header) -> Result<(), Error> {
+    if header.variables.iter().any(|variable| variable == name) {
+        return Ok(());
+    }
+    let there = match header.variables.as_slice() {
+        [] => format!(
+            "{} files have one variable without a name",
+            header.format.name()
+        ),
+        names => format!("there are {}", names.join(", ")),
+    };
+    Err(Error::usage(
+        format!("--variable {name}: {there}"),
+        "leave out --variable",
+    ))
+}

@@ -1,0 +1,48 @@
+//! The flags of a picture: one struct a topic, the same for the command line and for a scene file.
+//!
+//! A flag that was not given is `None` here, so that flags can be laid over a scene; what is missing is
+//! filled in where a struct is turned into what the library takes.
+
+mod camera;
+mod classification;
+mod input;
+mod not_built;
+mod numbers;
+mod picture;
+mod sampling;
+
+pub use camera::CameraFlags;
+pub use classification::{Classification, ClassificationFlags};
+pub use input::InputFlags;
+pub use not_built::NotBuilt;
+pub use numbers::{Background, Numbers, Size, finite, positive};
+pub use picture::PictureFlags;
+pub use sampling::{Depth, SamplingFlags};
+
+use super::Error;
+use clap::Args;
+use serde::{Deserialize, Serialize};
+
+/// Everything that decides what a picture shows.
+#[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[allow(missing_docs, reason = "the names say it")]
+pub struct SceneFlags {
+    /// The version of a scene file.
+    #[arg(skip)]
+    pub stratavox_scene: u32,
+    #[command(flatten)]
+    pub input: InputFlags,
+    #[command(flatten)]
+    pub sampling: SamplingFlags,
+    #[command(flatten)]
+    pub classification: ClassificationFlags,
+    #[command(flatten)]
+    pub camera: CameraFlags,
+    #[command(flatten)]
+    pub picture: PictureFlags,
+    /// A Vulkan device by name, index or UUID, `cpu` for a software one, or `reference` for no Vulkan at all
+    #[arg(long, value_name = "DEVICE")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub device: Option<String>,
+}

@@ -1,0 +1,129 @@
+//! How large the picture is, what lies behind the volume, and which layers go with it.
+
+use super::{Background, Error, Size, sampling::not_built};
+use crate::picture::LayerKind;
+use clap::{Args, ValueEnum};
+use serde::{Deserialize, Serialize};
+
+/// The flags, none of them filled in.
+#[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct PictureFlags {
+    /// Pixels across and down [default: 1024x768]
+    #[arg(long, value_name = "WxH", help_heading = "Picture")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub size: Option<Size>,
+    /// What lies behind, in sRGB numbers from 0 to 1 [default: none]
+    #[arg(long, value_name = "R,G,B[,A]|none", help_heading = "Picture")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub background: Option<Background>,
+    /// Layers beside the colours, for .exr and .npy
+    #[arg(
+        long,
+        value_name = "NAME,...",
+        value_delimiter = ',',
+        help_heading = "Picture"
+    )]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub aov: Vec<LayerWord>,
+}
+
+/// Pixels on one side: what image formats and devices agree on.
+const MAX_SIDE_PIXELS: u32 = 32_768;
+
+impl PictureFlags {
+    /// Pixels across and down.
+    pub fn extent_pixels(&self) -> Result<[u32; 2], Error> {
+        let Size(extent) = self.size.unwrap_or(Size([1024, 768]));
+        if extent.iter().any(|&side| side > MAX_SIDE_PIXELS) {
+            return Err(Error::Limit(format!(
+                "--size {}x{}: a side has at most {MAX_SIDE_PIXELS} pixels",
+                extent[0], extent[1]
+            )));
+        }
+        Ok(extent)
+    }
+
+    /// Straight sRGB and alpha of what lies behind; `None`: nothing does.
+    pub fn background(&self) -> Option<[f64; 4]> {
+        match self.background {
+            Some(Background::Color(color)) => Some(color),
+            Some(Background::None) | None => None,
+        }
+    }
+
+    /// The layers asked for, each once, in the order of the words.
+    pub fn layers(&self) -> Result<Vec<LayerKind>, Error> {
+        let mut layers = Vec::new();
+        for word in &self.aov {
+            let layer = word.layer()?;
+            if !layers.contains(&layer) {
+                layers.push(layer);
+            }
+        }
+        Ok(layers)
+    }
+}
+
+/// Every word of `--aov`, built or not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum LayerWord {
+    Value,
+    Depth,
+    Transmittance,
+    Samples,
+    #[value(help = "not built yet")]
+    Label,
+    #[value(help = "not built yet")]
+    Position,
+}
+
+impl LayerWord {
+    fn layer(self) -> Result<LayerKind, Error> {
+        Ok(match self {
+            Self::Value => LayerKind::Value,
+            Self::Depth => LayerKind::Depth,
+            Self::Transmittance => LayerKind::Transmittance,
+            Self::Samples => LayerKind::Samples,
+            Self::Label | Self::Position => return Err(not_built("--aov", self)),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_layer_asked_for_twice_is_made_once() {
+        let flags = PictureFlags {
+            aov: vec![LayerWord::Depth, LayerWord::Value, LayerWord::Depth],
+            ..PictureFlags::default()
+        };
+        assert_eq!(
+            flags.layers().expect("layers"),
+            [LayerKind::Depth, LayerKind::Value]
+        );
+    }
+
+    #[test]
+    fn a_layer_that_is_not_built_is_named() {
+        let flags = PictureFlags {
+            aov: vec![LayerWord::Position],
+            ..PictureFlags::default()
+        };
+        let error = flags.layers().expect_err("refused");
+        assert_eq!(error.to_string(), "`--aov position` is not built yet");
+    }
+
+    #[test]
+    fn a_picture_beyond_the_limit_is_refused_with_the_code_of_limits() {
+        let flags = PictureFlags {
+            size: Some(Size([32_769, 1])),
+            ..PictureFlags::default()
+        };
+        assert_eq!(flags.extent_pixels().expect_err("refused").exit_code(), 6);
+    }
+}

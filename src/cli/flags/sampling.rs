@@ -1,0 +1,403 @@
+//! Which samples are taken and what is done with them: flags to [`Settings`].
+
+use super::{Error, Numbers, positive};
+use crate::{
+    picture::ColorSpace,
+    shaders::MAX_CLIP_PLANES,
+    technique::{ClipPlane, Filter, Lattice, Mode, Order, Settings, Technique},
+};
+use clap::{Args, ValueEnum};
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// The flags, none of them filled in.
+#[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SamplingFlags {
+    /// Where samples lie [default: raycast]
+    #[arg(long)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub technique: Option<TechniqueWord>,
+    /// What is done with the samples of a ray [default: composite]
+    #[arg(long)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mode: Option<ModeWord>,
+    /// How a value between voxels is made [default: linear]
+    #[arg(long)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub filter: Option<FilterWord>,
+    /// Samples at equal steps along the ray, or on the planes of the slicer [default: ray]
+    #[arg(long)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lattice: Option<LatticeWord>,
+    /// How slicers blend [default: back-to-front]
+    #[arg(long)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub order: Option<OrderWord>,
+    /// Samples per smallest voxel spacing [default: 1]
+    #[arg(long, value_name = "F", value_parser = positive)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub samples_per_voxel: Option<f64>,
+    /// Rays per pixel, a square number [default: 1]
+    #[arg(long, value_name = "N")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub aa: Option<u32>,
+    /// Blend in linear light, or in sRGB numbers as VTK and Slicer do [default: linear]
+    #[arg(long)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub color_space: Option<ColorSpaceWord>,
+    /// Keep this box of voxels; fractions are allowed
+    #[arg(long, value_name = "X0,X1,Y0,Y1,Z0,Z1", allow_hyphen_values = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub crop: Option<Numbers<6>>,
+    /// Keep the world points with n.x >= D (repeatable)
+    #[arg(long, value_name = "NX,NY,NZ,D", allow_hyphen_values = true)]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub clip: Vec<Numbers<4>>,
+    /// Float targets, no early termination, own filtering by texel fetch
+    #[arg(long)]
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub conformance: bool,
+}
+
+/// How exactly the picture is kept: what early termination may leave out follows from it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Depth {
+    /// An 8-bit PNG.
+    Eight,
+    /// 16-bit PNG, EXR, npy.
+    More,
+}
+
+/// Early termination of an 8-bit picture in linear light: 0.4 of a code where sRGB is steepest.
+const TERMINATION_LINEAR: f32 = 1.0 / 8192.0;
+/// Early termination of an 8-bit picture in display space.
+const TERMINATION_DISPLAY: f32 = 1.0 / 512.0;
+/// Rays along one side of a pixel.
+const MAX_RAYS_PER_SIDE: u32 = 64;
+
+impl SamplingFlags {
+    /// What to compute, for a picture kept so exactly.
+    pub fn settings(&self, depth: Depth) -> Result<Settings, Error> {
+        let color_space = match self.color_space.unwrap_or_default() {
+            ColorSpaceWord::Linear => ColorSpace::Linear,
+            ColorSpaceWord::Display => ColorSpace::Display,
+        };
+        let termination = match (depth, color_space) {
+            _ if self.conformance => 0.0,
+            (Depth::More, _) => 0.0,
+            (Depth::Eight, ColorSpace::Linear) => TERMINATION_LINEAR,
+            (Depth::Eight, ColorSpace::Display) => TERMINATION_DISPLAY,
+        };
+        Ok(Settings {
+            technique: self.technique.unwrap_or_default().technique(),
+            mode: self.mode.unwrap_or_default().mode()?,
+            filter: self.filter.unwrap_or_default().filter()?,
+            lattice: match self.lattice.unwrap_or_default() {
+                LatticeWord::Ray => Lattice::Ray,
+                LatticeWord::Planes => Lattice::Planes,
+            },
+            order: match self.order.unwrap_or_default() {
+                OrderWord::BackToFront => Order::BackToFront,
+                OrderWord::FrontToBack => Order::FrontToBack,
+            },
+            samples_per_voxel: samples_per_voxel(self.samples_per_voxel.unwrap_or(1.0))?,
+            rays_per_side: rays_per_side(self.aa.unwrap_or(1))?,
+            termination,
+            color_space,
+            crop: self.crop.map(crop_box).transpose()?,
+            clip_planes: clip_planes(&self.clip)?,
+            conformance: self.conformance,
+        })
+    }
+
+    /// Flags that change nothing under the others, a sentence each.
+    pub fn idle(&self) -> Vec<&'static str> {
+        let mut notes = Vec::new();
+        let technique = self.technique.unwrap_or_default();
+        if self.order.is_some() && technique == TechniqueWord::Raycast {
+            notes.push("--order has no effect on rays, they go front to back");
+        }
+        if self.lattice == Some(LatticeWord::Ray) && technique != TechniqueWord::Raycast {
+            notes.push("--lattice ray has no effect on slices, they have a lattice of their own");
+        }
+        if self.samples_per_voxel.is_some() && technique == TechniqueWord::Slices2d {
+            notes.push(
+                "--samples-per-voxel has no effect on 2D stacks, they have one sample a slice",
+            );
+        }
+        notes
+    }
+}
+
+/// A scene file can say what the command line would have refused.
+fn samples_per_voxel(samples: f64) -> Result<f64, Error> {
+    if samples > 0.0 && samples.is_finite() {
+        Ok(samples)
+    } else {
+        Err(Error::usage(
+            format!("--samples-per-voxel {samples}: wanted a number over 0"),
+            "--samples-per-voxel 2",
+        ))
+    }
+}
+
+fn rays_per_side(rays: u32) -> Result<u32, Error> {
+    (1..=MAX_RAYS_PER_SIDE)
+        .find(|side| side * side == rays)
+        .ok_or_else(|| {
+            Error::usage(
+                format!("--aa {rays}: wanted a square number from 1 to 4096"),
+                "--aa 4 sends 2 x 2 rays through each pixel",
+            )
+        })
+}
+
+fn crop_box(Numbers([x0, x1, y0, y1, z0, z1]): Numbers<6>) -> Result<[DVec3; 2], Error> {
+    let [min, max] = [DVec3::new(x0, y0, z0), DVec3::new(x1, y1, z1)];
+    if min.cmple(max).all() {
+        Ok([min, max])
+    } else {
+        Err(Error::usage(
+            format!("--crop {x0},{x1},{y0},{y1},{z0},{z1}: a lower bound is over its upper one"),
+            "the order is X0,X1,Y0,Y1,Z0,Z1, in voxels",
+        ))
+    }
+}
+
+fn clip_planes(clips: &[Numbers<4>]) -> Result<Vec<ClipPlane>, Error> {
+    if clips.len() > MAX_CLIP_PLANES as usize {
+        return Err(Error::usage(
+            format!(
+                "{} clip planes, at most {MAX_CLIP_PLANES} are possible",
+                clips.len()
+            ),
+            "use --crop for planes along the axes of the grid",
+        ));
+    }
+    let plane = |Numbers([x, y, z, offset]): &Numbers<4>| {
+        let normal = DVec3::new(*x, *y, *z);
+        if normal == DVec3::ZERO {
+            return Err(Error::usage(
+                format!("--clip 0,0,0,{offset}: a plane needs a direction"),
+                "--clip 1,0,0,10 keeps the world points with x >= 10",
+            ));
+        }
+        Ok(ClipPlane {
+            normal,
+            offset: *offset,
+        })
+    };
+    clips.iter().map(plane).collect()
+}
+
+/// Every word of `--technique`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum TechniqueWord {
+    #[default]
+    Raycast,
+    #[value(name = "slices-3d")]
+    #[serde(rename = "slices-3d")]
+    Slices3d,
+    #[value(name = "slices-2d")]
+    #[serde(rename = "slices-2d")]
+    Slices2d,
+}
+
+impl TechniqueWord {
+    fn technique(self) -> Technique {
+        match self {
+            Self::Raycast => Technique::Raycast,
+            Self::Slices3d => Technique::Slices3d,
+            Self::Slices2d => Technique::Slices2d,
+        }
+    }
+}
+
+/// Every word of `--mode`, built or not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum ModeWord {
+    #[default]
+    Composite,
+    Mip,
+    Minip,
+    Average,
+    Xray,
+    #[value(help = "not built yet")]
+    Lmip,
+    #[value(help = "not built yet")]
+    Mida,
+    #[value(help = "not built yet")]
+    Iso,
+}
+
+impl ModeWord {
+    fn mode(self) -> Result<Mode, Error> {
+        Ok(match self {
+            Self::Composite => Mode::Composite,
+            Self::Mip => Mode::Mip,
+            Self::Minip => Mode::Minip,
+            Self::Average => Mode::Average,
+            Self::Xray => Mode::Xray,
+            Self::Lmip | Self::Mida | Self::Iso => return Err(not_built("--mode", self)),
+        })
+    }
+}
+
+/// Every word of `--filter`, built or not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum FilterWord {
+    Nearest,
+    #[default]
+    Linear,
+    #[value(help = "not built yet")]
+    Quadratic,
+    #[value(help = "not built yet")]
+    Cubic,
+    #[value(help = "not built yet")]
+    QuadraticSmooth,
+    #[value(help = "not built yet")]
+    CubicSmooth,
+    #[value(help = "not built yet")]
+    CatmullRom,
+}
+
+impl FilterWord {
+    fn filter(self) -> Result<Filter, Error> {
+        match self {
+            Self::Nearest => Ok(Filter::Nearest),
+            Self::Linear => Ok(Filter::Linear),
+            _ => Err(not_built("--filter", self)),
+        }
+    }
+}
+
+/// Every word of `--lattice`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum LatticeWord {
+    #[default]
+    Ray,
+    Planes,
+}
+
+/// Every word of `--order`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum OrderWord {
+    #[default]
+    BackToFront,
+    FrontToBack,
+}
+
+/// Every word of `--color-space`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum ColorSpaceWord {
+    #[default]
+    Linear,
+    Display,
+}
+
+/// `--flag word` is not built yet.
+pub fn not_built(flag: &str, word: impl ValueEnum) -> Error {
+    let name = word
+        .to_possible_value()
+        .map(|value| value.get_name().to_owned())
+        .unwrap_or_default();
+    Error::NotBuilt(format!("`{flag} {name}`"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn flags(change: impl FnOnce(&mut SamplingFlags)) -> SamplingFlags {
+        let mut flags = SamplingFlags::default();
+        change(&mut flags);
+        flags
+    }
+
+    #[track_caller]
+    fn refusal(flags: &SamplingFlags) -> String {
+        flags
+            .settings(Depth::Eight)
+            .expect_err("refused")
+            .to_string()
+    }
+
+    #[test]
+    fn rays_end_early_only_as_far_as_the_picture_can_show() {
+        let linear = flags(|_| {});
+        let display = flags(|f| f.color_space = Some(ColorSpaceWord::Display));
+        let conformance = flags(|f| f.conformance = true);
+        for (flags, depth, wanted) in [
+            (&linear, Depth::Eight, 2_f32.powi(-13)),
+            (&display, Depth::Eight, 2_f32.powi(-9)),
+            (&conformance, Depth::Eight, 0.0),
+            (&linear, Depth::More, 0.0),
+            (&display, Depth::More, 0.0),
+        ] {
+            let found = flags.settings(depth).expect("settings").termination;
+            assert_eq!(found, wanted, "{flags:?} {depth:?}");
+        }
+    }
+
+    #[test]
+    fn rays_per_pixel_are_a_square_number() {
+        for (rays, wanted) in [(1, 1), (4, 2), (9, 3), (4096, 64)] {
+            let found = flags(|f| f.aa = Some(rays)).settings(Depth::Eight);
+            assert_eq!(found.expect("settings").rays_per_side, wanted);
+        }
+        for rays in [0, 2, 8, 4225] {
+            let text = refusal(&flags(|f| f.aa = Some(rays)));
+            assert!(text.contains("square number"), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_word_that_is_not_built_is_named() {
+        let text = refusal(&flags(|f| f.mode = Some(ModeWord::Iso)));
+        assert_eq!(text, "`--mode iso` is not built yet");
+        let text = refusal(&flags(|f| f.filter = Some(FilterWord::QuadraticSmooth)));
+        assert_eq!(text, "`--filter quadratic-smooth` is not built yet");
+    }
+
+    #[test]
+    fn a_crop_is_in_the_order_of_its_words() {
+        let crop = "1,2,3,4.5,-5,6".parse().expect("six numbers");
+        let found = flags(|f| f.crop = Some(crop)).settings(Depth::Eight);
+        assert_eq!(
+            found.expect("settings").crop,
+            Some([DVec3::new(1.0, 3.0, -5.0), DVec3::new(2.0, 4.5, 6.0)])
+        );
+        let crop = "2,1,0,1,0,1".parse().expect("six numbers");
+        let text = refusal(&flags(|f| f.crop = Some(crop)));
+        assert!(text.contains("--crop 2,1,0,1,0,1"), "{text}");
+    }
+
+    #[test]
+    fn a_clip_plane_needs_a_direction_and_there_are_only_so_many() {
+        let text = refusal(&flags(|f| f.clip = vec![Numbers([0.0, 0.0, 0.0, 3.0])]));
+        assert!(text.contains("--clip 0,0,0,3"), "{text}");
+        let many = vec![Numbers([1.0, 0.0, 0.0, 3.0]); MAX_CLIP_PLANES as usize + 1];
+        let text = refusal(&flags(|f| f.clip = many));
+        assert!(text.contains("at most 8"), "{text}");
+    }
+
+    #[test]
+    fn a_flag_without_effect_is_mentioned() {
+        let idle = flags(|f| f.order = Some(OrderWord::FrontToBack)).idle();
+        assert_eq!(idle.len(), 1, "{idle:?}");
+        assert!(flags(|_| {}).idle().is_empty());
+    }
+}

@@ -1,0 +1,109 @@
+//! The `stratavox` program: words to scenes, errors to exit codes.
+//!
+//! ```text
+//! words -> one struct a verb (clap) -> flags laid over a scene file -> checked once -> the library
+//! ```
+//!
+//! One file a verb; `flags` holds what verbs share. Everything that can be refused is refused before the
+//! first voxel is read: words, outputs that exist, folders that do not.
+
+mod bench;
+mod bug;
+mod cameras_file;
+mod compare;
+mod devices;
+mod error;
+mod flags;
+mod info;
+mod later;
+mod output;
+mod progress;
+mod reasons;
+mod render;
+mod renderer;
+mod scene_file;
+mod signals;
+mod timings;
+
+pub use bug::guarded;
+pub use error::Error;
+
+use clap::{Parser, Subcommand};
+use signals::Gate;
+use std::ffi::OsString;
+
+/// Volume rendering on Vulkan: texture slicing, ray casting, maximum intensity projection
+#[derive(Debug, Parser)]
+#[command(version, arg_required_else_help = true, max_term_width = 100)]
+#[command(after_help = "Example:\n  stratavox render phantom:head -o head.png")]
+struct Words {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    Render(Box<render::Render>),
+    Info(info::Info),
+    Devices(devices::Devices),
+    Compare(compare::Compare),
+    Bench(Box<bench::Bench>),
+    #[command(flatten)]
+    Later(later::Later),
+}
+
+/// Runs the program with these words (the first is its own name) and gives its exit code.
+///
+/// Installs a panic hook and signal handlers: it is for a process of its own.
+pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
+    let words: Vec<OsString> = words.into_iter().collect();
+    guarded(move || {
+        let gate = Gate::default();
+        signals::install(&gate);
+        match obey(words, &gate) {
+            Ok(()) => 0,
+            Err(error) => {
+                // Where stderr is closed the exit code has to do.
+                let _ = std::io::Write::write_all(&mut std::io::stderr(), error.lines().as_bytes());
+                error.exit_code()
+            }
+        }
+    })
+}
+
+fn obey(words: Vec<OsString>, gate: &Gate) -> Result<(), Error> {
+    let words = match Words::try_parse_from(words) {
+        Ok(words) => words,
+        // Help and version are answers, not errors.
+        Err(answer) if !answer.use_stderr() => return output::say(&answer.render().to_string()),
+        Err(error) => return Err(Error::Words(error.render().to_string())),
+    };
+    match words.verb {
+        Verb::Render(render) => render.run(gate),
+        Verb::Info(info) => info.run(),
+        Verb::Devices(devices) => devices.run(),
+        Verb::Compare(compare) => compare.run(gate),
+        Verb::Bench(bench) => bench.run(gate),
+        Verb::Later(verb) => verb.refuse(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_words_are_put_together_without_contradiction() {
+        Words::command().debug_assert();
+    }
+
+    #[test]
+    fn every_verb_shows_an_example_in_its_help() {
+        for verb in Words::command().get_subcommands() {
+            let help = verb.clone().render_long_help().to_string();
+            assert!(help.contains("Example"), "{}: {help}", verb.get_name());
+            assert!(help.contains("stratavox "), "{}: {help}", verb.get_name());
+        }
+    }
+}

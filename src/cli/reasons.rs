@@ -1,0 +1,298 @@
+//! Why a picture is empty: nobody is left alone with a blank one.
+
+use super::flags::Classification;
+use crate::{
+    camera::Camera,
+    picture::Picture,
+    technique::{Mode, Settings},
+    transfer::{Absorption, Points, TransferFunction, classify_by_points},
+    volume::Volume,
+};
+use glam::{DMat3, DVec3};
+
+/// The reason, where no pixel of `picture` shows anything.
+pub fn why_empty(
+    picture: &Picture,
+    volume: &Volume,
+    classification: &Classification,
+    camera: &Camera,
+    settings: &Settings,
+) -> Option<&'static str> {
+    if picture.pixels.iter().any(|pixel| pixel[3] != 0.0) {
+        return None;
+    }
+    let validity = volume.validity.as_deref().unwrap_or(&[1]);
+    if validity.iter().all(|&valid| valid == 0) {
+        return Some("all voxels of the volume hold no data");
+    }
+    let seen = seen(volume, camera, settings, [picture.width, picture.height]);
+    Some(match (seen, classification) {
+        (Seen::Nothing, _) => "the camera sees no volume",
+        (Seen::Clipped, _) => "everything that the camera sees is cut away by --crop or --clip",
+        (Seen::Volume, Classification::Function(function))
+            if covers_nothing(settings, function, volume) =>
+        {
+            "the transfer function covers no value of this volume"
+        }
+        (Seen::Volume, _) => {
+            "the transfer function covers no value that the camera sees, or there is no data"
+        }
+    })
+}
+
+/// How far the rays of a picture get.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Seen {
+    /// All miss the grid box.
+    Nothing,
+    /// All that hit the grid box miss what crop and clip leave of it.
+    Clipped,
+    /// Some go through the domain.
+    Volume,
+}
+
+fn seen(volume: &Volume, camera: &Camera, settings: &Settings, extent: [u32; 2]) -> Seen {
+    let box_slabs = slabs(
+        volume,
+        [DVec3::ZERO, DVec3::from(volume.dims.map(f64::from))],
+    );
+    let mut domain = box_slabs.clone();
+    if let Some(crop) = settings.crop {
+        domain.extend(slabs(volume, crop));
+    }
+    domain.extend(settings.clip_planes.iter().map(|plane| HalfSpace {
+        normal: plane.normal,
+        offset: plane.offset,
+    }));
+    let rays = camera.rays(extent);
+    let pixels = (0..extent[1]).flat_map(|y| (0..extent[0]).map(move |x| (x, y)));
+    let of_pixel = |(x, y)| {
+        let (origin, direction) = rays.at(f64::from(x) + 0.5, f64::from(y) + 0.5);
+        if hits(&domain, origin, direction) {
+            Seen::Volume
+        } else if hits(&box_slabs, origin, direction) {
+            Seen::Clipped
+        } else {
+            Seen::Nothing
+        }
+    };
+    pixels.map(of_pixel).max().unwrap_or(Seen::Nothing)
+}
+
+/// World points with `normal . x >= offset`.
+#[derive(Clone, Debug)]
+struct HalfSpace {
+    normal: DVec3,
+    offset: f64,
+}
+
+/// A box of voxel space as six half spaces of the world.
+fn slabs(volume: &Volume, [min, max]: [DVec3; 2]) -> Vec<HalfSpace> {
+    let affine = volume.world_from_voxel;
+    let rows: DMat3 = affine.matrix3.inverse().transpose();
+    (0..3)
+        .flat_map(|k| {
+            let row = rows.col(k);
+            // Voxel coordinate k of a world point is row . (x - translation).
+            let shift = row.dot(affine.translation);
+            [
+                HalfSpace {
+                    normal: row,
+                    offset: min[k] + shift,
+                },
+                HalfSpace {
+                    normal: -row,
+                    offset: -(max[k] + shift),
+                },
+            ]
+        })
+        .collect()
+}
+
+/// True where the ray from `origin` has a stretch of some length inside all half spaces.
+fn hits(half_spaces: &[HalfSpace], origin: DVec3, direction: DVec3) -> bool {
+    let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
+    for HalfSpace { normal, offset } in half_spaces {
+        let (height, slope) = (normal.dot(origin) - offset, normal.dot(direction));
+        if slope == 0.0 {
+            if height < 0.0 {
+                return false;
+            }
+        } else if slope > 0.0 {
+            enter = enter.max(-height / slope);
+        } else {
+            leave = leave.min(-height / slope);
+        }
+    }
+    enter < leave
+}
+
+/// True where the function gives opacity to no value between the volume's extremes. An integral is no such
+/// value.
+fn covers_nothing(settings: &Settings, function: &TransferFunction, volume: &Volume) -> bool {
+    let [low, high] = volume.value_range;
+    let points = Points::new(function, Absorption::Opacity, settings.color_space);
+    let inside = function.opacity.iter().map(|point| point.value);
+    let inside = inside.filter(|value| (low..=high).contains(value));
+    let opacity = |value| classify_by_points(&points, value)[3];
+    settings.mode != Mode::Xray
+        && [low, high]
+            .into_iter()
+            .chain(inside)
+            .all(|v| opacity(v) == 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        camera::Projection,
+        technique::ClipPlane,
+        transfer::{Classified, Window},
+        volume::{Rescale, Voxels},
+    };
+    use glam::DAffine3;
+
+    struct Case {
+        volume: Volume,
+        camera: Camera,
+        settings: Settings,
+        window: [f64; 2],
+        alpha: f32,
+    }
+
+    /// A cube of values 0 to 7 around (1, 1, 1), seen from the front, all of it grey.
+    fn case() -> Case {
+        Case {
+            volume: Volume {
+                dims: [2, 2, 2],
+                world_from_voxel: DAffine3::IDENTITY,
+                voxels: Voxels::U8((0..8).collect()),
+                rescale: Rescale::default(),
+                validity: None,
+                hounsfield: false,
+                loss: Default::default(),
+                value_range: [0.0, 7.0],
+            },
+            camera: Camera {
+                eye: DVec3::new(1.0, 9.0, 1.0),
+                target: DVec3::ONE,
+                up: DVec3::Z,
+                projection: Projection::Perspective { fov_degrees: 30.0 },
+                zoom: 1.0,
+            },
+            settings: Settings::default(),
+            window: [0.0, 7.0],
+            alpha: 0.0,
+        }
+    }
+
+    fn reason(case: &Case) -> &'static str {
+        let picture = Picture {
+            width: 4,
+            height: 4,
+            pixels: vec![[case.alpha; 4]; 16],
+            color_space: Default::default(),
+            layers: Vec::new(),
+        };
+        let [low, high] = case.window;
+        let window = Window::new(low, high).expect("a window");
+        let function = Classification::Function(window.grey(Classified::Samples));
+        why_empty(
+            &picture,
+            &case.volume,
+            &function,
+            &case.camera,
+            &case.settings,
+        )
+        .unwrap_or("")
+    }
+
+    #[test]
+    fn a_picture_that_shows_something_needs_no_reason() {
+        assert_eq!(
+            reason(&Case {
+                alpha: 0.1,
+                ..case()
+            }),
+            ""
+        );
+    }
+
+    #[test]
+    fn a_camera_that_looks_away_is_the_reason() {
+        let mut away = case();
+        away.camera.target = DVec3::new(1.0, 20.0, 1.0);
+        assert!(
+            reason(&away).contains("camera sees no volume"),
+            "{}",
+            reason(&away)
+        );
+    }
+
+    #[test]
+    fn planes_and_crops_that_leave_nothing_are_the_reason() {
+        let mut clipped = case();
+        clipped.settings.clip_planes = vec![ClipPlane {
+            normal: DVec3::X,
+            offset: 2.5,
+        }];
+        assert!(
+            reason(&clipped).contains("cut away"),
+            "{}",
+            reason(&clipped)
+        );
+        let mut cropped = case();
+        cropped.settings.crop = Some([DVec3::splat(5.0), DVec3::splat(6.0)]);
+        assert!(
+            reason(&cropped).contains("cut away"),
+            "{}",
+            reason(&cropped)
+        );
+    }
+
+    #[test]
+    fn a_function_beyond_the_values_is_the_reason() {
+        let beyond = Case {
+            window: [100.0, 200.0],
+            ..case()
+        };
+        assert!(
+            reason(&beyond).contains("covers no value of this"),
+            "{}",
+            reason(&beyond)
+        );
+        // The values are covered, yet nothing of them is seen: not the fault of the function as a whole.
+        assert!(
+            reason(&case()).contains("that the camera sees"),
+            "{}",
+            reason(&case())
+        );
+    }
+
+    #[test]
+    fn a_volume_without_data_is_the_reason() {
+        let mut empty = case();
+        empty.volume.validity = Some(vec![0; 8]);
+        assert!(reason(&empty).contains("no data"), "{}", reason(&empty));
+    }
+
+    #[test]
+    fn a_rotated_and_moved_grid_is_hit_where_it_lies() {
+        let mut moved = case();
+        moved.volume.world_from_voxel = DAffine3::from_translation(DVec3::new(100.0, 0.0, 0.0))
+            * DAffine3::from_rotation_z(0.5);
+        assert!(
+            reason(&moved).contains("sees no volume"),
+            "{}",
+            reason(&moved)
+        );
+        moved.camera.target = moved.volume.world_from_voxel.transform_point3(DVec3::ONE);
+        moved.camera.eye = moved.camera.target + DVec3::new(0.0, 6.0, 0.0);
+        assert!(
+            reason(&moved).contains("covers no value that"),
+            "{}",
+            reason(&moved)
+        );
+    }
+}

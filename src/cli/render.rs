@@ -1,0 +1,231 @@
+//! `stratavox render`: one picture of one volume.
+
+use super::{
+    Error,
+    flags::{Depth, NotBuilt, SceneFlags},
+    output::{self, write_whole},
+    progress::{Progress, ProgressWord},
+    reasons::why_empty,
+    renderer::{Job, Renderer},
+    scene_file,
+    signals::Gate,
+    timings::{FrameTime, Timings, ms_since, peak_rss_bytes},
+};
+use crate::{
+    camera::BoundingSphere,
+    picture::{BitDepth, LayerKind, Picture, PictureFormat, WriteOptions, write_picture},
+    volume::{Limits, Volume},
+};
+use clap::Args;
+use std::{
+    path::{Path, PathBuf},
+    time::Instant,
+};
+
+/// Draw a volume into a picture
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:\n  \
+    stratavox render phantom:head -o head.png\n  \
+    stratavox render phantom:head --technique slices-3d --view left --background 0,0,0 -o left.png\n  \
+    stratavox render phantom:head --mode mip --aov value,depth -o mip.exr")]
+pub struct Render {
+    /// The picture: its ending says whether .png, .exr or .npy
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    #[command(flatten)]
+    scene: SceneFlags,
+    /// Flags from a file; those of the command line win
+    #[arg(long = "scene", value_name = "FILE.json", help_heading = "Run")]
+    scene_file: Option<PathBuf>,
+    /// Write all flags of this picture into a file
+    #[arg(long, value_name = "FILE.json", help_heading = "Run")]
+    save_scene: Option<PathBuf>,
+    /// Write what the work took into a file
+    #[arg(long, value_name = "FILE.json", help_heading = "Run")]
+    timings: Option<PathBuf>,
+    /// Draw so many times; the last picture is written
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..), help_heading = "Run")]
+    repeat: u32,
+    /// Say on stderr how far the work is
+    #[arg(long, value_enum, default_value_t, help_heading = "Run")]
+    progress: ProgressWord,
+    /// Replace files that exist
+    #[arg(long, help_heading = "Run")]
+    force: bool,
+    /// Bits of a channel of a PNG
+    #[arg(long, value_name = "8|16", default_value = "8", value_parser = bit_depth, help_heading = "Picture")]
+    bit_depth: BitDepth,
+    /// No empty-space skipping: the picture is the same without
+    #[arg(long)]
+    no_skip: bool,
+    #[command(flatten)]
+    not_built: NotBuilt,
+}
+
+fn bit_depth(word: &str) -> Result<BitDepth, String> {
+    match word {
+        "8" => Ok(BitDepth::Eight),
+        "16" => Ok(BitDepth::Sixteen),
+        _ => Err("wanted 8 or 16".to_owned()),
+    }
+}
+
+impl Render {
+    /// Draws and writes.
+    pub fn run(mut self, gate: &Gate) -> Result<(), Error> {
+        self.not_built.refuse()?;
+        let scene = self.whole_scene()?;
+        let format = picture_format(&self.output)?;
+        let layers = scene.picture.layers()?;
+        if format == PictureFormat::Png && !layers.is_empty() {
+            return Err(Error::usage(
+                "a .png has no room for the layers of --aov",
+                "write a .exr or a .npy",
+            ));
+        }
+        let depth = match (format, self.bit_depth) {
+            (PictureFormat::Png, BitDepth::Eight) => Depth::Eight,
+            _ => Depth::More,
+        };
+        let settings = scene.sampling.settings(depth)?;
+        let extent_pixels = scene.picture.extent_pixels()?;
+        scene.classification.check()?;
+        let inputs = scene_file::inputs(&scene, self.scene_file.as_deref());
+        output::check(&self.outputs(format, &layers), &inputs, self.force)?;
+
+        let progress = Progress::new(self.progress);
+        for note in [scene.sampling.idle(), scene.camera.idle()].concat() {
+            progress.note(note);
+        }
+        progress.stage("read", 0, 1);
+        let start = Instant::now();
+        let volume = load(&scene, &progress)?;
+        let bounds = BoundingSphere::of_grid(&volume.world_from_voxel, volume.dims);
+        let camera = scene.camera.camera(&bounds, extent_pixels)?;
+        let classification = scene
+            .classification
+            .classification(&volume, settings.mode)?;
+        let load_ms = ms_since(start);
+
+        progress.stage("prepare", 0, 1);
+        let job = Job {
+            volume: &volume,
+            classification: &classification,
+            settings: &settings,
+            extent_pixels,
+            layers: &layers,
+            device: scene.device.as_deref(),
+        };
+        let mut renderer = Renderer::new(job, &camera)?;
+        let mut frames = Vec::new();
+        let mut last = None;
+        for done in 0..self.repeat {
+            progress.stage("draw", done as usize, self.repeat as usize);
+            let start = Instant::now();
+            let frame = renderer.draw(&camera)?;
+            frames.push(FrameTime {
+                gpu_ms: frame.gpu_ms,
+                wall_ms: ms_since(start),
+            });
+            last = Some(frame.picture);
+        }
+        let mut picture = last.expect("at least one picture is drawn");
+        if let Some(reason) = why_empty(&picture, &volume, &classification, &camera, &settings) {
+            progress.note(&format!("the picture is empty: {reason}"));
+        }
+        if let Some(background) = scene.picture.background() {
+            picture.over_background(background);
+        }
+
+        progress.stage("write", 0, 1);
+        let options = WriteOptions {
+            bit_depth: self.bit_depth,
+            force: self.force,
+        };
+        gate.whole(|| write_picture(&picture, &self.output, options))?;
+        if let Some(path) = &self.save_scene {
+            let text = scene_file::text(&scene, path);
+            write_whole(path, text.as_bytes(), self.force, gate)?;
+        }
+        if let Some(path) = &self.timings {
+            let timings = Timings {
+                device: renderer.device(),
+                driver: renderer.driver(),
+                load_ms,
+                upload_ms: renderer.upload_ms,
+                prepare_ms: renderer.prepare_ms,
+                first_frame_ms: frames.first().map_or(0.0, |frame| frame.wall_ms),
+                frames,
+                samples: samples(&picture),
+                peak_rss_bytes: peak_rss_bytes(),
+                device_bytes: renderer.device_bytes(),
+            };
+            write_whole(path, timings.json().as_bytes(), self.force, gate)?;
+        }
+        Ok(())
+    }
+
+    /// The flags laid over those of `--scene`.
+    fn whole_scene(&mut self) -> Result<SceneFlags, Error> {
+        self.scene.classification.inline_file()?;
+        match &self.scene_file {
+            Some(path) => Ok(scene_file::overlay(scene_file::read(path)?, &self.scene)),
+            None => Ok(self.scene.clone()),
+        }
+    }
+
+    fn outputs(&self, format: PictureFormat, layers: &[LayerKind]) -> Vec<PathBuf> {
+        let mut outputs = vec![self.output.clone()];
+        if format == PictureFormat::Npy {
+            let name = |layer: &LayerKind| format!("{}.npy", layer.name());
+            outputs.extend(
+                layers
+                    .iter()
+                    .map(|layer| self.output.with_extension(name(layer))),
+            );
+        }
+        outputs.extend(self.save_scene.iter().chain(&self.timings).cloned());
+        outputs
+    }
+}
+
+fn picture_format(path: &Path) -> Result<PictureFormat, Error> {
+    PictureFormat::of_path(path).ok_or_else(|| {
+        Error::usage(
+            format!("-o {}: the ending says no kind of picture", path.display()),
+            "end the name in .png, .exr or .npy",
+        )
+    })
+}
+
+/// The one volume that the words name, in memory.
+pub fn load(scene: &SceneFlags, progress: &Progress) -> Result<Volume, Error> {
+    let limits = Limits::default();
+    let source = scene.input.open(&limits)?;
+    let (pick, note) = scene.input.pick(source.header())?;
+    for note in source.header().notes.iter().chain(&note) {
+        progress.note(note);
+    }
+    let whole = source.header().whole();
+    let volume = Volume::read(source.as_ref(), pick, whole, &limits)?;
+    if !volume.loss.is_none() {
+        let crate::volume::Loss { changed, worst } = volume.loss;
+        progress.note(&format!(
+            "{changed} voxels were rounded to 32-bit floats, by at most {worst}"
+        ));
+    }
+    let no_data = volume.no_data_count();
+    if no_data > 0 {
+        progress.note(&format!("{no_data} voxels hold no data"));
+    }
+    Ok(volume)
+}
+
+/// Samples that a picture took, where they were counted.
+pub fn samples(picture: &Picture) -> Option<u64> {
+    let layer = picture
+        .layers
+        .iter()
+        .find(|layer| layer.kind == LayerKind::Samples)?;
+    Some(layer.values.iter().map(|&count| count as u64).sum())
+}

@@ -1,0 +1,172 @@
+//! A renderer for a volume, on a Vulkan device or on the CPU alone: the one place of the program that makes one.
+
+use super::{Error, flags::Classification, timings::ms_since};
+use crate::{
+    camera::Camera,
+    gpu::{DeviceChoice, Headless, Options},
+    offscreen::{self, reference},
+    picture::{LayerKind, Picture},
+    scene::Scene,
+    technique::{Mode, Settings, Technique},
+    volume::Volume,
+};
+use std::time::Instant;
+
+/// What stays the same from picture to picture.
+#[derive(Clone, Copy, Debug)]
+pub struct Job<'a> {
+    /// What is drawn.
+    pub volume: &'a Volume,
+    /// How its values are seen.
+    pub classification: &'a Classification,
+    /// What is computed.
+    pub settings: &'a Settings,
+    /// Pixels across and down.
+    pub extent_pixels: [u32; 2],
+    /// Layers that the picture must have.
+    pub layers: &'a [LayerKind],
+    /// The word of `--device`.
+    pub device: Option<&'a str>,
+}
+
+/// A renderer that is ready to draw.
+#[derive(Debug)]
+pub struct Renderer<'a> {
+    job: Job<'a>,
+    /// `None`: the CPU twins.
+    on_device: Option<Box<offscreen::Renderer<'a>>>,
+    /// What bringing the volume to the device took.
+    pub upload_ms: f64,
+    /// What making the device took.
+    pub prepare_ms: f64,
+}
+
+/// One picture and what it took.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// Before the background.
+    pub picture: Picture,
+    /// By the device's own clock.
+    pub gpu_ms: Option<f64>,
+}
+
+/// The word of `--device` for the CPU twins.
+const REFERENCE: &str = "reference";
+
+impl<'a> Renderer<'a> {
+    /// Finds the device and brings there what `camera` sees first.
+    pub fn new(job: Job<'a>, camera: &Camera) -> Result<Self, Error> {
+        check_layers(&job)?;
+        if job.device == Some(REFERENCE) {
+            return Ok(Self {
+                job,
+                on_device: None,
+                upload_ms: 0.0,
+                prepare_ms: 0.0,
+            });
+        }
+        let start = Instant::now();
+        let choice = job.device.map(DeviceChoice::from).unwrap_or_default();
+        let device = Headless::new(&choice, &Options::default())?;
+        let mut renderer = offscreen::Renderer::new(device, job.volume)?;
+        let prepare_ms = ms_since(start);
+        let start = Instant::now();
+        renderer.upload(&job.scene(camera))?;
+        Ok(Self {
+            job,
+            on_device: Some(Box::new(renderer)),
+            upload_ms: ms_since(start),
+            prepare_ms,
+        })
+    }
+
+    /// The picture that this camera sees, in memory when the call returns.
+    pub fn draw(&mut self, camera: &Camera) -> Result<Frame, Error> {
+        let scene = self.job.scene(camera);
+        if let Some(renderer) = &mut self.on_device {
+            let rendered = renderer.render(&scene, self.job.layers)?;
+            return Ok(Frame {
+                picture: rendered.picture,
+                gpu_ms: rendered.gpu_ms,
+            });
+        }
+        let mut picture = reference::render::<f32>(&scene).map_err(offscreen::Error::Technique)?;
+        let mut made = std::mem::take(&mut picture.layers);
+        for kind in self.job.layers {
+            let at = made.iter().position(|layer| layer.kind == *kind);
+            let at = at.expect("`check_layers` knows what a twin makes");
+            picture.layers.push(made.swap_remove(at));
+        }
+        Ok(Frame {
+            picture,
+            gpu_ms: None,
+        })
+    }
+
+    /// The device's name.
+    pub fn device(&self) -> String {
+        match &self.on_device {
+            Some(renderer) => renderer.device().gpu().device_name().to_owned(),
+            None => "reference (the CPU, without Vulkan)".to_owned(),
+        }
+    }
+
+    /// The driver and its version.
+    pub fn driver(&self) -> String {
+        match &self.on_device {
+            Some(renderer) => {
+                let identity = renderer.device().gpu().identity();
+                format!("{} {}", identity.driver_name, identity.driver_info)
+            }
+            None => format!("stratavox {}", env!("CARGO_PKG_VERSION")),
+        }
+    }
+
+    /// Device memory in use or kept for later.
+    pub fn device_bytes(&self) -> u64 {
+        match &self.on_device {
+            Some(renderer) => renderer.device().gpu().device_bytes(),
+            None => 0,
+        }
+    }
+}
+
+impl<'a> Job<'a> {
+    fn scene<'s>(&self, camera: &'s Camera) -> Scene<'s>
+    where
+        'a: 's,
+    {
+        Scene {
+            volume: self.volume,
+            transfer: match self.classification {
+                Classification::Function(function) => Some(function),
+                Classification::RangeOfPicture => None,
+            },
+            camera,
+            extent_pixels: self.extent_pixels,
+            settings: self.settings,
+        }
+    }
+}
+
+/// Blending keeps no depth, a projection no transmittance, and a composite has no one value.
+fn check_layers(job: &Job) -> Result<(), Error> {
+    let Settings {
+        technique, mode, ..
+    } = *job.settings;
+    for layer in job.layers {
+        let missing = match layer {
+            LayerKind::Value if mode == Mode::Composite => {
+                "a mode that projects, such as --mode mip"
+            }
+            LayerKind::Transmittance if mode != Mode::Composite => "--mode composite",
+            LayerKind::Depth if technique != Technique::Raycast => "--technique raycast",
+            _ => continue,
+        };
+        return Err(Error::Usage {
+            message: format!("--aov {} needs {missing}", layer.name()),
+            hint: "without --aov the picture itself can be drawn",
+        });
+    }
+    Ok(())
+}

@@ -1,0 +1,161 @@
+//! A [`Source`] over files: fetches the wanted box of one time and component and keeps nothing else.
+
+use super::convert::{Builder, bytes_in_memory, to_u64};
+use super::data::Data;
+use super::decode::Encoding;
+use super::problem::at;
+use super::select::rows;
+use super::stream::Stream;
+use crate::volume::{Header, Limits, Pick, Piece, Problem, ReadError, Source, VoxelBox};
+use std::path::{Path, PathBuf};
+
+/// A [`Source`] over [`Data`]: every reader of files ends in one.
+#[derive(Debug)]
+pub(crate) struct FileSource {
+    path: PathBuf,
+    header: Header,
+    data: Data,
+    max_bytes: u64,
+}
+
+impl FileSource {
+    /// `header` and `data` speak of the same array. Adds the notes that `data` gives rise to.
+    pub(crate) fn new(path: &Path, mut header: Header, data: Data, limits: &Limits) -> Self {
+        header.notes.extend(data.notes.iter().cloned());
+        if !data.stored.is_kept_exactly() {
+            header.notes.push(format!(
+                "voxels are stored as {} and kept as f32",
+                data.stored.name()
+            ));
+        }
+        Self {
+            path: path.to_owned(),
+            header,
+            data,
+            max_bytes: limits.max_bytes,
+        }
+    }
+
+    /// Bytes that `count` voxels take in memory, as a `usize`, if the limit allows them.
+    fn count_within_limit(&self, region: VoxelBox) -> Result<usize, Problem> {
+        let count = (0..3).try_fold(1_u64, |product, k| {
+            let side = region.max.get(k)?.checked_sub(*region.min.get(k)?)?;
+            product.checked_mul(side.into())
+        });
+        let wanted_bytes = count
+            .and_then(|count| count.checked_mul(to_u64(bytes_in_memory(self.data.stored))))
+            .unwrap_or(u64::MAX);
+        count
+            .filter(|_| wanted_bytes <= self.max_bytes)
+            .and_then(|count| usize::try_from(count).ok())
+            .ok_or(Problem::Limit {
+                what: "the volume".to_owned(),
+                wanted_bytes,
+                limit_bytes: self.max_bytes,
+            })
+    }
+
+    fn check(&self, pick: Pick, region: VoxelBox) -> Result<(), Problem> {
+        let wrong = |field: &str, wanted: String, found: String| {
+            Err(Problem::Invalid {
+                format: self.data.format,
+                field: field.to_owned(),
+                wanted,
+                found,
+            })
+        };
+        let header = &self.header;
+        if pick.time >= header.times {
+            let wanted = format!("a time below {}", header.times);
+            return wrong("time", wanted, pick.time.to_string());
+        }
+        if pick.component >= header.components {
+            let wanted = format!("a component below {}", header.components);
+            return wrong("component", wanted, pick.component.to_string());
+        }
+        let inside = region
+            .min
+            .iter()
+            .zip(&region.max)
+            .zip(&header.dims)
+            .all(|((min, max), size)| min < max && max <= size);
+        if !inside {
+            let wanted = format!("a box inside {:?} that is not empty", header.dims);
+            return wrong(
+                "box",
+                wanted,
+                format!("{:?} to {:?}", region.min, region.max),
+            );
+        }
+        Ok(())
+    }
+
+    fn read_rows(&self, pick: Pick, region: VoxelBox, wanted: usize) -> Result<Piece, ReadError> {
+        let data = &self.data;
+        let here = at(&self.path);
+        let number_bytes = to_u64(data.stored.bytes());
+        let mut builder = Builder::new(data.stored, data.endian, wanted);
+        // Raw bytes were seen to be there; of others only the plausible part is believed beforehand.
+        let believed = match data.encoding {
+            Encoding::Raw => wanted,
+            _ => wanted.min(BELIEVED_NUMBERS),
+        };
+        let mut stream = Stream::new(data);
+        if let Err(problem) = builder.reserve(believed) {
+            return Err(here(problem));
+        }
+        for row in rows(&data.axes, pick, region) {
+            let stride_bytes = row.stride.saturating_mul(number_bytes);
+            let mut at_byte = row.start.saturating_mul(number_bytes);
+            let mut left = row.count;
+            // Where numbers lie far apart, each is fetched alone.
+            let batch = CHUNK_BYTES.checked_div(stride_bytes).unwrap_or(0).max(1);
+            while left > 0 {
+                let count = left.min(batch);
+                let span = count
+                    .saturating_sub(1)
+                    .saturating_mul(stride_bytes)
+                    .saturating_add(number_bytes);
+                let bytes = stream.read_at(at_byte, span)?;
+                let stride = match count {
+                    1 => 1,
+                    _ => usize::try_from(row.stride).unwrap_or(usize::MAX),
+                };
+                builder.push(bytes, stride).map_err(at(&self.path))?;
+                at_byte = at_byte.saturating_add(count.saturating_mul(stride_bytes));
+                left = left.saturating_sub(count);
+            }
+        }
+        stream.finish()?;
+        if builder.len() != wanted {
+            return Err(at(&self.path)(Problem::Size {
+                format: data.format,
+                wanted_bytes: to_u64(wanted).saturating_mul(number_bytes),
+                found_bytes: to_u64(builder.len()).saturating_mul(number_bytes),
+            }));
+        }
+        Ok(builder.finish())
+    }
+}
+
+/// Numbers that are reserved before the first byte of a compressed stream is seen.
+const BELIEVED_NUMBERS: usize = 1 << 24;
+
+/// Bytes that are fetched and converted at once.
+const CHUNK_BYTES: u64 = 1 << 18;
+
+impl Source for FileSource {
+    fn path(&self) -> &Path {
+        &self.path
+    }
+
+    fn header(&self) -> &Header {
+        &self.header
+    }
+
+    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+        self.check(pick, region).map_err(at(&self.path))?;
+        let wanted = self.count_within_limit(region).map_err(at(&self.path))?;
+        self.read_rows(pick, region, wanted)
+    }
+}

@@ -1,0 +1,179 @@
+//! An image, its memory and its one view.
+
+use super::{Error, Gpu, error::Doing, owned::Own, owned::OwnMemory};
+use ash::vk;
+use gpu_allocator::{
+    MemoryLocation,
+    vulkan::{AllocationCreateDesc, AllocationScheme},
+};
+use std::sync::Arc;
+
+/// What an image is to a shader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ImageKind {
+    /// `texture_2d`.
+    D2,
+    /// `texture_2d_array`; the third number of an extent counts layers.
+    D2Array,
+    /// `texture_3d`.
+    D3,
+}
+
+impl ImageKind {
+    pub(super) fn image_type(self) -> vk::ImageType {
+        match self {
+            Self::D2 | Self::D2Array => vk::ImageType::TYPE_2D,
+            Self::D3 => vk::ImageType::TYPE_3D,
+        }
+    }
+
+    fn view_type(self) -> vk::ImageViewType {
+        match self {
+            Self::D2 => vk::ImageViewType::TYPE_2D,
+            Self::D2Array => vk::ImageViewType::TYPE_2D_ARRAY,
+            Self::D3 => vk::ImageViewType::TYPE_3D,
+        }
+    }
+
+    /// How many of `extent[2]` are layers, and how many are depth.
+    pub(super) fn layers_and_depth(self, extent: [u32; 3]) -> [u32; 2] {
+        match self {
+            Self::D2 | Self::D2Array => [extent[2], 1],
+            Self::D3 => [1, extent[2]],
+        }
+    }
+}
+
+/// What to make: one mip level, one sample, optimal tiling.
+#[derive(Clone, Copy, Debug)]
+pub struct ImageDesc<'a> {
+    /// What the image is to a shader.
+    pub kind: ImageKind,
+    /// Texels across and down, and the depth, layers, or 1.
+    pub extent: [u32; 3],
+    /// A color format of [`super::texel_bytes`].
+    pub format: vk::Format,
+    /// All that will be done with it.
+    pub usage: vk::ImageUsageFlags,
+    /// For errors and validation messages.
+    pub name: &'a str,
+}
+
+/// An image with memory and a view of all of it.
+#[derive(Debug)]
+pub struct Image {
+    view: Own<vk::ImageView>,
+    raw: Own<vk::Image>,
+    // After `view` and `raw`: fields are dropped in this order, and memory goes last.
+    _memory: OwnMemory,
+    kind: ImageKind,
+    extent: [u32; 3],
+    format: vk::Format,
+    name: String,
+}
+
+impl Image {
+    /// An image in layout `UNDEFINED`. Sizes and format are compared with the device first ([`Gpu::check_image`]).
+    pub fn new(gpu: &Arc<Gpu>, desc: &ImageDesc<'_>) -> Result<Self, Error> {
+        gpu.check_image(desc)?;
+        let doing = || {
+            let [width, height, depth] = desc.extent;
+            format!(
+                "make image `{}` of {width}x{height}x{depth} {:?}",
+                desc.name, desc.format
+            )
+        };
+        let [layers, depth] = desc.kind.layers_and_depth(desc.extent);
+        let info = vk::ImageCreateInfo::default()
+            .image_type(desc.kind.image_type())
+            .format(desc.format)
+            .extent(vk::Extent3D {
+                width: desc.extent[0],
+                height: desc.extent[1],
+                depth,
+            })
+            .mip_levels(1)
+            .array_layers(layers)
+            .samples(vk::SampleCountFlags::TYPE_1)
+            .tiling(vk::ImageTiling::OPTIMAL)
+            .usage(desc.usage);
+        // SAFETY: the device is valid; sizes, format and usage were checked.
+        let raw = unsafe { gpu.device().create_image(&info, None) }.doing(doing)?;
+        let raw = Own::new(gpu, raw);
+        gpu.name(raw.get(), desc.name);
+        // SAFETY: the image was made on this device.
+        let requirements = unsafe { gpu.device().get_image_memory_requirements(raw.get()) };
+        let memory = AllocationCreateDesc {
+            name: desc.name,
+            requirements,
+            location: MemoryLocation::GpuOnly,
+            linear: false,
+            allocation_scheme: AllocationScheme::GpuAllocatorManaged,
+        };
+        let memory = OwnMemory::new(gpu, &memory, doing)?;
+        let allocation = memory.get();
+        // SAFETY: the memory was allocated for this image's requirements and is bound once.
+        unsafe {
+            gpu.device()
+                .bind_image_memory(raw.get(), allocation.memory(), allocation.offset())
+        }
+        .doing(doing)?;
+        let info = vk::ImageViewCreateInfo::default()
+            .image(raw.get())
+            .view_type(desc.kind.view_type())
+            .format(desc.format)
+            .subresource_range(WHOLE_COLOR);
+        // SAFETY: the image has memory, and the view is of its own kind and format.
+        let view = unsafe { gpu.device().create_image_view(&info, None) }.doing(doing)?;
+        let view = Own::new(gpu, view);
+        gpu.name(view.get(), desc.name);
+        Ok(Self {
+            view,
+            raw,
+            _memory: memory,
+            kind: desc.kind,
+            extent: desc.extent,
+            format: desc.format,
+            name: desc.name.into(),
+        })
+    }
+
+    /// The Vulkan handle.
+    pub fn raw(&self) -> vk::Image {
+        self.raw.get()
+    }
+
+    /// The view of all of it.
+    pub fn view(&self) -> vk::ImageView {
+        self.view.get()
+    }
+
+    /// What the image is to a shader.
+    pub fn kind(&self) -> ImageKind {
+        self.kind
+    }
+
+    /// Texels across and down, and the depth, layers, or 1.
+    pub fn extent(&self) -> [u32; 3] {
+        self.extent
+    }
+
+    /// The format.
+    pub fn format(&self) -> vk::Format {
+        self.format
+    }
+
+    /// The name in errors and validation messages.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+}
+
+/// Every layer of the one level of a color image.
+pub(super) const WHOLE_COLOR: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
+    aspect_mask: vk::ImageAspectFlags::COLOR,
+    base_mip_level: 0,
+    level_count: 1,
+    base_array_layer: 0,
+    layer_count: vk::REMAINING_ARRAY_LAYERS,
+};

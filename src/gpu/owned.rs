@@ -1,0 +1,272 @@
+//! Who owns a raw object, and what becomes of it when its owner is dropped.
+//!
+//! An owner's `Drop` never waits: it hands the raw object to the [`Store`] with the newest value that
+//! the timeline was announced to reach. [`Store::retire`] destroys what the timeline has passed.
+
+use super::{Error, Gpu, error::within};
+use ash::vk;
+use gpu_allocator::{
+    AllocationError, vulkan::Allocation, vulkan::AllocationCreateDesc, vulkan::Allocator,
+};
+use std::{
+    collections::{BTreeMap, VecDeque},
+    sync::Arc,
+};
+
+/// A raw object together with the duty to destroy it once, when the GPU is done with it.
+#[derive(Debug)]
+pub(super) struct Own<H: Handle> {
+    gpu: Arc<Gpu>,
+    handle: H,
+}
+
+impl<H: Handle> Own<H> {
+    /// Takes over a handle that was just created on `gpu`'s device.
+    pub fn new(gpu: &Arc<Gpu>, handle: H) -> Self {
+        gpu.store().adopt(H::WORD);
+        Self {
+            gpu: Arc::clone(gpu),
+            handle,
+        }
+    }
+
+    pub fn get(&self) -> H {
+        self.handle
+    }
+
+    pub fn gpu(&self) -> &Arc<Gpu> {
+        &self.gpu
+    }
+}
+
+impl<H: Handle> Drop for Own<H> {
+    fn drop(&mut self) {
+        self.gpu.store().discard(self.handle.into());
+    }
+}
+
+/// Memory of one buffer or image, with the duty to free it.
+#[derive(Debug)]
+pub(super) struct OwnMemory {
+    gpu: Arc<Gpu>,
+    allocation: Option<Allocation>,
+}
+
+impl OwnMemory {
+    /// Allocates, after `desc` was compared with the limits. `doing` follows the word "cannot".
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        desc: &AllocationCreateDesc<'_>,
+        doing: impl Fn() -> String,
+    ) -> Result<Self, Error> {
+        let limits = gpu.limits();
+        let size = desc.requirements.size;
+        within(
+            &doing,
+            "maxMemoryAllocationSize",
+            size,
+            limits.max_allocation_bytes,
+        )?;
+        within(
+            &doing,
+            "the largest memory heap",
+            size,
+            limits.max_heap_bytes,
+        )?;
+        let allocation = gpu.store().allocate(desc, limits.max_allocations, &doing)?;
+        Ok(Self {
+            gpu: Arc::clone(gpu),
+            allocation: Some(allocation),
+        })
+    }
+
+    pub fn get(&self) -> &Allocation {
+        self.allocation
+            .as_ref()
+            .expect("memory is taken only by drop")
+    }
+}
+
+impl Drop for OwnMemory {
+    fn drop(&mut self) {
+        if let Some(allocation) = self.allocation.take() {
+            self.gpu.store().discard(Raw::Memory(allocation));
+        }
+    }
+}
+
+/// A kind of raw object that we create and destroy.
+pub(super) trait Handle: Copy + std::fmt::Debug + Into<Raw> {
+    /// What live objects of this kind are counted under.
+    const WORD: &'static str;
+}
+
+macro_rules! handles {
+    ($($kind:ident $handle:ty, $word:literal, $destroy:ident;)*) => {
+        /// A raw object without its owner.
+        #[derive(Debug)]
+        pub(super) enum Raw {
+            $($kind($handle),)*
+            Memory(Allocation),
+        }
+
+        $(
+            impl From<$handle> for Raw {
+                fn from(handle: $handle) -> Self {
+                    Self::$kind(handle)
+                }
+            }
+
+            impl Handle for $handle {
+                const WORD: &'static str = $word;
+            }
+        )*
+
+        impl Raw {
+            fn word(&self) -> &'static str {
+                match self {
+                    $(Self::$kind(_) => $word,)*
+                    Self::Memory(_) => "memory",
+                }
+            }
+
+            /// # Safety
+            /// The object belongs to `device`, which has finished with it.
+            unsafe fn destroy(self, device: &ash::Device, allocator: Option<&mut Allocator>) {
+                match self {
+                    // SAFETY: the caller's promise is what each of these calls asks.
+                    $(Self::$kind(handle) => unsafe { device.$destroy(handle, None) },)*
+                    Self::Memory(allocation) => {
+                        let freed = allocator.map(|allocator| allocator.free(allocation));
+                        debug_assert!(matches!(freed, Some(Ok(()))), "memory freed twice: {freed:?}");
+                    }
+                }
+            }
+        }
+    };
+}
+
+handles! {
+    Buffer vk::Buffer, "buffer", destroy_buffer;
+    Image vk::Image, "image", destroy_image;
+    ImageView vk::ImageView, "image view", destroy_image_view;
+    Sampler vk::Sampler, "sampler", destroy_sampler;
+    SetLayout vk::DescriptorSetLayout, "descriptor set layout", destroy_descriptor_set_layout;
+    PipelineLayout vk::PipelineLayout, "pipeline layout", destroy_pipeline_layout;
+    Pipeline vk::Pipeline, "pipeline", destroy_pipeline;
+    ShaderModule vk::ShaderModule, "shader module", destroy_shader_module;
+    DescriptorPool vk::DescriptorPool, "descriptor pool", destroy_descriptor_pool;
+    QueryPool vk::QueryPool, "query pool", destroy_query_pool;
+    CommandPool vk::CommandPool, "command pool", destroy_command_pool;
+    Semaphore vk::Semaphore, "semaphore", destroy_semaphore;
+}
+
+/// The allocator, what is alive, and what waits for the timeline.
+#[derive(Debug)]
+pub(super) struct Store {
+    /// `None` only while the device goes: memory is freed before it.
+    allocator: Option<Allocator>,
+    /// The newest value that a recording was announced to reach.
+    announced: u64,
+    /// In the order of their values, and of one owner's parts: an image before its memory.
+    waiting: VecDeque<(u64, Raw)>,
+    live: BTreeMap<&'static str, usize>,
+}
+
+impl Store {
+    pub fn new(allocator: Allocator) -> Self {
+        Self {
+            allocator: Some(allocator),
+            announced: 0,
+            waiting: VecDeque::new(),
+            live: BTreeMap::new(),
+        }
+    }
+
+    /// Values only rise: what is dropped from now on waits for the largest one.
+    pub fn announce(&mut self, value: u64) {
+        self.announced = self.announced.max(value);
+    }
+
+    fn adopt(&mut self, word: &'static str) {
+        *self.live.entry(word).or_default() += 1;
+    }
+
+    fn discard(&mut self, raw: Raw) {
+        self.waiting.push_back((self.announced, raw));
+    }
+
+    /// # Safety
+    /// `device` is the one everything was created on and has finished all work up to `completed`.
+    pub unsafe fn retire(&mut self, device: &ash::Device, completed: u64) {
+        while self
+            .waiting
+            .front()
+            .is_some_and(|&(value, _)| value <= completed)
+        {
+            let (_, raw) = self.waiting.pop_front().expect("the front was just seen");
+            let live = self.live.entry(raw.word()).or_default();
+            *live = live.saturating_sub(1);
+            // SAFETY: the caller promises that work up to this object's value is done.
+            unsafe { raw.destroy(device, self.allocator.as_mut()) };
+        }
+    }
+
+    /// # Safety
+    /// As [`Store::retire`], for all work; nothing is created afterwards.
+    pub unsafe fn destroy_all(&mut self, device: &ash::Device) {
+        // SAFETY: the caller's promise.
+        unsafe { self.retire(device, u64::MAX) };
+        self.allocator = None;
+    }
+
+    pub fn live(&self) -> BTreeMap<&'static str, usize> {
+        self.live
+            .iter()
+            .filter(|&(_, &count)| count > 0)
+            .map(|(&word, &count)| (word, count))
+            .collect()
+    }
+
+    /// Bytes that are allocated from the driver, whether in use or kept for later.
+    pub fn reserved_bytes(&self) -> u64 {
+        self.allocator.as_ref().map_or(0, Allocator::capacity)
+    }
+
+    fn allocate(
+        &mut self,
+        desc: &AllocationCreateDesc<'_>,
+        max_allocations: u64,
+        doing: impl Fn() -> String,
+    ) -> Result<Allocation, Error> {
+        let allocator = self
+            .allocator
+            .as_mut()
+            .expect("the allocator outlives every owner");
+        // Blocks hold one allocation or more, and one block for each of at most 32 memory types may stand empty:
+        // counting the blocks costs a walk over all of them, so it is done near the limit only,
+        // and one allocation that would still find room in a block may be refused there.
+        let live = *self.live.get("memory").unwrap_or(&0) as u64;
+        if live + vk::MAX_MEMORY_TYPES as u64 >= max_allocations {
+            let blocks = allocator.generate_report().blocks.len() as u64;
+            within(
+                &doing,
+                "maxMemoryAllocationCount",
+                blocks + 1,
+                max_allocations,
+            )?;
+        }
+        let allocation = allocator.allocate(desc).map_err(|cause| match cause {
+            AllocationError::OutOfMemory => Error::OutOfMemory {
+                doing: doing(),
+                memory: "device",
+            },
+            cause => Error::Allocation {
+                doing: doing(),
+                cause,
+            },
+        })?;
+        self.adopt("memory");
+        Ok(allocation)
+    }
+}

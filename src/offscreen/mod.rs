@@ -1,0 +1,32 @@
+//! A scene to a picture, on either side: [`Renderer`] on a device of our own, [`reference`] on the CPU.
+//!
+//! The only place that submits and waits.
+
+mod passes;
+pub mod reference;
+mod renderer;
+mod targets;
+mod upload;
+
+pub use renderer::{Rendered, Renderer};
+
+/// Why there is no picture.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The picture cannot be made as asked.
+    #[error(transparent)]
+    Technique(#[from] crate::technique::Error),
+    /// The device refused.
+    #[error(transparent)]
+    Gpu(#[from] crate::gpu::Error),
+    /// A layer that this technique and mode do not have.
+    #[error("{technique:?} has no layer `{layer:?}` in mode {mode:?}")]
+    NoLayer {
+        /// Where samples lie.
+        technique: crate::technique::Technique,
+        /// What is done with them.
+        mode: crate::technique::Mode,
+        /// What was asked for.
+        layer: crate::picture::LayerKind,
+    },
+}

@@ -1,0 +1,78 @@
+//! The images that a picture is made in, and the way back to the CPU.
+
+use crate::gpu::{
+    Buffer, Error, Gpu, Headless, Image, ImageDesc, ImageKind, Memory, Region, Use, image_barrier,
+    image_to_buffer,
+};
+use ash::vk;
+use std::sync::Arc;
+
+/// Every target holds four f32: accumulation is as exact as the shaders' own arithmetic.
+pub const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+
+/// Images of one extent.
+#[derive(Debug)]
+pub struct Targets {
+    /// Pixels across and down.
+    pub extent: [u32; 2],
+    /// What a technique leaves.
+    pub accumulation: Image,
+    /// What the ray caster leaves beside it; counts of slicers.
+    pub layers: Image,
+    /// Resolved colour.
+    pub picture: Image,
+    readback: Buffer,
+}
+
+impl Targets {
+    /// Objects for pictures of `extent`.
+    pub fn new(gpu: &Arc<Gpu>, extent: [u32; 2]) -> Result<Self, Error> {
+        let image = |name| {
+            let usage = vk::ImageUsageFlags::STORAGE
+                | vk::ImageUsageFlags::COLOR_ATTACHMENT
+                | vk::ImageUsageFlags::SAMPLED
+                | vk::ImageUsageFlags::TRANSFER_SRC;
+            let [width, height] = extent;
+            let extent = [width, height, 1];
+            Image::new(
+                gpu,
+                &ImageDesc {
+                    kind: ImageKind::D2,
+                    extent,
+                    format: FORMAT,
+                    usage,
+                    name,
+                },
+            )
+        };
+        let bytes = u64::from(extent[0]) * u64::from(extent[1]) * 16;
+        let usage = vk::BufferUsageFlags::TRANSFER_DST;
+        Ok(Self {
+            extent,
+            accumulation: image("accumulation")?,
+            layers: image("layers")?,
+            picture: image("picture")?,
+            readback: Buffer::new(gpu, bytes, usage, Memory::Readback, "readback")?,
+        })
+    }
+
+    /// The pixels of one of the images, rows from the top. `before` is what was last done with it.
+    pub fn read(
+        &self,
+        device: &mut Headless,
+        image: &Image,
+        before: Use,
+    ) -> Result<Vec<[f32; 4]>, Error> {
+        let gpu = Arc::clone(device.gpu());
+        // SAFETY: recorded outside rendering; `run` waits, and `self` lives meanwhile.
+        device.run(|cmd| unsafe {
+            image_barrier(&gpu, cmd, image, before, Use::TransferRead);
+            image_to_buffer(&gpu, cmd, image, Region::whole(image), &self.readback, 0)
+        })?;
+        let count = self.extent.map(|n| n as usize).iter().product();
+        let mut pixels = vec![[0.0; 4]; count];
+        self.readback
+            .read(0, bytemuck::cast_slice_mut(&mut pixels))?;
+        Ok(pixels)
+    }
+}

@@ -1,0 +1,43 @@
+//! Volumes through a staging buffer to the device, a slab at a time.
+
+use crate::gpu::{Buffer, Error, Headless, Memory, Use};
+use crate::resident::{GpuVolume, TextureLayout};
+use crate::volume::Volume;
+use ash::vk;
+
+/// A slab is as many slices as fit into this.
+const STAGING_BYTES: u64 = 32 << 20;
+
+/// Makes and fills the textures of a volume.
+pub fn upload(
+    device: &mut Headless,
+    volume: &Volume,
+    layout: TextureLayout,
+) -> Result<GpuVolume, Error> {
+    let made = GpuVolume::new(device.gpu(), volume, layout)?;
+    let slabs = || {
+        let of_brick = |brick| {
+            made.slabs(brick, STAGING_BYTES)
+                .into_iter()
+                .map(move |slab| (brick, slab))
+        };
+        made.bricks().iter().flat_map(of_brick)
+    };
+    let bytes = slabs()
+        .map(|(_, slab)| made.staging_bytes(slab))
+        .max()
+        .unwrap_or(0);
+    let usage = vk::BufferUsageFlags::TRANSFER_SRC;
+    let staging = Buffer::new(device.gpu(), bytes, usage, Memory::Upload, "staging")?;
+    for (brick, slab) in slabs() {
+        staging.write(0, &made.staged(volume, slab))?;
+        let before = if slab.min == brick.cell.stored.min {
+            Use::Nothing
+        } else {
+            Use::Sampled
+        };
+        // SAFETY: recorded outside rendering; the staging buffer holds this slab; `run` waits.
+        device.run(|cmd| unsafe { made.record_upload(cmd, &staging, brick, slab, before) })?;
+    }
+    Ok(made)
+}

@@ -1,0 +1,14 @@
+//! Data put on a device: a volume as bricks or as stacks of slices, a transfer function as table and points.
+//!
+//! Making them only creates objects. Their content is uploaded by recorded copies (or, where the host
+//! reaches the memory, written at once); nothing here submits or waits.
+
+mod bricks;
+mod texel;
+mod transfer;
+mod volume;
+
+pub use bricks::{Cell, front_to_back};
+pub use texel::{Coding, TexelFormat};
+pub use transfer::{GpuTransfer, TransferLayout};
+pub use volume::{Brick, GpuVolume, TextureLayout};

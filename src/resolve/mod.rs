@@ -1,0 +1,99 @@
+//! What a technique left behind to linear premultiplied colour: a draw that is legal inside a host's rendering.
+
+pub mod reference;
+
+use crate::gpu::{
+    Bindings, Blend, Error, Gpu, Image, ParameterRing, RasterDesc, RasterPipeline, Resource,
+    set_area,
+};
+use crate::resident::GpuTransfer;
+use crate::shaders::shader;
+use crate::technique::Mode;
+use ash::vk;
+use std::sync::Arc;
+
+/// The pipeline that classifies (or passes on) what a technique left.
+#[derive(Debug)]
+pub struct Resolve {
+    gpu: Arc<Gpu>,
+    pipeline: RasterPipeline,
+}
+
+impl Resolve {
+    /// Compiles the variant for what `mode` leaves, for a target of `format`.
+    ///
+    /// [`Blend::Add`] sums weighted resolves to the mean over the rays of a pixel; [`Blend::Over`] lays the
+    /// picture over what a host has drawn.
+    ///
+    /// # Errors
+    /// Where the device does not blend that format, by its name.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        mode: Mode,
+        blend: Blend,
+        format: vk::Format,
+    ) -> Result<Self, Error> {
+        let fragment = match mode {
+            Mode::Composite => "resolve.picture",
+            Mode::Mip | Mode::Minip | Mode::Xray => "resolve.value",
+            Mode::Average => "resolve.mean",
+        };
+        let desc = RasterDesc {
+            vertex: shader("resolve_cover"),
+            fragment: shader(fragment),
+            color_formats: &[format],
+            blend,
+        };
+        Ok(Self {
+            gpu: Arc::clone(gpu),
+            pipeline: RasterPipeline::new(gpu, &desc)?,
+        })
+    }
+
+    /// Binds what a technique left. Projecting modes need the transfer function.
+    ///
+    /// # Errors
+    /// Where it is missing.
+    pub fn bind(
+        &self,
+        ring: &ParameterRing,
+        accumulation: &Image,
+        transfer: Option<&GpuTransfer>,
+    ) -> Result<Bindings, Error> {
+        let left = Resource::sampled(accumulation);
+        let mut given = vec![
+            ("frame", Resource::Uniform(ring)),
+            ("picture", left),
+            ("accumulation", left),
+        ];
+        given.extend(transfer.map(|transfer| ("points", Resource::Storage(transfer.points()))));
+        given.retain(|(name, _)| {
+            self.pipeline
+                .layout()
+                .slots()
+                .iter()
+                .any(|slot| slot.name == *name)
+        });
+        Bindings::new(&self.gpu, self.pipeline.layout(), &given)
+    }
+
+    /// Records the draw with the parameters at `offset` of the ring, and sets viewport and scissor to the whole
+    /// target.
+    ///
+    /// # Safety
+    /// - `cmd` is recording, inside rendering to one target of the pipeline's format and of `extent`;
+    /// - what was bound lives until it has run; the accumulation is in `Use::FragmentSampled`.
+    pub unsafe fn record(
+        &self,
+        cmd: vk::CommandBuffer,
+        bindings: &Bindings,
+        offset: u32,
+        extent: [u32; 2],
+    ) {
+        // SAFETY: the caller's promises; the bindings come from `bind`.
+        unsafe {
+            set_area(&self.gpu, cmd, extent);
+            self.pipeline.draw(cmd, bindings, &[offset], 3, 1);
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! What a blending unit does with the fragments of one pixel, and its twin on the CPU.
+//!
+//! ```text
+//! over    back to front   C = s + (1 - alpha_s) C
+//! under   front to back   C = C + (1 - alpha_C) s
+//! max, min, add           channel by channel
+//! ```
+//!
+//! All colours are premultiplied (Porter and Duff 1984); `algorithms.md` 1.6.
+
+use super::{Mode, Order, Words};
+use crate::gpu::Blend;
+use crate::real::Real;
+use crate::transfer::opacity_over;
+
+/// One sample on a slice: its value and the world length that it stands for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the line above says it")]
+pub struct Fragment<R> {
+    pub value: R,
+    pub length: R,
+}
+
+/// What slices are drawn for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Drawn {
+    /// The picture of a mode.
+    Picture(Mode),
+    /// How many samples each pixel took.
+    Count,
+}
+
+impl Drawn {
+    /// The fragment shader of a slicer.
+    pub fn shader_name(self, slicer: &str, words: &Words) -> String {
+        let Words {
+            filter,
+            holes,
+            transfer,
+            ..
+        } = words;
+        match self {
+            Self::Picture(Mode::Composite) => {
+                format!("{slicer}.composite.{filter}.{holes}.{transfer}")
+            }
+            Self::Picture(Mode::Mip | Mode::Minip) => format!("{slicer}.extreme.{filter}.{holes}"),
+            Self::Picture(Mode::Average | Mode::Xray) => format!("{slicer}.sum.{filter}.{holes}"),
+            Self::Count => format!("{slicer}.count.nearest.none"),
+        }
+    }
+}
+
+/// The fixed-function operator.
+pub fn operator(drawn: Drawn, order: Order) -> Blend {
+    match (drawn, order) {
+        (Drawn::Picture(Mode::Composite), Order::BackToFront) => Blend::Over,
+        (Drawn::Picture(Mode::Composite), Order::FrontToBack) => Blend::Under,
+        (Drawn::Picture(Mode::Mip), _) => Blend::Max,
+        (Drawn::Picture(Mode::Minip), _) => Blend::Min,
+        (Drawn::Picture(Mode::Average | Mode::Xray) | Drawn::Count, _) => Blend::Add,
+    }
+}
+
+/// What the target holds before the first fragment: where nothing is drawn, the second number of a
+/// projection stays 0.
+pub fn clear_color(mode: Mode) -> [f32; 4] {
+    match mode {
+        Mode::Mip => [-f32::MAX, 0.0, 0.0, 0.0],
+        Mode::Minip => [f32::MAX, 0.0, 0.0, 0.0],
+        Mode::Composite | Mode::Average | Mode::Xray => [0.0; 4],
+    }
+}
+
+/// +1 where a mode looks for the largest, -1 where for the smallest value.
+pub fn extreme_sign(mode: Mode) -> f32 {
+    if mode == Mode::Minip { -1.0 } else { 1.0 }
+}
+
+/// The target after one more fragment. `classify` gives (red, green, blue, extinction).
+pub fn blend<R: Real>(
+    mode: Mode,
+    order: Order,
+    target: [R; 4],
+    fragment: Fragment<R>,
+    classify: impl Fn(R) -> [R; 4],
+) -> [R; 4] {
+    let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
+    let sign = R::from_f32(extreme_sign(mode));
+    match mode {
+        Mode::Composite => {
+            let [r, g, b, extinction] = classify(fragment.value);
+            let opacity = opacity_over(extinction, fragment.length);
+            let source = [opacity * r, opacity * g, opacity * b, opacity];
+            match order {
+                Order::BackToFront => each(source, target, |s, c| s + (one - opacity) * c),
+                Order::FrontToBack => each(source, target, |s, c| (one - target[3]) * s + c),
+            }
+        }
+        Mode::Mip => each([fragment.value, sign, zero, zero], target, R::max),
+        Mode::Minip => each([fragment.value, sign, zero, zero], target, R::min),
+        Mode::Average | Mode::Xray => {
+            let Fragment { value, length } = fragment;
+            each([value * length, length, zero, zero], target, |s, c| s + c)
+        }
+    }
+}
+
+fn each<R: Real>(source: [R; 4], target: [R; 4], operator: impl Fn(R, R) -> R) -> [R; 4] {
+    std::array::from_fn(|channel| operator(source[channel], target[channel]))
+}

@@ -1,0 +1,334 @@
+//! Camera, grid and settings to the parameters that shaders and twins share: pure, set up once in f64.
+//!
+//! The world is moved so that the centre of the uncropped grid box is its origin: f32 then keeps the same
+//! precision wherever the volume lies, and the planes n . x = (k + 1/2) h pass by the centre as
+//! `sampling.md` 3 wants them.
+
+use super::{MAX_SAMPLES_PER_RAY, Settings};
+use crate::camera::{Camera, Projection, Rays};
+use crate::picture::ColorSpace;
+use crate::resident::{Cell, Coding, TransferLayout, front_to_back};
+use crate::shaders::{Frame, FrameFields, MAX_CLIP_PLANES};
+use crate::technique::Error;
+use crate::transfer::Interpolation;
+use crate::volume::Grid;
+use glam::{DAffine3, DVec3, dvec3};
+
+/// What one picture is taken of, and how.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a> {
+    /// The grid of the volume.
+    pub grid: &'a Grid,
+    /// The eye.
+    pub camera: &'a Camera,
+    /// Pixels across and down.
+    pub extent_pixels: [u32; 2],
+    /// Where in a pixel its ray goes through; (0, 0) is the centre, the corners lie at +-1/2.
+    pub in_pixel: [f64; 2],
+    /// The words of the picture.
+    pub settings: &'a Settings,
+}
+
+impl View<'_> {
+    /// World length of a step: the smallest spacing over the samples per voxel.
+    pub fn step_world(&self) -> f64 {
+        self.grid.smallest_spacing() / self.settings.samples_per_voxel
+    }
+
+    /// The part of the grid that is kept, in voxel space.
+    pub fn domain(&self) -> [DVec3; 2] {
+        let far = self.grid.far_corner();
+        let [low, high] = self.settings.crop.unwrap_or([DVec3::ZERO, far]);
+        [low.max(DVec3::ZERO), high.min(far)]
+    }
+
+    /// The centred world to voxel space and back.
+    pub fn world_from_voxel(&self) -> DAffine3 {
+        DAffine3::from_translation(-self.grid.center()) * self.grid.world_from_voxel
+    }
+
+    /// The rays of the picture in the centred world.
+    pub fn rays(&self) -> Rays {
+        let mut rays = self.camera.rays(self.extent_pixels);
+        let [x, y] = self.in_pixel;
+        rays.origin += x * rays.origin_dx + y * rays.origin_dy - self.grid.center();
+        rays.direction += x * rays.direction_dx + y * rays.direction_dy;
+        rays
+    }
+
+    /// The parameters without those of slices.
+    ///
+    /// # Errors
+    /// [`Error::TooManySamples`] and [`Error::TooManyClipPlanes`].
+    pub fn fields(&self, coding: &Coding, transfer: &TransferLayout) -> Result<FrameFields, Error> {
+        let rays = self.rays();
+        let world_from_voxel = self.world_from_voxel();
+        let [domain_min, domain_max] = self.domain();
+        self.check_sample_count(&world_from_voxel)?;
+        let margin = self.cover_margin(&rays, &world_from_voxel);
+        let (clip_planes, clip_plane_count) = self.clip_planes()?;
+        let v = |v: DVec3| v.as_vec3().to_array();
+        let forward_voxel = world_from_voxel.matrix3.transpose() * rays.forward;
+        Ok(FrameFields {
+            origin: v(rays.origin),
+            origin_dx: v(rays.origin_dx),
+            origin_dy: v(rays.origin_dy),
+            direction: v(rays.direction),
+            direction_dx: v(rays.direction_dx),
+            direction_dy: v(rays.direction_dy),
+            forward: v(rays.forward),
+            forward_voxel: v(forward_voxel),
+            step_world: self.step_world() as f32,
+            termination: self.settings.termination,
+            code_scale: coding.scale,
+            code_offset: coding.offset,
+            slope: coding.slope,
+            intercept: coding.intercept,
+            codes_are_integers: coding.is_integer.into(),
+            weight: 1.0,
+            domain_min: v(domain_min),
+            domain_max: v(domain_max),
+            cover_min: v(domain_min - margin),
+            cover_max: v(domain_max + margin),
+            dims: self.grid.dims.map(|n| n as f32),
+            voxel_from_world: affine_rows(&world_from_voxel.inverse()),
+            world_from_voxel: affine_rows(&world_from_voxel),
+            clip_from_world: clip_rows(&rays, self.extent_pixels),
+            clip_planes,
+            clip_plane_count,
+            table_count: transfer.table_count,
+            table_first: transfer.table_first,
+            table_scale: transfer.table_scale,
+            reference_length: transfer.reference_length,
+            color_point_count: transfer.color_point_count,
+            opacity_point_count: transfer.opacity_point_count,
+            interpolation_is_step: (transfer.interpolation == Interpolation::Step).into(),
+            color_space_is_display: (self.settings.color_space == ColorSpace::Display).into(),
+            brick_min: [0.0; 3],
+            brick_max: [0.0; 3],
+            brick_origin: [0.0; 3],
+            brick_dims: self.grid.dims.map(|n| n as f32),
+            is_first_brick: 1,
+            is_only_brick: 1,
+            extent_pixels: self.extent_pixels,
+            slice_first: 0,
+            slice_direction: 1,
+            slice_turn: 0,
+            slice_first_after_turn: 0,
+            slice_axis: 0,
+            extreme_sign: 1.0,
+        })
+    }
+
+    /// Narrows the parameters to one of several bricks. `is_first`: no nearer one has been recorded.
+    pub fn set_brick(&self, cell: &Cell, is_first: bool, fields: &mut FrameFields) {
+        let [low, high] = self.part(Some(cell));
+        for k in 0..3 {
+            let margin = fields.domain_min[k] - fields.cover_min[k];
+            fields.cover_min[k] = low[k] as f32 - margin;
+            fields.cover_max[k] = high[k] as f32 + margin;
+            // Rounding may take a sample a little out of the grid: the outer bricks have no outer face.
+            let own = &cell.own;
+            let is_outer = [own.min[k] == 0, own.max[k] == self.grid.dims[k]];
+            fields.brick_min[k] = if is_outer[0] {
+                f32::MIN
+            } else {
+                own.min[k] as f32
+            };
+            fields.brick_max[k] = if is_outer[1] {
+                f32::MAX
+            } else {
+                own.max[k] as f32
+            };
+        }
+        fields.brick_origin = cell.stored.min.map(|n| n as f32);
+        fields.brick_dims = cell.stored.dims().map(|n| n as f32);
+        fields.is_first_brick = is_first.into();
+        fields.is_only_brick = 0;
+    }
+
+    /// The part of the domain that lies in a brick, or all of it.
+    pub fn part(&self, cell: Option<&Cell>) -> [DVec3; 2] {
+        let [low, high] = self.domain();
+        let corner = |voxel: [u32; 3]| DVec3::from_array(voxel.map(f64::from));
+        match cell {
+            Some(cell) => [
+                low.max(corner(cell.own.min)),
+                high.min(corner(cell.own.max)),
+            ],
+            None => [low, high],
+        }
+    }
+
+    /// The order in which every ray meets the bricks.
+    pub fn front_to_back(&self, cells: &[Cell]) -> Vec<usize> {
+        let size = cells[0].own.dims();
+        let eye_cell = match self.camera.projection {
+            Projection::Perspective { .. } => {
+                let eye = self
+                    .grid
+                    .world_from_voxel
+                    .inverse()
+                    .transform_point3(self.camera.eye);
+                std::array::from_fn(|k| eye[k] / f64::from(size[k]))
+            }
+            Projection::Orthographic { .. } => {
+                let forward = self.rays().forward;
+                self.grid
+                    .voxel_rows()
+                    .map(|row| -f64::INFINITY.copysign(row.dot(forward)))
+            }
+        };
+        front_to_back(cells, eye_cell)
+    }
+
+    /// The longest ray is the box's diagonal.
+    fn check_sample_count(&self, world_from_voxel: &DAffine3) -> Result<(), Error> {
+        let m = world_from_voxel.matrix3;
+        let far = self.grid.far_corner();
+        let diagonals = [
+            dvec3(1., 1., 1.),
+            dvec3(1., 1., -1.),
+            dvec3(1., -1., 1.),
+            dvec3(-1., 1., 1.),
+        ];
+        let longest = diagonals
+            .map(|d| (m * (d * far)).length())
+            .into_iter()
+            .fold(0.0, f64::max);
+        let wanted = longest / self.step_world();
+        if wanted <= f64::from(MAX_SAMPLES_PER_RAY) {
+            return Ok(());
+        }
+        Err(Error::TooManySamples {
+            wanted,
+            limit: MAX_SAMPLES_PER_RAY,
+        })
+    }
+
+    /// By how many voxels a slicer's cover is larger than the domain: two pixels, as the farthest corner
+    /// sees them. Rounding in the rasterizer then never uncovers a pixel.
+    fn cover_margin(&self, rays: &Rays, world_from_voxel: &DAffine3) -> DVec3 {
+        let far = self.grid.far_corner();
+        let corner = |i: u32| far * dvec3((i & 1).into(), (i >> 1 & 1).into(), (i >> 2).into());
+        let depth = |i: u32| {
+            rays.forward
+                .dot(world_from_voxel.transform_point3(corner(i)) - rays.origin)
+        };
+        let farthest = (0..8).map(depth).fold(0.0, f64::max);
+        let pixel_world = rays.origin_dx.length() + rays.direction_dx.length() * farthest;
+        let rows = self.grid.voxel_rows().map(|row| row.length());
+        2.0 * pixel_world * DVec3::from_array(rows) + 1e-3
+    }
+
+    fn clip_planes(&self) -> Result<([[f32; 4]; MAX_CLIP_PLANES as usize], u32), Error> {
+        let wanted = &self.settings.clip_planes;
+        let mut planes = [[0.0; 4]; MAX_CLIP_PLANES as usize];
+        if wanted.len() > planes.len() {
+            return Err(Error::TooManyClipPlanes {
+                wanted: wanted.len(),
+                limit: planes.len(),
+            });
+        }
+        for (plane, found) in planes.iter_mut().zip(wanted) {
+            let offset = found.offset - found.normal.dot(self.grid.center());
+            *plane = found.normal.extend(offset).as_vec4().to_array();
+        }
+        Ok((planes, wanted.len() as u32))
+    }
+}
+
+/// The parameters of a recording from their fields.
+pub fn frame(fields: FrameFields) -> Frame {
+    fields.into()
+}
+
+fn affine_rows(affine: &DAffine3) -> [[f32; 4]; 3] {
+    let (m, t) = (affine.matrix3, affine.translation);
+    [0, 1, 2].map(|k| m.row(k).extend(t[k]).as_vec4().to_array())
+}
+
+/// Clip space from the centred world, as rows, from the rays themselves: with w the depth and d the ray
+/// direction of depth 1, pixel x of a point p is where (p/w - d) . dx / |dx|^2 finds it. Depth is 1/2
+/// everywhere: w > 0 alone clips.
+fn clip_rows(rays: &Rays, [width, height]: [u32; 2]) -> [[f32; 4]; 4] {
+    let is_perspective = rays.origin_dx == DVec3::ZERO;
+    let row = |dx_origin: DVec3, dx_direction: DVec3, pixels: u32| {
+        // A point's pixel coordinate times w is dot(slope, p - origin) + at_origin.
+        let (slope, start, w_slope) = if is_perspective {
+            let slope = dx_direction / dx_direction.length_squared();
+            // p - w d, with w = forward . (p - origin); dx is orthogonal to forward.
+            (slope, slope.dot(rays.direction), rays.forward)
+        } else {
+            (dx_origin / dx_origin.length_squared(), 0.0, DVec3::ZERO)
+        };
+        let pixel_times_w = slope - start * w_slope;
+        let clip = 2.0 / f64::from(pixels) * pixel_times_w - w_slope;
+        let at_origin = if is_perspective { 0.0 } else { -1.0 };
+        clip.extend(at_origin - clip.dot(rays.origin))
+            .as_vec4()
+            .to_array()
+    };
+    let x = row(rays.origin_dx, rays.direction_dx, width);
+    let y = row(rays.origin_dy, rays.direction_dy, height);
+    let w = if is_perspective {
+        rays.forward.extend(-rays.forward.dot(rays.origin))
+    } else {
+        glam::dvec4(0.0, 0.0, 0.0, 1.0)
+    };
+    [x, y, (0.5 * w).as_vec4().to_array(), w.as_vec4().to_array()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dvec4;
+
+    fn view_of<'a>(grid: &'a Grid, camera: &'a Camera, settings: &'a Settings) -> View<'a> {
+        View {
+            grid,
+            camera,
+            extent_pixels: [40, 30],
+            in_pixel: [0.0; 2],
+            settings,
+        }
+    }
+
+    #[test]
+    fn a_point_on_a_pixels_ray_is_drawn_at_that_pixel() {
+        let grid = Grid {
+            dims: [8, 9, 10],
+            world_from_voxel: DAffine3::IDENTITY,
+        };
+        let settings = Settings::default();
+        let projections = [
+            Projection::Perspective { fov_degrees: 70.0 },
+            Projection::Orthographic { view_height: 12.0 },
+        ];
+        for projection in projections {
+            let camera = Camera {
+                eye: dvec3(20.0, -7.0, 3.0),
+                target: dvec3(1.0, 2.0, 4.0),
+                up: dvec3(0.1, 0.2, 1.0),
+                projection,
+                zoom: 1.3,
+            };
+            let view = view_of(&grid, &camera, &settings);
+            let rays = view.rays();
+            let rows = clip_rows(&rays, view.extent_pixels);
+            for (x, y) in [(0.5, 0.5), (39.5, 0.5), (11.25, 22.75)] {
+                let (origin, direction) = rays.at(x, y);
+                let point = (origin + 9.0 * direction).extend(1.0);
+                let clip = rows
+                    .map(|[a, b, c, d]| point.dot(dvec4(a.into(), b.into(), c.into(), d.into())));
+                let pixel = [0, 1]
+                    .map(|k| 0.5 * (clip[k] / clip[3] + 1.0) * f64::from(view.extent_pixels[k]));
+                let off = (pixel[0] - x).abs().max((pixel[1] - y).abs());
+                assert!(
+                    off < 1e-4,
+                    "{projection:?}: ({x}, {y}) is drawn at {pixel:?}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! MIP and its relatives: one ray a pixel in a compute pass, one number a ray.
+
+pub mod reference;
+
+use super::inputs::mode_word;
+use super::{Inputs, Mode, Words};
+use crate::gpu::{Bindings, ComputePipeline, Error, Gpu, Image, Resource};
+use crate::shaders::shader;
+use ash::vk;
+use std::sync::Arc;
+
+/// The compute pass of one mode.
+#[derive(Debug)]
+pub struct Projection {
+    gpu: Arc<Gpu>,
+    pipeline: ComputePipeline,
+}
+
+impl Projection {
+    /// Compiles the variant of this mode and these words.
+    ///
+    /// # Errors
+    /// Where the device refuses.
+    pub fn new(gpu: &Arc<Gpu>, mode: Mode, words: &Words) -> Result<Self, Error> {
+        let Words {
+            filter,
+            holes,
+            lattice,
+            ..
+        } = words;
+        let name = format!("projection.{}.{lattice}.{filter}.{holes}", mode_word(mode));
+        Ok(Self {
+            gpu: Arc::clone(gpu),
+            pipeline: ComputePipeline::new(gpu, shader(&name))?,
+        })
+    }
+
+    /// Binds inputs and the image that a recording fills, an R32G32B32A32_SFLOAT storage image:
+    /// (value, weight, depth or -1, samples).
+    ///
+    /// # Errors
+    /// Where an input is missing.
+    pub fn bind(&self, inputs: &Inputs, accumulation: &Image) -> Result<Bindings, Error> {
+        let outputs = [("accumulation", Resource::written(accumulation))];
+        inputs.bind(&self.gpu, self.pipeline.layout(), &outputs)
+    }
+
+    /// Records one picture of the parameters at `offset` of the ring.
+    ///
+    /// # Errors
+    /// A picture larger than the device can dispatch.
+    ///
+    /// # Safety
+    /// - `cmd` is recording, outside rendering; what was bound lives until it has run;
+    /// - the inputs are in `Use::Sampled`, the image in `Use::ComputeWrite`.
+    pub unsafe fn record(
+        &self,
+        cmd: vk::CommandBuffer,
+        bindings: &Bindings,
+        offset: u32,
+        [width, height]: [u32; 2],
+    ) -> Result<(), Error> {
+        let groups = self.pipeline.groups([width, height, 1])?;
+        // SAFETY: the caller's promises; the bindings come from `bind`.
+        unsafe { self.pipeline.dispatch(cmd, bindings, &[offset], groups) };
+        Ok(())
+    }
+}

@@ -1,0 +1,75 @@
+//! Ray casting: one ray a pixel in a compute pass, emission and absorption front to back (Levoy 1988).
+
+pub mod reference;
+
+use super::{Inputs, Words};
+use crate::gpu::{Bindings, ComputePipeline, Error, Gpu, Image, Resource};
+use crate::shaders::shader;
+use ash::vk;
+use std::sync::Arc;
+
+/// The compute pass.
+#[derive(Debug)]
+pub struct Raycast {
+    gpu: Arc<Gpu>,
+    pipeline: ComputePipeline,
+}
+
+impl Raycast {
+    /// Compiles the variant of these words.
+    ///
+    /// # Errors
+    /// Where the device refuses.
+    pub fn new(gpu: &Arc<Gpu>, words: &Words) -> Result<Self, Error> {
+        let Words {
+            filter,
+            holes,
+            lattice,
+            transfer,
+        } = words;
+        let name = format!("raycast.composite.{lattice}.{filter}.{holes}.{transfer}");
+        Ok(Self {
+            gpu: Arc::clone(gpu),
+            pipeline: ComputePipeline::new(gpu, shader(&name))?,
+        })
+    }
+
+    /// Binds inputs and the two images that a recording fills, both R32G32B32A32_SFLOAT storage images:
+    /// `picture` gets premultiplied colour and alpha, `layers` (0, depth or -1, transmittance, samples).
+    ///
+    /// # Errors
+    /// Where an input is missing.
+    pub fn bind(
+        &self,
+        inputs: &Inputs,
+        picture: &Image,
+        layers: &Image,
+    ) -> Result<Bindings, Error> {
+        let outputs = [
+            ("picture", Resource::written(picture)),
+            ("layers", Resource::written(layers)),
+        ];
+        inputs.bind(&self.gpu, self.pipeline.layout(), &outputs)
+    }
+
+    /// Records one picture of the parameters at `offset` of the ring.
+    ///
+    /// # Errors
+    /// A picture larger than the device can dispatch.
+    ///
+    /// # Safety
+    /// - `cmd` is recording, outside rendering; what was bound lives until it has run;
+    /// - the inputs are in `Use::Sampled`, the images in `Use::ComputeWrite`.
+    pub unsafe fn record(
+        &self,
+        cmd: vk::CommandBuffer,
+        bindings: &Bindings,
+        offset: u32,
+        [width, height]: [u32; 2],
+    ) -> Result<(), Error> {
+        let groups = self.pipeline.groups([width, height, 1])?;
+        // SAFETY: the caller's promises; the bindings come from `bind`.
+        unsafe { self.pipeline.dispatch(cmd, bindings, &[offset], groups) };
+        Ok(())
+    }
+}

@@ -1,0 +1,29 @@
+//! Ray casting on the CPU: twin of `shaders/raycast.wgsl`.
+
+use crate::real::Real;
+use crate::shaders::Frame;
+use crate::technique::Lattice;
+use crate::technique::composite::Composite;
+use crate::technique::march::march;
+use std::ops::ControlFlow;
+
+/// What one ray gathers, and how many samples it took. `value_at` filters the volume at a position in voxel
+/// space; `classify` gives (red, green, blue, extinction).
+pub fn radiance<R: Real>(
+    frame: &Frame,
+    lattice: Lattice,
+    pixel: [R; 2],
+    value_at: impl Fn([R; 3]) -> Option<R>,
+    classify: impl Fn(R) -> [R; 4],
+) -> (Composite<R>, u32) {
+    let termination = R::from_f32(frame.termination);
+    let mut so_far = Composite::default();
+    let samples = march(frame, lattice, pixel, value_at, |value, segment| {
+        so_far.add(classify(value), segment.length, segment.t);
+        if so_far.transmittance < termination {
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    });
+    (so_far, samples)
+}

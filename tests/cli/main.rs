@@ -1,0 +1,10 @@
+//! The program as a person meets it: words, exit codes, files.
+#![cfg(feature = "cli")]
+
+mod device;
+mod errors;
+#[cfg(unix)]
+mod interrupt;
+mod person;
+mod pictures;
+mod words;

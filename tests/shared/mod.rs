@@ -1,0 +1,145 @@
+//! What tests of pictures share: a device that fails on any validation message, small volumes, and a
+//! comparison that cannot pass when it is empty.
+
+#![allow(dead_code, reason = "each test file uses its part")]
+
+use glam::{DAffine3, DMat3, DVec3, dvec3};
+use stratavox::camera::{Camera, Projection};
+use stratavox::gpu::{Caps, DeviceChoice, Headless, Options, PipelineCache};
+use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
+use stratavox::volume::{Rescale, Volume, Voxels};
+
+/// A device without a pipeline cache; dropping it panics on a validation message.
+pub fn device() -> Headless {
+    device_with(Caps::UNLIMITED)
+}
+
+/// The same with stricter limits.
+pub fn device_with(caps: Caps) -> Headless {
+    let options = Options {
+        caps,
+        pipeline_cache: PipelineCache::Off,
+        ..Options::default()
+    };
+    Headless::new(&DeviceChoice::Default, &options)
+        .expect("a Vulkan device (`make test` installs one)")
+}
+
+/// A grid that is neither axis-aligned nor orthogonal nor isotropic, far from the origin.
+pub fn sheared_affine() -> DAffine3 {
+    let m = DMat3::from_cols(
+        dvec3(1.1, 0.2, -0.1),
+        dvec3(-0.3, 0.9, 0.2),
+        dvec3(0.1, 0.3, 1.6),
+    );
+    DAffine3::from_mat3_translation(m, dvec3(250.0, -80.0, 1000.0))
+}
+
+/// A volume of `dims` voxels of a field over voxel space, sampled at voxel centres.
+pub fn volume_of(dims: [u32; 3], affine: DAffine3, field: impl Fn(DVec3) -> f64) -> Volume {
+    let [nx, ny, nz] = dims;
+    let at = |x: u32, y: u32, z: u32| field(dvec3(x.into(), y.into(), z.into()) + 0.5) as f32;
+    let voxels = (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| (x, y, z))));
+    let values: Vec<f32> = voxels.map(|(x, y, z)| at(x, y, z)).collect();
+    Volume::from_voxels(dims, affine, Voxels::F32(values), Rescale::default(), None)
+        .expect("a right volume")
+}
+
+/// A field that varies along every axis, between about 0 and 1.
+pub fn waves(p: DVec3) -> f64 {
+    0.5 + 0.2 * (0.61 * p.x).sin()
+        + 0.15 * (0.53 * p.y + 0.4).cos()
+        + 0.15 * (0.37 * p.z - p.x * 0.2).sin()
+}
+
+/// Colours and opacities with ramps between 0 and 1.
+pub fn ramps() -> TransferFunction {
+    let color = |value, srgb| ColorPoint { value, srgb };
+    let opacity = |value, opacity| OpacityPoint { value, opacity };
+    TransferFunction {
+        color: vec![
+            color(0.0, [0.1, 0.2, 0.9]),
+            color(0.5, [0.2, 0.8, 0.3]),
+            color(1.0, [1.0, 0.5, 0.1]),
+        ],
+        opacity: vec![opacity(0.2, 0.0), opacity(0.6, 0.15), opacity(0.9, 0.4)],
+        reference_length: None,
+        interpolation: Interpolation::Linear,
+    }
+}
+
+/// A camera that looks along no axis at the centre of a volume, close enough to fill the picture.
+pub fn oblique_camera(volume: &Volume, projection: Projection) -> Camera {
+    let grid = volume.grid();
+    let center = grid.center();
+    let size = (grid.world_from_voxel.matrix3 * grid.far_corner()).length();
+    Camera {
+        eye: center + size * dvec3(0.9, -1.3, 0.6),
+        target: center,
+        up: dvec3(0.1, 0.0, 1.0),
+        projection,
+        zoom: 1.0,
+    }
+}
+
+/// Both projections, framing about the same.
+pub fn projections(volume: &Volume) -> [Projection; 2] {
+    let grid = volume.grid();
+    let size = (grid.world_from_voxel.matrix3 * grid.far_corner()).length();
+    [
+        Projection::Orthographic {
+            view_height: 0.9 * size,
+        },
+        Projection::Perspective { fov_degrees: 36.0 },
+    ]
+}
+
+/// How far two lists of numbers are apart. Says nothing until asked.
+#[must_use = "call `at_most`: a comparison alone checks nothing"]
+pub struct Comparison {
+    worst: f32,
+    worst_index: usize,
+    count: usize,
+}
+
+impl Comparison {
+    /// NaN equals NaN; else a NaN is infinitely far away.
+    pub fn of(wanted: &[f32], found: &[f32]) -> Self {
+        assert_eq!(wanted.len(), found.len(), "pictures of different size");
+        let mut comparison = Self {
+            worst: 0.0,
+            worst_index: 0,
+            count: wanted.len(),
+        };
+        for (i, (wanted, found)) in wanted.iter().zip(found).enumerate() {
+            let both_nan = wanted.is_nan() && found.is_nan();
+            let error = if both_nan || wanted == found {
+                0.0
+            } else {
+                (wanted - found).abs()
+            };
+            let error = if error.is_nan() { f32::INFINITY } else { error };
+            if error > comparison.worst {
+                comparison.worst = error;
+                comparison.worst_index = i;
+            }
+        }
+        comparison
+    }
+
+    /// The largest difference.
+    pub fn worst(&self) -> f32 {
+        self.worst
+    }
+
+    #[track_caller]
+    pub fn at_most(self, limit: f32, what: &str) {
+        assert!(self.count > 0, "{what}: nothing was compared");
+        assert!(
+            self.worst <= limit,
+            "{what}: off by {} at number {}, allowed {limit}",
+            self.worst,
+            self.worst_index
+        );
+    }
+}
