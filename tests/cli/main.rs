@@ -7,4 +7,5 @@ mod errors;
 mod interrupt;
 mod person;
 mod pictures;
+mod real;
 mod words;

@@ -256,3 +256,24 @@ fn info_has_the_promised_keys_and_exact_numbers() {
     text.assert_done();
     assert!(text.out.contains("-2 to 8, mean 2.5"), "{text:#?}");
 }
+
+#[test]
+fn raw_bytes_are_read_as_the_layout_says() {
+    let folder = Folder::new();
+    folder.file("a.bin", [0, 1, 0, 2, 0xff, 0xfd, 1, 0]);
+    let ran = folder.run("info a.bin --json --raw 2x2x1,i16,1x2x3,be");
+    ran.assert_done();
+    let info = json(&ran.out);
+    assert_eq!(
+        (&info["min"], &info["max"]),
+        (&(-3.0).into(), &256.0.into()),
+        "{info}"
+    );
+    assert_eq!(info["spacing"], json("[1.0,2.0,3.0]"), "{info}");
+    folder
+        .run("info a.bin --raw 2x2,i16")
+        .assert_refused(2, &["--raw 2x2,i16"]);
+    folder
+        .run("info a.bin --raw 2x2x2,i16")
+        .assert_refused(3, &["a.bin", "16", "8"]);
+}
