@@ -8,8 +8,16 @@ use shared::oracle::{
     atmosphere, constant_color, homogeneous, linear_density, order_of_convergence,
     quadratic_density,
 };
-use shared::{Device, Shot, Twin, Way, inner_box, oblique_shots, sheared_affine, straight_shots};
+use shared::{
+    Device, Shot, Twin, Way, Worst, device, inner_box, oblique_shots, ramps, sheared_affine,
+    straight_shots, volume_of, waves,
+};
+use stratavox::color::decode_srgb;
+use stratavox::offscreen::{Renderer, reference};
+use stratavox::picture::ColorSpace;
+use stratavox::scene::Scene;
 use stratavox::technique::{Mode, Settings};
+use stratavox::transfer::ColorPoint;
 use stratavox::volume::Grid;
 
 const SHEARED: fn() -> Grid = || Grid {
@@ -132,5 +140,52 @@ fn an_atmosphere_absorbs_as_its_integral_says() {
     for shot in oblique_shots(SHEARED(), Mode::Composite) {
         atmosphere(&Twin::<f64>::new(), &shot).assert_holds();
         atmosphere(&Twin::<f32>::new(), &shot).assert_holds();
+    }
+}
+
+#[test]
+fn a_furnace_looks_the_same_with_and_without_its_medium() {
+    // A6: the background has the medium's colour, so the picture is that colour, and opaque, everywhere.
+    let volume = volume_of(SHEARED().dims, sheared_affine(), waves);
+    let srgb = [0.9, 0.5, 0.2];
+    let mut transfer = ramps();
+    transfer.color = vec![ColorPoint { value: 0.0, srgb }];
+    let mut renderer = Renderer::new(device(), &volume).unwrap();
+    for color_space in [ColorSpace::Linear, ColorSpace::Display] {
+        for shot in oblique_shots(SHEARED(), Mode::Composite) {
+            let settings = Settings {
+                color_space,
+                ..shot.settings.clone()
+            };
+            let scene = Scene {
+                volume: &volume,
+                transfer: Some(&transfer),
+                camera: &shot.camera,
+                extent_pixels: shot.extent,
+                settings: &settings,
+            };
+            let pictures = [
+                ("device", renderer.render(&scene, &[]).unwrap().picture),
+                ("f32", reference::render::<f32>(&scene).unwrap()),
+                ("f64", reference::render::<f64>(&scene).unwrap()),
+            ];
+            for (way, mut picture) in pictures {
+                let seen = picture.pixels.iter().filter(|p| p[3] > 0.1).count();
+                assert!(seen > 200, "the medium is in {seen} pixels only");
+                picture.over_background([srgb[0], srgb[1], srgb[2], 1.0]);
+                let color = match color_space {
+                    ColorSpace::Linear => srgb.map(decode_srgb),
+                    ColorSpace::Display => srgb,
+                };
+                let mut worst = Worst::new(format!("A6, {way}, {color_space:?}, {}", shot.what()));
+                for (pixel, found) in shot.pixels().zip(&picture.pixels) {
+                    for c in 0..3 {
+                        worst.take(pixel, f64::from(found[c]) - color[c], 2e-6);
+                    }
+                    worst.take(pixel, f64::from(found[3]) - 1.0, 2e-6);
+                }
+                worst.assert_holds();
+            }
+        }
     }
 }

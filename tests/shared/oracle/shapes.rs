@@ -18,10 +18,9 @@ impl Sphere {
     fn new(shot: &Shot, is_voxelized: bool) -> Self {
         let grid = &shot.grid;
         let m = grid.world_from_voxel.matrix3;
-        let across = [0, 1, 2].map(|k| f64::from(grid.dims[k]) / grid.voxel_rows()[k].length() / f64::from(grid.dims[k]));
-        let narrowest = (0..3)
-            .map(|k| across[k] * f64::from(grid.dims[k]))
-            .fold(f64::INFINITY, f64::min);
+        // Opposite faces of the box are dims / |row of voxel_from_world| apart.
+        let apart = |k: usize| f64::from(grid.dims[k]) / grid.voxel_rows()[k].length();
+        let narrowest = (0..3).map(apart).fold(f64::INFINITY, f64::min);
         let diagonals = [[1., 1., 1.], [1., 1., -1.], [1., -1., 1.], [-1., 1., 1.]];
         let longest = diagonals
             .map(|d| (m * DVec3::from_array(d)).length())
