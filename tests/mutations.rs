@@ -12,6 +12,8 @@ mod files;
 mod memory;
 #[path = "shared/mutate.rs"]
 mod mutate;
+#[path = "shared/nifti.rs"]
+mod nifti;
 
 use encode::{ascii, bytes_of, bzip2, gzip, hex, zlib};
 use files::Folder;
@@ -261,5 +263,76 @@ fn mhd_survives_mutations() {
                 ("z3", zlib(slices[2])),
             ],
         ],
+    );
+}
+
+/// 5 x 4 x 3 voxels with everything that a reader looks at.
+fn nifti_header(version: u8, datatype: i16, bitpix: i16) -> nifti::Nifti {
+    nifti::Nifti {
+        version,
+        dim: [4, 5, 4, 3, 1, 0, 0, 0],
+        pixdim: [-1.0, 1.5, 1.5, 2.0, 1.0, 0.0, 0.0, 0.0],
+        scl_slope: 2.0,
+        scl_inter: -3.0,
+        qform_code: 1,
+        quatern: [0.5, 0.5, 0.5],
+        sform_code: 1,
+        srow: [
+            [1.5, 0.0, 0.0, 9.0],
+            [0.0, 1.5, 0.5, 8.0],
+            [0.0, 0.0, 2.0, 7.0],
+        ],
+        units: 3,
+        ..nifti::Nifti::new(datatype, bitpix)
+    }
+}
+
+#[test]
+fn nifti_survives_mutations() {
+    let short = |big| bytes_of(&values(), VoxelType::I16, big);
+    let double = bytes_of(&values(), VoxelType::F64, false);
+    let big = nifti::Nifti {
+        big_endian: true,
+        ..nifti_header(1, 4, 16)
+    };
+    let pair = |version: u8| nifti::Nifti {
+        is_single_file: false,
+        ..nifti_header(version, 4, 16)
+    };
+    survive(
+        "nifti",
+        &[
+            vec![("a.nii", nifti_header(1, 4, 16).with(&short(false)))],
+            vec![("a.nii", big.with(&short(true)))],
+            vec![("a.nii", nifti_header(2, 64, 64).with(&double))],
+            vec![(
+                "b.nii.gz",
+                gzip(&nifti_header(1, 4, 16).with(&short(false))),
+            )],
+            vec![("b.nii.gz", gzip(&nifti_header(2, 64, 64).with(&double)))],
+            // Without the four bytes behind the header, which carry nothing here.
+            vec![
+                ("c.hdr", pair(1).bytes()[..348].to_vec()),
+                ("c.img", short(false)),
+            ],
+            vec![
+                ("d.hdr", pair(2).bytes()[..540].to_vec()),
+                ("d.img.gz", gzip(&short(false))),
+            ],
+        ],
+    );
+}
+
+#[test]
+#[cfg(feature = "json")]
+fn raw_survives_mutations() {
+    let sidecar = r#"{"file": "a.raw", "dims": [5, 4, 3], "type": "i16", "endian": "little", "header_bytes": 2}"#;
+    let short = bytes_of(&values(), VoxelType::I16, false);
+    survive(
+        "raw",
+        &[vec![
+            ("a.json", sidecar.as_bytes().to_vec()),
+            ("a.raw", [b"xy", &short[..]].concat()),
+        ]],
     );
 }

@@ -95,6 +95,22 @@ fn each_kind_of_volume_is_known_for_what_it_is() {
     let temperature: Vec<f64> = (0..40_000)
         .map(|i| 230.0 + 60.0 * (f64::from(i) / 5000.0).sin())
         .collect();
+    // No CT for a little padding of -1000, nor for a range that happens to begin there.
+    let padded: Vec<f64> = object(&mut Random(10), 0.4, 12.0, [60.0, 220.0])
+        .into_iter()
+        .enumerate()
+        .map(|(i, value)| if i % 100 == 0 { -1000.0 } else { value })
+        .collect();
+    let mut third = {
+        let mut random = Random(11);
+        move || random.unit() * 2000.0 / 3.0
+    };
+    let bell: Vec<f64> = (0..40_000)
+        .map(|_| (third() + third() + third() - 1000.0).round())
+        .collect();
+    let even: Vec<f64> = (0..40_000)
+        .map(|i| f64::from(i * 7 % 2001 - 1000))
+        .collect();
     let wave: Vec<f64> = (0..40_000)
         .map(|i| (f64::from(i) / 50.0).sin() * 3e4)
         .map(f64::round)
@@ -108,6 +124,9 @@ fn each_kind_of_volume_is_known_for_what_it_is() {
         (Kind::Ct, ct),
         (Kind::Field, temperature),
         (Kind::Signed, wave),
+        (Kind::Signed, bell),
+        (Kind::Signed, even),
+        (Kind::Signed, padded),
     ];
     for (n, (wanted, values)) in cases.into_iter().enumerate() {
         let summary = summary(&values);

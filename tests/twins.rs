@@ -25,7 +25,7 @@ fn every_technique_and_mode_draws_what_its_twin_computes() {
     let mut renderer = Renderer::new(device(), &volume).unwrap();
     for technique in TECHNIQUES {
         for mode in MODES {
-            for projection in projections(&volume) {
+            for projection in projections(&volume.grid()) {
                 for filter in [Filter::Nearest, Filter::Linear] {
                     let settings = Settings {
                         technique,
@@ -34,7 +34,7 @@ fn every_technique_and_mode_draws_what_its_twin_computes() {
                         conformance: true,
                         ..Settings::default()
                     };
-                    let camera = oblique_camera(&volume, projection);
+                    let camera = oblique_camera(&volume.grid(), projection);
                     let scene = Scene {
                         volume: &volume,
                         transfer: Some(&transfer),

@@ -96,18 +96,11 @@ mod tests {
             .sum();
         assert_eq!(own, 23 * 9 * 40, "own voxels of all bricks");
         for cell in &cells {
-            for k in 0..3 {
-                assert!(cell.stored.dims()[k] <= 12, "{cell:?} is too large");
-                assert_eq!(
-                    cell.stored.min[k],
-                    cell.own.min[k].saturating_sub(1),
-                    "{cell:?}"
-                );
-                assert_eq!(
-                    cell.stored.max[k],
-                    (cell.own.max[k] + 1).min(dims[k]),
-                    "{cell:?}"
-                );
+            for (k, dim) in dims.into_iter().enumerate() {
+                let (own, stored) = (cell.own, cell.stored);
+                assert!(stored.dims()[k] <= 12, "{cell:?} is too large");
+                assert_eq!(stored.min[k], own.min[k].saturating_sub(1), "{cell:?}");
+                assert_eq!(stored.max[k], (own.max[k] + 1).min(dim), "{cell:?}");
             }
         }
     }

@@ -99,11 +99,7 @@ fn looks_like_hounsfield(summary: &ValueSummary) -> bool {
     let [low, high] = summary.range;
     let air = summary.share_below(-800.0);
     let gap = summary.share_below(-500.0) - air;
-    summary.integers
-        && (-3100.0..=-900.0).contains(&low)
-        && high > 200.0
-        && air > 0.05
-        && (gap < air || air > 0.3)
+    summary.integers && (-3100.0..=-900.0).contains(&low) && high > 200.0 && air > 0.05 && gap < air
 }
 
 /// Skin is where air turns to tissue, -500 to -200 HU; then bone as `ct-bone` has it.

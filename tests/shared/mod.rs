@@ -1,13 +1,23 @@
 //! What tests of pictures share: a device that fails on any validation message, small volumes, and a
 //! comparison that cannot pass when it is empty.
 
-#![allow(dead_code, reason = "each test file uses its part")]
+#![allow(dead_code, unused_imports, reason = "each test file uses its part")]
+
+pub mod oracle;
+mod shot;
+mod way;
+mod worst;
+
+pub use shot::{Chord, Shot};
+pub use way::{Device, Matter, Twin, Way};
+pub use worst::Worst;
 
 use glam::{DAffine3, DMat3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
 use stratavox::gpu::{Caps, DeviceChoice, Headless, Options, PipelineCache};
+use stratavox::technique::{Lattice, Mode, Order, Settings, Technique};
 use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
-use stratavox::volume::{Rescale, Volume, Voxels};
+use stratavox::volume::{Grid, Rescale, Volume, Voxels};
 
 /// A device without a pipeline cache; dropping it panics on a validation message.
 pub fn device() -> Headless {
@@ -68,9 +78,8 @@ pub fn ramps() -> TransferFunction {
     }
 }
 
-/// A camera that looks along no axis at the centre of a volume, close enough to fill the picture.
-pub fn oblique_camera(volume: &Volume, projection: Projection) -> Camera {
-    let grid = volume.grid();
+/// A camera that looks along no axis at the centre of a grid, close enough to fill the picture.
+pub fn oblique_camera(grid: &Grid, projection: Projection) -> Camera {
     let center = grid.center();
     let size = (grid.world_from_voxel.matrix3 * grid.far_corner()).length();
     Camera {
@@ -83,8 +92,7 @@ pub fn oblique_camera(volume: &Volume, projection: Projection) -> Camera {
 }
 
 /// Both projections, framing about the same.
-pub fn projections(volume: &Volume) -> [Projection; 2] {
-    let grid = volume.grid();
+pub fn projections(grid: &Grid) -> [Projection; 2] {
     let size = (grid.world_from_voxel.matrix3 * grid.far_corner()).length();
     [
         Projection::Orthographic {
@@ -92,6 +100,72 @@ pub fn projections(volume: &Volume) -> [Projection; 2] {
         },
         Projection::Perspective { fov_degrees: 36.0 },
     ]
+}
+
+/// Every place where samples can lie, and both orders of blending.
+pub fn placements() -> Vec<Settings> {
+    let settings = |technique, lattice, order| Settings {
+        technique,
+        lattice,
+        order,
+        conformance: true,
+        ..Settings::default()
+    };
+    use {Lattice::*, Order::*, Technique::*};
+    vec![
+        settings(Raycast, Ray, BackToFront),
+        settings(Raycast, Planes, BackToFront),
+        settings(Slices3d, Ray, BackToFront),
+        settings(Slices3d, Ray, FrontToBack),
+        settings(Slices2d, Ray, BackToFront),
+        settings(Slices2d, Ray, FrontToBack),
+    ]
+}
+
+/// Each placement in both projections, seen from where no axis is: all of `grid` in the picture.
+pub fn oblique_shots(grid: Grid, mode: Mode) -> Vec<Shot> {
+    let views = projections(&grid).map(|projection| oblique_camera(&grid, projection));
+    shots(grid, mode, &views)
+}
+
+/// Each placement along the last axis, every pixel through the centre of a column of voxels: so long as
+/// dims[2] is even, every sample of every placement is a voxel centre.
+pub fn straight_shots(grid: Grid, mode: Mode) -> Vec<Shot> {
+    let [nx, ny, nz] = grid.dims.map(f64::from);
+    assert_eq!(
+        grid.world_from_voxel,
+        DAffine3::IDENTITY,
+        "voxels of side 1 at the origin"
+    );
+    let center = grid.center();
+    let camera = Camera {
+        eye: center - dvec3(0.0, 0.0, nz),
+        target: center,
+        up: DVec3::Y,
+        projection: Projection::Orthographic { view_height: ny },
+        zoom: 1.0,
+    };
+    let extent = [nx as u32, ny as u32];
+    let shots = shots(grid, mode, &[camera]).into_iter();
+    shots.map(|shot| Shot { extent, ..shot }).collect()
+}
+
+fn shots(grid: Grid, mode: Mode, cameras: &[Camera]) -> Vec<Shot> {
+    let all = cameras.iter().flat_map(|&camera| {
+        placements().into_iter().map(move |settings| Shot {
+            grid,
+            camera,
+            extent: [40, 36],
+            settings: Settings { mode, ..settings },
+        })
+    });
+    all.collect()
+}
+
+/// The middle of the grid: more than half a voxel is cut off all around, so that trilinear interpolation of a
+/// linear field is the field itself.
+pub fn inner_box(grid: &Grid) -> [DVec3; 2] {
+    [DVec3::splat(0.625), grid.far_corner() - 0.625]
 }
 
 /// How far two lists of numbers are apart. Says nothing until asked.
