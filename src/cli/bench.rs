@@ -130,7 +130,7 @@ impl Bench {
             prepare_ms: renderer.prepare_ms,
             first_frame_ms: frames[0].wall_ms,
             frames,
-            samples: None,
+            samples: renderer.samples(&cameras[cameras.len() - 1])?,
             peak_rss_bytes: peak_rss_bytes(),
             device_bytes: renderer.device_bytes(),
         };

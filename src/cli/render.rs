@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     camera::BoundingSphere,
-    picture::{BitDepth, LayerKind, Picture, PictureFormat, WriteOptions, write_picture},
+    picture::{BitDepth, LayerKind, PictureFormat, WriteOptions, write_picture},
     volume::{Limits, Volume},
 };
 use clap::Args;
@@ -156,7 +156,7 @@ impl Render {
                 prepare_ms: renderer.prepare_ms,
                 first_frame_ms: frames.first().map_or(0.0, |frame| frame.wall_ms),
                 frames,
-                samples: samples(&picture),
+                samples: renderer.samples(&camera)?,
                 peak_rss_bytes: peak_rss_bytes(),
                 device_bytes: renderer.device_bytes(),
             };
@@ -219,13 +219,4 @@ pub fn load(scene: &SceneFlags, progress: &Progress) -> Result<Volume, Error> {
         progress.note(&format!("{no_data} voxels hold no data"));
     }
     Ok(volume)
-}
-
-/// Samples that a picture took, where they were counted.
-pub fn samples(picture: &Picture) -> Option<u64> {
-    let layer = picture
-        .layers
-        .iter()
-        .find(|layer| layer.kind == LayerKind::Samples)?;
-    Some(layer.values.iter().map(|&count| count as u64).sum())
 }
