@@ -103,12 +103,13 @@ fn info_says_what_the_manifest_says() {
             );
         }
         // The frog's header says 2067 bytes less than there are, and the manifest was made by a reader that
-        // believes it: the last slices are empty there.
-        if path.ends_with("frogtissue.mhd") {
-            continue;
-        }
+        // believes it and leaves the rest zero. This is the sum of all of its voxels.
+        let mean = if path.ends_with("frogtissue.mhd") {
+            12_279_472.0 / dims.iter().product::<f64>()
+        } else {
+            wanted["stored"]["mean"].as_f64().expect("a number")
+        };
         // Sums of some million numbers in f64, in another order.
-        let mean = wanted["stored"]["mean"].as_f64().expect("a number");
         assert_near(
             &path,
             "mean",
