@@ -1,5 +1,6 @@
 //! View-aligned slicing: planes parallel to the picture, cut in the vertex shader, blended in hardware.
 
+pub mod cover;
 mod planes;
 pub mod reference;
 
