@@ -85,7 +85,6 @@ impl View<'_> {
             slope: coding.slope,
             intercept: coding.intercept,
             codes_are_integers: coding.is_integer.into(),
-            weight: 1.0,
             domain_min: v(domain_min),
             domain_max: v(domain_max),
             cover_min: v(domain_min - margin),

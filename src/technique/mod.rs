@@ -5,6 +5,7 @@ pub mod composite;
 mod frame;
 mod inputs;
 mod march;
+pub mod merge;
 pub mod projection;
 pub mod raycast;
 pub mod slices_2d;
