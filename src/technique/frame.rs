@@ -79,7 +79,11 @@ impl View<'_> {
             forward: v(rays.forward),
             forward_voxel: v(forward_voxel),
             step_world: self.step_world() as f32,
-            termination: self.settings.termination,
+            termination: if self.settings.conformance {
+                0.0
+            } else {
+                self.settings.termination
+            },
             code_scale: coding.scale,
             code_offset: coding.offset,
             slope: coding.slope,

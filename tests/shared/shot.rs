@@ -10,7 +10,9 @@ use stratavox::shaders::Frame;
 use stratavox::technique::slices_2d::{set_slices, stack_axis};
 use stratavox::technique::slices_3d::set_planes;
 use stratavox::technique::{Lattice, Settings, Technique, View, frame};
-use stratavox::volume::Grid;
+use stratavox::scene::Scene;
+use stratavox::transfer::TransferFunction;
+use stratavox::volume::{Grid, Volume};
 
 /// A picture without its matter.
 #[derive(Clone, Debug)]
@@ -46,6 +48,29 @@ impl Shot {
             in_pixel: [0.0; 2],
             settings: &self.settings,
         }
+    }
+
+    /// The same picture of a volume on the same grid.
+    pub fn scene<'a>(
+        &'a self,
+        volume: &'a Volume,
+        transfer: Option<&'a TransferFunction>,
+    ) -> Scene<'a> {
+        assert_eq!(volume.grid(), self.grid, "another grid");
+        Scene {
+            volume,
+            transfer,
+            camera: &self.camera,
+            extent_pixels: self.extent,
+            settings: &self.settings,
+        }
+    }
+
+    /// The same with other settings.
+    pub fn with(&self, change: impl FnOnce(&mut Settings)) -> Self {
+        let mut shot = self.clone();
+        change(&mut shot.settings);
+        shot
     }
 
     /// The parameters that the twins read, and how many slices there are.
