@@ -6,11 +6,11 @@
 use glam::{DAffine3, DVec3};
 use stratavox::camera::Camera;
 use stratavox::resident::{Coding, TransferLayout};
+use stratavox::scene::Scene;
 use stratavox::shaders::Frame;
 use stratavox::technique::slices_2d::{set_slices, stack_axis};
 use stratavox::technique::slices_3d::set_planes;
 use stratavox::technique::{Lattice, Settings, Technique, View, frame};
-use stratavox::scene::Scene;
 use stratavox::transfer::TransferFunction;
 use stratavox::volume::{Grid, Volume};
 
