@@ -14,6 +14,7 @@ use super::{
 use crate::{
     camera::BoundingSphere,
     picture::{BitDepth, LayerKind, PictureFormat, WriteOptions, write_picture},
+    technique::Filter,
     volume::{Limits, Volume},
 };
 use clap::Args;
@@ -87,7 +88,7 @@ impl Render {
             (PictureFormat::Png, BitDepth::Eight) => Depth::Eight,
             _ => Depth::More,
         };
-        let settings = scene.sampling.settings(depth)?;
+        let mut settings = scene.sampling.settings(depth)?;
         let extent_pixels = scene.picture.extent_pixels()?;
         scene.classification.check()?;
         let inputs = scene_file::inputs(&scene, self.scene_file.as_deref());
@@ -105,6 +106,10 @@ impl Render {
         let classification = scene
             .classification
             .classification(&volume, settings.mode)?;
+        if scene.sampling.filter.is_none() && scene.classification.found_labels(&classification) {
+            settings.filter = Filter::Nearest;
+            progress.note("the values look like labels: drawn with --filter nearest");
+        }
         let load_ms = ms_since(start);
 
         progress.stage("prepare", 0, 1);

@@ -22,7 +22,7 @@ pub struct CameraFlags {
     #[arg(long, value_name = "F", value_parser = positive, help_heading = "Camera")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub zoom: Option<f64>,
-    /// Stand on this side [default: anterior]
+    /// Stand on this side [default: between right and anterior, a little above]
     #[arg(long, value_name = "SIDE", conflicts_with_all = ["azimuth", "elevation"], help_heading = "Camera")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub view: Option<ViewWord>,
@@ -112,7 +112,12 @@ impl CameraFlags {
     fn orbit(&self) -> Orbit {
         let side = match (self.view, self.azimuth, self.elevation) {
             (Some(view), _, _) => view.view().orbit(),
-            (None, None, None) => View::Anterior.orbit(),
+            // Three sides of a box are seen, and of a head more than the profile.
+            (None, None, None) => Orbit {
+                azimuth_degrees: 60.0,
+                elevation_degrees: 15.0,
+                roll_degrees: 0.0,
+            },
             (None, azimuth, elevation) => Orbit {
                 azimuth_degrees: azimuth.unwrap_or(0.0),
                 elevation_degrees: elevation.unwrap_or(0.0),
