@@ -10,8 +10,10 @@ SHELL := /bin/bash
 CARGO ?= cargo
 ROOT := $(if $(filter 0,$(shell id -u)),,sudo )
 APT := $(ROOT)env DEBIAN_FRONTEND=noninteractive apt-get
-# Mesa compiles shaders on the CPU and keeps the result: here, so that `make test` leaves nothing behind elsewhere.
+# Mesa compiles shaders on the CPU and keeps the result, and we keep pipelines: here, so that nothing is left
+# behind elsewhere.
 export MESA_SHADER_CACHE_DIR ?= $(CURDIR)/target/mesa-shader-cache
+export XDG_CACHE_HOME ?= $(CURDIR)/target/cache
 export DATA
 
 # A Vulkan driver is a manifest in one of the loader's folders; the loader is libvulkan.so.1.

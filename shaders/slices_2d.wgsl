@@ -3,8 +3,9 @@
 // Twin: src/technique/slices_2d/reference.rs.
 
 #import ray
+#import brick
 #import stack_{filter}
-#import holes_{holes}
+#import stack_holes_{holes}
 #import blend_{blend}
 
 @fragment
@@ -25,8 +26,15 @@ fn main(
         discard;
     }
     let sample = voxel.origin + t * voxel.direction;
-    if !footprint_is_valid(footprint_of(sample, slice)) {
+    if !is_in_brick(on_slice(sample, slice)) || !footprint_is_valid(footprint_of(sample, slice)) {
         discard;
     }
     return blend_source(value_at(sample, slice), 1.0 / abs(slope));
+}
+
+// The position with its coordinate along the stack as it is meant: no rounding takes it out of its slice.
+fn on_slice(voxel: vec3<f32>, slice: i32) -> vec3<f32> {
+    var exact = voxel;
+    exact[frame.slice_axis] = f32(slice) + 0.5;
+    return exact;
 }

@@ -4,6 +4,7 @@
 // Twin: src/technique/slices_3d/reference.rs.
 
 #import ray
+#import brick
 #import filter_{filter}
 #import holes_{holes}
 #import blend_{blend}
@@ -21,7 +22,7 @@ fn main(
         discard;
     }
     let sample = voxel.origin + t * voxel.direction;
-    if !footprint_is_valid(footprint_of(sample)) {
+    if !is_in_brick(sample) || !footprint_is_valid(footprint_of(sample)) {
         discard;
     }
     return blend_source(value_at(sample), plane_length(world));

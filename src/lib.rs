@@ -48,3 +48,8 @@ pub mod shaders;
 pub mod technique;
 pub mod transfer;
 pub mod volume;
+
+/// The example of the README compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

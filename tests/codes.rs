@@ -34,7 +34,11 @@ fn sheet(voxels: Voxels, rescale: Rescale, fill: Option<f64>, width: u32, axis: 
     // Up is against the second axis, so that it runs down; right is then along the first or against it.
     let forward = DVec3::AXES[axis];
     let up = -DVec3::AXES[down];
-    let forward = if forward.cross(up) == DVec3::AXES[across] { forward } else { -forward };
+    let forward = if forward.cross(up) == DVec3::AXES[across] {
+        forward
+    } else {
+        -forward
+    };
     let camera = Camera {
         eye: center - 4.0 * forward,
         target: center,
@@ -113,9 +117,11 @@ fn check_codes(what: &str, width: u32, voxels: &Voxels) {
         let axis = i % 3;
         let rescale = Rescale { slope, intercept };
         let sheet = sheet(voxels.clone(), rescale, None, width, axis);
-        check(&format!("{what} {rescale:?} axis {axis}"), &sheet, |i, found| {
-            f64::from(found) == f64::from(voxels.stored(i)) * slope + intercept
-        });
+        check(
+            &format!("{what} {rescale:?} axis {axis}"),
+            &sheet,
+            |i, found| f64::from(found) == f64::from(voxels.stored(i)) * slope + intercept,
+        );
     }
 }
 
@@ -150,8 +156,18 @@ fn all_finite_halves_come_out_exactly() {
 #[test]
 fn the_corners_of_f32_come_out_exactly() {
     let corners = [
-        0.0, 1.0, 1.0 + f32::EPSILON, 1.0 - f32::EPSILON / 2.0, f32::MIN_POSITIVE, f32::MAX, 16_777_215.0,
-        16_777_217.0, 0.1, 1e-30, 1e30, std::f32::consts::PI,
+        0.0,
+        1.0,
+        1.0 + f32::EPSILON,
+        1.0 - f32::EPSILON / 2.0,
+        f32::MIN_POSITIVE,
+        f32::MAX,
+        16_777_215.0,
+        16_777_217.0,
+        0.1,
+        1e-30,
+        1e30,
+        std::f32::consts::PI,
     ];
     let voxels = Voxels::F32(corners.iter().flat_map(|&x| [x, -x]).collect());
     for axis in 0..3 {
@@ -175,7 +191,9 @@ fn a_subnormal_f32_comes_out_as_itself_or_as_zero() {
 fn holes_never_win() {
     // The fill is the largest, then the smallest number there is; a column of nothing else stays empty.
     for fill in [i16::MAX, i16::MIN] {
-        let codes: Vec<i16> = (0..64).map(|i| if i % 3 == 0 { fill } else { i - 30 }).collect();
+        let codes: Vec<i16> = (0..64)
+            .map(|i| if i % 3 == 0 { fill } else { i - 30 })
+            .collect();
         for axis in 0..3 {
             let sheet = sheet(
                 Voxels::I16(codes.clone()),
@@ -241,10 +259,15 @@ fn holes_never_win_along_a_ray() {
                 extent_pixels: [8, 6],
                 settings: &settings,
             };
-            let picture = renderer.render(&scene, &[LayerKind::Value]).unwrap().picture;
+            let picture = renderer
+                .render(&scene, &[LayerKind::Value])
+                .unwrap()
+                .picture;
             for y in 0..6 {
                 for x in 0..8 {
-                    let column = (0..dims[2]).map(|z| code(x, 5 - y, z)).filter(|&c| c != fill);
+                    let column = (0..dims[2])
+                        .map(|z| code(x, 5 - y, z))
+                        .filter(|&c| c != fill);
                     let wanted = match mode {
                         Mode::Mip => column.max(),
                         _ => column.min(),

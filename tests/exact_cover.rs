@@ -140,17 +140,18 @@ fn the_areas_of_all_planes_add_up_to_the_volume() {
     for grid in grids() {
         for (i, forward) in (0..).zip(directions(60)) {
             let shot = shot_along(grid, forward, 40.0);
-            let (frame, count) = shot.parameters();
+            let (mut frame, count) = shot.parameters();
             // The domain instead of its cover, whose planes are all drawn.
-            let frame = Frame {
-                cover_min: frame.domain_min,
-                cover_max: frame.domain_max,
-                ..frame
-            };
+            frame.cover_min = frame.domain_min;
+            frame.cover_max = frame.domain_max;
             let normal = DVec3::from_array(frame.forward.map(f64::from));
             let areas = (0..count).map(|i| {
                 let plane = frame.slice_first + i as i32 * frame.slice_direction;
-                area(&polygon::<f64>(&frame, plane).map(DVec3::from_array), normal).abs()
+                area(
+                    &polygon::<f64>(&frame, plane).map(DVec3::from_array),
+                    normal,
+                )
+                .abs()
             });
             let found = areas.sum::<f64>() * f64::from(frame.step_world);
             let dims: f64 = grid.dims.map(f64::from).into_iter().product();
@@ -172,7 +173,10 @@ fn the_cover_leaves_out_no_sample_and_doubles_none() {
     let volume = volume_of(grid.dims, grid.world_from_voxel, waves);
     let transfer = ramps();
     let mut renderer = Renderer::new(device(), &volume).unwrap();
-    let mut cameras: Vec<Camera> = oblique_shots(grid, Mode::Mip).iter().map(|s| s.camera).collect();
+    let mut cameras: Vec<Camera> = oblique_shots(grid, Mode::Mip)
+        .iter()
+        .map(|s| s.camera)
+        .collect();
     for forward in directions(24) {
         cameras.push(shot_along(grid, forward, 1.0).camera);
         // From inside, the cover goes behind the eye.
@@ -204,9 +208,16 @@ fn the_cover_leaves_out_no_sample_and_doubles_none() {
                 extent_pixels: shot.extent,
                 settings: &shot.settings,
             };
-            let found = renderer.render(&scene, &[LayerKind::Samples]).unwrap().picture;
+            let found = renderer
+                .render(&scene, &[LayerKind::Samples])
+                .unwrap()
+                .picture;
             let wanted = reference::render::<f32>(&scene).unwrap();
-            let wanted = wanted.layers.iter().find(|l| l.kind == LayerKind::Samples).unwrap();
+            let wanted = wanted
+                .layers
+                .iter()
+                .find(|l| l.kind == LayerKind::Samples)
+                .unwrap();
             let pairs = found.layers[0].values.iter().zip(&wanted.values);
             for (pixel, (found, wanted)) in shot.pixels().zip(pairs) {
                 if shot.chord(pixel).is_some_and(|chord| chord.hangs) {

@@ -35,7 +35,11 @@ fn value_error(volume: &Volume, bits: u32) -> f64 {
         for y in 0..ny {
             for x in 0..nx {
                 let here = at(x, y, z);
-                let next = [at((x + 1).min(nx - 1), y, z), at(x, (y + 1).min(ny - 1), z), at(x, y, (z + 1).min(nz - 1))];
+                let next = [
+                    at((x + 1).min(nx - 1), y, z),
+                    at(x, (y + 1).min(ny - 1), z),
+                    at(x, y, (z + 1).min(nz - 1)),
+                ];
                 for k in 0..3 {
                     steps[k] = steps[k].max((next[k] - here).abs());
                 }
@@ -48,14 +52,20 @@ fn value_error(volume: &Volume, bits: u32) -> f64 {
 /// Largest opacity, its steepest rise and the steepest rise of an sRGB number.
 fn slopes(transfer: &TransferFunction) -> [f64; 3] {
     let rise = |points: &mut dyn Iterator<Item = (f64, f64, f64, f64)>| {
-        points.map(|(v0, y0, v1, y1)| ((y1 - y0) / (v1 - v0)).abs()).fold(0.0, f64::max)
+        points
+            .map(|(v0, y0, v1, y1)| ((y1 - y0) / (v1 - v0)).abs())
+            .fold(0.0, f64::max)
     };
     let opacity = transfer.opacity.windows(2);
     let opacity = rise(&mut opacity.map(|p| (p[0].value, p[0].opacity, p[1].value, p[1].opacity)));
     let color = transfer.color.windows(2).flat_map(|p| {
         [0, 1, 2].map(|c: usize| (p[0].value, p[0].srgb[c], p[1].value, p[1].srgb[c]))
     });
-    let largest = transfer.opacity.iter().map(|p| p.opacity).fold(0.0, f64::max);
+    let largest = transfer
+        .opacity
+        .iter()
+        .map(|p| p.opacity)
+        .fold(0.0, f64::max);
     [largest, opacity, rise(&mut color.into_iter())]
 }
 
@@ -72,9 +82,19 @@ fn the_fast_path_is_off_by_what_filter_and_table_explain() {
     let ds = da / ((1.0 - largest) * reference_length);
     let dc = DECODE_SLOPE * (TABLE + color_slope * dv);
     println!("{bits} sub-texel bits: a value is off by {dv:.2e}, an extinction by {ds:.2e}");
-    for mode in [Mode::Composite, Mode::Mip, Mode::Minip, Mode::Average, Mode::Xray] {
+    for mode in [
+        Mode::Composite,
+        Mode::Mip,
+        Mode::Minip,
+        Mode::Average,
+        Mode::Xray,
+    ] {
         for shot in oblique_shots(GRID(), mode) {
-            let layers: &[LayerKind] = if mode.is_projection() { &[LayerKind::Value] } else { &[] };
+            let layers: &[LayerKind] = if mode.is_projection() {
+                &[LayerKind::Value]
+            } else {
+                &[]
+            };
             let scene = shot.scene(&volume, Some(&transfer));
             let exact = renderer.render(&scene, layers).unwrap().picture;
             let fast = shot.with(|settings| settings.conformance = false);
@@ -114,8 +134,14 @@ fn a_fast_picture_of_a_projection_is_classified_by_the_points_themselves() {
     for shot in oblique_shots(GRID(), Mode::Mip) {
         let shot: Shot = shot.with(|s| s.filter = stratavox::technique::Filter::Nearest);
         let fast = shot.with(|settings| settings.conformance = false);
-        let wanted = renderer.render(&shot.scene(&volume, Some(&transfer)), &[]).unwrap().picture;
-        let found = renderer.render(&fast.scene(&volume, Some(&transfer)), &[]).unwrap().picture;
+        let wanted = renderer
+            .render(&shot.scene(&volume, Some(&transfer)), &[])
+            .unwrap()
+            .picture;
+        let found = renderer
+            .render(&fast.scene(&volume, Some(&transfer)), &[])
+            .unwrap()
+            .picture;
         assert_eq!(wanted.pixels, found.pixels, "{}", shot.what());
     }
 }

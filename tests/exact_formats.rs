@@ -13,20 +13,20 @@ use ash::vk;
 use glam::{DAffine3, DVec3};
 use half::f16;
 use shared::{device, volume_of};
+use std::sync::Arc;
 use stratavox::camera::{Camera, Projection};
 use stratavox::gpu::{
     Buffer, Headless, Image, ImageDesc, ImageKind, Load, Memory, ParameterRing, Region, Use,
     begin_rendering, end_rendering, image_barrier, image_to_buffer,
 };
 use stratavox::picture::ColorSpace;
-use stratavox::resident::{GpuTransfer, GpuVolume};
+use stratavox::resident::{GpuTransfer, GpuVolume, TextureLayout};
 use stratavox::shaders::Frame;
 use stratavox::technique::blend::Drawn;
 use stratavox::technique::slices_3d::{Slices3d, set_planes};
-use stratavox::technique::{GpuVoxels, Inputs, Mode, Order, Settings, Technique, View, Words, frame};
+use stratavox::technique::{Inputs, Mode, Order, Settings, Technique, View, Words, frame};
 use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
 use stratavox::volume::{Volume, VoxelBox};
-use std::sync::Arc;
 
 const COLOR: f64 = 0.8;
 const EXTENT: [u32; 2] = [4, 4];
@@ -69,7 +69,9 @@ fn drawn(device: &mut Headless, format: vk::Format, order: Order, slices: u32) -
     let length = f64::from(VOXELS);
     let table = GpuTransfer::new(&gpu, &transfer, length, ColorSpace::Display).unwrap();
     // SAFETY: recorded outside rendering; `run` waits, and `table` lives meanwhile.
-    device.run(|cmd| unsafe { table.record_upload(cmd) }).unwrap();
+    device
+        .run(|cmd| unsafe { table.record_upload(cmd) })
+        .unwrap();
     let grid = volume.grid();
     let view = View {
         grid: &grid,
@@ -79,16 +81,16 @@ fn drawn(device: &mut Headless, format: vk::Format, order: Order, slices: u32) -
         settings: &settings,
     };
     let mut fields = view.fields(&voxels.texel().coding, table.layout()).unwrap();
-    let planes = set_planes(&view, &mut fields);
+    let planes = set_planes(&view, view.part(None), &mut fields);
     let ring = ParameterRing::new(&gpu, size_of::<Frame>() as u32, 1, "parameters").unwrap();
     ring.write(0, bytemuck::bytes_of(&frame(fields))).unwrap();
-    let words = Words::of(&settings, voxels.texel(), false);
+    let words = Words::of(&settings, &voxels);
     let drawn = Drawn::Picture(Mode::Composite);
     let slicer = Slices3d::new(&gpu, drawn, order, &words, format).unwrap();
     let inputs = Inputs {
         ring: &ring,
-        voxels: GpuVoxels::Volume(&voxels),
-        mask: None,
+        volume: &voxels,
+        brick: &voxels.bricks()[0],
         transfer: Some(&table),
     };
     let bindings = slicer.bind(&inputs).unwrap();
@@ -113,7 +115,7 @@ fn drawn(device: &mut Headless, format: vk::Format, order: Order, slices: u32) -
             image_barrier(&gpu, cmd, &target, Use::Nothing, Use::ColorTarget);
             let clear = Load::Clear([0.0; 4]);
             begin_rendering(&gpu, cmd, &[(target.view(), clear)], EXTENT);
-            slicer.record(cmd, &bindings, ring.offset(0)?, EXTENT, planes);
+            slicer.record(cmd, &bindings, ring.offset(0)?, EXTENT, 0..planes);
             end_rendering(&gpu, cmd);
             image_barrier(&gpu, cmd, &target, Use::ColorTarget, Use::TransferRead);
             image_to_buffer(&gpu, cmd, &target, region, &back, 0)
@@ -127,7 +129,7 @@ fn drawn(device: &mut Headless, format: vk::Format, order: Order, slices: u32) -
 
 fn uploaded(device: &mut Headless, volume: &Volume) -> GpuVolume {
     let gpu = Arc::clone(device.gpu());
-    let made = GpuVolume::new(&gpu, volume).unwrap();
+    let made = GpuVolume::new(&gpu, volume, TextureLayout::Texture3d).unwrap();
     let all = VoxelBox {
         min: [0; 3],
         max: volume.dims,
@@ -137,7 +139,9 @@ fn uploaded(device: &mut Headless, volume: &Volume) -> GpuVolume {
     let staging = Buffer::new(&gpu, bytes, usage, Memory::Upload, "staging").unwrap();
     staging.write(0, &made.staged(volume, all)).unwrap();
     // SAFETY: recorded outside rendering; `run` waits, and both live meanwhile.
-    let run = device.run(|cmd| unsafe { made.record_upload(cmd, &staging, all, Use::Nothing) });
+    let run = device.run(|cmd| unsafe {
+        made.record_upload(cmd, &staging, &made.bricks()[0], all, Use::Nothing)
+    });
     run.unwrap();
     made
 }
@@ -170,7 +174,11 @@ fn effective(slices: u32, opacity: f64) -> f64 {
 /// Under multiplies the source by 1 - A, whose own error adds as much again.
 fn allowed(format: vk::Format, order: Order, slices: u32, exact: [f64; 2]) -> [f64; 2] {
     let opacity = -(-1.0 / f64::from(slices)).exp_m1();
-    let feedback = if order == Order::FrontToBack { 2.0 } else { 1.0 };
+    let feedback = if order == Order::FrontToBack {
+        2.0
+    } else {
+        1.0
+    };
     match format {
         vk::Format::R8G8B8A8_UNORM => {
             let half = 0.5 / 255.0;
@@ -211,7 +219,10 @@ fn blending_is_as_exact_as_its_format_allows() {
             // In 8 bits the allowance is all there is from 256 slices on.
             let is_coarse = format == vk::Format::R8G8B8A8_UNORM;
             let most = if is_coarse { 128 } else { 1024 };
-            for slices in [16, 32, 64, 128, 256, 512, 1024].into_iter().filter(|&n| n <= most) {
+            for slices in [16, 32, 64, 128, 256, 512, 1024]
+                .into_iter()
+                .filter(|&n| n <= most)
+            {
                 let found = drawn(&mut device, format, order, slices);
                 let allowed = allowed(format, order, slices, exact);
                 for (i, what) in [(0, "red"), (1, "alpha")] {

@@ -49,7 +49,10 @@ fn exact(volume: &Volume, voxel_from_world: &DAffine3, chord: &Chord) -> (f64, f
         let q = -c - c.signum() * root;
         let tops = [q / (3.0 * d), b / q];
         let inside = |u: &f64| (0.0..=1.0).contains(u);
-        for u in [0.0, 1.0].into_iter().chain(tops.into_iter().filter(inside)) {
+        for u in [0.0, 1.0]
+            .into_iter()
+            .chain(tops.into_iter().filter(inside))
+        {
             largest = largest.max(cubic(u));
         }
         let bend = -c / (3.0 * d);

@@ -43,7 +43,10 @@ fn every(shot: Shot, samples_per_voxel: f64) -> Shot {
 
 #[test]
 fn an_absorbing_sphere_is_as_opaque_as_its_chords_to_a_sample() {
-    for shot in oblique_shots(SHEARED(), Mode::Composite).into_iter().map(nearest) {
+    for shot in oblique_shots(SHEARED(), Mode::Composite)
+        .into_iter()
+        .map(nearest)
+    {
         for way in twins() {
             absorbing_sphere(&*way, &shot, false).assert_holds();
             absorbing_sphere(&*way, &every(shot.clone(), 9.0), false).assert_holds();
@@ -54,7 +57,10 @@ fn an_absorbing_sphere_is_as_opaque_as_its_chords_to_a_sample() {
 
 #[test]
 fn an_emissive_sphere_shines_as_its_chords_are_long_to_a_sample() {
-    for shot in oblique_shots(SHEARED(), Mode::Xray).into_iter().map(nearest) {
+    for shot in oblique_shots(SHEARED(), Mode::Xray)
+        .into_iter()
+        .map(nearest)
+    {
         for way in twins() {
             emissive_sphere(&*way, &shot, false).assert_holds();
             emissive_sphere(&*way, &every(shot.clone(), 9.0), false).assert_holds();
@@ -65,7 +71,10 @@ fn an_emissive_sphere_shines_as_its_chords_are_long_to_a_sample() {
 
 /// Three widths along axes of its own, off the middle; five widths lie inside the box.
 fn leaning() -> Gaussian {
-    let turn = DMat3::from_quat(DQuat::from_axis_angle(dvec3(1.0, 2.0, -0.5).normalize(), 0.7));
+    let turn = DMat3::from_quat(DQuat::from_axis_angle(
+        dvec3(1.0, 2.0, -0.5).normalize(),
+        0.7,
+    ));
     let inverse_squares = DMat3::from_diagonal(DVec3::new(3.0, 4.0, 5.5).powf(-2.0));
     Gaussian {
         center: dvec3(33.5, 31.0, 30.5),

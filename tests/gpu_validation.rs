@@ -156,7 +156,11 @@ fn sync_validation_reports_a_missing_barrier_between_fills() {
                 };
             };
             headless
-                .run(|cmd| Ok([1, 2].map(|value| fill(cmd, value))))
+                .run(|cmd| {
+                    fill(cmd, 1);
+                    fill(cmd, 2);
+                    Ok(())
+                })
                 .unwrap();
             expect(&headless, "SYNC-HAZARD-WRITE-AFTER-WRITE", "Fill");
             headless
@@ -254,7 +258,10 @@ fn best_practices_report_a_barrier_between_all_commands() {
             let info = vk::DependencyInfo::default().memory_barriers(&barriers);
             // SAFETY: legal, and wasteful on purpose.
             headless
-                .run(|cmd| unsafe { Ok(gpu.device().cmd_pipeline_barrier2(cmd, &info)) })
+                .run(|cmd| unsafe {
+                    gpu.device().cmd_pipeline_barrier2(cmd, &info);
+                    Ok(())
+                })
                 .unwrap();
             expect(
                 &headless,
@@ -281,5 +288,25 @@ fn a_word_that_is_no_mode_is_refused_by_name() {
     let said = String::from_utf8_lossy(&child.stdout);
     let wanted =
         "environment variable STRATAVOX_VALIDATION is `everything`, wanted core, sync, gpu or best";
+    assert!(said.contains(wanted), "{said}");
+}
+
+#[test]
+fn validation_without_the_layer_is_refused_with_the_name_of_its_package() {
+    const TEST: &str = "validation_without_the_layer_is_refused_with_the_name_of_its_package";
+    if std::env::var_os("STRATAVOX_TEST_CONTROL").is_some() {
+        let refused = Headless::new(&DeviceChoice::Default, &Options::default()).map(|_| ());
+        return println!("refused: {}", refused.unwrap_err());
+    }
+    let child = Command::new(std::env::current_exe().unwrap())
+        .args([TEST, "--exact", "--nocapture"])
+        .env(VALIDATION_VARIABLE, "sync")
+        .env("VK_LAYER_PATH", "/nonexistent")
+        .env("STRATAVOX_TEST_CONTROL", TEST)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&child.stdout);
+    let wanted = "validation mode `sync` needs VK_LAYER_KHRONOS_validation, which is not installed \
+                  (Debian and Ubuntu: package vulkan-validationlayers)";
     assert!(said.contains(wanted), "{said}");
 }

@@ -5,8 +5,8 @@ mod shared;
 
 use glam::{DAffine3, DVec3};
 use shared::{
-    Shot, Worst, device, oblique_camera, oblique_shots, ramps, sheared_affine, straight_shots, volume_of,
-    waves,
+    Shot, Worst, device, oblique_camera, oblique_shots, ramps, sheared_affine, straight_shots,
+    volume_of, waves,
 };
 use stratavox::camera::{Camera, Projection};
 use stratavox::offscreen::{Renderer, reference};
@@ -26,7 +26,9 @@ fn shots() -> Vec<Shot> {
     let outside = oblique_shots(grid, Mode::Composite);
     let wide = Projection::Perspective { fov_degrees: 120.0 };
     let inside = Camera {
-        eye: grid.world_from_voxel.transform_point3(DVec3::new(7.3, 12.1, 6.2)),
+        eye: grid
+            .world_from_voxel
+            .transform_point3(DVec3::new(7.3, 12.1, 6.2)),
         ..oblique_camera(&grid, wide)
     };
     let from_inside = outside[..outside.len() / 2].iter().map(|shot| Shot {
@@ -200,7 +202,10 @@ fn early_termination_leaves_out_no_more_than_its_threshold() {
     let mut transfer = ramps();
     transfer.opacity.last_mut().unwrap().opacity = 0.95;
     let mut renderer = Renderer::new(device(), &volume).unwrap();
-    for shot in shots().into_iter().filter(|s| s.settings.technique == Technique::Raycast) {
+    for shot in shots()
+        .into_iter()
+        .filter(|s| s.settings.technique == Technique::Raycast)
+    {
         let full = shot.with(|settings| settings.conformance = false);
         let wanted = rendered(&mut renderer, &volume, &transfer, &full);
         for termination in [0.1f32, 1.0 / 512.0, 1.0 / 8192.0] {
@@ -209,13 +214,8 @@ fn early_termination_leaves_out_no_more_than_its_threshold() {
             for ((way, wanted), (_, found)) in wanted.iter().zip(&found) {
                 let what = format!("terminated at {termination}, {way}, {}", shot.what());
                 let allowed = f64::from(termination);
-                let worst = Worst::between(
-                    what,
-                    wanted.width,
-                    &wanted.pixels,
-                    &found.pixels,
-                    allowed,
-                );
+                let worst =
+                    Worst::between(what, wanted.width, &wanted.pixels, &found.pixels, allowed);
                 worst.assert_holds();
                 assert!(worst.error() > 0.0, "{termination}: nothing was left out");
             }

@@ -113,7 +113,14 @@ fn exact_answers_hold_for_long_voxels() {
 #[test]
 fn a_homogeneous_volume_may_have_axes_of_one_voxel() {
     let scale = DAffine3::from_scale(dvec3(1.0, 1.2, 0.9));
-    for dims in [[1, 14, 12], [15, 1, 12], [15, 14, 1], [1, 1, 16], [18, 1, 1], [1, 1, 1]] {
+    for dims in [
+        [1, 14, 12],
+        [15, 1, 12],
+        [15, 14, 1],
+        [1, 1, 16],
+        [18, 1, 1],
+        [1, 1, 1],
+    ] {
         let grid = Grid {
             dims,
             world_from_voxel: scale,
@@ -161,7 +168,14 @@ fn pierced(dims: [u32; 3]) -> Volume {
     let is_hole = |i: u32| matches!((i.wrapping_mul(2_654_435_761) >> 16) % 19, 2 | 5);
     let codes = (0..count).map(|i| if is_hole(i) { 200 } else { 1 });
     let voxels = Voxels::U8(codes.collect());
-    Volume::from_voxels(dims, sheared_affine(), voxels, Rescale::default(), Some(200.0)).unwrap()
+    Volume::from_voxels(
+        dims,
+        sheared_affine(),
+        voxels,
+        Rescale::default(),
+        Some(200.0),
+    )
+    .unwrap()
 }
 
 #[test]
@@ -171,7 +185,8 @@ fn a_sample_counts_where_its_whole_footprint_has_data() {
     let volume = pierced([12, 10, 14]);
     let validity = volume.validity.clone().expect("holes");
     let is_valid = |voxel: [i64; 3]| {
-        let [x, y, z] = [0, 1, 2].map(|k| voxel[k].clamp(0, i64::from(volume.dims[k]) - 1) as usize);
+        let [x, y, z] =
+            [0, 1, 2].map(|k| voxel[k].clamp(0, i64::from(volume.dims[k]) - 1) as usize);
         validity[(z * volume.dims[1] as usize + y) * volume.dims[0] as usize + x] == 1
     };
     let mut renderer = Renderer::new(device(), &volume).unwrap();
@@ -198,9 +213,8 @@ fn a_sample_counts_where_its_whole_footprint_has_data() {
                             Filter::Linear => p[k] - 0.5,
                         };
                         let fixed = |k: usize| in_slice && k == axis;
-                        hangs |= (0..3).any(|k| {
-                            !fixed(k) && (lattice(k) - lattice(k).round()).abs() < 1e-4
-                        });
+                        hangs |= (0..3)
+                            .any(|k| !fixed(k) && (lattice(k) - lattice(k).round()).abs() < 1e-4);
                         let taps = |k: usize| {
                             let first = lattice(k).floor() as i64;
                             let last = match filter {
@@ -210,9 +224,8 @@ fn a_sample_counts_where_its_whole_footprint_has_data() {
                             };
                             first..=last
                         };
-                        let counts = taps(2).all(|z| {
-                            taps(1).all(|y| taps(0).all(|x| is_valid([x, y, z])))
-                        });
+                        let counts =
+                            taps(2).all(|z| taps(1).all(|y| taps(0).all(|x| is_valid([x, y, z]))));
                         if counts {
                             sum += length;
                         }
@@ -220,7 +233,10 @@ fn a_sample_counts_where_its_whole_footprint_has_data() {
                     Some((sum, hangs))
                 };
                 let scene = shot.scene(&volume, Some(&transfer));
-                let on_device = renderer.render(&scene, &[LayerKind::Value]).unwrap().picture;
+                let on_device = renderer
+                    .render(&scene, &[LayerKind::Value])
+                    .unwrap()
+                    .picture;
                 let on_cpu = reference::render::<f64>(&scene).unwrap();
                 for (way, picture) in [("device", on_device), ("twin", on_cpu)] {
                     let values = picture.layers.iter().find(|l| l.kind == LayerKind::Value);
@@ -235,7 +251,11 @@ fn a_sample_counts_where_its_whole_footprint_has_data() {
                             worst.leave_out();
                             continue;
                         }
-                        let found = if found.is_nan() { 0.0 } else { f64::from(found) };
+                        let found = if found.is_nan() {
+                            0.0
+                        } else {
+                            f64::from(found)
+                        };
                         worst.take(pixel, found - wanted, 1e-4);
                     }
                     worst.assert_holds();
@@ -280,7 +300,9 @@ fn several_rays_a_pixel_are_the_mean_of_a_finer_picture() {
                 let hangs = |[x, y]: [u32; 2]| {
                     let inside = (0..per_side * per_side)
                         .map(|i| [x * per_side + i % per_side, y * per_side + i / per_side]);
-                    inside.filter_map(|p| finer.chord(p)).any(|chord| chord.hangs)
+                    inside
+                        .filter_map(|p| finer.chord(p))
+                        .any(|chord| chord.hangs)
                 };
                 // The parameters differ in the last place, and with them where samples lie.
                 for (way, picture) in [("device", &found), ("twin", &cpu)] {

@@ -4,7 +4,10 @@
 mod shared;
 
 use glam::{DAffine3, DVec3};
-use shared::{Device, Matter, Shot, Twin, Way, Worst, device, oblique_shots, ramps, sheared_affine, volume_of, waves};
+use shared::{
+    Device, Matter, Shot, Twin, Way, Worst, device, oblique_shots, ramps, sheared_affine,
+    volume_of, waves,
+};
 use stratavox::offscreen::Renderer;
 use stratavox::picture::LayerKind;
 use stratavox::technique::{Filter, Mode, Order};
@@ -114,7 +117,10 @@ fn the_maximum_of_the_larger_field_is_the_larger_maximum() {
 fn nearest_values(renderer: &mut Renderer, volume: &Volume, shot: &Shot) -> Vec<f32> {
     let transfer = ramps();
     let scene = shot.scene(volume, Some(&transfer));
-    let picture = renderer.render(&scene, &[LayerKind::Value]).unwrap().picture;
+    let picture = renderer
+        .render(&scene, &[LayerKind::Value])
+        .unwrap()
+        .picture;
     picture.layers[0].values.clone()
 }
 
@@ -169,7 +175,10 @@ fn an_average_is_the_xray_over_the_length() {
             let mut worst = Worst::new(format!("average, {}, {}", way.name(), average.what()));
             let (means, sums) = (of(&average), of(&xray));
             for (i, pixel) in average.pixels().enumerate() {
-                let Some(chord) = average.chord(pixel).filter(|chord| !chord.samples.is_empty()) else {
+                let Some(chord) = average
+                    .chord(pixel)
+                    .filter(|chord| !chord.samples.is_empty())
+                else {
                     continue;
                 };
                 if chord.hangs {
@@ -197,7 +206,10 @@ fn all_techniques_see_one_gaussian_alike() {
     let value = |p: DVec3| (-0.5 * (p - center).length_squared() / 36.0).exp();
     let peak = 6.0 * (2.0 * std::f64::consts::PI).sqrt();
     let shots = oblique_shots(grid, Mode::Xray);
-    let found: Vec<_> = shots.iter().map(|shot| Device.values(shot, &of_values(&value))).collect();
+    let found: Vec<_> = shots
+        .iter()
+        .map(|shot| Device.values(shot, &of_values(&value)))
+        .collect();
     for (i, one) in shots.iter().enumerate() {
         for (j, other) in shots.iter().enumerate().skip(i + 1) {
             if one.camera != other.camera {

@@ -23,7 +23,14 @@ struct Symmetry {
 }
 
 fn symmetries() -> impl Iterator<Item = Symmetry> {
-    let orders = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
+    let orders = [
+        [0, 1, 2],
+        [0, 2, 1],
+        [1, 0, 2],
+        [1, 2, 0],
+        [2, 0, 1],
+        [2, 1, 0],
+    ];
     orders.into_iter().flat_map(|axes| {
         (0..8).map(move |bits: u32| Symmetry {
             axes,
@@ -54,7 +61,9 @@ impl Symmetry {
     /// The same voxels in the new order.
     fn volume(&self, world_from_new: DAffine3) -> Volume {
         let old = self.old_from_new();
-        volume_of(self.dims(), world_from_new, |p| waves(old.transform_point3(p)))
+        volume_of(self.dims(), world_from_new, |p| {
+            waves(old.transform_point3(p))
+        })
     }
 }
 
@@ -67,7 +76,11 @@ fn placements(mode: Mode) -> impl Iterator<Item = Settings> {
 
 /// Composite for every symmetry, MIP for every fifth of them.
 fn mode_of(i: usize) -> Mode {
-    if i % 5 == 4 { Mode::Mip } else { Mode::Composite }
+    if i % 5 == 4 {
+        Mode::Mip
+    } else {
+        Mode::Composite
+    }
 }
 
 fn pictures(
@@ -134,7 +147,8 @@ fn a_volume_and_a_camera_turned_alike_are_the_same_picture_or_its_mirror_image()
     };
     let camera = |i: usize| oblique_camera(&grid, projections(&grid)[i]);
     let volume = volume_of(DIMS, DAffine3::IDENTITY, waves);
-    let wanted = [Mode::Composite, Mode::Mip].map(|mode| (mode, pictures(&volume, mode, camera, false)));
+    let wanted =
+        [Mode::Composite, Mode::Mip].map(|mode| (mode, pictures(&volume, mode, camera, false)));
     for (i, symmetry) in symmetries().enumerate() {
         let new_from_old = symmetry.old_from_new().inverse();
         let turned = |i: usize| {

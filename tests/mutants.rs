@@ -46,7 +46,11 @@ impl Naive {
     fn samples(&self, shot: &Shot, matter: &Matter, chord: &Chord) -> Vec<(f64, f64)> {
         let voxel_from_world = shot.voxel_from_world();
         let value = |&(t, length): &(f64, f64)| {
-            let back = if self.0 == Mistake::NoHalfStep { 0.5 * length } else { 0.0 };
+            let back = if self.0 == Mistake::NoHalfStep {
+                0.5 * length
+            } else {
+                0.0
+            };
             let mut p = voxel_from_world.transform_point3(chord.at(t - back));
             match self.0 {
                 Mistake::SwappedAxes => {
@@ -88,7 +92,11 @@ impl Way for Naive {
             let over = |target: [f64; 4], &(value, length): &(f64, f64)| {
                 let alpha = self.opacity((matter.extinction)(value), length);
                 let [r, g, b] = (matter.color)(value);
-                let weight = if self.0 == Mistake::StraightColor { 1.0 } else { alpha };
+                let weight = if self.0 == Mistake::StraightColor {
+                    1.0
+                } else {
+                    alpha
+                };
                 let source = [weight * r, weight * g, weight * b, alpha];
                 [0, 1, 2, 3].map(|c: usize| source[c] + (1.0 - alpha) * target[c])
             };

@@ -1,6 +1,6 @@
 //! Numbers that `compare` gives, against small cases by hand and against the authors' FLIP.
 
-use stratavox::color::ColorSpace;
+use stratavox::color::{ColorSpace, encode_srgb};
 use stratavox::picture::Picture;
 use stratavox::picture::compare::{
     Comparison, Image, NotComparable, Numbers, PIXELS_PER_DEGREE, flip_map,
@@ -79,6 +79,26 @@ fn one_wrong_number_is_found_measured_and_named() {
         refused.contains("(2, 1)") && refused.contains("0.25"),
         "{refused}"
     );
+}
+
+#[test]
+fn of_equal_errors_the_first_is_named() {
+    let wanted = image(3, vec![[0.0; 4]; 6]);
+    let mut found = wanted.clone();
+    found.pixels[1][3] = 0.5;
+    found.pixels[5][0] = 0.5;
+    assert_eq!(comparison(&wanted, &found).worst_pixel(), [1, 0]);
+}
+
+#[test]
+fn half_covered_white_looks_like_half_the_light() {
+    let half = encode_srgb(0.5_f32);
+    let (thin, grey) = ([1.0, 1.0, 1.0, 0.5], [half, half, half, 1.0]);
+    let comparison = comparison(&image(4, vec![thin; 12]), &image(4, vec![grey; 12]));
+    assert_eq!(comparison.max(), 0.5);
+    let (flip, ssim) = (comparison.flip().unwrap(), comparison.ssim().unwrap());
+    // FLIP rises with the 0.7th power of f32's rounding.
+    assert!(flip < 1e-4 && ssim > 1.0 - 1e-6, "flip {flip}, ssim {ssim}");
 }
 
 #[test]

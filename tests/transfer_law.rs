@@ -1,5 +1,6 @@
 //! The exact law of classification, its table and its search, `sampling.md` 4.
 
+#[allow(dead_code, reason = "each file of tests uses some of it")]
 mod transfer_shared;
 
 use stratavox::color::{ColorSpace, decode_srgb, encode_srgb};

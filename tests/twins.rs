@@ -9,8 +9,8 @@ mod shared;
 
 use glam::{DVec3, Vec3Swizzles, dvec3};
 use shared::{
-    Shot, Worst, device, oblique_camera, oblique_shots, projections, ramps, sheared_affine, volume_of,
-    waves,
+    Shot, Worst, device, oblique_camera, oblique_shots, projections, ramps, sheared_affine,
+    volume_of, waves,
 };
 use stratavox::camera::{Camera, Projection};
 use stratavox::offscreen::{Renderer, reference};
@@ -76,7 +76,13 @@ fn layers_of(shot: &Shot) -> Vec<LayerKind> {
 }
 
 /// Picture and all layers.
-fn check(renderer: &mut Renderer, volume: &Volume, transfer: &TransferFunction, shot: &Shot, what: &str) {
+fn check(
+    renderer: &mut Renderer,
+    volume: &Volume,
+    transfer: &TransferFunction,
+    shot: &Shot,
+    what: &str,
+) {
     let scene = shot.scene(volume, Some(transfer));
     let kinds = layers_of(shot);
     let found = renderer.render(&scene, &kinds).unwrap().picture;
@@ -85,13 +91,21 @@ fn check(renderer: &mut Renderer, volume: &Volume, transfer: &TransferFunction, 
     let what = format!("{what}, {}", shot.what());
     let all = [&double, &single, &found];
     // Channel by channel would be four times as long and say no more.
-    compare(&what, 4 * found.width, all.map(|p| p.pixels.as_flattened()), 1.0);
+    compare(
+        &what,
+        4 * found.width,
+        all.map(|p| p.pixels.as_flattened()),
+        1.0,
+    );
     let drawn = single.pixels.iter().filter(|p| p[3] > 0.01).count();
     assert!(drawn > 100, "{what}: only {drawn} pixels are drawn");
     for kind in kinds {
         let values = |picture: &'_ Picture| {
             let layer = picture.layers.iter().find(|layer| layer.kind == kind);
-            layer.unwrap_or_else(|| panic!("{what}: no layer {kind:?}")).values.clone()
+            layer
+                .unwrap_or_else(|| panic!("{what}: no layer {kind:?}"))
+                .values
+                .clone()
         };
         let lists = all.map(values);
         let size = |values: &Vec<f32>| values.iter().copied().fold(1.0, f32::max);
@@ -110,7 +124,13 @@ fn every_technique_mode_and_filter_draws_what_its_twin_computes() {
         for shot in oblique_shots(GRID(), mode) {
             for filter in [Filter::Nearest, Filter::Linear] {
                 let shot = shot.with(|settings| settings.filter = filter);
-                check(&mut renderer, &volume, &transfer, &shot, &format!("{filter:?}"));
+                check(
+                    &mut renderer,
+                    &volume,
+                    &transfer,
+                    &shot,
+                    &format!("{filter:?}"),
+                );
             }
         }
     }
@@ -124,16 +144,28 @@ fn the_eye_inside_sees_what_its_twin_computes() {
     let wide = Projection::Perspective { fov_degrees: 120.0 };
     // In the middle, near a corner, and close to a slice of every stack. (In a slice's own plane rounding says
     // whether it is seen: no rasterizer draws it.)
-    for eye in [dvec3(7.3, 12.1, 6.2), dvec3(1.2, 2.7, 11.9), dvec3(8.51, 10.51, 6.51)] {
+    for eye in [
+        dvec3(7.3, 12.1, 6.2),
+        dvec3(1.2, 2.7, 11.9),
+        dvec3(8.51, 10.51, 6.51),
+    ] {
         let camera = Camera {
             eye: GRID().world_from_voxel.transform_point3(eye),
-            target: GRID().world_from_voxel.transform_point3(dvec3(5.0, 16.0, 3.0)),
+            target: GRID()
+                .world_from_voxel
+                .transform_point3(dvec3(5.0, 16.0, 3.0)),
             ..oblique_camera(&GRID(), wide)
         };
         for mode in [Mode::Composite, Mode::Xray, Mode::Mip] {
             for shot in oblique_shots(GRID(), mode).into_iter().take(6) {
                 let shot = Shot { camera, ..shot };
-                check(&mut renderer, &volume, &transfer, &shot, &format!("eye at {eye}"));
+                check(
+                    &mut renderer,
+                    &volume,
+                    &transfer,
+                    &shot,
+                    &format!("eye at {eye}"),
+                );
             }
         }
     }
@@ -183,13 +215,37 @@ fn both_color_spaces_and_steps_are_classified_as_their_twins_do() {
 fn every_type_of_voxel_is_read_as_its_twin_reads_it() {
     let dims = GRID().dims;
     let values = volume_of(dims, sheared_affine(), waves).voxels;
-    let codes = |scale: f32| (0..values.len()).map(move |i| (i, scale)).map(|(i, scale)| values.stored(i) * scale);
+    let codes = |scale: f32| {
+        (0..values.len())
+            .map(move |i| (i, scale))
+            .map(|(i, scale)| values.stored(i) * scale)
+    };
     let types = [
-        (Voxels::U8(codes(200.0).map(|v| v as u8).collect()), 1.0 / 200.0, 0.0),
-        (Voxels::I8(codes(200.0).map(|v| (v - 100.0) as i8).collect()), 1.0 / 200.0, 0.5),
-        (Voxels::U16(codes(60000.0).map(|v| v as u16).collect()), 1.0 / 60000.0, 0.0),
-        (Voxels::I16(codes(4000.0).map(|v| (v - 1024.0) as i16).collect()), 1.0 / 4000.0, 0.256),
-        (Voxels::F16(codes(1.0).map(half::f16::from_f32).collect()), 1.0, 0.0),
+        (
+            Voxels::U8(codes(200.0).map(|v| v as u8).collect()),
+            1.0 / 200.0,
+            0.0,
+        ),
+        (
+            Voxels::I8(codes(200.0).map(|v| (v - 100.0) as i8).collect()),
+            1.0 / 200.0,
+            0.5,
+        ),
+        (
+            Voxels::U16(codes(60000.0).map(|v| v as u16).collect()),
+            1.0 / 60000.0,
+            0.0,
+        ),
+        (
+            Voxels::I16(codes(4000.0).map(|v| (v - 1024.0) as i16).collect()),
+            1.0 / 4000.0,
+            0.256,
+        ),
+        (
+            Voxels::F16(codes(1.0).map(half::f16::from_f32).collect()),
+            1.0,
+            0.0,
+        ),
     ];
     let transfer = ramps();
     for (voxels, slope, intercept) in types {
@@ -197,7 +253,8 @@ fn every_type_of_voxel_is_read_as_its_twin_reads_it() {
         let rescale = Rescale { slope, intercept };
         // A code that is there now and then: holes take part.
         let fill = f64::from(voxels.stored(100));
-        let volume = Volume::from_voxels(dims, sheared_affine(), voxels, rescale, Some(fill)).unwrap();
+        let volume =
+            Volume::from_voxels(dims, sheared_affine(), voxels, rescale, Some(fill)).unwrap();
         let mut renderer = Renderer::new(device(), &volume).unwrap();
         for shot in oblique_shots(GRID(), Mode::Composite) {
             check(&mut renderer, &volume, &transfer, &shot, &what);
@@ -213,7 +270,13 @@ fn fewer_and_more_samples_are_those_of_the_twin() {
     for samples_per_voxel in [0.3, 0.9, 4.7] {
         for shot in oblique_shots(GRID(), Mode::Composite) {
             let shot = shot.with(|settings| settings.samples_per_voxel = samples_per_voxel);
-            check(&mut renderer, &volume, &transfer, &shot, &format!("{samples_per_voxel}"));
+            check(
+                &mut renderer,
+                &volume,
+                &transfer,
+                &shot,
+                &format!("{samples_per_voxel}"),
+            );
         }
     }
 }
@@ -239,7 +302,13 @@ fn a_camera_along_an_axis_sees_what_its_twin_computes() {
             };
             for shot in oblique_shots(grid, Mode::Composite).into_iter().take(6) {
                 let shot = Shot { camera, ..shot };
-                check(&mut renderer, &volume, &transfer, &shot, &format!("along {axis}"));
+                check(
+                    &mut renderer,
+                    &volume,
+                    &transfer,
+                    &shot,
+                    &format!("along {axis}"),
+                );
             }
         }
     }

@@ -26,5 +26,5 @@ fn row(taps: Footprint, weight: f32, y: i32, z: i32) -> f32 {
 }
 
 fn code_at(index: vec3<i32>) -> f32 {
-    return code_from_texel(textureLoad(volume, index, 0).x);
+    return code_from_texel(textureLoad(volume, index - vec3<i32>(frame.brick_origin), 0).x);
 }

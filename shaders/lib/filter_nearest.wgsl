@@ -15,5 +15,6 @@ fn footprint_of(voxel: vec3<f32>) -> Footprint {
 }
 
 fn value_at(voxel: vec3<f32>) -> f32 {
-    return value_from_code(code_from_texel(textureLoad(volume, footprint_of(voxel).min, 0).x));
+    let index = footprint_of(voxel).min - vec3<i32>(frame.brick_origin);
+    return value_from_code(code_from_texel(textureLoad(volume, index, 0).x));
 }

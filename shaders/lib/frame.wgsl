@@ -26,7 +26,8 @@ struct Frame {
     codes_are_integers: u32,
     // The same as a covector of voxel space: which way each grid axis runs away from the eye.
     forward_voxel: vec3<f32>,
-    weight: f32,
+    // +1 for a maximum, -1 for a minimum.
+    extreme_sign: f32,
     // What is kept of the grid, in voxel space, and the cover that slicers draw.
     domain_min: vec3<f32>,
     clip_plane_count: u32,
@@ -38,6 +39,15 @@ struct Frame {
     table_scale: f32,
     dims: vec3<f32>,
     reference_length: f32,
+    // The brick of this recording: the samples that are its own, and where its texture lies in voxel space.
+    brick_min: vec3<f32>,
+    is_first_brick: u32,
+    brick_max: vec3<f32>,
+    is_only_brick: u32,
+    brick_origin: vec3<f32>,
+    slice_first: i32,
+    brick_dims: vec3<f32>,
+    slice_direction: i32,
     voxel_from_world: mat3x4<f32>,
     world_from_voxel: mat3x4<f32>,
     clip_from_world: mat4x4<f32>,
@@ -50,13 +60,9 @@ struct Frame {
     color_space_is_display: u32,
     // Slices: instance i shows slice (or plane) slice_first + i * slice_direction; in a 2D stack that
     // is seen from inside, the instances from slice_turn on start at the other end.
-    slice_first: i32,
-    slice_direction: i32,
     slice_turn: u32,
     slice_first_after_turn: i32,
     slice_axis: u32,
-    // +1 for a maximum, -1 for a minimum.
-    extreme_sign: f32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

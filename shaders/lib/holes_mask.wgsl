@@ -6,7 +6,7 @@ fn footprint_is_valid(footprint: Footprint) -> bool {
     for (var z = footprint.min.z; z <= footprint.max.z; z++) {
         for (var y = footprint.min.y; y <= footprint.max.y; y++) {
             for (var x = footprint.min.x; x <= footprint.max.x; x++) {
-                if textureLoad(validity, vec3(x, y, z), 0).x == 0u {
+                if textureLoad(validity, vec3(x, y, z) - vec3<i32>(frame.brick_origin), 0).x == 0u {
                     return false;
                 }
             }

@@ -29,3 +29,9 @@ fn segment_of(lattice: Lattice, world: Ray, k: i32) -> Segment {
     let inside = lattice.t0 <= t && t < lattice.t1;
     return Segment(t, select(0.0, plane_length(world), inside));
 }
+
+// Which sample lies at t, as a fraction.
+fn index_at(lattice: Lattice, world: Ray, t: f32) -> f32 {
+    let height = dot(frame.forward, world.origin) + t * dot(frame.forward, world.direction);
+    return height / frame.step_world - 0.5;
+}

@@ -29,3 +29,8 @@ fn segment_of(lattice: Lattice, world: Ray, k: i32) -> Segment {
     let length = max(lattice.t1 - start, 0.0);
     return Segment(start + 0.5 * length, length);
 }
+
+// Which sample lies at t, as a fraction.
+fn index_at(lattice: Lattice, world: Ray, t: f32) -> f32 {
+    return (t - lattice.t0) / frame.step_world - 0.5;
+}

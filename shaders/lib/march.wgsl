@@ -2,27 +2,32 @@
 // mode what for. Twin: src/technique/march.rs.
 
 #import ray
+#import brick
 #import lattice_{lattice}
 #import filter_{filter}
 #import holes_{holes}
 #import mode_{mode}
 
-fn march(pixel: vec2<f32>) -> Accumulator {
+// `before` is what bricks nearer to the eye have gathered.
+fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
     let world = pixel_ray(pixel);
     let voxel = voxel_ray(world);
     let interval = domain_interval(world, voxel);
-    var so_far = begin();
-    if !(interval.x < interval.y) {
+    var so_far = before;
+    let inside = brick_interval(voxel, interval);
+    if !(interval.x < interval.y && inside.x < inside.y) || is_finished(before) {
         return so_far;
     }
     let lattice = lattice_of(world, interval);
-    for (var k = lattice.first; k < lattice.first + lattice.count; k++) {
+    let first = max(lattice.first, i32(floor(index_at(lattice, world, inside.x))) - 1);
+    let end = min(lattice.first + lattice.count, i32(ceil(index_at(lattice, world, inside.y))) + 2);
+    for (var k = first; k < end; k++) {
         let segment = segment_of(lattice, world, k);
-        if segment.length <= 0.0 {
+        let position = voxel.origin + segment.t * voxel.direction;
+        if segment.length <= 0.0 || !is_in_brick(position) {
             continue;
         }
         so_far.samples += 1.0;
-        let position = voxel.origin + segment.t * voxel.direction;
         if !footprint_is_valid(footprint_of(position)) {
             continue;
         }

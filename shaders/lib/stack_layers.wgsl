@@ -4,7 +4,13 @@
 
 @group(0) @binding(1) var stack: texture_2d_array<f32>;
 
-// Position inside a slice.
-fn in_slice(voxel: vec3<f32>) -> vec2<f32> {
-    return vec2(voxel[(frame.slice_axis + 1u) % 3u], voxel[(frame.slice_axis + 2u) % 3u]);
+// A vector of voxel space by the axes of the stack's images: across, down, layer.
+fn in_stack(voxel: vec3<f32>) -> vec3<f32> {
+    let axis = frame.slice_axis;
+    return vec3(voxel[(axis + 1u) % 3u], voxel[(axis + 2u) % 3u], voxel[axis]);
+}
+
+// Where a voxel lies in the images of the brick.
+fn texel_of(index: vec3<i32>) -> vec3<i32> {
+    return vec3<i32>(in_stack(vec3<f32>(index) - frame.brick_origin));
 }

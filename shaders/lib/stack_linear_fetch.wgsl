@@ -5,14 +5,14 @@
 
 fn value_at(voxel: vec3<f32>, slice: i32) -> f32 {
     let taps = footprint_of(voxel, slice);
-    let low = vec2<i32>(in_slice(vec3<f32>(taps.min)));
-    let high = vec2<i32>(in_slice(vec3<f32>(taps.max)));
-    let weight = fract(in_slice(voxel) - 0.5);
-    let above = lerp(code_at(low, slice), code_at(vec2(high.x, low.y), slice), weight.x);
-    let below = lerp(code_at(vec2(low.x, high.y), slice), code_at(high, slice), weight.x);
+    let low = texel_of(taps.min);
+    let high = texel_of(taps.max);
+    let weight = fract(in_stack(voxel).xy - 0.5);
+    let above = lerp(code_at(low), code_at(vec3(high.x, low.yz)), weight.x);
+    let below = lerp(code_at(vec3(low.x, high.y, low.z)), code_at(high), weight.x);
     return value_from_code(lerp(above, below, weight.y));
 }
 
-fn code_at(pixel: vec2<i32>, slice: i32) -> f32 {
-    return code_from_texel(textureLoad(stack, pixel, slice, 0).x);
+fn code_at(texel: vec3<i32>) -> f32 {
+    return code_from_texel(textureLoad(stack, texel.xy, texel.z, 0).x);
 }

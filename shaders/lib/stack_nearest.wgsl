@@ -14,6 +14,6 @@ fn footprint_of(voxel: vec3<f32>, slice: i32) -> Footprint {
 }
 
 fn value_at(voxel: vec3<f32>, slice: i32) -> f32 {
-    let pixel = in_slice(vec3<f32>(footprint_of(voxel, slice).min));
-    return value_from_code(code_from_texel(textureLoad(stack, vec2<i32>(pixel), slice, 0).x));
+    let texel = texel_of(footprint_of(voxel, slice).min);
+    return value_from_code(code_from_texel(textureLoad(stack, texel.xy, texel.z, 0).x));
 }

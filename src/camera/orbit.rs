@@ -343,11 +343,19 @@ mod tests {
             sphere.radius
         );
 
-        // Sheared: the columns (1,0,0), (1,1,0), (0,0,1); dims 2: half axes i, i + j, k; longest is 2i + j +- k.
-        let sheared =
-            DAffine3::from_mat3(DMat3::from_cols(DVec3::X, dvec3(1.0, 1.0, 0.0), DVec3::Z));
-        let radius = BoundingSphere::of_grid(&sheared, [2, 2, 2]).radius;
-        assert!((radius - 6_f64.sqrt()).abs() < 1e-14, "{radius}");
+        // Sheared: dims 2 make the columns the half axes. The longest of their four sums is (2, 1, 1) long,
+        // and which one it is depends on the signs.
+        for (x, z) in [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)] {
+            let columns = DMat3::from_cols(DVec3::X, dvec3(x, 1.0, 0.0), dvec3(0.0, z, 1.0));
+            let sphere = BoundingSphere::of_grid(&DAffine3::from_mat3(columns), [2, 2, 2]);
+            // |(2, 1 + |z|, 1)|
+            let wanted = (4.0 + (1.0 + z.abs()) * (1.0 + z.abs()) + 1.0_f64).sqrt();
+            let found = sphere.radius;
+            assert!(
+                (found - wanted).abs() < 1e-14,
+                "{x} {z}: {found}, wanted {wanted}"
+            );
+        }
     }
 
     #[test]

@@ -5,7 +5,7 @@
 
 use super::{
     Error, cameras_file,
-    flags::{Depth, NotBuilt, SceneFlags},
+    flags::{Classification, Depth, NotBuilt, SceneFlags},
     output::{self, say, write_whole},
     progress::{Progress, ProgressWord},
     render::load,
@@ -16,7 +16,9 @@ use super::{
 };
 use crate::{
     camera::{BoundingSphere, Camera},
+    picture::LayerKind,
     technique::{Mode, Settings, Technique},
+    transfer::{Classified, Window},
 };
 use clap::Args;
 use serde_json::json;
@@ -101,15 +103,18 @@ impl Bench {
             .classification(&volume, settings.mode)?;
         let load_ms = ms_since(start);
         progress.stage("prepare", 0, 1);
-        let mut renderer = Renderer::new(Job {
+        let mut job = Job {
             volume: &volume,
             classification: &classification,
             settings: &settings,
             extent_pixels: scene.picture.extent_pixels()?,
             layers: &[],
             device: scene.device.as_deref(),
-            first_camera: &cameras[0],
-        })?;
+        };
+        // The window of an X-ray is the range of the first view, in all views.
+        let of_first = window_of(job, &cameras[0])?;
+        job.classification = of_first.as_ref().unwrap_or(&classification);
+        let mut renderer = Renderer::new(job, &cameras[0])?;
         // Pipelines are made on first use: that is not what is measured.
         renderer.draw(&cameras[0])?;
         let mut frames = Vec::new();
@@ -118,16 +123,16 @@ impl Bench {
             frames.push(timed(&mut renderer, camera)?);
         }
         let timings = Timings {
-            device: renderer.device.clone(),
-            driver: renderer.driver.clone(),
+            device: renderer.device(),
+            driver: renderer.driver(),
             load_ms,
             upload_ms: renderer.upload_ms,
             prepare_ms: renderer.prepare_ms,
             first_frame_ms: frames[0].wall_ms,
             frames,
-            samples: None,
+            samples: renderer.samples(&cameras[cameras.len() - 1])?,
             peak_rss_bytes: peak_rss_bytes(),
-            device_bytes: renderer.device_bytes,
+            device_bytes: renderer.device_bytes(),
         };
         say(&format!(
             "{}: median of {} views {:.3} ms\n",
@@ -157,20 +162,20 @@ impl Bench {
                 ..base.clone()
             };
             let classification = scene.classification.classification(&volume, mode)?;
-            let mut renderer = Renderer::new(Job {
+            let job = Job {
                 volume: &volume,
                 classification: &classification,
                 settings: &settings,
                 extent_pixels,
                 layers: &[],
                 device: scene.device.as_deref(),
-                first_camera: &camera,
-            })?;
+            };
+            let mut renderer = Renderer::new(job, &camera)?;
             renderer.draw(&camera)?;
             let frames = (0..self.repeat).map(|_| timed(&mut renderer, &camera));
             let frames = frames.collect::<Result<Vec<_>, _>>()?;
             rows.push((name, median_gpu(&frames), median_wall(&frames)));
-            device = format!("{}, {}", renderer.device, renderer.driver);
+            device = format!("{}, {}", renderer.device(), renderer.driver());
         }
         drop(progress);
         let [width, height] = extent_pixels;
@@ -191,6 +196,27 @@ impl Bench {
             json!({ "device": device, "size": extent_pixels, "repeat": self.repeat, "rows": rows });
         Ok(format!("{value:#}\n"))
     }
+}
+
+/// Preset `grey` over the range of what the first view projects, where nothing else says how to classify.
+fn window_of(job: Job, camera: &Camera) -> Result<Option<Classification>, Error> {
+    if *job.classification != Classification::RangeOfPicture {
+        return Ok(None);
+    }
+    let job = Job {
+        layers: &[LayerKind::Value],
+        ..job
+    };
+    let picture = Renderer::new(job, camera)?.draw(camera)?.picture;
+    let values = picture.layers[0]
+        .values
+        .iter()
+        .filter(|value| !value.is_nan());
+    let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| {
+        [low.min(value.into()), high.max(value.into())]
+    });
+    let function = Window::of_range(range).grey(Classified::Projection);
+    Ok(Some(Classification::Function(function)))
 }
 
 /// The rows of the table.

@@ -113,7 +113,7 @@ impl Error {
             }) => 6,
             Self::Read(_) | Self::ReadPicture(_) | Self::Input { .. } => 3,
             Self::WritePicture(_) | Self::Output { .. } => 4,
-            Self::Device(gpu::Error::Limit { .. }) => 6,
+            Self::Device(gpu::Error::Limit { .. } | gpu::Error::OutOfMemory { .. }) => 6,
             Self::Device(_) => 5,
             Self::Limit(_) => 6,
         }
@@ -131,6 +131,10 @@ impl Error {
                 }
                 _ => None,
             },
+            Self::Device(gpu::Error::Limit { .. } | gpu::Error::OutOfMemory { .. }) => None,
+            Self::Device(gpu::Error::Format { .. }) => {
+                Some("--technique raycast needs no blending")
+            }
             Self::Device(_) => Some(
                 "`stratavox devices` says what is here; --device reference draws without Vulkan",
             ),

@@ -1,7 +1,12 @@
 //! `stratavox info`: what a volume is, before anything is drawn.
 
-use super::{Error, error::visible, flags::InputFlags, output::say};
-use crate::volume::{Header, Limits, Statistics};
+use super::{
+    Error,
+    error::visible,
+    flags::InputFlags,
+    output::{say, say_aside},
+};
+use crate::volume::{Grid, Header, Limits, Statistics};
 use clap::Args;
 use glam::DVec3;
 use serde::Serialize;
@@ -56,7 +61,7 @@ impl Info {
         let report = report(header, &statistics);
         if self.json {
             for note in &header.notes {
-                eprint!("stratavox: {}\n", visible(note));
+                say_aside(note);
             }
             let json = serde_json::to_string_pretty(&report).expect("numbers as JSON");
             say(&format!("{json}\n"))
@@ -67,6 +72,10 @@ impl Info {
 }
 
 fn report(header: &Header, statistics: &Statistics) -> Report {
+    let grid = Grid {
+        dims: header.dims,
+        world_from_voxel: header.world_from_voxel,
+    };
     let known = |number: f64| number.is_finite().then_some(number);
     Report {
         format: header.format.name(),
@@ -74,7 +83,7 @@ fn report(header: &Header, statistics: &Statistics) -> Report {
         components: header.components,
         times: header.times,
         r#type: header.stored.name(),
-        spacing: spacing(header),
+        spacing: grid.spacing(),
         world_from_voxel: world_from_centers(header),
         min: known(statistics.min),
         max: known(statistics.max),
@@ -86,16 +95,12 @@ fn report(header: &Header, statistics: &Statistics) -> Report {
     }
 }
 
-fn spacing(header: &Header) -> [f64; 3] {
-    let m = header.world_from_voxel.matrix3;
-    [m.x_axis.length(), m.y_axis.length(), m.z_axis.length()]
-}
-
 /// The affine of index space: index (0, 0, 0) is the centre of the first voxel.
 fn world_from_centers(header: &Header) -> [[f64; 4]; 4] {
     let m = header.world_from_voxel.matrix3;
     let origin = header.world_from_voxel.transform_point3(DVec3::splat(0.5));
-    let row = |k: usize| [m.x_axis[k], m.y_axis[k], m.z_axis[k], origin[k]];
+    // A sum with zero has no negative zero.
+    let row = |k: usize| [m.x_axis[k], m.y_axis[k], m.z_axis[k], origin[k]].map(|n| n + 0.0);
     [row(0), row(1), row(2), [0.0, 0.0, 0.0, 1.0]]
 }
 

@@ -1,8 +1,8 @@
 //! Files that the program writes: looked at before the work begins, and whole or not there at the end.
 
-use super::{Error, signals::Gate};
+use super::{Error, error::visible, signals::Gate};
+use crate::picture::write_file;
 use std::{
-    fs,
     io::{self, Write},
     path::{Path, PathBuf},
 };
@@ -56,34 +56,7 @@ fn check_one(path: &Path, inputs: &[PathBuf], force: bool) -> Result<(), Error> 
 
 /// Puts a file with these bytes at `path`, whole or not at all. Only `force` replaces one.
 pub fn write_whole(path: &Path, bytes: &[u8], force: bool, gate: &Gate) -> Result<(), Error> {
-    gate.whole(|| {
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".stratavox-");
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            // A temporary file is for its owner alone; a result is for whom the process says.
-            builder.permissions(fs::Permissions::from_mode(0o666));
-        }
-        let mut file = builder.tempfile_in(folder_of(path))?;
-        file.write_all(bytes)?;
-        file.as_file().sync_all()?;
-        if force {
-            file.persist(path).map_err(|e| e.error)?;
-        } else {
-            file.persist_noclobber(path).map_err(|e| e.error)?;
-        }
-        sync_folder(folder_of(path))
-    })
-    .map_err(|cause: io::Error| Error::output(path, &cause))
-}
-
-/// Makes the new name last. Folders cannot be opened everywhere; where they cannot, there is nothing to do.
-fn sync_folder(folder: &Path) -> io::Result<()> {
-    match fs::File::open(folder) {
-        Ok(folder) => folder.sync_all(),
-        Err(_) => Ok(()),
-    }
+    Ok(gate.whole(|| write_file(path, bytes, force))?)
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -101,9 +74,16 @@ pub fn say(text: &str) -> Result<(), Error> {
         .map_err(|cause| Error::output("the standard output", &cause))
 }
 
+/// Says one line on stderr. Where stderr is closed there is nobody to tell.
+pub fn say_aside(text: &str) {
+    let line = format!("stratavox: {}\n", visible(text));
+    let _ = io::stderr().write_all(line.as_bytes());
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     fn refusal(outputs: &[&Path], inputs: &[&Path], force: bool) -> (u8, String) {
         let owned = |paths: &[&Path]| paths.iter().map(|p| p.to_path_buf()).collect::<Vec<_>>();

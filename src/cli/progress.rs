@@ -1,5 +1,6 @@
 //! What is being done at the moment, on stderr: a line for a person, or JSON for a program.
 
+use super::output::say_aside;
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::{io::IsTerminal, time::Duration};
@@ -62,13 +63,9 @@ impl Progress {
 
     /// Says something that stays.
     pub fn note(&self, text: &str) {
-        let text = format!("stratavox: {}\n", super::error::visible(text));
-        let write = || {
-            let _ = std::io::Write::write_all(&mut std::io::stderr(), text.as_bytes());
-        };
         match self {
-            Self::Line(line) => line.suspend(write),
-            Self::Silent | Self::Json => write(),
+            Self::Line(line) => line.suspend(|| say_aside(text)),
+            Self::Silent | Self::Json => say_aside(text),
         }
     }
 }

@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     camera::BoundingSphere,
-    picture::{BitDepth, LayerKind, Picture, PictureFormat, WriteOptions, write_picture},
+    picture::{BitDepth, LayerKind, PictureFormat, WriteOptions, write_picture},
     volume::{Limits, Volume},
 };
 use clap::Args;
@@ -108,15 +108,15 @@ impl Render {
         let load_ms = ms_since(start);
 
         progress.stage("prepare", 0, 1);
-        let mut renderer = Renderer::new(Job {
+        let job = Job {
             volume: &volume,
             classification: &classification,
             settings: &settings,
             extent_pixels,
             layers: &layers,
             device: scene.device.as_deref(),
-            first_camera: &camera,
-        })?;
+        };
+        let mut renderer = Renderer::new(job, &camera)?;
         let mut frames = Vec::new();
         let mut last = None;
         for done in 0..self.repeat {
@@ -149,16 +149,16 @@ impl Render {
         }
         if let Some(path) = &self.timings {
             let timings = Timings {
-                device: renderer.device.clone(),
-                driver: renderer.driver.clone(),
+                device: renderer.device(),
+                driver: renderer.driver(),
                 load_ms,
                 upload_ms: renderer.upload_ms,
                 prepare_ms: renderer.prepare_ms,
                 first_frame_ms: frames.first().map_or(0.0, |frame| frame.wall_ms),
                 frames,
-                samples: samples(&picture),
+                samples: renderer.samples(&camera)?,
                 peak_rss_bytes: peak_rss_bytes(),
-                device_bytes: renderer.device_bytes,
+                device_bytes: renderer.device_bytes(),
             };
             write_whole(path, timings.json().as_bytes(), self.force, gate)?;
         }
@@ -207,14 +207,16 @@ pub fn load(scene: &SceneFlags, progress: &Progress) -> Result<Volume, Error> {
         progress.note(note);
     }
     let whole = source.header().whole();
-    Ok(Volume::read(source.as_ref(), pick, whole, &limits)?)
-}
-
-/// Samples that a picture took, where they were counted.
-pub fn samples(picture: &Picture) -> Option<u64> {
-    let layer = picture
-        .layers
-        .iter()
-        .find(|layer| layer.kind == LayerKind::Samples)?;
-    Some(layer.values.iter().map(|&count| count as u64).sum())
+    let volume = Volume::read(source.as_ref(), pick, whole, &limits)?;
+    if !volume.loss.is_none() {
+        let crate::volume::Loss { changed, worst } = volume.loss;
+        progress.note(&format!(
+            "{changed} voxels were rounded to 32-bit floats, by at most {worst}"
+        ));
+    }
+    let no_data = volume.no_data_count();
+    if no_data > 0 {
+        progress.note(&format!("{no_data} voxels hold no data"));
+    }
+    Ok(volume)
 }

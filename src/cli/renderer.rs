@@ -4,10 +4,10 @@ use super::{Error, flags::Classification, timings::ms_since};
 use crate::{
     camera::Camera,
     gpu::{DeviceChoice, Headless, Options},
-    offscreen,
+    offscreen::{self, reference},
     picture::{LayerKind, Picture},
     scene::Scene,
-    technique::Settings,
+    technique::{Mode, Settings, Technique},
     volume::Volume,
 };
 use std::time::Instant;
@@ -27,38 +27,18 @@ pub struct Job<'a> {
     pub layers: &'a [LayerKind],
     /// The word of `--device`.
     pub device: Option<&'a str>,
-    /// The camera of the first picture: what it needs is brought to the device at once.
-    pub first_camera: &'a Camera,
-}
-
-impl<'a> Job<'a> {
-    fn scene(&self, camera: &'a Camera) -> Scene<'a> {
-        Scene {
-            volume: self.volume,
-            transfer: match self.classification {
-                Classification::Function(function) => Some(function),
-                Classification::RangeOfPicture => None,
-            },
-            camera,
-            extent_pixels: self.extent_pixels,
-            settings: self.settings,
-        }
-    }
 }
 
 /// A renderer that is ready to draw.
+#[derive(Debug)]
 pub struct Renderer<'a> {
-    /// The device's name.
-    pub device: String,
-    /// Its driver and the driver's version.
-    pub driver: String,
+    job: Job<'a>,
+    /// `None`: the CPU twins.
+    on_device: Option<Box<offscreen::Renderer<'a>>>,
     /// What bringing the volume to the device took.
     pub upload_ms: f64,
-    /// What all other preparation took.
+    /// What making the device took.
     pub prepare_ms: f64,
-    /// Device memory in use.
-    pub device_bytes: u64,
-    draw: Box<dyn FnMut(&Camera) -> Result<Frame, Error> + 'a>,
 }
 
 /// One picture and what it took.
@@ -74,81 +54,131 @@ pub struct Frame {
 const REFERENCE: &str = "reference";
 
 impl<'a> Renderer<'a> {
-    /// Finds the device, brings the volume there, makes what drawing needs.
-    pub fn new(job: Job<'a>) -> Result<Self, Error> {
+    /// Finds the device and brings there what `camera` sees first.
+    pub fn new(job: Job<'a>, camera: &Camera) -> Result<Self, Error> {
+        check_layers(&job)?;
         if job.device == Some(REFERENCE) {
-            return Ok(Self::reference(job));
+            return Ok(Self {
+                job,
+                on_device: None,
+                upload_ms: 0.0,
+                prepare_ms: 0.0,
+            });
         }
-        Self::vulkan(job)
+        let start = Instant::now();
+        let choice = job.device.map(DeviceChoice::from).unwrap_or_default();
+        let device = Headless::new(&choice, &Options::default())?;
+        let mut renderer = offscreen::Renderer::new(device, job.volume)?;
+        let prepare_ms = ms_since(start);
+        let start = Instant::now();
+        renderer.upload(&job.scene(camera))?;
+        Ok(Self {
+            job,
+            on_device: Some(Box::new(renderer)),
+            upload_ms: ms_since(start),
+            prepare_ms,
+        })
     }
 
     /// The picture that this camera sees, in memory when the call returns.
     pub fn draw(&mut self, camera: &Camera) -> Result<Frame, Error> {
-        (self.draw)(camera)
+        self.draw_with(camera, self.job.layers)
     }
 
-    fn vulkan(job: Job<'a>) -> Result<Self, Error> {
-        let start = Instant::now();
-        let choice = job.device.map(DeviceChoice::from).unwrap_or_default();
-        let headless = Headless::new(&choice, &Options::default())?;
-        let identity = headless.gpu().identity();
-        let device = identity.name.clone();
-        let driver = format!("{} {}", identity.driver_name, identity.driver_info);
-        let mut renderer = offscreen::Renderer::new(headless, job.volume)?;
-        let prepare_ms = ms_since(start);
-        let start = Instant::now();
-        renderer.upload(&job.scene(job.first_camera))?;
-        let upload_ms = ms_since(start);
-        let device_bytes = renderer.device().gpu().device_bytes();
-        let draw = move |camera: &Camera| {
-            let rendered = renderer.render(&job.scene(camera), job.layers)?;
-            Ok(Frame {
+    /// The samples that the picture of this camera takes, rays through the middles of pixels alone. Draws once
+    /// more to count them.
+    pub fn samples(&mut self, camera: &Camera) -> Result<u64, Error> {
+        let picture = self.draw_with(camera, &[LayerKind::Samples])?.picture;
+        let counts = picture.layers.iter().flat_map(|layer| &layer.values);
+        Ok(counts.map(|&count| count as u64).sum())
+    }
+
+    fn draw_with(&mut self, camera: &Camera, layers: &[LayerKind]) -> Result<Frame, Error> {
+        let scene = self.job.scene(camera);
+        if let Some(renderer) = &mut self.on_device {
+            let rendered = renderer.render(&scene, layers)?;
+            return Ok(Frame {
                 picture: rendered.picture,
                 gpu_ms: rendered.gpu_ms,
-            })
-        };
-        Ok(Self {
-            device,
-            driver,
-            upload_ms,
-            prepare_ms,
-            device_bytes,
-            draw: Box::new(draw),
+            });
+        }
+        let mut picture = reference::render::<f32>(&scene).map_err(offscreen::Error::Technique)?;
+        let mut made = std::mem::take(&mut picture.layers);
+        for kind in layers {
+            let at = made.iter().position(|layer| layer.kind == *kind);
+            let at = at.expect("`check_layers` knows what a twin makes");
+            picture.layers.push(made.swap_remove(at));
+        }
+        Ok(Frame {
+            picture,
+            gpu_ms: None,
         })
     }
 
-    fn reference(job: Job<'a>) -> Self {
-        let draw = move |camera: &Camera| {
-            let scene = job.scene(camera);
-            let mut picture = offscreen::reference::render::<f32>(&scene)
-                .map_err(|error| Error::Limit(error.to_string()))?;
-            keep_layers(&mut picture, job.layers)?;
-            Ok(Frame {
-                picture,
-                gpu_ms: None,
-            })
-        };
-        Self {
-            device: "reference (the CPU, without Vulkan)".to_owned(),
-            driver: format!("stratavox {}", env!("CARGO_PKG_VERSION")),
-            upload_ms: 0.0,
-            prepare_ms: 0.0,
-            device_bytes: 0,
-            draw: Box::new(draw),
+    /// The device's name.
+    pub fn device(&self) -> String {
+        match &self.on_device {
+            Some(renderer) => renderer.device().gpu().device_name().to_owned(),
+            None => "reference (the CPU, without Vulkan)".to_owned(),
+        }
+    }
+
+    /// The driver and its version.
+    pub fn driver(&self) -> String {
+        match &self.on_device {
+            Some(renderer) => {
+                let identity = renderer.device().gpu().identity();
+                format!("{} {}", identity.driver_name, identity.driver_info)
+            }
+            None => format!("stratavox {}", env!("CARGO_PKG_VERSION")),
+        }
+    }
+
+    /// Device memory in use or kept for later.
+    pub fn device_bytes(&self) -> u64 {
+        match &self.on_device {
+            Some(renderer) => renderer.device().gpu().device_bytes(),
+            None => 0,
         }
     }
 }
 
-/// Leaves the layers that were asked for, in that order.
-fn keep_layers(picture: &mut Picture, wanted: &[LayerKind]) -> Result<(), Error> {
-    let mut made = std::mem::take(&mut picture.layers);
-    for &kind in wanted {
-        let at = made.iter().position(|layer| layer.kind == kind);
-        let at = at.ok_or_else(|| {
-            let name = format!("{kind:?}").to_lowercase();
-            Error::NotBuilt(format!("`--aov {name}` with this technique and mode"))
-        })?;
-        picture.layers.push(made.swap_remove(at));
+impl<'a> Job<'a> {
+    fn scene<'s>(&self, camera: &'s Camera) -> Scene<'s>
+    where
+        'a: 's,
+    {
+        Scene {
+            volume: self.volume,
+            transfer: match self.classification {
+                Classification::Function(function) => Some(function),
+                Classification::RangeOfPicture => None,
+            },
+            camera,
+            extent_pixels: self.extent_pixels,
+            settings: self.settings,
+        }
+    }
+}
+
+/// Blending keeps no depth, a projection no transmittance, and a composite has no one value.
+fn check_layers(job: &Job) -> Result<(), Error> {
+    let Settings {
+        technique, mode, ..
+    } = *job.settings;
+    for layer in job.layers {
+        let missing = match layer {
+            LayerKind::Value if mode == Mode::Composite => {
+                "a mode that projects, such as --mode mip"
+            }
+            LayerKind::Transmittance if mode != Mode::Composite => "--mode composite",
+            LayerKind::Depth if technique != Technique::Raycast => "--technique raycast",
+            _ => continue,
+        };
+        return Err(Error::Usage {
+            message: format!("--aov {} needs {missing}", layer.name()),
+            hint: "without --aov the picture itself can be drawn",
+        });
     }
     Ok(())
 }

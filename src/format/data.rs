@@ -28,7 +28,7 @@ pub(crate) struct Promise {
 pub(crate) struct Part {
     pub path: PathBuf,
     pub start: Start,
-    /// Bytes of encoded voxels and the field that says so; else all up to the end of the file.
+    /// Bytes of encoded voxels and the field that says so.
     pub encoded_bytes: Option<(u64, &'static str)>,
 }
 
@@ -37,8 +37,8 @@ pub(crate) struct Part {
 pub(crate) enum Start {
     /// `file_bytes` into the file, and then `decoded_bytes` into what is decoded from there.
     Skip { file_bytes: u64, decoded_bytes: u64 },
-    /// So that `after_bytes` follow them in the file.
-    End { after_bytes: u64 },
+    /// So that `after_bytes` follow them in the file, and never before `earliest`: a header is no voxels.
+    End { after_bytes: u64, earliest: u64 },
 }
 
 /// Voxels in files, checked to be there.
@@ -52,8 +52,8 @@ pub(crate) struct Data {
     pub parts: Vec<FoundPart>,
     /// Decoded bytes of voxels in each part.
     pub part_bytes: u64,
-    /// Bytes behind the voxels of raw files that nobody reads.
-    pub left_over_bytes: u64,
+    /// What is odd about the files and yet no error.
+    pub notes: Vec<String>,
 }
 
 /// One file whose length was seen.
@@ -115,16 +115,24 @@ impl Data {
             axes,
             parts: Vec::new(),
             part_bytes,
-            left_over_bytes: 0,
+            notes: Vec::new(),
         };
+        let mut left_over_bytes = 0_u64;
         for part in parts {
-            let found = data.find_part(&part).map_err(at(&part.path))?;
+            let (found, left_over) = data.find_part(&part).map_err(at(&part.path))?;
+            left_over_bytes = left_over_bytes.saturating_add(left_over);
             data.parts.push(found);
+        }
+        if left_over_bytes > 0 {
+            data.notes.push(format!(
+                "{left_over_bytes} bytes behind the voxels are not read"
+            ));
         }
         Ok(data)
     }
 
-    fn find_part(&mut self, part: &Part) -> Result<FoundPart, Problem> {
+    /// The part, and how many bytes follow its voxels.
+    fn find_part(&mut self, part: &Part) -> Result<(FoundPart, u64), Problem> {
         let (_, metadata) = open_regular(&part.path)?;
         let file_bytes = metadata.len();
         let (offset, skip_bytes) = match part.start {
@@ -132,50 +140,60 @@ impl Data {
                 file_bytes,
                 decoded_bytes,
             } => (file_bytes, decoded_bytes),
-            Start::End { after_bytes } => {
+            Start::End {
+                after_bytes,
+                earliest,
+            } => {
                 let encoded = part.encoded_bytes.map_or(self.part_bytes, |(n, _)| n);
                 let wanted = encoded.saturating_add(after_bytes);
-                let offset = file_bytes
-                    .checked_sub(wanted)
-                    .ok_or_else(|| self.too_short(wanted, file_bytes))?;
-                (offset, 0)
+                let present = file_bytes.saturating_sub(earliest);
+                if wanted > present {
+                    return Err(self.too_short(wanted, present));
+                }
+                (file_bytes.saturating_sub(wanted), 0)
             }
         };
-        let present = file_bytes
+        let encoded_bytes = file_bytes
             .checked_sub(offset)
             .ok_or_else(|| self.too_short(offset.saturating_add(self.part_bytes), file_bytes))?;
-        let encoded_bytes = match part.encoded_bytes {
-            Some((promised, field)) if promised > present => {
+        if let Some((promised, field)) = part.encoded_bytes {
+            if promised > encoded_bytes {
                 return Err(Problem::Invalid {
                     format: self.format,
                     field: field.to_owned(),
-                    wanted: format!("at most the {present} bytes that are there"),
+                    wanted: format!("at most the {encoded_bytes} bytes that are there"),
                     found: promised.to_string(),
                 });
             }
-            Some((promised, _)) => promised,
-            None => present,
-        };
-        let wanted = skip_bytes.saturating_add(self.part_bytes);
-        if self.encoding == Encoding::Raw {
-            self.left_over_bytes = encoded_bytes
-                .checked_sub(wanted)
-                .ok_or_else(|| self.too_short(wanted, encoded_bytes))?
-                .saturating_add(self.left_over_bytes);
-        } else if wanted > self.encoding.most_bytes(encoded_bytes, self.stored) {
-            return Err(Problem::TooFewEncoded {
-                format: self.format,
-                encoding: self.encoding.name(),
-                wanted_bytes: wanted,
-                encoded_bytes,
-            });
+            // A stream knows its own end, and there are files in which this field is too small.
+            if promised < encoded_bytes {
+                self.notes.push(format!(
+                    "{field} is {promised}, the file has {encoded_bytes} bytes there; the stream's own end counts"
+                ));
+            }
         }
-        Ok(FoundPart {
+        let wanted = skip_bytes.saturating_add(self.part_bytes);
+        let left_over = match self.encoding {
+            Encoding::Raw => encoded_bytes
+                .checked_sub(wanted)
+                .ok_or_else(|| self.too_short(wanted, encoded_bytes))?,
+            _ if wanted > self.encoding.most_bytes(encoded_bytes, self.stored) => {
+                return Err(Problem::TooFewEncoded {
+                    format: self.format,
+                    encoding: self.encoding.name(),
+                    wanted_bytes: wanted,
+                    encoded_bytes,
+                });
+            }
+            _ => 0,
+        };
+        let found = FoundPart {
             path: part.path.clone(),
             offset,
             encoded_bytes,
             skip_bytes,
-        })
+        };
+        Ok((found, left_over))
     }
 
     fn too_short(&self, wanted_bytes: u64, found_bytes: u64) -> Problem {

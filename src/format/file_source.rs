@@ -21,12 +21,7 @@ pub(crate) struct FileSource {
 impl FileSource {
     /// `header` and `data` speak of the same array. Adds the notes that `data` gives rise to.
     pub(crate) fn new(path: &Path, mut header: Header, data: Data, limits: &Limits) -> Self {
-        if data.left_over_bytes > 0 {
-            header.notes.push(format!(
-                "{} bytes behind the voxels are not read",
-                data.left_over_bytes
-            ));
-        }
+        header.notes.extend(data.notes.iter().cloned());
         if !data.stored.is_kept_exactly() {
             header.notes.push(format!(
                 "voxels are stored as {} and kept as f32",
@@ -150,6 +145,10 @@ const BELIEVED_NUMBERS: usize = 1 << 24;
 const CHUNK_BYTES: u64 = 1 << 18;
 
 impl Source for FileSource {
+    fn path(&self) -> &Path {
+        &self.path
+    }
+
     fn header(&self) -> &Header {
         &self.header
     }

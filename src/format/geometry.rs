@@ -4,6 +4,11 @@
 //! world = first_center + sum of index[k] * column[k],   voxel = index + 0.5
 //! ```
 
+#![allow(
+    clippy::arithmetic_side_effects,
+    reason = "vectors of f64: nothing wraps or panics"
+)]
+
 use glam::{DAffine3, DMat3, DVec3};
 
 /// Multiplies LPS coordinates (DICOM, MetaImage) to make RAS+ ones.

@@ -1,4 +1,4 @@
-//! Files to [`Source`]s: NRRD and MetaImage.
+//! Files to [`Source`]s: NIfTI, NRRD, MetaImage, raw voxels.
 //!
 //! A header only promises. [`open`] compares its promises with the bytes that are there before anything is
 //! allocated, and [`Source::read`] again as it goes; a file that is too short, too long once decompressed or
@@ -29,6 +29,7 @@ mod decode;
 mod file_source;
 mod geometry;
 mod metaimage;
+mod nifti;
 mod nrrd;
 mod place;
 mod problem;
@@ -60,13 +61,27 @@ pub fn open(path: &Path, limits: &Limits) -> Result<Box<dyn Source>, ReadError> 
         Ok(Box::new(nrrd::open(path, limits)?))
     } else if metaimage::recognizes(&first) {
         Ok(Box::new(metaimage::open(path, limits)?))
+    } else if nifti::recognizes(&first) {
+        Ok(Box::new(nifti::open(path, limits)?))
     } else if matches!(extension.as_str(), "nrrd" | "nhdr") {
         Ok(Box::new(nrrd::open(path, limits)?))
     } else if matches!(extension.as_str(), "mha" | "mhd") {
         Ok(Box::new(metaimage::open(path, limits)?))
+    } else if matches!(extension.as_str(), "nii" | "hdr" | "img") || is_compressed_nifti(path) {
+        Ok(Box::new(nifti::open(path, limits)?))
+    } else if let Some(sidecar) = raw::sidecar_of(path) {
+        raw::open_sidecar(&sidecar, limits)
     } else {
         Err(at(path)(unknown(&first)))
     }
+}
+
+fn is_compressed_nifti(path: &Path) -> bool {
+    let name = path.file_name().and_then(|name| name.to_str());
+    let name = name.unwrap_or("").to_ascii_lowercase();
+    [".nii.gz", ".hdr.gz", ".img.gz"]
+        .iter()
+        .any(|end| name.ends_with(end))
 }
 
 fn first_bytes(path: &Path) -> Result<Vec<u8>, Problem> {
@@ -84,7 +99,7 @@ fn unknown(first: &[u8]) -> Problem {
         .map(|byte| format!("{byte:02x}"))
         .collect();
     Problem::UnknownFormat(format!(
-        ": the file begins with the bytes {}; we read nrrd and metaimage",
+        ": the file begins with the bytes {}; we read nifti, nrrd, metaimage, and raw voxels that a spec or a sidecar describes",
         shown.join(" ")
     ))
 }

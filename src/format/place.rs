@@ -3,7 +3,7 @@
 use super::problem::{self, at, escape, invalid};
 use crate::volume::{Problem, ReadError};
 use std::fs::{File, FileType, Metadata};
-use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
+use std::io::{BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Component, Path, PathBuf};
 
 /// Opens a regular file. A folder, a pipe or a device is refused before it is opened: opening a pipe waits.
@@ -83,10 +83,12 @@ impl Folder {
         let path = self.given.join(name);
         // What a message repeats must not carry control characters from the file.
         let shown = self.given.join(escape(name));
-        let real = path
-            .canonicalize()
-            .map_err(problem::io("looking for the file that the header names"))
-            .map_err(at(&shown))?;
+        let real = path.canonicalize().map_err(|cause| {
+            at(&shown)(match cause.kind() {
+                ErrorKind::NotFound => invalid(format, field, "a file that is there", name),
+                _ => problem::io("looking for the file that the header names")(cause),
+            })
+        })?;
         if !real.starts_with(&self.real) {
             return Err(at(&shown)(invalid(
                 format,

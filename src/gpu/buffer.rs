@@ -30,6 +30,7 @@ pub struct Buffer {
     memory: OwnMemory,
     bytes: u64,
     usage: vk::BufferUsageFlags,
+    reached_by: Memory,
     name: String,
     /// One host access at a time: two writes to the same bytes would be a data race.
     host_access: Mutex<()>,
@@ -41,7 +42,7 @@ impl Buffer {
         gpu: &Arc<Gpu>,
         bytes: u64,
         usage: vk::BufferUsageFlags,
-        memory: Memory,
+        reached_by: Memory,
         name: &str,
     ) -> Result<Self, Error> {
         gpu.check_buffer(bytes, usage, name)?;
@@ -56,7 +57,7 @@ impl Buffer {
         let desc = AllocationCreateDesc {
             name,
             requirements,
-            location: match memory {
+            location: match reached_by {
                 Memory::Device => MemoryLocation::GpuOnly,
                 Memory::Upload => MemoryLocation::CpuToGpu,
                 Memory::Readback => MemoryLocation::GpuToCpu,
@@ -77,6 +78,7 @@ impl Buffer {
             memory,
             bytes,
             usage,
+            reached_by,
             name: name.into(),
             host_access: Mutex::new(()),
         })
@@ -141,15 +143,14 @@ impl Buffer {
                 found: "one that ends outside".into(),
             });
         }
-        let mapped = self
-            .memory
-            .get()
-            .mapped_ptr()
-            .ok_or_else(|| Error::Argument {
-                doing: doing(),
-                wanted: "memory that the host reaches".into(),
-                found: "device memory".into(),
-            })?;
+        // Some devices map all their memory: the answer is the same on every one.
+        let is_reached = self.reached_by != Memory::Device;
+        let mapped = self.memory.get().mapped_ptr().filter(|_| is_reached);
+        let mapped = mapped.ok_or_else(|| Error::Argument {
+            doing: doing(),
+            wanted: "memory that the host reaches".into(),
+            found: "device memory".into(),
+        })?;
         // SAFETY: the allocation holds at least `bytes` bytes, and `offset` does not pass them.
         Ok(unsafe { mapped.cast::<u8>().as_ptr().add(offset as usize) })
     }

@@ -244,7 +244,8 @@ impl Store {
             .as_mut()
             .expect("the allocator outlives every owner");
         // Blocks hold one allocation or more, and one block for each of at most 32 memory types may stand empty:
-        // counting the blocks costs a walk over all of them, so it is done near the limit only.
+        // counting the blocks costs a walk over all of them, so it is done near the limit only,
+        // and one allocation that would still find room in a block may be refused there.
         let live = *self.live.get("memory").unwrap_or(&0) as u64;
         if live + vk::MAX_MEMORY_TYPES as u64 >= max_allocations {
             let blocks = allocator.generate_report().blocks.len() as u64;

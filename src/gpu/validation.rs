@@ -20,11 +20,21 @@ pub(super) const LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 /// Messages of one device that are kept; more are counted.
 const MOST_KEPT: usize = 256;
 
-/// What best practices ask for and we knowingly do not do, with the reason. Other modes allow nothing.
-const ALLOWED_BEST_PRACTICES: &[(&str, &str)] = &[(
-    "UNASSIGNED-BestPractices-vkCreateInstance-specialuse-extension-debugging",
-    "the extensions by which the layer itself is asked for",
-)];
+/// Complaints that we know and do not heed: the mode, the id, a part of the text, and the reason.
+const ALLOWED: &[(ValidationMode, &str, &str, &str)] = &[
+    (
+        ValidationMode::BestPractices,
+        "UNASSIGNED-BestPractices-vkCreateInstance-specialuse-extension-debugging",
+        "",
+        "the extensions by which the layer itself is asked for",
+    ),
+    (
+        ValidationMode::GpuAssisted,
+        "UNASSIGNED-GPU-Assisted Validation Warning",
+        "No buffer device address checking",
+        "devices without shaderInt64: we use no buffer addresses",
+    ),
+];
 
 /// Whether a [`super::Headless`] is validated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -180,10 +190,9 @@ impl Messages {
     }
 
     fn add(&self, message: Message) {
-        let is_allowed = self.mode == ValidationMode::BestPractices
-            && ALLOWED_BEST_PRACTICES
-                .iter()
-                .any(|&(id, _)| id == message.id);
+        let is_allowed = ALLOWED.iter().any(|&(mode, id, part, _reason)| {
+            mode == self.mode && id == message.id && message.text.contains(part)
+        });
         if is_allowed {
             return;
         }

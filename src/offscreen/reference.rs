@@ -266,9 +266,10 @@ fn parameters(view: &View) -> Result<(Frame, u32), Error> {
     let mut fields = view.fields(&coding, &transfer)?;
     let slices = match view.settings.technique {
         Technique::Raycast => 0,
-        Technique::Slices3d => slices_3d::set_planes(view, &mut fields),
+        Technique::Slices3d => slices_3d::set_planes(view, view.part(None), &mut fields),
         Technique::Slices2d => {
-            slices_2d::set_slices(view, slices_2d::stack_axis(view), &mut fields)
+            let axis = slices_2d::stack_axis(view);
+            slices_2d::set_slices(view, axis, view.part(None), &mut fields)
         }
     };
     Ok((frame(fields), slices))

@@ -2,24 +2,26 @@
 //!
 //! ```text
 //! for each ray position in the pixel:
-//!     gather:   technique          -> accumulation (and layers)
-//!     resolve:  weight * colour    -> picture, added up
-//! read back
+//!     gather:   technique -> accumulation (and layers)
+//!     resolve:  colour    -> picture, read back
+//! picture = mean over the positions
 //! ```
 
-use super::passes::{Passes, Submission};
+use super::Error;
+use super::passes::Passes;
+use super::submission::{Recording, Submission};
 use super::targets::Targets;
-use super::{Error, upload};
+use super::upload::upload;
 use crate::gpu::{Headless, ParameterRing, Timer, Use};
 use crate::picture::{ColorSpace, Layer, LayerKind, Picture};
-use crate::resident::{GpuMask, GpuStack, GpuTransfer, GpuVolume, TransferLayout};
+use crate::resident::{GpuTransfer, GpuVolume, TextureLayout, TransferLayout};
 use crate::resolve::reference::projected_value;
 use crate::scene::{Scene, positions_in_pixel};
 use crate::shaders::Frame;
 use crate::technique::blend::extreme_sign;
 use crate::technique::slices_2d::{set_slices, stack_axis};
 use crate::technique::slices_3d::set_planes;
-use crate::technique::{self, GpuVoxels, Inputs, Settings, Technique, Words, frame};
+use crate::technique::{self, Inputs, Order, Settings, Technique, View, Words, frame};
 use crate::transfer::{Classified, TransferFunction, Window};
 use crate::volume::Volume;
 use std::sync::Arc;
@@ -37,9 +39,8 @@ pub struct Rendered {
 #[derive(Debug)]
 pub struct Renderer<'v> {
     volume: &'v Volume,
-    brick: Option<GpuVolume>,
-    stacks: [Option<GpuStack>; 3],
-    mask: Option<GpuMask>,
+    /// As 3D textures, then as the stacks along x, y, z: what has been needed so far.
+    resident: [Option<GpuVolume>; 4],
     transfer: Option<Uploaded>,
     targets: Option<Targets>,
     passes: Option<Passes>,
@@ -65,9 +66,7 @@ impl<'v> Renderer<'v> {
         let gpu = device.gpu();
         Ok(Self {
             volume,
-            brick: None,
-            stacks: [None, None, None],
-            mask: None,
+            resident: [const { None }; 4],
             transfer: None,
             targets: None,
             passes: None,
@@ -87,22 +86,10 @@ impl<'v> Renderer<'v> {
     /// # Errors
     /// Where something is over a limit of the device.
     pub fn upload(&mut self, scene: &Scene) -> Result<(), Error> {
-        let grid = self.volume.grid();
-        if scene.settings.technique == Technique::Slices2d {
-            let axis = stack_axis(&scene.view(&grid, [0.0; 2]));
-            if self.stacks[axis].is_none() {
-                self.stacks[axis] =
-                    Some(upload::upload_stack(&mut self.device, self.volume, axis)?);
-            }
-        } else if self.brick.is_none() {
-            self.brick = Some(upload::upload_volume(&mut self.device, self.volume)?);
-        }
-        if let (Some(validity), None) = (&self.volume.validity, &self.mask) {
-            self.mask = Some(upload::upload_mask(
-                &mut self.device,
-                self.volume,
-                validity,
-            )?);
+        let layout = layout(&scene.view(&self.volume.grid(), [0.0; 2]));
+        let resident = &mut self.resident[place(layout)];
+        if resident.is_none() {
+            *resident = Some(upload(&mut self.device, self.volume, layout)?);
         }
         Ok(())
     }
@@ -126,12 +113,12 @@ impl<'v> Renderer<'v> {
             None => return Err(technique::Error::NoTransferFunction.into()),
         }
         let per_side = scene.settings.rays_per_side;
-        for (i, in_pixel) in positions_in_pixel(per_side).enumerate() {
+        let mut mean = Mean::new(scene.extent_pixels, per_side);
+        for in_pixel in positions_in_pixel(per_side) {
             clock.add(self.gather(scene, in_pixel)?);
-            self.resolve(i == 0)?;
+            mean.add(&self.resolve()?);
         }
-        let targets = self.targets.as_ref().expect("prepared");
-        let pixels = targets.read(&mut self.device, &targets.picture, Use::ColorTarget)?;
+        let pixels = mean.pixels;
         if per_side > 1 && !layers.is_empty() {
             clock.add(self.gather(scene, [0.0; 2])?);
         }
@@ -161,11 +148,14 @@ impl<'v> Renderer<'v> {
         {
             self.targets = Some(Targets::new(&gpu, scene.extent_pixels)?);
         }
-        let words = Words::of(
-            scene.settings,
-            self.voxels(scene).texel(),
-            self.mask.is_some(),
-        );
+        let layout = layout(&scene.view(&self.volume.grid(), [0.0; 2]));
+        let resident = self.resident[place(layout)].as_ref().expect("uploaded");
+        let slots = resident.bricks().len() as u32;
+        if self.ring.slots() < slots {
+            let bytes = size_of::<Frame>() as u32;
+            self.ring = ParameterRing::new(&gpu, bytes, slots, "frame parameters")?;
+        }
+        let words = Words::of(scene.settings, resident);
         let Settings {
             technique,
             mode,
@@ -181,14 +171,6 @@ impl<'v> Renderer<'v> {
             self.passes = Some(Passes::new(&gpu, scene.settings, &words)?);
         }
         Ok(())
-    }
-
-    fn voxels(&self, scene: &Scene) -> GpuVoxels<'_> {
-        if scene.settings.technique == Technique::Slices2d {
-            let axis = stack_axis(&scene.view(&self.volume.grid(), [0.0; 2]));
-            return GpuVoxels::Stack(self.stacks[axis].as_ref().expect("uploaded"));
-        }
-        GpuVoxels::Volume(self.brick.as_ref().expect("uploaded"))
     }
 
     fn set_transfer(&mut self, scene: &Scene, function: &TransferFunction) -> Result<(), Error> {
@@ -225,54 +207,65 @@ impl<'v> Renderer<'v> {
         let grid = self.volume.grid();
         let view = scene.view(&grid, in_pixel);
         let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
-        let layout = transfer.map_or_else(TransferLayout::default, |transfer| *transfer.layout());
-        // Not `self.voxels`: the borrow of `self.device` below must stay apart.
-        let voxels = if scene.settings.technique == Technique::Slices2d {
-            GpuVoxels::Stack(self.stacks[stack_axis(&view)].as_ref().expect("uploaded"))
-        } else {
-            GpuVoxels::Volume(self.brick.as_ref().expect("uploaded"))
-        };
-        let mut fields = view.fields(&voxels.texel().coding, &layout)?;
-        let slices = match scene.settings.technique {
-            Technique::Raycast => 0,
-            Technique::Slices3d => set_planes(&view, &mut fields),
-            Technique::Slices2d => set_slices(&view, stack_axis(&view), &mut fields),
-        };
-        let per_side = scene.settings.rays_per_side as f32;
-        fields.weight = 1.0 / (per_side * per_side);
+        let transfer_layout = transfer.map_or_else(TransferLayout::default, |t| *t.layout());
+        let volume = self.resident[place(layout(&view))]
+            .as_ref()
+            .expect("uploaded");
+        let mut fields = view.fields(&volume.texel().coding, &transfer_layout)?;
         fields.extreme_sign = extreme_sign(scene.settings.mode);
-        self.ring.write(0, bytemuck::bytes_of(&frame(fields)))?;
-        let inputs = Inputs {
-            ring: &self.ring,
-            voxels,
-            mask: self.mask.as_ref(),
-            transfer,
-        };
+
+        let cells: Vec<_> = volume.bricks().iter().map(|brick| brick.cell).collect();
+        let mut order = view.front_to_back(&cells);
+        let Settings {
+            technique,
+            order: blending,
+            ..
+        } = *scene.settings;
+        if technique != Technique::Raycast && blending == Order::BackToFront {
+            order.reverse();
+        }
+        let mut bricks = Vec::new();
+        for (slot, &i) in (0..).zip(&order) {
+            let mut fields = fields;
+            let part = view.part(Some(&cells[i]));
+            if cells.len() > 1 {
+                view.set_brick(&cells[i], slot == 0, &mut fields);
+            }
+            let slices = match technique {
+                Technique::Raycast => 0,
+                Technique::Slices3d => set_planes(&view, part, &mut fields),
+                Technique::Slices2d => set_slices(&view, stack_axis(&view), part, &mut fields),
+            };
+            self.ring.write(slot, bytemuck::bytes_of(&frame(fields)))?;
+            let inputs = Inputs {
+                ring: &self.ring,
+                volume,
+                brick: &volume.bricks()[i],
+                transfer,
+            };
+            bricks.push(Recording {
+                inputs,
+                offset: self.ring.offset(slot)?,
+                slices,
+            });
+        }
         let submission = Submission {
             device: &mut self.device,
-            inputs: &inputs,
             targets: self.targets.as_ref().expect("prepared"),
-            offset: self.ring.offset(0)?,
-            slices,
+            bricks: &bricks,
             timer: self.timer.as_ref(),
         };
         Ok(pass(self.passes.as_ref().expect("prepared"), submission)?)
     }
 
-    /// Adds what was gathered to the picture; the parameters are still in the ring.
-    fn resolve(&mut self, is_first: bool) -> Result<(), Error> {
+    /// The colours of what was gathered; the parameters are still in the ring.
+    fn resolve(&mut self) -> Result<Vec<[f32; 4]>, Error> {
         let passes = self.passes.as_ref().expect("prepared");
         let targets = self.targets.as_ref().expect("prepared");
         let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
         let offset = self.ring.offset(0)?;
-        Ok(passes.resolve(
-            &mut self.device,
-            &self.ring,
-            offset,
-            targets,
-            transfer,
-            is_first,
-        )?)
+        passes.resolve(&mut self.device, &self.ring, offset, targets, transfer)?;
+        Ok(targets.read(&mut self.device, &targets.picture, Use::ColorTarget)?)
     }
 
     /// The default window of a projecting mode without a transfer function: the range of this picture.
@@ -361,6 +354,43 @@ fn check_layers(settings: &Settings, wanted: &[LayerKind]) -> Result<(), Error> 
         }
     }
     Ok(())
+}
+
+/// How the volume must lie for a view's technique.
+fn layout(view: &View) -> TextureLayout {
+    match view.settings.technique {
+        Technique::Raycast | Technique::Slices3d => TextureLayout::Texture3d,
+        Technique::Slices2d => TextureLayout::Stack(stack_axis(view)),
+    }
+}
+
+/// Where a layout is kept among those that are resident.
+fn place(layout: TextureLayout) -> usize {
+    match layout {
+        TextureLayout::Texture3d => 0,
+        TextureLayout::Stack(axis) => 1 + axis,
+    }
+}
+
+/// The mean of pictures, added up in f32 in the order of their rays: no device needs to blend for it.
+struct Mean {
+    weight: f32,
+    pixels: Vec<[f32; 4]>,
+}
+
+impl Mean {
+    fn new([width, height]: [u32; 2], per_side: u32) -> Self {
+        Self {
+            weight: 1.0 / (per_side * per_side) as f32,
+            pixels: vec![[0.0; 4]; width as usize * height as usize],
+        }
+    }
+
+    fn add(&mut self, picture: &[[f32; 4]]) {
+        for (sum, color) in self.pixels.iter_mut().zip(picture) {
+            *sum = std::array::from_fn(|c| sum[c] + self.weight * color[c]);
+        }
+    }
 }
 
 /// Milliseconds on the device so far.

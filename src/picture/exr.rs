@@ -47,18 +47,24 @@ pub(super) fn encode(picture: &Picture) -> std::result::Result<Vec<u8>, OutputPr
     Ok(bytes.into_inner())
 }
 
+type Pixels = (Vec2<usize>, Vec<[f32; 4]>);
+
 /// R, G, B and A (1 where there is none) of an EXR file of one part in scan lines.
 pub(super) fn decode(bytes: &[u8]) -> std::result::Result<Image, PictureProblem> {
     let (width, height) = checked_size(bytes)?;
+    // A channel has two bytes a pixel at least.
+    let raw_bytes = 2 * u64::from(width) * u64::from(height);
+    PictureProblem::check_expansion("EXR", raw_bytes, bytes.len())?;
     let image = read()
         .no_deep_data()
         .largest_resolution_level()
         .rgba_channels(
-            |size, _| (size.0, vec![[0.0; 4]; size.area()]),
-            |(width, pixels): &mut (usize, Vec<[f32; 4]>),
-             at,
-             (r, g, b, a): (f32, f32, f32, f32)| {
-                pixels[at.1 * *width + at.0] = [r, g, b, a];
+            // Memory for the size that was checked, whatever the reader makes of the header.
+            |size, _| (size, vec![[0.0; 4]; width as usize * height as usize]),
+            |(size, pixels): &mut Pixels, at, (r, g, b, a): (f32, f32, f32, f32)| {
+                if let Some(pixel) = pixels.get_mut(at.flat_index_for_size(*size)) {
+                    *pixel = [r, g, b, a];
+                }
             },
         )
         .first_valid_layer()
@@ -66,8 +72,8 @@ pub(super) fn decode(bytes: &[u8]) -> std::result::Result<Image, PictureProblem>
         .non_parallel()
         .from_buffered(Cursor::new(bytes))
         .map_err(|cause| PictureProblem::broken("EXR", cause))?;
-    let (_, pixels) = image.layer_data.channel_data.pixels;
-    if pixels.len() != width as usize * height as usize {
+    let (size, pixels) = image.layer_data.channel_data.pixels;
+    if size != Vec2(width as usize, height as usize) {
         return Err(PictureProblem::broken("EXR", "the header has two sizes"));
     }
     Ok(Image {

@@ -21,7 +21,9 @@ pub use crate::color::ColorSpace;
 #[cfg(feature = "files")]
 pub use read::{MAX_PICTURE_BYTES, PictureError, PictureProblem, read_image};
 #[cfg(feature = "files")]
-pub use write::{BitDepth, OutputError, OutputProblem, PictureFormat, WriteOptions, write_picture};
+pub use write::{
+    BitDepth, OutputError, OutputProblem, PictureFormat, WriteOptions, write_file, write_picture,
+};
 
 /// A picture, rows from the top.
 #[derive(Clone, Debug, PartialEq)]

@@ -31,11 +31,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, PictureProblem> {
             format: "npy",
             field,
             wanted,
-            found: found
-                .chars()
-                .take(60)
-                .flat_map(char::escape_debug)
-                .collect(),
+            found: shown(found),
         };
     let rest = bytes
         .strip_prefix(MAGIC)
@@ -100,4 +96,10 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, PictureProblem> {
         pixels,
         numbers,
     })
+}
+
+/// The beginning of a field, on one line.
+fn shown(text: &str) -> String {
+    let beginning = text.chars().take(40);
+    beginning.filter(|c| !c.is_control()).collect()
 }

@@ -1,83 +1,63 @@
-//! PNG (ISO/IEC 15948): straight sRGB numbers of 8 or 16 bits, said so by an sRGB chunk.
+//! PNG (ISO/IEC 15948): straight sRGB numbers of 8 or 16 bits.
 
 use super::Picture;
 use super::compare::{Image, Numbers};
 use super::read::{MAX_PICTURE_BYTES, PictureProblem};
 use super::write::{BitDepth, OutputProblem};
-use png::{ColorType, Transformations};
+use image::codecs::png::{PngDecoder, PngEncoder};
+use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder, ImageError, Limits};
+use std::io::Cursor;
 
 /// The bytes of a PNG file of `picture`, layers left out.
 pub(super) fn encode(picture: &Picture, depth: BitDepth) -> Result<Vec<u8>, OutputProblem> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, picture.width, picture.height);
-    encoder.set_color(ColorType::Rgba);
-    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    let data: Vec<u8> = match depth {
+    let (data, color): (Vec<u8>, _) = match depth {
         BitDepth::Eight => {
-            encoder.set_depth(png::BitDepth::Eight);
             let codes = picture.codes(u8::MAX.into());
-            codes
-                .as_flattened()
-                .iter()
-                .map(|&code| code as u8)
-                .collect()
+            let codes = codes.as_flattened().iter().map(|&code| code as u8);
+            (codes.collect(), ExtendedColorType::Rgba8)
         }
         BitDepth::Sixteen => {
-            encoder.set_depth(png::BitDepth::Sixteen);
             let codes = picture.codes(u16::MAX);
             let codes = codes.as_flattened().iter();
-            codes.flat_map(|code| code.to_be_bytes()).collect()
+            let bytes = codes.flat_map(|code| code.to_ne_bytes());
+            (bytes.collect(), ExtendedColorType::Rgba16)
         }
     };
-    let refused = |cause: png::EncodingError| OutputProblem::Encode(cause.to_string());
-    let mut writer = encoder.write_header().map_err(refused)?;
-    writer.write_image_data(&data).map_err(refused)?;
-    writer.finish().map_err(refused)?;
+    let mut bytes = Vec::new();
+    let refused = |cause: ImageError| OutputProblem::Encode(cause.to_string());
+    let encoder = PngEncoder::new(&mut bytes);
+    encoder
+        .write_image(&data, picture.width, picture.height, color)
+        .map_err(refused)?;
     Ok(bytes)
 }
 
 /// The pixels of a PNG file of any kind.
 pub(super) fn decode(bytes: &[u8]) -> Result<Image, PictureProblem> {
-    let broken = |cause: png::DecodingError| PictureProblem::broken("PNG", cause);
-    let limits = png::Limits {
-        bytes: MAX_PICTURE_BYTES as usize,
-    };
-    let mut decoder = png::Decoder::new_with_limits(std::io::Cursor::new(bytes), limits);
-    // Palettes and fewer than 8 bits become 8 bits.
-    decoder.set_transformations(Transformations::EXPAND);
-    let mut reader = decoder.read_info().map_err(broken)?;
-    let size = reader.output_buffer_size();
-    let (width, height) = reader.info().size();
+    let broken = |cause: ImageError| PictureProblem::broken("PNG", cause);
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(MAX_PICTURE_BYTES);
+    let decoder = PngDecoder::with_limits(Cursor::new(bytes), limits).map_err(broken)?;
+    let (width, height) = decoder.dimensions();
     PictureProblem::check_size("PNG", width.into(), height.into())?;
-    let Some(size) = size.filter(|&size| size as u64 <= MAX_PICTURE_BYTES) else {
-        return Err(PictureProblem::too_large(
-            "PNG",
-            width.into(),
-            height.into(),
-        ));
+    PictureProblem::check_expansion("PNG", decoder.total_bytes(), bytes.len())?;
+    let is_deep = decoder.color_type().bytes_per_pixel() > decoder.color_type().channel_count();
+    let found = DynamicImage::from_decoder(decoder).map_err(broken)?;
+    // Grey, palettes and fewer than 8 bits become red, green, blue and alpha here.
+    let numbers: Vec<f32> = if is_deep {
+        let codes = found.into_rgba16().into_raw();
+        codes
+            .iter()
+            .map(|&code| f32::from(code) / 65_535.0)
+            .collect()
+    } else {
+        let codes = found.into_rgba8().into_raw();
+        codes.iter().map(|&code| f32::from(code) / 255.0).collect()
     };
-    let mut data = vec![0; size];
-    let frame = reader.next_frame(&mut data).map_err(broken)?;
-    let numbers: Vec<f32> = match frame.bit_depth {
-        png::BitDepth::Sixteen => {
-            let codes = data.as_chunks::<2>().0.iter();
-            codes
-                .map(|&code| f32::from(u16::from_be_bytes(code)) / 65_535.0)
-                .collect()
-        }
-        _ => data.iter().map(|&code| f32::from(code) / 255.0).collect(),
-    };
-    let pixel = |p: &[f32]| match *p {
-        [grey] => [grey, grey, grey, 1.0],
-        [grey, alpha] => [grey, grey, grey, alpha],
-        [r, g, b] => [r, g, b, 1.0],
-        _ => [p[0], p[1], p[2], p[3]],
-    };
-    let pixels = numbers.chunks_exact(frame.color_type.samples()).map(pixel);
     Ok(Image {
         width,
         height,
-        pixels: pixels.collect(),
+        pixels: numbers.as_chunks::<4>().0.to_vec(),
         numbers: Numbers::StraightSrgb,
     })
 }

@@ -10,6 +10,9 @@ use std::path::{Path, PathBuf};
 pub const MAX_PICTURE_BYTES: u64 = 1 << 31;
 /// Of a pixel in memory.
 const PIXEL_BYTES: u64 = 16;
+/// No compression in use makes one byte of more than this many; deflate ends at 1032.
+#[cfg(any(feature = "png", feature = "exr"))]
+const MAX_EXPANSION: u64 = 8192;
 
 /// What went wrong with a picture file, and with which one.
 #[derive(Debug, thiserror::Error)]
@@ -77,6 +80,7 @@ pub enum PictureProblem {
 }
 
 impl PictureProblem {
+    #[cfg(any(feature = "png", feature = "exr"))]
     pub(super) fn broken(format: &'static str, what: impl ToString) -> Self {
         let what = what.to_string().chars().take(200).collect();
         Self::Broken { format, what }
@@ -88,6 +92,23 @@ impl PictureProblem {
             width,
             height,
         }
+    }
+
+    /// An error where a file of `file_bytes` cannot hold the `raw_bytes` that its header promises.
+    #[cfg(any(feature = "png", feature = "exr"))]
+    pub(super) fn check_expansion(
+        format: &'static str,
+        raw_bytes: u64,
+        file_bytes: usize,
+    ) -> Result<(), Self> {
+        if raw_bytes <= (file_bytes as u64).saturating_mul(MAX_EXPANSION) {
+            return Ok(());
+        }
+        Err(Self::Size {
+            format,
+            wanted_bytes: raw_bytes,
+            found_bytes: file_bytes as u64,
+        })
     }
 
     /// The size, if it is not too large.

@@ -137,7 +137,21 @@ pub fn write_picture(
     Ok(())
 }
 
+/// Puts a file with these bytes at `path`, whole or not at all. Only `force` replaces one.
+pub fn write_file(path: &Path, bytes: &[u8], force: bool) -> Result<(), OutputError> {
+    place::stage(path, bytes, force)
+        .and_then(place::Staged::publish)
+        .map_err(|problem| OutputError {
+            path: path.to_owned(),
+            problem,
+        })
+}
+
 /// The files of `picture` and what stands in them.
+#[cfg_attr(
+    not(feature = "png"),
+    expect(unused_variables, reason = "only PNG has options")
+)]
 fn encode(
     picture: &Picture,
     path: &Path,

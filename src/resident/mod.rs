@@ -3,14 +3,12 @@
 //! Making them only creates objects. Their content is uploaded by recorded copies (or, where the host
 //! reaches the memory, written at once); nothing here submits or waits.
 
-mod mask;
-mod stacks;
+mod bricks;
 mod texel;
 mod transfer;
 mod volume;
 
-pub use mask::GpuMask;
-pub use stacks::GpuStack;
+pub use bricks::{Cell, front_to_back};
 pub use texel::{Coding, TexelFormat};
 pub use transfer::{GpuTransfer, TransferLayout};
-pub use volume::GpuVolume;
+pub use volume::{Brick, GpuVolume, TextureLayout};

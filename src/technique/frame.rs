@@ -5,9 +5,9 @@
 //! `sampling.md` 3 wants them.
 
 use super::{MAX_SAMPLES_PER_RAY, Settings};
-use crate::camera::{Camera, Rays};
+use crate::camera::{Camera, Projection, Rays};
 use crate::picture::ColorSpace;
-use crate::resident::{Coding, TransferLayout};
+use crate::resident::{Cell, Coding, TransferLayout, front_to_back};
 use crate::shaders::{Frame, FrameFields, MAX_CLIP_PLANES};
 use crate::technique::Error;
 use crate::transfer::Interpolation;
@@ -89,7 +89,6 @@ impl View<'_> {
             slope: coding.slope,
             intercept: coding.intercept,
             codes_are_integers: coding.is_integer.into(),
-            weight: 1.0,
             domain_min: v(domain_min),
             domain_max: v(domain_max),
             cover_min: v(domain_min - margin),
@@ -108,6 +107,12 @@ impl View<'_> {
             opacity_point_count: transfer.opacity_point_count,
             interpolation_is_step: (transfer.interpolation == Interpolation::Step).into(),
             color_space_is_display: (self.settings.color_space == ColorSpace::Display).into(),
+            brick_min: [0.0; 3],
+            brick_max: [0.0; 3],
+            brick_origin: [0.0; 3],
+            brick_dims: self.grid.dims.map(|n| n as f32),
+            is_first_brick: 1,
+            is_only_brick: 1,
             extent_pixels: self.extent_pixels,
             slice_first: 0,
             slice_direction: 1,
@@ -116,6 +121,68 @@ impl View<'_> {
             slice_axis: 0,
             extreme_sign: 1.0,
         })
+    }
+
+    /// Narrows the parameters to one of several bricks. `is_first`: no nearer one has been recorded.
+    pub fn set_brick(&self, cell: &Cell, is_first: bool, fields: &mut FrameFields) {
+        let [low, high] = self.part(Some(cell));
+        for k in 0..3 {
+            let margin = fields.domain_min[k] - fields.cover_min[k];
+            fields.cover_min[k] = low[k] as f32 - margin;
+            fields.cover_max[k] = high[k] as f32 + margin;
+            // Rounding may take a sample a little out of the grid: the outer bricks have no outer face.
+            let own = &cell.own;
+            let is_outer = [own.min[k] == 0, own.max[k] == self.grid.dims[k]];
+            fields.brick_min[k] = if is_outer[0] {
+                f32::MIN
+            } else {
+                own.min[k] as f32
+            };
+            fields.brick_max[k] = if is_outer[1] {
+                f32::MAX
+            } else {
+                own.max[k] as f32
+            };
+        }
+        fields.brick_origin = cell.stored.min.map(|n| n as f32);
+        fields.brick_dims = cell.stored.dims().map(|n| n as f32);
+        fields.is_first_brick = is_first.into();
+        fields.is_only_brick = 0;
+    }
+
+    /// The part of the domain that lies in a brick, or all of it.
+    pub fn part(&self, cell: Option<&Cell>) -> [DVec3; 2] {
+        let [low, high] = self.domain();
+        let corner = |voxel: [u32; 3]| DVec3::from_array(voxel.map(f64::from));
+        match cell {
+            Some(cell) => [
+                low.max(corner(cell.own.min)),
+                high.min(corner(cell.own.max)),
+            ],
+            None => [low, high],
+        }
+    }
+
+    /// The order in which every ray meets the bricks.
+    pub fn front_to_back(&self, cells: &[Cell]) -> Vec<usize> {
+        let size = cells[0].own.dims();
+        let eye_cell = match self.camera.projection {
+            Projection::Perspective { .. } => {
+                let eye = self
+                    .grid
+                    .world_from_voxel
+                    .inverse()
+                    .transform_point3(self.camera.eye);
+                std::array::from_fn(|k| eye[k] / f64::from(size[k]))
+            }
+            Projection::Orthographic { .. } => {
+                let forward = self.rays().forward;
+                self.grid
+                    .voxel_rows()
+                    .map(|row| -f64::INFINITY.copysign(row.dot(forward)))
+            }
+        };
+        front_to_back(cells, eye_cell)
     }
 
     /// The longest ray is the box's diagonal.
@@ -218,7 +285,6 @@ fn clip_rows(rays: &Rays, [width, height]: [u32; 2]) -> [[f32; 4]; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::Projection;
     use glam::dvec4;
 
     fn view_of<'a>(grid: &'a Grid, camera: &'a Camera, settings: &'a Settings) -> View<'a> {

@@ -3,37 +3,18 @@
 
 use super::{Filter, Lattice, Mode, Settings};
 use crate::gpu::{Bindings, Error, Gpu, Layout, ParameterRing, Resource};
-use crate::resident::{GpuMask, GpuStack, GpuTransfer, GpuVolume, TexelFormat};
+use crate::resident::{Brick, GpuTransfer, GpuVolume, TextureLayout};
 use std::sync::Arc;
-
-/// Values on the device.
-#[derive(Clone, Copy, Debug)]
-pub enum GpuVoxels<'a> {
-    /// For ray casting, projection and view-aligned slices.
-    Volume(&'a GpuVolume),
-    /// For 2D texture slicing.
-    Stack(&'a GpuStack),
-}
-
-impl GpuVoxels<'_> {
-    /// What the texels mean.
-    pub fn texel(&self) -> &TexelFormat {
-        match self {
-            Self::Volume(volume) => volume.texel(),
-            Self::Stack(stack) => stack.texel(),
-        }
-    }
-}
 
 /// What a technique reads.
 #[derive(Clone, Copy, Debug)]
 pub struct Inputs<'a> {
     /// Parameters; one slot a recording.
     pub ring: &'a ParameterRing,
-    /// Values.
-    pub voxels: GpuVoxels<'a>,
-    /// Holes, if there are any.
-    pub mask: Option<&'a GpuMask>,
+    /// What is shown.
+    pub volume: &'a GpuVolume,
+    /// The part of it that this recording shows.
+    pub brick: &'a Brick,
     /// Classification; projecting modes do without.
     pub transfer: Option<&'a GpuTransfer>,
 }
@@ -50,18 +31,14 @@ impl Inputs<'_> {
         outputs: &[(&str, Resource)],
     ) -> Result<Bindings, Error> {
         let mut given = vec![("frame", Resource::Uniform(self.ring))];
-        match self.voxels {
-            GpuVoxels::Volume(volume) => {
-                given.push(("volume", Resource::sampled(volume.values())));
-                given.push(("volume_sampler", Resource::Sampler(volume.sampler())));
-            }
-            GpuVoxels::Stack(stack) => {
-                given.push(("stack", Resource::sampled(stack.slices())));
-                given.push(("volume_sampler", Resource::Sampler(stack.sampler())));
-            }
-        }
-        if let Some(mask) = self.mask {
-            given.push(("validity", Resource::sampled(mask.validity())));
+        let values = match self.volume.layout() {
+            TextureLayout::Texture3d => "volume",
+            TextureLayout::Stack(_) => "stack",
+        };
+        given.push((values, Resource::sampled(&self.brick.values)));
+        given.push(("volume_sampler", Resource::Sampler(self.volume.sampler())));
+        if let Some(validity) = &self.brick.validity {
+            given.push(("validity", Resource::sampled(validity)));
         }
         if let Some(transfer) = self.transfer {
             given.push(("transfer_table", Resource::sampled(transfer.table())));
@@ -87,15 +64,17 @@ pub struct Words {
 }
 
 impl Words {
-    /// The variant for a picture of such voxels.
-    pub fn of(settings: &Settings, texel: &TexelFormat, has_holes: bool) -> Self {
+    /// The variant for a picture of such a volume.
+    pub fn of(settings: &Settings, volume: &GpuVolume) -> Self {
         Self {
             filter: match settings.filter {
                 Filter::Nearest => "nearest",
-                Filter::Linear if settings.conformance || !texel.is_filtered => "linear_fetch",
+                Filter::Linear if settings.conformance || !volume.texel().is_filtered => {
+                    "linear_fetch"
+                }
                 Filter::Linear => "linear",
             },
-            holes: if has_holes { "mask" } else { "none" },
+            holes: if volume.has_holes() { "mask" } else { "none" },
             lattice: match settings.lattice {
                 Lattice::Ray => "ray",
                 Lattice::Planes => "planes",

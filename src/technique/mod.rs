@@ -5,13 +5,14 @@ pub mod composite;
 mod frame;
 mod inputs;
 mod march;
+pub mod merge;
 pub mod projection;
 pub mod raycast;
 pub mod slices_2d;
 pub mod slices_3d;
 
 pub use frame::{View, frame};
-pub use inputs::{GpuVoxels, Inputs, Words};
+pub use inputs::{Inputs, Words};
 
 /// Where samples lie.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -38,13 +38,15 @@ impl Kind {
         }
         // Outliers do not count: the background is dark against most of the values.
         let (dark, bright) = (summary.quantile(0.001), summary.quantile(0.999));
-        let mode = summary.mode();
+        let threshold = summary.threshold(dark, summary.quantile(0.9995));
+        let mode = summary.mode_below(threshold);
         let near = 0.02 * (bright - dark);
         let background = summary.share_below(mode + near) - summary.share_below(mode - near);
-        if mode > dark + 0.25 * (bright - dark) || background < 0.1 {
+        // Measured numbers have noise in the background; computed ones have no background but by a mask.
+        let enough = if summary.integers { 0.1 } else { 0.3 };
+        if mode > dark + 0.25 * (bright - dark) || background < enough {
             return Self::Field;
         }
-        let threshold = summary.threshold(dark, summary.quantile(0.9995));
         if 1.0 - summary.share_below(threshold) < 0.03 {
             Self::Sparse
         } else {
@@ -97,25 +99,21 @@ fn looks_like_hounsfield(summary: &ValueSummary) -> bool {
     let [low, high] = summary.range;
     let air = summary.share_below(-800.0);
     let gap = summary.share_below(-500.0) - air;
-    summary.integers
-        && (-3100.0..=-900.0).contains(&low)
-        && high > 200.0
-        && air > 0.05
-        && (gap < air || air > 0.3)
+    summary.integers && (-3100.0..=-900.0).contains(&low) && high > 200.0 && air > 0.05 && gap < air
 }
 
 /// Skin is where air turns to tissue, -500 to -200 HU; then bone as `ct-bone` has it.
 const CT: &[Stop] = &[
-    (-650.0, [96, 58, 44], 0.0),
-    (-420.0, [150, 98, 78], 0.012),
-    (-250.0, [206, 150, 124], 0.016),
+    (-650.0, [110, 66, 48], 0.0),
+    (-420.0, [176, 118, 94], 0.022),
+    (-250.0, [226, 172, 146], 0.03),
     (-120.0, [214, 150, 120], 0.002),
-    (110.0, [70, 14, 10], 0.002),
-    (180.0, [96, 28, 18], 0.03),
-    (260.0, [160, 88, 56], 0.12),
-    (420.0, [224, 188, 146], 0.35),
-    (800.0, [250, 238, 214], 0.7),
-    (1600.0, [255, 255, 250], 0.9),
+    (110.0, [60, 12, 8], 0.002),
+    (200.0, [92, 26, 16], 0.05),
+    (330.0, [150, 78, 48], 0.14),
+    (560.0, [212, 168, 124], 0.3),
+    (1000.0, [244, 226, 196], 0.6),
+    (1800.0, [255, 255, 250], 0.9),
 ];
 
 /// Five colours of viridis (Smith & van der Walt 2015, public domain): equal steps look equal.
@@ -171,7 +169,7 @@ fn categorical(summary: &ValueSummary) -> TransferFunction {
     });
     let opacity = labels.iter().map(|&(label, _)| OpacityPoint {
         value: value(label),
-        opacity: if Some(label) == background { 0.0 } else { 0.12 },
+        opacity: if Some(label) == background { 0.0 } else { 0.05 },
     });
     TransferFunction {
         color: color.collect(),

@@ -99,11 +99,11 @@ pub(super) type Stop = (f64, [u8; 3], f64);
 /// Cortical bone is above 300 HU, spongy bone and contrast medium from 150.
 const CT_BONE: &[Stop] = &[
     (120.0, [40, 6, 4], 0.0),
-    (180.0, [92, 26, 16], 0.03),
-    (260.0, [158, 84, 52], 0.12),
-    (420.0, [222, 184, 140], 0.35),
-    (800.0, [250, 238, 214], 0.7),
-    (1600.0, [255, 255, 250], 0.9),
+    (200.0, [92, 26, 16], 0.05),
+    (330.0, [150, 78, 48], 0.14),
+    (560.0, [212, 168, 124], 0.3),
+    (1000.0, [244, 226, 196], 0.6),
+    (1800.0, [255, 255, 250], 0.9),
 ];
 
 /// Fat is near -100 HU, water 0, muscle and organs 20 to 80, bone above 200.
@@ -176,7 +176,7 @@ fn fitted(summary: &ValueSummary, stops: &[Stop], early: f64) -> TransferFunctio
 fn signal(summary: &ValueSummary, early: f64) -> Window {
     let [low, high] = [summary.quantile(0.001), summary.quantile(0.9995)];
     let threshold = summary.threshold(low, high);
-    let background = summary.mode().min(threshold);
+    let background = summary.mode_below(threshold);
     let start = threshold - early * (threshold - background);
     let bright = 1.0 - summary.share_below(threshold);
     let end = summary.quantile(1.0 - bright / 200.0);

@@ -21,7 +21,7 @@ impl Volume {
     ) -> Result<Self, ReadError> {
         let header = source.header();
         let failed = |problem| ReadError {
-            path: header.path.clone(),
+            path: source.path().to_owned(),
             problem,
         };
         check_inside(header, pick, region).map_err(failed)?;

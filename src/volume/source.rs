@@ -2,10 +2,13 @@
 
 use super::{VoxelType, Voxels};
 use glam::DAffine3;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A volume that can be read in parts: a file, a folder, or a formula.
 pub trait Source: Send + Sync {
+    /// The file, folder or phantom, as errors name it.
+    fn path(&self) -> &Path;
+
     /// What the source holds, checked once when it was opened.
     fn header(&self) -> &Header;
 
@@ -71,8 +74,6 @@ pub struct Pick {
 /// What a source holds. Nothing in it can be wrong: dims are not zero, the affine can be inverted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Header {
-    /// The file, folder or phantom, as errors name it.
-    pub path: PathBuf,
     /// The kind of file.
     pub format: Format,
     /// Voxels along x, y, z.

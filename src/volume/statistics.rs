@@ -4,7 +4,7 @@
 
 use super::read::check_memory;
 use super::voxels::{Stored, with_numbers};
-use super::{Limits, Pick, ReadError, Source, Voxels};
+use super::{Limits, Loss, Pick, Piece, ReadError, Source, Voxels};
 use std::ops::Range;
 
 /// Smallest, largest and mean value, and how many voxels count.
@@ -22,6 +22,8 @@ pub struct Statistics {
     pub non_finite_count: u64,
     /// Finite voxels that equal the fill.
     pub fill_count: u64,
+    /// What rounding to f32 changed, in stored units.
+    pub loss: Loss,
     /// How often each value occurs.
     pub histogram: Histogram,
 }
@@ -52,7 +54,7 @@ impl Statistics {
     ) -> Result<Self, ReadError> {
         let header = source.header();
         check_memory(header, header.whole(), limits).map_err(|problem| ReadError {
-            path: header.path.clone(),
+            path: source.path().to_owned(),
             problem,
         })?;
         let picks: Vec<Pick> = (0..header.times)
@@ -65,8 +67,9 @@ impl Statistics {
         let mut tally = Tally::default();
         let mut kept = None;
         for &pick in &picks {
-            let voxels = source.read(pick, header.whole())?.voxels;
+            let Piece { voxels, loss } = source.read(pick, header.whole())?;
             tally.add(&voxels, header.fill);
+            tally.loss = tally.loss.and(loss);
             kept = (picks.len() == 1).then_some(voxels);
         }
         let Some(mut bins) = Bins::over(&tally, header.stored.is_float()) else {
@@ -94,6 +97,7 @@ impl Statistics {
             valid_count: tally.valid,
             non_finite_count: tally.non_finite,
             fill_count: tally.fill,
+            loss: tally.loss,
             histogram: Histogram {
                 value_range: ordered([
                     bins.start,
@@ -113,6 +117,7 @@ struct Tally {
     valid: u64,
     non_finite: u64,
     fill: u64,
+    loss: Loss,
 }
 
 impl Default for Tally {
@@ -124,6 +129,7 @@ impl Default for Tally {
             valid: 0,
             non_finite: 0,
             fill: 0,
+            loss: Loss::default(),
         }
     }
 }
@@ -158,6 +164,7 @@ impl Tally {
             valid_count: 0,
             non_finite_count: self.non_finite,
             fill_count: self.fill,
+            loss: self.loss,
             histogram: Histogram {
                 value_range: [0.0; 2],
                 counts: Vec::new(),

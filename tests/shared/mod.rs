@@ -1,11 +1,7 @@
 //! What tests of pictures share: a device that fails on any validation message, small volumes, and a
 //! comparison that cannot pass when it is empty.
 
-#![allow(
-    dead_code,
-    unused_imports,
-    reason = "each test file uses its part"
-)]
+#![allow(dead_code, unused_imports, reason = "each test file uses its part")]
 
 pub mod oracle;
 mod shot;
@@ -18,14 +14,20 @@ pub use worst::Worst;
 
 use glam::{DAffine3, DMat3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
-use stratavox::gpu::{DeviceChoice, Headless, Options, PipelineCache};
+use stratavox::gpu::{Caps, DeviceChoice, Headless, Options, PipelineCache};
 use stratavox::technique::{Lattice, Mode, Order, Settings, Technique};
 use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
 use stratavox::volume::{Grid, Rescale, Volume, Voxels};
 
 /// A device without a pipeline cache; dropping it panics on a validation message.
 pub fn device() -> Headless {
+    device_with(Caps::UNLIMITED)
+}
+
+/// The same with stricter limits.
+pub fn device_with(caps: Caps) -> Headless {
     let options = Options {
+        caps,
         pipeline_cache: PipelineCache::Off,
         ..Options::default()
     };
@@ -130,7 +132,11 @@ pub fn oblique_shots(grid: Grid, mode: Mode) -> Vec<Shot> {
 /// dims[2] is even, every sample of every placement is a voxel centre.
 pub fn straight_shots(grid: Grid, mode: Mode) -> Vec<Shot> {
     let [nx, ny, nz] = grid.dims.map(f64::from);
-    assert_eq!(grid.world_from_voxel, DAffine3::IDENTITY, "voxels of side 1 at the origin");
+    assert_eq!(
+        grid.world_from_voxel,
+        DAffine3::IDENTITY,
+        "voxels of side 1 at the origin"
+    );
     let center = grid.center();
     let camera = Camera {
         eye: center - dvec3(0.0, 0.0, nz),

@@ -6,11 +6,11 @@
 use glam::{DAffine3, DVec3};
 use stratavox::camera::Camera;
 use stratavox::resident::{Coding, TransferLayout};
+use stratavox::scene::Scene;
 use stratavox::shaders::Frame;
 use stratavox::technique::slices_2d::{set_slices, stack_axis};
 use stratavox::technique::slices_3d::set_planes;
 use stratavox::technique::{Lattice, Settings, Technique, View, frame};
-use stratavox::scene::Scene;
 use stratavox::transfer::TransferFunction;
 use stratavox::volume::{Grid, Volume};
 
@@ -86,8 +86,10 @@ impl Shot {
         let mut fields = view.fields(&coding, &TransferLayout::default()).unwrap();
         let slices = match self.settings.technique {
             Technique::Raycast => 0,
-            Technique::Slices3d => set_planes(&view, &mut fields),
-            Technique::Slices2d => set_slices(&view, stack_axis(&view), &mut fields),
+            Technique::Slices3d => set_planes(&view, view.part(None), &mut fields),
+            Technique::Slices2d => {
+                set_slices(&view, stack_axis(&view), view.part(None), &mut fields)
+            }
         };
         (frame(fields), slices)
     }
@@ -149,7 +151,10 @@ impl Shot {
                 plane.normal.dot(direction),
             );
             let t = -height / slope;
-            let end = (t, rounding(t, origin.distance(self.grid.center()) / slope.abs()));
+            let end = (
+                t,
+                rounding(t, origin.distance(self.grid.center()) / slope.abs()),
+            );
             if slope > 0.0 && t > enter.0 {
                 enter = end;
             } else if slope < 0.0 && t < leave.0 {
@@ -256,9 +261,6 @@ impl Chord {
             return self.leave - self.enter;
         };
         let inner = self.samples.windows(2).map(|w| 0.5 * (w[1].0 - w[0].0));
-        inner.fold(
-            (first.0 - self.enter).max(self.leave - last.0),
-            f64::max,
-        )
+        inner.fold((first.0 - self.enter).max(self.leave - last.0), f64::max)
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{Shot, device, volume_of};
 use glam::{DVec3, dvec3};
+use std::marker::PhantomData;
 use stratavox::offscreen::Renderer;
 use stratavox::picture::{ColorSpace, LayerKind, Picture};
 use stratavox::real::Real;
@@ -11,7 +12,6 @@ use stratavox::shaders::Frame;
 use stratavox::technique::blend::{blend, clear_color};
 use stratavox::technique::{Settings, Technique, projection, raycast, slices_2d, slices_3d};
 use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
-use std::marker::PhantomData;
 
 /// A field over voxel space and what its values look like. Colours are blended as they are
 /// (`ColorSpace::Display`), so that a linear ramp of values is a linear ramp of light.
@@ -106,8 +106,7 @@ fn accumulate<R: Real>(
     };
     match technique {
         Technique::Raycast if mode.is_projection() => {
-            let (found, _) =
-                projection::reference::project(frame, lattice, mode, pixel, value_at);
+            let (found, _) = projection::reference::project(frame, lattice, mode, pixel, value_at);
             [found.value, found.weight, zero, zero]
         }
         Technique::Raycast => {

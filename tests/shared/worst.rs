@@ -50,7 +50,11 @@ impl Worst {
     /// One number of one pixel. Not a number is infinitely wrong.
     pub fn take(&mut self, at: [u32; 2], error: f64, allowed: f64) {
         self.checked += 1;
-        let error = if error.is_nan() { f64::INFINITY } else { error.abs() };
+        let error = if error.is_nan() {
+            f64::INFINITY
+        } else {
+            error.abs()
+        };
         let ratio = if error == 0.0 { 0.0 } else { error / allowed };
         if ratio > self.ratio {
             (self.ratio, self.error, self.allowed, self.at) = (ratio, error, allowed, at);
@@ -89,7 +93,11 @@ impl Worst {
     #[track_caller]
     pub fn assert_holds(&self) {
         println!("{}", self.text());
-        assert!(self.checked >= 100, "{}: hardly anything checked", self.text());
+        assert!(
+            self.checked >= 100,
+            "{}: hardly anything checked",
+            self.text()
+        );
         assert!(
             self.left_out * 20 <= self.checked,
             "{}: too much left out",

@@ -82,7 +82,7 @@ impl InputFlags {
         }
         let source = match &self.raw {
             Some(layout) => {
-                let layout = format::raw::Layout::parse(layout).map_err(|problem| {
+                let layout = format::raw::RawSpec::parse(layout).map_err(|problem| {
                     Error::usage(
                         format!("--raw {layout}: {problem}"),
                         "--raw 256x256x109,i16,0.9x0.9x1.5,le",
@@ -107,6 +107,7 @@ impl InputFlags {
 
     /// Which of the volumes in the source to draw, and what a person should know about the choice.
     pub fn pick(&self, header: &Header) -> Result<(Pick, Option<String>), Error> {
+        self.check_one_variable(header)?;
         let (time, note) = self.time(header)?;
         let component = match self.component {
             Some(component) if component < header.components => component,
@@ -132,6 +133,21 @@ impl InputFlags {
             }
         };
         Ok((Pick { time, component }, note))
+    }
+
+    fn check_one_variable(&self, header: &Header) -> Result<(), Error> {
+        let in_path = |path: &str| path.starts_with(PHANTOM) && path.contains(",variable=");
+        let is_chosen = self.variable.is_some() || self.path.as_deref().is_some_and(in_path);
+        if is_chosen || header.variables.len() < 2 {
+            return Ok(());
+        }
+        Err(Error::usage(
+            format!(
+                "the input holds several variables: {}",
+                header.variables.join(", ")
+            ),
+            "choose one with --variable NAME",
+        ))
     }
 
     fn time(&self, header: &Header) -> Result<(u32, Option<String>), Error> {

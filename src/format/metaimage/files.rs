@@ -132,9 +132,10 @@ fn part(
             file_bytes: data_begins,
             decoded_bytes: 0,
         },
-        Some(-1) if encoding == Encoding::Raw || encoded_bytes.is_some() => {
-            Start::End { after_bytes: 0 }
-        }
+        Some(-1) if encoding == Encoding::Raw || encoded_bytes.is_some() => Start::End {
+            after_bytes: 0,
+            earliest: data_begins,
+        },
         Some(-1) => {
             let what = format!(
                 "HeaderSize -1 with {} data of unknown size",

@@ -46,7 +46,7 @@ pub(super) fn open(path: &Path, limits: &Limits) -> Result<FileSource, ReadError
     let encoding = encoding(&fields).map_err(at(path))?;
     let mut notes = Vec::new();
     let endian = endian(&fields, stored, &mut notes).map_err(at(path))?;
-    let header = header(path, &fields, &array, stored, notes).map_err(at(path))?;
+    let header = header(&fields, &array, stored, notes).map_err(at(path))?;
     let promise = Promise {
         format: METAIMAGE,
         stored,
@@ -117,7 +117,6 @@ impl Array {
 }
 
 fn header(
-    path: &Path,
     fields: &Fields,
     array: &Array,
     stored: VoxelType,
@@ -131,7 +130,6 @@ fn header(
         return Err(invalid(METAIMAGE, name, "a number other than 0", "0"));
     }
     Ok(Header {
-        path: path.to_owned(),
         format: Format::MetaImage,
         dims: array.dims,
         components: array.components,
@@ -151,6 +149,10 @@ fn header(
 }
 
 /// `world = offset + sum of index[k] * spacing[k] * row[k]`, LPS, to voxel space and RAS+.
+#[allow(
+    clippy::arithmetic_side_effects,
+    reason = "vectors of f64: nothing wraps or panics"
+)]
 fn affine(fields: &Fields, dimension: usize, notes: &mut Vec<String>) -> Result<DAffine3, Problem> {
     let spacing = match fields.numbers(&["ElementSize", "ElementSpacing"], dimension)? {
         Some(spacing) => spacing,

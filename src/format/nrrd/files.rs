@@ -145,6 +145,7 @@ impl Skip {
         let start = match u64::try_from(self.bytes) {
             Err(_) => Start::End {
                 after_bytes: self.bytes.unsigned_abs().saturating_sub(1),
+                earliest: header_bytes,
             },
             Ok(bytes) => {
                 let after_lines = match self.lines {

@@ -33,7 +33,7 @@ pub(super) fn open(path: &Path, limits: &Limits) -> Result<FileSource, ReadError
     let stored = stored_type(&fields).map_err(at(path))?;
     let encoding = encoding(&fields).map_err(at(path))?;
     let endian = endian(&fields, stored, encoding).map_err(at(path))?;
-    let header = header(path, &fields, &array, stored).map_err(at(path))?;
+    let header = header(&fields, &array, stored).map_err(at(path))?;
     let promise = Promise {
         format: NRRD,
         stored,
@@ -46,12 +46,7 @@ pub(super) fn open(path: &Path, limits: &Limits) -> Result<FileSource, ReadError
     Ok(FileSource::new(path, header, data, limits))
 }
 
-fn header(
-    path: &Path,
-    fields: &Fields,
-    array: &Array,
-    stored: VoxelType,
-) -> Result<Header, Problem> {
+fn header(fields: &Fields, array: &Array, stored: VoxelType) -> Result<Header, Problem> {
     let mut notes = array.notes.clone();
     let world_from_voxel = space::affine(fields, array, &mut notes)?;
     if let Some((count, first)) = &fields.unknown {
@@ -71,7 +66,6 @@ fn header(
     // Values of eight bits cannot be Hounsfield units, whatever the modality.
     let may_be_hounsfield = fields.modality_is_ct && stored.bytes() > 1;
     Ok(Header {
-        path: path.to_owned(),
         format: Format::Nrrd,
         dims: array.dims,
         components: array.components,

@@ -15,6 +15,10 @@ use crate::volume::Problem;
 use glam::{DAffine3, DVec3};
 
 /// Voxel space to world, RAS+, and what should be said about it.
+#[allow(
+    clippy::arithmetic_side_effects,
+    reason = "vectors of f64: nothing wraps or panics"
+)]
 pub(super) fn affine(
     fields: &Fields,
     array: &Array,
@@ -167,6 +171,10 @@ fn origin(fields: &Fields) -> Result<DVec3, Problem> {
 }
 
 /// Steps along the world's own axes, and the centre of the first voxel.
+#[allow(
+    clippy::arithmetic_side_effects,
+    reason = "vectors of f64: nothing wraps or panics"
+)]
 fn along_axes(
     fields: &Fields,
     array: &Array,

@@ -10,6 +10,7 @@ use super::{Inputs, Order, Words};
 use crate::gpu::{Bindings, Error, Gpu, RasterDesc, RasterPipeline, set_area};
 use crate::shaders::shader;
 use ash::vk;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Vertices of one slice's cover.
@@ -54,7 +55,7 @@ impl Slices2d {
         inputs.bind(&self.gpu, self.pipeline.layout(), &[])
     }
 
-    /// Records the draw of `count` slices of the parameters at `offset` of the ring, and sets viewport and
+    /// Records the draw of `slices` (counted in the order of drawing) of the parameters at `offset` of the ring, and sets viewport and
     /// scissor to the whole target.
     ///
     /// # Safety
@@ -67,13 +68,13 @@ impl Slices2d {
         bindings: &Bindings,
         offset: u32,
         extent: [u32; 2],
-        count: u32,
+        slices: Range<u32>,
     ) {
         // SAFETY: the caller's promises; the bindings come from `bind`.
         unsafe {
             set_area(&self.gpu, cmd, extent);
             self.pipeline
-                .draw(cmd, bindings, &[offset], VERTICES, count);
+                .draw(cmd, bindings, &[offset], VERTICES, slices);
         }
     }
 }

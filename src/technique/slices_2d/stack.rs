@@ -7,6 +7,7 @@
 use crate::camera::Projection;
 use crate::shaders::FrameFields;
 use crate::technique::{Order, View};
+use glam::DVec3;
 
 /// Two axes that face the eye alike by this much are a tie: the lower one wins.
 const TIE: f64 = 1e-12;
@@ -30,12 +31,17 @@ pub fn stack_axis(view: &View) -> usize {
         .expect("one of three is the largest")
 }
 
-/// Fills in the slice parameters for one stack and returns how many slices to draw.
+/// Fills in the slice parameters for a part of the grid ([`View::part`]) in the stack along `axis`, and
+/// returns how many slices to draw.
 ///
 /// Rays that rise along the axis meet only slices above the eye, the others only slices below it. So both
 /// sides are drawn towards (or away from) the eye one after the other, and every pixel has its order.
-pub fn set_slices(view: &View, axis: usize, fields: &mut FrameFields) -> u32 {
-    let [low, high] = view.domain();
+pub fn set_slices(
+    view: &View,
+    axis: usize,
+    [low, high]: [DVec3; 2],
+    fields: &mut FrameFields,
+) -> u32 {
     let count = view.grid.dims[axis] as i32;
     let first = ((low[axis] - 0.5).ceil() as i32).clamp(0, count);
     let end = ((high[axis] - 0.5).floor() as i32 + 1).clamp(first, count);

@@ -5,11 +5,11 @@
 
 use crate::shaders::FrameFields;
 use crate::technique::{Order, View};
-use glam::dvec3;
+use glam::{DVec3, dvec3};
 
-/// Fills in the slice parameters and returns how many planes to draw.
-pub fn set_planes(view: &View, fields: &mut FrameFields) -> u32 {
-    let [first, last] = plane_range(view);
+/// Fills in the slice parameters for a part of the grid ([`View::part`]) and returns how many planes to draw.
+pub fn set_planes(view: &View, part: [DVec3; 2], fields: &mut FrameFields) -> u32 {
+    let [first, last] = plane_range(view, part);
     let count = (last - first + 1).max(0);
     (fields.slice_first, fields.slice_direction) = match view.settings.order {
         Order::BackToFront => (last, -1),
@@ -19,12 +19,11 @@ pub fn set_planes(view: &View, fields: &mut FrameFields) -> u32 {
     count as u32
 }
 
-/// The planes that meet the domain in front of the eye, one more at each end against rounding.
-fn plane_range(view: &View) -> [i32; 2] {
+/// The planes that meet the part in front of the eye, one more at each end against rounding.
+fn plane_range(view: &View, [low, high]: [DVec3; 2]) -> [i32; 2] {
     let step = view.step_world();
     let forward = view.rays().forward;
     let world_from_voxel = view.world_from_voxel();
-    let [low, high] = view.domain();
     let height = |i: u32| {
         let part = dvec3((i & 1).into(), (i >> 1 & 1).into(), (i >> 2).into());
         forward.dot(world_from_voxel.transform_point3(low + part * (high - low)))

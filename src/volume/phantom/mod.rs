@@ -26,6 +26,7 @@ use super::{
 use glam::{DAffine3, DMat3, DVec3};
 use spec::Spec;
 use std::num::NonZero;
+use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 /// The phantom that `spec` names, with or without `phantom:` in front.
@@ -44,11 +45,16 @@ pub fn open(spec: &str, limits: &Limits) -> Result<Box<dyn Source>, ReadError> {
 
 /// A field for each time, and where its voxels lie.
 struct Phantom {
+    spec: PathBuf,
     header: Header,
     field_at: Box<dyn Fn(u32) -> Box<dyn Field> + Send + Sync>,
 }
 
 impl Source for Phantom {
+    fn path(&self) -> &Path {
+        &self.spec
+    }
+
     fn header(&self) -> &Header {
         &self.header
     }
@@ -202,7 +208,6 @@ fn build(text: &str) -> Result<Phantom, Problem> {
     let spacing = (design.max.x - design.min.x) / f64::from(n);
     let size = design.max - design.min;
     let header = Header {
-        path: text.into(),
         format: Format::Phantom,
         dims: size
             .to_array()
@@ -220,7 +225,11 @@ fn build(text: &str) -> Result<Phantom, Problem> {
         variables,
         notes: Vec::new(),
     };
-    Ok(Phantom { header, field_at })
+    Ok(Phantom {
+        spec: text.into(),
+        header,
+        field_at,
+    })
 }
 
 fn rescale(design: &Design, stored: VoxelType) -> Rescale {

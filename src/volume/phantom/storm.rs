@@ -96,8 +96,8 @@ impl Storm {
         }
     }
 
-    /// From the axis of the updraft, at this height.
-    fn from_axis(&self, p: DVec3) -> DVec2 {
+    /// Away from the axis of the updraft, at this height.
+    fn off_axis(&self, p: DVec3) -> DVec2 {
         p.truncate() - self.center - TILT * p.z
     }
 
@@ -105,7 +105,7 @@ impl Storm {
     fn updraft(&self, p: DVec3) -> f64 {
         let top = TROPOPAUSE * self.strength.sqrt() + 1.5;
         let height = (p.z / top).clamp(0.0, 1.0);
-        let r = self.from_axis(p) / UPDRAFT_RADIUS;
+        let r = self.off_axis(p) / UPDRAFT_RADIUS;
         (std::f64::consts::PI * height).sin() * (-0.5 * r.length_squared()).exp()
     }
 
@@ -113,7 +113,7 @@ impl Storm {
         if p.z < CLOUD_BASE - 1.0 {
             return 0.0;
         }
-        let away = self.from_axis(p);
+        let away = self.off_axis(p);
         let top = CLOUD_BASE + (TROPOPAUSE + 1.0 - CLOUD_BASE) * self.strength.sqrt();
         let billows = 0.22 * turbulence(p * 0.4 + self.phase);
         // The tower is a ball on a stem; 1 in its middle, 0 on its wall.
@@ -159,7 +159,7 @@ impl Storm {
             3.0 + 0.7 * p.z.min(TROPOPAUSE),
         );
         // A vortex, fastest at the radius of the updraft: (r / s) exp((1 - r^2 / s^2) / 2).
-        let r = self.from_axis(p) / UPDRAFT_RADIUS;
+        let r = self.off_axis(p) / UPDRAFT_RADIUS;
         let spin = 22.0 * self.strength * (0.5 - 0.5 * r.length_squared() - p.z / 12.0).exp();
         let around = r.perp() * spin;
         // Air that went up comes down in a wide ring.

@@ -82,7 +82,11 @@ fn absorbed(
         let thickest = sigma(0.0).max(sigma(1.0));
         let allowed = allowed + 2.0 * chord.blur * thickest;
         worst.take(pixel, found[3] - wanted, 1e-5 + allowed * (-depth).exp());
-        worst.take(pixel, found[1] - 0.5 * wanted, 1e-5 + allowed * (-depth).exp());
+        worst.take(
+            pixel,
+            found[1] - 0.5 * wanted,
+            1e-5 + allowed * (-depth).exp(),
+        );
     }
     worst
 }
@@ -91,21 +95,33 @@ fn absorbed(
 pub fn linear_density(way: &dyn Way, shot: &Shot) -> Worst {
     const P: f64 = 0.02;
     const Q: f64 = 0.15;
-    absorbed("A2", way, shot, |s| P + Q * s, |_, [t0, t1], a, b| {
-        let middle = a + b * 0.5 * (t0 + t1);
-        ((t1 - t0) * (P + Q * middle), 0.0)
-    })
+    absorbed(
+        "A2",
+        way,
+        shot,
+        |s| P + Q * s,
+        |_, [t0, t1], a, b| {
+            let middle = a + b * 0.5 * (t0 + t1);
+            ((t1 - t0) * (P + Q * middle), 0.0)
+        },
+    )
 }
 
 /// A3: sigma = c s^2. Midpoints miss c b^2 d^3 / 12 in each segment, which is taken off the answer.
 pub fn quadratic_density(way: &dyn Way, shot: &Shot) -> Worst {
     const C: f64 = 0.3;
-    absorbed("A3", way, shot, |s| C * s * s, |chord, [t0, t1], a, b| {
-        let (s0, s1) = (a + b * t0, a + b * t1);
-        let integral = C * (t1 - t0) * (s0 * s0 + s0 * s1 + s1 * s1) / 3.0;
-        let missed: f64 = chord.samples.iter().map(|(_, d)| d.powi(3)).sum();
-        (integral - C * b * b * missed / 12.0, 0.0)
-    })
+    absorbed(
+        "A3",
+        way,
+        shot,
+        |s| C * s * s,
+        |chord, [t0, t1], a, b| {
+            let (s0, s1) = (a + b * t0, a + b * t1);
+            let integral = C * (t1 - t0) * (s0 * s0 + s0 * s1 + s1 * s1) / 3.0;
+            let missed: f64 = chord.samples.iter().map(|(_, d)| d.powi(3)).sum();
+            (integral - C * b * b * missed / 12.0, 0.0)
+        },
+    )
 }
 
 /// A9: an exponential atmosphere, sigma = sigma0 exp(-s / H). Each midpoint is off by at most
@@ -175,7 +191,8 @@ fn refined(shot: &Shot, factor: u32) -> Shot {
     Shot {
         grid: Grid {
             dims: shot.grid.dims.map(|dim| dim * factor),
-            world_from_voxel: shot.grid.world_from_voxel * DAffine3::from_scale(DVec3::splat(1.0 / n)),
+            world_from_voxel: shot.grid.world_from_voxel
+                * DAffine3::from_scale(DVec3::splat(1.0 / n)),
         },
         settings: stratavox::technique::Settings {
             crop: shot.settings.crop.map(|ends| ends.map(|end| end * n)),

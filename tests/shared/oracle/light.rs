@@ -39,8 +39,8 @@ pub fn homogeneous(way: &dyn Way, shot: &Shot) -> Worst {
 
 /// Optical depth that may come and go with the ends of a chord in f32: on planes none, they are counted.
 fn moved_ends(shot: &Shot, chord: Option<&Chord>, sigma: f64) -> f64 {
-    let is_counted = shot.settings.technique != Technique::Raycast
-        || shot.settings.lattice == Lattice::Planes;
+    let is_counted =
+        shot.settings.technique != Technique::Raycast || shot.settings.lattice == Lattice::Planes;
     if is_counted {
         return 0.0;
     }

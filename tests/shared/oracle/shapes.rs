@@ -44,7 +44,10 @@ impl Sphere {
     fn chords(&self, chord: &Chord) -> [f64; 2] {
         let d = chord.samples.iter().map(|s| s.1).fold(0.0, f64::max);
         let shortest = self.chord(chord, self.radius - self.blur) - d;
-        [shortest.max(0.0), self.chord(chord, self.radius + self.blur) + d]
+        [
+            shortest.max(0.0),
+            self.chord(chord, self.radius + self.blur) + d,
+        ]
     }
 }
 
@@ -178,7 +181,11 @@ pub fn gaussian_xray(way: &dyn Way, shot: &Shot, gaussian: &Gaussian) -> Worst {
         let peak = gaussian.peak(chord.direction);
         let [sum, _] = gaussian.allowed(chord);
         let wanted = peak * gaussian.maximum(chord);
-        worst.take(pixel, found - wanted, peak * (sum + 1e-5 + gaussian.interpolation));
+        worst.take(
+            pixel,
+            found - wanted,
+            peak * (sum + 1e-5 + gaussian.interpolation),
+        );
     })
 }
 
@@ -187,7 +194,11 @@ pub fn gaussian_maximum(way: &dyn Way, shot: &Shot, gaussian: &Gaussian) -> Wors
     through("A11", way, shot, gaussian, |worst, pixel, chord, found| {
         let [_, missed] = gaussian.allowed(chord);
         let wanted = gaussian.maximum(chord);
-        worst.take(pixel, found - wanted, missed + 1e-6 + gaussian.interpolation);
+        worst.take(
+            pixel,
+            found - wanted,
+            missed + 1e-6 + gaussian.interpolation,
+        );
     })
 }
 
@@ -201,7 +212,11 @@ pub fn gaussian_ratio(way: &dyn Way, mip: &Shot, xray: &Shot, gaussian: &Gaussia
             let wanted = 1.0 / gaussian.peak(chord.direction);
             let [sum, missed] = gaussian.allowed(chord);
             let relative = missed + (sum + 2e-5 + 2.0 * gaussian.interpolation) / part;
-            worst.take(pixel, found / sums[index(pixel)] - wanted, wanted * relative);
+            worst.take(
+                pixel,
+                found / sums[index(pixel)] - wanted,
+                wanted * relative,
+            );
         }
     })
 }

@@ -1,0 +1,11 @@
+//! The program as a person meets it: words, exit codes, files.
+#![cfg(feature = "cli")]
+
+mod device;
+mod errors;
+#[cfg(unix)]
+mod interrupt;
+mod person;
+mod pictures;
+mod real;
+mod words;

@@ -1,0 +1,165 @@
+//! Words that cannot be followed are refused by name, with exit code 2, before anything is read.
+
+use crate::person::Folder;
+
+#[test]
+fn a_word_that_is_not_built_exits_2_and_is_named() {
+    let folder = Folder::new();
+    for (words, name) in [
+        ("render phantom:fog -o a.png --mode iso", "`--mode iso`"),
+        ("render phantom:fog -o a.png --mode lmip", "`--mode lmip`"),
+        ("render phantom:fog -o a.png --mode mida", "`--mode mida`"),
+        ("render phantom:fog -o a.png --iso 3,4", "`--iso`"),
+        (
+            "render phantom:fog -o a.png --filter cubic",
+            "`--filter cubic`",
+        ),
+        (
+            "render phantom:fog -o a.png --filter quadratic-smooth",
+            "`--filter quadratic-smooth`",
+        ),
+        (
+            "render phantom:fog -o a.png --gradient-filter cubic",
+            "`--gradient-filter`",
+        ),
+        (
+            "render phantom:fog -o a.png --shading phong",
+            "`--shading phong`",
+        ),
+        (
+            "render phantom:fog -o a.png --material 1,1,1,1",
+            "`--material`",
+        ),
+        (
+            "render phantom:fog -o a.png --preintegrated",
+            "`--preintegrated`",
+        ),
+        ("render phantom:fog -o a.png --smooth", "`--smooth`"),
+        ("render phantom:fog -o a.png --labels x.nrrd", "`--labels`"),
+        (
+            "render phantom:fog -o a.png --label-tf x.json",
+            "`--label-tf`",
+        ),
+        (
+            "render phantom:fog -o a.exr --aov position",
+            "`--aov position`",
+        ),
+        ("render phantom:fog -o a.png --series 1.2.3", "`--series`"),
+        ("render . -o a.png", "folders"),
+        ("histogram phantom:fog -o h.png", "`stratavox histogram`"),
+        (
+            "animate phantom:fog -o %04d.png --turntable 3",
+            "`stratavox animate`",
+        ),
+        ("convert phantom:fog -o a.nrrd", "`stratavox convert`"),
+        ("conformance --device cpu", "`stratavox conformance`"),
+        ("preset list", "`stratavox preset`"),
+    ] {
+        folder
+            .run(words)
+            .assert_refused(2, &[name, "not built yet"]);
+    }
+    folder.file("a.tif", "II");
+    folder
+        .run("info a.tif")
+        .assert_refused(2, &["`.tif`", "not built yet"]);
+}
+
+#[test]
+fn a_word_that_cannot_be_is_a_usage_error() {
+    let folder = Folder::new();
+    for (words, name) in [
+        ("paint", "paint"),
+        ("render phantom:fog", "--output"),
+        ("render -o a.png", "INPUT"),
+        ("render phantom:fog -o a.jpg", "a.jpg"),
+        ("render phantom:fog -o a.png --size 0x3", "--size"),
+        ("render phantom:fog -o a.png --aa 2", "--aa 2"),
+        ("render phantom:fog -o a.png --zoom 0", "--zoom"),
+        ("render phantom:fog -o a.png --zoom nan", "--zoom"),
+        ("render phantom:fog -o a.png --eye 1,2", "--eye"),
+        (
+            "render phantom:fog -o a.png --eye 1,2,3 --view left",
+            "--view",
+        ),
+        ("render phantom:fog -o a.png --window 3,3", "--window 3,3"),
+        ("render phantom:fog -o a.png --preset ct-bones", "ct-bone,"),
+        (
+            "render phantom:fog -o a.png --background 2,0,0",
+            "--background",
+        ),
+        ("render phantom:fog -o a.png --crop 1,0,0,1,0,1", "--crop"),
+        ("render phantom:fog -o a.png --aov depth", "--aov"),
+        ("render phantom:fog -o a.png --repeat 0", "--repeat"),
+        ("render phantom:fog -o a.png --bit-depth 12", "--bit-depth"),
+        ("render phantom:fog -o a.png --timings a.png", "twice"),
+        ("render phantom:fog -o a.png --raw 2x2x2,u8", "--raw"),
+        (
+            "render phantom:fog,n=8 -o a.png --component 1",
+            "--component 1",
+        ),
+        ("render phantom:fog,n=8 -o a.png --time 9", "--time 9"),
+    ] {
+        let ran = folder.run(words);
+        assert_eq!(ran.code, 2, "{words}: {ran:#?}");
+        assert!(ran.err.contains(name), "{words}: {ran:#?}");
+        assert!(!ran.err.contains("panicked"), "{words}: {ran:#?}");
+    }
+    assert!(folder.names().is_empty(), "{:?}", folder.names());
+}
+
+#[test]
+fn help_and_version_are_answers_on_standard_output() {
+    let folder = Folder::new();
+    for words in [
+        "--help",
+        "render --help",
+        "info --help",
+        "devices --help",
+        "compare --help",
+        "bench --help",
+    ] {
+        let ran = folder.run(words);
+        ran.assert_done();
+        assert!(
+            ran.out.contains("stratavox ") && ran.err.is_empty(),
+            "{words}: {ran:#?}"
+        );
+    }
+    let ran = folder.run("--version");
+    ran.assert_done();
+    assert_eq!(
+        ran.out,
+        format!("stratavox {}\n", env!("CARGO_PKG_VERSION"))
+    );
+}
+
+#[test]
+fn several_variables_are_an_error_that_lists_them() {
+    let folder = Folder::new();
+    let words = "render phantom:storm,n=8 -o a.png --size 8x8 --device reference";
+    let refused = folder.run(words);
+    refused.assert_refused(2, &["several variables", "--variable"]);
+    let listed = refused
+        .err
+        .split("several variables: ")
+        .nth(1)
+        .expect("a list");
+    let first = listed.split([',', '\n']).next().expect("a name");
+    let ran = folder.run(&format!("{words} --variable {first}"));
+    ran.assert_done();
+    assert!(
+        ran.err.contains("the first of"),
+        "the choice of a time is not said: {ran:#?}"
+    );
+}
+
+#[test]
+fn a_flag_without_effect_is_mentioned_and_no_skip_is_always_taken() {
+    let folder = Folder::new();
+    let ran = folder.run(
+        "render phantom:fog,n=8 -o a.png --size 8x8 --device reference --no-skip --order front-to-back",
+    );
+    ran.assert_done();
+    assert!(ran.err.contains("--order has no effect"), "{ran:#?}");
+}

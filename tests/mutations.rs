@@ -1,0 +1,338 @@
+//! Mutated files: no panic, no memory in proportion to a lie, no volume out of bytes that are not there.
+//!
+//! `STRATAVOX_MUTATIONS` is the number of mutations of each reader, 20 000 where it is not set. The same number
+//! gives the same mutations; a failure prints the number of the one that failed and keeps its file.
+#![cfg(feature = "files")]
+
+#[path = "shared/encode.rs"]
+mod encode;
+#[path = "shared/files.rs"]
+mod files;
+#[path = "shared/memory.rs"]
+mod memory;
+#[path = "shared/mutate.rs"]
+mod mutate;
+#[path = "shared/nifti.rs"]
+mod nifti;
+
+use encode::{ascii, bytes_of, bzip2, gzip, hex, zlib};
+use files::Folder;
+use mutate::{Mutation, Random};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use stratavox::format;
+use stratavox::volume::{Limits, Pick, ReadError, VoxelType};
+
+#[global_allocator]
+static MEMORY: memory::Counting = memory::Counting;
+
+/// Small, so that a lie shows.
+const LIMITS: Limits = Limits {
+    max_bytes: 4 << 20,
+    max_files: 100,
+    max_header_bytes: 1 << 16,
+};
+
+/// What a read may take beyond the volume.
+const BESIDE_BYTES: usize = 64 << 20;
+
+/// Files that belong together; the first is opened.
+type Base = Vec<(&'static str, Vec<u8>)>;
+
+/// Reads all of a mutated file, one time and component after the other. Gives the number of voxels read.
+fn read_all(folder: &Folder, base: &Base) -> Result<u64, ReadError> {
+    let source = format::open(&folder.path(base[0].0), &LIMITS)?;
+    let header = source.header();
+    assert!(header.world_from_voxel.inverse().is_finite(), "{header:?}");
+    let mut voxels = 0;
+    for time in 0..header.times.min(4) {
+        for component in 0..header.components.min(4) {
+            let piece = source.read(Pick { time, component }, header.whole())?;
+            assert_eq!(piece.voxels.len() as u64, header.voxel_count(), "voxels");
+            voxels += header.voxel_count();
+        }
+    }
+    Ok(voxels)
+}
+
+/// Mutates the bases of one reader in turn.
+fn survive(reader: &str, bases: &[Base]) {
+    let count: u64 = match std::env::var("STRATAVOX_MUTATIONS") {
+        Ok(number) => number.parse().expect("STRATAVOX_MUTATIONS is a number"),
+        Err(_) => 20_000,
+    };
+    let folder = Folder::new();
+    let mut whole = Vec::new();
+    for base in bases {
+        for (name, bytes) in base {
+            folder.write(name, bytes);
+        }
+        let voxels = read_all(&folder, base).unwrap_or_else(|e| panic!("{reader}: {e}"));
+        whole.push(voxels);
+    }
+    let (mut refused, mut read, mut worst_memory) = (0_u64, 0_u64, 0_usize);
+    for number in 0..count {
+        let which = (number % bases.len() as u64) as usize;
+        let base = &bases[which];
+        let mut random = Random::new(number);
+        let (name, bytes) = &base[random.below(base.len())];
+        let (mutated, mutation) = mutate::mutate(bytes, &mut random);
+        folder.write(name, &mutated);
+        memory::start();
+        let outcome = catch_unwind(AssertUnwindSafe(|| read_all(&folder, base)));
+        let memory = memory::peak_since_start();
+        worst_memory = worst_memory.max(memory);
+        let failed = |what: &str| -> ! {
+            let kept = std::env::temp_dir().join(format!("stratavox-mutation-{reader}-{number}"));
+            std::fs::write(&kept, &mutated).unwrap();
+            panic!("{reader} mutation {number} ({mutation:?} of {name}): {what}; kept as {kept:?}");
+        };
+        let Ok(outcome) = outcome else {
+            failed("a panic");
+        };
+        if memory > LIMITS.max_bytes as usize + BESIDE_BYTES {
+            failed(&format!("{memory} bytes of memory"));
+        }
+        match outcome {
+            Err(_) => refused += 1,
+            Ok(voxels) => {
+                read += 1;
+                // Every base ends with its last voxel, or with a line end that carries nothing.
+                let lost = bytes.len().saturating_sub(mutated.len());
+                if mutation == Mutation::Cut && lost > 1 {
+                    failed("a volume out of a file that was cut");
+                }
+                // Less than one bit a voxel cannot be voxels, unless they are compressed: there the checksum tells.
+                let present: usize = base
+                    .iter()
+                    .map(|(name, _)| {
+                        std::fs::metadata(folder.path(name)).map_or(0, |m| m.len() as usize)
+                    })
+                    .sum();
+                if voxels > whole[which] && voxels as usize > 1032 * present {
+                    failed("more voxels than the bytes can hold");
+                }
+            }
+        }
+        folder.write(name, bytes);
+    }
+    println!(
+        "{reader}: {count} mutations, {refused} refused, {read} read, at most {worst_memory} bytes of memory"
+    );
+    assert_eq!(refused + read, count);
+    assert!(
+        refused > count / 4,
+        "{refused} of {count} refused: the mutations do no harm"
+    );
+    assert!(
+        read > 0 || count < 1000,
+        "nothing was read: the mutations do only harm"
+    );
+}
+
+const COUNT: usize = 5 * 4 * 3;
+
+fn values() -> Vec<i128> {
+    (0..COUNT as i128).map(|k| k * 541 - 9000).collect()
+}
+
+fn nrrd_header(kind: &str, encoding: &str) -> String {
+    format!(
+        "NRRD0005\n# c\ntype: {kind}\ndimension: 4\nspace: left-posterior-superior\nsizes: 1 5 4 3\n\
+         space directions: none (1.5,0,0) (0,1.5,0.25) (0,0,2)\nkinds: vector domain domain domain\n\
+         space origin: (1,-2,3)\nendian: little\nencoding: {encoding}\nmodality:=CT\n"
+    )
+}
+
+fn metaimage_header(kind: &str, fields: &str) -> String {
+    format!(
+        "ObjectType = Image\nNDims = 3\nBinaryDataByteOrderMSB = False\n{fields}\
+         TransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = 1 -2 3\nElementSpacing = 1 1 2.5\nDimSize = 5 4 3\n\
+         ElementNumberOfChannels = 1\nElementType = {kind}\nElementDataFile = "
+    )
+}
+
+#[test]
+fn nrrd_survives_mutations() {
+    let short = bytes_of(&values(), VoxelType::I16, false);
+    let double = bytes_of(&values(), VoxelType::F64, false);
+    let attached = |header: String, data: &[u8]| -> Base {
+        vec![("a.nrrd", [header.as_bytes(), b"\n", data].concat())]
+    };
+    survive(
+        "nrrd",
+        &[
+            attached(nrrd_header("short", "raw"), &short),
+            attached(nrrd_header("double", "raw"), &double),
+            attached(nrrd_header("short", "gzip"), &gzip(&short)),
+            attached(nrrd_header("double", "bzip2"), &bzip2(&double)),
+            attached(nrrd_header("short", "ascii"), &ascii(&values())),
+            attached(nrrd_header("short", "hex"), &hex(&short)),
+        ],
+    );
+}
+
+#[test]
+fn nhdr_survives_mutations() {
+    let short = bytes_of(&values(), VoxelType::I16, false);
+    let slices: Vec<&[u8]> = short.chunks(short.len() / 3).collect();
+    let header = |encoding: &str, rest: &str| (nrrd_header("short", encoding) + rest).into_bytes();
+    survive(
+        "nhdr",
+        &[
+            vec![
+                (
+                    "a.nhdr",
+                    header("raw", "byte skip: 3\nline skip: 1\ndata file: a.raw\n"),
+                ),
+                ("a.raw", [b"line\nxyz", &short[..]].concat()),
+            ],
+            vec![
+                ("b.nhdr", header("raw", "data file: s%02d 7 9 1\n")),
+                ("s07", slices[0].to_vec()),
+                ("s08", slices[1].to_vec()),
+                ("s09", slices[2].to_vec()),
+            ],
+            vec![
+                ("c.nhdr", header("gz", "data file: LIST 3\nz1\nz2\nz3\n")),
+                ("z1", gzip(slices[0])),
+                ("z2", gzip(slices[1])),
+                ("z3", gzip(slices[2])),
+            ],
+            vec![
+                ("d.nhdr", header("raw", "byte skip: -1\ndata file: a.raw\n")),
+                ("a.raw", short.clone()),
+            ],
+        ],
+    );
+}
+
+#[test]
+fn mha_survives_mutations() {
+    let short = bytes_of(&values(), VoxelType::I16, false);
+    let long = bytes_of(&values(), VoxelType::I64, false);
+    let attached = |header: String, data: &[u8]| -> Base {
+        vec![("a.mha", [header.as_bytes(), b"LOCAL\n", data].concat())]
+    };
+    let sized = format!(
+        "CompressedData = True\nCompressedDataSize = {}\n",
+        zlib(&short).len()
+    );
+    survive(
+        "mha",
+        &[
+            attached(metaimage_header("MET_SHORT", ""), &short),
+            attached(
+                metaimage_header("MET_LONG_LONG", "HeaderSize = -1\n"),
+                &long,
+            ),
+            attached(metaimage_header("MET_SHORT", &sized), &zlib(&short)),
+            attached(
+                metaimage_header("MET_SHORT", "BinaryData = False\n"),
+                &ascii(&values()),
+            ),
+        ],
+    );
+}
+
+#[test]
+fn mhd_survives_mutations() {
+    let short = bytes_of(&values(), VoxelType::I16, false);
+    let slices: Vec<&[u8]> = short.chunks(short.len() / 3).collect();
+    let header =
+        |fields: &str, rest: &str| (metaimage_header("MET_SHORT", fields) + rest).into_bytes();
+    survive(
+        "mhd",
+        &[
+            vec![
+                ("a.mhd", header("HeaderSize = 3\n", "a.raw\n")),
+                ("a.raw", [b"xyz", &short[..]].concat()),
+            ],
+            vec![
+                ("b.mhd", header("", "s%02d 7 9 1\n")),
+                ("s07", slices[0].to_vec()),
+                ("s08", slices[1].to_vec()),
+                ("s09", slices[2].to_vec()),
+            ],
+            vec![
+                (
+                    "c.mhd",
+                    header("CompressedData = True\n", "LIST\nz1\nz2\nz3\n"),
+                ),
+                ("z1", zlib(slices[0])),
+                ("z2", zlib(slices[1])),
+                ("z3", zlib(slices[2])),
+            ],
+        ],
+    );
+}
+
+/// 5 x 4 x 3 voxels with everything that a reader looks at.
+fn nifti_header(version: u8, datatype: i16, bitpix: i16) -> nifti::Nifti {
+    nifti::Nifti {
+        version,
+        dim: [4, 5, 4, 3, 1, 0, 0, 0],
+        pixdim: [-1.0, 1.5, 1.5, 2.0, 1.0, 0.0, 0.0, 0.0],
+        scl_slope: 2.0,
+        scl_inter: -3.0,
+        qform_code: 1,
+        quatern: [0.5, 0.5, 0.5],
+        sform_code: 1,
+        srow: [
+            [1.5, 0.0, 0.0, 9.0],
+            [0.0, 1.5, 0.5, 8.0],
+            [0.0, 0.0, 2.0, 7.0],
+        ],
+        units: 3,
+        ..nifti::Nifti::new(datatype, bitpix)
+    }
+}
+
+#[test]
+fn nifti_survives_mutations() {
+    let short = |big| bytes_of(&values(), VoxelType::I16, big);
+    let double = bytes_of(&values(), VoxelType::F64, false);
+    let big = nifti::Nifti {
+        big_endian: true,
+        ..nifti_header(1, 4, 16)
+    };
+    let pair = |version: u8| nifti::Nifti {
+        is_single_file: false,
+        ..nifti_header(version, 4, 16)
+    };
+    survive(
+        "nifti",
+        &[
+            vec![("a.nii", nifti_header(1, 4, 16).with(&short(false)))],
+            vec![("a.nii", big.with(&short(true)))],
+            vec![("a.nii", nifti_header(2, 64, 64).with(&double))],
+            vec![(
+                "b.nii.gz",
+                gzip(&nifti_header(1, 4, 16).with(&short(false))),
+            )],
+            vec![("b.nii.gz", gzip(&nifti_header(2, 64, 64).with(&double)))],
+            // Without the four bytes behind the header, which carry nothing here.
+            vec![
+                ("c.hdr", pair(1).bytes()[..348].to_vec()),
+                ("c.img", short(false)),
+            ],
+            vec![
+                ("d.hdr", pair(2).bytes()[..540].to_vec()),
+                ("d.img.gz", gzip(&short(false))),
+            ],
+        ],
+    );
+}
+
+#[test]
+#[cfg(feature = "json")]
+fn raw_survives_mutations() {
+    let sidecar = r#"{"file": "a.raw", "dims": [5, 4, 3], "type": "i16", "endian": "little", "header_bytes": 2}"#;
+    let short = bytes_of(&values(), VoxelType::I16, false);
+    survive(
+        "raw",
+        &[vec![
+            ("a.json", sidecar.as_bytes().to_vec()),
+            ("a.raw", [b"xy", &short[..]].concat()),
+        ]],
+    );
+}
