@@ -297,12 +297,27 @@ fn several_rays_a_pixel_are_the_mean_of_a_finer_picture() {
                     }
                     sum
                 };
-                let wanted: Vec<_> = shot.pixels().map(mean).collect();
+                let hangs = |[x, y]: [u32; 2]| {
+                    let inside = (0..per_side * per_side)
+                        .map(|i| [x * per_side + i % per_side, y * per_side + i / per_side]);
+                    inside
+                        .filter_map(|p| finer.chord(p))
+                        .any(|chord| chord.hangs)
+                };
                 // The parameters differ in the last place, and with them where samples lie.
                 for (way, picture) in [("device", &found), ("twin", &cpu)] {
                     let what = format!("{per_side} rays a side, {way}, {}", shot.what());
-                    Worst::between(what, found.width, &wanted, &picture.pixels, 1e-5)
-                        .assert_holds();
+                    let mut worst = Worst::new(what);
+                    for (pixel, found) in shot.pixels().zip(&picture.pixels) {
+                        if hangs(pixel) {
+                            worst.leave_out();
+                            continue;
+                        }
+                        for (wanted, found) in mean(pixel).into_iter().zip(found) {
+                            worst.take(pixel, f64::from(found - wanted), 1e-5);
+                        }
+                    }
+                    worst.assert_holds();
                 }
                 // The other layers come from the pixel's centre.
                 let scene = shot.scene(&volume, Some(&transfer));
