@@ -1,6 +1,6 @@
 //! The pipelines of one kind of picture, and one submission for each.
 
-use super::targets::{FORMAT, Targets};
+use super::targets::Targets;
 use crate::gpu::{
     Bindings, Blend, Error, Gpu, Headless, Image, Load, ParameterRing, Timer, Use, begin_rendering,
     end_rendering, image_barrier,
@@ -12,7 +12,9 @@ use crate::technique::projection::Projection;
 use crate::technique::raycast::Raycast;
 use crate::technique::slices_2d::Slices2d;
 use crate::technique::slices_3d::Slices3d;
-use crate::technique::{Inputs, Mode, Order, Settings, Technique, Words};
+use crate::technique::{
+    ACCUMULATION_FORMAT as FORMAT, Inputs, Mode, Order, Settings, Technique, Words,
+};
 use ash::vk;
 use std::sync::Arc;
 
@@ -45,14 +47,14 @@ pub struct Submission<'a> {
     /// The images.
     pub targets: &'a Targets,
     /// In the order in which they are recorded.
-    pub bricks: &'a [Recording<'a>],
+    pub bricks: &'a [Part<'a>],
     /// The device's clock, if it has one.
     pub timer: Option<&'a Timer>,
 }
 
 /// What one brick adds to a picture.
 #[derive(Debug)]
-pub struct Recording<'a> {
+pub struct Part<'a> {
     /// What a technique reads.
     pub inputs: Inputs<'a>,
     /// Of the parameters in the ring.
@@ -224,10 +226,10 @@ impl Gather {
         &self,
         cmd: vk::CommandBuffer,
         bindings: &Bindings,
-        brick: &Recording,
+        brick: &Part,
         extent: [u32; 2],
     ) -> Result<(), Error> {
-        let Recording { offset, slices, .. } = *brick;
+        let Part { offset, slices, .. } = *brick;
         // SAFETY: the caller's promises.
         unsafe {
             match self {
