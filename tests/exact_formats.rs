@@ -16,17 +16,16 @@ use shared::{device, volume_of};
 use std::sync::Arc;
 use stratavox::camera::{Camera, Projection};
 use stratavox::gpu::{
-    Buffer, Headless, Image, ImageDesc, ImageKind, Load, Memory, ParameterRing, Region, Use,
-    begin_rendering, end_rendering, image_barrier, image_to_buffer,
+    Buffer, Headless, Image, ImageDesc, ImageKind, Load, Memory, Region, Use, begin_rendering,
+    end_rendering, image_barrier, image_to_buffer,
 };
 use stratavox::picture::ColorSpace;
 use stratavox::resident::{GpuTransfer, GpuVolume, TextureLayout};
-use stratavox::shaders::Frame;
 use stratavox::technique::blend::Drawn;
-use stratavox::technique::slices_3d::{Slices3d, set_planes};
-use stratavox::technique::{Inputs, Mode, Order, Settings, Technique, View, Words, frame};
+use stratavox::technique::slices_3d::Slices3d;
+use stratavox::technique::{Inputs, Mode, Order, Settings, Technique, View, Words, parameter_ring};
 use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
-use stratavox::volume::{Volume, VoxelBox};
+use stratavox::volume::Volume;
 
 const COLOR: f64 = 0.8;
 const EXTENT: [u32; 2] = [4, 4];
@@ -80,10 +79,10 @@ fn drawn(device: &mut Headless, format: vk::Format, order: Order, slices: u32) -
         in_pixel: [0.0; 2],
         settings: &settings,
     };
-    let mut fields = view.fields(&voxels.texel().coding, table.layout()).unwrap();
-    let planes = set_planes(&view, view.part(None), &mut fields);
-    let ring = ParameterRing::new(&gpu, size_of::<Frame>() as u32, 1, "parameters").unwrap();
-    ring.write(0, bytemuck::bytes_of(&frame(fields))).unwrap();
+    let recording = view.recordings(&voxels, Some(&table)).unwrap()[0];
+    let ring = parameter_ring(&gpu, 1).unwrap();
+    let offset = recording.write(&ring, 0).unwrap();
+    let planes = recording.slices;
     let words = Words::of(&settings, &voxels);
     let drawn = Drawn::Picture(Mode::Composite);
     let slicer = Slices3d::new(&gpu, drawn, order, &words, format).unwrap();
@@ -115,7 +114,7 @@ fn drawn(device: &mut Headless, format: vk::Format, order: Order, slices: u32) -
             image_barrier(&gpu, cmd, &target, Use::Nothing, Use::ColorTarget);
             let clear = Load::Clear([0.0; 4]);
             begin_rendering(&gpu, cmd, &[(target.view(), clear)], EXTENT);
-            slicer.record(cmd, &bindings, ring.offset(0)?, EXTENT, 0..planes);
+            slicer.record(cmd, &bindings, offset, EXTENT, 0..planes);
             end_rendering(&gpu, cmd);
             image_barrier(&gpu, cmd, &target, Use::ColorTarget, Use::TransferRead);
             image_to_buffer(&gpu, cmd, &target, region, &back, 0)
@@ -128,20 +127,10 @@ fn drawn(device: &mut Headless, format: vk::Format, order: Order, slices: u32) -
 }
 
 fn uploaded(device: &mut Headless, volume: &Volume) -> GpuVolume {
-    let gpu = Arc::clone(device.gpu());
-    let made = GpuVolume::new(&gpu, volume, TextureLayout::Texture3d).unwrap();
-    let all = VoxelBox {
-        min: [0; 3],
-        max: volume.dims,
-    };
-    let bytes = made.staging_bytes(all);
-    let usage = vk::BufferUsageFlags::TRANSFER_SRC;
-    let staging = Buffer::new(&gpu, bytes, usage, Memory::Upload, "staging").unwrap();
-    staging.write(0, &made.staged(volume, all)).unwrap();
+    let made = GpuVolume::new(device.gpu(), volume, TextureLayout::Texture3d).unwrap();
+    let staging = made.stage(volume).unwrap();
     // SAFETY: recorded outside rendering; `run` waits, and both live meanwhile.
-    let run = device.run(|cmd| unsafe {
-        made.record_upload(cmd, &staging, &made.bricks()[0], all, Use::Nothing)
-    });
+    let run = device.run(|cmd| unsafe { made.record_upload_all(cmd, &staging) });
     run.unwrap();
     made
 }

@@ -2,7 +2,7 @@
 
 use super::slicing::Slicing;
 use super::submission::Submission;
-use super::targets::{FORMAT, Targets};
+use super::targets::Targets;
 use crate::gpu::{
     Blend, Error, Gpu, Headless, Load, ParameterRing, Use, begin_rendering, end_rendering,
     image_barrier,
@@ -12,7 +12,7 @@ use crate::resolve::Resolve;
 use crate::technique::blend::Drawn;
 use crate::technique::projection::Projection;
 use crate::technique::raycast::Raycast;
-use crate::technique::{Mode, Order, Settings, Technique, Words};
+use crate::technique::{ACCUMULATION_FORMAT, Mode, Order, Settings, Technique, Words};
 use std::sync::Arc;
 
 /// What pipelines depend on.
@@ -60,7 +60,7 @@ impl Passes {
             key: (technique, mode, order, *words),
             gather,
             count,
-            resolve: Resolve::new(gpu, mode, Blend::Replace, FORMAT)?,
+            resolve: Resolve::new(gpu, mode, Blend::Replace, ACCUMULATION_FORMAT)?,
         })
     }
 

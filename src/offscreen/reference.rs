@@ -2,13 +2,12 @@
 
 use crate::picture::{Layer, LayerKind, Picture};
 use crate::real::Real;
-use crate::resident::{Coding, TransferLayout};
 use crate::resolve::reference::{premultiplied, projected_value};
 use crate::scene::{Scene, positions_in_pixel};
 use crate::shaders::Frame;
 use crate::technique::blend::{blend, clear_color};
 use crate::technique::{
-    Error, Filter, Mode, Technique, View, frame, projection, raycast, slices_2d, slices_3d,
+    Error, Filter, Mode, Recording, Technique, projection, raycast, slices_2d, slices_3d,
 };
 use crate::transfer::{
     Absorption, Classified, Points, Table, TransferFunction, Window, classify_by_points,
@@ -135,7 +134,7 @@ impl<'a, R: Real> Walk<'a, R> {
             Some(function) => Classifier::Table(Table::new(function, absorption, space)),
             None => return Err(Error::NoTransferFunction),
         };
-        let (frame, slices) = parameters(&view)?;
+        let Recording { frame, slices, .. } = view.on_cpu()?;
         Ok(Self {
             scene,
             frame,
@@ -251,28 +250,6 @@ impl<'a, R: Real> Walk<'a, R> {
             Classifier::Later => [R::from_f64(0.0); 4],
         }
     }
-}
-
-/// The parameters of a view on the CPU, where values need no decoding, and how many slices it draws.
-fn parameters(view: &View) -> Result<(Frame, u32), Error> {
-    let coding = Coding {
-        scale: 1.0,
-        offset: 0.0,
-        slope: 1.0,
-        intercept: 0.0,
-        is_integer: false,
-    };
-    let transfer = TransferLayout::default();
-    let mut fields = view.fields(&coding, &transfer)?;
-    let slices = match view.settings.technique {
-        Technique::Raycast => 0,
-        Technique::Slices3d => slices_3d::set_planes(view, view.part(None), &mut fields),
-        Technique::Slices2d => {
-            let axis = slices_2d::stack_axis(view);
-            slices_2d::set_slices(view, axis, view.part(None), &mut fields)
-        }
-    };
-    Ok((frame(fields), slices))
 }
 
 fn filtered<R: Real>(volume: &Volume, filter: Filter, p: [R; 3]) -> Option<R> {

@@ -9,19 +9,15 @@
 
 use super::Error;
 use super::passes::Passes;
-use super::submission::{Recording, Submission};
+use super::submission::{Part, Submission};
 use super::targets::Targets;
 use super::upload::upload;
 use crate::gpu::{Headless, ParameterRing, Timer, Use};
 use crate::picture::{ColorSpace, Layer, LayerKind, Picture};
-use crate::resident::{GpuTransfer, GpuVolume, TextureLayout, TransferLayout};
+use crate::resident::{GpuTransfer, GpuVolume, TextureLayout};
 use crate::resolve::reference::projected_value;
 use crate::scene::{Scene, positions_in_pixel};
-use crate::shaders::Frame;
-use crate::technique::blend::extreme_sign;
-use crate::technique::slices_2d::{set_slices, stack_axis};
-use crate::technique::slices_3d::set_planes;
-use crate::technique::{self, Inputs, Order, Settings, Technique, View, Words, frame};
+use crate::technique::{self, Inputs, Recording, Settings, Technique, Words, parameter_ring};
 use crate::transfer::{Classified, TransferFunction, Window};
 use crate::volume::Volume;
 use std::sync::Arc;
@@ -70,7 +66,7 @@ impl<'v> Renderer<'v> {
             transfer: None,
             targets: None,
             passes: None,
-            ring: ParameterRing::new(gpu, size_of::<Frame>() as u32, 1, "frame parameters")?,
+            ring: parameter_ring(gpu, 1)?,
             timer: Timer::new(gpu)?,
             device,
         })
@@ -86,7 +82,7 @@ impl<'v> Renderer<'v> {
     /// # Errors
     /// Where something is over a limit of the device.
     pub fn upload(&mut self, scene: &Scene) -> Result<(), Error> {
-        let layout = layout(&scene.view(&self.volume.grid(), [0.0; 2]));
+        let layout = scene.view(&self.volume.grid(), [0.0; 2]).texture_layout();
         let resident = &mut self.resident[place(layout)];
         if resident.is_none() {
             *resident = Some(upload(&mut self.device, self.volume, layout)?);
@@ -148,12 +144,11 @@ impl<'v> Renderer<'v> {
         {
             self.targets = Some(Targets::new(&gpu, scene.extent_pixels)?);
         }
-        let layout = layout(&scene.view(&self.volume.grid(), [0.0; 2]));
+        let layout = scene.view(&self.volume.grid(), [0.0; 2]).texture_layout();
         let resident = self.resident[place(layout)].as_ref().expect("uploaded");
         let slots = resident.bricks().len() as u32;
         if self.ring.slots() < slots {
-            let bytes = size_of::<Frame>() as u32;
-            self.ring = ParameterRing::new(&gpu, bytes, slots, "frame parameters")?;
+            self.ring = parameter_ring(&gpu, slots)?;
         }
         let words = Words::of(scene.settings, resident);
         let Settings {
@@ -207,48 +202,25 @@ impl<'v> Renderer<'v> {
         let grid = self.volume.grid();
         let view = scene.view(&grid, in_pixel);
         let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
-        let transfer_layout = transfer.map_or_else(TransferLayout::default, |t| *t.layout());
-        let volume = self.resident[place(layout(&view))]
+        let volume = self.resident[place(view.texture_layout())]
             .as_ref()
             .expect("uploaded");
-        let mut fields = view.fields(&volume.texel().coding, &transfer_layout)?;
-        fields.extreme_sign = extreme_sign(scene.settings.mode);
-
-        let cells: Vec<_> = volume.bricks().iter().map(|brick| brick.cell).collect();
-        let mut order = view.front_to_back(&cells);
-        let Settings {
-            technique,
-            order: blending,
-            ..
-        } = *scene.settings;
-        if technique != Technique::Raycast && blending == Order::BackToFront {
-            order.reverse();
-        }
-        let mut bricks = Vec::new();
-        for (slot, &i) in (0..).zip(&order) {
-            let mut fields = fields;
-            let part = view.part(Some(&cells[i]));
-            if cells.len() > 1 {
-                view.set_brick(&cells[i], slot == 0, &mut fields);
-            }
-            let slices = match technique {
-                Technique::Raycast => 0,
-                Technique::Slices3d => set_planes(&view, part, &mut fields),
-                Technique::Slices2d => set_slices(&view, stack_axis(&view), part, &mut fields),
-            };
-            self.ring.write(slot, bytemuck::bytes_of(&frame(fields)))?;
+        let part = |(slot, recording): (u32, Recording)| {
             let inputs = Inputs {
                 ring: &self.ring,
                 volume,
-                brick: &volume.bricks()[i],
+                brick: &volume.bricks()[recording.brick],
                 transfer,
             };
-            bricks.push(Recording {
+            Ok(Part {
                 inputs,
-                offset: self.ring.offset(slot)?,
-                slices,
-            });
-        }
+                offset: recording.write(&self.ring, slot)?,
+                slices: recording.slices,
+            })
+        };
+        let recordings = view.recordings(volume, transfer)?;
+        let parts = (0..).zip(recordings).map(part);
+        let bricks = parts.collect::<Result<Vec<_>, Error>>()?;
         let submission = Submission {
             device: &mut self.device,
             targets: self.targets.as_ref().expect("prepared"),
@@ -354,14 +326,6 @@ fn check_layers(settings: &Settings, wanted: &[LayerKind]) -> Result<(), Error> 
         }
     }
     Ok(())
-}
-
-/// How the volume must lie for a view's technique.
-fn layout(view: &View) -> TextureLayout {
-    match view.settings.technique {
-        Technique::Raycast | Technique::Slices3d => TextureLayout::Texture3d,
-        Technique::Slices2d => TextureLayout::Stack(stack_axis(view)),
-    }
 }
 
 /// Where a layout is kept among those that are resident.

@@ -1,7 +1,6 @@
 //! A slicer's picture: drawn into the accumulation where the device blends f32, else in merged batches.
 
-use super::submission::{Recording, Submission};
-use super::targets::FORMAT;
+use super::submission::{Part, Submission};
 use crate::gpu::{
     Bindings, Error, Gpu, Image, ImageDesc, ImageKind, Load, Use, begin_rendering, clear_image,
     end_rendering, image_barrier,
@@ -10,7 +9,7 @@ use crate::technique::blend::{Drawn, clear_color};
 use crate::technique::merge::{BATCH_FORMAT, MAX_BATCH_SLICES, Merge};
 use crate::technique::slices_2d::Slices2d;
 use crate::technique::slices_3d::Slices3d;
-use crate::technique::{Inputs, Mode, Settings, Technique, Words};
+use crate::technique::{ACCUMULATION_FORMAT, Inputs, Mode, Settings, Technique, Words};
 use ash::vk;
 use std::ops::Range;
 use std::sync::Arc;
@@ -44,8 +43,12 @@ impl Slicing {
     ) -> Result<Self, Error> {
         let order = settings.order;
         let can_merge = matches!(drawn, Drawn::Picture(Mode::Composite) | Drawn::Count);
-        let is_merged = can_merge && !gpu.format_features(FORMAT).blend;
-        let format = if is_merged { BATCH_FORMAT } else { FORMAT };
+        let is_merged = can_merge && !gpu.format_features(ACCUMULATION_FORMAT).blend;
+        let format = if is_merged {
+            BATCH_FORMAT
+        } else {
+            ACCUMULATION_FORMAT
+        };
         let slicer = match settings.technique {
             Technique::Slices2d => Slicer::Stack(Slices2d::new(gpu, drawn, order, words, format)?),
             _ => Slicer::ViewAligned(Slices3d::new(gpu, drawn, order, words, format)?),
@@ -149,7 +152,7 @@ impl Slicer {
         &self,
         cmd: vk::CommandBuffer,
         bindings: &Bindings,
-        brick: &Recording,
+        brick: &Part,
         extent: [u32; 2],
         slices: Range<u32>,
     ) {

@@ -14,14 +14,14 @@ pub struct Submission<'a> {
     /// The images.
     pub targets: &'a Targets,
     /// In the order in which they are recorded.
-    pub bricks: &'a [Recording<'a>],
+    pub bricks: &'a [Part<'a>],
     /// The device's clock, if it has one.
     pub timer: Option<&'a Timer>,
 }
 
 /// What one brick adds to a picture.
 #[derive(Debug)]
-pub struct Recording<'a> {
+pub struct Part<'a> {
     /// What a technique reads.
     pub inputs: Inputs<'a>,
     /// Of the parameters in the ring.

@@ -1,14 +1,11 @@
 //! The images that a picture is made in, and the way back to the CPU.
 
 use crate::gpu::{
-    Buffer, Error, Gpu, Headless, Image, ImageDesc, ImageKind, Memory, Region, Use, image_barrier,
-    image_to_buffer,
+    Buffer, Error, Gpu, Headless, Image, Memory, Region, Use, image_barrier, image_to_buffer,
 };
+use crate::technique::accumulation;
 use ash::vk;
 use std::sync::Arc;
-
-/// Every target holds four f32: accumulation is as exact as the shaders' own arithmetic.
-pub const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
 /// Images of one extent.
 #[derive(Debug)]
@@ -27,32 +24,13 @@ pub struct Targets {
 impl Targets {
     /// Objects for pictures of `extent`.
     pub fn new(gpu: &Arc<Gpu>, extent: [u32; 2]) -> Result<Self, Error> {
-        let image = |name| {
-            let usage = vk::ImageUsageFlags::STORAGE
-                | vk::ImageUsageFlags::COLOR_ATTACHMENT
-                | vk::ImageUsageFlags::SAMPLED
-                | vk::ImageUsageFlags::TRANSFER_SRC
-                | vk::ImageUsageFlags::TRANSFER_DST;
-            let [width, height] = extent;
-            let extent = [width, height, 1];
-            Image::new(
-                gpu,
-                &ImageDesc {
-                    kind: ImageKind::D2,
-                    extent,
-                    format: FORMAT,
-                    usage,
-                    name,
-                },
-            )
-        };
         let bytes = u64::from(extent[0]) * u64::from(extent[1]) * 16;
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
         Ok(Self {
             extent,
-            accumulation: image("accumulation")?,
-            layers: image("layers")?,
-            picture: image("picture")?,
+            accumulation: accumulation(gpu, extent, "accumulation")?,
+            layers: accumulation(gpu, extent, "layers")?,
+            picture: accumulation(gpu, extent, "picture")?,
             readback: Buffer::new(gpu, bytes, usage, Memory::Readback, "readback")?,
         })
     }

@@ -1,6 +1,6 @@
 //! Volumes through a staging buffer to the device, a slab at a time.
 
-use crate::gpu::{Buffer, Error, Headless, Memory, Use};
+use crate::gpu::{Buffer, Error, Headless, Memory};
 use crate::resident::{GpuVolume, TextureLayout};
 use crate::volume::Volume;
 use ash::vk;
@@ -15,29 +15,15 @@ pub fn upload(
     layout: TextureLayout,
 ) -> Result<GpuVolume, Error> {
     let made = GpuVolume::new(device.gpu(), volume, layout)?;
-    let slabs = || {
-        let of_brick = |brick| {
-            made.slabs(brick, STAGING_BYTES)
-                .into_iter()
-                .map(move |slab| (brick, slab))
-        };
-        made.bricks().iter().flat_map(of_brick)
-    };
-    let bytes = slabs()
-        .map(|(_, slab)| made.staging_bytes(slab))
-        .max()
-        .unwrap_or(0);
+    let slabs = made.slabs(STAGING_BYTES);
+    let bytes = slabs.iter().map(|slab| made.staging_bytes(slab.region));
+    let bytes = bytes.max().unwrap_or(0);
     let usage = vk::BufferUsageFlags::TRANSFER_SRC;
     let staging = Buffer::new(device.gpu(), bytes, usage, Memory::Upload, "staging")?;
-    for (brick, slab) in slabs() {
-        staging.write(0, &made.staged(volume, slab))?;
-        let before = if slab.min == brick.cell.stored.min {
-            Use::Nothing
-        } else {
-            Use::Sampled
-        };
+    for slab in &slabs {
+        staging.write(0, &made.staged(volume, slab.region))?;
         // SAFETY: recorded outside rendering; the staging buffer holds this slab; `run` waits.
-        device.run(|cmd| unsafe { made.record_upload(cmd, &staging, brick, slab, before) })?;
+        device.run(|cmd| unsafe { made.record_upload(cmd, &staging, 0, slab) })?;
     }
     Ok(made)
 }

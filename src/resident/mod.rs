@@ -6,9 +6,11 @@
 mod bricks;
 mod texel;
 mod transfer;
+mod upload;
 mod volume;
 
 pub use bricks::{Cell, front_to_back};
 pub use texel::{Coding, TexelFormat};
 pub use transfer::{GpuTransfer, TransferLayout};
+pub use upload::Slab;
 pub use volume::{Brick, GpuVolume, TextureLayout};

@@ -31,6 +31,17 @@ pub struct Coding {
     pub is_integer: bool,
 }
 
+impl Coding {
+    /// Texels that are values.
+    pub const PLAIN: Self = Self {
+        scale: 1.0,
+        offset: 0.0,
+        slope: 1.0,
+        intercept: 0.0,
+        is_integer: false,
+    };
+}
+
 /// A format and what its texels mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TexelFormat {

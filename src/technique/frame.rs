@@ -4,11 +4,12 @@
 //! precision wherever the volume lies, and the planes n . x = (k + 1/2) h pass by the centre as
 //! `sampling.md` 3 wants them.
 
+use super::blend::extreme_sign;
 use super::{MAX_SAMPLES_PER_RAY, Settings};
 use crate::camera::{Camera, Projection, Rays};
 use crate::picture::ColorSpace;
 use crate::resident::{Cell, Coding, TransferLayout, front_to_back};
-use crate::shaders::{Frame, FrameFields, MAX_CLIP_PLANES};
+use crate::shaders::{FrameFields, MAX_CLIP_PLANES};
 use crate::technique::Error;
 use crate::transfer::Interpolation;
 use crate::volume::Grid;
@@ -56,7 +57,7 @@ impl View<'_> {
         rays
     }
 
-    /// The parameters without those of slices.
+    /// The parameters of the whole grid, without those of slices.
     ///
     /// # Errors
     /// [`Error::TooManySamples`] and [`Error::TooManyClipPlanes`].
@@ -119,7 +120,7 @@ impl View<'_> {
             slice_turn: 0,
             slice_first_after_turn: 0,
             slice_axis: 0,
-            extreme_sign: 1.0,
+            extreme_sign: extreme_sign(self.settings.mode),
         })
     }
 
@@ -239,11 +240,6 @@ impl View<'_> {
         }
         Ok((planes, wanted.len() as u32))
     }
-}
-
-/// The parameters of a recording from their fields.
-pub fn frame(fields: FrameFields) -> Frame {
-    fields.into()
 }
 
 fn affine_rows(affine: &DAffine3) -> [[f32; 4]; 3] {

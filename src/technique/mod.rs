@@ -1,5 +1,6 @@
 //! The closed list of techniques (where samples lie) and modes (what is done with them).
 
+mod accumulation;
 pub mod blend;
 pub mod composite;
 mod frame;
@@ -8,11 +9,14 @@ mod march;
 pub mod merge;
 pub mod projection;
 pub mod raycast;
+mod recording;
 pub mod slices_2d;
 pub mod slices_3d;
 
-pub use frame::{View, frame};
+pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
+pub use frame::View;
 pub use inputs::{Inputs, Words};
+pub use recording::{Recording, parameter_ring};
 
 /// Where samples lie.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -126,6 +130,14 @@ pub enum Error {
     /// Compositing classifies every sample.
     #[error("compositing needs a transfer function")]
     NoTransferFunction,
+    /// A volume is on the device in another way than the view's technique reads it.
+    #[error("the volume lies on the device as {found:?}, this view reads it as {wanted:?}")]
+    WrongLayout {
+        /// What [`View::texture_layout`] says.
+        wanted: crate::resident::TextureLayout,
+        /// How the volume lies.
+        found: crate::resident::TextureLayout,
+    },
     /// The parameters hold a fixed number of planes.
     #[error("{wanted} clip planes, the limit is {limit}")]
     TooManyClipPlanes {

@@ -5,12 +5,10 @@
 
 use glam::{DAffine3, DVec3};
 use stratavox::camera::Camera;
-use stratavox::resident::{Coding, TransferLayout};
 use stratavox::scene::Scene;
 use stratavox::shaders::Frame;
-use stratavox::technique::slices_2d::{set_slices, stack_axis};
-use stratavox::technique::slices_3d::set_planes;
-use stratavox::technique::{Lattice, Settings, Technique, View, frame};
+use stratavox::technique::slices_2d::stack_axis;
+use stratavox::technique::{Lattice, Recording, Settings, Technique, View};
 use stratavox::transfer::TransferFunction;
 use stratavox::volume::{Grid, Volume};
 
@@ -75,23 +73,8 @@ impl Shot {
 
     /// The parameters that the twins read, and how many slices there are.
     pub fn parameters(&self) -> (Frame, u32) {
-        let view = self.view();
-        let coding = Coding {
-            scale: 1.0,
-            offset: 0.0,
-            slope: 1.0,
-            intercept: 0.0,
-            is_integer: false,
-        };
-        let mut fields = view.fields(&coding, &TransferLayout::default()).unwrap();
-        let slices = match self.settings.technique {
-            Technique::Raycast => 0,
-            Technique::Slices3d => set_planes(&view, view.part(None), &mut fields),
-            Technique::Slices2d => {
-                set_slices(&view, stack_axis(&view), view.part(None), &mut fields)
-            }
-        };
-        (frame(fields), slices)
+        let Recording { frame, slices, .. } = self.view().on_cpu().unwrap();
+        (frame, slices)
     }
 
     pub fn pixels(&self) -> impl Iterator<Item = [u32; 2]> + use<> {

@@ -1,0 +1,176 @@
+//! Voxels through staging memory to textures: what to stage, and the copies.
+//!
+//! ```text
+//! all at once    stage -> record_upload_all
+//! in slabs       slabs -> staged -> record_upload, for each
+//! ```
+
+use super::{Brick, GpuVolume};
+use crate::gpu::{Buffer, Error, Memory, Region, Use, buffer_to_image, image_barrier};
+use crate::volume::{Volume, VoxelBox};
+use ash::vk;
+
+/// Copies from a buffer begin at multiples of this.
+const ALIGNMENT_BYTES: u64 = 4;
+
+/// A part of a brick that is staged and copied at once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Slab {
+    /// Index into [`GpuVolume::bricks`].
+    pub brick: usize,
+    /// Voxels of the volume, all of them stored by the brick.
+    pub region: VoxelBox,
+    /// What was last done with the brick: [`Use::Nothing`] gives up all it holds, [`Use::Sampled`] keeps the rest.
+    pub before: Use,
+}
+
+impl GpuVolume {
+    /// All of the volume in parts small enough to be staged in `bytes` (or one slice), for its first upload:
+    /// the first slab of a brick comes after [`Use::Nothing`], the others after [`Use::Sampled`].
+    pub fn slabs(&self, bytes: u64) -> Vec<Slab> {
+        let numbered = self.bricks().iter().enumerate();
+        numbered
+            .flat_map(|(index, brick)| self.slabs_of(index, brick, bytes))
+            .collect()
+    }
+
+    fn slabs_of(&self, index: usize, brick: &Brick, bytes: u64) -> impl Iterator<Item = Slab> {
+        let axis = self.layout().axes()[2];
+        let whole = brick.cell.stored;
+        let part = move |first: u32, end: u32| {
+            let mut part = whole;
+            (part.min[axis], part.max[axis]) = (first, end);
+            part
+        };
+        let slice = part(whole.min[axis], whole.min[axis] + 1);
+        let count = (bytes / self.staging_bytes(slice)).clamp(1, u32::MAX.into()) as u32;
+        let firsts = (whole.min[axis]..whole.max[axis]).step_by(count as usize);
+        firsts.map(move |first| Slab {
+            brick: index,
+            region: part(first, first.saturating_add(count).min(whole.max[axis])),
+            before: if first == whole.min[axis] {
+                Use::Nothing
+            } else {
+                Use::Sampled
+            },
+        })
+    }
+
+    /// The texels of `region` as [`GpuVolume::record_upload`] wants them in a staging buffer: values, then,
+    /// from the next multiple of 4 on, validity.
+    pub fn staged(&self, volume: &Volume, region: VoxelBox) -> Vec<u8> {
+        let mut bytes = Vec::with_capacity(self.staging_bytes(region) as usize);
+        self.texel()
+            .encode(&volume.voxels, self.indices(region), &mut bytes);
+        if let Some(mask) = &volume.validity {
+            bytes.resize(bytes.len().next_multiple_of(ALIGNMENT_BYTES as usize), 0);
+            bytes.extend(self.indices(region).map(|i| mask[i]));
+        }
+        bytes
+    }
+
+    /// Room for [`GpuVolume::staged`]; the next slab may begin behind it.
+    pub fn staging_bytes(&self, region: VoxelBox) -> u64 {
+        let voxels: u64 = region.dims().iter().map(|&n| u64::from(n)).product();
+        let values = (voxels * self.texel().bytes() as u64).next_multiple_of(ALIGNMENT_BYTES);
+        if self.has_holes() {
+            values + voxels.next_multiple_of(ALIGNMENT_BYTES)
+        } else {
+            values
+        }
+    }
+
+    /// Records the copy of a slab from byte `offset` (a multiple of 4) of `staging`.
+    ///
+    /// # Errors
+    /// A region outside the brick, a staging buffer that is too small.
+    ///
+    /// # Safety
+    /// - `cmd` is recording, outside rendering; `self` and `staging` live until it has run;
+    /// - `staging` holds [`GpuVolume::staged`] of the slab's region when `cmd` runs;
+    /// - `slab.before` is true.
+    pub unsafe fn record_upload(
+        &self,
+        cmd: vk::CommandBuffer,
+        staging: &Buffer,
+        offset: u64,
+        slab: &Slab,
+    ) -> Result<(), Error> {
+        let axes = self.layout().axes();
+        let brick = &self.bricks()[slab.brick];
+        let (region, stored) = (slab.region, brick.cell.stored);
+        let part = Region {
+            origin: axes.map(|k| region.min[k].wrapping_sub(stored.min[k])),
+            extent: axes.map(|k| region.max[k] - region.min[k]),
+        };
+        let values_bytes = part.bytes(self.texel().format).unwrap_or(u64::MAX / 2);
+        let validity_offset = offset.saturating_add(values_bytes.next_multiple_of(ALIGNMENT_BYTES));
+        let planes = [
+            (Some(&brick.values), offset),
+            (brick.validity.as_ref(), validity_offset),
+        ];
+        for (image, offset) in planes {
+            let Some(image) = image else { continue };
+            // SAFETY: the caller's promises; the two barriers put the copy between earlier and later uses.
+            unsafe {
+                image_barrier(self.gpu(), cmd, image, slab.before, Use::TransferWrite);
+                buffer_to_image(self.gpu(), cmd, staging, offset, image, part)?;
+                image_barrier(self.gpu(), cmd, image, Use::TransferWrite, Use::Sampled);
+            }
+        }
+        Ok(())
+    }
+
+    /// A staging buffer that holds all of `volume`, for [`GpuVolume::record_upload_all`].
+    ///
+    /// # Errors
+    /// Where the device has no buffer of that size: go in [`GpuVolume::slabs`] then.
+    pub fn stage(&self, volume: &Volume) -> Result<Buffer, Error> {
+        let slabs = self.slabs(u64::MAX);
+        let bytes = slabs.iter().map(|s| self.staging_bytes(s.region)).sum();
+        let usage = vk::BufferUsageFlags::TRANSFER_SRC;
+        let staging = Buffer::new(self.gpu(), bytes, usage, Memory::Upload, "staging")?;
+        let mut offset = 0;
+        for slab in slabs {
+            staging.write(offset, &self.staged(volume, slab.region))?;
+            offset += self.staging_bytes(slab.region);
+        }
+        Ok(staging)
+    }
+
+    /// Records the first upload of all of the volume from what [`GpuVolume::stage`] gave.
+    ///
+    /// # Errors
+    /// A staging buffer that is too small.
+    ///
+    /// # Safety
+    /// As [`GpuVolume::record_upload`].
+    pub unsafe fn record_upload_all(
+        &self,
+        cmd: vk::CommandBuffer,
+        staging: &Buffer,
+    ) -> Result<(), Error> {
+        let mut offset = 0;
+        for slab in self.slabs(u64::MAX) {
+            // SAFETY: the caller's promises; slabs lie in the buffer in this order.
+            unsafe { self.record_upload(cmd, staging, offset, &slab)? };
+            offset += self.staging_bytes(slab.region);
+        }
+        Ok(())
+    }
+
+    /// Indices of the voxels of a region in the order of the texels.
+    fn indices(&self, region: VoxelBox) -> impl Iterator<Item = usize> {
+        let [nx, ny, _] = self.grid().dims.map(|n| n as usize);
+        let strides = [1, nx, nx * ny];
+        let [across, down, deep] = self.layout().axes().map(|axis| {
+            let stride = strides[axis];
+            (region.min[axis] as usize..region.max[axis] as usize).map(move |i| i * stride)
+        });
+        deep.flat_map(move |w| {
+            let across = across.clone();
+            down.clone()
+                .flat_map(move |v| across.clone().map(move |u| u + v + w))
+        })
+    }
+}

@@ -1,0 +1,111 @@
+//! From a view to what is recorded for it: one recording a brick, in order.
+//!
+//! ```text
+//! view.recordings(volume, transfer)        pure, once a frame
+//!     recording.write(ring, slot)          parameters into the ring; gives the offset to record with
+//!     a technique's record(cmd, ...)       with the bindings of recording.brick
+//! ```
+
+use super::slices_2d::{set_slices, stack_axis};
+use super::slices_3d::set_planes;
+use super::{Error, Order, Technique, View};
+use crate::gpu::{self, Gpu, ParameterRing};
+use crate::resident::{Cell, Coding, GpuTransfer, GpuVolume, TextureLayout, TransferLayout};
+use crate::shaders::{Frame, FrameFields};
+use std::sync::Arc;
+
+/// What one recording of a technique shows.
+#[derive(Clone, Copy, Debug)]
+pub struct Recording {
+    /// The brick that the bindings must be of, as an index into [`GpuVolume::bricks`].
+    pub brick: usize,
+    /// Slices to draw; 0 for compute passes.
+    pub slices: u32,
+    /// The parameters.
+    pub frame: Frame,
+}
+
+impl View<'_> {
+    /// How the volume must lie in textures for the technique seen from here: 2D slicing changes stacks.
+    pub fn texture_layout(&self) -> TextureLayout {
+        match self.settings.technique {
+            Technique::Raycast | Technique::Slices3d => TextureLayout::Texture3d,
+            Technique::Slices2d => TextureLayout::Stack(stack_axis(self)),
+        }
+    }
+
+    /// What is recorded for one picture of `volume`, in the order in which it is recorded: compute passes go
+    /// from front to back, slicers as they blend.
+    ///
+    /// # Errors
+    /// [`Error::WrongLayout`], [`Error::TooManySamples`] and [`Error::TooManyClipPlanes`].
+    pub fn recordings(
+        &self,
+        volume: &GpuVolume,
+        transfer: Option<&GpuTransfer>,
+    ) -> Result<Vec<Recording>, Error> {
+        let (wanted, found) = (self.texture_layout(), volume.layout());
+        if wanted != found {
+            return Err(Error::WrongLayout { wanted, found });
+        }
+        let layout = transfer.map_or_else(TransferLayout::default, |t| *t.layout());
+        let fields = self.fields(&volume.texel().coding, &layout)?;
+        let cells: Vec<_> = volume.bricks().iter().map(|brick| brick.cell).collect();
+        let mut order = self.front_to_back(&cells);
+        let settings = self.settings;
+        if settings.technique != Technique::Raycast && settings.order == Order::BackToFront {
+            order.reverse();
+        }
+        let recording = |(nth, &brick): (usize, &usize)| {
+            let cell = &cells[brick];
+            let mut fields = fields;
+            if cells.len() > 1 {
+                self.set_brick(cell, nth == 0, &mut fields);
+            }
+            self.recording(brick, Some(cell), fields)
+        };
+        Ok(order.iter().enumerate().map(recording).collect())
+    }
+
+    /// What the CPU twins compute: the whole grid at once, values as they are.
+    ///
+    /// # Errors
+    /// As [`View::recordings`].
+    pub fn on_cpu(&self) -> Result<Recording, Error> {
+        let fields = self.fields(&Coding::PLAIN, &TransferLayout::default())?;
+        Ok(self.recording(0, None, fields))
+    }
+
+    fn recording(&self, brick: usize, cell: Option<&Cell>, mut fields: FrameFields) -> Recording {
+        let part = self.part(cell);
+        let slices = match self.settings.technique {
+            Technique::Raycast => 0,
+            Technique::Slices3d => set_planes(self, part, &mut fields),
+            Technique::Slices2d => set_slices(self, stack_axis(self), part, &mut fields),
+        };
+        Recording {
+            brick,
+            slices,
+            frame: fields.into(),
+        }
+    }
+}
+
+impl Recording {
+    /// Writes the parameters into a slot that no unfinished recording reads, and gives its offset.
+    ///
+    /// # Errors
+    /// Where the ring has no such slot.
+    pub fn write(&self, ring: &ParameterRing, slot: u32) -> Result<u32, gpu::Error> {
+        ring.write(slot, bytemuck::bytes_of(&self.frame))?;
+        ring.offset(slot)
+    }
+}
+
+/// A ring for the parameters of `slots` recordings: bricks times views times frames in flight.
+///
+/// # Errors
+/// Where the device gives no memory.
+pub fn parameter_ring(gpu: &Arc<Gpu>, slots: u32) -> Result<ParameterRing, gpu::Error> {
+    ParameterRing::new(gpu, size_of::<Frame>() as u32, slots, "frame parameters")
+}
