@@ -119,10 +119,10 @@ impl<'h> HostImage<'h> {
         unsafe { self.barrier(cmd, nothing, (stage, access, layout)) };
     }
 
-    /// Copies what was drawn to where the CPU reads it, from this layout on.
+    /// Brings the image to where a copy reads it, and copies it to where the CPU does.
     ///
     /// # Safety
-    /// `cmd` is recording outside rendering; the image is in `layout`, last written by `stage` and `access`.
+    /// `cmd` is recording outside rendering; the image is as `before` says.
     pub unsafe fn fetch(
         &self,
         cmd: vk::CommandBuffer,
@@ -133,6 +133,39 @@ impl<'h> HostImage<'h> {
             vk::AccessFlags::TRANSFER_READ,
             vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
         );
+        // SAFETY: the caller's promise.
+        unsafe {
+            self.barrier(cmd, before, after);
+            self.copy_from(cmd, after.2);
+        }
+    }
+
+    /// Clears a new image to what the host draws, by a transfer, and leaves it in `TRANSFER_DST_OPTIMAL`.
+    ///
+    /// # Safety
+    /// `cmd` is recording outside rendering.
+    pub unsafe fn clear(&self, cmd: vk::CommandBuffer, drawn: [f32; 4]) {
+        let stage = vk::PipelineStageFlags::TRANSFER;
+        let layout = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
+        let nothing = (stage, vk::AccessFlags::empty(), vk::ImageLayout::UNDEFINED);
+        let color = vk::ClearColorValue { float32: drawn };
+        // SAFETY: the caller's promise.
+        unsafe {
+            self.barrier(
+                cmd,
+                nothing,
+                (stage, vk::AccessFlags::TRANSFER_WRITE, layout),
+            );
+            let device = &self.host.device;
+            device.cmd_clear_color_image(cmd, self.raw, layout, &color, &[WHOLE]);
+        }
+    }
+
+    /// Copies the image, which is in `layout`, to where the CPU reads it.
+    ///
+    /// # Safety
+    /// `cmd` is recording outside rendering; copies may read the image now.
+    pub unsafe fn copy_from(&self, cmd: vk::CommandBuffer, layout: vk::ImageLayout) {
         let [width, height] = self.extent;
         let copy = [vk::BufferImageCopy::default()
             .image_subresource(vk::ImageSubresourceLayers {
@@ -151,8 +184,7 @@ impl<'h> HostImage<'h> {
         let device = &self.host.device;
         // SAFETY: the caller's promise.
         unsafe {
-            self.barrier(cmd, before, after);
-            device.cmd_copy_image_to_buffer(cmd, self.raw, after.2, self.readback, &copy);
+            device.cmd_copy_image_to_buffer(cmd, self.raw, layout, self.readback, &copy);
             device.cmd_pipeline_barrier(
                 cmd,
                 vk::PipelineStageFlags::TRANSFER,
@@ -208,9 +240,8 @@ impl<'h> HostImage<'h> {
 impl Drop for HostImage<'_> {
     fn drop(&mut self) {
         let device = &self.host.device;
-        // SAFETY: the device has finished, and all of it is the host's own.
+        // SAFETY: the tests have waited for what used the image, and all of it is the host's own.
         unsafe {
-            device.device_wait_idle().unwrap();
             device.destroy_image_view(self.view, None);
             device.destroy_image(self.raw, None);
             device.free_memory(self.memory, None);
