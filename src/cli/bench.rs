@@ -115,6 +115,7 @@ impl Bench {
         let of_first = window_of(job, &cameras[0])?;
         job.classification = of_first.as_ref().unwrap_or(&classification);
         let mut renderer = Renderer::new(job, &cameras[0])?;
+        progress.device(&renderer.device());
         // Pipelines are made on first use: that is not what is measured.
         renderer.draw(&cameras[0])?;
         let mut frames = Vec::new();

@@ -122,6 +122,7 @@ impl Render {
             device: scene.device.as_deref(),
         };
         let mut renderer = Renderer::new(job, &camera)?;
+        progress.device(&renderer.device());
         let mut frames = Vec::new();
         let mut last = None;
         for done in 0..self.repeat {
