@@ -175,12 +175,12 @@ fn slices_into_the_hosts_image(stage: &Stage, format: vk::Format, drawn: [f32; 4
         let pass = Slices3d::new(gpu, picture, order, &words, format).unwrap();
         let bound = pass.bind(&inputs(&ring, &there)).unwrap();
         // SAFETY: as above.
-        render(&|cmd| unsafe { pass.record(cmd, &bound, offset, extent, slices) });
+        render(&|cmd| unsafe { pass.record(cmd, &bound, offset, extent, 0..slices) });
     } else {
         let pass = Slices2d::new(gpu, picture, order, &words, format).unwrap();
         let bound = pass.bind(&inputs(&ring, &there)).unwrap();
         // SAFETY: as above.
-        render(&|cmd| unsafe { pass.record(cmd, &bound, offset, extent, slices) });
+        render(&|cmd| unsafe { pass.record(cmd, &bound, offset, extent, 0..slices) });
     }
     let wanted: Vec<_> = stage.twin().iter().map(|&p| over(p, drawn)).collect();
     let what = format!("{technique:?} {order:?} into {format:?}");
