@@ -11,10 +11,8 @@ use stratavox::resolve::Resolve;
 use stratavox::technique::blend::Drawn;
 use stratavox::technique::projection::Projection;
 use stratavox::technique::raycast::Raycast;
-use stratavox::technique::slices_2d::Slices2d;
-use stratavox::technique::slices_3d::Slices3d;
 use stratavox::technique::{
-    Inputs, Mode, Order, Settings, Technique, Words, accumulation, parameter_ring,
+    Inputs, Mode, Order, Settings, Slicer, Technique, Words, accumulation, parameter_ring,
 };
 
 /// Behind the volume, in numbers that 8 bits and halves hold exactly where they are not sRGB.
@@ -172,12 +170,12 @@ fn slices_into_the_hosts_image(stage: &Stage, format: vk::Format, drawn: [f32; 4
         });
     };
     if technique == Technique::Slices3d {
-        let pass = Slices3d::new(gpu, picture, order, &words, format).unwrap();
+        let pass = Slicer::new(gpu, Technique::Slices3d, picture, order, &words, format).unwrap();
         let bound = pass.bind(&inputs(&ring, &there)).unwrap();
         // SAFETY: as above.
         render(&|cmd| unsafe { pass.record(cmd, &bound, offset, extent, 0..slices) });
     } else {
-        let pass = Slices2d::new(gpu, picture, order, &words, format).unwrap();
+        let pass = Slicer::new(gpu, Technique::Slices2d, picture, order, &words, format).unwrap();
         let bound = pass.bind(&inputs(&ring, &there)).unwrap();
         // SAFETY: as above.
         render(&|cmd| unsafe { pass.record(cmd, &bound, offset, extent, 0..slices) });

@@ -22,8 +22,9 @@ use stratavox::gpu::{
 use stratavox::picture::ColorSpace;
 use stratavox::resident::{GpuTransfer, GpuVolume, TextureLayout};
 use stratavox::technique::blend::Drawn;
-use stratavox::technique::slices_3d::Slices3d;
-use stratavox::technique::{Inputs, Mode, Order, Settings, Technique, View, Words, parameter_ring};
+use stratavox::technique::{
+    Inputs, Mode, Order, Settings, Slicer, Technique, View, Words, parameter_ring,
+};
 use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
 use stratavox::volume::Volume;
 
@@ -85,7 +86,7 @@ fn drawn(device: &mut Headless, format: vk::Format, order: Order, slices: u32) -
     let planes = recording.slices;
     let words = Words::of(&settings, &voxels);
     let drawn = Drawn::Picture(Mode::Composite);
-    let slicer = Slices3d::new(&gpu, drawn, order, &words, format).unwrap();
+    let slicer = Slicer::new(&gpu, Technique::Slices3d, drawn, order, &words, format).unwrap();
     let inputs = Inputs {
         ring: &ring,
         volume: &voxels,

@@ -1,17 +1,14 @@
 //! A slicer's picture: drawn into the accumulation where the device blends f32, else in merged batches.
 
-use super::submission::{Part, Submission};
+use super::submission::Submission;
 use crate::gpu::{
     Bindings, Error, Gpu, Image, ImageDesc, ImageKind, Load, Use, begin_rendering, clear_image,
     end_rendering, image_barrier,
 };
 use crate::technique::blend::{Drawn, clear_color};
 use crate::technique::merge::{BATCH_FORMAT, MAX_BATCH_SLICES, Merge};
-use crate::technique::slices_2d::Slices2d;
-use crate::technique::slices_3d::Slices3d;
-use crate::technique::{ACCUMULATION_FORMAT, Inputs, Mode, Settings, Technique, Words};
+use crate::technique::{ACCUMULATION_FORMAT, Mode, Settings, Slicer, Words};
 use ash::vk;
-use std::ops::Range;
 use std::sync::Arc;
 
 /// The pipelines of one slicer.
@@ -22,12 +19,6 @@ pub struct Slicing {
     slicer: Slicer,
     /// Where f32 targets cannot be blended.
     merge: Option<Merge>,
-}
-
-#[derive(Debug)]
-enum Slicer {
-    ViewAligned(Slices3d),
-    Stack(Slices2d),
 }
 
 impl Slicing {
@@ -49,15 +40,11 @@ impl Slicing {
         } else {
             ACCUMULATION_FORMAT
         };
-        let slicer = match settings.technique {
-            Technique::Slices2d => Slicer::Stack(Slices2d::new(gpu, drawn, order, words, format)?),
-            _ => Slicer::ViewAligned(Slices3d::new(gpu, drawn, order, words, format)?),
-        };
         let merge = || Merge::new(gpu, drawn, order);
         Ok(Self {
             gpu: Arc::clone(gpu),
             drawn,
-            slicer,
+            slicer: Slicer::new(gpu, settings.technique, drawn, order, words, format)?,
             merge: is_merged.then(merge).transpose()?,
         })
     }
@@ -88,7 +75,7 @@ impl Slicing {
             begin_rendering(gpu, cmd, &[(into.view(), Load::Clear(clear))], extent);
             for (brick, bindings) in bricks.iter().zip(bound) {
                 self.slicer
-                    .record(cmd, bindings, brick, extent, 0..brick.slices);
+                    .record(cmd, bindings, brick.offset, extent, 0..brick.slices);
             }
             end_rendering(gpu, cmd);
             image_barrier(gpu, cmd, into, Use::ColorTarget, Use::FragmentSampled);
@@ -125,7 +112,8 @@ impl Slicing {
                 };
                 image_barrier(gpu, cmd, &batch, last, Use::ColorTarget);
                 begin_rendering(gpu, cmd, &[(batch.view(), Load::Clear([0.0; 4]))], extent);
-                self.slicer.record(cmd, bindings, brick, extent, slices);
+                self.slicer
+                    .record(cmd, bindings, brick.offset, extent, slices);
                 end_rendering(gpu, cmd);
                 image_barrier(gpu, cmd, &batch, Use::ColorTarget, Use::ComputeSampled);
                 image_barrier(gpu, cmd, into, before, Use::ComputeWrite);
@@ -135,34 +123,6 @@ impl Slicing {
             image_barrier(gpu, cmd, into, before, Use::FragmentSampled);
             Ok(())
         })
-    }
-}
-
-impl Slicer {
-    fn bind(&self, inputs: &Inputs) -> Result<Bindings, Error> {
-        match self {
-            Self::ViewAligned(pass) => pass.bind(inputs),
-            Self::Stack(pass) => pass.bind(inputs),
-        }
-    }
-
-    /// # Safety
-    /// As `record` of each technique.
-    unsafe fn record(
-        &self,
-        cmd: vk::CommandBuffer,
-        bindings: &Bindings,
-        brick: &Part,
-        extent: [u32; 2],
-        slices: Range<u32>,
-    ) {
-        // SAFETY: the caller's promises.
-        unsafe {
-            match self {
-                Self::ViewAligned(pass) => pass.record(cmd, bindings, brick.offset, extent, slices),
-                Self::Stack(pass) => pass.record(cmd, bindings, brick.offset, extent, slices),
-            }
-        }
     }
 }
 
