@@ -8,8 +8,9 @@ use crate::shaders::shader;
 use ash::vk;
 use std::sync::Arc;
 
-/// Slices of one batch: more would be lost in the 11 bits of the format (`algorithms.md` 1.7).
-pub const MAX_BATCH_SLICES: u32 = 512;
+/// Slices of one batch. The law allows 512, which keeps an 8-bit code where blending rounds to nearest
+/// (`algorithms.md` 1.7); blending that truncates, as lavapipe's does, needs batches of an eighth.
+pub const MAX_BATCH_SLICES: u32 = 64;
 
 /// The format of a batch.
 pub const BATCH_FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
