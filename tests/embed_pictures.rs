@@ -5,7 +5,7 @@ mod shared;
 
 use ash::vk;
 use embed_shared::{Host, HostImage, OnDevice, Stage, assert_close, over};
-use stratavox::gpu::{Bindings, Blend, Image, ParameterRing, Use, image_barrier};
+use stratavox::gpu::{Bindings, Blend, Caps, Image, ParameterRing, Use, image_barrier};
 use stratavox::picture::ColorSpace;
 use stratavox::resolve::Resolve;
 use stratavox::technique::blend::Drawn;
@@ -33,13 +33,11 @@ fn targets() -> [(vk::Format, ColorSpace); 3] {
     ]
 }
 
-/// The one brick of these volumes.
-fn inputs<'a>(ring: &'a ParameterRing, there: &'a OnDevice) -> Inputs<'a> {
-    let brick = &there.volume.bricks()[0];
+fn inputs<'a>(ring: &'a ParameterRing, there: &'a OnDevice, brick: usize) -> Inputs<'a> {
     Inputs {
         ring,
         volume: &there.volume,
-        brick,
+        brick: &there.volume.bricks()[brick],
         transfer: Some(&there.transfer),
     }
 }
@@ -50,11 +48,13 @@ fn over_the_hosts_drawing(host: &Host, stage: &Stage, format: vk::Format) {
     let there = OnDevice::new(host, stage);
     let Settings { mode, .. } = stage.settings;
     let words = Words::of(&stage.settings, &there.volume);
-    let ring = parameter_ring(gpu, 1).unwrap();
+    let bricks = there.volume.bricks().len();
+    let ring = parameter_ring(gpu, bricks as u32).unwrap();
     let gathered = accumulation(gpu, stage.extent, "gathered").unwrap();
     let layers = accumulation(gpu, stage.extent, "layers").unwrap();
     let gather = Gather::new(host, mode, &words);
-    let bindings = gather.bind(&inputs(&ring, &there), &gathered, &layers);
+    let bind = |brick| gather.bind(&inputs(&ring, &there, brick), &gathered, &layers);
+    let bound: Vec<_> = (0..bricks).map(bind).collect();
     let resolve = Resolve::new(gpu, mode, Blend::Over, format).unwrap();
     let resolved = resolve
         .bind(&ring, &gathered, Some(&there.transfer))
@@ -64,25 +64,29 @@ fn over_the_hosts_drawing(host: &Host, stage: &Stage, format: vk::Format) {
     let recordings = stage
         .view()
         .recordings(&there.volume, Some(&there.transfer));
-    let [recording] = recordings.unwrap()[..] else {
-        panic!("one brick, one recording")
-    };
-    let offset = recording.write(&ring, 0).unwrap();
+    let slots = (0..).zip(recordings.unwrap());
+    let slots = slots.map(|(slot, r)| (r.brick, r.write(&ring, slot).unwrap()));
+    let slots: Vec<_> = slots.collect();
     // SAFETY: barriers stand between the passes, and all of it lives until `run` has waited.
     host.run(|cmd| unsafe {
-        for written in [&gathered, &layers] {
-            image_barrier(gpu, cmd, written, Use::Nothing, Use::ComputeWrite);
+        let mut before = Use::Nothing;
+        for &(brick, offset) in &slots {
+            for written in [&gathered, &layers] {
+                image_barrier(gpu, cmd, written, before, Use::ComputeWrite);
+            }
+            gather.record(cmd, &bound[brick], offset, stage.extent);
+            before = Use::ComputeWrite;
         }
-        gather.record(cmd, &bindings, offset, stage.extent);
         image_barrier(gpu, cmd, &gathered, Use::ComputeWrite, Use::FragmentSampled);
         image.make_target(cmd);
         host.begin_rendering(cmd, image.view, stage.extent, DRAWN);
-        resolve.record(cmd, &resolved, offset, stage.extent);
+        resolve.record(cmd, &resolved, slots[0].1, stage.extent);
         host.device.cmd_end_rendering(cmd);
         image.fetch_drawn(cmd);
     });
     let wanted: Vec<_> = stage.twin().iter().map(|&p| over(p, DRAWN)).collect();
-    assert_close(&image, &wanted, 1, &format!("{mode:?} into {format:?}"));
+    let what = format!("{mode:?}, {bricks} bricks, into {format:?}");
+    assert_close(&image, &wanted, 1, &what);
 }
 
 enum Gather {
@@ -141,6 +145,21 @@ fn a_projected_maximum_stands_before_what_the_host_has_drawn() {
     }
 }
 
+#[test]
+fn a_volume_too_large_for_one_texture_is_staged_and_drawn_in_bricks() {
+    let host = Host::with_caps(Caps {
+        max_image_dimension_3d: 9,
+        ..Caps::UNLIMITED
+    });
+    for mode in [Mode::Composite, Mode::Mip] {
+        let stage = Stage::new(Settings {
+            mode,
+            ..Settings::default()
+        });
+        over_the_hosts_drawing(&host, &stage, FLOATS[1]);
+    }
+}
+
 /// Slices of either kind, drawn straight into the host's image; `drawn` stands behind them.
 fn slices_into_the_hosts_image(stage: &Stage, format: vk::Format, drawn: [f32; 4]) {
     let host = Host::new();
@@ -159,27 +178,16 @@ fn slices_into_the_hosts_image(stage: &Stage, format: vk::Format, drawn: [f32; 4
     let offset = recording.write(&ring, 0).unwrap();
     let (extent, slices) = (stage.extent, recording.slices);
     let picture = Drawn::Picture(Mode::Composite);
+    let pass = Slicer::new(gpu, technique, picture, order, &words, format).unwrap();
+    let bound = pass.bind(&inputs(&ring, &there, 0)).unwrap();
     // SAFETY: recorded inside the host's rendering; all of it lives until `run` has waited.
-    let render = |slicer: &dyn Fn(vk::CommandBuffer)| {
-        host.run(|cmd| unsafe {
-            image.make_target(cmd);
-            host.begin_rendering(cmd, image.view, extent, drawn);
-            slicer(cmd);
-            host.device.cmd_end_rendering(cmd);
-            image.fetch_drawn(cmd);
-        });
-    };
-    if technique == Technique::Slices3d {
-        let pass = Slicer::new(gpu, Technique::Slices3d, picture, order, &words, format).unwrap();
-        let bound = pass.bind(&inputs(&ring, &there)).unwrap();
-        // SAFETY: as above.
-        render(&|cmd| unsafe { pass.record(cmd, &bound, offset, extent, 0..slices) });
-    } else {
-        let pass = Slicer::new(gpu, Technique::Slices2d, picture, order, &words, format).unwrap();
-        let bound = pass.bind(&inputs(&ring, &there)).unwrap();
-        // SAFETY: as above.
-        render(&|cmd| unsafe { pass.record(cmd, &bound, offset, extent, 0..slices) });
-    }
+    host.run(|cmd| unsafe {
+        image.make_target(cmd);
+        host.begin_rendering(cmd, image.view, extent, drawn);
+        pass.record(cmd, &bound, offset, extent, 0..slices);
+        host.device.cmd_end_rendering(cmd);
+        image.fetch_drawn(cmd);
+    });
     let wanted: Vec<_> = stage.twin().iter().map(|&p| over(p, drawn)).collect();
     let what = format!("{technique:?} {order:?} into {format:?}");
     assert_close(&image, &wanted, slices, &what);

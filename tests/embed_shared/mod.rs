@@ -34,16 +34,22 @@ impl Host {
     /// A host that knows its submissions by fences.
     pub fn new() -> Self {
         // SAFETY: nothing is enabled on the device that is not asked for here.
-        unsafe { Self::with(false) }
+        unsafe { Self::with(false, Caps::UNLIMITED) }
+    }
+
+    /// The same with stricter limits.
+    pub fn with_caps(caps: Caps) -> Self {
+        // SAFETY: as above.
+        unsafe { Self::with(false, caps) }
     }
 
     /// A host with a timeline.
     pub fn with_timeline() -> Self {
         // SAFETY: as above.
-        unsafe { Self::with(true) }
+        unsafe { Self::with(true, Caps::UNLIMITED) }
     }
 
-    unsafe fn with(timeline_semaphore: bool) -> Self {
+    unsafe fn with(timeline_semaphore: bool, caps: Caps) -> Self {
         let mode = Validation::default().mode().unwrap();
         // SAFETY: plain Vulkan set-up, every argument of which is right.
         unsafe {
@@ -94,7 +100,7 @@ impl Host {
                     ..Features::default()
                 },
                 debug_utils: mode.is_some(),
-                caps: Caps::UNLIMITED,
+                caps,
                 pipeline_cache: &[],
             });
             Self {
