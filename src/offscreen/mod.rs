@@ -1,4 +1,4 @@
-//! A scene to a picture, on either side: [`Renderer`] on a device of our own, [`reference`] on the CPU.
+//! A scene to a picture, on either side: [`Renderer`] on a device of our own, [`mod@reference`] on the CPU.
 //!
 //! The only place that submits and waits.
 
