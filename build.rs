@@ -68,6 +68,7 @@ const ENTRIES: &[(&str, &[Slot])] = &[
     ("slices_2d_cover", &[]),
     ("resolve", &[("source", &["picture", "value", "mean"])]),
     ("resolve_cover", &[]),
+    ("merge", &[("operator", &["over", "under", "add"])]),
 ];
 
 fn main() {

@@ -1,9 +1,8 @@
-// What a technique left, as linear premultiplied colour, weighted: additive blending of several resolves
-// is the mean over the rays of a pixel. Legal inside a host's rendering.
+// What a technique left, as linear premultiplied colour. Legal inside a host's rendering.
 
 #import resolve_{source}
 
 @fragment
 fn main(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    return frame.weight * premultiplied(vec2<i32>(position.xy));
+    return premultiplied(vec2<i32>(position.xy));
 }

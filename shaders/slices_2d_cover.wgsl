@@ -24,6 +24,12 @@ fn main(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u3
     var corners = CORNERS;
     let slice = slice_of(instance);
     let axis = frame.slice_axis;
+    // A slice that the eye lies in has no picture of its own, yet every ray has its first sample there: the
+    // fragments decide, all of them.
+    let eye = vec4(frame.origin, 1.0) * frame.voxel_from_world;
+    if abs(eye[axis] - (f32(slice) + 0.5)) < 0.01 {
+        return Vertex(vec4(2.0 * corners[index] - 1.0, 0.5, 1.0), slice);
+    }
     var part = vec3(0.0);
     part[(axis + 1u) % 3u] = corners[index].x;
     part[(axis + 2u) % 3u] = corners[index].y;

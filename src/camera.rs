@@ -11,7 +11,7 @@
 //!                                                 along f
 //! ```
 //!
-//! The words of the command line for it stand in [`orbit`].
+//! The words of the command line for it stand in `camera/orbit.rs`.
 
 mod orbit;
 

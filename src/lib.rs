@@ -9,9 +9,9 @@
 //! |---|---|---|
 //! | 0 | [`shaders`], [`real`], [`ray`], [`lattice`], [`color`] | arithmetic shared with the shaders, free of Vulkan |
 //! | 1 | [`gpu`], [`volume`], [`transfer`], [`camera`], [`picture`] | Vulkan objects, or data; never both |
-//! | 2 | `resident`, `format` | data put on a device; bytes of files turned into a [`volume::Source`] |
-//! | 3 | [`technique`], `resolve` | `new`, `bind`, `record`, and the CPU twins |
-//! | 4 | `scene`, `offscreen` | a scene to a [`picture::Picture`]; the only place that submits and waits |
+//! | 2 | [`resident`], `format` | data put on a device; bytes of files turned into a [`volume::Source`] |
+//! | 3 | [`technique`], [`resolve`] | `new`, `bind`, `record`, and the CPU twins |
+//! | 4 | [`scene`], [`offscreen`] | a scene to a [`picture::Picture`]; the only place that submits and waits |
 //! | 5 | `cli` | words to scenes, errors to exit codes |
 //!
 //! # Spaces
@@ -143,8 +143,15 @@
 //!
 //! # What holds everywhere
 //!
-//! Recording creates, destroys and waits for nothing. Only `gpu/headless.rs` makes a device. Only
-//! `format` and `picture` touch files. There is no global state. The same inputs give the same bytes.
+//! Recording creates, destroys and waits for nothing. Only `gpu/headless.rs` makes a device. Files are
+//! touched by `format`, `picture` and `transfer/file.rs`, by the program, and by `gpu/cache.rs`, which keeps
+//! compiled pipelines. There is no global state. The same inputs give the same bytes.
+//!
+//! # Where a pixel comes from
+//!
+//! [`technique::View::recordings`] sets the parameters, `shaders/raycast.wgsl` (or a slicer's) walks the ray,
+//! `shaders/lib/mode_*.wgsl` says what a sample adds, `shaders/resolve.wgsl` makes it a colour, and
+//! [`offscreen::Renderer::render`] (or a host) puts the passes in order.
 
 pub mod camera;
 #[cfg(feature = "cli")]

@@ -9,8 +9,7 @@ use embed_shared::{Host, HostImage, OnDevice, Stage, assert_close, over};
 use std::process::Command;
 use stratavox::gpu::{Load, Target, TargetState, Use, begin_rendering, end_rendering};
 use stratavox::technique::blend::Drawn;
-use stratavox::technique::slices_3d::Slices3d;
-use stratavox::technique::{Inputs, Mode, Settings, Technique, Words, parameter_ring};
+use stratavox::technique::{Inputs, Mode, Settings, Slicer, Technique, Words, parameter_ring};
 
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const DRAWN: [f32; 4] = [0.25, 0.0, 0.5, 1.0];
@@ -50,7 +49,7 @@ fn drawn_and_left_in(layout: vk::ImageLayout) {
     let ring = parameter_ring(gpu, 1).unwrap();
     let picture = Drawn::Picture(Mode::Composite);
     let order = stage.settings.order;
-    let pass = Slices3d::new(gpu, picture, order, &words, FORMAT).unwrap();
+    let pass = Slicer::new(gpu, Technique::Slices3d, picture, order, &words, FORMAT).unwrap();
     let inputs = Inputs {
         ring: &ring,
         volume: &there.volume,
@@ -90,7 +89,7 @@ fn drawn_and_left_in(layout: vk::ImageLayout) {
         image.clear(cmd, DRAWN);
         target.enter(gpu, cmd, Use::ColorTarget);
         begin_rendering(gpu, cmd, &[(target.view, Load::Keep)], target.extent);
-        pass.record(cmd, &bound, offset, target.extent, recording.slices);
+        pass.record(cmd, &bound, offset, target.extent, 0..recording.slices);
         end_rendering(gpu, cmd);
         target.leave(gpu, cmd, Use::ColorTarget);
         image.fetch(cmd, taken);

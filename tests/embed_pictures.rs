@@ -11,10 +11,8 @@ use stratavox::resolve::Resolve;
 use stratavox::technique::blend::Drawn;
 use stratavox::technique::projection::Projection;
 use stratavox::technique::raycast::Raycast;
-use stratavox::technique::slices_2d::Slices2d;
-use stratavox::technique::slices_3d::Slices3d;
 use stratavox::technique::{
-    Inputs, Mode, Order, Settings, Technique, Words, accumulation, parameter_ring,
+    Inputs, Mode, Order, Settings, Slicer, Technique, Words, accumulation, parameter_ring,
 };
 
 /// Behind the volume, in numbers that 8 bits and halves hold exactly where they are not sRGB.
@@ -180,27 +178,16 @@ fn slices_into_the_hosts_image(stage: &Stage, format: vk::Format, drawn: [f32; 4
     let offset = recording.write(&ring, 0).unwrap();
     let (extent, slices) = (stage.extent, recording.slices);
     let picture = Drawn::Picture(Mode::Composite);
+    let pass = Slicer::new(gpu, technique, picture, order, &words, format).unwrap();
+    let bound = pass.bind(&inputs(&ring, &there, 0)).unwrap();
     // SAFETY: recorded inside the host's rendering; all of it lives until `run` has waited.
-    let render = |slicer: &dyn Fn(vk::CommandBuffer)| {
-        host.run(|cmd| unsafe {
-            image.make_target(cmd);
-            host.begin_rendering(cmd, image.view, extent, drawn);
-            slicer(cmd);
-            host.device.cmd_end_rendering(cmd);
-            image.fetch_drawn(cmd);
-        });
-    };
-    if technique == Technique::Slices3d {
-        let pass = Slices3d::new(gpu, picture, order, &words, format).unwrap();
-        let bound = pass.bind(&inputs(&ring, &there, 0)).unwrap();
-        // SAFETY: as above.
-        render(&|cmd| unsafe { pass.record(cmd, &bound, offset, extent, slices) });
-    } else {
-        let pass = Slices2d::new(gpu, picture, order, &words, format).unwrap();
-        let bound = pass.bind(&inputs(&ring, &there, 0)).unwrap();
-        // SAFETY: as above.
-        render(&|cmd| unsafe { pass.record(cmd, &bound, offset, extent, slices) });
-    }
+    host.run(|cmd| unsafe {
+        image.make_target(cmd);
+        host.begin_rendering(cmd, image.view, extent, drawn);
+        pass.record(cmd, &bound, offset, extent, 0..slices);
+        host.device.cmd_end_rendering(cmd);
+        image.fetch_drawn(cmd);
+    });
     let wanted: Vec<_> = stage.twin().iter().map(|&p| over(p, drawn)).collect();
     let what = format!("{technique:?} {order:?} into {format:?}");
     assert_close(&image, &wanted, slices, &what);

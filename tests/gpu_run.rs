@@ -348,7 +348,7 @@ fn every_blend_is_its_formula() {
                 target.enter(&gpu, cmd, Use::ColorTarget);
                 begin_rendering(&gpu, cmd, &[(target.view, Load::Clear(old))], target.extent);
                 set_area(&gpu, cmd, target.extent);
-                pipeline.draw(cmd, &bindings, &[0], 3, 1);
+                pipeline.draw(cmd, &bindings, &[0], 3, 0..1);
                 end_rendering(&gpu, cmd);
                 target.leave(&gpu, cmd, Use::ColorTarget);
                 image_to_buffer(&gpu, cmd, &image, Region::whole(&image), &back, 0)

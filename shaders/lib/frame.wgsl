@@ -26,7 +26,8 @@ struct Frame {
     codes_are_integers: u32,
     // The same as a covector of voxel space: which way each grid axis runs away from the eye.
     forward_voxel: vec3<f32>,
-    weight: f32,
+    // +1 for a maximum, -1 for a minimum.
+    extreme_sign: f32,
     // What is kept of the grid, in voxel space, and the cover that slicers draw.
     domain_min: vec3<f32>,
     clip_plane_count: u32,
@@ -62,8 +63,6 @@ struct Frame {
     slice_turn: u32,
     slice_first_after_turn: i32,
     slice_axis: u32,
-    // +1 for a maximum, -1 for a minimum.
-    extreme_sign: f32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -115,6 +115,7 @@ impl Bench {
         let of_first = window_of(job, &cameras[0])?;
         job.classification = of_first.as_ref().unwrap_or(&classification);
         let mut renderer = Renderer::new(job, &cameras[0])?;
+        progress.device(&renderer.device());
         // Pipelines are made on first use: that is not what is measured.
         renderer.draw(&cameras[0])?;
         let mut frames = Vec::new();
@@ -130,7 +131,7 @@ impl Bench {
             prepare_ms: renderer.prepare_ms,
             first_frame_ms: frames[0].wall_ms,
             frames,
-            samples: None,
+            samples: renderer.samples(&cameras[cameras.len() - 1])?,
             peak_rss_bytes: peak_rss_bytes(),
             device_bytes: renderer.device_bytes(),
         };

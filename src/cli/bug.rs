@@ -9,7 +9,7 @@ use std::{
 /// The exit code of a bug.
 pub const EXIT_CODE: u8 = 101;
 
-/// Runs `work`; where it panics, says so in one sentence on stderr and gives [`EXIT_CODE`].
+/// Runs `work`; where it panics, says so in one sentence on stderr and gives exit code 101.
 ///
 /// Sets the panic hook of the process, so it is for programs alone.
 pub fn guarded(work: impl FnOnce() -> u8 + panic::UnwindSafe) -> u8 {

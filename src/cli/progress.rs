@@ -24,7 +24,7 @@ pub enum Progress {
     Silent,
     /// To a person.
     Line(ProgressBar),
-    /// To a program: `{"stage":"draw","done":1,"of":3}`.
+    /// To a program: `{"device":"..."}`, `{"stage":"draw","done":1,"of":3}`.
     Json,
 }
 
@@ -50,14 +50,16 @@ impl Progress {
             Self::Silent => {}
             Self::Line(line) if of > 1 => line.set_message(format!("{stage} {done}/{of}")),
             Self::Line(line) => line.set_message(stage),
-            Self::Json => {
-                let line = serde_json::json!({ "stage": stage, "done": done, "of": of });
-                // Nobody reads a closed stderr.
-                let _ = std::io::Write::write_all(
-                    &mut std::io::stderr(),
-                    format!("{line}\n").as_bytes(),
-                );
-            }
+            Self::Json => say_json(&serde_json::json!({ "stage": stage, "done": done, "of": of })),
+        }
+    }
+
+    /// Which device was chosen.
+    pub fn device(&self, name: &str) {
+        match self {
+            Self::Silent => {}
+            Self::Line(_) => self.note(&format!("on {name}")),
+            Self::Json => say_json(&serde_json::json!({ "device": name })),
         }
     }
 
@@ -68,6 +70,11 @@ impl Progress {
             Self::Silent | Self::Json => say_aside(text),
         }
     }
+}
+
+fn say_json(line: &serde_json::Value) {
+    // Nobody reads a closed stderr.
+    let _ = std::io::Write::write_all(&mut std::io::stderr(), format!("{line}\n").as_bytes());
 }
 
 impl Drop for Progress {

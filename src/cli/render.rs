@@ -13,7 +13,8 @@ use super::{
 };
 use crate::{
     camera::BoundingSphere,
-    picture::{BitDepth, LayerKind, Picture, PictureFormat, WriteOptions, write_picture},
+    picture::{BitDepth, LayerKind, PictureFormat, WriteOptions, write_picture},
+    technique::Filter,
     volume::{Limits, Volume},
 };
 use clap::Args;
@@ -87,7 +88,7 @@ impl Render {
             (PictureFormat::Png, BitDepth::Eight) => Depth::Eight,
             _ => Depth::More,
         };
-        let settings = scene.sampling.settings(depth)?;
+        let mut settings = scene.sampling.settings(depth)?;
         let extent_pixels = scene.picture.extent_pixels()?;
         scene.classification.check()?;
         let inputs = scene_file::inputs(&scene, self.scene_file.as_deref());
@@ -105,6 +106,10 @@ impl Render {
         let classification = scene
             .classification
             .classification(&volume, settings.mode)?;
+        if scene.sampling.filter.is_none() && scene.classification.found_labels(&classification) {
+            settings.filter = Filter::Nearest;
+            progress.note("the values look like labels: drawn with --filter nearest");
+        }
         let load_ms = ms_since(start);
 
         progress.stage("prepare", 0, 1);
@@ -117,6 +122,7 @@ impl Render {
             device: scene.device.as_deref(),
         };
         let mut renderer = Renderer::new(job, &camera)?;
+        progress.device(&renderer.device());
         let mut frames = Vec::new();
         let mut last = None;
         for done in 0..self.repeat {
@@ -156,7 +162,7 @@ impl Render {
                 prepare_ms: renderer.prepare_ms,
                 first_frame_ms: frames.first().map_or(0.0, |frame| frame.wall_ms),
                 frames,
-                samples: samples(&picture),
+                samples: renderer.samples(&camera)?,
                 peak_rss_bytes: peak_rss_bytes(),
                 device_bytes: renderer.device_bytes(),
             };
@@ -219,13 +225,4 @@ pub fn load(scene: &SceneFlags, progress: &Progress) -> Result<Volume, Error> {
         progress.note(&format!("{no_data} voxels hold no data"));
     }
     Ok(volume)
-}
-
-/// Samples that a picture took, where they were counted.
-pub fn samples(picture: &Picture) -> Option<u64> {
-    let layer = picture
-        .layers
-        .iter()
-        .find(|layer| layer.kind == LayerKind::Samples)?;
-    Some(layer.values.iter().map(|&count| count as u64).sum())
 }

@@ -82,9 +82,21 @@ impl<'a> Renderer<'a> {
 
     /// The picture that this camera sees, in memory when the call returns.
     pub fn draw(&mut self, camera: &Camera) -> Result<Frame, Error> {
+        self.draw_with(camera, self.job.layers)
+    }
+
+    /// The samples that the picture of this camera takes, rays through the middles of pixels alone. Draws once
+    /// more to count them.
+    pub fn samples(&mut self, camera: &Camera) -> Result<u64, Error> {
+        let picture = self.draw_with(camera, &[LayerKind::Samples])?.picture;
+        let counts = picture.layers.iter().flat_map(|layer| &layer.values);
+        Ok(counts.map(|&count| count as u64).sum())
+    }
+
+    fn draw_with(&mut self, camera: &Camera, layers: &[LayerKind]) -> Result<Frame, Error> {
         let scene = self.job.scene(camera);
         if let Some(renderer) = &mut self.on_device {
-            let rendered = renderer.render(&scene, self.job.layers)?;
+            let rendered = renderer.render(&scene, layers)?;
             return Ok(Frame {
                 picture: rendered.picture,
                 gpu_ms: rendered.gpu_ms,
@@ -92,7 +104,7 @@ impl<'a> Renderer<'a> {
         }
         let mut picture = reference::render::<f32>(&scene).map_err(offscreen::Error::Technique)?;
         let mut made = std::mem::take(&mut picture.layers);
-        for kind in self.job.layers {
+        for kind in layers {
             let at = made.iter().position(|layer| layer.kind == *kind);
             let at = at.expect("`check_layers` knows what a twin makes");
             picture.layers.push(made.swap_remove(at));

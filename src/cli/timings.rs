@@ -20,8 +20,8 @@ pub struct Timings {
     pub first_frame_ms: f64,
     /// Each picture, in order.
     pub frames: Vec<FrameTime>,
-    /// Samples that the last picture took; `null` where they were not counted.
-    pub samples: Option<u64>,
+    /// Samples that the last picture took.
+    pub samples: u64,
     /// The most memory that the process had.
     pub peak_rss_bytes: Option<u64>,
     /// Device memory.

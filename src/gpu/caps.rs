@@ -30,6 +30,8 @@ pub struct Caps {
     pub max_color_attachments: u32,
     pub max_framebuffer: [u32; 2],
     pub max_viewport: [u32; 2],
+    /// R32G32B32A32_SFLOAT targets can be blended into, where the device can; optional in Vulkan.
+    pub float32_blend: bool,
     /// A dynamic offset is a multiple of it.
     pub min_uniform_offset_alignment: u64,
     /// Bits of a filter weight: one look-up may be off by `2^-bits` of the step between two texels.
@@ -57,6 +59,7 @@ impl Caps {
         max_color_attachments: u32::MAX,
         max_framebuffer: [u32::MAX; 2],
         max_viewport: [u32::MAX; 2],
+        float32_blend: true,
         min_uniform_offset_alignment: 1,
         subtexel_bits: u32::MAX,
         timestamp_period_ns: 0.0,
@@ -80,6 +83,7 @@ impl Caps {
         max_color_attachments: 4,
         max_framebuffer: [4096; 2],
         max_viewport: [4096; 2],
+        float32_blend: false,
         min_uniform_offset_alignment: 256,
         subtexel_bits: 4,
         timestamp_period_ns: 0.0,
@@ -119,6 +123,7 @@ impl Caps {
             max_color_attachments: limits.max_color_attachments,
             max_framebuffer: [limits.max_framebuffer_width, limits.max_framebuffer_height],
             max_viewport: limits.max_viewport_dimensions,
+            float32_blend: true,
             min_uniform_offset_alignment: limits.min_uniform_buffer_offset_alignment,
             subtexel_bits: limits.sub_texel_precision_bits,
             timestamp_period_ns: limits.timestamp_period,
@@ -159,6 +164,7 @@ impl Caps {
             max_color_attachments: self.max_color_attachments.min(other.max_color_attachments),
             max_framebuffer: least(self.max_framebuffer, other.max_framebuffer),
             max_viewport: least(self.max_viewport, other.max_viewport),
+            float32_blend: self.float32_blend && other.float32_blend,
             min_uniform_offset_alignment: self
                 .min_uniform_offset_alignment
                 .max(other.min_uniform_offset_alignment),

@@ -6,7 +6,7 @@
 //! bytes = texel bytes * width * height * (depth or layers)
 //! ```
 
-use super::{Buffer, Error, Gpu, Image, texel_bytes};
+use super::{Buffer, Error, Gpu, Image, image::WHOLE_COLOR, texel_bytes};
 use ash::vk;
 
 /// Part of an image. For a 2D array, the third number counts layers.
@@ -92,6 +92,22 @@ pub unsafe fn image_to_buffer(
             .cmd_copy_image_to_buffer(cmd, image.raw(), layout, buffer.raw(), &copy)
     };
     Ok(())
+}
+
+/// Fills all of a color image with one color.
+///
+/// # Safety
+///
+/// `cmd` is recording on `gpu`'s device, outside rendering; the image lives until it has run and is in
+/// [`super::Use::TransferWrite`].
+pub unsafe fn clear_image(gpu: &Gpu, cmd: vk::CommandBuffer, image: &Image, color: [f32; 4]) {
+    let layout = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
+    let color = vk::ClearColorValue { float32: color };
+    // SAFETY: the caller's promises.
+    unsafe {
+        gpu.device()
+            .cmd_clear_color_image(cmd, image.raw(), layout, &color, &[WHOLE_COLOR])
+    };
 }
 
 fn checked(

@@ -22,7 +22,13 @@ impl Gpu {
     /// What this device can do with `format`.
     pub fn format_features(&self, format: vk::Format) -> FormatFeatures {
         // SAFETY: the physical device belongs to the instance; both live as long as we do.
-        unsafe { FormatFeatures::of(self.instance(), self.physical_device(), format) }
+        let features =
+            unsafe { FormatFeatures::of(self.instance(), self.physical_device(), format) };
+        let is_clamped = format == vk::Format::R32G32B32A32_SFLOAT && !self.limits().float32_blend;
+        FormatFeatures {
+            blend: features.blend && !is_clamped,
+            ..features
+        }
     }
 }
 

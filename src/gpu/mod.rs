@@ -46,7 +46,7 @@ pub use buffer::{Buffer, Memory};
 pub use cache::PipelineCache;
 pub use caps::Caps;
 pub use choice::DeviceChoice;
-pub use copy::{Region, buffer_to_image, image_to_buffer};
+pub use copy::{Region, buffer_to_image, clear_image, image_to_buffer};
 pub use devices::{Ability, DeviceReport, list_devices};
 pub use error::Error;
 pub use format::{FormatFeatures, texel_bytes};

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::shaders::{Shader, Stage};
 use ash::vk;
-use std::sync::Arc;
+use std::{ops::Range, sync::Arc};
 
 /// What becomes of the target. Colors are premultiplied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -109,7 +109,7 @@ impl RasterPipeline {
         &self.layout
     }
 
-    /// Binds pipeline and bindings and draws `vertices`, three a triangle, `instances` times.
+    /// Binds pipeline and bindings and draws `vertices`, three a triangle, once for each of `instances`.
     ///
     /// `offsets` are the dynamic offsets ([`super::ParameterRing::offset`]) of the uniform bindings, in order of
     /// their numbers.
@@ -126,7 +126,7 @@ impl RasterPipeline {
         bindings: &Bindings,
         offsets: &[u32],
         vertices: u32,
-        instances: u32,
+        instances: Range<u32>,
     ) {
         let device = self.raw.gpu().device();
         let point = vk::PipelineBindPoint::GRAPHICS;
@@ -135,7 +135,8 @@ impl RasterPipeline {
         unsafe {
             device.cmd_bind_pipeline(cmd, point, self.raw());
             device.cmd_bind_descriptor_sets(cmd, point, self.layout.raw(), 0, &sets, offsets);
-            device.cmd_draw(cmd, vertices, instances, 0, 0);
+            let count = instances.end.saturating_sub(instances.start);
+            device.cmd_draw(cmd, vertices, count, 0, instances.start);
         }
     }
 }

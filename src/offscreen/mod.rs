@@ -5,6 +5,8 @@
 mod passes;
 pub mod reference;
 mod renderer;
+mod slicing;
+mod submission;
 mod targets;
 mod upload;
 

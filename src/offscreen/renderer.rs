@@ -2,13 +2,14 @@
 //!
 //! ```text
 //! for each ray position in the pixel:
-//!     gather:   technique          -> accumulation (and layers)
-//!     resolve:  weight * colour    -> picture, added up
-//! read back
+//!     gather:   technique -> accumulation (and layers)
+//!     resolve:  colour    -> picture, read back
+//! picture = mean over the positions
 //! ```
 
 use super::Error;
-use super::passes::{Part, Passes, Submission};
+use super::passes::Passes;
+use super::submission::{Part, Submission};
 use super::targets::Targets;
 use super::upload::upload;
 use crate::gpu::{Headless, ParameterRing, Timer, Use};
@@ -108,12 +109,12 @@ impl<'v> Renderer<'v> {
             None => return Err(technique::Error::NoTransferFunction.into()),
         }
         let per_side = scene.settings.rays_per_side;
-        for (i, in_pixel) in positions_in_pixel(per_side).enumerate() {
+        let mut mean = Mean::new(scene.extent_pixels, per_side);
+        for in_pixel in positions_in_pixel(per_side) {
             clock.add(self.gather(scene, in_pixel)?);
-            self.resolve(i == 0)?;
+            mean.add(&self.resolve()?);
         }
-        let targets = self.targets.as_ref().expect("prepared");
-        let pixels = targets.read(&mut self.device, &targets.picture, Use::ColorTarget)?;
+        let pixels = mean.pixels;
         if per_side > 1 && !layers.is_empty() {
             clock.add(self.gather(scene, [0.0; 2])?);
         }
@@ -229,20 +230,14 @@ impl<'v> Renderer<'v> {
         Ok(pass(self.passes.as_ref().expect("prepared"), submission)?)
     }
 
-    /// Adds what was gathered to the picture; the parameters are still in the ring.
-    fn resolve(&mut self, is_first: bool) -> Result<(), Error> {
+    /// The colours of what was gathered; the parameters are still in the ring.
+    fn resolve(&mut self) -> Result<Vec<[f32; 4]>, Error> {
         let passes = self.passes.as_ref().expect("prepared");
         let targets = self.targets.as_ref().expect("prepared");
         let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
         let offset = self.ring.offset(0)?;
-        Ok(passes.resolve(
-            &mut self.device,
-            &self.ring,
-            offset,
-            targets,
-            transfer,
-            is_first,
-        )?)
+        passes.resolve(&mut self.device, &self.ring, offset, targets, transfer)?;
+        Ok(targets.read(&mut self.device, &targets.picture, Use::ColorTarget)?)
     }
 
     /// The default window of a projecting mode without a transfer function: the range of this picture.
@@ -338,6 +333,27 @@ fn place(layout: TextureLayout) -> usize {
     match layout {
         TextureLayout::Texture3d => 0,
         TextureLayout::Stack(axis) => 1 + axis,
+    }
+}
+
+/// The mean of pictures, added up in f32 in the order of their rays: no device needs to blend for it.
+struct Mean {
+    weight: f32,
+    pixels: Vec<[f32; 4]>,
+}
+
+impl Mean {
+    fn new([width, height]: [u32; 2], per_side: u32) -> Self {
+        Self {
+            weight: 1.0 / (per_side * per_side) as f32,
+            pixels: vec![[0.0; 4]; width as usize * height as usize],
+        }
+    }
+
+    fn add(&mut self, picture: &[[f32; 4]]) {
+        for (sum, color) in self.pixels.iter_mut().zip(picture) {
+            *sum = std::array::from_fn(|c| sum[c] + self.weight * color[c]);
+        }
     }
 }
 

@@ -93,7 +93,7 @@ impl Resolve {
         // SAFETY: the caller's promises; the bindings come from `bind`.
         unsafe {
             set_area(&self.gpu, cmd, extent);
-            self.pipeline.draw(cmd, bindings, &[offset], 3, 1);
+            self.pipeline.draw(cmd, bindings, &[offset], 3, 0..1);
         }
     }
 }

@@ -19,7 +19,8 @@ pub fn accumulation(gpu: &Arc<Gpu>, [width, height]: [u32; 2], name: &str) -> Re
         usage: vk::ImageUsageFlags::STORAGE
             | vk::ImageUsageFlags::COLOR_ATTACHMENT
             | vk::ImageUsageFlags::SAMPLED
-            | vk::ImageUsageFlags::TRANSFER_SRC,
+            | vk::ImageUsageFlags::TRANSFER_SRC
+            | vk::ImageUsageFlags::TRANSFER_DST,
         name,
     };
     Image::new(gpu, &desc)

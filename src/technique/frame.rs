@@ -69,7 +69,6 @@ impl View<'_> {
         let margin = self.cover_margin(&rays, &world_from_voxel);
         let (clip_planes, clip_plane_count) = self.clip_planes()?;
         let v = |v: DVec3| v.as_vec3().to_array();
-        let per_side = self.settings.rays_per_side as f32;
         let forward_voxel = world_from_voxel.matrix3.transpose() * rays.forward;
         Ok(FrameFields {
             origin: v(rays.origin),
@@ -81,13 +80,16 @@ impl View<'_> {
             forward: v(rays.forward),
             forward_voxel: v(forward_voxel),
             step_world: self.step_world() as f32,
-            termination: self.settings.termination,
+            termination: if self.settings.conformance {
+                0.0
+            } else {
+                self.settings.termination
+            },
             code_scale: coding.scale,
             code_offset: coding.offset,
             slope: coding.slope,
             intercept: coding.intercept,
             codes_are_integers: coding.is_integer.into(),
-            weight: 1.0 / (per_side * per_side),
             domain_min: v(domain_min),
             domain_max: v(domain_max),
             cover_min: v(domain_min - margin),

@@ -6,9 +6,11 @@ pub mod composite;
 mod frame;
 mod inputs;
 mod march;
+pub mod merge;
 pub mod projection;
 pub mod raycast;
 mod recording;
+mod slicer;
 pub mod slices_2d;
 pub mod slices_3d;
 
@@ -16,6 +18,7 @@ pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 pub use frame::View;
 pub use inputs::{Inputs, Words};
 pub use recording::{Recording, parameter_ring};
+pub use slicer::Slicer;
 
 /// Where samples lie.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -5,10 +5,12 @@
 
 use glam::{DAffine3, DVec3};
 use stratavox::camera::Camera;
+use stratavox::scene::Scene;
 use stratavox::shaders::Frame;
 use stratavox::technique::slices_2d::stack_axis;
 use stratavox::technique::{Lattice, Recording, Settings, Technique, View};
-use stratavox::volume::Grid;
+use stratavox::transfer::TransferFunction;
+use stratavox::volume::{Grid, Volume};
 
 /// A picture without its matter.
 #[derive(Clone, Debug)]
@@ -44,6 +46,29 @@ impl Shot {
             in_pixel: [0.0; 2],
             settings: &self.settings,
         }
+    }
+
+    /// The same picture of a volume on the same grid.
+    pub fn scene<'a>(
+        &'a self,
+        volume: &'a Volume,
+        transfer: Option<&'a TransferFunction>,
+    ) -> Scene<'a> {
+        assert_eq!(volume.grid(), self.grid, "another grid");
+        Scene {
+            volume,
+            transfer,
+            camera: &self.camera,
+            extent_pixels: self.extent,
+            settings: &self.settings,
+        }
+    }
+
+    /// The same with other settings.
+    pub fn with(&self, change: impl FnOnce(&mut Settings)) -> Self {
+        let mut shot = self.clone();
+        change(&mut shot.settings);
+        shot
     }
 
     /// The parameters that the twins read, and how many slices there are.

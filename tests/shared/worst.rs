@@ -26,6 +26,27 @@ impl Worst {
         }
     }
 
+    /// Two pictures, number by number, each allowed as much.
+    pub fn between(
+        what: impl Into<String>,
+        width: u32,
+        wanted: &[[f32; 4]],
+        found: &[[f32; 4]],
+        allowed: f64,
+    ) -> Self {
+        let mut worst = Self::new(what);
+        assert_eq!(wanted.len(), found.len(), "pictures of different size");
+        for (i, (wanted, found)) in (0..).zip(wanted.iter().zip(found)) {
+            for c in 0..4 {
+                let error = f64::from(found[c]) - f64::from(wanted[c]);
+                worst.take([i % width, i / width], error, allowed);
+            }
+        }
+        let drawn = wanted.iter().filter(|pixel| pixel[3] > 0.01).count();
+        assert!(drawn > 40, "{}: only {drawn} pixels are drawn", worst.what);
+        worst
+    }
+
     /// One number of one pixel. Not a number is infinitely wrong.
     pub fn take(&mut self, at: [u32; 2], error: f64, allowed: f64) {
         self.checked += 1;

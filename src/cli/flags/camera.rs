@@ -22,7 +22,7 @@ pub struct CameraFlags {
     #[arg(long, value_name = "F", value_parser = positive, help_heading = "Camera")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub zoom: Option<f64>,
-    /// Stand on this side [default: anterior]
+    /// Stand on this side [default: between right and anterior, a little above]
     #[arg(long, value_name = "SIDE", conflicts_with_all = ["azimuth", "elevation"], help_heading = "Camera")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub view: Option<ViewWord>,
@@ -112,7 +112,12 @@ impl CameraFlags {
     fn orbit(&self) -> Orbit {
         let side = match (self.view, self.azimuth, self.elevation) {
             (Some(view), _, _) => view.view().orbit(),
-            (None, None, None) => View::Anterior.orbit(),
+            // Three sides of a box are seen, and of a head more than the profile.
+            (None, None, None) => Orbit {
+                azimuth_degrees: 60.0,
+                elevation_degrees: 15.0,
+                roll_degrees: 0.0,
+            },
             (None, azimuth, elevation) => Orbit {
                 azimuth_degrees: azimuth.unwrap_or(0.0),
                 elevation_degrees: elevation.unwrap_or(0.0),
@@ -218,11 +223,12 @@ mod tests {
     }
 
     #[test]
-    fn without_a_flag_the_whole_volume_is_seen_from_the_front() {
+    fn without_a_flag_the_whole_volume_is_seen_from_three_sides() {
         let found = camera(|_| {});
-        // 5 / sin(15 degrees) = 19.318516525781366 in front of the middle.
-        let off = (found.eye - DVec3::new(10.0, 39.318_516_525_781_37, 30.0)).length();
-        assert!(off < 1e-12, "{found:?}");
+        // 5 / sin(15 degrees) = 19.318516525781366 from the middle, at azimuth 60 and elevation 15: times
+        // (cos 15 cos 60, cos 15 sin 60, sin 15) = (0.48296291, 0.83651630, 0.25881905).
+        let wanted = BOUNDS.center + DVec3::new(9.330_127_02, 16.160_254_04, 5.0);
+        assert!((found.eye - wanted).length() < 1e-7, "{found:?}");
         assert_eq!(found.target, BOUNDS.center);
         assert_eq!(
             found.projection,
@@ -239,7 +245,10 @@ mod tests {
 
     #[test]
     fn an_orthographic_eye_stands_two_radii_off_and_the_height_fits() {
-        let found = camera(|f| f.projection = Some(ProjectionWord::Orthographic));
+        let found = camera(|f| {
+            f.projection = Some(ProjectionWord::Orthographic);
+            f.view = Some(ViewWord::Anterior);
+        });
         assert!((found.eye.y - 30.0).abs() < 1e-12, "{found:?}");
         assert_eq!(
             found.projection,

@@ -4,7 +4,7 @@ use super::{Error, Numbers};
 use crate::{
     technique::Mode,
     transfer::{
-        Classified, Preset, TransferFunction, ValueSummary, Window, automatic,
+        Classified, Interpolation, Preset, TransferFunction, ValueSummary, Window, automatic,
         read_transfer_function, transfer_function_from_json, transfer_function_to_json,
     },
     volume::Volume,
@@ -80,6 +80,13 @@ impl ClassificationFlags {
             preset(name).map_err(|problem| Error::usage(problem, "--preset ct-bone"))?;
         }
         Ok(())
+    }
+
+    /// True where this program alone has found that the volume holds labels: no value lies between two of them.
+    pub fn found_labels(&self, found: &Classification) -> bool {
+        let is_automatic = self.preset.is_none() && self.transfer_function.is_none();
+        let is_step = |f: &TransferFunction| f.interpolation == Interpolation::Step;
+        is_automatic && matches!(found, Classification::Function(f) if is_step(f))
     }
 
     /// The function for this volume and what `mode` classifies.

@@ -10,6 +10,7 @@ mod not_built;
 mod numbers;
 mod picture;
 mod sampling;
+mod words;
 
 pub use camera::CameraFlags;
 pub use classification::{Classification, ClassificationFlags};

@@ -1,6 +1,6 @@
 //! How large the picture is, what lies behind the volume, and which layers go with it.
 
-use super::{Background, Error, Size, sampling::not_built};
+use super::{Background, Error, Size, words::not_built};
 use crate::picture::LayerKind;
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};

@@ -1,12 +1,15 @@
 //! Which samples are taken and what is done with them: flags to [`Settings`].
 
-use super::{Error, Numbers, positive};
+use super::{
+    Error, Numbers, positive,
+    words::{ColorSpaceWord, FilterWord, LatticeWord, ModeWord, OrderWord, TechniqueWord},
+};
 use crate::{
     picture::ColorSpace,
     shaders::MAX_CLIP_PLANES,
-    technique::{ClipPlane, Filter, Lattice, Mode, Order, Settings, Technique},
+    technique::{ClipPlane, Settings},
 };
-use clap::{Args, ValueEnum};
+use clap::Args;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -79,10 +82,7 @@ const MAX_RAYS_PER_SIDE: u32 = 64;
 impl SamplingFlags {
     /// What to compute, for a picture kept so exactly.
     pub fn settings(&self, depth: Depth) -> Result<Settings, Error> {
-        let color_space = match self.color_space.unwrap_or_default() {
-            ColorSpaceWord::Linear => ColorSpace::Linear,
-            ColorSpaceWord::Display => ColorSpace::Display,
-        };
+        let color_space = self.color_space.unwrap_or_default().color_space();
         let termination = match (depth, color_space) {
             _ if self.conformance => 0.0,
             (Depth::More, _) => 0.0,
@@ -93,14 +93,8 @@ impl SamplingFlags {
             technique: self.technique.unwrap_or_default().technique(),
             mode: self.mode.unwrap_or_default().mode()?,
             filter: self.filter.unwrap_or_default().filter()?,
-            lattice: match self.lattice.unwrap_or_default() {
-                LatticeWord::Ray => Lattice::Ray,
-                LatticeWord::Planes => Lattice::Planes,
-            },
-            order: match self.order.unwrap_or_default() {
-                OrderWord::BackToFront => Order::BackToFront,
-                OrderWord::FrontToBack => Order::FrontToBack,
-            },
+            lattice: self.lattice.unwrap_or_default().lattice(),
+            order: self.order.unwrap_or_default().order(),
             samples_per_voxel: samples_per_voxel(self.samples_per_voxel.unwrap_or(1.0))?,
             rays_per_side: rays_per_side(self.aa.unwrap_or(1))?,
             termination,
@@ -189,132 +183,6 @@ fn clip_planes(clips: &[Numbers<4>]) -> Result<Vec<ClipPlane>, Error> {
         })
     };
     clips.iter().map(plane).collect()
-}
-
-/// Every word of `--technique`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "the names say it")]
-pub enum TechniqueWord {
-    #[default]
-    Raycast,
-    #[value(name = "slices-3d")]
-    #[serde(rename = "slices-3d")]
-    Slices3d,
-    #[value(name = "slices-2d")]
-    #[serde(rename = "slices-2d")]
-    Slices2d,
-}
-
-impl TechniqueWord {
-    fn technique(self) -> Technique {
-        match self {
-            Self::Raycast => Technique::Raycast,
-            Self::Slices3d => Technique::Slices3d,
-            Self::Slices2d => Technique::Slices2d,
-        }
-    }
-}
-
-/// Every word of `--mode`, built or not.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "the names say it")]
-pub enum ModeWord {
-    #[default]
-    Composite,
-    Mip,
-    Minip,
-    Average,
-    Xray,
-    #[value(help = "not built yet")]
-    Lmip,
-    #[value(help = "not built yet")]
-    Mida,
-    #[value(help = "not built yet")]
-    Iso,
-}
-
-impl ModeWord {
-    fn mode(self) -> Result<Mode, Error> {
-        Ok(match self {
-            Self::Composite => Mode::Composite,
-            Self::Mip => Mode::Mip,
-            Self::Minip => Mode::Minip,
-            Self::Average => Mode::Average,
-            Self::Xray => Mode::Xray,
-            Self::Lmip | Self::Mida | Self::Iso => return Err(not_built("--mode", self)),
-        })
-    }
-}
-
-/// Every word of `--filter`, built or not.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "the names say it")]
-pub enum FilterWord {
-    Nearest,
-    #[default]
-    Linear,
-    #[value(help = "not built yet")]
-    Quadratic,
-    #[value(help = "not built yet")]
-    Cubic,
-    #[value(help = "not built yet")]
-    QuadraticSmooth,
-    #[value(help = "not built yet")]
-    CubicSmooth,
-    #[value(help = "not built yet")]
-    CatmullRom,
-}
-
-impl FilterWord {
-    fn filter(self) -> Result<Filter, Error> {
-        match self {
-            Self::Nearest => Ok(Filter::Nearest),
-            Self::Linear => Ok(Filter::Linear),
-            _ => Err(not_built("--filter", self)),
-        }
-    }
-}
-
-/// Every word of `--lattice`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "the names say it")]
-pub enum LatticeWord {
-    #[default]
-    Ray,
-    Planes,
-}
-
-/// Every word of `--order`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "the names say it")]
-pub enum OrderWord {
-    #[default]
-    BackToFront,
-    FrontToBack,
-}
-
-/// Every word of `--color-space`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "the names say it")]
-pub enum ColorSpaceWord {
-    #[default]
-    Linear,
-    Display,
-}
-
-/// `--flag word` is not built yet.
-pub fn not_built(flag: &str, word: impl ValueEnum) -> Error {
-    let name = word
-        .to_possible_value()
-        .map(|value| value.get_name().to_owned())
-        .unwrap_or_default();
-    Error::NotBuilt(format!("`{flag} {name}`"))
 }
 
 #[cfg(test)]

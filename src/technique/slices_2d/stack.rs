@@ -48,15 +48,18 @@ pub fn set_slices(
     let above = first_slice_above_eye(view, axis).clamp(first, end);
     let (slices_above, slices_below) = (end - above, above - first);
     fields.slice_axis = axis as u32;
-    fields.slice_turn = slices_above as u32;
+    // A slice that the eye lies in counts as below. It is the nearest of all: drawn last, or first.
+    fields.slice_direction = -1;
     match view.settings.order {
         Order::BackToFront => {
-            (fields.slice_first, fields.slice_direction) = (end - 1, -1);
+            fields.slice_first = end - 1;
+            fields.slice_turn = slices_above as u32;
             fields.slice_first_after_turn = first;
         }
         Order::FrontToBack => {
-            (fields.slice_first, fields.slice_direction) = (above, 1);
-            fields.slice_first_after_turn = above - 1;
+            fields.slice_first = above - 1;
+            fields.slice_turn = slices_below as u32;
+            fields.slice_first_after_turn = above;
         }
     }
     (slices_above + slices_below) as u32

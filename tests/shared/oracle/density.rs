@@ -65,12 +65,14 @@ fn absorbed(
     };
     let mut worst = Worst::new(what(answer, way, shot));
     for (pixel, found) in shot.pixels().zip(way.picture(shot, &matter)) {
-        let Some(chord) = shot.chord(pixel) else {
-            worst.take(pixel, found[3], 5e-6);
-            continue;
-        };
-        let Some(covered) = chord.covered().filter(|_| !chord.hangs) else {
+        let chord = shot.chord(pixel);
+        if chord.as_ref().is_some_and(|chord| chord.hangs) {
             worst.leave_out();
+            continue;
+        }
+        let met = chord.and_then(|chord| chord.covered().map(|covered| (chord, covered)));
+        let Some((chord, covered)) = met else {
+            worst.take(pixel, found[3], 5e-6);
             continue;
         };
         let (a, b) = height.along(&chord);

@@ -42,7 +42,7 @@ pub(super) fn great_hole(p: DVec3) -> f64 {
 pub(super) fn skull(p: DVec3, brain_room: f64, face: f64) -> f64 {
     let shell = (brain_room - 0.5 * CAP_THICKNESS).abs() - 0.5 * CAP_THICKNESS;
     if p.z > 50.0 {
-        return shell;
+        return shell + seam(p);
     }
     let shell = cut(shell, great_hole(p), 2.0);
     let ear = ear_bone(p);
@@ -51,6 +51,15 @@ pub(super) fn skull(p: DVec3, brain_room: f64, face: f64) -> f64 {
         return skull;
     }
     join(skull, face, 4.0)
+}
+
+/// How deep the seams between the plates of the skull cap are: from ear to ear, and from there back.
+fn seam(p: DVec3) -> f64 {
+    let across = p.y - 16.0 + 0.3 * (p.z - 90.0) + 1.2 * (0.9 * p.x).sin();
+    let along = if across < 0.0 { p.x } else { f64::INFINITY };
+    let aside = across.abs().min(along) / 1.3;
+    // None where the face begins.
+    1.3 * (-aside * aside).exp() * smoothstep(50.0, 60.0, p.z)
 }
 
 fn ear_bone(p: DVec3) -> f64 {

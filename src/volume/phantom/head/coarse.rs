@@ -53,3 +53,44 @@ impl Coarse {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{air, bone, skin, soft};
+    use super::*;
+
+    #[test]
+    fn knowing_distances_roughly_changes_none_that_somebody_looks_at() {
+        const REACH: f64 = 5.0;
+        type Distance = fn(DVec3) -> f64;
+        let bodies: [(&str, Distance); 5] = [
+            ("skin", skin::distance),
+            ("face", bone::face),
+            ("jaw", bone::jaw),
+            ("muscles", soft::muscles),
+            ("air", |p| air::distance(p, 1.0)),
+        ];
+        for (name, distance) in bodies {
+            let coarse = Coarse::new(REACH, distance);
+            let mut left_out = 0;
+            // A step that meets all parts of the cells.
+            let along = |count: u32, from: f64| (0..count).map(move |k| from + 3.7 * f64::from(k));
+            for x in along(32, 0.1) {
+                for y in along(64, -119.8) {
+                    for z in along(64, -119.7) {
+                        let p = DVec3::new(x, y, z);
+                        let (exact, found) = (distance(p), coarse.at(p, distance));
+                        let both_far = exact.abs().min(found.abs()) > REACH
+                            && exact.signum() == found.signum();
+                        left_out += u32::from(found != exact);
+                        assert!(
+                            found == exact || both_far,
+                            "{name} at {p}: {found}, not {exact}"
+                        );
+                    }
+                }
+            }
+            assert!(left_out > 10_000, "{name}: {left_out} were left out");
+        }
+    }
+}

@@ -96,7 +96,8 @@ impl Head {
         let under_skin = skin + 1.5 + reach;
         let skull = bone::skull(p, room, self.face.at(p, bone::face)).max(under_skin);
         if skull < reach {
-            painting.over(skull, COMPACT - 150.0 * smoothstep(0.0, 20.0, p.z));
+            let thinner = 200.0 * smoothstep(0.0, 20.0, p.z);
+            painting.over(skull, COMPACT - thinner + 260.0 * noise(p * 0.055));
             if skull < -1.2 {
                 painting.over(skull + 2.2, 520.0 + 260.0 * turbulence(p * 0.45));
             }

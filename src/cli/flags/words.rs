@@ -1,0 +1,168 @@
+//! The words that flags of sampling take, built or not, and what they stand for.
+
+use super::Error;
+use crate::{
+    picture::ColorSpace,
+    technique::{Filter, Lattice, Mode, Order, Technique},
+};
+use clap::ValueEnum;
+use serde::{Deserialize, Serialize};
+
+/// Every word of `--technique`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum TechniqueWord {
+    #[default]
+    Raycast,
+    #[value(name = "slices-3d")]
+    #[serde(rename = "slices-3d")]
+    Slices3d,
+    #[value(name = "slices-2d")]
+    #[serde(rename = "slices-2d")]
+    Slices2d,
+}
+
+impl TechniqueWord {
+    /// What it stands for.
+    pub fn technique(self) -> Technique {
+        match self {
+            Self::Raycast => Technique::Raycast,
+            Self::Slices3d => Technique::Slices3d,
+            Self::Slices2d => Technique::Slices2d,
+        }
+    }
+}
+
+/// Every word of `--mode`, built or not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum ModeWord {
+    #[default]
+    Composite,
+    Mip,
+    Minip,
+    Average,
+    Xray,
+    #[value(help = "not built yet")]
+    Lmip,
+    #[value(help = "not built yet")]
+    Mida,
+    #[value(help = "not built yet")]
+    Iso,
+}
+
+impl ModeWord {
+    /// What it stands for, where it is built.
+    pub fn mode(self) -> Result<Mode, Error> {
+        Ok(match self {
+            Self::Composite => Mode::Composite,
+            Self::Mip => Mode::Mip,
+            Self::Minip => Mode::Minip,
+            Self::Average => Mode::Average,
+            Self::Xray => Mode::Xray,
+            Self::Lmip | Self::Mida | Self::Iso => return Err(not_built("--mode", self)),
+        })
+    }
+}
+
+/// Every word of `--filter`, built or not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum FilterWord {
+    Nearest,
+    #[default]
+    Linear,
+    #[value(help = "not built yet")]
+    Quadratic,
+    #[value(help = "not built yet")]
+    Cubic,
+    #[value(help = "not built yet")]
+    QuadraticSmooth,
+    #[value(help = "not built yet")]
+    CubicSmooth,
+    #[value(help = "not built yet")]
+    CatmullRom,
+}
+
+impl FilterWord {
+    /// What it stands for, where it is built.
+    pub fn filter(self) -> Result<Filter, Error> {
+        match self {
+            Self::Nearest => Ok(Filter::Nearest),
+            Self::Linear => Ok(Filter::Linear),
+            _ => Err(not_built("--filter", self)),
+        }
+    }
+}
+
+/// Every word of `--lattice`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum LatticeWord {
+    #[default]
+    Ray,
+    Planes,
+}
+
+impl LatticeWord {
+    /// What it stands for.
+    pub fn lattice(self) -> Lattice {
+        match self {
+            Self::Ray => Lattice::Ray,
+            Self::Planes => Lattice::Planes,
+        }
+    }
+}
+
+/// Every word of `--order`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum OrderWord {
+    #[default]
+    BackToFront,
+    FrontToBack,
+}
+
+impl OrderWord {
+    /// What it stands for.
+    pub fn order(self) -> Order {
+        match self {
+            Self::BackToFront => Order::BackToFront,
+            Self::FrontToBack => Order::FrontToBack,
+        }
+    }
+}
+
+/// Every word of `--color-space`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum ColorSpaceWord {
+    #[default]
+    Linear,
+    Display,
+}
+
+impl ColorSpaceWord {
+    /// What it stands for.
+    pub fn color_space(self) -> ColorSpace {
+        match self {
+            Self::Linear => ColorSpace::Linear,
+            Self::Display => ColorSpace::Display,
+        }
+    }
+}
+
+/// `--flag word` is not built yet.
+pub fn not_built(flag: &str, word: impl ValueEnum) -> Error {
+    let name = word
+        .to_possible_value()
+        .map(|value| value.get_name().to_owned())
+        .unwrap_or_default();
+    Error::NotBuilt(format!("`{flag} {name}`"))
+}

@@ -1,0 +1,138 @@
+//! A slicer's picture: drawn into the accumulation where the device blends f32, else in merged batches.
+
+use super::submission::Submission;
+use crate::gpu::{
+    Bindings, Error, Gpu, Image, ImageDesc, ImageKind, Load, Use, begin_rendering, clear_image,
+    end_rendering, image_barrier,
+};
+use crate::technique::blend::{Drawn, clear_color};
+use crate::technique::merge::{BATCH_FORMAT, MAX_BATCH_SLICES, Merge};
+use crate::technique::{ACCUMULATION_FORMAT, Mode, Settings, Slicer, Words};
+use ash::vk;
+use std::sync::Arc;
+
+/// The pipelines of one slicer.
+#[derive(Debug)]
+pub struct Slicing {
+    gpu: Arc<Gpu>,
+    drawn: Drawn,
+    slicer: Slicer,
+    /// Where f32 targets cannot be blended.
+    merge: Option<Merge>,
+}
+
+impl Slicing {
+    /// Compiles.
+    ///
+    /// # Errors
+    /// Where the mode needs f32 blending and the device has none.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        settings: &Settings,
+        drawn: Drawn,
+        words: &Words,
+    ) -> Result<Self, Error> {
+        let order = settings.order;
+        let can_merge = matches!(drawn, Drawn::Picture(Mode::Composite) | Drawn::Count);
+        let is_merged = can_merge && !gpu.format_features(ACCUMULATION_FORMAT).blend;
+        let format = if is_merged {
+            BATCH_FORMAT
+        } else {
+            ACCUMULATION_FORMAT
+        };
+        let merge = || Merge::new(gpu, drawn, order);
+        Ok(Self {
+            gpu: Arc::clone(gpu),
+            drawn,
+            slicer: Slicer::new(gpu, settings.technique, drawn, order, words, format)?,
+            merge: is_merged.then(merge).transpose()?,
+        })
+    }
+
+    /// Draws all slices into `into` and leaves it in [`Use::FragmentSampled`]. Milliseconds on the device.
+    pub fn run(&self, submission: Submission, into: &Image) -> Result<Option<f64>, Error> {
+        let bound = submission.bind(|inputs| self.slicer.bind(inputs))?;
+        match &self.merge {
+            Some(merge) => self.run_in_batches(submission, &bound, into, merge),
+            None => self.run_at_once(submission, &bound, into),
+        }
+    }
+
+    fn run_at_once(
+        &self,
+        submission: Submission,
+        bound: &[Bindings],
+        into: &Image,
+    ) -> Result<Option<f64>, Error> {
+        let (bricks, extent) = (submission.bricks, submission.targets.extent);
+        let clear = match self.drawn {
+            Drawn::Picture(mode) => clear_color(mode),
+            Drawn::Count => [0.0; 4],
+        };
+        // SAFETY: recorded in order, with barriers between; `run` waits, and all that is bound lives meanwhile.
+        submission.run(|cmd, gpu| unsafe {
+            image_barrier(gpu, cmd, into, Use::Nothing, Use::ColorTarget);
+            begin_rendering(gpu, cmd, &[(into.view(), Load::Clear(clear))], extent);
+            for (brick, bindings) in bricks.iter().zip(bound) {
+                self.slicer
+                    .record(cmd, bindings, brick.offset, extent, 0..brick.slices);
+            }
+            end_rendering(gpu, cmd);
+            image_barrier(gpu, cmd, into, Use::ColorTarget, Use::FragmentSampled);
+            Ok(())
+        })
+    }
+
+    fn run_in_batches(
+        &self,
+        submission: Submission,
+        bound: &[Bindings],
+        into: &Image,
+        merge: &Merge,
+    ) -> Result<Option<f64>, Error> {
+        let (bricks, extent) = (submission.bricks, submission.targets.extent);
+        let batch = batch_image(&self.gpu, extent)?;
+        let merged = merge.bind(&batch, into)?;
+        let batches = bricks.iter().zip(bound).flat_map(|(brick, bindings)| {
+            let firsts = (0..brick.slices).step_by(MAX_BATCH_SLICES as usize);
+            let range = |first: u32| first..(first + MAX_BATCH_SLICES).min(brick.slices);
+            firsts.map(move |first| (brick, bindings, range(first)))
+        });
+        // SAFETY: recorded in order, with barriers between; `run` waits, and all that is bound lives meanwhile.
+        submission.run(|cmd, gpu| unsafe {
+            image_barrier(gpu, cmd, into, Use::Nothing, Use::TransferWrite);
+            clear_image(gpu, cmd, into, [0.0; 4]);
+            let mut before = Use::TransferWrite;
+            for (brick, bindings, slices) in batches {
+                // What the merge before has read is overwritten only after it.
+                let last = if before == Use::TransferWrite {
+                    Use::Nothing
+                } else {
+                    Use::ComputeSampled
+                };
+                image_barrier(gpu, cmd, &batch, last, Use::ColorTarget);
+                begin_rendering(gpu, cmd, &[(batch.view(), Load::Clear([0.0; 4]))], extent);
+                self.slicer
+                    .record(cmd, bindings, brick.offset, extent, slices);
+                end_rendering(gpu, cmd);
+                image_barrier(gpu, cmd, &batch, Use::ColorTarget, Use::ComputeSampled);
+                image_barrier(gpu, cmd, into, before, Use::ComputeWrite);
+                merge.record(cmd, &merged, extent)?;
+                before = Use::ComputeWrite;
+            }
+            image_barrier(gpu, cmd, into, before, Use::FragmentSampled);
+            Ok(())
+        })
+    }
+}
+
+fn batch_image(gpu: &Arc<Gpu>, [width, height]: [u32; 2]) -> Result<Image, Error> {
+    let desc = ImageDesc {
+        kind: ImageKind::D2,
+        extent: [width, height, 1],
+        format: BATCH_FORMAT,
+        usage: vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::SAMPLED,
+        name: "batch of slices",
+    };
+    Image::new(gpu, &desc)
+}

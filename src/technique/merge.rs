@@ -1,0 +1,75 @@
+//! Slicing on a device that does not blend R32G32B32A32_SFLOAT (`sampling.md` 5): batches of slices are blended
+//! in R16G16B16A16_SFLOAT, which every device blends, and merged in f32 by a compute pass.
+
+use super::Order;
+use super::blend::Drawn;
+use crate::gpu::{Bindings, Blend, ComputePipeline, Error, Gpu, Image, Resource};
+use crate::shaders::shader;
+use ash::vk;
+use std::sync::Arc;
+
+/// Slices of one batch. The law allows 512, which keeps an 8-bit code where blending rounds to nearest
+/// (`algorithms.md` 1.7); blending that truncates, as lavapipe's does, needs batches of an eighth.
+pub const MAX_BATCH_SLICES: u32 = 64;
+
+/// The format of a batch.
+pub const BATCH_FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
+
+/// The compute pass that lays a batch onto what earlier ones have left.
+#[derive(Debug)]
+pub struct Merge {
+    gpu: Arc<Gpu>,
+    pipeline: ComputePipeline,
+}
+
+impl Merge {
+    /// Compiles the operator that `drawn` slices are put together with. Only compositing and counting can be
+    /// merged: a maximum or a sum of 16-bit floats is not that of the values.
+    ///
+    /// # Errors
+    /// Where the device refuses.
+    pub fn new(gpu: &Arc<Gpu>, drawn: Drawn, order: Order) -> Result<Self, Error> {
+        let name = match super::blend::operator(drawn, order) {
+            Blend::Over => "merge.over",
+            Blend::Under => "merge.under",
+            _ => "merge.add",
+        };
+        Ok(Self {
+            gpu: Arc::clone(gpu),
+            pipeline: ComputePipeline::new(gpu, shader(name))?,
+        })
+    }
+
+    /// Binds a batch and the R32G32B32A32_SFLOAT storage image that gathers them.
+    ///
+    /// # Errors
+    /// None but a mistake of ours.
+    pub fn bind(&self, batch: &Image, accumulation: &Image) -> Result<Bindings, Error> {
+        let given = [
+            ("batch", Resource::sampled(batch)),
+            ("accumulation", Resource::written(accumulation)),
+        ];
+        Bindings::new(&self.gpu, self.pipeline.layout(), &given)
+    }
+
+    /// Records the merge of one batch.
+    ///
+    /// # Errors
+    /// A picture larger than the device can dispatch.
+    ///
+    /// # Safety
+    /// - `cmd` is recording, outside rendering; what was bound lives until it has run;
+    /// - the batch is in `Use::ComputeSampled`, the accumulation, all zeros before the first batch, in
+    ///   `Use::ComputeWrite`.
+    pub unsafe fn record(
+        &self,
+        cmd: vk::CommandBuffer,
+        bindings: &Bindings,
+        [width, height]: [u32; 2],
+    ) -> Result<(), Error> {
+        let groups = self.pipeline.groups([width, height, 1])?;
+        // SAFETY: the caller's promises; the bindings come from `bind`.
+        unsafe { self.pipeline.dispatch(cmd, bindings, &[], groups) };
+        Ok(())
+    }
+}

@@ -1,0 +1,83 @@
+//! The pipeline of a slicer: its cover in the vertex shader, its samples in the fragment shader, its operator in
+//! the blending unit, all slices of a picture in one instanced draw.
+
+use super::blend::{Drawn, operator};
+use super::{Inputs, Order, Technique, Words};
+use crate::gpu::{Bindings, Error, Gpu, RasterDesc, RasterPipeline, set_area};
+use crate::shaders::shader;
+use ash::vk;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The pipeline that draws the slices of one technique.
+#[derive(Debug)]
+pub struct Slicer {
+    gpu: Arc<Gpu>,
+    pipeline: RasterPipeline,
+    vertices_per_slice: u32,
+}
+
+impl Slicer {
+    /// Compiles the variant of these words for a target of `format`: view-aligned slices for
+    /// [`Technique::Slices3d`], else the slices of a stack.
+    ///
+    /// # Errors
+    /// Where the device does not blend that format, by its name.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        technique: Technique,
+        drawn: Drawn,
+        order: Order,
+        words: &Words,
+        format: vk::Format,
+    ) -> Result<Self, Error> {
+        // Four triangles cover the six corners of a plane in a box, two a rectangle.
+        let (name, cover, vertices_per_slice) = match technique {
+            Technique::Slices3d => ("slices_3d", "slices_3d_cover", 12),
+            Technique::Slices2d | Technique::Raycast => ("slices_2d", "slices_2d_cover", 6),
+        };
+        let desc = RasterDesc {
+            vertex: shader(cover),
+            fragment: shader(&drawn.shader_name(name, words)),
+            color_formats: &[format],
+            blend: operator(drawn, order),
+        };
+        Ok(Self {
+            gpu: Arc::clone(gpu),
+            pipeline: RasterPipeline::new(gpu, &desc)?,
+            vertices_per_slice,
+        })
+    }
+
+    /// Binds the inputs.
+    ///
+    /// # Errors
+    /// Where an input is missing.
+    pub fn bind(&self, inputs: &Inputs) -> Result<Bindings, Error> {
+        inputs.bind(&self.gpu, self.pipeline.layout(), &[])
+    }
+
+    /// Records the draw of `slices`, counted in the order of drawing, of the parameters at `offset` of the ring,
+    /// and sets viewport and scissor to the whole target.
+    ///
+    /// # Safety
+    /// - `cmd` is recording, inside rendering to one target of the pipeline's format and of `extent`, cleared
+    ///   to [`super::blend::clear_color`];
+    /// - what was bound lives until it has run; the inputs are in `Use::Sampled`.
+    pub unsafe fn record(
+        &self,
+        cmd: vk::CommandBuffer,
+        bindings: &Bindings,
+        offset: u32,
+        extent: [u32; 2],
+        slices: Range<u32>,
+    ) {
+        // SAFETY: the caller's promises; the bindings come from `bind`.
+        unsafe {
+            set_area(&self.gpu, cmd, extent);
+            let vertices = self.vertices_per_slice;
+            self.pipeline
+                .draw(cmd, bindings, &[offset], vertices, slices);
+        }
+    }
+}
