@@ -24,6 +24,123 @@
 //! A transform is named `target_from_source`. A ray keeps one parameter `t` in world length in every
 //! space: directions are transformed and never normalized again.
 //!
+//! # How to embed
+//!
+//! A host keeps its device, its queues, its command buffers and its images: it gives handles to
+//! [`gpu::Gpu::from_host`], and nothing is submitted or waited for behind its back. The device speaks Vulkan
+//! 1.3 and has `dynamicRendering` and `synchronization2` enabled, no more; the queues are of a family with
+//! graphics and compute.
+//!
+//! | step | when | how |
+//! |---|---|---|
+//! | make | once | [`resident::GpuVolume`], [`resident::GpuTransfer`], a technique, a [`technique::parameter_ring`]; for compute passes also [`technique::accumulation`] and a [`resolve::Resolve`] |
+//! | bind | once | `bind` of technique and resolve: descriptor sets, one for each brick |
+//! | upload | once | `record_upload` outside rendering; the staging buffer goes when that has run |
+//! | describe | each frame | [`technique::View::recordings`], each written to a slot that no unfinished frame reads |
+//! | record | each frame | `record` of the technique, then of the resolve; makes, destroys and waits for nothing |
+//!
+//! Each image must be in a state, which is a word of [`gpu::Use`], and is left in one. [`gpu::image_barrier`]
+//! goes from one to the next for images of ours, [`gpu::Target`] from and to what a host says for its own.
+//!
+//! | recording | image | arrives in | leaves in |
+//! |---|---|---|---|
+//! | [`resident::GpuVolume::record_upload`] | textures | `Nothing`, or `Sampled` | `Sampled` |
+//! | [`resident::GpuTransfer::record_upload`] | table | `Nothing` | `Sampled` |
+//! | [`technique::raycast`], [`technique::projection`]: outside rendering | textures, table | `Sampled` | `Sampled` |
+//! | | accumulation, layers | `ComputeWrite` | `ComputeWrite` |
+//! | [`technique::slices_3d`], [`technique::slices_2d`]: inside the host's rendering | textures, table | `Sampled` | `Sampled` |
+//! | | the host's target | `ColorTarget` | `ColorTarget` |
+//! | [`resolve`]: inside the host's rendering | accumulation | `FragmentSampled` | `FragmentSampled` |
+//! | | the host's target | `ColorTarget` | `ColorTarget` |
+//!
+//! After a recording, the bound pipeline, descriptor set 0, viewport and scissor are ours: a host sets its own
+//! again. Bricks of a compute pass want a barrier from `ComputeWrite` to `ComputeWrite` between them.
+//!
+//! Frames in flight have slots and accumulation images of their own; volumes, tables, pipelines and rings are
+//! shared. [`gpu::Gpu::announce`] before recording says with which value a frame is done: what is dropped
+//! later lives until [`gpu::Gpu::retire`] hears of it.
+//!
+//! Colour is premultiplied. Targets that hold linear light (floats, `SRGB`) go with
+//! [`picture::ColorSpace::Linear`], `UNORM` targets that are shown as they are with
+//! [`picture::ColorSpace::Display`].
+//!
+//! View-aligned slices in a host's own pass, over what it has drawn:
+//!
+//! ```rust,no_run
+//! use ash::vk;
+//! use std::{error::Error, sync::Arc};
+//! use stratavox::gpu::{Gpu, ParameterRing};
+//! use stratavox::resident::{GpuTransfer, GpuVolume};
+//! use stratavox::technique::blend::Drawn;
+//! use stratavox::technique::slices_3d::Slices3d;
+//! use stratavox::technique::{Inputs, Mode, View, Words, parameter_ring};
+//! use stratavox::transfer::TransferFunction;
+//! use stratavox::volume::Volume;
+//!
+//! struct Shown {
+//!     volume: GpuVolume,
+//!     transfer: GpuTransfer,
+//!     ring: ParameterRing,
+//!     slicer: Slices3d,
+//!     /// One for each brick.
+//!     bound: Vec<stratavox::gpu::Bindings>,
+//! }
+//!
+//! impl Shown {
+//!     /// Objects and their descriptor sets, and the upload, recorded outside rendering.
+//!     unsafe fn new(
+//!         gpu: &Arc<Gpu>,
+//!         cmd: vk::CommandBuffer,
+//!         target_format: vk::Format,
+//!         frames_in_flight: u32,
+//!         view: &View,
+//!         voxels: &Volume,
+//!         function: &TransferFunction,
+//!     ) -> Result<Self, Box<dyn Error>> {
+//!         let settings = view.settings;
+//!         let volume = GpuVolume::new(gpu, voxels, view.texture_layout())?;
+//!         let staging = volume.stage(voxels)?;
+//!         let length = view.grid.smallest_spacing();
+//!         let transfer = GpuTransfer::new(gpu, function, length, settings.color_space)?;
+//!         unsafe {
+//!             volume.record_upload_all(cmd, &staging)?;
+//!             transfer.record_upload(cmd)?;
+//!         }
+//!         let bricks = volume.bricks().len() as u32;
+//!         let ring = parameter_ring(gpu, bricks * frames_in_flight)?;
+//!         let words = Words::of(settings, &volume);
+//!         let picture = Drawn::Picture(Mode::Composite);
+//!         let slicer = Slices3d::new(gpu, picture, settings.order, &words, target_format)?;
+//!         let bind = |brick| {
+//!             let (ring, volume, transfer) = (&ring, &volume, Some(&transfer));
+//!             slicer.bind(&Inputs { ring, volume, brick, transfer })
+//!         };
+//!         let bound = volume.bricks().iter().map(bind).collect::<Result<_, _>>()?;
+//!         Ok(Self { volume, transfer, ring, slicer, bound })
+//!     }
+//!
+//!     /// One frame, inside the host's rendering to an image of `view.extent_pixels`.
+//!     unsafe fn record(
+//!         &self,
+//!         cmd: vk::CommandBuffer,
+//!         frame_in_flight: u32,
+//!         view: &View,
+//!     ) -> Result<(), Box<dyn Error>> {
+//!         let first_slot = frame_in_flight * self.bound.len() as u32;
+//!         let recordings = view.recordings(&self.volume, Some(&self.transfer))?;
+//!         for (slot, recording) in (first_slot..).zip(recordings) {
+//!             let offset = recording.write(&self.ring, slot)?;
+//!             let (bound, extent) = (&self.bound[recording.brick], view.extent_pixels);
+//!             unsafe { self.slicer.record(cmd, bound, offset, extent, recording.slices) };
+//!         }
+//!         Ok(())
+//!     }
+//! }
+//! ```
+//!
+//! `staging` is dropped while the upload may run: [`gpu::Gpu::announce`] was called with its value before.
+//! `examples/embed` is a whole host, from its device to a PNG, with the ray caster.
+//!
 //! # What holds everywhere
 //!
 //! Recording creates, destroys and waits for nothing. Only `gpu/headless.rs` makes a device. Files are
