@@ -3,6 +3,7 @@
 #[allow(dead_code, reason = "each file of tests uses some of it")]
 mod transfer_shared;
 
+#[cfg(feature = "files")]
 use std::path::PathBuf;
 use stratavox::transfer::{
     Classified, Interpolation, Kind, Preset, TransferFunction, ValueSummary, Window, automatic,
