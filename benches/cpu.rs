@@ -77,7 +77,7 @@ fn twins(volume: &Volume) -> Result<(), Box<dyn Error>> {
 /// From files in the page cache to a volume in memory.
 fn decoding() -> Result<(), Box<dyn Error>> {
     let voxels: Vec<u8> = (0..SIDE.pow(3))
-        .flat_map(|i| (((i % SIDE * 97) ^ (i / SIDE)) as u16).to_be_bytes())
+        .flat_map(|i| ((97 * (i % SIDE) + i / SIDE) as u16).to_be_bytes())
         .collect();
     let mut gzip = GzEncoder::new(Vec::new(), Compression::default());
     gzip.write_all(&voxels)?;

@@ -48,7 +48,7 @@
 //! | [`resident::GpuTransfer::record_upload`] | table | `Nothing` | `Sampled` |
 //! | [`technique::raycast`], [`technique::projection`]: outside rendering | textures, table | `Sampled` | `Sampled` |
 //! | | accumulation, layers | `ComputeWrite` | `ComputeWrite` |
-//! | [`technique::slices_3d`], [`technique::slices_2d`]: inside the host's rendering | textures, table | `Sampled` | `Sampled` |
+//! | [`technique::Slicer`]: inside the host's rendering | textures, table | `Sampled` | `Sampled` |
 //! | | the host's target | `ColorTarget` | `ColorTarget` |
 //! | [`resolve`]: inside the host's rendering | accumulation | `FragmentSampled` | `FragmentSampled` |
 //! | | the host's target | `ColorTarget` | `ColorTarget` |
@@ -72,8 +72,7 @@
 //! use stratavox::gpu::{Gpu, ParameterRing};
 //! use stratavox::resident::{GpuTransfer, GpuVolume};
 //! use stratavox::technique::blend::Drawn;
-//! use stratavox::technique::slices_3d::Slices3d;
-//! use stratavox::technique::{Inputs, Mode, View, Words, parameter_ring};
+//! use stratavox::technique::{Inputs, Mode, Slicer, Technique, View, Words, parameter_ring};
 //! use stratavox::transfer::TransferFunction;
 //! use stratavox::volume::Volume;
 //!
@@ -81,7 +80,7 @@
 //!     volume: GpuVolume,
 //!     transfer: GpuTransfer,
 //!     ring: ParameterRing,
-//!     slicer: Slices3d,
+//!     slicer: Slicer,
 //!     /// One for each brick.
 //!     bound: Vec<stratavox::gpu::Bindings>,
 //! }
@@ -110,7 +109,8 @@
 //!         let ring = parameter_ring(gpu, bricks * frames_in_flight)?;
 //!         let words = Words::of(settings, &volume);
 //!         let picture = Drawn::Picture(Mode::Composite);
-//!         let slicer = Slices3d::new(gpu, picture, settings.order, &words, target_format)?;
+//!         let (technique, order) = (Technique::Slices3d, settings.order);
+//!         let slicer = Slicer::new(gpu, technique, picture, order, &words, target_format)?;
 //!         let bind = |brick| {
 //!             let (ring, volume, transfer) = (&ring, &volume, Some(&transfer));
 //!             slicer.bind(&Inputs { ring, volume, brick, transfer })
@@ -131,7 +131,8 @@
 //!         for (slot, recording) in (first_slot..).zip(recordings) {
 //!             let offset = recording.write(&self.ring, slot)?;
 //!             let (bound, extent) = (&self.bound[recording.brick], view.extent_pixels);
-//!             unsafe { self.slicer.record(cmd, bound, offset, extent, recording.slices) };
+//!             let slices = 0..recording.slices;
+//!             unsafe { self.slicer.record(cmd, bound, offset, extent, slices) };
 //!         }
 //!         Ok(())
 //!     }

@@ -60,9 +60,11 @@ impl Slicer {
     /// Records the draw of `slices`, counted in the order of drawing, of the parameters at `offset` of the ring,
     /// and sets viewport and scissor to the whole target.
     ///
+    /// The target holds [`super::blend::clear_color`] before. Compositing from back to front also goes over
+    /// premultiplied colour that a host has drawn.
+    ///
     /// # Safety
-    /// - `cmd` is recording, inside rendering to one target of the pipeline's format and of `extent`, cleared
-    ///   to [`super::blend::clear_color`];
+    /// - `cmd` is recording, inside rendering to one target of the pipeline's format and of `extent`;
     /// - what was bound lives until it has run; the inputs are in `Use::Sampled`.
     pub unsafe fn record(
         &self,
