@@ -93,6 +93,7 @@ fn a_word_that_cannot_be_is_a_usage_error() {
         ("render phantom:fog -o a.png --repeat 0", "--repeat"),
         ("render phantom:fog -o a.png --bit-depth 12", "--bit-depth"),
         ("render phantom:fog -o a.png --timings a.png", "twice"),
+        ("render phantom:fog -o a.png --timings ./a.png", "twice"),
         ("render phantom:fog -o a.png --raw 2x2x2,u8", "--raw"),
         (
             "render phantom:fog,n=8 -o a.png --component 1",
