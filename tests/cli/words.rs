@@ -176,3 +176,17 @@ fn a_flag_without_effect_is_mentioned_and_no_skip_is_always_taken() {
     ran.assert_done();
     assert!(ran.err.contains("--time has no effect"), "{ran:#?}");
 }
+
+#[test]
+fn a_step_beyond_the_limit_is_refused_with_a_hint_but_not_in_stacks_that_ignore_it() {
+    let folder = Folder::new();
+    let words = "render phantom:fog,n=8 --size 8x8 --device reference --samples-per-voxel 1e9";
+    folder
+        .run(&format!("{words} -o a.png"))
+        .assert_refused(6, &["samples, the limit is", "--samples-per-voxel"]);
+    let ran = folder.run(&format!("{words} -o b.png --technique slices-2d"));
+    ran.assert_done();
+    let plain = "render phantom:fog,n=8 --size 8x8 --device reference --technique slices-2d";
+    folder.run(&format!("{plain} -o c.png")).assert_done();
+    folder.run("compare b.png c.png --at-most 0").assert_done();
+}
