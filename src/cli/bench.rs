@@ -6,7 +6,7 @@
 use super::{
     Error, cameras_file,
     flags::{Classification, Depth, NotBuilt, SceneFlags},
-    output::{self, say, write_whole},
+    output::{self, say, say_aside, write_whole},
     progress::{Progress, ProgressWord},
     render::load,
     renderer::{Job, Renderer},
@@ -83,7 +83,14 @@ impl Bench {
             .transpose()?;
         let text = match cameras {
             Some(cameras) => self.views(&scene, &cameras)?,
-            None => self.techniques(&scene)?,
+            None => {
+                if scene.sampling.technique.is_some() || scene.sampling.mode.is_some() {
+                    say_aside(
+                        "--technique and --mode have no effect without --cameras, the table has its own",
+                    );
+                }
+                self.techniques(&scene)?
+            }
         };
         match &self.json {
             Some(path) => write_whole(path, text.as_bytes(), self.force, gate),

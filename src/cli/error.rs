@@ -131,7 +131,10 @@ impl Error {
                 }
                 _ => None,
             },
-            Self::Device(gpu::Error::Limit { .. } | gpu::Error::OutOfMemory { .. }) => None,
+            Self::Device(gpu::Error::Limit { .. } | gpu::Error::OutOfMemory { .. }) => {
+                Some("a smaller --size or volume may fit; --device reference has no such limit")
+            }
+            Self::Limit(_) => Some("a smaller --size or fewer --samples-per-voxel stay below it"),
             Self::Device(gpu::Error::Format { .. }) => {
                 Some("--technique raycast needs no blending")
             }
@@ -142,8 +145,7 @@ impl Error {
             | Self::Differs(_)
             | Self::ReadPicture(_)
             | Self::Input { .. }
-            | Self::WritePicture(_)
-            | Self::Limit(_) => None,
+            | Self::WritePicture(_) => None,
         }
     }
 

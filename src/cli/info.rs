@@ -57,7 +57,12 @@ impl Info {
         let limits = Limits::default();
         let source = self.input.open(&limits)?;
         let header = source.header();
-        let statistics = Statistics::of(source.as_ref(), 0..header.components, &limits)?;
+        self.input.time(header)?;
+        if self.input.time.is_some() {
+            say_aside("--time has no effect on info, its numbers are those of all times");
+        }
+        let components = self.input.components(header)?;
+        let statistics = Statistics::of(source.as_ref(), components, &limits)?;
         let report = report(header, &statistics);
         if self.json {
             for note in &header.notes {

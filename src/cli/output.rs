@@ -10,7 +10,10 @@ use std::{
 /// Refuses, before any work is done, outputs that cannot be written or would take the place of something.
 pub fn check(outputs: &[PathBuf], inputs: &[PathBuf], force: bool) -> Result<(), Error> {
     for (at, path) in outputs.iter().enumerate() {
-        if outputs[..at].contains(path) {
+        if outputs[..at]
+            .iter()
+            .any(|other| place(other) == place(path))
+        {
             return Err(Error::usage(
                 format!("{} is to be written twice", path.display()),
                 "give each output a name of its own",
@@ -57,6 +60,13 @@ fn check_one(path: &Path, inputs: &[PathBuf], force: bool) -> Result<(), Error> 
 /// Puts a file with these bytes at `path`, whole or not at all. Only `force` replaces one.
 pub fn write_whole(path: &Path, bytes: &[u8], force: bool, gate: &Gate) -> Result<(), Error> {
     Ok(gate.whole(|| write_file(path, bytes, force))?)
+}
+
+/// Where a file lies or will lie, whichever way its name goes there.
+fn place(path: &Path) -> PathBuf {
+    let folder = folder_of(path);
+    let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+    folder.join(path.file_name().unwrap_or_default())
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -139,6 +149,13 @@ mod tests {
         );
         let path = folder.path().join("a.png");
         let (code, text) = refusal(&[&path, &path], &[], false);
+        assert!(code == 2 && text.contains("twice"), "{code}: {text}");
+        let by_another_way = folder
+            .path()
+            .join(".")
+            .join("..")
+            .join(folder.path().file_name().expect("a name"));
+        let (code, text) = refusal(&[&path, &by_another_way.join("a.png")], &[], true);
         assert!(code == 2 && text.contains("twice"), "{code}: {text}");
     }
 

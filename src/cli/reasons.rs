@@ -34,9 +34,7 @@ pub fn why_empty(
         {
             "the transfer function covers no value of this volume"
         }
-        (Seen::Volume, _) => {
-            "the transfer function covers no value that the camera sees, or there is no data"
-        }
+        (Seen::Volume, _) => "no sample of a ray meets a value that the transfer function covers",
     })
 }
 
@@ -264,7 +262,7 @@ mod tests {
         );
         // The values are covered, yet nothing of them is seen: not the fault of the function as a whole.
         assert!(
-            reason(&case()).contains("that the camera sees"),
+            reason(&case()).contains("no sample of a ray"),
             "{}",
             reason(&case())
         );
@@ -290,7 +288,7 @@ mod tests {
         moved.camera.target = moved.volume.world_from_voxel.transform_point3(DVec3::ONE);
         moved.camera.eye = moved.camera.target + DVec3::new(0.0, 6.0, 0.0);
         assert!(
-            reason(&moved).contains("covers no value that"),
+            reason(&moved).contains("no sample of a ray"),
             "{}",
             reason(&moved)
         );

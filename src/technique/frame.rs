@@ -5,7 +5,7 @@
 //! `sampling.md` 3 wants them.
 
 use super::blend::extreme_sign;
-use super::{MAX_SAMPLES_PER_RAY, Settings};
+use super::{MAX_SAMPLES_PER_RAY, Settings, Technique};
 use crate::camera::{Camera, Projection, Rays};
 use crate::picture::ColorSpace;
 use crate::resident::{Cell, Coding, TransferLayout, front_to_back};
@@ -186,8 +186,11 @@ impl View<'_> {
         front_to_back(cells, eye_cell)
     }
 
-    /// The longest ray is the box's diagonal.
+    /// The longest ray is the box's diagonal. A 2D stack takes one sample a slice, whatever the step.
     fn check_sample_count(&self, world_from_voxel: &DAffine3) -> Result<(), Error> {
+        if self.settings.technique == Technique::Slices2d {
+            return Ok(());
+        }
         let m = world_from_voxel.matrix3;
         let far = self.grid.far_corner();
         let diagonals = [

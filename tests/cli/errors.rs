@@ -32,6 +32,10 @@ fn an_input_that_is_not_there_or_not_a_volume_exits_3() {
             "nowhere.json",
         ),
         ("compare a.png b.png".to_owned(), "a.png"),
+        (
+            "info phantom:head,type=f64".to_owned(),
+            "wanted one of u16, u8, f32,",
+        ),
     ] {
         folder.run(&words).assert_refused(3, &[name]);
     }

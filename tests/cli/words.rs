@@ -93,6 +93,9 @@ fn a_word_that_cannot_be_is_a_usage_error() {
         ("render phantom:fog -o a.png --repeat 0", "--repeat"),
         ("render phantom:fog -o a.png --bit-depth 12", "--bit-depth"),
         ("render phantom:fog -o a.png --timings a.png", "twice"),
+        ("render phantom:fog -o a.png --timings ./a.png", "twice"),
+        ("info phantom:fog,n=8 --time 9", "--time 9"),
+        ("info phantom:fog,n=8 --component 1", "--component 1"),
         ("render phantom:fog -o a.png --raw 2x2x2,u8", "--raw"),
         (
             "render phantom:fog,n=8 -o a.png --component 1",
@@ -162,4 +165,28 @@ fn a_flag_without_effect_is_mentioned_and_no_skip_is_always_taken() {
     );
     ran.assert_done();
     assert!(ran.err.contains("--order has no effect"), "{ran:#?}");
+    let bench = "bench phantom:fog,n=8 --size 8x8 --repeat 1 --device reference";
+    let ran = folder.run(&format!("{bench} --technique slices-2d"));
+    ran.assert_done();
+    assert!(
+        ran.err.contains("--technique and --mode have no effect"),
+        "{ran:#?}"
+    );
+    let ran = folder.run("info phantom:fog,n=8 --time 0");
+    ran.assert_done();
+    assert!(ran.err.contains("--time has no effect"), "{ran:#?}");
+}
+
+#[test]
+fn a_step_beyond_the_limit_is_refused_with_a_hint_but_not_in_stacks_that_ignore_it() {
+    let folder = Folder::new();
+    let words = "render phantom:fog,n=8 --size 8x8 --device reference --samples-per-voxel 1e9";
+    folder
+        .run(&format!("{words} -o a.png"))
+        .assert_refused(6, &["samples, the limit is", "--samples-per-voxel"]);
+    let ran = folder.run(&format!("{words} -o b.png --technique slices-2d"));
+    ran.assert_done();
+    let plain = "render phantom:fog,n=8 --size 8x8 --device reference --technique slices-2d";
+    folder.run(&format!("{plain} -o c.png")).assert_done();
+    folder.run("compare b.png c.png --at-most 0").assert_done();
 }

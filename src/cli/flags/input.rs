@@ -7,7 +7,10 @@ use crate::{
 };
 use clap::Args;
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use std::{
+    ops::Range,
+    path::{Path, PathBuf},
+};
 
 /// The words, none of them filled in.
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -109,30 +112,34 @@ impl InputFlags {
     pub fn pick(&self, header: &Header) -> Result<(Pick, Option<String>), Error> {
         self.check_one_variable(header)?;
         let (time, note) = self.time(header)?;
-        let component = match self.component {
-            Some(component) if component < header.components => component,
-            Some(component) => {
-                return Err(Error::usage(
-                    format!(
-                        "--component {component}: a voxel has {} of them, counted from 0",
-                        header.components
-                    ),
-                    "--component 0",
-                ));
-            }
-            None if header.components == 1 => 0,
-            None => {
-                return Err(Error::usage(
-                    format!(
-                        "a voxel holds {} numbers, components 0 to {}",
-                        header.components,
-                        header.components - 1
-                    ),
-                    "choose one: --component 0",
-                ));
-            }
-        };
+        let components = self.components(header)?;
+        if components.len() != 1 {
+            return Err(Error::usage(
+                format!(
+                    "a voxel holds {} numbers, components 0 to {}",
+                    header.components,
+                    header.components - 1
+                ),
+                "choose one: --component 0",
+            ));
+        }
+        let component = components.start;
         Ok((Pick { time, component }, note))
+    }
+
+    /// The components that the words leave: the one they name, else all.
+    pub fn components(&self, header: &Header) -> Result<Range<u32>, Error> {
+        match self.component {
+            None => Ok(0..header.components),
+            Some(component) if component < header.components => Ok(component..component + 1),
+            Some(component) => Err(Error::usage(
+                format!(
+                    "--component {component}: a voxel has {} of them, counted from 0",
+                    header.components
+                ),
+                "--component 0",
+            )),
+        }
     }
 
     fn check_one_variable(&self, header: &Header) -> Result<(), Error> {
@@ -150,7 +157,8 @@ impl InputFlags {
         ))
     }
 
-    fn time(&self, header: &Header) -> Result<(u32, Option<String>), Error> {
+    /// The time to take, and what a person should know about the choice.
+    pub fn time(&self, header: &Header) -> Result<(u32, Option<String>), Error> {
         let times = header.times;
         let Some(word) = &self.time else {
             let note = (times > 1)

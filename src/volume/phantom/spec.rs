@@ -86,8 +86,11 @@ impl<'a> Spec<'a> {
 
     /// The type of the stored numbers.
     pub fn voxel_type(&mut self, default: VoxelType) -> Result<VoxelType, Problem> {
-        let types = [default, VoxelType::U8, VoxelType::U16, VoxelType::F32];
-        Ok(types[self.choice("type", &types.map(VoxelType::name))?])
+        let others = [VoxelType::U8, VoxelType::U16, VoxelType::F32];
+        let others = others.into_iter().filter(|&other| other != default);
+        let types: Vec<_> = std::iter::once(default).chain(others).collect();
+        let names: Vec<_> = types.iter().map(|kind| kind.name()).collect();
+        Ok(types[self.choice("type", &names)?])
     }
 
     /// An error where a word was not asked for.
