@@ -22,8 +22,7 @@ pub struct Resolve {
 impl Resolve {
     /// Compiles the variant for what `mode` leaves, for a target of `format`.
     ///
-    /// [`Blend::Add`] sums weighted resolves to the mean over the rays of a pixel; [`Blend::Over`] lays the
-    /// picture over what a host has drawn.
+    /// [`Blend::Replace`] gives the picture itself, [`Blend::Over`] lays it over what a host has drawn.
     ///
     /// # Errors
     /// Where the device does not blend that format, by its name.
