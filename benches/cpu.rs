@@ -14,7 +14,7 @@ use stratavox::picture::ColorSpace;
 use stratavox::scene::Scene;
 use stratavox::technique::{Settings, Technique};
 use stratavox::transfer::{Absorption, Classified, Points, Table, Window};
-use stratavox::volume::{Limits, Pick, Volume, phantom};
+use stratavox::volume::{Limits, Pick, Volume, Wanted, phantom};
 
 const RUNS: usize = 5;
 const SIDE: u32 = 128;
@@ -108,7 +108,7 @@ fn decoding() -> Result<(), Box<dyn Error>> {
 
 fn read(path: &Path) -> Result<Volume, stratavox::volume::ReadError> {
     let limits = Limits::default();
-    let source = format::open(path, &limits)?;
+    let source = format::open(path, &Wanted::default(), &limits)?;
     Volume::read(
         source.as_ref(),
         Pick::default(),

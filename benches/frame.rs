@@ -15,7 +15,7 @@ use stratavox::picture::LayerKind;
 use stratavox::scene::Scene;
 use stratavox::technique::{Mode, Settings, Technique};
 use stratavox::transfer::{Classified, Window};
-use stratavox::volume::{Limits, Pick, Source, Volume, phantom};
+use stratavox::volume::{Limits, Pick, Source, Volume, Wanted, phantom};
 
 const EXTENT: [u32; 2] = [256, 256];
 const RUNS: usize = 5;
@@ -45,7 +45,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let scan = scan();
     if scan.exists() {
-        measure(SCAN, format::open(&scan, &limits)?.as_ref())?;
+        measure(
+            SCAN,
+            format::open(&scan, &Wanted::default(), &limits)?.as_ref(),
+        )?;
     } else {
         println!("skipped: no data at {}", scan.display());
     }

@@ -12,7 +12,7 @@ use files::{Folder, message};
 use std::os::unix::fs::symlink;
 use std::path::Path;
 use stratavox::format;
-use stratavox::volume::{Limits, Problem};
+use stratavox::volume::{Limits, Problem, Wanted};
 
 /// The two headers that name a file, for 6 bytes.
 fn headers(name: &str) -> [(&'static str, String); 4] {
@@ -110,7 +110,7 @@ fn pathdiff(folder: &Folder, file: &Path) -> String {
 fn a_folder_a_pipe_a_device_and_an_empty_file_are_named_for_what_they_are() {
     let folder = Folder::new();
     let open = |path: &Path| {
-        let error = format::open(path, &Limits::default())
+        let error = format::open(path, &Wanted::default(), &Limits::default())
             .err()
             .expect("no volume");
         message(&error)
@@ -171,7 +171,9 @@ fn a_size_that_lies_is_refused_when_the_file_is_opened() {
                 "NRRD0004\ntype: double\ndimension: 3\nsizes: {sizes}\nencoding: {encoding}\nendian: big\n\n"
             );
             let path = folder.write("a.nrrd", [text.as_bytes(), &data].concat());
-            let error = format::open(&path, &Limits::default()).err().expect(sizes);
+            let error = format::open(&path, &Wanted::default(), &Limits::default())
+                .err()
+                .expect(sizes);
             let told = matches!(
                 error.problem,
                 Problem::Size { .. } | Problem::TooFewEncoded { .. } | Problem::Invalid { .. }
@@ -183,7 +185,10 @@ fn a_size_that_lies_is_refused_when_the_file_is_opened() {
             "NDims = 3\nDimSize = {sizes}\nElementType = MET_DOUBLE\nCompressedData = True\nElementDataFile = LOCAL\n"
         );
         let path = folder.write("a.mha", [text.as_bytes(), &zlib(&[0; 100])].concat());
-        assert!(format::open(&path, &Limits::default()).is_err(), "{sizes}");
+        assert!(
+            format::open(&path, &Wanted::default(), &Limits::default()).is_err(),
+            "{sizes}"
+        );
     }
     assert_eq!(tried, 16);
 }
@@ -209,7 +214,7 @@ fn a_stream_that_expands_beyond_its_promise_is_stopped_there() {
             max_bytes: 1 << 20,
             ..Limits::default()
         };
-        let source = format::open(&path, &limits).unwrap();
+        let source = format::open(&path, &Wanted::default(), &limits).unwrap();
         let error = source
             .read(Default::default(), source.header().whole())
             .unwrap_err();
@@ -236,7 +241,9 @@ fn a_header_without_end_is_read_to_its_limit_only() {
             + &"x\n".repeat(9_000),
     ] {
         let path = folder.write("a", &text);
-        let error = format::open(&path, &limits).err().expect("too long");
+        let error = format::open(&path, &Wanted::default(), &limits)
+            .err()
+            .expect("too long");
         assert!(
             matches!(
                 error.problem,
@@ -256,7 +263,7 @@ fn a_file_that_shrinks_between_opening_and_reading_is_refused() {
     let folder = Folder::new();
     let text = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 3 2 1\nencoding: raw\n\n";
     let path = folder.write("a.nrrd", text.to_owned() + "abcdef");
-    let source = format::open(&path, &Limits::default()).unwrap();
+    let source = format::open(&path, &Wanted::default(), &Limits::default()).unwrap();
     folder.write("a.nrrd", text.to_owned() + "abc");
     let error = source
         .read(Default::default(), source.header().whole())

@@ -11,7 +11,7 @@ mod truth;
 use encode::{ascii, bytes_of, extremes, gzip, zlib};
 use files::{Folder, message, numbers};
 use stratavox::format;
-use stratavox::volume::{Format, Limits, Pick, VoxelBox, VoxelType};
+use stratavox::volume::{Format, Limits, Pick, VoxelBox, VoxelType, Wanted};
 
 const TYPES: [(&str, VoxelType); 12] = [
     ("MET_CHAR", VoxelType::I8),
@@ -101,7 +101,7 @@ fn one_time_one_channel_and_one_box_can_be_picked() {
         ("CompressedData = True\n", zlib(&bytes)),
     ] {
         let path = folder.write("a.mha", attached(&(text.to_owned() + fields), &data));
-        let source = format::open(&path, &Limits::default()).unwrap();
+        let source = format::open(&path, &Wanted::default(), &Limits::default()).unwrap();
         let header = source.header();
         assert_eq!(
             (header.dims, header.times, header.components),
@@ -212,7 +212,12 @@ fn voxels_may_lie_in_other_files_one_or_many() {
     }
     // Two times of two slices, a file each.
     let text = "NDims = 4\nDimSize = 3 2 2 2\nElementType = MET_UCHAR\nElementDataFile = LIST 3\nlow.raw\nhigh.raw\n";
-    let source = format::open(&folder.write("t.mhd", text), &Limits::default()).unwrap();
+    let source = format::open(
+        &folder.write("t.mhd", text),
+        &Wanted::default(),
+        &Limits::default(),
+    )
+    .unwrap();
     let pick = Pick {
         time: 1,
         component: 0,

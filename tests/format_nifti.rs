@@ -12,7 +12,7 @@ use encode::{bytes_of, extremes, gzip};
 use files::{Folder, message, numbers};
 use nifti::Nifti;
 use stratavox::format;
-use stratavox::volume::{Format, Limits, Pick, Rescale, VoxelBox, VoxelType};
+use stratavox::volume::{Format, Limits, Pick, Rescale, VoxelBox, VoxelType, Wanted};
 
 const TYPES: [(i16, i16, VoxelType); 10] = [
     (2, 8, VoxelType::U8),
@@ -98,7 +98,12 @@ fn one_time_one_component_and_one_box_can_be_picked() {
     header.dim = [5, 4, 3, 2, 3, 2, 0, 0];
     let bytes = header.with(&bytes_of(&values, VoxelType::U16, false));
     for (name, bytes) in [("a.nii", bytes.clone()), ("a.nii.gz", gzip(&bytes))] {
-        let source = format::open(&folder.write(name, bytes), &Limits::default()).unwrap();
+        let source = format::open(
+            &folder.write(name, bytes),
+            &Wanted::default(),
+            &Limits::default(),
+        )
+        .unwrap();
         let header = source.header();
         assert_eq!(
             (header.dims, header.times, header.components),
@@ -132,6 +137,7 @@ fn colors_are_components_and_have_no_slope() {
         let voxels: Vec<u8> = (10..10 + 2 * channels as u8).collect();
         let source = format::open(
             &folder.write("a.nii", header.with(&voxels)),
+            &Wanted::default(),
             &Limits::default(),
         )
         .unwrap();

@@ -11,7 +11,7 @@ mod truth;
 use encode::{ascii, bytes_of, bzip2, extremes, gzip, hex};
 use files::{Folder, message, numbers};
 use stratavox::format;
-use stratavox::volume::{Format, Limits, Pick, VoxelBox, VoxelType};
+use stratavox::volume::{Format, Limits, Pick, VoxelBox, VoxelType, Wanted};
 
 /// Every name of every type, from the definition of the format.
 const TYPES: [(VoxelType, &[&str]); 10] = [
@@ -203,7 +203,12 @@ fn voxels_may_lie_in_other_files_one_or_many_behind_lines_and_bytes() {
 
     // A box that lies in the last files opens those only.
     let text = format!("NRRD0004\n{text}raw\ndata file: s.%d 8 11 1\n");
-    let source = format::open(&folder.write("a.nhdr", text), &Limits::default()).unwrap();
+    let source = format::open(
+        &folder.write("a.nhdr", text),
+        &Wanted::default(),
+        &Limits::default(),
+    )
+    .unwrap();
     std::fs::remove_file(folder.path("s.8")).unwrap();
     let region = VoxelBox {
         min: [1, 0, 1],

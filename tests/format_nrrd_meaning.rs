@@ -10,7 +10,7 @@ use encode::{ascii, bytes_of, bzip2, gzip, hex};
 use files::{Folder, message, numbers};
 use glam::{DVec3, dvec3};
 use stratavox::format;
-use stratavox::volume::{Header, Limits, Pick, VoxelBox, VoxelType};
+use stratavox::volume::{Header, Limits, Pick, VoxelBox, VoxelType, Wanted};
 
 fn attached(header: &str, data: &[u8]) -> Vec<u8> {
     [b"NRRD0005\n", header.as_bytes(), b"\n", data].concat()
@@ -77,7 +77,7 @@ fn one_time_one_component_and_one_box_can_be_picked_wherever_the_axes_stand() {
                 "type: ushort\ndimension: 5\nsizes: {sizes}\nendian: big\nencoding: {encoding}\n{kinds}"
             );
             let path = folder.write("a.nrrd", attached(&text, &data));
-            let source = format::open(&path, &Limits::default())
+            let source = format::open(&path, &Wanted::default(), &Limits::default())
                 .unwrap_or_else(|e| panic!("{text}: {}", message(&e)));
             let header = source.header();
             let shape = (header.dims, header.times, header.components);

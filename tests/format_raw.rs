@@ -13,7 +13,7 @@ use files::{Folder, message, numbers};
 use glam::dvec3;
 use stratavox::format;
 use stratavox::format::raw::{self, RawSpec};
-use stratavox::volume::{Format, Limits, Pick, ReadError, Source, VoxelType};
+use stratavox::volume::{Format, Limits, Pick, ReadError, Source, VoxelType, Wanted};
 
 fn spec(text: &str) -> RawSpec {
     RawSpec::parse(text).unwrap_or_else(|problem| panic!("{text}: {problem}"))
@@ -163,7 +163,8 @@ fn a_sidecar_is_found_from_the_voxels_and_from_its_own_name() {
                       "spacing": [1, 2, 3], "header_bytes": 3}"#;
     folder.write("a.json", sidecar);
     for name in ["a.raw", "a.json"] {
-        let source = format::open(&folder.path(name), &Limits::default()).unwrap();
+        let source =
+            format::open(&folder.path(name), &Wanted::default(), &Limits::default()).unwrap();
         assert_eq!(all_numbers(&*source), [1.0, 2.0, 3.0, 4.0], "{name}");
         assert_eq!(source.header().dims, [2, 2, 1]);
         assert_eq!(
@@ -176,10 +177,19 @@ fn a_sidecar_is_found_from_the_voxels_and_from_its_own_name() {
         "b.raw.json",
         r#"{"file": "b.raw", "dims": [1, 1, 1], "type": "u8"}"#,
     );
-    let source = format::open(&folder.path("b.raw"), &Limits::default()).unwrap();
+    let source = format::open(
+        &folder.path("b.raw"),
+        &Wanted::default(),
+        &Limits::default(),
+    )
+    .unwrap();
     assert_eq!(all_numbers(&*source), [5.0]);
     folder.write("c.raw", [5]);
-    let refused = refusal(format::open(&folder.path("c.raw"), &Limits::default()));
+    let refused = refusal(format::open(
+        &folder.path("c.raw"),
+        &Wanted::default(),
+        &Limits::default(),
+    ));
     assert!(
         refused.contains("unknown format") && refused.contains("sidecar"),
         "{refused}"
@@ -251,6 +261,7 @@ fn a_sidecar_that_lies_or_leads_away_is_refused() {
     for (text, wanted) in cases {
         let refused = refusal(format::open(
             &folder.write("s.json", text),
+            &Wanted::default(),
             &Limits::default(),
         ));
         assert!(refused.contains(wanted), "{text}: {refused}");
@@ -259,7 +270,11 @@ fn a_sidecar_that_lies_or_leads_away_is_refused() {
         max_header_bytes: 10,
         ..Limits::default()
     };
-    let refused = refusal(format::open(&folder.write("s.json", [b' '; 11]), &limits));
+    let refused = refusal(format::open(
+        &folder.write("s.json", [b' '; 11]),
+        &Wanted::default(),
+        &limits,
+    ));
     assert!(
         refused.contains("the sidecar needs 11 bytes, the limit is 10"),
         "{refused}"
@@ -272,8 +287,11 @@ fn the_walnut_is_the_same_from_its_sidecar_and_from_a_spec() {
         return;
     };
     let of = |name: &str| folder.join("ct-walnut").join(name);
-    let by_header = all_numbers(&*format::open(&of("walnut.mhd"), &Limits::default()).unwrap());
-    let by_sidecar = format::open(&of("walnut.raw"), &Limits::default()).unwrap();
+    let by_header = all_numbers(
+        &*format::open(&of("walnut.mhd"), &Wanted::default(), &Limits::default()).unwrap(),
+    );
+    let by_sidecar =
+        format::open(&of("walnut.raw"), &Wanted::default(), &Limits::default()).unwrap();
     assert_eq!(
         by_sidecar.header().world_from_voxel.matrix3.x_axis.x,
         0.015625

@@ -20,7 +20,7 @@ use files::Folder;
 use mutate::{Mutation, Random};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use stratavox::format;
-use stratavox::volume::{Limits, Pick, ReadError, VoxelType};
+use stratavox::volume::{Limits, Pick, ReadError, VoxelType, Wanted};
 
 #[global_allocator]
 static MEMORY: memory::Counting = memory::Counting;
@@ -40,7 +40,7 @@ type Base = Vec<(&'static str, Vec<u8>)>;
 
 /// Reads all of a mutated file, one time and component after the other. Gives the number of voxels read.
 fn read_all(folder: &Folder, base: &Base) -> Result<u64, ReadError> {
-    let source = format::open(&folder.path(base[0].0), &LIMITS)?;
+    let source = format::open(&folder.path(base[0].0), &Wanted::default(), &LIMITS)?;
     let header = source.header();
     assert!(header.world_from_voxel.inverse().is_finite(), "{header:?}");
     let mut voxels = 0;

@@ -28,19 +28,7 @@ impl Source for Given {
 }
 
 fn header(dims: [u32; 3], stored: VoxelType) -> Header {
-    Header {
-        format: Format::Raw,
-        dims,
-        components: 1,
-        times: 1,
-        stored,
-        world_from_voxel: DAffine3::IDENTITY,
-        rescale: Rescale::default(),
-        fill: None,
-        hounsfield: false,
-        variables: Vec::new(),
-        notes: Vec::new(),
-    }
+    Header::new(Format::Raw, dims, stored, DAffine3::IDENTITY)
 }
 
 fn in_memory(dims: [u32; 3], voxels: Voxels, fill: Option<f64>) -> Volume {

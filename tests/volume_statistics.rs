@@ -29,17 +29,15 @@ impl Source for Given {
 
 fn given(times: Vec<Voxels>, rescale: Rescale, fill: Option<f64>) -> Given {
     let header = Header {
-        format: Format::Raw,
-        dims: [times[0].len() as u32, 1, 1],
-        components: 1,
         times: times.len() as u32,
-        stored: times[0].voxel_type(),
-        world_from_voxel: DAffine3::IDENTITY,
         rescale,
         fill,
-        hounsfield: false,
-        variables: Vec::new(),
-        notes: Vec::new(),
+        ..Header::new(
+            Format::Raw,
+            [times[0].len() as u32, 1, 1],
+            times[0].voxel_type(),
+            DAffine3::IDENTITY,
+        )
     };
     Given { header, times }
 }

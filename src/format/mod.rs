@@ -40,7 +40,7 @@ mod stream;
 mod text;
 mod textual;
 
-use crate::volume::{Limits, Problem, ReadError, Source};
+use crate::volume::{Limits, Problem, ReadError, Source, Wanted};
 use problem::at;
 use std::path::Path;
 
@@ -49,10 +49,12 @@ const FIRST_BYTES: u64 = 4096;
 
 /// Opens a file of any format that we read, known by its content.
 ///
+/// Of several volumes in it `wanted` takes one; without a word the first is taken, and the header lists them all.
+///
 /// # Errors
 /// The file cannot be read, is of no known format, says something that cannot be, or promises more voxels than
 /// there are bytes. The error names the file, the field, what was wanted and what was found.
-pub fn open(path: &Path, limits: &Limits) -> Result<Box<dyn Source>, ReadError> {
+pub fn open(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Source>, ReadError> {
     let first = first_bytes(path).map_err(at(path))?;
     let extension = path.extension().and_then(|extension| extension.to_str());
     let extension = extension.unwrap_or("").to_ascii_lowercase();

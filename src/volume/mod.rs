@@ -20,7 +20,8 @@ mod voxels;
 
 pub use grid::Grid;
 pub use source::{
-    Format, Header, Limits, Loss, Pick, Piece, Problem, ReadError, Rescale, Source, VoxelBox,
+    Channel, Format, Header, Limits, Loss, Meaning, Pick, Piece, Problem, ReadError, Rescale,
+    Series, Source, VoxelBox, Wanted,
 };
 pub use statistics::{Histogram, Statistics};
 pub use voxels::{VoxelType, Voxels};

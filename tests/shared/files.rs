@@ -4,7 +4,7 @@
 use std::error::Error;
 use std::path::PathBuf;
 use stratavox::format;
-use stratavox::volume::{Header, Limits, Pick, Piece, ReadError, Voxels};
+use stratavox::volume::{Header, Limits, Pick, Piece, ReadError, Voxels, Wanted};
 
 /// A folder that goes away with the test.
 pub struct Folder(tempfile::TempDir);
@@ -26,7 +26,11 @@ impl Folder {
 
     /// Writes a file, opens it and reads all of its first time and component.
     pub fn read(&self, name: &str, bytes: impl AsRef<[u8]>) -> Result<(Header, Piece), ReadError> {
-        let source = format::open(&self.write(name, bytes), &Limits::default())?;
+        let source = format::open(
+            &self.write(name, bytes),
+            &Wanted::default(),
+            &Limits::default(),
+        )?;
         let header = source.header().clone();
         let piece = source.read(Pick::default(), header.whole())?;
         Ok((header, piece))

@@ -5,7 +5,7 @@ use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::path::PathBuf;
 use stratavox::format;
-use stratavox::volume::{Limits, Pick, Voxels};
+use stratavox::volume::{Limits, Pick, Voxels, Wanted};
 
 /// The folder of real volumes, if there is one.
 pub fn folder() -> Option<PathBuf> {
@@ -38,7 +38,8 @@ pub fn entries(kind: &str) -> Vec<Value> {
 pub fn check(entry: &Value, known_voxels: Option<usize>) -> [[f64; 4]; 3] {
     let id = entry["id"].as_str().unwrap();
     let path = folder().unwrap().join(entry["path"].as_str().unwrap());
-    let source = format::open(&path, &Limits::default()).unwrap_or_else(|e| panic!("{id}: {e}"));
+    let source = format::open(&path, &Wanted::default(), &Limits::default())
+        .unwrap_or_else(|e| panic!("{id}: {e}"));
     let header = source.header();
     println!("{id}: {header:?}");
     let volume = &entry["volume"];

@@ -3,7 +3,7 @@
 use super::Error;
 use crate::{
     format,
-    volume::{Header, Limits, Pick, Source, phantom},
+    volume::{Header, Limits, Pick, Series, Source, Wanted, phantom},
 };
 use clap::Args;
 use serde::{Deserialize, Serialize};
@@ -28,16 +28,16 @@ pub struct InputFlags {
     #[arg(long, value_name = "NAME", help_heading = "Input")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub variable: Option<String>,
-    /// One of several times, counted from 0 [default: the first]
-    #[arg(long, value_name = "N", help_heading = "Input")]
+    /// One of several times: its number, counted from 0, or its date [default: the first]
+    #[arg(long, value_name = "N|ISO", help_heading = "Input")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time: Option<String>,
     /// One of several numbers of a voxel, counted from 0
     #[arg(long, value_name = "N", help_heading = "Input")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub component: Option<u32>,
-    /// One of several DICOM series
-    #[arg(long, value_name = "UID", help_heading = super::not_built::HEADING)]
+    /// One of several DICOM series in a folder
+    #[arg(long, value_name = "UID", help_heading = "Input")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub series: Option<String>,
 }
@@ -67,9 +67,6 @@ impl InputFlags {
                 "name a volume file, or phantom:head",
             ));
         };
-        if self.series.is_some() {
-            return Err(Error::NotBuilt("`--series`".to_owned()));
-        }
         if path.starts_with(PHANTOM) {
             if self.raw.is_some() {
                 return Err(Error::usage(
@@ -93,8 +90,15 @@ impl InputFlags {
                 })?;
                 format::raw::open(path, &layout, limits)?
             }
-            None => format::open(path, limits)?,
+            None => {
+                let wanted = Wanted {
+                    variable: self.variable.clone(),
+                    series: self.series.clone(),
+                };
+                format::open(path, &wanted, limits)?
+            }
         };
+        self.check_series(source.header())?;
         if let Some(name) = &self.variable {
             check_variable(name, source.header())?;
         }
@@ -111,6 +115,7 @@ impl InputFlags {
     /// Which of the volumes in the source to draw, and what a person should know about the choice.
     pub fn pick(&self, header: &Header) -> Result<(Pick, Option<String>), Error> {
         self.check_one_variable(header)?;
+        self.check_one_series(header)?;
         let (time, note) = self.time(header)?;
         let components = self.components(header)?;
         if components.len() != 1 {
@@ -157,12 +162,42 @@ impl InputFlags {
         ))
     }
 
+    fn check_one_series(&self, header: &Header) -> Result<(), Error> {
+        if self.series.is_some() || header.series.len() < 2 {
+            return Ok(());
+        }
+        Err(Error::usage(
+            format!("the folder holds several series: {}", listed(header)),
+            "choose one with --series UID",
+        ))
+    }
+
+    fn check_series(&self, header: &Header) -> Result<(), Error> {
+        let Some(uid) = &self.series else {
+            return Ok(());
+        };
+        if header.series.iter().any(|series| series.uid == *uid) {
+            return Ok(());
+        }
+        let there = match header.series.as_slice() {
+            [] => format!("{} files have no series", header.format.name()),
+            _ => format!("there are {}", listed(header)),
+        };
+        Err(Error::usage(
+            format!("--series {uid}: {there}"),
+            "leave out --series",
+        ))
+    }
+
     /// The time to take, and what a person should know about the choice.
     pub fn time(&self, header: &Header) -> Result<(u32, Option<String>), Error> {
         let times = header.times;
         let Some(word) = &self.time else {
-            let note = (times > 1)
-                .then(|| format!("the first of {times} times is taken; --time N takes another"));
+            let first = header.time_names.first();
+            let first = first.map_or(String::new(), |name| format!(", {name},"));
+            let note = (times > 1).then(|| {
+                format!("the first of {times} times{first} is taken; --time N takes another")
+            });
             return Ok((0, note));
         };
         match word.parse::<u32>() {
@@ -171,13 +206,7 @@ impl InputFlags {
                 format!("--time {time}: the input has {times}, counted from 0"),
                 "--time 0",
             )),
-            Err(_) if word.contains(['-', ':', 'T']) => {
-                Err(Error::NotBuilt(format!("`--time {word}` (a date)")))
-            }
-            Err(_) => Err(Error::usage(
-                format!("--time {word}: wanted a number, counted from 0"),
-                "--time 0",
-            )),
+            Err(_) => time_by_name(word, header).map(|time| (time, None)),
         }
     }
 
@@ -206,6 +235,40 @@ impl InputFlags {
             None => self.clone(),
         }
     }
+}
+
+/// The first time whose name begins with `word`, so that a day or an hour is enough.
+fn time_by_name(word: &str, header: &Header) -> Result<u32, Error> {
+    let plain = |text: &str| text.replace(' ', "T").trim_end_matches('Z').to_owned();
+    let wanted = plain(word);
+    let found = header
+        .time_names
+        .iter()
+        .position(|name| plain(name).starts_with(&wanted));
+    found.map(|time| time as u32).ok_or_else(|| {
+        let there = match header.time_names.as_slice() {
+            [] => "its times have no dates, wanted a number counted from 0".to_owned(),
+            [first, .., last] => format!("there are {first} to {last}"),
+            [only] => format!("there is {only}"),
+        };
+        Error::usage(format!("--time {word}: {there}"), "--time 0")
+    })
+}
+
+/// The series, each with what is known of it.
+fn listed(header: &Header) -> String {
+    let line = |series: &Series| {
+        format!(
+            "{} ({:?}, {} pictures)",
+            series.uid, series.description, series.pictures
+        )
+    };
+    header
+        .series
+        .iter()
+        .map(line)
+        .collect::<Vec<_>>()
+        .join("; ")
 }
 
 fn refuse_later_formats(path: &Path) -> Result<(), Error> {

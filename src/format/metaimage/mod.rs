@@ -130,21 +130,16 @@ fn header(
         return Err(invalid(METAIMAGE, name, "a number other than 0", "0"));
     }
     Ok(Header {
-        format: Format::MetaImage,
-        dims: array.dims,
         components: array.components,
         times: array.times,
-        stored,
-        world_from_voxel,
         rescale: Rescale {
             slope: slope.unwrap_or(1.0),
             intercept: intercept.unwrap_or(0.0),
         },
-        fill: None,
         // Values of eight bits cannot be Hounsfield units, whatever the modality.
         hounsfield: fields.get("Modality") == Some("MET_MOD_CT") && stored.bytes() > 1,
-        variables: Vec::new(),
         notes,
+        ..Header::new(Format::MetaImage, array.dims, stored, world_from_voxel)
     })
 }
 

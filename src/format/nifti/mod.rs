@@ -159,21 +159,16 @@ fn header(fields: &Fields, number: &Number, array: &Array) -> Result<Header, Pro
             number.bits()
         ));
     }
+    let format = match fields.version {
+        Version::One => Format::Nifti1,
+        Version::Two => Format::Nifti2,
+    };
     Ok(Header {
-        format: match fields.version {
-            Version::One => Format::Nifti1,
-            Version::Two => Format::Nifti2,
-        },
-        dims: array.dims,
         components: array.components,
         times: array.times,
-        stored: number.stored,
-        world_from_voxel,
         rescale: rescale(fields, number, &mut notes),
-        fill: None,
-        hounsfield: false,
-        variables: Vec::new(),
         notes,
+        ..Header::new(format, array.dims, number.stored, world_from_voxel)
     })
 }
 

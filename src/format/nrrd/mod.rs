@@ -13,7 +13,7 @@ use super::data::{Data, Promise};
 use super::decode::Encoding;
 use super::file_source::FileSource;
 use super::problem::{at, escape, invalid, missing, unsupported};
-use crate::volume::{Format, Header, Limits, Problem, ReadError, Rescale, VoxelType};
+use crate::volume::{Format, Header, Limits, Problem, ReadError, VoxelType};
 use array::Array;
 use fields::Fields;
 use std::path::Path;
@@ -66,17 +66,11 @@ fn header(fields: &Fields, array: &Array, stored: VoxelType) -> Result<Header, P
     // Values of eight bits cannot be Hounsfield units, whatever the modality.
     let may_be_hounsfield = fields.modality_is_ct && stored.bytes() > 1;
     Ok(Header {
-        format: Format::Nrrd,
-        dims: array.dims,
         components: array.components,
         times: array.times,
-        stored,
-        world_from_voxel,
-        rescale: Rescale::default(),
-        fill: None,
         hounsfield: is_hounsfield || may_be_hounsfield,
-        variables: Vec::new(),
         notes,
+        ..Header::new(Format::Nrrd, array.dims, stored, world_from_voxel)
     })
 }
 

@@ -24,7 +24,7 @@ use super::place::open_regular;
 use super::problem::{at, invalid};
 use super::select::{Axis, Role};
 use super::text::number;
-use crate::volume::{Format, Header, Limits, Problem, ReadError, Rescale, Source, VoxelType};
+use crate::volume::{Format, Header, Limits, Problem, ReadError, Source, VoxelType};
 use glam::{DMat3, DVec3};
 use std::path::{Path, PathBuf};
 
@@ -167,22 +167,16 @@ pub(super) fn open_sidecar(path: &Path, _limits: &Limits) -> Result<Box<dyn Sour
 fn header(spec: &RawSpec) -> Result<Header, Problem> {
     let steps = DMat3::from_diagonal(DVec3::from_array(spec.spacing));
     let affine = world_from_voxel([steps.x_axis, steps.y_axis, steps.z_axis], DVec3::ZERO);
-    Ok(Header {
-        format: Format::Raw,
-        dims: spec.dims,
-        components: 1,
-        times: 1,
-        stored: spec.stored,
-        world_from_voxel: affine.ok_or_else(|| {
-            let found = format!("{:?}", spec.spacing);
-            invalid(RAW, "spacing", "three lengths from 1e-30 to 1e30", &found)
-        })?,
-        rescale: Rescale::default(),
-        fill: None,
-        hounsfield: false,
-        variables: Vec::new(),
-        notes: Vec::new(),
-    })
+    let world_from_voxel = affine.ok_or_else(|| {
+        let found = format!("{:?}", spec.spacing);
+        invalid(RAW, "spacing", "three lengths from 1e-30 to 1e30", &found)
+    })?;
+    Ok(Header::new(
+        Format::Raw,
+        spec.dims,
+        spec.stored,
+        world_from_voxel,
+    ))
 }
 
 const TYPES: &str = "one of u8, i8, u16, i16, u32, i32, u64, i64, f16, f32, f64";

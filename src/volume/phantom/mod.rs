@@ -207,23 +207,19 @@ fn build(text: &str) -> Result<Phantom, Problem> {
     spec.finish(&known)?;
     let spacing = (design.max.x - design.min.x) / f64::from(n);
     let size = design.max - design.min;
+    let dims = size
+        .to_array()
+        .map(|side| ((side / spacing).round() as u32).max(1));
+    let world_from_voxel = DAffine3 {
+        matrix3: DMat3::from_diagonal(DVec3::splat(spacing)),
+        translation: design.min,
+    };
     let header = Header {
-        format: Format::Phantom,
-        dims: size
-            .to_array()
-            .map(|side| ((side / spacing).round() as u32).max(1)),
-        components: 1,
         times,
-        stored,
-        world_from_voxel: DAffine3 {
-            matrix3: DMat3::from_diagonal(DVec3::splat(spacing)),
-            translation: design.min,
-        },
         rescale: rescale(&design, stored),
-        fill: None,
         hounsfield: design.hounsfield,
         variables,
-        notes: Vec::new(),
+        ..Header::new(Format::Phantom, dims, stored, world_from_voxel)
     };
     Ok(Phantom {
         spec: text.into(),
