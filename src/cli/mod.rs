@@ -16,6 +16,8 @@ mod error;
 mod flags;
 mod info;
 mod later;
+mod load;
+mod memory;
 mod output;
 mod progress;
 mod reasons;

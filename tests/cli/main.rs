@@ -5,6 +5,7 @@ mod device;
 mod errors;
 #[cfg(unix)]
 mod interrupt;
+mod memory;
 mod person;
 mod pictures;
 mod real;

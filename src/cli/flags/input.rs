@@ -1,6 +1,6 @@
 //! Which volume: the words, and the source they name.
 
-use super::Error;
+use super::{super::memory, Error};
 use crate::{
     format,
     volume::{Header, Limits, Pick, Series, Source, Wanted, phantom},
@@ -40,6 +40,26 @@ pub struct InputFlags {
     #[arg(long, value_name = "UID", help_heading = "Input")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub series: Option<String>,
+    /// Draw a volume that is too large for the memory with fewer voxels, and say so
+    #[arg(long, help_heading = "Input")]
+    #[serde(skip_serializing_if = "is_false")]
+    pub fit: bool,
+    /// Memory that the volume may take, such as 512M or 16G [default: 90 % of what is free]
+    #[arg(long, value_name = "SIZE", value_parser = memory::bytes_of_word, help_heading = "Input")]
+    #[serde(skip)]
+    pub max_memory: Option<u64>,
+    /// Tight limits for files of strangers: 1 GiB, small headers, no second file that a header names
+    #[arg(long, help_heading = "Input")]
+    #[serde(skip)]
+    pub untrusted: bool,
+}
+
+#[allow(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde hands over references"
+)]
+fn is_false(flag: &bool) -> bool {
+    !flag
 }
 
 /// How a built-in volume begins.
@@ -59,6 +79,23 @@ impl InputFlags {
             .map(Path::new)
     }
 
+    /// What a reader may use.
+    pub fn limits(&self) -> Limits {
+        let limits = if self.untrusted {
+            Limits::UNTRUSTED
+        } else {
+            Limits::default()
+        };
+        Limits {
+            max_bytes: match self.max_memory.or_else(memory::available_bytes) {
+                Some(bytes) if self.untrusted => bytes.min(limits.max_bytes),
+                Some(bytes) => bytes,
+                None => limits.max_bytes,
+            },
+            ..limits
+        }
+    }
+
     /// Opens what the words name; reads its header alone.
     pub fn open(&self, limits: &Limits) -> Result<Box<dyn Source>, Error> {
         let Some(path) = self.path.as_deref() else {
@@ -74,7 +111,9 @@ impl InputFlags {
                     "leave out --raw",
                 ));
             }
-            return Ok(phantom::open(&self.phantom_spec(path), limits)?);
+            let source = phantom::open(&self.phantom_spec(path), limits)?;
+            self.check_series(source.header())?;
+            return Ok(source);
         }
         let path = Path::new(path);
         if path.exists() && self.raw.is_none() {
