@@ -158,6 +158,14 @@ impl<'a> Renderer<'a> {
         })
     }
 
+    /// The device, free for another volume.
+    pub fn into_device(self) -> Device {
+        Device {
+            on: self.on_device.map(|renderer| renderer.into_device()),
+            found_ms: 0.0,
+        }
+    }
+
     /// The device's name.
     pub fn device(&self) -> String {
         name_of(self.on_device.as_ref().map(|renderer| renderer.device()))

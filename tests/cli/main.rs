@@ -9,4 +9,5 @@ mod memory;
 mod person;
 mod pictures;
 mod real;
+mod sheet;
 mod words;
