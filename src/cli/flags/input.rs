@@ -67,7 +67,7 @@ const PHANTOM: &str = "phantom:";
 
 /// Endings of files that are promised and not built yet.
 const LATER: &[&str] = &[
-    "vti", "vtk", "tif", "tiff", "nc", "h5", "grib", "grib2", "npy", "zarr", "dcm",
+    "tif", "tiff", "nc", "h5", "grib", "grib2", "npy", "zarr", "dcm",
 ];
 
 impl InputFlags {
