@@ -67,7 +67,7 @@ const PHANTOM: &str = "phantom:";
 
 /// Endings of files that are promised and not built yet.
 const LATER: &[&str] = &[
-    "tif", "tiff", "nc", "h5", "grib", "grib2", "npy", "zarr", "dcm",
+    "tif", "tiff", "nc", "h5", "grib", "grib2", "npy", "zarr",
 ];
 
 impl InputFlags {
@@ -311,14 +311,8 @@ fn listed(header: &Header) -> String {
 }
 
 fn refuse_later_formats(path: &Path) -> Result<(), Error> {
-    if path.is_dir() {
-        let is_zarr = path.extension().is_some_and(|ending| ending == "zarr");
-        let what = if is_zarr {
-            "reading `.zarr` folders"
-        } else {
-            "reading folders (DICOM, TIFF stacks)"
-        };
-        return Err(Error::NotBuilt(what.to_owned()));
+    if path.is_dir() && path.extension().is_some_and(|ending| ending == "zarr") {
+        return Err(Error::NotBuilt("reading `.zarr` folders".to_owned()));
     }
     let ending = path.extension().and_then(|ending| ending.to_str());
     match ending.map(str::to_ascii_lowercase) {
