@@ -1,4 +1,4 @@
-//! Files to [`Source`]s: NIfTI, NRRD, MetaImage, raw voxels.
+//! Files to [`Source`]s: NIfTI, NRRD, MetaImage, Zarr, raw voxels.
 //!
 //! A header only promises. [`open`] compares its promises with the bytes that are there before anything is
 //! allocated, and [`Source::read`] again as it goes; a file that is too short, too long once decompressed or
@@ -39,6 +39,8 @@ mod sequence;
 mod stream;
 mod text;
 mod textual;
+#[cfg(feature = "zarr")]
+mod zarr;
 
 use crate::volume::{Limits, Problem, ReadError, Source, Wanted};
 use problem::at;
@@ -55,6 +57,10 @@ const FIRST_BYTES: u64 = 4096;
 /// The file cannot be read, is of no known format, says something that cannot be, or promises more voxels than
 /// there are bytes. The error names the file, the field, what was wanted and what was found.
 pub fn open(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Source>, ReadError> {
+    #[cfg(feature = "zarr")]
+    if path.is_dir() && zarr::recognizes(path) {
+        return zarr::open(path, wanted, limits);
+    }
     let first = first_bytes(path).map_err(at(path))?;
     let extension = path.extension().and_then(|extension| extension.to_str());
     let extension = extension.unwrap_or("").to_ascii_lowercase();

@@ -47,7 +47,7 @@ const PHANTOM: &str = "phantom:";
 
 /// Endings of files that are promised and not built yet.
 const LATER: &[&str] = &[
-    "vti", "vtk", "tif", "tiff", "nc", "h5", "grib", "grib2", "npy", "zarr", "dcm",
+    "vti", "vtk", "tif", "tiff", "nc", "h5", "grib", "grib2", "npy", "dcm",
 ];
 
 impl InputFlags {
@@ -273,12 +273,11 @@ fn listed(header: &Header) -> String {
 
 fn refuse_later_formats(path: &Path) -> Result<(), Error> {
     if path.is_dir() {
-        let is_zarr = path.extension().is_some_and(|ending| ending == "zarr");
-        let what = if is_zarr {
-            "reading `.zarr` folders"
-        } else {
-            "reading folders (DICOM, TIFF stacks)"
-        };
+        let marks = ["zarr.json", ".zgroup", ".zarray", ".zmetadata", ".zattrs"];
+        if marks.iter().any(|name| path.join(name).is_file()) {
+            return Ok(());
+        }
+        let what = "reading folders (DICOM, TIFF stacks)";
         return Err(Error::NotBuilt(what.to_owned()));
     }
     let ending = path.extension().and_then(|ending| ending.to_str());
