@@ -52,7 +52,9 @@ fn named(tree: &Tree, wanted: &Wanted, limits: &Limits) -> Result<(Array, Vec<St
         None => match first {
             Some(array) => array,
             None => {
-                return Err(refused.unwrap_or_else(|| unsupported(ZARR, "a store without an array")));
+                return Err(
+                    refused.unwrap_or_else(|| unsupported(ZARR, "a store without an array"))
+                );
             }
         },
     };
