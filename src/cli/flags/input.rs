@@ -66,9 +66,7 @@ fn is_false(flag: &bool) -> bool {
 const PHANTOM: &str = "phantom:";
 
 /// Endings of files that are promised and not built yet.
-const LATER: &[&str] = &[
-    "tif", "tiff", "nc", "h5", "grib", "grib2", "npy", "zarr",
-];
+const LATER: &[&str] = &["tif", "tiff", "nc", "h5", "grib", "grib2", "npy"];
 
 impl InputFlags {
     /// The file, where the input is one.
@@ -311,8 +309,8 @@ fn listed(header: &Header) -> String {
 }
 
 fn refuse_later_formats(path: &Path) -> Result<(), Error> {
-    if path.is_dir() && path.extension().is_some_and(|ending| ending == "zarr") {
-        return Err(Error::NotBuilt("reading `.zarr` folders".to_owned()));
+    if path.is_dir() {
+        return Ok(());
     }
     let ending = path.extension().and_then(|ending| ending.to_str());
     match ending.map(str::to_ascii_lowercase) {
