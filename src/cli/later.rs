@@ -6,9 +6,6 @@ use clap::{Args, Subcommand};
 /// The verbs, with whatever words follow them.
 #[derive(Debug, Subcommand)]
 pub enum Later {
-    /// Not built yet: the histogram of a volume
-    #[command(after_help = INFO)]
-    Histogram(Rest),
     /// Not built yet: a film of many pictures
     #[command(after_help = RENDER)]
     Animate(Rest),
@@ -41,7 +38,6 @@ impl Later {
     /// Says which verb is not built.
     pub fn refuse(&self) -> Result<(), Error> {
         let name = match self {
-            Self::Histogram(_) => "histogram",
             Self::Animate(_) => "animate",
             Self::Convert(_) => "convert",
             Self::Conformance(_) => "conformance",

@@ -13,7 +13,9 @@ mod cameras_file;
 mod compare;
 mod devices;
 mod error;
+mod figure;
 mod flags;
+mod histogram;
 mod info;
 mod later;
 mod output;
@@ -48,6 +50,7 @@ enum Verb {
     Devices(devices::Devices),
     Compare(compare::Compare),
     Bench(Box<bench::Bench>),
+    Histogram(Box<histogram::HistogramVerb>),
     #[command(flatten)]
     Later(later::Later),
 }
@@ -84,6 +87,7 @@ fn obey(words: Vec<OsString>, gate: &Gate) -> Result<(), Error> {
         Verb::Devices(devices) => devices.run(),
         Verb::Compare(compare) => compare.run(gate),
         Verb::Bench(bench) => bench.run(gate),
+        Verb::Histogram(histogram) => histogram.run(gate),
         Verb::Later(verb) => verb.refuse(),
     }
 }
