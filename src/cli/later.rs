@@ -15,18 +15,12 @@ pub enum Later {
     /// Not built yet: a device tested against exact answers
     #[command(after_help = DEVICES)]
     Conformance(Rest),
-    /// Not built yet: transfer functions of ours and of other programs
-    #[command(after_help = PRESET)]
-    Preset(Rest),
 }
 
 const INFO: &str = "Example of what is there:\n  stratavox info phantom:head --json";
 const RENDER: &str =
     "Example of what is there:\n  stratavox render phantom:head --azimuth 30 -o 030.png";
 const DEVICES: &str = "Example of what is there:\n  stratavox devices";
-const PRESET: &str =
-    "Example of what is there:\n  stratavox render phantom:head --preset ct-bone -o head.png";
-
 /// Any words.
 #[derive(Args, Debug)]
 pub struct Rest {
@@ -41,7 +35,6 @@ impl Later {
             Self::Animate(_) => "animate",
             Self::Convert(_) => "convert",
             Self::Conformance(_) => "conformance",
-            Self::Preset(_) => "preset",
         };
         Err(Error::NotBuilt(format!("`stratavox {name}`")))
     }

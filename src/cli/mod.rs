@@ -18,7 +18,9 @@ mod flags;
 mod histogram;
 mod info;
 mod later;
+mod manuals;
 mod output;
+mod preset;
 mod progress;
 mod reasons;
 mod render;
@@ -30,7 +32,7 @@ mod timings;
 pub use bug::guarded;
 pub use error::Error;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use signals::Gate;
 use std::ffi::OsString;
 
@@ -51,6 +53,9 @@ enum Verb {
     Compare(compare::Compare),
     Bench(Box<bench::Bench>),
     Histogram(Box<histogram::HistogramVerb>),
+    Preset(preset::PresetVerb),
+    Completions(manuals::Completions),
+    Man(manuals::Man),
     #[command(flatten)]
     Later(later::Later),
 }
@@ -88,6 +93,9 @@ fn obey(words: Vec<OsString>, gate: &Gate) -> Result<(), Error> {
         Verb::Compare(compare) => compare.run(gate),
         Verb::Bench(bench) => bench.run(gate),
         Verb::Histogram(histogram) => histogram.run(gate),
+        Verb::Preset(preset) => preset.run(gate),
+        Verb::Completions(completions) => completions.run(Words::command()),
+        Verb::Man(man) => man.run(Words::command(), gate),
         Verb::Later(verb) => verb.refuse(),
     }
 }
@@ -95,7 +103,6 @@ fn obey(words: Vec<OsString>, gate: &Gate) -> Result<(), Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
     #[test]
     fn the_words_are_put_together_without_contradiction() {
