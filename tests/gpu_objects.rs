@@ -132,7 +132,7 @@ fn every_kind_of_owner_is_gone_after_drop_and_retire() {
     assert_eq!(gpu.live_objects(), before);
     assert_eq!(
         before,
-        BTreeMap::from([("command pool", 1), ("semaphore", 1)])
+        BTreeMap::from([("command pool", 1), ("fence", 1)])
     );
 }
 
