@@ -1,4 +1,4 @@
-//! Files to [`Source`]s: NIfTI, NRRD, MetaImage, raw voxels.
+//! Files to [`Source`]s: NIfTI, NRRD, MetaImage, NumPy, TIFF, raw voxels.
 //!
 //! A header only promises. [`open`] compares its promises with the bytes that are there before anything is
 //! allocated, and [`Source::read`] again as it goes; a file that is too short, too long once decompressed or
@@ -30,15 +30,19 @@ mod file_source;
 mod geometry;
 mod metaimage;
 mod nifti;
+mod npy;
 mod nrrd;
 mod place;
 mod problem;
 pub mod raw;
+mod request;
 mod select;
 mod sequence;
 mod stream;
 mod text;
 mod textual;
+#[cfg(feature = "tiff")]
+mod tiff;
 
 use crate::volume::{Limits, Problem, ReadError, Source, Wanted};
 use problem::at;
@@ -55,6 +59,10 @@ const FIRST_BYTES: u64 = 4096;
 /// The file cannot be read, is of no known format, says something that cannot be, or promises more voxels than
 /// there are bytes. The error names the file, the field, what was wanted and what was found.
 pub fn open(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Source>, ReadError> {
+    #[cfg(feature = "tiff")]
+    if path.is_dir() && tiff::recognizes_folder(path) {
+        return tiff::open_folder(path, wanted, limits);
+    }
     let first = first_bytes(path).map_err(at(path))?;
     let extension = path.extension().and_then(|extension| extension.to_str());
     let extension = extension.unwrap_or("").to_ascii_lowercase();
@@ -65,6 +73,10 @@ pub fn open(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Sou
         Ok(Box::new(metaimage::open(path, limits)?))
     } else if nifti::recognizes(&first) {
         Ok(Box::new(nifti::open(path, limits)?))
+    } else if npy::recognizes(&first) {
+        Ok(Box::new(npy::open(path, limits)?))
+    } else if is_tiff(&first) {
+        open_tiff(path, wanted, limits)
     } else if matches!(extension.as_str(), "nrrd" | "nhdr") {
         Ok(Box::new(nrrd::open(path, limits)?))
     } else if matches!(extension.as_str(), "mha" | "mhd") {
@@ -76,6 +88,23 @@ pub fn open(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Sou
     } else {
         Err(at(path)(unknown(&first)))
     }
+}
+
+/// True where a file begins as a TIFF or BigTIFF does.
+fn is_tiff(first: &[u8]) -> bool {
+    let heads = [b"II\x2a\0", b"MM\0\x2a", b"II\x2b\0", b"MM\0\x2b"];
+    heads.iter().any(|head| first.starts_with(*head))
+}
+
+#[cfg(feature = "tiff")]
+fn open_tiff(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Source>, ReadError> {
+    tiff::open(path, wanted, limits)
+}
+
+#[cfg(not(feature = "tiff"))]
+fn open_tiff(path: &Path, _: &Wanted, _: &Limits) -> Result<Box<dyn Source>, ReadError> {
+    let what = "TIFF in a build without the feature `tiff`";
+    Err(at(path)(problem::unsupported("tiff", what)))
 }
 
 fn is_compressed_nifti(path: &Path) -> bool {
@@ -101,7 +130,7 @@ fn unknown(first: &[u8]) -> Problem {
         .map(|byte| format!("{byte:02x}"))
         .collect();
     Problem::UnknownFormat(format!(
-        ": the file begins with the bytes {}; we read nifti, nrrd, metaimage, and raw voxels that a spec or a sidecar describes",
+        ": the file begins with the bytes {}; we read nifti, nrrd, metaimage, npy, tiff, and raw voxels that a spec or a sidecar describes",
         shown.join(" ")
     ))
 }

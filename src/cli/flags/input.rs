@@ -16,7 +16,7 @@ use std::{
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct InputFlags {
-    /// A volume file, or phantom:NAME[,n=256][,type=u8|u16|f32] with NAME of sphere, gauss, marschner-lobb, head, fog, shells, storm
+    /// A volume file, a folder of slices, or phantom:NAME[,n=256][,type=u8|u16|f32] with NAME of sphere, gauss, marschner-lobb, head, fog, shells, storm
     #[arg(value_name = "INPUT")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub path: Option<String>,
@@ -46,9 +46,7 @@ pub struct InputFlags {
 const PHANTOM: &str = "phantom:";
 
 /// Endings of files that are promised and not built yet.
-const LATER: &[&str] = &[
-    "vti", "vtk", "tif", "tiff", "nc", "h5", "grib", "grib2", "npy", "zarr", "dcm",
-];
+const LATER: &[&str] = &["vti", "vtk", "nc", "h5", "grib", "grib2", "zarr", "dcm"];
 
 impl InputFlags {
     /// The file, where the input is one.
@@ -272,15 +270,6 @@ fn listed(header: &Header) -> String {
 }
 
 fn refuse_later_formats(path: &Path) -> Result<(), Error> {
-    if path.is_dir() {
-        let is_zarr = path.extension().is_some_and(|ending| ending == "zarr");
-        let what = if is_zarr {
-            "reading `.zarr` folders"
-        } else {
-            "reading folders (DICOM, TIFF stacks)"
-        };
-        return Err(Error::NotBuilt(what.to_owned()));
-    }
     let ending = path.extension().and_then(|ending| ending.to_str());
     match ending.map(str::to_ascii_lowercase) {
         Some(ending) if LATER.contains(&ending.as_str()) => {
