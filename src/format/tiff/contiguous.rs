@@ -19,7 +19,7 @@ pub(super) fn open(
     parts: Parts,
     limits: &Limits,
 ) -> Result<Box<dyn Source>, ReadError> {
-    let page = file.first_page(limits).map_err(at(path))?;
+    let page = file.page(0, limits).map_err(at(path))?;
     check(&page, file.pages.len()).map_err(at(path))?;
     let mut header = parts
         .header(page.look, page.look.stored)

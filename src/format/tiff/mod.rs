@@ -25,7 +25,7 @@ mod volume;
 
 use super::place::Folder;
 use super::problem::{at, escape, invalid, unsupported};
-use crate::volume::{Limits, Meaning, Problem, ReadError, Source, Wanted};
+use crate::volume::{Limits, Meaning, ReadError, Source, Wanted};
 use imagej::Hyperstack;
 use page::{Color, Look};
 use single::Single;
@@ -161,7 +161,13 @@ fn open_ome(
         let other = name.and_then(|name| others.iter().position(|other| other == name));
         other.map_or(0, |index| index.saturating_add(1))
     };
-    let look = first_look(&mut opened, limits).map_err(at(path))?;
+    let (file, number) = image.first_page();
+    let look = opened
+        .get_mut(index_of(file))
+        .ok_or_else(|| invalid(TIFF, "TiffData", "a file", "none"))
+        .and_then(|file| file.page(number, limits))
+        .map_err(at(path))?
+        .look;
     let (channel_pages, components_agree) = match volume::components(look) {
         1 => (image.channel_count, true),
         n => (1, n == image.channel_count || n == look.samples),
@@ -212,19 +218,10 @@ fn open_ome(
     Ok(Box::new(parts.source(path, limits)?))
 }
 
-fn first_look(opened: &mut [Single], limits: &Limits) -> Result<Look, Problem> {
-    let first = opened.first_mut();
-    let first = first.ok_or_else(|| invalid(TIFF, "pages", "a page", "none"))?;
-    Ok(first.first_page(limits)?.look)
-}
-
 /// Text of a file for a header: no control characters, and not without end.
 fn clean(text: &str) -> String {
-    escape_controls(text.trim())
-}
-
-fn escape_controls(text: &str) -> String {
-    let is_plain = text.chars().all(|c| !c.is_control()) && text.len() <= 200;
+    let text = text.trim();
+    let is_plain = text.len() <= 200 && !text.chars().any(char::is_control);
     match is_plain {
         true => text.to_owned(),
         false => escape(text),

@@ -83,6 +83,9 @@ impl Page {
                 return Err(invalid(TIFF, name, "1 or 2", &n.to_string()));
             }
         };
+        if look.color == Color::YCbCr && is_planar {
+            return Err(unsupported(TIFF, "YCbCr colors in separate planes"));
+        }
         let predictor = match reader.integer(directory, ifd::PREDICTOR)?.unwrap_or(1) {
             // libtiff's codecs other than LZW and deflate know no predictor.
             _ if !compression.has_predictor() => 1,

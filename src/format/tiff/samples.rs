@@ -70,8 +70,9 @@ impl Band {
         for (out, packed) in out_rows.zip(packed_rows) {
             let begins = side(to_column).saturating_mul(number_bytes);
             let out = out.get_mut(begins..).unwrap_or_default();
-            row(page, packed, from..to, sample, out);
-            filled = filled.saturating_add(1);
+            if row(page, packed, from..to, sample, out).is_some() {
+                filled = filled.saturating_add(1);
+            }
         }
         if filled != rows {
             let wanted = format!("{rows} rows of a {}", page.chunk_word());
@@ -105,8 +106,8 @@ impl Band {
     }
 }
 
-/// Copies one sample of the pixels `columns` of a packed row to the beginning of `out`.
-fn row(page: &Page, packed: &[u8], columns: Range<u32>, sample: u32, out: &mut [u8]) {
+/// Copies one sample of the pixels `columns` of a packed row to the beginning of `out`; `None` where it is not there.
+fn row(page: &Page, packed: &[u8], columns: Range<u32>, sample: u32, out: &mut [u8]) -> Option<()> {
     let samples = side(page.samples_in_chunk());
     let sample = if page.is_planar { 0 } else { side(sample) };
     let (from, to) = (side(columns.start), side(columns.end));
@@ -115,9 +116,9 @@ fn row(page: &Page, packed: &[u8], columns: Range<u32>, sample: u32, out: &mut [
         for (k, out) in out.iter_mut().take(count).enumerate() {
             let pixel = from.saturating_add(k);
             let index = pixel.saturating_mul(samples).saturating_add(sample);
-            *out = unpack(packed, index, page.look.bits);
+            *out = unpack(packed, index, page.look.bits)?;
         }
-        return;
+        return Some(());
     }
     let number = page.look.stored.bytes();
     let pixel_bytes = number.saturating_mul(samples);
@@ -128,23 +129,22 @@ fn row(page: &Page, packed: &[u8], columns: Range<u32>, sample: u32, out: &mut [
     let begins = sample.saturating_mul(number);
     let ends = begins.saturating_add(number);
     for (out, pixel) in out.chunks_exact_mut(number.max(1)).zip(pixels) {
-        if page.look.color == Color::YCbCr && sample < 3 {
-            if let (&[y, cb, cr, ..], [out]) = (pixel, out) {
-                *out = rgb_of(y, cb, cr, sample);
-            }
-        } else if let Some(bytes) = pixel.get(begins..ends) {
-            out.copy_from_slice(bytes);
+        if page.look.color == Color::YCbCr {
+            *out.first_mut()? = rgb_of(*pixel.first_chunk()?, sample);
+        } else {
+            out.copy_from_slice(pixel.get(begins..ends)?);
         }
     }
+    Some(())
 }
 
 /// A number of 1, 2 or 4 bits; the first lies in the high bits of a byte.
-fn unpack(packed: &[u8], index: usize, bits: u32) -> u8 {
+fn unpack(packed: &[u8], index: usize, bits: u32) -> Option<u8> {
     let bit = index.saturating_mul(side(bits));
-    let byte = packed.get(bit.wrapping_shr(3)).copied().unwrap_or(0);
+    let byte = packed.get(bit.wrapping_shr(3)).copied()?;
     let used = u32::try_from(bit & 7).unwrap_or(0).saturating_add(bits);
     let mask = 1_u8.wrapping_shl(bits).wrapping_sub(1);
-    byte.wrapping_shr(8_u32.saturating_sub(used)) & mask
+    Some(byte.wrapping_shr(8_u32.saturating_sub(used)) & mask)
 }
 
 /// ITU-R BT.601 with full range, as JFIF 1.02 writes it:
@@ -155,8 +155,8 @@ fn unpack(packed: &[u8], index: usize, bits: u32) -> u8 {
     clippy::cast_sign_loss,
     reason = "floats, clamped to a byte"
 )]
-fn rgb_of(y: u8, cb: u8, cr: u8, sample: usize) -> u8 {
-    let [y, cb, cr] = [y, cb, cr].map(f32::from);
+fn rgb_of(ycbcr: [u8; 3], sample: usize) -> u8 {
+    let [y, cb, cr] = ycbcr.map(f32::from);
     let (cb, cr) = (cb - 128.0, cr - 128.0);
     let color = match sample {
         0 => y + 1.402 * cr,
@@ -178,11 +178,11 @@ mod tests {
     #[test]
     fn small_numbers_come_out_of_bytes_from_the_high_end() {
         let packed = [0b1011_0001, 0b0110_0011];
-        let bits: Vec<u8> = (0..9).map(|i| unpack(&packed, i, 1)).collect();
+        let bits: Vec<u8> = (0..9).map(|i| unpack(&packed, i, 1).unwrap()).collect();
         assert_eq!(bits, [1, 0, 1, 1, 0, 0, 0, 1, 0]);
-        let pairs: Vec<u8> = (0..8).map(|i| unpack(&packed, i, 2)).collect();
+        let pairs: Vec<u8> = (0..8).map(|i| unpack(&packed, i, 2).unwrap()).collect();
         assert_eq!(pairs, [2, 3, 0, 1, 1, 2, 0, 3]);
-        let halves: Vec<u8> = (0..4).map(|i| unpack(&packed, i, 4)).collect();
+        let halves: Vec<u8> = (0..4).map(|i| unpack(&packed, i, 4).unwrap()).collect();
         assert_eq!(halves, [11, 1, 6, 3]);
     }
 
@@ -195,8 +195,7 @@ mod tests {
             ([29, 255, 107], [0, 0, 254]),
             ([128, 128, 128], [128, 128, 128]),
         ] {
-            let [y, cb, cr] = ycbcr;
-            let found = [0, 1, 2].map(|k| rgb_of(y, cb, cr, k));
+            let found = [0, 1, 2].map(|k| rgb_of(ycbcr, k));
             for (found, wanted) in found.iter().zip(rgb) {
                 assert!(found.abs_diff(wanted) <= 1, "{ycbcr:?}: {found}, {wanted}");
             }

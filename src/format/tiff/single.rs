@@ -62,8 +62,17 @@ impl Single {
         self.reader.directory(at)
     }
 
-    pub(super) fn first_page(&mut self, limits: &Limits) -> Result<Page, Problem> {
-        let directory = self.first_directory()?;
+    /// One page; of one that is not there, that there is none.
+    pub(super) fn page(&mut self, index: u64, limits: &Limits) -> Result<Page, Problem> {
+        let at = usize::try_from(index)
+            .ok()
+            .and_then(|index| self.pages.get(index));
+        let count = self.pages.len();
+        let &at = at.ok_or_else(|| {
+            let wanted = format!("one of {count} pages");
+            invalid(TIFF, "page", wanted, &index.to_string())
+        })?;
+        let directory = self.reader.directory(at)?;
         Page::read(&mut self.reader, &directory, limits)
     }
 

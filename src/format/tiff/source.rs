@@ -72,6 +72,8 @@ impl PageSource {
             }
             _ => None,
         };
+        // An index stands for all three colors.
+        let stored_sample = if palette.is_some() { 0 } else { sample };
         let [x0, y0, _] = region.min;
         let [x1, y1, _] = region.max;
         let height = page.chunk_height.max(1);
@@ -87,9 +89,9 @@ impl PageSource {
                 .checked_div(page.chunk_width)
                 .unwrap_or(0);
             for column in first..=last {
-                let index = samples::chunk_index(&page, column, row, sample);
+                let index = samples::chunk_index(&page, column, row, stored_sample);
                 let pixels = chunk::pixels(reader, &page, index)?;
-                band.take(&page, column, &pixels, sample)?;
+                band.take(&page, column, &pixels, stored_sample)?;
             }
             if let Some(palette) = &palette {
                 let bytes = band.through(palette, sample, self.header.stored);

@@ -192,6 +192,13 @@ impl Volume {
         others
     }
 
+    /// The file and the number of a page of this image.
+    pub(super) fn first_page(&self) -> (Option<&str>, u64) {
+        let first = self.blocks.first();
+        let file = first.and_then(|block| block.file_name.as_deref());
+        (file, first.and_then(|block| block.ifd).unwrap_or(0))
+    }
+
     /// The page of each z, channel page and time, z fastest. `channel_pages` is how many pages the channels take.
     pub(super) fn pages(
         &self,
