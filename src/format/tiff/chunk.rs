@@ -128,9 +128,16 @@ pub(super) fn pixels(reader: &mut Reader, page: &Page, index: usize) -> Result<P
             if decoded != wanted {
                 return Err(damaged(&"the stream ends early", decoded));
             }
-            // Only at its end does a stream compare its checksum. A strip that goes on is cut, as libtiff does.
-            let end = stream.read(&mut [0]);
-            end.map_err(|cause| damaged(&cause, decoded))?;
+            // Only at its end does a stream compare its checksum. The last strip may be written in full.
+            let room = page.chunk_bytes(page.chunk_height);
+            let rest = std::io::copy(
+                &mut stream.take(room.saturating_add(1)),
+                &mut std::io::sink(),
+            );
+            let rest = rest.map_err(|cause| damaged(&cause, decoded))?;
+            if wanted_bytes.saturating_add(rest) > room {
+                return Err(damaged(&"the stream goes on behind the pixels", decoded));
+            }
             if page.predictor == 1 {
                 plain.drain(..begins);
                 return Ok(Pixels {

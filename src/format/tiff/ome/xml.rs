@@ -109,7 +109,7 @@ pub(super) fn parse(text: &str) -> Result<Ome, Problem> {
 
 fn attributes(element: &BytesStart) -> Result<Attributes, Problem> {
     let mut all = Attributes::new();
-    for (index, attribute) in element.attributes().with_checks(false).enumerate() {
+    for (index, attribute) in element.attributes().enumerate() {
         let wrong = |cause: String| invalid(TIFF, "OME-XML", "attributes", &cause);
         if index >= MOST_ATTRIBUTES {
             return Err(wrong("more than 256".to_owned()));
