@@ -34,16 +34,20 @@ mod file_source;
 mod geometry;
 mod metaimage;
 mod nifti;
+mod npy;
 mod nrrd;
 mod pieces;
 mod place;
 mod problem;
 pub mod raw;
+mod request;
 mod select;
 mod sequence;
 mod stream;
 mod text;
 mod textual;
+#[cfg(feature = "tiff")]
+mod tiff;
 mod vti;
 mod vtk;
 #[cfg(feature = "zarr")]
@@ -94,6 +98,12 @@ pub fn open(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Sou
     }
 }
 
+/// True where a file begins as a TIFF or BigTIFF does.
+fn is_tiff(first: &[u8]) -> bool {
+    let heads = [b"II\x2a\0", b"MM\0\x2a", b"II\x2b\0", b"MM\0\x2b"];
+    heads.iter().any(|head| first.starts_with(*head))
+}
+
 type Open = fn(&Path, &Wanted, &Limits) -> Result<Box<dyn Source>, ReadError>;
 
 /// A reader of files.
@@ -123,6 +133,23 @@ const READERS: &[Reader] = &[
         recognizes: dicom::recognizes,
         endings: &["dcm", "dicom"],
         open: dicom::open,
+    },
+    #[cfg(feature = "tiff")]
+    Reader {
+        recognizes: is_tiff,
+        endings: &["tif", "tiff"],
+        open: tiff::open,
+    },
+    #[cfg(not(feature = "tiff"))]
+    Reader {
+        recognizes: is_tiff,
+        endings: &["tif", "tiff"],
+        open: |path, _, _| Err(lacks("tiff", path)),
+    },
+    Reader {
+        recognizes: npy::recognizes,
+        endings: &["npy"],
+        open: |path, _, limits| Ok(Box::new(npy::open(path, limits)?)),
     },
     Reader {
         recognizes: vti::recognizes,
@@ -154,12 +181,26 @@ const FOLDERS: &[FolderReader] = &[
         recognizes: |path, _| zarr::recognizes(path),
         open: zarr::open,
     },
+    #[cfg(feature = "tiff")]
+    FolderReader {
+        recognizes: |path, _| tiff::recognizes_folder(path),
+        open: tiff::open_folder,
+    },
     #[cfg(feature = "dicom")]
     FolderReader {
         recognizes: dicom::is_folder_of_pictures,
         open: dicom::open,
     },
 ];
+
+/// What a reader says that was not built.
+#[cfg(not(all(feature = "tiff")))]
+fn lacks(format: &'static str, path: &Path) -> ReadError {
+    at(path)(problem::unsupported(
+        format,
+        "this format in a build without the feature of its name",
+    ))
+}
 
 const UNKNOWN_FOLDER: &str =
     ": the folder holds no DICOM pictures, no stack of TIFF pages and no Zarr arrays";
