@@ -12,9 +12,6 @@ pub enum Later {
     /// Not built yet: a film of many pictures
     #[command(after_help = RENDER)]
     Animate(Rest),
-    /// Not built yet: a volume in another format
-    #[command(after_help = INFO)]
-    Convert(Rest),
     /// Not built yet: a device tested against exact answers
     #[command(after_help = DEVICES)]
     Conformance(Rest),
@@ -43,7 +40,6 @@ impl Later {
         let name = match self {
             Self::Histogram(_) => "histogram",
             Self::Animate(_) => "animate",
-            Self::Convert(_) => "convert",
             Self::Conformance(_) => "conformance",
             Self::Preset(_) => "preset",
         };

@@ -44,6 +44,7 @@ mod text;
 mod textual;
 mod vti;
 mod vtk;
+pub mod write;
 
 use crate::volume::{Limits, Problem, ReadError, Source, Wanted};
 use problem::at;
