@@ -30,6 +30,7 @@ const LIMITS: Limits = Limits {
     max_bytes: 4 << 20,
     max_files: 100,
     max_header_bytes: 1 << 16,
+    detached: true,
 };
 
 /// What a read may take beyond the volume.

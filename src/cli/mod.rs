@@ -17,12 +17,15 @@ mod error;
 mod flags;
 mod info;
 mod later;
+mod load;
+mod memory;
 mod output;
 mod progress;
 mod reasons;
 mod render;
 mod renderer;
 mod scene_file;
+mod sheet;
 mod signals;
 mod timings;
 
@@ -50,6 +53,7 @@ enum Verb {
     Devices(devices::Devices),
     Compare(compare::Compare),
     Bench(Box<bench::Bench>),
+    Sheet(sheet::Sheet),
     #[command(flatten)]
     Later(later::Later),
 }
@@ -87,6 +91,7 @@ fn obey(words: Vec<OsString>, gate: &Gate) -> Result<(), Error> {
         Verb::Devices(devices) => devices.run(),
         Verb::Compare(compare) => compare.run(gate),
         Verb::Bench(bench) => bench.run(gate),
+        Verb::Sheet(sheet) => sheet.run(gate),
         Verb::Later(verb) => verb.refuse(),
     }
 }

@@ -1,4 +1,4 @@
-//! Files to [`Source`]s: NIfTI, NRRD, MetaImage, VTK images, raw voxels.
+//! Files to [`Source`]s: NIfTI, NRRD, MetaImage, VTK images, DICOM, raw voxels.
 //!
 //! A header only promises. [`open`] compares its promises with the bytes that are there before anything is
 //! allocated, and [`Source::read`] again as it goes; a file that is too short, too long once decompressed or
@@ -28,6 +28,8 @@ mod blocks;
 mod convert;
 mod data;
 mod decode;
+#[cfg(feature = "dicom")]
+mod dicom;
 mod file_source;
 mod geometry;
 mod metaimage;
@@ -61,7 +63,15 @@ const FIRST_BYTES: u64 = 4096;
 /// The file cannot be read, is of no known format, says something that cannot be, or promises more voxels than
 /// there are bytes. The error names the file, the field, what was wanted and what was found.
 pub fn open(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Source>, ReadError> {
+    #[cfg(feature = "dicom")]
+    if path.is_dir() && dicom::is_folder_of_pictures(path, limits) {
+        return dicom::open(path, wanted, limits);
+    }
     let first = first_bytes(path).map_err(at(path))?;
+    #[cfg(feature = "dicom")]
+    if dicom::recognizes(&first) {
+        return dicom::open(path, wanted, limits);
+    }
     let extension = path.extension().and_then(|extension| extension.to_str());
     let extension = extension.unwrap_or("").to_ascii_lowercase();
     // The content decides. Where it is no format's, the name does, and that reader says what is wrong.

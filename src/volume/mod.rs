@@ -13,12 +13,14 @@ mod grid;
 mod holes;
 pub mod phantom;
 mod read;
+mod reduce;
 pub mod sample;
 mod source;
 mod statistics;
 mod voxels;
 
 pub use grid::Grid;
+pub use reduce::Reduced;
 pub use source::{
     Channel, Format, Header, Limits, Loss, Meaning, Pick, Piece, Problem, ReadError, Rescale,
     Series, Source, VoxelBox, Wanted,
