@@ -1,6 +1,6 @@
 //! A [`Source`] over files: fetches the wanted box of one time and component and keeps nothing else.
 
-use super::convert::{Builder, to_u64};
+use super::convert::{Builder, Endian, bytes_in_memory, to_u64};
 use super::data::Data;
 use super::decode::Encoding;
 use super::problem::at;
@@ -37,20 +37,30 @@ impl FileSource {
         }
     }
 
-    fn read_rows(&self, pick: Pick, region: VoxelBox, wanted: usize) -> Result<Piece, ReadError> {
+    fn read_piece(&self, pick: Pick, region: VoxelBox, wanted: usize) -> Result<Piece, ReadError> {
         let data = &self.data;
-        let here = at(&self.path);
-        let number_bytes = to_u64(data.stored.bytes());
         let mut builder = Builder::new(data.stored, data.endian, wanted);
         // Raw bytes were seen to be there; of others only the plausible part is believed beforehand.
         let believed = match data.encoding {
             Encoding::Raw => wanted,
             _ => wanted.min(BELIEVED_NUMBERS),
         };
+        builder.reserve(believed).map_err(at(&self.path))?;
+        self.read_rows(pick, region, |bytes, stride| builder.push(bytes, stride))?;
+        self.check_count(builder.len(), wanted)?;
+        Ok(builder.finish())
+    }
+
+    /// Hands every wanted number to `take`: bytes of which each `stride`th number is wanted, the first one first.
+    fn read_rows(
+        &self,
+        pick: Pick,
+        region: VoxelBox,
+        mut take: impl FnMut(&[u8], usize) -> Result<(), Problem>,
+    ) -> Result<(), ReadError> {
+        let data = &self.data;
+        let number_bytes = to_u64(data.stored.bytes());
         let mut stream = Stream::new(data);
-        if let Err(problem) = builder.reserve(believed) {
-            return Err(here(problem));
-        }
         for row in rows(&data.axes, pick, region) {
             let stride_bytes = row.stride.saturating_mul(number_bytes);
             let mut at_byte = row.start.saturating_mul(number_bytes);
@@ -68,20 +78,24 @@ impl FileSource {
                     1 => 1,
                     _ => usize::try_from(row.stride).unwrap_or(usize::MAX),
                 };
-                builder.push(bytes, stride).map_err(at(&self.path))?;
+                take(bytes, stride).map_err(at(&self.path))?;
                 at_byte = at_byte.saturating_add(count.saturating_mul(stride_bytes));
                 left = left.saturating_sub(count);
             }
         }
-        stream.finish()?;
-        if builder.len() != wanted {
-            return Err(at(&self.path)(Problem::Size {
-                format: data.format,
-                wanted_bytes: to_u64(wanted).saturating_mul(number_bytes),
-                found_bytes: to_u64(builder.len()).saturating_mul(number_bytes),
-            }));
+        stream.finish()
+    }
+
+    fn check_count(&self, found: usize, wanted: usize) -> Result<(), ReadError> {
+        if found == wanted {
+            return Ok(());
         }
-        Ok(builder.finish())
+        let number_bytes = to_u64(self.data.stored.bytes());
+        Err(at(&self.path)(Problem::Size {
+            format: self.data.format,
+            wanted_bytes: to_u64(wanted).saturating_mul(number_bytes),
+            found_bytes: to_u64(found).saturating_mul(number_bytes),
+        }))
     }
 }
 
@@ -103,6 +117,26 @@ impl Source for FileSource {
     fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
         let wanted = wanted_count(self.data.format, &self.header, pick, region, self.max_bytes)
             .map_err(at(&self.path))?;
-        self.read_rows(pick, region, wanted)
+        self.read_piece(pick, region, wanted)
+    }
+
+    fn read_bytes(&self, pick: Pick, region: VoxelBox) -> Result<Option<Vec<u8>>, ReadError> {
+        let bytes_each = self.data.stored.bytes();
+        let times_kept = to_u64(bytes_each).div_ceil(to_u64(bytes_in_memory(self.data.stored)));
+        let max_bytes = self.max_bytes.checked_div(times_kept).unwrap_or(0);
+        let wanted = wanted_count(self.data.format, &self.header, pick, region, max_bytes)
+            .map_err(at(&self.path))?;
+        let mut all = Vec::new();
+        self.read_rows(pick, region, |bytes, stride| {
+            for number in bytes.chunks_exact(bytes_each).step_by(stride.max(1)) {
+                match self.data.endian {
+                    Endian::Little => all.extend_from_slice(number),
+                    Endian::Big => all.extend(number.iter().rev()),
+                }
+            }
+            Ok(())
+        })?;
+        self.check_count(all.len().checked_div(bytes_each).unwrap_or(0), wanted)?;
+        Ok(Some(all))
     }
 }

@@ -50,6 +50,7 @@ mod textual;
 mod tiff;
 mod vti;
 mod vtk;
+pub mod write;
 #[cfg(feature = "zarr")]
 mod zarr;
 

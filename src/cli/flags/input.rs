@@ -151,8 +151,7 @@ impl InputFlags {
 
     /// Which of the volumes in the source to draw, and what a person should know about the choice.
     pub fn pick(&self, header: &Header) -> Result<(Pick, Option<String>), Error> {
-        self.check_one_variable(header)?;
-        self.check_one_series(header)?;
+        self.check_one(header)?;
         let (time, note) = self.time(header)?;
         let components = self.components(header)?;
         if components.len() != 1 {
@@ -182,6 +181,12 @@ impl InputFlags {
                 "--component 0",
             )),
         }
+    }
+
+    /// Refuses a source of several variables or series of which the words choose none.
+    pub fn check_one(&self, header: &Header) -> Result<(), Error> {
+        self.check_one_variable(header)?;
+        self.check_one_series(header)
     }
 
     fn check_one_variable(&self, header: &Header) -> Result<(), Error> {
