@@ -55,7 +55,7 @@ impl Info {
     /// Reads all of the input and prints what it is like.
     pub fn run(self) -> Result<(), Error> {
         let limits = Limits::default();
-        let source = self.input.open(&limits)?;
+        let source = self.input.open_as_stored(&limits)?;
         let header = source.header();
         self.input.time(header)?;
         if self.input.time.is_some() {
@@ -63,7 +63,13 @@ impl Info {
         }
         let components = self.input.components(header)?;
         let statistics = Statistics::of(source.as_ref(), components, &limits)?;
-        let report = report(header, &statistics);
+        let mut report = report(header, &statistics);
+        if header.is_earth {
+            // Uneven levels are drawn from even ones, of which there are more.
+            let drawn = self.input.open(&limits)?;
+            let is_other = drawn.header().dims != header.dims;
+            report.render_bytes = render_bytes(drawn.header(), is_other || has_holes(&statistics));
+        }
         if self.json {
             for note in &header.notes {
                 say_aside(note);
@@ -96,7 +102,7 @@ fn report(header: &Header, statistics: &Statistics) -> Report {
         non_finite: statistics.non_finite_count,
         fill_count: statistics.fill_count,
         variables: header.variables.clone(),
-        render_bytes: render_bytes(header, statistics),
+        render_bytes: render_bytes(header, has_holes(statistics)),
     }
 }
 
@@ -109,7 +115,11 @@ fn world_from_centers(header: &Header) -> [[f64; 4]; 4] {
     [row(0), row(1), row(2), [0.0, 0.0, 0.0, 1.0]]
 }
 
-fn render_bytes(header: &Header, statistics: &Statistics) -> RenderBytes {
+fn has_holes(statistics: &Statistics) -> bool {
+    statistics.non_finite_count + statistics.fill_count > 0
+}
+
+fn render_bytes(header: &Header, has_holes: bool) -> RenderBytes {
     let voxels = header.voxel_count();
     // What is not kept exactly becomes f32; 8-bit numbers may need 16 on a device.
     let host = if header.stored.is_kept_exactly() {
@@ -118,7 +128,6 @@ fn render_bytes(header: &Header, statistics: &Statistics) -> RenderBytes {
         4
     };
     let device = host.max(2);
-    let has_holes = statistics.non_finite_count + statistics.fill_count > 0;
     let mask = u64::from(has_holes);
     RenderBytes {
         host: voxels.saturating_mul(host + mask),

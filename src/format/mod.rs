@@ -1,4 +1,4 @@
-//! Files to [`Source`]s: NIfTI, NRRD, MetaImage, raw voxels.
+//! Files to [`Source`]s: NIfTI, NRRD, MetaImage, HDF5, NetCDF, raw voxels.
 //!
 //! A header only promises. [`open`] compares its promises with the bytes that are there before anything is
 //! allocated, and [`Source::read`] again as it goes; a file that is too short, too long once decompressed or
@@ -23,12 +23,20 @@
     )
 )]
 
+#[cfg(feature = "netcdf")]
+mod cf;
 mod convert;
 mod data;
 mod decode;
+#[cfg(feature = "netcdf")]
+mod fence;
 mod file_source;
 mod geometry;
+#[cfg(feature = "netcdf")]
+mod hdf5;
 mod metaimage;
+#[cfg(feature = "netcdf")]
+mod netcdf;
 mod nifti;
 mod nrrd;
 mod place;
@@ -58,6 +66,9 @@ pub fn open(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Sou
     let first = first_bytes(path).map_err(at(path))?;
     let extension = path.extension().and_then(|extension| extension.to_str());
     let extension = extension.unwrap_or("").to_ascii_lowercase();
+    if let Some(source) = open_arrays(path, &first, wanted, limits) {
+        return source;
+    }
     // The content decides. Where it is no format's, the name does, and that reader says what is wrong.
     if nrrd::recognizes(&first) {
         Ok(Box::new(nrrd::open(path, limits)?))
@@ -76,6 +87,41 @@ pub fn open(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Sou
     } else {
         Err(at(path)(unknown(&first)))
     }
+}
+
+/// Containers of arrays: `None` for a file that is none.
+#[cfg(feature = "netcdf")]
+fn open_arrays(
+    path: &Path,
+    first: &[u8],
+    wanted: &Wanted,
+    limits: &Limits,
+) -> Option<Result<Box<dyn Source>, ReadError>> {
+    if netcdf::recognizes(first) {
+        Some(netcdf::open(path, wanted, limits))
+    } else if hdf5::recognizes(first) {
+        Some(hdf5::open(path, wanted, limits))
+    } else {
+        None
+    }
+}
+
+#[cfg(not(feature = "netcdf"))]
+fn open_arrays(
+    path: &Path,
+    first: &[u8],
+    _: &Wanted,
+    _: &Limits,
+) -> Option<Result<Box<dyn Source>, ReadError>> {
+    let format = if first.starts_with(b"CDF") {
+        "netcdf"
+    } else if first.starts_with(b"\x89HDF") {
+        "hdf5"
+    } else {
+        return None;
+    };
+    let what = "a build without the feature `netcdf`";
+    Some(Err(at(path)(problem::unsupported(format, what))))
 }
 
 fn is_compressed_nifti(path: &Path) -> bool {
@@ -101,7 +147,7 @@ fn unknown(first: &[u8]) -> Problem {
         .map(|byte| format!("{byte:02x}"))
         .collect();
     Problem::UnknownFormat(format!(
-        ": the file begins with the bytes {}; we read nifti, nrrd, metaimage, and raw voxels that a spec or a sidecar describes",
+        ": the file begins with the bytes {}; we read nifti, nrrd, metaimage, hdf5, netcdf, and raw voxels that a spec or a sidecar describes",
         shown.join(" ")
     ))
 }
