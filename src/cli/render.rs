@@ -1,7 +1,7 @@
 //! `stratavox render`: one picture of one volume.
 
 use super::{
-    Error,
+    Error, exaggerate,
     flags::{Depth, NotBuilt, SceneFlags},
     output::{self, write_whole},
     progress::{Progress, ProgressWord},
@@ -213,7 +213,12 @@ pub fn load(scene: &SceneFlags, progress: &Progress) -> Result<Volume, Error> {
         progress.note(note);
     }
     let whole = source.header().whole();
-    let volume = Volume::read(source.as_ref(), pick, whole, &limits)?;
+    let mut volume = Volume::read(source.as_ref(), pick, whole, &limits)?;
+    let (factor, note) = exaggerate::factor(scene, &volume.grid(), source.header().is_earth)?;
+    volume.world_from_voxel = exaggerate::stretched(volume.world_from_voxel, factor);
+    for note in &note {
+        progress.note(note);
+    }
     if !volume.loss.is_none() {
         let crate::volume::Loss { changed, worst } = volume.loss;
         progress.note(&format!(

@@ -278,3 +278,46 @@ fn date_of(day: i64, calendar: Calendar) -> Option<(i64, i64, i64)> {
     }
     Some((year, month, left.checked_add(1)?))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn moments_are_those_of_cftime_in_every_calendar() {
+        let text = include_str!("../../../tests/fixtures/netcdf/moments.json");
+        let moments: Vec<(String, String, f64, String)> = serde_json::from_str(text).unwrap();
+        assert!(moments.len() > 200);
+        for (calendar, units, number, wanted) in moments {
+            let place = format!("{number} {units}, {calendar}");
+            let clock = Clock::of(&units, Some(&calendar)).expect(&place);
+            let found = clock.iso(number).expect(&place);
+            let (seconds, fraction) = found.split_once('.').unwrap_or((&found, ""));
+            assert_eq!(format!("{seconds}.{fraction:0<6}"), wanted, "{place}");
+        }
+    }
+
+    #[test]
+    fn what_tells_no_moment_is_none() {
+        for units in [
+            "K",
+            "days",
+            "days since",
+            "days since yesterday",
+            "months since 2000-01-01",
+            "days since 2000-13-01",
+            "days since 2000-02-30",
+            "days since 2000-01-01 25:00",
+            "days since 99999999999-01-01",
+            "fortnights since 2000-01-01",
+        ] {
+            assert_eq!(Clock::of(units, None), None, "{units}");
+        }
+        assert_eq!(Clock::of("days since 2000-01-01", Some("none")), None);
+        assert_eq!(Clock::of("days since 2000-02-29", Some("noleap")), None);
+        let clock = Clock::of("days since 2000-01-01", None).unwrap();
+        for number in [f64::NAN, f64::INFINITY, 1e300, 1e18] {
+            assert_eq!(clock.iso(number), None, "{number}");
+        }
+    }
+}
