@@ -96,7 +96,7 @@ fn every_variant_gives_the_numbers_that_its_own_library_reads() {
         }
     }
     println!("{compared} numbers compared");
-    assert!(compared > 700, "only {compared} numbers");
+    assert!(compared > 600, "only {compared} numbers");
 }
 
 #[test]
@@ -199,9 +199,8 @@ fn a_field_that_is_linear_stays_exactly_so_on_even_points() {
     assert_eq!(stored.header().dims, [8, 8, 4]);
     let even = open_as("netcdf/uneven.nc", Some("f"), false).unwrap();
     let header = even.header();
-    // Heights 0, 100, 300, 700: eight steps of 100. The nearest latitudes are a little nearer than the others.
-    assert_eq!(header.dims[2], 8);
-    assert!((9..=16).contains(&header.dims[1]), "{:?}", header.dims);
+    // Heights 0, 100, 300, 700 and latitudes from 70 to -60, the nearest 5 apart.
+    assert_eq!(header.dims, [8, 27, 8]);
     let notes = header.notes.join("; ");
     assert!(
         notes.contains("4 unevenly spaced points along z are drawn as 8"),

@@ -216,7 +216,7 @@ pub fn load(scene: &SceneFlags, progress: &Progress) -> Result<Volume, Error> {
     let mut volume = Volume::read(source.as_ref(), pick, whole, &limits)?;
     let (factor, note) = exaggerate::factor(scene, &volume.grid(), source.header().is_earth)?;
     volume.world_from_voxel = exaggerate::stretched(volume.world_from_voxel, factor);
-    for note in &note {
+    if let Some(note) = &note {
         progress.note(note);
     }
     if !volume.loss.is_none() {
