@@ -4,9 +4,10 @@ use super::{
     Error,
     error::visible,
     flags::InputFlags,
+    memory::RenderBytes,
     output::{say, say_aside},
 };
-use crate::volume::{Grid, Header, Limits, Statistics};
+use crate::volume::{Grid, Header, Statistics};
 use clap::Args;
 use glam::DVec3;
 use serde::Serialize;
@@ -44,17 +45,10 @@ struct Report {
     render_bytes: RenderBytes,
 }
 
-/// What drawing one time and component takes, pictures left out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-struct RenderBytes {
-    host: u64,
-    device: u64,
-}
-
 impl Info {
     /// Reads all of the input and prints what it is like.
     pub fn run(self) -> Result<(), Error> {
-        let limits = Limits::default();
+        let limits = self.input.limits();
         let source = self.input.open_as_stored(&limits)?;
         let header = source.header();
         self.input.time(header)?;
@@ -68,7 +62,8 @@ impl Info {
             // Uneven levels are drawn from even ones, of which there are more.
             let drawn = self.input.open(&limits)?;
             let is_other = drawn.header().dims != header.dims;
-            report.render_bytes = render_bytes(drawn.header(), is_other || has_holes(&statistics));
+            report.render_bytes =
+                RenderBytes::of(drawn.header(), is_other || has_holes(&statistics));
         }
         if self.json {
             for note in &header.notes {
@@ -102,7 +97,7 @@ fn report(header: &Header, statistics: &Statistics) -> Report {
         non_finite: statistics.non_finite_count,
         fill_count: statistics.fill_count,
         variables: header.variables.clone(),
-        render_bytes: render_bytes(header, has_holes(statistics)),
+        render_bytes: RenderBytes::of(header, has_holes(statistics)),
     }
 }
 
@@ -117,22 +112,6 @@ fn world_from_centers(header: &Header) -> [[f64; 4]; 4] {
 
 fn has_holes(statistics: &Statistics) -> bool {
     statistics.non_finite_count + statistics.fill_count > 0
-}
-
-fn render_bytes(header: &Header, has_holes: bool) -> RenderBytes {
-    let voxels = header.voxel_count();
-    // What is not kept exactly becomes f32; 8-bit numbers may need 16 on a device.
-    let host = if header.stored.is_kept_exactly() {
-        header.stored.bytes() as u64
-    } else {
-        4
-    };
-    let device = host.max(2);
-    let mask = u64::from(has_holes);
-    RenderBytes {
-        host: voxels.saturating_mul(host + mask),
-        device: voxels.saturating_mul(device + mask),
-    }
 }
 
 fn text(report: &Report, notes: &[String]) -> String {
