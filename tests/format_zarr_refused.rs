@@ -259,7 +259,12 @@ fn chunks_that_lie_are_refused_before_memory_is_taken() {
     let huge = 1_u64 << 31;
     for (name, pointer, value, wanted) in [
         // Two gigabytes in each chunk, and the files of a chunk of 72 bytes.
-        ("v2-zlib", "/chunks", json!([1, huge, 1]), "were wanted, 72 came out"),
+        (
+            "v2-zlib",
+            "/chunks",
+            json!([1, huge, 1]),
+            "were wanted, 72 came out",
+        ),
         ("v2-bz2", "/chunks", json!([1, huge, 1]), "wanted"),
         ("v2-zstd", "/chunks", json!([1, huge, 1]), "wanted"),
         ("v2-lz4", "/chunks", json!([1, huge, 1]), "wanted"),

@@ -32,6 +32,7 @@ mod decode;
 mod dicom;
 mod file_source;
 mod geometry;
+mod grib;
 mod metaimage;
 mod nifti;
 mod nrrd;
@@ -128,6 +129,11 @@ const READERS: &[Reader] = &[
         recognizes: vti::recognizes,
         endings: &["vti", "pvti", "vtr", "vts", "vtu", "vtp"],
         open: vti::open,
+    },
+    Reader {
+        recognizes: grib::recognizes,
+        endings: &["grib", "grib2", "grb", "grb2"],
+        open: grib::open,
     },
     Reader {
         recognizes: vtk::recognizes,

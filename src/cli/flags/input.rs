@@ -66,7 +66,7 @@ fn is_false(flag: &bool) -> bool {
 const PHANTOM: &str = "phantom:";
 
 /// Endings of files that are promised and not built yet.
-const LATER: &[&str] = &["tif", "tiff", "nc", "h5", "grib", "grib2", "npy"];
+const LATER: &[&str] = &["tif", "tiff", "nc", "h5", "npy"];
 
 impl InputFlags {
     /// The file, where the input is one.
