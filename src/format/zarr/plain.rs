@@ -181,7 +181,7 @@ fn rescale(array: &Array) -> Result<Rescale, Problem> {
 
 /// The number that means "no data". Where xarray writes version 2, the fill value of the array is it.
 fn fill(array: &Array) -> Option<f64> {
-    let named = ["_FillValue", "missing_value"].iter();
+    let mut named = ["_FillValue", "missing_value"].iter();
     let named = named.find_map(|field| number(array.attributes.get(*field)?));
     let is_of_xarray = array.attributes.contains_key("_ARRAY_DIMENSIONS");
     named
