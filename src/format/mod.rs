@@ -37,6 +37,7 @@ mod dicom;
 mod fence;
 mod file_source;
 mod geometry;
+mod grib;
 #[cfg(feature = "netcdf")]
 mod hdf5;
 mod metaimage;
@@ -168,6 +169,11 @@ const READERS: &[Reader] = &[
         recognizes: vti::recognizes,
         endings: &["vti", "pvti", "vtr", "vts", "vtu", "vtp"],
         open: vti::open,
+    },
+    Reader {
+        recognizes: grib::recognizes,
+        endings: &["grib", "grib2", "grb", "grb2"],
+        open: grib::open,
     },
     Reader {
         recognizes: vtk::recognizes,

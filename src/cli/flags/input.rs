@@ -65,9 +65,6 @@ fn is_false(flag: &bool) -> bool {
 /// How a built-in volume begins.
 const PHANTOM: &str = "phantom:";
 
-/// Endings of files that are promised and not built yet.
-const LATER: &[&str] = &["grib", "grib2"];
-
 impl InputFlags {
     /// The file, where the input is one.
     pub fn file(&self) -> Option<&Path> {
@@ -123,9 +120,6 @@ impl InputFlags {
             return Ok(source);
         }
         let path = Path::new(path);
-        if path.exists() && self.raw.is_none() {
-            refuse_later_formats(path)?;
-        }
         let source = match &self.raw {
             Some(layout) => {
                 let layout = format::raw::RawSpec::parse(layout).map_err(|problem| {
@@ -321,19 +315,6 @@ fn listed(header: &Header) -> String {
         .map(line)
         .collect::<Vec<_>>()
         .join("; ")
-}
-
-fn refuse_later_formats(path: &Path) -> Result<(), Error> {
-    if path.is_dir() {
-        return Ok(());
-    }
-    let ending = path.extension().and_then(|ending| ending.to_str());
-    match ending.map(str::to_ascii_lowercase) {
-        Some(ending) if LATER.contains(&ending.as_str()) => {
-            Err(Error::NotBuilt(format!("reading `.{ending}` files")))
-        }
-        _ => Ok(()),
-    }
 }
 
 fn check_variable(name: &str, header: &Header) -> Result<(), Error> {
