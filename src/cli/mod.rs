@@ -22,6 +22,7 @@ mod manuals;
 mod output;
 mod preset;
 mod progress;
+mod readable;
 mod reasons;
 mod render;
 mod renderer;

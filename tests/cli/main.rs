@@ -3,9 +3,14 @@
 
 mod device;
 mod errors;
+mod examples;
+mod figures;
+mod info;
 #[cfg(unix)]
 mod interrupt;
+mod manuals;
 mod person;
 mod pictures;
+mod presets;
 mod real;
 mod words;

@@ -1,16 +1,22 @@
 //! `stratavox info`: what a volume is, before anything is drawn.
 
+mod place;
+mod text;
+
 use super::{
     Error,
-    error::visible,
     flags::InputFlags,
+    histogram::unit,
     output::{say, say_aside},
 };
-use crate::volume::{Grid, Header, Limits, Statistics};
+use crate::{
+    transfer::{Kind, ValueSummary},
+    volume::{Grid, Header, Limits, Meaning, Pick, ReadError, Source, Statistics},
+};
 use clap::Args;
 use glam::DVec3;
 use serde::Serialize;
-use std::fmt::Write;
+use std::ops::Range;
 
 /// Say what a volume holds
 #[derive(Args, Debug)]
@@ -42,6 +48,32 @@ struct Report {
     fill_count: u64,
     variables: Vec<String>,
     render_bytes: RenderBytes,
+    /// Of values; `null` where the file is silent.
+    unit: Option<String>,
+    /// What the numbers of a voxel are to each other: numbers, rgb, rgba, vector or channels.
+    meaning: &'static str,
+    /// One for each component that is a channel.
+    channels: Vec<ChannelReport>,
+    /// One for each time, or none.
+    time_names: Vec<String>,
+    series: Vec<SeriesReport>,
+    notes: Vec<String>,
+}
+
+/// A thing seen in the same place as others.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct ChannelReport {
+    name: String,
+    srgb: Option<[f32; 3]>,
+    window: Option<[f64; 2]>,
+}
+
+/// A series of a DICOM folder.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct SeriesReport {
+    uid: String,
+    description: String,
+    pictures: usize,
 }
 
 /// What drawing one time and component takes, pictures left out.
@@ -62,7 +94,7 @@ impl Info {
             say_aside("--time has no effect on info, its numbers are those of all times");
         }
         let components = self.input.components(header)?;
-        let statistics = Statistics::of(source.as_ref(), components, &limits)?;
+        let statistics = Statistics::of(source.as_ref(), components.clone(), &limits)?;
         let report = report(header, &statistics);
         if self.json {
             for note in &header.notes {
@@ -71,9 +103,80 @@ impl Info {
             let json = serde_json::to_string_pretty(&report).expect("numbers as JSON");
             say(&format!("{json}\n"))
         } else {
-            say(&text(&report, &header.notes))
+            let kind = kind(source.as_ref(), &components, &statistics)?;
+            let page = text::Page {
+                report: &report,
+                header,
+                input: &self.input,
+                statistics: &statistics,
+                kind,
+            };
+            say(&page.text(&limits))
         }
     }
+}
+
+/// What the values of the first time look like, where one number a voxel is drawn.
+fn kind(
+    source: &dyn Source,
+    components: &Range<u32>,
+    statistics: &Statistics,
+) -> Result<Option<Kind>, ReadError> {
+    let header = source.header();
+    if components.len() != 1 || statistics.valid_count == 0 {
+        return Ok(None);
+    }
+    let pick = Pick {
+        time: 0,
+        component: components.start,
+    };
+    let voxels = source.read(pick, header.whole())?.voxels;
+    // As numbers were rounded on their way here, so is the fill.
+    let fill = header.fill.map(|fill| fill as f32);
+    let value = |i: usize| {
+        let stored = voxels.stored(i);
+        let is_valid = stored.is_finite() && Some(stored) != fill;
+        is_valid.then(|| f64::from(stored) * header.rescale.slope + header.rescale.intercept)
+    };
+    let values = (0..voxels.len()).filter_map(value);
+    let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+        [low.min(value), high.max(value)]
+    });
+    if range[0] > range[1] {
+        return Ok(None);
+    }
+    let [x, y, z] = header.dims.map(f64::from);
+    let diagonal = header
+        .world_from_voxel
+        .transform_vector3(DVec3::new(x, y, z));
+    let summary = ValueSummary::of(
+        voxels.len(),
+        range,
+        diagonal.length(),
+        header.hounsfield,
+        value,
+    );
+    Ok(Some(Kind::of(&summary)))
+}
+
+fn meaning(header: &Header) -> (&'static str, Vec<ChannelReport>) {
+    let channels = match &header.meaning {
+        Meaning::Channels(channels) => channels.as_slice(),
+        _ => &[],
+    };
+    let channels = channels.iter().map(|channel| ChannelReport {
+        name: channel.name.clone(),
+        srgb: channel.srgb,
+        window: channel.window,
+    });
+    let word = match header.meaning {
+        Meaning::Numbers => "numbers",
+        Meaning::Rgb => "rgb",
+        Meaning::Rgba => "rgba",
+        Meaning::Vector => "vector",
+        Meaning::Channels(_) => "channels",
+    };
+    (word, channels.collect())
 }
 
 fn report(header: &Header, statistics: &Statistics) -> Report {
@@ -82,6 +185,12 @@ fn report(header: &Header, statistics: &Statistics) -> Report {
         world_from_voxel: header.world_from_voxel,
     };
     let known = |number: f64| number.is_finite().then_some(number);
+    let (meaning, channels) = meaning(header);
+    let series = header.series.iter().map(|series| SeriesReport {
+        uid: series.uid.clone(),
+        description: series.description.clone(),
+        pictures: series.pictures,
+    });
     Report {
         format: header.format.name(),
         dims: header.dims,
@@ -97,6 +206,12 @@ fn report(header: &Header, statistics: &Statistics) -> Report {
         fill_count: statistics.fill_count,
         variables: header.variables.clone(),
         render_bytes: render_bytes(header, statistics),
+        unit: unit(header),
+        meaning,
+        channels,
+        time_names: header.time_names.clone(),
+        series: series.collect(),
+        notes: header.notes.clone(),
     }
 }
 
@@ -124,63 +239,4 @@ fn render_bytes(header: &Header, statistics: &Statistics) -> RenderBytes {
         host: voxels.saturating_mul(host + mask),
         device: voxels.saturating_mul(device + mask),
     }
-}
-
-fn text(report: &Report, notes: &[String]) -> String {
-    let join = |numbers: &[f64]| {
-        let words: Vec<_> = numbers.iter().map(f64::to_string).collect();
-        words.join(" ")
-    };
-    let or_none = |number: Option<f64>| number.map_or("none".to_owned(), |n| n.to_string());
-    let [x, y, z] = report.dims;
-    let mut text = String::new();
-    let mut line = |name: &str, value: String| {
-        let _ = writeln!(text, "{name:<12} {}", visible(&value));
-    };
-    line("format", report.format.to_owned());
-    line("dims", format!("{x} x {y} x {z}"));
-    line("type", report.r#type.to_owned());
-    if report.components > 1 {
-        line("components", report.components.to_string());
-    }
-    if report.times > 1 {
-        line("times", report.times.to_string());
-    }
-    line("spacing", join(&report.spacing));
-    line(
-        "world",
-        format!(
-            "{}    (from voxel centres, RAS+)",
-            join(&report.world_from_voxel[0])
-        ),
-    );
-    line("", join(&report.world_from_voxel[1]));
-    line("", join(&report.world_from_voxel[2]));
-    line(
-        "values",
-        format!(
-            "{} to {}, mean {}",
-            or_none(report.min),
-            or_none(report.max),
-            or_none(report.mean)
-        ),
-    );
-    if report.non_finite > 0 {
-        line("not finite", format!("{} voxels", report.non_finite));
-    }
-    if report.fill_count > 0 {
-        line("no data", format!("{} voxels", report.fill_count));
-    }
-    if !report.variables.is_empty() {
-        line("variables", report.variables.join(" "));
-    }
-    let RenderBytes { host, device } = report.render_bytes;
-    line(
-        "to draw",
-        format!("{host} bytes of memory, {device} of the device's"),
-    );
-    for note in notes {
-        line("note", note.clone());
-    }
-    text
 }
