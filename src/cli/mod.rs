@@ -26,6 +26,7 @@ mod memory;
 mod output;
 mod preset;
 mod progress;
+mod readable;
 mod reasons;
 mod render;
 mod renderer;

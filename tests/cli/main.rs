@@ -4,11 +4,16 @@
 mod convert;
 mod device;
 mod errors;
+mod examples;
+mod figures;
+mod info;
 #[cfg(unix)]
 mod interrupt;
+mod manuals;
 mod memory;
 mod person;
 mod pictures;
+mod presets;
 mod real;
 mod sheet;
 mod words;
