@@ -9,9 +9,6 @@ pub enum Later {
     /// Not built yet: the histogram of a volume
     #[command(after_help = INFO)]
     Histogram(Rest),
-    /// Not built yet: a film of many pictures
-    #[command(after_help = RENDER)]
-    Animate(Rest),
     /// Not built yet: a volume in another format
     #[command(after_help = INFO)]
     Convert(Rest),
@@ -24,8 +21,6 @@ pub enum Later {
 }
 
 const INFO: &str = "Example of what is there:\n  stratavox info phantom:head --json";
-const RENDER: &str =
-    "Example of what is there:\n  stratavox render phantom:head --azimuth 30 -o 030.png";
 const DEVICES: &str = "Example of what is there:\n  stratavox devices";
 const PRESET: &str =
     "Example of what is there:\n  stratavox render phantom:head --preset ct-bone -o head.png";
@@ -42,7 +37,6 @@ impl Later {
     pub fn refuse(&self) -> Result<(), Error> {
         let name = match self {
             Self::Histogram(_) => "histogram",
-            Self::Animate(_) => "animate",
             Self::Convert(_) => "convert",
             Self::Conformance(_) => "conformance",
             Self::Preset(_) => "preset",

@@ -7,6 +7,7 @@
 //! One file a verb; `flags` holds what verbs share. Everything that can be refused is refused before the
 //! first voxel is read: words, outputs that exist, folders that do not.
 
+mod animate;
 mod bench;
 mod bug;
 mod cameras_file;
@@ -44,6 +45,7 @@ struct Words {
 #[derive(Debug, Subcommand)]
 enum Verb {
     Render(Box<render::Render>),
+    Animate(Box<animate::Animate>),
     Info(info::Info),
     Devices(devices::Devices),
     Compare(compare::Compare),
@@ -80,6 +82,7 @@ fn obey(words: Vec<OsString>, gate: &Gate) -> Result<(), Error> {
     };
     match words.verb {
         Verb::Render(render) => render.run(gate),
+        Verb::Animate(animate) => animate.run(gate),
         Verb::Info(info) => info.run(),
         Verb::Devices(devices) => devices.run(),
         Verb::Compare(compare) => compare.run(gate),

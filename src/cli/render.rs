@@ -15,7 +15,7 @@ use crate::{
     camera::BoundingSphere,
     picture::{BitDepth, LayerKind, PictureFormat, WriteOptions, write_picture},
     technique::Filter,
-    volume::{Limits, Volume},
+    volume::{Limits, Source, Volume},
 };
 use clap::Args;
 use std::{
@@ -63,7 +63,8 @@ pub struct Render {
     not_built: NotBuilt,
 }
 
-fn bit_depth(word: &str) -> Result<BitDepth, String> {
+/// Reads the word of `--bit-depth`.
+pub fn bit_depth(word: &str) -> Result<BitDepth, String> {
     match word {
         "8" => Ok(BitDepth::Eight),
         "16" => Ok(BitDepth::Sixteen),
@@ -206,14 +207,23 @@ fn picture_format(path: &Path) -> Result<PictureFormat, Error> {
 
 /// The one volume that the words name, in memory.
 pub fn load(scene: &SceneFlags, progress: &Progress) -> Result<Volume, Error> {
+    let source = scene.input.open(&Limits::default())?;
+    load_from(scene, source.as_ref(), progress)
+}
+
+/// The one volume of `source` that the words name, in memory.
+pub fn load_from(
+    scene: &SceneFlags,
+    source: &dyn Source,
+    progress: &Progress,
+) -> Result<Volume, Error> {
     let limits = Limits::default();
-    let source = scene.input.open(&limits)?;
     let (pick, note) = scene.input.pick(source.header())?;
     for note in source.header().notes.iter().chain(&note) {
         progress.note(note);
     }
     let whole = source.header().whole();
-    let volume = Volume::read(source.as_ref(), pick, whole, &limits)?;
+    let volume = Volume::read(source, pick, whole, &limits)?;
     if !volume.loss.is_none() {
         let crate::volume::Loss { changed, worst } = volume.loss;
         progress.note(&format!(

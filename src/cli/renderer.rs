@@ -4,7 +4,7 @@ use super::{Error, flags::Classification, timings::ms_since};
 use crate::{
     camera::Camera,
     gpu::{DeviceChoice, Headless, Options},
-    offscreen::{self, reference},
+    offscreen::{self, Kit, reference},
     picture::{LayerKind, Picture},
     scene::Scene,
     technique::{Mode, Settings, Technique},
@@ -56,6 +56,11 @@ const REFERENCE: &str = "reference";
 impl<'a> Renderer<'a> {
     /// Finds the device and brings there what `camera` sees first.
     pub fn new(job: Job<'a>, camera: &Camera) -> Result<Self, Error> {
+        Self::on(None, job, camera)
+    }
+
+    /// The same on the device of a renderer before this one, where there was one.
+    pub fn on(kit: Option<Kit>, job: Job<'a>, camera: &Camera) -> Result<Self, Error> {
         check_layers(&job)?;
         if job.device == Some(REFERENCE) {
             return Ok(Self {
@@ -66,9 +71,14 @@ impl<'a> Renderer<'a> {
             });
         }
         let start = Instant::now();
-        let choice = job.device.map(DeviceChoice::from).unwrap_or_default();
-        let device = Headless::new(&choice, &Options::default())?;
-        let mut renderer = offscreen::Renderer::new(device, job.volume)?;
+        let mut renderer = match kit {
+            Some(kit) => kit.renderer(job.volume),
+            None => {
+                let choice = job.device.map(DeviceChoice::from).unwrap_or_default();
+                let device = Headless::new(&choice, &Options::default())?;
+                offscreen::Renderer::new(device, job.volume)?
+            }
+        };
         let prepare_ms = ms_since(start);
         let start = Instant::now();
         renderer.upload(&job.scene(camera))?;
@@ -78,6 +88,29 @@ impl<'a> Renderer<'a> {
             upload_ms: ms_since(start),
             prepare_ms,
         })
+    }
+
+    /// Gives the volume back and keeps the device; none for the CPU twins.
+    pub fn into_kit(self) -> Option<Kit> {
+        self.on_device.map(|renderer| renderer.into_kit())
+    }
+
+    /// From here on values are seen so, and so is computed.
+    pub fn change(&mut self, classification: &'a Classification, settings: &'a Settings) {
+        self.job.classification = classification;
+        self.job.settings = settings;
+    }
+
+    /// The range of what the mode projects in the picture of this camera; upside down where nothing is hit.
+    pub fn projected_range(&mut self, camera: &Camera) -> Result<[f64; 2], Error> {
+        let picture = self.draw_with(camera, &[LayerKind::Value])?.picture;
+        let values = picture.layers.iter().flat_map(|layer| &layer.values);
+        let values = values.filter(|value| !value.is_nan());
+        Ok(
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| {
+                [low.min(value.into()), high.max(value.into())]
+            }),
+        )
     }
 
     /// The picture that this camera sees, in memory when the call returns.

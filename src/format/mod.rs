@@ -40,6 +40,9 @@ mod stream;
 mod text;
 mod textual;
 
+#[cfg(feature = "cli")]
+pub(crate) use sequence::expand as numbered_name;
+
 use crate::volume::{Limits, Problem, ReadError, Source, Wanted};
 use problem::at;
 use std::path::Path;

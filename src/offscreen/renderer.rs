@@ -7,6 +7,10 @@
 //! picture = mean over the positions
 //! ```
 
+mod kit;
+
+pub use kit::Kit;
+
 use super::Error;
 use super::passes::Passes;
 use super::submission::{Part, Submission};

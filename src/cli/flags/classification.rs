@@ -91,6 +91,15 @@ impl ClassificationFlags {
 
     /// The function for this volume and what `mode` classifies.
     pub fn classification(&self, volume: &Volume, mode: Mode) -> Result<Classification, Error> {
+        self.classification_of(mode, || Ok(summary(volume)))
+    }
+
+    /// The same for values that look like `summary`, which is asked for where it decides anything.
+    pub fn classification_of(
+        &self,
+        mode: Mode,
+        summary: impl FnOnce() -> Result<ValueSummary, Error>,
+    ) -> Result<Classification, Error> {
         let window = self.window()?;
         let classified = match mode {
             Mode::Composite => Classified::Samples,
@@ -106,8 +115,12 @@ impl ClassificationFlags {
             (None, None | Some(Preset::Grey)) if mode == Mode::Xray && window.is_none() => {
                 return Ok(Classification::RangeOfPicture);
             }
-            (None, Some(preset)) => preset.function(&summary(volume), classified, window),
-            (None, None) => automatic(&summary(volume), classified, window),
+            (None, Some(Preset::Grey)) if let Some(window) = window => window.grey(classified),
+            (None, Some(preset)) => preset.function(&summary()?, classified, window),
+            (None, None) => match window.filter(|_| classified == Classified::Projection) {
+                Some(window) => window.grey(classified),
+                None => automatic(&summary()?, classified, window),
+            },
         };
         Ok(Classification::Function(function))
     }
@@ -161,7 +174,8 @@ fn preset(name: &str) -> Result<String, String> {
     }
 }
 
-fn summary(volume: &Volume) -> ValueSummary {
+/// What the values of one volume look like.
+pub fn summary(volume: &Volume) -> ValueSummary {
     let [x, y, z] = volume.dims.map(f64::from);
     let diagonal = volume
         .world_from_voxel
