@@ -10,7 +10,7 @@ mod submission;
 mod targets;
 mod upload;
 
-pub use renderer::{Kit, Rendered, Renderer};
+pub use renderer::{Rendered, Renderer};
 
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]

@@ -7,10 +7,6 @@
 //! picture = mean over the positions
 //! ```
 
-mod kit;
-
-pub use kit::Kit;
-
 use super::Error;
 use super::passes::Passes;
 use super::submission::{Part, Submission};
@@ -79,6 +75,11 @@ impl<'v> Renderer<'v> {
     /// The device.
     pub fn device(&self) -> &Headless {
         &self.device
+    }
+
+    /// The device, free for another volume.
+    pub fn into_device(self) -> Headless {
+        self.device
     }
 
     /// Uploads what pictures of `scene` read, as far as it is not there yet.

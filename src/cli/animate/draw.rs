@@ -8,7 +8,7 @@ use crate::{
         flags::{Classification, SceneFlags, summary},
         progress::Progress,
         reasons::why_empty,
-        renderer::{Job, Renderer},
+        renderer::{Device, Job, Renderer},
         timings::{FrameTime, Timings, ms_since, peak_rss_bytes},
     },
     picture::{LayerKind, Picture},
@@ -61,16 +61,12 @@ struct Ready {
 
 impl Drawing<'_> {
     /// Draws what `sink` does not have yet.
-    pub fn draw(&self, sink: &Sink) -> Result<Timings, Error> {
+    pub fn draw(&self, sink: &Sink, device: Device) -> Result<Timings, Error> {
         let all: Vec<u32> = (0..self.shots.len() as u32).collect();
         let wanted = match sink {
             Sink::Store(store) => store.missing(),
             Sink::Stream(_) => &all,
         };
-        if wanted.is_empty() {
-            self.progress.note("all frames are there already");
-            return Ok(Timings::default());
-        }
         let start = Instant::now();
         self.progress.stage("read", 0, 1);
         let saw_volume = |time: u32, volume: &Volume| match sink {
@@ -89,7 +85,15 @@ impl Drawing<'_> {
             };
             // A picture that nobody takes: the writer has stopped and says why.
             let give = |picture| sender.send(picture).is_ok();
-            let drawn = self.draw_all(wanted, &mut volumes, &mut ready, sink, &mut seen, give);
+            let drawn = self.draw_all(
+                wanted,
+                &mut volumes,
+                &mut ready,
+                sink,
+                &mut seen,
+                device,
+                give,
+            );
             drop(sender);
             match writer.join() {
                 Ok(written) => written?,
@@ -163,11 +167,11 @@ impl Drawing<'_> {
         ready: &mut [Ready],
         sink: &Sink,
         seen: &mut Seen,
+        mut device: Device,
         give: impl Fn((u32, Picture)) -> bool,
     ) -> Result<(), Error> {
         let extent_pixels = self.scene.picture.extent_pixels()?;
         self.progress.stage("prepare", 0, 1);
-        let mut kit = None;
         if ready
             .iter()
             .any(|ready| ready.classification == Classification::RangeOfPicture)
@@ -175,9 +179,9 @@ impl Drawing<'_> {
             let volume = volumes.at(ready[0].time)?;
             let job = self.job(&volume, &ready[0], extent_pixels, &[LayerKind::Value]);
             let camera = &self.shots[0].camera;
-            let mut renderer = Renderer::on(kit, job, camera)?;
+            let mut renderer = Renderer::new(job, camera, device)?;
             let range = renderer.projected_range(camera)?;
-            kit = renderer.into_kit();
+            device = renderer.into_device();
             let function = Window::of_range(range).grey(Classified::Projection);
             for ready in ready.iter_mut() {
                 ready.classification = Classification::Function(function.clone());
@@ -193,8 +197,9 @@ impl Drawing<'_> {
             let time = ready[first as usize].time;
             let volume = volumes.at(time)?;
             let job = self.job(&volume, &ready[first as usize], extent_pixels, self.layers);
-            let mut renderer = Renderer::on(kit, job, &self.shots[first as usize].camera)?;
-            seen.prepared(&renderer, self.progress);
+            let camera = &self.shots[first as usize].camera;
+            let mut renderer = Renderer::new(job, camera, device)?;
+            seen.prepared(&renderer);
             if let Sink::Store(store) = sink {
                 store
                     .journal()
@@ -236,7 +241,7 @@ impl Drawing<'_> {
                 seen.timings.device_bytes = renderer.device_bytes();
                 seen.timings.peak_rss_bytes = peak_rss_bytes();
             }
-            kit = renderer.into_kit();
+            device = renderer.into_device();
         }
         Ok(())
     }
@@ -254,7 +259,6 @@ impl Drawing<'_> {
             settings: &ready.settings,
             extent_pixels,
             layers,
-            device: self.scene.device.as_deref(),
         }
     }
 
@@ -311,13 +315,12 @@ struct Seen {
 }
 
 impl Seen {
-    fn prepared(&mut self, renderer: &Renderer, progress: &Progress) {
+    fn prepared(&mut self, renderer: &Renderer) {
         let timings = &mut self.timings;
         if timings.device.is_empty() {
             timings.device = renderer.device();
             timings.driver = renderer.driver();
             timings.load_ms = self.load_ms;
-            progress.device(&timings.device);
         }
         timings.upload_ms += renderer.upload_ms;
         timings.prepare_ms += renderer.prepare_ms;

@@ -23,7 +23,7 @@ pub fn of_film(plan: &Plan, frames: &Frames, depth: BitDepth) -> Result<Value, E
             problem: cause.to_string(),
         })?,
     };
-    let header = format!("{:?}", plan.source.header());
+    let header = format!("{:?}", plan.header);
     Ok(json!({
         "frames": plan.shots.len(),
         "turntable": plan.film.turntable,

@@ -23,7 +23,7 @@ use super::{
 use crate::{
     cli::Error,
     transfer::{
-        TransferFunction, read_transfer_function, transfer_function_from_json,
+        Scale, TransferFunction, import_transfer_function, transfer_function_from_json,
         transfer_function_to_json,
     },
 };
@@ -161,9 +161,15 @@ fn function(
     match tf {
         Value::String(name) => {
             let path = folder.join(name);
-            let function = read_transfer_function(&path).map_err(|error| error.to_string())?;
+            let imported =
+                import_transfer_function(&path, None).map_err(|error| error.to_string())?;
+            if imported.scale == Scale::Fractions {
+                return Err(format!(
+                    "the points of {name} stand at fractions of a range, wanted values"
+                ));
+            }
             inputs.push(path);
-            Ok(function)
+            Ok(imported.function)
         }
         Value::Object(_) => transfer_function_from_json(tf.to_string().as_bytes())
             .map_err(|error| error.to_string()),

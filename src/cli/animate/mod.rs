@@ -22,15 +22,18 @@ mod volumes;
 use super::{
     Error,
     flags::{Depth, NotBuilt, SceneFlags},
+    memory::fitting,
     output::{self, write_whole},
     progress::{Progress, ProgressWord},
     render::bit_depth,
+    renderer::Device,
     scene_file,
     signals::Gate,
+    timings::Timings,
 };
 use crate::{
     picture::{BitDepth, LayerKind, PictureFormat, WriteOptions},
-    volume::{Limits, Source},
+    volume::{Header, Source},
 };
 use clap::Args;
 use draw::{Drawing, Sink};
@@ -106,9 +109,11 @@ struct Plan {
     scene: SceneFlags,
     target: Target,
     layers: Vec<LayerKind>,
-    source: Box<dyn Source>,
+    /// Of the input as it lies in its file.
+    header: Header,
     film: Film,
     shots: Vec<Shot>,
+    depth: Depth,
     inputs: Vec<PathBuf>,
 }
 
@@ -116,7 +121,7 @@ impl Animate {
     /// Draws and writes.
     pub fn run(mut self, gate: &Gate) -> Result<(), Error> {
         self.not_built.refuse()?;
-        let plan = self.plan()?;
+        let (plan, source) = self.plan()?;
         let mut outputs: Vec<PathBuf> = self
             .save_scene
             .iter()
@@ -136,20 +141,19 @@ impl Animate {
         if self.repeat.is_some() {
             progress.note("--repeat has no effect on a film");
         }
-        let drawing = Drawing {
-            scene: &plan.scene,
-            shots: &plan.shots,
-            layers: &plan.layers,
-            source: plan.source.as_ref(),
-            background: self.background(&plan, &progress),
-            progress: &progress,
-            wants_timings: self.timings.is_some(),
-        };
         let sink = match &store {
             Some(store) => Sink::Store(store),
             None => Sink::Stream(self.fps),
         };
-        let drawn = drawing.draw(&sink);
+        let is_done = store
+            .as_ref()
+            .is_some_and(|store| store.missing().is_empty());
+        let drawn = if is_done {
+            progress.note("all frames are there already");
+            Ok(Timings::default())
+        } else {
+            self.draw(&plan, source, &sink, &progress)
+        };
         if let (Err(_), Some(store), Target::Film { .. }) = (&drawn, &store, &plan.target) {
             store.say_what_is_kept(&progress);
         }
@@ -176,8 +180,33 @@ impl Animate {
         Ok(())
     }
 
+    fn draw(
+        &self,
+        plan: &Plan,
+        source: Box<dyn Source>,
+        sink: &Sink,
+        progress: &Progress,
+    ) -> Result<Timings, Error> {
+        progress.stage("prepare", 0, 1);
+        let device = Device::find(plan.scene.device.as_deref())?;
+        progress.device(&device.name());
+        // A volume that is reduced to fit has a grid of its own.
+        let source = fitting(source, &plan.scene.input, device.memory())?;
+        let shots = plan.film.shots(&plan.scene, plan.depth, source.header())?;
+        let drawing = Drawing {
+            scene: &plan.scene,
+            shots: &shots,
+            layers: &plan.layers,
+            source: source.as_ref(),
+            background: self.background(plan, progress),
+            progress,
+            wants_timings: self.timings.is_some(),
+        };
+        drawing.draw(sink, device)
+    }
+
     /// All that the words say, checked as far as it can be without a voxel.
-    fn plan(&mut self) -> Result<Plan, Error> {
+    fn plan(&mut self) -> Result<(Plan, Box<dyn Source>), Error> {
         self.scene.classification.inline_file()?;
         let scene = match &self.scene_file {
             Some(path) => scene_file::overlay(scene_file::read(path)?, &self.scene),
@@ -204,17 +233,19 @@ impl Animate {
             _ if self.bit_depth == BitDepth::Sixteen => Depth::More,
             _ => Depth::Eight,
         };
-        let source = scene.input.open(&Limits::default())?;
+        let source = scene.input.open(&scene.input.limits())?;
         let shots = film.shots(&scene, depth, source.header())?;
-        Ok(Plan {
+        let plan = Plan {
             scene,
             target,
             layers,
-            source,
+            header: source.header().clone(),
             film,
             shots,
+            depth,
             inputs,
-        })
+        };
+        Ok((plan, source))
     }
 
     /// What a kind of file has no room for.

@@ -87,6 +87,7 @@ impl Tracks {
             let value = serde_json::from_str(&text).expect("what we have just written as JSON");
             flags.preset = None;
             flags.transfer_function = Some(value);
+            flags.transfer_function_of_fractions = None;
         }
         if let Some(window) = self.window.at(u) {
             flags.window = Some(Numbers(window));

@@ -3,9 +3,9 @@
 //! Between two times every voxel is mixed, `v = v0 + s (v1 - v0)`.
 
 use crate::{
-    cli::{Error, flags::SceneFlags, progress::Progress, render::load_from},
+    cli::{Error, flags::SceneFlags, load::load_from, progress::Progress},
     transfer::ValueSummary,
-    volume::{Limits, Pick, Problem, ReadError, Source, Volume, Voxels},
+    volume::{Pick, Problem, ReadError, Source, Volume, Voxels},
 };
 use std::{collections::BTreeSet, rc::Rc};
 
@@ -80,7 +80,7 @@ impl<'a> Volumes<'a> {
                     self.source,
                     Pick { time, ..pick },
                     whole,
-                    &Limits::default(),
+                    &self.scene.input.limits(),
                 )?
             }
         };
