@@ -9,7 +9,7 @@
 //! {"frame":{"number":0,"files":[{"name":"0000.png","bytes":5123,"hash":"..."}]}}
 //! ```
 //!
-//! The file begins with the first whole frame. A line is on the disk before the next frame is written; a torn
+//! The file begins before the first frame: a frame without a journal is somebody else's. A line is on the disk before the next frame is written; a torn
 //! last line, as a kill leaves it, counts for nothing. Hashes are those of one build of the program: they find
 //! damage and change, not forgery.
 
@@ -63,7 +63,7 @@ pub struct Journal {
     frames: BTreeMap<u32, Vec<Mark>>,
     voxels: BTreeMap<u32, String>,
     device: Option<String>,
-    /// Open for more once a frame is whole.
+    /// Open for more once frames are being written.
     file: Option<File>,
 }
 
@@ -137,7 +137,18 @@ impl Journal {
         })
     }
 
-    /// Notes that the files of a frame are whole. With the first one the journal gets its own file.
+    /// Puts the journal on the disk, without what was torn, and keeps it open for more.
+    pub fn begin(&mut self) -> Result<(), Error> {
+        if self.file.is_some() {
+            return Ok(());
+        }
+        write_file(&self.path, self.text().as_bytes(), true)?;
+        let file = OpenOptions::new().append(true).open(&self.path);
+        self.file = Some(file.map_err(|cause| Error::output(&self.path, &cause))?);
+        Ok(())
+    }
+
+    /// Notes that the files of a frame are whole.
     pub fn add_frame(&mut self, number: u32, files: &[PathBuf]) -> Result<(), Error> {
         let marks = files
             .iter()
@@ -175,22 +186,14 @@ impl Journal {
 
     fn add(&mut self, line: Line) -> Result<(), Error> {
         let text = json_line(&line);
-        let is_frame = matches!(line, Line::Frame { .. });
         self.take(line);
-        if let Some(file) = &mut self.file {
-            return file
-                .write_all(text.as_bytes())
-                .and_then(|()| file.sync_data())
-                .map_err(|cause| Error::output(&self.path, &cause));
-        }
-        if !is_frame {
+        // Before the beginning it is remembered alone.
+        let Some(file) = &mut self.file else {
             return Ok(());
-        }
-        // A journal that is there already is written anew, without what was torn.
-        write_file(&self.path, self.text().as_bytes(), true)?;
-        let file = OpenOptions::new().append(true).open(&self.path);
-        self.file = Some(file.map_err(|cause| Error::output(&self.path, &cause))?);
-        Ok(())
+        };
+        file.write_all(text.as_bytes())
+            .and_then(|()| file.sync_data())
+            .map_err(|cause| Error::output(&self.path, &cause))
     }
 
     fn text(&self) -> String {
@@ -261,7 +264,14 @@ fn difference(place: &str, was: &Value, is: &Value) -> Option<String> {
     if was == is {
         return None;
     }
-    if let (Value::Object(a), Value::Object(b)) = (was, is) {
+    let nothing = serde_json::Map::new();
+    // A topic that is left out has no words.
+    let (a, b) = match (was, is) {
+        (Value::Object(a), Value::Null) => (Some(a), Some(&nothing)),
+        (Value::Null, Value::Object(b)) => (Some(&nothing), Some(b)),
+        (was, is) => (was.as_object(), is.as_object()),
+    };
+    if let (Some(a), Some(b)) = (a, b) {
         let mut keys: Vec<_> = a.keys().chain(b.keys()).collect();
         keys.sort();
         return keys.into_iter().find_map(|key| {
@@ -299,7 +309,8 @@ mod tests {
         fs::write(&frame, "a picture").expect("a file");
         let mut journal = Journal::new(&path, json!({"scene": 1}));
         journal.saw_device("a card").expect("noted");
-        assert!(!path.exists(), "nothing is done yet");
+        assert!(!path.exists(), "nothing is written yet");
+        journal.begin().expect("written");
         journal
             .add_frame(0, std::slice::from_ref(&frame))
             .expect("noted");
@@ -321,6 +332,7 @@ mod tests {
         fs::write(&frame, "a damaged").expect("a file");
         assert!(!back.is_whole(0, folder.path()));
         // What is added after a resume stands after a whole line.
+        back.begin().expect("written");
         back.add_frame(2, &[frame]).expect("noted");
         assert_eq!(
             Journal::read(&path)
@@ -346,7 +358,7 @@ mod tests {
             ),
             (
                 json!({"frames": 3, "scene": {}}),
-                "`scene.camera` was {\"zoom\":2.0}, is null",
+                "`scene.camera.zoom` was 2.0, is null",
             ),
         ] {
             assert_eq!(was.difference(&with(film)).as_deref(), Some(wanted));

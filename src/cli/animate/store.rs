@@ -66,12 +66,16 @@ impl Store {
             journal: Mutex::new(new),
         };
         store.check_folder()?;
-        let past = Journal::read(&path)?.filter(|past| past.done() > 0);
+        if wishes.resume && store.frames.folder.is_dir() {
+            store.remove_parts()?;
+        }
+        // One without a frame is in nobody's way.
+        let past = Journal::read(&path)?.filter(|past| wishes.resume || past.done() > 0);
         if let Some(past) = past {
             let difference = past.difference(&store.journal());
             match difference {
                 None if wishes.resume => {
-                    store.take_over(past)?;
+                    store.take_over(past);
                     return Ok(store);
                 }
                 Some(why) if wishes.resume && !wishes.force => return Err(another(&why)),
@@ -90,14 +94,13 @@ impl Store {
     }
 
     /// Goes on from what a run before has done.
-    fn take_over(&mut self, past: Journal) -> Result<(), Error> {
+    fn take_over(&mut self, past: Journal) {
         let folder = &self.frames.folder;
         self.missing
             .retain(|&number| !past.is_whole(number, folder));
         // What a kill has left under these names is ours.
         self.options.force = true;
         self.journal = Mutex::new(past);
-        self.remove_parts()
     }
 
     /// Frames that are not there yet, ascending.
@@ -116,6 +119,7 @@ impl Store {
             fs::create_dir(&self.frames.folder)
                 .map_err(|cause| Error::output(&self.frames.folder, &cause))?;
         }
+        self.gate.whole(|| self.journal().begin())?;
         let path = self.frames.path(number);
         self.gate
             .whole(|| write_picture(picture, &path, self.options))?;
