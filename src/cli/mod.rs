@@ -12,8 +12,10 @@ mod bench;
 mod bug;
 mod cameras_file;
 mod compare;
+mod convert;
 mod devices;
 mod error;
+mod exaggerate;
 mod figure;
 mod flags;
 mod histogram;
@@ -54,6 +56,7 @@ enum Verb {
     Render(Box<render::Render>),
     Animate(Box<animate::Animate>),
     Info(info::Info),
+    Convert(convert::Convert),
     Devices(devices::Devices),
     Compare(compare::Compare),
     Bench(Box<bench::Bench>),
@@ -96,6 +99,7 @@ fn obey(words: Vec<OsString>, gate: &Gate) -> Result<(), Error> {
         Verb::Render(render) => render.run(gate),
         Verb::Animate(animate) => animate.run(gate),
         Verb::Info(info) => info.run(),
+        Verb::Convert(convert) => convert.run(gate),
         Verb::Devices(devices) => devices.run(),
         Verb::Compare(compare) => compare.run(gate),
         Verb::Bench(bench) => bench.run(gate),

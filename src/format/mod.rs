@@ -23,32 +23,53 @@
     )
 )]
 
+mod absent;
 mod base64;
 mod blocks;
+#[cfg(feature = "netcdf")]
+mod cf;
 mod convert;
 mod data;
 mod decode;
 #[cfg(feature = "dicom")]
 mod dicom;
+#[cfg(feature = "netcdf")]
+mod fence;
 mod file_source;
 mod geometry;
+mod grib;
+#[cfg(feature = "netcdf")]
+mod hdf5;
 mod metaimage;
+#[cfg(feature = "netcdf")]
+mod netcdf;
 mod nifti;
+mod npy;
 mod nrrd;
 mod pieces;
 mod place;
 mod problem;
 pub mod raw;
+mod request;
 mod select;
 mod sequence;
 mod stream;
 mod text;
 mod textual;
+#[cfg(feature = "tiff")]
+mod tiff;
 mod vti;
 mod vtk;
+pub mod write;
 #[cfg(feature = "zarr")]
 mod zarr;
 
+#[cfg(not(feature = "dicom"))]
+use absent::dicom;
+#[cfg(not(feature = "tiff"))]
+use absent::tiff;
+#[cfg(not(feature = "netcdf"))]
+use absent::{hdf5, netcdf};
 #[cfg(feature = "cli")]
 pub(crate) use sequence::expand as numbered_name;
 
@@ -121,16 +142,40 @@ const READERS: &[Reader] = &[
         endings: &["nrrd", "nhdr"],
         open: |path, _, limits| Ok(Box::new(nrrd::open(path, limits)?)),
     },
-    #[cfg(feature = "dicom")]
     Reader {
         recognizes: dicom::recognizes,
         endings: &["dcm", "dicom"],
         open: dicom::open,
     },
     Reader {
+        recognizes: tiff::recognizes,
+        endings: &["tif", "tiff"],
+        open: tiff::open,
+    },
+    Reader {
+        recognizes: npy::recognizes,
+        endings: &["npy"],
+        open: |path, _, limits| Ok(Box::new(npy::open(path, limits)?)),
+    },
+    Reader {
+        recognizes: netcdf::recognizes,
+        endings: &["nc", "cdf"],
+        open: netcdf::open,
+    },
+    Reader {
+        recognizes: hdf5::recognizes,
+        endings: &["h5", "hdf5", "hdf", "nc4"],
+        open: hdf5::open,
+    },
+    Reader {
         recognizes: vti::recognizes,
         endings: &["vti", "pvti", "vtr", "vts", "vtu", "vtp"],
         open: vti::open,
+    },
+    Reader {
+        recognizes: grib::recognizes,
+        endings: &["grib", "grib2", "grb", "grb2"],
+        open: grib::open,
     },
     Reader {
         recognizes: vtk::recognizes,
@@ -156,6 +201,11 @@ const FOLDERS: &[FolderReader] = &[
     FolderReader {
         recognizes: |path, _| zarr::recognizes(path),
         open: zarr::open,
+    },
+    #[cfg(feature = "tiff")]
+    FolderReader {
+        recognizes: |path, _| tiff::recognizes_folder(path),
+        open: tiff::open_folder,
     },
     #[cfg(feature = "dicom")]
     FolderReader {

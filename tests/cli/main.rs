@@ -5,6 +5,7 @@ mod animate;
 mod animate_films;
 #[cfg(unix)]
 mod animate_stops;
+mod convert;
 mod device;
 mod errors;
 #[cfg(unix)]

@@ -46,7 +46,6 @@ fn a_word_that_is_not_built_exits_2_and_is_named() {
         ),
         ("render . -o a.png", "folders"),
         ("histogram phantom:fog -o h.png", "`stratavox histogram`"),
-        ("convert phantom:fog -o a.nrrd", "`stratavox convert`"),
         ("conformance --device cpu", "`stratavox conformance`"),
         ("preset list", "`stratavox preset`"),
     ] {

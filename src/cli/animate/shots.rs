@@ -12,7 +12,7 @@ use super::keyframes::{Keyframes, MAX_FRAMES, place_of_frame};
 use crate::{
     camera::{BoundingSphere, Camera},
     cli::{
-        Error,
+        Error, exaggerate,
         flags::{ClassificationFlags, Depth, SceneFlags},
     },
     technique::Settings,
@@ -89,6 +89,7 @@ impl Film {
             ));
         }
         let count = self.frame_count(header)?;
+        let grid = grid(scene, header)?;
         let time = match &scene.input.time {
             Some(_) => scene.input.time(header)?.0,
             None => 0,
@@ -97,8 +98,8 @@ impl Film {
             film: self,
             scene,
             depth,
-            bounds: BoundingSphere::of_grid(&header.world_from_voxel, header.dims),
-            spacing: grid(header).smallest_spacing(),
+            bounds: BoundingSphere::of_grid(&grid.world_from_voxel, grid.dims),
+            spacing: grid.smallest_spacing(),
             times: header.times,
             time: f64::from(time),
             count,
@@ -169,11 +170,17 @@ impl Maker<'_> {
     }
 }
 
-fn grid(header: &Header) -> Grid {
-    Grid {
+/// Where voxels are drawn: heights may be stretched.
+fn grid(scene: &SceneFlags, header: &Header) -> Result<Grid, Error> {
+    let grid = Grid {
         dims: header.dims,
         world_from_voxel: header.world_from_voxel,
-    }
+    };
+    let (factor, _) = exaggerate::factor(scene, &grid, header.is_earth)?;
+    Ok(Grid {
+        world_from_voxel: exaggerate::stretched(grid.world_from_voxel, factor),
+        ..grid
+    })
 }
 
 #[cfg(test)]

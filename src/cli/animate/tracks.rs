@@ -47,6 +47,7 @@ impl Tracks {
         weaker.give_way_to(&stronger);
         CameraFlags {
             projection: weaker.projection,
+            exaggerate: weaker.exaggerate,
             view: weaker.view,
             azimuth: stronger.azimuth.or(weaker.azimuth),
             elevation: stronger.elevation.or(weaker.elevation),

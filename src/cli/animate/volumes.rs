@@ -7,6 +7,7 @@ use crate::{
     transfer::ValueSummary,
     volume::{Pick, Problem, ReadError, Source, Volume, Voxels},
 };
+use glam::DAffine3;
 use std::{collections::BTreeSet, rc::Rc};
 
 /// Voxels that all times together give to the choice of colours.
@@ -19,7 +20,7 @@ pub struct Volumes<'a> {
     source: &'a dyn Source,
     scene: SceneFlags,
     progress: &'a Progress,
-    pick: Option<Pick>,
+    first: Option<(Pick, DAffine3)>,
     kept: Vec<(u32, Rc<Volume>)>,
     /// Told of every volume that is read.
     saw: &'a dyn Fn(u32, &Volume) -> Result<(), Error>,
@@ -37,7 +38,7 @@ impl<'a> Volumes<'a> {
             source,
             scene: scene.clone(),
             progress,
-            pick: None,
+            first: None,
             kept: Vec::new(),
             saw,
         }
@@ -67,21 +68,24 @@ impl<'a> Volumes<'a> {
         if let Some((_, volume)) = self.kept.iter().find(|kept| kept.0 == time) {
             return Ok(Rc::clone(volume));
         }
-        let volume = match self.pick {
+        let volume = match self.first {
             // What there is to say is said of the first.
             None => {
                 self.scene.input.time = Some(time.to_string());
-                self.pick = Some(self.scene.input.pick(self.source.header())?.0);
-                load_from(&self.scene, self.source, self.progress)?
+                let (pick, _) = self.scene.input.pick(self.source.header())?;
+                let volume = load_from(&self.scene, self.source, self.progress)?;
+                self.first = Some((pick, volume.world_from_voxel));
+                volume
             }
-            Some(pick) => {
+            Some((pick, world_from_voxel)) => {
                 let whole = self.source.header().whole();
-                Volume::read(
-                    self.source,
-                    Pick { time, ..pick },
-                    whole,
-                    &self.scene.input.limits(),
-                )?
+                let limits = self.scene.input.limits();
+                let volume = Volume::read(self.source, Pick { time, ..pick }, whole, &limits)?;
+                Volume {
+                    // Stretched as the first is.
+                    world_from_voxel,
+                    ..volume
+                }
             }
         };
         (self.saw)(time, &volume)?;
@@ -167,7 +171,6 @@ fn blend(a: &Volume, b: &Volume, s: f64) -> Result<Volume, Problem> {
 mod tests {
     use super::*;
     use crate::volume::Rescale;
-    use glam::DAffine3;
 
     fn volume(voxels: Voxels, fill: Option<f64>) -> Volume {
         let rescale = Rescale {
