@@ -1,6 +1,10 @@
 //! The program as a person meets it: words, exit codes, files.
 #![cfg(feature = "cli")]
 
+mod animate;
+mod animate_films;
+#[cfg(unix)]
+mod animate_stops;
 mod convert;
 mod device;
 mod errors;

@@ -45,10 +45,6 @@ fn a_word_that_is_not_built_exits_2_and_is_named() {
             "`--aov position`",
         ),
         ("render . -o a.png", "folders"),
-        (
-            "animate phantom:fog -o %04d.png --turntable 3",
-            "`stratavox animate`",
-        ),
         ("conformance --device cpu", "`stratavox conformance`"),
     ] {
         folder
