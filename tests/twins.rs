@@ -203,6 +203,7 @@ fn an_eye_in_a_slices_own_plane_sees_that_slice() {
                 ..Settings::default()
             };
             let scene = Scene {
+                beside: Default::default(),
                 volume: &volume,
                 transfer: Some(&transfer),
                 camera: &camera,

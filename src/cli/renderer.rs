@@ -149,6 +149,7 @@ impl<'a> Job<'a> {
         'a: 's,
     {
         Scene {
+            beside: Default::default(),
             volume: self.volume,
             transfer: match self.classification {
                 Classification::Function(function) => Some(function),
