@@ -27,7 +27,7 @@ pub enum Beside<'a> {
     /// in modes that project the sum of the pictures of each.
     Channels(&'a [Channel<'a>]),
     /// Green, blue, and perhaps alpha; the scene's volume is red. All hold sRGB numbers from 0 to 1, the first
-    /// three multiplied with alpha where there is one (`volume::colors` makes them so). The transfer
+    /// three multiplied with alpha where there is one ([`crate::volume::read_colors`] makes them so). The transfer
     /// function is over alpha, or over luma (0 black to 1 white); its own colours are not used. Composite only.
     Colors(&'a [&'a Volume]),
 }

@@ -10,8 +10,11 @@
 //! Colour is linear between its points in sRGB numbers and decoded afterwards.
 
 mod automatic;
+mod channel;
 #[cfg(feature = "json")]
 mod file;
+#[cfg(feature = "json")]
+mod labels;
 mod law;
 mod points;
 mod preset;
@@ -20,11 +23,14 @@ mod table;
 mod window;
 
 pub use automatic::{Kind, automatic};
+pub use channel::{CHANNEL_COLORS, of_channel, of_colors};
 #[cfg(feature = "json")]
 pub use file::{
     FileError, FileProblem, MAX_FILE_BYTES, MAX_POINTS, read_transfer_function,
     transfer_function_from_json, transfer_function_to_json,
 };
+#[cfg(feature = "json")]
+pub use labels::{Label, LabelTable};
 pub use law::{Absorption, MAX_OPACITY, extinction, opacity_over};
 pub use points::{Points, classify_by_points};
 pub use preset::Preset;

@@ -8,9 +8,12 @@
 //!
 //! Knows nothing of Vulkan.
 
+mod colors;
 pub mod field;
 mod grid;
 mod holes;
+pub mod labels;
+mod magnitude;
 pub mod phantom;
 mod read;
 pub mod sample;
@@ -18,7 +21,9 @@ mod source;
 mod statistics;
 mod voxels;
 
+pub use colors::{luma, read_all, read_colors};
 pub use grid::Grid;
+pub use magnitude::Magnitude;
 pub use source::{
     Channel, Format, Header, Limits, Loss, Meaning, Pick, Piece, Problem, ReadError, Rescale,
     Series, Source, VoxelBox, Wanted,
