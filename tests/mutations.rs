@@ -30,6 +30,7 @@ const LIMITS: Limits = Limits {
     max_bytes: 4 << 20,
     max_files: 100,
     max_header_bytes: 1 << 16,
+    detached: true,
 };
 
 /// What a read may take beyond the volume.
@@ -334,5 +335,53 @@ fn raw_survives_mutations() {
             ("a.json", sidecar.as_bytes().to_vec()),
             ("a.raw", [b"xy", &short[..]].concat()),
         ]],
+    );
+}
+
+/// A file of VTK's own writer, without the line end behind it.
+fn written_by_vtk(format: &str, name: &'static str) -> Base {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");
+    let mut bytes = std::fs::read(path.join(format).join(name)).expect("a fixture");
+    while bytes.ends_with(b"\n") {
+        bytes.pop();
+    }
+    vec![(name, bytes)]
+}
+
+#[test]
+fn vti_survives_mutations() {
+    let names = [
+        "ascii-none-u32-le.vti",
+        "binary-none-u64-le.vti",
+        "binary-zlib-u32-be.vti",
+        "appended-none-u32-le.vti",
+        "appended-lz4-u64-le.vti",
+        "appended-zlib-u32-le.vti",
+        "appended64-none-u64-be.vti",
+        "appended64-lz4-u32-le.vti",
+        "several.vti",
+        "pieces.vti",
+        "cells.vti",
+        "vectors.vti",
+    ];
+    survive("vti", &names.map(|name| written_by_vtk("vti", name)));
+}
+
+#[test]
+fn vtk_survives_mutations() {
+    let with_end = |name| {
+        let mut base = written_by_vtk("vtk", name);
+        // Without its line end the last number could have lost digits.
+        base[0].1.push(b'\n');
+        base
+    };
+    survive(
+        "vtk",
+        &[
+            with_end("type-int16-ascii-42.vtk"),
+            with_end("type-float64-ascii-51.vtk"),
+            written_by_vtk("vtk", "type-int16-binary-51.vtk"),
+            written_by_vtk("vtk", "type-float64-binary-51.vtk"),
+        ],
     );
 }

@@ -16,12 +16,15 @@ mod error;
 mod flags;
 mod info;
 mod later;
+mod load;
+mod memory;
 mod output;
 mod progress;
 mod reasons;
 mod render;
 mod renderer;
 mod scene_file;
+mod sheet;
 mod signals;
 mod timings;
 
@@ -48,6 +51,7 @@ enum Verb {
     Devices(devices::Devices),
     Compare(compare::Compare),
     Bench(Box<bench::Bench>),
+    Sheet(sheet::Sheet),
     #[command(flatten)]
     Later(later::Later),
 }
@@ -84,6 +88,7 @@ fn obey(words: Vec<OsString>, gate: &Gate) -> Result<(), Error> {
         Verb::Devices(devices) => devices.run(),
         Verb::Compare(compare) => compare.run(gate),
         Verb::Bench(bench) => bench.run(gate),
+        Verb::Sheet(sheet) => sheet.run(gate),
         Verb::Later(verb) => verb.refuse(),
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! gzip is RFC 1952, zlib RFC 1950; their checksums, and those of bzip2, are verified at the end of a stream.
 
+use super::blocks::Coding;
 use super::convert::to_u64;
 use super::textual::{HexBytes, Numbers};
 use crate::volume::VoxelType;
@@ -20,6 +21,8 @@ pub(crate) enum Encoding {
     Ascii,
     /// Two digits a byte.
     Hex,
+    /// As VTK's XML files have it.
+    Vtk(Coding),
 }
 
 impl Encoding {
@@ -30,6 +33,7 @@ impl Encoding {
             Self::Bzip2 => "bzip2",
             Self::Ascii => "ascii",
             Self::Hex => "hex",
+            Self::Vtk(coding) => coding.name(),
         }
     }
 
@@ -46,6 +50,8 @@ impl Encoding {
                 .saturating_div(2)
                 .saturating_mul(to_u64(stored.bytes())),
             Self::Hex => encoded_bytes.saturating_div(2),
+            // Its own sizes tell, block by block; this is the most of all its encodings.
+            Self::Vtk(_) => encoded_bytes.saturating_mul(1032),
         }
     }
 
@@ -57,6 +63,7 @@ impl Encoding {
             Self::Bzip2 => Box::new(Expand::new(input, Codec::bzip2())),
             Self::Ascii => Box::new(Numbers::new(input, stored)),
             Self::Hex => Box::new(HexBytes::new(input)),
+            Self::Vtk(coding) => coding.decode(input, stored),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Files to [`Source`]s: NIfTI, NRRD, MetaImage, raw voxels.
+//! Files to [`Source`]s: NIfTI, NRRD, MetaImage, VTK images, DICOM, raw voxels.
 //!
 //! A header only promises. [`open`] compares its promises with the bytes that are there before anything is
 //! allocated, and [`Source::read`] again as it goes; a file that is too short, too long once decompressed or
@@ -23,14 +23,19 @@
     )
 )]
 
+mod base64;
+mod blocks;
 mod convert;
 mod data;
 mod decode;
+#[cfg(feature = "dicom")]
+mod dicom;
 mod file_source;
 mod geometry;
 mod metaimage;
 mod nifti;
 mod nrrd;
+mod pieces;
 mod place;
 mod problem;
 pub mod raw;
@@ -39,6 +44,8 @@ mod sequence;
 mod stream;
 mod text;
 mod textual;
+mod vti;
+mod vtk;
 
 use crate::volume::{Limits, Problem, ReadError, Source, Wanted};
 use problem::at;
@@ -55,7 +62,15 @@ const FIRST_BYTES: u64 = 4096;
 /// The file cannot be read, is of no known format, says something that cannot be, or promises more voxels than
 /// there are bytes. The error names the file, the field, what was wanted and what was found.
 pub fn open(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Source>, ReadError> {
+    #[cfg(feature = "dicom")]
+    if path.is_dir() && dicom::is_folder_of_pictures(path, limits) {
+        return dicom::open(path, wanted, limits);
+    }
     let first = first_bytes(path).map_err(at(path))?;
+    #[cfg(feature = "dicom")]
+    if dicom::recognizes(&first) {
+        return dicom::open(path, wanted, limits);
+    }
     let extension = path.extension().and_then(|extension| extension.to_str());
     let extension = extension.unwrap_or("").to_ascii_lowercase();
     // The content decides. Where it is no format's, the name does, and that reader says what is wrong.
@@ -63,6 +78,10 @@ pub fn open(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Sou
         Ok(Box::new(nrrd::open(path, limits)?))
     } else if metaimage::recognizes(&first) {
         Ok(Box::new(metaimage::open(path, limits)?))
+    } else if vti::recognizes(&first) {
+        vti::open(path, wanted, limits)
+    } else if vtk::recognizes(&first) {
+        vtk::open(path, wanted, limits)
     } else if nifti::recognizes(&first) {
         Ok(Box::new(nifti::open(path, limits)?))
     } else if matches!(extension.as_str(), "nrrd" | "nhdr") {
@@ -71,6 +90,13 @@ pub fn open(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Sou
         Ok(Box::new(metaimage::open(path, limits)?))
     } else if matches!(extension.as_str(), "nii" | "hdr" | "img") || is_compressed_nifti(path) {
         Ok(Box::new(nifti::open(path, limits)?))
+    } else if matches!(
+        extension.as_str(),
+        "vti" | "pvti" | "vtr" | "vts" | "vtu" | "vtp"
+    ) {
+        vti::open(path, wanted, limits)
+    } else if extension == "vtk" {
+        vtk::open(path, wanted, limits)
     } else if let Some(sidecar) = raw::sidecar_of(path) {
         raw::open_sidecar(&sidecar, limits)
     } else {
@@ -101,7 +127,7 @@ fn unknown(first: &[u8]) -> Problem {
         .map(|byte| format!("{byte:02x}"))
         .collect();
     Problem::UnknownFormat(format!(
-        ": the file begins with the bytes {}; we read nifti, nrrd, metaimage, and raw voxels that a spec or a sidecar describes",
+        ": the file begins with the bytes {}; we read nifti, nrrd, metaimage, vti, vtk, and raw voxels that a spec or a sidecar describes",
         shown.join(" ")
     ))
 }

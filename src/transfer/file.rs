@@ -131,7 +131,10 @@ pub fn transfer_function_to_json(function: &TransferFunction) -> String {
 
 /// serde refuses unknown, doubled and missing keys; what stands behind them is checked here, by name.
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(
+    deny_unknown_fields,
+    expecting = "an object with stratavox_transfer_function, color and opacity"
+)]
 struct Keys {
     stratavox_transfer_function: Value,
     color: Value,

@@ -16,6 +16,7 @@ pub mod labels;
 mod magnitude;
 pub mod phantom;
 mod read;
+mod reduce;
 pub mod sample;
 mod source;
 mod statistics;
@@ -24,6 +25,7 @@ mod voxels;
 pub use colors::{luma, read_all, read_colors};
 pub use grid::Grid;
 pub use magnitude::Magnitude;
+pub use reduce::Reduced;
 pub use source::{
     Channel, Format, Header, Limits, Loss, Meaning, Pick, Piece, Problem, ReadError, Rescale,
     Series, Source, VoxelBox, Wanted,

@@ -388,6 +388,18 @@ pub struct Limits {
     pub max_files: usize,
     /// Bytes of a text header.
     pub max_header_bytes: usize,
+    /// True where a header may name other files, always in its own folder.
+    pub detached: bool,
+}
+
+impl Limits {
+    /// For files of strangers: one file, small headers, little memory.
+    pub const UNTRUSTED: Self = Self {
+        max_bytes: 1 << 30,
+        max_files: 4096,
+        max_header_bytes: 1 << 16,
+        detached: false,
+    };
 }
 
 impl Default for Limits {
@@ -396,6 +408,7 @@ impl Default for Limits {
             max_bytes: 4 << 30,
             max_files: 65_536,
             max_header_bytes: 1 << 20,
+            detached: true,
         }
     }
 }

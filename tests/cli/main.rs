@@ -5,7 +5,9 @@ mod device;
 mod errors;
 #[cfg(unix)]
 mod interrupt;
+mod memory;
 mod person;
 mod pictures;
 mod real;
+mod sheet;
 mod words;

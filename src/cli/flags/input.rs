@@ -1,6 +1,6 @@
 //! Which volume: the words, and the source they name.
 
-use super::Error;
+use super::{super::memory, Error};
 use crate::{
     format,
     volume::{Header, Limits, Pick, Series, Source, Wanted, phantom},
@@ -40,6 +40,26 @@ pub struct InputFlags {
     #[arg(long, value_name = "UID", help_heading = "Input")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub series: Option<String>,
+    /// Draw a volume that is too large for the memory with fewer voxels, and say so
+    #[arg(long, help_heading = "Input")]
+    #[serde(skip_serializing_if = "is_false")]
+    pub fit: bool,
+    /// Memory that the volume may take, such as 512M or 16G [default: 90 % of what is free]
+    #[arg(long, value_name = "SIZE", value_parser = memory::bytes_of_word, help_heading = "Input")]
+    #[serde(skip)]
+    pub max_memory: Option<u64>,
+    /// Tight limits for files of strangers: 1 GiB, small headers, no second file that a header names
+    #[arg(long, help_heading = "Input")]
+    #[serde(skip)]
+    pub untrusted: bool,
+}
+
+#[allow(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde hands over references"
+)]
+fn is_false(flag: &bool) -> bool {
+    !flag
 }
 
 /// How a built-in volume begins.
@@ -47,7 +67,7 @@ const PHANTOM: &str = "phantom:";
 
 /// Endings of files that are promised and not built yet.
 const LATER: &[&str] = &[
-    "vti", "vtk", "tif", "tiff", "nc", "h5", "grib", "grib2", "npy", "zarr", "dcm",
+    "tif", "tiff", "nc", "h5", "grib", "grib2", "npy", "zarr",
 ];
 
 impl InputFlags {
@@ -57,6 +77,23 @@ impl InputFlags {
             .as_deref()
             .filter(|path| !path.starts_with(PHANTOM))
             .map(Path::new)
+    }
+
+    /// What a reader may use.
+    pub fn limits(&self) -> Limits {
+        let limits = if self.untrusted {
+            Limits::UNTRUSTED
+        } else {
+            Limits::default()
+        };
+        Limits {
+            max_bytes: match self.max_memory.or_else(memory::available_bytes) {
+                Some(bytes) if self.untrusted => bytes.min(limits.max_bytes),
+                Some(bytes) => bytes,
+                None => limits.max_bytes,
+            },
+            ..limits
+        }
     }
 
     /// Opens what the words name; reads its header alone.
@@ -74,7 +111,9 @@ impl InputFlags {
                     "leave out --raw",
                 ));
             }
-            return Ok(phantom::open(&self.phantom_spec(path), limits)?);
+            let source = phantom::open(&self.phantom_spec(path), limits)?;
+            self.check_series(source.header())?;
+            return Ok(source);
         }
         let path = Path::new(path);
         if path.exists() && self.raw.is_none() {
@@ -272,14 +311,8 @@ fn listed(header: &Header) -> String {
 }
 
 fn refuse_later_formats(path: &Path) -> Result<(), Error> {
-    if path.is_dir() {
-        let is_zarr = path.extension().is_some_and(|ending| ending == "zarr");
-        let what = if is_zarr {
-            "reading `.zarr` folders"
-        } else {
-            "reading folders (DICOM, TIFF stacks)"
-        };
-        return Err(Error::NotBuilt(what.to_owned()));
+    if path.is_dir() && path.extension().is_some_and(|ending| ending == "zarr") {
+        return Err(Error::NotBuilt("reading `.zarr` folders".to_owned()));
     }
     let ending = path.extension().and_then(|ending| ending.to_str());
     match ending.map(str::to_ascii_lowercase) {
