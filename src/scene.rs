@@ -32,6 +32,17 @@ pub enum Beside<'a> {
     Colors(&'a [&'a Volume]),
 }
 
+impl<'a> Beside<'a> {
+    /// The volumes, in their order.
+    pub fn volumes(&self) -> Vec<&'a Volume> {
+        match *self {
+            Beside::Nothing => Vec::new(),
+            Beside::Channels(channels) => channels.iter().map(|c| c.volume).collect(),
+            Beside::Colors(volumes) => volumes.to_vec(),
+        }
+    }
+}
+
 /// A volume, how it is classified, who looks at it, and what is computed.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'a> {
@@ -62,11 +73,7 @@ impl<'a> Scene<'a> {
 
     /// Its volumes, that of the scene first.
     pub fn volumes(&self) -> Vec<&'a Volume> {
-        let beside = match self.beside {
-            Beside::Nothing => Vec::new(),
-            Beside::Channels(channels) => channels.iter().map(|c| c.volume).collect(),
-            Beside::Colors(volumes) => volumes.to_vec(),
-        };
+        let beside = self.beside.volumes();
         [self.volume].into_iter().chain(beside).collect()
     }
 

@@ -15,6 +15,7 @@ mod devices;
 mod error;
 mod flags;
 mod info;
+mod labels;
 mod later;
 mod load;
 mod memory;
@@ -25,6 +26,7 @@ mod render;
 mod renderer;
 mod scene_file;
 mod sheet;
+mod shown;
 mod signals;
 mod timings;
 

@@ -28,17 +28,21 @@ impl std::fmt::Debug for Magnitude {
 impl Magnitude {
     /// The length of all components of `source` together.
     pub fn new(source: Box<dyn Source>) -> Self {
-        let header = Header {
+        let mut header = Header {
             components: 1,
             stored: VoxelType::F32,
             rescale: Rescale::default(),
-            // Holes are NaN, see `read`.
+            // Holes are NaN, see `slab`.
             fill: None,
             meaning: Meaning::Numbers,
             is_labels: false,
             hounsfield: false,
             ..source.header().clone()
         };
+        header.notes.push(format!(
+            "a voxel holds a vector of {} numbers: its length is taken; --component N takes one of them",
+            source.header().components
+        ));
         Self { of: source, header }
     }
 }
@@ -53,6 +57,32 @@ impl Source for Magnitude {
     }
 
     fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+        let [nx, ny, _] = region.dims().map(u64::from);
+        let slices = (SLAB_VOXELS / (nx * ny).max(1)).clamp(1, u32::MAX.into()) as u32;
+        let mut lengths = Vec::new();
+        let mut loss = Loss::default();
+        for z in (region.min[2]..region.max[2]).step_by(slices as usize) {
+            let mut slab = region;
+            (slab.min[2], slab.max[2]) = (z, z.saturating_add(slices).min(region.max[2]));
+            loss = loss.and(self.slab(pick, slab, &mut lengths)?);
+        }
+        Ok(Piece {
+            voxels: Voxels::F32(lengths),
+            loss,
+        })
+    }
+}
+
+/// Voxels whose squares are in memory at once.
+const SLAB_VOXELS: u64 = 1 << 22;
+
+impl Magnitude {
+    fn slab(
+        &self,
+        pick: Pick,
+        region: VoxelBox,
+        lengths: &mut Vec<f32>,
+    ) -> Result<Loss, ReadError> {
         let Header {
             components,
             rescale,
@@ -63,8 +93,7 @@ impl Source for Magnitude {
         let mut squares: Vec<f64> = Vec::new();
         let mut loss = Loss::default();
         for component in 0..components {
-            let pick = Pick { component, ..pick };
-            let piece = self.of.read(pick, region)?;
+            let piece = self.of.read(Pick { component, ..pick }, region)?;
             squares.resize(piece.voxels.len(), 0.0);
             loss = loss.and(piece.loss);
             // What was rounded to f32 meets a fill that was rounded too.
@@ -81,10 +110,7 @@ impl Source for Magnitude {
                 };
             }
         }
-        let lengths = squares.into_iter().map(|square| square.sqrt() as f32);
-        Ok(Piece {
-            voxels: Voxels::F32(lengths.collect()),
-            loss,
-        })
+        lengths.extend(squares.into_iter().map(|square| square.sqrt() as f32));
+        Ok(loss)
     }
 }

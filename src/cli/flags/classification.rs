@@ -112,7 +112,8 @@ impl ClassificationFlags {
         Ok(Classification::Function(function))
     }
 
-    fn window(&self) -> Result<Option<Window>, Error> {
+    /// The window of `--window`.
+    pub fn window(&self) -> Result<Option<Window>, Error> {
         let Some(Numbers([low, high])) = self.window else {
             return Ok(None);
         };
@@ -125,7 +126,8 @@ impl ClassificationFlags {
         Ok(Some(window))
     }
 
-    fn function_of_file(&self) -> Result<Option<TransferFunction>, Error> {
+    /// The function of `--tf`, or that of a scene.
+    pub fn function_of_file(&self) -> Result<Option<TransferFunction>, Error> {
         let Some(value) = &self.transfer_function else {
             return Ok(None);
         };
@@ -161,7 +163,8 @@ fn preset(name: &str) -> Result<String, String> {
     }
 }
 
-fn summary(volume: &Volume) -> ValueSummary {
+/// What the values of a volume look like as a whole.
+pub fn summary(volume: &Volume) -> ValueSummary {
     let [x, y, z] = volume.dims.map(f64::from);
     let diagonal = volume
         .world_from_voxel
