@@ -84,7 +84,15 @@ impl Shown {
                 ));
             };
             let grid = shown.volume.grid();
-            others.push(labels::read(scene, &grid, progress)?);
+            let map = labels::read(scene, &grid, progress)?;
+            let is_drawn = map.function.opacity.iter().any(|point| point.opacity > 0.0);
+            if is_drawn && says_nothing(&scene.classification)? {
+                fade(&mut shown.classification);
+                progress.note(
+                    "the volume is drawn faint, so that labels inside are seen; a --preset or --tf is drawn as it is",
+                );
+            }
+            others.push(map);
         }
         Ok(shown)
     }
@@ -165,9 +173,8 @@ impl Reader<'_> {
         let volume = load_from(source, self.scene, self.device, self.progress)?;
         let flags = &self.scene.classification;
         let has_table = self.scene.labels.label_tf.is_some() && self.scene.labels.labels.is_none();
-        let says_nothing =
-            flags.preset.is_none() && flags.function_of_file()?.is_none() && flags.window.is_none();
-        if (has_table || is_labels) && says_nothing && self.mode == Mode::Composite {
+        let may_name = says_nothing(flags)? && self.mode == Mode::Composite;
+        if (has_table || is_labels) && may_name {
             if let Some(function) = self.names(&volume)? {
                 return Ok(Shown {
                     volume,
@@ -354,6 +361,22 @@ impl Reader<'_> {
             self.progress.note(note);
         }
         Ok(source)
+    }
+}
+
+/// True where no word says how values are seen.
+fn says_nothing(flags: &ClassificationFlags) -> Result<bool, Error> {
+    let of_file = flags.function_of_file()?;
+    Ok(flags.preset.is_none() && of_file.is_none() && flags.window.is_none())
+}
+
+/// Takes most of its opacity from a volume that labels lie inside of.
+fn fade(classification: &mut Classification) {
+    const REST: f64 = 0.12;
+    if let Classification::Function(function) = classification {
+        for point in &mut function.opacity {
+            point.opacity *= REST;
+        }
     }
 }
 

@@ -17,9 +17,9 @@ pub const CHANNEL_COLORS: [[f64; 3]; 4] = [
 /// Fraction of the window, share of the colour, opacity per 1/512 of the diagonal.
 const STOPS: [(f64, f64, f64); 4] = [
     (0.0, 0.3, 0.0),
-    (0.3, 0.6, 0.02),
-    (0.7, 1.0, 0.12),
-    (1.0, 1.0, 0.3),
+    (0.3, 0.6, 0.004),
+    (0.7, 1.0, 0.03),
+    (1.0, 1.0, 0.1),
 ];
 
 /// The function of one channel: from nothing at the low end of the window to the colour at its high end. Without a
@@ -56,9 +56,9 @@ pub fn of_channel(
 
 /// The opacity of a volume of colours, over luma or alpha from 0 to 1. Its own colours are not used.
 pub fn of_colors(diagonal: f64, by_alpha: bool, window: Option<Window>) -> TransferFunction {
-    // Alpha says what is opaque. Luma does not: black is nothing, and light matter is hardly more than dark.
+    // Alpha says what is opaque; a table's cell at its very zero is not opaque either. Luma does not: black is nothing, and light matter is hardly more than dark.
     let stops: &[(f64, f64)] = if by_alpha {
-        &[(0.0, 0.0), (1.0, 0.5)]
+        &[(0.002, 0.0), (1.0, 0.5)]
     } else {
         &[(0.04, 0.0), (0.2, 0.06), (1.0, 0.2)]
     };

@@ -6,6 +6,7 @@ mod errors;
 #[cfg(unix)]
 mod interrupt;
 mod memory;
+mod mixed;
 mod person;
 mod pictures;
 mod real;

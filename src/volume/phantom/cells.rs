@@ -8,7 +8,7 @@
 //! mitochondria  ridges of noise between nucleus and membrane
 //! ```
 
-use super::noise::{noise, turbulence};
+use super::noise::noise;
 use crate::volume::Channel;
 use crate::volume::field::Field;
 use glam::{DVec3, IVec3};
@@ -57,7 +57,7 @@ impl Field for Cells {
             1 => membrane * (0.85 + 0.15 * wobble),
             _ => {
                 let between = (1.0 - nucleus) * soft(d2 - d1 - 3.0, 1.0);
-                let ridge = 1.0 - (turbulence(p / 5.0) * 2.2).abs();
+                let ridge = 1.0 - 2.0 * (noise(p / 4.0) + 0.4 * noise(p / 1.7)).abs();
                 between * ridge.max(0.0).powi(6)
             }
         };
