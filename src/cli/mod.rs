@@ -20,6 +20,7 @@ mod figure;
 mod flags;
 mod histogram;
 mod info;
+mod labels;
 mod later;
 mod load;
 mod manuals;
@@ -33,6 +34,7 @@ mod render;
 mod renderer;
 mod scene_file;
 mod sheet;
+mod shown;
 mod signals;
 mod timings;
 

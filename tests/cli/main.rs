@@ -15,6 +15,7 @@ mod info;
 mod interrupt;
 mod manuals;
 mod memory;
+mod mixed;
 mod person;
 mod pictures;
 mod presets;

@@ -35,11 +35,6 @@ fn a_word_that_is_not_built_exits_2_and_is_named() {
             "`--preintegrated`",
         ),
         ("render phantom:fog -o a.png --smooth", "`--smooth`"),
-        ("render phantom:fog -o a.png --labels x.nrrd", "`--labels`"),
-        (
-            "render phantom:fog -o a.png --label-tf x.json",
-            "`--label-tf`",
-        ),
         (
             "render phantom:fog -o a.exr --aov position",
             "`--aov position`",
