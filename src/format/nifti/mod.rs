@@ -16,7 +16,7 @@ use super::place::{first_bytes, open_regular};
 use super::problem::{at, invalid, unsupported};
 use super::select::{Axis, Role};
 use super::text::whole;
-use crate::volume::{Format, Header, Limits, Problem, ReadError, Rescale, VoxelType};
+use crate::volume::{Format, Header, Limits, Meaning, Problem, ReadError, Rescale, VoxelType};
 use fields::{Fields, Version, is_gzip};
 use std::path::Path;
 
@@ -166,6 +166,11 @@ fn header(fields: &Fields, number: &Number, array: &Array) -> Result<Header, Pro
     Ok(Header {
         components: array.components,
         times: array.times,
+        meaning: match number.channels {
+            3 if array.components == 3 => Meaning::Rgb,
+            4 if array.components == 4 => Meaning::Rgba,
+            _ => Meaning::Numbers,
+        },
         rescale: rescale(fields, number, &mut notes),
         notes,
         ..Header::new(format, array.dims, number.stored, world_from_voxel)
