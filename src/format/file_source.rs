@@ -1,9 +1,10 @@
 //! A [`Source`] over files: fetches the wanted box of one time and component and keeps nothing else.
 
-use super::convert::{Builder, Endian, bytes_in_memory, to_u64};
+use super::convert::{Builder, Endian, to_u64};
 use super::data::Data;
 use super::decode::Encoding;
 use super::problem::at;
+use super::request::wanted_count;
 use super::select::rows;
 use super::stream::Stream;
 use crate::volume::{Header, Limits, Pick, Piece, Problem, ReadError, Source, VoxelBox};
@@ -34,60 +35,6 @@ impl FileSource {
             data,
             max_bytes: limits.max_bytes,
         }
-    }
-
-    /// Voxels of `region` as a `usize`, if the limit allows `bytes_each` for each of them.
-    fn count_within_limit(&self, region: VoxelBox, bytes_each: usize) -> Result<usize, Problem> {
-        let count = (0..3).try_fold(1_u64, |product, k| {
-            let side = region.max.get(k)?.checked_sub(*region.min.get(k)?)?;
-            product.checked_mul(side.into())
-        });
-        let wanted_bytes = count
-            .and_then(|count| count.checked_mul(to_u64(bytes_each)))
-            .unwrap_or(u64::MAX);
-        count
-            .filter(|_| wanted_bytes <= self.max_bytes)
-            .and_then(|count| usize::try_from(count).ok())
-            .ok_or(Problem::Limit {
-                what: "the volume".to_owned(),
-                wanted_bytes,
-                limit_bytes: self.max_bytes,
-            })
-    }
-
-    fn check(&self, pick: Pick, region: VoxelBox) -> Result<(), Problem> {
-        let wrong = |field: &str, wanted: String, found: String| {
-            Err(Problem::Invalid {
-                format: self.data.format,
-                field: field.to_owned(),
-                wanted,
-                found,
-            })
-        };
-        let header = &self.header;
-        if pick.time >= header.times {
-            let wanted = format!("a time below {}", header.times);
-            return wrong("time", wanted, pick.time.to_string());
-        }
-        if pick.component >= header.components {
-            let wanted = format!("a component below {}", header.components);
-            return wrong("component", wanted, pick.component.to_string());
-        }
-        let inside = region
-            .min
-            .iter()
-            .zip(&region.max)
-            .zip(&header.dims)
-            .all(|((min, max), size)| min < max && max <= size);
-        if !inside {
-            let wanted = format!("a box inside {:?} that is not empty", header.dims);
-            return wrong(
-                "box",
-                wanted,
-                format!("{:?} to {:?}", region.min, region.max),
-            );
-        }
-        Ok(())
     }
 
     fn read_piece(&self, pick: Pick, region: VoxelBox, wanted: usize) -> Result<Piece, ReadError> {
@@ -168,19 +115,19 @@ impl Source for FileSource {
     }
 
     fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
-        self.check(pick, region).map_err(at(&self.path))?;
-        let bytes_each = bytes_in_memory(self.data.stored);
-        let wanted = self
-            .count_within_limit(region, bytes_each)
+        let wanted = wanted_count(self.data.format, &self.header, pick, region, self.max_bytes)
             .map_err(at(&self.path))?;
         self.read_piece(pick, region, wanted)
     }
 
     fn read_bytes(&self, pick: Pick, region: VoxelBox) -> Result<Option<Vec<u8>>, ReadError> {
-        self.check(pick, region).map_err(at(&self.path))?;
         let bytes_each = self.data.stored.bytes();
-        let wanted = self
-            .count_within_limit(region, bytes_each)
+        // Numbers of eight bytes take twice what they take in memory.
+        let max_bytes = match bytes_each {
+            8 => self.max_bytes.saturating_div(2),
+            _ => self.max_bytes,
+        };
+        let wanted = wanted_count(self.data.format, &self.header, pick, region, max_bytes)
             .map_err(at(&self.path))?;
         let mut all = Vec::new();
         self.read_rows(pick, region, |bytes, stride| {

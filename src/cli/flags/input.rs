@@ -16,7 +16,7 @@ use std::{
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct InputFlags {
-    /// A volume file, or phantom:NAME[,n=256][,type=u8|u16|f32] with NAME of sphere, gauss, marschner-lobb, head, fog, shells, storm
+    /// A volume file, a folder of slices, or phantom:NAME[,n=256][,type=u8|u16|f32] with NAME of sphere, gauss, marschner-lobb, head, fog, shells, storm
     #[arg(value_name = "INPUT")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub path: Option<String>,
@@ -66,7 +66,7 @@ fn is_false(flag: &bool) -> bool {
 const PHANTOM: &str = "phantom:";
 
 /// Endings of files that are promised and not built yet.
-const LATER: &[&str] = &["tif", "tiff", "nc", "h5", "grib", "grib2", "npy", "zarr"];
+const LATER: &[&str] = &["nc", "h5", "grib", "grib2"];
 
 impl InputFlags {
     /// The file, where the input is one.
@@ -314,8 +314,8 @@ fn listed(header: &Header) -> String {
 }
 
 fn refuse_later_formats(path: &Path) -> Result<(), Error> {
-    if path.is_dir() && path.extension().is_some_and(|ending| ending == "zarr") {
-        return Err(Error::NotBuilt("reading `.zarr` folders".to_owned()));
+    if path.is_dir() {
+        return Ok(());
     }
     let ending = path.extension().and_then(|ending| ending.to_str());
     match ending.map(str::to_ascii_lowercase) {
