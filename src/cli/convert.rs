@@ -87,7 +87,7 @@ impl Convert {
         let selection = self.selection(source.header())?;
         for note in &source.header().notes {
             // Said of a volume in memory; the file gets the stored numbers, or a count of those that changed.
-            if !note.ends_with("kept as f32") {
+            if !note.starts_with("voxels are stored as") {
                 progress.note(note);
             }
         }
