@@ -1,6 +1,6 @@
 //! A [`Source`] over files: fetches the wanted box of one time and component and keeps nothing else.
 
-use super::convert::{Builder, Endian, to_u64};
+use super::convert::{Builder, Endian, bytes_in_memory, to_u64};
 use super::data::Data;
 use super::decode::Encoding;
 use super::problem::at;
@@ -122,11 +122,8 @@ impl Source for FileSource {
 
     fn read_bytes(&self, pick: Pick, region: VoxelBox) -> Result<Option<Vec<u8>>, ReadError> {
         let bytes_each = self.data.stored.bytes();
-        // Numbers of eight bytes take twice what they take in memory.
-        let max_bytes = match bytes_each {
-            8 => self.max_bytes.saturating_div(2),
-            _ => self.max_bytes,
-        };
+        let times_kept = to_u64(bytes_each).div_ceil(to_u64(bytes_in_memory(self.data.stored)));
+        let max_bytes = self.max_bytes.checked_div(times_kept).unwrap_or(0);
         let wanted = wanted_count(self.data.format, &self.header, pick, region, max_bytes)
             .map_err(at(&self.path))?;
         let mut all = Vec::new();

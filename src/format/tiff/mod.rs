@@ -150,7 +150,7 @@ fn open_ome(
     let mut files = vec![path.to_owned()];
     let mut opened = vec![file];
     if !others.is_empty() {
-        let folder = Folder::of(path).map_err(at(path))?;
+        let folder = Folder::of(path, TIFF, limits).map_err(at(path))?;
         for name in &others {
             let other = folder.resolve(name, TIFF, "FileName")?;
             opened.push(Single::open(&other, limits).map_err(at(&other))?);
