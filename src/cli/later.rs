@@ -14,7 +14,6 @@ pub enum Later {
     Conformance(Rest),
 }
 
-const INFO: &str = "Example of what is there:\n  stratavox info phantom:head --json";
 const RENDER: &str =
     "Example of what is there:\n  stratavox render phantom:head --azimuth 30 -o 030.png";
 const DEVICES: &str = "Example of what is there:\n  stratavox devices";
