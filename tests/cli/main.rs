@@ -2,6 +2,7 @@
 #![cfg(feature = "cli")]
 
 mod convert;
+mod convert_refused;
 mod device;
 mod errors;
 #[cfg(unix)]
