@@ -14,6 +14,7 @@ mod compare;
 mod convert;
 mod devices;
 mod error;
+mod exaggerate;
 mod figure;
 mod flags;
 mod histogram;
