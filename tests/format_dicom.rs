@@ -13,7 +13,9 @@ fn real_folders_give_the_volumes_that_the_manifest_describes() {
         // Positions and spacing as the manifest lists them, in LPS: x and y change their signs.
         let volume = &entry["volume"];
         let number = |key: &str, k: usize| volume[key][k].as_f64().unwrap();
-        let step = volume["slice_distance_along_normal"]["median"].as_f64().unwrap();
+        let step = volume["slice_distance_along_normal"]["median"]
+            .as_f64()
+            .unwrap();
         let [rows, columns] = [0, 1].map(|k| number("pixel_spacing_row_col", k));
         let first = [0, 1, 2].map(|k| number("first_position", k));
         let wanted = [

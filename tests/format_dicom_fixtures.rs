@@ -34,8 +34,12 @@ fn bytes(source: &dyn Source) -> Vec<u8> {
     for time in 0..header.times {
         let parts: Vec<Vec<Vec<u8>>> = (0..header.components)
             .map(|component| {
-                let piece = source.read(Pick { time, component }, header.whole()).unwrap();
-                (0..piece.voxels.len()).map(|i| number(&piece.voxels, i)).collect()
+                let piece = source
+                    .read(Pick { time, component }, header.whole())
+                    .unwrap();
+                (0..piece.voxels.len())
+                    .map(|i| number(&piece.voxels, i))
+                    .collect()
             })
             .collect();
         for voxel in 0..parts[0].len() {
@@ -65,13 +69,25 @@ fn check(path: &Path, name: &str, wanted: &Value) -> Result<(), String> {
     };
     same("dims", header.dims.to_vec().into(), &wanted["dims"])?;
     same("type", header.stored.name().into(), &wanted["type"])?;
-    same("components", header.components.into(), &wanted["components"])?;
-    same("times", header.times.into(), wanted.get("times").unwrap_or(&1.into()))?;
+    same(
+        "components",
+        header.components.into(),
+        &wanted["components"],
+    )?;
+    same(
+        "times",
+        header.times.into(),
+        wanted.get("times").unwrap_or(&1.into()),
+    )?;
     if let Some(names) = wanted.get("time_names") {
         same("times", header.time_names.clone().into(), names)?;
     }
     if let Some(affine) = wanted.get("affine") {
-        let at = |p: [f64; 3]| header.world_from_voxel.transform_point3(DVec3::from_array(p) + 0.5);
+        let at = |p: [f64; 3]| {
+            header
+                .world_from_voxel
+                .transform_point3(DVec3::from_array(p) + 0.5)
+        };
         let first = at([0.0; 3]);
         let steps = [[1., 0., 0.], [0., 1., 0.], [0., 0., 1.]].map(|p| at(p) - first);
         for (row, wanted) in affine.as_array().unwrap().iter().enumerate() {
@@ -85,15 +101,29 @@ fn check(path: &Path, name: &str, wanted: &Value) -> Result<(), String> {
     }
     let bytes = bytes(source.as_ref());
     let Some(lossy) = wanted.get("lossy") else {
-        let digest: String = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();
+        let digest: String = Sha256::digest(&bytes)
+            .iter()
+            .map(|b| format!("{b:02x}"))
+            .collect();
         return same("voxels", digest.into(), &wanted["sha256"]);
     };
     let found: Vec<i64> = match header.stored.bytes() {
         1 => bytes.iter().map(|&b| b.into()).collect(),
-        _ => bytes.chunks(2).map(|b| i16::from_le_bytes([b[0], b[1]]).into()).collect(),
+        _ => bytes
+            .chunks(2)
+            .map(|b| i16::from_le_bytes([b[0], b[1]]).into())
+            .collect(),
     };
-    let numbers = wanted["numbers"].as_array().unwrap().iter().map(|n| n.as_i64().unwrap());
-    let worst = found.iter().zip(numbers.clone()).map(|(a, b)| (a - b).abs()).max();
+    let numbers = wanted["numbers"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|n| n.as_i64().unwrap());
+    let worst = found
+        .iter()
+        .zip(numbers.clone())
+        .map(|(a, b)| (a - b).abs())
+        .max();
     println!("{name}: lossy, at most {worst:?} from the other decoder");
     match (found.len() == numbers.count(), worst <= lossy.as_i64()) {
         (true, true) => Ok(()),
@@ -105,7 +135,10 @@ fn check(path: &Path, name: &str, wanted: &Value) -> Result<(), String> {
 fn every_transfer_syntax_gives_the_numbers_that_pydicom_reads() {
     let mut wrong = Vec::new();
     let mut tried = 0;
-    for (name, wanted) in expected().iter().filter(|(_, wanted)| wanted.get("refused").is_none()) {
+    for (name, wanted) in expected()
+        .iter()
+        .filter(|(_, wanted)| wanted.get("refused").is_none())
+    {
         let outcome = check(&folder().join(format!("{name}.dcm")), name, wanted);
         wrong.extend(outcome.err().map(|error| format!("{name}: {error}")));
         tried += 1;

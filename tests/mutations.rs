@@ -4,6 +4,9 @@
 //! gives the same mutations; a failure prints the number of the one that failed and keeps its file.
 #![cfg(feature = "files")]
 
+#[cfg(feature = "dicom")]
+#[path = "shared/dicom.rs"]
+mod dicom;
 #[path = "shared/encode.rs"]
 mod encode;
 #[path = "shared/files.rs"]
@@ -40,7 +43,13 @@ type Base = Vec<(&'static str, Vec<u8>)>;
 
 /// Reads all of a mutated file, one time and component after the other. Gives the number of voxels read.
 fn read_all(folder: &Folder, base: &Base) -> Result<u64, ReadError> {
-    let source = format::open(&folder.path(base[0].0), &Wanted::default(), &LIMITS)?;
+    // Slices are opened as the folder that they lie in.
+    let opened = if base[0].0 == "slice0.dcm" {
+        ""
+    } else {
+        base[0].0
+    };
+    let source = format::open(&folder.path(opened), &Wanted::default(), &LIMITS)?;
     let header = source.header();
     assert!(header.world_from_voxel.inverse().is_finite(), "{header:?}");
     let mut voxels = 0;
@@ -333,6 +342,49 @@ fn raw_survives_mutations() {
         &[vec![
             ("a.json", sidecar.as_bytes().to_vec()),
             ("a.raw", [b"xy", &short[..]].concat()),
+        ]],
+    );
+}
+
+/// Files of many frames that pydicom wrote, in each transfer syntax.
+#[test]
+#[cfg(feature = "dicom")]
+fn dicom_survives_mutations() {
+    macro_rules! fixture {
+        ($name:literal) => {
+            vec![(
+                concat!($name, ".x"),
+                include_bytes!(concat!("fixtures/dicom/", $name, ".dcm")).to_vec(),
+            )]
+        };
+    }
+    survive(
+        "dicom",
+        &[
+            fixture!("implicit_i16"),
+            fixture!("big_i16"),
+            fixture!("deflated_i16"),
+            fixture!("rle_fragments"),
+            fixture!("jpeg_rgb_422"),
+            fixture!("jpeg_lossless_i16"),
+            fixture!("j2k_i16"),
+            fixture!("j2k_lossy_rgb"),
+            fixture!("enhanced_slopes"),
+            fixture!("segmentation"),
+        ],
+    );
+}
+
+#[test]
+#[cfg(feature = "dicom")]
+fn dicom_folders_survive_mutations() {
+    let slice = |k: usize| dicom::Dicom::slice(k, [1.0, 2.0, 1.5 * k as f64]).bytes();
+    survive(
+        "dicom-folder",
+        &[vec![
+            ("slice0.dcm", slice(0)),
+            ("slice1.dcm", slice(1)),
+            ("slice2.dcm", slice(2)),
         ]],
     );
 }

@@ -66,6 +66,13 @@ pub fn open(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Sou
     if dicom::recognizes(&first) {
         return dicom::open(path, wanted, limits);
     }
+    #[cfg(not(feature = "dicom"))]
+    let _ = wanted;
+    #[cfg(not(feature = "dicom"))]
+    if first.get(128..132) == Some(b"DICM") {
+        let what = "DICOM in a build without the feature `dicom`";
+        return Err(at(path)(problem::unsupported("dicom", what)));
+    }
     let extension = path.extension().and_then(|extension| extension.to_str());
     let extension = extension.unwrap_or("").to_ascii_lowercase();
     // The content decides. Where it is no format's, the name does, and that reader says what is wrong.
@@ -111,7 +118,7 @@ fn unknown(first: &[u8]) -> Problem {
         .map(|byte| format!("{byte:02x}"))
         .collect();
     Problem::UnknownFormat(format!(
-        ": the file begins with the bytes {}; we read nifti, nrrd, metaimage, and raw voxels that a spec or a sidecar describes",
+        ": the file begins with the bytes {}; we read nifti, nrrd, metaimage, dicom, and raw voxels that a spec or a sidecar describes",
         shown.join(" ")
     ))
 }

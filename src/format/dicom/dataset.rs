@@ -200,7 +200,12 @@ impl<'a> Elements<'a> {
         Ok(())
     }
 
-    fn items(&mut self, sequence: Element, keep: bool, depth: u32) -> Result<Vec<DataSet>, Problem> {
+    fn items(
+        &mut self,
+        sequence: Element,
+        keep: bool,
+        depth: u32,
+    ) -> Result<Vec<DataSet>, Problem> {
         let depth = depth.saturating_add(1);
         if depth > DEEPEST {
             let wanted = format!("sequences at most {DEEPEST} deep");
@@ -298,7 +303,10 @@ impl<'a> Elements<'a> {
             }
             None => Err(Problem::Limit {
                 what: format!("the header up to {}", tags::name(tag)),
-                wanted_bytes: self.max_value_bytes.saturating_mul(BUDGET).saturating_add(1),
+                wanted_bytes: self
+                    .max_value_bytes
+                    .saturating_mul(BUDGET)
+                    .saturating_add(1),
                 limit_bytes: self.max_value_bytes.saturating_mul(BUDGET),
             }),
         }

@@ -25,7 +25,9 @@ pub(in crate::format) fn recognizes(first: &[u8]) -> bool {
 }
 
 fn has_preamble(first: &[u8]) -> bool {
-    first.get(PREAMBLE_BYTES..).is_some_and(|rest| rest.starts_with(b"DICM"))
+    first
+        .get(PREAMBLE_BYTES..)
+        .is_some_and(|rest| rest.starts_with(b"DICM"))
 }
 
 /// How the elements of a file without `DICM` are written.
@@ -33,10 +35,17 @@ fn bare_syntax(first: &[u8]) -> Option<Syntax> {
     let [group, 0, number, 0, kind_or_length @ ..] = first.first_chunk::<8>()? else {
         return None;
     };
-    let is_first = matches!((group, number), (8, 0 | 1 | 5 | 8 | 0x12 | 0x13 | 0x14 | 0x16 | 0x18) | (2, 0..=0x10));
+    let is_first = matches!(
+        (group, number),
+        (8, 0 | 1 | 5 | 8 | 0x12 | 0x13 | 0x14 | 0x16 | 0x18) | (2, 0..=0x10)
+    );
     let kind = kind_or_length.first_chunk::<2>()?;
-    let is_explicit = matches!(kind, b"UL" | b"UI" | b"CS" | b"DA" | b"TM" | b"OB" | b"SH" | b"LO");
-    let is_implicit = matches!(kind_or_length, [length, 0, 0, 0] if *length <= 64 && length % 2 == 0);
+    let is_explicit = matches!(
+        kind,
+        b"UL" | b"UI" | b"CS" | b"DA" | b"TM" | b"OB" | b"SH" | b"LO"
+    );
+    let is_implicit =
+        matches!(kind_or_length, [length, 0, 0, 0] if *length <= 64 && length % 2 == 0);
     match (is_first, is_explicit, is_implicit) {
         (true, true, _) => Some(Syntax::EXPLICIT),
         (true, false, true) => Some(Syntax::IMPLICIT),
@@ -82,24 +91,48 @@ fn scan_file(path: &Path, limits: &Limits) -> Result<Found, Problem> {
     let first = {
         let mut first = Vec::new();
         let head = to_u64(PREAMBLE_BYTES).saturating_add(8);
-        (&mut stream).take(head).read_to_end(&mut first).map_err(io("reading the first bytes"))?;
+        (&mut stream)
+            .take(head)
+            .read_to_end(&mut first)
+            .map_err(io("reading the first bytes"))?;
         first
     };
-    let mut start = if has_preamble(&first) { to_u64(PREAMBLE_BYTES).saturating_add(4) } else { 0 };
-    stream.seek(SeekFrom::Start(start)).map_err(io("reading the first bytes"))?;
+    let mut start = if has_preamble(&first) {
+        to_u64(PREAMBLE_BYTES).saturating_add(4)
+    } else {
+        0
+    };
+    stream
+        .seek(SeekFrom::Start(start))
+        .map_err(io("reading the first bytes"))?;
     // The group that says how the rest is written is itself always explicit and little-endian.
-    let bare = if start == 0 { bare_syntax(&first) } else { None };
+    let bare = if start == 0 {
+        bare_syntax(&first)
+    } else {
+        None
+    };
     let mut syntax = bare.unwrap_or(Syntax::IMPLICIT);
-    let mut refused = None;
+    let (mut refused, mut meta_class) = (None, None);
     if start != 0 || first.starts_with(&[2, 0]) {
-        let elements = Elements::new(&mut stream, start, length, Syntax::EXPLICIT, limits.max_header_bytes);
+        let elements = Elements::new(
+            &mut stream,
+            start,
+            length,
+            Syntax::EXPLICIT,
+            limits.max_header_bytes,
+        );
         let (meta, end) = elements.read_group(2)?;
         start = end;
-        let uid = meta.text(TRANSFER_SYNTAX_UID).ok_or_else(|| missing(DICOM, &name(TRANSFER_SYNTAX_UID)))?;
+        meta_class = meta.text(MEDIA_STORAGE_SOP_CLASS_UID);
+        let uid = meta
+            .text(TRANSFER_SYNTAX_UID)
+            .ok_or_else(|| missing(DICOM, &name(TRANSFER_SYNTAX_UID)))?;
         // Whatever the pixels are, the data set around fragments is explicit.
         (syntax, refused) = match Syntax::of(&uid) {
             Ok(syntax) => (syntax, None),
-            Err(problem) if uid.starts_with("1.2.840.10008.1.2.4.") => (Syntax::EXPLICIT, Some(problem)),
+            Err(problem) if uid.starts_with("1.2.840.10008.1.2.4.") => {
+                (Syntax::EXPLICIT, Some(problem))
+            }
             Err(problem) => return Err(problem),
         };
     }
@@ -110,17 +143,25 @@ fn scan_file(path: &Path, limits: &Limits) -> Result<Found, Problem> {
         (position, length) = (0, to_u64(inflated.len()));
         stream = Box::new(Cursor::new(inflated));
     }
-    let elements = Elements::new(&mut stream, position, length, syntax, limits.max_header_bytes);
+    let elements = Elements::new(
+        &mut stream,
+        position,
+        length,
+        syntax,
+        limits.max_header_bytes,
+    );
     let (set, place) = elements.read()?;
     let Some(place) = place else {
-        return match must_be_a_picture(&set) {
+        return match must_be_a_picture(meta_class, &set) {
             true => Err(missing(DICOM, &name(PIXEL_DATA))),
             false => Ok(Found::Other),
         };
     };
     let layout = match (refused, Layout::of(&set, place.tag)) {
         (None, Ok(layout)) => layout,
-        (Some(problem), _) | (None, Err(problem)) => return Ok(Found::Refused(at(path)(problem), set)),
+        (Some(problem), _) | (None, Err(problem)) => {
+            return Ok(Found::Refused(at(path)(problem), set));
+        }
     };
     let file = PictureFile {
         path: path.to_owned(),
@@ -137,13 +178,17 @@ fn scan_file(path: &Path, limits: &Limits) -> Result<Found, Problem> {
 }
 
 /// A file whose pixels are missing is damaged, not of another kind, where its class or its size says so.
-fn must_be_a_picture(set: &DataSet) -> bool {
-    let class = set.text(SOP_CLASS_UID).unwrap_or_default();
-    let of_storage = class.strip_prefix("1.2.840.10008.5.1.4.1.1.");
-    // CT, MR, NM and PET, each also enhanced; dose and segmentation.
+fn must_be_a_picture(meta_class: Option<String>, set: &DataSet) -> bool {
+    let class = set.text(SOP_CLASS_UID).or(meta_class).unwrap_or_default();
+    let of_storage = class.strip_prefix("1.2.840.10008.5.1.4.1.1.").unwrap_or("");
+    let kind = of_storage.split('.').next().unwrap_or("");
+    // X-rays, CT, ultrasound, secondary capture, fluoroscopy, NM, PET, cameras; of other kinds the pictures alone.
     let is_picture = matches!(
+        kind,
+        "1" | "2" | "3" | "6" | "7" | "12" | "13" | "14" | "20" | "30" | "77" | "128" | "130"
+    ) || matches!(
         of_storage,
-        Some("2" | "2.1" | "2.2" | "4" | "4.1" | "4.4" | "20" | "128" | "130" | "128.1" | "481.2" | "66.4")
+        "4" | "4.1" | "4.3" | "4.4" | "66.4" | "66.8" | "481.1" | "481.2"
     );
     is_picture || set.has(ROWS)
 }
@@ -163,8 +208,17 @@ fn padding(set: &DataSet, layout: &Layout) -> Result<Option<[f64; 2]>, Problem> 
     let value = number(PIXEL_PADDING_VALUE)?;
     let limit = number(PIXEL_PADDING_RANGE_LIMIT)?;
     let bits = f64::from(layout.bits_stored).exp2();
-    let (least, most) = if layout.is_signed { (-bits / 2.0, bits / 2.0 - 1.0) } else { (0.0, bits - 1.0) };
-    let range = value.map(|value| [value.min(limit.unwrap_or(value)), value.max(limit.unwrap_or(value))]);
+    let (least, most) = if layout.is_signed {
+        (-bits / 2.0, bits / 2.0 - 1.0)
+    } else {
+        (0.0, bits - 1.0)
+    };
+    let range = value.map(|value| {
+        [
+            value.min(limit.unwrap_or(value)),
+            value.max(limit.unwrap_or(value)),
+        ]
+    });
     // Padding that no pixel can hold pads nothing.
     Ok(range.filter(|[low, _]| (least..=most).contains(low)))
 }
@@ -176,8 +230,13 @@ fn note_on_preamble(path: &Path, first: &[u8]) -> Option<String> {
         [b'I', b'I', 42, 0, ..] | [b'M', b'M', 0, 42, ..] => "a TIFF file",
         _ => return None,
     };
-    let name = path.file_name().map(|name| escape(&name.to_string_lossy())).unwrap_or_default();
-    Some(format!("{name} begins as {other} does and is read as DICOM"))
+    let name = path
+        .file_name()
+        .map(|name| escape(&name.to_string_lossy()))
+        .unwrap_or_default();
+    Some(format!(
+        "{name} begins as {other} does and is read as DICOM"
+    ))
 }
 
 fn open_file(path: &Path) -> Result<(BufReader<File>, u64), Problem> {
@@ -187,7 +246,9 @@ fn open_file(path: &Path) -> Result<(BufReader<File>, u64), Problem> {
 
 /// The data set of a deflated file, at most as long as a volume may be.
 fn inflate(stream: &mut dyn Stream, limits: &Limits) -> Result<Vec<u8>, Problem> {
-    let most = limits.max_bytes.saturating_add(to_u64(limits.max_header_bytes));
+    let most = limits
+        .max_bytes
+        .saturating_add(to_u64(limits.max_header_bytes));
     let mut inflated = Vec::new();
     DeflateDecoder::new(stream)
         .take(most.saturating_add(1))
@@ -219,7 +280,9 @@ impl PictureFile {
         if !self.syntax.is_deflated {
             return Ok(Box::new(stream));
         }
-        stream.seek(SeekFrom::Start(self.start)).map_err(io("looking for the data set"))?;
+        stream
+            .seek(SeekFrom::Start(self.start))
+            .map_err(io("looking for the data set"))?;
         Ok(Box::new(Cursor::new(inflate(&mut stream, limits)?)))
     }
 }

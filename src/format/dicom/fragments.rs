@@ -46,12 +46,21 @@ impl Fragments {
                 ITEM => {}
                 other => {
                     let found = tags::name(other);
-                    return Err(invalid(DICOM, &tags::name(PIXEL_DATA), "a fragment", &found));
+                    return Err(invalid(
+                        DICOM,
+                        &tags::name(PIXEL_DATA),
+                        "a fragment",
+                        &found,
+                    ));
                 }
             }
             let left = file.length.saturating_sub(position);
             if u64::from(bytes) > left {
-                return Err(Problem::Size { format: DICOM, wanted_bytes: bytes.into(), found_bytes: left });
+                return Err(Problem::Size {
+                    format: DICOM,
+                    wanted_bytes: bytes.into(),
+                    found_bytes: left,
+                });
             }
             let next = position.saturating_add(bytes.into());
             if table.is_none() {
@@ -62,8 +71,13 @@ impl Fragments {
                     let wanted = format!("at most {} fragments", limits.max_header_bytes);
                     return Err(invalid(DICOM, &tags::name(PIXEL_DATA), wanted, "more"));
                 }
-                all.push(Fragment { offset: position, bytes });
-                stream.seek_relative(i64::from(bytes)).map_err(io("passing over a fragment"))?;
+                all.push(Fragment {
+                    offset: position,
+                    bytes,
+                });
+                stream
+                    .seek_relative(i64::from(bytes))
+                    .map_err(io("passing over a fragment"))?;
             }
             position = next;
         }
@@ -73,24 +87,47 @@ impl Fragments {
     }
 
     /// The encoded bytes of one frame.
-    pub(super) fn read(&self, stream: &mut dyn Stream, frame: u32, limits: &Limits) -> Result<Vec<u8>, Problem> {
+    pub(super) fn read(
+        &self,
+        stream: &mut dyn Stream,
+        frame: u32,
+        limits: &Limits,
+    ) -> Result<Vec<u8>, Problem> {
         let frame = usize::try_from(frame).unwrap_or(usize::MAX);
         let start = self.first.get(frame).copied().unwrap_or(self.all.len());
-        let end = self.first.get(frame.saturating_add(1)).copied().unwrap_or(self.all.len());
+        let end = self
+            .first
+            .get(frame.saturating_add(1))
+            .copied()
+            .unwrap_or(self.all.len());
         let parts = self.all.get(start..end).unwrap_or(&[]);
-        let wanted_bytes: u64 = parts.iter().map(|part| u64::from(part.bytes)).fold(0, u64::saturating_add);
+        let wanted_bytes: u64 = parts
+            .iter()
+            .map(|part| u64::from(part.bytes))
+            .fold(0, u64::saturating_add);
         if wanted_bytes > limits.max_bytes {
             let what = "an encoded frame".to_owned();
-            return Err(Problem::Limit { what, wanted_bytes, limit_bytes: limits.max_bytes });
+            return Err(Problem::Limit {
+                what,
+                wanted_bytes,
+                limit_bytes: limits.max_bytes,
+            });
         }
         let mut encoded = Vec::new();
         for part in parts {
             seek_to(stream, part.offset)?;
-            (&mut *stream).take(part.bytes.into()).read_to_end(&mut encoded).map_err(io("reading pixels"))?;
+            (&mut *stream)
+                .take(part.bytes.into())
+                .read_to_end(&mut encoded)
+                .map_err(io("reading pixels"))?;
         }
         match to_u64(encoded.len()) {
             found if found == wanted_bytes => Ok(encoded),
-            found_bytes => Err(Problem::Size { format: DICOM, wanted_bytes, found_bytes }),
+            found_bytes => Err(Problem::Size {
+                format: DICOM,
+                wanted_bytes,
+                found_bytes,
+            }),
         }
     }
 }
@@ -103,21 +140,41 @@ fn item(stream: &mut dyn Stream, position: u64, length: u64) -> Result<(u32, u32
         return Err(invalid(DICOM, &tags::name(PIXEL_DATA), wanted, &found));
     }
     let mut bytes = [0; 8];
-    stream.read_exact(&mut bytes).map_err(io("looking for fragments"))?;
+    stream
+        .read_exact(&mut bytes)
+        .map_err(io("looking for fragments"))?;
     let [a, b, c, d, e, f, g, h] = bytes;
-    Ok((u32::from_be_bytes([b, a, d, c]), u32::from_le_bytes([e, f, g, h])))
+    Ok((
+        u32::from_be_bytes([b, a, d, c]),
+        u32::from_le_bytes([e, f, g, h]),
+    ))
 }
 
 /// The first item: 32-bit offsets of the frames, or nothing.
 fn offsets(stream: &mut dyn Stream, bytes: u32, limits: &Limits) -> Result<Vec<u64>, Problem> {
-    if usize::try_from(bytes).unwrap_or(usize::MAX) > limits.max_header_bytes || !bytes.is_multiple_of(4) {
-        let wanted = format!("a table of offsets of at most {} bytes, four for each", limits.max_header_bytes);
-        return Err(invalid(DICOM, &tags::name(PIXEL_DATA), wanted, &bytes.to_string()));
+    if usize::try_from(bytes).unwrap_or(usize::MAX) > limits.max_header_bytes
+        || !bytes.is_multiple_of(4)
+    {
+        let wanted = format!(
+            "a table of offsets of at most {} bytes, four for each",
+            limits.max_header_bytes
+        );
+        return Err(invalid(
+            DICOM,
+            &tags::name(PIXEL_DATA),
+            wanted,
+            &bytes.to_string(),
+        ));
     }
     let mut table = Vec::new();
-    stream.take(bytes.into()).read_to_end(&mut table).map_err(io("reading the table of offsets"))?;
+    stream
+        .take(bytes.into())
+        .read_to_end(&mut table)
+        .map_err(io("reading the table of offsets"))?;
     let numbers = table.as_chunks::<4>().0.iter();
-    Ok(numbers.map(|bytes| u32::from_le_bytes(*bytes).into()).collect())
+    Ok(numbers
+        .map(|bytes| u32::from_le_bytes(*bytes).into())
+        .collect())
 }
 
 fn first_of_frames(all: &[Fragment], table: &[u64], frames: u32) -> Result<Vec<usize>, Problem> {
@@ -136,7 +193,10 @@ fn first_of_frames(all: &[Fragment], table: &[u64], frames: u32) -> Result<Vec<u
         return damaged(format!("a fragment at least for each of {frames} frames"));
     }
     if table.is_empty() {
-        let what = format!("{} fragments for {frames} frames without a table of offsets", all.len());
+        let what = format!(
+            "{} fragments for {frames} frames without a table of offsets",
+            all.len()
+        );
         return Err(unsupported(DICOM, what));
     }
     let base = all.first().map_or(0, |fragment| fragment.offset);
@@ -144,11 +204,16 @@ fn first_of_frames(all: &[Fragment], table: &[u64], frames: u32) -> Result<Vec<u
         .iter()
         .map(|offset| {
             let offset = base.checked_add(*offset)?;
-            all.binary_search_by_key(&offset, |fragment| fragment.offset).ok()
+            all.binary_search_by_key(&offset, |fragment| fragment.offset)
+                .ok()
         })
         .collect();
     match found {
-        Some(first) if first.len() == count && first.is_sorted() && first.first() == Some(&0) => Ok(first),
-        _ => damaged(format!("offsets of {frames} fragments, each after the last")),
+        Some(first) if first.len() == count && first.is_sorted() && first.first() == Some(&0) => {
+            Ok(first)
+        }
+        _ => damaged(format!(
+            "offsets of {frames} fragments, each after the last"
+        )),
     }
 }

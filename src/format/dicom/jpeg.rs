@@ -15,11 +15,19 @@ pub(super) fn is_lossless(name: &str) -> bool {
 }
 
 /// Samples of the layout, little-endian, side by side.
-pub(super) fn decode(encoded: &[u8], layout: &Layout, name: &'static str) -> Result<Vec<u8>, Problem> {
+pub(super) fn decode(
+    encoded: &[u8],
+    layout: &Layout,
+    name: &'static str,
+) -> Result<Vec<u8>, Problem> {
     fenced(name, || decode_unfenced(encoded, layout, name))
 }
 
-fn decode_unfenced(encoded: &[u8], layout: &Layout, name: &'static str) -> Result<Vec<u8>, Problem> {
+fn decode_unfenced(
+    encoded: &[u8],
+    layout: &Layout,
+    name: &'static str,
+) -> Result<Vec<u8>, Problem> {
     let wrong = |error: Error| match error {
         Error::Unsupported(feature) => {
             unsupported(DICOM, format!("{name} with the feature {feature:?}"))
@@ -28,13 +36,20 @@ fn decode_unfenced(encoded: &[u8], layout: &Layout, name: &'static str) -> Resul
     };
     let mut decoder = Decoder::new(encoded);
     decoder.read_info().map_err(wrong)?;
-    let info = decoder.info().ok_or_else(|| damaged(name, "no frame header"))?;
+    let info = decoder
+        .info()
+        .ok_or_else(|| damaged(name, "no frame header"))?;
     let samples = match info.pixel_format {
         PixelFormat::L8 | PixelFormat::L16 => 1,
         PixelFormat::RGB24 => 3,
         PixelFormat::CMYK32 => 4,
     };
-    same_size(name, layout, [info.width.into(), info.height.into()], samples)?;
+    same_size(
+        name,
+        layout,
+        [info.width.into(), info.height.into()],
+        samples,
+    )?;
     let wanted_bytes = usize::try_from(layout.frame_bytes()).unwrap_or(usize::MAX);
     decoder.set_max_decoding_buffer_size(wanted_bytes);
     if samples == 3 {
@@ -49,10 +64,15 @@ fn decode_unfenced(encoded: &[u8], layout: &Layout, name: &'static str) -> Resul
         (PixelFormat::L8, 16) => Ok(decoded.iter().flat_map(|byte| [*byte, 0]).collect()),
         (PixelFormat::L16, 16) => {
             let numbers = decoded.as_chunks::<2>().0.iter();
-            Ok(numbers.flat_map(|bytes| u16::from_ne_bytes(*bytes).to_le_bytes()).collect())
+            Ok(numbers
+                .flat_map(|bytes| u16::from_ne_bytes(*bytes).to_le_bytes())
+                .collect())
         }
         (format, bits) => {
-            let cause = format!("{format:?} where the file says {bits} bits, {} bytes", to_u64(decoded.len()));
+            let cause = format!(
+                "{format:?} where the file says {bits} bits, {} bytes",
+                to_u64(decoded.len())
+            );
             Err(damaged(name, cause))
         }
     }

@@ -19,15 +19,27 @@ const LEAST_TILE_BYTES: u64 = 14;
 
 /// Samples of the layout, little-endian, side by side.
 pub(super) fn decode(encoded: &[u8], layout: &Layout) -> Result<Vec<u8>, Problem> {
-    let size = Size::of(encoded).ok_or_else(|| damaged(J2K, "no code stream with a SIZ segment"))?;
-    same_size(J2K, layout, [size.width, size.height], size.components.len())?;
+    let size =
+        Size::of(encoded).ok_or_else(|| damaged(J2K, "no code stream with a SIZ segment"))?;
+    same_size(
+        J2K,
+        layout,
+        [size.width, size.height],
+        size.components.len(),
+    )?;
     if size.tiles.saturating_mul(LEAST_TILE_BYTES) > to_u64(encoded.len()) {
         let cause = format!("{} tiles in {} bytes", size.tiles, encoded.len());
         return Err(damaged(J2K, cause));
     }
-    let precise = size.components.iter().all(|part| part.bits <= layout.bits_allocated && part.bits <= 24);
+    let precise = size
+        .components
+        .iter()
+        .all(|part| part.bits <= layout.bits_allocated && part.bits <= 24);
     if !precise {
-        let cause = format!("more bits a sample than the {} of the file or 24", layout.bits_allocated);
+        let cause = format!(
+            "more bits a sample than the {} of the file or 24",
+            layout.bits_allocated
+        );
         return Err(damaged(J2K, cause));
     }
     fenced(J2K, || decode_unfenced(encoded, layout, &size))
@@ -40,13 +52,25 @@ fn decode_unfenced(encoded: &[u8], layout: &Layout, size: &Size) -> Result<Vec<u
         target_resolution: None,
     };
     let image = Image::new(encoded, &settings).map_err(|cause| damaged(J2K, cause))?;
-    same_size(J2K, layout, [image.width().into(), image.height().into()], size.components.len())?;
+    same_size(
+        J2K,
+        layout,
+        [image.width().into(), image.height().into()],
+        size.components.len(),
+    )?;
     let mut context = DecoderContext::default();
-    let decoded = image.decode(&mut context).map_err(|cause| damaged(J2K, cause))?;
+    let decoded = image
+        .decode(&mut context)
+        .map_err(|cause| damaged(J2K, cause))?;
     let planes = decoded.components();
     let pixels = usize::try_from(layout.pixels()).unwrap_or(usize::MAX);
-    if planes.len() != size.components.len() || planes.iter().any(|plane| plane.samples().len() != pixels) {
-        return Err(damaged(J2K, "the decoder gives other samples than the header says"));
+    if planes.len() != size.components.len()
+        || planes.iter().any(|plane| plane.samples().len() != pixels)
+    {
+        return Err(damaged(
+            J2K,
+            "the decoder gives other samples than the header says",
+        ));
     }
     let sample_bytes = layout.stored().bytes();
     let stride = planes.len().saturating_mul(sample_bytes);
@@ -57,7 +81,10 @@ fn decode_unfenced(encoded: &[u8], layout: &Layout, size: &Size) -> Result<Vec<u
         for (pixel, sample) in numbers {
             let bytes = component.number(*sample).to_le_bytes();
             let place = pixel.iter_mut().skip(first);
-            place.zip(bytes).take(sample_bytes).for_each(|(place, byte)| *place = byte);
+            place
+                .zip(bytes)
+                .take(sample_bytes)
+                .for_each(|(place, byte)| *place = byte);
         }
     }
     Ok(frame)
@@ -79,7 +106,10 @@ struct Component {
 
 impl Component {
     /// What the encoder was given; lossy samples that left the range go back to its ends.
-    #[allow(clippy::cast_possible_truncation, reason = "clamped to at most 24 bits")]
+    #[allow(
+        clippy::cast_possible_truncation,
+        reason = "clamped to at most 24 bits"
+    )]
     fn number(self, sample: f32) -> i32 {
         let range = f64::from(self.bits).exp2();
         let offset = if self.is_signed { range / 2.0 } else { 0.0 };
@@ -93,15 +123,31 @@ impl Size {
         // Length and capabilities come before the eight numbers.
         let body = encoded.get(start.checked_add(8)?..)?;
         let numbers = body.get(..32)?.as_chunks::<4>().0;
-        let numbers: Vec<u64> = numbers.iter().map(|bytes| u32::from_be_bytes(*bytes).into()).collect();
-        let [right, bottom, left, top, tile_width, tile_height, tile_left, tile_top] = numbers.try_into().ok()?;
+        let numbers: Vec<u64> = numbers
+            .iter()
+            .map(|bytes| u32::from_be_bytes(*bytes).into())
+            .collect();
+        let [
+            right,
+            bottom,
+            left,
+            top,
+            tile_width,
+            tile_height,
+            tile_left,
+            tile_top,
+        ] = numbers.try_into().ok()?;
         let tiles = |end: u64, tile_start: u64, tile: u64| {
             (tile > 0).then(|| end.saturating_sub(tile_start).div_ceil(tile.max(1)))
         };
         let across = tiles(right, tile_left, tile_width)?;
         let down = tiles(bottom, tile_top, tile_height)?;
         let count = u16::from_be_bytes(*body.get(32..34)?.first_chunk()?);
-        let parts = body.get(34..)?.as_chunks::<3>().0.get(..usize::from(count))?;
+        let parts = body
+            .get(34..)?
+            .as_chunks::<3>()
+            .0
+            .get(..usize::from(count))?;
         let components = parts.iter().map(|[bits, dx, dy]| {
             (*dx == 1 && *dy == 1).then(|| Component {
                 bits: u16::from(bits & 0x7f).saturating_add(1),

@@ -59,7 +59,10 @@ impl Layout {
             _ => &[1, 8, 16, 32],
         };
         if !wanted.contains(&bits_allocated) {
-            let what = format!("{bits_allocated} bits allocated for a sample of {}", tags::name(pixels));
+            let what = format!(
+                "{bits_allocated} bits allocated for a sample of {}",
+                tags::name(pixels)
+            );
             return Err(unsupported(DICOM, what));
         }
         let bits_stored = match set.u16(BITS_STORED)? {
@@ -70,7 +73,10 @@ impl Layout {
             Some(bit) if !is_float => bit,
             _ => bits_stored.saturating_sub(1),
         };
-        if bits_stored == 0 || high_bit >= bits_allocated || high_bit.saturating_add(1) < bits_stored {
+        if bits_stored == 0
+            || high_bit >= bits_allocated
+            || high_bit.saturating_add(1) < bits_stored
+        {
             let wanted = format!("1 to {bits_allocated} bits below the high bit");
             let found = format!("{bits_stored} bits, high bit {high_bit}");
             return Err(invalid(DICOM, &tags::name(BITS_STORED), wanted, &found));
@@ -90,7 +96,10 @@ impl Layout {
         };
         let is_odd = color == Color::YbrFull422 && !layout.columns.is_multiple_of(2);
         if color.samples() > 1 && bits_allocated != 8 || is_odd {
-            let what = format!("colour of {bits_allocated} bits a sample and {} columns", layout.columns);
+            let what = format!(
+                "colour of {bits_allocated} bits a sample and {} columns",
+                layout.columns
+            );
             return Err(unsupported(DICOM, what));
         }
         Ok(layout)
@@ -145,7 +154,8 @@ impl Layout {
             color: self.color,
             ..*other
         };
-        alike == *self && self.color.samples() == other.color.samples()
+        alike == *self
+            && self.color.samples() == other.color.samples()
             && (self.color == Color::Inverted) == (other.color == Color::Inverted)
     }
 }
@@ -179,7 +189,12 @@ fn color(set: &DataSet) -> Result<Color, Problem> {
     };
     if u32::from(samples) != color.samples() {
         let wanted = format!("{} for {}", color.samples(), text.unwrap_or_default());
-        return Err(invalid(DICOM, &tags::name(SAMPLES_PER_PIXEL), wanted, &samples.to_string()));
+        return Err(invalid(
+            DICOM,
+            &tags::name(SAMPLES_PER_PIXEL),
+            wanted,
+            &samples.to_string(),
+        ));
     }
     Ok(color)
 }
@@ -187,8 +202,17 @@ fn color(set: &DataSet) -> Result<Color, Problem> {
 fn frames(set: &DataSet) -> Result<u32, Problem> {
     match set.number(NUMBER_OF_FRAMES)? {
         None => Ok(1),
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number of 1 to 10^9")]
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a whole number of 1 to 10^9"
+        )]
         Some(n) if n >= 1.0 && n <= 1e9 && n.fract() == 0.0 => Ok(n as u32),
-        Some(n) => Err(invalid(DICOM, &tags::name(NUMBER_OF_FRAMES), "a whole number above 0", &n.to_string())),
+        Some(n) => Err(invalid(
+            DICOM,
+            &tags::name(NUMBER_OF_FRAMES),
+            "a whole number above 0",
+            &n.to_string(),
+        )),
     }
 }

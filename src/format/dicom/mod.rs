@@ -28,6 +28,7 @@ mod fragments;
 mod jpeg;
 mod jpeg2000;
 mod layout;
+mod line;
 mod moment;
 mod picture;
 mod pixels;
@@ -66,7 +67,11 @@ pub(super) fn open(
     wanted: &Wanted,
     limits: &Limits,
 ) -> Result<Box<dyn Source>, ReadError> {
-    let Contents { mut groups, without_pictures, not_dicom } = series::contents(path, limits)?;
+    let Contents {
+        mut groups,
+        without_pictures,
+        not_dicom,
+    } = series::contents(path, limits)?;
     let mut listed: Vec<Series> = groups.iter().map(Group::series).collect();
     let mut notes = Vec::new();
     let mut passed_over = |count: usize, what: &str| {
@@ -78,14 +83,25 @@ pub(super) fn open(
     passed_over(not_dicom, "that are not DICOM");
     let chosen = match &wanted.series {
         None => 0,
-        Some(uid) => groups.iter().position(|group| group.uid == *uid).ok_or_else(|| {
-            let uids: Vec<&str> = listed.iter().map(|series| series.uid.as_str()).collect();
-            at(path)(invalid(DICOM, "series", format!("one of {}", uids.join(", ")), uid))
-        })?,
+        Some(uid) => groups
+            .iter()
+            .position(|group| group.uid == *uid)
+            .ok_or_else(|| {
+                let uids: Vec<&str> = listed.iter().map(|series| series.uid.as_str()).collect();
+                at(path)(invalid(
+                    DICOM,
+                    "series",
+                    format!("one of {}", uids.join(", ")),
+                    uid,
+                ))
+            })?,
     };
     if groups.is_empty() {
         let found = format!("{without_pictures} DICOM files without one");
-        return Err(at(path)(Problem::Missing { format: DICOM, field: format!("picture ({found})") }));
+        return Err(at(path)(Problem::Missing {
+            format: DICOM,
+            field: format!("picture ({found})"),
+        }));
     }
     let group = groups.swap_remove(chosen);
     drop(groups);
@@ -104,9 +120,17 @@ fn open_group(
     if let Some(error) = group.refused {
         return Err(error);
     }
-    let Group { files, pictures, quantity, .. } = group;
+    let Group {
+        files,
+        pictures,
+        quantity,
+        ..
+    } = group;
     let (Some(first), Some(quantity)) = (files.first(), quantity) else {
-        return Err(at(path)(Problem::Missing { format: DICOM, field: "picture".to_owned() }));
+        return Err(at(path)(Problem::Missing {
+            format: DICOM,
+            field: "picture".to_owned(),
+        }));
     };
     let layout = first.layout;
     let mut frames = Vec::new();
@@ -121,10 +145,17 @@ fn open_group(
     }
     // Hundreds of files may all be odd in the same way.
     if let [first, rest @ ..] = file_notes.as_slice() {
-        let others = if rest.is_empty() { String::new() } else { format!(" (and {} more)", rest.len()) };
+        let others = if rest.is_empty() {
+            String::new()
+        } else {
+            format!(" (and {} more)", rest.len())
+        };
         notes.push(format!("{first}{others}"));
     }
-    let sorting = Sorting { pictures: &pictures, files: &files };
+    let sorting = Sorting {
+        pictures: &pictures,
+        files: &files,
+    };
     let mut same = |a: usize, b: usize| same_pixels(&sorting, &frames, [a, b], limits);
     let stack = stack(&sorting, &mut same)?;
     notes.extend(stack.notes.iter().cloned());
@@ -137,54 +168,98 @@ fn open_group(
     let steps = [x * RAS_FROM_LPS, y * RAS_FROM_LPS, z * RAS_FROM_LPS];
     let world = world_from_voxel(steps, stack.first_center * RAS_FROM_LPS).ok_or_else(|| {
         let found = format!("{:?}", stack.steps);
-        at(path)(invalid(DICOM, &tags::name(tags::IMAGE_POSITION), "steps that span a volume", &found))
+        at(path)(invalid(
+            DICOM,
+            &tags::name(tags::IMAGE_POSITION),
+            "steps that span a volume",
+            &found,
+        ))
     })?;
     let dims = dims(&layout, &stack).map_err(at(path))?;
     if quantity.is_turned(&layout) {
-        notes.push("the smallest numbers are the brightest (MONOCHROME1): values are turned round".to_owned());
+        notes.push(
+            "the smallest numbers are the brightest (MONOCHROME1): values are turned round"
+                .to_owned(),
+        );
     }
     if !stored.is_kept_exactly() {
-        notes.push(format!("voxels are stored as {} and kept as f32", stored.name()));
+        notes.push(format!(
+            "voxels are stored as {} and kept as f32",
+            stored.name()
+        ));
     }
     let is_color = layout.color.samples() > 1;
-    let rescale = pictures.first().map(|picture| picture.rescale).unwrap_or_default();
+    let rescale = pictures
+        .first()
+        .map(|picture| picture.rescale)
+        .unwrap_or_default();
     let header = Header {
         components: layout.color.samples(),
         times: u32::try_from(stack.times).unwrap_or(u32::MAX),
-        rescale: if kept == Kept::Values || is_color { Rescale::default() } else { rescale },
+        rescale: if kept == Kept::Values || is_color {
+            Rescale::default()
+        } else {
+            rescale
+        },
         fill: match kept {
             Kept::Stored => first.padding.map(|[low, _]| low),
             _ => None,
         },
         hounsfield: quantity.hounsfield,
         unit: quantity.unit,
-        meaning: if is_color { Meaning::Rgb } else { Meaning::Numbers },
+        meaning: if is_color {
+            Meaning::Rgb
+        } else {
+            Meaning::Numbers
+        },
         is_labels: quantity.is_labels,
         time_names: stack.time_names,
         series,
         notes,
         ..Header::new(Format::Dicom, dims, stored, world)
     };
-    Ok(DicomSource { path: path.to_owned(), header, frames, order: stack.order, kept, limits: *limits, files, pictures })
+    Ok(DicomSource {
+        path: path.to_owned(),
+        header,
+        frames,
+        order: stack.order,
+        kept,
+        limits: *limits,
+        files,
+        pictures,
+    })
 }
 
 fn dims(layout: &Layout, stack: &Stack) -> Result<[u32; 3], Problem> {
     match u32::try_from(stack.slices) {
         Ok(slices) if slices > 0 => Ok([layout.columns, layout.rows, slices]),
-        _ => Err(invalid(DICOM, "slices", "1 to 2^32 - 1", &stack.slices.to_string())),
+        _ => Err(invalid(
+            DICOM,
+            "slices",
+            "1 to 2^32 - 1",
+            &stack.slices.to_string(),
+        )),
     }
 }
 
 /// Numbers stay as they are stored wherever one rescale is right for all of them and no slice is missing.
-fn kept(pictures: &[picture::Picture], stack: &Stack, first: &file::PictureFile, notes: &mut Vec<String>) -> Kept {
+fn kept(
+    pictures: &[picture::Picture],
+    stack: &Stack,
+    first: &file::PictureFile,
+    notes: &mut Vec<String>,
+) -> Kept {
     let is_color = first.layout.color.samples() > 1;
-    let differ = pictures.windows(2).any(|pair| matches!(pair, [a, b] if a.rescale != b.rescale));
+    let differ = pictures
+        .windows(2)
+        .any(|pair| matches!(pair, [a, b] if a.rescale != b.rescale));
     let lacks = stack.order.iter().any(Option::is_none);
     if differ && !is_color {
         notes.push("each slice has a rescale of its own: values are kept as f32".to_owned());
         return Kept::Values;
     }
-    let has_nothing = first.padding.is_some() && !first.layout.is_float && first.layout.bits_allocated <= 16;
+    let has_nothing =
+        first.padding.is_some() && !first.layout.is_float && first.layout.bits_allocated <= 16;
     if lacks && !has_nothing && !is_color {
         return Kept::Floats;
     }
@@ -194,7 +269,11 @@ fn kept(pictures: &[picture::Picture], stack: &Stack, first: &file::PictureFile,
 /// Two pictures that do not make one volume.
 fn differ(first: &file::PictureFile, other: &file::PictureFile) -> ReadError {
     let shown = |layout: &Layout| {
-        let sign = if layout.is_signed { "signed" } else { "unsigned" };
+        let sign = if layout.is_signed {
+            "signed"
+        } else {
+            "unsigned"
+        };
         let color = match layout.color {
             Color::Monochrome => "MONOCHROME2",
             Color::Inverted => "MONOCHROME1",
@@ -209,7 +288,11 @@ fn differ(first: &file::PictureFile, other: &file::PictureFile) -> ReadError {
     at(&other.path)(Problem::Invalid {
         format: DICOM,
         field: "pixels".to_owned(),
-        wanted: format!("{} as in {}", shown(&first.layout), escape(&name.to_string_lossy())),
+        wanted: format!(
+            "{} as in {}",
+            shown(&first.layout),
+            escape(&name.to_string_lossy())
+        ),
         found: shown(&other.layout),
     })
 }

@@ -69,9 +69,7 @@ impl Kind {
 }
 
 /// The moments that stand in the first of `sets` that has each.
-pub(super) fn moments(
-    sets: &[Option<&DataSet>],
-) -> Result<[Option<f64>; Kind::COUNT], Problem> {
+pub(super) fn moments(sets: &[Option<&DataSet>]) -> Result<[Option<f64>; Kind::COUNT], Problem> {
     let first = |read: &dyn Fn(&DataSet) -> Result<Option<f64>, Problem>| {
         sets.iter()
             .flatten()
@@ -108,11 +106,12 @@ fn acquired(set: &DataSet) -> Option<f64> {
         .text(FRAME_ACQUISITION_DATE_TIME)
         .or_else(|| set.text(ACQUISITION_DATE_TIME));
     match both {
-        Some(both) => {
-            Some(days(both.get(..8)?)? * 86_400.0 + seconds_of_day(both.get(8..)?)?)
-        }
+        Some(both) => Some(days(both.get(..8)?)? * 86_400.0 + seconds_of_day(both.get(8..)?)?),
         None => {
-            let day = set.text(ACQUISITION_DATE).and_then(|day| days(&day)).unwrap_or(0.0);
+            let day = set
+                .text(ACQUISITION_DATE)
+                .and_then(|day| days(&day))
+                .unwrap_or(0.0);
             Some(day * 86_400.0 + seconds_of_day(&set.text(ACQUISITION_TIME)?)?)
         }
     }
@@ -121,9 +120,14 @@ fn acquired(set: &DataSet) -> Option<f64> {
 /// Days of `YYYYMMDD` since 0000-03-01 in the Gregorian calendar: years and months are counted from March on, so
 /// that a leap day comes last.
 fn days(date: &str) -> Option<f64> {
-    let number = |range: std::ops::Range<usize>| date.get(range)?.parse::<u32>().ok().map(f64::from);
+    let number =
+        |range: std::ops::Range<usize>| date.get(range)?.parse::<u32>().ok().map(f64::from);
     let (year, month, day) = (number(0..4)?, number(4..6)?, number(6..8)?);
-    let (year, month) = if month > 2.0 { (year, month - 3.0) } else { (year - 1.0, month + 9.0) };
+    let (year, month) = if month > 2.0 {
+        (year, month - 3.0)
+    } else {
+        (year - 1.0, month + 9.0)
+    };
     let leap_days = (year / 4.0).floor() - (year / 100.0).floor() + (year / 400.0).floor();
     Some(year * 365.0 + leap_days + ((153.0 * month + 2.0) / 5.0).floor() + day - 1.0)
 }
@@ -132,9 +136,14 @@ fn days(date: &str) -> Option<f64> {
 fn seconds_of_day(time: &str) -> Option<f64> {
     let time = time.split(['+', '-']).next()?;
     let hours = time.get(0..2)?.parse::<u32>().ok()?;
-    let minutes = time.get(2..4).map_or(Some(0), |text| text.parse::<u32>().ok())?;
+    let minutes = time
+        .get(2..4)
+        .map_or(Some(0), |text| text.parse::<u32>().ok())?;
     let seconds = match time.get(4..).filter(|text| !text.is_empty()) {
-        Some(text) => text.parse::<f64>().ok().filter(|seconds| (0.0..61.0).contains(seconds))?,
+        Some(text) => text
+            .parse::<f64>()
+            .ok()
+            .filter(|seconds| (0.0..61.0).contains(seconds))?,
         None => 0.0,
     };
     Some(f64::from(hours) * 3600.0 + f64::from(minutes) * 60.0 + seconds)
@@ -153,16 +162,26 @@ mod tests {
             ("19000228", "19000301", 1.0),
             ("20000101", "20010101", 366.0),
         ] {
-            assert_eq!(days(after).unwrap() - days(before).unwrap(), apart, "{before}");
+            assert_eq!(
+                days(after).unwrap() - days(before).unwrap(),
+                apart,
+                "{before}"
+            );
         }
     }
 
     #[test]
     fn times_may_be_cut_short_and_what_is_none_is_passed_over() {
-        assert_eq!(seconds_of_day("072730.5"), Some(7.0 * 3600.0 + 27.0 * 60.0 + 30.5));
+        assert_eq!(
+            seconds_of_day("072730.5"),
+            Some(7.0 * 3600.0 + 27.0 * 60.0 + 30.5)
+        );
         assert_eq!(seconds_of_day("0727"), Some(7.0 * 3600.0 + 27.0 * 60.0));
         assert_eq!(seconds_of_day("07"), Some(7.0 * 3600.0));
-        assert_eq!(seconds_of_day("072730.000000+0100"), Some(7.0 * 3600.0 + 27.0 * 60.0 + 30.0));
+        assert_eq!(
+            seconds_of_day("072730.000000+0100"),
+            Some(7.0 * 3600.0 + 27.0 * 60.0 + 30.0)
+        );
         for none in ["", "7", "ab", "07:27:30", "0727nan", "0727inf"] {
             assert_eq!(seconds_of_day(none), None, "{none}");
         }

@@ -61,7 +61,9 @@ pub(super) fn pictures(set: &DataSet, file: usize, frames: u32) -> Result<Vec<Pi
 
 /// What the attributes at the root of a data set say.
 fn plain(set: &DataSet, file: usize) -> Result<Picture, Problem> {
-    let detector = set.item(DETECTOR_INFORMATION).filter(|_| !set.has(IMAGE_POSITION));
+    let detector = set
+        .item(DETECTOR_INFORMATION)
+        .filter(|_| !set.has(IMAGE_POSITION));
     let place = detector.unwrap_or(set);
     let spacing = match set.vector(PIXEL_SPACING)? {
         Some(spacing) => Some(spacing),
@@ -93,7 +95,12 @@ fn repeated(set: &DataSet, first: &Picture, frames: u32) -> Result<Vec<Picture>,
     {
         let wanted = format!("{frames} numbers");
         let found = format!("{} numbers", offsets.len());
-        return Err(invalid(DICOM, &tags::name(GRID_FRAME_OFFSET_VECTOR), wanted, &found));
+        return Err(invalid(
+            DICOM,
+            &tags::name(GRID_FRAME_OFFSET_VECTOR),
+            wanted,
+            &found,
+        ));
     }
     let time = match set.tag(FRAME_INCREMENT_POINTER) {
         // Where the times between frames differ, frames are counted.
@@ -107,7 +114,11 @@ fn repeated(set: &DataSet, first: &Picture, frames: u32) -> Result<Vec<Picture>,
     let normal = along_row.cross(along_column);
     let step = first.slice_step.filter(|step| *step != 0.0);
     let origin = first.position.unwrap_or(DVec3::ZERO);
-    let first_offset = offsets.as_ref().and_then(|offsets| offsets.first()).copied().unwrap_or(0.0);
+    let first_offset = offsets
+        .as_ref()
+        .and_then(|offsets| offsets.first())
+        .copied()
+        .unwrap_or(0.0);
     let mut pictures = Vec::new();
     for frame in 0..frames {
         let index = usize::try_from(frame).unwrap_or(usize::MAX);
@@ -116,7 +127,10 @@ fn repeated(set: &DataSet, first: &Picture, frames: u32) -> Result<Vec<Picture>,
             Some(offsets) => offsets.get(index).map(|offset| offset - first_offset),
             None => Some(f64::from(frame) * step.unwrap_or(1.0)),
         };
-        let mut picture = Picture { frame, ..first.clone() };
+        let mut picture = Picture {
+            frame,
+            ..first.clone()
+        };
         if let Some(milliseconds) = time {
             Kind::Frame.put(&mut picture.moments, f64::from(frame) * milliseconds);
         } else if frames > 1 {
@@ -129,7 +143,11 @@ fn repeated(set: &DataSet, first: &Picture, frames: u32) -> Result<Vec<Picture>,
 }
 
 /// A frame with functional groups: its own before those that all share before the root.
-fn enhanced(groups: [Option<&DataSet>; 3], plain: &Picture, frame: u32) -> Result<Picture, Problem> {
+fn enhanced(
+    groups: [Option<&DataSet>; 3],
+    plain: &Picture,
+    frame: u32,
+) -> Result<Picture, Problem> {
     let item = |tag| groups.iter().flatten().find_map(|group| group.item(tag));
     let measures = item(PIXEL_MEASURES);
     let from_measures = |tag| measures.map_or(Ok(None), |item| item.number(tag));
@@ -165,7 +183,12 @@ fn ordered(spacing: Option<[f64; 2]>) -> Result<Option<[f64; 2]>, Problem> {
         Some([y, x]) if y > 0.0 && x > 0.0 => Ok(Some([x, y])),
         Some(other) => {
             let found = format!("{other:?}");
-            Err(invalid(DICOM, &tags::name(PIXEL_SPACING), "two numbers above 0", &found))
+            Err(invalid(
+                DICOM,
+                &tags::name(PIXEL_SPACING),
+                "two numbers above 0",
+                &found,
+            ))
         }
         None => Ok(None),
     }
@@ -177,20 +200,32 @@ fn directions(set: &DataSet) -> Result<Option<[DVec3; 2]>, Problem> {
     };
     let (row, column) = (DVec3::new(a, b, c), DVec3::new(d, e, f));
     // What digits in words leave open is far less.
-    let are_unit = [row, column].iter().all(|v| (v.length() - 1.0).abs() < 0.01);
+    let are_unit = [row, column]
+        .iter()
+        .all(|v| (v.length() - 1.0).abs() < 0.01);
     if are_unit && row.dot(column).abs() < 0.01 {
         return Ok(Some([row.normalize(), column.normalize()]));
     }
     let wanted = "two vectors of length 1 at right angles";
     let found = format!("{row} and {column}");
-    Err(invalid(DICOM, &tags::name(IMAGE_ORIENTATION), wanted, &found))
+    Err(invalid(
+        DICOM,
+        &tags::name(IMAGE_ORIENTATION),
+        wanted,
+        &found,
+    ))
 }
 
 fn rescale(set: &DataSet) -> Result<Rescale, Problem> {
     let dose = set.number(DOSE_GRID_SCALING)?;
     let slope = set.number(RESCALE_SLOPE)?.or(dose).unwrap_or(1.0);
     if slope == 0.0 {
-        return Err(invalid(DICOM, &tags::name(RESCALE_SLOPE), "a number other than 0", "0"));
+        return Err(invalid(
+            DICOM,
+            &tags::name(RESCALE_SLOPE),
+            "a number other than 0",
+            "0",
+        ));
     }
     let intercept = set.number(RESCALE_INTERCEPT)?.unwrap_or(0.0);
     Ok(Rescale { slope, intercept })

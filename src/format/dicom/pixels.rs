@@ -8,8 +8,8 @@ use super::layout::{Color, Layout};
 use super::syntax::Coding;
 use super::{jpeg, jpeg2000, rle, samples};
 use crate::format::convert::to_u64;
-use crate::format::problem::{invalid, io, unsupported};
 use crate::format::dicom::tags;
+use crate::format::problem::{invalid, io, unsupported};
 use crate::volume::{Limits, Problem};
 use std::io::Read;
 
@@ -22,7 +22,10 @@ pub(super) enum Frames {
 
 impl Frames {
     /// Compares what the header promises with the bytes that are there. The note says what is odd and harmless.
-    pub(super) fn find(file: &PictureFile, limits: &Limits) -> Result<(Self, Option<String>), Problem> {
+    pub(super) fn find(
+        file: &PictureFile,
+        limits: &Limits,
+    ) -> Result<(Self, Option<String>), Problem> {
         let layout = &file.layout;
         if layout.frame_bytes() > limits.max_bytes {
             return Err(Problem::Limit {
@@ -43,17 +46,27 @@ impl Frames {
         };
         if file.syntax.coding != Coding::Native {
             let wanted = format!("fragments of {}", file.syntax.coding.name());
-            return Err(invalid(DICOM, &tags::name(file.place.tag), wanted, &format!("{found_bytes} bytes")));
+            return Err(invalid(
+                DICOM,
+                &tags::name(file.place.tag),
+                wanted,
+                &format!("{found_bytes} bytes"),
+            ));
         }
         let wanted_bytes = layout
             .native_frame_bits()
             .saturating_mul(layout.frames.into())
             .div_ceil(8);
         if found_bytes < wanted_bytes {
-            return Err(Problem::Size { format: DICOM, wanted_bytes, found_bytes });
+            return Err(Problem::Size {
+                format: DICOM,
+                wanted_bytes,
+                found_bytes,
+            });
         }
         let extra = found_bytes.saturating_sub(wanted_bytes);
-        let note = (extra > 1).then(|| format!("{extra} bytes follow the last pixel and are passed over"));
+        let note =
+            (extra > 1).then(|| format!("{extra} bytes follow the last pixel and are passed over"));
         Ok((Self::Native, note))
     }
 
@@ -74,7 +87,10 @@ impl Frames {
                 match file.syntax.coding {
                     Coding::Native | Coding::Encapsulated => {
                         let mut encoded = encoded;
-                        encoded.truncate(usize::try_from(layout.native_frame_bits().div_ceil(8)).unwrap_or(usize::MAX));
+                        encoded.truncate(
+                            usize::try_from(layout.native_frame_bits().div_ceil(8))
+                                .unwrap_or(usize::MAX),
+                        );
                         encoded
                     }
                     Coding::Rle => rle::decode(&encoded, layout)?,
@@ -91,10 +107,16 @@ impl Frames {
         }
         let found_bytes = to_u64(bytes.len());
         if found_bytes != wanted_bytes {
-            return Err(Problem::Size { format: DICOM, wanted_bytes, found_bytes });
+            return Err(Problem::Size {
+                format: DICOM,
+                wanted_bytes,
+                found_bytes,
+            });
         }
         // JPEG 2000 and lossy JPEG have turned chroma into colours themselves.
-        if layout.color == Color::YbrFull && !matches!(file.syntax.coding, Coding::Jpeg(name) if !jpeg::is_lossless(name)) {
+        if layout.color == Color::YbrFull
+            && !matches!(file.syntax.coding, Coding::Jpeg(name) if !jpeg::is_lossless(name))
+        {
             samples::rgb_from_ybr(&mut bytes);
         }
         samples::clear_unused_bits(&mut bytes, layout);
@@ -112,10 +134,17 @@ fn native(file: &PictureFile, stream: &mut dyn Stream, frame: u32) -> Result<Vec
     let wanted_bytes = bits.saturating_add(shift).div_ceil(8);
     seek_to(stream, start)?;
     let mut bytes = Vec::new();
-    stream.take(wanted_bytes).read_to_end(&mut bytes).map_err(io("reading pixels"))?;
+    stream
+        .take(wanted_bytes)
+        .read_to_end(&mut bytes)
+        .map_err(io("reading pixels"))?;
     if to_u64(bytes.len()) != wanted_bytes {
         let found_bytes = to_u64(bytes.len());
-        return Err(Problem::Size { format: DICOM, wanted_bytes, found_bytes });
+        return Err(Problem::Size {
+            format: DICOM,
+            wanted_bytes,
+            found_bytes,
+        });
     }
     if layout.bits_allocated == 1 {
         return Ok(samples::bytes_of_bits(&bytes, shift, layout.pixels()));
@@ -123,7 +152,10 @@ fn native(file: &PictureFile, stream: &mut dyn Stream, frame: u32) -> Result<Vec
     if file.syntax.is_big_endian {
         match layout.bits_allocated {
             8 if file.place.are_words && start % 2 != 0 => {
-                return Err(unsupported(DICOM, "frames of an odd number of bytes in big-endian words"));
+                return Err(unsupported(
+                    DICOM,
+                    "frames of an odd number of bytes in big-endian words",
+                ));
             }
             8 if file.place.are_words => samples::swap::<2>(&mut bytes),
             8 => {}
@@ -137,7 +169,12 @@ fn native(file: &PictureFile, stream: &mut dyn Stream, frame: u32) -> Result<Vec
 
 /// An encoded frame that cannot be what the header says.
 pub(super) fn damaged(encoding: &'static str, cause: impl ToString) -> Problem {
-    Problem::Damaged { format: DICOM, encoding, decoded_bytes: 0, cause: cause.to_string() }
+    Problem::Damaged {
+        format: DICOM,
+        encoding,
+        decoded_bytes: 0,
+        cause: cause.to_string(),
+    }
 }
 
 /// Compares what a coded frame says of itself with the header, before anything is decoded.

@@ -25,7 +25,10 @@ impl Quantity {
             return Err(unsupported(DICOM, "a fractional segmentation"));
         }
         if !set.items(MODALITY_LUT).is_empty() {
-            return Err(unsupported(DICOM, "a table from stored numbers to values (Modality LUT Sequence)"));
+            return Err(unsupported(
+                DICOM,
+                "a table from stored numbers to values (Modality LUT Sequence)",
+            ));
         }
         let shared = set.item(SHARED_FUNCTIONAL_GROUPS);
         let own = set.item(PER_FRAME_FUNCTIONAL_GROUPS);
@@ -45,7 +48,11 @@ impl Quantity {
             Some("HU".to_owned())
         } else {
             let words = [set.text(UNITS), kind, set.text(DOSE_UNITS)];
-            words.into_iter().flatten().find(|word| word != "US").map(|word| escape(&word))
+            words
+                .into_iter()
+                .flatten()
+                .find(|word| word != "US")
+                .map(|word| escape(&word))
         };
         Ok(Self {
             unit,

@@ -6,7 +6,9 @@ use super::layout::Layout;
 pub(super) fn bytes_of_bits(bytes: &[u8], shift: u64, pixels: u64) -> Vec<u8> {
     let shift = usize::try_from(shift).unwrap_or(0);
     let pixels = usize::try_from(pixels).unwrap_or(usize::MAX);
-    let bits = bytes.iter().flat_map(|byte| (0..8).map(move |bit| byte >> bit & 1));
+    let bits = bytes
+        .iter()
+        .flat_map(|byte| (0..8).map(move |bit| byte >> bit & 1));
     bits.skip(shift).take(pixels).collect()
 }
 
@@ -21,7 +23,8 @@ pub(super) fn swap<const N: usize>(bytes: &mut [u8]) {
 pub(super) fn interleaved(planes: &[u8]) -> Vec<u8> {
     let plane = (planes.len() / 3).max(1);
     let mut colors = planes.chunks_exact(plane);
-    let (Some(reds), Some(greens), Some(blues)) = (colors.next(), colors.next(), colors.next()) else {
+    let (Some(reds), Some(greens), Some(blues)) = (colors.next(), colors.next(), colors.next())
+    else {
         return Vec::new();
     };
     let pixels = reds.iter().zip(greens).zip(blues);
@@ -71,9 +74,15 @@ pub(super) fn clear_unused_bits(bytes: &mut [u8], layout: &Layout) {
     macro_rules! clear {
         ($unsigned:ty) => {
             for number in bytes.as_chunks_mut::<{ size_of::<$unsigned>() }>().0 {
-                let lifted = <$unsigned>::from_le_bytes(*number).checked_shl(above).unwrap_or(0);
+                let lifted = <$unsigned>::from_le_bytes(*number)
+                    .checked_shl(above)
+                    .unwrap_or(0);
                 *number = if layout.is_signed {
-                    lifted.cast_signed().checked_shr(empty).unwrap_or(0).to_le_bytes()
+                    lifted
+                        .cast_signed()
+                        .checked_shr(empty)
+                        .unwrap_or(0)
+                        .to_le_bytes()
                 } else {
                     lifted.checked_shr(empty).unwrap_or(0).to_le_bytes()
                 };

@@ -49,19 +49,39 @@ impl Group {
         }
     }
 
-    fn try_add(&mut self, file: PictureFile, set: &DataSet, limits: &Limits) -> Result<(), Problem> {
+    fn try_add(
+        &mut self,
+        file: PictureFile,
+        set: &DataSet,
+        limits: &Limits,
+    ) -> Result<(), Problem> {
         // Frames are believed as far as there are bytes: the pixels themselves are compared later.
-        let most = file.place.bytes.unwrap_or(file.length / 8).saturating_mul(8);
+        let most = file
+            .place
+            .bytes
+            .unwrap_or(file.length / 8)
+            .saturating_mul(8);
         let frames = file.layout.frames;
-        let count = self.pictures.len().saturating_add(usize::try_from(frames).unwrap_or(usize::MAX));
+        let count = self
+            .pictures
+            .len()
+            .saturating_add(usize::try_from(frames).unwrap_or(usize::MAX));
         if u64::from(frames) > most || count > limits.max_files {
             let wanted = format!("at most {} frames", most.min(to_u64(limits.max_files)));
-            return Err(invalid(DICOM, &tags::name(NUMBER_OF_FRAMES), wanted, &count.to_string()));
+            return Err(invalid(
+                DICOM,
+                &tags::name(NUMBER_OF_FRAMES),
+                wanted,
+                &count.to_string(),
+            ));
         }
         let quantity = Quantity::of(set, &file.layout)?;
         let first = self.quantity.get_or_insert_with(|| quantity.clone());
         if *first != quantity {
-            let wanted = format!("{} as in the other pictures of the series", first.unit.as_deref().unwrap_or("none"));
+            let wanted = format!(
+                "{} as in the other pictures of the series",
+                first.unit.as_deref().unwrap_or("none")
+            );
             let found = quantity.unit.unwrap_or_default();
             return Err(invalid(DICOM, &tags::name(RESCALE_TYPE), wanted, &found));
         }
@@ -102,14 +122,34 @@ fn is_dicom(path: &Path) -> bool {
         .is_ok_and(|first| recognizes(&first))
 }
 
+fn has_dicom_name(path: &Path) -> bool {
+    let ending = path
+        .extension()
+        .and_then(|ending| ending.to_str())
+        .unwrap_or("");
+    let is_hidden = path
+        .file_name()
+        .is_some_and(|name| name.as_encoded_bytes().starts_with(b"."));
+    !is_hidden && ["dcm", "ima", "dicom"].contains(&ending.to_ascii_lowercase().as_str())
+}
+
 /// Looks at all files in a folder, or at the one file that `path` is.
 pub(super) fn contents(path: &Path, limits: &Limits) -> Result<Contents, ReadError> {
     let is_folder = path.is_dir();
-    let files = if is_folder { files_in(path, limits)? } else { vec![path.to_owned()] };
+    let files = if is_folder {
+        files_in(path, limits)?
+    } else {
+        vec![path.to_owned()]
+    };
     let mut contents = Contents::default();
     let mut groups: BTreeMap<String, Group> = BTreeMap::new();
     for file in files {
         if is_folder && !is_dicom(&file) {
+            // A slice that is empty or cut to pieces must not be missed in silence.
+            if has_dicom_name(&file) {
+                let what = ": its name is that of a DICOM file and its content is not".to_owned();
+                return Err(at(&file)(Problem::UnknownFormat(what)));
+            }
             contents.not_dicom = contents.not_dicom.saturating_add(1);
             continue;
         }
@@ -134,7 +174,9 @@ pub(super) fn contents(path: &Path, limits: &Limits) -> Result<Contents, ReadErr
     }
     contents.groups = groups.into_values().collect();
     // Most pictures first: a scout of two comes after the series that it was made for.
-    contents.groups.sort_by_key(|group| std::cmp::Reverse(group.series().pictures));
+    contents
+        .groups
+        .sort_by_key(|group| std::cmp::Reverse(group.series().pictures));
     Ok(contents)
 }
 
@@ -148,7 +190,9 @@ fn files_in(folder: &Path, limits: &Limits) -> Result<Vec<PathBuf>, ReadError> {
         for entry in entries {
             let entry = entry.map_err(|cause| at(&folder)(listing()(cause)))?;
             let path = entry.path();
-            let kind = entry.file_type().map_err(|cause| at(&path)(listing()(cause)))?;
+            let kind = entry
+                .file_type()
+                .map_err(|cause| at(&path)(listing()(cause)))?;
             if kind.is_dir() && depth < DEEPEST {
                 folders.push((path, depth.saturating_add(1)));
             } else if kind.is_file() || kind.is_symlink() && path.is_file() {

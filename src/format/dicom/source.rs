@@ -53,7 +53,9 @@ impl DicomSource {
             product.checked_mul(side.into())
         });
         let each = to_u64(bytes_in_memory(self.header.stored));
-        let wanted_bytes = count.and_then(|count| count.checked_mul(each)).unwrap_or(u64::MAX);
+        let wanted_bytes = count
+            .and_then(|count| count.checked_mul(each))
+            .unwrap_or(u64::MAX);
         count
             .filter(|_| wanted_bytes <= self.limits.max_bytes)
             .and_then(|count| usize::try_from(count).ok())
@@ -66,7 +68,9 @@ impl DicomSource {
 
     fn check(&self, pick: Pick, region: VoxelBox) -> Result<(), Problem> {
         let sides = region.min.iter().zip(&region.max).zip(&self.header.dims);
-        let inside = sides.into_iter().all(|((min, max), size)| min < max && max <= size);
+        let inside = sides
+            .into_iter()
+            .all(|((min, max), size)| min < max && max <= size);
         if inside && pick.time < self.header.times && pick.component < self.header.components {
             return Ok(());
         }
@@ -84,19 +88,30 @@ impl DicomSource {
     /// Which picture a slice is.
     fn picture(&self, time: u32, slice: u32) -> Option<&Picture> {
         let [_, _, slices] = self.header.dims;
-        let index = u64::from(time).saturating_mul(slices.into()).saturating_add(slice.into());
-        let picture = self.order.get(usize::try_from(index).ok()?).copied().flatten()?;
+        let index = u64::from(time)
+            .saturating_mul(slices.into())
+            .saturating_add(slice.into());
+        let picture = self
+            .order
+            .get(usize::try_from(index).ok()?)
+            .copied()
+            .flatten()?;
         self.pictures.get(picture)
     }
 
     /// The samples of one picture, of the layout's stored type.
     fn samples(&self, picture: &Picture, open: &mut Option<Open>) -> Result<Vec<u8>, ReadError> {
-        let (Some(file), Some(frames)) = (self.files.get(picture.file), self.frames.get(picture.file)) else {
+        let (Some(file), Some(frames)) =
+            (self.files.get(picture.file), self.frames.get(picture.file))
+        else {
             return Ok(Vec::new());
         };
         let mut opened = match open.take() {
             Some(open) if open.file == picture.file => open,
-            _ => Open { file: picture.file, stream: file.open(&self.limits)? },
+            _ => Open {
+                file: picture.file,
+                stream: file.open(&self.limits)?,
+            },
         };
         let samples = frames.read(file, opened.stream.as_mut(), picture.frame, &self.limits);
         *open = Some(opened);
@@ -124,7 +139,12 @@ impl DicomSource {
         for y in y0..y1 {
             let Some((picture, samples)) = slice else {
                 let number = encode(self.nothing(), self.header.stored);
-                let row: Vec<u8> = number.iter().copied().cycle().take(width.saturating_mul(number.len())).collect();
+                let row: Vec<u8> = number
+                    .iter()
+                    .copied()
+                    .cycle()
+                    .take(width.saturating_mul(number.len()))
+                    .collect();
                 builder.push(&row, 1).map_err(at(&self.path))?;
                 continue;
             };
@@ -167,7 +187,9 @@ fn row(samples: &[u8], layout: &Layout, component: u32, [x, y]: [u32; 2], width:
     let pixel_bytes = usize::try_from(pixel_bytes).unwrap_or(usize::MAX);
     let end = start.saturating_add(width.saturating_mul(pixel_bytes));
     let row = samples.get(start..end).unwrap_or(&[]);
-    let skip = usize::try_from(component).unwrap_or(usize::MAX).saturating_mul(sample_bytes);
+    let skip = usize::try_from(component)
+        .unwrap_or(usize::MAX)
+        .saturating_mul(sample_bytes);
     row.chunks_exact(pixel_bytes.max(1))
         .flat_map(|pixel| pixel.iter().skip(skip).take(sample_bytes).copied())
         .collect()
@@ -177,7 +199,9 @@ fn row(samples: &[u8], layout: &Layout, component: u32, [x, y]: [u32; 2], width:
 fn decode(bytes: &[u8], stored: VoxelType) -> f64 {
     macro_rules! number {
         ($type:ty) => {
-            bytes.first_chunk().map_or(0.0, |bytes| <$type>::from_le_bytes(*bytes).into())
+            bytes
+                .first_chunk()
+                .map_or(0.0, |bytes| <$type>::from_le_bytes(*bytes).into())
         };
     }
     match stored {
@@ -224,7 +248,9 @@ impl Source for DicomSource {
         self.check(pick, region).map_err(at(&self.path))?;
         let wanted = self.count(region).map_err(at(&self.path))?;
         let mut builder = Builder::new(self.header.stored, Endian::Little, wanted);
-        builder.reserve(wanted.min(BELIEVED_NUMBERS)).map_err(at(&self.path))?;
+        builder
+            .reserve(wanted.min(BELIEVED_NUMBERS))
+            .map_err(at(&self.path))?;
         let mut open = None;
         let ([_, _, z0], [_, _, z1]) = (region.min, region.max);
         for z in z0..z1 {
@@ -232,11 +258,14 @@ impl Source for DicomSource {
                 Some(picture) => Some((picture, self.samples(picture, &mut open)?)),
                 None => None,
             };
-            let slice = samples.as_ref().map(|(picture, samples)| (*picture, samples.as_slice()));
+            let slice = samples
+                .as_ref()
+                .map(|(picture, samples)| (*picture, samples.as_slice()));
             self.push_slice(&mut builder, slice, pick.component, region)?;
         }
         if builder.len() != wanted {
-            let bytes = |count: usize| to_u64(count).saturating_mul(to_u64(self.header.stored.bytes()));
+            let bytes =
+                |count: usize| to_u64(count).saturating_mul(to_u64(self.header.stored.bytes()));
             return Err(at(&self.path)(Problem::Size {
                 format: DICOM,
                 wanted_bytes: bytes(wanted),

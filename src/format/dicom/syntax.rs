@@ -76,7 +76,9 @@ impl Syntax {
             ".4.50" => coded(Coding::Jpeg("JPEG Baseline (Process 1)")),
             ".4.51" => coded(Coding::Jpeg("JPEG Extended (Process 2 and 4)")),
             ".4.57" => coded(Coding::Jpeg("JPEG Lossless (Process 14)")),
-            ".4.70" => coded(Coding::Jpeg("JPEG Lossless (Process 14, Selection Value 1)")),
+            ".4.70" => coded(Coding::Jpeg(
+                "JPEG Lossless (Process 14, Selection Value 1)",
+            )),
             ".4.90" | ".4.91" => coded(Coding::Jpeg2000),
             _ => {
                 let name = unread(short).unwrap_or("a transfer syntax that we do not know");

@@ -26,7 +26,11 @@ pub(super) fn times(
 ) -> Result<Times, ReadError> {
     let most = places.iter().map(Vec::len).max().unwrap_or(0);
     if most <= 1 {
-        return Ok(Times { places, count: 1, names: Vec::new() });
+        return Ok(Times {
+            places,
+            count: 1,
+            names: Vec::new(),
+        });
     }
     if let Some(times) = by_moment(sorting, &places, notes) {
         return Ok(times);
@@ -39,7 +43,11 @@ pub(super) fn times(
         notes.push(format!("{dropped} pictures are in the folder twice, in the same place with the same pixels: one of each is taken"));
     }
     if places.iter().all(|place| place.len() == 1) {
-        return Ok(Times { places, count: 1, names: Vec::new() });
+        return Ok(Times {
+            places,
+            count: 1,
+            names: Vec::new(),
+        });
     }
     match by_moment(sorting, &places, notes).or_else(|| by_number(sorting, &places, notes)) {
         Some(times) => Ok(times),
@@ -62,9 +70,19 @@ fn by_moment(sorting: &Sorting, places: &Places, notes: &mut Vec<String>) -> Opt
             return None;
         }
         let earliest = first.first().copied().flatten()?;
-        notes.push(format!("{count} pictures lie in each place: they are told apart by their {}", kind.word()));
-        let names = first.iter().flatten().map(|number| kind.name(*number, earliest));
-        Some(Times { names: names.collect(), places: sorted, count })
+        notes.push(format!(
+            "{count} pictures lie in each place: they are told apart by their {}",
+            kind.word()
+        ));
+        let names = first
+            .iter()
+            .flatten()
+            .map(|number| kind.name(*number, earliest));
+        Some(Times {
+            names: names.collect(),
+            places: sorted,
+            count,
+        })
     })
 }
 
@@ -72,13 +90,22 @@ fn by_moment(sorting: &Sorting, places: &Places, notes: &mut Vec<String>) -> Opt
 fn by_number(sorting: &Sorting, places: &Places, notes: &mut Vec<String>) -> Option<Times> {
     let count = equal_count(places)?;
     let sorted = sorted_by(places, |index| sorting.picture(index).ok()?.instance)?;
-    notes.push(format!("{count} pictures lie in each place: they are told apart by their instance numbers alone"));
-    Some(Times { places: sorted, count, names: Vec::new() })
+    notes.push(format!(
+        "{count} pictures lie in each place: they are told apart by their instance numbers alone"
+    ));
+    Some(Times {
+        places: sorted,
+        count,
+        names: Vec::new(),
+    })
 }
 
 fn equal_count(places: &Places) -> Option<usize> {
     let count = places.first()?.len();
-    places.iter().all(|place| place.len() == count).then_some(count)
+    places
+        .iter()
+        .all(|place| place.len() == count)
+        .then_some(count)
 }
 
 /// Each place by a number that all its pictures have and no two share.
@@ -91,7 +118,9 @@ fn sorted_by(places: &Places, number: impl Fn(usize) -> Option<f64>) -> Option<P
                 sorted.push((number(*index)?, *index));
             }
             sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let differ = sorted.windows(2).all(|pair| matches!(pair, [a, b] if a.0 < b.0));
+            let differ = sorted
+                .windows(2)
+                .all(|pair| matches!(pair, [a, b] if a.0 < b.0));
             differ.then(|| sorted.into_iter().map(|(_, index)| index).collect())
         })
         .collect()
@@ -121,11 +150,19 @@ fn unequal(sorting: &Sorting, places: &Places) -> ReadError {
     match (fewest.map(Vec::as_slice), most.map(Vec::as_slice)) {
         (Some([few, ..]), Some(many @ [a, b, ..])) if fewest.map(Vec::len) != Some(many.len()) => {
             let wanted = format!("as many pictures as where {} lies", sorting.name(*few));
-            let found = format!("{} there, among them {} and {}", many.len(), sorting.name(*a), sorting.name(*b));
+            let found = format!(
+                "{} there, among them {} and {}",
+                many.len(),
+                sorting.name(*a),
+                sorting.name(*b)
+            );
             sorting.wrong(*b, IMAGE_POSITION, wanted, found)
         }
         (_, Some([a, b, ..])) => {
-            let wanted = format!("a time, an echo or a number that tells it from {} in the same place", sorting.name(*a));
+            let wanted = format!(
+                "a time, an echo or a number that tells it from {} in the same place",
+                sorting.name(*a)
+            );
             sorting.wrong(*b, SOP_INSTANCE_UID, wanted, "none".to_owned())
         }
         _ => sorting.wrong(0, IMAGE_POSITION, "a picture".to_owned(), "none".to_owned()),
