@@ -6,9 +6,7 @@ mod dicom;
 #[path = "shared/files.rs"]
 mod files;
 
-use dicom::{
-    COLUMNS, Dicom, ROWS, center, is_noted, number, open, read, series, slice_numbers, words,
-};
+use dicom::{COLUMNS, Dicom, ROWS, center, is_noted, open, read, series, slice_numbers, words};
 use files::{Folder, message, numbers};
 use glam::dvec3;
 use stratavox::format;

@@ -45,6 +45,10 @@ fn a_file_cut_at_any_byte_is_refused() {
             .step_by(step)
             .chain(bytes.len() - 40..bytes.len())
         {
+            // A stream of deflate is padded to an even length with a zero that nobody reads.
+            if name == "deflated" && length + 1 == bytes.len() {
+                continue;
+            }
             let error = folder.refused(name, &bytes[..length]);
             assert!(error.len() < 1200 && error.is_ascii(), "{error}");
             cuts += 1;
@@ -68,16 +72,8 @@ fn a_slice_of_a_folder_that_is_cut_is_never_passed_over() {
     let last = Dicom::slice(2, [0.0, 0.0, 2.0]).bytes();
     for length in 0..last.len() {
         folder.write("2.dcm", &last[..length]);
-        let outcome = open();
-        let header = outcome.as_ref().map(|source| source.header().clone());
-        // Before its class is read a cut file is like one that never held a picture: that is said.
-        let is_said = header
-            .as_ref()
-            .is_ok_and(|h| h.notes.iter().any(|n| n.contains("no picture")));
-        assert!(
-            outcome.is_err() || is_said && length < 240,
-            "cut at {length}: {header:?}"
-        );
+        let header = open().map(|source| source.header().clone());
+        assert!(header.is_err(), "cut at {length}: {header:?}");
     }
 }
 

@@ -91,6 +91,10 @@ pub fn open(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Sou
     } else if let Some(sidecar) = raw::sidecar_of(path) {
         raw::open_sidecar(&sidecar, limits)
     } else {
+        #[cfg(feature = "dicom")]
+        if dicom::recognizes_bare(&first) {
+            return dicom::open(path, wanted, limits);
+        }
         Err(at(path)(unknown(&first)))
     }
 }

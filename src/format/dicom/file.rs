@@ -18,10 +18,15 @@ use std::path::{Path, PathBuf};
 /// Where the letters `DICM` stand.
 const PREAMBLE_BYTES: usize = 128;
 
-/// True where the first bytes are those of a DICOM file: `DICM` after 128 bytes that may be anything, or, as old
-/// files have it, elements of group 2 or 8 at once.
+/// True where `DICM` stands after 128 bytes that may be anything.
 pub(in crate::format) fn recognizes(first: &[u8]) -> bool {
-    has_preamble(first) || bare_syntax(first).is_some()
+    has_preamble(first)
+}
+
+/// True where a file begins with elements of group 2 or 8 at once, as old ones do. So few bytes are little proof:
+/// to be asked after all other formats.
+pub(in crate::format) fn recognizes_bare(first: &[u8]) -> bool {
+    bare_syntax(first).is_some()
 }
 
 fn has_preamble(first: &[u8]) -> bool {
@@ -177,7 +182,8 @@ fn scan_file(path: &Path, limits: &Limits) -> Result<Found, Problem> {
     Ok(Found::Picture(Box::new(file), set))
 }
 
-/// A file whose pixels are missing is damaged, not of another kind, where its class or its size says so.
+/// A file whose pixels are missing is damaged, not of another kind, where its class or its size says so,
+/// and where it has no class, which all objects have.
 fn must_be_a_picture(meta_class: Option<String>, set: &DataSet) -> bool {
     let class = set.text(SOP_CLASS_UID).or(meta_class).unwrap_or_default();
     let of_storage = class.strip_prefix("1.2.840.10008.5.1.4.1.1.").unwrap_or("");
@@ -190,7 +196,7 @@ fn must_be_a_picture(meta_class: Option<String>, set: &DataSet) -> bool {
         of_storage,
         "4" | "4.1" | "4.3" | "4.4" | "66.4" | "66.8" | "481.1" | "481.2"
     );
-    is_picture || set.has(ROWS)
+    is_picture || class.is_empty() || set.has(ROWS)
 }
 
 /// Padding has the sign of pixels, whatever the type of its attribute.

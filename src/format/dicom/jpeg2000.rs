@@ -119,9 +119,8 @@ impl Component {
 
 impl Size {
     fn of(encoded: &[u8]) -> Option<Self> {
-        let start = encoded.windows(4).position(|bytes| bytes == START)?;
         // Length and capabilities come before the eight numbers.
-        let body = encoded.get(start.checked_add(8)?..)?;
+        let body = encoded.strip_prefix(&START)?.get(4..)?;
         let numbers = body.get(..32)?.as_chunks::<4>().0;
         let numbers: Vec<u64> = numbers
             .iter()

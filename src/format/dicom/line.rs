@@ -47,7 +47,10 @@ pub(super) fn line(
         .collect();
     let mut sorted = distances.clone();
     sorted.sort_by(f64::total_cmp);
-    let usual = sorted.get(sorted.len() / 2).copied().unwrap_or(1.0);
+    let usual = sorted
+        .get(sorted.len().saturating_sub(1) / 2)
+        .copied()
+        .unwrap_or(1.0);
     let even: Vec<usize> = (0..positions.len()).collect();
     let (index, missing) = match on_line(&positions, &even) {
         Some(_) => (even, 0),

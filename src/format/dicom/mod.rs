@@ -44,7 +44,7 @@ mod times;
 
 use super::convert::to_u64;
 use super::geometry::{RAS_FROM_LPS, world_from_voxel};
-use super::problem::{at, escape, invalid};
+use super::problem::{at, escape, invalid, unsupported};
 use crate::volume::{
     Format, Header, Limits, Meaning, Problem, ReadError, Rescale, Series, Source, VoxelType, Wanted,
 };
@@ -55,7 +55,7 @@ use source::{DicomSource, Kept};
 use stack::{Sorting, Stack, stack};
 use std::path::Path;
 
-pub(super) use file::recognizes;
+pub(super) use file::{recognizes, recognizes_bare};
 pub(super) use series::is_folder_of_pictures;
 
 /// The word of errors.
@@ -159,6 +159,10 @@ fn open_group(
     let mut same = |a: usize, b: usize| same_pixels(&sorting, &frames, [a, b], limits);
     let stack = stack(&sorting, &mut same)?;
     notes.extend(stack.notes.iter().cloned());
+    if layout.color.samples() > 1 && stack.order.contains(&None) {
+        let what = "a series of colour pictures of which some are missing";
+        return Err(at(path)(unsupported(DICOM, what)));
+    }
     let kept = kept(&pictures, &stack, first, &mut notes);
     let stored = match kept {
         Kept::Stored => layout.stored(),
@@ -182,10 +186,10 @@ fn open_group(
                 .to_owned(),
         );
     }
-    if !stored.is_kept_exactly() {
+    if !layout.stored().is_kept_exactly() {
         notes.push(format!(
             "voxels are stored as {} and kept as f32",
-            stored.name()
+            layout.stored().name()
         ));
     }
     let is_color = layout.color.samples() > 1;
