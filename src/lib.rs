@@ -8,8 +8,8 @@
 //! | floor | modules | what they know |
 //! |---|---|---|
 //! | 0 | [`shaders`], [`real`], [`ray`], [`lattice`], [`color`] | arithmetic shared with the shaders, free of Vulkan |
-//! | 1 | [`gpu`], [`volume`], [`transfer`], [`camera`], [`picture`] | Vulkan objects, or data; never both |
-//! | 2 | [`resident`], `format` | data put on a device; bytes of files turned into a [`volume::Source`] |
+//! | 1 | [`gpu`], [`volume`], [`transfer`], [`camera`], [`picture`], [`mesh`] | Vulkan objects, or data; never both |
+//! | 2 | [`resident`], [`isosurface`], `format` | data put on a device; a surface in a volume; bytes of files turned into a [`volume::Source`] |
 //! | 3 | [`technique`], [`resolve`] | `new`, `bind`, `record`, and the CPU twins |
 //! | 4 | [`scene`], [`offscreen`] | a scene to a [`picture::Picture`]; the only place that submits and waits |
 //! | 5 | `cli` | words to scenes, errors to exit codes |
@@ -161,7 +161,9 @@ pub mod color;
 #[cfg(feature = "files")]
 pub mod format;
 pub mod gpu;
+pub mod isosurface;
 pub mod lattice;
+pub mod mesh;
 pub mod offscreen;
 pub mod picture;
 pub mod ray;

@@ -11,8 +11,8 @@ const FLOORS: &[&[&str]] = &[
     &["shaders", "real"],
     &["ray", "color"],
     &["lattice"],
-    &["gpu", "volume", "transfer", "camera", "picture"],
-    &["resident", "format"],
+    &["gpu", "volume", "transfer", "camera", "picture", "mesh"],
+    &["resident", "isosurface", "format"],
     &["technique"],
     &["resolve"],
     &["scene"],
@@ -22,8 +22,19 @@ const FLOORS: &[&[&str]] = &[
 
 /// Modules that hold data and must build where there is no Vulkan.
 const FREE_OF_VULKAN: &[&str] = &[
-    "shaders", "real", "ray", "lattice", "color", "volume", "transfer", "camera", "picture",
-    "format", "scene",
+    "shaders",
+    "real",
+    "ray",
+    "lattice",
+    "color",
+    "volume",
+    "transfer",
+    "camera",
+    "picture",
+    "mesh",
+    "isosurface",
+    "format",
+    "scene",
 ];
 
 fn floor_of(module: &str) -> usize {

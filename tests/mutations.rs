@@ -4,9 +4,6 @@
 //! gives the same mutations; a failure prints the number of the one that failed and keeps its file.
 #![cfg(feature = "files")]
 
-#[cfg(feature = "dicom")]
-#[path = "shared/dicom.rs"]
-mod dicom;
 #[path = "shared/encode.rs"]
 mod encode;
 #[path = "shared/files.rs"]
@@ -17,126 +14,16 @@ mod memory;
 mod mutate;
 #[path = "shared/nifti.rs"]
 mod nifti;
+#[path = "shared/survive.rs"]
+mod survive;
 
 use encode::{ascii, bytes_of, bzip2, gzip, hex, zlib};
 use files::Folder;
-use mutate::{Mutation, Random};
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use stratavox::format;
-use stratavox::volume::{Limits, Pick, ReadError, VoxelType, Wanted};
+use stratavox::volume::VoxelType;
+use survive::{Base, read_all, survive};
 
 #[global_allocator]
 static MEMORY: memory::Counting = memory::Counting;
-
-/// Small, so that a lie shows.
-const LIMITS: Limits = Limits {
-    max_bytes: 4 << 20,
-    max_files: 100,
-    max_header_bytes: 1 << 16,
-};
-
-/// What a read may take beyond the volume.
-const BESIDE_BYTES: usize = 64 << 20;
-
-/// Files that belong together; the first is opened.
-type Base = Vec<(&'static str, Vec<u8>)>;
-
-/// Reads all of a mutated file, one time and component after the other. Gives the number of voxels read.
-fn read_all(folder: &Folder, base: &Base) -> Result<u64, ReadError> {
-    // Slices are opened as the folder that they lie in.
-    let opened = if base[0].0 == "slice0.dcm" {
-        ""
-    } else {
-        base[0].0
-    };
-    let source = format::open(&folder.path(opened), &Wanted::default(), &LIMITS)?;
-    let header = source.header();
-    assert!(header.world_from_voxel.inverse().is_finite(), "{header:?}");
-    let mut voxels = 0;
-    for time in 0..header.times.min(4) {
-        for component in 0..header.components.min(4) {
-            let piece = source.read(Pick { time, component }, header.whole())?;
-            assert_eq!(piece.voxels.len() as u64, header.voxel_count(), "voxels");
-            voxels += header.voxel_count();
-        }
-    }
-    Ok(voxels)
-}
-
-/// Mutates the bases of one reader in turn.
-fn survive(reader: &str, bases: &[Base]) {
-    let count: u64 = match std::env::var("STRATAVOX_MUTATIONS") {
-        Ok(number) => number.parse().expect("STRATAVOX_MUTATIONS is a number"),
-        Err(_) => 20_000,
-    };
-    let folder = Folder::new();
-    let mut whole = Vec::new();
-    for base in bases {
-        for (name, bytes) in base {
-            folder.write(name, bytes);
-        }
-        let voxels = read_all(&folder, base).unwrap_or_else(|e| panic!("{reader}: {e}"));
-        whole.push(voxels);
-    }
-    let (mut refused, mut read, mut worst_memory) = (0_u64, 0_u64, 0_usize);
-    for number in 0..count {
-        let which = (number % bases.len() as u64) as usize;
-        let base = &bases[which];
-        let mut random = Random::new(number);
-        let (name, bytes) = &base[random.below(base.len())];
-        let (mutated, mutation) = mutate::mutate(bytes, &mut random);
-        folder.write(name, &mutated);
-        memory::start();
-        let outcome = catch_unwind(AssertUnwindSafe(|| read_all(&folder, base)));
-        let memory = memory::peak_since_start();
-        worst_memory = worst_memory.max(memory);
-        let failed = |what: &str| -> ! {
-            let kept = std::env::temp_dir().join(format!("stratavox-mutation-{reader}-{number}"));
-            std::fs::write(&kept, &mutated).unwrap();
-            panic!("{reader} mutation {number} ({mutation:?} of {name}): {what}; kept as {kept:?}");
-        };
-        let Ok(outcome) = outcome else {
-            failed("a panic");
-        };
-        if memory > LIMITS.max_bytes as usize + BESIDE_BYTES {
-            failed(&format!("{memory} bytes of memory"));
-        }
-        match outcome {
-            Err(_) => refused += 1,
-            Ok(voxels) => {
-                read += 1;
-                // Every base ends with its last voxel, or with a line end that carries nothing.
-                let lost = bytes.len().saturating_sub(mutated.len());
-                if mutation == Mutation::Cut && lost > 1 {
-                    failed("a volume out of a file that was cut");
-                }
-                // Less than one bit a voxel cannot be voxels, unless they are compressed: there the checksum tells.
-                let present: usize = base
-                    .iter()
-                    .map(|(name, _)| {
-                        std::fs::metadata(folder.path(name)).map_or(0, |m| m.len() as usize)
-                    })
-                    .sum();
-                if voxels > whole[which] && voxels as usize > 1032 * present {
-                    failed("more voxels than the bytes can hold");
-                }
-            }
-        }
-        folder.write(name, bytes);
-    }
-    println!(
-        "{reader}: {count} mutations, {refused} refused, {read} read, at most {worst_memory} bytes of memory"
-    );
-    assert_eq!(refused + read, count);
-    assert!(
-        refused > count / 4,
-        "{refused} of {count} refused: the mutations do no harm"
-    );
-    assert!(
-        read > 0 || count < 1000,
-        "nothing was read: the mutations do only harm"
-    );
-}
 
 const COUNT: usize = 5 * 4 * 3;
 
@@ -346,45 +233,112 @@ fn raw_survives_mutations() {
     );
 }
 
-/// Files of many frames that pydicom wrote, in each transfer syntax.
-#[test]
-#[cfg(feature = "dicom")]
-fn dicom_survives_mutations() {
-    macro_rules! fixture {
-        ($name:literal) => {
-            vec![(
-                concat!($name, ".x"),
-                include_bytes!(concat!("fixtures/dicom/", $name, ".dcm")).to_vec(),
-            )]
-        };
+/// A file of VTK's own writer, without the line end behind it.
+fn written_by_vtk(format: &str, name: &'static str) -> Base {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");
+    let mut bytes = std::fs::read(path.join(format).join(name)).expect("a fixture");
+    while bytes.ends_with(b"\n") {
+        bytes.pop();
     }
+    vec![(name, bytes)]
+}
+
+#[test]
+fn vti_survives_mutations() {
+    let names = [
+        "ascii-none-u32-le.vti",
+        "binary-none-u64-le.vti",
+        "binary-zlib-u32-be.vti",
+        "appended-none-u32-le.vti",
+        "appended-lz4-u64-le.vti",
+        "appended-zlib-u32-le.vti",
+        "appended64-none-u64-be.vti",
+        "appended64-lz4-u32-le.vti",
+        "several.vti",
+        "pieces.vti",
+        "cells.vti",
+        "vectors.vti",
+    ];
+    survive("vti", &names.map(|name| written_by_vtk("vti", name)));
+}
+
+#[test]
+fn vtk_survives_mutations() {
+    let with_end = |name| {
+        let mut base = written_by_vtk("vtk", name);
+        // Without its line end the last number could have lost digits.
+        base[0].1.push(b'\n');
+        base
+    };
     survive(
-        "dicom",
+        "vtk",
         &[
-            fixture!("implicit_i16"),
-            fixture!("big_i16"),
-            fixture!("deflated_i16"),
-            fixture!("rle_fragments"),
-            fixture!("jpeg_rgb_422"),
-            fixture!("jpeg_lossless_i16"),
-            fixture!("j2k_i16"),
-            fixture!("j2k_lossy_rgb"),
-            fixture!("enhanced_slopes"),
-            fixture!("segmentation"),
+            with_end("type-int16-ascii-42.vtk"),
+            with_end("type-float64-ascii-51.vtk"),
+            written_by_vtk("vtk", "type-int16-binary-51.vtk"),
+            written_by_vtk("vtk", "type-float64-binary-51.vtk"),
         ],
     );
 }
 
+/// Files of an independent writer, tests/fixtures.
+fn fixture(format: &str, name: &'static str) -> Base {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");
+    let mut bytes = std::fs::read(path.join(format).join(name)).unwrap();
+    let folder = Folder::new();
+    // Padding at the end belongs to nothing: without it every cut is a loss.
+    loop {
+        let shorter = vec![(name, bytes[..bytes.len() - 1].to_vec())];
+        folder.write(name, &shorter[0].1);
+        if read_all(&folder, &shorter).is_err() {
+            return vec![(name, bytes)];
+        }
+        bytes.pop();
+    }
+}
+
 #[test]
-#[cfg(feature = "dicom")]
-fn dicom_folders_survive_mutations() {
-    let slice = |k: usize| dicom::Dicom::slice(k, [1.0, 2.0, 1.5 * k as f64]).bytes();
-    survive(
-        "dicom-folder",
-        &[vec![
-            ("slice0.dcm", slice(0)),
-            ("slice1.dcm", slice(1)),
-            ("slice2.dcm", slice(2)),
-        ]],
-    );
+fn npy_survives_mutations() {
+    let names = [
+        "u2-be.npy",
+        "f8-le.npy",
+        "v3.npy",
+        "colors.npy",
+        "fortran-times.npy",
+    ];
+    survive("npy", &names.map(|name| fixture("npy", name)));
+}
+
+#[test]
+#[cfg(feature = "tiff")]
+fn tiff_survives_mutations() {
+    let names = [
+        "raw-u2-be.tif",
+        "big-be.tif",
+        "lzw-u2-p2-be.tif",
+        "deflate-f4-p3.tif",
+        "packbits-u2.tif",
+        "strips-lzw-be.tif",
+        "tiles-deflate-p2-be.tif",
+        "bits-1.tif",
+        "rgb-planar.tif",
+        "palette-u1.tif",
+        "jpeg-ycbcr.tif",
+        "jpeg-gray-tiles.tif",
+        "thumbnails.tif",
+    ];
+    survive("tiff", &names.map(|name| fixture("tiff", name)));
+}
+
+#[test]
+#[cfg(feature = "tiff")]
+fn ome_and_imagej_survive_mutations() {
+    let names = [
+        "ome-tzcyx.ome.tif",
+        "ome-rgb.ome.tif",
+        "ome-two.ome.tif",
+        "imagej-hyper.tif",
+        "imagej-rgb.tif",
+    ];
+    survive("ome", &names.map(|name| fixture("tiff", name)));
 }

@@ -6,10 +6,10 @@
 use super::{
     Error, cameras_file,
     flags::{Classification, Depth, NotBuilt, SceneFlags},
+    load::load,
     output::{self, say, say_aside, write_whole},
     progress::{Progress, ProgressWord},
-    render::load,
-    renderer::{Job, Renderer},
+    renderer::{Device, Job, Renderer},
     scene_file,
     signals::Gate,
     timings::{FrameTime, Timings, median, ms_since, peak_rss_bytes},
@@ -101,10 +101,14 @@ impl Bench {
     /// One scene from each of the views.
     fn views(&self, scene: &SceneFlags, cameras: &[Camera]) -> Result<String, Error> {
         let progress = Progress::new(self.progress);
+        let settings = scene.sampling.settings(Depth::Eight)?;
+        progress.stage("prepare", 0, 1);
+        let word = scene.device.as_deref();
+        let device = Device::find(word)?;
+        progress.device(&device.name());
         progress.stage("read", 0, 1);
         let start = Instant::now();
-        let settings = scene.sampling.settings(Depth::Eight)?;
-        let volume = load(scene, &progress)?;
+        let volume = load(scene, &device, &progress)?;
         let classification = scene
             .classification
             .classification(&volume, settings.mode)?;
@@ -116,13 +120,11 @@ impl Bench {
             settings: &settings,
             extent_pixels: scene.picture.extent_pixels()?,
             layers: &[],
-            device: scene.device.as_deref(),
         };
         // The window of an X-ray is the range of the first view, in all views.
-        let of_first = window_of(job, &cameras[0])?;
+        let of_first = window_of(job, &cameras[0], word)?;
         job.classification = of_first.as_ref().unwrap_or(&classification);
-        let mut renderer = Renderer::new(job, &cameras[0])?;
-        progress.device(&renderer.device());
+        let mut renderer = Renderer::new(job, &cameras[0], device)?;
         // Pipelines are made on first use: that is not what is measured.
         renderer.draw(&cameras[0])?;
         let mut frames = Vec::new();
@@ -156,7 +158,8 @@ impl Bench {
         let progress = Progress::new(self.progress);
         progress.stage("read", 0, 1);
         let base = scene.sampling.settings(Depth::Eight)?;
-        let volume = load(scene, &progress)?;
+        let word = scene.device.as_deref();
+        let volume = load(scene, &Device::find(word)?, &progress)?;
         let extent_pixels = scene.picture.extent_pixels()?;
         let bounds = BoundingSphere::of_grid(&volume.world_from_voxel, volume.dims);
         let camera = scene.camera.camera(&bounds, extent_pixels)?;
@@ -176,9 +179,8 @@ impl Bench {
                 settings: &settings,
                 extent_pixels,
                 layers: &[],
-                device: scene.device.as_deref(),
             };
-            let mut renderer = Renderer::new(job, &camera)?;
+            let mut renderer = Renderer::new(job, &camera, Device::find(word)?)?;
             renderer.draw(&camera)?;
             let frames = (0..self.repeat).map(|_| timed(&mut renderer, &camera));
             let frames = frames.collect::<Result<Vec<_>, _>>()?;
@@ -207,7 +209,11 @@ impl Bench {
 }
 
 /// Preset `grey` over the range of what the first view projects, where nothing else says how to classify.
-fn window_of(job: Job, camera: &Camera) -> Result<Option<Classification>, Error> {
+fn window_of(
+    job: Job,
+    camera: &Camera,
+    device: Option<&str>,
+) -> Result<Option<Classification>, Error> {
     if *job.classification != Classification::RangeOfPicture {
         return Ok(None);
     }
@@ -215,7 +221,8 @@ fn window_of(job: Job, camera: &Camera) -> Result<Option<Classification>, Error>
         layers: &[LayerKind::Value],
         ..job
     };
-    let picture = Renderer::new(job, camera)?.draw(camera)?.picture;
+    let device = Device::find(device)?;
+    let picture = Renderer::new(job, camera, device)?.draw(camera)?.picture;
     let values = picture.layers[0]
         .values
         .iter()

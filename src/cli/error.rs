@@ -72,6 +72,9 @@ pub enum Error {
     /// More than there is, or than is allowed.
     #[error("{0}")]
     Limit(String),
+    /// More memory than there is.
+    #[error("{0}")]
+    Memory(String),
 }
 
 impl From<offscreen::Error> for Error {
@@ -115,7 +118,7 @@ impl Error {
             Self::WritePicture(_) | Self::Output { .. } => 4,
             Self::Device(gpu::Error::Limit { .. } | gpu::Error::OutOfMemory { .. }) => 6,
             Self::Device(_) => 5,
-            Self::Limit(_) => 6,
+            Self::Limit(_) | Self::Memory(_) => 6,
         }
     }
 
@@ -129,10 +132,16 @@ impl Error {
                 Problem::UnknownFormat(_) => {
                     Some("a file without a header needs its layout: --raw 256x256x109,i16")
                 }
+                Problem::Limit { .. } => {
+                    Some("--max-memory 16G allows more, where --untrusted does not forbid it")
+                }
                 _ => None,
             },
             Self::Device(gpu::Error::Limit { .. } | gpu::Error::OutOfMemory { .. }) => {
                 Some("a smaller --size or volume may fit; --device reference has no such limit")
+            }
+            Self::Memory(_) => {
+                Some("--fit draws it with fewer voxels; --max-memory 16G sets what may be taken")
             }
             Self::Limit(_) => Some("a smaller --size or fewer --samples-per-voxel stay below it"),
             Self::Device(gpu::Error::Format { .. }) => {

@@ -4,9 +4,10 @@ use super::{
     Error,
     error::visible,
     flags::InputFlags,
+    memory::RenderBytes,
     output::{say, say_aside},
 };
-use crate::volume::{Grid, Header, Limits, Statistics};
+use crate::volume::{Grid, Header, Statistics};
 use clap::Args;
 use glam::DVec3;
 use serde::Serialize;
@@ -44,17 +45,10 @@ struct Report {
     render_bytes: RenderBytes,
 }
 
-/// What drawing one time and component takes, pictures left out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-struct RenderBytes {
-    host: u64,
-    device: u64,
-}
-
 impl Info {
     /// Reads all of the input and prints what it is like.
     pub fn run(self) -> Result<(), Error> {
-        let limits = Limits::default();
+        let limits = self.input.limits();
         let source = self.input.open(&limits)?;
         let header = source.header();
         self.input.time(header)?;
@@ -96,7 +90,10 @@ fn report(header: &Header, statistics: &Statistics) -> Report {
         non_finite: statistics.non_finite_count,
         fill_count: statistics.fill_count,
         variables: header.variables.clone(),
-        render_bytes: render_bytes(header, statistics),
+        render_bytes: RenderBytes::of(
+            header,
+            statistics.non_finite_count + statistics.fill_count > 0,
+        ),
     }
 }
 
@@ -107,23 +104,6 @@ fn world_from_centers(header: &Header) -> [[f64; 4]; 4] {
     // A sum with zero has no negative zero.
     let row = |k: usize| [m.x_axis[k], m.y_axis[k], m.z_axis[k], origin[k]].map(|n| n + 0.0);
     [row(0), row(1), row(2), [0.0, 0.0, 0.0, 1.0]]
-}
-
-fn render_bytes(header: &Header, statistics: &Statistics) -> RenderBytes {
-    let voxels = header.voxel_count();
-    // What is not kept exactly becomes f32; 8-bit numbers may need 16 on a device.
-    let host = if header.stored.is_kept_exactly() {
-        header.stored.bytes() as u64
-    } else {
-        4
-    };
-    let device = host.max(2);
-    let has_holes = statistics.non_finite_count + statistics.fill_count > 0;
-    let mask = u64::from(has_holes);
-    RenderBytes {
-        host: voxels.saturating_mul(host + mask),
-        device: voxels.saturating_mul(device + mask),
-    }
 }
 
 fn text(report: &Report, notes: &[String]) -> String {

@@ -3,10 +3,11 @@
 use super::{
     Error,
     flags::{Depth, NotBuilt, SceneFlags},
+    load::load,
     output::{self, write_whole},
     progress::{Progress, ProgressWord},
     reasons::why_empty,
-    renderer::{Job, Renderer},
+    renderer::{Device, Job, Renderer},
     scene_file,
     signals::Gate,
     timings::{FrameTime, Timings, ms_since, peak_rss_bytes},
@@ -15,7 +16,6 @@ use crate::{
     camera::BoundingSphere,
     picture::{BitDepth, LayerKind, PictureFormat, WriteOptions, write_picture},
     technique::Filter,
-    volume::{Limits, Volume},
 };
 use clap::Args;
 use std::{
@@ -98,9 +98,12 @@ impl Render {
         for note in [scene.sampling.idle(), scene.camera.idle()].concat() {
             progress.note(note);
         }
+        progress.stage("prepare", 0, 1);
+        let device = Device::find(scene.device.as_deref())?;
+        progress.device(&device.name());
         progress.stage("read", 0, 1);
         let start = Instant::now();
-        let volume = load(&scene, &progress)?;
+        let volume = load(&scene, &device, &progress)?;
         let bounds = BoundingSphere::of_grid(&volume.world_from_voxel, volume.dims);
         let camera = scene.camera.camera(&bounds, extent_pixels)?;
         let classification = scene
@@ -119,10 +122,8 @@ impl Render {
             settings: &settings,
             extent_pixels,
             layers: &layers,
-            device: scene.device.as_deref(),
         };
-        let mut renderer = Renderer::new(job, &camera)?;
-        progress.device(&renderer.device());
+        let mut renderer = Renderer::new(job, &camera, device)?;
         let mut frames = Vec::new();
         let mut last = None;
         for done in 0..self.repeat {
@@ -202,27 +203,4 @@ fn picture_format(path: &Path) -> Result<PictureFormat, Error> {
             "end the name in .png, .exr or .npy",
         )
     })
-}
-
-/// The one volume that the words name, in memory.
-pub fn load(scene: &SceneFlags, progress: &Progress) -> Result<Volume, Error> {
-    let limits = Limits::default();
-    let source = scene.input.open(&limits)?;
-    let (pick, note) = scene.input.pick(source.header())?;
-    for note in source.header().notes.iter().chain(&note) {
-        progress.note(note);
-    }
-    let whole = source.header().whole();
-    let volume = Volume::read(source.as_ref(), pick, whole, &limits)?;
-    if !volume.loss.is_none() {
-        let crate::volume::Loss { changed, worst } = volume.loss;
-        progress.note(&format!(
-            "{changed} voxels were rounded to 32-bit floats, by at most {worst}"
-        ));
-    }
-    let no_data = volume.no_data_count();
-    if no_data > 0 {
-        progress.note(&format!("{no_data} voxels hold no data"));
-    }
-    Ok(volume)
 }

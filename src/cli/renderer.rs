@@ -1,6 +1,6 @@
 //! A renderer for a volume, on a Vulkan device or on the CPU alone: the one place of the program that makes one.
 
-use super::{Error, flags::Classification, timings::ms_since};
+use super::{Error, flags::Classification, memory::DeviceMemory, timings::ms_since};
 use crate::{
     camera::Camera,
     gpu::{DeviceChoice, Headless, Options},
@@ -25,8 +25,14 @@ pub struct Job<'a> {
     pub extent_pixels: [u32; 2],
     /// Layers that the picture must have.
     pub layers: &'a [LayerKind],
-    /// The word of `--device`.
-    pub device: Option<&'a str>,
+}
+
+/// What draws.
+#[derive(Debug)]
+pub struct Device {
+    /// `None`: the CPU twins.
+    on: Option<Headless>,
+    found_ms: f64,
 }
 
 /// A renderer that is ready to draw.
@@ -53,23 +59,60 @@ pub struct Frame {
 /// The word of `--device` for the CPU twins.
 const REFERENCE: &str = "reference";
 
+impl Device {
+    /// The one that the word of `--device` names.
+    pub fn find(word: Option<&str>) -> Result<Self, Error> {
+        let start = Instant::now();
+        let on = match word {
+            Some(REFERENCE) => None,
+            _ => {
+                let choice = word.map(DeviceChoice::from).unwrap_or_default();
+                Some(Headless::new(&choice, &Options::default())?)
+            }
+        };
+        Ok(Self {
+            on,
+            found_ms: ms_since(start),
+        })
+    }
+
+    /// Its name.
+    pub fn name(&self) -> String {
+        name_of(self.on.as_ref())
+    }
+
+    /// What it has for textures; the CPU twins need none.
+    pub fn memory(&self) -> Option<DeviceMemory> {
+        let gpu = self.on.as_ref()?.gpu();
+        Some(DeviceMemory {
+            heap_bytes: gpu.limits().max_heap_bytes,
+            is_of_host: gpu.is_cpu(),
+        })
+    }
+}
+
+fn name_of(device: Option<&Headless>) -> String {
+    match device {
+        Some(device) => device.gpu().device_name().to_owned(),
+        None => "reference (the CPU, without Vulkan)".to_owned(),
+    }
+}
+
 impl<'a> Renderer<'a> {
-    /// Finds the device and brings there what `camera` sees first.
-    pub fn new(job: Job<'a>, camera: &Camera) -> Result<Self, Error> {
+    /// Brings to the device what `camera` sees first.
+    pub fn new(job: Job<'a>, camera: &Camera, device: Device) -> Result<Self, Error> {
         check_layers(&job)?;
-        if job.device == Some(REFERENCE) {
+        let Some(on) = device.on else {
             return Ok(Self {
                 job,
                 on_device: None,
                 upload_ms: 0.0,
                 prepare_ms: 0.0,
             });
-        }
+        };
         let start = Instant::now();
-        let choice = job.device.map(DeviceChoice::from).unwrap_or_default();
-        let device = Headless::new(&choice, &Options::default())?;
-        let mut renderer = offscreen::Renderer::new(device, job.volume)?;
-        let prepare_ms = ms_since(start);
+        let mut renderer = offscreen::Renderer::new(on, job.volume)?;
+        let prepare_ms = device.found_ms + ms_since(start);
         let start = Instant::now();
         renderer.upload(&job.scene(camera))?;
         Ok(Self {
@@ -115,12 +158,17 @@ impl<'a> Renderer<'a> {
         })
     }
 
+    /// The device, free for another volume.
+    pub fn into_device(self) -> Device {
+        Device {
+            on: self.on_device.map(|renderer| renderer.into_device()),
+            found_ms: 0.0,
+        }
+    }
+
     /// The device's name.
     pub fn device(&self) -> String {
-        match &self.on_device {
-            Some(renderer) => renderer.device().gpu().device_name().to_owned(),
-            None => "reference (the CPU, without Vulkan)".to_owned(),
-        }
+        name_of(self.on_device.as_ref().map(|renderer| renderer.device()))
     }
 
     /// The driver and its version.

@@ -1,7 +1,7 @@
 //! Which files may be opened: regular ones, and from inside a header only those under the header's folder.
 
 use super::problem::{self, at, escape, invalid};
-use crate::volume::{Problem, ReadError};
+use crate::volume::{Limits, Problem, ReadError};
 use std::fs::{File, FileType, Metadata};
 use std::io::{BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Component, Path, PathBuf};
@@ -52,8 +52,17 @@ pub(crate) struct Folder {
 }
 
 impl Folder {
-    /// The folder that `header` lies in.
-    pub(crate) fn of(header: &Path) -> Result<Self, Problem> {
+    /// The folder that `header` lies in, where `limits` let a header of `format` name other files.
+    pub(crate) fn of(
+        header: &Path,
+        format: &'static str,
+        limits: &Limits,
+    ) -> Result<Self, Problem> {
+        if !limits.detached {
+            let what =
+                "a header that names another file, where limits are those for untrusted files,";
+            return Err(problem::unsupported(format, what));
+        }
         let given = match header.parent() {
             Some(parent) if parent != Path::new("") => parent.to_owned(),
             _ => PathBuf::from("."),

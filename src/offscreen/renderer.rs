@@ -77,6 +77,11 @@ impl<'v> Renderer<'v> {
         &self.device
     }
 
+    /// The device, free for another volume.
+    pub fn into_device(self) -> Headless {
+        self.device
+    }
+
     /// Uploads what pictures of `scene` read, as far as it is not there yet.
     ///
     /// # Errors

@@ -12,6 +12,8 @@
 mod automatic;
 #[cfg(feature = "json")]
 mod file;
+#[cfg(all(feature = "json", feature = "files"))]
+mod import;
 mod law;
 mod points;
 mod preset;
@@ -25,6 +27,8 @@ pub use file::{
     FileError, FileProblem, MAX_FILE_BYTES, MAX_POINTS, read_transfer_function,
     transfer_function_from_json, transfer_function_to_json,
 };
+#[cfg(all(feature = "json", feature = "files"))]
+pub use import::{Imported, Scale, import_transfer_function, transfer_function_from_bytes};
 pub use law::{Absorption, MAX_OPACITY, extinction, opacity_over};
 pub use points::{Points, classify_by_points};
 pub use preset::Preset;

@@ -10,20 +10,26 @@
 
 pub mod field;
 mod grid;
+mod histogram;
 mod holes;
+mod joint;
 pub mod phantom;
 mod read;
+mod reduce;
 pub mod sample;
 mod source;
 mod statistics;
 mod voxels;
 
 pub use grid::Grid;
+pub use histogram::Histogram;
+pub use joint::JointHistogram;
+pub use reduce::Reduced;
 pub use source::{
     Channel, Format, Header, Limits, Loss, Meaning, Pick, Piece, Problem, ReadError, Rescale,
     Series, Source, VoxelBox, Wanted,
 };
-pub use statistics::{Histogram, Statistics};
+pub use statistics::Statistics;
 pub use voxels::{VoxelType, Voxels};
 
 use glam::DAffine3;

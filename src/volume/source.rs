@@ -17,6 +17,13 @@ pub trait Source: Send + Sync {
     /// `pick` and `region` lie inside the header; integers of 32 and 64 bits and f64 are rounded to f32,
     /// and [`Piece::loss`] says what that cost.
     fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError>;
+
+    /// The same numbers as little-endian bytes of the type in the file, none of them rounded. `None` from a source
+    /// that has them in the types of [`Voxels`] only.
+    fn read_bytes(&self, pick: Pick, region: VoxelBox) -> Result<Option<Vec<u8>>, ReadError> {
+        let _ = (pick, region);
+        Ok(None)
+    }
 }
 
 /// What one [`Source::read`] brings.
@@ -388,6 +395,18 @@ pub struct Limits {
     pub max_files: usize,
     /// Bytes of a text header.
     pub max_header_bytes: usize,
+    /// True where a header may name other files, always in its own folder.
+    pub detached: bool,
+}
+
+impl Limits {
+    /// For files of strangers: one file, small headers, little memory.
+    pub const UNTRUSTED: Self = Self {
+        max_bytes: 1 << 30,
+        max_files: 4096,
+        max_header_bytes: 1 << 16,
+        detached: false,
+    };
 }
 
 impl Default for Limits {
@@ -396,6 +415,7 @@ impl Default for Limits {
             max_bytes: 4 << 30,
             max_files: 65_536,
             max_header_bytes: 1 << 20,
+            detached: true,
         }
     }
 }

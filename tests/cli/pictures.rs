@@ -119,9 +119,10 @@ fn progress_as_json_is_one_object_a_line() {
     assert_eq!(
         stages,
         [
-            "\"read\"",
             "\"prepare\"",
             "a device",
+            "\"read\"",
+            "\"prepare\"",
             "\"draw\"",
             "\"draw\"",
             "\"write\""

@@ -44,14 +44,12 @@ fn a_word_that_is_not_built_exits_2_and_is_named() {
             "render phantom:fog -o a.exr --aov position",
             "`--aov position`",
         ),
-        ("render phantom:fog -o a.png --series 1.2.3", "`--series`"),
         ("render . -o a.png", "folders"),
         ("histogram phantom:fog -o h.png", "`stratavox histogram`"),
         (
             "animate phantom:fog -o %04d.png --turntable 3",
             "`stratavox animate`",
         ),
-        ("convert phantom:fog -o a.nrrd", "`stratavox convert`"),
         ("conformance --device cpu", "`stratavox conformance`"),
         ("preset list", "`stratavox preset`"),
     ] {

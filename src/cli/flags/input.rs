@@ -1,6 +1,6 @@
 //! Which volume: the words, and the source they name.
 
-use super::Error;
+use super::{super::memory, Error};
 use crate::{
     format,
     volume::{Header, Limits, Pick, Series, Source, Wanted, phantom},
@@ -16,7 +16,7 @@ use std::{
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct InputFlags {
-    /// A volume file, or phantom:NAME[,n=256][,type=u8|u16|f32] with NAME of sphere, gauss, marschner-lobb, head, fog, shells, storm
+    /// A volume file, a folder of slices, or phantom:NAME[,n=256][,type=u8|u16|f32] with NAME of sphere, gauss, marschner-lobb, head, fog, shells, storm
     #[arg(value_name = "INPUT")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub path: Option<String>,
@@ -40,15 +40,33 @@ pub struct InputFlags {
     #[arg(long, value_name = "UID", help_heading = "Input")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub series: Option<String>,
+    /// Draw a volume that is too large for the memory with fewer voxels, and say so
+    #[arg(long, help_heading = "Input")]
+    #[serde(skip_serializing_if = "is_false")]
+    pub fit: bool,
+    /// Memory that the volume may take, such as 512M or 16G [default: 90 % of what is free]
+    #[arg(long, value_name = "SIZE", value_parser = memory::bytes_of_word, help_heading = "Input")]
+    #[serde(skip)]
+    pub max_memory: Option<u64>,
+    /// Tight limits for files of strangers: 1 GiB, small headers, no second file that a header names
+    #[arg(long, help_heading = "Input")]
+    #[serde(skip)]
+    pub untrusted: bool,
+}
+
+#[allow(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde hands over references"
+)]
+fn is_false(flag: &bool) -> bool {
+    !flag
 }
 
 /// How a built-in volume begins.
 const PHANTOM: &str = "phantom:";
 
 /// Endings of files that are promised and not built yet.
-const LATER: &[&str] = &[
-    "vti", "vtk", "tif", "tiff", "nc", "h5", "grib", "grib2", "npy", "zarr",
-];
+const LATER: &[&str] = &["nc", "h5", "grib", "grib2"];
 
 impl InputFlags {
     /// The file, where the input is one.
@@ -57,6 +75,23 @@ impl InputFlags {
             .as_deref()
             .filter(|path| !path.starts_with(PHANTOM))
             .map(Path::new)
+    }
+
+    /// What a reader may use.
+    pub fn limits(&self) -> Limits {
+        let limits = if self.untrusted {
+            Limits::UNTRUSTED
+        } else {
+            Limits::default()
+        };
+        Limits {
+            max_bytes: match self.max_memory.or_else(memory::available_bytes) {
+                Some(bytes) if self.untrusted => bytes.min(limits.max_bytes),
+                Some(bytes) => bytes,
+                None => limits.max_bytes,
+            },
+            ..limits
+        }
     }
 
     /// Opens what the words name; reads its header alone.
@@ -74,7 +109,9 @@ impl InputFlags {
                     "leave out --raw",
                 ));
             }
-            return Ok(phantom::open(&self.phantom_spec(path), limits)?);
+            let source = phantom::open(&self.phantom_spec(path), limits)?;
+            self.check_series(source.header())?;
+            return Ok(source);
         }
         let path = Path::new(path);
         if path.exists() && self.raw.is_none() {
@@ -114,8 +151,7 @@ impl InputFlags {
 
     /// Which of the volumes in the source to draw, and what a person should know about the choice.
     pub fn pick(&self, header: &Header) -> Result<(Pick, Option<String>), Error> {
-        self.check_one_variable(header)?;
-        self.check_one_series(header)?;
+        self.check_one(header)?;
         let (time, note) = self.time(header)?;
         let components = self.components(header)?;
         if components.len() != 1 {
@@ -145,6 +181,12 @@ impl InputFlags {
                 "--component 0",
             )),
         }
+    }
+
+    /// Refuses a source of several variables or series of which the words choose none.
+    pub fn check_one(&self, header: &Header) -> Result<(), Error> {
+        self.check_one_variable(header)?;
+        self.check_one_series(header)
     }
 
     fn check_one_variable(&self, header: &Header) -> Result<(), Error> {
@@ -272,8 +314,8 @@ fn listed(header: &Header) -> String {
 }
 
 fn refuse_later_formats(path: &Path) -> Result<(), Error> {
-    if path.is_dir() && path.extension().is_some_and(|ending| ending == "zarr") {
-        return Err(Error::NotBuilt("reading `.zarr` folders".to_owned()));
+    if path.is_dir() {
+        return Ok(());
     }
     let ending = path.extension().and_then(|ending| ending.to_str());
     match ending.map(str::to_ascii_lowercase) {

@@ -13,7 +13,7 @@ mod sampling;
 mod words;
 
 pub use camera::CameraFlags;
-pub use classification::{Classification, ClassificationFlags};
+pub use classification::{Classification, ClassificationFlags, preset, summary, with_causes};
 pub use input::InputFlags;
 pub use not_built::NotBuilt;
 pub use numbers::{Background, Numbers, Size, finite, positive};

@@ -116,6 +116,10 @@ fn scan_file(path: &Path, limits: &Limits) -> Result<Found, Problem> {
     } else {
         None
     };
+    if start == 0 && bare.is_none() {
+        let what = ": this is no DICOM file, whatever its name says".to_owned();
+        return Err(Problem::UnknownFormat(what));
+    }
     let mut syntax = bare.unwrap_or(Syntax::IMPLICIT);
     let (mut refused, mut meta_class) = (None, None);
     if start != 0 || first.starts_with(&[2, 0]) {

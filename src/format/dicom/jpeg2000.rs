@@ -19,6 +19,9 @@ const LEAST_TILE_BYTES: u64 = 14;
 
 /// Samples of the layout, little-endian, side by side.
 pub(super) fn decode(encoded: &[u8], layout: &Layout) -> Result<Vec<u8>, Problem> {
+    // Boxes around the code stream are to be passed over, PS3.5 section 8.2.4.
+    let start = encoded.windows(4).position(|bytes| bytes == START);
+    let encoded = encoded.get(start.unwrap_or(0)..).unwrap_or(encoded);
     let size =
         Size::of(encoded).ok_or_else(|| damaged(J2K, "no code stream with a SIZ segment"))?;
     same_size(

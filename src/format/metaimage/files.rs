@@ -25,7 +25,7 @@ pub(super) fn parts(
         let part = part(fields, path.to_owned(), fields.header_bytes, encoding, true);
         return Ok(vec![part.map_err(at(path))?]);
     }
-    let folder = Folder::of(path).map_err(at(path))?;
+    let folder = Folder::of(path, METAIMAGE, limits).map_err(at(path))?;
     let is_one_file = !text.starts_with("LIST") && !text.contains('%');
     let one = |name: &str| {
         let resolved = folder.resolve(name, METAIMAGE, "ElementDataFile")?;

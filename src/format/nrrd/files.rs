@@ -25,7 +25,7 @@ pub(super) fn parts(
     let Some(text) = fields.get("data file") else {
         return Ok(vec![skip.part(path.to_owned(), fields.header_bytes)?]);
     };
-    let folder = Folder::of(path).map_err(at(path))?;
+    let folder = Folder::of(path, NRRD, limits).map_err(at(path))?;
     let part = |name: &str| skip.part(folder.resolve(name, NRRD, "data file")?, 0);
     let too_many = |count: u64| {
         let wanted = format!("at most {} files", limits.max_files);

@@ -32,9 +32,10 @@ pub(super) fn read(path: &Path, limits: &Limits) -> Result<(PathBuf, RawSpec), R
         })
     })?;
     let spec = spec(&sidecar).map_err(at(path))?;
-    let voxels = Folder::of(path)
-        .map_err(at(path))?
-        .resolve(&sidecar.file, RAW, "file")?;
+    let voxels =
+        Folder::of(path, RAW, limits)
+            .map_err(at(path))?
+            .resolve(&sidecar.file, RAW, "file")?;
     Ok((voxels, spec))
 }
 

@@ -1,0 +1,30 @@
+//! From the words to a volume in memory: opened, compared with the memory that is there, read.
+
+use super::{Error, flags::SceneFlags, memory::fitting, progress::Progress, renderer::Device};
+use crate::volume::{Loss, Volume};
+
+/// The one volume that the words name, in memory.
+pub fn load(scene: &SceneFlags, device: &Device, progress: &Progress) -> Result<Volume, Error> {
+    let limits = scene.input.limits();
+    let source = scene.input.open(&limits)?;
+    // What may be wrong with the words is said before anything about memory.
+    scene.input.pick(source.header())?;
+    let source = fitting(source, &scene.input, device.memory())?;
+    let (pick, note) = scene.input.pick(source.header())?;
+    for note in source.header().notes.iter().chain(&note) {
+        progress.note(note);
+    }
+    let whole = source.header().whole();
+    let volume = Volume::read(source.as_ref(), pick, whole, &limits)?;
+    if !volume.loss.is_none() {
+        let Loss { changed, worst } = volume.loss;
+        progress.note(&format!(
+            "{changed} voxels were rounded to 32-bit floats, by at most {worst}"
+        ));
+    }
+    let no_data = volume.no_data_count();
+    if no_data > 0 {
+        progress.note(&format!("{no_data} voxels hold no data"));
+    }
+    Ok(volume)
+}

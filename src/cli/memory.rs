@@ -1,0 +1,224 @@
+//! What memory a picture takes, and whether it is there: asked before the first voxel is read.
+//!
+//! ```text
+//! host   = voxels as they are kept + one byte a voxel where some may be no data
+//! device = voxels as texels        + the same
+//! ```
+//!
+//! The textures of a CPU driver lie in the memory of the host: there the sum has to fit.
+
+use super::{Error, flags::InputFlags};
+use crate::volume::{Header, Reduced, Source};
+use serde::Serialize;
+
+/// What one time and component takes, pictures left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct RenderBytes {
+    /// In the memory of the process.
+    pub host: u64,
+    /// In the memory of the device.
+    pub device: u64,
+}
+
+impl RenderBytes {
+    /// Of a volume like this one; `has_holes` where voxels without data are known or expected.
+    pub fn of(header: &Header, has_holes: bool) -> Self {
+        let voxels = header.voxel_count();
+        // What is not kept exactly becomes f32; 8-bit numbers may need 16 on a device.
+        let host = if header.stored.is_kept_exactly() {
+            header.stored.bytes() as u64
+        } else {
+            4
+        };
+        let device = host.max(2);
+        let mask = u64::from(has_holes);
+        Self {
+            host: voxels.saturating_mul(host + mask),
+            device: voxels.saturating_mul(device + mask),
+        }
+    }
+}
+
+/// The memory that a device has for textures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DeviceMemory {
+    /// Its largest heap.
+    pub heap_bytes: u64,
+    /// True where that is the memory of the host.
+    pub is_of_host: bool,
+}
+
+/// Voxels of a source that are read at once to be reduced.
+const SLAB_BYTES: u64 = 256 << 20;
+
+/// Part of what is there that a volume may take: the rest is for pictures, programs and the system.
+const SHARE: f64 = 0.9;
+
+/// The source, reduced where that is wanted and needed.
+///
+/// # Errors
+/// Where the memory is not there, and `--fit` is not given.
+pub fn fitting(
+    source: Box<dyn Source>,
+    input: &InputFlags,
+    device: Option<DeviceMemory>,
+) -> Result<Box<dyn Source>, Error> {
+    let host_bytes = input.max_memory.or_else(available_bytes);
+    let factor = least_factor(source.header(), host_bytes, device);
+    if factor == 1 {
+        return Ok(source);
+    }
+    if input.fit {
+        let slab_bytes = host_bytes.map_or(SLAB_BYTES, |there| (there / 16).min(SLAB_BYTES));
+        return Ok(Box::new(Reduced::new(source, factor, slab_bytes)));
+    }
+    let needed = RenderBytes::of(source.header(), false);
+    let there = |bytes: Option<u64>| bytes.map_or("an unknown amount".to_owned(), in_units);
+    Err(Error::Memory(format!(
+        "{}: the volume needs {} of memory and {} of the device's; there are {} and {}",
+        source.path().display(),
+        in_units(needed.host),
+        in_units(needed.device),
+        there(host_bytes),
+        there(device.map(|device| device.heap_bytes)),
+    )))
+}
+
+/// By how much each axis has to shrink.
+fn least_factor(header: &Header, host_bytes: Option<u64>, device: Option<DeviceMemory>) -> u32 {
+    let whole = RenderBytes::of(header, header.fill.is_some());
+    let largest = header.dims.iter().copied().max().unwrap_or(1);
+    let fits = |&factor: &u32| {
+        let part = |bytes: u64| bytes as f64 / f64::from(factor).powi(3);
+        let within = |wanted: f64, there: Option<u64>| {
+            there.is_none_or(|there| wanted <= SHARE * there as f64)
+        };
+        let on_device = device.map_or(0.0, |_| part(whole.device));
+        let shares = device.is_some_and(|device| device.is_of_host);
+        let on_host = part(whole.host) + if shares { on_device } else { 0.0 };
+        within(on_host, host_bytes) && within(on_device, device.map(|d| d.heap_bytes))
+    };
+    (1..largest).find(fits).unwrap_or(largest)
+}
+
+/// Memory that this process may still take without swapping: the least of what the system and its control group
+/// have left. `None` where the system does not tell.
+pub fn available_bytes() -> Option<u64> {
+    let system = std::fs::read_to_string("/proc/meminfo")
+        .ok()
+        .and_then(|text| kib_of_line(&text, "MemAvailable:"));
+    let read = |name: &str| {
+        let text = std::fs::read_to_string(format!("/sys/fs/cgroup/{name}")).ok()?;
+        text.trim().parse::<u64>().ok()
+    };
+    let group = read("memory.max")
+        .zip(read("memory.current"))
+        .map(|(most, now)| most.saturating_sub(now));
+    [system, group].into_iter().flatten().min()
+}
+
+/// `MemAvailable:   123 kB` in bytes.
+fn kib_of_line(text: &str, name: &str) -> Option<u64> {
+    let line = text.lines().find_map(|line| line.strip_prefix(name))?;
+    let kib: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    kib.checked_mul(1024)
+}
+
+/// `2.5 GiB`.
+pub fn in_units(bytes: u64) -> String {
+    const UNITS: [&str; 5] = ["bytes", "KiB", "MiB", "GiB", "TiB"];
+    let mut size = bytes as f64;
+    let mut unit = 0;
+    while size >= 1024.0 && unit + 1 < UNITS.len() {
+        size /= 1024.0;
+        unit += 1;
+    }
+    let digits = usize::from(unit > 0 && size < 100.0);
+    format!("{size:.digits$} {}", UNITS[unit])
+}
+
+/// A size as people write it: `512M`, `2G`, `1.5GiB`, or plain bytes.
+pub fn bytes_of_word(word: &str) -> Result<u64, String> {
+    let wanted = || format!("wanted a size such as 512M or 2G, found {word:?}");
+    let end = word.find(|c: char| !(c.is_ascii_digit() || c == '.'));
+    let (number, unit) = word.split_at(end.unwrap_or(word.len()));
+    let number: f64 = number.parse().map_err(|_| wanted())?;
+    let unit = unit.to_ascii_uppercase();
+    let power = match unit.trim_end_matches("IB").trim_end_matches('B') {
+        "" => 0,
+        "K" => 1,
+        "M" => 2,
+        "G" => 3,
+        "T" => 4,
+        _ => return Err(wanted()),
+    };
+    let bytes = number * 1024_f64.powi(power);
+    if !(1.0..1.8e19).contains(&bytes) {
+        return Err(wanted());
+    }
+    Ok(bytes as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::volume::{Format, VoxelType};
+    use glam::DAffine3;
+
+    fn header(side: u32, stored: VoxelType) -> Header {
+        Header::new(Format::Raw, [side; 3], stored, DAffine3::IDENTITY)
+    }
+
+    #[test]
+    fn a_volume_shrinks_by_the_least_factor_that_fits() {
+        // 100^3 u16: 2 MB on each side.
+        let header = header(100, VoxelType::U16);
+        let card = |heap_bytes| {
+            Some(DeviceMemory {
+                heap_bytes,
+                is_of_host: false,
+            })
+        };
+        let cpu = |heap_bytes| {
+            Some(DeviceMemory {
+                heap_bytes,
+                is_of_host: true,
+            })
+        };
+        assert_eq!(least_factor(&header, None, None), 1);
+        assert_eq!(least_factor(&header, Some(2_300_000), None), 1);
+        assert_eq!(least_factor(&header, Some(2_200_000), None), 2);
+        assert_eq!(least_factor(&header, Some(2_300_000), card(2_300_000)), 1);
+        assert_eq!(least_factor(&header, Some(2_300_000), cpu(2_300_000)), 2);
+        assert_eq!(least_factor(&header, Some(1 << 40), card(80_000)), 4);
+        assert_eq!(least_factor(&header, Some(1 << 40), card(0)), 100);
+    }
+
+    #[test]
+    fn sizes_are_read_as_they_are_written() {
+        for (word, bytes) in [
+            ("4096", 4096),
+            ("2K", 2048),
+            ("1.5G", 3 << 29),
+            ("3MiB", 3 << 20),
+            ("3mb", 3 << 20),
+        ] {
+            assert_eq!(bytes_of_word(word), Ok(bytes), "{word}");
+        }
+        for word in ["", "G", "-1G", "1X", "0", "1e300G", "nan"] {
+            assert!(bytes_of_word(word).is_err(), "{word}");
+        }
+        assert_eq!(in_units(512), "512 bytes");
+        assert_eq!(in_units(3 << 29), "1.5 GiB");
+        assert_eq!(in_units(900 << 20), "900 MiB");
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn the_memory_of_this_machine_is_known() {
+        let bytes = available_bytes().expect("a number");
+        assert!(bytes > 1 << 20, "{bytes}");
+        let text = "MemTotal: 5 kB\nMemAvailable:      7 kB\n";
+        assert_eq!(kib_of_line(text, "MemAvailable:"), Some(7 << 10));
+    }
+}
