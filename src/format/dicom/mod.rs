@@ -48,6 +48,7 @@ use super::problem::{at, escape, invalid, unsupported};
 use crate::volume::{
     Format, Header, Limits, Meaning, Problem, ReadError, Rescale, Series, Source, VoxelType, Wanted,
 };
+use glam::DAffine3;
 use layout::{Color, Layout};
 use pixels::Frames;
 use series::{Contents, Group};
@@ -168,17 +169,7 @@ fn open_group(
         Kept::Stored => layout.stored(),
         _ => VoxelType::F32,
     };
-    let [x, y, z] = stack.steps;
-    let steps = [x * RAS_FROM_LPS, y * RAS_FROM_LPS, z * RAS_FROM_LPS];
-    let world = world_from_voxel(steps, stack.first_center * RAS_FROM_LPS).ok_or_else(|| {
-        let found = format!("{:?}", stack.steps);
-        at(path)(invalid(
-            DICOM,
-            &tags::name(tags::IMAGE_POSITION),
-            "steps that span a volume",
-            &found,
-        ))
-    })?;
+    let world = world(&stack).map_err(at(path))?;
     let dims = dims(&layout, &stack).map_err(at(path))?;
     if quantity.is_turned(&layout) {
         notes.push(
@@ -231,6 +222,20 @@ fn open_group(
         limits: *limits,
         files,
         pictures,
+    })
+}
+
+/// From LPS to RAS+.
+#[allow(
+    clippy::arithmetic_side_effects,
+    reason = "vectors of f64: nothing wraps or panics"
+)]
+fn world(stack: &Stack) -> Result<DAffine3, Problem> {
+    let steps = stack.steps.map(|step| step * RAS_FROM_LPS);
+    world_from_voxel(steps, stack.first_center * RAS_FROM_LPS).ok_or_else(|| {
+        let found = format!("{:?}", stack.steps);
+        let field = tags::name(tags::IMAGE_POSITION);
+        invalid(DICOM, &field, "steps that span a volume", &found)
     })
 }
 
