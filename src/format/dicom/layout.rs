@@ -210,7 +210,7 @@ fn frames(set: &DataSet) -> Result<u32, Problem> {
             clippy::cast_sign_loss,
             reason = "a whole number of 1 to 10^9"
         )]
-        Some(n) if n >= 1.0 && n <= 1e9 && n.fract() == 0.0 => Ok(n as u32),
+        Some(n) if (1.0..=1e9).contains(&n) && n.fract() == 0.0 => Ok(n as u32),
         Some(n) => Err(invalid(
             DICOM,
             &tags::name(NUMBER_OF_FRAMES),
