@@ -7,6 +7,7 @@
 //! One file a verb; `flags` holds what verbs share. Everything that can be refused is refused before the
 //! first voxel is read: words, outputs that exist, folders that do not.
 
+mod animate;
 mod bench;
 mod bug;
 mod cameras_file;
@@ -14,6 +15,7 @@ mod compare;
 mod convert;
 mod devices;
 mod error;
+mod exaggerate;
 mod figure;
 mod flags;
 mod histogram;
@@ -25,6 +27,7 @@ mod memory;
 mod output;
 mod preset;
 mod progress;
+mod readable;
 mod reasons;
 mod render;
 mod renderer;
@@ -52,6 +55,7 @@ struct Words {
 #[derive(Debug, Subcommand)]
 enum Verb {
     Render(Box<render::Render>),
+    Animate(Box<animate::Animate>),
     Info(info::Info),
     Convert(convert::Convert),
     Devices(devices::Devices),
@@ -94,6 +98,7 @@ fn obey(words: Vec<OsString>, gate: &Gate) -> Result<(), Error> {
     };
     match words.verb {
         Verb::Render(render) => render.run(gate),
+        Verb::Animate(animate) => animate.run(gate),
         Verb::Info(info) => info.run(),
         Verb::Convert(convert) => convert.run(gate),
         Verb::Devices(devices) => devices.run(),

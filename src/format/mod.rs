@@ -23,16 +23,26 @@
     )
 )]
 
+mod absent;
 mod base64;
 mod blocks;
+#[cfg(feature = "netcdf")]
+mod cf;
 mod convert;
 mod data;
 mod decode;
 #[cfg(feature = "dicom")]
 mod dicom;
+#[cfg(feature = "netcdf")]
+mod fence;
 mod file_source;
 mod geometry;
+mod grib;
+#[cfg(feature = "netcdf")]
+mod hdf5;
 mod metaimage;
+#[cfg(feature = "netcdf")]
+mod netcdf;
 mod nifti;
 mod npy;
 mod nrrd;
@@ -53,6 +63,15 @@ mod vtk;
 pub mod write;
 #[cfg(feature = "zarr")]
 mod zarr;
+
+#[cfg(not(feature = "dicom"))]
+use absent::dicom;
+#[cfg(not(feature = "tiff"))]
+use absent::tiff;
+#[cfg(not(feature = "netcdf"))]
+use absent::{hdf5, netcdf};
+#[cfg(feature = "cli")]
+pub(crate) use sequence::expand as numbered_name;
 
 use crate::volume::{Limits, Problem, ReadError, Source, Wanted};
 use problem::at;
@@ -99,12 +118,6 @@ pub fn open(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Sou
     }
 }
 
-/// True where a file begins as a TIFF or BigTIFF does.
-fn is_tiff(first: &[u8]) -> bool {
-    let heads = [b"II\x2a\0", b"MM\0\x2a", b"II\x2b\0", b"MM\0\x2b"];
-    heads.iter().any(|head| first.starts_with(*head))
-}
-
 type Open = fn(&Path, &Wanted, &Limits) -> Result<Box<dyn Source>, ReadError>;
 
 /// A reader of files.
@@ -129,29 +142,15 @@ const READERS: &[Reader] = &[
         endings: &["nrrd", "nhdr"],
         open: |path, _, limits| Ok(Box::new(nrrd::open(path, limits)?)),
     },
-    #[cfg(feature = "dicom")]
     Reader {
         recognizes: dicom::recognizes,
         endings: &["dcm", "dicom"],
         open: dicom::open,
     },
-    #[cfg(not(feature = "dicom"))]
     Reader {
-        recognizes: |first| first.get(128..132) == Some(b"DICM"),
-        endings: &["dcm", "dicom"],
-        open: |path, _, _| Err(lacks("dicom", path)),
-    },
-    #[cfg(feature = "tiff")]
-    Reader {
-        recognizes: is_tiff,
+        recognizes: tiff::recognizes,
         endings: &["tif", "tiff"],
         open: tiff::open,
-    },
-    #[cfg(not(feature = "tiff"))]
-    Reader {
-        recognizes: is_tiff,
-        endings: &["tif", "tiff"],
-        open: |path, _, _| Err(lacks("tiff", path)),
     },
     Reader {
         recognizes: npy::recognizes,
@@ -159,9 +158,24 @@ const READERS: &[Reader] = &[
         open: |path, _, limits| Ok(Box::new(npy::open(path, limits)?)),
     },
     Reader {
+        recognizes: netcdf::recognizes,
+        endings: &["nc", "cdf"],
+        open: netcdf::open,
+    },
+    Reader {
+        recognizes: hdf5::recognizes,
+        endings: &["h5", "hdf5", "hdf", "nc4"],
+        open: hdf5::open,
+    },
+    Reader {
         recognizes: vti::recognizes,
         endings: &["vti", "pvti", "vtr", "vts", "vtu", "vtp"],
         open: vti::open,
+    },
+    Reader {
+        recognizes: grib::recognizes,
+        endings: &["grib", "grib2", "grb", "grb2"],
+        open: grib::open,
     },
     Reader {
         recognizes: vtk::recognizes,
@@ -205,15 +219,6 @@ const FOLDERS: &[FolderReader] = &[
         open: dicom::open,
     },
 ];
-
-/// What a reader says that was not built.
-#[cfg(not(all(feature = "dicom", feature = "tiff")))]
-fn lacks(format: &'static str, path: &Path) -> ReadError {
-    at(path)(problem::unsupported(
-        format,
-        "this format in a build without the feature of its name",
-    ))
-}
 
 const UNKNOWN_FOLDER: &str =
     ": the folder holds no DICOM pictures, no stack of TIFF pages and no Zarr arrays";

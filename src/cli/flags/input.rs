@@ -24,7 +24,7 @@ pub struct InputFlags {
     #[arg(long, value_name = "LAYOUT", help_heading = "Input")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub raw: Option<String>,
-    /// One of several variables
+    /// One of several variables: a name, an HDF5 path, or NAME[AXIS=N] where it has axes beside time and space
     #[arg(long, value_name = "NAME", help_heading = "Input")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub variable: Option<String>,
@@ -65,9 +65,6 @@ fn is_false(flag: &bool) -> bool {
 /// How a built-in volume begins.
 const PHANTOM: &str = "phantom:";
 
-/// Endings of files that are promised and not built yet.
-const LATER: &[&str] = &["nc", "h5", "grib", "grib2"];
-
 impl InputFlags {
     /// The file, where the input is one.
     pub fn file(&self) -> Option<&Path> {
@@ -94,8 +91,17 @@ impl InputFlags {
         }
     }
 
-    /// Opens what the words name; reads its header alone.
+    /// Opens what the words name, as it is drawn; reads its header alone.
     pub fn open(&self, limits: &Limits) -> Result<Box<dyn Source>, Error> {
+        self.open_with(false, limits)
+    }
+
+    /// The same with the voxels as they stand in the file.
+    pub fn open_as_stored(&self, limits: &Limits) -> Result<Box<dyn Source>, Error> {
+        self.open_with(true, limits)
+    }
+
+    fn open_with(&self, as_stored: bool, limits: &Limits) -> Result<Box<dyn Source>, Error> {
         let Some(path) = self.path.as_deref() else {
             return Err(Error::usage(
                 "no INPUT is given",
@@ -114,9 +120,6 @@ impl InputFlags {
             return Ok(source);
         }
         let path = Path::new(path);
-        if path.exists() && self.raw.is_none() {
-            refuse_later_formats(path)?;
-        }
         let source = match &self.raw {
             Some(layout) => {
                 let layout = format::raw::RawSpec::parse(layout).map_err(|problem| {
@@ -131,6 +134,7 @@ impl InputFlags {
                 let wanted = Wanted {
                     variable: self.variable.clone(),
                     series: self.series.clone(),
+                    as_stored,
                 };
                 format::open(path, &wanted, limits)?
             }
@@ -311,19 +315,6 @@ fn listed(header: &Header) -> String {
         .map(line)
         .collect::<Vec<_>>()
         .join("; ")
-}
-
-fn refuse_later_formats(path: &Path) -> Result<(), Error> {
-    if path.is_dir() {
-        return Ok(());
-    }
-    let ending = path.extension().and_then(|ending| ending.to_str());
-    match ending.map(str::to_ascii_lowercase) {
-        Some(ending) if LATER.contains(&ending.as_str()) => {
-            Err(Error::NotBuilt(format!("reading `.{ending}` files")))
-        }
-        _ => Ok(()),
-    }
 }
 
 fn check_variable(name: &str, header: &Header) -> Result<(), Error> {
