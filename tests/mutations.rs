@@ -317,7 +317,7 @@ fn vtk_survives_mutations() {
 }
 
 /// Files of an independent writer, tests/fixtures.
-fn fixture(format: &str, name: &'static str) -> Base {
+fn unpadded(format: &str, name: &'static str) -> Base {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");
     let mut bytes = std::fs::read(path.join(format).join(name)).unwrap();
     let folder = Folder::new();
@@ -341,7 +341,7 @@ fn npy_survives_mutations() {
         "colors.npy",
         "fortran-times.npy",
     ];
-    survive("npy", &names.map(|name| fixture("npy", name)));
+    survive("npy", &names.map(|name| unpadded("npy", name)));
 }
 
 #[test]
@@ -362,7 +362,7 @@ fn tiff_survives_mutations() {
         "jpeg-gray-tiles.tif",
         "thumbnails.tif",
     ];
-    survive("tiff", &names.map(|name| fixture("tiff", name)));
+    survive("tiff", &names.map(|name| unpadded("tiff", name)));
 }
 
 #[test]
@@ -375,5 +375,5 @@ fn ome_and_imagej_survive_mutations() {
         "imagej-hyper.tif",
         "imagej-rgb.tif",
     ];
-    survive("ome", &names.map(|name| fixture("tiff", name)));
+    survive("ome", &names.map(|name| unpadded("tiff", name)));
 }
