@@ -338,6 +338,41 @@ fn raw_survives_mutations() {
     );
 }
 
+#[test]
+#[cfg(feature = "netcdf")]
+fn netcdf_survives_mutations() {
+    let file = |name: &'static str| -> Base { vec![(name, fixture("netcdf", name))] };
+    survive(
+        "netcdf",
+        &[
+            file("classic.nc"),
+            file("offset64.nc"),
+            file("cdf5.nc"),
+            file("packed.nc"),
+            file("order.nc"),
+            file("uneven.nc"),
+        ],
+    );
+}
+
+#[test]
+#[cfg(feature = "netcdf")]
+fn hdf5_survives_mutations() {
+    let file = |name: &'static str| -> Base { vec![(name, fixture("hdf5", name))] };
+    survive(
+        "hdf5",
+        &[file("earliest.h5"), file("latest.h5"), file("kinds.h5")],
+    );
+}
+
+/// A file that another program wrote.
+#[cfg(feature = "netcdf")]
+fn fixture(format: &str, name: &str) -> Vec<u8> {
+    let root = std::path::PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    let path = root.join("tests/fixtures").join(format).join(name);
+    std::fs::read(path).expect("a fixture")
+}
+
 /// A file of VTK's own writer, without the line end behind it.
 fn written_by_vtk(format: &str, name: &'static str) -> Base {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");

@@ -1,6 +1,8 @@
 //! From the words to a volume in memory: opened, compared with the memory that is there, read.
 
-use super::{Error, flags::SceneFlags, memory::fitting, progress::Progress, renderer::Device};
+use super::{
+    Error, exaggerate, flags::SceneFlags, memory::fitting, progress::Progress, renderer::Device,
+};
 use crate::volume::{Loss, Volume};
 
 /// The one volume that the words name, in memory.
@@ -15,7 +17,12 @@ pub fn load(scene: &SceneFlags, device: &Device, progress: &Progress) -> Result<
         progress.note(note);
     }
     let whole = source.header().whole();
-    let volume = Volume::read(source.as_ref(), pick, whole, &limits)?;
+    let mut volume = Volume::read(source.as_ref(), pick, whole, &limits)?;
+    let (factor, note) = exaggerate::factor(scene, &volume.grid(), source.header().is_earth)?;
+    volume.world_from_voxel = exaggerate::stretched(volume.world_from_voxel, factor);
+    if let Some(note) = &note {
+        progress.note(note);
+    }
     if !volume.loss.is_none() {
         let Loss { changed, worst } = volume.loss;
         progress.note(&format!(

@@ -13,6 +13,7 @@ mod cameras_file;
 mod compare;
 mod devices;
 mod error;
+mod exaggerate;
 mod figure;
 mod flags;
 mod histogram;

@@ -10,6 +10,16 @@ pub(crate) enum Endian {
     Big,
 }
 
+impl Endian {
+    /// That of numbers in memory.
+    #[cfg(feature = "netcdf")]
+    pub(crate) const NATIVE: Self = if cfg!(target_endian = "big") {
+        Self::Big
+    } else {
+        Self::Little
+    };
+}
+
 /// Voxels that grow as bytes come in. Memory follows the bytes that came, not what a header promised.
 pub(crate) struct Builder {
     stored: VoxelType,

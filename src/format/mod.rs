@@ -25,15 +25,21 @@
 
 mod base64;
 mod blocks;
+#[cfg(feature = "netcdf")]
+mod cf;
 mod convert;
 mod data;
 mod decode;
 #[cfg(feature = "dicom")]
 mod dicom;
+#[cfg(feature = "netcdf")]
+mod fence;
 mod file_source;
 mod geometry;
 mod grib;
 mod metaimage;
+#[cfg(feature = "netcdf")]
+mod netcdf;
 mod nifti;
 mod nrrd;
 mod pieces;
@@ -95,6 +101,35 @@ pub fn open(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Sou
     }
 }
 
+/// What stands in for readers that a build leaves out: their files are known and refused by the feature's name.
+#[cfg(not(feature = "netcdf"))]
+mod netcdf {
+    use super::*;
+
+    pub(super) fn recognizes(first: &[u8]) -> bool {
+        first.starts_with(b"CDF")
+    }
+
+    pub(super) fn open(path: &Path, _: &Wanted, _: &Limits) -> Result<Box<dyn Source>, ReadError> {
+        let what = "a file in a build without the feature `netcdf`";
+        Err(at(path)(problem::unsupported("netcdf", what)))
+    }
+}
+
+#[cfg(not(feature = "netcdf"))]
+mod hdf5 {
+    use super::*;
+
+    pub(super) fn recognizes(first: &[u8]) -> bool {
+        first.starts_with(b"\x89HDF")
+    }
+
+    pub(super) fn open(path: &Path, _: &Wanted, _: &Limits) -> Result<Box<dyn Source>, ReadError> {
+        let what = "a file in a build without the feature `netcdf`";
+        Err(at(path)(problem::unsupported("hdf5", what)))
+    }
+}
+
 type Open = fn(&Path, &Wanted, &Limits) -> Result<Box<dyn Source>, ReadError>;
 
 /// A reader of files.
@@ -124,6 +159,16 @@ const READERS: &[Reader] = &[
         recognizes: dicom::recognizes,
         endings: &["dcm", "dicom"],
         open: dicom::open,
+    },
+    Reader {
+        recognizes: netcdf::recognizes,
+        endings: &["nc", "cdf"],
+        open: netcdf::open,
+    },
+    Reader {
+        recognizes: hdf5::recognizes,
+        endings: &["h5", "hdf5", "hdf", "nc4"],
+        open: hdf5::open,
     },
     Reader {
         recognizes: vti::recognizes,

@@ -7,7 +7,7 @@ mod raster;
 mod svg;
 
 pub use axis::{Ticks, compact, log_ticks};
-pub use raster::png;
+pub use raster::{SCALE, png};
 pub use svg::svg;
 
 /// A point of a figure: x to the right, y down.
@@ -132,7 +132,8 @@ impl Figure {
         });
     }
 
-    fn words(
+    /// Adds words of any colour from left to right.
+    pub fn words(
         &mut self,
         at: Point,
         text: impl Into<String>,

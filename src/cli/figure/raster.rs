@@ -5,7 +5,7 @@ use super::{Anchor, Color, Figure, Mark, Point, font};
 use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 
 /// Pixels across a unit of a figure.
-const SCALE: f64 = 1.5;
+pub const SCALE: f64 = 1.5;
 /// Lines of samples in the height of a pixel.
 const SUBLINES: usize = 4;
 /// The thickness of letters, in em.

@@ -24,7 +24,7 @@ pub struct InputFlags {
     #[arg(long, value_name = "LAYOUT", help_heading = "Input")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub raw: Option<String>,
-    /// One of several variables
+    /// One of several variables: a name, an HDF5 path, or NAME[AXIS=N] where it has axes beside time and space
     #[arg(long, value_name = "NAME", help_heading = "Input")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub variable: Option<String>,
@@ -94,8 +94,17 @@ impl InputFlags {
         }
     }
 
-    /// Opens what the words name; reads its header alone.
+    /// Opens what the words name, as it is drawn; reads its header alone.
     pub fn open(&self, limits: &Limits) -> Result<Box<dyn Source>, Error> {
+        self.open_with(false, limits)
+    }
+
+    /// The same with the voxels as they stand in the file.
+    pub fn open_as_stored(&self, limits: &Limits) -> Result<Box<dyn Source>, Error> {
+        self.open_with(true, limits)
+    }
+
+    fn open_with(&self, as_stored: bool, limits: &Limits) -> Result<Box<dyn Source>, Error> {
         let Some(path) = self.path.as_deref() else {
             return Err(Error::usage(
                 "no INPUT is given",
@@ -131,6 +140,7 @@ impl InputFlags {
                 let wanted = Wanted {
                     variable: self.variable.clone(),
                     series: self.series.clone(),
+                    as_stored,
                 };
                 format::open(path, &wanted, limits)?
             }
