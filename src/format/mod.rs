@@ -37,6 +37,8 @@ mod fence;
 mod file_source;
 mod geometry;
 mod grib;
+#[cfg(feature = "netcdf")]
+mod hdf5;
 mod metaimage;
 #[cfg(feature = "netcdf")]
 mod netcdf;
