@@ -9,9 +9,6 @@ pub enum Later {
     /// Not built yet: a film of many pictures
     #[command(after_help = RENDER)]
     Animate(Rest),
-    /// Not built yet: a volume in another format
-    #[command(after_help = INFO)]
-    Convert(Rest),
     /// Not built yet: a device tested against exact answers
     #[command(after_help = DEVICES)]
     Conformance(Rest),
@@ -33,7 +30,6 @@ impl Later {
     pub fn refuse(&self) -> Result<(), Error> {
         let name = match self {
             Self::Animate(_) => "animate",
-            Self::Convert(_) => "convert",
             Self::Conformance(_) => "conformance",
         };
         Err(Error::NotBuilt(format!("`stratavox {name}`")))

@@ -11,6 +11,7 @@ mod bench;
 mod bug;
 mod cameras_file;
 mod compare;
+mod convert;
 mod devices;
 mod error;
 mod exaggerate;
@@ -53,6 +54,7 @@ struct Words {
 enum Verb {
     Render(Box<render::Render>),
     Info(info::Info),
+    Convert(convert::Convert),
     Devices(devices::Devices),
     Compare(compare::Compare),
     Bench(Box<bench::Bench>),
@@ -94,6 +96,7 @@ fn obey(words: Vec<OsString>, gate: &Gate) -> Result<(), Error> {
     match words.verb {
         Verb::Render(render) => render.run(gate),
         Verb::Info(info) => info.run(),
+        Verb::Convert(convert) => convert.run(gate),
         Verb::Devices(devices) => devices.run(),
         Verb::Compare(compare) => compare.run(gate),
         Verb::Bench(bench) => bench.run(gate),
