@@ -217,6 +217,10 @@ fn variables(images: &[Image], taken: &str, is_wanted: bool) -> Vec<String> {
     names
 }
 
+#[allow(
+    clippy::arithmetic_side_effects,
+    reason = "vectors of f64: nothing wraps or panics"
+)]
 fn header(
     image: &Image,
     multiscale: &Multiscale,
