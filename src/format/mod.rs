@@ -70,6 +70,8 @@ use absent::dicom;
 use absent::tiff;
 #[cfg(not(feature = "netcdf"))]
 use absent::{hdf5, netcdf};
+#[cfg(feature = "cli")]
+pub(crate) use sequence::expand as numbered_name;
 
 use crate::volume::{Limits, Problem, ReadError, Source, Wanted};
 use problem::at;

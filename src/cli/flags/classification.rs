@@ -102,6 +102,15 @@ impl ClassificationFlags {
 
     /// The function for this volume and what `mode` classifies.
     pub fn classification(&self, volume: &Volume, mode: Mode) -> Result<Classification, Error> {
+        self.classification_of(mode, || Ok(summary(volume)))
+    }
+
+    /// The same for values that look like `summary`, which is asked for where it decides anything.
+    pub fn classification_of(
+        &self,
+        mode: Mode,
+        summary: impl FnOnce() -> Result<ValueSummary, Error>,
+    ) -> Result<Classification, Error> {
         let window = self.window()?;
         let classified = match mode {
             Mode::Composite => Classified::Samples,
@@ -116,7 +125,11 @@ impl ClassificationFlags {
                         "--window LO,HI says it",
                     ));
                 }
-                function.of_fractions(window.unwrap_or(Window::of_range(volume.value_range)))
+                let window = match window {
+                    Some(window) => window,
+                    None => Window::of_range(summary()?.range),
+                };
+                function.of_fractions(window)
             }
             (Some(function), _) => match window {
                 Some(window) => function.spread_over(window),
@@ -126,13 +139,18 @@ impl ClassificationFlags {
             (None, None | Some(Preset::Grey)) if mode == Mode::Xray && window.is_none() => {
                 return Ok(Classification::RangeOfPicture);
             }
-            (None, Some(preset)) => preset.function(&summary(volume), classified, window),
-            (None, None) => automatic(&summary(volume), classified, window),
+            (None, Some(Preset::Grey)) if let Some(window) = window => window.grey(classified),
+            (None, Some(preset)) => preset.function(&summary()?, classified, window),
+            (None, None) => match window.filter(|_| classified == Classified::Projection) {
+                Some(window) => window.grey(classified),
+                None => automatic(&summary()?, classified, window),
+            },
         };
         Ok(Classification::Function(function))
     }
 
-    fn window(&self) -> Result<Option<Window>, Error> {
+    /// The window of `--window`.
+    pub fn window(&self) -> Result<Option<Window>, Error> {
         let Some(Numbers([low, high])) = self.window else {
             return Ok(None);
         };
@@ -145,7 +163,8 @@ impl ClassificationFlags {
         Ok(Some(window))
     }
 
-    fn function_of_file(&self) -> Result<Option<TransferFunction>, Error> {
+    /// The function of `--tf`, or that of a scene.
+    pub fn function_of_file(&self) -> Result<Option<TransferFunction>, Error> {
         let Some(value) = &self.transfer_function else {
             return Ok(None);
         };
@@ -181,6 +200,7 @@ pub fn preset(name: &str) -> Result<String, String> {
     }
 }
 
+/// What the values of a volume look like as a whole.
 pub fn summary(volume: &Volume) -> ValueSummary {
     let [x, y, z] = volume.dims.map(f64::from);
     let diagonal = volume
