@@ -166,11 +166,6 @@ fn header(fields: &Fields, number: &Number, array: &Array) -> Result<Header, Pro
     Ok(Header {
         components: array.components,
         times: array.times,
-        meaning: match number.channels {
-            3 if array.components == 3 => Meaning::Rgb,
-            4 if array.components == 4 => Meaning::Rgba,
-            _ => Meaning::Numbers,
-        },
         rescale: rescale(fields, number, &mut notes),
         meaning: meaning(fields, number, array),
         is_labels: fields.intent_code == LABEL && array.components == 1,

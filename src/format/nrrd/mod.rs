@@ -13,7 +13,7 @@ use super::data::{Data, Promise};
 use super::decode::Encoding;
 use super::file_source::FileSource;
 use super::problem::{at, escape, invalid, missing, unsupported};
-use crate::volume::{Format, Header, Limits, Meaning, Problem, ReadError, VoxelType};
+use crate::volume::{Format, Header, Limits, Problem, ReadError, VoxelType};
 use array::Array;
 use fields::Fields;
 use std::path::Path;
@@ -73,25 +73,6 @@ fn header(fields: &Fields, array: &Array, stored: VoxelType) -> Result<Header, P
         notes,
         ..Header::new(Format::Nrrd, array.dims, stored, world_from_voxel)
     })
-}
-
-/// What the kind of the component axis says (section 6 of the definition).
-fn meaning(fields: &Fields, components: u32) -> Meaning {
-    let kinds = fields.get("kinds").unwrap_or("").to_ascii_lowercase();
-    let is = |name| kinds.split_ascii_whitespace().any(|kind| kind == name);
-    let vectors = [
-        "vector",
-        "covariant-vector",
-        "2-vector",
-        "3-vector",
-        "3-gradient",
-    ];
-    match components {
-        3 if is("rgb-color") => Meaning::Rgb,
-        4 if is("rgba-color") => Meaning::Rgba,
-        2 | 3 if vectors.into_iter().any(is) => Meaning::Vector,
-        _ => Meaning::Numbers,
-    }
 }
 
 /// The names of section 5 of the definition.
