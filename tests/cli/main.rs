@@ -10,4 +10,5 @@ mod person;
 mod pictures;
 mod real;
 mod sheet;
+mod weather;
 mod words;
