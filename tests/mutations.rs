@@ -422,3 +422,65 @@ fn vtk_survives_mutations() {
         ],
     );
 }
+
+/// Files of an independent writer, tests/fixtures.
+fn fixture(format: &str, name: &'static str) -> Base {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");
+    let mut bytes = std::fs::read(path.join(format).join(name)).unwrap();
+    let folder = Folder::new();
+    // Padding at the end belongs to nothing: without it every cut is a loss.
+    loop {
+        let shorter = vec![(name, bytes[..bytes.len() - 1].to_vec())];
+        folder.write(name, &shorter[0].1);
+        if read_all(&folder, &shorter).is_err() {
+            return vec![(name, bytes)];
+        }
+        bytes.pop();
+    }
+}
+
+#[test]
+fn npy_survives_mutations() {
+    let names = [
+        "u2-be.npy",
+        "f8-le.npy",
+        "v3.npy",
+        "colors.npy",
+        "fortran-times.npy",
+    ];
+    survive("npy", &names.map(|name| fixture("npy", name)));
+}
+
+#[test]
+#[cfg(feature = "tiff")]
+fn tiff_survives_mutations() {
+    let names = [
+        "raw-u2-be.tif",
+        "big-be.tif",
+        "lzw-u2-p2-be.tif",
+        "deflate-f4-p3.tif",
+        "packbits-u2.tif",
+        "strips-lzw-be.tif",
+        "tiles-deflate-p2-be.tif",
+        "bits-1.tif",
+        "rgb-planar.tif",
+        "palette-u1.tif",
+        "jpeg-ycbcr.tif",
+        "jpeg-gray-tiles.tif",
+        "thumbnails.tif",
+    ];
+    survive("tiff", &names.map(|name| fixture("tiff", name)));
+}
+
+#[test]
+#[cfg(feature = "tiff")]
+fn ome_and_imagej_survive_mutations() {
+    let names = [
+        "ome-tzcyx.ome.tif",
+        "ome-rgb.ome.tif",
+        "ome-two.ome.tif",
+        "imagej-hyper.tif",
+        "imagej-rgb.tif",
+    ];
+    survive("ome", &names.map(|name| fixture("tiff", name)));
+}

@@ -3,7 +3,7 @@
 use super::{
     Error, exaggerate, flags::SceneFlags, memory::fitting, progress::Progress, renderer::Device,
 };
-use crate::volume::{Loss, Volume};
+use crate::volume::{Loss, Source, Volume};
 
 /// The one volume that the words name, in memory.
 pub fn load(scene: &SceneFlags, device: &Device, progress: &Progress) -> Result<Volume, Error> {
@@ -12,12 +12,21 @@ pub fn load(scene: &SceneFlags, device: &Device, progress: &Progress) -> Result<
     // What may be wrong with the words is said before anything about memory.
     scene.input.pick(source.header())?;
     let source = fitting(source, &scene.input, device.memory())?;
+    load_from(scene, source.as_ref(), progress)
+}
+
+/// The one volume of `source` that the words name, in memory; there is enough.
+pub fn load_from(
+    scene: &SceneFlags,
+    source: &dyn Source,
+    progress: &Progress,
+) -> Result<Volume, Error> {
     let (pick, note) = scene.input.pick(source.header())?;
     for note in source.header().notes.iter().chain(&note) {
         progress.note(note);
     }
     let whole = source.header().whole();
-    let mut volume = Volume::read(source.as_ref(), pick, whole, &limits)?;
+    let mut volume = Volume::read(source, pick, whole, &scene.input.limits())?;
     let (factor, note) = exaggerate::factor(scene, &volume.grid(), source.header().is_earth)?;
     volume.world_from_voxel = exaggerate::stretched(volume.world_from_voxel, factor);
     if let Some(note) = &note {

@@ -7,10 +7,12 @@
 //! One file a verb; `flags` holds what verbs share. Everything that can be refused is refused before the
 //! first voxel is read: words, outputs that exist, folders that do not.
 
+mod animate;
 mod bench;
 mod bug;
 mod cameras_file;
 mod compare;
+mod convert;
 mod devices;
 mod error;
 mod exaggerate;
@@ -25,6 +27,7 @@ mod memory;
 mod output;
 mod preset;
 mod progress;
+mod readable;
 mod reasons;
 mod render;
 mod renderer;
@@ -52,7 +55,9 @@ struct Words {
 #[derive(Debug, Subcommand)]
 enum Verb {
     Render(Box<render::Render>),
+    Animate(Box<animate::Animate>),
     Info(info::Info),
+    Convert(convert::Convert),
     Devices(devices::Devices),
     Compare(compare::Compare),
     Bench(Box<bench::Bench>),
@@ -93,7 +98,9 @@ fn obey(words: Vec<OsString>, gate: &Gate) -> Result<(), Error> {
     };
     match words.verb {
         Verb::Render(render) => render.run(gate),
+        Verb::Animate(animate) => animate.run(gate),
         Verb::Info(info) => info.run(),
+        Verb::Convert(convert) => convert.run(gate),
         Verb::Devices(devices) => devices.run(),
         Verb::Compare(compare) => compare.run(gate),
         Verb::Bench(bench) => bench.run(gate),

@@ -23,6 +23,7 @@
     )
 )]
 
+mod absent;
 mod base64;
 mod blocks;
 #[cfg(feature = "netcdf")]
@@ -36,26 +37,41 @@ mod dicom;
 mod fence;
 mod file_source;
 mod geometry;
+mod grib;
 #[cfg(feature = "netcdf")]
 mod hdf5;
 mod metaimage;
 #[cfg(feature = "netcdf")]
 mod netcdf;
 mod nifti;
+mod npy;
 mod nrrd;
 mod pieces;
 mod place;
 mod problem;
 pub mod raw;
+mod request;
 mod select;
 mod sequence;
 mod stream;
 mod text;
 mod textual;
+#[cfg(feature = "tiff")]
+mod tiff;
 mod vti;
 mod vtk;
+pub mod write;
 #[cfg(feature = "zarr")]
 mod zarr;
+
+#[cfg(not(feature = "dicom"))]
+use absent::dicom;
+#[cfg(not(feature = "tiff"))]
+use absent::tiff;
+#[cfg(not(feature = "netcdf"))]
+use absent::{hdf5, netcdf};
+#[cfg(feature = "cli")]
+pub(crate) use sequence::expand as numbered_name;
 
 use crate::volume::{Limits, Problem, ReadError, Source, Wanted};
 use problem::at;
@@ -102,35 +118,6 @@ pub fn open(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Sou
     }
 }
 
-/// What stands in for readers that a build leaves out: their files are known and refused by the feature's name.
-#[cfg(not(feature = "netcdf"))]
-mod netcdf {
-    use super::*;
-
-    pub(super) fn recognizes(first: &[u8]) -> bool {
-        first.starts_with(b"CDF")
-    }
-
-    pub(super) fn open(path: &Path, _: &Wanted, _: &Limits) -> Result<Box<dyn Source>, ReadError> {
-        let what = "a file in a build without the feature `netcdf`";
-        Err(at(path)(problem::unsupported("netcdf", what)))
-    }
-}
-
-#[cfg(not(feature = "netcdf"))]
-mod hdf5 {
-    use super::*;
-
-    pub(super) fn recognizes(first: &[u8]) -> bool {
-        first.starts_with(b"\x89HDF")
-    }
-
-    pub(super) fn open(path: &Path, _: &Wanted, _: &Limits) -> Result<Box<dyn Source>, ReadError> {
-        let what = "a file in a build without the feature `netcdf`";
-        Err(at(path)(problem::unsupported("hdf5", what)))
-    }
-}
-
 type Open = fn(&Path, &Wanted, &Limits) -> Result<Box<dyn Source>, ReadError>;
 
 /// A reader of files.
@@ -155,11 +142,20 @@ const READERS: &[Reader] = &[
         endings: &["nrrd", "nhdr"],
         open: |path, _, limits| Ok(Box::new(nrrd::open(path, limits)?)),
     },
-    #[cfg(feature = "dicom")]
     Reader {
         recognizes: dicom::recognizes,
         endings: &["dcm", "dicom"],
         open: dicom::open,
+    },
+    Reader {
+        recognizes: tiff::recognizes,
+        endings: &["tif", "tiff"],
+        open: tiff::open,
+    },
+    Reader {
+        recognizes: npy::recognizes,
+        endings: &["npy"],
+        open: |path, _, limits| Ok(Box::new(npy::open(path, limits)?)),
     },
     Reader {
         recognizes: netcdf::recognizes,
@@ -175,6 +171,11 @@ const READERS: &[Reader] = &[
         recognizes: vti::recognizes,
         endings: &["vti", "pvti", "vtr", "vts", "vtu", "vtp"],
         open: vti::open,
+    },
+    Reader {
+        recognizes: grib::recognizes,
+        endings: &["grib", "grib2", "grb", "grb2"],
+        open: grib::open,
     },
     Reader {
         recognizes: vtk::recognizes,
@@ -200,6 +201,11 @@ const FOLDERS: &[FolderReader] = &[
     FolderReader {
         recognizes: |path, _| zarr::recognizes(path),
         open: zarr::open,
+    },
+    #[cfg(feature = "tiff")]
+    FolderReader {
+        recognizes: |path, _| tiff::recognizes_folder(path),
+        open: tiff::open_folder,
     },
     #[cfg(feature = "dicom")]
     FolderReader {

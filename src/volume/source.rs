@@ -17,6 +17,13 @@ pub trait Source: Send + Sync {
     /// `pick` and `region` lie inside the header; integers of 32 and 64 bits and f64 are rounded to f32,
     /// and [`Piece::loss`] says what that cost.
     fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError>;
+
+    /// The same numbers as little-endian bytes of the type in the file, none of them rounded. `None` from a source
+    /// that has them in the types of [`Voxels`] only.
+    fn read_bytes(&self, pick: Pick, region: VoxelBox) -> Result<Option<Vec<u8>>, ReadError> {
+        let _ = (pick, region);
+        Ok(None)
+    }
 }
 
 /// What one [`Source::read`] brings.

@@ -16,7 +16,7 @@ use std::{
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct InputFlags {
-    /// A volume file, or phantom:NAME[,n=256][,type=u8|u16|f32] with NAME of sphere, gauss, marschner-lobb, head, fog, shells, storm
+    /// A volume file, a folder of slices, or phantom:NAME[,n=256][,type=u8|u16|f32] with NAME of sphere, gauss, marschner-lobb, head, fog, shells, storm
     #[arg(value_name = "INPUT")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub path: Option<String>,
@@ -64,9 +64,6 @@ fn is_false(flag: &bool) -> bool {
 
 /// How a built-in volume begins.
 const PHANTOM: &str = "phantom:";
-
-/// Endings of files that are promised and not built yet.
-const LATER: &[&str] = &["tif", "tiff", "grib", "grib2", "npy"];
 
 impl InputFlags {
     /// The file, where the input is one.
@@ -123,9 +120,6 @@ impl InputFlags {
             return Ok(source);
         }
         let path = Path::new(path);
-        if path.exists() && self.raw.is_none() {
-            refuse_later_formats(path)?;
-        }
         let source = match &self.raw {
             Some(layout) => {
                 let layout = format::raw::RawSpec::parse(layout).map_err(|problem| {
@@ -161,8 +155,7 @@ impl InputFlags {
 
     /// Which of the volumes in the source to draw, and what a person should know about the choice.
     pub fn pick(&self, header: &Header) -> Result<(Pick, Option<String>), Error> {
-        self.check_one_variable(header)?;
-        self.check_one_series(header)?;
+        self.check_one(header)?;
         let (time, note) = self.time(header)?;
         let components = self.components(header)?;
         if components.len() != 1 {
@@ -192,6 +185,12 @@ impl InputFlags {
                 "--component 0",
             )),
         }
+    }
+
+    /// Refuses a source of several variables or series of which the words choose none.
+    pub fn check_one(&self, header: &Header) -> Result<(), Error> {
+        self.check_one_variable(header)?;
+        self.check_one_series(header)
     }
 
     fn check_one_variable(&self, header: &Header) -> Result<(), Error> {
@@ -316,19 +315,6 @@ fn listed(header: &Header) -> String {
         .map(line)
         .collect::<Vec<_>>()
         .join("; ")
-}
-
-fn refuse_later_formats(path: &Path) -> Result<(), Error> {
-    if path.is_dir() {
-        return Ok(());
-    }
-    let ending = path.extension().and_then(|ending| ending.to_str());
-    match ending.map(str::to_ascii_lowercase) {
-        Some(ending) if LATER.contains(&ending.as_str()) => {
-            Err(Error::NotBuilt(format!("reading `.{ending}` files")))
-        }
-        _ => Ok(()),
-    }
 }
 
 fn check_variable(name: &str, header: &Header) -> Result<(), Error> {
