@@ -351,8 +351,6 @@ fn netcdf_survives_mutations() {
             file("packed.nc"),
             file("order.nc"),
             file("uneven.nc"),
-            file("wrf.nc"),
-            file("curved.nc"),
         ],
     );
 }
