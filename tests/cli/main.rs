@@ -22,4 +22,5 @@ mod pictures;
 mod presets;
 mod real;
 mod sheet;
+mod weather;
 mod words;
