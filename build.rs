@@ -20,30 +20,62 @@ type Slot = (&'static str, &'static [&'static str]);
 const FILTER: Slot = ("filter", &["nearest", "linear", "linear_fetch"]);
 const HOLES: Slot = ("holes", &["none", "mask"]);
 const LATTICE: Slot = ("lattice", &["ray", "planes"]);
+const MIXED: Slot = ("mix", &["channels", "colors"]);
+/// One number a voxel. The word is left out of names.
+const ALONE: Slot = ("mix", &["alone"]);
 const TRANSFER: Slot = ("transfer", &["table", "points"]);
 
 /// The wanted combinations. Order of the slots is the order of words in a variant's name.
 const ENTRIES: &[(&str, &[Slot])] = &[
     (
         "raycast",
-        &[("mode", &["composite"]), LATTICE, FILTER, HOLES, TRANSFER],
+        &[
+            ("mode", &["composite"]),
+            ALONE,
+            LATTICE,
+            FILTER,
+            HOLES,
+            TRANSFER,
+        ],
+    ),
+    (
+        "raycast",
+        &[
+            ("mode", &["composite"]),
+            MIXED,
+            LATTICE,
+            FILTER,
+            HOLES,
+            TRANSFER,
+        ],
     ),
     (
         "projection",
-        &[("mode", &["mip", "minip", "sum"]), LATTICE, FILTER, HOLES],
+        &[
+            ("mode", &["mip", "minip", "sum"]),
+            ALONE,
+            LATTICE,
+            FILTER,
+            HOLES,
+        ],
     ),
     (
         "slices_3d",
-        &[("blend", &["composite"]), FILTER, HOLES, TRANSFER],
+        &[("blend", &["composite"]), ALONE, FILTER, HOLES, TRANSFER],
     ),
     (
         "slices_3d",
-        &[("blend", &["extreme", "sum"]), FILTER, HOLES],
+        &[("blend", &["composite"]), MIXED, FILTER, HOLES, TRANSFER],
+    ),
+    (
+        "slices_3d",
+        &[("blend", &["extreme", "sum"]), ALONE, FILTER, HOLES],
     ),
     (
         "slices_3d",
         &[
             ("blend", &["count"]),
+            ALONE,
             ("filter", &["nearest"]),
             ("holes", &["none"]),
         ],
@@ -51,16 +83,21 @@ const ENTRIES: &[(&str, &[Slot])] = &[
     ("slices_3d_cover", &[]),
     (
         "slices_2d",
-        &[("blend", &["composite"]), FILTER, HOLES, TRANSFER],
+        &[("blend", &["composite"]), ALONE, FILTER, HOLES, TRANSFER],
     ),
     (
         "slices_2d",
-        &[("blend", &["extreme", "sum"]), FILTER, HOLES],
+        &[("blend", &["composite"]), MIXED, FILTER, HOLES, TRANSFER],
+    ),
+    (
+        "slices_2d",
+        &[("blend", &["extreme", "sum"]), ALONE, FILTER, HOLES],
     ),
     (
         "slices_2d",
         &[
             ("blend", &["count"]),
+            ALONE,
             ("filter", &["nearest"]),
             ("holes", &["none"]),
         ],
@@ -109,7 +146,12 @@ struct Book {
 
 impl Book {
     fn add(&mut self, file: &str, slots: &[Slot], words: &[&str]) {
-        let name = [&[file], words].concat().join(".");
+        let named = words.iter().copied().filter(|&word| word != ALONE.1[0]);
+        let name = [file]
+            .into_iter()
+            .chain(named)
+            .collect::<Vec<_>>()
+            .join(".");
         let fills: BTreeMap<_, _> = slots
             .iter()
             .map(|slot| slot.0)

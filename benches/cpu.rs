@@ -59,6 +59,7 @@ fn twins(volume: &Volume) -> Result<(), Box<dyn Error>> {
             ..Settings::default()
         };
         let scene = Scene {
+            beside: Default::default(),
             volume,
             transfer: Some(&transfer),
             camera: &camera,

@@ -119,6 +119,7 @@ fn row(
         ..Settings::default()
     };
     let scene = Scene {
+        beside: Default::default(),
         volume,
         transfer: Some(&transfer),
         camera: &camera,

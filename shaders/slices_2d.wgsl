@@ -5,7 +5,9 @@
 #import ray
 #import brick
 #import stack_{filter}
-#import stack_holes_{holes}
+#import stack_at_nearest
+#import stack_mask
+#import sample_{mix}
 #import blend_{blend}
 
 @fragment
@@ -25,16 +27,16 @@ fn main(
     if !(interval.x <= t && t < interval.y) {
         discard;
     }
-    let sample = voxel.origin + t * voxel.direction;
-    if !is_in_brick(on_slice(sample, slice)) || !footprint_is_valid(footprint_of(sample, slice)) {
+    let place = Place(voxel.origin + t * voxel.direction, slice);
+    if !is_in_brick(on_slice(place)) || !has_data(place) {
         discard;
     }
-    return blend_source(value_at(sample, slice), 1.0 / abs(slope));
+    return blend_source(sample_at(place), 1.0 / abs(slope));
 }
 
 // The position with its coordinate along the stack as it is meant: no rounding takes it out of its slice.
-fn on_slice(voxel: vec3<f32>, slice: i32) -> vec3<f32> {
-    var exact = voxel;
-    exact[frame.slice_axis] = f32(slice) + 0.5;
+fn on_slice(place: Place) -> vec3<f32> {
+    var exact = place.voxel;
+    exact[frame.slice_axis] = f32(place.slice) + 0.5;
     return exact;
 }

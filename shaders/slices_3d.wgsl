@@ -6,7 +6,9 @@
 #import ray
 #import brick
 #import filter_{filter}
-#import holes_{holes}
+#import nearest
+#import mask
+#import sample_{mix}
 #import blend_{blend}
 
 @fragment
@@ -21,9 +23,9 @@ fn main(
     if !(interval.x <= t && t < interval.y) {
         discard;
     }
-    let sample = voxel.origin + t * voxel.direction;
-    if !is_in_brick(sample) || !footprint_is_valid(footprint_of(sample)) {
+    let place = voxel.origin + t * voxel.direction;
+    if !is_in_brick(place) || !has_data(place) {
         discard;
     }
-    return blend_source(value_at(sample), plane_length(world));
+    return blend_source(sample_at(place), plane_length(world));
 }

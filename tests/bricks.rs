@@ -67,6 +67,7 @@ fn assert_same_picture(volume: &Volume, camera: &Camera) {
     let mut bricked = Renderer::new(device_with(small()), volume).unwrap();
     for settings in settings() {
         let scene = Scene {
+            beside: Default::default(),
             volume,
             transfer: Some(&transfer),
             camera,

@@ -81,6 +81,7 @@ fn check(what: &str, sheet: &Sheet, is_right: impl Fn(usize, f32) -> bool) {
                     ..Settings::default()
                 };
                 let scene = Scene {
+                    beside: Default::default(),
                     volume: &sheet.volume,
                     transfer: Some(&transfer),
                     camera: &sheet.camera,
@@ -253,6 +254,7 @@ fn holes_never_win_along_a_ray() {
                 ..Settings::default()
             };
             let scene = Scene {
+                beside: Default::default(),
                 volume: &volume,
                 transfer: None,
                 camera: &camera,

@@ -107,6 +107,7 @@ impl<'h> Ready<'h> {
         let raycast = Raycast::new(gpu, &words).unwrap();
         let resolve = Resolve::new(gpu, Mode::Composite, Blend::Over, FORMAT).unwrap();
         let inputs = Inputs {
+            beside: &[],
             ring: &ring,
             volume: &there.volume,
             brick: &there.volume.bricks()[0],

@@ -35,6 +35,7 @@ fn targets() -> [(vk::Format, ColorSpace); 3] {
 
 fn inputs<'a>(ring: &'a ParameterRing, there: &'a OnDevice, brick: usize) -> Inputs<'a> {
     Inputs {
+        beside: &[],
         ring,
         volume: &there.volume,
         brick: &there.volume.bricks()[brick],

@@ -202,6 +202,7 @@ fn the_cover_leaves_out_no_sample_and_doubles_none() {
                 },
             };
             let scene = Scene {
+                beside: Default::default(),
                 volume: &volume,
                 transfer: Some(&transfer),
                 camera,

@@ -158,6 +158,7 @@ fn a_furnace_looks_the_same_with_and_without_its_medium() {
                 ..shot.settings.clone()
             };
             let scene = Scene {
+                beside: Default::default(),
                 volume: &volume,
                 transfer: Some(&transfer),
                 camera: &shot.camera,

@@ -61,6 +61,7 @@ fn batches_of_16_bit_floats_make_the_picture_of_32_bit_ones() {
                 ..Settings::default()
             };
             let scene = Scene {
+                beside: Default::default(),
                 volume: &volume,
                 transfer: Some(&transfer),
                 camera: &camera,
@@ -107,6 +108,7 @@ fn projections_by_blending_are_refused_by_name() {
             let grid = volume.grid();
             let camera = oblique_camera(&grid, projections(&grid)[0]);
             let scene = Scene {
+                beside: Default::default(),
                 volume: &volume,
                 transfer: None,
                 camera: &camera,
@@ -143,6 +145,7 @@ fn rays_do_not_need_blending() {
     let grid = volume.grid();
     let camera = oblique_camera(&grid, projections(&grid)[0]);
     let scene = Scene {
+        beside: Default::default(),
         volume: &volume,
         transfer: Some(&transfer),
         camera: &camera,

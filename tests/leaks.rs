@@ -27,6 +27,7 @@ fn a_dropped_renderer_leaves_no_vulkan_object() {
                 ..Settings::default()
             };
             let scene = Scene {
+                beside: Default::default(),
                 volume: &volume,
                 transfer,
                 camera: &camera,

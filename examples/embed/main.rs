@@ -85,6 +85,7 @@ unsafe fn draw(host: &Host) -> Result<(), Box<dyn Error>> {
     let raycast = Raycast::new(&gpu, &Words::of(&settings, &voxels))?;
     let bind = |brick| {
         let inputs = Inputs {
+            beside: &[],
             ring: &ring,
             volume: &voxels,
             brick,

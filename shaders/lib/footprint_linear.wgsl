@@ -1,11 +1,7 @@
 // The voxels with a weight in trilinear interpolation: one on an axis where the position is a centre.
 
 #import frame
-
-struct Footprint {
-    min: vec3<i32>,
-    max: vec3<i32>,
-}
+#import footprint
 
 fn footprint_of(voxel: vec3<f32>) -> Footprint {
     let lattice = voxel - 0.5;

@@ -5,6 +5,8 @@
 // another and are applied as `vec4(position, 1) * rows`.
 
 const MAX_CLIP_PLANES: u32 = 8u;
+// One lane of a vector each.
+const MAX_CHANNELS: u32 = 4u;
 
 struct Frame {
     // A pixel's ray: origin + x * origin_dx + y * origin_dy, and the same for its direction, which is
@@ -63,6 +65,24 @@ struct Frame {
     slice_turn: u32,
     slice_first_after_turn: i32,
     slice_axis: u32,
+    // Several volumes on one grid, one lane a channel; lane 0 of codes is that of the volume above.
+    channel_count: u32,
+    channel_code_scale: vec4<f32>,
+    channel_code_offset: vec4<f32>,
+    channel_slope: vec4<f32>,
+    channel_intercept: vec4<f32>,
+    channel_codes_are_integers: vec4<u32>,
+    channel_is_labels: vec4<u32>,
+    channel_has_holes: vec4<u32>,
+    channel_table_first: vec4<f32>,
+    channel_table_scale: vec4<f32>,
+    channel_table_count: vec4<u32>,
+    channel_table_row: vec4<u32>,
+    channel_point_first: vec4<u32>,
+    channel_color_point_count: vec4<u32>,
+    channel_opacity_point_count: vec4<u32>,
+    channel_interpolation_is_step: vec4<u32>,
+    channel_reference_length: vec4<f32>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

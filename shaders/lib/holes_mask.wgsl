@@ -1,16 +1,7 @@
-// A sample is no data when any voxel with a weight in it is: decided by fetches, never by filtering the mask.
+// A volume in which some voxels have no value.
 
-@group(0) @binding(3) var validity: texture_3d<u32>;
+@group(0) @binding(3) var validity: Mask;
 
-fn footprint_is_valid(footprint: Footprint) -> bool {
-    for (var z = footprint.min.z; z <= footprint.max.z; z++) {
-        for (var y = footprint.min.y; y <= footprint.max.y; y++) {
-            for (var x = footprint.min.x; x <= footprint.max.x; x++) {
-                if textureLoad(validity, vec3(x, y, z) - vec3<i32>(frame.brick_origin), 0).x == 0u {
-                    return false;
-                }
-            }
-        }
-    }
-    return true;
+fn volume_is_valid(footprint: Footprint) -> bool {
+    return all_valid(validity, footprint);
 }

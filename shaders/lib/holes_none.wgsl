@@ -1,5 +1,5 @@
 // A volume in which every voxel has a value.
 
-fn footprint_is_valid(footprint: Footprint) -> bool {
+fn volume_is_valid(footprint: Footprint) -> bool {
     return true;
 }

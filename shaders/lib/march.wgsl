@@ -5,7 +5,9 @@
 #import brick
 #import lattice_{lattice}
 #import filter_{filter}
-#import holes_{holes}
+#import nearest
+#import mask
+#import sample_{mix}
 #import mode_{mode}
 
 // `before` is what bricks nearer to the eye have gathered.
@@ -28,10 +30,10 @@ fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
             continue;
         }
         so_far.samples += 1.0;
-        if !footprint_is_valid(footprint_of(position)) {
+        if !has_data(position) {
             continue;
         }
-        so_far = add(so_far, value_at(position), segment);
+        so_far = add(so_far, sample_at(position), segment);
         if is_finished(so_far) {
             break;
         }

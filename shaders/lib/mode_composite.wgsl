@@ -5,7 +5,7 @@
 // Twin: src/technique/composite.rs.
 
 #import opacity
-#import transfer_{transfer}
+#import material_{mix}
 
 struct Accumulator {
     color: vec3<f32>,
@@ -19,8 +19,8 @@ fn begin() -> Accumulator {
     return Accumulator(vec3(0.0), 1.0, -1.0, 0.0);
 }
 
-fn add(so_far: Accumulator, value: f32, segment: Segment) -> Accumulator {
-    let material = classify(value);
+fn add(so_far: Accumulator, sample: Sample, segment: Segment) -> Accumulator {
+    let material = material_of(sample);
     let opacity = opacity_over(material.extinction, segment.length);
     var next = so_far;
     next.color += so_far.transmittance * opacity * material.color;

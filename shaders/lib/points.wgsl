@@ -13,11 +13,15 @@ struct Points {
 @group(0) @binding(5) var<storage, read> points: Points;
 
 fn opacity_at(value: f32) -> f32 {
-    return between_points(value, frame.color_point_count, frame.opacity_point_count).y;
+    return between_points(value, frame.color_point_count, frame.opacity_point_count, frame.interpolation_is_step).y;
 }
 
 fn color_at(value: f32) -> vec3<f32> {
-    let srgb = between_points(value, 0u, frame.color_point_count).yzw;
+    return shown(between_points(value, 0u, frame.color_point_count, frame.interpolation_is_step).yzw);
+}
+
+// A colour as it is blended.
+fn shown(srgb: vec3<f32>) -> vec3<f32> {
     if frame.color_space_is_display != 0u {
         return srgb;
     }
@@ -25,7 +29,7 @@ fn color_at(value: f32) -> vec3<f32> {
 }
 
 // Interpolates points[first .. first + count] at a value.
-fn between_points(value: f32, first: u32, count: u32) -> vec4<f32> {
+fn between_points(value: f32, first: u32, count: u32, is_step: u32) -> vec4<f32> {
     // Invariant: points before `low` are at or below the value, points from `high` on are above it.
     var low = first;
     var high = first + count;
@@ -41,7 +45,7 @@ fn between_points(value: f32, first: u32, count: u32) -> vec4<f32> {
         return points.d[first];
     }
     let left = points.d[low - 1u];
-    if low == first + count || frame.interpolation_is_step != 0u {
+    if low == first + count || is_step != 0u {
         return left;
     }
     let right = points.d[low];

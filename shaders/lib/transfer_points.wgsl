@@ -8,6 +8,9 @@ struct Classified {
 }
 
 fn classify(value: f32) -> Classified {
-    let opacity = min(opacity_at(value), 1.0 - 1.0 / 4096.0);
-    return Classified(color_at(value), -log(1.0 - opacity) / frame.reference_length);
+    return Classified(color_at(value), extinction_of(opacity_at(value), frame.reference_length));
+}
+
+fn extinction_of(opacity: f32, reference_length: f32) -> f32 {
+    return -log(1.0 - min(opacity, 1.0 - 1.0 / 4096.0)) / reference_length;
 }

@@ -14,9 +14,13 @@ struct Classified {
 }
 
 fn classify(value: f32) -> Classified {
+    return classified_by(value, frame.table_first, frame.table_scale, frame.table_count, 0);
+}
+
+fn classified_by(value: f32, first: f32, scale: f32, count: u32, row: i32) -> Classified {
     // Clamped before it becomes a whole number: a float out of range has no defined one.
-    let cell = clamp((value - frame.table_first) * frame.table_scale, 0.0, f32(frame.table_count - 1u));
+    let cell = clamp((value - first) * scale, 0.0, f32(count - 1u));
     let index = i32(cell);
-    let entry = textureLoad(transfer_table, vec2(index & (TABLE_WIDTH - 1), index / TABLE_WIDTH), 0);
+    let entry = textureLoad(transfer_table, vec2(index & (TABLE_WIDTH - 1), row + index / TABLE_WIDTH), 0);
     return Classified(entry.xyz, entry.w);
 }

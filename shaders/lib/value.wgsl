@@ -1,20 +1,33 @@
-// Texel to value (`sampling.md` 2): code = texel * code_scale + code_offset, value = code * slope + intercept.
+// Texel to value (`sampling.md` 2): code = texel * scale + offset, value = code * slope + intercept.
 // Integer types sit in UNORM formats; rounding brings their code back exactly. Twin: src/volume/sample.rs.
 
 #import frame
 
-fn code_from_texel(texel: f32) -> f32 {
-    let code = texel * frame.code_scale;
-    return select(code, round(code), frame.codes_are_integers != 0u) + frame.code_offset;
+struct Coding {
+    scale: f32,
+    offset: f32,
+    slope: f32,
+    intercept: f32,
+    is_integer: u32,
+}
+
+// That of the volume, the first channel.
+fn volume_coding() -> Coding {
+    return Coding(frame.code_scale, frame.code_offset, frame.slope, frame.intercept, frame.codes_are_integers);
+}
+
+fn code_from_texel(coding: Coding, texel: f32) -> f32 {
+    let code = texel * coding.scale;
+    return select(code, round(code), coding.is_integer != 0u) + coding.offset;
 }
 
 // For texels that a sampler has mixed: no rounding.
-fn code_from_mixed_texels(texel: f32) -> f32 {
-    return texel * frame.code_scale + frame.code_offset;
+fn code_from_mixed_texels(coding: Coding, texel: f32) -> f32 {
+    return texel * coding.scale + coding.offset;
 }
 
-fn value_from_code(code: f32) -> f32 {
-    return code * frame.slope + frame.intercept;
+fn value_from_code(coding: Coding, code: f32) -> f32 {
+    return code * coding.slope + coding.intercept;
 }
 
 // Exact where both ends are equal, unlike `mix`.

@@ -116,6 +116,7 @@ impl Bench {
         let mut job = Job {
             volume: &volume,
             classification: &classification,
+            beside: Default::default(),
             settings: &settings,
             extent_pixels: scene.picture.extent_pixels()?,
             layers: &[],
@@ -175,6 +176,7 @@ impl Bench {
             let job = Job {
                 volume: &volume,
                 classification: &classification,
+                beside: Default::default(),
                 settings: &settings,
                 extent_pixels,
                 layers: &[],

@@ -1,26 +1,52 @@
-//! From the words to a volume in memory: opened, compared with the memory that is there, read.
+//! From the words to volumes in memory: opened, compared with the memory that is there, read.
 
 use super::{
-    Error, exaggerate, flags::SceneFlags, memory::fitting, progress::Progress, renderer::Device,
+    Error, exaggerate,
+    flags::{InputFlags, SceneFlags},
+    memory::fitting,
+    progress::Progress,
+    renderer::Device,
 };
-use crate::volume::{Loss, Source, Volume};
+use crate::volume::{Limits, Loss, Magnitude, Meaning, Source, Volume};
 
 /// The one volume that the words name, in memory.
 pub fn load(scene: &SceneFlags, device: &Device, progress: &Progress) -> Result<Volume, Error> {
+    if scene.channels.are_given() || scene.labels.labels.is_some() {
+        return Err(Error::usage(
+            "one volume at a time is drawn here, without --channel, --channels and --labels",
+            "draw them with `stratavox render`",
+        ));
+    }
     let limits = scene.input.limits();
-    let source = scene.input.open(&limits)?;
-    // What may be wrong with the words is said before anything about memory.
-    scene.input.pick(source.header())?;
-    let source = fitting(source, &scene.input, device.memory())?;
-    load_from(scene, source.as_ref(), progress)
+    let source = open(&scene.input, &limits)?;
+    load_from(source, scene, device, progress)
 }
 
-/// The one volume of `source` that the words name, in memory; there is enough.
+/// The source that the words name. Vectors are taken by their length, unless a word takes something else.
+pub fn open(input: &InputFlags, limits: &Limits) -> Result<Box<dyn Source>, Error> {
+    let source = input.open(limits)?;
+    let header = source.header();
+    if input.component.is_none() && header.meaning == Meaning::Vector && header.components > 1 {
+        return Ok(Box::new(Magnitude::new(source)));
+    }
+    Ok(source)
+}
+
+/// The one volume of `source` that the words pick, where there is memory for it.
 pub fn load_from(
+    source: Box<dyn Source>,
     scene: &SceneFlags,
-    source: &dyn Source,
+    device: &Device,
     progress: &Progress,
 ) -> Result<Volume, Error> {
+    // What may be wrong with the words is said before anything about memory.
+    scene.input.pick(source.header())?;
+    let source = fitting(source, &scene.input, device.memory(), 1)?;
+    read(source.as_ref(), scene, progress)
+}
+
+/// The one volume of `source` that the words pick; there is memory for it.
+pub fn read(source: &dyn Source, scene: &SceneFlags, progress: &Progress) -> Result<Volume, Error> {
     let (pick, note) = scene.input.pick(source.header())?;
     for note in source.header().notes.iter().chain(&note) {
         progress.note(note);
@@ -32,15 +58,20 @@ pub fn load_from(
     if let Some(note) = &note {
         progress.note(note);
     }
+    say_what_was_lost(&volume, "voxels", progress);
+    Ok(volume)
+}
+
+/// Notes on what is not in memory as it is in the file; `voxels` is what they are called.
+pub fn say_what_was_lost(volume: &Volume, voxels: &str, progress: &Progress) {
     if !volume.loss.is_none() {
         let Loss { changed, worst } = volume.loss;
         progress.note(&format!(
-            "{changed} voxels were rounded to 32-bit floats, by at most {worst}"
+            "{changed} {voxels} were rounded to 32-bit floats, by at most {worst}"
         ));
     }
     let no_data = volume.no_data_count();
     if no_data > 0 {
-        progress.note(&format!("{no_data} voxels hold no data"));
+        progress.note(&format!("{no_data} {voxels} hold no data"));
     }
-    Ok(volume)
 }

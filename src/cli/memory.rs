@@ -37,6 +37,14 @@ impl RenderBytes {
             device: voxels.saturating_mul(device + mask),
         }
     }
+
+    /// Of so many volumes.
+    fn times(self, volumes: u32) -> Self {
+        Self {
+            host: self.host.saturating_mul(volumes.into()),
+            device: self.device.saturating_mul(volumes.into()),
+        }
+    }
 }
 
 /// The memory that a device has for textures.
@@ -54,7 +62,7 @@ const SLAB_BYTES: u64 = 256 << 20;
 /// Part of what is there that a volume may take: the rest is for pictures, programs and the system.
 const SHARE: f64 = 0.9;
 
-/// The source, reduced where that is wanted and needed.
+/// The source, reduced where that is wanted and needed, so that so many volumes of it fit.
 ///
 /// # Errors
 /// Where the memory is not there, and `--fit` is not given.
@@ -62,9 +70,10 @@ pub fn fitting(
     source: Box<dyn Source>,
     input: &InputFlags,
     device: Option<DeviceMemory>,
+    volumes: u32,
 ) -> Result<Box<dyn Source>, Error> {
     let host_bytes = input.max_memory.or_else(available_bytes);
-    let factor = least_factor(source.header(), host_bytes, device);
+    let factor = least_factor(source.header(), volumes, host_bytes, device);
     if factor == 1 {
         return Ok(source);
     }
@@ -72,7 +81,7 @@ pub fn fitting(
         let slab_bytes = host_bytes.map_or(SLAB_BYTES, |there| (there / 16).min(SLAB_BYTES));
         return Ok(Box::new(Reduced::new(source, factor, slab_bytes)));
     }
-    let needed = RenderBytes::of(source.header(), false);
+    let needed = RenderBytes::of(source.header(), false).times(volumes);
     let there = |bytes: Option<u64>| bytes.map_or("an unknown amount".to_owned(), in_units);
     Err(Error::Memory(format!(
         "{}: the volume needs {} of memory and {} of the device's; there are {} and {}",
@@ -85,8 +94,13 @@ pub fn fitting(
 }
 
 /// By how much each axis has to shrink.
-fn least_factor(header: &Header, host_bytes: Option<u64>, device: Option<DeviceMemory>) -> u32 {
-    let whole = RenderBytes::of(header, header.fill.is_some());
+fn least_factor(
+    header: &Header,
+    volumes: u32,
+    host_bytes: Option<u64>,
+    device: Option<DeviceMemory>,
+) -> u32 {
+    let whole = RenderBytes::of(header, header.fill.is_some()).times(volumes);
     let largest = header.dims.iter().copied().max().unwrap_or(1);
     let fits = |&factor: &u32| {
         let part = |bytes: u64| bytes as f64 / f64::from(factor).powi(3);
@@ -185,13 +199,16 @@ mod tests {
                 is_of_host: true,
             })
         };
-        assert_eq!(least_factor(&header, None, None), 1);
-        assert_eq!(least_factor(&header, Some(2_300_000), None), 1);
-        assert_eq!(least_factor(&header, Some(2_200_000), None), 2);
-        assert_eq!(least_factor(&header, Some(2_300_000), card(2_300_000)), 1);
-        assert_eq!(least_factor(&header, Some(2_300_000), cpu(2_300_000)), 2);
-        assert_eq!(least_factor(&header, Some(1 << 40), card(80_000)), 4);
-        assert_eq!(least_factor(&header, Some(1 << 40), card(0)), 100);
+        assert_eq!(least_factor(&header, 1, None, None), 1);
+        assert_eq!(least_factor(&header, 1, Some(2_300_000), None), 1);
+        assert_eq!(least_factor(&header, 1, Some(2_200_000), None), 2);
+        assert_eq!(
+            least_factor(&header, 1, Some(2_300_000), card(2_300_000)),
+            1
+        );
+        assert_eq!(least_factor(&header, 1, Some(2_300_000), cpu(2_300_000)), 2);
+        assert_eq!(least_factor(&header, 1, Some(1 << 40), card(80_000)), 4);
+        assert_eq!(least_factor(&header, 1, Some(1 << 40), card(0)), 100);
     }
 
     #[test]

@@ -2,20 +2,20 @@
 
 use super::{
     Error,
-    flags::{Depth, NotBuilt, SceneFlags},
-    load::load,
+    flags::{Classification, Depth, NotBuilt, SceneFlags},
     output::{self, write_whole},
     progress::{Progress, ProgressWord},
     reasons::why_empty,
     renderer::{Device, Job, Renderer},
     scene_file,
+    shown::Shown,
     signals::Gate,
     timings::{FrameTime, Timings, ms_since, peak_rss_bytes},
 };
 use crate::{
     camera::BoundingSphere,
     picture::{BitDepth, LayerKind, PictureFormat, WriteOptions, write_picture},
-    technique::Filter,
+    scene::Beside,
 };
 use clap::Args;
 use std::{
@@ -28,7 +28,9 @@ use std::{
 #[command(after_help = "Examples:\n  \
     stratavox render phantom:head -o head.png\n  \
     stratavox render phantom:head --technique slices-3d --view left --background 0,0,0 -o left.png\n  \
-    stratavox render phantom:head --mode mip --aov value,depth -o mip.exr")]
+    stratavox render phantom:head --mode mip --aov value,depth -o mip.exr\n  \
+    stratavox render phantom:cells --channel 0,color=cyan --channel 1,color=1:0.3:0,window=60:255 -o cells.png\n  \
+    stratavox render brain.nii.gz --labels atlas.nii.gz --label-tf names.txt --label-show 1-20 -o parts.png")]
 pub struct Render {
     /// The picture: its ending says whether .png, .exr or .npy
     #[arg(short, long, value_name = "FILE")]
@@ -104,22 +106,25 @@ impl Render {
         progress.device(&device.name());
         progress.stage("read", 0, 1);
         let start = Instant::now();
-        let volume = load(&scene, &device, &progress)?;
+        let shown = Shown::read(&scene, &settings, &device, &progress)?;
+        let Shown {
+            volume,
+            classification,
+            ..
+        } = &shown;
         let bounds = BoundingSphere::of_grid(&volume.world_from_voxel, volume.dims);
         let camera = scene.camera.camera(&bounds, extent_pixels)?;
-        let classification = scene
-            .classification
-            .classification(&volume, settings.mode)?;
-        if scene.sampling.filter.is_none() && scene.classification.found_labels(&classification) {
-            settings.filter = Filter::Nearest;
-            progress.note("the values look like labels: drawn with --filter nearest");
+        if let (None, Some(filter)) = (scene.sampling.filter, shown.filter) {
+            settings.filter = filter;
         }
         let load_ms = ms_since(start);
 
         progress.stage("prepare", 0, 1);
+        let parts = shown.parts();
         let job = Job {
-            volume: &volume,
-            classification: &classification,
+            volume,
+            classification,
+            beside: parts.beside(),
             settings: &settings,
             extent_pixels,
             layers: &layers,
@@ -138,7 +143,12 @@ impl Render {
             last = Some(frame.picture);
         }
         let mut picture = last.expect("at least one picture is drawn");
-        if let Some(reason) = why_empty(&picture, &volume, &classification, &camera, &settings) {
+        // What one of several functions covers says nothing of the others.
+        let reasoned = match parts.beside() {
+            Beside::Nothing => classification,
+            Beside::Channels(_) | Beside::Colors(_) => &Classification::RangeOfPicture,
+        };
+        if let Some(reason) = why_empty(&picture, volume, reasoned, &camera, &settings) {
             progress.note(&format!("the picture is empty: {reason}"));
         }
         if let Some(background) = scene.picture.background() {

@@ -6,7 +6,7 @@ use crate::{
     gpu::{DeviceChoice, Headless, Options},
     offscreen::{self, reference},
     picture::{LayerKind, Picture},
-    scene::Scene,
+    scene::{Beside, Scene},
     technique::{Mode, Settings, Technique},
     volume::Volume,
 };
@@ -19,6 +19,8 @@ pub struct Job<'a> {
     pub volume: &'a Volume,
     /// How its values are seen.
     pub classification: &'a Classification,
+    /// What it is seen together with.
+    pub beside: Beside<'a>,
     /// What is computed.
     pub settings: &'a Settings,
     /// Pixels across and down.
@@ -111,7 +113,9 @@ impl<'a> Renderer<'a> {
             });
         };
         let start = Instant::now();
-        let mut renderer = offscreen::Renderer::new(on, job.volume)?;
+        let beside = job.beside.volumes();
+        let volumes = [job.volume].into_iter().chain(beside).collect();
+        let mut renderer = offscreen::Renderer::several(on, volumes)?;
         let prepare_ms = device.found_ms + ms_since(start);
         let start = Instant::now();
         renderer.upload(&job.scene(camera))?;
@@ -215,6 +219,7 @@ impl<'a> Job<'a> {
         'a: 's,
     {
         Scene {
+            beside: self.beside,
             volume: self.volume,
             transfer: match self.classification {
                 Classification::Function(function) => Some(function),
@@ -232,8 +237,10 @@ fn check_layers(job: &Job) -> Result<(), Error> {
     let Settings {
         technique, mode, ..
     } = *job.settings;
+    let is_sum = !matches!(job.beside, Beside::Nothing) && mode.is_projection();
     for layer in job.layers {
         let missing = match layer {
+            LayerKind::Value | LayerKind::Depth if is_sum => "one number a voxel: --component 0",
             LayerKind::Value if mode == Mode::Composite => {
                 "a mode that projects, such as --mode mip"
             }

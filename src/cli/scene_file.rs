@@ -14,7 +14,10 @@
 //! transfer function file stands inside as `classification.transfer_function`. The path of the input is
 //! looked for from the scene file's own folder.
 
-use super::{Error, flags::SceneFlags};
+use super::{
+    Error,
+    flags::{SceneFlags, relative},
+};
 use serde_json::Value;
 use std::{
     fs::File,
@@ -43,6 +46,7 @@ pub fn read(path: &Path) -> Result<SceneFlags, Error> {
     }
     let mut scene = parse(&text).map_err(refused)?;
     scene.input = scene.input.found_in(folder_of(path));
+    scene.labels = scene.labels.with_paths(|file| folder_of(path).join(file));
     Ok(scene)
 }
 
@@ -51,6 +55,9 @@ pub fn text(scene: &SceneFlags, path: &Path) -> String {
     let scene = SceneFlags {
         stratavox_scene: VERSION,
         input: scene.input.relative_to(folder_of(path)),
+        labels: scene
+            .labels
+            .with_paths(|file| relative(file, folder_of(path))),
         ..scene.clone()
     };
     let mut value = serde_json::to_value(scene).expect("flags as JSON");
@@ -65,6 +72,9 @@ pub fn overlay(mut scene: SceneFlags, flags: &SceneFlags) -> SceneFlags {
     // What picks a volume in one file means nothing in another one.
     if flags.input.path.is_some() {
         scene.input = Default::default();
+    }
+    if flags.channels.are_given() {
+        scene.channels = Default::default();
     }
     scene.camera.give_way_to(&flags.camera);
     scene.classification.give_way_to(&flags.classification);
@@ -114,9 +124,12 @@ fn folder_of(path: &Path) -> &Path {
 
 /// The files that a scene reads, so that no output is put in their place.
 pub fn inputs(scene: &SceneFlags, scene_file: Option<&Path>) -> Vec<PathBuf> {
+    let [labels, label_tf] = scene.labels.files();
     let files = [
         scene.input.file(),
         scene.classification.tf.as_deref(),
+        labels,
+        label_tf,
         scene_file,
     ];
     files.into_iter().flatten().map(Path::to_owned).collect()
@@ -143,7 +156,8 @@ mod tests {
         --crop 0,1,0,1,0.5,1 --clip 1,0,0,5 --clip -1,0,0,-9.1 --conformance --preset mri --window -1,2 \
         --projection orthographic --fov 31.7 --zoom 1.1 --azimuth 12.3 --elevation -4 --roll 7 \
         --target 1,2,3 --up 0,0,1 --view-height 77 --exaggerate 3 --size 64x48 --background 0,0.1,1 --aov value,depth \
-        --device cpu --component 1 --raw 2x2x2,u8 --variable T";
+        --device cpu --component 1 --raw 2x2x2,u8 --variable T --channel 0,color=red,window=0:3 --channel 2 \
+        --labels l.nrrd --label-tf l.txt --label-show 1,3-5";
 
     #[test]
     fn a_saved_scene_comes_back_as_it_was() {

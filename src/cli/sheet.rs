@@ -132,6 +132,7 @@ fn draw(
     let job = Job {
         volume: &volume,
         classification: &classification,
+        beside: Default::default(),
         settings: &settings,
         extent_pixels,
         layers: &[],

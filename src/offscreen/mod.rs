@@ -7,6 +7,8 @@ pub mod reference;
 mod renderer;
 mod slicing;
 mod submission;
+mod sum;
+mod tally;
 mod targets;
 mod upload;
 

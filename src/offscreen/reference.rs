@@ -1,13 +1,15 @@
 //! A scene to a picture on the CPU: every technique by its twin, in f32 or f64, no Vulkan anywhere.
 
+use super::sum::sum_of;
 use crate::picture::{Layer, LayerKind, Picture};
 use crate::real::Real;
 use crate::resolve::reference::{premultiplied, projected_value};
-use crate::scene::{Scene, positions_in_pixel};
+use crate::scene::{Beside, Scene, positions_in_pixel};
 use crate::shaders::Frame;
-use crate::technique::blend::{blend, clear_color};
+use crate::technique::blend::{Fragment, blend, blend_material, clear_color};
+use crate::technique::mixture::{color_of, colored, mixed};
 use crate::technique::{
-    Error, Filter, Mode, Recording, Technique, projection, raycast, slices_2d, slices_3d,
+    Error, Filter, Mix, Mode, Recording, Role, Technique, projection, raycast, slices_2d, slices_3d,
 };
 use crate::transfer::{
     Absorption, Classified, Points, Table, TransferFunction, Window, classify_by_points,
@@ -28,8 +30,17 @@ struct Gathered<R> {
 /// The picture of `scene` with all layers that its technique has.
 ///
 /// # Errors
-/// Those of the parameters: too many samples or clip planes.
+/// Those of the parameters, too many samples or clip planes, and of volumes that cannot be put together.
 pub fn render<R: Real>(scene: &Scene) -> Result<Picture, Error> {
+    scene.check()?;
+    if scene.mix() == Mix::Channels && scene.settings.mode.is_projection() {
+        let pictures = scene.projected().into_iter();
+        return sum_of(pictures.map(|one| render_one::<R>(&one)));
+    }
+    render_one::<R>(scene)
+}
+
+fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     let grid = scene.volume.grid();
     let mode = scene.settings.mode;
     let gathered = |in_pixel| Walk::<R>::new(scene, &grid, in_pixel).map(|walk| walk.gather_all());
@@ -105,10 +116,13 @@ fn layers<R: Real>(scene: &Scene, gathered: &[Gathered<R>]) -> Vec<Layer> {
 /// One walk over the pixels of a picture.
 struct Walk<'a, R> {
     scene: &'a Scene<'a>,
+    volumes: Vec<&'a Volume>,
+    roles: Vec<Role>,
+    /// One a transfer function; none in a projecting mode, which classifies when it resolves.
+    classifiers: Vec<Classifier>,
     frame: Frame,
     /// Slices to draw; a ray caster has none.
     slices: u32,
-    classifier: Classifier,
     real: std::marker::PhantomData<R>,
 }
 
@@ -116,30 +130,36 @@ struct Walk<'a, R> {
 enum Classifier {
     Table(Table),
     Points(Points),
-    /// A projecting mode classifies when it resolves.
-    Later,
 }
 
 impl<'a, R: Real> Walk<'a, R> {
     fn new(scene: &'a Scene<'a>, grid: &Grid, in_pixel: [f64; 2]) -> Result<Self, Error> {
         let view = scene.view(grid, in_pixel);
-        let reference_length = scene.reference_length();
-        let absorption = Absorption::Extinction { reference_length };
         let space = scene.settings.color_space;
-        let classifier = match scene.transfer {
-            _ if scene.settings.mode.is_projection() => Classifier::Later,
-            Some(function) if scene.settings.conformance => {
+        let classifier = |function: Option<&TransferFunction>| {
+            let function = function.ok_or(Error::NoTransferFunction)?;
+            let reference_length = scene.length_of(function);
+            let absorption = Absorption::Extinction { reference_length };
+            Ok(if scene.settings.conformance {
                 Classifier::Points(Points::new(function, absorption, space))
-            }
-            Some(function) => Classifier::Table(Table::new(function, absorption, space)),
-            None => return Err(Error::NoTransferFunction),
+            } else {
+                Classifier::Table(Table::new(function, absorption, space))
+            })
+        };
+        let classifiers = if scene.settings.mode.is_projection() {
+            Vec::new()
+        } else {
+            let functions = scene.transfers().into_iter();
+            functions.map(classifier).collect::<Result<_, Error>>()?
         };
         let Recording { frame, slices, .. } = view.on_cpu()?;
         Ok(Self {
             scene,
+            volumes: scene.volumes(),
+            roles: scene.roles(),
+            classifiers,
             frame,
             slices,
-            classifier,
             real: std::marker::PhantomData,
         })
     }
@@ -171,69 +191,143 @@ impl<'a, R: Real> Walk<'a, R> {
 
     fn gather(&self, x: u32, y: u32) -> Gathered<R> {
         let pixel = [x, y].map(|n| R::from_f64(f64::from(n)) + R::from_f64(0.5));
-        let settings = self.scene.settings;
-        let (volume, frame) = (self.scene.volume, &self.frame);
-        let value_at = |p| filtered(volume, settings.filter, p);
-        match settings.technique {
-            Technique::Raycast if settings.mode.is_projection() => {
-                let (found, samples) = projection::reference::project(
-                    frame,
-                    settings.lattice,
-                    settings.mode,
-                    pixel,
-                    value_at,
-                );
-                let zero = R::from_f64(0.0);
-                let accumulation = [found.value, found.weight, zero, zero];
-                Gathered {
-                    accumulation,
-                    depth: found.depth,
-                    samples,
-                }
-            }
-            Technique::Raycast => {
-                let classify = |value| self.classify(value);
-                let (found, samples) = raycast::reference::radiance(
-                    frame,
-                    settings.lattice,
-                    pixel,
-                    value_at,
-                    classify,
-                );
-                let [r, g, b] = found.color;
-                let accumulation = [r, g, b, R::from_f64(1.0) - found.transmittance];
-                Gathered {
-                    accumulation,
-                    depth: found.depth,
-                    samples,
-                }
-            }
-            Technique::Slices3d => self.blend_all(|instance| {
-                let plane = frame.slice_first + instance as i32 * frame.slice_direction;
-                slices_3d::reference::fragment(frame, pixel, plane, value_at)
-            }),
-            Technique::Slices2d => self.blend_all(|instance| {
-                let slice = slices_2d::reference::slice_of(frame, instance);
-                let axis = frame.slice_axis as usize;
-                let value_at =
-                    |p| filtered_in_slice(volume, settings.filter, axis, slice as u32, p);
-                slices_2d::reference::fragment(frame, pixel, slice, value_at)
-            }),
+        if self.scene.settings.mode.is_projection() {
+            self.project(pixel)
+        } else {
+            self.composite(pixel)
         }
     }
 
-    /// All slices of one pixel through the blending unit.
-    fn blend_all(
+    /// One value a ray.
+    fn project(&self, pixel: [R; 2]) -> Gathered<R> {
+        let settings = self.scene.settings;
+        let (mode, order) = (settings.mode, settings.order);
+        let (volume, frame) = (self.scene.volume, &self.frame);
+        let value_at = |p| filtered(volume, settings.filter, p);
+        // A projecting mode classifies when it resolves.
+        let unclassified = |_| [R::from_f64(0.0); 4];
+        let blend = |target, fragment| blend(mode, order, target, fragment, unclassified);
+        match settings.technique {
+            Technique::Raycast => {
+                let (found, samples) =
+                    projection::reference::project(frame, settings.lattice, mode, pixel, value_at);
+                let zero = R::from_f64(0.0);
+                Gathered {
+                    accumulation: [found.value, found.weight, zero, zero],
+                    depth: found.depth,
+                    samples,
+                }
+            }
+            Technique::Slices3d => self.blend_all(|i| self.on_plane(pixel, i, value_at), blend),
+            Technique::Slices2d => {
+                let value_at =
+                    |axis, slice, p| filtered_in_slice(volume, settings.filter, axis, slice, p);
+                self.blend_all(|i| self.on_slice(pixel, i, value_at), blend)
+            }
+        }
+    }
+
+    /// Emission and absorption of what the volumes are made of together.
+    fn composite(&self, pixel: [R; 2]) -> Gathered<R> {
+        let settings = self.scene.settings;
+        let material_at = |p| self.material(|volume, filter| filtered(volume, filter, p));
+        let blend = |target, fragment: Fragment<R, [R; 4]>| {
+            blend_material(settings.order, target, fragment.value, fragment.length)
+        };
+        match settings.technique {
+            Technique::Raycast => {
+                let (found, samples) = raycast::reference::radiance(
+                    &self.frame,
+                    settings.lattice,
+                    pixel,
+                    material_at,
+                    |material| material,
+                );
+                let [r, g, b] = found.color;
+                Gathered {
+                    accumulation: [r, g, b, R::from_f64(1.0) - found.transmittance],
+                    depth: found.depth,
+                    samples,
+                }
+            }
+            Technique::Slices3d => self.blend_all(|i| self.on_plane(pixel, i, material_at), blend),
+            Technique::Slices2d => {
+                let material_at = |axis, slice, p| {
+                    self.material(|volume, filter| {
+                        filtered_in_slice(volume, filter, axis, slice, p)
+                    })
+                };
+                self.blend_all(|i| self.on_slice(pixel, i, material_at), blend)
+            }
+        }
+    }
+
+    /// What the volumes are made of where `look` looks; `None` for no data.
+    fn material(&self, look: impl Fn(&Volume, Filter) -> Option<R>) -> Option<[R; 4]> {
+        let settings = self.scene.settings;
+        if let Beside::Colors(_) = self.scene.beside {
+            let mut found = [R::from_f64(0.0); 4];
+            for (number, volume) in found.iter_mut().zip(&self.volumes) {
+                *number = look(volume, settings.filter)?;
+            }
+            let [r, g, b, alpha] = found;
+            let alpha = (self.volumes.len() == 4).then_some(alpha);
+            let (srgb, value) = color_of([r, g, b], alpha);
+            let extinction = self.classify(0, value)[3];
+            return Some(colored(srgb, extinction, settings.color_space));
+        }
+        if let [volume] = self.volumes[..] {
+            return look(volume, settings.filter).map(|value| self.classify(0, value));
+        }
+        let mut found = [None; crate::shaders::MAX_CHANNELS as usize];
+        for (c, (volume, role)) in self.volumes.iter().zip(&self.roles).enumerate() {
+            found[c] = match role {
+                Role::Numbers => look(volume, settings.filter),
+                Role::Labels => Some(look(volume, Filter::Nearest)?),
+            };
+        }
+        let has_data = found.iter().any(Option::is_some);
+        let there = found.into_iter().enumerate();
+        let materials = there.filter_map(|(c, value)| Some(self.classify(c, value?)));
+        has_data.then(|| mixed(materials))
+    }
+
+    /// The sample of a pixel's ray on the view-aligned plane of an instance.
+    fn on_plane<V>(
         &self,
-        fragment: impl Fn(u32) -> Option<Option<crate::technique::blend::Fragment<R>>>,
+        pixel: [R; 2],
+        instance: u32,
+        value_at: impl Fn([R; 3]) -> Option<V>,
+    ) -> Option<Option<Fragment<R, V>>> {
+        let plane = self.frame.slice_first + instance as i32 * self.frame.slice_direction;
+        slices_3d::reference::fragment(&self.frame, pixel, plane, value_at)
+    }
+
+    /// The same on the slice of a stack, which is slice number so much of an axis.
+    fn on_slice<V>(
+        &self,
+        pixel: [R; 2],
+        instance: u32,
+        value_at: impl Fn(usize, u32, [R; 3]) -> Option<V>,
+    ) -> Option<Option<Fragment<R, V>>> {
+        let slice = slices_2d::reference::slice_of(&self.frame, instance);
+        let axis = self.frame.slice_axis as usize;
+        let value_at = |p| value_at(axis, slice as u32, p);
+        slices_2d::reference::fragment(&self.frame, pixel, slice, value_at)
+    }
+
+    /// All slices of one pixel through the blending unit.
+    fn blend_all<V>(
+        &self,
+        fragment: impl Fn(u32) -> Option<Option<Fragment<R, V>>>,
+        blend: impl Fn([R; 4], Fragment<R, V>) -> [R; 4],
     ) -> Gathered<R> {
-        let (mode, order) = (self.scene.settings.mode, self.scene.settings.order);
-        let mut target = clear_color(mode).map(R::from_f32);
+        let mut target = clear_color(self.scene.settings.mode).map(R::from_f32);
         let mut samples = 0;
         for fragment in (0..self.slices).filter_map(fragment) {
             samples += 1;
             if let Some(fragment) = fragment {
-                target = blend(mode, order, target, fragment, |value| self.classify(value));
+                target = blend(target, fragment);
             }
         }
         Gathered {
@@ -243,11 +337,10 @@ impl<'a, R: Real> Walk<'a, R> {
         }
     }
 
-    fn classify(&self, value: R) -> [R; 4] {
-        match &self.classifier {
+    fn classify(&self, channel: usize, value: R) -> [R; 4] {
+        match &self.classifiers[channel] {
             Classifier::Table(table) => classify_by_table(table, value),
             Classifier::Points(points) => classify_by_points(points, value),
-            Classifier::Later => [R::from_f64(0.0); 4],
         }
     }
 }

@@ -9,7 +9,9 @@
 
 use super::Error;
 use super::passes::Passes;
-use super::submission::{Part, Submission};
+use super::submission::{self, Submission};
+use super::sum::sum_of;
+use super::tally::{Clock, Mean, check_layers};
 use super::targets::Targets;
 use super::upload::upload;
 use crate::gpu::{Headless, ParameterRing, Timer, Use};
@@ -17,7 +19,9 @@ use crate::picture::{ColorSpace, Layer, LayerKind, Picture};
 use crate::resident::{GpuTransfer, GpuVolume, TextureLayout};
 use crate::resolve::reference::projected_value;
 use crate::scene::{Scene, positions_in_pixel};
-use crate::technique::{self, Inputs, Recording, Settings, Technique, Words, parameter_ring};
+use crate::technique::{
+    self, Inputs, Mix, Part, Recording, Settings, Technique, Words, parameter_ring,
+};
 use crate::transfer::{Classified, TransferFunction, Window};
 use crate::volume::Volume;
 use std::sync::Arc;
@@ -31,12 +35,14 @@ pub struct Rendered {
     pub gpu_ms: Option<f64>,
 }
 
-/// Renders pictures of one volume. What does not change from picture to picture stays on the device.
+/// Renders pictures of one volume, or of several on one grid. What does not change from picture to picture stays on the device.
 #[derive(Debug)]
 pub struct Renderer<'v> {
-    volume: &'v Volume,
+    volumes: Vec<&'v Volume>,
+    /// Which of them is drawn, where they are drawn one by one; else the first.
+    shown: usize,
     /// As 3D textures, then as the stacks along x, y, z: what has been needed so far.
-    resident: [Option<GpuVolume>; 4],
+    resident: [Vec<GpuVolume>; 4],
     transfer: Option<Uploaded>,
     targets: Option<Targets>,
     passes: Option<Passes>,
@@ -48,7 +54,7 @@ pub struct Renderer<'v> {
 /// A transfer function on the device, and what it was made of.
 #[derive(Debug)]
 struct Uploaded {
-    function: TransferFunction,
+    functions: Vec<TransferFunction>,
     space: ColorSpace,
     made: GpuTransfer,
 }
@@ -59,10 +65,19 @@ impl<'v> Renderer<'v> {
     /// # Errors
     /// Where the device gives no memory.
     pub fn new(device: Headless, volume: &'v Volume) -> Result<Self, Error> {
+        Self::several(device, vec![volume])
+    }
+
+    /// A renderer of the [`Scene::volumes`] of scenes.
+    ///
+    /// # Errors
+    /// Where the device gives no memory.
+    pub fn several(device: Headless, volumes: Vec<&'v Volume>) -> Result<Self, Error> {
         let gpu = device.gpu();
         Ok(Self {
-            volume,
-            resident: [const { None }; 4],
+            volumes,
+            shown: 0,
+            resident: [const { Vec::new() }; 4],
             transfer: None,
             targets: None,
             passes: None,
@@ -87,10 +102,11 @@ impl<'v> Renderer<'v> {
     /// # Errors
     /// Where something is over a limit of the device.
     pub fn upload(&mut self, scene: &Scene) -> Result<(), Error> {
-        let layout = scene.view(&self.volume.grid(), [0.0; 2]).texture_layout();
+        scene.check()?;
+        let layout = scene.view(&scene.volume.grid(), [0.0; 2]).texture_layout();
         let resident = &mut self.resident[place(layout)];
-        if resident.is_none() {
-            *resident = Some(upload(&mut self.device, self.volume, layout)?);
+        if resident.is_empty() {
+            *resident = upload(&mut self.device, &self.volumes, layout)?;
         }
         Ok(())
     }
@@ -100,16 +116,41 @@ impl<'v> Renderer<'v> {
     /// # Errors
     /// Parameters out of range, a limit of the device, a layer that the technique does not have.
     pub fn render(&mut self, scene: &Scene, layers: &[LayerKind]) -> Result<Rendered, Error> {
-        check_layers(scene.settings, layers)?;
+        check_layers(scene, layers)?;
         self.upload(scene)?;
-        self.prepare(scene)?;
         let mut clock = Clock(self.timer.is_some().then_some(0.0));
-        match scene.transfer {
-            Some(function) => self.set_transfer(scene, function)?,
+        if scene.mix() == Mix::Channels && scene.settings.mode.is_projection() {
+            let one_by_one = scene.projected().into_iter().enumerate();
+            let picture = sum_of(one_by_one.map(|(shown, one)| {
+                self.shown = shown;
+                self.picture(&one, layers, &mut clock)
+            }));
+            self.shown = 0;
+            let (picture, gpu_ms) = (picture?, clock.0);
+            return Ok(Rendered { picture, gpu_ms });
+        }
+        let picture = self.picture(scene, layers, &mut clock)?;
+        Ok(Rendered {
+            picture,
+            gpu_ms: clock.0,
+        })
+    }
+
+    /// One picture of what has been uploaded.
+    fn picture(
+        &mut self,
+        scene: &Scene,
+        layers: &[LayerKind],
+        clock: &mut Clock,
+    ) -> Result<Picture, Error> {
+        self.prepare(scene)?;
+        let functions = scene.transfers().into_iter();
+        match functions.collect::<Option<Vec<_>>>() {
+            Some(functions) => self.set_transfers(scene, &functions)?,
             None if scene.settings.mode.is_projection() => {
                 clock.add(self.gather(scene, [0.0; 2])?);
                 let function = self.grey_of_picture(scene)?;
-                self.set_transfer(scene, &function)?;
+                self.set_transfers(scene, &[&function])?;
             }
             None => return Err(technique::Error::NoTransferFunction.into()),
         }
@@ -126,16 +167,12 @@ impl<'v> Renderer<'v> {
         let layers = self.read_layers(scene, layers)?;
         let [width, height] = scene.extent_pixels;
         let color_space = scene.settings.color_space;
-        let picture = Picture {
+        Ok(Picture {
             width,
             height,
             pixels,
             color_space,
             layers,
-        };
-        Ok(Rendered {
-            picture,
-            gpu_ms: clock.0,
         })
     }
 
@@ -149,13 +186,12 @@ impl<'v> Renderer<'v> {
         {
             self.targets = Some(Targets::new(&gpu, scene.extent_pixels)?);
         }
-        let layout = scene.view(&self.volume.grid(), [0.0; 2]).texture_layout();
-        let resident = self.resident[place(layout)].as_ref().expect("uploaded");
-        let slots = resident.bricks().len() as u32;
+        let parts = parts_of(&self.resident, self.shown, scene);
+        let slots = parts[0].volume.bricks().len() as u32;
+        let words = Words::mixed(scene.settings, scene.mix(), &parts);
         if self.ring.slots() < slots {
             self.ring = parameter_ring(&gpu, slots)?;
         }
-        let words = Words::of(scene.settings, resident);
         let Settings {
             technique,
             mode,
@@ -173,19 +209,25 @@ impl<'v> Renderer<'v> {
         Ok(())
     }
 
-    fn set_transfer(&mut self, scene: &Scene, function: &TransferFunction) -> Result<(), Error> {
+    fn set_transfers(
+        &mut self,
+        scene: &Scene,
+        functions: &[&TransferFunction],
+    ) -> Result<(), Error> {
         let space = scene.settings.color_space;
-        let is_there = |there: &Uploaded| there.function == *function && there.space == space;
+        let is_there = |there: &Uploaded| {
+            there.functions.iter().eq(functions.iter().copied()) && there.space == space
+        };
         if self.transfer.as_ref().is_some_and(is_there) {
             return Ok(());
         }
-        let length = function.reference_length;
-        let length = length.unwrap_or_else(|| self.volume.grid().smallest_spacing());
-        let made = GpuTransfer::new(self.device.gpu(), function, length, space)?;
+        let with_length = functions.iter().map(|&f| (f, scene.length_of(f)));
+        let with_length: Vec<_> = with_length.collect();
+        let made = GpuTransfer::several(self.device.gpu(), &with_length, space)?;
         // SAFETY: recorded outside rendering; `run` waits, and `made` lives meanwhile.
         self.device.run(|cmd| unsafe { made.record_upload(cmd) })?;
         self.transfer = Some(Uploaded {
-            function: function.clone(),
+            functions: functions.iter().copied().cloned().collect(),
             space,
             made,
         });
@@ -204,28 +246,36 @@ impl<'v> Renderer<'v> {
         in_pixel: [f64; 2],
         pass: impl FnOnce(&Passes, Submission) -> Result<Option<f64>, crate::gpu::Error>,
     ) -> Result<Option<f64>, Error> {
-        let grid = self.volume.grid();
+        let grid = scene.volume.grid();
         let view = scene.view(&grid, in_pixel);
         let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
-        let volume = self.resident[place(view.texture_layout())]
-            .as_ref()
-            .expect("uploaded");
-        let part = |(slot, recording): (u32, Recording)| {
+        let parts = parts_of(&self.resident, self.shown, scene);
+        let recordings = view.recordings_of(&parts, transfer)?;
+        let beside = |recording: &Recording| -> Vec<_> {
+            let others = parts[1..].iter();
+            others
+                .map(|part| &part.volume.bricks()[recording.brick])
+                .collect()
+        };
+        let beside: Vec<_> = recordings.iter().map(beside).collect();
+        let part = |(slot, (recording, beside)): (u32, (Recording, _))| {
+            let volume = parts[0].volume;
             let inputs = Inputs {
                 ring: &self.ring,
                 volume,
                 brick: &volume.bricks()[recording.brick],
                 transfer,
+                beside,
             };
-            Ok(Part {
+            Ok(submission::Part {
                 inputs,
                 offset: recording.write(&self.ring, slot)?,
                 slices: recording.slices,
             })
         };
-        let recordings = view.recordings(volume, transfer)?;
-        let parts = (0..).zip(recordings).map(part);
-        let bricks = parts.collect::<Result<Vec<_>, Error>>()?;
+        let with_others = recordings.into_iter().zip(beside.iter().map(Vec::as_slice));
+        let drawn = (0..).zip(with_others).map(part);
+        let bricks = drawn.collect::<Result<Vec<_>, Error>>()?;
         let submission = Submission {
             device: &mut self.device,
             targets: self.targets.as_ref().expect("prepared"),
@@ -310,27 +360,12 @@ impl<'v> Renderer<'v> {
     }
 }
 
-/// Blending keeps no depth, a projection no transmittance, and a composite has no one value.
-fn check_layers(settings: &Settings, wanted: &[LayerKind]) -> Result<(), Error> {
-    let Settings {
-        technique, mode, ..
-    } = *settings;
-    for &layer in wanted {
-        let is_there = match layer {
-            LayerKind::Value => mode.is_projection(),
-            LayerKind::Depth => technique == Technique::Raycast,
-            LayerKind::Transmittance => !mode.is_projection(),
-            LayerKind::Samples => true,
-        };
-        if !is_there {
-            return Err(Error::NoLayer {
-                technique,
-                mode,
-                layer,
-            });
-        }
-    }
-    Ok(())
+/// The volumes of the scene as they lie on the device, from the first that is shown on.
+fn parts_of<'a>(resident: &'a [Vec<GpuVolume>; 4], shown: usize, scene: &Scene) -> Vec<Part<'a>> {
+    let layout = scene.view(&scene.volume.grid(), [0.0; 2]).texture_layout();
+    let there = &resident[place(layout)][shown..];
+    let parts = there.iter().zip(scene.roles());
+    parts.map(|(volume, role)| Part { volume, role }).collect()
 }
 
 /// Where a layout is kept among those that are resident.
@@ -338,35 +373,5 @@ fn place(layout: TextureLayout) -> usize {
     match layout {
         TextureLayout::Texture3d => 0,
         TextureLayout::Stack(axis) => 1 + axis,
-    }
-}
-
-/// The mean of pictures, added up in f32 in the order of their rays: no device needs to blend for it.
-struct Mean {
-    weight: f32,
-    pixels: Vec<[f32; 4]>,
-}
-
-impl Mean {
-    fn new([width, height]: [u32; 2], per_side: u32) -> Self {
-        Self {
-            weight: 1.0 / (per_side * per_side) as f32,
-            pixels: vec![[0.0; 4]; width as usize * height as usize],
-        }
-    }
-
-    fn add(&mut self, picture: &[[f32; 4]]) {
-        for (sum, color) in self.pixels.iter_mut().zip(picture) {
-            *sum = std::array::from_fn(|c| sum[c] + self.weight * color[c]);
-        }
-    }
-}
-
-/// Milliseconds on the device so far.
-struct Clock(Option<f64>);
-
-impl Clock {
-    fn add(&mut self, more: Option<f64>) {
-        self.0 = self.0.zip(more).map(|(sum, more)| sum + more);
     }
 }

@@ -8,13 +8,20 @@ use ash::vk;
 /// A slab is as many slices as fit into this.
 const STAGING_BYTES: u64 = 32 << 20;
 
-/// Makes and fills the textures of a volume.
+/// Makes and fills the textures of volumes on one grid.
 pub fn upload(
     device: &mut Headless,
-    volume: &Volume,
+    volumes: &[&Volume],
     layout: TextureLayout,
-) -> Result<GpuVolume, Error> {
-    let made = GpuVolume::new(device.gpu(), volume, layout)?;
+) -> Result<Vec<GpuVolume>, Error> {
+    let made = GpuVolume::several(device.gpu(), volumes, layout)?;
+    for (made, volume) in made.iter().zip(volumes) {
+        fill(device, made, volume)?;
+    }
+    Ok(made)
+}
+
+fn fill(device: &mut Headless, made: &GpuVolume, volume: &Volume) -> Result<(), Error> {
     let slabs = made.slabs(STAGING_BYTES);
     let bytes = slabs.iter().map(|slab| made.staging_bytes(slab.region));
     let bytes = bytes.max().unwrap_or(0);
@@ -25,5 +32,5 @@ pub fn upload(
         // SAFETY: recorded outside rendering; the staging buffer holds this slab; `run` waits.
         device.run(|cmd| unsafe { made.record_upload(cmd, &staging, 0, slab) })?;
     }
-    Ok(made)
+    Ok(())
 }

@@ -21,13 +21,16 @@ pub struct TransferLayout {
     pub opacity_point_count: u32,
     pub interpolation: Interpolation,
     pub reference_length: f32,
+    /// Where the table begins in a texture of several, and the points in a list of several.
+    pub table_row: u32,
+    pub point_first: u32,
 }
 
-/// A transfer function. The points are there at once; [`GpuTransfer::record_upload`] fills the table.
+/// One transfer function, or several of which each has a table of its own. The points are there at once; [`GpuTransfer::record_upload`] fills the table.
 #[derive(Debug)]
 pub struct GpuTransfer {
     gpu: Arc<Gpu>,
-    layout: TransferLayout,
+    layouts: Vec<TransferLayout>,
     table: Image,
     staging: Buffer,
     points: Buffer,
@@ -44,47 +47,69 @@ impl GpuTransfer {
         reference_length: f64,
         space: ColorSpace,
     ) -> Result<Self, Error> {
-        let absorption = Absorption::Extinction { reference_length };
-        let table = Table::new(function, absorption, space);
-        let points = Points::new(function, absorption, space);
-        let width = (TABLE_WIDTH as usize).min(table.entries.len());
+        Self::several(gpu, &[(function, reference_length)], space)
+    }
+
+    /// Objects for the functions of channels, each with the length that its opacities are for.
+    ///
+    /// # Errors
+    /// Where the device gives no memory.
+    pub fn several(
+        gpu: &Arc<Gpu>,
+        functions: &[(&TransferFunction, f64)],
+        space: ColorSpace,
+    ) -> Result<Self, Error> {
+        let extinction = |reference_length| Absorption::Extinction { reference_length };
+        let tables = functions
+            .iter()
+            .map(|&(function, length)| Table::new(function, extinction(length), space));
+        let tables: Vec<_> = tables.collect();
+        let longest = tables.iter().map(|table| table.entries.len()).max();
+        let width = longest.unwrap_or(1).min(TABLE_WIDTH as usize);
+        let (mut entries, mut points, mut layouts) = (Vec::new(), Vec::new(), Vec::new());
+        for (table, &(function, length)) in tables.iter().zip(functions) {
+            let own = Points::new(function, extinction(length), space);
+            layouts.push(TransferLayout {
+                table_first: table.first,
+                table_scale: table.scale,
+                table_count: table.entries.len() as u32,
+                color_point_count: own.color_count,
+                opacity_point_count: own.opacity_count,
+                interpolation: function.interpolation,
+                reference_length: length as f32,
+                table_row: (entries.len() / width) as u32,
+                point_first: points.len() as u32,
+            });
+            entries.extend_from_slice(&table.entries);
+            entries.resize(entries.len().next_multiple_of(width), [0.0; 4]);
+            points.extend_from_slice(&own.entries);
+        }
         let desc = ImageDesc {
             kind: ImageKind::D2,
-            extent: [width as u32, (table.entries.len() / width) as u32, 1],
+            extent: [width as u32, (entries.len() / width) as u32, 1],
             format: vk::Format::R32G32B32A32_SFLOAT,
             usage: vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST,
             name: "transfer table",
         };
+        let copied = vk::BufferUsageFlags::TRANSFER_SRC;
+        let read = vk::BufferUsageFlags::STORAGE_BUFFER;
         Ok(Self {
             gpu: Arc::clone(gpu),
-            layout: TransferLayout {
-                table_first: table.first,
-                table_scale: table.scale,
-                table_count: table.entries.len() as u32,
-                color_point_count: points.color_count,
-                opacity_point_count: points.opacity_count,
-                interpolation: function.interpolation,
-                reference_length: reference_length as f32,
-            },
+            layouts,
             table: Image::new(gpu, &desc)?,
-            staging: filled(
-                gpu,
-                &table.entries,
-                vk::BufferUsageFlags::TRANSFER_SRC,
-                "transfer staging",
-            )?,
-            points: filled(
-                gpu,
-                &points.entries,
-                vk::BufferUsageFlags::STORAGE_BUFFER,
-                "transfer points",
-            )?,
+            staging: filled(gpu, &entries, copied, "transfer staging")?,
+            points: filled(gpu, &points, read, "transfer points")?,
         })
     }
 
-    /// How table and points are to be read.
+    /// How table and points of the (first) function are to be read.
     pub fn layout(&self) -> &TransferLayout {
-        &self.layout
+        &self.layouts[0]
+    }
+
+    /// The same of every function, in their order.
+    pub fn layouts(&self) -> &[TransferLayout] {
+        &self.layouts
     }
 
     /// The table, in [`Use::Sampled`] after the upload.

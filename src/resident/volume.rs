@@ -63,50 +63,103 @@ pub struct GpuVolume {
     sampler: Sampler,
 }
 
+/// How a volume will lie in textures, before it is cut.
+struct Plan {
+    layout: TextureLayout,
+    texel: TexelFormat,
+    has_holes: bool,
+}
+
+impl Plan {
+    fn of(gpu: &Gpu, volume: &Volume, layout: TextureLayout) -> Self {
+        Self {
+            layout,
+            texel: TexelFormat::choose(gpu, volume.voxels.voxel_type(), volume.rescale),
+            has_holes: volume.validity.is_some(),
+        }
+    }
+
+    fn values(&self, stored: [u32; 3]) -> ImageDesc<'static> {
+        self.desc(stored, self.texel.format, "volume")
+    }
+
+    fn validity(&self, stored: [u32; 3]) -> ImageDesc<'static> {
+        self.desc(stored, vk::Format::R8_UINT, "validity")
+    }
+
+    fn desc(&self, stored: [u32; 3], format: vk::Format, name: &'static str) -> ImageDesc<'static> {
+        ImageDesc {
+            kind: self.layout.kind(),
+            extent: self.layout.axes().map(|axis| stored[axis]),
+            format,
+            usage: vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST,
+            name,
+        }
+    }
+
+    /// The limit that a brick of so many stored voxels is over.
+    fn check(&self, gpu: &Gpu, stored: [u32; 3]) -> Result<(), Error> {
+        gpu.check_image(&self.values(stored))?;
+        if self.has_holes {
+            gpu.check_image(&self.validity(stored))?;
+        }
+        Ok(())
+    }
+
+    fn make(self, gpu: &Arc<Gpu>, volume: &Volume, cells: &[Cell]) -> Result<GpuVolume, Error> {
+        let brick = |&cell: &Cell| {
+            let stored = cell.stored.dims();
+            let mask = || Image::new(gpu, &self.validity(stored));
+            Ok(Brick {
+                cell,
+                values: Image::new(gpu, &self.values(stored))?,
+                validity: self.has_holes.then(mask).transpose()?,
+            })
+        };
+        Ok(GpuVolume {
+            gpu: Arc::clone(gpu),
+            grid: volume.grid(),
+            layout: self.layout,
+            texel: self.texel,
+            bricks: cells.iter().map(brick).collect::<Result<_, Error>>()?,
+            sampler: Sampler::linear_clamp(gpu)?,
+        })
+    }
+}
+
 impl GpuVolume {
     /// Objects for a volume like this one: one brick where the device's limits allow it.
     ///
     /// # Errors
     /// Where the device gives no memory, or not even a voxel fits.
     pub fn new(gpu: &Arc<Gpu>, volume: &Volume, layout: TextureLayout) -> Result<Self, Error> {
-        let texel = TexelFormat::choose(gpu, volume.voxels.voxel_type(), volume.rescale);
-        let desc = |stored: [u32; 3], format, name| ImageDesc {
-            kind: layout.kind(),
-            extent: layout.axes().map(|axis| stored[axis]),
-            format,
-            usage: vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST,
-            name,
-        };
-        let values = |stored| desc(stored, texel.format, "volume");
-        let validity = |stored| desc(stored, vk::Format::R8_UINT, "validity");
-        let has_holes = volume.validity.is_some();
-        let fits = |stored| {
-            let values_fit = gpu.check_image(&values(stored)).is_ok();
-            values_fit && (!has_holes || gpu.check_image(&validity(stored)).is_ok())
-        };
-        let Some(cells) = cut(volume.dims, layout.halo(), fits) else {
+        let mut made = Self::several(gpu, &[volume], layout)?;
+        Ok(made.swap_remove(0))
+    }
+
+    /// Objects for volumes of the same dims, all cut into the same bricks, so that they can be put together
+    /// sample by sample.
+    ///
+    /// # Errors
+    /// As [`GpuVolume::new`].
+    pub fn several(
+        gpu: &Arc<Gpu>,
+        volumes: &[&Volume],
+        layout: TextureLayout,
+    ) -> Result<Vec<Self>, Error> {
+        let plans: Vec<_> = volumes.iter().map(|v| Plan::of(gpu, v, layout)).collect();
+        let dims = volumes.first().map_or([1; 3], |volume| volume.dims);
+        let fits = |stored| plans.iter().all(|plan| plan.check(gpu, stored).is_ok());
+        let Some(cells) = cut(dims, layout.halo(), fits) else {
             // The error that names the limit.
-            gpu.check_image(&values(volume.dims))?;
-            gpu.check_image(&validity(volume.dims))?;
+            for plan in &plans {
+                plan.check(gpu, dims)?;
+            }
             unreachable!("what cannot be cut to fit is over a limit");
         };
-        let brick = |cell: Cell| {
-            let stored = cell.stored.dims();
-            let mask = || Image::new(gpu, &validity(stored));
-            Ok(Brick {
-                cell,
-                values: Image::new(gpu, &values(stored))?,
-                validity: has_holes.then(mask).transpose()?,
-            })
-        };
-        Ok(Self {
-            gpu: Arc::clone(gpu),
-            grid: volume.grid(),
-            layout,
-            texel,
-            bricks: cells.into_iter().map(brick).collect::<Result<_, Error>>()?,
-            sampler: Sampler::linear_clamp(gpu)?,
-        })
+        let made = volumes.iter().zip(plans);
+        made.map(|(volume, plan)| plan.make(gpu, volume, &cells))
+            .collect()
     }
 
     /// Where the voxels lie.

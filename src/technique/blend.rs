@@ -13,11 +13,12 @@ use crate::gpu::Blend;
 use crate::real::Real;
 use crate::transfer::opacity_over;
 
-/// One sample on a slice: its value and the world length that it stands for.
+/// One sample on a slice: its value (or, of several volumes, what they are together) and the world length that it
+/// stands for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs, reason = "the line above says it")]
-pub struct Fragment<R> {
-    pub value: R,
+pub struct Fragment<R, V = R> {
+    pub value: V,
     pub length: R,
 }
 
@@ -37,11 +38,13 @@ impl Drawn {
             filter,
             holes,
             transfer,
+            mix,
             ..
         } = words;
+        let mix = mix.word();
         match self {
             Self::Picture(Mode::Composite) => {
-                format!("{slicer}.composite.{filter}.{holes}.{transfer}")
+                format!("{slicer}.composite{mix}.{filter}.{holes}.{transfer}")
             }
             Self::Picture(Mode::Mip | Mode::Minip) => format!("{slicer}.extreme.{filter}.{holes}"),
             Self::Picture(Mode::Average | Mode::Xray) => format!("{slicer}.sum.{filter}.{holes}"),
@@ -84,24 +87,32 @@ pub fn blend<R: Real>(
     fragment: Fragment<R>,
     classify: impl Fn(R) -> [R; 4],
 ) -> [R; 4] {
-    let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
+    let zero = R::from_f64(0.0);
     let sign = R::from_f32(extreme_sign(mode));
     match mode {
-        Mode::Composite => {
-            let [r, g, b, extinction] = classify(fragment.value);
-            let opacity = opacity_over(extinction, fragment.length);
-            let source = [opacity * r, opacity * g, opacity * b, opacity];
-            match order {
-                Order::BackToFront => each(source, target, |s, c| s + (one - opacity) * c),
-                Order::FrontToBack => each(source, target, |s, c| (one - target[3]) * s + c),
-            }
-        }
+        Mode::Composite => blend_material(order, target, classify(fragment.value), fragment.length),
         Mode::Mip => each([fragment.value, sign, zero, zero], target, R::max),
         Mode::Minip => each([fragment.value, sign, zero, zero], target, R::min),
         Mode::Average | Mode::Xray => {
             let Fragment { value, length } = fragment;
             each([value * length, length, zero, zero], target, |s, c| s + c)
         }
+    }
+}
+
+/// The target after one more segment of `length`, of a material (red, green, blue, extinction).
+pub fn blend_material<R: Real>(
+    order: Order,
+    target: [R; 4],
+    [r, g, b, extinction]: [R; 4],
+    length: R,
+) -> [R; 4] {
+    let one = R::from_f64(1.0);
+    let opacity = opacity_over(extinction, length);
+    let source = [opacity * r, opacity * g, opacity * b, opacity];
+    match order {
+        Order::BackToFront => each(source, target, |s, c| s + (one - opacity) * c),
+        Order::FrontToBack => each(source, target, |s, c| (one - target[3]) * s + c),
     }
 }
 

@@ -1,9 +1,10 @@
 //! What every technique reads, by the names that the shaders give it, and which variant of a shader that
 //! asks for.
 
-use super::{Filter, Lattice, Mode, Settings};
+use super::{Filter, Lattice, Mix, Mode, Part, Role, Settings};
 use crate::gpu::{Bindings, Error, Gpu, Layout, ParameterRing, Resource};
 use crate::resident::{Brick, GpuTransfer, GpuVolume, TextureLayout};
+use crate::shaders::MAX_CHANNELS;
 use std::sync::Arc;
 
 /// What a technique reads.
@@ -17,6 +18,8 @@ pub struct Inputs<'a> {
     pub brick: &'a Brick,
     /// Classification; projecting modes do without.
     pub transfer: Option<&'a GpuTransfer>,
+    /// The same part of the volumes that are put together with it; none where it is alone.
+    pub beside: &'a [&'a Brick],
 }
 
 impl Inputs<'_> {
@@ -37,9 +40,7 @@ impl Inputs<'_> {
         };
         given.push((values, Resource::sampled(&self.brick.values)));
         given.push(("volume_sampler", Resource::Sampler(self.volume.sampler())));
-        if let Some(validity) = &self.brick.validity {
-            given.push(("validity", Resource::sampled(validity)));
-        }
+        given.extend(self.channels());
         if let Some(transfer) = self.transfer {
             given.push(("transfer_table", Resource::sampled(transfer.table())));
             given.push(("points", Resource::Storage(transfer.points())));
@@ -47,6 +48,31 @@ impl Inputs<'_> {
         given.extend_from_slice(outputs);
         given.retain(|(name, _)| layout.slots().iter().any(|slot| slot.name == *name));
         Bindings::new(gpu, layout, &given)
+    }
+}
+
+/// What the shaders call volumes after the first, and where they have values.
+const CHANNELS: [[&str; 2]; MAX_CHANNELS as usize - 1] = [
+    ["channel_1", "validity_1"],
+    ["channel_2", "validity_2"],
+    ["channel_3", "validity_3"],
+];
+
+impl<'a> Inputs<'a> {
+    /// Every name gets something: where there is no such channel, or it has no holes, another's stands in and
+    /// is not looked at.
+    fn channels(&self) -> Vec<(&'static str, Resource<'a>)> {
+        let mut given = Vec::new();
+        let bricks = || [self.brick].into_iter().chain(self.beside.iter().copied());
+        let any_mask = bricks().find_map(|brick| brick.validity.as_ref());
+        let mask = |brick: &'a Brick| brick.validity.as_ref().or(any_mask);
+        given.extend(mask(self.brick).map(|mask| ("validity", Resource::sampled(mask))));
+        for (c, [values, validity]) in CHANNELS.into_iter().enumerate() {
+            let brick = *self.beside.get(c).unwrap_or(&self.brick);
+            given.push((values, Resource::sampled(&brick.values)));
+            given.extend(mask(brick).map(|mask| (validity, Resource::sampled(mask))));
+        }
+        given
     }
 }
 
@@ -61,20 +87,31 @@ pub struct Words {
     pub lattice: &'static str,
     /// How values are classified.
     pub transfer: &'static str,
+    /// How several volumes go together.
+    pub mix: Mix,
 }
 
 impl Words {
     /// The variant for a picture of such a volume.
     pub fn of(settings: &Settings, volume: &GpuVolume) -> Self {
+        Self::mixed(settings, Mix::Alone, &[Part::numbers(volume)])
+    }
+
+    /// The variant for a picture of several volumes.
+    pub fn mixed(settings: &Settings, mix: Mix, parts: &[Part]) -> Self {
+        let is_fetched =
+            |part: &Part| part.role == Role::Numbers && !part.volume.texel().is_filtered;
+        let has_holes = parts.iter().any(|part| part.volume.has_holes());
         Self {
+            mix,
             filter: match settings.filter {
                 Filter::Nearest => "nearest",
-                Filter::Linear if settings.conformance || !volume.texel().is_filtered => {
+                Filter::Linear if settings.conformance || parts.iter().any(is_fetched) => {
                     "linear_fetch"
                 }
                 Filter::Linear => "linear",
             },
-            holes: if volume.has_holes() { "mask" } else { "none" },
+            holes: if has_holes { "mask" } else { "none" },
             lattice: match settings.lattice {
                 Lattice::Ray => "ray",
                 Lattice::Planes => "planes",

@@ -9,12 +9,12 @@ use std::ops::ControlFlow;
 
 /// Hands each valid sample of a pixel's ray to `add` until that breaks, and returns how many samples were
 /// taken. `value_at` is the filter: a position in voxel space to a value, `None` for no data.
-pub fn march<R: Real>(
+pub fn march<R: Real, V>(
     frame: &Frame,
     lattice: Lattice,
     pixel: [R; 2],
-    value_at: impl Fn([R; 3]) -> Option<R>,
-    mut add: impl FnMut(R, Segment<R>) -> ControlFlow<()>,
+    value_at: impl Fn([R; 3]) -> Option<V>,
+    mut add: impl FnMut(V, Segment<R>) -> ControlFlow<()>,
 ) -> u32 {
     let world = pixel_ray(frame, pixel);
     let voxel = voxel_ray(frame, &world);

@@ -7,6 +7,7 @@ mod frame;
 mod inputs;
 mod march;
 pub mod merge;
+pub mod mixture;
 pub mod projection;
 pub mod raycast;
 mod recording;
@@ -17,6 +18,7 @@ pub mod slices_3d;
 pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 pub use frame::View;
 pub use inputs::{Inputs, Words};
+pub use mixture::{Mix, Part, Role};
 pub use recording::{Recording, parameter_ring};
 pub use slicer::Slicer;
 
@@ -139,6 +141,29 @@ pub enum Error {
         wanted: crate::resident::TextureLayout,
         /// How the volume lies.
         found: crate::resident::TextureLayout,
+    },
+    /// A mode that projects shows one volume at a time.
+    #[error("{mode:?} projects one number a ray: volumes are mixed in composite only")]
+    NotMixed {
+        /// The mode.
+        mode: Mode,
+    },
+    /// Volumes that are mixed lie on one grid.
+    #[error("the volumes to be mixed lie on different grids, or in different bricks")]
+    OtherGrid,
+    /// The parameters hold a fixed number of channels.
+    #[error("{wanted} volumes are to be mixed, the limit is {limit}")]
+    TooManyChannels {
+        /// How many were asked for.
+        wanted: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+    /// Colours are red, green, blue, and perhaps alpha.
+    #[error("a colour is made of 3 or 4 volumes, not of {found}")]
+    NoColor {
+        /// How many there are.
+        found: usize,
     },
     /// The parameters hold a fixed number of planes.
     #[error("{wanted} clip planes, the limit is {limit}")]

@@ -6,6 +6,7 @@
 //!     a technique's record(cmd, ...)       with the bindings of recording.brick
 //! ```
 
+use super::mixture::{Part, set_channels};
 use super::slices_2d::{set_slices, stack_axis};
 use super::slices_3d::set_planes;
 use super::{Error, Order, Technique, View};
@@ -44,12 +45,26 @@ impl View<'_> {
         volume: &GpuVolume,
         transfer: Option<&GpuTransfer>,
     ) -> Result<Vec<Recording>, Error> {
+        self.recordings_of(&[Part::numbers(volume)], transfer)
+    }
+
+    /// The same for several volumes that are put together sample by sample; `transfer` holds a function for each.
+    ///
+    /// # Errors
+    /// Those of [`View::recordings`], [`Error::OtherGrid`] and [`Error::TooManyChannels`].
+    pub fn recordings_of(
+        &self,
+        parts: &[Part],
+        transfer: Option<&GpuTransfer>,
+    ) -> Result<Vec<Recording>, Error> {
+        let volume = parts.first().ok_or(Error::NoColor { found: 0 })?.volume;
         let (wanted, found) = (self.texture_layout(), volume.layout());
         if wanted != found {
             return Err(Error::WrongLayout { wanted, found });
         }
         let layout = transfer.map_or_else(TransferLayout::default, |t| *t.layout());
-        let fields = self.fields(&volume.texel().coding, &layout)?;
+        let mut fields = self.fields(&volume.texel().coding, &layout)?;
+        set_channels(parts, transfer, &mut fields)?;
         let cells: Vec<_> = volume.bricks().iter().map(|brick| brick.cell).collect();
         let mut order = self.front_to_back(&cells);
         let settings = self.settings;

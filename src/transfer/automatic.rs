@@ -180,7 +180,7 @@ fn categorical(summary: &ValueSummary) -> TransferFunction {
 }
 
 /// The golden angle apart, so that neighbours differ and no two of many labels are alike.
-fn label_color(label: i64) -> [f64; 3] {
+pub(super) fn label_color(label: i64) -> [f64; 3] {
     let hue = (label as f64 * 0.618_033_988_749_895).rem_euclid(1.0) * 6.0;
     let lightness = [0.95, 0.75, 0.85][label.rem_euclid(3) as usize];
     let saturation = [0.75, 0.6][label.rem_euclid(2) as usize];

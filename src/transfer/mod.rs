@@ -10,10 +10,13 @@
 //! Colour is linear between its points in sRGB numbers and decoded afterwards.
 
 mod automatic;
+mod channel;
 #[cfg(feature = "json")]
 mod file;
 #[cfg(all(feature = "json", feature = "files"))]
 mod import;
+#[cfg(feature = "json")]
+mod labels;
 mod law;
 mod points;
 mod preset;
@@ -22,6 +25,7 @@ mod table;
 mod window;
 
 pub use automatic::{Kind, automatic};
+pub use channel::{CHANNEL_COLORS, of_channel, of_colors};
 #[cfg(feature = "json")]
 pub use file::{
     FileError, FileProblem, MAX_FILE_BYTES, MAX_POINTS, read_transfer_function,
@@ -29,6 +33,8 @@ pub use file::{
 };
 #[cfg(all(feature = "json", feature = "files"))]
 pub use import::{Imported, Scale, import_transfer_function, transfer_function_from_bytes};
+#[cfg(feature = "json")]
+pub use labels::{Label, LabelTable};
 pub use law::{Absorption, MAX_OPACITY, extinction, opacity_over};
 pub use points::{Points, classify_by_points};
 pub use preset::Preset;

@@ -181,7 +181,7 @@ fn fitted(summary: &ValueSummary, stops: &[Stop], early: f64) -> TransferFunctio
 }
 
 /// Where the bright class of the values lies.
-fn signal(summary: &ValueSummary, early: f64) -> Window {
+pub(super) fn signal(summary: &ValueSummary, early: f64) -> Window {
     let [low, high] = [summary.quantile(0.001), summary.quantile(0.9995)];
     let threshold = summary.threshold(low, high);
     let background = summary.mode_below(threshold);

@@ -8,11 +8,14 @@
 //!
 //! Knows nothing of Vulkan.
 
+mod colors;
 pub mod field;
 mod grid;
 mod histogram;
 mod holes;
 mod joint;
+pub mod labels;
+mod magnitude;
 pub mod phantom;
 mod read;
 mod reduce;
@@ -21,9 +24,11 @@ mod source;
 mod statistics;
 mod voxels;
 
+pub use colors::{luma, read_all, read_colors};
 pub use grid::Grid;
 pub use histogram::Histogram;
 pub use joint::JointHistogram;
+pub use magnitude::Magnitude;
 pub use reduce::Reduced;
 pub use source::{
     Channel, Format, Header, Limits, Loss, Meaning, Pick, Piece, Problem, ReadError, Rescale,

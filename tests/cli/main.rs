@@ -6,13 +6,21 @@ mod animate_films;
 #[cfg(unix)]
 mod animate_stops;
 mod convert;
+mod convert_refused;
 mod device;
 mod errors;
+mod examples;
+mod figures;
+mod info;
 #[cfg(unix)]
 mod interrupt;
+mod manuals;
 mod memory;
+mod mixed;
 mod person;
 mod pictures;
+mod presets;
 mod real;
 mod sheet;
+mod weather;
 mod words;

@@ -69,6 +69,7 @@ impl Stage {
     /// What the CPU twin computes: premultiplied colour of each pixel.
     pub fn twin(&self) -> Vec<[f32; 4]> {
         let scene = Scene {
+            beside: Default::default(),
             volume: &self.volume,
             transfer: Some(&self.transfer),
             camera: &self.camera,

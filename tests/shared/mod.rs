@@ -3,11 +3,13 @@
 
 #![allow(dead_code, unused_imports, reason = "each test file uses its part")]
 
+mod agree;
 pub mod oracle;
 mod shot;
 mod way;
 mod worst;
 
+pub use agree::compare;
 pub use shot::{Chord, Shot};
 pub use way::{Device, Matter, Twin, Way};
 pub use worst::Worst;

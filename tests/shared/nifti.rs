@@ -22,6 +22,7 @@ pub struct Nifti {
     pub qoffset: [f64; 3],
     pub srow: [[f64; 4]; 3],
     pub units: u8,
+    pub intent: i16,
 }
 
 impl Nifti {
@@ -44,6 +45,7 @@ impl Nifti {
             qoffset: [0.0; 3],
             srow: [[0.0; 4]; 3],
             units: 2,
+            intent: 0,
         }
     }
 
@@ -69,6 +71,7 @@ impl Nifti {
             put(40 + 2 * k, &(self.dim[k] as i16).to_le_bytes());
             put(76 + 4 * k, &f(self.pixdim[k]));
         }
+        put(68, &self.intent.to_le_bytes());
         put(70, &self.datatype.to_le_bytes());
         put(72, &self.bitpix.to_le_bytes());
         put(108, &f(self.vox_offset));
@@ -119,6 +122,7 @@ impl Nifti {
             }
         }
         put(500, &i32::from(self.units).to_le_bytes());
+        put(504, &i32::from(self.intent).to_le_bytes());
         let magic = if self.is_single_file {
             b"n+2\0\r\n\x1a\n"
         } else {

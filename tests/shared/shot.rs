@@ -56,6 +56,7 @@ impl Shot {
     ) -> Scene<'a> {
         assert_eq!(volume.grid(), self.grid, "another grid");
         Scene {
+            beside: Default::default(),
             volume,
             transfer,
             camera: &self.camera,

@@ -142,6 +142,7 @@ impl Device {
             ..shot.settings.clone()
         };
         let scene = Scene {
+            beside: Default::default(),
             volume: &volume,
             transfer: Some(&transfer),
             camera: &shot.camera,

@@ -259,6 +259,7 @@ impl Drawing<'_> {
     ) -> Job<'j> {
         Job {
             volume,
+            beside: Default::default(),
             classification: &ready.classification,
             settings: &ready.settings,
             extent_pixels,

@@ -191,7 +191,7 @@ impl Animate {
         let device = Device::find(plan.scene.device.as_deref())?;
         progress.device(&device.name());
         // A volume that is reduced to fit has a grid of its own.
-        let source = fitting(source, &plan.scene.input, device.memory())?;
+        let source = fitting(source, &plan.scene.input, device.memory(), 1)?;
         let shots = plan.film.shots(&plan.scene, plan.depth, source.header())?;
         let drawing = Drawing {
             scene: &plan.scene,

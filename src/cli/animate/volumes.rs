@@ -3,7 +3,7 @@
 //! Between two times every voxel is mixed, `v = v0 + s (v1 - v0)`.
 
 use crate::{
-    cli::{Error, flags::SceneFlags, load::load_from, progress::Progress},
+    cli::{Error, flags::SceneFlags, load, progress::Progress},
     transfer::ValueSummary,
     volume::{Pick, Problem, ReadError, Source, Volume, Voxels},
 };
@@ -73,7 +73,7 @@ impl<'a> Volumes<'a> {
             None => {
                 self.scene.input.time = Some(time.to_string());
                 let (pick, _) = self.scene.input.pick(self.source.header())?;
-                let volume = load_from(&self.scene, self.source, self.progress)?;
+                let volume = load::read(self.source, &self.scene, self.progress)?;
                 self.first = Some((pick, volume.world_from_voxel));
                 volume
             }

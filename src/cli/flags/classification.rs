@@ -149,7 +149,8 @@ impl ClassificationFlags {
         Ok(Classification::Function(function))
     }
 
-    fn window(&self) -> Result<Option<Window>, Error> {
+    /// The window of `--window`.
+    pub fn window(&self) -> Result<Option<Window>, Error> {
         let Some(Numbers([low, high])) = self.window else {
             return Ok(None);
         };
@@ -162,7 +163,8 @@ impl ClassificationFlags {
         Ok(Some(window))
     }
 
-    fn function_of_file(&self) -> Result<Option<TransferFunction>, Error> {
+    /// The function of `--tf`, or that of a scene.
+    pub fn function_of_file(&self) -> Result<Option<TransferFunction>, Error> {
         let Some(value) = &self.transfer_function else {
             return Ok(None);
         };
@@ -198,6 +200,7 @@ pub fn preset(name: &str) -> Result<String, String> {
     }
 }
 
+/// What the values of a volume look like as a whole.
 pub fn summary(volume: &Volume) -> ValueSummary {
     let [x, y, z] = volume.dims.map(f64::from);
     let diagonal = volume

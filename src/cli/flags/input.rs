@@ -1,9 +1,9 @@
 //! Which volume: the words, and the source they name.
 
-use super::{super::memory, Error};
+use super::{super::memory, Component, Error};
 use crate::{
     format,
-    volume::{Header, Limits, Pick, Series, Source, Wanted, phantom},
+    volume::{Header, Limits, Magnitude, Pick, Series, Source, Wanted, phantom},
 };
 use clap::Args;
 use serde::{Deserialize, Serialize};
@@ -16,7 +16,7 @@ use std::{
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct InputFlags {
-    /// A volume file, a folder of slices, or phantom:NAME[,n=256][,type=u8|u16|f32] with NAME of sphere, gauss, marschner-lobb, head, fog, shells, storm
+    /// A volume file, a folder of slices, or phantom:NAME[,n=256][,type=u8|u16|f32] with NAME of sphere, gauss, marschner-lobb, head, fog, shells, storm, cells
     #[arg(value_name = "INPUT")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub path: Option<String>,
@@ -32,10 +32,10 @@ pub struct InputFlags {
     #[arg(long, value_name = "N|ISO", help_heading = "Input")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time: Option<String>,
-    /// One of several numbers of a voxel, counted from 0
-    #[arg(long, value_name = "N", help_heading = "Input")]
+    /// One of several numbers of a voxel, counted from 0; the length of the vector that they are; or all, each in a colour of its own
+    #[arg(long, value_name = "N|magnitude|all", help_heading = "Input")]
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub component: Option<u32>,
+    pub component: Option<Component>,
     /// One of several DICOM series in a folder
     #[arg(long, value_name = "UID", help_heading = "Input")]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -93,12 +93,20 @@ impl InputFlags {
 
     /// Opens what the words name, as it is drawn; reads its header alone.
     pub fn open(&self, limits: &Limits) -> Result<Box<dyn Source>, Error> {
-        self.open_with(false, limits)
+        self.open_picked(false, limits)
     }
 
     /// The same with the voxels as they stand in the file.
     pub fn open_as_stored(&self, limits: &Limits) -> Result<Box<dyn Source>, Error> {
-        self.open_with(true, limits)
+        self.open_picked(true, limits)
+    }
+
+    fn open_picked(&self, as_stored: bool, limits: &Limits) -> Result<Box<dyn Source>, Error> {
+        let source = self.open_with(as_stored, limits)?;
+        if self.component == Some(Component::Magnitude) {
+            return Ok(Box::new(Magnitude::new(source)));
+        }
+        Ok(source)
     }
 
     fn open_with(&self, as_stored: bool, limits: &Limits) -> Result<Box<dyn Source>, Error> {
@@ -165,7 +173,7 @@ impl InputFlags {
                     header.components,
                     header.components - 1
                 ),
-                "choose one: --component 0",
+                "choose one: --component 0, or draw all together: --component all",
             ));
         }
         let component = components.start;
@@ -175,9 +183,11 @@ impl InputFlags {
     /// The components that the words leave: the one they name, else all.
     pub fn components(&self, header: &Header) -> Result<Range<u32>, Error> {
         match self.component {
-            None => Ok(0..header.components),
-            Some(component) if component < header.components => Ok(component..component + 1),
-            Some(component) => Err(Error::usage(
+            None | Some(Component::Word(_)) => Ok(0..header.components),
+            Some(Component::Number(component)) if component < header.components => {
+                Ok(component..component + 1)
+            }
+            Some(Component::Number(component)) => Err(Error::usage(
                 format!(
                     "--component {component}: a voxel has {} of them, counted from 0",
                     header.components
@@ -261,9 +271,7 @@ impl InputFlags {
         let Some(path) = self.file() else {
             return self.clone();
         };
-        let absolute = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
-        let (path, folder) = (absolute(path), absolute(folder));
-        let shown = path.strip_prefix(&folder).unwrap_or(&path);
+        let shown = relative(path, folder);
         Self {
             path: Some(shown.to_string_lossy().into_owned()),
             ..self.clone()
@@ -281,6 +289,13 @@ impl InputFlags {
             None => self.clone(),
         }
     }
+}
+
+/// The path of a file as it is said in `folder`.
+pub fn relative(path: &Path, folder: &Path) -> PathBuf {
+    let absolute = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let (path, folder) = (absolute(path), absolute(folder));
+    path.strip_prefix(&folder).unwrap_or(&path).to_owned()
 }
 
 /// The first time whose name begins with `word`, so that a day or an hour is enough.

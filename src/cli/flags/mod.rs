@@ -4,8 +4,11 @@
 //! filled in where a struct is turned into what the library takes.
 
 mod camera;
+mod channels;
 mod classification;
+mod component;
 mod input;
+mod labels;
 mod not_built;
 mod numbers;
 mod picture;
@@ -13,8 +16,11 @@ mod sampling;
 mod words;
 
 pub use camera::CameraFlags;
+pub use channels::{ChannelFlags, ChannelWord, Plan};
 pub use classification::{Classification, ClassificationFlags, preset, summary, with_causes};
-pub use input::InputFlags;
+pub use component::Component;
+pub use input::{InputFlags, relative};
+pub use labels::LabelFlags;
 pub use not_built::NotBuilt;
 pub use numbers::{Background, Numbers, Size, finite, positive};
 pub use picture::PictureFlags;
@@ -38,6 +44,10 @@ pub struct SceneFlags {
     pub sampling: SamplingFlags,
     #[command(flatten)]
     pub classification: ClassificationFlags,
+    #[command(flatten)]
+    pub channels: ChannelFlags,
+    #[command(flatten)]
+    pub labels: LabelFlags,
     #[command(flatten)]
     pub camera: CameraFlags,
     #[command(flatten)]

@@ -19,10 +19,6 @@ pub struct NotBuilt {
     preintegrated: bool,
     #[arg(long, help_heading = HEADING)]
     smooth: bool,
-    #[arg(long, value_name = "FILE", help_heading = HEADING)]
-    labels: Option<String>,
-    #[arg(long, value_name = "FILE", help_heading = HEADING)]
-    label_tf: Option<String>,
 }
 
 /// Under which these stand in `--help`.
@@ -39,8 +35,6 @@ impl NotBuilt {
             ("--material", self.material.as_deref()),
             ("--preintegrated", self.preintegrated.then_some("")),
             ("--smooth", self.smooth.then_some("")),
-            ("--labels", self.labels.as_deref()),
-            ("--label-tf", self.label_tf.as_deref()),
         ];
         match given
             .into_iter()

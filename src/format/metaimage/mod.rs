@@ -16,7 +16,7 @@ use super::geometry::{RAS_FROM_LPS, with_missing_axes, world_from_voxel};
 use super::problem::{at, escape, invalid, unsupported};
 use super::select::{Axis, Role};
 use super::text::integers;
-use crate::volume::{Format, Header, Limits, Problem, ReadError, Rescale, VoxelType};
+use crate::volume::{Format, Header, Limits, Meaning, Problem, ReadError, Rescale, VoxelType};
 use fields::Fields;
 use glam::{DAffine3, DVec3};
 use std::path::Path;
@@ -129,7 +129,9 @@ fn header(
         let name = "ElementToIntensityFunctionSlope";
         return Err(invalid(METAIMAGE, name, "a number other than 0", "0"));
     }
+    let meaning = meaning(array, stored, &mut notes);
     Ok(Header {
+        meaning,
         components: array.components,
         times: array.times,
         rescale: Rescale {
@@ -141,6 +143,26 @@ fn header(
         notes,
         ..Header::new(Format::MetaImage, array.dims, stored, world_from_voxel)
     })
+}
+
+/// The format has no word for it. Its writers write colours as bytes, and vectors as floats of as many numbers as
+/// there are axes.
+fn meaning(array: &Array, stored: VoxelType, notes: &mut Vec<String>) -> Meaning {
+    let axes = array.dims.iter().filter(|&&size| size > 1).count();
+    let (meaning, what) = match (array.components, stored) {
+        (3, VoxelType::U8) => (Meaning::Rgb, "colours"),
+        (4, VoxelType::U8) => (Meaning::Rgba, "colours with opacity"),
+        (n @ 2..=3, VoxelType::F32 | VoxelType::F64) if usize::try_from(n) == Ok(axes) => {
+            (Meaning::Vector, "vectors")
+        }
+        _ => return Meaning::Numbers,
+    };
+    notes.push(format!(
+        "{} channels of {} are taken as {what}",
+        array.components,
+        stored.name()
+    ));
+    meaning
 }
 
 /// `world = offset + sum of index[k] * spacing[k] * row[k]`, LPS, to voxel space and RAS+.

@@ -35,6 +35,8 @@ pub(super) struct Fields {
     pub qoffset: [f64; 3],
     pub srow: [[f64; 4]; 3],
     pub xyzt_units: i64,
+    /// What values are for, `NIFTI_INTENT_...`.
+    pub intent_code: i64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -183,6 +185,7 @@ impl Bytes<'_> {
             endian: self.endian,
             is_single_file,
             dim: steps(40, 2).map(|at| self.i16(at)),
+            intent_code: self.i16(68),
             datatype: self.i16(70),
             bitpix: self.i16(72),
             pixdim: steps(76, 4).map(f32s),
@@ -221,6 +224,7 @@ impl Bytes<'_> {
             qoffset: steps(376, 8).map(f64s),
             srow: steps(400, 32).map(|row| steps(row, 8).map(f64s)),
             xyzt_units: self.i32(500),
+            intent_code: self.i32(504),
         }
     }
 

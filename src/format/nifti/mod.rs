@@ -16,7 +16,7 @@ use super::place::{first_bytes, open_regular};
 use super::problem::{at, invalid, unsupported};
 use super::select::{Axis, Role};
 use super::text::whole;
-use crate::volume::{Format, Header, Limits, Problem, ReadError, Rescale, VoxelType};
+use crate::volume::{Format, Header, Limits, Meaning, Problem, ReadError, Rescale, VoxelType};
 use fields::{Fields, Version, is_gzip};
 use std::path::Path;
 
@@ -167,9 +167,26 @@ fn header(fields: &Fields, number: &Number, array: &Array) -> Result<Header, Pro
         components: array.components,
         times: array.times,
         rescale: rescale(fields, number, &mut notes),
+        meaning: meaning(fields, number, array),
+        is_labels: fields.intent_code == LABEL && array.components == 1,
         notes,
         ..Header::new(format, array.dims, number.stored, world_from_voxel)
     })
+}
+
+/// `NIFTI_INTENT_LABEL`, `_DISPVECT`, `_VECTOR`, `_RGB_VECTOR`, `_RGBA_VECTOR`.
+const LABEL: i64 = 1002;
+const VECTORS: [i64; 2] = [1006, 1007];
+const RGB: i64 = 2003;
+const RGBA: i64 = 2004;
+
+fn meaning(fields: &Fields, number: &Number, array: &Array) -> Meaning {
+    match (number.channels, array.components, fields.intent_code) {
+        (3, 3, _) | (1, 3, RGB) => Meaning::Rgb,
+        (4, 4, _) | (1, 4, RGBA) => Meaning::Rgba,
+        (1, 2.., code) if VECTORS.contains(&code) => Meaning::Vector,
+        _ => Meaning::Numbers,
+    }
 }
 
 /// A slope of 0 means that there is none, and so does one that is no number; colors have none.

@@ -23,6 +23,8 @@ pub(super) struct Array {
     pub dims: [u32; 3],
     pub components: u32,
     pub times: u32,
+    /// What `kinds` says of the components; alone where there is one axis of them.
+    pub meaning: crate::volume::Meaning,
     /// What was guessed.
     pub notes: Vec<String>,
 }
@@ -63,6 +65,7 @@ impl Array {
             dims: [1; 3],
             components: 1,
             times: 1,
+            meaning: crate::volume::Meaning::Numbers,
             notes,
         };
         for (index, (&size, meaning)) in sizes.iter().zip(meanings).enumerate() {
@@ -75,6 +78,7 @@ impl Array {
             };
             array.add(role, size)?;
         }
+        array.meaning = of_components(fields, &array);
         Ok(array)
     }
 
@@ -93,6 +97,32 @@ impl Array {
         }
         self.axes.push(Axis { role, size });
         Ok(())
+    }
+}
+
+/// Section 6 of the definition: what the one axis of components says that they are together.
+fn of_components(fields: &Fields, array: &Array) -> crate::volume::Meaning {
+    use crate::volume::Meaning;
+    let roles = || array.axes.iter().map(|axis| &axis.role);
+    let is_component = |role: &&Role| matches!(role, Role::Component);
+    let place = roles().position(|role| is_component(&role));
+    let (Some(place), 1) = (place, roles().filter(is_component).count()) else {
+        return Meaning::Numbers;
+    };
+    let kinds = fields.get("kinds").unwrap_or_default();
+    let kind = kinds
+        .split_ascii_whitespace()
+        .nth(place)
+        .unwrap_or_default();
+    match (kind.to_ascii_lowercase().as_str(), array.components) {
+        ("rgb-color" | "3-color", 3) => Meaning::Rgb,
+        ("rgba-color" | "4-color", 4) => Meaning::Rgba,
+        (
+            "vector" | "covariant-vector" | "normal" | "2-vector" | "3-vector" | "4-vector"
+            | "3-gradient" | "3-normal",
+            2..,
+        ) => Meaning::Vector,
+        _ => Meaning::Numbers,
     }
 }
 

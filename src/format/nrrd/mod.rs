@@ -68,6 +68,7 @@ fn header(fields: &Fields, array: &Array, stored: VoxelType) -> Result<Header, P
     Ok(Header {
         components: array.components,
         times: array.times,
+        meaning: array.meaning.clone(),
         hounsfield: is_hounsfield || may_be_hounsfield,
         notes,
         ..Header::new(Format::Nrrd, array.dims, stored, world_from_voxel)

@@ -26,8 +26,10 @@ impl Raycast {
             holes,
             lattice,
             transfer,
+            mix,
         } = words;
-        let name = format!("raycast.composite.{lattice}.{filter}.{holes}.{transfer}");
+        let mix = mix.word();
+        let name = format!("raycast.composite{mix}.{lattice}.{filter}.{holes}.{transfer}");
         Ok(Self {
             gpu: Arc::clone(gpu),
             pipeline: ComputePipeline::new(gpu, shader(&name))?,

@@ -9,12 +9,12 @@ use std::ops::ControlFlow;
 
 /// What one ray gathers, and how many samples it took. `value_at` filters the volume at a position in voxel
 /// space; `classify` gives (red, green, blue, extinction).
-pub fn radiance<R: Real>(
+pub fn radiance<R: Real, V>(
     frame: &Frame,
     lattice: Lattice,
     pixel: [R; 2],
-    value_at: impl Fn([R; 3]) -> Option<R>,
-    classify: impl Fn(R) -> [R; 4],
+    value_at: impl Fn([R; 3]) -> Option<V>,
+    classify: impl Fn(V) -> [R; 4],
 ) -> (Composite<R>, u32) {
     let termination = R::from_f32(frame.termination);
     let mut so_far = Composite::default();

@@ -15,12 +15,12 @@ pub fn slice_of(frame: &Frame, instance: u32) -> i32 {
 
 /// The sample of a pixel's ray on one slice; `None` outside the domain, `Some(None)` for no data. `value_at`
 /// filters inside the slice.
-pub fn fragment<R: Real>(
+pub fn fragment<R: Real, V>(
     frame: &Frame,
     pixel: [R; 2],
     slice: i32,
-    value_at: impl Fn([R; 3]) -> Option<R>,
-) -> Option<Option<Fragment<R>>> {
+    value_at: impl Fn([R; 3]) -> Option<V>,
+) -> Option<Option<Fragment<R, V>>> {
     let world = pixel_ray(frame, pixel);
     let voxel = voxel_ray(frame, &world);
     let axis = frame.slice_axis as usize;

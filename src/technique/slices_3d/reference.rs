@@ -6,12 +6,12 @@ use crate::shaders::Frame;
 use crate::technique::blend::Fragment;
 
 /// The sample of a pixel's ray on one plane; `None` outside the domain, `Some(None)` for no data.
-pub fn fragment<R: Real>(
+pub fn fragment<R: Real, V>(
     frame: &Frame,
     pixel: [R; 2],
     plane: i32,
-    value_at: impl Fn([R; 3]) -> Option<R>,
-) -> Option<Option<Fragment<R>>> {
+    value_at: impl Fn([R; 3]) -> Option<V>,
+) -> Option<Option<Fragment<R, V>>> {
     let world = pixel_ray(frame, pixel);
     let voxel = voxel_ray(frame, &world);
     let [t0, t1] = domain_interval(frame, &world, &voxel);

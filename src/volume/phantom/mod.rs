@@ -5,11 +5,13 @@
 //! phantom:sphere[,edge=LENGTH]               width of the soft edge; 0 for a hard one; default one voxel
 //! phantom:fog[,profile=exponential|linear]
 //! phantom:storm[,variable=NAME][,times=8]
+//! phantom:cells                             three dyes of a microscope: nuclei, membranes, mitochondria
 //! ```
 //!
 //! `n` is the number of voxels along x; voxels are cubes. World is RAS+ in millimetres (`marschner-lobb`:
 //! the unit of its paper; `storm`: x east, y north, z up in kilometres).
 
+mod cells;
 mod head;
 mod noise;
 mod spec;
@@ -20,8 +22,8 @@ pub use spec::NAMES;
 use super::field::{Ball, Field, Fog, Gaussian, MarschnerLobb, Shells};
 use super::read::check_memory;
 use super::{
-    Format, Header, Limits, Pick, Piece, Problem, ReadError, Rescale, Source, VoxelBox, VoxelType,
-    Voxels,
+    Format, Header, Limits, Meaning, Pick, Piece, Problem, ReadError, Rescale, Source, VoxelBox,
+    VoxelType, Voxels,
 };
 use glam::{DAffine3, DMat3, DVec3};
 use spec::Spec;
@@ -47,8 +49,11 @@ pub fn open(spec: &str, limits: &Limits) -> Result<Box<dyn Source>, ReadError> {
 struct Phantom {
     spec: PathBuf,
     header: Header,
-    field_at: Box<dyn Fn(u32) -> Box<dyn Field> + Send + Sync>,
+    field_at: FieldAt,
 }
+
+/// The field of one time and component.
+type FieldAt = Box<dyn Fn(Pick) -> Box<dyn Field> + Send + Sync>;
 
 impl Source for Phantom {
     fn path(&self) -> &Path {
@@ -60,7 +65,7 @@ impl Source for Phantom {
     }
 
     fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
-        let field = (self.field_at)(pick.time);
+        let field = (self.field_at)(pick);
         let Rescale { slope, intercept } = self.header.rescale;
         // A cast goes to the nearest end where a number does not fit.
         let code = |value: f64| ((value - intercept) / slope).round();
@@ -139,7 +144,8 @@ fn build(text: &str) -> Result<Phantom, Problem> {
     let mut known = vec!["n", "type"];
     let (mut times, mut variables) = (1, Vec::new());
     let mut design = Design::cube(50.0);
-    let field_at: Box<dyn Fn(u32) -> Box<dyn Field> + Send + Sync> = match spec.name {
+    let mut meaning = Meaning::Numbers;
+    let field_at: FieldAt = match spec.name {
         "sphere" => {
             known.push("edge");
             let ball = Ball {
@@ -190,7 +196,12 @@ fn build(text: &str) -> Result<Phantom, Problem> {
             variables.extend(others.map(|other| other.name().to_string()));
             (design.min, design.max) = (storm::MIN, storm::MAX);
             design.value_range = variable.value_range();
-            Box::new(move |time| Box::new(storm::Storm::new(variable, time, times)))
+            Box::new(move |pick| Box::new(storm::Storm::new(variable, pick.time, times)))
+        }
+        "cells" => {
+            meaning = Meaning::Channels(cells::channels());
+            design.default_type = VoxelType::U8;
+            Box::new(|pick| Box::new(cells::Cells::new(pick.component)))
         }
         _ => {
             design = Design {
@@ -214,7 +225,13 @@ fn build(text: &str) -> Result<Phantom, Problem> {
         matrix3: DMat3::from_diagonal(DVec3::splat(spacing)),
         translation: design.min,
     };
+    let components = match &meaning {
+        Meaning::Channels(channels) => channels.len() as u32,
+        _ => 1,
+    };
     let header = Header {
+        components,
+        meaning,
         times,
         rescale: rescale(&design, stored),
         hounsfield: design.hounsfield,

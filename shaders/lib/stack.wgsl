@@ -2,7 +2,20 @@
 
 #import value
 
-@group(0) @binding(1) var stack: texture_2d_array<f32>;
+alias Values = texture_2d_array<f32>;
+alias Mask = texture_2d_array<u32>;
+
+// A position in voxel space on a slice.
+struct Place {
+    voxel: vec3<f32>,
+    slice: i32,
+}
+
+@group(0) @binding(1) var stack: Values;
+
+fn volume_value(place: Place) -> f32 {
+    return filtered(stack, volume_coding(), place);
+}
 
 // A vector of voxel space by the axes of the stack's images: across, down, layer.
 fn in_stack(voxel: vec3<f32>) -> vec3<f32> {

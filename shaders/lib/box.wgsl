@@ -1,0 +1,14 @@
+// A volume as 3D textures: what is looked up, and where.
+
+#import value
+
+alias Values = texture_3d<f32>;
+alias Mask = texture_3d<u32>;
+// A position in voxel space.
+alias Place = vec3<f32>;
+
+@group(0) @binding(1) var volume: Values;
+
+fn volume_value(place: Place) -> f32 {
+    return filtered(volume, volume_coding(), place);
+}

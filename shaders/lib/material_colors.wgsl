@@ -1,0 +1,13 @@
+// Volumes of colour bring their own; the transfer function says how opaque it is.
+// Twin: src/technique/mixture.rs.
+
+#import color
+#import transfer_{transfer}
+
+fn material_of(sample: Sample) -> Classified {
+    let extinction = classify(sample.value).extinction;
+    if frame.color_space_is_display != 0u {
+        return Classified(sample.srgb, extinction);
+    }
+    return Classified(linear_from_srgb(sample.srgb), extinction);
+}

@@ -1,0 +1,13 @@
+// One number a sample.
+
+#import holes_{holes}
+
+alias Sample = f32;
+
+fn has_data(place: Place) -> bool {
+    return volume_is_valid(footprint_of(place));
+}
+
+fn sample_at(place: Place) -> Sample {
+    return volume_value(place);
+}

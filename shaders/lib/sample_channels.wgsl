@@ -1,0 +1,32 @@
+// Several things seen in the same place, one number each. Twin: src/technique/mixture.rs.
+
+#import channels
+
+struct Sample {
+    values: vec4<f32>,
+    has_data: vec4<bool>,
+}
+
+// Labels without data hide what lies there; else one channel with data is enough.
+fn has_data(place: Place) -> bool {
+    var any_has = false;
+    for (var c = 0u; c < frame.channel_count; c++) {
+        let has = channel_has_data(c, place);
+        if !has && frame.channel_is_labels[c] != 0u {
+            return false;
+        }
+        any_has = any_has || has;
+    }
+    return any_has;
+}
+
+fn sample_at(place: Place) -> Sample {
+    var found = Sample(vec4(0.0), vec4(false));
+    for (var c = 0u; c < frame.channel_count; c++) {
+        if channel_has_data(c, place) {
+            found.values[c] = channel_value(c, place);
+            found.has_data[c] = true;
+        }
+    }
+    return found;
+}

@@ -1,0 +1,34 @@
+// The colour of a sample, sRGB numbers from 0 to 1, and what its opacity is classified by: alpha, where red,
+// green and blue come multiplied with it, else luma. Interpolated as they are stored and decoded afterwards.
+// Twin: src/technique/mixture.rs.
+
+#import channels
+
+struct Sample {
+    srgb: vec3<f32>,
+    value: f32,
+}
+
+fn has_data(place: Place) -> bool {
+    for (var c = 0u; c < frame.channel_count; c++) {
+        if !channel_has_data(c, place) {
+            return false;
+        }
+    }
+    return true;
+}
+
+fn sample_at(place: Place) -> Sample {
+    let color = vec3(channel_value(0u, place), channel_value(1u, place), channel_value(2u, place));
+    if frame.channel_count == 3u {
+        return Sample(color, luma(color));
+    }
+    let alpha = channel_value(3u, place);
+    // What is transparent has no colour.
+    return Sample(clamp(color / max(alpha, 1e-6), vec3(0.0), vec3(1.0)), alpha);
+}
+
+// ITU-R BT.709, of sRGB numbers.
+fn luma(srgb: vec3<f32>) -> f32 {
+    return 0.2126 * srgb.x + 0.7152 * srgb.y + 0.0722 * srgb.z;
+}

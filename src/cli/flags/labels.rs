@@ -1,0 +1,175 @@
+//! A label map that lies over a volume, or cuts parts out of it: the words.
+
+use super::Error;
+use crate::transfer::{LabelTable, MAX_FILE_BYTES};
+use clap::Args;
+use serde::{Deserialize, Serialize};
+use std::{
+    fmt,
+    fs::File,
+    io::Read,
+    ops::RangeInclusive,
+    path::{Path, PathBuf},
+    str::FromStr,
+};
+
+const HEADING: &str = "Labels";
+
+/// The words, none of them filled in.
+#[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct LabelFlags {
+    /// A label map of the same place: each label is drawn over the volume in a colour of its own
+    #[arg(long, value_name = "FILE", help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub labels: Option<PathBuf>,
+    /// Names, colours and opacities of labels: a transfer function file with a key `labels`, an ITK-SNAP description, a Slicer colour table, or lines `1 name`
+    #[arg(long, value_name = "FILE", help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub label_tf: Option<PathBuf>,
+    /// Show only what has these labels; without --label-tf the volume keeps its own colours
+    #[arg(long, value_name = "N,A-B,...", requires = "labels", help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub label_show: Option<LabelList>,
+    /// Hide what has these labels
+    #[arg(long, value_name = "N,A-B,...", requires = "labels", conflicts_with = "label_show", help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub label_hide: Option<LabelList>,
+}
+
+/// `1,2,5-9`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct LabelList(Vec<RangeInclusive<i64>>);
+
+impl LabelFlags {
+    /// The table of `--label-tf`.
+    pub fn table(&self) -> Result<Option<LabelTable>, Error> {
+        let Some(path) = &self.label_tf else {
+            return Ok(None);
+        };
+        let refused = |problem: String| Error::Input {
+            path: path.clone(),
+            problem,
+        };
+        let mut text = Vec::new();
+        File::open(path)
+            .and_then(|file| file.take(MAX_FILE_BYTES + 1).read_to_end(&mut text))
+            .map_err(|cause| refused(cause.to_string()))?;
+        if text.len() as u64 > MAX_FILE_BYTES {
+            return Err(refused(format!(
+                "a table of labels has at most {MAX_FILE_BYTES} bytes"
+            )));
+        }
+        let table = LabelTable::parse(&text).map_err(|problem| refused(problem.to_string()))?;
+        Ok(Some(table))
+    }
+
+    /// True where labels cut and nothing says that they are drawn too.
+    pub fn only_cut(&self) -> bool {
+        self.cut() && self.label_tf.is_none()
+    }
+
+    /// True where words say which labels are seen.
+    pub fn cut(&self) -> bool {
+        self.label_show.is_some() || self.label_hide.is_some()
+    }
+
+    /// Whether the words leave what has this label.
+    pub fn shows(&self, label: i64) -> bool {
+        let is_shown = self.label_show.as_ref().is_none_or(|all| all.has(label));
+        is_shown && !self.label_hide.as_ref().is_some_and(|all| all.has(label))
+    }
+
+    /// The files.
+    pub fn files(&self) -> [Option<&Path>; 2] {
+        [self.labels.as_deref(), self.label_tf.as_deref()]
+    }
+
+    /// The same words with other paths.
+    pub fn with_paths(&self, path: impl Fn(&Path) -> PathBuf) -> Self {
+        let [labels, label_tf] = self.files().map(|file| file.map(&path));
+        Self {
+            labels,
+            label_tf,
+            ..self.clone()
+        }
+    }
+}
+
+impl LabelList {
+    fn has(&self, label: i64) -> bool {
+        self.0.iter().any(|range| range.contains(&label))
+    }
+}
+
+impl FromStr for LabelList {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wanted = || format!("wanted labels such as 1,2,5-9, found {text:?}");
+        let number = |word: &str| word.trim().parse::<i64>().map_err(|_| wanted());
+        let range = |word: &str| -> Result<_, String> {
+            // The first character may be a sign.
+            let dash = word.char_indices().skip(1).find(|&(_, c)| c == '-');
+            let [low, high] = match dash {
+                Some((at, _)) => [number(&word[..at])?, number(&word[at + 1..])?],
+                None => [number(word)?; 2],
+            };
+            (low <= high).then_some(low..=high).ok_or_else(wanted)
+        };
+        text.split(',')
+            .map(range)
+            .collect::<Result<_, _>>()
+            .map(Self)
+    }
+}
+
+impl fmt::Display for LabelList {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let words: Vec<_> = self
+            .0
+            .iter()
+            .map(|range| match (range.start(), range.end()) {
+                (low, high) if low == high => low.to_string(),
+                (low, high) => format!("{low}-{high}"),
+            })
+            .collect();
+        f.write_str(&words.join(","))
+    }
+}
+
+impl TryFrom<String> for LabelList {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+impl From<LabelList> for String {
+    fn from(list: LabelList) -> Self {
+        list.to_string()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_list_of_labels_has_its_numbers_and_ranges() {
+        let list: LabelList = "1,5-9,-3".parse().expect("a list");
+        let found: Vec<i64> = (-4..=10).filter(|&label| list.has(label)).collect();
+        assert_eq!(found, [-3, 1, 5, 6, 7, 8, 9]);
+        assert_eq!(list.to_string(), "1,5-9,-3");
+    }
+
+    #[test]
+    fn what_is_no_list_of_labels_is_refused() {
+        for text in ["", "a", "3-1", "1,,2", "1.5"] {
+            let problem = text.parse::<LabelList>().expect_err(text);
+            assert!(problem.contains("1,2,5-9"), "{text}: {problem}");
+        }
+    }
+}

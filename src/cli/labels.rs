@@ -1,0 +1,124 @@
+//! A label map over a volume: read, brought to the volume's grid, given colours, and cut.
+
+use super::{Error, flags::SceneFlags, load::say_what_was_lost, progress::Progress, shown::Other};
+use crate::{
+    format,
+    technique::Role,
+    transfer::{LabelTable, TransferFunction},
+    volume::{
+        Grid, Pick, Volume, Wanted,
+        labels::{hide, labels_of, on_grid},
+    },
+};
+use glam::DVec3;
+
+/// Names that are said, at most.
+const NAMES: usize = 4;
+
+/// The map that `--labels` names, on `grid`, with what it looks like.
+pub fn read(scene: &SceneFlags, grid: &Grid, progress: &Progress) -> Result<Other, Error> {
+    let flags = &scene.labels;
+    let path = flags.labels.as_deref().expect("asked for");
+    let refused = |problem: &str| Error::Input {
+        path: path.to_owned(),
+        problem: problem.to_owned(),
+    };
+    let table = flags.table()?;
+    let limits = scene.input.limits();
+    let source = format::open(path, &Wanted::default(), &limits)?;
+    let header = source.header();
+    if header.components != 1 || header.times != 1 {
+        return Err(refused(
+            "a label map holds one number a voxel, of one time; this file holds several",
+        ));
+    }
+    let map = Volume::read(source.as_ref(), Pick::default(), header.whole(), &limits)?;
+    say_what_was_lost(&map, "labels", progress);
+    let mut map = placed(map, grid, progress).ok_or_else(|| {
+        refused("no voxel of the volume lies in the label map: they do not overlap")
+    })?;
+    let present = labels_of(&map)
+        .ok_or_else(|| refused("wanted whole numbers, the names of at most 2048 things"))?;
+    let function = if flags.only_cut() {
+        nothing()
+    } else {
+        let table = table.clone().unwrap_or_default();
+        table.function(present.keys().copied(), diagonal(&map))
+    };
+    say_names(&present, table.as_ref(), &function, progress);
+    let hides = table.is_some_and(|table| table.hides);
+    if flags.cut() || hides {
+        let is_shown =
+            |label: i64| flags.shows(label) && !(hides && function.opacity(label as f64) == 0.0);
+        hide(&mut map, is_shown);
+    }
+    Ok(Other {
+        volume: map,
+        function,
+        role: Role::Labels,
+    })
+}
+
+/// World length of the diagonal of the grid.
+pub fn diagonal(volume: &Volume) -> f64 {
+    let far = DVec3::from_array(volume.dims.map(f64::from));
+    volume.world_from_voxel.transform_vector3(far).length()
+}
+
+/// The map on the grid; `None` where they do not meet.
+fn placed(map: Volume, grid: &Grid, progress: &Progress) -> Option<Volume> {
+    let tolerance = 1e-3 * grid.smallest_spacing();
+    let corners = [DVec3::ZERO, grid.far_corner(), DVec3::X, DVec3::Y];
+    let is_same = map.dims == grid.dims
+        && corners.into_iter().all(|corner| {
+            let here = grid.world_from_voxel.transform_point3(corner);
+            let there = map.world_from_voxel.transform_point3(corner);
+            here.distance(there) <= tolerance
+        });
+    if is_same && map.validity.is_none() {
+        return Some(Volume {
+            world_from_voxel: grid.world_from_voxel,
+            ..map
+        });
+    }
+    let (moved, share) = on_grid(&map, grid);
+    if !is_same {
+        progress.note(&format!(
+            "the label map lies on another grid: each voxel of the volume takes the label that its centre lies in; \
+             the map covers {:.0} % of them",
+            100.0 * share
+        ));
+    }
+    (share > 0.0).then_some(moved)
+}
+
+fn say_names(
+    present: &std::collections::BTreeMap<i64, u64>,
+    table: Option<&LabelTable>,
+    function: &TransferFunction,
+    progress: &Progress,
+) {
+    let drawn = present
+        .keys()
+        .filter(|&&label| function.opacity(label as f64) > 0.0);
+    let name = |label: &i64| {
+        let known = table.and_then(|table| table.labels.get(label));
+        let name = known.map(|label| label.name.as_str()).unwrap_or_default();
+        format!("{label} {name}").trim_end().to_owned()
+    };
+    let names: Vec<String> = drawn.map(name).collect();
+    let more = if names.len() > NAMES { ", ..." } else { "" };
+    let first = names[..names.len().min(NAMES)].join(", ");
+    progress.note(&match names.len() {
+        0 => format!(
+            "the label map holds {} labels, none is drawn",
+            present.len()
+        ),
+        n => format!("{n} labels are drawn: {first}{more}"),
+    });
+}
+
+/// No colour and no opacity anywhere.
+fn nothing() -> TransferFunction {
+    LabelTable::default().function([0].into_iter(), 512.0)
+}

@@ -1,0 +1,393 @@
+//! What a picture shows: a volume and how it is classified, and what it is seen together with.
+
+use super::{
+    Error,
+    flags::{
+        ChannelWord, Classification, ClassificationFlags, Component, Plan, SceneFlags, summary,
+    },
+    labels,
+    load::{load_from, open, say_what_was_lost},
+    memory::fitting,
+    progress::Progress,
+    renderer::Device,
+};
+use crate::{
+    scene::{Beside, Channel},
+    shaders::MAX_CHANNELS,
+    technique::{Filter, Mode, Role, Settings},
+    transfer::{
+        CHANNEL_COLORS, Classified, LabelTable, TransferFunction, Window, of_channel, of_colors,
+    },
+    volume::{Meaning, Source, Volume, labels::labels_of, read_all, read_colors},
+};
+
+/// Everything that is drawn.
+#[derive(Debug)]
+pub struct Shown {
+    /// The volume; red of colours, the first of channels.
+    pub volume: Volume,
+    /// How its values are seen.
+    pub classification: Classification,
+    /// Where the values themselves ask for one.
+    pub filter: Option<Filter>,
+    others: Others,
+}
+
+#[derive(Debug)]
+enum Others {
+    Channels(Vec<Other>),
+    Colors(Vec<Volume>),
+}
+
+/// A volume that is seen together with the first.
+#[derive(Debug)]
+pub struct Other {
+    /// On the same grid.
+    pub volume: Volume,
+    /// How its values are seen.
+    pub function: TransferFunction,
+    /// What it is.
+    pub role: Role,
+}
+
+impl Shown {
+    /// Reads what the words name, for a picture of these settings.
+    pub fn read(
+        scene: &SceneFlags,
+        settings: &Settings,
+        device: &Device,
+        progress: &Progress,
+    ) -> Result<Self, Error> {
+        check(scene, settings)?;
+        let source = open(&scene.input, &scene.input.limits())?;
+        let room = MAX_CHANNELS as usize - usize::from(scene.labels.labels.is_some());
+        let (plan, note) = scene.channels.plan(&scene.input, source.header(), room)?;
+        if let Some(note) = note {
+            progress.note(&note);
+        }
+        let reader = Reader {
+            scene,
+            mode: settings.mode,
+            device,
+            progress,
+        };
+        let mut shown = match plan {
+            Plan::One => reader.one(source)?,
+            Plan::Channels(words) => reader.channels(source, &words)?,
+            Plan::Colors => reader.colors(source)?,
+        };
+        if scene.labels.labels.is_some() {
+            let Others::Channels(others) = &mut shown.others else {
+                return Err(Error::usage(
+                    "--labels lies over numbers, and this volume is one of colours",
+                    "take one of them: --component 0",
+                ));
+            };
+            let grid = shown.volume.grid();
+            let map = labels::read(scene, &grid, progress)?;
+            let is_drawn = map.function.opacity.iter().any(|point| point.opacity > 0.0);
+            if is_drawn && says_nothing(&scene.classification)? {
+                fade(&mut shown.classification);
+                progress.note(
+                    "the volume is drawn faint, so that labels inside are seen; a --preset or --tf is drawn as it is",
+                );
+            }
+            others.push(map);
+        }
+        Ok(shown)
+    }
+
+    /// What [`Shown::beside`] hands out.
+    pub fn parts(&self) -> Parts<'_> {
+        match &self.others {
+            Others::Channels(others) => Parts::Channels(
+                others
+                    .iter()
+                    .map(|other| Channel {
+                        volume: &other.volume,
+                        transfer: Some(&other.function),
+                        role: other.role,
+                    })
+                    .collect(),
+            ),
+            Others::Colors(volumes) => Parts::Colors(volumes.iter().collect()),
+        }
+    }
+}
+
+/// The others, as a scene wants them.
+#[derive(Debug)]
+pub enum Parts<'a> {
+    /// Things of their own.
+    Channels(Vec<Channel<'a>>),
+    /// Green, blue, and perhaps alpha.
+    Colors(Vec<&'a Volume>),
+}
+
+impl Parts<'_> {
+    /// For a scene.
+    pub fn beside(&self) -> Beside<'_> {
+        match self {
+            Self::Channels(channels) if channels.is_empty() => Beside::Nothing,
+            Self::Channels(channels) => Beside::Channels(channels),
+            Self::Colors(volumes) => Beside::Colors(volumes),
+        }
+    }
+}
+
+/// What can be said wrong before anything is opened.
+fn check(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
+    if scene.labels.labels.is_some() && settings.mode.is_projection() {
+        return Err(Error::usage(
+            "--labels needs --mode composite: a projection has no place for labels",
+            "leave out --mode or --labels",
+        ));
+    }
+    let ClassificationFlags { preset, window, .. } = &scene.classification;
+    let several = scene.channels.are_given() || scene.input.component == Some(Component::All);
+    let one_function = [
+        ("--preset", preset.is_some()),
+        ("--tf", scene.classification.function_of_file()?.is_some()),
+        ("--window", window.is_some()),
+    ];
+    match one_function.into_iter().find(|(_, is_given)| *is_given) {
+        Some((flag, _)) if several => Err(Error::usage(
+            format!("{flag} is for one number a voxel, and several are drawn"),
+            "say it of each: --channel 0,color=cyan,window=0:100",
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// What reading needs beside the source.
+struct Reader<'a> {
+    scene: &'a SceneFlags,
+    mode: Mode,
+    device: &'a Device,
+    progress: &'a Progress,
+}
+
+impl Reader<'_> {
+    fn one(&self, source: Box<dyn Source>) -> Result<Shown, Error> {
+        let is_labels = source.header().is_labels;
+        let volume = load_from(source, self.scene, self.device, self.progress)?;
+        let flags = &self.scene.classification;
+        let has_table = self.scene.labels.label_tf.is_some() && self.scene.labels.labels.is_none();
+        let may_name = says_nothing(flags)? && self.mode == Mode::Composite;
+        if (has_table || is_labels) && may_name {
+            if let Some(function) = self.names(&volume)? {
+                return Ok(Shown {
+                    volume,
+                    classification: Classification::Function(function),
+                    filter: Some(Filter::Nearest),
+                    others: Others::Channels(Vec::new()),
+                });
+            }
+        }
+        let classification = flags.classification(&volume, self.mode)?;
+        let found_labels = flags.found_labels(&classification);
+        if found_labels && self.scene.sampling.filter.is_none() {
+            self.progress
+                .note("the values look like labels: drawn with --filter nearest");
+        }
+        Ok(Shown {
+            volume,
+            classification,
+            filter: found_labels.then_some(Filter::Nearest),
+            others: Others::Channels(Vec::new()),
+        })
+    }
+
+    /// A volume of labels by itself: each in its colour. `None` where the values are none.
+    fn names(&self, volume: &Volume) -> Result<Option<TransferFunction>, Error> {
+        let table = self.scene.labels.table()?;
+        let present = labels_of(volume);
+        Ok(match (table, present) {
+            (table, Some(present)) => {
+                let table = table.unwrap_or_else(LabelTable::default);
+                Some(table.function(present.into_keys(), labels::diagonal(volume)))
+            }
+            (Some(_), None) => {
+                return Err(Error::usage(
+                    "--label-tf names labels, and the values of INPUT are none",
+                    "--labels FILE lays a label map over INPUT",
+                ));
+            }
+            (None, None) => None,
+        })
+    }
+
+    fn channels(&self, source: Box<dyn Source>, words: &[ChannelWord]) -> Result<Shown, Error> {
+        if self.mode == Mode::Xray && words.iter().any(|word| word.window.is_none()) {
+            return Err(Error::usage(
+                "--mode xray of several channels needs a window of each, of its integrals",
+                "--channel 0,window=0:9000",
+            ));
+        }
+        let source = self.fitted(source, words.len())?;
+        let header = source.header();
+        let (time, _) = self.scene.input.time(header)?;
+        let indices: Vec<u32> = words.iter().map(|word| word.index).collect();
+        let limits = self.scene.input.limits();
+        let volumes = read_all(source.as_ref(), indices, time, &limits)?;
+        let known = match &header.meaning {
+            Meaning::Channels(known) => known.as_slice(),
+            _ => &[],
+        };
+        let primaries = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let is_color = matches!(header.meaning, Meaning::Rgb | Meaning::Rgba);
+        let mut made = Vec::new();
+        let mut said = Vec::new();
+        for (nth, (word, volume)) in words.iter().zip(volumes).enumerate() {
+            let of_file = known.get(word.index as usize);
+            let own = primaries.get(word.index as usize).filter(|_| is_color);
+            let srgb = word.srgb.or_else(|| {
+                let color = of_file.and_then(|channel| channel.srgb);
+                color.map(|c| c.map(f64::from)).or(own.copied())
+            });
+            let srgb = srgb.unwrap_or(CHANNEL_COLORS[nth % CHANNEL_COLORS.len()]);
+            let window = word.window.or(of_file.and_then(|channel| channel.window));
+            let window = window.and_then(|[low, high]| Window::new(low, high));
+            let function = of_channel(&summary(&volume), srgb, classified(self.mode), window);
+            let name = of_file.map_or("", |channel| channel.name.as_str());
+            let name = match name {
+                "" => format!("channel {}", word.index),
+                name => format!("channel {} ({name})", word.index),
+            };
+            say_what_was_lost(&volume, &format!("voxels of {name}"), self.progress);
+            let [r, g, b] = srgb;
+            let ends = [function.opacity.first(), function.opacity.last()];
+            let [low, high] = ends.map(|point| point.map_or(0.0, |point| point.value));
+            said.push(format!(
+                "{name} in {r:.2}:{g:.2}:{b:.2} over {low:.6}:{high:.6}"
+            ));
+            made.push(Other {
+                volume,
+                function,
+                role: Role::Numbers,
+            });
+        }
+        self.progress.note(&said.join("; "));
+        let first = made.remove(0);
+        Ok(Shown {
+            volume: first.volume,
+            classification: Classification::Function(first.function),
+            filter: None,
+            others: Others::Channels(made),
+        })
+    }
+
+    fn colors(&self, source: Box<dyn Source>) -> Result<Shown, Error> {
+        let flags = &self.scene.classification;
+        if let Some(preset) = &flags.preset {
+            return Err(Error::usage(
+                format!("--preset {preset} colours numbers, and this volume has its own colours"),
+                "take one of them: --component 0",
+            ));
+        }
+        let by_alpha = source.header().components == 4;
+        let source = self.fitted(source, source_count(by_alpha))?;
+        let (time, _) = self.scene.input.time(source.header())?;
+        let limits = self.scene.input.limits();
+        let mut volumes = read_colors(source.as_ref(), time, &limits)?;
+        for volume in &volumes {
+            say_what_was_lost(volume, "voxels", self.progress);
+        }
+        let window = flags.window()?;
+        if self.mode.is_projection() {
+            return self.projected_colors(volumes, window);
+        }
+        let function = match (flags.function_of_file()?, window) {
+            (Some(function), Some(window)) => function.spread_over(window),
+            (Some(function), None) => function,
+            (None, window) => of_colors(labels::diagonal(&volumes[0]), by_alpha, window),
+        };
+        self.progress.note(if by_alpha {
+            "a voxel holds a colour: drawn in it, opaque by its alpha; --component N takes one number"
+        } else {
+            "a voxel holds a colour: drawn in it, opaque by its luma; --component N takes one number"
+        });
+        let red = volumes.remove(0);
+        Ok(Shown {
+            volume: red,
+            classification: Classification::Function(function),
+            filter: None,
+            others: Others::Colors(volumes),
+        })
+    }
+
+    /// Red, green and blue each projected by itself.
+    fn projected_colors(
+        &self,
+        volumes: Vec<Volume>,
+        window: Option<Window>,
+    ) -> Result<Shown, Error> {
+        if self.mode == Mode::Xray {
+            return Err(Error::usage(
+                "--mode xray: the integral of a colour has no window",
+                "take one number of it: --component 0",
+            ));
+        }
+        self.progress
+            .note("red, green and blue are projected one by one, and added");
+        let window = window.unwrap_or(Window::of_range([0.0, 1.0]));
+        let mut made: Vec<Other> = Vec::new();
+        for (c, volume) in volumes.into_iter().take(3).enumerate() {
+            let mut function = window.grey(Classified::Projection);
+            function.color[1].srgb = std::array::from_fn(|k| f64::from(u8::from(k == c)));
+            made.push(Other {
+                volume,
+                function,
+                role: Role::Numbers,
+            });
+        }
+        let first = made.remove(0);
+        Ok(Shown {
+            volume: first.volume,
+            classification: Classification::Function(first.function),
+            filter: None,
+            others: Others::Channels(made),
+        })
+    }
+
+    /// The source, small enough for so many volumes, and what is to be known of it.
+    fn fitted(&self, source: Box<dyn Source>, count: usize) -> Result<Box<dyn Source>, Error> {
+        let input = &self.scene.input;
+        let count = u32::try_from(count).unwrap_or(u32::MAX);
+        let source = fitting(source, input, self.device.memory(), count)?;
+        let (_, note) = input.time(source.header())?;
+        input.check_one(source.header())?;
+        for note in source.header().notes.iter().chain(&note) {
+            self.progress.note(note);
+        }
+        Ok(source)
+    }
+}
+
+/// True where no word says how values are seen.
+fn says_nothing(flags: &ClassificationFlags) -> Result<bool, Error> {
+    let of_file = flags.function_of_file()?;
+    Ok(flags.preset.is_none() && of_file.is_none() && flags.window.is_none())
+}
+
+/// Takes most of its opacity from a volume that labels lie inside of.
+fn fade(classification: &mut Classification) {
+    const REST: f64 = 0.12;
+    if let Classification::Function(function) = classification {
+        for point in &mut function.opacity {
+            point.opacity *= REST;
+        }
+    }
+}
+
+fn source_count(by_alpha: bool) -> usize {
+    3 + usize::from(by_alpha)
+}
+
+fn classified(mode: Mode) -> Classified {
+    if mode.is_projection() {
+        Classified::Projection
+    } else {
+        Classified::Samples
+    }
+}

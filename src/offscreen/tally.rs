@@ -1,0 +1,62 @@
+//! What a picture is added up of, and which layers it can have.
+
+use super::Error;
+use crate::picture::LayerKind;
+use crate::scene::Scene;
+use crate::technique::{Mix, Settings, Technique};
+
+/// Blending keeps no depth, a projection no transmittance, and a composite has no one value.
+pub fn check_layers(scene: &Scene, wanted: &[LayerKind]) -> Result<(), Error> {
+    let Settings {
+        technique, mode, ..
+    } = *scene.settings;
+    // The sum of several projections has no one value and no one depth.
+    let is_sum = scene.mix() == Mix::Channels && mode.is_projection();
+    for &layer in wanted {
+        let is_there = match layer {
+            LayerKind::Value | LayerKind::Depth if is_sum => false,
+            LayerKind::Value => mode.is_projection(),
+            LayerKind::Depth => technique == Technique::Raycast,
+            LayerKind::Transmittance => !mode.is_projection(),
+            LayerKind::Samples => true,
+        };
+        if !is_there {
+            return Err(Error::NoLayer {
+                technique,
+                mode,
+                layer,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// The mean of pictures, added up in f32 in the order of their rays: no device needs to blend for it.
+pub struct Mean {
+    weight: f32,
+    pub pixels: Vec<[f32; 4]>,
+}
+
+impl Mean {
+    pub fn new([width, height]: [u32; 2], per_side: u32) -> Self {
+        Self {
+            weight: 1.0 / (per_side * per_side) as f32,
+            pixels: vec![[0.0; 4]; width as usize * height as usize],
+        }
+    }
+
+    pub fn add(&mut self, picture: &[[f32; 4]]) {
+        for (sum, color) in self.pixels.iter_mut().zip(picture) {
+            *sum = std::array::from_fn(|c| sum[c] + self.weight * color[c]);
+        }
+    }
+}
+
+/// Milliseconds on the device so far.
+pub struct Clock(pub Option<f64>);
+
+impl Clock {
+    pub fn add(&mut self, more: Option<f64>) {
+        self.0 = self.0.zip(more).map(|(sum, more)| sum + more);
+    }
+}

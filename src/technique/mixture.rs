@@ -1,0 +1,158 @@
+//! Several volumes on one grid, put together sample by sample: the words, the parameters, and the twin of
+//! `shaders/lib/material_channels.wgsl`, `sample_colors.wgsl` and `material_colors.wgsl`.
+//!
+//! ```text
+//! channels    sigma = sum of sigma_i        c = sum of sigma_i c_i / sigma
+//! colours     c as the volumes say it       sigma of alpha, or of luma
+//! ```
+//!
+//! The first is a physical mixture: emitters and absorbers in one place, none of which knows of the others, add
+//! up their emission and their extinction (Max 1995). It does not depend on the order of channels.
+
+use super::Error;
+use crate::color::decode_srgb;
+use crate::picture::ColorSpace;
+use crate::real::Real;
+use crate::resident::{GpuTransfer, GpuVolume};
+use crate::shaders::{FrameFields, MAX_CHANNELS};
+
+/// How volumes on one grid go together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Mix {
+    /// There is one.
+    #[default]
+    Alone,
+    /// Each is a thing of its own with a transfer function of its own.
+    Channels,
+    /// Red, green, blue, and perhaps alpha, of one colour.
+    Colors,
+}
+
+impl Mix {
+    /// Its part of a shader's name.
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Self::Alone => "",
+            Self::Channels => ".channels",
+            Self::Colors => ".colors",
+        }
+    }
+}
+
+/// What a channel is among others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Role {
+    /// Numbers, filtered as the settings say.
+    #[default]
+    Numbers,
+    /// Names of things: always the nearest, and where they are no data the whole sample is hidden.
+    Labels,
+}
+
+/// One of the volumes that are put together, on the device.
+#[derive(Clone, Copy, Debug)]
+pub struct Part<'a> {
+    /// Cut into the same bricks as the others: see [`GpuVolume::several`].
+    pub volume: &'a GpuVolume,
+    /// What it is.
+    pub role: Role,
+}
+
+impl<'a> Part<'a> {
+    /// Numbers.
+    pub fn numbers(volume: &'a GpuVolume) -> Self {
+        Self {
+            volume,
+            role: Role::Numbers,
+        }
+    }
+}
+
+/// Fills the lanes of the parameters.
+pub(super) fn set_channels(
+    parts: &[Part],
+    transfer: Option<&GpuTransfer>,
+    fields: &mut FrameFields,
+) -> Result<(), Error> {
+    let limit = MAX_CHANNELS as usize;
+    if parts.len() > limit {
+        let wanted = parts.len();
+        return Err(Error::TooManyChannels { wanted, limit });
+    }
+    fields.channel_count = parts.len() as u32;
+    let cells = |part: &Part| {
+        let bricks = part.volume.bricks().iter();
+        bricks.map(|brick| brick.cell).collect::<Vec<_>>()
+    };
+    for (c, part) in parts.iter().enumerate() {
+        let (volume, first) = (part.volume, parts[0].volume);
+        if volume.grid() != first.grid() || cells(part) != cells(&parts[0]) {
+            return Err(Error::OtherGrid);
+        }
+        let coding = volume.texel().coding;
+        fields.channel_code_scale[c] = coding.scale;
+        fields.channel_code_offset[c] = coding.offset;
+        fields.channel_slope[c] = coding.slope;
+        fields.channel_intercept[c] = coding.intercept;
+        fields.channel_codes_are_integers[c] = coding.is_integer.into();
+        fields.channel_is_labels[c] = (part.role == Role::Labels).into();
+        fields.channel_has_holes[c] = volume.has_holes().into();
+    }
+    let layouts = transfer.map_or(&[][..], GpuTransfer::layouts);
+    for (c, layout) in layouts.iter().enumerate().take(limit) {
+        fields.channel_table_first[c] = layout.table_first;
+        fields.channel_table_scale[c] = layout.table_scale;
+        fields.channel_table_count[c] = layout.table_count;
+        fields.channel_table_row[c] = layout.table_row;
+        fields.channel_point_first[c] = layout.point_first;
+        fields.channel_color_point_count[c] = layout.color_point_count;
+        fields.channel_opacity_point_count[c] = layout.opacity_point_count;
+        let is_step = layout.interpolation == crate::transfer::Interpolation::Step;
+        fields.channel_interpolation_is_step[c] = is_step.into();
+        fields.channel_reference_length[c] = layout.reference_length;
+    }
+    Ok(())
+}
+
+/// The material (red, green, blue, extinction) of several in one place.
+pub fn mixed<R: Real>(materials: impl IntoIterator<Item = [R; 4]>) -> [R; 4] {
+    let zero = R::from_f64(0.0);
+    let mut light = [zero; 3];
+    let mut sum = zero;
+    for [r, g, b, extinction] in materials {
+        let color = [r, g, b];
+        light = std::array::from_fn(|c| light[c] + extinction * color[c]);
+        sum = sum + extinction;
+    }
+    if sum == zero {
+        return [zero; 4];
+    }
+    let [r, g, b] = light.map(|c| c / sum);
+    [r, g, b, sum]
+}
+
+/// The sRGB colour of a sample and the value that its opacity is classified by: luma, or alpha, with which the
+/// other three come multiplied.
+pub fn color_of<R: Real>(color: [R; 3], alpha: Option<R>) -> ([R; 3], R) {
+    let n = R::from_f32;
+    match alpha {
+        None => {
+            let [r, g, b] = color;
+            (color, n(0.2126) * r + n(0.7152) * g + n(0.0722) * b)
+        }
+        Some(alpha) => {
+            let share = |c: R| (c / alpha.max(n(1e-6))).max(n(0.0)).min(n(1.0));
+            (color.map(share), alpha)
+        }
+    }
+}
+
+/// The material of an sRGB colour.
+pub fn colored<R: Real>(srgb: [R; 3], extinction: R, space: ColorSpace) -> [R; 4] {
+    let shown = |c: R| match space {
+        ColorSpace::Linear => decode_srgb(c),
+        ColorSpace::Display => c,
+    };
+    let [r, g, b] = srgb.map(shown);
+    [r, g, b, extinction]
+}
