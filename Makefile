@@ -5,7 +5,7 @@
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := test
-.PHONY: test demo bench driver layers
+.PHONY: test demo sheet bench driver layers
 
 CARGO ?= cargo
 ROOT := $(if $(filter 0,$(shell id -u)),,sudo )
@@ -45,6 +45,10 @@ if [ -n "$$wanted" ]; then \
 fi
 endef
 
+# Tests of files and of arithmetic make no device: the validation layer has nothing to hear there.
+WITHOUT_DEVICE := cf_% floors format_% isosurface mutations phantoms picture_% transfer_% volume_%
+WITH_DEVICE := $(filter-out $(WITHOUT_DEVICE),$(basename $(notdir $(wildcard tests/*.rs))) cli)
+
 # One test at a time: each makes a device of its own, and a software driver of 2022 under its validation layer has
 # been seen to crash while two threads made and destroyed theirs. A device uses all cores anyway.
 test: driver layers
@@ -53,7 +57,7 @@ test: driver layers
 	$(CARGO) clippy --locked --all-targets --no-default-features -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --locked --no-deps
 	RUST_TEST_THREADS=1 $(CARGO) test --locked
-	RUST_TEST_THREADS=1 STRATAVOX_VALIDATION=sync $(CARGO) test --locked
+	RUST_TEST_THREADS=1 STRATAVOX_VALIDATION=sync $(CARGO) test --locked --lib $(addprefix --test ,$(WITH_DEVICE))
 
 demo: driver
 	$(CARGO) build --locked --release
@@ -68,6 +72,12 @@ demo: driver
 	    draw "$$input" --mode mip -o $$name-mip.png; \
 	done; \
 	echo "the pictures:"; ls -1 $(CURDIR)/target/demo/*.png
+
+# Every volume of the folder DATA, drawn without a flag, into docs/sheet.png.
+sheet: driver
+	$(CARGO) build --locked --release
+	@[ -d "$$DATA" ] || { echo "DATA=folder names the volumes" >&2; exit 1; }
+	cd "$$DATA" && $(CURDIR)/target/release/stratavox sheet --force -o $(CURDIR)/docs/sheet.png $(SHEET)
 
 bench: driver
 	$(CARGO) build --locked --release

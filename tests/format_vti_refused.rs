@@ -142,7 +142,7 @@ fn what_is_wrong_is_named() {
         ("\"ascii\"", "\"words\"", "format"),
         (
             "1 2 3 4 5 6",
-            "1 2 3 4 5",
+            "10 20 30 40 50",
             "promises 6 bytes of voxels, found 5",
         ),
         (

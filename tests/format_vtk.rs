@@ -95,11 +95,19 @@ fn colors_are_bytes_in_binary_files_and_fractions_in_words() {
         "ASCII",
         &format!("POINT_DATA 6\nCOLOR_SCALARS rgb 3\n{words}"),
     );
-    let (header, _) = folder.read("a.vtk", text).unwrap();
+    let (header, _) = folder.read("a.vtk", &text).unwrap();
     assert_eq!(
         (header.meaning, header.stored),
-        (Meaning::Rgb, VoxelType::F32)
+        (Meaning::Rgb, VoxelType::U8)
     );
+    let words = text
+        .replace("rgb 3", "grey 1")
+        .replace("0 0.5 1\n", "0.498 ");
+    let (header, read) = folder.read("a.vtk", words + "\n").unwrap();
+    assert_eq!(header.meaning, Meaning::Numbers);
+    assert_eq!(read.voxels, Voxels::U8(vec![127; 6]));
+    let error = folder.refused("a.vtk", text.replace("0.5", "1.5"));
+    assert!(error.contains("`1.5` is no fraction of 1"), "{error}");
 }
 
 #[test]

@@ -130,10 +130,7 @@ fn every_kind_of_owner_is_gone_after_drop_and_retire() {
     // SAFETY: nothing was submitted.
     unsafe { gpu.retire(0) };
     assert_eq!(gpu.live_objects(), before);
-    assert_eq!(
-        before,
-        BTreeMap::from([("command pool", 1), ("semaphore", 1)])
-    );
+    assert_eq!(before, BTreeMap::from([("command pool", 1), ("fence", 1)]));
 }
 
 #[test]

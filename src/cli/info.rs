@@ -49,7 +49,7 @@ impl Info {
     /// Reads all of the input and prints what it is like.
     pub fn run(self) -> Result<(), Error> {
         let limits = self.input.limits();
-        let source = self.input.open(&limits)?;
+        let source = self.input.open_as_stored(&limits)?;
         let header = source.header();
         self.input.time(header)?;
         if self.input.time.is_some() {
@@ -57,7 +57,14 @@ impl Info {
         }
         let components = self.input.components(header)?;
         let statistics = Statistics::of(source.as_ref(), components, &limits)?;
-        let report = report(header, &statistics);
+        let mut report = report(header, &statistics);
+        if header.is_earth {
+            // Uneven levels are drawn from even ones, of which there are more.
+            let drawn = self.input.open(&limits)?;
+            let is_other = drawn.header().dims != header.dims;
+            report.render_bytes =
+                RenderBytes::of(drawn.header(), is_other || has_holes(&statistics));
+        }
         if self.json {
             for note in &header.notes {
                 say_aside(note);
@@ -90,10 +97,7 @@ fn report(header: &Header, statistics: &Statistics) -> Report {
         non_finite: statistics.non_finite_count,
         fill_count: statistics.fill_count,
         variables: header.variables.clone(),
-        render_bytes: RenderBytes::of(
-            header,
-            statistics.non_finite_count + statistics.fill_count > 0,
-        ),
+        render_bytes: RenderBytes::of(header, has_holes(statistics)),
     }
 }
 
@@ -104,6 +108,10 @@ fn world_from_centers(header: &Header) -> [[f64; 4]; 4] {
     // A sum with zero has no negative zero.
     let row = |k: usize| [m.x_axis[k], m.y_axis[k], m.z_axis[k], origin[k]].map(|n| n + 0.0);
     [row(0), row(1), row(2), [0.0, 0.0, 0.0, 1.0]]
+}
+
+fn has_holes(statistics: &Statistics) -> bool {
+    statistics.non_finite_count + statistics.fill_count > 0
 }
 
 fn text(report: &Report, notes: &[String]) -> String {

@@ -11,15 +11,21 @@ mod bench;
 mod bug;
 mod cameras_file;
 mod compare;
+mod convert;
 mod devices;
 mod error;
+mod exaggerate;
+mod figure;
 mod flags;
+mod histogram;
 mod info;
 mod labels;
 mod later;
 mod load;
+mod manuals;
 mod memory;
 mod output;
+mod preset;
 mod progress;
 mod reasons;
 mod render;
@@ -33,7 +39,7 @@ mod timings;
 pub use bug::guarded;
 pub use error::Error;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use signals::Gate;
 use std::ffi::OsString;
 
@@ -50,10 +56,15 @@ struct Words {
 enum Verb {
     Render(Box<render::Render>),
     Info(info::Info),
+    Convert(convert::Convert),
     Devices(devices::Devices),
     Compare(compare::Compare),
     Bench(Box<bench::Bench>),
     Sheet(sheet::Sheet),
+    Histogram(Box<histogram::HistogramVerb>),
+    Preset(preset::PresetVerb),
+    Completions(manuals::Completions),
+    Man(manuals::Man),
     #[command(flatten)]
     Later(later::Later),
 }
@@ -87,10 +98,15 @@ fn obey(words: Vec<OsString>, gate: &Gate) -> Result<(), Error> {
     match words.verb {
         Verb::Render(render) => render.run(gate),
         Verb::Info(info) => info.run(),
+        Verb::Convert(convert) => convert.run(gate),
         Verb::Devices(devices) => devices.run(),
         Verb::Compare(compare) => compare.run(gate),
         Verb::Bench(bench) => bench.run(gate),
         Verb::Sheet(sheet) => sheet.run(gate),
+        Verb::Histogram(histogram) => histogram.run(gate),
+        Verb::Preset(preset) => preset.run(gate),
+        Verb::Completions(completions) => completions.run(Words::command()),
+        Verb::Man(man) => man.run(Words::command(), gate),
         Verb::Later(verb) => verb.refuse(),
     }
 }
@@ -98,7 +114,6 @@ fn obey(words: Vec<OsString>, gate: &Gate) -> Result<(), Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
     #[test]
     fn the_words_are_put_together_without_contradiction() {

@@ -3,6 +3,7 @@
 use super::{
     Error,
     error::visible,
+    figure::{Anchor, Color, Figure, Mark, SCALE, png},
     flags::{Depth, InputFlags, SceneFlags, Size},
     load::load,
     output::{self, say},
@@ -10,11 +11,7 @@ use super::{
     renderer::{Device, Job, Renderer},
     signals::Gate,
 };
-use crate::{
-    camera::BoundingSphere,
-    picture::{ColorSpace, Picture, WriteOptions, write_picture},
-    technique::Filter,
-};
+use crate::{camera::BoundingSphere, picture::Picture, technique::Filter};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -48,12 +45,6 @@ pub struct Sheet {
     force: bool,
 }
 
-/// Behind and between the small pictures, sRGB and alpha.
-const BACKGROUND: [f64; 4] = [0.09, 0.09, 0.11, 1.0];
-
-/// Pixels between small pictures.
-const GAP: u32 = 4;
-
 impl Sheet {
     /// Draws one after the other and writes the sheet. An input that cannot be drawn leaves its place empty,
     /// and the first such error is that of the whole.
@@ -73,6 +64,7 @@ impl Sheet {
         for (at, scene) in scenes.iter().enumerate() {
             progress.stage("draw", at, scenes.len());
             let words = &self.inputs[at];
+            sheet.name(at as u32, short_name(words));
             match draw(scene, self.tile.0, &mut device, &self.device, &progress) {
                 Ok(picture) => sheet.put(at as u32, &picture),
                 Err(error) => {
@@ -84,14 +76,19 @@ impl Sheet {
             places += &format!("{row} {column} {}\n", visible(words));
         }
         progress.stage("write", 0, 1);
-        let options = WriteOptions {
-            force: self.force,
-            ..WriteOptions::default()
-        };
-        gate.whole(|| write_picture(&sheet.picture, &self.output, options))?;
+        output::write_whole(&self.output, &png(&sheet.figure), self.force, gate)?;
         say(&places)?;
         first_error.map_or(Ok(()), Err)
     }
+}
+
+/// The last part of a path, with the words behind it.
+fn short_name(words: &str) -> &str {
+    words
+        .trim_end_matches('/')
+        .rsplit('/')
+        .next()
+        .unwrap_or(words)
 }
 
 /// `PATH[,variable=NAME][,time=N][,component=N]`.
@@ -148,7 +145,8 @@ fn draw(
         closer.zoom = Some(zoom_to(&whole));
         let camera = closer.camera(&bounds, extent_pixels)?;
         let mut picture = renderer.draw(&camera)?.picture;
-        picture.over_background(BACKGROUND);
+        let [r, g, b, _] = BACKGROUND.map(|code| f64::from(code) / 255.0);
+        picture.over_background([r, g, b, 1.0]);
         Ok((picture, renderer.into_device()))
     });
     match drawn {
@@ -184,46 +182,39 @@ fn zoom_to(picture: &Picture) -> f64 {
     }
 }
 
-/// Small pictures in rows.
+/// Small pictures in rows, each over its name.
 struct Tiles {
     columns: u32,
     tile: [u32; 2],
-    picture: Picture,
+    figure: Figure,
 }
 
 impl Tiles {
     fn new(count: u32, columns: Option<u32>, tile: [u32; 2]) -> Result<Self, Error> {
-        let [width, height] = tile.map(|side| u64::from(side) + u64::from(GAP));
-        let square = (f64::from(count) * height as f64 / width as f64).sqrt();
+        let [width, height] = [tile[0] + GAP, tile[1] + GAP + NAME].map(f64::from);
+        let square = (f64::from(count) * height / width).sqrt();
         let columns = columns.unwrap_or(square.round() as u32).clamp(1, count);
-        let rows = count.div_ceil(columns);
-        let sides = [
-            u64::from(columns) * width + u64::from(GAP),
-            u64::from(rows) * height + u64::from(GAP),
+        let gap = f64::from(GAP);
+        let pixels = [
+            f64::from(columns) * width + gap,
+            f64::from(count.div_ceil(columns)) * height + gap,
         ];
-        let [Ok(width), Ok(height)] = sides.map(|side| {
-            u32::try_from(side)
-                .ok()
-                .filter(|&side| side <= MAX_SIDE_PIXELS)
-                .ok_or(())
-        }) else {
+        if pixels.iter().any(|&side| side > MAX_SIDE_PIXELS) {
             return Err(Error::Limit(format!(
                 "a sheet of {}x{} pixels: a side has at most {MAX_SIDE_PIXELS}",
-                sides[0], sides[1]
+                pixels[0], pixels[1]
             )));
-        };
-        let mut picture = Picture {
-            width,
-            height,
-            pixels: vec![[0.0; 4]; width as usize * height as usize],
-            color_space: ColorSpace::Linear,
-            layers: Vec::new(),
-        };
-        picture.over_background(BACKGROUND);
+        }
+        let [right, bottom] = pixels.map(|side| side / SCALE);
+        let mut figure = Figure::new([right, bottom], "volumes".to_owned());
+        figure.marks.push(Mark::Area {
+            points: vec![[0.0, 0.0], [right, 0.0], [right, bottom], [0.0, bottom]],
+            fill: BACKGROUND,
+        });
         Ok(Self {
             columns,
             tile,
-            picture,
+            figure,
         })
     }
 
@@ -232,22 +223,58 @@ impl Tiles {
         [at / self.columns, at % self.columns]
     }
 
-    fn put(&mut self, at: u32, picture: &Picture) {
+    /// Pixels from the upper left corner of the sheet to that of a small picture.
+    fn corner(&self, at: u32) -> [f64; 2] {
         let [row, column] = self.place(at);
-        let left = GAP + column * (self.tile[0] + GAP);
-        let top = GAP + row * (self.tile[1] + GAP);
-        for y in 0..picture.height {
-            let to = ((top + y) * self.picture.width + left) as usize;
-            let from = (y * picture.width) as usize;
-            let width = picture.width as usize;
-            self.picture.pixels[to..to + width]
-                .copy_from_slice(&picture.pixels[from..from + width]);
-        }
+        [
+            GAP + column * (self.tile[0] + GAP),
+            GAP + row * (self.tile[1] + GAP + NAME),
+        ]
+        .map(f64::from)
+    }
+
+    fn put(&mut self, at: u32, picture: &Picture) {
+        let opaque = |[r, g, b, _]: [u16; 4]| [r, g, b].map(|code| code as u8);
+        self.figure.marks.push(Mark::Cells {
+            at: self.corner(at).map(|pixels| pixels / SCALE),
+            size: self.tile.map(|pixels| f64::from(pixels) / SCALE),
+            columns: picture.width as usize,
+            colors: picture.codes(255).into_iter().map(opaque).collect(),
+        });
+    }
+
+    fn name(&mut self, at: u32, name: &str) {
+        let [left, top] = self.corner(at);
+        let [width, height] = self.tile.map(f64::from);
+        // The end of a name says more than its beginning.
+        let most = ((width / (0.62 * LETTERS_PIXELS)) as usize).max(1);
+        let skipped = name.chars().count().saturating_sub(most);
+        let shown: String = name.chars().skip(skipped).collect();
+        let middle = [left + width / 2.0, top + height + 0.75 * f64::from(NAME)];
+        let size = LETTERS_PIXELS / SCALE;
+        let middle = middle.map(|pixels| pixels / SCALE);
+        self.figure
+            .words(middle, shown, size, Anchor::Middle, NAMES);
     }
 }
 
+/// Behind and between the small pictures.
+const BACKGROUND: Color = [24, 24, 28, 255];
+
+/// Words on it.
+const NAMES: Color = [196, 200, 208, 255];
+
+/// Pixels between small pictures.
+const GAP: u32 = 6;
+
+/// Pixels below each for its name.
+const NAME: u32 = 18;
+
+/// Pixels of an em of a name.
+const LETTERS_PIXELS: f64 = 13.5;
+
 /// Pixels on one side: what image formats agree on.
-const MAX_SIDE_PIXELS: u32 = 32_768;
+const MAX_SIDE_PIXELS: f64 = 32_768.0;
 
 #[cfg(test)]
 mod tests {
@@ -264,21 +291,32 @@ mod tests {
     }
 
     #[test]
-    fn small_pictures_stand_side_by_side_with_gaps() {
-        let mut sheet = Tiles::new(3, Some(2), [2, 1]).expect("a sheet");
-        assert_eq!([sheet.picture.width, sheet.picture.height], [16, 14]);
+    fn small_pictures_stand_side_by_side_over_their_names() {
+        let mut sheet = Tiles::new(3, Some(2), [30, 20]).expect("a sheet");
         let white = Picture {
-            width: 2,
-            height: 1,
-            pixels: vec![[1.0; 4]; 2],
-            color_space: ColorSpace::Linear,
+            width: 30,
+            height: 20,
+            pixels: vec![[1.0; 4]; 600],
+            color_space: crate::picture::ColorSpace::Linear,
             layers: Vec::new(),
         };
         sheet.put(2, &white);
-        let lit: Vec<usize> = (0..16 * 14)
-            .filter(|&i| sheet.picture.pixels[i] == [1.0; 4])
-            .collect();
-        assert_eq!(lit, [9 * 16 + 4, 9 * 16 + 5]);
+        let bytes = png(&sheet.figure);
+        let found = image::load_from_memory(&bytes)
+            .expect("a picture")
+            .to_rgb8();
+        assert_eq!(found.dimensions(), (78, 94));
+        let lit = |(x, y): (u32, u32)| found.get_pixel(x, y).0 == [255; 3];
+        let all = (0..94).flat_map(|y| (0..78).map(move |x| (x, y)));
+        let lit: Vec<_> = all.filter(|&at| lit(at)).collect();
+        assert_eq!((lit.len(), lit[0], lit[599]), (600, (6, 50), (35, 69)));
         assert!(Tiles::new(1 << 20, Some(1), [512, 512]).is_err());
+    }
+
+    #[test]
+    fn a_name_is_the_last_part_of_a_path() {
+        assert_eq!(short_name("a/b.nc,variable=T"), "b.nc,variable=T");
+        assert_eq!(short_name("a/folder.zarr/"), "folder.zarr");
+        assert_eq!(short_name("phantom:head"), "phantom:head");
     }
 }

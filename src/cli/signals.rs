@@ -1,23 +1,50 @@
 //! Ctrl-C, and limits on the size of files: both end in an exit code, never in half a file.
 //!
 //! The handler stops the process at once, unless a file is just being put in its place: then it waits for
-//! that one file to be whole. Threads of a driver may be at work at that moment, so the process ends without
-//! running anybody's exit handlers.
+//! that one file to be whole. A file that takes long to write has its unfinished part removed instead. Threads of
+//! a driver may be at work at that moment, so the process ends without running anybody's exit handlers.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::{
+    path::PathBuf,
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
+};
 
 /// The exit code of a process that was asked to stop.
 pub const INTERRUPTED: u8 = 130;
 
-/// Held while a file is written: an interrupt waits for it.
+/// Held while a file is written: an interrupt waits for it. Holds the unfinished file that it removes.
 #[derive(Clone, Debug, Default)]
-pub struct Gate(Arc<Mutex<()>>);
+pub struct Gate(Arc<Mutex<Option<PathBuf>>>);
 
 impl Gate {
     /// Runs `write` so that no interrupt comes between its beginning and its end.
     pub fn whole<T>(&self, write: impl FnOnce() -> T) -> T {
-        let _held = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let _held = self.held();
         write()
+    }
+
+    /// Makes an unfinished file with `make`, which an interrupt from here on removes.
+    pub fn unfinished<T, E>(
+        &self,
+        make: impl FnOnce() -> Result<T, E>,
+        part: impl FnOnce(&T) -> PathBuf,
+    ) -> Result<T, E> {
+        let mut held = self.held();
+        let made = make()?;
+        *held = Some(part(&made));
+        Ok(made)
+    }
+
+    /// Runs `end`, which gives the unfinished file its name or removes it: there is nothing to remove any more.
+    pub fn finished<T>(&self, end: impl FnOnce() -> T) -> T {
+        let mut held = self.held();
+        let outcome = end();
+        *held = None;
+        outcome
+    }
+
+    fn held(&self) -> MutexGuard<'_, Option<PathBuf>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -26,7 +53,13 @@ impl Gate {
 pub fn install(gate: &Gate) {
     let gate = gate.clone();
     // A second call in one process is refused by ctrlc: the first handler stays, which is as good.
-    let _ = ctrlc::set_handler(move || gate.whole(|| exit_now(INTERRUPTED)));
+    let _ = ctrlc::set_handler(move || {
+        let unfinished = gate.held();
+        if let Some(part) = unfinished.as_ref() {
+            let _ = std::fs::remove_file(part);
+        }
+        exit_now(INTERRUPTED)
+    });
     ignore_file_size_signal();
 }
 

@@ -10,6 +10,16 @@ pub(crate) enum Endian {
     Big,
 }
 
+impl Endian {
+    /// That of numbers in memory.
+    #[cfg(feature = "netcdf")]
+    pub(crate) const NATIVE: Self = if cfg!(target_endian = "big") {
+        Self::Big
+    } else {
+        Self::Little
+    };
+}
+
 /// Voxels that grow as bytes come in. Memory follows the bytes that came, not what a header promised.
 pub(crate) struct Builder {
     stored: VoxelType,
@@ -153,7 +163,7 @@ impl Builder {
     clippy::cast_precision_loss,
     reason = "rounding is what this is for; an f32 of at most 2^64 fits an i128"
 )]
-fn round(x: i128, loss: &mut Loss) -> f32 {
+pub(crate) fn round(x: i128, loss: &mut Loss) -> f32 {
     let kept = x as f32;
     let distance = (kept as i128).saturating_sub(x).unsigned_abs();
     if distance != 0 {
@@ -168,7 +178,7 @@ fn round(x: i128, loss: &mut Loss) -> f32 {
     clippy::cast_possible_truncation,
     reason = "rounding is what this is for"
 )]
-fn round_float(x: f64, loss: &mut Loss) -> f32 {
+pub(crate) fn round_float(x: f64, loss: &mut Loss) -> f32 {
     let kept = x as f32;
     let back = f64::from(kept);
     // An infinity is equal to itself and a NaN stays one: neither is a change.

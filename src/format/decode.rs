@@ -4,7 +4,7 @@
 
 use super::blocks::Coding;
 use super::convert::to_u64;
-use super::textual::{HexBytes, Numbers};
+use super::textual::{Fractions, HexBytes, Numbers};
 use crate::volume::VoxelType;
 use flate2::{Decompress, FlushDecompress, Status};
 use std::io::{self, BufRead, Read};
@@ -19,6 +19,8 @@ pub(crate) enum Encoding {
     Bzip2,
     /// Decimal numbers, white space or commas between.
     Ascii,
+    /// Decimal fractions of 255, a byte each.
+    Fractions,
     /// Two digits a byte.
     Hex,
     /// As VTK's XML files have it.
@@ -32,6 +34,7 @@ impl Encoding {
             Self::Gzip => "gzip",
             Self::Bzip2 => "bzip2",
             Self::Ascii => "ascii",
+            Self::Fractions => "ascii",
             Self::Hex => "hex",
             Self::Vtk(coding) => coding.name(),
         }
@@ -49,7 +52,7 @@ impl Encoding {
             Self::Ascii => encoded_bytes
                 .saturating_div(2)
                 .saturating_mul(to_u64(stored.bytes())),
-            Self::Hex => encoded_bytes.saturating_div(2),
+            Self::Fractions | Self::Hex => encoded_bytes.saturating_div(2),
             // Its own sizes tell, block by block; this is the most of all its encodings.
             Self::Vtk(_) => encoded_bytes.saturating_mul(1032),
         }
@@ -62,6 +65,7 @@ impl Encoding {
             Self::Gzip => Box::new(Expand::new(input, Codec::Undecided)),
             Self::Bzip2 => Box::new(Expand::new(input, Codec::bzip2())),
             Self::Ascii => Box::new(Numbers::new(input, stored)),
+            Self::Fractions => Box::new(Fractions::new(input)),
             Self::Hex => Box::new(HexBytes::new(input)),
             Self::Vtk(coding) => coding.decode(input, stored),
         }

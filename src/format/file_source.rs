@@ -1,9 +1,10 @@
 //! A [`Source`] over files: fetches the wanted box of one time and component and keeps nothing else.
 
-use super::convert::{Builder, bytes_in_memory, to_u64};
+use super::convert::{Builder, Endian, bytes_in_memory, to_u64};
 use super::data::Data;
 use super::decode::Encoding;
 use super::problem::at;
+use super::request::wanted_count;
 use super::select::rows;
 use super::stream::Stream;
 use crate::volume::{Header, Limits, Pick, Piece, Problem, ReadError, Source, VoxelBox};
@@ -36,74 +37,30 @@ impl FileSource {
         }
     }
 
-    /// Bytes that `count` voxels take in memory, as a `usize`, if the limit allows them.
-    fn count_within_limit(&self, region: VoxelBox) -> Result<usize, Problem> {
-        let count = (0..3).try_fold(1_u64, |product, k| {
-            let side = region.max.get(k)?.checked_sub(*region.min.get(k)?)?;
-            product.checked_mul(side.into())
-        });
-        let wanted_bytes = count
-            .and_then(|count| count.checked_mul(to_u64(bytes_in_memory(self.data.stored))))
-            .unwrap_or(u64::MAX);
-        count
-            .filter(|_| wanted_bytes <= self.max_bytes)
-            .and_then(|count| usize::try_from(count).ok())
-            .ok_or(Problem::Limit {
-                what: "the volume".to_owned(),
-                wanted_bytes,
-                limit_bytes: self.max_bytes,
-            })
-    }
-
-    fn check(&self, pick: Pick, region: VoxelBox) -> Result<(), Problem> {
-        let wrong = |field: &str, wanted: String, found: String| {
-            Err(Problem::Invalid {
-                format: self.data.format,
-                field: field.to_owned(),
-                wanted,
-                found,
-            })
-        };
-        let header = &self.header;
-        if pick.time >= header.times {
-            let wanted = format!("a time below {}", header.times);
-            return wrong("time", wanted, pick.time.to_string());
-        }
-        if pick.component >= header.components {
-            let wanted = format!("a component below {}", header.components);
-            return wrong("component", wanted, pick.component.to_string());
-        }
-        let inside = region
-            .min
-            .iter()
-            .zip(&region.max)
-            .zip(&header.dims)
-            .all(|((min, max), size)| min < max && max <= size);
-        if !inside {
-            let wanted = format!("a box inside {:?} that is not empty", header.dims);
-            return wrong(
-                "box",
-                wanted,
-                format!("{:?} to {:?}", region.min, region.max),
-            );
-        }
-        Ok(())
-    }
-
-    fn read_rows(&self, pick: Pick, region: VoxelBox, wanted: usize) -> Result<Piece, ReadError> {
+    fn read_piece(&self, pick: Pick, region: VoxelBox, wanted: usize) -> Result<Piece, ReadError> {
         let data = &self.data;
-        let here = at(&self.path);
-        let number_bytes = to_u64(data.stored.bytes());
         let mut builder = Builder::new(data.stored, data.endian, wanted);
         // Raw bytes were seen to be there; of others only the plausible part is believed beforehand.
         let believed = match data.encoding {
             Encoding::Raw => wanted,
             _ => wanted.min(BELIEVED_NUMBERS),
         };
+        builder.reserve(believed).map_err(at(&self.path))?;
+        self.read_rows(pick, region, |bytes, stride| builder.push(bytes, stride))?;
+        self.check_count(builder.len(), wanted)?;
+        Ok(builder.finish())
+    }
+
+    /// Hands every wanted number to `take`: bytes of which each `stride`th number is wanted, the first one first.
+    fn read_rows(
+        &self,
+        pick: Pick,
+        region: VoxelBox,
+        mut take: impl FnMut(&[u8], usize) -> Result<(), Problem>,
+    ) -> Result<(), ReadError> {
+        let data = &self.data;
+        let number_bytes = to_u64(data.stored.bytes());
         let mut stream = Stream::new(data);
-        if let Err(problem) = builder.reserve(believed) {
-            return Err(here(problem));
-        }
         for row in rows(&data.axes, pick, region) {
             let stride_bytes = row.stride.saturating_mul(number_bytes);
             let mut at_byte = row.start.saturating_mul(number_bytes);
@@ -121,20 +78,24 @@ impl FileSource {
                     1 => 1,
                     _ => usize::try_from(row.stride).unwrap_or(usize::MAX),
                 };
-                builder.push(bytes, stride).map_err(at(&self.path))?;
+                take(bytes, stride).map_err(at(&self.path))?;
                 at_byte = at_byte.saturating_add(count.saturating_mul(stride_bytes));
                 left = left.saturating_sub(count);
             }
         }
-        stream.finish()?;
-        if builder.len() != wanted {
-            return Err(at(&self.path)(Problem::Size {
-                format: data.format,
-                wanted_bytes: to_u64(wanted).saturating_mul(number_bytes),
-                found_bytes: to_u64(builder.len()).saturating_mul(number_bytes),
-            }));
+        stream.finish()
+    }
+
+    fn check_count(&self, found: usize, wanted: usize) -> Result<(), ReadError> {
+        if found == wanted {
+            return Ok(());
         }
-        Ok(builder.finish())
+        let number_bytes = to_u64(self.data.stored.bytes());
+        Err(at(&self.path)(Problem::Size {
+            format: self.data.format,
+            wanted_bytes: to_u64(wanted).saturating_mul(number_bytes),
+            found_bytes: to_u64(found).saturating_mul(number_bytes),
+        }))
     }
 }
 
@@ -154,8 +115,28 @@ impl Source for FileSource {
     }
 
     fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
-        self.check(pick, region).map_err(at(&self.path))?;
-        let wanted = self.count_within_limit(region).map_err(at(&self.path))?;
-        self.read_rows(pick, region, wanted)
+        let wanted = wanted_count(self.data.format, &self.header, pick, region, self.max_bytes)
+            .map_err(at(&self.path))?;
+        self.read_piece(pick, region, wanted)
+    }
+
+    fn read_bytes(&self, pick: Pick, region: VoxelBox) -> Result<Option<Vec<u8>>, ReadError> {
+        let bytes_each = self.data.stored.bytes();
+        let times_kept = to_u64(bytes_each).div_ceil(to_u64(bytes_in_memory(self.data.stored)));
+        let max_bytes = self.max_bytes.checked_div(times_kept).unwrap_or(0);
+        let wanted = wanted_count(self.data.format, &self.header, pick, region, max_bytes)
+            .map_err(at(&self.path))?;
+        let mut all = Vec::new();
+        self.read_rows(pick, region, |bytes, stride| {
+            for number in bytes.chunks_exact(bytes_each).step_by(stride.max(1)) {
+                match self.data.endian {
+                    Endian::Little => all.extend_from_slice(number),
+                    Endian::Big => all.extend(number.iter().rev()),
+                }
+            }
+            Ok(())
+        })?;
+        self.check_count(all.len().checked_div(bytes_each).unwrap_or(0), wanted)?;
+        Ok(Some(all))
     }
 }

@@ -1,11 +1,11 @@
-//! Files to [`Source`]s: NIfTI, NRRD, MetaImage, VTK images, DICOM, raw voxels.
+//! Files to [`Source`]s, one reader a format.
 //!
 //! A header only promises. [`open`] compares its promises with the bytes that are there before anything is
 //! allocated, and [`Source::read`] again as it goes; a file that is too short, too long once decompressed or
 //! damaged is an error, never a volume. A header may name files in its own folder only.
 //!
 //! ```text
-//! path -> first bytes -> reader of that format -> Header, Data (files, offsets, encoding, axes) -> Source
+//! path -> what it holds -> reader of that format -> Header, Data (files, offsets, encoding, axes) -> Source
 //! ```
 
 #![forbid(unsafe_code)]
@@ -23,29 +23,52 @@
     )
 )]
 
+mod absent;
 mod base64;
 mod blocks;
+#[cfg(feature = "netcdf")]
+mod cf;
 mod convert;
 mod data;
 mod decode;
 #[cfg(feature = "dicom")]
 mod dicom;
+#[cfg(feature = "netcdf")]
+mod fence;
 mod file_source;
 mod geometry;
+#[cfg(feature = "netcdf")]
+mod hdf5;
 mod metaimage;
+#[cfg(feature = "netcdf")]
+mod netcdf;
 mod nifti;
+mod npy;
 mod nrrd;
 mod pieces;
 mod place;
 mod problem;
 pub mod raw;
+mod request;
 mod select;
 mod sequence;
 mod stream;
 mod text;
 mod textual;
+#[cfg(feature = "tiff")]
+mod tiff;
 mod vti;
 mod vtk;
+pub mod write;
+#[cfg(feature = "zarr")]
+mod zarr;
+
+#[cfg(not(feature = "dicom"))]
+use absent::dicom;
+#[cfg(not(feature = "tiff"))]
+use absent::tiff;
+#[cfg(not(feature = "netcdf"))]
+use absent::{hdf5, netcdf};
 
 use crate::volume::{Limits, Problem, ReadError, Source, Wanted};
 use problem::at;
@@ -62,41 +85,29 @@ const FIRST_BYTES: u64 = 4096;
 /// The file cannot be read, is of no known format, says something that cannot be, or promises more voxels than
 /// there are bytes. The error names the file, the field, what was wanted and what was found.
 pub fn open(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Source>, ReadError> {
-    #[cfg(feature = "dicom")]
-    if path.is_dir() && dicom::is_folder_of_pictures(path, limits) {
-        return dicom::open(path, wanted, limits);
+    if path.is_dir() {
+        let reader = FOLDERS
+            .iter()
+            .find(|reader| (reader.recognizes)(path, limits));
+        let reader =
+            reader.ok_or_else(|| at(path)(Problem::UnknownFormat(UNKNOWN_FOLDER.into())))?;
+        return (reader.open)(path, wanted, limits);
     }
     let first = first_bytes(path).map_err(at(path))?;
-    #[cfg(feature = "dicom")]
-    if dicom::recognizes(&first) {
-        return dicom::open(path, wanted, limits);
-    }
-    let extension = path.extension().and_then(|extension| extension.to_str());
-    let extension = extension.unwrap_or("").to_ascii_lowercase();
     // The content decides. Where it is no format's, the name does, and that reader says what is wrong.
-    if nrrd::recognizes(&first) {
-        Ok(Box::new(nrrd::open(path, limits)?))
-    } else if metaimage::recognizes(&first) {
-        Ok(Box::new(metaimage::open(path, limits)?))
-    } else if vti::recognizes(&first) {
-        vti::open(path, wanted, limits)
-    } else if vtk::recognizes(&first) {
-        vtk::open(path, wanted, limits)
-    } else if nifti::recognizes(&first) {
-        Ok(Box::new(nifti::open(path, limits)?))
-    } else if matches!(extension.as_str(), "nrrd" | "nhdr") {
-        Ok(Box::new(nrrd::open(path, limits)?))
-    } else if matches!(extension.as_str(), "mha" | "mhd") {
-        Ok(Box::new(metaimage::open(path, limits)?))
-    } else if matches!(extension.as_str(), "nii" | "hdr" | "img") || is_compressed_nifti(path) {
-        Ok(Box::new(nifti::open(path, limits)?))
-    } else if matches!(
-        extension.as_str(),
-        "vti" | "pvti" | "vtr" | "vts" | "vtu" | "vtp"
-    ) {
-        vti::open(path, wanted, limits)
-    } else if extension == "vtk" {
-        vtk::open(path, wanted, limits)
+    let by_content = READERS.iter().find(|reader| (reader.recognizes)(&first));
+    let by_name = || {
+        let name = path.file_name()?.to_str()?.to_ascii_lowercase();
+        let ends = |ending: &&str| {
+            name.strip_suffix(*ending)
+                .is_some_and(|stem| stem.ends_with('.'))
+        };
+        READERS
+            .iter()
+            .find(|reader| reader.endings.iter().any(ends))
+    };
+    if let Some(reader) = by_content.or_else(by_name) {
+        (reader.open)(path, wanted, limits)
     } else if let Some(sidecar) = raw::sidecar_of(path) {
         raw::open_sidecar(&sidecar, limits)
     } else {
@@ -104,13 +115,99 @@ pub fn open(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Sou
     }
 }
 
-fn is_compressed_nifti(path: &Path) -> bool {
-    let name = path.file_name().and_then(|name| name.to_str());
-    let name = name.unwrap_or("").to_ascii_lowercase();
-    [".nii.gz", ".hdr.gz", ".img.gz"]
-        .iter()
-        .any(|end| name.ends_with(end))
+type Open = fn(&Path, &Wanted, &Limits) -> Result<Box<dyn Source>, ReadError>;
+
+/// A reader of files.
+struct Reader {
+    /// True where a file begins as the format does.
+    recognizes: fn(&[u8]) -> bool,
+    /// What follows the last dot (or the last two) of names, in small letters.
+    endings: &'static [&'static str],
+    open: Open,
 }
+
+/// A reader of folders.
+struct FolderReader {
+    recognizes: fn(&Path, &Limits) -> bool,
+    open: Open,
+}
+
+/// The first that recognizes a file reads it.
+const READERS: &[Reader] = &[
+    Reader {
+        recognizes: nrrd::recognizes,
+        endings: &["nrrd", "nhdr"],
+        open: |path, _, limits| Ok(Box::new(nrrd::open(path, limits)?)),
+    },
+    Reader {
+        recognizes: dicom::recognizes,
+        endings: &["dcm", "dicom"],
+        open: dicom::open,
+    },
+    Reader {
+        recognizes: tiff::recognizes,
+        endings: &["tif", "tiff"],
+        open: tiff::open,
+    },
+    Reader {
+        recognizes: npy::recognizes,
+        endings: &["npy"],
+        open: |path, _, limits| Ok(Box::new(npy::open(path, limits)?)),
+    },
+    Reader {
+        recognizes: netcdf::recognizes,
+        endings: &["nc", "cdf"],
+        open: netcdf::open,
+    },
+    Reader {
+        recognizes: hdf5::recognizes,
+        endings: &["h5", "hdf5", "hdf", "nc4"],
+        open: hdf5::open,
+    },
+    Reader {
+        recognizes: vti::recognizes,
+        endings: &["vti", "pvti", "vtr", "vts", "vtu", "vtp"],
+        open: vti::open,
+    },
+    Reader {
+        recognizes: vtk::recognizes,
+        endings: &["vtk"],
+        open: vtk::open,
+    },
+    // Those with weaker marks come last.
+    Reader {
+        recognizes: metaimage::recognizes,
+        endings: &["mha", "mhd"],
+        open: |path, _, limits| Ok(Box::new(metaimage::open(path, limits)?)),
+    },
+    Reader {
+        recognizes: nifti::recognizes,
+        endings: &["nii", "hdr", "img", "nii.gz", "hdr.gz", "img.gz"],
+        open: |path, _, limits| Ok(Box::new(nifti::open(path, limits)?)),
+    },
+];
+
+/// The first that recognizes a folder reads it.
+const FOLDERS: &[FolderReader] = &[
+    #[cfg(feature = "zarr")]
+    FolderReader {
+        recognizes: |path, _| zarr::recognizes(path),
+        open: zarr::open,
+    },
+    #[cfg(feature = "tiff")]
+    FolderReader {
+        recognizes: |path, _| tiff::recognizes_folder(path),
+        open: tiff::open_folder,
+    },
+    #[cfg(feature = "dicom")]
+    FolderReader {
+        recognizes: dicom::is_folder_of_pictures,
+        open: dicom::open,
+    },
+];
+
+const UNKNOWN_FOLDER: &str =
+    ": the folder holds no DICOM pictures, no stack of TIFF pages and no Zarr arrays";
 
 fn first_bytes(path: &Path) -> Result<Vec<u8>, Problem> {
     let (mut file, metadata) = place::open_regular(path)?;
@@ -127,7 +224,7 @@ fn unknown(first: &[u8]) -> Problem {
         .map(|byte| format!("{byte:02x}"))
         .collect();
     Problem::UnknownFormat(format!(
-        ": the file begins with the bytes {}; we read nifti, nrrd, metaimage, vti, vtk, and raw voxels that a spec or a sidecar describes",
+        ": the file begins with the bytes {}; we read nifti, nrrd, metaimage, dicom, tiff, vti, vtk, npy, hdf5, netcdf, zarr, and raw voxels that a spec or a sidecar describes",
         shown.join(" ")
     ))
 }

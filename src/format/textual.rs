@@ -82,6 +82,37 @@ impl<R: BufRead> Read for Numbers<R> {
     }
 }
 
+/// Bytes written as decimal fractions of 255, as VTK writes colors in words.
+pub(crate) struct Fractions<R>(Numbers<R>);
+
+impl<R: BufRead> Fractions<R> {
+    pub(crate) fn new(input: R) -> Self {
+        Self(Numbers::new(input, VoxelType::F64))
+    }
+}
+
+impl<R: BufRead> Read for Fractions<R> {
+    fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
+        let mut count = 0_usize;
+        for to in out {
+            let word = self.0.word()?;
+            if word.is_empty() {
+                break;
+            }
+            let fraction = word.parse::<f64>().ok();
+            *to = fraction
+                .and_then(|fraction| whole((fraction * 255.0).round_ties_even()))
+                .and_then(|byte| u8::try_from(byte).ok())
+                .ok_or_else(|| {
+                    let word = super::problem::escape(&word);
+                    damaged(format!("`{word}` is no fraction of 1"))
+                })?;
+            count = count.saturating_add(1);
+        }
+        Ok(count)
+    }
+}
+
 /// The number that `word` means as bytes of `stored`, or `None` where it is none or does not fit.
 fn bytes_of(word: &str, stored: VoxelType) -> Option<Vec<u8>> {
     // Some writers print every type through a float: 7 as 7.0 or 7e0.

@@ -30,12 +30,12 @@ impl Default for Options {
     }
 }
 
-/// A device, one queue, and a timeline that counts what was submitted to it.
+/// A device, one queue, and a fence that says when what was submitted to it has ended.
 #[derive(Debug)]
 pub struct Headless {
     pool: Own<vk::CommandPool>,
     cmd: vk::CommandBuffer,
-    timeline: Own<vk::Semaphore>,
+    done: Own<vk::Fence>,
     queue: vk::Queue,
     /// The newest value that was submitted.
     submitted: u64,
@@ -109,20 +109,17 @@ impl Headless {
         // SAFETY: as above.
         let cmd = unsafe { device.allocate_command_buffers(&info) }
             .doing(|| "make a command buffer".into())?[0];
-        let mut kind =
-            vk::SemaphoreTypeCreateInfo::default().semaphore_type(vk::SemaphoreType::TIMELINE);
-        let info = vk::SemaphoreCreateInfo::default().push_next(&mut kind);
-        // SAFETY: as above, and timelineSemaphore is enabled.
-        let timeline =
-            unsafe { device.create_semaphore(&info, None) }.doing(|| "make a timeline".into())?;
-        let timeline = Own::new(&gpu, timeline);
+        let info = vk::FenceCreateInfo::default();
+        // SAFETY: as above.
+        let done = unsafe { device.create_fence(&info, None) }.doing(|| "make a fence".into())?;
+        let done = Own::new(&gpu, done);
         // SAFETY: as above; the device was made with one queue of this family.
         let queue = unsafe { device.get_device_queue(gpu.queue_family(), 0) };
-        gpu.name(timeline.get(), "headless timeline");
+        gpu.name(done.get(), "headless submission");
         Ok(Self {
             pool,
             cmd,
-            timeline,
+            done,
             queue,
             submitted: 0,
             is_lost: false,
@@ -221,23 +218,21 @@ impl Headless {
     /// Submits what was recorded and waits for it.
     fn submit(&mut self, value: u64) -> Result<(), Error> {
         let device = self.gpu.device();
-        // Not vkQueueSubmit2: after it, GPU-assisted validation 1.3.239 waits ten seconds for the timeline, in vain.
-        let (commands, semaphores, values) = ([self.cmd], [self.timeline.get()], [value]);
-        let mut timeline =
-            vk::TimelineSemaphoreSubmitInfo::default().signal_semaphore_values(&values);
-        let submit = vk::SubmitInfo::default()
-            .command_buffers(&commands)
-            .signal_semaphores(&semaphores)
-            .push_next(&mut timeline);
-        // SAFETY: the recording has ended; the queue is ours, and `&mut self` makes us its only user.
-        unsafe { device.queue_submit(self.queue, &[submit], vk::Fence::null()) }
-            .doing(|| "submit".into())?;
+        // A fence, not a timeline: waiting for one, validation 1.3.239 races with its own queue thread and crashes
+        // once in some ten thousand submissions (KhronosGroup/Vulkan-ValidationLayers#4968 is of that kind).
+        let (commands, fences) = ([self.cmd], [self.done.get()]);
+        let submit = vk::SubmitInfo::default().command_buffers(&commands);
+        // SAFETY: the recording has ended; the queue is ours, and `&mut self` makes us its only user. The last
+        // submission was waited for, so nothing uses the fence.
+        unsafe {
+            device
+                .reset_fences(&fences)
+                .and_then(|()| device.queue_submit(self.queue, &[submit], fences[0]))
+        }
+        .doing(|| "submit".into())?;
         self.submitted = value;
-        let wait = vk::SemaphoreWaitInfo::default()
-            .semaphores(&semaphores)
-            .values(&values);
-        // SAFETY: the semaphore is ours. A driver that hangs is found by its watchdog, which makes this call fail.
-        let waited = unsafe { device.wait_semaphores(&wait, u64::MAX) };
+        // SAFETY: the fence is ours. A driver that hangs is found by its watchdog, which makes this call fail.
+        let waited = unsafe { device.wait_for_fences(&fences, true, u64::MAX) };
         if waited.is_err() {
             // Whatever the reason, what was submitted may still run: nothing may be recorded over it.
             self.is_lost = true;

@@ -158,7 +158,7 @@ handles! {
     DescriptorPool vk::DescriptorPool, "descriptor pool", destroy_descriptor_pool;
     QueryPool vk::QueryPool, "query pool", destroy_query_pool;
     CommandPool vk::CommandPool, "command pool", destroy_command_pool;
-    Semaphore vk::Semaphore, "semaphore", destroy_semaphore;
+    Fence vk::Fence, "fence", destroy_fence;
 }
 
 /// The allocator, what is alive, and what waits for the timeline.

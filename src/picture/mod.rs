@@ -19,6 +19,8 @@ mod write;
 
 pub use crate::color::ColorSpace;
 #[cfg(feature = "files")]
+pub use place::OutputFile;
+#[cfg(feature = "files")]
 pub use read::{MAX_PICTURE_BYTES, PictureError, PictureProblem, read_image};
 #[cfg(feature = "files")]
 pub use write::{

@@ -127,12 +127,12 @@ pub fn write_picture(
     let mut staged = Vec::new();
     for (path, bytes) in files {
         match place::stage(&path, &bytes, options.force) {
-            Ok(file) => staged.push((path, file)),
+            Ok(file) => staged.push(file),
             Err(problem) => return Err(of_file(&path, problem)),
         }
     }
-    for (path, file) in staged {
-        file.publish().map_err(|problem| of_file(&path, problem))?;
+    for file in staged {
+        file.publish()?;
     }
     Ok(())
 }
@@ -140,11 +140,11 @@ pub fn write_picture(
 /// Puts a file with these bytes at `path`, whole or not at all. Only `force` replaces one.
 pub fn write_file(path: &Path, bytes: &[u8], force: bool) -> Result<(), OutputError> {
     place::stage(path, bytes, force)
-        .and_then(place::Staged::publish)
         .map_err(|problem| OutputError {
             path: path.to_owned(),
             problem,
-        })
+        })?
+        .publish()
 }
 
 /// The files of `picture` and what stands in them.

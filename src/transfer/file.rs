@@ -36,6 +36,22 @@ pub enum FileProblem {
     /// Not JSON, or a key that is unknown, doubled or missing; with line and column.
     #[error("{0}")]
     Json(String),
+    /// Not XML as it is read here.
+    #[error("XML: {0}")]
+    Xml(String),
+    /// No kind of file that is known here; says what it is instead.
+    #[error(
+        "it is {0}; transfer functions of stratavox, 3D Slicer, ParaView, Inviwo, Voreen and VAPOR and rows of points are read"
+    )]
+    Unknown(String),
+    /// A file of another program that is wrong, or says what cannot be taken over.
+    #[error("{origin}: {problem}")]
+    Foreign {
+        /// What the file is.
+        origin: &'static str,
+        /// What is wrong with it.
+        problem: String,
+    },
     /// A field says something that cannot be.
     #[error("field `{field}`: wanted {wanted}, found {found}")]
     Field {
@@ -54,14 +70,20 @@ pub fn read_transfer_function(path: &Path) -> Result<TransferFunction, FileError
         path: path.to_owned(),
         problem,
     };
-    let mut text = Vec::new();
-    File::open(path)
-        .and_then(|file| file.take(MAX_FILE_BYTES + 1).read_to_end(&mut text))
-        .map_err(|cause| of_file(FileProblem::Io(cause)))?;
-    if text.len() as u64 > MAX_FILE_BYTES {
-        return Err(of_file(FileProblem::TooLong));
-    }
+    let text = read_limited(path).map_err(of_file)?;
     transfer_function_from_json(&text).map_err(of_file)
+}
+
+/// The bytes of a file that is not too long.
+pub(super) fn read_limited(path: &Path) -> Result<Vec<u8>, FileProblem> {
+    let mut bytes = Vec::new();
+    File::open(path)
+        .and_then(|file| file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes))
+        .map_err(FileProblem::Io)?;
+    if bytes.len() as u64 > MAX_FILE_BYTES {
+        return Err(FileProblem::TooLong);
+    }
+    Ok(bytes)
 }
 
 /// The transfer function that `text` states.

@@ -13,6 +13,8 @@ mod automatic;
 mod channel;
 #[cfg(feature = "json")]
 mod file;
+#[cfg(all(feature = "json", feature = "files"))]
+mod import;
 #[cfg(feature = "json")]
 mod labels;
 mod law;
@@ -29,6 +31,8 @@ pub use file::{
     FileError, FileProblem, MAX_FILE_BYTES, MAX_POINTS, read_transfer_function,
     transfer_function_from_json, transfer_function_to_json,
 };
+#[cfg(all(feature = "json", feature = "files"))]
+pub use import::{Imported, Scale, import_transfer_function, transfer_function_from_bytes};
 #[cfg(feature = "json")]
 pub use labels::{Label, LabelTable};
 pub use law::{Absorption, MAX_OPACITY, extinction, opacity_over};

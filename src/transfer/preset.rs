@@ -65,6 +65,14 @@ impl Preset {
         }
     }
 
+    /// True where the preset fits itself to the values; else it stands at values of its own.
+    pub fn fits_the_volume(self) -> bool {
+        match self {
+            Self::CtBone | Self::CtSoftTissue | Self::CtLung => false,
+            Self::Mri | Self::Microscopy | Self::Grey => true,
+        }
+    }
+
     /// The preset for values like those of `summary`, spread over `window` if one is given.
     ///
     /// Opacities are for 1/512 of the diagonal of the grid, so that volumes of few and of many voxels look

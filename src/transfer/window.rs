@@ -81,6 +81,18 @@ impl Window {
 }
 
 impl TransferFunction {
+    /// This function, whose points stand at fractions of `window`, with them at its values.
+    pub fn of_fractions(&self, window: Window) -> Self {
+        let mut placed = self.clone();
+        for point in &mut placed.color {
+            point.value = window.at(point.value);
+        }
+        for point in &mut placed.opacity {
+            point.value = window.at(point.value);
+        }
+        placed
+    }
+
     /// This function spread over `window`: its first control point (of colour or opacity) moves to the low
     /// end, its last one to the high end, the others keep their fractions. Points that all lie at one value
     /// move to the middle.

@@ -11,7 +11,9 @@
 mod colors;
 pub mod field;
 mod grid;
+mod histogram;
 mod holes;
+mod joint;
 pub mod labels;
 mod magnitude;
 pub mod phantom;
@@ -24,13 +26,15 @@ mod voxels;
 
 pub use colors::{luma, read_all, read_colors};
 pub use grid::Grid;
+pub use histogram::Histogram;
+pub use joint::JointHistogram;
 pub use magnitude::Magnitude;
 pub use reduce::Reduced;
 pub use source::{
     Channel, Format, Header, Limits, Loss, Meaning, Pick, Piece, Problem, ReadError, Rescale,
     Series, Source, VoxelBox, Wanted,
 };
-pub use statistics::{Histogram, Statistics};
+pub use statistics::Statistics;
 pub use voxels::{VoxelType, Voxels};
 
 use glam::DAffine3;

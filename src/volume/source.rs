@@ -17,6 +17,13 @@ pub trait Source: Send + Sync {
     /// `pick` and `region` lie inside the header; integers of 32 and 64 bits and f64 are rounded to f32,
     /// and [`Piece::loss`] says what that cost.
     fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError>;
+
+    /// The same numbers as little-endian bytes of the type in the file, none of them rounded. `None` from a source
+    /// that has them in the types of [`Voxels`] only.
+    fn read_bytes(&self, pick: Pick, region: VoxelBox) -> Result<Option<Vec<u8>>, ReadError> {
+        let _ = (pick, region);
+        Ok(None)
+    }
 }
 
 /// What one [`Source::read`] brings.
@@ -98,6 +105,8 @@ pub struct Header {
     pub meaning: Meaning,
     /// True where the file says that values are names of things: nothing lies between two of them.
     pub is_labels: bool,
+    /// True where the world is a piece of the Earth in kilometres: x east, y north, z up.
+    pub is_earth: bool,
     /// The moment of each time step, an ISO 8601 date or a number with its unit. Empty where the file does not say.
     pub time_names: Vec<String>,
     /// The DICOM series of a folder; the one this source reads comes first. Empty in other formats.
@@ -129,6 +138,7 @@ impl Header {
             unit: None,
             meaning: Meaning::Numbers,
             is_labels: false,
+            is_earth: false,
             time_names: Vec::new(),
             series: Vec::new(),
             variables: Vec::new(),
@@ -194,6 +204,9 @@ pub struct Wanted {
     pub variable: Option<String>,
     /// The UID of a DICOM series.
     pub series: Option<String>,
+    /// True for the voxels as they stand in the file where those of a picture are others: a grid of uneven levels
+    /// is drawn from even ones between them.
+    pub as_stored: bool,
 }
 
 /// `value = stored * slope + intercept`.

@@ -2,6 +2,7 @@
 //!
 //! Over voxels that are finite and not the fill, after rescale; sums in f64.
 
+use super::histogram::{Bins, Histogram};
 use super::read::check_memory;
 use super::voxels::{Stored, with_numbers};
 use super::{Limits, Loss, Pick, Piece, ReadError, Source, Voxels};
@@ -26,20 +27,6 @@ pub struct Statistics {
     pub loss: Loss,
     /// How often each value occurs.
     pub histogram: Histogram,
-}
-
-/// Bins of equal width. Those of integers hold a whole number of codes each, or they would beat.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Histogram {
-    /// Where the first bin begins and the last one ends, ascending; `[0.0, 0.0]` where no voxel is valid.
-    pub value_range: [f64; 2],
-    /// At most [`Histogram::MAX_BINS`]; empty where no voxel is valid.
-    pub counts: Vec<u64>,
-}
-
-impl Histogram {
-    /// So many bins that a picture of them has one a pixel.
-    pub const MAX_BINS: usize = 1024;
 }
 
 impl Statistics {
@@ -72,39 +59,29 @@ impl Statistics {
             tally.loss = tally.loss.and(loss);
             kept = (picks.len() == 1).then_some(voxels);
         }
-        let Some(mut bins) = Bins::over(&tally, header.stored.is_float()) else {
+        if tally.valid == 0 {
             return Ok(tally.statistics_without_values());
-        };
+        }
+        let is_float = header.stored.is_float();
+        let mut bins = Bins::over([tally.min, tally.max], is_float, Histogram::MAX_BINS);
         for &pick in &picks {
             match kept.take() {
                 Some(voxels) => bins.add(&voxels, header.fill),
                 None => bins.add(&source.read(pick, header.whole())?.voxels, header.fill),
             }
         }
-        let rescaled = |stored: f64| stored * header.rescale.slope + header.rescale.intercept;
-        let ordered = |ends: [f64; 2]| {
-            let [a, b] = ends.map(rescaled);
-            [a.min(b), a.max(b)]
-        };
-        let [min, max] = ordered([tally.min.into(), tally.max.into()]);
-        if header.rescale.slope < 0.0 {
-            bins.counts.reverse();
-        }
+        let rescale = header.rescale;
+        let value = |stored: f64| stored * rescale.slope + rescale.intercept;
+        let ends = [tally.min, tally.max].map(|stored| value(stored.into()));
         Ok(Self {
-            min,
-            max,
-            mean: rescaled(tally.sum / tally.valid as f64),
+            min: ends[0].min(ends[1]),
+            max: ends[0].max(ends[1]),
+            mean: value(tally.sum / tally.valid as f64),
             valid_count: tally.valid,
             non_finite_count: tally.non_finite,
             fill_count: tally.fill,
             loss: tally.loss,
-            histogram: Histogram {
-                value_range: ordered([
-                    bins.start,
-                    bins.start + bins.width * bins.counts.len() as f64,
-                ]),
-                counts: bins.counts,
-            },
+            histogram: bins.histogram(rescale),
         })
     }
 }
@@ -165,60 +142,7 @@ impl Tally {
             non_finite_count: self.non_finite,
             fill_count: self.fill,
             loss: self.loss,
-            histogram: Histogram {
-                value_range: [0.0; 2],
-                counts: Vec::new(),
-            },
-        }
-    }
-}
-
-/// The second pass: bins over stored numbers.
-struct Bins {
-    start: f64,
-    width: f64,
-    counts: Vec<u64>,
-}
-
-impl Bins {
-    fn over(tally: &Tally, is_float: bool) -> Option<Self> {
-        if tally.valid == 0 {
-            return None;
-        }
-        let (min, max) = (f64::from(tally.min), f64::from(tally.max));
-        let range = max - min;
-        let (start, width, count) = if is_float {
-            // One value alone has a bin of width 1 around it.
-            let width = range / Histogram::MAX_BINS as f64;
-            if width.is_normal() {
-                (min, width, Histogram::MAX_BINS)
-            } else {
-                (min - 0.5, 1.0, 1)
-            }
-        } else {
-            let width = ((range + 1.0) / Histogram::MAX_BINS as f64).ceil();
-            (min - 0.5, width, ((range + 1.0) / width).ceil() as usize)
-        };
-        Some(Self {
-            start,
-            width,
-            counts: vec![0; count],
-        })
-    }
-
-    fn add(&mut self, voxels: &Voxels, fill: Option<f64>) {
-        with_numbers!(voxels, numbers => self.add_numbers(numbers, fill));
-    }
-
-    fn add_numbers<T: Stored>(&mut self, numbers: &[T], fill: Option<f64>) {
-        let fill = fill.and_then(T::from_fill);
-        let last = self.counts.len() - 1;
-        for &number in numbers {
-            let stored = number.to_f32();
-            if stored.is_finite() && Some(number) != fill {
-                let bin = (f64::from(stored) - self.start) / self.width;
-                self.counts[(bin as usize).min(last)] += 1;
-            }
+            histogram: Histogram::empty(),
         }
     }
 }

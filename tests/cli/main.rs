@@ -1,6 +1,7 @@
 //! The program as a person meets it: words, exit codes, files.
 #![cfg(feature = "cli")]
 
+mod convert;
 mod device;
 mod errors;
 #[cfg(unix)]

@@ -14,14 +14,14 @@ fn a_sheet_has_a_place_for_each_input_and_says_which_could_not_be_drawn() {
     let picture = image::open(folder.path("a.png"))
         .expect("a picture")
         .to_rgba8();
-    assert_eq!(picture.dimensions(), (76, 60));
+    assert_eq!(picture.dimensions(), (82, 102));
     // What is seen fills each small picture; the place without one keeps the background.
     let background = picture.get_pixel(0, 0);
     let differs = |left: u32, top: u32| {
         let inside = |i: u32| (left + i % 32, top + i / 32);
         (0..32 * 24).any(|i| picture.get_pixel(inside(i).0, inside(i).1) != background)
     };
-    assert!(differs(4, 4) && differs(40, 4) && differs(4, 32) && !differs(40, 32));
+    assert!(differs(6, 6) && differs(44, 6) && differs(6, 54) && !differs(44, 54));
 
     let ran = folder.run("sheet phantom:fog,n=8 missing.nrrd -o b.png --tile 16x16");
     ran.assert_refused(3, &["missing.nrrd is left out"]);

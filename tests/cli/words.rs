@@ -45,7 +45,6 @@ fn a_word_that_is_not_built_exits_2_and_is_named() {
             "animate phantom:fog -o %04d.png --turntable 3",
             "`stratavox animate`",
         ),
-        ("convert phantom:fog -o a.nrrd", "`stratavox convert`"),
         ("conformance --device cpu", "`stratavox conformance`"),
         ("preset list", "`stratavox preset`"),
     ] {

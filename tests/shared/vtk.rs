@@ -58,10 +58,7 @@ fn check(format: &str, key: &str, expected: &Value) {
             .unwrap_or_else(|e| panic!("{key}: {e}"));
         let (mut sum, mut weighted) = (0.0, 0.0);
         for index in 0..piece.voxels.len() {
-            // Colors in words are fractions of 255 in f32.
-            let is_fraction = header.stored.is_float() && expected["meaning"] == "rgb";
-            let scale = if is_fraction { 255.0 } else { 1.0 };
-            let value = (f64::from(piece.voxels.stored(index)) * scale).round();
+            let value = f64::from(piece.voxels.stored(index));
             sum += value;
             weighted += value * (index % 97) as f64;
         }

@@ -1,11 +1,13 @@
 //! Value to colour and opacity: flags to a transfer function, once the volume is known.
 
 use super::{Error, Numbers};
+use crate::cli::output::say_aside;
 use crate::{
     technique::Mode,
     transfer::{
-        Classified, Interpolation, Preset, TransferFunction, ValueSummary, Window, automatic,
-        read_transfer_function, transfer_function_from_json, transfer_function_to_json,
+        Classified, Interpolation, Preset, Scale, TransferFunction, ValueSummary, Window,
+        automatic, import_transfer_function, transfer_function_from_json,
+        transfer_function_to_json,
     },
     volume::Volume,
 };
@@ -22,7 +24,7 @@ pub struct ClassificationFlags {
     #[arg(long, value_name = "NAME", value_parser = preset, conflicts_with = "tf", help_heading = "Colour")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub preset: Option<String>,
-    /// A transfer function file
+    /// A transfer function file: ours, or one of 3D Slicer, ParaView, Inviwo, Voreen, VAPOR, or rows of points
     #[arg(long, value_name = "FILE", help_heading = "Colour")]
     #[serde(skip)]
     pub tf: Option<PathBuf>,
@@ -30,6 +32,10 @@ pub struct ClassificationFlags {
     #[arg(skip)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub transfer_function: Option<serde_json::Value>,
+    /// True where its points stand at fractions, 0 to 1, of the window or of the volume's range.
+    #[arg(skip)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub transfer_function_of_fractions: Option<bool>,
     /// The values that the function is spread over (xray: of the integral)
     #[arg(
         long,
@@ -54,13 +60,17 @@ impl ClassificationFlags {
     /// Reads the file of `--tf` into `transfer_function`; what a scene says in its place is gone.
     pub fn inline_file(&mut self) -> Result<(), Error> {
         let Some(path) = &self.tf else { return Ok(()) };
-        let function = read_transfer_function(path).map_err(|error| Error::Input {
+        let imported = import_transfer_function(path, None).map_err(|error| Error::Input {
             path: path.clone(),
             problem: with_causes(&error.problem),
         })?;
-        let text = transfer_function_to_json(&function);
+        for piece in &imported.left_out {
+            say_aside(&format!("{}: not taken over: {piece}", path.display()));
+        }
+        let text = transfer_function_to_json(&imported.function);
         let value = serde_json::from_str(&text).expect("what we have just written as JSON");
         self.transfer_function = Some(value);
+        self.transfer_function_of_fractions = (imported.scale == Scale::Fractions).then_some(true);
         Ok(())
     }
 
@@ -69,6 +79,7 @@ impl ClassificationFlags {
         if stronger.preset.is_some() || stronger.transfer_function.is_some() {
             self.preset = None;
             self.transfer_function = None;
+            self.transfer_function_of_fractions = None;
         }
     }
 
@@ -98,6 +109,15 @@ impl ClassificationFlags {
         };
         let preset = self.preset.as_deref().and_then(Preset::from_name);
         let function = match (self.function_of_file()?, preset) {
+            (Some(function), _) if self.transfer_function_of_fractions == Some(true) => {
+                if mode == Mode::Xray && window.is_none() {
+                    return Err(Error::usage(
+                        "the points of the --tf file stand at fractions of a range, and that of integrals is not known",
+                        "--window LO,HI says it",
+                    ));
+                }
+                function.of_fractions(window.unwrap_or(Window::of_range(volume.value_range)))
+            }
             (Some(function), _) => match window {
                 Some(window) => function.spread_over(window),
                 None => function,
@@ -141,7 +161,7 @@ impl ClassificationFlags {
 }
 
 /// A sentence with all its causes.
-fn with_causes(error: &dyn std::error::Error) -> String {
+pub fn with_causes(error: &dyn std::error::Error) -> String {
     let mut text = error.to_string();
     let mut cause = error.source();
     while let Some(error) = cause {
@@ -151,7 +171,7 @@ fn with_causes(error: &dyn std::error::Error) -> String {
     text
 }
 
-fn preset(name: &str) -> Result<String, String> {
+pub fn preset(name: &str) -> Result<String, String> {
     let names = Preset::ALL.map(Preset::name);
     if names.contains(&name) {
         Ok(name.to_owned())

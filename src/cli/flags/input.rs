@@ -16,7 +16,7 @@ use std::{
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct InputFlags {
-    /// A volume file, or phantom:NAME[,n=256][,type=u8|u16|f32] with NAME of sphere, gauss, marschner-lobb, head, fog, shells, storm, cells
+    /// A volume file, a folder of slices, or phantom:NAME[,n=256][,type=u8|u16|f32] with NAME of sphere, gauss, marschner-lobb, head, fog, shells, storm, cells
     #[arg(value_name = "INPUT")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub path: Option<String>,
@@ -24,7 +24,7 @@ pub struct InputFlags {
     #[arg(long, value_name = "LAYOUT", help_heading = "Input")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub raw: Option<String>,
-    /// One of several variables
+    /// One of several variables: a name, an HDF5 path, or NAME[AXIS=N] where it has axes beside time and space
     #[arg(long, value_name = "NAME", help_heading = "Input")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub variable: Option<String>,
@@ -66,7 +66,7 @@ fn is_false(flag: &bool) -> bool {
 const PHANTOM: &str = "phantom:";
 
 /// Endings of files that are promised and not built yet.
-const LATER: &[&str] = &["tif", "tiff", "nc", "h5", "grib", "grib2", "npy", "zarr"];
+const LATER: &[&str] = &["grib", "grib2"];
 
 impl InputFlags {
     /// The file, where the input is one.
@@ -94,16 +94,25 @@ impl InputFlags {
         }
     }
 
-    /// Opens what the words name; reads its header alone.
+    /// Opens what the words name, as it is drawn; reads its header alone.
     pub fn open(&self, limits: &Limits) -> Result<Box<dyn Source>, Error> {
-        let source = self.open_as_it_is(limits)?;
+        self.open_with(false, limits)
+    }
+
+    /// The same with the voxels as they stand in the file.
+    pub fn open_as_stored(&self, limits: &Limits) -> Result<Box<dyn Source>, Error> {
+        self.open_with(true, limits)
+    }
+
+    fn open_with(&self, as_stored: bool, limits: &Limits) -> Result<Box<dyn Source>, Error> {
+        let source = self.open_as_it_is(as_stored, limits)?;
         if self.component == Some(Component::Magnitude) {
             return Ok(Box::new(Magnitude::new(source)));
         }
         Ok(source)
     }
 
-    fn open_as_it_is(&self, limits: &Limits) -> Result<Box<dyn Source>, Error> {
+    fn open_as_it_is(&self, as_stored: bool, limits: &Limits) -> Result<Box<dyn Source>, Error> {
         let Some(path) = self.path.as_deref() else {
             return Err(Error::usage(
                 "no INPUT is given",
@@ -139,6 +148,7 @@ impl InputFlags {
                 let wanted = Wanted {
                     variable: self.variable.clone(),
                     series: self.series.clone(),
+                    as_stored,
                 };
                 format::open(path, &wanted, limits)?
             }
@@ -193,7 +203,7 @@ impl InputFlags {
         }
     }
 
-    /// Whether the words leave one variable and one series.
+    /// Refuses a source of several variables or series of which the words choose none.
     pub fn check_one(&self, header: &Header) -> Result<(), Error> {
         self.check_one_variable(header)?;
         self.check_one_series(header)
@@ -329,8 +339,8 @@ fn listed(header: &Header) -> String {
 }
 
 fn refuse_later_formats(path: &Path) -> Result<(), Error> {
-    if path.is_dir() && path.extension().is_some_and(|ending| ending == "zarr") {
-        return Err(Error::NotBuilt("reading `.zarr` folders".to_owned()));
+    if path.is_dir() {
+        return Ok(());
     }
     let ending = path.extension().and_then(|ending| ending.to_str());
     match ending.map(str::to_ascii_lowercase) {

@@ -17,7 +17,7 @@ mod words;
 
 pub use camera::CameraFlags;
 pub use channels::{ChannelFlags, ChannelWord, Plan};
-pub use classification::{Classification, ClassificationFlags, summary};
+pub use classification::{Classification, ClassificationFlags, preset, summary, with_causes};
 pub use component::Component;
 pub use input::{InputFlags, relative};
 pub use labels::LabelFlags;

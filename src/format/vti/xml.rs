@@ -11,6 +11,7 @@ use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
+use std::panic::catch_unwind;
 use std::path::Path;
 
 const MOST_DEPTH: usize = 32;
@@ -64,6 +65,14 @@ impl Element {
 
 /// Reads the markup of a file, at most `limit_bytes` of it, to its end or to where appended data begin.
 pub(super) fn read(path: &Path, limit_bytes: usize) -> Result<Document, Problem> {
+    // The parser is not ours: whatever it does, it is this file that is wrong.
+    catch_unwind(|| parse(path, limit_bytes)).unwrap_or_else(|_| {
+        let wanted = "XML that the parser can take";
+        Err(invalid(VTI, "markup", wanted, "something else"))
+    })
+}
+
+fn parse(path: &Path, limit_bytes: usize) -> Result<Document, Problem> {
     let (mut file, metadata) = open_regular(path)?;
     check_end(&mut file, metadata.len())?;
     let limit_bytes = u64::try_from(limit_bytes).unwrap_or(u64::MAX);
@@ -92,6 +101,8 @@ pub(super) fn read(path: &Path, limit_bytes: usize) -> Result<Document, Problem>
             Err(cause) => return Err(invalid(VTI, "markup", "XML", &cause.to_string())),
         };
         match step {
+            // The parser is in the middle of text, which it has to finish.
+            Step::Text => continue,
             Step::Open => {}
             Step::Done(root) => {
                 return Ok(Document {
@@ -148,6 +159,7 @@ struct Tree {
 /// What came of one piece of markup.
 enum Step {
     Open,
+    Text,
     Done(Element),
     Appended(Element),
 }
@@ -185,7 +197,8 @@ impl Tree {
                 "`</VTKFile>`",
                 "the end of the file",
             )),
-            Event::Text(_) | Event::Comment(_) | Event::Decl(_) | Event::PI(_) => Ok(Step::Open),
+            Event::Text(_) => Ok(Step::Text),
+            Event::Comment(_) | Event::Decl(_) | Event::PI(_) => Ok(Step::Open),
         }
     }
 

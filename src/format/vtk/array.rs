@@ -38,7 +38,8 @@ impl Array {
     pub(in crate::format) fn meaning(&self, stored: VoxelType) -> Meaning {
         let named = self.name.to_ascii_lowercase();
         let is_color = stored == VoxelType::U8
-            && (self.attribute == Attribute::Scalars || named.starts_with("rgb"));
+            && (matches!(self.attribute, Attribute::Scalars | Attribute::Colors)
+                || named.starts_with("rgb"));
         match self.components {
             3 if is_color => Meaning::Rgb,
             4 if is_color => Meaning::Rgba,
@@ -85,9 +86,10 @@ pub(in crate::format) fn choose(
             invalid(format, "variable", wanted, name)
         });
     }
+    let is_scalars =
+        |array: &Array| matches!(array.attribute, Attribute::Scalars | Attribute::Colors);
     let active = |of_cells| {
-        let is_active =
-            |array: &Array| array.attribute == Attribute::Scalars && array.of_cells == of_cells;
+        let is_active = |array: &Array| is_scalars(array) && array.of_cells == of_cells;
         arrays.iter().position(is_active)
     };
     match active(false).or(active(true)) {

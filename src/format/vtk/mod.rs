@@ -18,6 +18,7 @@ use super::geometry::world_from_voxel;
 use super::problem::{at, invalid};
 use super::select::{Axis, Role};
 use crate::volume::{Format, Header, Limits, Problem, ReadError, Source, Wanted};
+use array::Attribute;
 use glam::{DMat3, DVec3};
 use header::Lattice;
 use scan::Scan;
@@ -77,12 +78,7 @@ fn taken(
     }
     let header = Header {
         components: array.components,
-        meaning: match (array.attribute, array.components, stored.is_float()) {
-            // Colors in words are fractions of 1.
-            (array::Attribute::Colors, 3, _) => crate::volume::Meaning::Rgb,
-            (array::Attribute::Colors, 4, _) => crate::volume::Meaning::Rgba,
-            _ => array.meaning(stored),
-        },
+        meaning: array.meaning(stored),
         variables: array::chosen_first(names, chosen),
         time_names: sections
             .time
@@ -109,10 +105,11 @@ fn taken(
         } else {
             Endian::Little
         },
-        encoding: if is_binary {
-            Encoding::Raw
-        } else {
-            Encoding::Ascii
+        encoding: match (is_binary, array.attribute) {
+            (true, _) => Encoding::Raw,
+            // VTK writes colors in words as fractions, and all scalars of bytes as colors.
+            (false, Attribute::Colors) => Encoding::Fractions,
+            (false, _) => Encoding::Ascii,
         },
         part_bytes: sections::bytes(&axes, stored)?,
         axes,

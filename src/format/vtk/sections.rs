@@ -143,14 +143,7 @@ fn attribute(
     let name = decoded(&scan.after(word)?);
     let number = "a number of components from 1 to 65536";
     let (kind, components) = match word {
-        "COLOR_SCALARS" => {
-            let kind = if scan.is_binary {
-                "unsigned_char"
-            } else {
-                "float"
-            };
-            (kind.to_owned(), scan.number(word, number)?)
-        }
+        "COLOR_SCALARS" => ("unsigned_char".to_owned(), scan.number(word, number)?),
         "TEXTURE_COORDINATES" => {
             let components = scan.number(word, number)?;
             (scan.after(word)?, components)

@@ -1,0 +1,214 @@
+//! `stratavox convert`: a volume in another format, or a part of it, or in another type.
+
+use super::{
+    Error,
+    flags::{InputFlags, Numbers},
+    output,
+    progress::{Progress, ProgressWord},
+    signals::Gate,
+};
+use crate::{
+    format::write::{
+        NumberType, Selection, VolumeFormat, WriteVolumeError, WriteVolumeOptions, Written,
+        write_volume,
+    },
+    picture::{OutputError, OutputFile, OutputProblem},
+    volume::{Header, Limits, Source, VoxelBox, VoxelType},
+};
+use clap::Args;
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+};
+
+/// Write a volume in another format
+#[derive(Args, Debug)]
+#[command(
+    after_help = "All times and components are written unless --time and --component take one. Stored numbers stay \
+    as they are\nwhere the format can say what they mean; what it cannot keep is said on stderr.\n\nExamples:\n  \
+    stratavox convert phantom:head -o head.nrrd\n  \
+    stratavox convert phantom:head -o small.nii.gz --crop 64,192,64,192,0,256 --type u8 --window -200,800\n  \
+    stratavox convert phantom:shells,n=64 -o shells.npy --type f32"
+)]
+pub struct Convert {
+    #[command(flatten)]
+    input: InputFlags,
+    /// The file: .nrrd, .mha, .nii, .nii.gz or .npy
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Keep this box of whole voxels
+    #[arg(
+        long,
+        value_name = "X0,X1,Y0,Y1,Z0,Z1",
+        allow_hyphen_values = true,
+        help_heading = "Numbers"
+    )]
+    crop: Option<Numbers<6>>,
+    /// Write values, rounded to this type: u8, i8, u16, i16, u32, i32, u64, i64, f16, f32, f64 [default: as stored]
+    #[arg(long, value_name = "TYPE", value_parser = voxel_type, help_heading = "Numbers")]
+    r#type: Option<VoxelType>,
+    /// Spread the values from LO to HI over the type: 0 to its largest number, or 0 to 1 for floats
+    #[arg(
+        long,
+        value_name = "LO,HI",
+        allow_hyphen_values = true,
+        requires = "type",
+        help_heading = "Numbers"
+    )]
+    window: Option<Numbers<2>>,
+    /// Do not compress a .nrrd or .mha
+    #[arg(long)]
+    uncompressed: bool,
+    /// Say on stderr how far the work is
+    #[arg(long, value_enum, default_value_t, help_heading = "Run")]
+    progress: ProgressWord,
+    /// Replace a file that exists
+    #[arg(long, help_heading = "Run")]
+    force: bool,
+}
+
+/// The type of a word.
+fn voxel_type(word: &str) -> Result<VoxelType, String> {
+    use VoxelType::{F16, F32, F64, I8, I16, I32, I64, U8, U16, U32, U64};
+    let all = [U8, I8, U16, I16, U32, I32, U64, I64, F16, F32, F64];
+    all.into_iter()
+        .find(|number| number.name() == word)
+        .ok_or_else(|| "wanted a type such as u8, i16 or f32".to_owned())
+}
+
+impl Convert {
+    /// Reads and writes.
+    pub fn run(self, gate: &Gate) -> Result<(), Error> {
+        let options = self.options()?;
+        let inputs: Vec<PathBuf> = self.input.file().map(Path::to_owned).into_iter().collect();
+        output::check(std::slice::from_ref(&self.output), &inputs, self.force)?;
+        let progress = Progress::new(self.progress);
+        let source = self.input.open(&Limits::default())?;
+        let selection = self.selection(source.header())?;
+        for note in &source.header().notes {
+            progress.note(note);
+        }
+        let written = self.write(source.as_ref(), &selection, &options, &progress, gate)?;
+        for note in &written.notes {
+            progress.note(note);
+        }
+        Ok(())
+    }
+
+    fn options(&self) -> Result<WriteVolumeOptions, Error> {
+        let format = VolumeFormat::of_path(&self.output).ok_or_else(|| {
+            Error::usage(
+                format!(
+                    "-o {}: no format of volumes has that ending",
+                    self.output.display()
+                ),
+                "name a file that ends in .nrrd, .mha, .nii, .nii.gz or .npy",
+            )
+        })?;
+        let window = self.window.map(|Numbers(ends)| ends);
+        if let Some([low, high]) = window
+            && low >= high
+        {
+            return Err(Error::usage(
+                format!("--window {low},{high}: the lower value comes first"),
+                "--window -200,800",
+            ));
+        }
+        let numbers = match (self.r#type, window) {
+            (None, _) => NumberType::Stored,
+            (Some(number), None) => NumberType::Values(number),
+            (Some(number), Some(window)) => NumberType::Spread(number, window),
+        };
+        Ok(WriteVolumeOptions {
+            format,
+            numbers,
+            compress: !self.uncompressed,
+        })
+    }
+
+    fn selection(&self, header: &Header) -> Result<Selection, Error> {
+        self.input.check_one(header)?;
+        let times = match self.input.time {
+            None => 0..header.times,
+            Some(_) => {
+                let (time, _) = self.input.time(header)?;
+                time..time + 1
+            }
+        };
+        Ok(Selection {
+            region: match self.crop {
+                None => header.whole(),
+                Some(crop) => whole_voxels(crop, header)?,
+            },
+            times,
+            components: self.input.components(header)?,
+        })
+    }
+
+    fn write(
+        &self,
+        source: &dyn Source,
+        selection: &Selection,
+        options: &WriteVolumeOptions,
+        progress: &Progress,
+        gate: &Gate,
+    ) -> Result<Written, Error> {
+        let make = || OutputFile::create(&self.output, self.force);
+        let mut file = gate.unfinished(make, |file| file.part().to_owned())?;
+        let mut say = |done, of| progress.stage("write", done, of);
+        say(0, 1);
+        let outcome = write_volume(source, selection, options, &mut file, &mut say)
+            .and_then(|written| Ok(file.flush().map(|()| written)?));
+        match outcome {
+            Ok(written) => {
+                gate.finished(|| file.publish())?;
+                Ok(written)
+            }
+            Err(error) => {
+                gate.finished(|| drop(file));
+                Err(self.error(error))
+            }
+        }
+    }
+
+    fn error(&self, error: WriteVolumeError) -> Error {
+        match error {
+            WriteVolumeError::Read(error) => Error::Read(error),
+            WriteVolumeError::Write(cause) => Error::WritePicture(OutputError {
+                path: self.output.clone(),
+                problem: OutputProblem::Io {
+                    doing: "cannot write the voxels",
+                    cause,
+                },
+            }),
+            WriteVolumeError::NoRoom(problem) => Error::Output {
+                path: self.output.clone(),
+                problem,
+                hint: Some("a .nrrd has room for volumes of any size"),
+            },
+        }
+    }
+}
+
+/// A box of whole voxels inside the volume.
+fn whole_voxels(Numbers(ends): Numbers<6>, header: &Header) -> Result<VoxelBox, Error> {
+    let [x, y, z] = header.dims;
+    let refuse = || {
+        let words = Numbers(ends).to_string();
+        Error::usage(
+            format!("--crop {words}: wanted whole voxels inside 0,{x},0,{y},0,{z}, at least one"),
+            "the order is X0,X1,Y0,Y1,Z0,Z1; each first is under its second",
+        )
+    };
+    if ends.iter().any(|n| n.fract() != 0.0 || *n < 0.0) {
+        return Err(refuse());
+    }
+    // A float over the largest u32 becomes that number, which no axis reaches.
+    let [x0, x1, y0, y1, z0, z1] = ends.map(|n| n as u32);
+    let region = VoxelBox {
+        min: [x0, y0, z0],
+        max: [x1, y1, z1],
+    };
+    let inside = (0..3).all(|k| region.min[k] < region.max[k] && region.max[k] <= header.dims[k]);
+    if inside { Ok(region) } else { Err(refuse()) }
+}

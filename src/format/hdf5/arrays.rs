@@ -1,0 +1,391 @@
+//! An open HDF5 file as [`Arrays`].
+
+use super::HDF5;
+use crate::format::cf::{Arrays, Attributes, Dimension, Kind, Value, Variable};
+use crate::format::convert::{Builder, Endian, to_u64};
+use crate::format::fence::fenced;
+use crate::format::place::open_regular;
+use crate::format::problem::{escape, invalid, unsupported};
+use crate::volume::{Limits, Piece, Problem, VoxelType};
+use hdf5_reader::error::{ByteOrder, Error};
+use hdf5_reader::group::Group;
+use hdf5_reader::{
+    Attribute, Dataset, Datatype, FileStorage, H5Type, Hdf5File, OpenOptions, SliceInfo,
+    SliceInfoElem,
+};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// An open file, and what its data sets are.
+pub(crate) struct Hdf5 {
+    path: PathBuf,
+    file: Hdf5File,
+    variables: Vec<Variable>,
+    attributes: Attributes,
+}
+
+/// Groups below each other, and data sets, beyond which no file is looked through.
+const MAX_DEPTH: usize = 32;
+const MAX_OBJECTS: usize = 10_000;
+
+/// Chunks that are kept decoded.
+const CACHE_BYTES: u64 = 64 << 20;
+
+impl Hdf5 {
+    /// Opens without looking for data sets. Gives the file's length too.
+    pub(super) fn open(path: &Path, limits: &Limits) -> Result<(Self, u64), Problem> {
+        let (file, metadata) = open_regular(path)?;
+        let file_bytes = metadata.len();
+        let bytes = |bytes: u64| usize::try_from(bytes).unwrap_or(usize::MAX);
+        let file = fenced(HDF5, "superblock", || {
+            let storage = FileStorage::from_file(file)
+                .map_err(|error| problem_of(HDF5, "superblock", &error))?;
+            let options = OpenOptions::default()
+                .with_chunk_cache_bytes(bytes(CACHE_BYTES.min(limits.max_bytes)))
+                .with_max_chunk_bytes(bytes(limits.max_bytes))
+                .with_max_read_bytes(bytes(limits.max_bytes))
+                .with_max_object_header_bytes(limits.max_header_bytes);
+            Hdf5File::from_storage_with_options(Arc::new(storage), options)
+                .map_err(|error| problem_of(HDF5, "superblock", &error))
+        })?;
+        // The library refuses such files too: what is missing could be voxels.
+        let promised = file.superblock().eof_address;
+        if promised > file_bytes {
+            return Err(Problem::Invalid {
+                format: HDF5,
+                field: "end of file address".to_owned(),
+                wanted: format!("a file of {promised} bytes"),
+                found: format!("{file_bytes} bytes"),
+            });
+        }
+        let hdf5 = Self {
+            path: path.to_owned(),
+            file,
+            variables: Vec::new(),
+            attributes: Attributes::default(),
+        };
+        Ok((hdf5, file_bytes))
+    }
+
+    /// True for what the NetCDF library wrote: it leaves attributes of its own.
+    pub(super) fn is_netcdf(&self) -> Result<bool, Problem> {
+        fenced(HDF5, "root group", || {
+            let root = self.file.root_group();
+            let root = root.map_err(|error| problem_of(HDF5, "root group", &error))?;
+            let marks = ["_NCProperties", "_nc3_strict"];
+            // An attribute that cannot be read says nothing.
+            let of_root = root.attributes().unwrap_or_default();
+            if of_root
+                .iter()
+                .any(|attribute| marks.contains(&attribute.name.as_str()))
+            {
+                return Ok(true);
+            }
+            let ending = self.path.extension().and_then(|ending| ending.to_str());
+            if ending
+                .is_some_and(|e| matches!(e.to_ascii_lowercase().as_str(), "nc" | "nc4" | "cdf"))
+            {
+                return Ok(true);
+            }
+            let (_, datasets) = root
+                .members()
+                .map_err(|error| problem_of(HDF5, "root group", &error))?;
+            let marks = ["_Netcdf4Dimid", "_Netcdf4Coordinates"];
+            Ok(datasets.iter().take(MAX_OBJECTS).any(|dataset| {
+                let attributes = dataset.attributes();
+                attributes
+                    .iter()
+                    .any(|attribute| marks.contains(&attribute.name.as_str()))
+            }))
+        })
+    }
+
+    /// With all data sets that the root group leads to.
+    pub(super) fn listed(mut self, limits: &Limits) -> Result<Self, Problem> {
+        let variables = fenced(HDF5, "groups", || {
+            let root = self.file.root_group();
+            let root = root.map_err(|error| problem_of(HDF5, "root group", &error))?;
+            let mut found = Vec::new();
+            let mut seen = vec![root.address()];
+            list(&root, "", 0, &mut seen, &mut found)?;
+            Ok(found)
+        })?;
+        let text: u64 = variables
+            .iter()
+            .map(|variable| to_u64(variable.name.len()))
+            .sum();
+        if text > to_u64(limits.max_header_bytes) {
+            return Err(Problem::Limit {
+                what: "the names of data sets".to_owned(),
+                wanted_bytes: text,
+                limit_bytes: to_u64(limits.max_header_bytes),
+            });
+        }
+        self.variables = variables;
+        Ok(self)
+    }
+
+    /// All data sets.
+    pub(super) fn list(&self) -> &[Variable] {
+        &self.variables
+    }
+
+    fn dataset(&self, variable: &Variable) -> Result<Dataset, Problem> {
+        let found = self.file.dataset(&variable.name);
+        found.map_err(|error| problem_of(HDF5, &variable.name, &error))
+    }
+}
+
+/// Data sets of a group and those below it. Groups may hold one another: each is entered once.
+fn list(
+    group: &Group,
+    prefix: &str,
+    depth: usize,
+    seen: &mut Vec<u64>,
+    found: &mut Vec<Variable>,
+) -> Result<(), Problem> {
+    let (groups, datasets) = group.members().map_err(|error| {
+        problem_of(
+            HDF5,
+            if prefix.is_empty() {
+                "root group"
+            } else {
+                prefix
+            },
+            &error,
+        )
+    })?;
+    for dataset in datasets {
+        if found.len() >= MAX_OBJECTS {
+            return Err(unsupported(
+                HDF5,
+                format!("a file of more than {MAX_OBJECTS} data sets"),
+            ));
+        }
+        found.push(variable(&dataset, prefix));
+    }
+    for group in groups {
+        if seen.contains(&group.address()) {
+            continue;
+        }
+        if depth >= MAX_DEPTH || seen.len() >= MAX_OBJECTS {
+            let what = format!(
+                "a file of more than {MAX_DEPTH} groups below each other, or {MAX_OBJECTS} of them,"
+            );
+            return Err(unsupported(HDF5, what));
+        }
+        seen.push(group.address());
+        let prefix = format!("{prefix}{}/", group.name());
+        list(&group, &prefix, depth.saturating_add(1), seen, found)?;
+    }
+    Ok(())
+}
+
+fn variable(dataset: &Dataset, prefix: &str) -> Variable {
+    let name = dataset.name().rsplit('/').next().unwrap_or("");
+    let dimensions = dataset.shape().iter().enumerate();
+    Variable {
+        name: format!("{prefix}{name}"),
+        dimensions: dimensions
+            .map(|(k, &size)| Dimension {
+                name: k.to_string(),
+                size,
+            })
+            .collect(),
+        kind: kind(dataset.dtype()),
+        attributes: Attributes(dataset.attributes().iter().filter_map(attribute).collect()),
+    }
+}
+
+fn kind(datatype: &Datatype) -> Kind {
+    Kind::Numbers(match *datatype {
+        Datatype::FixedPoint { size, signed, .. } => match (size, signed) {
+            (1, false) => VoxelType::U8,
+            (1, true) => VoxelType::I8,
+            (2, false) => VoxelType::U16,
+            (2, true) => VoxelType::I16,
+            (4, false) => VoxelType::U32,
+            (4, true) => VoxelType::I32,
+            (8, false) => VoxelType::U64,
+            (8, true) => VoxelType::I64,
+            _ => return Kind::Other,
+        },
+        Datatype::FloatingPoint { size, .. } => match size {
+            2 => VoxelType::F16,
+            4 => VoxelType::F32,
+            8 => VoxelType::F64,
+            _ => return Kind::Other,
+        },
+        Datatype::String { .. } => return Kind::Text,
+        _ => return Kind::Other,
+    })
+}
+
+/// An attribute of numbers or of text; others say nothing to us.
+fn attribute(attribute: &Attribute) -> Option<(String, Value)> {
+    macro_rules! numbers {
+        ($($size:literal $is_signed:literal $number:ty),*) => {
+            match &attribute.datatype {
+                $(Datatype::FixedPoint { size: $size, signed: $is_signed, .. } => {
+                    attribute.read_1d::<$number>().ok()?.into_iter().map(|n| n as f64).collect()
+                })*
+                Datatype::FloatingPoint { size: 4, .. } => {
+                    attribute.read_1d::<f32>().ok()?.into_iter().map(f64::from).collect()
+                }
+                Datatype::FloatingPoint { size: 8, .. } => attribute.read_1d::<f64>().ok()?,
+                _ => return Some((attribute.name.clone(), Value::Text(attribute.read_string().ok()?))),
+            }
+        };
+    }
+    let numbers: Vec<f64> = numbers!(
+        1 false u8, 1 true i8, 2 false u16, 2 true i16, 4 false u32, 4 true i32, 8 false u64, 8 true i64
+    );
+    Some((attribute.name.clone(), Value::Numbers(numbers)))
+}
+
+/// A number of 16 bits, which the crate has no type for.
+#[derive(Clone, Copy)]
+struct Half([u8; 2]);
+
+impl H5Type for Half {
+    fn hdf5_type() -> Datatype {
+        Datatype::FloatingPoint {
+            size: 2,
+            byte_order: ByteOrder::LittleEndian,
+        }
+    }
+
+    fn from_bytes(bytes: &[u8], datatype: &Datatype) -> hdf5_reader::error::Result<Self> {
+        match (bytes.first_chunk::<2>(), datatype) {
+            (
+                Some(&[a, b]),
+                Datatype::FloatingPoint {
+                    size: 2,
+                    byte_order,
+                },
+            ) => Ok(Self(match byte_order {
+                ByteOrder::LittleEndian => [a, b],
+                ByteOrder::BigEndian => [b, a],
+            })),
+            _ => Err(Error::InvalidData("no number of 16 bits".to_owned())),
+        }
+    }
+
+    fn element_size(_: &Datatype) -> usize {
+        2
+    }
+}
+
+/// The decoder's error in our words. What it does not support is a valid file.
+pub(crate) fn problem_of(format: &'static str, what: &str, error: &Error) -> Problem {
+    match error {
+        Error::Context { source, .. } => problem_of(format, what, source),
+        Error::Io(cause) => Problem::Io {
+            doing: "reading the file",
+            cause: std::io::Error::new(cause.kind(), cause.to_string()),
+        },
+        Error::UnsupportedFilter(name) => unsupported(format, filter(name)),
+        Error::UnsupportedEncoding(what) => unsupported(format, escape(what)),
+        Error::UnsupportedDatatypeClass(class) => {
+            unsupported(format, format!("a type of class {class}"))
+        }
+        other => invalid(format, what, "bytes that are in order", &other.to_string()),
+    }
+}
+
+/// The name of a filter that is known by its number, portal.hdfgroup.org, registered filter plug-ins.
+fn filter(name: &str) -> String {
+    let known = [
+        ("32000", "LZF"),
+        ("32001", "Blosc"),
+        ("32004", "LZ4"),
+        ("32008", "bitshuffle"),
+        ("32013", "ZFP"),
+        ("32015", "Zstandard"),
+        ("32026", "Blosc2"),
+    ];
+    let known = known.iter().find(|(number, _)| name.contains(number));
+    match known {
+        Some((number, word)) => format!("the filter {number}, {word},"),
+        None => format!("the filter {}", escape(name)),
+    }
+}
+
+impl Arrays for Hdf5 {
+    fn path(&self) -> &Path {
+        &self.path
+    }
+
+    fn format(&self) -> &'static str {
+        HDF5
+    }
+
+    fn variables(&self) -> &[Variable] {
+        &self.variables
+    }
+
+    fn attributes(&self) -> &Attributes {
+        &self.attributes
+    }
+
+    fn read(
+        &self,
+        variable: &Variable,
+        start: &[u64],
+        count: &[u64],
+        stored: VoxelType,
+    ) -> Result<Piece, Problem> {
+        let name = variable.name.as_str();
+        let ends = start.iter().zip(count);
+        let selection = SliceInfo {
+            selections: ends
+                .map(|(&start, &count)| SliceInfoElem::Slice {
+                    start,
+                    end: start.saturating_add(count),
+                    step: 1,
+                })
+                .collect(),
+        };
+        fenced(HDF5, name, || {
+            let dataset = self.dataset(variable)?;
+            macro_rules! read {
+                ($number:ty) => {{
+                    let found = dataset.read_slice::<$number>(&selection);
+                    let array = found.map_err(|error| problem_of(HDF5, name, &error))?;
+                    let numbers = array.as_slice().unwrap_or(&[]);
+                    let mut builder = Builder::new(stored, Endian::NATIVE, numbers.len());
+                    builder.push(bytemuck::cast_slice(numbers), 1)?;
+                    Ok(builder.finish())
+                }};
+            }
+            match stored {
+                VoxelType::U8 => read!(u8),
+                VoxelType::I8 => read!(i8),
+                VoxelType::U16 => read!(u16),
+                VoxelType::I16 => read!(i16),
+                VoxelType::U32 => read!(u32),
+                VoxelType::I32 => read!(i32),
+                VoxelType::U64 => read!(u64),
+                VoxelType::I64 => read!(i64),
+                VoxelType::F32 => read!(f32),
+                VoxelType::F64 => read!(f64),
+                VoxelType::F16 => {
+                    let found = dataset.read_slice::<Half>(&selection);
+                    let array = found.map_err(|error| problem_of(HDF5, name, &error))?;
+                    let bytes: Vec<u8> = array.iter().flat_map(|half| half.0).collect();
+                    let mut builder = Builder::new(stored, Endian::Little, array.len());
+                    builder.push(&bytes, 1)?;
+                    Ok(builder.finish())
+                }
+            }
+        })
+    }
+
+    fn numbers(&self, _: &Variable) -> Result<Vec<f64>, Problem> {
+        Err(unsupported(HDF5, "a coordinate"))
+    }
+
+    fn texts(&self, _: &Variable) -> Result<Vec<String>, Problem> {
+        Err(unsupported(HDF5, "a text coordinate"))
+    }
+}

@@ -1,0 +1,259 @@
+//! NetCDF: classic (CDF-1), 64-bit offset (CDF-2), 64-bit data (CDF-5), and NetCDF-4, which is HDF5.
+//!
+//! By the NetCDF file format specifications, docs.unidata.ucar.edu/netcdf-c, appendix B and C. The bytes are
+//! decoded by the crate `netcdf-reader`, which is young: every call is fenced, and given limits. What the
+//! variables mean is [`super::cf`]'s.
+
+use super::cf::{self, Arrays, Attributes, Dimension, Kind, Value, Variable};
+use super::convert::{Builder, Endian};
+use super::fence::fenced;
+use super::hdf5::problem_of as hdf5_problem;
+use super::place::open_regular;
+use super::problem::{at, escape, invalid, unsupported};
+use crate::volume::{Format, Limits, Piece, Problem, ReadError, Source, VoxelType, Wanted};
+use netcdf_reader::{
+    Error, NcAttrValue, NcAttribute, NcFile, NcGroup, NcOpenOptions, NcSliceInfo, NcSliceInfoElem,
+    NcType, NcVariable,
+};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The word of errors.
+const NETCDF: &str = "netcdf";
+
+/// True for a file of the classic formats; a NetCDF-4 file begins as HDF5 does.
+pub(super) fn recognizes(first: &[u8]) -> bool {
+    matches!(first, [b'C', b'D', b'F', 1 | 2 | 5, ..])
+}
+
+/// Opens a variable of a file.
+pub(super) fn open(
+    path: &Path,
+    wanted: &Wanted,
+    limits: &Limits,
+) -> Result<Box<dyn Source>, ReadError> {
+    let (file, file_bytes) = NetCdf::open(path, limits).map_err(at(path))?;
+    cf::open(Arc::new(file), file_bytes, Format::NetCdf, wanted, limits)
+}
+
+/// An open file, and what its variables are.
+struct NetCdf {
+    path: PathBuf,
+    file: NcFile,
+    variables: Vec<Variable>,
+    attributes: Attributes,
+}
+
+/// Chunks that are kept decoded.
+const CACHE_BYTES: u64 = 64 << 20;
+
+/// A variable of more numbers or strings is no coordinate.
+const MAX_SMALL: u64 = 1 << 24;
+
+impl NetCdf {
+    fn open(path: &Path, limits: &Limits) -> Result<(Self, u64), Problem> {
+        let (file, metadata) = open_regular(path)?;
+        let bytes = |bytes: u64| usize::try_from(bytes).unwrap_or(usize::MAX);
+        let options = NcOpenOptions {
+            chunk_cache_bytes: bytes(CACHE_BYTES.min(limits.max_bytes)),
+            max_chunk_bytes: bytes(limits.max_bytes),
+            max_read_bytes: bytes(limits.max_bytes),
+            max_object_header_bytes: limits.max_header_bytes,
+            ..NcOpenOptions::default()
+        };
+        fenced(NETCDF, "header", || {
+            let storage = netcdf_reader::FileStorage::from_file(file)
+                .map_err(|error| hdf5_problem(NETCDF, "header", &error))?;
+            let file = NcFile::from_storage_with_options(Arc::new(storage), options)
+                .map_err(|error| problem_of("header", &error))?;
+            let root = file
+                .root_group()
+                .map_err(|error| problem_of("header", &error))?;
+            let mut variables = Vec::new();
+            list(root, "", &mut variables);
+            let attributes = attributes(&root.attributes);
+            let open = Self {
+                path: path.to_owned(),
+                variables,
+                attributes,
+                file,
+            };
+            Ok((open, metadata.len()))
+        })
+    }
+}
+
+fn list(group: &NcGroup, prefix: &str, found: &mut Vec<Variable>) {
+    found.extend(
+        group
+            .variables
+            .iter()
+            .map(|inside| variable(inside, prefix)),
+    );
+    for inner in &group.groups {
+        let name = inner
+            .name
+            .trim_matches('/')
+            .rsplit('/')
+            .next()
+            .unwrap_or("");
+        list(inner, &format!("{prefix}{name}/"), found);
+    }
+}
+
+fn variable(inside: &NcVariable, prefix: &str) -> Variable {
+    let dimensions = inside.dimensions.iter();
+    Variable {
+        name: format!("{prefix}{}", inside.name),
+        dimensions: dimensions
+            .map(|dimension| Dimension {
+                name: dimension.name.clone(),
+                size: dimension.size,
+            })
+            .collect(),
+        kind: kind(&inside.dtype),
+        attributes: attributes(&inside.attributes),
+    }
+}
+
+fn kind(nc_type: &NcType) -> Kind {
+    Kind::Numbers(match nc_type {
+        NcType::Byte => VoxelType::I8,
+        NcType::UByte => VoxelType::U8,
+        NcType::Short => VoxelType::I16,
+        NcType::UShort => VoxelType::U16,
+        NcType::Int => VoxelType::I32,
+        NcType::UInt => VoxelType::U32,
+        NcType::Int64 => VoxelType::I64,
+        NcType::UInt64 => VoxelType::U64,
+        NcType::Float => VoxelType::F32,
+        NcType::Double => VoxelType::F64,
+        NcType::Char | NcType::String => return Kind::Text,
+        NcType::Enum { .. }
+        | NcType::Compound { .. }
+        | NcType::Opaque { .. }
+        | NcType::Array { .. }
+        | NcType::VLen { .. } => return Kind::Other,
+    })
+}
+
+fn attributes(list: &[NcAttribute]) -> Attributes {
+    let value = |value: &NcAttrValue| match value {
+        NcAttrValue::Chars(text) => Some(Value::Text(text.clone())),
+        NcAttrValue::Strings(texts) => Some(Value::Text(texts.join(" "))),
+        other => other.as_f64_vec().map(Value::Numbers),
+    };
+    let pairs = list
+        .iter()
+        .filter_map(|attribute| Some((attribute.name.clone(), value(&attribute.value)?)));
+    Attributes(pairs.collect())
+}
+
+/// The decoder's error in our words. What it does not support is a valid file.
+fn problem_of(what: &str, error: &Error) -> Problem {
+    match error {
+        Error::Hdf5(error) => hdf5_problem(NETCDF, what, error),
+        Error::Io(cause) => Problem::Io {
+            doing: "reading the file",
+            cause: std::io::Error::new(cause.kind(), cause.to_string()),
+        },
+        Error::UnsupportedFeature(what) => unsupported(NETCDF, escape(what)),
+        Error::UnsupportedVersion(version) => unsupported(NETCDF, format!("version {version}")),
+        other => invalid(NETCDF, what, "bytes that are in order", &other.to_string()),
+    }
+}
+
+fn check_small(variable: &Variable) -> Result<(), Problem> {
+    let count = variable.count();
+    if count <= MAX_SMALL {
+        return Ok(());
+    }
+    let wanted = format!("a coordinate of at most {MAX_SMALL} points");
+    Err(invalid(NETCDF, &variable.name, wanted, &count.to_string()))
+}
+
+impl Arrays for NetCdf {
+    fn path(&self) -> &Path {
+        &self.path
+    }
+
+    fn format(&self) -> &'static str {
+        NETCDF
+    }
+
+    fn variables(&self) -> &[Variable] {
+        &self.variables
+    }
+
+    fn attributes(&self) -> &Attributes {
+        &self.attributes
+    }
+
+    fn read(
+        &self,
+        variable: &Variable,
+        start: &[u64],
+        count: &[u64],
+        stored: VoxelType,
+    ) -> Result<Piece, Problem> {
+        let name = variable.name.as_str();
+        let ends = start.iter().zip(count);
+        let selection = NcSliceInfo {
+            selections: ends
+                .map(|(&start, &count)| NcSliceInfoElem::Slice {
+                    start,
+                    end: start.saturating_add(count),
+                    step: 1,
+                })
+                .collect(),
+        };
+        // A type that is read as unsigned is stored as the signed one.
+        let Kind::Numbers(in_file) = variable.kind else {
+            return Err(unsupported(NETCDF, "a variable that holds no numbers"));
+        };
+        fenced(NETCDF, name, || {
+            macro_rules! read {
+                ($number:ty) => {{
+                    let found = self.file.read_variable_slice::<$number>(name, &selection);
+                    let array = found.map_err(|error| problem_of(name, &error))?;
+                    let numbers = array.as_slice().unwrap_or(&[]);
+                    let mut builder = Builder::new(stored, Endian::NATIVE, numbers.len());
+                    builder.push(bytemuck::cast_slice(numbers), 1)?;
+                    Ok(builder.finish())
+                }};
+            }
+            match in_file {
+                VoxelType::U8 => read!(u8),
+                VoxelType::I8 => read!(i8),
+                VoxelType::U16 => read!(u16),
+                VoxelType::I16 => read!(i16),
+                VoxelType::U32 => read!(u32),
+                VoxelType::I32 => read!(i32),
+                VoxelType::U64 => read!(u64),
+                VoxelType::I64 => read!(i64),
+                VoxelType::F32 => read!(f32),
+                VoxelType::F64 => read!(f64),
+                VoxelType::F16 => Err(unsupported(NETCDF, "16-bit floats")),
+            }
+        })
+    }
+
+    fn numbers(&self, variable: &Variable) -> Result<Vec<f64>, Problem> {
+        check_small(variable)?;
+        let name = variable.name.as_str();
+        fenced(NETCDF, name, || {
+            let found = self.file.read_variable_as_f64(name);
+            let array = found.map_err(|error| problem_of(name, &error))?;
+            Ok(array.iter().copied().collect())
+        })
+    }
+
+    fn texts(&self, variable: &Variable) -> Result<Vec<String>, Problem> {
+        check_small(variable)?;
+        let name = variable.name.as_str();
+        fenced(NETCDF, name, || {
+            let found = self.file.read_variable_as_strings(name);
+            found.map_err(|error| problem_of(name, &error))
+        })
+    }
+}

@@ -1,0 +1,264 @@
+//! NumPy arrays, `.npy`: a Python literal that names type, order and shape, and the numbers behind it.
+//!
+//! numpy.org/doc/stable/reference/generated/numpy.lib.format.html, versions 1.0, 2.0 and 3.0:
+//!
+//! ```text
+//! 93 'NUMPY' major minor length(u16 | u32, little-endian) {'descr': '<f4', 'fortran_order': False, 'shape': (z, y, x), }
+//! ```
+//!
+//! An array has no names for its axes, so their order in memory gives them: the fastest is x. With C order that
+//! is [y, x], [z, y, x], [t, z, y, x] and [t, c, z, y, x], with Fortran order the same from the other end. Bytes
+//! whose fastest axis has 3 or 4 entries, in arrays of three axes and more, are colours.
+
+mod literal;
+
+use super::convert::{Endian, to_u64};
+use super::data::{Data, Part, Promise, Start};
+use super::decode::Encoding;
+use super::file_source::FileSource;
+use super::geometry::world_from_voxel;
+use super::place::{first_bytes, open_regular};
+use super::problem::{at, escape, invalid, missing, unsupported};
+use super::select::{Axis, Role};
+use crate::volume::{Format, Header, Limits, Meaning, Problem, ReadError, VoxelType};
+use glam::DVec3;
+use literal::Literal;
+use std::path::Path;
+
+/// The word of errors.
+const NPY: &str = "npy";
+
+const MAGIC: &[u8] = b"\x93NUMPY";
+
+/// True where a file begins as every `.npy` does.
+pub(super) fn recognizes(first: &[u8]) -> bool {
+    first.starts_with(MAGIC)
+}
+
+/// Opens an array.
+pub(super) fn open(path: &Path, limits: &Limits) -> Result<FileSource, ReadError> {
+    let (text, data_begins) = text(path, limits.max_header_bytes).map_err(at(path))?;
+    let literal = literal::parse(&text).map_err(at(path))?;
+    let kind = Kind::of(&literal).map_err(at(path))?;
+    let array = Array::of(&literal, kind.stored).map_err(at(path))?;
+    let header = header(&array, kind, literal.fortran_order).map_err(at(path))?;
+    let promise = Promise {
+        format: NPY,
+        stored: kind.stored,
+        endian: kind.endian,
+        encoding: Encoding::Raw,
+        axes: array.axes,
+        parts: vec![Part {
+            path: path.to_owned(),
+            start: Start::Skip {
+                file_bytes: data_begins,
+                decoded_bytes: 0,
+            },
+            encoded_bytes: None,
+        }],
+    };
+    let data = Data::find(promise, path)?;
+    Ok(FileSource::new(path, header, data, limits))
+}
+
+/// The literal, and where the numbers begin.
+fn text(path: &Path, limit_bytes: usize) -> Result<(String, u64), Problem> {
+    let (mut file, _) = open_regular(path)?;
+    let limit = to_u64(limit_bytes).saturating_add(12);
+    let bytes = first_bytes(&mut file, limit)?;
+    let version = bytes.get(6..8).ok_or_else(|| missing(NPY, "version"))?;
+    let (length, begins) = match version {
+        [1, 0] => {
+            let length = bytes.get(8..).and_then(|b| b.first_chunk());
+            (length.map(|b| u32::from(u16::from_le_bytes(*b))), 10_usize)
+        }
+        [2 | 3, 0] => {
+            let length = bytes.get(8..).and_then(|b| b.first_chunk());
+            (length.map(|b| u32::from_le_bytes(*b)), 12)
+        }
+        _ => {
+            let found = format!("{version:?}");
+            let wanted = "1.0, 2.0 or 3.0";
+            return Err(invalid(NPY, "version", wanted, &found));
+        }
+    };
+    let length = length.ok_or_else(|| missing(NPY, "header length"))?;
+    let too_long = Problem::Limit {
+        what: "the header".to_owned(),
+        wanted_bytes: length.into(),
+        limit_bytes: to_u64(limit_bytes),
+    };
+    let length = match usize::try_from(length) {
+        Ok(length) if length <= limit_bytes => length,
+        _ => return Err(too_long),
+    };
+    let ends = begins.saturating_add(length);
+    let text = bytes.get(begins..ends).ok_or_else(|| {
+        let found = format!("{} bytes of it", bytes.len().saturating_sub(begins));
+        invalid(NPY, "header length", "a header as long as it says", &found)
+    })?;
+    Ok((String::from_utf8_lossy(text).into_owned(), to_u64(ends)))
+}
+
+/// What `descr` says.
+#[derive(Clone, Copy)]
+struct Kind {
+    stored: VoxelType,
+    endian: Endian,
+    is_bool: bool,
+}
+
+impl Kind {
+    fn of(literal: &Literal) -> Result<Self, Problem> {
+        let text = literal.descr.as_str();
+        let wrong = || invalid(NPY, "descr", "a type such as '<f4' or '|u1'", text);
+        let order = text.chars().next().ok_or_else(wrong)?;
+        let kind = text.get(order.len_utf8()..).ok_or_else(wrong)?;
+        let stored = match kind {
+            "b1" | "u1" => VoxelType::U8,
+            "i1" => VoxelType::I8,
+            "u2" => VoxelType::U16,
+            "i2" => VoxelType::I16,
+            "u4" => VoxelType::U32,
+            "i4" => VoxelType::I32,
+            "u8" => VoxelType::U64,
+            "i8" => VoxelType::I64,
+            "f2" => VoxelType::F16,
+            "f4" => VoxelType::F32,
+            "f8" => VoxelType::F64,
+            _ => {
+                let what = match kind.chars().next() {
+                    Some('c') => "complex numbers",
+                    Some('f') => "floats of more than 64 bits",
+                    Some('O') => "Python objects",
+                    Some('S' | 'a' | 'U') => "text",
+                    Some('V') => "structured or void types",
+                    Some('M' | 'm') => "dates and durations",
+                    _ => return Err(wrong()),
+                };
+                let what = format!("{what} (descr `{}`)", escape(text));
+                return Err(unsupported(NPY, what));
+            }
+        };
+        let endian = match order {
+            '<' => Endian::Little,
+            '>' => Endian::Big,
+            '|' if stored.bytes() == 1 => Endian::Little,
+            _ => return Err(wrong()),
+        };
+        Ok(Self {
+            stored,
+            endian,
+            is_bool: kind == "b1",
+        })
+    }
+}
+
+/// The stored array, fastest axis first.
+struct Array {
+    axes: Vec<Axis>,
+    dims: [u32; 3],
+    components: u32,
+    times: u32,
+    is_color: bool,
+}
+
+impl Array {
+    fn of(literal: &Literal, stored: VoxelType) -> Result<Self, Problem> {
+        let wrong = |wanted: &str| invalid(NPY, "shape", wanted, &literal.shape_text());
+        let mut sizes = literal
+            .shape
+            .iter()
+            .map(|&n| u32::try_from(n).ok().filter(|&n| n > 0))
+            .collect::<Option<Vec<u32>>>()
+            .ok_or_else(|| wrong("sizes from 1 to 2^32 - 1"))?;
+        if !literal.fortran_order {
+            sizes.reverse();
+        }
+        let is_color = stored == VoxelType::U8
+            && literal.descr.ends_with("u1")
+            && sizes.len() >= 3
+            && matches!(sizes.first(), Some(3 | 4));
+        use Role::{Component, Space, Time};
+        let roles: &[Role] = match (is_color, sizes.len()) {
+            (false, 2) => &[Space(0), Space(1)],
+            (false, 3) => &[Space(0), Space(1), Space(2)],
+            (false, 4) => &[Space(0), Space(1), Space(2), Time],
+            (false, 5) => &[Space(0), Space(1), Space(2), Component, Time],
+            (true, 3) => &[Component, Space(0), Space(1)],
+            (true, 4) => &[Component, Space(0), Space(1), Space(2)],
+            (true, 5) => &[Component, Space(0), Space(1), Space(2), Time],
+            _ => return Err(wrong("2 to 5 axes")),
+        };
+        let mut array = Self {
+            axes: Vec::new(),
+            dims: [1; 3],
+            components: 1,
+            times: 1,
+            is_color,
+        };
+        for (&role, &size) in roles.iter().zip(&sizes) {
+            match role {
+                Component => array.components = size,
+                Time => array.times = size,
+                Space(k) => {
+                    if let Some(dim) = array.dims.get_mut(k) {
+                        *dim = size;
+                    }
+                }
+            }
+            array.axes.push(Axis {
+                role,
+                size: size.into(),
+            });
+        }
+        Ok(array)
+    }
+
+    /// The axes as a person writes them: `[z, y, x]`.
+    fn words(&self, fortran_order: bool) -> String {
+        let mut words: Vec<&str> = self
+            .axes
+            .iter()
+            .map(|axis| match axis.role {
+                Role::Component if self.is_color => "color",
+                Role::Component => "c",
+                Role::Time => "t",
+                Role::Space(0) => "x",
+                Role::Space(1) => "y",
+                Role::Space(_) => "z",
+            })
+            .collect();
+        if !fortran_order {
+            words.reverse();
+        }
+        words.join(", ")
+    }
+}
+
+fn header(array: &Array, kind: Kind, fortran_order: bool) -> Result<Header, Problem> {
+    let world_from_voxel = world_from_voxel(DVec3::AXES, DVec3::splat(0.5))
+        .ok_or_else(|| invalid(NPY, "shape", "steps that span a volume", ""))?;
+    let order = if fortran_order { "Fortran" } else { "C" };
+    let mut notes = vec![
+        format!(
+            "the array is in {order} order: its axes are taken as [{}]",
+            array.words(fortran_order)
+        ),
+        "the file gives no spacing: 1 is taken".to_owned(),
+    ];
+    if kind.is_bool {
+        notes.push("booleans are read as 0 and 1".to_owned());
+    }
+    Ok(Header {
+        components: array.components,
+        times: array.times,
+        meaning: match (array.is_color, array.components) {
+            (true, 3) => Meaning::Rgb,
+            (true, _) => Meaning::Rgba,
+            (false, _) => Meaning::Numbers,
+        },
+        notes,
+        ..Header::new(Format::Npy, array.dims, kind.stored, world_from_voxel)
+    })
+}
