@@ -1,10 +1,13 @@
 //! Zarr stores of other writers, read whole and in parts, against what those writers read back.
 #![cfg(feature = "zarr")]
 
+#[path = "shared/truth.rs"]
+mod truth;
 #[path = "shared/zarr.rs"]
 mod zarr;
 
 use serde_json::Value;
+use sha2::{Digest, Sha256};
 use stratavox::volume::{Pick, VoxelBox};
 use zarr::{Store, all, open, region, variants};
 
@@ -166,5 +169,42 @@ fn arrays_of_a_group_are_variables_and_lines_are_none() {
         assert_eq!(source.header().components, 2, "{name}");
         let error = open(&store.path(), Some("none")).map(|_| ()).unwrap_err();
         assert!(error.to_string().contains("one of a, deep/er/b"), "{error}");
+    }
+}
+
+#[test]
+fn members_of_an_ensemble_are_what_the_manifest_says() {
+    for entry in truth::entries("zarr") {
+        let path = truth::folder()
+            .unwrap()
+            .join(entry["path"].as_str().unwrap());
+        for variable in entry["variables"].as_array().unwrap() {
+            let name = variable["name"].as_str().unwrap();
+            let source = open(&path, Some(name)).unwrap();
+            let header = source.header();
+            println!("{name}: {header:?}");
+            assert_eq!((header.dims, header.times), ([120, 61, 2], 4), "{name}");
+            assert_eq!(header.components, 2, "{name}: members");
+            // The file's order: members, then times.
+            let mut numbers = Vec::new();
+            for component in 0..header.components {
+                for time in 0..header.times {
+                    numbers.extend(
+                        region(&*source, Pick { time, component }, header.whole()).unwrap(),
+                    );
+                }
+            }
+            let bytes: Vec<u8> = numbers
+                .iter()
+                .flat_map(|&n| (n as f32).to_le_bytes())
+                .collect();
+            let digest = Sha256::digest(&bytes);
+            let digest: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();
+            assert_eq!(
+                Some(digest.as_str()),
+                variable["voxel_sha256"].as_str(),
+                "{name}"
+            );
+        }
     }
 }

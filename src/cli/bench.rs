@@ -16,7 +16,6 @@ use super::{
 };
 use crate::{
     camera::{BoundingSphere, Camera},
-    picture::LayerKind,
     technique::{Mode, Settings, Technique},
     transfer::{Classified, Window},
 };
@@ -219,19 +218,8 @@ fn window_of(
     if *job.classification != Classification::RangeOfPicture {
         return Ok(None);
     }
-    let job = Job {
-        layers: &[LayerKind::Value],
-        ..job
-    };
     let device = Device::find(device)?;
-    let picture = Renderer::new(job, camera, device)?.draw(camera)?.picture;
-    let values = picture.layers[0]
-        .values
-        .iter()
-        .filter(|value| !value.is_nan());
-    let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| {
-        [low.min(value.into()), high.max(value.into())]
-    });
+    let range = Renderer::new(job, camera, device)?.projected_range(camera)?;
     let function = Window::of_range(range).grey(Classified::Projection);
     Ok(Some(Classification::Function(function)))
 }

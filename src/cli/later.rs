@@ -6,18 +6,13 @@ use clap::{Args, Subcommand};
 /// The verbs, with whatever words follow them.
 #[derive(Debug, Subcommand)]
 pub enum Later {
-    /// Not built yet: a film of many pictures
-    #[command(after_help = RENDER)]
-    Animate(Rest),
     /// Not built yet: a device tested against exact answers
     #[command(after_help = DEVICES)]
     Conformance(Rest),
 }
 
-const INFO: &str = "Example of what is there:\n  stratavox info phantom:head --json";
-const RENDER: &str =
-    "Example of what is there:\n  stratavox render phantom:head --azimuth 30 -o 030.png";
 const DEVICES: &str = "Example of what is there:\n  stratavox devices";
+
 /// Any words.
 #[derive(Args, Debug)]
 pub struct Rest {
@@ -29,7 +24,6 @@ impl Later {
     /// Says which verb is not built.
     pub fn refuse(&self) -> Result<(), Error> {
         let name = match self {
-            Self::Animate(_) => "animate",
             Self::Conformance(_) => "conformance",
         };
         Err(Error::NotBuilt(format!("`stratavox {name}`")))

@@ -43,12 +43,26 @@ pub fn load_from(
     // What may be wrong with the words is said before anything about memory.
     scene.input.pick(source.header())?;
     let source = fitting(source, &scene.input, device.memory(), 1)?;
+    read_stretched(source.as_ref(), scene, progress)
+}
+
+/// The one volume of `source` that the words pick; there is memory for it.
+pub fn read(source: &dyn Source, scene: &SceneFlags, progress: &Progress) -> Result<Volume, Error> {
+    let (volume, _) = read_stretched(source, scene, progress)?;
+    Ok(volume)
+}
+
+fn read_stretched(
+    source: &dyn Source,
+    scene: &SceneFlags,
+    progress: &Progress,
+) -> Result<(Volume, f64), Error> {
     let (pick, note) = scene.input.pick(source.header())?;
     for note in source.header().notes.iter().chain(&note) {
         progress.note(note);
     }
     let whole = source.header().whole();
-    let mut volume = Volume::read(source.as_ref(), pick, whole, &scene.input.limits())?;
+    let mut volume = Volume::read(source, pick, whole, &scene.input.limits())?;
     let factor = stretch(
         std::slice::from_mut(&mut volume),
         scene,

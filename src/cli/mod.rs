@@ -7,6 +7,7 @@
 //! One file a verb; `flags` holds what verbs share. Everything that can be refused is refused before the
 //! first voxel is read: words, outputs that exist, folders that do not.
 
+mod animate;
 mod bench;
 mod bug;
 mod cameras_file;
@@ -27,6 +28,7 @@ mod memory;
 mod output;
 mod preset;
 mod progress;
+mod readable;
 mod reasons;
 mod render;
 mod renderer;
@@ -55,6 +57,7 @@ struct Words {
 #[derive(Debug, Subcommand)]
 enum Verb {
     Render(Box<render::Render>),
+    Animate(Box<animate::Animate>),
     Info(info::Info),
     Convert(convert::Convert),
     Devices(devices::Devices),
@@ -97,6 +100,7 @@ fn obey(words: Vec<OsString>, gate: &Gate) -> Result<(), Error> {
     };
     match words.verb {
         Verb::Render(render) => render.run(gate),
+        Verb::Animate(animate) => animate.run(gate),
         Verb::Info(info) => info.run(),
         Verb::Convert(convert) => convert.run(gate),
         Verb::Devices(devices) => devices.run(),

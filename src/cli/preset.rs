@@ -5,6 +5,7 @@ use super::{
     error::visible,
     flags::{InputFlags, Numbers, preset, summary, with_causes},
     output::{self, say, say_aside, write_whole},
+    readable::short,
     signals::Gate,
 };
 use crate::{
@@ -137,11 +138,21 @@ impl Show {
                 "the preset fits itself to a volume: these are fractions of where it will lie",
             );
         }
+        let per = match function.reference_length {
+            Some(length) => format!("a length of {}", short(length)),
+            None if preset == Preset::Grey => "the smallest voxel spacing".to_owned(),
+            None => "1/512 of the diagonal of the grid".to_owned(),
+        };
         if self.json {
+            if function.reference_length.is_none() && preset != Preset::Grey {
+                say_aside(&format!(
+                    "opacities are for {per}: name a volume, and the length is written"
+                ));
+            }
             return say(&transfer_function_to_json(&function));
         }
         say(&format!(
-            "{}: {}\n{}",
+            "{}: {}\nopacity is for {per}\n{}",
             preset.name(),
             preset.description(),
             table(&function)
@@ -233,17 +244,10 @@ fn table(function: &TransferFunction) -> String {
             format!("#{r:02x}{g:02x}{b:02x}")
         });
         let opacity = function.opacity.iter().find(|p| p.value == value);
-        let opacity = opacity.map_or(String::new(), |p| p.opacity.to_string());
-        let line = format!("{value:>12}  {color:<7}  {opacity}");
+        let opacity = opacity.map_or(String::new(), |p| short(p.opacity));
+        let line = format!("{:>12}  {color:<7}  {opacity}", short(value));
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{}", visible(line.trim_end()));
     }
-    let per = match function.reference_length {
-        Some(length) => format!("opacity is per length of {length}"),
-        None => {
-            "opacity is per smallest voxel spacing; the presets but grey: per 1/512 of the diagonal"
-                .to_owned()
-        }
-    };
-    text + &per + "\n"
+    text
 }

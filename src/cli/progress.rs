@@ -54,6 +54,23 @@ impl Progress {
         }
     }
 
+    /// `done` of `of` frames are written; `left` is the time that the others will take, once that is known.
+    pub fn frames(&self, done: usize, of: usize, left: Option<Duration>) {
+        match self {
+            Self::Silent => {}
+            Self::Line(line) => {
+                let left = left.map_or(String::new(), |left| format!(", {} left", shown(left)));
+                line.set_message(format!("frame {done}/{of}{left}"));
+            }
+            Self::Json => {
+                let left = left.map(|left| left.as_secs_f64());
+                say_json(
+                    &serde_json::json!({ "stage": "frames", "done": done, "of": of, "seconds_left": left }),
+                );
+            }
+        }
+    }
+
     /// Which device was chosen.
     pub fn device(&self, name: &str) {
         match self {
@@ -72,6 +89,16 @@ impl Progress {
     }
 }
 
+/// A time to come, for a person.
+fn shown(left: Duration) -> String {
+    let seconds = left.as_secs_f64().ceil() as u64;
+    match seconds {
+        0..60 => format!("{seconds} s"),
+        60..3600 => format!("{} min {:02} s", seconds / 60, seconds % 60),
+        _ => format!("{} h {:02} min", seconds / 3600, seconds / 60 % 60),
+    }
+}
+
 fn say_json(line: &serde_json::Value) {
     // Nobody reads a closed stderr.
     let _ = std::io::Write::write_all(&mut std::io::stderr(), format!("{line}\n").as_bytes());
@@ -81,6 +108,23 @@ impl Drop for Progress {
     fn drop(&mut self) {
         if let Self::Line(line) = self {
             line.finish_and_clear();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_time_to_come_is_told_in_two_units_at_most() {
+        for (seconds, wanted) in [
+            (0.2, "1 s"),
+            (59.0, "59 s"),
+            (61.0, "1 min 01 s"),
+            (7322.0, "2 h 02 min"),
+        ] {
+            assert_eq!(shown(Duration::from_secs_f64(seconds)), wanted);
         }
     }
 }

@@ -65,7 +65,8 @@ pub struct Render {
     not_built: NotBuilt,
 }
 
-fn bit_depth(word: &str) -> Result<BitDepth, String> {
+/// Reads the word of `--bit-depth`.
+pub fn bit_depth(word: &str) -> Result<BitDepth, String> {
     match word {
         "8" => Ok(BitDepth::Eight),
         "16" => Ok(BitDepth::Sixteen),

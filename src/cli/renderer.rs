@@ -127,6 +127,24 @@ impl<'a> Renderer<'a> {
         })
     }
 
+    /// From here on values are seen so, and so is computed.
+    pub fn change(&mut self, classification: &'a Classification, settings: &'a Settings) {
+        self.job.classification = classification;
+        self.job.settings = settings;
+    }
+
+    /// The range of what the mode projects in the picture of this camera; upside down where nothing is hit.
+    pub fn projected_range(&mut self, camera: &Camera) -> Result<[f64; 2], Error> {
+        let picture = self.draw_with(camera, &[LayerKind::Value])?.picture;
+        let values = picture.layers.iter().flat_map(|layer| &layer.values);
+        let values = values.filter(|value| !value.is_nan());
+        Ok(
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| {
+                [low.min(value.into()), high.max(value.into())]
+            }),
+        )
+    }
+
     /// The picture that this camera sees, in memory when the call returns.
     pub fn draw(&mut self, camera: &Camera) -> Result<Frame, Error> {
         self.draw_with(camera, self.job.layers)

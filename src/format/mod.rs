@@ -37,6 +37,7 @@ mod dicom;
 mod fence;
 mod file_source;
 mod geometry;
+mod grib;
 #[cfg(feature = "netcdf")]
 mod hdf5;
 mod metaimage;
@@ -69,6 +70,8 @@ use absent::dicom;
 use absent::tiff;
 #[cfg(not(feature = "netcdf"))]
 use absent::{hdf5, netcdf};
+#[cfg(feature = "cli")]
+pub(crate) use sequence::expand as numbered_name;
 
 use crate::volume::{Limits, Problem, ReadError, Source, Wanted};
 use problem::at;
@@ -168,6 +171,11 @@ const READERS: &[Reader] = &[
         recognizes: vti::recognizes,
         endings: &["vti", "pvti", "vtr", "vts", "vtu", "vtp"],
         open: vti::open,
+    },
+    Reader {
+        recognizes: grib::recognizes,
+        endings: &["grib", "grib2", "grb", "grb2"],
+        open: grib::open,
     },
     Reader {
         recognizes: vtk::recognizes,

@@ -50,7 +50,7 @@ pub(crate) fn asks_for_a_number(template: &str) -> bool {
 }
 
 /// The name for one number. One of `%d %i %u` with an optional width, zero-padded or not; `%%` means `%`.
-fn expand(template: &str, number: i64) -> Option<String> {
+pub(crate) fn expand(template: &str, number: i64) -> Option<String> {
     const WIDEST: usize = 32;
     let mut name = String::new();
     let mut rest = template;

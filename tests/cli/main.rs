@@ -1,15 +1,24 @@
 //! The program as a person meets it: words, exit codes, files.
 #![cfg(feature = "cli")]
 
+mod animate;
+mod animate_films;
+#[cfg(unix)]
+mod animate_stops;
 mod convert;
 mod device;
 mod errors;
+mod examples;
+mod figures;
+mod info;
 #[cfg(unix)]
 mod interrupt;
+mod manuals;
 mod memory;
 mod mixed;
 mod person;
 mod pictures;
+mod presets;
 mod real;
 mod sheet;
 mod words;

@@ -83,7 +83,7 @@ pub fn log_ticks(most: f64) -> Vec<(f64, String)> {
 }
 
 /// A count in few characters: `950`, `12 k`, `3.4 M`.
-pub fn compact(count: f64) -> String {
+fn compact(count: f64) -> String {
     let (scaled, unit) = match count {
         c if c < 1e3 => (c, ""),
         c if c < 1e6 => (c / 1e3, " k"),

@@ -6,7 +6,7 @@ mod font;
 mod raster;
 mod svg;
 
-pub use axis::{Ticks, compact, log_ticks};
+pub use axis::{Ticks, log_ticks};
 pub use raster::{SCALE, png};
 pub use svg::svg;
 

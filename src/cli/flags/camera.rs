@@ -3,7 +3,7 @@
 use super::{Error, Numbers, finite, positive};
 use crate::camera::{self, BoundingSphere, Camera, Lens, Orbit, View, up_for};
 use clap::{Args, ValueEnum};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
 /// The flags, none of them filled in.
@@ -132,6 +132,36 @@ impl CameraFlags {
             roll_degrees: self.roll.unwrap_or(0.0),
             ..side
         }
+    }
+
+    /// The same flags gone around the vertical axis through the target, from +x towards +y.
+    pub fn turned(&self, degrees: f64, bounds: &BoundingSphere) -> Self {
+        let turn = DMat3::from_rotation_z(degrees.to_radians());
+        let turned_up = |forward| {
+            let up = self
+                .up
+                .map_or_else(|| up_for(forward), |Numbers(v)| v.into());
+            Some(Numbers((turn * up).into()))
+        };
+        let mut turned = self.clone();
+        if let Some(Numbers(eye)) = self.eye {
+            let target = self.target.map_or(bounds.center, |Numbers(p)| p.into());
+            let from_target = DVec3::from(eye) - target;
+            turned.eye = Some(Numbers((target + turn * from_target).into()));
+            turned.up = turned_up(-from_target);
+            return turned;
+        }
+        let orbit = self.orbit();
+        turned.view = None;
+        turned.azimuth = Some(orbit.azimuth_degrees + degrees);
+        turned.elevation = Some(orbit.elevation_degrees);
+        // Along the axis nothing would turn but for `up`.
+        let (sine, cosine) = orbit.elevation_degrees.to_radians().sin_cos();
+        let forward = DVec3::new(cosine, 0.0, -sine);
+        if self.up.is_none() && up_for(forward) == DVec3::Y {
+            turned.up = turned_up(forward);
+        }
+        turned
     }
 
     /// Takes out what `stronger` excludes, so that both can be put together.

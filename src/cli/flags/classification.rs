@@ -102,6 +102,15 @@ impl ClassificationFlags {
 
     /// The function for this volume and what `mode` classifies.
     pub fn classification(&self, volume: &Volume, mode: Mode) -> Result<Classification, Error> {
+        self.classification_of(mode, || Ok(summary(volume)))
+    }
+
+    /// The same for values that look like `summary`, which is asked for where it decides anything.
+    pub fn classification_of(
+        &self,
+        mode: Mode,
+        summary: impl FnOnce() -> Result<ValueSummary, Error>,
+    ) -> Result<Classification, Error> {
         let window = self.window()?;
         let classified = match mode {
             Mode::Composite => Classified::Samples,
@@ -116,7 +125,11 @@ impl ClassificationFlags {
                         "--window LO,HI says it",
                     ));
                 }
-                function.of_fractions(window.unwrap_or(Window::of_range(volume.value_range)))
+                let window = match window {
+                    Some(window) => window,
+                    None => Window::of_range(summary()?.range),
+                };
+                function.of_fractions(window)
             }
             (Some(function), _) => match window {
                 Some(window) => function.spread_over(window),
@@ -126,8 +139,12 @@ impl ClassificationFlags {
             (None, None | Some(Preset::Grey)) if mode == Mode::Xray && window.is_none() => {
                 return Ok(Classification::RangeOfPicture);
             }
-            (None, Some(preset)) => preset.function(&summary(volume), classified, window),
-            (None, None) => automatic(&summary(volume), classified, window),
+            (None, Some(Preset::Grey)) if let Some(window) = window => window.grey(classified),
+            (None, Some(preset)) => preset.function(&summary()?, classified, window),
+            (None, None) => match window.filter(|_| classified == Classified::Projection) {
+                Some(window) => window.grey(classified),
+                None => automatic(&summary()?, classified, window),
+            },
         };
         Ok(Classification::Function(function))
     }

@@ -65,9 +65,6 @@ fn is_false(flag: &bool) -> bool {
 /// How a built-in volume begins.
 const PHANTOM: &str = "phantom:";
 
-/// Endings of files that are promised and not built yet.
-const LATER: &[&str] = &["grib", "grib2"];
-
 impl InputFlags {
     /// The file, where the input is one.
     pub fn file(&self) -> Option<&Path> {
@@ -96,23 +93,23 @@ impl InputFlags {
 
     /// Opens what the words name, as it is drawn; reads its header alone.
     pub fn open(&self, limits: &Limits) -> Result<Box<dyn Source>, Error> {
-        self.open_with(false, limits)
+        self.open_picked(false, limits)
     }
 
     /// The same with the voxels as they stand in the file.
     pub fn open_as_stored(&self, limits: &Limits) -> Result<Box<dyn Source>, Error> {
-        self.open_with(true, limits)
+        self.open_picked(true, limits)
     }
 
-    fn open_with(&self, as_stored: bool, limits: &Limits) -> Result<Box<dyn Source>, Error> {
-        let source = self.open_as_it_is(as_stored, limits)?;
+    fn open_picked(&self, as_stored: bool, limits: &Limits) -> Result<Box<dyn Source>, Error> {
+        let source = self.open_with(as_stored, limits)?;
         if self.component == Some(Component::Magnitude) {
             return Ok(Box::new(Magnitude::new(source)));
         }
         Ok(source)
     }
 
-    fn open_as_it_is(&self, as_stored: bool, limits: &Limits) -> Result<Box<dyn Source>, Error> {
+    fn open_with(&self, as_stored: bool, limits: &Limits) -> Result<Box<dyn Source>, Error> {
         let Some(path) = self.path.as_deref() else {
             return Err(Error::usage(
                 "no INPUT is given",
@@ -131,9 +128,6 @@ impl InputFlags {
             return Ok(source);
         }
         let path = Path::new(path);
-        if path.exists() && self.raw.is_none() {
-            refuse_later_formats(path)?;
-        }
         let source = match &self.raw {
             Some(layout) => {
                 let layout = format::raw::RawSpec::parse(layout).map_err(|problem| {
@@ -336,19 +330,6 @@ fn listed(header: &Header) -> String {
         .map(line)
         .collect::<Vec<_>>()
         .join("; ")
-}
-
-fn refuse_later_formats(path: &Path) -> Result<(), Error> {
-    if path.is_dir() {
-        return Ok(());
-    }
-    let ending = path.extension().and_then(|ending| ending.to_str());
-    match ending.map(str::to_ascii_lowercase) {
-        Some(ending) if LATER.contains(&ending.as_str()) => {
-            Err(Error::NotBuilt(format!("reading `.{ending}` files")))
-        }
-        _ => Ok(()),
-    }
 }
 
 fn check_variable(name: &str, header: &Header) -> Result<(), Error> {

@@ -3,6 +3,7 @@
 use super::{Counted, NAME_SIZE, Plot, TICK_SIZE, color, function_json, shortened};
 use crate::{
     cli::figure::{Anchor, Color, FAINT, Figure, GRID, INK, Mark, Point, Ticks, log_ticks},
+    cli::readable::short,
     color::ColorSpace,
     transfer::{Absorption, Interpolation, Points, TransferFunction, classify_by_points},
     volume::Histogram,
@@ -172,10 +173,4 @@ fn colors(figure: &mut Figure, plot: &Plot, function: &TransferFunction) {
     });
     figure.frame([plot.left, top], [plot.right, bottom], FAINT);
     figure.faint([plot.left - 9.0, bottom - 5.0], "colour", 13.0, Anchor::End);
-}
-
-/// Three digits that count.
-fn short(number: f64) -> String {
-    let digits = 2 - number.abs().log10().floor() as i32;
-    format!("{number:.*}", digits.clamp(0, 9) as usize)
 }

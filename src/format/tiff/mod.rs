@@ -14,6 +14,7 @@ mod folder;
 mod ifd;
 mod imagej;
 mod jpeg;
+mod kind;
 mod length;
 mod ome;
 mod page;
@@ -204,7 +205,7 @@ fn open_ome(
         };
         pages.push(PageAt { file, ifd, number });
     }
-    let meaning = (channel_pages > 1).then(|| Meaning::Channels(image.channels));
+    let meaning = (channel_pages > 1).then_some(Meaning::Channels(image.channels));
     let parts = Parts {
         channels: channel_pages,
         depth: image.depth,

@@ -73,11 +73,6 @@ impl Array {
         self.shape.len()
     }
 
-    /// The last part of the path.
-    pub(super) fn name(&self) -> &str {
-        self.path.rsplit('/').next().unwrap_or("")
-    }
-
     /// The box that is decoded at once.
     pub(super) fn unit(&self) -> &[u64] {
         self.shards

@@ -173,9 +173,14 @@ fn collect(mut input: impl Read, length: Length) -> Result<Vec<u8>, Damage> {
 
 /// One frame of Zstandard, RFC 8878; its checksum is compared where it has one.
 pub(super) fn zstd(bytes: &[u8], length: Length) -> Result<Vec<u8>, Damage> {
+    // A window is reserved as a frame's header asks for it: no more than the chunk may have, and no more than so
+    // many bytes can stand for (a block of 128 kB that repeats one byte takes four).
     const LEAST_WINDOW_BYTES: u64 = 8 << 20;
+    const MOST_EXPANSION: u64 = 1 << 15;
+    let plausible = to_u64(bytes.len()).saturating_mul(MOST_EXPANSION);
     let window = to_u64(length.most())
         .saturating_mul(2)
+        .min(plausible)
         .max(LEAST_WINDOW_BYTES);
     let decoded = catch_unwind(AssertUnwindSafe(|| {
         let mut source = bytes;

@@ -2,12 +2,14 @@
 
 use super::ZARR;
 use super::array::Array;
+use super::json::{number, optional, wrong};
 use super::ngff::Level;
 use super::source::Role;
 use super::tree::Tree;
 use crate::format::problem::{escape, invalid, unsupported};
-use crate::volume::{Format, Header, Limits, Problem, Wanted};
+use crate::volume::{Format, Header, Limits, Problem, Rescale, Wanted};
 use glam::DAffine3;
+use serde_json::Value;
 
 /// The wanted array of a store, without a word the first.
 pub(super) fn choose(tree: &Tree, wanted: &Wanted, limits: &Limits) -> Result<Level, Problem> {
@@ -152,10 +154,39 @@ fn header(array: &Array, roles: &[Role], variables: Vec<String>) -> Result<Heade
     Ok(Header {
         times,
         components,
+        rescale: rescale(array)?,
+        fill: fill(array),
+        unit: optional(&array.attributes, "units")
+            .and_then(Value::as_str)
+            .map(escape),
         variables,
         notes,
         ..Header::new(Format::Zarr, dims, array.stored, DAffine3::IDENTITY)
     })
+}
+
+/// Packed numbers, CF Conventions 8.1: value = stored * scale_factor + add_offset.
+fn rescale(array: &Array) -> Result<Rescale, Problem> {
+    let factor = |field: &str, usual: f64| match optional(&array.attributes, field) {
+        None => Ok(usual),
+        Some(value) => number(value)
+            .filter(|number| number.is_finite() && (number.is_normal() || field == "add_offset"))
+            .ok_or_else(|| wrong(field, "a finite number that scales", value)),
+    };
+    Ok(Rescale {
+        slope: factor("scale_factor", 1.0)?,
+        intercept: factor("add_offset", 0.0)?,
+    })
+}
+
+/// The number that means "no data". Where xarray writes version 2, the fill value of the array is it.
+fn fill(array: &Array) -> Option<f64> {
+    let mut named = ["_FillValue", "missing_value"].iter();
+    let named = named.find_map(|field| number(array.attributes.get(*field)?));
+    let is_of_xarray = array.attributes.contains_key("_ARRAY_DIMENSIONS");
+    named
+        .or_else(|| (is_of_xarray && array.fill.is_given).then_some(array.fill.number))
+        .filter(|number| number.is_finite())
 }
 
 /// What a header says about the sides of an array.

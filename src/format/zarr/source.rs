@@ -107,61 +107,6 @@ fn unit_strides(array: &Array) -> Vec<usize> {
     strides
 }
 
-/// All numbers of a small array, the last axis fastest, as near as an f64 comes.
-pub(super) fn numbers(
-    store: &Store,
-    array: &Array,
-    limits: &Limits,
-) -> Result<Vec<f64>, ReadError> {
-    let range = Range::whole(array);
-    let bytes = to_u64(array.stored.bytes());
-    let wanted_bytes = range.count().saturating_mul(bytes.max(8));
-    let limit_bytes = to_u64(limits.max_header_bytes);
-    if wanted_bytes > limit_bytes {
-        return Err(at(&store.shown(&array.path))(Problem::Limit {
-            what: "the numbers of a coordinate".to_owned(),
-            wanted_bytes,
-            limit_bytes,
-        }));
-    }
-    let count = usize::try_from(range.count()).unwrap_or(0);
-    let mut all = vec![array.fill.number; count];
-    let from_strides = unit_strides(array);
-    let size = array.stored.bytes();
-    visit(store, array, &range, limits, &mut |unit: &Unit| {
-        let Some(meet) = range.meet(unit.origin, array.unit()) else {
-            return Ok(());
-        };
-        for index in meet.indices() {
-            let mut from = 0_usize;
-            let mut to = 0_u64;
-            let sides = unit.origin.iter().zip(&array.shape);
-            for ((here, (origin, side)), stride) in index.iter().zip(sides).zip(&from_strides) {
-                let inside = usize::try_from(here.saturating_sub(*origin)).unwrap_or(usize::MAX);
-                from = from.saturating_add(inside.saturating_mul(*stride));
-                to = to.saturating_mul(*side).saturating_add(*here);
-            }
-            let mut bytes = unit
-                .bytes
-                .get(from.saturating_mul(size)..)
-                .and_then(|rest| rest.get(..size))
-                .unwrap_or(&[])
-                .to_vec();
-            if array.codecs.endian == crate::format::convert::Endian::Big {
-                bytes.reverse();
-            }
-            let place = usize::try_from(to).ok().and_then(|to| all.get_mut(to));
-            if let (Some(place), Some(number)) =
-                (place, super::array::number_of(&bytes, array.stored))
-            {
-                *place = number;
-            }
-        }
-        Ok(())
-    })?;
-    Ok(all)
-}
-
 impl ArraySource {
     /// Adds what every array may give a person to know.
     pub(super) fn with_notes(mut self) -> Self {

@@ -64,11 +64,6 @@ impl Tree {
         }
     }
 
-    /// The version of the store's format.
-    pub(super) fn version(&self) -> u8 {
-        self.nodes.values().next().map_or(2, |node| node.version)
-    }
-
     /// Takes all nodes out of one file, where there is one; false where there is none.
     fn add_consolidated(&mut self, store: &Store, limits: &Limits) -> Result<bool, ReadError> {
         let read = |key: &str| -> Result<Option<Object>, ReadError> {

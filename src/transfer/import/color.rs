@@ -22,20 +22,44 @@ pub(super) enum Space {
 pub(super) fn mixed(space: Space, left: [f64; 3], right: [f64; 3], t: f64) -> [f64; 3] {
     match space {
         Space::Hsv { wraps } => {
-            let (mut left, mut right) = (hsv(left), hsv(right));
-            if wraps && (left[0] - right[0]).abs() > 0.5 {
-                let lower = if left[0] < right[0] {
-                    &mut left
-                } else {
-                    &mut right
-                };
-                lower[0] += 1.0;
-            }
+            let (left, right) = hues(wraps, left, right);
             rgb_of_hsv(lerp(left, right, t))
         }
         Space::Lab => rgb_of_lab(lerp(lab(left), lab(right), t)),
         Space::Diverging => diverging(left, right, t),
     }
+}
+
+/// Fractions of the way from `left` to `right` where points are needed, the first end among them: `parts` equal
+/// ones, and those where a hue passes a primary or secondary colour, at which the mixture has corners.
+pub(super) fn places(space: Space, left: [f64; 3], right: [f64; 3], parts: usize) -> Vec<f64> {
+    let mut places: Vec<f64> = (0..parts).map(|part| part as f64 / parts as f64).collect();
+    if let Space::Hsv { wraps } = space {
+        let (left, right) = hues(wraps, left, right);
+        places.extend(corners(left[0], right[0]));
+        places.sort_by(f64::total_cmp);
+    }
+    places
+}
+
+/// Where between two hues a sixth of the circle is passed.
+pub(super) fn corners(left: f64, right: f64) -> impl Iterator<Item = f64> {
+    let passed = (-6..=12).map(move |sixth| (f64::from(sixth) / 6.0 - left) / (right - left));
+    passed.filter(|t| *t > 0.0 && *t < 1.0)
+}
+
+/// Both colours as hue, saturation and value, the hues so that the way between them is straight.
+fn hues(wraps: bool, left: [f64; 3], right: [f64; 3]) -> ([f64; 3], [f64; 3]) {
+    let (mut left, mut right) = (hsv(left), hsv(right));
+    if wraps && (left[0] - right[0]).abs() > 0.5 {
+        let lower = if left[0] < right[0] {
+            &mut left
+        } else {
+            &mut right
+        };
+        lower[0] += 1.0;
+    }
+    (left, right)
 }
 
 fn lerp(a: [f64; 3], b: [f64; 3], t: f64) -> [f64; 3] {

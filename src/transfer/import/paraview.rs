@@ -2,10 +2,10 @@
 //! and the older XML (`Point x o r g b`).
 //!
 //! Colours of another space than RGB are mixed there and written down in steps; straight lines between the
-//! steps differ from the curve by less than one part in 255.
+//! steps differ from the curve by less than half of one part in 255.
 
 use super::super::FileProblem;
-use super::color::{Space, mixed};
+use super::color::{Space, mixed, places};
 use super::draft::{Curve, Draft};
 use super::xml::Element;
 use super::{Imported, Scale, choose};
@@ -13,7 +13,7 @@ use serde_json::Value;
 
 const ORIGIN: &str = "a ParaView colour map";
 /// Of a segment, where there are few; even, so that the middle of a diverging map is one of them.
-const PARTS: usize = 32;
+const PARTS: usize = 64;
 
 pub(super) fn json(value: &Value, wanted: Option<&str>) -> Result<Imported, FileProblem> {
     let all = match value.as_array() {
@@ -152,14 +152,13 @@ fn add_colors(
         }
     };
     let room = super::super::MAX_POINTS / points.len().max(1);
-    let parts = PARTS.min(room / 2 * 2).max(1);
+    // Some are added where hues have corners.
+    let parts = PARTS.min(room / 4 * 2).max(1);
     for pair in points.windows(2) {
         let [(from, left), (to, right)] = [pair[0], pair[1]];
-        for part in 0..parts {
-            let t = part as f64 / parts as f64;
-            draft
-                .color
-                .push((from + t * (to - from), mixed(space, left, right, t)));
+        for t in places(space, left, right, parts) {
+            let at = from + t * (to - from);
+            draft.color.push((at, mixed(space, left, right, t)));
         }
     }
     draft.color.extend(points.last());

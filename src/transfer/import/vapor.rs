@@ -6,13 +6,13 @@
 
 use super::super::FileProblem;
 use super::Imported;
-use super::color::{Space, mixed, rgb_of_hsv};
+use super::color::{Space, corners, mixed, rgb_of_hsv};
 use super::draft::Draft;
 use super::xml::Element;
 
 const ORIGIN: &str = "a VAPOR transfer function (.tf3)";
 /// Of a segment: even, so that the middle of a diverging map is one of them.
-const PARTS: usize = 32;
+const PARTS: usize = 64;
 
 pub(super) fn read(root: &Element) -> Result<Imported, FileProblem> {
     let mut draft = Draft::new(ORIGIN);
@@ -67,11 +67,16 @@ fn colors(draft: &mut Draft, map: &Element, otherwise: [f64; 2]) -> Result<(), F
                 .extend(steps.map(|(t, hsv)| (between(t), rgb_of_hsv(hsv))));
             continue;
         }
-        let parts = PARTS.min(super::super::MAX_POINTS / points.len()).max(1);
-        for part in 0..parts {
-            let t = part as f64 / parts as f64;
+        let parts = PARTS
+            .min(super::super::MAX_POINTS / points.len() / 2)
+            .max(1);
+        let (ends, right_hue) = ([left, right].map(rgb_of_hsv), around(left, right, 1.0)[0]);
+        let mut places: Vec<f64> = (0..parts).map(|part| part as f64 / parts as f64).collect();
+        places.extend(corners(left[0], right_hue));
+        places.sort_by(f64::total_cmp);
+        for t in places {
             let rgb = match kind {
-                4.0 => mixed(Space::Diverging, rgb_of_hsv(left), rgb_of_hsv(right), t),
+                4.0 => mixed(Space::Diverging, ends[0], ends[1], t),
                 _ => rgb_of_hsv(around(left, right, t)),
             };
             draft.color.push((between(t), rgb));

@@ -1,0 +1,333 @@
+//! `stratavox animate`: many pictures of one input, as files or as a film.
+//!
+//! ```text
+//! words, header -> shots (one set of flags a frame, all checked) -> store (which frames are there)
+//!     -> draw (one device, one volume after another) -> store -> film, where one file is asked for
+//! ```
+
+mod draw;
+mod film;
+mod functions;
+mod identity;
+mod journal;
+mod keyframes;
+mod rate;
+mod shots;
+mod store;
+mod target;
+mod track;
+mod tracks;
+mod volumes;
+
+use super::{
+    Error,
+    flags::{Depth, NotBuilt, SceneFlags},
+    memory::fitting,
+    output::{self, write_whole},
+    progress::{Progress, ProgressWord},
+    render::bit_depth,
+    renderer::Device,
+    scene_file,
+    signals::Gate,
+    timings::Timings,
+};
+use crate::{
+    picture::{BitDepth, LayerKind, PictureFormat, WriteOptions},
+    volume::{Header, Source},
+};
+use clap::Args;
+use draw::{Drawing, Sink};
+use film::{FilmFormat, Reel};
+use rate::Rate;
+use shots::{Film, Shot};
+use std::path::{Path, PathBuf};
+use store::{Store, Wishes};
+use target::{Frames, Target};
+
+/// Draw many pictures of a volume: a turn, its times, or a film by keyframes
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:\n  \
+    stratavox animate phantom:head,n=64 --turntable 24 --size 320x240 -o head.gif\n  \
+    stratavox animate phantom:storm,n=64,variable=cloud --times --fps 4 --size 320x240 -o storm.apng\n  \
+    stratavox animate phantom:head,n=64 --turntable 8 --size 320x240 -o frames/%04d.png --resume\n  \
+    stratavox animate phantom:head,n=64 --turntable 24 --size 320x240 -o - | ffmpeg -i - head.webm\n\n\
+    Keyframes, each word of a key with a course of its own:\n  \
+    { \"stratavox_keyframes\": 1, \"frames\": 120, \"easing\": \"smooth\", \"keys\": [\n    \
+    { \"at\": 0, \"azimuth\": 0, \"zoom\": 1 }, { \"at\": 1, \"azimuth\": 360, \"zoom\": 2 } ] }\n  \
+    Words of a key: azimuth, elevation, roll, zoom, fov, view_height, eye, target, up, window, tf, crop, clip, time")]
+pub struct Animate {
+    /// frames/%04d.png (or .exr, .npy), a film that ends in .apng, .gif, .y4m or .mp4, or - for Y4M on the standard output
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Turn the camera once around in so many frames
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), conflicts_with = "keyframes", help_heading = "Film")]
+    turntable: Option<u32>,
+    /// Show every time of the input; with a turn or keyframes, time runs once through all of them
+    #[arg(long, help_heading = "Film")]
+    times: bool,
+    /// Change camera, colours, planes and time by the keys of a file
+    #[arg(long, value_name = "FILE.json", help_heading = "Film")]
+    keyframes: Option<PathBuf>,
+    /// Go on with a film that was stopped; frames that are whole stay
+    #[arg(long, help_heading = "Film")]
+    resume: bool,
+    /// Frames a second: 25, 29.97, 30000/1001
+    #[arg(long, value_name = "F", default_value = "25", help_heading = "Film")]
+    fps: Rate,
+    #[command(flatten)]
+    scene: SceneFlags,
+    /// Flags from a file; those of the command line win
+    #[arg(long = "scene", value_name = "FILE.json", help_heading = "Run")]
+    scene_file: Option<PathBuf>,
+    /// Write all flags of the pictures into a file
+    #[arg(long, value_name = "FILE.json", help_heading = "Run")]
+    save_scene: Option<PathBuf>,
+    /// Write what the work took into a file
+    #[arg(long, value_name = "FILE.json", help_heading = "Run")]
+    timings: Option<PathBuf>,
+    /// Taken as `render` takes it; a film draws each frame once
+    #[arg(long, value_name = "N", hide = true)]
+    repeat: Option<u32>,
+    /// Say on stderr how far the work is
+    #[arg(long, value_enum, default_value_t, help_heading = "Run")]
+    progress: ProgressWord,
+    /// Replace files that exist
+    #[arg(long, help_heading = "Run")]
+    force: bool,
+    /// Bits of a channel of a PNG or APNG
+    #[arg(long, value_name = "8|16", default_value = "8", value_parser = bit_depth, help_heading = "Picture")]
+    bit_depth: BitDepth,
+    /// No empty-space skipping: the picture is the same without
+    #[arg(long)]
+    no_skip: bool,
+    #[command(flatten)]
+    not_built: NotBuilt,
+}
+
+/// Everything that was checked before the first voxel is read.
+struct Plan {
+    scene: SceneFlags,
+    target: Target,
+    layers: Vec<LayerKind>,
+    /// Of the input as it lies in its file.
+    header: Header,
+    film: Film,
+    shots: Vec<Shot>,
+    depth: Depth,
+    inputs: Vec<PathBuf>,
+}
+
+impl Animate {
+    /// Draws and writes.
+    pub fn run(mut self, gate: &Gate) -> Result<(), Error> {
+        self.not_built.refuse()?;
+        let (plan, source) = self.plan()?;
+        let mut outputs: Vec<PathBuf> = self
+            .save_scene
+            .iter()
+            .chain(&self.timings)
+            .cloned()
+            .collect();
+        if let Target::Film { path, .. } = &plan.target {
+            outputs.push(path.clone());
+        }
+        output::check(&outputs, &plan.inputs, self.force)?;
+        let store = self.store(&plan, gate)?;
+
+        let progress = Progress::new(self.progress);
+        for note in [plan.scene.sampling.idle(), plan.scene.camera.idle()].concat() {
+            progress.note(note);
+        }
+        if self.repeat.is_some() {
+            progress.note("--repeat has no effect on a film");
+        }
+        let sink = match &store {
+            Some(store) => Sink::Store(store),
+            None => Sink::Stream(self.fps),
+        };
+        let is_done = store
+            .as_ref()
+            .is_some_and(|store| store.missing().is_empty());
+        let drawn = if is_done {
+            progress.note("all frames are there already");
+            Ok(Timings::default())
+        } else {
+            self.draw(&plan, source, &sink, &progress)
+        };
+        if let (Err(_), Some(store), Target::Film { .. }) = (&drawn, &store, &plan.target) {
+            store.say_what_is_kept(&progress);
+        }
+        let timings = drawn?;
+        if let (Some(store), Target::Film { path, format }) = (&store, &plan.target) {
+            let reel = Reel {
+                frames: store.frames(),
+                count: plan.shots.len() as u32,
+                extent_pixels: plan.scene.picture.extent_pixels()?,
+                rate: self.fps,
+                path,
+                progress: &progress,
+            };
+            film::write(*format, &reel, self.force, gate)?;
+            store.remove()?;
+        }
+        if let Some(path) = &self.save_scene {
+            let text = scene_file::text(&plan.scene, path);
+            write_whole(path, text.as_bytes(), self.force, gate)?;
+        }
+        if let Some(path) = &self.timings {
+            write_whole(path, timings.json().as_bytes(), self.force, gate)?;
+        }
+        Ok(())
+    }
+
+    fn draw(
+        &self,
+        plan: &Plan,
+        source: Box<dyn Source>,
+        sink: &Sink,
+        progress: &Progress,
+    ) -> Result<Timings, Error> {
+        progress.stage("prepare", 0, 1);
+        let device = Device::find(plan.scene.device.as_deref())?;
+        progress.device(&device.name());
+        // A volume that is reduced to fit has a grid of its own.
+        let source = fitting(source, &plan.scene.input, device.memory(), 1)?;
+        let shots = plan.film.shots(&plan.scene, plan.depth, source.header())?;
+        let drawing = Drawing {
+            scene: &plan.scene,
+            shots: &shots,
+            layers: &plan.layers,
+            source: source.as_ref(),
+            background: self.background(plan, progress),
+            progress,
+            wants_timings: self.timings.is_some(),
+        };
+        drawing.draw(sink, device)
+    }
+
+    /// All that the words say, checked as far as it can be without a voxel.
+    fn plan(&mut self) -> Result<(Plan, Box<dyn Source>), Error> {
+        self.scene.classification.inline_file()?;
+        let scene = match &self.scene_file {
+            Some(path) => scene_file::overlay(scene_file::read(path)?, &self.scene),
+            None => self.scene.clone(),
+        };
+        let target = Target::new(&self.output)?;
+        let layers = scene.picture.layers()?;
+        self.check_target(&target, &layers)?;
+        let keyframes = self
+            .keyframes
+            .as_deref()
+            .map(|path| keyframes::read(path, self.fps));
+        let film = Film {
+            turntable: self.turntable,
+            times: self.times,
+            keyframes: keyframes.transpose()?,
+        };
+        let mut inputs = scene_file::inputs(&scene, self.scene_file.as_deref());
+        if let Some(keyframes) = &film.keyframes {
+            inputs.extend(keyframes.inputs.iter().cloned());
+        }
+        let depth = match &target {
+            Target::Frames(frames) if frames.format != PictureFormat::Png => Depth::More,
+            _ if self.bit_depth == BitDepth::Sixteen => Depth::More,
+            _ => Depth::Eight,
+        };
+        let source = scene.input.open(&scene.input.limits())?;
+        let shots = film.shots(&scene, depth, source.header())?;
+        let plan = Plan {
+            scene,
+            target,
+            layers,
+            header: source.header().clone(),
+            film,
+            shots,
+            depth,
+            inputs,
+        };
+        Ok((plan, source))
+    }
+
+    /// What a kind of file has no room for.
+    fn check_target(&self, target: &Target, layers: &[LayerKind]) -> Result<(), Error> {
+        let (has_layers, has_depth) = match target {
+            Target::Frames(frames) => (frames.format != PictureFormat::Png, true),
+            Target::Film { format, .. } => (false, format.is_as_good_as_png()),
+            Target::Stream => (false, false),
+        };
+        let name = self.output.display();
+        if !has_layers && !layers.is_empty() {
+            let message = format!("-o {name}: no room for the layers of --aov");
+            return Err(Error::usage(message, "write frames/%04d.exr or .npy"));
+        }
+        if !has_depth && self.bit_depth == BitDepth::Sixteen {
+            let message = format!("-o {name}: --bit-depth 16 is for PNG and APNG");
+            return Err(Error::usage(message, "leave out --bit-depth"));
+        }
+        match target {
+            Target::Film {
+                path,
+                format: FilmFormat::Mp4,
+            } => film::find_ffmpeg(path).map(drop),
+            Target::Stream if self.resume => Err(Error::usage(
+                "--resume: a stream leaves nothing to go on from",
+                "-o film.y4m keeps what is done",
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    /// The frames that lie in files: those asked for, or those that a film in one file is made of.
+    fn store(&self, plan: &Plan, gate: &Gate) -> Result<Option<Store>, Error> {
+        let frames = match &plan.target {
+            Target::Frames(frames) => frames.clone(),
+            Target::Film { path, .. } => frames_of_film(path),
+            Target::Stream => return Ok(None),
+        };
+        if matches!(plan.target, Target::Film { .. }) && self.force && !self.resume {
+            store::clear(&frames)?;
+        }
+        let film = identity::of_film(plan, &frames, self.bit_depth)?;
+        let wishes = Wishes {
+            resume: self.resume,
+            force: self.force,
+            layers: &plan.layers,
+            inputs: &plan.inputs,
+        };
+        let options = WriteOptions {
+            bit_depth: self.bit_depth,
+            force: self.force,
+        };
+        Store::new(frames, plan.shots.len() as u32, film, wishes, options, gate).map(Some)
+    }
+
+    /// What lies behind every frame. Films without transparency have black there.
+    fn background(&self, plan: &Plan, progress: &Progress) -> Vec<[f64; 4]> {
+        let mut layers: Vec<_> = plan.scene.picture.background().into_iter().collect();
+        if !keeps_transparency(&plan.target) {
+            if layers.first().is_none_or(|color| color[3] < 1.0) {
+                progress.note("this kind of film has no transparency: black lies behind");
+            }
+            layers.push([0.0, 0.0, 0.0, 1.0]);
+        }
+        layers
+    }
+}
+
+fn keeps_transparency(target: &Target) -> bool {
+    match target {
+        Target::Frames(_) => true,
+        Target::Film { format, .. } => format.is_as_good_as_png(),
+        Target::Stream => false,
+    }
+}
+
+/// In a hidden folder beside the film.
+fn frames_of_film(path: &Path) -> Frames {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    Frames {
+        folder: path.with_file_name(format!(".{name}.frames")),
+        template: "%06d.png".to_owned(),
+        format: PictureFormat::Png,
+    }
+}

@@ -1,0 +1,207 @@
+//! The volumes of a film, one time after another: no more in memory than a frame needs.
+//!
+//! Between two times every voxel is mixed, `v = v0 + s (v1 - v0)`.
+
+use crate::{
+    cli::{Error, flags::SceneFlags, load, progress::Progress},
+    transfer::ValueSummary,
+    volume::{Pick, Problem, ReadError, Source, Volume, Voxels},
+};
+use glam::DAffine3;
+use std::{collections::BTreeSet, rc::Rc};
+
+/// Voxels that all times together give to the choice of colours.
+const MAX_SAMPLES: usize = 1 << 22;
+/// Voxels that are taken one after the other: labels are known by what their neighbours are.
+const RUN: usize = 256;
+
+/// Reads what frames need, and keeps it as long as the next frame needs it too.
+pub struct Volumes<'a> {
+    source: &'a dyn Source,
+    scene: SceneFlags,
+    progress: &'a Progress,
+    first: Option<(Pick, DAffine3)>,
+    kept: Vec<(u32, Rc<Volume>)>,
+    /// Told of every volume that is read.
+    saw: &'a dyn Fn(u32, &Volume) -> Result<(), Error>,
+}
+
+impl<'a> Volumes<'a> {
+    /// Of the words of `scene`, which name times only in `source`.
+    pub fn new(
+        source: &'a dyn Source,
+        scene: &SceneFlags,
+        progress: &'a Progress,
+        saw: &'a dyn Fn(u32, &Volume) -> Result<(), Error>,
+    ) -> Self {
+        Self {
+            source,
+            scene: scene.clone(),
+            progress,
+            first: None,
+            kept: Vec::new(),
+            saw,
+        }
+    }
+
+    /// The volume at this time.
+    pub fn at(&mut self, time: f64) -> Result<Rc<Volume>, Error> {
+        let [before, after] = [time.floor(), time.ceil()].map(|time| time as u32);
+        self.kept
+            .retain(|&(time, _)| time == before || time == after);
+        let first = self.whole(before)?;
+        if before == after {
+            return Ok(first);
+        }
+        let second = self.whole(after)?;
+        blend(&first, &second, time.fract())
+            .map(Rc::new)
+            .map_err(|problem| {
+                Error::Read(ReadError {
+                    path: self.source.path().to_owned(),
+                    problem,
+                })
+            })
+    }
+
+    fn whole(&mut self, time: u32) -> Result<Rc<Volume>, Error> {
+        if let Some((_, volume)) = self.kept.iter().find(|kept| kept.0 == time) {
+            return Ok(Rc::clone(volume));
+        }
+        let volume = match self.first {
+            // What there is to say is said of the first.
+            None => {
+                self.scene.input.time = Some(time.to_string());
+                let (pick, _) = self.scene.input.pick(self.source.header())?;
+                let volume = load::read(self.source, &self.scene, self.progress)?;
+                self.first = Some((pick, volume.world_from_voxel));
+                volume
+            }
+            Some((pick, world_from_voxel)) => {
+                let whole = self.source.header().whole();
+                let limits = self.scene.input.limits();
+                let volume = Volume::read(self.source, Pick { time, ..pick }, whole, &limits)?;
+                Volume {
+                    // Stretched as the first is.
+                    world_from_voxel,
+                    ..volume
+                }
+            }
+        };
+        (self.saw)(time, &volume)?;
+        let volume = Rc::new(volume);
+        self.kept.push((time, Rc::clone(&volume)));
+        Ok(volume)
+    }
+
+    /// What the values of these times look like together, so that colours mean the same in all frames.
+    pub fn summary(&mut self, times: &BTreeSet<u32>) -> Result<ValueSummary, Error> {
+        let per_time = MAX_SAMPLES / times.len().max(1);
+        let mut pool = Vec::new();
+        let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+        let (mut diagonal, mut hounsfield) = (0.0, false);
+        for (done, &time) in times.iter().enumerate() {
+            self.progress.stage("look at all times", done, times.len());
+            let volume = self.at(time.into())?;
+            if volume.no_data_count() < volume.voxels.len() as u64 {
+                let [low, high] = volume.value_range;
+                range = [range[0].min(low), range[1].max(high)];
+            }
+            diagonal = volume
+                .world_from_voxel
+                .transform_vector3(volume.grid().far_corner())
+                .length();
+            hounsfield = volume.hounsfield;
+            pool.extend(runs(volume.voxels.len(), per_time).map(|i| value(&volume, i)));
+        }
+        if range[0] > range[1] {
+            range = [0.0; 2];
+        }
+        Ok(ValueSummary::of(
+            pool.len(),
+            range,
+            diagonal,
+            hounsfield,
+            |i| pool[i],
+        ))
+    }
+}
+
+/// At most `most` of `count` voxels (or one run), in runs at equal distances; all of them where they are few.
+fn runs(count: usize, most: usize) -> impl Iterator<Item = usize> {
+    let runs = if count <= most {
+        count.div_ceil(RUN)
+    } else {
+        (most / RUN).max(1)
+    };
+    (0..runs).flat_map(move |run| {
+        let start = (run as u128 * count as u128 / runs as u128) as usize;
+        let next = ((run + 1) as u128 * count as u128 / runs as u128) as usize;
+        start..next.min(start + RUN)
+    })
+}
+
+fn value(volume: &Volume, i: usize) -> Option<f64> {
+    let is_valid = volume.validity.as_ref().is_none_or(|valid| valid[i] != 0);
+    let stored = f64::from(volume.voxels.stored(i));
+    is_valid.then(|| stored * volume.rescale.slope + volume.rescale.intercept)
+}
+
+/// Between `a` (`s = 0`) and `b` (`s = 1`); no data where either has none.
+fn blend(a: &Volume, b: &Volume, s: f64) -> Result<Volume, Problem> {
+    let is_valid =
+        |volume: &Volume, i: usize| volume.validity.as_ref().is_none_or(|valid| valid[i] != 0);
+    let mixed = |i: usize| {
+        if !is_valid(a, i) || !is_valid(b, i) {
+            return f32::NAN;
+        }
+        let [a, b] = [a, b].map(|volume| f64::from(volume.voxels.stored(i)));
+        (a + s * (b - a)) as f32
+    };
+    let voxels = Voxels::F32((0..a.voxels.len()).map(mixed).collect());
+    let blended = Volume::from_voxels(a.dims, a.world_from_voxel, voxels, a.rescale, None)?;
+    Ok(Volume {
+        hounsfield: a.hounsfield,
+        loss: a.loss.and(b.loss),
+        ..blended
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::volume::Rescale;
+
+    fn volume(voxels: Voxels, fill: Option<f64>) -> Volume {
+        let rescale = Rescale {
+            slope: 2.0,
+            intercept: 1.0,
+        };
+        Volume::from_voxels([3, 1, 1], DAffine3::IDENTITY, voxels, rescale, fill).expect("a volume")
+    }
+
+    #[test]
+    fn a_blend_is_that_of_the_values_and_no_data_stays_no_data() {
+        let a = volume(Voxels::U8(vec![0, 10, 255]), Some(255.0));
+        let b = volume(Voxels::U8(vec![4, 30, 7]), None);
+        let found = blend(&a, &b, 0.25).expect("a volume");
+        // The hole takes the number of its neighbour.
+        assert_eq!(found.voxels, Voxels::F32(vec![1.0, 15.0, 15.0]));
+        assert_eq!(found.validity, Some(vec![1, 1, 0]));
+        assert_eq!(found.value_range, [3.0, 31.0]);
+    }
+
+    #[test]
+    fn samples_are_runs_over_all_of_the_volume_and_never_too_many() {
+        assert_eq!(
+            runs(1000, 5000).collect::<Vec<_>>(),
+            (0..1000).collect::<Vec<_>>()
+        );
+        let found: Vec<_> = runs(10_000, 1024).collect();
+        assert_eq!(found.len(), 1024);
+        assert_eq!(found[..2], [0, 1]);
+        assert_eq!(found[RUN], 2500);
+        assert!(found.is_sorted_by(|a, b| a < b) && found[1023] < 10_000);
+        assert_eq!(runs(10_000, 0).count(), RUN);
+    }
+}

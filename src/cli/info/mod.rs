@@ -1,0 +1,230 @@
+//! `stratavox info`: what a volume is, before anything is drawn.
+
+mod place;
+mod text;
+
+use super::{
+    Error,
+    flags::InputFlags,
+    histogram::unit,
+    memory::RenderBytes,
+    output::{say, say_aside},
+};
+use crate::{
+    transfer::{Kind, ValueSummary},
+    volume::{Grid, Header, Meaning, Pick, ReadError, Source, Statistics},
+};
+use clap::Args;
+use glam::DVec3;
+use serde::Serialize;
+use std::ops::Range;
+
+/// Say what a volume holds
+#[derive(Args, Debug)]
+#[command(after_help = "Example:\n  stratavox info phantom:head --json")]
+pub struct Info {
+    #[command(flatten)]
+    input: InputFlags,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// The JSON, key by key; lengths in world units, values after rescale.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct Report {
+    format: &'static str,
+    dims: [u32; 3],
+    components: u32,
+    times: u32,
+    r#type: &'static str,
+    spacing: [f64; 3],
+    /// Row-major, of voxel centres as index space.
+    world_from_voxel: [[f64; 4]; 4],
+    /// Over finite voxels that are not the fill, of all times; `null` where there are none.
+    min: Option<f64>,
+    max: Option<f64>,
+    mean: Option<f64>,
+    non_finite: u64,
+    fill_count: u64,
+    variables: Vec<String>,
+    render_bytes: RenderBytes,
+    /// Of values; `null` where the file is silent.
+    unit: Option<String>,
+    /// What the numbers of a voxel are to each other: numbers, rgb, rgba, vector or channels.
+    meaning: &'static str,
+    /// One for each component that is a channel.
+    channels: Vec<ChannelReport>,
+    /// One for each time, or none.
+    time_names: Vec<String>,
+    series: Vec<SeriesReport>,
+    notes: Vec<String>,
+}
+
+/// A thing seen in the same place as others.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct ChannelReport {
+    name: String,
+    srgb: Option<[f32; 3]>,
+    window: Option<[f64; 2]>,
+}
+
+/// A series of a DICOM folder.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct SeriesReport {
+    uid: String,
+    description: String,
+    pictures: usize,
+}
+
+impl Info {
+    /// Reads all of the input and prints what it is like.
+    pub fn run(self) -> Result<(), Error> {
+        let limits = self.input.limits();
+        let source = self.input.open_as_stored(&limits)?;
+        let header = source.header();
+        self.input.time(header)?;
+        if self.input.time.is_some() {
+            say_aside("--time has no effect on info, its numbers are those of all times");
+        }
+        let components = self.input.components(header)?;
+        let statistics = Statistics::of(source.as_ref(), components.clone(), &limits)?;
+        let mut report = report(header, &statistics);
+        if header.is_earth {
+            // Uneven levels are drawn from even ones, of which there are more.
+            let drawn = self.input.open(&limits)?;
+            let is_other = drawn.header().dims != header.dims;
+            report.render_bytes =
+                RenderBytes::of(drawn.header(), is_other || has_holes(&statistics));
+        }
+        if self.json {
+            for note in &header.notes {
+                say_aside(note);
+            }
+            let json = serde_json::to_string_pretty(&report).expect("numbers as JSON");
+            say(&format!("{json}\n"))
+        } else {
+            let kind = kind(source.as_ref(), &components, &statistics)?;
+            let page = text::Page {
+                report: &report,
+                header,
+                input: &self.input,
+                statistics: &statistics,
+                kind,
+            };
+            say(&page.text(&limits))
+        }
+    }
+}
+
+/// What the values of the first time look like, where one number a voxel is drawn.
+fn kind(
+    source: &dyn Source,
+    components: &Range<u32>,
+    statistics: &Statistics,
+) -> Result<Option<Kind>, ReadError> {
+    let header = source.header();
+    if components.len() != 1 || statistics.valid_count == 0 {
+        return Ok(None);
+    }
+    let pick = Pick {
+        time: 0,
+        component: components.start,
+    };
+    let voxels = source.read(pick, header.whole())?.voxels;
+    // As numbers were rounded on their way here, so is the fill.
+    let fill = header.fill.map(|fill| fill as f32);
+    let value = |i: usize| {
+        let stored = voxels.stored(i);
+        let is_valid = stored.is_finite() && Some(stored) != fill;
+        is_valid.then(|| f64::from(stored) * header.rescale.slope + header.rescale.intercept)
+    };
+    let values = (0..voxels.len()).filter_map(value);
+    let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+        [low.min(value), high.max(value)]
+    });
+    if range[0] > range[1] {
+        return Ok(None);
+    }
+    let [x, y, z] = header.dims.map(f64::from);
+    let diagonal = header
+        .world_from_voxel
+        .transform_vector3(DVec3::new(x, y, z));
+    let summary = ValueSummary::of(
+        voxels.len(),
+        range,
+        diagonal.length(),
+        header.hounsfield,
+        value,
+    );
+    Ok(Some(Kind::of(&summary)))
+}
+
+fn meaning(header: &Header) -> (&'static str, Vec<ChannelReport>) {
+    let channels = match &header.meaning {
+        Meaning::Channels(channels) => channels.as_slice(),
+        _ => &[],
+    };
+    let channels = channels.iter().map(|channel| ChannelReport {
+        name: channel.name.clone(),
+        srgb: channel.srgb,
+        window: channel.window,
+    });
+    let word = match header.meaning {
+        Meaning::Numbers => "numbers",
+        Meaning::Rgb => "rgb",
+        Meaning::Rgba => "rgba",
+        Meaning::Vector => "vector",
+        Meaning::Channels(_) => "channels",
+    };
+    (word, channels.collect())
+}
+
+fn report(header: &Header, statistics: &Statistics) -> Report {
+    let grid = Grid {
+        dims: header.dims,
+        world_from_voxel: header.world_from_voxel,
+    };
+    let known = |number: f64| number.is_finite().then_some(number);
+    let (meaning, channels) = meaning(header);
+    let series = header.series.iter().map(|series| SeriesReport {
+        uid: series.uid.clone(),
+        description: series.description.clone(),
+        pictures: series.pictures,
+    });
+    Report {
+        format: header.format.name(),
+        dims: header.dims,
+        components: header.components,
+        times: header.times,
+        r#type: header.stored.name(),
+        spacing: grid.spacing(),
+        world_from_voxel: world_from_centers(header),
+        min: known(statistics.min),
+        max: known(statistics.max),
+        mean: known(statistics.mean),
+        non_finite: statistics.non_finite_count,
+        fill_count: statistics.fill_count,
+        variables: header.variables.clone(),
+        render_bytes: RenderBytes::of(header, has_holes(statistics)),
+        unit: unit(header),
+        meaning,
+        channels,
+        time_names: header.time_names.clone(),
+        series: series.collect(),
+        notes: header.notes.clone(),
+    }
+}
+
+/// The affine of index space: index (0, 0, 0) is the centre of the first voxel.
+fn world_from_centers(header: &Header) -> [[f64; 4]; 4] {
+    let m = header.world_from_voxel.matrix3;
+    let origin = header.world_from_voxel.transform_point3(DVec3::splat(0.5));
+    // A sum with zero has no negative zero.
+    let row = |k: usize| [m.x_axis[k], m.y_axis[k], m.z_axis[k], origin[k]].map(|n| n + 0.0);
+    [row(0), row(1), row(2), [0.0, 0.0, 0.0, 1.0]]
+}
+
+fn has_holes(statistics: &Statistics) -> bool {
+    statistics.non_finite_count + statistics.fill_count > 0
+}

@@ -1,0 +1,305 @@
+//! What a person reads: lines of a name and what is known, in groups.
+
+use super::{RenderBytes, Report, place};
+use crate::{
+    camera::BoundingSphere,
+    cli::{
+        error::visible,
+        flags::{CameraFlags, InputFlags},
+        histogram::length_unit,
+        readable::{bytes, grouped, short},
+    },
+    transfer::Kind,
+    volume::{Grid, Header, Limits, Statistics},
+};
+use std::fmt::Write;
+
+/// What there is to say.
+pub struct Page<'a> {
+    pub report: &'a Report,
+    pub header: &'a Header,
+    pub input: &'a InputFlags,
+    pub statistics: &'a Statistics,
+    pub kind: Option<Kind>,
+}
+
+/// Of the line of bars.
+const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+/// Bars in the line.
+const BAR_COUNT: usize = 48;
+/// Of a list that may be long.
+const MAX_LINES: usize = 40;
+
+/// Lines, groups of them apart.
+#[derive(Default)]
+struct Lines(String);
+
+impl Lines {
+    fn group(&mut self) {
+        if !self.0.is_empty() {
+            self.0.push('\n');
+        }
+    }
+
+    fn say(&mut self, name: &str, value: impl AsRef<str>) {
+        let line = format!("{name:<13}{}", visible(value.as_ref()));
+        // Writing to a String cannot fail.
+        let _ = writeln!(self.0, "{}", line.trim_end());
+    }
+}
+
+impl Page<'_> {
+    /// All of it.
+    pub fn text(&self, limits: &Limits) -> String {
+        let mut lines = Lines::default();
+        self.what(&mut lines);
+        lines.group();
+        self.space(&mut lines);
+        lines.group();
+        self.values(&mut lines);
+        lines.group();
+        self.drawing(&mut lines);
+        if self.header.variables.len() > 1 {
+            lines.group();
+            self.variables(&mut lines, limits);
+        }
+        if !self.header.series.is_empty() {
+            lines.group();
+            self.series(&mut lines);
+        }
+        if !self.header.notes.is_empty() {
+            lines.group();
+            for note in &self.header.notes {
+                lines.say("note", note);
+            }
+        }
+        lines.0
+    }
+
+    fn what(&self, lines: &mut Lines) {
+        let (report, header) = (self.report, self.header);
+        lines.say("format", report.format);
+        match header.variables.as_slice() {
+            [] => {}
+            [only] => lines.say("variable", only),
+            [first, others @ ..] => lines.say(
+                "variable",
+                format!(
+                    "{first}: all numbers here are its own; {} more below",
+                    others.len()
+                ),
+            ),
+        }
+        let [x, y, z] = report.dims;
+        let count = grouped(header.voxel_count());
+        lines.say(
+            "dims",
+            format!("{x} x {y} x {z} = {count} voxels of {}", report.r#type),
+        );
+        if report.components > 1 {
+            lines.say(
+                "components",
+                format!("{}, {}", report.components, self.meaning()),
+            );
+        }
+        for (i, channel) in report.channels.iter().take(MAX_LINES).enumerate() {
+            let window = channel
+                .window
+                .map(|[low, high]| format!(", {} to {}", short(low), short(high)));
+            let name = format!("{i}: {}{}", channel.name, window.unwrap_or_default());
+            lines.say("", name);
+        }
+        if report.times > 1 {
+            let names = match (report.time_names.first(), report.time_names.last()) {
+                (Some(first), Some(last)) => format!(", {first} to {last}"),
+                _ => String::new(),
+            };
+            lines.say("times", format!("{}{names}", report.times));
+        } else if let Some(time) = report.time_names.first() {
+            lines.say("time", time);
+        }
+    }
+
+    fn meaning(&self) -> &'static str {
+        match self.report.meaning {
+            "rgb" => "red, green and blue",
+            "rgba" => "red, green, blue and opacity",
+            "vector" => "coordinates of a vector",
+            "channels" => "channels of the same place",
+            _ => "numbers of which the file says nothing more",
+        }
+    }
+
+    fn space(&self, lines: &mut Lines) {
+        let (report, header) = (self.report, self.header);
+        let grid = Grid {
+            dims: header.dims,
+            world_from_voxel: header.world_from_voxel,
+        };
+        let unit = length_unit(header.format).map_or(String::new(), |unit| format!(" {unit}"));
+        let lengths = |lengths: [f64; 3]| lengths.map(short).join(" x ");
+        let extent = std::array::from_fn(|k| report.spacing[k] * f64::from(report.dims[k]));
+        lines.say("extent", format!("{}{unit}", lengths(extent)));
+        lines.say("spacing", format!("{}{unit}", lengths(report.spacing)));
+        lines.say("orientation", place::orientation(&grid, header.format));
+        if let Some(shear) = place::shear(&grid) {
+            lines.say("sheared", shear);
+        }
+        let rows = report.world_from_voxel;
+        let row = |k: usize| {
+            rows[k]
+                .map(|number| format!("{:>12}", short(number)))
+                .concat()
+        };
+        lines.say("world", format!("{}   from voxel centres", row(0)));
+        lines.say("", row(1));
+        lines.say("", row(2));
+    }
+
+    fn values(&self, lines: &mut Lines) {
+        let report = self.report;
+        let unit = report
+            .unit
+            .as_ref()
+            .map_or(String::new(), |unit| format!(" {unit}"));
+        match (report.min, report.max, report.mean) {
+            (Some(min), Some(max), Some(mean)) => {
+                let range = format!(
+                    "{} to {}{unit}, mean {}",
+                    short(min),
+                    short(max),
+                    short(mean)
+                );
+                lines.say("values", range);
+                lines.say("", bars(&self.statistics.histogram.counts));
+            }
+            _ => lines.say("values", "none"),
+        }
+        if report.non_finite > 0 {
+            lines.say(
+                "not finite",
+                format!("{} voxels", grouped(report.non_finite)),
+            );
+        }
+        if report.fill_count > 0 {
+            lines.say("no data", format!("{} voxels", grouped(report.fill_count)));
+        }
+        if self.header.is_labels {
+            lines.say("labels", "values are names of things");
+        }
+    }
+
+    fn drawing(&self, lines: &mut Lines) {
+        if let Some(kind) = self.kind {
+            lines.say("drawn as", kind.sentence());
+        }
+        if let Some([azimuth, elevation]) = self.view() {
+            let degrees = format!("azimuth {azimuth}, elevation {elevation} degrees");
+            lines.say("seen from", degrees);
+        }
+        let RenderBytes { host, device } = self.report.render_bytes;
+        let (host, device) = (bytes(host), bytes(device));
+        lines.say(
+            "to draw",
+            format!("{host} of memory, {device} of the device's"),
+        );
+    }
+
+    /// Where the camera stands without a flag, in degrees.
+    fn view(&self) -> Option<[f64; 2]> {
+        let bounds = BoundingSphere::of_grid(&self.header.world_from_voxel, self.header.dims);
+        let camera = CameraFlags::default().camera(&bounds, [4, 3]).ok()?;
+        let way = (camera.eye - camera.target).normalize();
+        let angles = [way.y.atan2(way.x), way.z.clamp(-1.0, 1.0).asin()];
+        Some(angles.map(|angle| angle.to_degrees().round()))
+    }
+
+    /// The others in the file, each with what its own header says.
+    fn variables(&self, lines: &mut Lines, limits: &Limits) {
+        for (i, name) in self.header.variables.iter().take(MAX_LINES).enumerate() {
+            let flags = InputFlags {
+                variable: Some(name.clone()),
+                ..self.input.clone()
+            };
+            let what = match flags.open(limits) {
+                Ok(source) => {
+                    let header = source.header();
+                    let [x, y, z] = header.dims;
+                    let times = match header.times {
+                        1 => String::new(),
+                        times => format!(", {times} times"),
+                    };
+                    let unit =
+                        super::unit(header).map_or(String::new(), |unit| format!(", {unit}"));
+                    format!("{x} x {y} x {z}, {}{times}{unit}", header.stored.name())
+                }
+                Err(error) => error.to_string(),
+            };
+            let title = if i == 0 { "variables" } else { "" };
+            lines.say(title, format!("{name:<16} {what}"));
+        }
+        self.rest(lines, self.header.variables.len());
+        lines.say("", "--variable NAME takes one");
+    }
+
+    fn series(&self, lines: &mut Lines) {
+        for (i, series) in self.header.series.iter().take(MAX_LINES).enumerate() {
+            let title = if i == 0 { "series" } else { "" };
+            let pictures = format!("{:>5} pictures", series.pictures);
+            lines.say(
+                title,
+                format!("{pictures}  {}  {}", series.uid, series.description),
+            );
+        }
+        self.rest(lines, self.header.series.len());
+        if self.header.series.len() > 1 {
+            lines.say(
+                "",
+                "--series UID takes one; all numbers here are those of the first",
+            );
+        }
+    }
+
+    fn rest(&self, lines: &mut Lines, count: usize) {
+        if count > MAX_LINES {
+            lines.say("", format!("and {} more", count - MAX_LINES));
+        }
+    }
+}
+
+/// A histogram on one line, its counts on a logarithmic scale; a blank where there is no voxel.
+fn bars(counts: &[u64]) -> String {
+    let count = counts.len().min(BAR_COUNT);
+    let mut sums = vec![0_u64; count];
+    for (i, &voxels) in counts.iter().enumerate() {
+        sums[i * count / counts.len()] += voxels;
+    }
+    let most = sums.iter().copied().max().unwrap_or(0).max(1) as f64;
+    let bar = |voxels: u64| match voxels {
+        0 => ' ',
+        voxels => {
+            let t = (voxels as f64).ln_1p() / most.ln_1p();
+            BARS[((t * BARS.len() as f64).ceil() as usize).clamp(1, BARS.len()) - 1]
+        }
+    };
+    let line: String = sums.into_iter().map(bar).collect();
+    format!("|{line}|")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bars_are_higher_where_voxels_are_more_and_blank_where_none_are() {
+        assert_eq!(bars(&[0, 1, 100]), "| ▂█|");
+        assert_eq!(bars(&[5]), "|█|");
+        // Twice as many bins as bars: each bar is two of them.
+        let counts: Vec<u64> = (0..2 * BAR_COUNT as u64)
+            .map(|i| u64::from(i < 2))
+            .collect();
+        let line = bars(&counts);
+        assert_eq!(line.chars().filter(|&c| c == '█').count(), 1, "{line}");
+        assert_eq!(line.chars().count(), BAR_COUNT + 2, "{line}");
+    }
+}

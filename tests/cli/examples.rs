@@ -1,0 +1,223 @@
+//! What README and `--help` show runs: every `stratavox ...` line, in an empty folder, exits 0; and where
+//! output is shown below a line, that is what comes.
+//!
+//! README says so in code blocks of `sh`. A comment at the end of a line is left out, `&&` runs one line after
+//! the other. A line with a word of capitals (`INPUT`, `FILE`) or `[` shows a form, not an example. A block of
+//! `console` shows `$ ` lines with what they print below them.
+
+use crate::person::{Folder, Ran};
+use std::fs;
+
+/// A line to run, what it must print where that is shown, and where it stands.
+#[derive(Debug, PartialEq)]
+struct Example {
+    line: String,
+    output: Option<String>,
+    place: String,
+}
+
+impl Example {
+    fn new(line: &str, place: &str) -> Self {
+        Self {
+            line: line.to_owned(),
+            output: None,
+            place: place.to_owned(),
+        }
+    }
+
+    /// Runs it and checks what comes.
+    fn check(&self, folder: &Folder) {
+        let mut printed = String::new();
+        for words in self.line.split(" && ") {
+            let words = words
+                .trim()
+                .strip_prefix("stratavox ")
+                .unwrap_or_else(|| panic!("{self:?}"));
+            let Ran { code, out, err } = folder.run(&words.replace('\'', ""));
+            assert_eq!(code, 0, "{self:?}: {err}");
+            printed.push_str(&out);
+        }
+        self.check_output(&printed);
+    }
+
+    fn check_output(&self, printed: &str) {
+        if let Some(wanted) = &self.output {
+            assert_eq!(printed.trim_end(), wanted.trim_end(), "{self:?}");
+        }
+    }
+}
+
+/// The line without its comment, if it is an example.
+fn example_line(line: &str) -> Option<&str> {
+    let line = line.split(" #").next().unwrap_or_default().trim();
+    let is_form = |word: &str| {
+        let word = word.trim_matches(|c: char| !c.is_alphanumeric());
+        word.len() > 1 && word.chars().all(|c| c.is_ascii_uppercase())
+    };
+    let parts = line.split([' ', '|', ',', '.', '=']);
+    let is_example =
+        line.starts_with("stratavox ") && !line.contains('[') && !parts.clone().any(is_form);
+    is_example.then_some(line)
+}
+
+/// The examples of a text in Markdown.
+fn of_markdown(text: &str, place: &str) -> Vec<Example> {
+    let mut examples: Vec<Example> = Vec::new();
+    let mut fence: Option<&str> = None;
+    for (number, line) in text.lines().enumerate() {
+        let place = format!("{place}:{}", number + 1);
+        match (fence, line.trim_start().strip_prefix("```")) {
+            (None, Some(language)) => fence = Some(language),
+            (Some(_), Some(_)) => fence = None,
+            (Some("sh"), None) => {
+                examples.extend(example_line(line).map(|line| Example::new(line, &place)))
+            }
+            (Some("console"), None) => match line.strip_prefix("$ ") {
+                Some(line) => examples.push(Example {
+                    output: Some(String::new()),
+                    ..Example::new(line.trim(), &place)
+                }),
+                None => {
+                    let last = examples
+                        .last_mut()
+                        .and_then(|example| example.output.as_mut());
+                    let output = last.unwrap_or_else(|| panic!("{place}: output before a command"));
+                    output.push_str(line);
+                    output.push('\n');
+                }
+            },
+            _ => {}
+        }
+    }
+    examples
+}
+
+/// The examples at the end of a help.
+fn of_help(help: &str, place: &str) -> Vec<Example> {
+    let after = help.split_once("\nExample").map_or("", |(_, after)| after);
+    let lines = after.lines().filter_map(example_line);
+    lines.map(|line| Example::new(line, place)).collect()
+}
+
+/// The verbs that a help lists, `help` left out.
+fn verbs(help: &str) -> Vec<String> {
+    let Some((_, list)) = help.split_once("Commands:\n") else {
+        return Vec::new();
+    };
+    let lines = list.lines().take_while(|line| !line.is_empty());
+    let names = lines
+        .filter(|line| !line.starts_with("   "))
+        .filter_map(|line| line.split_whitespace().next());
+    names
+        .filter(|&name| name != "help")
+        .map(str::to_owned)
+        .collect()
+}
+
+/// Files that examples begin with: what a person has.
+fn given(folder: &Folder) {
+    let tf = r#"[{"ColorSpace":"RGB","Name":"Own","RGBPoints":[0,0,0,0,1,1,1,1]}]"#;
+    folder.file("colours.json", tf);
+    let bone = r#"<MRML><VolumeProperty name="CT-Bone" scalarOpacity="4 0 0 1 1" colorTransfer="8 0 0 0 0 1 1 1 1"/>
+        <VolumeProperty name="CT-Air" scalarOpacity="4 0 1 1 0" colorTransfer="8 0 0 0 0 1 1 1 1"/></MRML>"#;
+    folder.file("presets.xml", bone);
+    folder
+        .run("render phantom:fog,n=8 --size 8x8 --device reference -o fog.npy")
+        .assert_done();
+}
+
+#[test]
+fn every_example_of_every_help_runs() {
+    let start = Folder::new();
+    let mut waiting = vec![String::new()];
+    let mut run = 0;
+    while let Some(verb) = waiting.pop() {
+        let help = start.run(&format!("{verb} --help"));
+        help.assert_done();
+        waiting.extend(
+            verbs(&help.out)
+                .into_iter()
+                .map(|below| format!("{verb} {below}")),
+        );
+        let examples = of_help(&help.out, &format!("stratavox{verb} --help"));
+        assert!(
+            !examples.is_empty(),
+            "stratavox{verb} --help shows no example: {}",
+            help.out
+        );
+        let folder = Folder::new();
+        given(&folder);
+        for example in examples {
+            // What pictures cost on this machine is asked elsewhere, in less time.
+            if verb == " bench" {
+                continue;
+            }
+            // Examples of one help may write to the same names.
+            let again = example
+                .line
+                .split_whitespace()
+                .skip_while(|&word| word != "-o")
+                .nth(1);
+            if let Some(name) = again.filter(|&name| name != ".") {
+                let _ = fs::remove_file(folder.path(name));
+            }
+            example.check(&folder);
+            run += 1;
+        }
+    }
+    println!("{run} examples");
+    assert!(run >= 15, "only {run} examples");
+}
+
+#[test]
+fn every_example_of_the_readme_runs_and_prints_what_is_shown() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/README.md");
+    let text = fs::read_to_string(path).expect("the README");
+    let examples = of_markdown(&text, "README.md");
+    let folder = Folder::new();
+    for example in &examples {
+        example.check(&folder);
+    }
+    let shown = examples
+        .iter()
+        .filter(|example| example.output.is_some())
+        .count();
+    println!("{} examples, {shown} with their output", examples.len());
+    assert!(examples.len() >= 3 && shown >= 1, "{examples:#?}");
+}
+
+#[test]
+fn examples_are_told_from_forms_and_comments() {
+    let text = "```sh\ncargo build\nstratavox info phantom:fog   # what\nstratavox info INPUT\n\
+        stratavox render a -o OUT.png|.exr\n```\nstratavox not this\n```console\n$ stratavox preset list\na\nb\n```\n";
+    let found = of_markdown(text, "x");
+    let lines: Vec<_> = found
+        .iter()
+        .map(|example| (example.line.as_str(), example.output.as_deref()))
+        .collect();
+    assert_eq!(
+        lines,
+        [
+            ("stratavox info phantom:fog", None),
+            ("stratavox preset list", Some("a\nb\n"))
+        ]
+    );
+    assert_eq!(found[0].place, "x:3");
+    let help = "Usage: stratavox x\n\nExamples:\n  stratavox a b\n  stratavox c\n";
+    assert_eq!(of_help(help, "y").len(), 2);
+    assert_eq!(
+        verbs("Commands:\n  render  Draw\n          more\n  help    Print\n\nOptions:\n  -h"),
+        ["render"]
+    );
+}
+
+#[test]
+#[should_panic(expected = "stratavox x")]
+fn an_example_that_prints_something_else_is_found() {
+    let example = Example {
+        output: Some("b\n".to_owned()),
+        ..Example::new("stratavox x", "z")
+    };
+    example.check_output("b\n\n");
+    example.check_output("a\n");
+}

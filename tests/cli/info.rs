@@ -1,0 +1,104 @@
+//! `info` for a person: exact text, and nothing that a file says can steer the terminal.
+
+use crate::person::Folder;
+
+/// What is said of a small file, to the letter.
+#[test]
+fn info_says_all_of_a_small_file_in_groups() {
+    let folder = Folder::new();
+    let header = "NRRD0004\ntype: short\ndimension: 3\nsizes: 4 2 1\nencoding: raw\nendian: little\n\
+        space: left-posterior-superior\nspace directions: (0.5,0,0) (0,0.75,0) (0,0,2.5)\n\
+        space origin: (0,0,0)\n\n";
+    let mut bytes = header.as_bytes().to_vec();
+    bytes.extend(
+        [-1000_i16, -1000, -1000, -1000, 0, 40, 60, 1000]
+            .iter()
+            .flat_map(|n| n.to_le_bytes()),
+    );
+    folder.file("a.nrrd", bytes);
+    let ran = folder.run("info a.nrrd");
+    ran.assert_done();
+    let wanted = "\
+format       nrrd
+dims         4 x 2 x 1 = 8 voxels of i16
+
+extent       2 x 1.5 x 2.5
+spacing      0.5 x 0.75 x 2.5
+orientation  x left, y posterior, z superior
+world                -0.5           0           0           0   from voxel centres
+                        0       -0.75           0           0
+                        0           0         2.5           0
+
+values       -1000 to 1000, mean -362.5
+             |█                       ▅▄                      ▄|
+
+drawn as     the values are Hounsfield units: bone, and faint skin
+seen from    azimuth 60, elevation 15 degrees
+to draw      16 bytes of memory, 16 bytes of the device's
+";
+    assert_eq!(ran.out, wanted, "{}", ran.out);
+}
+
+#[test]
+fn of_several_variables_it_is_said_whose_numbers_these_are() {
+    let folder = Folder::new();
+    let ran = folder.run("info phantom:storm,n=16");
+    ran.assert_done();
+    let first = "variable     cloud: all numbers here are its own; 5 more below\n";
+    assert!(ran.out.contains(first), "{}", ran.out);
+    assert!(ran.out.contains("times        8\n"), "{}", ran.out);
+    for line in [
+        "variables    cloud            16 x 16 x 6, f32, 8 times\n",
+        "             temperature      16 x 16 x 6, f32, 8 times\n",
+        "             --variable NAME takes one\n",
+    ] {
+        assert!(ran.out.contains(line), "no {line:?} in {}", ran.out);
+    }
+    let ran = folder.run("info phantom:storm,n=16 --variable temperature");
+    assert!(
+        ran.out.contains("variable     temperature: all numbers"),
+        "{}",
+        ran.out
+    );
+}
+
+#[test]
+fn voxels_without_data_are_counted_and_a_volume_of_none_has_no_values() {
+    let folder = Folder::new();
+    let numbers = |numbers: [f32; 4]| {
+        numbers
+            .iter()
+            .flat_map(|n| n.to_le_bytes())
+            .collect::<Vec<_>>()
+    };
+    folder.file("a.bin", numbers([1.0, f32::NAN, 2.0, f32::INFINITY]));
+    let ran = folder.run("info a.bin --raw 2x2x1,f32");
+    ran.assert_done();
+    assert!(
+        ran.out.contains("values       1 to 2, mean 1.5\n"),
+        "{}",
+        ran.out
+    );
+    assert!(ran.out.contains("not finite   2 voxels\n"), "{}", ran.out);
+    folder.file("b.bin", numbers([f32::NAN; 4]));
+    let ran = folder.run("info b.bin --raw 2x2x1,f32");
+    ran.assert_done();
+    assert!(ran.out.contains("values       none\n"), "{}", ran.out);
+}
+
+#[test]
+fn a_name_in_a_file_cannot_steer_the_terminal() {
+    let folder = Folder::new();
+    let header = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 1 1 2\nencoding: raw\n\
+        sample units: \"\u{1b}[2Jdeg\"\n\n";
+    let mut bytes = header.as_bytes().to_vec();
+    bytes.extend([1, 2]);
+    folder.file("a.nrrd", bytes);
+    for words in ["info a.nrrd", "info a.nrrd --json"] {
+        let ran = folder.run(words);
+        assert!(
+            !ran.out.contains('\u{1b}') && !ran.err.contains('\u{1b}'),
+            "{ran:?}"
+        );
+    }
+}
