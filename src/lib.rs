@@ -142,6 +142,13 @@
 //! `staging` is dropped while the upload may run: [`gpu::Gpu::announce`] was called with its value before.
 //! `examples/embed` is a whole host, from its device to a PNG, with the ray caster.
 //!
+//! # Several values a voxel
+//!
+//! [`scene::Scene::beside`] puts volumes on one grid together, sample by sample. A host makes them by
+//! [`resident::GpuVolume::several`] and [`resident::GpuTransfer::several`], takes the variant of
+//! [`technique::Words::mixed`] and the parameters of [`technique::View::recordings_of`], and binds the bricks of all of
+//! them by [`technique::Inputs`].
+//!
 //! # What holds everywhere
 //!
 //! Recording creates, destroys and waits for nothing. Only `gpu/headless.rs` makes a device. Files are

@@ -1,6 +1,8 @@
 //! A label map over a volume: read, brought to the volume's grid, given colours, and cut.
 
-use super::{Error, flags::SceneFlags, load::say_what_was_lost, progress::Progress, shown::Other};
+use super::{
+    Error, exaggerate, flags::SceneFlags, load::say_what_was_lost, progress::Progress, shown::Other,
+};
 use crate::{
     format,
     technique::Role,
@@ -15,8 +17,14 @@ use glam::DVec3;
 /// Names that are said, at most.
 const NAMES: usize = 4;
 
-/// The map that `--labels` names, on `grid`, with what it looks like.
-pub fn read(scene: &SceneFlags, grid: &Grid, progress: &Progress) -> Result<Other, Error> {
+/// The map that `--labels` names, on `grid`, with what it looks like. The volume is drawn so much higher than it is,
+/// and the map with it.
+pub fn read(
+    scene: &SceneFlags,
+    grid: &Grid,
+    height_factor: f64,
+    progress: &Progress,
+) -> Result<Other, Error> {
     let flags = &scene.labels;
     let path = flags.labels.as_deref().expect("asked for");
     let refused = |problem: &str| Error::Input {
@@ -32,7 +40,8 @@ pub fn read(scene: &SceneFlags, grid: &Grid, progress: &Progress) -> Result<Othe
             "a label map holds one number a voxel, of one time; this file holds several",
         ));
     }
-    let map = Volume::read(source.as_ref(), Pick::default(), header.whole(), &limits)?;
+    let mut map = Volume::read(source.as_ref(), Pick::default(), header.whole(), &limits)?;
+    map.world_from_voxel = exaggerate::stretched(map.world_from_voxel, height_factor);
     say_what_was_lost(&map, "labels", progress);
     let mut map = placed(map, grid, progress).ok_or_else(|| {
         refused("no voxel of the volume lies in the label map: they do not overlap")

@@ -7,7 +7,7 @@ use super::{
     progress::Progress,
     renderer::Device,
 };
-use crate::volume::{Limits, Loss, Magnitude, Meaning, Source, Volume};
+use crate::volume::{Header, Limits, Loss, Magnitude, Meaning, Source, Volume};
 
 /// The one volume that the words name, in memory.
 pub fn load(scene: &SceneFlags, device: &Device, progress: &Progress) -> Result<Volume, Error> {
@@ -19,7 +19,8 @@ pub fn load(scene: &SceneFlags, device: &Device, progress: &Progress) -> Result<
     }
     let limits = scene.input.limits();
     let source = open(&scene.input, &limits)?;
-    load_from(source, scene, device, progress)
+    let (volume, _) = load_from(source, scene, device, progress)?;
+    Ok(volume)
 }
 
 /// The source that the words name. Vectors are taken by their length, unless a word takes something else.
@@ -32,34 +33,64 @@ pub fn open(input: &InputFlags, limits: &Limits) -> Result<Box<dyn Source>, Erro
     Ok(source)
 }
 
-/// The one volume of `source` that the words pick, where there is memory for it.
+/// The one volume of `source` that the words pick, and how much higher than it is it will be drawn.
 pub fn load_from(
     source: Box<dyn Source>,
     scene: &SceneFlags,
     device: &Device,
     progress: &Progress,
-) -> Result<Volume, Error> {
+) -> Result<(Volume, f64), Error> {
     // What may be wrong with the words is said before anything about memory.
     scene.input.pick(source.header())?;
     let source = fitting(source, &scene.input, device.memory(), 1)?;
-    read(source.as_ref(), scene, progress)
+    read_stretched(source.as_ref(), scene, progress)
 }
 
 /// The one volume of `source` that the words pick; there is memory for it.
 pub fn read(source: &dyn Source, scene: &SceneFlags, progress: &Progress) -> Result<Volume, Error> {
+    let (volume, _) = read_stretched(source, scene, progress)?;
+    Ok(volume)
+}
+
+fn read_stretched(
+    source: &dyn Source,
+    scene: &SceneFlags,
+    progress: &Progress,
+) -> Result<(Volume, f64), Error> {
     let (pick, note) = scene.input.pick(source.header())?;
     for note in source.header().notes.iter().chain(&note) {
         progress.note(note);
     }
     let whole = source.header().whole();
     let mut volume = Volume::read(source, pick, whole, &scene.input.limits())?;
-    let (factor, note) = exaggerate::factor(scene, &volume.grid(), source.header().is_earth)?;
-    volume.world_from_voxel = exaggerate::stretched(volume.world_from_voxel, factor);
+    let factor = stretch(
+        std::slice::from_mut(&mut volume),
+        scene,
+        source.header(),
+        progress,
+    )?;
+    say_what_was_lost(&volume, "voxels", progress);
+    Ok((volume, factor))
+}
+
+/// Stretches volumes of one grid upward as far as the words or the planet want it, says so, and gives the factor.
+pub fn stretch(
+    volumes: &mut [Volume],
+    scene: &SceneFlags,
+    header: &Header,
+    progress: &Progress,
+) -> Result<f64, Error> {
+    let Some(first) = volumes.first() else {
+        return Ok(1.0);
+    };
+    let (factor, note) = exaggerate::factor(scene, &first.grid(), header.is_earth)?;
     if let Some(note) = &note {
         progress.note(note);
     }
-    say_what_was_lost(&volume, "voxels", progress);
-    Ok(volume)
+    for volume in volumes {
+        volume.world_from_voxel = exaggerate::stretched(volume.world_from_voxel, factor);
+    }
+    Ok(factor)
 }
 
 /// Notes on what is not in memory as it is in the file; `voxels` is what they are called.

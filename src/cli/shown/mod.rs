@@ -1,12 +1,14 @@
 //! What a picture shows: a volume and how it is classified, and what it is seen together with.
 
+mod colors;
+
 use super::{
     Error,
     flags::{
         ChannelWord, Classification, ClassificationFlags, Component, Plan, SceneFlags, summary,
     },
     labels,
-    load::{load_from, open, say_what_was_lost},
+    load::{load_from, open, say_what_was_lost, stretch},
     memory::fitting,
     progress::Progress,
     renderer::Device,
@@ -15,10 +17,8 @@ use crate::{
     scene::{Beside, Channel},
     shaders::MAX_CHANNELS,
     technique::{Filter, Mode, Role, Settings},
-    transfer::{
-        CHANNEL_COLORS, Classified, LabelTable, TransferFunction, Window, of_channel, of_colors,
-    },
-    volume::{Meaning, Source, Volume, labels::labels_of, read_all, read_colors},
+    transfer::{CHANNEL_COLORS, Classified, LabelTable, TransferFunction, Window, of_channel},
+    volume::{Meaning, Source, Volume, labels::labels_of, read_all},
 };
 
 /// Everything that is drawn.
@@ -30,6 +30,8 @@ pub struct Shown {
     pub classification: Classification,
     /// Where the values themselves ask for one.
     pub filter: Option<Filter>,
+    /// How much higher than it is the volume is drawn.
+    height_factor: f64,
     others: Others,
 }
 
@@ -84,7 +86,7 @@ impl Shown {
                 ));
             };
             let grid = shown.volume.grid();
-            let map = labels::read(scene, &grid, progress)?;
+            let map = labels::read(scene, &grid, shown.height_factor, progress)?;
             let is_drawn = map.function.opacity.iter().any(|point| point.opacity > 0.0);
             if is_drawn && says_nothing(&scene.classification)? {
                 fade(&mut shown.classification);
@@ -170,7 +172,7 @@ struct Reader<'a> {
 impl Reader<'_> {
     fn one(&self, source: Box<dyn Source>) -> Result<Shown, Error> {
         let is_labels = source.header().is_labels;
-        let volume = load_from(source, self.scene, self.device, self.progress)?;
+        let (volume, height_factor) = load_from(source, self.scene, self.device, self.progress)?;
         let flags = &self.scene.classification;
         let has_table = self.scene.labels.label_tf.is_some() && self.scene.labels.labels.is_none();
         let may_name = says_nothing(flags)? && self.mode == Mode::Composite;
@@ -180,6 +182,7 @@ impl Reader<'_> {
                     volume,
                     classification: Classification::Function(function),
                     filter: Some(Filter::Nearest),
+                    height_factor,
                     others: Others::Channels(Vec::new()),
                 });
             }
@@ -194,6 +197,7 @@ impl Reader<'_> {
             volume,
             classification,
             filter: found_labels.then_some(Filter::Nearest),
+            height_factor,
             others: Others::Channels(Vec::new()),
         })
     }
@@ -229,7 +233,8 @@ impl Reader<'_> {
         let (time, _) = self.scene.input.time(header)?;
         let indices: Vec<u32> = words.iter().map(|word| word.index).collect();
         let limits = self.scene.input.limits();
-        let volumes = read_all(source.as_ref(), indices, time, &limits)?;
+        let mut volumes = read_all(source.as_ref(), indices, time, &limits)?;
+        let height_factor = stretch(&mut volumes, self.scene, header, self.progress)?;
         let known = match &header.meaning {
             Meaning::Channels(known) => known.as_slice(),
             _ => &[],
@@ -273,79 +278,7 @@ impl Reader<'_> {
             volume: first.volume,
             classification: Classification::Function(first.function),
             filter: None,
-            others: Others::Channels(made),
-        })
-    }
-
-    fn colors(&self, source: Box<dyn Source>) -> Result<Shown, Error> {
-        let flags = &self.scene.classification;
-        if let Some(preset) = &flags.preset {
-            return Err(Error::usage(
-                format!("--preset {preset} colours numbers, and this volume has its own colours"),
-                "take one of them: --component 0",
-            ));
-        }
-        let by_alpha = source.header().components == 4;
-        let source = self.fitted(source, source_count(by_alpha))?;
-        let (time, _) = self.scene.input.time(source.header())?;
-        let limits = self.scene.input.limits();
-        let mut volumes = read_colors(source.as_ref(), time, &limits)?;
-        for volume in &volumes {
-            say_what_was_lost(volume, "voxels", self.progress);
-        }
-        let window = flags.window()?;
-        if self.mode.is_projection() {
-            return self.projected_colors(volumes, window);
-        }
-        let function = match (flags.function_of_file()?, window) {
-            (Some(function), Some(window)) => function.spread_over(window),
-            (Some(function), None) => function,
-            (None, window) => of_colors(labels::diagonal(&volumes[0]), by_alpha, window),
-        };
-        self.progress.note(if by_alpha {
-            "a voxel holds a colour: drawn in it, opaque by its alpha; --component N takes one number"
-        } else {
-            "a voxel holds a colour: drawn in it, opaque by its luma; --component N takes one number"
-        });
-        let red = volumes.remove(0);
-        Ok(Shown {
-            volume: red,
-            classification: Classification::Function(function),
-            filter: None,
-            others: Others::Colors(volumes),
-        })
-    }
-
-    /// Red, green and blue each projected by itself.
-    fn projected_colors(
-        &self,
-        volumes: Vec<Volume>,
-        window: Option<Window>,
-    ) -> Result<Shown, Error> {
-        if self.mode == Mode::Xray {
-            return Err(Error::usage(
-                "--mode xray: the integral of a colour has no window",
-                "take one number of it: --component 0",
-            ));
-        }
-        self.progress
-            .note("red, green and blue are projected one by one, and added");
-        let window = window.unwrap_or(Window::of_range([0.0, 1.0]));
-        let mut made: Vec<Other> = Vec::new();
-        for (c, volume) in volumes.into_iter().take(3).enumerate() {
-            let mut function = window.grey(Classified::Projection);
-            function.color[1].srgb = std::array::from_fn(|k| f64::from(u8::from(k == c)));
-            made.push(Other {
-                volume,
-                function,
-                role: Role::Numbers,
-            });
-        }
-        let first = made.remove(0);
-        Ok(Shown {
-            volume: first.volume,
-            classification: Classification::Function(first.function),
-            filter: None,
+            height_factor,
             others: Others::Channels(made),
         })
     }
@@ -378,10 +311,6 @@ fn fade(classification: &mut Classification) {
             point.opacity *= REST;
         }
     }
-}
-
-fn source_count(by_alpha: bool) -> usize {
-    3 + usize::from(by_alpha)
 }
 
 fn classified(mode: Mode) -> Classified {
