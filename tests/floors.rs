@@ -24,6 +24,7 @@ const FLOORS: &[&[&str]] = &[
 const FREE_OF_VULKAN: &[&str] = &[
     "shaders",
     "real",
+    "fence",
     "ray",
     "lattice",
     "color",
