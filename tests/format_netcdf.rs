@@ -167,6 +167,28 @@ fn north_is_north_and_up_is_up_in_kilometres_of_the_earth() {
 }
 
 #[test]
+fn a_bent_grid_lies_flat_with_the_steps_of_its_middle() {
+    let degree = 6371.0088 * std::f64::consts::PI / 180.0;
+    let source = open("netcdf/curved.nc", Some("placed")).unwrap();
+    let header = source.header();
+    assert!(header.is_earth);
+    let notes = header.notes.join("; ");
+    assert!(notes.contains("the grid is drawn flat"), "{notes}");
+    let step = center(header, [1.0, 1.0, 0.0]) - center(header, [0.0; 3]);
+    // A great circle cuts the corner of the circle of latitude by one part in a million here.
+    let east = 0.25 * degree * 59_f64.to_radians().cos();
+    assert!((step.x - east).abs() < 1e-5 * east, "{step}, not {east} km");
+    assert!((step.y + 0.5 * degree).abs() < 1e-9 * degree, "{step}");
+    assert!(!header.variables.iter().any(|name| name == "lat2d"));
+    let bare = open("netcdf/curved.nc", Some("bare")).unwrap();
+    let notes = bare.header().notes.join("; ");
+    assert!(
+        notes.contains("no coordinates along x: points are taken 1 km apart"),
+        "{notes}"
+    );
+}
+
+#[test]
 fn of_an_ensemble_the_first_member_is_taken_and_another_by_its_index() {
     let source = open("netcdf/order.nc", Some("w")).unwrap();
     let notes = source.header().notes.join("; ");

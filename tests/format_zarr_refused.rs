@@ -543,3 +543,42 @@ fn headers_longer_than_the_limit_are_not_read() {
     let message = refused.unwrap_err().to_string();
     assert!(message.contains("the header needs"), "{message}");
 }
+
+#[test]
+fn a_read_takes_the_volume_and_one_chunk_and_little_else() {
+    use std::io::Write;
+    const VOLUME_BYTES: usize = 64 * 256 * 256 * 2;
+    const CHUNK_BYTES: usize = VOLUME_BYTES / 8;
+    const BESIDE_BYTES: usize = 1 << 20;
+    let numbers: Vec<u8> = (0..CHUNK_BYTES as u32 / 2)
+        .flat_map(|n| ((n % 977) as u16).to_le_bytes())
+        .collect();
+    let zlib = {
+        let mut encoder = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::fast());
+        encoder.write_all(&numbers).unwrap();
+        encoder.finish().unwrap()
+    };
+    for (compressor, bytes) in [(Value::Null, &numbers), (json!({"id": "zlib"}), &zlib)] {
+        let store = Store::new(&[]);
+        let array = json!({
+            "zarr_format": 2, "shape": [64, 256, 256], "chunks": [8, 256, 256], "dtype": "<u2", "order": "C",
+            "fill_value": 0, "filters": null, "compressor": compressor,
+        });
+        store.write(".zarray", array.to_string());
+        for chunk in 0..8 {
+            store.write(&format!("{chunk}.0.0"), bytes);
+        }
+        let source = store.open().unwrap();
+        let whole = source.header().whole();
+        memory::start();
+        let piece = source
+            .read(stratavox::volume::Pick::default(), whole)
+            .unwrap();
+        let peak = memory::peak_since_start();
+        assert_eq!(piece.voxels.len(), VOLUME_BYTES / 2);
+        // Beside the volume: a chunk as it is in its file and as it is decoded, which grows by doubling.
+        let most = VOLUME_BYTES + bytes.len() + 2 * CHUNK_BYTES + BESIDE_BYTES;
+        println!("{compressor}: {peak} bytes at most, {most} allowed");
+        assert!(peak <= most, "{compressor}: {peak} bytes, {most} allowed");
+    }
+}

@@ -14,121 +14,16 @@ mod memory;
 mod mutate;
 #[path = "shared/nifti.rs"]
 mod nifti;
+#[path = "shared/survive.rs"]
+mod survive;
 
 use encode::{ascii, bytes_of, bzip2, gzip, hex, zlib};
 use files::Folder;
-use mutate::{Mutation, Random};
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use stratavox::format;
-use stratavox::volume::{Limits, Pick, ReadError, VoxelType, Wanted};
+use stratavox::volume::VoxelType;
+use survive::{Base, read_all, survive};
 
 #[global_allocator]
 static MEMORY: memory::Counting = memory::Counting;
-
-/// Small, so that a lie shows.
-const LIMITS: Limits = Limits {
-    max_bytes: 4 << 20,
-    max_files: 100,
-    max_header_bytes: 1 << 16,
-    detached: true,
-};
-
-/// What a read may take beyond the volume.
-const BESIDE_BYTES: usize = 64 << 20;
-
-/// Files that belong together; the first is opened.
-type Base = Vec<(&'static str, Vec<u8>)>;
-
-/// Reads all of a mutated file, one time and component after the other. Gives the number of voxels read.
-fn read_all(folder: &Folder, base: &Base) -> Result<u64, ReadError> {
-    let source = format::open(&folder.path(base[0].0), &Wanted::default(), &LIMITS)?;
-    let header = source.header();
-    assert!(header.world_from_voxel.inverse().is_finite(), "{header:?}");
-    let mut voxels = 0;
-    for time in 0..header.times.min(4) {
-        for component in 0..header.components.min(4) {
-            let piece = source.read(Pick { time, component }, header.whole())?;
-            assert_eq!(piece.voxels.len() as u64, header.voxel_count(), "voxels");
-            voxels += header.voxel_count();
-        }
-    }
-    Ok(voxels)
-}
-
-/// Mutates the bases of one reader in turn.
-fn survive(reader: &str, bases: &[Base]) {
-    let count: u64 = match std::env::var("STRATAVOX_MUTATIONS") {
-        Ok(number) => number.parse().expect("STRATAVOX_MUTATIONS is a number"),
-        Err(_) => 20_000,
-    };
-    let folder = Folder::new();
-    let mut whole = Vec::new();
-    for base in bases {
-        for (name, bytes) in base {
-            folder.write(name, bytes);
-        }
-        let voxels = read_all(&folder, base).unwrap_or_else(|e| panic!("{reader}: {e}"));
-        whole.push(voxels);
-    }
-    let (mut refused, mut read, mut worst_memory) = (0_u64, 0_u64, 0_usize);
-    for number in 0..count {
-        let which = (number % bases.len() as u64) as usize;
-        let base = &bases[which];
-        let mut random = Random::new(number);
-        let (name, bytes) = &base[random.below(base.len())];
-        let (mutated, mutation) = mutate::mutate(bytes, &mut random);
-        folder.write(name, &mutated);
-        memory::start();
-        let outcome = catch_unwind(AssertUnwindSafe(|| read_all(&folder, base)));
-        let memory = memory::peak_since_start();
-        worst_memory = worst_memory.max(memory);
-        let failed = |what: &str| -> ! {
-            let kept = std::env::temp_dir().join(format!("stratavox-mutation-{reader}-{number}"));
-            std::fs::write(&kept, &mutated).unwrap();
-            panic!("{reader} mutation {number} ({mutation:?} of {name}): {what}; kept as {kept:?}");
-        };
-        let Ok(outcome) = outcome else {
-            failed("a panic");
-        };
-        if memory > LIMITS.max_bytes as usize + BESIDE_BYTES {
-            failed(&format!("{memory} bytes of memory"));
-        }
-        match outcome {
-            Err(_) => refused += 1,
-            Ok(voxels) => {
-                read += 1;
-                // Every base ends with its last voxel, or with a line end that carries nothing.
-                let lost = bytes.len().saturating_sub(mutated.len());
-                if mutation == Mutation::Cut && lost > 1 {
-                    failed("a volume out of a file that was cut");
-                }
-                // Less than one bit a voxel cannot be voxels, unless they are compressed: there the checksum tells.
-                let present: usize = base
-                    .iter()
-                    .map(|(name, _)| {
-                        std::fs::metadata(folder.path(name)).map_or(0, |m| m.len() as usize)
-                    })
-                    .sum();
-                if voxels > whole[which] && voxels as usize > 1032 * present {
-                    failed("more voxels than the bytes can hold");
-                }
-            }
-        }
-        folder.write(name, bytes);
-    }
-    println!(
-        "{reader}: {count} mutations, {refused} refused, {read} read, at most {worst_memory} bytes of memory"
-    );
-    assert_eq!(refused + read, count);
-    assert!(
-        refused > count / 4,
-        "{refused} of {count} refused: the mutations do no harm"
-    );
-    assert!(
-        read > 0 || count < 1000,
-        "nothing was read: the mutations do only harm"
-    );
-}
 
 const COUNT: usize = 5 * 4 * 3;
 
@@ -422,7 +317,7 @@ fn vtk_survives_mutations() {
 }
 
 /// Files of an independent writer, tests/fixtures.
-fn fixture(format: &str, name: &'static str) -> Base {
+fn unpadded(format: &str, name: &'static str) -> Base {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");
     let mut bytes = std::fs::read(path.join(format).join(name)).unwrap();
     let folder = Folder::new();
@@ -446,7 +341,7 @@ fn npy_survives_mutations() {
         "colors.npy",
         "fortran-times.npy",
     ];
-    survive("npy", &names.map(|name| fixture("npy", name)));
+    survive("npy", &names.map(|name| unpadded("npy", name)));
 }
 
 #[test]
@@ -467,7 +362,7 @@ fn tiff_survives_mutations() {
         "jpeg-gray-tiles.tif",
         "thumbnails.tif",
     ];
-    survive("tiff", &names.map(|name| fixture("tiff", name)));
+    survive("tiff", &names.map(|name| unpadded("tiff", name)));
 }
 
 #[test]
@@ -480,5 +375,5 @@ fn ome_and_imagej_survive_mutations() {
         "imagej-hyper.tif",
         "imagej-rgb.tif",
     ];
-    survive("ome", &names.map(|name| fixture("tiff", name)));
+    survive("ome", &names.map(|name| unpadded("tiff", name)));
 }

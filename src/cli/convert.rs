@@ -27,7 +27,7 @@ use std::{
     after_help = "All times and components are written unless --time and --component take one. Stored numbers stay \
     as they are\nwhere the format can say what they mean; what it cannot keep is said on stderr.\n\nExamples:\n  \
     stratavox convert phantom:head -o head.nrrd\n  \
-    stratavox convert phantom:head -o small.nii.gz --crop 64,192,64,192,0,256 --type u8 --window -200,800\n  \
+    stratavox convert phantom:head -o bone.nii.gz --type u8 --window=-200,800\n  \
     stratavox convert phantom:shells,n=64 -o shells.npy --type f32"
 )]
 pub struct Convert {
@@ -86,7 +86,10 @@ impl Convert {
         let source = self.input.open(&Limits::default())?;
         let selection = self.selection(source.header())?;
         for note in &source.header().notes {
-            progress.note(note);
+            // Said of a volume in memory; the file gets the stored numbers, or a count of those that changed.
+            if !note.starts_with("voxels are stored as") {
+                progress.note(note);
+            }
         }
         let written = self.write(source.as_ref(), &selection, &options, &progress, gate)?;
         for note in &written.notes {

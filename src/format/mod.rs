@@ -193,6 +193,12 @@ const READERS: &[Reader] = &[
         endings: &["nii", "hdr", "img", "nii.gz", "hdr.gz", "img.gz"],
         open: |path, _, limits| Ok(Box::new(nifti::open(path, limits)?)),
     },
+    #[cfg(feature = "dicom")]
+    Reader {
+        recognizes: dicom::recognizes_bare,
+        endings: &[],
+        open: dicom::open,
+    },
 ];
 
 /// The first that recognizes a folder reads it.

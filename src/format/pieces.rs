@@ -2,6 +2,7 @@
 
 use super::convert::{bytes_in_memory, to_u64};
 use super::problem::{at, invalid};
+use super::request::wanted_count;
 use crate::volume::{
     Header, Limits, Loss, Pick, Piece, Problem, ReadError, Source, VoxelBox, Voxels,
 };
@@ -106,30 +107,16 @@ impl Source for Pieces {
 
     fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
         let header = &self.header;
-        let count = common(region, header.whole())
-            .filter(|inside| *inside == region)
-            .and_then(|_| {
-                let sides = region.max.iter().zip(&region.min);
-                sides
-                    .map(|(max, min)| u64::from(max.saturating_sub(*min)))
-                    .try_fold(1_u64, u64::checked_mul)
-            });
-        let Some(count) = count else {
-            let wanted = format!("a box inside {:?} that is not empty", header.dims);
-            let found = format!("{:?} to {:?}", region.min, region.max);
-            let problem = invalid(header.format.name(), "box", wanted, &found);
-            return Err(at(&self.path)(problem));
-        };
-        let wanted_bytes = count.saturating_mul(to_u64(bytes_in_memory(header.stored)));
+        let format = header.format.name();
+        let length =
+            wanted_count(format, header, pick, region, self.max_bytes).map_err(at(&self.path))?;
+        let bytes_each = to_u64(bytes_in_memory(header.stored));
+        let wanted_bytes = to_u64(length).saturating_mul(bytes_each);
         let too_large = || Problem::Limit {
             what: "the volume".to_owned(),
             wanted_bytes,
             limit_bytes: self.max_bytes,
         };
-        let length = usize::try_from(count)
-            .ok()
-            .filter(|_| wanted_bytes <= self.max_bytes)
-            .ok_or_else(|| at(&self.path)(too_large()))?;
         let mut whole: Option<Voxels> = None;
         let mut loss = Loss::default();
         for (place, source) in &self.pieces {
@@ -152,7 +139,7 @@ impl Source for Pieces {
         match whole {
             Some(voxels) => Ok(Piece { voxels, loss }),
             None => Err(at(&self.path)(Problem::Size {
-                format: header.format.name(),
+                format,
                 wanted_bytes,
                 found_bytes: 0,
             })),

@@ -30,7 +30,7 @@ world                -0.5           0           0           0   from voxel centr
                         0           0         2.5           0
 
 values       -1000 to 1000, mean -362.5
-             |█                       ▅▄                      ▄|
+             |█                      ▄▄▄                     ▄|
 
 drawn as     the values are Hounsfield units: bone, and faint skin
 seen from    azimuth 60, elevation 15 degrees

@@ -6,6 +6,7 @@ mod animate_films;
 #[cfg(unix)]
 mod animate_stops;
 mod convert;
+mod convert_refused;
 mod device;
 mod errors;
 mod examples;
@@ -21,4 +22,5 @@ mod pictures;
 mod presets;
 mod real;
 mod sheet;
+mod weather;
 mod words;

@@ -27,7 +27,7 @@ fn every_shell_is_told_every_verb_and_its_flags() {
         let ran = folder.run(&format!("completions {shell}"));
         ran.assert_done();
         assert!(ran.err.is_empty(), "{shell}: {}", ran.err);
-        let flags = ["samples-per-voxel", "joint", "slices-3d"];
+        let flags = ["samples-per-voxel", "joint"];
         for word in verbs.iter().map(String::as_str).chain(flags) {
             assert!(ran.out.contains(word), "{shell} does not know {word}");
         }

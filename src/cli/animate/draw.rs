@@ -160,6 +160,10 @@ impl Drawing<'_> {
         Ok(ready)
     }
 
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "each is borrowed for another time"
+    )]
     fn draw_all(
         &self,
         wanted: &[u32],

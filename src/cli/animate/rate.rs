@@ -55,8 +55,9 @@ impl FromStr for Rate {
         };
         let divisor = common_divisor(frames, seconds).max(1);
         let (frames, seconds) = (frames / divisor, seconds / divisor);
-        let in_range =
-            seconds > 0 && frames * 100 >= seconds && frames <= seconds.saturating_mul(1000);
+        let in_range = seconds > 0
+            && frames.saturating_mul(100) >= seconds
+            && frames <= seconds.saturating_mul(1000);
         match (u16::try_from(frames), u16::try_from(seconds)) {
             (Ok(frames), Ok(seconds)) if in_range => Ok(Self { frames, seconds }),
             _ => Err(wanted()),

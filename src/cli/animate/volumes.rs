@@ -144,7 +144,7 @@ fn runs(count: usize, most: usize) -> impl Iterator<Item = usize> {
 fn value(volume: &Volume, i: usize) -> Option<f64> {
     let is_valid = volume.validity.as_ref().is_none_or(|valid| valid[i] != 0);
     let stored = f64::from(volume.voxels.stored(i));
-    is_valid.then(|| stored * volume.rescale.slope + volume.rescale.intercept)
+    is_valid.then_some(stored * volume.rescale.slope + volume.rescale.intercept)
 }
 
 /// Between `a` (`s = 0`) and `b` (`s = 1`); no data where either has none.

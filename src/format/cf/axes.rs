@@ -50,7 +50,7 @@ pub(super) fn in_scope<'a>(
 
 /// The axis of each dimension of `variable`.
 pub(super) fn axes_of(arrays: &dyn Arrays, variable: &Variable) -> Vec<Axis> {
-    let told: Vec<Option<Axis>> = variable
+    let mut told: Vec<Option<Axis>> = variable
         .dimensions
         .iter()
         .map(|dimension| {
@@ -59,6 +59,20 @@ pub(super) fn axes_of(arrays: &dyn Arrays, variable: &Variable) -> Vec<Axis> {
                 .or_else(|| by_name(&dimension.name))
         })
         .collect();
+    // When a forecast began is its time only where no other dimension is the time.
+    let is_start: Vec<bool> = variable
+        .dimensions
+        .iter()
+        .map(|dimension| {
+            coordinate(arrays, variable, &dimension.name).is_some_and(is_start_of_forecast)
+        })
+        .collect();
+    let mut pairs = told.iter().zip(&is_start);
+    if pairs.any(|(axis, is_start)| *axis == Some(Axis::Time) && !is_start) {
+        for (axis, _) in told.iter_mut().zip(&is_start).filter(|(_, start)| **start) {
+            *axis = Some(Axis::Other);
+        }
+    }
     let mut axes: Vec<Option<Axis>> = Vec::new();
     for axis in &told {
         // Two dimensions cannot both run east: the first of them does.
@@ -88,6 +102,10 @@ pub(super) fn axes_of(arrays: &dyn Arrays, variable: &Variable) -> Vec<Axis> {
         .collect()
 }
 
+fn is_start_of_forecast(coordinate: &Variable) -> bool {
+    coordinate.attributes.text("standard_name") == Some("forecast_reference_time")
+}
+
 fn by_attributes(coordinate: &Variable) -> Option<Axis> {
     let attributes = &coordinate.attributes;
     match attributes
@@ -105,7 +123,7 @@ fn by_attributes(coordinate: &Variable) -> Option<Axis> {
         "longitude" | "grid_longitude" | "projection_x_coordinate" => return Some(Axis::X),
         "latitude" | "grid_latitude" | "projection_y_coordinate" => return Some(Axis::Y),
         "time" => return Some(Axis::Time),
-        "realization" | "forecast_period" | "forecast_reference_time" => return Some(Axis::Other),
+        "realization" | "forecast_period" => return Some(Axis::Other),
         name if is_vertical(name) => return Some(Axis::Z),
         _ => {}
     }

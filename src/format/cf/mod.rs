@@ -16,6 +16,7 @@ mod axes;
 mod choose;
 mod columns;
 mod coordinates;
+mod curved;
 mod grid;
 mod knots;
 mod missing;

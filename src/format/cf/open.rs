@@ -3,6 +3,7 @@
 use super::axes::{coordinate, in_scope};
 use super::choose::{Choice, choose};
 use super::coordinates::Coordinate;
+use super::curved::flattened;
 use super::grid::{Grid, Role};
 use super::model::{Arrays, Kind, Variable};
 use super::place::{Place, place};
@@ -133,6 +134,25 @@ fn placed(
         {
             *place = Coordinate::read(arrays, variable, notes);
         }
+    }
+    let name_of = |k: usize| {
+        let at = choice
+            .roles
+            .iter()
+            .position(|role| *role == Role::Space(k))?;
+        let found = choice.variable.dimensions.get(at)?;
+        Some(found.name.as_str())
+    };
+    let [x, y, _] = &coordinates;
+    if x.is_none()
+        && y.is_none()
+        && let (Some(x), Some(y)) = (name_of(0), name_of(1))
+        && let Some([east, north]) = flattened(arrays, &choice.variable, x, y)
+    {
+        notes.push(
+            "latitudes and longitudes bend: the grid is drawn flat, with the mean steps of its middle row and column".to_owned(),
+        );
+        [coordinates[0], coordinates[1]] = [Some(east), Some(north)];
     }
     let spanned = place(dims, &coordinates);
     spanned.ok_or_else(|| {

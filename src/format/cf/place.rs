@@ -14,7 +14,7 @@ use crate::format::geometry::world_from_voxel;
 use glam::{DAffine3, DVec3};
 
 /// The mean radius of the Earth, km (IUGG).
-const RADIUS_KM: f64 = 6_371.0088;
+pub(super) const RADIUS_KM: f64 = 6371.0088;
 
 /// Levels that are only numbers are spread over this part of the longer horizontal side.
 const HEIGHT_OF_NUMBERS: f64 = 0.25;
@@ -133,6 +133,13 @@ fn on_earth(
         step(points, points.len()).map(f64::abs)
     };
     let other = step_of(&north).or(step_of(&east)).unwrap_or(1.0);
+    for (points, name) in [(&east, "x"), (&north, "y")] {
+        if points.is_none() {
+            notes.push(format!(
+                "the file gives no coordinates along {name}: points are taken {other} km apart"
+            ));
+        }
+    }
     let [nx, ny, nz] = dims;
     let east = east.unwrap_or_else(|| evenly(nx, other));
     let north = north.unwrap_or_else(|| evenly(ny, other));

@@ -2,7 +2,7 @@
 //!
 //! CF Conventions 4.4. Days are counted from day 0 of a calendar's year 0; the Gregorian and Julian counts by
 //! the usual leap rules, `standard` being Julian before 15 October 1582. Months and years of UDUNITS are no
-//! calendar months, so such numbers keep their unit and get no date.
+//! calendar months, so such numbers keep their unit and get no date, as do years before 0.
 
 /// A calendar of CF.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,6 +27,16 @@ pub(crate) struct Clock {
     unit_microseconds: f64,
     /// Microseconds of the reference moment since day 0.
     origin: i128,
+}
+
+impl Calendar {
+    /// Historical calendars go from 1 BC to AD 1, and what a year 0 or an earlier one means there is disputed.
+    fn first_year(self) -> i64 {
+        match self {
+            Self::Standard | Self::Julian => 1,
+            _ => 0,
+        }
+    }
 }
 
 const SECOND: i128 = 1_000_000;
@@ -77,13 +87,16 @@ impl Clock {
     pub(crate) fn iso(&self, number: f64) -> Option<String> {
         let microseconds = (number * self.unit_microseconds).round();
         // 1e21 microseconds are thirty million years.
-        if !(microseconds.abs() < 1e21) {
+        if microseconds.is_nan() || microseconds.abs() >= 1e21 {
             return None;
         }
         #[allow(clippy::cast_possible_truncation, reason = "checked by the line above")]
         let moment = self.origin.checked_add(microseconds as i128)?;
         let day = i64::try_from(moment.div_euclid(DAY)).ok()?;
         let (year, month, date) = date_of(day, self.calendar)?;
+        if year < self.calendar.first_year() {
+            return None;
+        }
         let within = moment.rem_euclid(DAY);
         let part = |unit: i128, of: i128| within.div_euclid(unit).rem_euclid(of);
         let [hour, minute, second] = [
@@ -111,12 +124,11 @@ fn origin(text: &str, calendar: Calendar) -> Option<i128> {
         Some(at) => (text.get(..at)?, text.get(at.checked_add(1)?..)?.trim()),
         None => (text, ""),
     };
-    let (sign, date) = match date.strip_prefix('-') {
-        Some(date) => (-1, date),
-        None => (1, date),
-    };
     let mut parts = date.split('-').map(str::parse::<i64>);
-    let year = parts.next()?.ok()?.checked_mul(sign)?;
+    let year = parts
+        .next()?
+        .ok()
+        .filter(|&year| year >= calendar.first_year())?;
     let month = parts.next().unwrap_or(Ok(1)).ok()?;
     let day = parts.next().unwrap_or(Ok(1)).ok()?;
     if parts.next().is_some() {
@@ -291,6 +303,10 @@ mod tests {
         for (calendar, units, number, wanted) in moments {
             let place = format!("{number} {units}, {calendar}");
             let clock = Clock::of(&units, Some(&calendar)).expect(&place);
+            if wanted.starts_with('-') {
+                assert_eq!(clock.iso(number), None, "{place}");
+                continue;
+            }
             let found = clock.iso(number).expect(&place);
             let (seconds, fraction) = found.split_once('.').unwrap_or((&found, ""));
             assert_eq!(format!("{seconds}.{fraction:0<6}"), wanted, "{place}");
@@ -309,6 +325,8 @@ mod tests {
             "days since 2000-02-30",
             "days since 2000-01-01 25:00",
             "days since 99999999999-01-01",
+            "days since 0000-01-01",
+            "days since -4712-01-01",
             "fortnights since 2000-01-01",
         ] {
             assert_eq!(Clock::of(units, None), None, "{units}");

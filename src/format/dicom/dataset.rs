@@ -91,15 +91,17 @@ impl<'a> Elements<'a> {
     }
 
     /// The elements of one group at the begin of a file; the stream then stands behind them.
-    pub(super) fn read_group(mut self, group: u32) -> Result<(DataSet, u64), Problem> {
+    pub(super) fn read_group(mut self, group: u16) -> Result<(DataSet, u64), Problem> {
         let mut set = DataSet::new(self.syntax.is_big_endian);
         while self.left() >= 8 {
+            // What follows the group may be written in another way: only its number is looked at.
             let before = self.position;
-            let element = self.header()?;
-            if element.tag >> 16 != group {
-                self.seek(before)?;
+            let next = self.u16()?;
+            self.seek(before)?;
+            if next != group {
                 break;
             }
+            let element = self.header()?;
             self.keep_or_skip(element, &mut set, true, 0)?;
         }
         Ok((set, self.position))

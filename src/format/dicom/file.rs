@@ -18,10 +18,15 @@ use std::path::{Path, PathBuf};
 /// Where the letters `DICM` stand.
 const PREAMBLE_BYTES: usize = 128;
 
-/// True where the first bytes are those of a DICOM file: `DICM` after 128 bytes that may be anything, or, as old
-/// files have it, elements of group 2 or 8 at once.
+/// True where `DICM` stands after 128 bytes that may be anything.
 pub(in crate::format) fn recognizes(first: &[u8]) -> bool {
-    has_preamble(first) || bare_syntax(first).is_some()
+    has_preamble(first)
+}
+
+/// True where a file begins with elements of group 2 or 8 at once, as old ones do. So few bytes are little proof:
+/// to be asked after all other formats.
+pub(in crate::format) fn recognizes_bare(first: &[u8]) -> bool {
+    bare_syntax(first).is_some()
 }
 
 fn has_preamble(first: &[u8]) -> bool {
@@ -111,8 +116,12 @@ fn scan_file(path: &Path, limits: &Limits) -> Result<Found, Problem> {
     } else {
         None
     };
+    if start == 0 && bare.is_none() {
+        let what = ": this is no DICOM file, whatever its name says".to_owned();
+        return Err(Problem::UnknownFormat(what));
+    }
     let mut syntax = bare.unwrap_or(Syntax::IMPLICIT);
-    let mut refused = None;
+    let (mut refused, mut meta_class) = (None, None);
     if start != 0 || first.starts_with(&[2, 0]) {
         let elements = Elements::new(
             &mut stream,
@@ -123,6 +132,7 @@ fn scan_file(path: &Path, limits: &Limits) -> Result<Found, Problem> {
         );
         let (meta, end) = elements.read_group(2)?;
         start = end;
+        meta_class = meta.text(MEDIA_STORAGE_SOP_CLASS_UID);
         let uid = meta
             .text(TRANSFER_SYNTAX_UID)
             .ok_or_else(|| missing(DICOM, &name(TRANSFER_SYNTAX_UID)))?;
@@ -151,7 +161,7 @@ fn scan_file(path: &Path, limits: &Limits) -> Result<Found, Problem> {
     );
     let (set, place) = elements.read()?;
     let Some(place) = place else {
-        return match must_be_a_picture(&set) {
+        return match must_be_a_picture(meta_class, &set) {
             true => Err(missing(DICOM, &name(PIXEL_DATA))),
             false => Ok(Found::Other),
         };
@@ -176,28 +186,21 @@ fn scan_file(path: &Path, limits: &Limits) -> Result<Found, Problem> {
     Ok(Found::Picture(Box::new(file), set))
 }
 
-/// A file whose pixels are missing is damaged, not of another kind, where its class or its size says so.
-fn must_be_a_picture(set: &DataSet) -> bool {
-    let class = set.text(SOP_CLASS_UID).unwrap_or_default();
-    let of_storage = class.strip_prefix("1.2.840.10008.5.1.4.1.1.");
-    // CT, MR, NM and PET, each also enhanced; dose and segmentation.
+/// A file whose pixels are missing is damaged, not of another kind, where its class or its size says so,
+/// and where it has no class, which all objects have.
+fn must_be_a_picture(meta_class: Option<String>, set: &DataSet) -> bool {
+    let class = set.text(SOP_CLASS_UID).or(meta_class).unwrap_or_default();
+    let of_storage = class.strip_prefix("1.2.840.10008.5.1.4.1.1.").unwrap_or("");
+    let kind = of_storage.split('.').next().unwrap_or("");
+    // X-rays, CT, ultrasound, secondary capture, fluoroscopy, NM, PET, cameras; of other kinds the pictures alone.
     let is_picture = matches!(
+        kind,
+        "1" | "2" | "3" | "6" | "7" | "12" | "13" | "14" | "20" | "30" | "77" | "128" | "130"
+    ) || matches!(
         of_storage,
-        Some(
-            "2" | "2.1"
-                | "2.2"
-                | "4"
-                | "4.1"
-                | "4.4"
-                | "20"
-                | "128"
-                | "130"
-                | "128.1"
-                | "481.2"
-                | "66.4"
-        )
+        "4" | "4.1" | "4.3" | "4.4" | "66.4" | "66.8" | "481.1" | "481.2"
     );
-    is_picture || set.has(ROWS)
+    is_picture || class.is_empty() || set.has(ROWS)
 }
 
 /// Padding has the sign of pixels, whatever the type of its attribute.

@@ -19,6 +19,9 @@ const LEAST_TILE_BYTES: u64 = 14;
 
 /// Samples of the layout, little-endian, side by side.
 pub(super) fn decode(encoded: &[u8], layout: &Layout) -> Result<Vec<u8>, Problem> {
+    // Boxes around the code stream are to be passed over, PS3.5 section 8.2.4.
+    let start = encoded.windows(4).position(|bytes| bytes == START);
+    let encoded = encoded.get(start.unwrap_or(0)..).unwrap_or(encoded);
     let size =
         Size::of(encoded).ok_or_else(|| damaged(J2K, "no code stream with a SIZ segment"))?;
     same_size(
@@ -119,9 +122,8 @@ impl Component {
 
 impl Size {
     fn of(encoded: &[u8]) -> Option<Self> {
-        let start = encoded.windows(4).position(|bytes| bytes == START)?;
         // Length and capabilities come before the eight numbers.
-        let body = encoded.get(start.checked_add(8)?..)?;
+        let body = encoded.strip_prefix(&START)?.get(4..)?;
         let numbers = body.get(..32)?.as_chunks::<4>().0;
         let numbers: Vec<u64> = numbers
             .iter()

@@ -95,11 +95,14 @@ impl Layout {
             is_planar: is_planar && color.samples() > 1,
         };
         let is_odd = color == Color::YbrFull422 && !layout.columns.is_multiple_of(2);
-        if color.samples() > 1 && bits_allocated != 8 || is_odd {
-            let what = format!(
-                "colour of {bits_allocated} bits a sample and {} columns",
-                layout.columns
-            );
+        let is_wide = match color {
+            Color::Monochrome | Color::Inverted => false,
+            Color::Rgb | Color::Ybr2000 => !matches!(bits_allocated, 8 | 16),
+            Color::YbrFull | Color::YbrFull422 => bits_allocated != 8,
+        };
+        if is_wide || is_odd {
+            let columns = layout.columns;
+            let what = format!("colour of {bits_allocated} bits a sample and {columns} columns");
             return Err(unsupported(DICOM, what));
         }
         Ok(layout)
@@ -207,7 +210,7 @@ fn frames(set: &DataSet) -> Result<u32, Problem> {
             clippy::cast_sign_loss,
             reason = "a whole number of 1 to 10^9"
         )]
-        Some(n) if n >= 1.0 && n <= 1e9 && n.fract() == 0.0 => Ok(n as u32),
+        Some(n) if (1.0..=1e9).contains(&n) && n.fract() == 0.0 => Ok(n as u32),
         Some(n) => Err(invalid(
             DICOM,
             &tags::name(NUMBER_OF_FRAMES),

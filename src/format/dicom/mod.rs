@@ -28,6 +28,7 @@ mod fragments;
 mod jpeg;
 mod jpeg2000;
 mod layout;
+mod line;
 mod moment;
 mod picture;
 mod pixels;
@@ -43,10 +44,11 @@ mod times;
 
 use super::convert::to_u64;
 use super::geometry::{RAS_FROM_LPS, world_from_voxel};
-use super::problem::{at, escape, invalid};
+use super::problem::{at, escape, invalid, unsupported};
 use crate::volume::{
     Format, Header, Limits, Meaning, Problem, ReadError, Rescale, Series, Source, VoxelType, Wanted,
 };
+use glam::DAffine3;
 use layout::{Color, Layout};
 use pixels::Frames;
 use series::{Contents, Group};
@@ -54,7 +56,7 @@ use source::{DicomSource, Kept};
 use stack::{Sorting, Stack, stack};
 use std::path::Path;
 
-pub(super) use file::recognizes;
+pub(super) use file::{recognizes, recognizes_bare};
 pub(super) use series::is_folder_of_pictures;
 
 /// The word of errors.
@@ -158,22 +160,16 @@ fn open_group(
     let mut same = |a: usize, b: usize| same_pixels(&sorting, &frames, [a, b], limits);
     let stack = stack(&sorting, &mut same)?;
     notes.extend(stack.notes.iter().cloned());
+    if layout.color.samples() > 1 && stack.order.contains(&None) {
+        let what = "a series of colour pictures of which some are missing";
+        return Err(at(path)(unsupported(DICOM, what)));
+    }
     let kept = kept(&pictures, &stack, first, &mut notes);
     let stored = match kept {
         Kept::Stored => layout.stored(),
         _ => VoxelType::F32,
     };
-    let [x, y, z] = stack.steps;
-    let steps = [x * RAS_FROM_LPS, y * RAS_FROM_LPS, z * RAS_FROM_LPS];
-    let world = world_from_voxel(steps, stack.first_center * RAS_FROM_LPS).ok_or_else(|| {
-        let found = format!("{:?}", stack.steps);
-        at(path)(invalid(
-            DICOM,
-            &tags::name(tags::IMAGE_POSITION),
-            "steps that span a volume",
-            &found,
-        ))
-    })?;
+    let world = world(&stack).map_err(at(path))?;
     let dims = dims(&layout, &stack).map_err(at(path))?;
     if quantity.is_turned(&layout) {
         notes.push(
@@ -181,10 +177,10 @@ fn open_group(
                 .to_owned(),
         );
     }
-    if !stored.is_kept_exactly() {
+    if !layout.stored().is_kept_exactly() {
         notes.push(format!(
             "voxels are stored as {} and kept as f32",
-            stored.name()
+            layout.stored().name()
         ));
     }
     let is_color = layout.color.samples() > 1;
@@ -226,6 +222,20 @@ fn open_group(
         limits: *limits,
         files,
         pictures,
+    })
+}
+
+/// From LPS to RAS+.
+#[allow(
+    clippy::arithmetic_side_effects,
+    reason = "vectors of f64: nothing wraps or panics"
+)]
+fn world(stack: &Stack) -> Result<DAffine3, Problem> {
+    let steps = stack.steps.map(|step| step * RAS_FROM_LPS);
+    world_from_voxel(steps, stack.first_center * RAS_FROM_LPS).ok_or_else(|| {
+        let found = format!("{:?}", stack.steps);
+        let field = tags::name(tags::IMAGE_POSITION);
+        invalid(DICOM, &field, "steps that span a volume", &found)
     })
 }
 

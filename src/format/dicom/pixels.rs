@@ -103,7 +103,7 @@ impl Frames {
         if is_native && layout.color == Color::YbrFull422 {
             bytes = samples::rgb_from_422(&bytes);
         } else if is_native && layout.is_planar {
-            bytes = samples::interleaved(&bytes);
+            bytes = samples::interleaved(&bytes, layout.stored().bytes());
         }
         let found_bytes = to_u64(bytes.len());
         if found_bytes != wanted_bytes {
@@ -132,17 +132,25 @@ fn native(file: &PictureFile, stream: &mut dyn Stream, frame: u32) -> Result<Vec
     let shift = first_bit % 8;
     let start = file.place.offset.saturating_add(first_bit / 8);
     let wanted_bytes = bits.saturating_add(shift).div_ceil(8);
+    let are_swapped =
+        file.syntax.is_big_endian && file.place.are_words && layout.bits_allocated == 8;
+    if are_swapped && bits.saturating_mul(frame.into()) % 16 != 0 {
+        let what = "frames of an odd number of bytes in big-endian words";
+        return Err(unsupported(DICOM, what));
+    }
+    // The last of an odd number of bytes stands behind the one that pads its word.
+    let read_bytes = wanted_bytes.saturating_add(u64::from(are_swapped) & wanted_bytes);
     seek_to(stream, start)?;
     let mut bytes = Vec::new();
     stream
-        .take(wanted_bytes)
+        .take(read_bytes)
         .read_to_end(&mut bytes)
         .map_err(io("reading pixels"))?;
-    if to_u64(bytes.len()) != wanted_bytes {
+    if to_u64(bytes.len()) != read_bytes {
         let found_bytes = to_u64(bytes.len());
         return Err(Problem::Size {
             format: DICOM,
-            wanted_bytes,
+            wanted_bytes: read_bytes,
             found_bytes,
         });
     }
@@ -151,13 +159,10 @@ fn native(file: &PictureFile, stream: &mut dyn Stream, frame: u32) -> Result<Vec
     }
     if file.syntax.is_big_endian {
         match layout.bits_allocated {
-            8 if file.place.are_words && start % 2 != 0 => {
-                return Err(unsupported(
-                    DICOM,
-                    "frames of an odd number of bytes in big-endian words",
-                ));
+            8 if file.place.are_words => {
+                samples::swap::<2>(&mut bytes);
+                bytes.truncate(usize::try_from(wanted_bytes).unwrap_or(usize::MAX));
             }
-            8 if file.place.are_words => samples::swap::<2>(&mut bytes),
             8 => {}
             16 => samples::swap::<2>(&mut bytes),
             32 => samples::swap::<4>(&mut bytes),

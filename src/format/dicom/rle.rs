@@ -55,7 +55,7 @@ pub(super) fn decode(encoded: &[u8], layout: &Layout) -> Result<Vec<u8>, Problem
         let sample = plane.checked_div(sample_bytes).unwrap_or(0);
         let byte = sample_bytes
             .saturating_sub(1)
-            .saturating_sub(plane % sample_bytes.max(1));
+            .saturating_sub(plane.checked_rem(sample_bytes).unwrap_or(0));
         let first = sample.saturating_mul(sample_bytes).saturating_add(byte);
         let places = frame.iter_mut().skip(first).step_by(planes.max(1));
         unpack(segment, places).map_err(|missing| {

@@ -19,16 +19,19 @@ pub(super) fn swap<const N: usize>(bytes: &mut [u8]) {
     }
 }
 
-/// Three planes to pixels of three bytes.
-pub(super) fn interleaved(planes: &[u8]) -> Vec<u8> {
+/// Three planes to pixels of three samples.
+pub(super) fn interleaved(planes: &[u8], sample_bytes: usize) -> Vec<u8> {
     let plane = (planes.len() / 3).max(1);
     let mut colors = planes.chunks_exact(plane);
     let (Some(reds), Some(greens), Some(blues)) = (colors.next(), colors.next(), colors.next())
     else {
         return Vec::new();
     };
-    let pixels = reds.iter().zip(greens).zip(blues);
-    pixels.flat_map(|((&r, &g), &b)| [r, g, b]).collect()
+    let size = sample_bytes.max(1);
+    let (reds, greens) = (reds.chunks_exact(size), greens.chunks_exact(size));
+    let pixels = reds.zip(greens).zip(blues.chunks_exact(size));
+    let samples = pixels.flat_map(|((r, g), b)| [r, g, b]);
+    samples.flatten().copied().collect()
 }
 
 /// Luma of two pixels and the chroma they share to two colours, by DICOM PS3.3 section C.7.6.3.1.2.

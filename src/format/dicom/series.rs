@@ -2,7 +2,7 @@
 
 use super::DICOM;
 use super::fields::DataSet;
-use super::file::{Found, PictureFile, recognizes, scan};
+use super::file::{Found, PictureFile, recognizes, recognizes_bare, scan};
 use super::picture::{Picture, pictures};
 use super::quantity::Quantity;
 use super::tags::{self, *};
@@ -113,27 +113,47 @@ pub(super) struct Contents {
 
 /// True where a folder holds a DICOM file.
 pub(in crate::format) fn is_folder_of_pictures(folder: &Path, limits: &Limits) -> bool {
-    files_in(folder, limits).is_ok_and(|files| files.iter().any(|file| is_dicom(file)))
+    let mut files = Vec::new();
+    // A folder of too many files is opened too: that gives the error.
+    let _ = files_in(folder, limits, &mut files);
+    files.iter().any(|file| is_dicom(file))
 }
 
 fn is_dicom(path: &Path) -> bool {
     place::open_regular(path)
         .and_then(|(mut file, _)| place::first_bytes(&mut file, FIRST_BYTES))
-        .is_ok_and(|first| recognizes(&first))
+        .is_ok_and(|first| recognizes(&first) || recognizes_bare(&first))
+}
+
+fn has_dicom_name(path: &Path) -> bool {
+    let ending = path
+        .extension()
+        .and_then(|ending| ending.to_str())
+        .unwrap_or("");
+    let is_hidden = path
+        .file_name()
+        .is_some_and(|name| name.as_encoded_bytes().starts_with(b"."));
+    !is_hidden && ["dcm", "ima", "dicom"].contains(&ending.to_ascii_lowercase().as_str())
 }
 
 /// Looks at all files in a folder, or at the one file that `path` is.
 pub(super) fn contents(path: &Path, limits: &Limits) -> Result<Contents, ReadError> {
     let is_folder = path.is_dir();
-    let files = if is_folder {
-        files_in(path, limits)?
-    } else {
-        vec![path.to_owned()]
-    };
+    let mut files = Vec::new();
+    match is_folder {
+        true => files_in(path, limits, &mut files)?,
+        false => files.push(path.to_owned()),
+    }
+    files.sort();
     let mut contents = Contents::default();
     let mut groups: BTreeMap<String, Group> = BTreeMap::new();
     for file in files {
         if is_folder && !is_dicom(&file) {
+            // A slice that is empty or cut to pieces must not be missed in silence.
+            if has_dicom_name(&file) {
+                let what = ": its name is that of a DICOM file and its content is not".to_owned();
+                return Err(at(&file)(Problem::UnknownFormat(what)));
+            }
             contents.not_dicom = contents.not_dicom.saturating_add(1);
             continue;
         }
@@ -164,9 +184,8 @@ pub(super) fn contents(path: &Path, limits: &Limits) -> Result<Contents, ReadErr
     Ok(contents)
 }
 
-/// All regular files in a folder and the folders in it, by name.
-fn files_in(folder: &Path, limits: &Limits) -> Result<Vec<PathBuf>, ReadError> {
-    let mut files = Vec::new();
+/// All regular files in a folder and the folders in it; the first ones where there are too many.
+fn files_in(folder: &Path, limits: &Limits, files: &mut Vec<PathBuf>) -> Result<(), ReadError> {
     let mut folders = vec![(folder.to_owned(), 0_u32)];
     while let Some((folder, depth)) = folders.pop() {
         let listing = || io("listing the folder");
@@ -188,6 +207,5 @@ fn files_in(folder: &Path, limits: &Limits) -> Result<Vec<PathBuf>, ReadError> {
             }
         }
     }
-    files.sort();
-    Ok(files)
+    Ok(())
 }

@@ -15,6 +15,7 @@ macro_rules! tags {
 }
 
 tags! {
+    MEDIA_STORAGE_SOP_CLASS_UID = 0x0002_0002 "MediaStorageSOPClassUID";
     TRANSFER_SYNTAX_UID = 0x0002_0010 "TransferSyntaxUID";
     SOP_CLASS_UID = 0x0008_0016 "SOPClassUID";
     SOP_INSTANCE_UID = 0x0008_0018 "SOPInstanceUID";

@@ -82,10 +82,7 @@ impl Scan {
     /// The next word; `None` at the end of the file. The white space behind it is not taken.
     pub(super) fn word(&mut self) -> Result<Option<String>, Problem> {
         let mut word = Vec::new();
-        loop {
-            let Some(&byte) = self.fill()?.first() else {
-                break;
-            };
+        while let Some(&byte) = self.fill()?.first() {
             if byte.is_ascii_whitespace() {
                 if !word.is_empty() {
                     break;

@@ -103,6 +103,25 @@ fn origin_of(index: &[u64], sides: &[u64]) -> Vec<u64> {
         .collect()
 }
 
+/// An error where more files would have to be looked for than the limits allow.
+pub(super) fn check_files(
+    store: &Store,
+    array: &Array,
+    range: &Range,
+    limits: &Limits,
+) -> Result<(), ReadError> {
+    let count = range.in_grid(&array.chunk).count();
+    if count <= to_u64(limits.max_files) {
+        return Ok(());
+    }
+    Err(at(&store.shown(&array.path))(Problem::Invalid {
+        format: ZARR,
+        field: "chunk shape".to_owned(),
+        wanted: format!("at most {} files for the wanted box", limits.max_files),
+        found: count.to_string(),
+    }))
+}
+
 /// Hands every chunk that meets `range` to `each`, decoded. What is not there is left out.
 pub(super) fn visit(
     store: &Store,
@@ -111,15 +130,8 @@ pub(super) fn visit(
     limits: &Limits,
     each: &mut dyn FnMut(&Unit) -> Result<(), Problem>,
 ) -> Result<(), ReadError> {
+    check_files(store, array, range, limits)?;
     let chunks = range.in_grid(&array.chunk);
-    if chunks.count() > to_u64(limits.max_files) {
-        return Err(at(&store.shown(&array.path))(Problem::Invalid {
-            format: ZARR,
-            field: "chunk shape".to_owned(),
-            wanted: format!("at most {} files for the wanted box", limits.max_files),
-            found: chunks.count().to_string(),
-        }));
-    }
     for index in chunks.indices() {
         let Some(mut file) = store.find(&array.key(&index))? else {
             continue;

@@ -251,6 +251,11 @@ pub(super) fn without_checksum(mut bytes: Vec<u8>) -> Result<Vec<u8>, Damage> {
 
 /// RFC 3720, appendix B.4: the polynomial 0x1edc6f41, here with its bits reversed.
 fn crc32c(bytes: &[u8]) -> u32 {
+    #[allow(
+        clippy::indexing_slicing,
+        clippy::arithmetic_side_effects,
+        reason = "done by the compiler, which would refuse an index or a sum out of range"
+    )]
     const TABLE: [u32; 256] = {
         let mut table = [0_u32; 256];
         let mut index = 0_u32;

@@ -17,6 +17,8 @@ mod chunk;
 mod codec;
 mod json;
 mod multiscale;
+#[cfg(feature = "netcdf")]
+mod named;
 mod ngff;
 mod omero;
 mod plain;
@@ -52,6 +54,10 @@ pub(super) fn open(
     let tree = Tree::read(&store, limits)?;
     let images = ngff::images(&tree);
     let level = ngff::choose(&tree, &images, wanted, limits).map_err(at(folder))?;
+    #[cfg(feature = "netcdf")]
+    if level.is_none() && named::has_names(&tree, limits) {
+        return named::open(store, &tree, wanted, limits);
+    }
     let Level {
         array,
         roles,

@@ -217,6 +217,10 @@ fn variables(images: &[Image], taken: &str, is_wanted: bool) -> Vec<String> {
     names
 }
 
+#[allow(
+    clippy::arithmetic_side_effects,
+    reason = "vectors of f64: nothing wraps or panics"
+)]
 fn header(
     image: &Image,
     multiscale: &Multiscale,
@@ -282,7 +286,9 @@ fn header(
         notes.push(format!("lengths are in {}", escape(&unit)));
     }
     let mut time_names = Vec::new();
-    if let Some(((scale, offset), Some(unit))) = along(Role::Time).filter(|_| sizes.times > 1) {
+    if let Some(((scale, offset), Some(unit))) =
+        along(Role::Time).filter(|_| (2..=MOST_TIMES).contains(&sizes.times))
+    {
         let unit = escape(&unit);
         time_names = (0..sizes.times)
             .map(|time| format!("{} {unit}", offset + scale * f64::from(time)))
@@ -303,6 +309,9 @@ fn header(
         ..Header::new(Format::Zarr, sizes.dims, array.stored, affine)
     })
 }
+
+/// More moments get no names: a header may promise any number of them.
+const MOST_TIMES: u32 = 1 << 16;
 
 /// What makes a length in `own` one in `unit`; `None` where they are no units of length.
 fn factor(own: Option<&str>, unit: Option<&str>) -> Option<f64> {

@@ -105,10 +105,11 @@ fn roles(array: &Array) -> Vec<Role> {
             .flatten()
             .filter(|role| *role != Role::Component);
         let later = roles.get(k.saturating_add(1)..).unwrap_or(&[]);
-        if twice.is_some() && later.contains(&twice) {
-            if let Some(role) = roles.get_mut(k) {
-                *role = Some(Role::Component);
-            }
+        if twice.is_some()
+            && later.contains(&twice)
+            && let Some(role) = roles.get_mut(k)
+        {
+            *role = Some(Role::Component);
         }
     }
     for space in (0..3).map(Role::Space) {

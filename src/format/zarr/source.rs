@@ -3,7 +3,7 @@
 use super::ZARR;
 use super::array::Array;
 use super::canvas::{Canvas, Move, MoveAxis};
-use super::chunk::{Range, Unit, visit};
+use super::chunk::{Range, Unit, check_files, visit};
 use super::store::Store;
 use crate::format::convert::{bytes_in_memory, to_u64};
 use crate::format::problem::at;
@@ -64,6 +64,7 @@ pub(super) fn read_box(
     let Ok(count) = usize::try_from(range.count()) else {
         return too_large("the volume", wanted_bytes, limits.max_bytes);
     };
+    check_files(store, array, range, limits)?;
     let fill = array.fill_piece().map_err(here)?;
     let endian = array.codecs.endian;
     let mut canvas = Canvas::new(array.stored, endian, &fill, count).map_err(here)?;
@@ -94,7 +95,7 @@ pub(super) fn read_box(
 }
 
 /// How far apart the numbers of a decoded chunk lie along each axis of the array.
-fn unit_strides(array: &Array) -> Vec<usize> {
+pub(super) fn unit_strides(array: &Array) -> Vec<usize> {
     let mut strides = vec![0; array.rank()];
     let mut stride = 1_usize;
     for &axis in array.codecs.order.iter().rev() {

@@ -18,10 +18,10 @@ pub(super) fn array(path: &str, metadata: &Object, limits: &Limits) -> Result<Ar
     if version.as_u64() != Some(3) {
         return Err(wrong("zarr_format", "3", version));
     }
-    if let Some(list) = optional(metadata, "storage_transformers") {
-        if list.as_array().is_none_or(|list| !list.is_empty()) {
-            return Err(not_read("the storage transformer", &list.to_string()));
-        }
+    if let Some(list) = optional(metadata, "storage_transformers")
+        && list.as_array().is_none_or(|list| !list.is_empty())
+    {
+        return Err(not_read("the storage transformer", &list.to_string()));
     }
     let shape = sizes(required(metadata, "shape")?, "shape")?;
     let stored = number_type(required(metadata, "data_type")?)?;

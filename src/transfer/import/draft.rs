@@ -4,7 +4,7 @@
 //! (`vtkPiecewiseFunction`, documented at `GetTable`): at the fraction s of the way,
 //!
 //! ```text
-//! s' = s / (2 m)                    s < m        h > 0.99: a step at s' = 1/2
+//! s' = s / (2 m)                    s < m        h > 0.99: colours step at s' = 1/2
 //!      1/2 + (s - m) / (2 (1 - m))  else         h < 0.01: a straight line in s'
 //!                                                else: the Hermite curve of s'' with end slopes (1 - h)
 //! s'' = (2 s')^(1 + 10 h) / 2       s' < 1/2, and turned about the middle above it
@@ -43,9 +43,9 @@ impl Curve {
     };
 
     /// Fractions of the way where points of straight lines are needed, and the share of the right end there.
-    pub fn shares(self) -> Vec<(f64, f64)> {
+    pub fn shares(self, sharp_is_step: bool) -> Vec<(f64, f64)> {
         let middle = self.midpoint.clamp(1e-5, 1.0 - 1e-5);
-        if self.sharpness > 0.99 {
+        if sharp_is_step && self.sharpness > 0.99 {
             return vec![(middle, 0.0), (middle, 1.0)];
         }
         if self.sharpness < 0.01 {
@@ -54,7 +54,7 @@ impl Curve {
                 false => vec![(middle, 0.5)],
             };
         }
-        const PARTS: u32 = 32;
+        const PARTS: u32 = 128;
         let fractions = (1..PARTS).map(|i| f64::from(i) / f64::from(PARTS));
         fractions.map(|s| (s, self.share(s, middle))).collect()
     }
@@ -105,7 +105,7 @@ impl Draft {
         for (i, &([value, opacity], curve)) in points.iter().enumerate() {
             self.opacity.push((value, opacity));
             if let Some(&([next, right], _)) = points.get(i + 1) {
-                for (t, share) in curve.shares() {
+                for (t, share) in curve.shares(false) {
                     let at = value + t * (next - value);
                     self.opacity.push((at, opacity + share * (right - opacity)));
                 }
@@ -118,7 +118,7 @@ impl Draft {
         for (i, &(value, left, curve)) in points.iter().enumerate() {
             self.color.push((value, left));
             if let Some(&(next, right, _)) = points.get(i + 1) {
-                for (t, share) in curve.shares() {
+                for (t, share) in curve.shares(true) {
                     let mixed = std::array::from_fn(|c| left[c] + share * (right[c] - left[c]));
                     self.color.push((value + t * (next - value), mixed));
                 }

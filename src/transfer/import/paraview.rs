@@ -133,14 +133,12 @@ fn add_colors(
             return Ok(());
         }
         "Step" => {
-            // The colour of a step is that of its right end.
+            // The colour of a step is that of its right end, and below all steps that of the first point.
+            draft.color.extend(points.first());
             for pair in points.windows(2) {
                 draft
                     .color
                     .extend([(pair[0].0, pair[1].1), (pair[1].0, pair[1].1)]);
-            }
-            if let (Some(&first), true) = (points.first(), points.len() == 1) {
-                draft.color.push(first);
             }
             return Ok(());
         }

@@ -55,7 +55,10 @@ impl Palette {
         if exact.len() <= MOST_COLORS {
             let mut colors: Vec<_> = exact.into_iter().collect();
             colors.sort_unstable();
-            let indices = colors.iter().zip(0..).map(|(&color, index)| (color, index));
+            let indices = colors
+                .iter()
+                .zip(0..=u8::MAX)
+                .map(|(&color, index)| (color, index));
             return Ok(Self {
                 exact: Some(indices.collect()),
                 amplitude: 0.0,
