@@ -176,16 +176,17 @@ impl Reader<'_> {
         let flags = &self.scene.classification;
         let has_table = self.scene.labels.label_tf.is_some() && self.scene.labels.labels.is_none();
         let may_name = says_nothing(flags)? && self.mode == Mode::Composite;
-        if (has_table || is_labels) && may_name {
-            if let Some(function) = self.names(&volume)? {
-                return Ok(Shown {
-                    volume,
-                    classification: Classification::Function(function),
-                    filter: Some(Filter::Nearest),
-                    height_factor,
-                    others: Others::Channels(Vec::new()),
-                });
-            }
+        if (has_table || is_labels)
+            && may_name
+            && let Some(function) = self.names(&volume)?
+        {
+            return Ok(Shown {
+                volume,
+                classification: Classification::Function(function),
+                filter: Some(Filter::Nearest),
+                height_factor,
+                others: Others::Channels(Vec::new()),
+            });
         }
         let classification = flags.classification(&volume, self.mode)?;
         let found_labels = flags.found_labels(&classification);
