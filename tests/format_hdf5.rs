@@ -159,7 +159,7 @@ fn what_is_no_volume_is_refused_by_its_reason() {
     }
     let source = open("hdf5/kinds.h5", Some("refused/lzf")).unwrap();
     let error = source.read(Pick::default(), source.header().whole());
-    let error = message(&error.err().expect("no voxels"));
+    let error = message(&error.expect_err("no voxels"));
     assert!(error.contains("32000, LZF"), "{error}");
 }
 

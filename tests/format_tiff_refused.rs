@@ -225,7 +225,7 @@ fn sizes_that_lie_are_refused_before_memory_is_asked_for() {
         tiff::file(&[jpeg(65_535, 65_535)], None),
         tiff::file(&[jpeg(3, 65_535)], None),
         tiff::file(&[jpeg(0, 2)], None),
-        tiff::file(&[tile.clone()], None),
+        tiff::file(std::slice::from_ref(&tile), None),
         tiff::file(&[wide], None),
         tiff::file(&[tile.with(259, Short(8))], None),
         tiff::file(&[strip(8, deflated.clone()).with(277, Short(4000))], None),
@@ -251,7 +251,7 @@ fn a_damaged_deflate_strip_is_found_by_its_checksum() {
     let page = Page::gray(30, 20, packed.clone()).with(259, Short(8));
     let folder = Folder::new();
     folder
-        .read("a.tif", tiff::file(&[page.clone()], None))
+        .read("a.tif", tiff::file(std::slice::from_ref(&page), None))
         .unwrap();
     let mut harmless = 0;
     for at in 0..packed.len() {

@@ -484,7 +484,8 @@ fn nothing_outside_of_the_folder_is_read() {
     let outside = Store::of("v2-zlib");
     let chunk = outside.path().join("0.0.0");
     // A chunk that is a link out, a link to itself, a link to nothing, a pipe, a folder.
-    let spoil: [(&str, &dyn Fn(&std::path::Path)); 5] = [
+    type Spoil<'a> = (&'static str, &'a dyn Fn(&std::path::Path));
+    let spoil: [Spoil; 5] = [
         ("not a link out of it", &|path| {
             symlink(&chunk, path).unwrap()
         }),

@@ -181,7 +181,7 @@ impl Draft {
     fn check_numbers(&mut self) -> Result<(), FileProblem> {
         let values = self.color.iter().map(|p| p.0);
         for value in values.chain(self.opacity.iter().map(|p| p.0)) {
-            if !(value.abs() <= f64::from(f32::MAX)) {
+            if value.is_nan() || value.abs() > f64::from(f32::MAX) {
                 return Err(self.refuse(format!("a point stands at {value}, wanted a number")));
             }
         }
