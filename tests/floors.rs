@@ -8,7 +8,7 @@ use std::{fs, path::Path};
 
 /// Modules by floor, as `src/lib.rs` tells them; floors 0, 3 and 4 have steps inside.
 const FLOORS: &[&[&str]] = &[
-    &["shaders", "real"],
+    &["shaders", "real", "fence"],
     &["ray", "color"],
     &["lattice"],
     &["gpu", "volume", "transfer", "camera", "picture", "mesh"],
