@@ -45,20 +45,24 @@ if [ -n "$$wanted" ]; then \
 fi
 endef
 
-# Tests of files and of arithmetic make no device: the validation layer has nothing to hear there.
-WITHOUT_DEVICE := cf_% floors format_% isosurface mutations phantoms picture_% transfer_% volume_%
-WITH_DEVICE := $(filter-out $(WITHOUT_DEVICE),$(basename $(notdir $(wildcard tests/*.rs))))
+# Tests of files and of arithmetic make no device: they run side by side, and the validation layer has nothing to
+# hear there.
+TESTS := $(basename $(notdir $(wildcard tests/*.rs)))
+WITHOUT_DEVICE := $(filter cf_% floors format_% isosurface mutations% phantoms picture_% transfer_% volume_%,$(TESTS))
+WITH_DEVICE := $(filter-out $(WITHOUT_DEVICE),$(TESTS))
+ON_DEVICE := RUST_TEST_THREADS=1 $(CARGO) test --locked --lib --examples $(addprefix --test ,$(WITH_DEVICE))
 
-# One test at a time: each makes a device of its own, and a software driver of 2022 under its validation layer has
-# been seen to crash while two threads made and destroyed theirs. A device uses all cores anyway.
+# One device at a time: a software driver uses all cores anyway.
 test: driver layers
 	$(CARGO) fmt --check
 	$(CARGO) clippy --locked --all-targets -- -D warnings
 	$(CARGO) clippy --locked --all-targets --no-default-features -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --locked --no-deps
-	RUST_TEST_THREADS=1 $(CARGO) test --locked
-	RUST_TEST_THREADS=1 STRATAVOX_VALIDATION=sync $(CARGO) test --locked --lib $(addprefix --test ,$(WITH_DEVICE))
-	RUST_TEST_THREADS=1 STRATAVOX_VALIDATION=sync $(CARGO) test --locked --test cli -- device:: mixed:: pictures::
+	$(CARGO) test --locked --doc
+	$(CARGO) test --locked $(addprefix --test ,$(WITHOUT_DEVICE))
+	$(ON_DEVICE) --test cli
+	STRATAVOX_VALIDATION=sync $(ON_DEVICE)
+	STRATAVOX_VALIDATION=sync RUST_TEST_THREADS=1 $(CARGO) test --locked --test cli -- device:: mixed:: pictures::
 
 demo: driver
 	$(CARGO) build --locked --release
