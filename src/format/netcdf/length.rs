@@ -58,7 +58,11 @@ fn end(variable: &NcVariable, record_bytes: u64) -> u64 {
         .iter()
         .map(|dimension| dimension.size)
         .fold(1, u64::saturating_mul);
-    if variable.dimensions.iter().any(|dimension| dimension.size == 0) {
+    if variable
+        .dimensions
+        .iter()
+        .any(|dimension| dimension.size == 0)
+    {
         return 0;
     }
     let size = if variable.is_record_var {
