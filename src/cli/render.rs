@@ -2,7 +2,7 @@
 
 use super::{
     Error,
-    flags::{Classification, Depth, NotBuilt, SceneFlags},
+    flags::{Depth, NotBuilt, SceneFlags},
     output::{self, write_whole},
     progress::{Progress, ProgressWord},
     reasons::why_empty,
@@ -12,11 +12,7 @@ use super::{
     signals::Gate,
     timings::{FrameTime, Timings, ms_since, peak_rss_bytes},
 };
-use crate::{
-    camera::BoundingSphere,
-    picture::{BitDepth, LayerKind, PictureFormat, WriteOptions, write_picture},
-    scene::Beside,
-};
+use crate::picture::{BitDepth, LayerKind, PictureFormat, WriteOptions, write_picture};
 use clap::Args;
 use std::{
     path::{Path, PathBuf},
@@ -113,8 +109,7 @@ impl Render {
             classification,
             ..
         } = &shown;
-        let bounds = BoundingSphere::of_grid(&volume.world_from_voxel, volume.dims);
-        let camera = scene.camera.camera(&bounds, extent_pixels)?;
+        let camera = scene.camera.camera(&shown.subject(), extent_pixels)?;
         if let (None, Some(filter)) = (scene.sampling.filter, shown.filter) {
             settings.filter = filter;
         }
@@ -144,11 +139,7 @@ impl Render {
             last = Some(frame.picture);
         }
         let mut picture = last.expect("at least one picture is drawn");
-        // What one of several functions covers says nothing of the others.
-        let reasoned = match parts.beside() {
-            Beside::Nothing => classification,
-            Beside::Channels(_) | Beside::Colors(_) => &Classification::RangeOfPicture,
-        };
+        let reasoned = parts.only(classification);
         if let Some(reason) = why_empty(&picture, volume, reasoned, &camera, &settings) {
             progress.note(&format!("the picture is empty: {reason}"));
         }

@@ -8,6 +8,7 @@ use super::{
     error::visible,
     figure::{self, Anchor, Color, Figure, INK, Ticks},
     flags::{Classification, ClassificationFlags, InputFlags},
+    load,
     output::{self, say_aside, write_whole},
     signals::Gate,
 };
@@ -115,7 +116,7 @@ struct Counted {
 impl Counted {
     fn read(input: &InputFlags) -> Result<Self, Error> {
         let limits = input.limits();
-        let source = input.open(&limits)?;
+        let source = load::open(input, &limits)?;
         let header = source.header().clone();
         let (pick, note) = input.pick(&header)?;
         for note in header.notes.iter().chain(&note) {
