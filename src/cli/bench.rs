@@ -6,16 +6,16 @@
 use super::{
     Error, cameras_file,
     flags::{Classification, Depth, NotBuilt, SceneFlags},
-    load::load,
     output::{self, say, say_aside, write_whole},
     progress::{Progress, ProgressWord},
     renderer::{Device, Job, Renderer},
     scene_file,
+    shown::Shown,
     signals::Gate,
     timings::{FrameTime, Timings, median, ms_since, peak_rss_bytes},
 };
 use crate::{
-    camera::{BoundingSphere, Camera},
+    camera::Camera,
     technique::{Mode, Settings, Technique},
     transfer::{Classified, Window},
 };
@@ -107,23 +107,22 @@ impl Bench {
         progress.device(&device.name());
         progress.stage("read", 0, 1);
         let start = Instant::now();
-        let volume = load(scene, &device, &progress)?;
-        let classification = scene
-            .classification
-            .classification(&volume, settings.mode)?;
+        let shown = Shown::read(scene, &settings, &device, &progress)?;
+        let settings = filtered(settings, scene, &shown);
+        let parts = shown.parts();
         let load_ms = ms_since(start);
         progress.stage("prepare", 0, 1);
         let mut job = Job {
-            volume: &volume,
-            classification: &classification,
-            beside: Default::default(),
+            volume: &shown.volume,
+            classification: &shown.classification,
+            beside: parts.beside(),
             settings: &settings,
             extent_pixels: scene.picture.extent_pixels()?,
             layers: &[],
         };
         // The window of an X-ray is the range of the first view, in all views.
         let of_first = window_of(job, &cameras[0], word)?;
-        job.classification = of_first.as_ref().unwrap_or(&classification);
+        job.classification = of_first.as_ref().unwrap_or(&shown.classification);
         let mut renderer = Renderer::new(job, &cameras[0], device)?;
         // Pipelines are made on first use: that is not what is measured.
         renderer.draw(&cameras[0])?;
@@ -159,34 +158,44 @@ impl Bench {
         progress.stage("read", 0, 1);
         let base = scene.sampling.settings(Depth::Eight)?;
         let word = scene.device.as_deref();
-        let volume = load(scene, &Device::find(word)?, &progress)?;
         let extent_pixels = scene.picture.extent_pixels()?;
-        let bounds = BoundingSphere::of_grid(&volume.world_from_voxel, volume.dims);
-        let camera = scene.camera.camera(&bounds, extent_pixels)?;
         let mut rows = Vec::new();
         let mut device = String::new();
-        for (done, (name, technique, mode)) in MEASURED.into_iter().enumerate() {
-            progress.stage("measure", done, MEASURED.len());
-            let settings = Settings {
-                technique,
+        for (mode, of_mode) in MEASURED {
+            // Labels are not projected.
+            if mode.is_projection() && scene.labels.labels.is_some() {
+                continue;
+            }
+            let base = Settings {
                 mode,
                 ..base.clone()
             };
-            let classification = scene.classification.classification(&volume, mode)?;
-            let job = Job {
-                volume: &volume,
-                classification: &classification,
-                beside: Default::default(),
-                settings: &settings,
-                extent_pixels,
-                layers: &[],
-            };
-            let mut renderer = Renderer::new(job, &camera, Device::find(word)?)?;
-            renderer.draw(&camera)?;
-            let frames = (0..self.repeat).map(|_| timed(&mut renderer, &camera));
-            let frames = frames.collect::<Result<Vec<_>, _>>()?;
-            rows.push((name, median_gpu(&frames), median_wall(&frames)));
-            device = format!("{}, {}", renderer.device(), renderer.driver());
+            // What is shown depends on the mode: channels are read for each.
+            let shown = Shown::read(scene, &base, &Device::find(word)?, &progress)?;
+            let camera = scene.camera.camera(&shown.subject(), extent_pixels)?;
+            let base = filtered(base, scene, &shown);
+            let parts = shown.parts();
+            for (name, technique) in of_mode {
+                progress.stage("measure", rows.len(), 2 * of_mode.len());
+                let settings = Settings {
+                    technique,
+                    ..base.clone()
+                };
+                let job = Job {
+                    volume: &shown.volume,
+                    classification: &shown.classification,
+                    beside: parts.beside(),
+                    settings: &settings,
+                    extent_pixels,
+                    layers: &[],
+                };
+                let mut renderer = Renderer::new(job, &camera, Device::find(word)?)?;
+                renderer.draw(&camera)?;
+                let frames = (0..self.repeat).map(|_| timed(&mut renderer, &camera));
+                let frames = frames.collect::<Result<Vec<_>, _>>()?;
+                rows.push((name, median_gpu(&frames), median_wall(&frames)));
+                device = format!("{}, {}", renderer.device(), renderer.driver());
+            }
         }
         drop(progress);
         let [width, height] = extent_pixels;
@@ -225,14 +234,32 @@ fn window_of(
 }
 
 /// The rows of the table.
-const MEASURED: [(&str, Technique, Mode); 6] = [
-    ("raycast composite", Technique::Raycast, Mode::Composite),
-    ("slices-3d composite", Technique::Slices3d, Mode::Composite),
-    ("slices-2d composite", Technique::Slices2d, Mode::Composite),
-    ("raycast mip", Technique::Raycast, Mode::Mip),
-    ("slices-3d mip", Technique::Slices3d, Mode::Mip),
-    ("slices-2d mip", Technique::Slices2d, Mode::Mip),
+const MEASURED: [(Mode, [(&str, Technique); 3]); 2] = [
+    (
+        Mode::Composite,
+        [
+            ("raycast composite", Technique::Raycast),
+            ("slices-3d composite", Technique::Slices3d),
+            ("slices-2d composite", Technique::Slices2d),
+        ],
+    ),
+    (
+        Mode::Mip,
+        [
+            ("raycast mip", Technique::Raycast),
+            ("slices-3d mip", Technique::Slices3d),
+            ("slices-2d mip", Technique::Slices2d),
+        ],
+    ),
 ];
+
+/// The settings, with the filter that the values ask for where no word does.
+fn filtered(settings: Settings, scene: &SceneFlags, shown: &Shown) -> Settings {
+    match (scene.sampling.filter, shown.filter) {
+        (None, Some(filter)) => Settings { filter, ..settings },
+        _ => settings,
+    }
+}
 
 fn timed(renderer: &mut Renderer, camera: &Camera) -> Result<FrameTime, Error> {
     let start = Instant::now();

@@ -3,25 +3,11 @@
 use super::{
     Error, exaggerate,
     flags::{InputFlags, SceneFlags},
-    memory::fitting,
+    memory::{Held, fitting},
     progress::Progress,
     renderer::Device,
 };
 use crate::volume::{Header, Limits, Loss, Magnitude, Meaning, Source, Volume};
-
-/// The one volume that the words name, in memory.
-pub fn load(scene: &SceneFlags, device: &Device, progress: &Progress) -> Result<Volume, Error> {
-    if scene.channels.are_given() || scene.labels.labels.is_some() {
-        return Err(Error::usage(
-            "one volume at a time is drawn here, without --channel, --channels and --labels",
-            "draw them with `stratavox render`",
-        ));
-    }
-    let limits = scene.input.limits();
-    let source = open(&scene.input, &limits)?;
-    let (volume, _) = load_from(source, scene, device, progress)?;
-    Ok(volume)
-}
 
 /// The source that the words name. Vectors are taken by their length, unless a word takes something else.
 pub fn open(input: &InputFlags, limits: &Limits) -> Result<Box<dyn Source>, Error> {
@@ -42,7 +28,7 @@ pub fn load_from(
 ) -> Result<(Volume, f64), Error> {
     // What may be wrong with the words is said before anything about memory.
     scene.input.pick(source.header())?;
-    let source = fitting(source, &scene.input, device.memory(), 1)?;
+    let source = fitting(source, &scene.input, device.memory(), Held::Volumes(1))?;
     read_stretched(source.as_ref(), scene, progress)
 }
 

@@ -8,7 +8,7 @@
 //! The textures of a CPU driver lie in the memory of the host: there the sum has to fit.
 
 use super::{Error, flags::InputFlags};
-use crate::volume::{Header, Reduced, Source};
+use crate::volume::{Header, Reduced, Source, VoxelType};
 use serde::Serialize;
 
 /// What one time and component takes, pictures left out.
@@ -38,13 +38,40 @@ impl RenderBytes {
         }
     }
 
-    /// Of so many volumes.
+    /// Of volumes like this one that are there at once.
+    fn held(header: &Header, has_holes: bool, held: Held) -> Self {
+        let one = Self::of(header, has_holes);
+        match held {
+            Held::Volumes(count) => one.times(count),
+            Held::Blend => {
+                let floats = Header {
+                    stored: VoxelType::F32,
+                    ..header.clone()
+                };
+                let blend = Self::of(&floats, has_holes);
+                Self {
+                    host: one.times(2).host.saturating_add(blend.host),
+                    device: blend.device,
+                }
+            }
+        }
+    }
+
     fn times(self, volumes: u32) -> Self {
         Self {
             host: self.host.saturating_mul(volumes.into()),
             device: self.device.saturating_mul(volumes.into()),
         }
     }
+}
+
+/// Volumes of one source that are there at once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Held {
+    /// So many, on the device too.
+    Volumes(u32),
+    /// Those of two times, and floats between them, which alone are on the device.
+    Blend,
 }
 
 /// The memory that a device has for textures.
@@ -62,7 +89,7 @@ const SLAB_BYTES: u64 = 256 << 20;
 /// Part of what is there that a volume may take: the rest is for pictures, programs and the system.
 const SHARE: f64 = 0.9;
 
-/// The source, reduced where that is wanted and needed, so that so many volumes of it fit.
+/// The source, reduced where that is wanted and needed, so that what is held of it fits.
 ///
 /// # Errors
 /// Where the memory is not there, and `--fit` is not given.
@@ -70,10 +97,10 @@ pub fn fitting(
     source: Box<dyn Source>,
     input: &InputFlags,
     device: Option<DeviceMemory>,
-    volumes: u32,
+    held: Held,
 ) -> Result<Box<dyn Source>, Error> {
     let host_bytes = input.max_memory.or_else(available_bytes);
-    let factor = least_factor(source.header(), volumes, host_bytes, device);
+    let factor = least_factor(source.header(), held, host_bytes, device);
     if factor == 1 {
         return Ok(source);
     }
@@ -81,7 +108,7 @@ pub fn fitting(
         let slab_bytes = host_bytes.map_or(SLAB_BYTES, |there| (there / 16).min(SLAB_BYTES));
         return Ok(Box::new(Reduced::new(source, factor, slab_bytes)));
     }
-    let needed = RenderBytes::of(source.header(), false).times(volumes);
+    let needed = RenderBytes::held(source.header(), false, held);
     let there = |bytes: Option<u64>| bytes.map_or("an unknown amount".to_owned(), in_units);
     Err(Error::Memory(format!(
         "{}: the volume needs {} of memory and {} of the device's; there are {} and {}",
@@ -96,11 +123,11 @@ pub fn fitting(
 /// By how much each axis has to shrink.
 fn least_factor(
     header: &Header,
-    volumes: u32,
+    held: Held,
     host_bytes: Option<u64>,
     device: Option<DeviceMemory>,
 ) -> u32 {
-    let whole = RenderBytes::of(header, header.fill.is_some()).times(volumes);
+    let whole = RenderBytes::held(header, header.fill.is_some(), held);
     let largest = header.dims.iter().copied().max().unwrap_or(1);
     let fits = |&factor: &u32| {
         let part = |bytes: u64| bytes as f64 / f64::from(factor).powi(3);
@@ -176,8 +203,10 @@ pub fn bytes_of_word(word: &str) -> Result<u64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::volume::{Format, VoxelType};
+    use crate::volume::Format;
     use glam::DAffine3;
+
+    const ONE: Held = Held::Volumes(1);
 
     fn header(side: u32, stored: VoxelType) -> Header {
         Header::new(Format::Raw, [side; 3], stored, DAffine3::IDENTITY)
@@ -199,16 +228,37 @@ mod tests {
                 is_of_host: true,
             })
         };
-        assert_eq!(least_factor(&header, 1, None, None), 1);
-        assert_eq!(least_factor(&header, 1, Some(2_300_000), None), 1);
-        assert_eq!(least_factor(&header, 1, Some(2_200_000), None), 2);
+        assert_eq!(least_factor(&header, ONE, None, None), 1);
+        assert_eq!(least_factor(&header, ONE, Some(2_300_000), None), 1);
+        assert_eq!(least_factor(&header, ONE, Some(2_200_000), None), 2);
         assert_eq!(
-            least_factor(&header, 1, Some(2_300_000), card(2_300_000)),
+            least_factor(&header, ONE, Some(2_300_000), card(2_300_000)),
             1
         );
-        assert_eq!(least_factor(&header, 1, Some(2_300_000), cpu(2_300_000)), 2);
-        assert_eq!(least_factor(&header, 1, Some(1 << 40), card(80_000)), 4);
-        assert_eq!(least_factor(&header, 1, Some(1 << 40), card(0)), 100);
+        assert_eq!(
+            least_factor(&header, ONE, Some(2_300_000), cpu(2_300_000)),
+            2
+        );
+        assert_eq!(least_factor(&header, ONE, Some(1 << 40), card(80_000)), 4);
+        assert_eq!(least_factor(&header, ONE, Some(1 << 40), card(0)), 100);
+    }
+
+    #[test]
+    fn a_blend_takes_two_volumes_and_floats_and_floats_alone_on_the_device() {
+        // 100^3 u16: 2 MB, 2 MB, and 4 MB of floats; nine tenths of the memory may be taken.
+        let header = header(100, VoxelType::U16);
+        let fits = |host, heap_bytes, is_of_host| {
+            let device = DeviceMemory {
+                heap_bytes,
+                is_of_host,
+            };
+            least_factor(&header, Held::Blend, Some(host), Some(device)) == 1
+        };
+        assert!(fits(8_900_000, 4_500_000, false));
+        assert!(!fits(8_800_000, 4_500_000, false));
+        assert!(!fits(8_900_000, 4_400_000, false));
+        assert!(fits(13_400_000, 13_400_000, true));
+        assert!(!fits(13_300_000, 13_300_000, true));
     }
 
     #[test]

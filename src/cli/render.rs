@@ -2,7 +2,7 @@
 
 use super::{
     Error,
-    flags::{Classification, Depth, NotBuilt, SceneFlags},
+    flags::{Depth, NotBuilt, SceneFlags},
     output::{self, write_whole},
     progress::{Progress, ProgressWord},
     reasons::why_empty,
@@ -12,11 +12,7 @@ use super::{
     signals::Gate,
     timings::{FrameTime, Timings, ms_since, peak_rss_bytes},
 };
-use crate::{
-    camera::BoundingSphere,
-    picture::{BitDepth, LayerKind, PictureFormat, WriteOptions, write_picture},
-    scene::Beside,
-};
+use crate::picture::{BitDepth, LayerKind, PictureFormat, WriteOptions, write_picture};
 use clap::Args;
 use std::{
     path::{Path, PathBuf},
@@ -29,8 +25,9 @@ use std::{
     stratavox render phantom:head -o head.png\n  \
     stratavox render phantom:head --technique slices-3d --view left --background 0,0,0 -o left.png\n  \
     stratavox render phantom:head --mode mip --aov value,depth -o mip.exr\n  \
-    stratavox render phantom:cells --channel 0,color=cyan --channel 1,color=1:0.3:0,window=60:255 -o cells.png\n  \
-    stratavox render brain.nii.gz --labels atlas.nii.gz --label-tf names.txt --label-show 1-20 -o parts.png")]
+    stratavox render phantom:cells,n=64 --channel 0,color=cyan --channel 1,color=1:0.3:0,window=0.3:1 -o cells.png\n  \
+    stratavox convert phantom:sphere,n=64 -o ball.nrrd --type u8 --window 0,1 && \
+    stratavox render phantom:head,n=64 --labels ball.nrrd --label-show 128-255 -o ball.png")]
 pub struct Render {
     /// The picture: its ending says whether .png, .exr or .npy
     #[arg(short, long, value_name = "FILE")]
@@ -112,8 +109,7 @@ impl Render {
             classification,
             ..
         } = &shown;
-        let bounds = BoundingSphere::of_grid(&volume.world_from_voxel, volume.dims);
-        let camera = scene.camera.camera(&bounds, extent_pixels)?;
+        let camera = scene.camera.camera(&shown.subject(), extent_pixels)?;
         if let (None, Some(filter)) = (scene.sampling.filter, shown.filter) {
             settings.filter = filter;
         }
@@ -143,11 +139,7 @@ impl Render {
             last = Some(frame.picture);
         }
         let mut picture = last.expect("at least one picture is drawn");
-        // What one of several functions covers says nothing of the others.
-        let reasoned = match parts.beside() {
-            Beside::Nothing => classification,
-            Beside::Channels(_) | Beside::Colors(_) => &Classification::RangeOfPicture,
-        };
+        let reasoned = parts.only(classification);
         if let Some(reason) = why_empty(&picture, volume, reasoned, &camera, &settings) {
             progress.note(&format!("the picture is empty: {reason}"));
         }

@@ -5,13 +5,13 @@ use super::{
     error::visible,
     figure::{Anchor, Color, Figure, Mark, SCALE, png},
     flags::{Depth, InputFlags, SceneFlags, Size},
-    load::load,
     output::{self, say},
     progress::{Progress, ProgressWord},
     renderer::{Device, Job, Renderer},
+    shown::Shown,
     signals::Gate,
 };
-use crate::{camera::BoundingSphere, picture::Picture, technique::Filter};
+use crate::picture::Picture;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -119,20 +119,17 @@ fn draw(
     device_word: &Option<String>,
     progress: &Progress,
 ) -> Result<Picture, Error> {
-    let volume = load(scene, device, progress)?;
     let mut settings = scene.sampling.settings(Depth::Eight)?;
-    let bounds = BoundingSphere::of_grid(&volume.world_from_voxel, volume.dims);
-    let camera = scene.camera.camera(&bounds, extent_pixels)?;
-    let classification = scene
-        .classification
-        .classification(&volume, settings.mode)?;
-    if scene.classification.found_labels(&classification) {
-        settings.filter = Filter::Nearest;
+    let shown = Shown::read(scene, &settings, device, progress)?;
+    if let Some(filter) = shown.filter {
+        settings.filter = filter;
     }
+    let camera = scene.camera.camera(&shown.subject(), extent_pixels)?;
+    let parts = shown.parts();
     let job = Job {
-        volume: &volume,
-        classification: &classification,
-        beside: Default::default(),
+        volume: &shown.volume,
+        classification: &shown.classification,
+        beside: parts.beside(),
         settings: &settings,
         extent_pixels,
         layers: &[],
@@ -143,7 +140,7 @@ fn draw(
         let whole = renderer.draw(&camera)?.picture;
         let mut closer = scene.camera.clone();
         closer.zoom = Some(zoom_to(&whole));
-        let camera = closer.camera(&bounds, extent_pixels)?;
+        let camera = closer.camera(&shown.subject(), extent_pixels)?;
         let mut picture = renderer.draw(&camera)?.picture;
         let [r, g, b, _] = BACKGROUND.map(|code| f64::from(code) / 255.0);
         picture.over_background([r, g, b, 1.0]);

@@ -209,3 +209,19 @@ fn a_volume_without_change_or_without_data_has_a_figure_too() {
         );
     }
 }
+
+#[test]
+fn vectors_are_counted_by_their_length_as_they_are_drawn() {
+    let folder = Folder::new();
+    let header = "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 3 2 2 2\nkinds: vector domain domain domain\n\
+                  encoding: raw\n\n";
+    // 3, 4, 12: of length 13.
+    let voxels = (0..8).flat_map(|i| [3 * i, 4 * i, 12 * i]).collect();
+    folder.file("flow.nrrd", [header.as_bytes().to_vec(), voxels].concat());
+    for words in ["-o a.json", "--component magnitude -o b.json"] {
+        let ran = folder.run(&format!("histogram flow.nrrd {words}"));
+        ran.assert_done();
+    }
+    let read = |name: &str| fs::read_to_string(folder.path(name)).expect("a file");
+    assert_eq!(read("a.json"), read("b.json"));
+}

@@ -2,7 +2,10 @@
 #![cfg(feature = "cli")]
 
 mod animate;
+#[cfg(target_os = "linux")]
+mod animate_faults;
 mod animate_films;
+mod animate_mixed;
 #[cfg(unix)]
 mod animate_stops;
 mod convert;

@@ -2,6 +2,34 @@
 
 use super::person::{Folder, assert_begins};
 
+/// Codes of the small picture of the first place.
+fn first_tile(folder: &Folder, input: &str) -> Vec<[u8; 3]> {
+    let words = format!("sheet {input} --tile 32x24 -o s.png --device reference --force");
+    folder.run(&words).assert_done();
+    let picture = image::open(folder.path("s.png"))
+        .expect("a picture")
+        .to_rgb8();
+    let at = |i: u32| picture.get_pixel(6 + i % 32, 6 + i / 32).0;
+    (0..32 * 24).map(at).collect()
+}
+
+#[test]
+fn channels_are_drawn_together_as_render_draws_them() {
+    let folder = Folder::new();
+    let all = first_tile(&folder, "phantom:cells,n=12");
+    let one = first_tile(&folder, "phantom:cells,n=12,component=0");
+    assert!(all != one, "one channel is drawn");
+    // Blue, green and orange: no grey picture of one channel has all three.
+    for c in 0..3 {
+        let others = [(c + 1) % 3, (c + 2) % 3];
+        let is_of = |p: &&[u8; 3]| p[c] > 40 && others.iter().any(|&o| p[c] > p[o] + 12);
+        assert!(
+            all.iter().filter(is_of).count() > 2,
+            "no pixel leans to {c}"
+        );
+    }
+}
+
 #[test]
 fn a_sheet_has_a_place_for_each_input_and_says_which_could_not_be_drawn() {
     let folder = Folder::new();

@@ -76,3 +76,27 @@ fn heights_are_stretched_where_the_sheet_is_flat_and_it_is_said() {
     let ran = folder.run(&format!("render phantom:head,n=8 --exaggerate 0 {DRAW}"));
     ran.assert_refused(2, &["--exaggerate"]);
 }
+
+#[test]
+fn the_earth_is_seen_from_the_south_unless_a_word_says_otherwise() {
+    let folder = Folder::new();
+    let file = format!("{} --variable t", fixture("netcdf/classic.nc"));
+    let draw = |words: &str| {
+        let ran = folder.run(&format!("render {file} {words} {DRAW}"));
+        ran.assert_done();
+        std::fs::read(folder.path("a.npy")).expect("a picture")
+    };
+    let by_default = draw("");
+    assert!(by_default == draw("--azimuth -60 --elevation 25"));
+    assert!(by_default != draw("--azimuth 60 --elevation 15"));
+    let info = folder.run(&format!("info {file}"));
+    info.assert_done();
+    let line = "seen from    azimuth -60, elevation 25 degrees";
+    assert!(info.out.contains(line), "{}", info.out);
+    let small = "--size 24x16 --device reference";
+    let film = format!("animate {file} --time 0 --turntable 2 -o f%d.npy {small}");
+    folder.run(&film).assert_done();
+    let frame = |name: &str| std::fs::read(folder.path(name)).expect("a frame");
+    assert!(frame("f0.npy") == by_default);
+    assert!(frame("f1.npy") == draw("--azimuth 120 --elevation 25"));
+}

@@ -1,25 +1,34 @@
 //! Shots to pictures: one device for the whole film, a volume uploaded once for all frames that show it, and a
 //! frame written while the next one is drawn.
 
-use super::{film::y4m, rate::Rate, shots::Shot, store::Store, volumes::Volumes};
+use super::{
+    film::y4m,
+    rate::Rate,
+    ready::{self, Ready},
+    shots::Shot,
+    store::Store,
+    volumes::Volumes,
+};
 use crate::{
     cli::{
         Error,
-        flags::{Classification, SceneFlags, summary},
+        flags::{Classification, SceneFlags},
         progress::Progress,
         reasons::why_empty,
         renderer::{Device, Job, Renderer},
+        shown::{Parts, Shown},
         timings::{FrameTime, Timings, ms_since, peak_rss_bytes},
     },
     picture::{LayerKind, Picture},
-    technique::{Filter, Settings},
-    transfer::{Classified, ValueSummary, Window},
+    transfer::{Classified, Window},
     volume::{Source, Volume},
 };
 use std::{
-    collections::BTreeSet,
     io::{self, Write},
-    sync::mpsc::{Receiver, sync_channel},
+    sync::{
+        Arc,
+        mpsc::{Receiver, sync_channel},
+    },
     time::Instant,
 };
 
@@ -34,14 +43,24 @@ pub struct Drawing<'a> {
     pub shots: &'a [Shot],
     /// Layers that the pictures must have.
     pub layers: &'a [LayerKind],
-    /// Where volumes come from.
-    pub source: &'a dyn Source,
+    /// The volumes.
+    pub content: &'a Content,
     /// Colours behind the picture, the nearest first.
     pub background: Vec<[f64; 4]>,
+    /// When reading began.
+    pub start: Instant,
     /// Who hears how far it is.
     pub progress: &'a Progress,
     /// Samples are counted at the end.
     pub wants_timings: bool,
+}
+
+/// What the frames show.
+pub enum Content {
+    /// One time, of everything that `render` draws.
+    Still(Box<Shown>),
+    /// Several times of one number a voxel.
+    Times(Box<dyn Source>),
 }
 
 /// Where pictures go.
@@ -52,13 +71,6 @@ pub enum Sink<'a> {
     Stream(Rate),
 }
 
-/// One frame, ready to be drawn.
-struct Ready {
-    classification: Classification,
-    settings: Settings,
-    time: f64,
-}
-
 impl Drawing<'_> {
     /// Draws what `sink` does not have yet.
     pub fn draw(&self, sink: &Sink, device: Device) -> Result<Timings, Error> {
@@ -67,15 +79,49 @@ impl Drawing<'_> {
             Sink::Store(store) => store.missing(),
             Sink::Stream(_) => &all,
         };
-        let start = Instant::now();
-        self.progress.stage("read", 0, 1);
-        let saw_volume = |time: u32, volume: &Volume| match sink {
-            Sink::Store(store) => store.journal().saw_volume(time, volume),
+        let saw = |time: u32, volumes: &[&Volume]| match sink {
+            Sink::Store(store) => store.journal().saw_volumes(time, volumes),
             Sink::Stream(_) => Ok(()),
         };
-        let mut volumes = Volumes::new(self.source, self.scene, self.progress, &saw_volume);
-        let mut ready = self.ready(&mut volumes)?;
-        let load_ms = ms_since(start);
+        match self.content {
+            Content::Still(shown) => {
+                let parts = shown.parts();
+                let volumes = [vec![&*shown.volume], parts.beside().volumes()].concat();
+                saw(self.shots[0].time as u32, &volumes)?;
+                let ready = ready::of_still(self.shots, self.scene, shown)?;
+                let at = |_| Ok(Arc::clone(&shown.volume));
+                self.draw_ready(wanted, ready, at, &parts, sink, device)
+            }
+            Content::Times(source) => {
+                self.progress.stage("read", 0, 1);
+                let saw = |time, volume: &Volume| saw(time, &[volume]);
+                let mut volumes = Volumes::new(source.as_ref(), self.scene, self.progress, &saw);
+                let is_labels = source.header().is_labels;
+                let ready = ready::of_times(
+                    self.shots,
+                    self.scene,
+                    is_labels,
+                    &mut volumes,
+                    self.progress,
+                )?;
+                let alone = Parts::Channels(Vec::new());
+                let at = |time| volumes.at(time);
+                self.draw_ready(wanted, ready, at, &alone, sink, device)
+            }
+        }
+    }
+
+    /// Draws these frames; `at` has the volume of a time.
+    fn draw_ready(
+        &self,
+        wanted: &[u32],
+        mut ready: Vec<Ready>,
+        mut at: impl FnMut(f64) -> Result<Arc<Volume>, Error>,
+        parts: &Parts,
+        sink: &Sink,
+        device: Device,
+    ) -> Result<Timings, Error> {
+        let load_ms = ms_since(self.start);
         let (sender, receiver) = sync_channel(QUEUE);
         std::thread::scope(|scope| {
             let writer = scope.spawn(|| self.write(sink, wanted.len(), receiver));
@@ -86,13 +132,7 @@ impl Drawing<'_> {
             // A picture that nobody takes: the writer has stopped and says why.
             let give = |picture| sender.send(picture).is_ok();
             let drawn = self.draw_all(
-                wanted,
-                &mut volumes,
-                &mut ready,
-                sink,
-                &mut seen,
-                device,
-                give,
+                wanted, &mut at, &mut ready, parts, sink, &mut seen, device, give,
             );
             drop(sender);
             match writer.join() {
@@ -105,61 +145,6 @@ impl Drawing<'_> {
         })
     }
 
-    /// Colours and settings of all frames; reads values only where they decide something.
-    fn ready(&self, volumes: &mut Volumes) -> Result<Vec<Ready>, Error> {
-        let times = self
-            .shots
-            .iter()
-            .flat_map(|shot| [shot.time.floor(), shot.time.ceil()]);
-        let times: BTreeSet<u32> = times.map(|time| time as u32).collect();
-        let mut known: Option<ValueSummary> = None;
-        let mut ready = Vec::with_capacity(self.shots.len());
-        for shot in self.shots {
-            let summary = || {
-                if known.is_none() {
-                    known = Some(match times.first() {
-                        Some(&time) if times.len() == 1 => {
-                            summary(volumes.at(time.into())?.as_ref())
-                        }
-                        _ => volumes.summary(&times)?,
-                    });
-                }
-                Ok(known.clone().expect("made above"))
-            };
-            ready.push(Ready {
-                classification: shot
-                    .classification
-                    .classification_of(shot.settings.mode, summary)?,
-                settings: shot.settings.clone(),
-                time: shot.time,
-            });
-        }
-        if times.len() > 1 && known.is_some() {
-            self.progress.note(&format!(
-                "colours are chosen for all {} times together",
-                times.len()
-            ));
-        }
-        let found_labels = |(shot, ready): (&Shot, &Ready)| {
-            shot.classification.found_labels(&ready.classification)
-        };
-        let are_labels = self.shots.iter().zip(&ready).all(found_labels);
-        if are_labels && self.scene.sampling.filter.is_none() {
-            ready
-                .iter_mut()
-                .for_each(|ready| ready.settings.filter = Filter::Nearest);
-            self.progress
-                .note("the values look like labels: drawn with --filter nearest");
-        }
-        if are_labels || self.source.header().is_labels {
-            // Between two labels there is none.
-            ready
-                .iter_mut()
-                .for_each(|ready| ready.time = ready.time.round());
-        }
-        Ok(ready)
-    }
-
     #[expect(
         clippy::too_many_arguments,
         reason = "each is borrowed for another time"
@@ -167,8 +152,9 @@ impl Drawing<'_> {
     fn draw_all(
         &self,
         wanted: &[u32],
-        volumes: &mut Volumes,
+        at: &mut impl FnMut(f64) -> Result<Arc<Volume>, Error>,
         ready: &mut [Ready],
+        parts: &Parts,
         sink: &Sink,
         seen: &mut Seen,
         mut device: Device,
@@ -180,8 +166,14 @@ impl Drawing<'_> {
             .iter()
             .any(|ready| ready.classification == Classification::RangeOfPicture)
         {
-            let volume = volumes.at(ready[0].time)?;
-            let job = self.job(&volume, &ready[0], extent_pixels, &[LayerKind::Value]);
+            let volume = at(ready[0].time)?;
+            let job = self.job(
+                &volume,
+                parts,
+                &ready[0],
+                extent_pixels,
+                &[LayerKind::Value],
+            );
             let camera = &self.shots[0].camera;
             let mut renderer = Renderer::new(job, camera, device)?;
             let range = renderer.projected_range(camera)?;
@@ -199,8 +191,14 @@ impl Drawing<'_> {
         let mut rest = wanted;
         while let Some(&first) = rest.first() {
             let time = ready[first as usize].time;
-            let volume = volumes.at(time)?;
-            let job = self.job(&volume, &ready[first as usize], extent_pixels, self.layers);
+            let volume = at(time)?;
+            let job = self.job(
+                &volume,
+                parts,
+                &ready[first as usize],
+                extent_pixels,
+                self.layers,
+            );
             let camera = &self.shots[first as usize].camera;
             let mut renderer = Renderer::new(job, camera, device)?;
             seen.prepared(&renderer);
@@ -229,7 +227,8 @@ impl Drawing<'_> {
                     wall_ms: ms_since(start),
                 });
                 let mut picture = frame.picture;
-                if let Some(why) = why_empty(&picture, &volume, classification, camera, settings) {
+                let reasoned = parts.only(classification);
+                if let Some(why) = why_empty(&picture, &volume, reasoned, camera, settings) {
                     seen.empty(number, why);
                 }
                 for &color in &self.background {
@@ -253,13 +252,14 @@ impl Drawing<'_> {
     fn job<'j>(
         &'j self,
         volume: &'j Volume,
+        parts: &'j Parts,
         ready: &'j Ready,
         extent_pixels: [u32; 2],
         layers: &'j [LayerKind],
     ) -> Job<'j> {
         Job {
             volume,
-            beside: Default::default(),
+            beside: parts.beside(),
             classification: &ready.classification,
             settings: &ready.settings,
             extent_pixels,

@@ -16,13 +16,8 @@ use std::{
 pub fn of_film(plan: &Plan, frames: &Frames, depth: BitDepth) -> Result<Value, Error> {
     let scene = scene_file::text(&plan.scene, &frames.path(0));
     let scene: Value = serde_json::from_str(&scene).expect("what we have just written as JSON");
-    let input = match plan.scene.input.file() {
-        None => Value::Null,
-        Some(path) => stamp(path).map_err(|cause| Error::Input {
-            path: path.to_owned(),
-            problem: cause.to_string(),
-        })?,
-    };
+    let input = stamp_of(plan.scene.input.file())?;
+    let [labels, label_names] = plan.scene.labels.files().map(stamp_of);
     let header = format!("{:?}", plan.header);
     Ok(json!({
         "frames": plan.shots.len(),
@@ -31,10 +26,22 @@ pub fn of_film(plan: &Plan, frames: &Frames, depth: BitDepth) -> Result<Value, E
         "keyframes": plan.film.keyframes.as_ref().map(|keyframes| &keyframes.text),
         "scene": scene,
         "input": input,
+        "labels": labels?,
+        "label_names": label_names?,
         "header": hash_of(|hasher| std::hash::Hasher::write(hasher, header.as_bytes())),
         "bits": match depth { BitDepth::Eight => 8, BitDepth::Sixteen => 16 },
         "black_behind": !keeps_transparency(&plan.target),
     }))
+}
+
+fn stamp_of(path: Option<&Path>) -> Result<Value, Error> {
+    let Some(path) = path else {
+        return Ok(Value::Null);
+    };
+    stamp(path).map_err(|cause| Error::Input {
+        path: path.to_owned(),
+        problem: cause.to_string(),
+    })
 }
 
 /// Size and last change of a file, or of all files in a folder.

@@ -158,8 +158,12 @@ impl Journal {
     }
 
     /// Notes what the voxels of a time are, or compares them with those of the frames that are done.
-    pub fn saw_volume(&mut self, time: u32, volume: &Volume) -> Result<(), Error> {
-        let hash = hash_of(|hasher| hash_voxels(volume, hasher));
+    pub fn saw_volumes(&mut self, time: u32, volumes: &[&Volume]) -> Result<(), Error> {
+        let hash = hash_of(|hasher| {
+            volumes
+                .iter()
+                .for_each(|volume| hash_voxels(volume, hasher));
+        });
         match self.voxels.get(&time) {
             Some(was) if *was != hash => Err(another("the input holds other voxels than before")),
             Some(_) => Ok(()),

@@ -12,6 +12,7 @@ mod identity;
 mod journal;
 mod keyframes;
 mod rate;
+mod ready;
 mod shots;
 mod store;
 mod target;
@@ -22,12 +23,14 @@ mod volumes;
 use super::{
     Error,
     flags::{Depth, NotBuilt, SceneFlags},
-    memory::fitting,
+    load,
+    memory::{Held, fitting},
     output::{self, write_whole},
     progress::{Progress, ProgressWord},
     render::bit_depth,
     renderer::Device,
     scene_file,
+    shown::{self, Shown},
     signals::Gate,
     timings::Timings,
 };
@@ -36,11 +39,14 @@ use crate::{
     volume::{Header, Source},
 };
 use clap::Args;
-use draw::{Drawing, Sink};
+use draw::{Content, Drawing, Sink};
 use film::{FilmFormat, Reel};
 use rate::Rate;
 use shots::{Film, Shot};
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    time::Instant,
+};
 use store::{Store, Wishes};
 use target::{Frames, Target};
 
@@ -190,14 +196,48 @@ impl Animate {
         progress.stage("prepare", 0, 1);
         let device = Device::find(plan.scene.device.as_deref())?;
         progress.device(&device.name());
+        let Plan {
+            scene,
+            depth,
+            header,
+            shots,
+            ..
+        } = plan;
+        let start = Instant::now();
+        let content = match shots::still_time(shots) {
+            Some(time) => {
+                progress.stage("read", 0, 1);
+                let mut scene = scene.clone();
+                if plan.film.changes_time() {
+                    scene.input.time = Some(time.to_string());
+                }
+                let settings = &shots[0].settings;
+                let shown = Shown::of(source, &scene, settings, &device, progress)?;
+                Content::Still(Box::new(shown))
+            }
+            None => {
+                let is_whole = shots.iter().all(|shot| shot.time.fract() == 0.0);
+                let held = if is_whole {
+                    Held::Volumes(1)
+                } else {
+                    Held::Blend
+                };
+                let source = fitting(source, &scene.input, device.memory(), held)?;
+                Content::Times(source)
+            }
+        };
         // A volume that is reduced to fit has a grid of its own.
-        let source = fitting(source, &plan.scene.input, device.memory(), 1)?;
-        let shots = plan.film.shots(&plan.scene, plan.depth, source.header())?;
+        let grid = match &content {
+            Content::Still(shown) => shown.volume.grid(),
+            Content::Times(source) => shots::grid(scene, source.header())?,
+        };
+        let shots = plan.film.shots(scene, *depth, header, &grid)?;
         let drawing = Drawing {
-            scene: &plan.scene,
+            scene,
             shots: &shots,
             layers: &plan.layers,
-            source: source.as_ref(),
+            content: &content,
+            start,
             background: self.background(plan, progress),
             progress,
             wants_timings: self.timings.is_some(),
@@ -233,8 +273,11 @@ impl Animate {
             _ if self.bit_depth == BitDepth::Sixteen => Depth::More,
             _ => Depth::Eight,
         };
-        let source = scene.input.open(&scene.input.limits())?;
-        let shots = film.shots(&scene, depth, source.header())?;
+        let source = load::open(&scene.input, &scene.input.limits())?;
+        let header = source.header();
+        let shots = film.shots(&scene, depth, header, &shots::grid(&scene, header)?)?;
+        shown::check(&scene, shots[0].settings.mode)?;
+        check_several(&scene, header, &shots)?;
         let plan = Plan {
             scene,
             target,
@@ -312,6 +355,26 @@ impl Animate {
         }
         layers
     }
+}
+
+/// Refuses what changes one number a voxel where several are seen.
+fn check_several(scene: &SceneFlags, header: &Header, shots: &[Shot]) -> Result<(), Error> {
+    let is_still = shots::still_time(shots).is_some();
+    let several = shown::shows_several(scene, header)?;
+    if !is_still && (several || scene.labels.label_tf.is_some()) {
+        return Err(Error::usage(
+            "several times are shown of one number a voxel, without colours, several channels, --labels and --label-tf",
+            "--time N takes one time, --component N one number",
+        ));
+    }
+    let is_same = |shot: &Shot| shot.classification == scene.classification;
+    if several && !shots.iter().all(is_same) {
+        return Err(Error::usage(
+            "`window` and `tf` of keyframes are for one number a voxel, and several are drawn",
+            "say it of each for the whole film: --channel 0,color=cyan,window=0:100",
+        ));
+    }
+    Ok(())
 }
 
 fn keeps_transparency(target: &Target) -> bool {

@@ -10,10 +10,10 @@
 
 use super::keyframes::{Keyframes, MAX_FRAMES, place_of_frame};
 use crate::{
-    camera::{BoundingSphere, Camera},
+    camera::Camera,
     cli::{
         Error, exaggerate,
-        flags::{ClassificationFlags, Depth, SceneFlags},
+        flags::{ClassificationFlags, Depth, SceneFlags, Subject},
     },
     technique::Settings,
     volume::{Grid, Header},
@@ -71,25 +71,31 @@ impl Film {
         Ok(count)
     }
 
-    /// All frames of `scene`, checked.
+    /// True where the film says which time a frame shows.
+    pub fn changes_time(&self) -> bool {
+        self.times || self.keys_change_time()
+    }
+
+    fn keys_change_time(&self) -> bool {
+        let keyframes = self.keyframes.as_ref();
+        keyframes.is_some_and(|film| !film.tracks.time.is_empty())
+    }
+
+    /// All frames of `scene`, checked, of a volume of this header that is drawn on `grid`.
     pub fn shots(
         &self,
         scene: &SceneFlags,
         depth: Depth,
         header: &Header,
+        grid: &Grid,
     ) -> Result<Vec<Shot>, Error> {
-        let changes_time = self
-            .keyframes
-            .as_ref()
-            .is_some_and(|film| !film.tracks.time.is_empty());
-        if self.times && (scene.input.time.is_some() || changes_time) {
+        if self.times && (scene.input.time.is_some() || self.keys_change_time()) {
             return Err(Error::usage(
                 "--times shows all times, and --time or the keyframes name one",
                 "leave out one of them",
             ));
         }
         let count = self.frame_count(header)?;
-        let grid = grid(scene, header)?;
         let time = match &scene.input.time {
             Some(_) => scene.input.time(header)?.0,
             None => 0,
@@ -98,7 +104,7 @@ impl Film {
             film: self,
             scene,
             depth,
-            bounds: BoundingSphere::of_grid(&grid.world_from_voxel, grid.dims),
+            subject: Subject::new(grid, header.is_earth),
             spacing: grid.smallest_spacing(),
             times: header.times,
             time: f64::from(time),
@@ -125,7 +131,7 @@ struct Maker<'a> {
     film: &'a Film,
     scene: &'a SceneFlags,
     depth: Depth,
-    bounds: BoundingSphere,
+    subject: Subject,
     spacing: f64,
     times: u32,
     time: f64,
@@ -147,7 +153,7 @@ impl Maker<'_> {
         }
         if let Some(count) = self.film.turntable {
             let degrees = 360.0 * f64::from(k) / f64::from(count);
-            camera = camera.turned(degrees, &self.bounds);
+            camera = camera.turned(degrees, &self.subject);
         }
         let last_time = f64::from(self.times - 1);
         if self.film.times {
@@ -162,7 +168,7 @@ impl Maker<'_> {
         }
         classification.check()?;
         Ok(Shot {
-            camera: camera.camera(&self.bounds, self.scene.picture.extent_pixels()?)?,
+            camera: camera.camera(&self.subject, self.scene.picture.extent_pixels()?)?,
             settings: sampling.settings(self.depth)?,
             classification,
             time,
@@ -170,8 +176,15 @@ impl Maker<'_> {
     }
 }
 
+/// The one time that all frames show, if it is one of the input's.
+pub fn still_time(shots: &[Shot]) -> Option<u32> {
+    let time = shots.first()?.time;
+    let is_still = time.fract() == 0.0 && shots.iter().all(|shot| shot.time == time);
+    is_still.then_some(time as u32)
+}
+
 /// Where voxels are drawn: heights may be stretched.
-fn grid(scene: &SceneFlags, header: &Header) -> Result<Grid, Error> {
+pub fn grid(scene: &SceneFlags, header: &Header) -> Result<Grid, Error> {
     let grid = Grid {
         dims: header.dims,
         world_from_voxel: header.world_from_voxel,
@@ -194,9 +207,13 @@ mod tests {
         Header { times, ..header }
     }
 
+    fn shots(film: &Film, scene: &SceneFlags, times: u32) -> Result<Vec<Shot>, Error> {
+        let header = header(times);
+        film.shots(scene, Depth::Eight, &header, &grid(scene, &header)?)
+    }
+
     fn times_of(film: &Film, times: u32) -> Vec<f64> {
-        let shots = film.shots(&SceneFlags::default(), Depth::Eight, &header(times));
-        shots
+        shots(film, &SceneFlags::default(), times)
             .expect("a film")
             .iter()
             .map(|shot| shot.time)
@@ -233,9 +250,7 @@ mod tests {
         };
         let mut scene = SceneFlags::default();
         scene.camera.elevation = Some(0.0);
-        let shots = film
-            .shots(&scene, Depth::Eight, &header(1))
-            .expect("a film");
+        let shots = shots(&film, &scene, 1).expect("a film");
         let directions: Vec<_> = shots
             .iter()
             .map(|shot| (shot.camera.eye - shot.camera.target).normalize())
@@ -266,9 +281,7 @@ mod tests {
                 camera: serde_json::from_str(flags).expect("flags"),
                 ..SceneFlags::default()
             };
-            let shots = film
-                .shots(&scene, Depth::Eight, &header(1))
-                .expect("a film");
+            let shots = shots(&film, &scene, 1).expect("a film");
             let up = shots[1].camera.frame().up;
             assert!((up - -glam::DVec3::X).length() < 1e-14, "{flags}: {up}");
         }
@@ -285,7 +298,7 @@ mod tests {
             (&TIMES, 1, 2),
             (&TIMES, MAX_FRAMES + 1, 6),
         ] {
-            let error = film.shots(&SceneFlags::default(), Depth::Eight, &header(times));
+            let error = shots(film, &SceneFlags::default(), times);
             assert_eq!(error.expect_err("refused").exit_code(), code);
         }
     }

@@ -8,7 +8,7 @@ use crate::{
     volume::{Pick, Problem, Quantity, ReadError, Source, Volume, Voxels},
 };
 use glam::DAffine3;
-use std::{collections::BTreeSet, rc::Rc};
+use std::{collections::BTreeSet, sync::Arc};
 
 /// Voxels that all times together give to the choice of colours.
 const MAX_SAMPLES: usize = 1 << 22;
@@ -21,7 +21,7 @@ pub struct Volumes<'a> {
     scene: SceneFlags,
     progress: &'a Progress,
     first: Option<(Pick, DAffine3)>,
-    kept: Vec<(u32, Rc<Volume>)>,
+    kept: Vec<(u32, Arc<Volume>)>,
     /// Told of every volume that is read.
     saw: &'a dyn Fn(u32, &Volume) -> Result<(), Error>,
 }
@@ -45,7 +45,7 @@ impl<'a> Volumes<'a> {
     }
 
     /// The volume at this time.
-    pub fn at(&mut self, time: f64) -> Result<Rc<Volume>, Error> {
+    pub fn at(&mut self, time: f64) -> Result<Arc<Volume>, Error> {
         let [before, after] = [time.floor(), time.ceil()].map(|time| time as u32);
         self.kept
             .retain(|&(time, _)| time == before || time == after);
@@ -55,7 +55,7 @@ impl<'a> Volumes<'a> {
         }
         let second = self.whole(after)?;
         blend(&first, &second, time.fract())
-            .map(Rc::new)
+            .map(Arc::new)
             .map_err(|problem| {
                 Error::Read(ReadError {
                     path: self.source.path().to_owned(),
@@ -64,9 +64,9 @@ impl<'a> Volumes<'a> {
             })
     }
 
-    fn whole(&mut self, time: u32) -> Result<Rc<Volume>, Error> {
+    fn whole(&mut self, time: u32) -> Result<Arc<Volume>, Error> {
         if let Some((_, volume)) = self.kept.iter().find(|kept| kept.0 == time) {
-            return Ok(Rc::clone(volume));
+            return Ok(Arc::clone(volume));
         }
         let volume = match self.first {
             // What there is to say is said of the first.
@@ -89,8 +89,8 @@ impl<'a> Volumes<'a> {
             }
         };
         (self.saw)(time, &volume)?;
-        let volume = Rc::new(volume);
-        self.kept.push((time, Rc::clone(&volume)));
+        let volume = Arc::new(volume);
+        self.kept.push((time, Arc::clone(&volume)));
         Ok(volume)
     }
 

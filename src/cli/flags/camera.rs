@@ -1,7 +1,7 @@
 //! Where the picture is seen from: flags to a [`Camera`], once the volume's box is known.
 
-use super::{Error, Numbers, finite, positive};
-use crate::camera::{self, BoundingSphere, Camera, Lens, Orbit, View, up_for};
+use super::{Error, Numbers, Subject, finite, positive};
+use crate::camera::{self, Camera, Lens, Orbit, View, up_for};
 use clap::{Args, ValueEnum};
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
@@ -22,7 +22,7 @@ pub struct CameraFlags {
     #[arg(long, value_name = "F", value_parser = positive, help_heading = "Camera")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub zoom: Option<f64>,
-    /// Stand on this side [default: between right and anterior, a little above]
+    /// Stand on this side [default: between right and anterior, a little above; of a piece of the Earth the south]
     #[arg(long, value_name = "SIDE", conflicts_with_all = ["azimuth", "elevation"], help_heading = "Camera")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub view: Option<ViewWord>,
@@ -75,12 +75,9 @@ pub struct CameraFlags {
 const DEFAULT_FOV_DEGREES: f64 = 30.0;
 
 impl CameraFlags {
-    /// The camera on a volume whose uncropped grid box lies in `bounds`.
-    pub fn camera(
-        &self,
-        bounds: &BoundingSphere,
-        extent_pixels: [u32; 2],
-    ) -> Result<Camera, Error> {
+    /// The camera on this subject.
+    pub fn camera(&self, subject: &Subject, extent_pixels: [u32; 2]) -> Result<Camera, Error> {
+        let bounds = &subject.bounds;
         let lens = match self.projection.unwrap_or_default() {
             ProjectionWord::Perspective => Lens::Perspective {
                 fov_degrees: self.fov.unwrap_or(DEFAULT_FOV_DEGREES),
@@ -102,8 +99,10 @@ impl CameraFlags {
                     zoom: 1.0,
                 }
             }
-            None => Camera::orbit(bounds, target, self.orbit(), up, lens, extent_pixels)
-                .map_err(refused)?,
+            None => {
+                let orbit = self.orbit(subject);
+                Camera::orbit(bounds, target, orbit, up, lens, extent_pixels).map_err(refused)?
+            }
         };
         let camera = Camera {
             zoom: self.zoom.unwrap_or(1.0),
@@ -113,15 +112,10 @@ impl CameraFlags {
         Ok(camera)
     }
 
-    fn orbit(&self) -> Orbit {
+    fn orbit(&self, subject: &Subject) -> Orbit {
         let side = match (self.view, self.azimuth, self.elevation) {
             (Some(view), _, _) => view.view().orbit(),
-            // Three sides of a box are seen, and of a head more than the profile.
-            (None, None, None) => Orbit {
-                azimuth_degrees: 60.0,
-                elevation_degrees: 15.0,
-                roll_degrees: 0.0,
-            },
+            (None, None, None) => subject.side(),
             (None, azimuth, elevation) => Orbit {
                 azimuth_degrees: azimuth.unwrap_or(0.0),
                 elevation_degrees: elevation.unwrap_or(0.0),
@@ -135,7 +129,7 @@ impl CameraFlags {
     }
 
     /// The same flags gone around the vertical axis through the target, from +x towards +y.
-    pub fn turned(&self, degrees: f64, bounds: &BoundingSphere) -> Self {
+    pub fn turned(&self, degrees: f64, subject: &Subject) -> Self {
         let turn = DMat3::from_rotation_z(degrees.to_radians());
         let turned_up = |forward| {
             let up = self
@@ -145,13 +139,15 @@ impl CameraFlags {
         };
         let mut turned = self.clone();
         if let Some(Numbers(eye)) = self.eye {
-            let target = self.target.map_or(bounds.center, |Numbers(p)| p.into());
+            let target = self
+                .target
+                .map_or(subject.bounds.center, |Numbers(p)| p.into());
             let from_target = DVec3::from(eye) - target;
             turned.eye = Some(Numbers((target + turn * from_target).into()));
             turned.up = turned_up(-from_target);
             return turned;
         }
-        let orbit = self.orbit();
+        let orbit = self.orbit(subject);
         turned.view = None;
         turned.azimuth = Some(orbit.azimuth_degrees + degrees);
         turned.elevation = Some(orbit.elevation_degrees);
@@ -243,17 +239,22 @@ impl ViewWord {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::Projection;
+    use crate::camera::{BoundingSphere, Projection};
 
     const BOUNDS: BoundingSphere = BoundingSphere {
         center: DVec3::new(10.0, 20.0, 30.0),
         radius: 5.0,
     };
 
+    const SUBJECT: Subject = Subject {
+        bounds: BOUNDS,
+        is_earth: false,
+    };
+
     fn camera(change: impl FnOnce(&mut CameraFlags)) -> Camera {
         let mut flags = CameraFlags::default();
         change(&mut flags);
-        flags.camera(&BOUNDS, [1024, 768]).expect("a camera")
+        flags.camera(&SUBJECT, [1024, 768]).expect("a camera")
     }
 
     #[test]
@@ -308,7 +309,7 @@ mod tests {
             eye: Some(Numbers([10.0, 20.0, 30.0])),
             ..CameraFlags::default()
         };
-        let error = flags.camera(&BOUNDS, [8, 8]).expect_err("refused");
+        let error = flags.camera(&SUBJECT, [8, 8]).expect_err("refused");
         assert_eq!(error.exit_code(), 2);
         assert!(error.to_string().contains("same point"), "{error}");
     }

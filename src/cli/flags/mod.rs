@@ -13,6 +13,7 @@ mod not_built;
 mod numbers;
 mod picture;
 mod sampling;
+mod subject;
 mod words;
 
 pub use camera::CameraFlags;
@@ -25,6 +26,7 @@ pub use not_built::NotBuilt;
 pub use numbers::{Background, Numbers, Size, finite, positive};
 pub use picture::PictureFlags;
 pub use sampling::{Depth, SamplingFlags};
+pub use subject::Subject;
 
 use super::Error;
 use clap::Args;

@@ -8,13 +8,14 @@ use super::{
     error::visible,
     figure::{self, Anchor, Color, Figure, INK, Ticks},
     flags::{Classification, ClassificationFlags, InputFlags},
+    load,
     output::{self, say_aside, write_whole},
     signals::Gate,
 };
 use crate::{
     technique::Mode,
     transfer::TransferFunction,
-    volume::{Format, Header, Limits, Pick, Volume},
+    volume::{Format, Header, Pick, Volume},
 };
 use clap::Args;
 use serde_json::{Value, json};
@@ -114,8 +115,8 @@ struct Counted {
 
 impl Counted {
     fn read(input: &InputFlags) -> Result<Self, Error> {
-        let limits = Limits::default();
-        let source = input.open(&limits)?;
+        let limits = input.limits();
+        let source = load::open(input, &limits)?;
         let header = source.header().clone();
         let (pick, note) = input.pick(&header)?;
         for note in header.notes.iter().chain(&note) {

@@ -2,10 +2,9 @@
 
 use super::{RenderBytes, Report, place};
 use crate::{
-    camera::BoundingSphere,
     cli::{
         error::visible,
-        flags::{CameraFlags, InputFlags},
+        flags::{CameraFlags, InputFlags, Subject},
         histogram::length_unit,
         readable::{bytes, grouped, short},
     },
@@ -207,8 +206,12 @@ impl Page<'_> {
 
     /// Where the camera stands without a flag, in degrees.
     fn view(&self) -> Option<[f64; 2]> {
-        let bounds = BoundingSphere::of_grid(&self.header.world_from_voxel, self.header.dims);
-        let camera = CameraFlags::default().camera(&bounds, [4, 3]).ok()?;
+        let grid = Grid {
+            dims: self.header.dims,
+            world_from_voxel: self.header.world_from_voxel,
+        };
+        let subject = Subject::new(&grid, self.header.is_earth);
+        let camera = CameraFlags::default().camera(&subject, [4, 3]).ok()?;
         let way = (camera.eye - camera.target).normalize();
         let angles = [way.y.atan2(way.x), way.z.clamp(-1.0, 1.0).asin()];
         Some(angles.map(|angle| angle.to_degrees().round()))

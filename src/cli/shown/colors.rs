@@ -12,6 +12,7 @@ use crate::{
     transfer::{Classified, Window, of_colors},
     volume::{Source, Volume, read_colors},
 };
+use std::sync::Arc;
 
 impl Reader<'_> {
     /// The volume in its own colours.
@@ -34,7 +35,8 @@ impl Reader<'_> {
         }
         let window = flags.window()?;
         if self.mode.is_projection() {
-            return self.projected_colors(volumes, window, height_factor);
+            let is_earth = source.header().is_earth;
+            return self.projected_colors(volumes, window, is_earth, height_factor);
         }
         let function = match (flags.function_of_file()?, window) {
             (Some(function), Some(window)) => function.spread_over(window),
@@ -48,7 +50,8 @@ impl Reader<'_> {
         });
         let red = volumes.remove(0);
         Ok(Shown {
-            volume: red,
+            volume: Arc::new(red),
+            is_earth: source.header().is_earth,
             classification: Classification::Function(function),
             filter: None,
             height_factor,
@@ -61,6 +64,7 @@ impl Reader<'_> {
         &self,
         volumes: Vec<Volume>,
         window: Option<Window>,
+        is_earth: bool,
         height_factor: f64,
     ) -> Result<Shown, Error> {
         if self.mode == Mode::Xray {
@@ -84,7 +88,8 @@ impl Reader<'_> {
         }
         let first = made.remove(0);
         Ok(Shown {
-            volume: first.volume,
+            volume: Arc::new(first.volume),
+            is_earth,
             classification: Classification::Function(first.function),
             filter: None,
             height_factor,

@@ -5,11 +5,12 @@ mod colors;
 use super::{
     Error,
     flags::{
-        ChannelWord, Classification, ClassificationFlags, Component, Plan, SceneFlags, summary,
+        ChannelWord, Classification, ClassificationFlags, Component, Plan, SceneFlags, Subject,
+        summary,
     },
     labels,
     load::{load_from, open, say_what_was_lost, stretch},
-    memory::fitting,
+    memory::{Held, fitting},
     progress::Progress,
     renderer::Device,
 };
@@ -18,14 +19,16 @@ use crate::{
     shaders::MAX_CHANNELS,
     technique::{Filter, Mode, Role, Settings},
     transfer::{CHANNEL_COLORS, Classified, LabelTable, TransferFunction, Window, of_channel},
-    volume::{Meaning, Source, Volume, labels::labels_of, read_all},
+    volume::{Header, Meaning, Source, Volume, labels::labels_of, read_all},
 };
+use std::sync::Arc;
 
 /// Everything that is drawn.
 #[derive(Debug)]
 pub struct Shown {
     /// The volume; red of colours, the first of channels.
-    pub volume: Volume,
+    pub volume: Arc<Volume>,
+    is_earth: bool,
     /// How its values are seen.
     pub classification: Classification,
     /// Where the values themselves ask for one.
@@ -60,10 +63,21 @@ impl Shown {
         device: &Device,
         progress: &Progress,
     ) -> Result<Self, Error> {
-        check(scene, settings)?;
+        check(scene, settings.mode)?;
         let source = open(&scene.input, &scene.input.limits())?;
-        let room = MAX_CHANNELS as usize - usize::from(scene.labels.labels.is_some());
-        let (plan, note) = scene.channels.plan(&scene.input, source.header(), room)?;
+        Self::of(source, scene, settings, device, progress)
+    }
+
+    /// The same of a source that is open already.
+    pub fn of(
+        source: Box<dyn Source>,
+        scene: &SceneFlags,
+        settings: &Settings,
+        device: &Device,
+        progress: &Progress,
+    ) -> Result<Self, Error> {
+        check(scene, settings.mode)?;
+        let (plan, note) = plan(scene, source.header())?;
         if let Some(note) = note {
             progress.note(&note);
         }
@@ -99,7 +113,12 @@ impl Shown {
         Ok(shown)
     }
 
-    /// What [`Shown::beside`] hands out.
+    /// What a camera is turned to.
+    pub fn subject(&self) -> Subject {
+        Subject::new(&self.volume.grid(), self.is_earth)
+    }
+
+    /// What [`Parts::beside`] hands out.
     pub fn parts(&self) -> Parts<'_> {
         match &self.others {
             Others::Channels(others) => Parts::Channels(
@@ -127,6 +146,14 @@ pub enum Parts<'a> {
 }
 
 impl Parts<'_> {
+    /// The function that says alone why a picture is empty. What one of several covers says nothing of the others.
+    pub fn only<'a>(&self, classification: &'a Classification) -> &'a Classification {
+        match self.beside() {
+            Beside::Nothing => classification,
+            Beside::Channels(_) | Beside::Colors(_) => &Classification::RangeOfPicture,
+        }
+    }
+
     /// For a scene.
     pub fn beside(&self) -> Beside<'_> {
         match self {
@@ -137,9 +164,21 @@ impl Parts<'_> {
     }
 }
 
+/// Which of the numbers of a voxel are drawn, and what a person should know of it.
+fn plan(scene: &SceneFlags, header: &Header) -> Result<(Plan, Option<String>), Error> {
+    let room = MAX_CHANNELS as usize - usize::from(scene.labels.labels.is_some());
+    scene.channels.plan(&scene.input, header, room)
+}
+
+/// True where more than one number a voxel is seen.
+pub fn shows_several(scene: &SceneFlags, header: &Header) -> Result<bool, Error> {
+    let (plan, _) = plan(scene, header)?;
+    Ok(plan != Plan::One || scene.labels.labels.is_some())
+}
+
 /// What can be said wrong before anything is opened.
-fn check(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
-    if scene.labels.labels.is_some() && settings.mode.is_projection() {
+pub fn check(scene: &SceneFlags, mode: Mode) -> Result<(), Error> {
+    if scene.labels.labels.is_some() && mode.is_projection() {
         return Err(Error::usage(
             "--labels needs --mode composite: a projection has no place for labels",
             "leave out --mode or --labels",
@@ -171,7 +210,11 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn one(&self, source: Box<dyn Source>) -> Result<Shown, Error> {
-        let is_labels = source.header().is_labels;
+        let Header {
+            is_labels,
+            is_earth,
+            ..
+        } = *source.header();
         let (volume, height_factor) = load_from(source, self.scene, self.device, self.progress)?;
         let flags = &self.scene.classification;
         let has_table = self.scene.labels.label_tf.is_some() && self.scene.labels.labels.is_none();
@@ -181,7 +224,8 @@ impl Reader<'_> {
             && let Some(function) = self.names(&volume)?
         {
             return Ok(Shown {
-                volume,
+                volume: Arc::new(volume),
+                is_earth,
                 classification: Classification::Function(function),
                 filter: Some(Filter::Nearest),
                 height_factor,
@@ -195,7 +239,8 @@ impl Reader<'_> {
                 .note("the values look like labels: drawn with --filter nearest");
         }
         Ok(Shown {
-            volume,
+            volume: Arc::new(volume),
+            is_earth,
             classification,
             filter: found_labels.then_some(Filter::Nearest),
             height_factor,
@@ -276,7 +321,8 @@ impl Reader<'_> {
         self.progress.note(&said.join("; "));
         let first = made.remove(0);
         Ok(Shown {
-            volume: first.volume,
+            volume: Arc::new(first.volume),
+            is_earth: header.is_earth,
             classification: Classification::Function(first.function),
             filter: None,
             height_factor,
@@ -288,7 +334,8 @@ impl Reader<'_> {
     fn fitted(&self, source: Box<dyn Source>, count: usize) -> Result<Box<dyn Source>, Error> {
         let input = &self.scene.input;
         let count = u32::try_from(count).unwrap_or(u32::MAX);
-        let source = fitting(source, input, self.device.memory(), count)?;
+        let held = Held::Volumes(count);
+        let source = fitting(source, input, self.device.memory(), held)?;
         let (_, note) = input.time(source.header())?;
         input.check_one(source.header())?;
         for note in source.header().notes.iter().chain(&note) {

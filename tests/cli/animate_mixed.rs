@@ -1,0 +1,169 @@
+//! Films of several numbers a voxel and of label maps: each frame is the picture that `render` draws. Drawn by the
+//! twins on the CPU.
+
+use crate::person::Folder;
+use std::fs;
+
+const SMALL: &str = "--size 24x18 --device reference";
+
+#[track_caller]
+fn assert_frame_is(folder: &Folder, frame: &str, words: &str) {
+    folder
+        .run(&format!("render {words} -o wanted.png {SMALL} --force"))
+        .assert_done();
+    let read = |name: &str| fs::read(folder.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
+    assert!(
+        read(frame) == read("wanted.png"),
+        "{frame} is not that of {words}"
+    );
+}
+
+/// 6 x 5 x 4 bytes, so many a voxel.
+fn nrrd(folder: &Folder, name: &str, first_axis: &str, kinds: &str, bytes: usize) {
+    let dimension = 3 + usize::from(!first_axis.is_empty());
+    let header = format!(
+        "NRRD0004\ntype: uchar\ndimension: {dimension}\nsizes: {first_axis} 6 5 4\n{kinds}encoding: raw\n\n"
+    );
+    let voxels = (0..120 * bytes).map(|i| (i * 7 % 251) as u8).collect();
+    folder.file(name, [header.into_bytes(), voxels].concat());
+}
+
+fn labels(folder: &Folder, name: &str, of: impl Fn(usize) -> u8) {
+    let header = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 6 5 4\nencoding: raw\n\n";
+    let voxels = (0..120).map(of).collect();
+    folder.file(name, [header.as_bytes().to_vec(), voxels].concat());
+}
+
+#[test]
+fn a_turn_of_channels_is_the_picture_of_all_of_them_from_each_side() {
+    let folder = Folder::new();
+    for (name, words) in [
+        (
+            "two",
+            "phantom:cells,n=12 --channel 0,color=cyan --channel 1,color=red,window=0:200",
+        ),
+        ("all", "phantom:cells,n=12"),
+        ("mip", "phantom:cells,n=12 --mode mip --channels 2,0"),
+    ] {
+        folder
+            .run(&format!(
+                "animate {words} --turntable 3 -o {name}%d.png {SMALL}"
+            ))
+            .assert_done();
+        for (k, azimuth) in [(0, 60), (2, 300)] {
+            let words = format!("{words} --azimuth {azimuth} --elevation 15");
+            assert_frame_is(&folder, &format!("{name}{k}.png"), &words);
+        }
+    }
+}
+
+#[test]
+fn keyframes_move_camera_and_planes_around_colours_and_labels() {
+    let folder = Folder::new();
+    nrrd(
+        &folder,
+        "rgb.nrrd",
+        "3",
+        "kinds: RGB-color domain domain domain\n",
+        3,
+    );
+    nrrd(&folder, "v.nrrd", "", "", 1);
+    labels(&folder, "l.nrrd", |i| u8::from(i % 6 >= 3));
+    folder.file("l.txt", "1 255 0 0 1 1 1 \"right half\"\n");
+    folder.file(
+        "k.json",
+        r#"{"stratavox_keyframes":1,"frames":3,"keys":[
+            {"at":0,"azimuth":0,"zoom":1,"clip":[[1,0,0,0]]},{"at":1,"azimuth":90,"zoom":4,"clip":[[1,0,0,4]]}]}"#,
+    );
+    for (name, words) in [
+        ("rgb", "rgb.nrrd"),
+        ("over", "v.nrrd --labels l.nrrd --label-tf l.txt"),
+        ("cut", "v.nrrd --preset grey --labels l.nrrd --label-show 1"),
+        ("names", "l.nrrd --label-tf l.txt"),
+    ] {
+        folder
+            .run(&format!(
+                "animate {words} --keyframes k.json -o {name}%d.png {SMALL}"
+            ))
+            .assert_done();
+        let words = format!("{words} --azimuth 45 --zoom 2 --clip 1,0,0,2");
+        assert_frame_is(&folder, &format!("{name}1.png"), &words);
+    }
+}
+
+#[test]
+fn what_several_numbers_cannot_do_in_a_film_is_refused_by_name() {
+    let folder = Folder::new();
+    nrrd(&folder, "v.nrrd", "", "", 1);
+    labels(&folder, "l.nrrd", |i| u8::from(i % 6 >= 3));
+    folder.file("l.txt", "1 255 0 0 1 1 1 \"right half\"\n");
+    folder.file(
+        "w.json",
+        r#"{"stratavox_keyframes":1,"frames":2,"keys":[{"at":0,"window":[0,9]}]}"#,
+    );
+    let before = folder.names();
+    for (words, said) in [
+        (
+            "phantom:storm,n=8,variable=u,times=2 --labels l.nrrd --times",
+            &["several times", "--labels", "--time N"][..],
+        ),
+        (
+            "phantom:storm,n=8,variable=u,times=2 --label-tf l.txt --times",
+            &["several times", "--label-tf"],
+        ),
+        (
+            "phantom:storm,n=8,variable=u,times=2 --channels 0 --times",
+            &["several times", "several channels"],
+        ),
+        (
+            "phantom:cells,n=8 --keyframes w.json",
+            &["`window`", "keyframes", "--channel 0"],
+        ),
+        (
+            "v.nrrd --labels l.nrrd --keyframes w.json",
+            &["`window`", "keyframes"],
+        ),
+        (
+            "phantom:cells,n=8 --channels 0,1 --preset grey --turntable 2",
+            &["--preset", "--channel 0"],
+        ),
+        (
+            "v.nrrd --labels l.nrrd --mode mip --turntable 2",
+            &["--labels", "--mode composite"],
+        ),
+    ] {
+        let ran = folder.run(&format!("animate {words} -o a.gif {SMALL}"));
+        ran.assert_refused(2, said);
+        assert_eq!(folder.names(), before, "{words}");
+    }
+}
+
+#[test]
+fn a_stopped_film_does_not_go_on_with_other_labels() {
+    let folder = Folder::new();
+    nrrd(&folder, "v.nrrd", "", "", 1);
+    labels(&folder, "l.nrrd", |i| u8::from(i % 6 >= 3));
+    let words = format!("animate v.nrrd --labels l.nrrd --turntable 2 -o %d.png {SMALL}");
+    folder.run(&words).assert_done();
+    labels(&folder, "l.nrrd", |i| u8::from(i % 6 >= 4));
+    fs::remove_file(folder.path("1.png")).expect("a frame");
+    let ran = folder.run(&format!("{words} --resume"));
+    ran.assert_refused(2, &["labels"]);
+}
+
+#[test]
+fn between_two_times_three_volumes_have_to_fit() {
+    let folder = Folder::new();
+    // One time: 64 x 64 x 64 floats, 1 MiB. Two of them and what lies between: 3 MiB.
+    let words = format!(
+        "animate phantom:storm,n=64,variable=u,times=2 --mode mip --window -20,30 --times --max-memory 2500K {SMALL}"
+    );
+    folder
+        .run(&format!("{words} --turntable 2 -o %d.png"))
+        .assert_done();
+    let ran = folder.run(&format!("{words} --turntable 3 -o b%d.png"));
+    ran.assert_refused(6, &["3.0 MiB", "--fit"]);
+    let ran = folder.run(&format!("{words} --turntable 3 -o b%d.png --fit"));
+    ran.assert_done();
+    assert!(ran.err.contains("reduced from 64"), "{}", ran.err);
+}
