@@ -6,9 +6,10 @@ mod transfer_shared;
 #[cfg(feature = "files")]
 use std::path::PathBuf;
 use stratavox::transfer::{
-    Classified, Interpolation, Kind, Preset, TransferFunction, ValueSummary, Window, automatic,
+    Classified, Interpolation, Kind, Preset, Quantity, TransferFunction, ValueSummary, Window,
+    automatic,
 };
-use stratavox::volume::Quantity;
+
 use transfer_shared::Random;
 
 fn summary(values: &[f64]) -> ValueSummary {

@@ -169,7 +169,7 @@ mod tests {
                 rescale: Rescale::default(),
                 validity: None,
                 hounsfield: false,
-                quantity: Default::default(),
+                unit: None,
                 loss: Default::default(),
                 value_range: [0.0, 7.0],
             },

@@ -6,7 +6,7 @@ use super::{
     Classified, ColorPoint, Interpolation, OpacityPoint, TransferFunction, ValueSummary, Window,
 };
 
-use crate::volume::Quantity;
+use super::Quantity;
 
 /// What the values of a volume look like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

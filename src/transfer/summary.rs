@@ -1,6 +1,6 @@
 //! What the values of a volume look like as a whole: enough to choose a transfer function by.
 
-use crate::volume::Quantity;
+use super::Quantity;
 
 /// Bins of the largest histogram.
 const MAX_BINS: usize = 4096;

@@ -2,8 +2,8 @@
 
 use super::voxels::{Stored, with_numbers};
 use super::{
-    Header, Limits, Loss, Pick, Piece, Problem, Quantity, ReadError, Rescale, Source, Volume,
-    VoxelBox, Voxels, holes,
+    Header, Limits, Loss, Pick, Piece, Problem, ReadError, Rescale, Source, Volume, VoxelBox,
+    Voxels, holes,
 };
 use glam::{DAffine3, DVec3};
 
@@ -34,7 +34,7 @@ impl Volume {
             rescale: header.rescale,
             fill: header.fill,
             hounsfield: header.hounsfield,
-            quantity: Quantity::of_unit(header.unit.as_deref()),
+            unit: header.unit.clone(),
             loss,
         };
         let format = header.format.name();
@@ -75,7 +75,7 @@ impl Volume {
             rescale,
             fill,
             hounsfield: false,
-            quantity: Quantity::Unknown,
+            unit: None,
             loss: Loss::default(),
         };
         let limits = Limits {
@@ -93,7 +93,7 @@ struct Grid {
     rescale: Rescale,
     fill: Option<f64>,
     hounsfield: bool,
-    quantity: Quantity,
+    unit: Option<String>,
     loss: Loss,
 }
 
@@ -132,7 +132,7 @@ fn finish(
         rescale: grid.rescale,
         validity,
         hounsfield: grid.hounsfield,
-        quantity: grid.quantity,
+        unit: grid.unit,
         loss: grid.loss,
     })
 }

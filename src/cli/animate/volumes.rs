@@ -4,8 +4,8 @@
 
 use crate::{
     cli::{Error, flags::SceneFlags, load, progress::Progress},
-    transfer::ValueSummary,
-    volume::{Pick, Problem, Quantity, ReadError, Source, Volume, Voxels},
+    transfer::{Quantity, ValueSummary},
+    volume::{Pick, Problem, ReadError, Source, Volume, Voxels},
 };
 use glam::DAffine3;
 use std::{collections::BTreeSet, sync::Arc};
@@ -112,7 +112,7 @@ impl<'a> Volumes<'a> {
                 .transform_vector3(volume.grid().far_corner())
                 .length();
             hounsfield = volume.hounsfield;
-            quantity = volume.quantity;
+            quantity = Quantity::of_unit(volume.unit.as_deref());
             pool.extend(runs(volume.voxels.len(), per_time).map(|i| value(&volume, i)));
         }
         if range[0] > range[1] {
@@ -160,7 +160,7 @@ fn blend(a: &Volume, b: &Volume, s: f64) -> Result<Volume, Problem> {
     let blended = Volume::from_voxels(a.dims, a.world_from_voxel, voxels, a.rescale, None)?;
     Ok(Volume {
         hounsfield: a.hounsfield,
-        quantity: a.quantity,
+        unit: a.unit.clone(),
         loss: a.loss.and(b.loss),
         ..blended
     })

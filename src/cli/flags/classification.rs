@@ -5,7 +5,7 @@ use crate::cli::output::say_aside;
 use crate::{
     technique::Mode,
     transfer::{
-        Classified, Interpolation, Preset, Scale, TransferFunction, ValueSummary, Window,
+        Classified, Interpolation, Preset, Quantity, Scale, TransferFunction, ValueSummary, Window,
         automatic, import_transfer_function, transfer_function_from_json,
         transfer_function_to_json,
     },
@@ -217,7 +217,7 @@ pub fn summary(volume: &Volume) -> ValueSummary {
         volume.hounsfield,
         |i| is_valid(i).then(|| value(i)),
     )
-    .measuring(volume.quantity)
+    .measuring(Quantity::of_unit(volume.unit.as_deref()))
 }
 
 #[cfg(test)]
@@ -234,7 +234,7 @@ mod tests {
             rescale: Rescale::default(),
             validity: None,
             hounsfield: false,
-            quantity: Default::default(),
+            unit: None,
             loss: Default::default(),
             value_range: [0.0, 70.0],
         }

@@ -11,8 +11,8 @@ use super::{
     output::{say, say_aside},
 };
 use crate::{
-    transfer::{Kind, ValueSummary},
-    volume::{Grid, Header, Meaning, Pick, Quantity, ReadError, Source, Statistics},
+    transfer::{Kind, Quantity, ValueSummary},
+    volume::{Grid, Header, Meaning, Pick, ReadError, Source, Statistics},
 };
 use clap::Args;
 use glam::DVec3;

@@ -41,7 +41,7 @@ impl Quantity {
     /// What `unit` says, as a file words it: `m s**-1` and `m s^-1` are `m s-1`.
     ///
     /// ```
-    /// # use stratavox::volume::Quantity;
+    /// # use stratavox::transfer::Quantity;
     /// assert_eq!(Quantity::of_unit(Some("BQML")), Quantity::Uptake);
     /// assert_eq!(Quantity::of_unit(Some("m s**-1")), Quantity::Field);
     /// assert_eq!(Quantity::of_unit(Some("HU")), Quantity::Unknown);
