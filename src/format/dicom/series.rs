@@ -114,9 +114,8 @@ pub(super) struct Contents {
 /// True where a folder holds a DICOM file.
 pub(in crate::format) fn is_folder_of_pictures(folder: &Path, limits: &Limits) -> bool {
     let mut files = Vec::new();
-    // A folder of too many files is opened too: that gives the error.
-    let _ = files_in(folder, limits, &mut files);
-    files.iter().any(|file| is_dicom(file))
+    // A folder of too many files, or with links, is opened too: that gives the error.
+    files_in(folder, limits, &mut files).is_err() || files.iter().any(|file| is_dicom(file))
 }
 
 fn is_dicom(path: &Path) -> bool {
