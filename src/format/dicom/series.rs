@@ -8,7 +8,7 @@ use super::quantity::Quantity;
 use super::tags::{self, *};
 use crate::format::convert::to_u64;
 use crate::format::place;
-use crate::format::problem::{at, escape, invalid, io};
+use crate::format::problem::{at, escape, invalid, io, unsupported};
 use crate::volume::{Limits, Problem, ReadError, Series};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -114,9 +114,8 @@ pub(super) struct Contents {
 /// True where a folder holds a DICOM file.
 pub(in crate::format) fn is_folder_of_pictures(folder: &Path, limits: &Limits) -> bool {
     let mut files = Vec::new();
-    // A folder of too many files is opened too: that gives the error.
-    let _ = files_in(folder, limits, &mut files);
-    files.iter().any(|file| is_dicom(file))
+    // A folder of too many files, or with links, is opened too: that gives the error.
+    files_in(folder, limits, &mut files).is_err() || files.iter().any(|file| is_dicom(file))
 }
 
 fn is_dicom(path: &Path) -> bool {
@@ -184,7 +183,16 @@ pub(super) fn contents(path: &Path, limits: &Limits) -> Result<Contents, ReadErr
     Ok(contents)
 }
 
-/// All regular files in a folder and the folders in it; the first ones where there are too many.
+/// A link may lead out of the folder, as a name in a header may.
+fn link() -> Problem {
+    unsupported(
+        DICOM,
+        "a folder with links, where limits are those for untrusted files,",
+    )
+}
+
+/// All regular files in a folder and the folders in it; the first ones where there are too many. A folder of
+/// strangers holds no links.
 fn files_in(folder: &Path, limits: &Limits, files: &mut Vec<PathBuf>) -> Result<(), ReadError> {
     let mut folders = vec![(folder.to_owned(), 0_u32)];
     while let Some((folder, depth)) = folders.pop() {
@@ -198,6 +206,8 @@ fn files_in(folder: &Path, limits: &Limits, files: &mut Vec<PathBuf>) -> Result<
                 .map_err(|cause| at(&path)(listing()(cause)))?;
             if kind.is_dir() && depth < DEEPEST {
                 folders.push((path, depth.saturating_add(1)));
+            } else if kind.is_symlink() && !limits.detached {
+                return Err(at(&path)(link()));
             } else if kind.is_file() || kind.is_symlink() && path.is_file() {
                 files.push(path);
             }

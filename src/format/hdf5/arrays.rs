@@ -289,6 +289,13 @@ pub(crate) fn problem_of(format: &'static str, what: &str, error: &Error) -> Pro
         Error::UnsupportedDatatypeClass(class) => {
             unsupported(format, format!("a type of class {class}"))
         }
+        // Class 3 of the HDF5 format specification, IV.A.2.i.
+        Error::UnsupportedLayoutClass(3) => {
+            unsupported(format, "a virtual data set, whose numbers are in others,")
+        }
+        Error::Other(cause) if cause.starts_with("external raw data file") => {
+            unsupported(format, "a data set whose numbers are in another file")
+        }
         other => invalid(format, what, "bytes that are in order", &other.to_string()),
     }
 }

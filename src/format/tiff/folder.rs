@@ -5,7 +5,7 @@ use super::single::Single;
 use super::source::PageAt;
 use super::volume::Parts;
 use crate::format::place::{first_bytes, open_regular};
-use crate::format::problem::{self, at, invalid};
+use crate::format::problem::{self, at, invalid, unsupported};
 use crate::volume::{Limits, Problem, ReadError, Source, Wanted};
 use std::cmp::Ordering;
 use std::path::{Path, PathBuf};
@@ -17,6 +17,10 @@ struct Listing {
     slices: Vec<PathBuf>,
     /// Other files that are not hidden.
     others: usize,
+    /// The first of them.
+    looked_at: Vec<PathBuf>,
+    /// True where a name is a link's, which may lead out of the folder.
+    has_links: bool,
     /// True where there is what other readers read: DICOM files, Zarr arrays.
     is_of_others: bool,
 }
@@ -28,7 +32,19 @@ pub(crate) fn recognizes_folder(path: &Path) -> bool {
         let (mut file, _) = open_regular(first).ok()?;
         first_bytes(&mut file, 8).ok()
     });
-    !listing.is_of_others && first.is_some_and(|first| super::recognizes(&first))
+    !listing.is_of_others
+        && first.is_some_and(|first| super::recognizes(&first))
+        && !listing.looked_at.iter().any(|other| is_dicom(other))
+}
+
+/// Files of any other name that are looked into: DICOM files often have none of their own.
+const MOST_LOOKED_AT: usize = 64;
+
+/// True for a file with the mark of DICOM, PS3.10 7.1: 128 bytes of anything, then four letters.
+fn is_dicom(path: &Path) -> bool {
+    open_regular(path)
+        .and_then(|(mut file, _)| first_bytes(&mut file, 132))
+        .is_ok_and(|first| first.ends_with(b"DICM"))
 }
 
 /// Opens a folder's slices as one volume.
@@ -41,6 +57,10 @@ pub(crate) fn open_folder(
     let (Some(first), Some(last)) = (listing.slices.first(), listing.slices.last()) else {
         return Err(at(path)(invalid(TIFF, "folder", "TIFF files", "none")));
     };
+    if listing.has_links && !limits.detached {
+        let what = "a folder with links, where limits are those for untrusted files,";
+        return Err(at(path)(unsupported(TIFF, what)));
+    }
     if listing.slices.len() == 1 {
         return super::open(first, wanted, limits);
     }
@@ -105,10 +125,16 @@ impl Listing {
             }
             match path.extension().and_then(|ending| ending.to_str()) {
                 Some(ending) if ["tif", "tiff"].contains(&ending.to_ascii_lowercase().as_str()) => {
+                    listing.has_links |= path.is_symlink();
                     listing.slices.push(path);
                 }
                 Some(ending) if ending.eq_ignore_ascii_case("dcm") => listing.is_of_others = true,
-                _ => listing.others = listing.others.saturating_add(1),
+                _ => {
+                    listing.others = listing.others.saturating_add(1);
+                    if listing.looked_at.len() < MOST_LOOKED_AT {
+                        listing.looked_at.push(path);
+                    }
+                }
             }
             if listing.slices.len() > most {
                 let wanted = format!("at most {most} files");
