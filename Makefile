@@ -45,19 +45,24 @@ if [ -n "$$wanted" ]; then \
 fi
 endef
 
-# Tests of files and of arithmetic make no device: the validation layer has nothing to hear there.
-WITHOUT_DEVICE := cf_% floors format_% isosurface mutations phantoms picture_% transfer_% volume_%
-WITH_DEVICE := $(filter-out $(WITHOUT_DEVICE),$(basename $(notdir $(wildcard tests/*.rs))) cli)
+# Tests of files and of arithmetic make no device: they run side by side, and the validation layer has nothing to
+# hear there.
+TESTS := $(basename $(notdir $(wildcard tests/*.rs)))
+WITHOUT_DEVICE := $(filter cf_% floors format_% isosurface mutations% phantoms picture_% transfer_% volume_%,$(TESTS))
+WITH_DEVICE := $(filter-out $(WITHOUT_DEVICE),$(TESTS))
+ON_DEVICE := RUST_TEST_THREADS=1 $(CARGO) test --locked --lib --examples $(addprefix --test ,$(WITH_DEVICE))
 
-# One test at a time: each makes a device of its own, and a software driver of 2022 under its validation layer has
-# been seen to crash while two threads made and destroyed theirs. A device uses all cores anyway.
+# One device at a time: a software driver uses all cores anyway.
 test: driver layers
 	$(CARGO) fmt --check
 	$(CARGO) clippy --locked --all-targets -- -D warnings
 	$(CARGO) clippy --locked --all-targets --no-default-features -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --locked --no-deps
-	RUST_TEST_THREADS=1 $(CARGO) test --locked
-	RUST_TEST_THREADS=1 STRATAVOX_VALIDATION=sync $(CARGO) test --locked --lib $(addprefix --test ,$(WITH_DEVICE))
+	$(CARGO) test --locked --doc
+	$(CARGO) test --locked $(addprefix --test ,$(WITHOUT_DEVICE))
+	$(ON_DEVICE) --test cli
+	STRATAVOX_VALIDATION=sync $(ON_DEVICE)
+	STRATAVOX_VALIDATION=sync RUST_TEST_THREADS=1 $(CARGO) test --locked --test cli -- device:: mixed:: pictures::
 
 demo: driver
 	$(CARGO) build --locked --release
@@ -73,11 +78,21 @@ demo: driver
 	done; \
 	echo "the pictures:"; ls -1 $(CURDIR)/target/demo/*.png
 
-# Every volume of the folder DATA, drawn without a flag, into docs/sheet.png.
+# The real volumes that the tests read, each drawn without a flag, into docs/sheet.png.
+VOLUMES ?= $(or $(STRATAVOX_DATA),$(abspath ../shared/data))
+SHEET ?= ct-cranium/cranium.nrrd ct-headsq/quarter.nhdr ct-walnut/walnut.mhd ct-torso/torso-2x.mha ct-teapot/teapot.nrrd \
+    dicom-ct-head dicom-ct-torso dicom-pet vti-headsq/headsq.vti \
+    mri-ch2/ch2.nii.gz mri-ch2/aal.nii.gz mri-mni152/mni152-t1.nii.gz mri-avg152-be/avg152T1_RL_nifti.nii.gz \
+    mri-flair-oblique/FLAIR.nrrd fmri-4d/example4d.nii.gz asl-4d/mpld_asl.nii.gz mri-small/HeadMRVolume.mhd \
+    mri-brainsmall/brainsmall.nhdr label-frog/frogtissue.mhd nucleon/nucleon.nrrd flow-aneurysm/sense_10.h5,variable=volume_0 \
+    tiff-nuclei/img3d.tif tiff-nuclei/mask3d.tif tiff-beads/Bead_Image1_crop.tif seismic-f3/f3.nrrd \
+    met-wrf/wrf_ci.nc,variable=QVAPOR met-wrf/wrf_ci.nc,variable=W met-ifs-ml/forecast_ml.nc,variable=u \
+    met-ifs-ml/forecast_ml.nc,variable=q met-era5-zarr/era5-members.zarr,variable=t[number=0]
+
 sheet: driver
+	@[ -d "$(VOLUMES)" ] || { echo "VOLUMES=folder names the volumes" >&2; exit 1; }
 	$(CARGO) build --locked --release
-	@[ -d "$$DATA" ] || { echo "DATA=folder names the volumes" >&2; exit 1; }
-	cd "$$DATA" && $(CURDIR)/target/release/stratavox sheet --force -o $(CURDIR)/docs/sheet.png $(SHEET)
+	cd "$(VOLUMES)" && $(CURDIR)/target/release/stratavox sheet --force --columns 6 -o $(CURDIR)/docs/sheet.png $(SHEET)
 
 bench: driver
 	$(CARGO) build --locked --release

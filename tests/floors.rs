@@ -8,7 +8,7 @@ use std::{fs, path::Path};
 
 /// Modules by floor, as `src/lib.rs` tells them; floors 0, 3 and 4 have steps inside.
 const FLOORS: &[&[&str]] = &[
-    &["shaders", "real"],
+    &["shaders", "real", "fence"],
     &["ray", "color"],
     &["lattice"],
     &["gpu", "volume", "transfer", "camera", "picture", "mesh"],
@@ -24,6 +24,7 @@ const FLOORS: &[&[&str]] = &[
 const FREE_OF_VULKAN: &[&str] = &[
     "shaders",
     "real",
+    "fence",
     "ray",
     "lattice",
     "color",

@@ -316,7 +316,7 @@ fn a_wrong_word_is_answered_with_the_right_ones() {
     let cases = [
         (
             "phantom:heart",
-            "wanted one of sphere, gauss, marschner-lobb, fog, shells, storm, head, found `heart`",
+            "wanted one of sphere, gauss, marschner-lobb, fog, shells, storm, cells, head, found `heart`",
         ),
         ("phantom:", "found ``"),
         (

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use stratavox::transfer::{
     Classified, Interpolation, Kind, Preset, TransferFunction, ValueSummary, Window, automatic,
 };
+use stratavox::volume::Quantity;
 use transfer_shared::Random;
 
 fn summary(values: &[f64]) -> ValueSummary {
@@ -147,6 +148,39 @@ fn known_hounsfield_units_need_no_guess() {
     assert_ne!(Kind::of(&summary), Kind::Ct);
     summary.hounsfield = true;
     assert_eq!(Kind::of(&summary), Kind::Ct);
+}
+
+#[test]
+fn a_unit_says_what_values_alone_do_not() {
+    let mut of = summary(&object(&mut Random(6), 0.4, 12.0, [60.0, 220.0]));
+    assert_eq!(Kind::of(&of), Kind::Tissue);
+    of.quantity = Quantity::Field;
+    assert_eq!(Kind::of(&of), Kind::Field);
+    of.quantity = Quantity::Uptake;
+    assert_eq!(Kind::of(&of), Kind::Uptake);
+
+    let function = automatic(&of, Classified::Samples, None);
+    assert_eq!(
+        function,
+        Preset::Pet.function(&of, Classified::Samples, None)
+    );
+    let brightest = of.quantile(0.999);
+    assert_eq!(function.opacity(0.03 * brightest), 0.0);
+    assert!((function.opacity(brightest) - 0.7).abs() < 1e-12);
+    let red_less_blue = |t: f64| function.srgb(t * brightest)[0] - function.srgb(t * brightest)[2];
+    assert!(red_less_blue(0.06) < 0.0, "the body is bluish");
+    assert!(
+        red_less_blue(0.45) > 0.5,
+        "what took up more is a glowing orange"
+    );
+
+    // Wind blows both ways, and little cloud in clear air stays what it is.
+    let mut wind = summary(&[-10.0, -5.0, 0.0, 5.0, 10.0]);
+    wind.quantity = Quantity::Field;
+    assert_eq!(Kind::of(&wind), Kind::Signed);
+    let mut cloud = summary(&object(&mut Random(7), 0.004, 6.0, [90.0, 250.0]));
+    cloud.quantity = Quantity::Field;
+    assert_eq!(Kind::of(&cloud), Kind::Sparse);
 }
 
 /// (file, how it is packed, bytes a voxel, kind)

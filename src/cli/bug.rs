@@ -14,6 +14,10 @@ pub const EXIT_CODE: u8 = 101;
 /// Sets the panic hook of the process, so it is for programs alone.
 pub fn guarded(work: impl FnOnce() -> u8 + panic::UnwindSafe) -> u8 {
     panic::set_hook(Box::new(|info| {
+        // A damaged file that a decoder fell over: the reader says so.
+        if crate::fence::is_inside() {
+            return;
+        }
         // Where stderr is closed there is nobody to tell.
         let _ = std::io::stderr().write_all(report(info).as_bytes());
     }));

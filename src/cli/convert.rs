@@ -6,14 +6,17 @@ use super::{
     output,
     progress::{Progress, ProgressWord},
     signals::Gate,
+    surface::Surface,
 };
 use crate::{
     format::write::{
         NumberType, Selection, VolumeFormat, WriteVolumeError, WriteVolumeOptions, Written,
         write_volume,
     },
+    isosurface::Border,
+    mesh::MeshFormat,
     picture::{OutputError, OutputFile, OutputProblem},
-    volume::{Header, Limits, Source, VoxelBox, VoxelType},
+    volume::{Header, Source, VoxelBox, VoxelType},
 };
 use clap::Args;
 use std::{
@@ -28,12 +31,13 @@ use std::{
     as they are\nwhere the format can say what they mean; what it cannot keep is said on stderr.\n\nExamples:\n  \
     stratavox convert phantom:head -o head.nrrd\n  \
     stratavox convert phantom:head -o bone.nii.gz --type u8 --window=-200,800\n  \
-    stratavox convert phantom:shells,n=64 -o shells.npy --type f32"
+    stratavox convert phantom:shells,n=64 -o shells.npy --type f32\n  \
+    stratavox convert phantom:head,n=64 -o skull.ply --iso 300"
 )]
 pub struct Convert {
     #[command(flatten)]
     input: InputFlags,
-    /// The file: .nrrd, .mha, .nii, .nii.gz or .npy
+    /// The file: .nrrd, .mha, .nii, .nii.gz or .npy; for a surface .ply, .stl or .glb
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Keep this box of whole voxels
@@ -56,6 +60,12 @@ pub struct Convert {
         help_heading = "Numbers"
     )]
     window: Option<Numbers<2>>,
+    /// The surface of this value, for a .ply, .stl or .glb
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true, conflicts_with_all = ["crop", "type", "window", "uncompressed"], help_heading = "Surface")]
+    iso: Option<f64>,
+    /// Close the surface where the volume ends, as printers of solids want it
+    #[arg(long, requires = "iso", help_heading = "Surface")]
+    closed: bool,
     /// Do not compress a .nrrd or .mha
     #[arg(long)]
     uncompressed: bool,
@@ -79,11 +89,17 @@ fn voxel_type(word: &str) -> Result<VoxelType, String> {
 impl Convert {
     /// Reads and writes.
     pub fn run(self, gate: &Gate) -> Result<(), Error> {
+        if let Some(surface) = self.surface()? {
+            let inputs: Vec<PathBuf> = self.input.file().map(Path::to_owned).into_iter().collect();
+            output::check(std::slice::from_ref(&self.output), &inputs, self.force)?;
+            let progress = Progress::new(self.progress);
+            return surface.write(&self.input, &self.output, self.force, &progress, gate);
+        }
         let options = self.options()?;
         let inputs: Vec<PathBuf> = self.input.file().map(Path::to_owned).into_iter().collect();
         output::check(std::slice::from_ref(&self.output), &inputs, self.force)?;
         let progress = Progress::new(self.progress);
-        let source = self.input.open(&Limits::default())?;
+        let source = self.input.open(&self.input.limits())?;
         let selection = self.selection(source.header())?;
         for note in &source.header().notes {
             // Said of a volume in memory; the file gets the stored numbers, or a count of those that changed.
@@ -96,6 +112,35 @@ impl Convert {
             progress.note(note);
         }
         Ok(())
+    }
+
+    /// What the words say of a surface; `None` where a volume is wanted.
+    fn surface(&self) -> Result<Option<Surface>, Error> {
+        let name = self.output.display();
+        match (MeshFormat::of_path(&self.output), self.iso) {
+            (None, None) => Ok(None),
+            (Some(_), None) => Err(Error::usage(
+                format!("-o {name}: a surface is that of a value"),
+                "--iso 300 takes the surface of 300",
+            )),
+            (None, Some(_)) => Err(Error::usage(
+                format!("-o {name}: no format of surfaces has that ending"),
+                "name a file that ends in .ply, .stl or .glb",
+            )),
+            (Some(_), Some(level)) if !level.is_finite() => Err(Error::usage(
+                format!("--iso {level}: wanted a finite value"),
+                "--iso 300",
+            )),
+            (Some(format), Some(level)) => Ok(Some(Surface {
+                format,
+                level,
+                border: if self.closed {
+                    Border::Closed
+                } else {
+                    Border::Open
+                },
+            })),
+        }
     }
 
     fn options(&self) -> Result<WriteVolumeOptions, Error> {

@@ -135,6 +135,9 @@ impl Error {
                 Problem::Limit { .. } => {
                     Some("--max-memory 16G allows more, where --untrusted does not forbid it")
                 }
+                Problem::Invalid { field, .. } if field == "variable" || field == "series" => {
+                    Some("`stratavox info INPUT` lists them")
+                }
                 _ => None,
             },
             Self::Device(gpu::Error::Limit { .. } | gpu::Error::OutOfMemory { .. }) => {

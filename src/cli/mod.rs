@@ -36,6 +36,7 @@ mod scene_file;
 mod sheet;
 mod shown;
 mod signals;
+mod surface;
 mod timings;
 
 pub use bug::guarded;

@@ -13,7 +13,7 @@ use crate::{
         Classified, Preset, Scale, TransferFunction, ValueSummary, Window,
         import_transfer_function, transfer_function_to_json,
     },
-    volume::{Limits, Volume},
+    volume::Volume,
 };
 use clap::{Args, Subcommand};
 use std::{fmt::Write, path::PathBuf};
@@ -160,7 +160,7 @@ impl Show {
     }
 
     fn summary(&self) -> Result<ValueSummary, Error> {
-        let limits = Limits::default();
+        let limits = self.input.limits();
         let source = self.input.open(&limits)?;
         let (pick, note) = self.input.pick(source.header())?;
         for note in source.header().notes.iter().chain(&note) {

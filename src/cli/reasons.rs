@@ -169,6 +169,7 @@ mod tests {
                 rescale: Rescale::default(),
                 validity: None,
                 hounsfield: false,
+                quantity: Default::default(),
                 loss: Default::default(),
                 value_range: [0.0, 7.0],
             },

@@ -12,10 +12,10 @@ use super::base64::Base64;
 use super::convert::{Endian, to_u64};
 use super::decode::damaged;
 use super::textual::Numbers;
+use crate::fence::fenced;
 use crate::volume::VoxelType;
 use flate2::{Decompress, FlushDecompress, Status};
 use std::io::{self, BufRead, Read};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// How the bytes of one array are written, and how many they must be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -268,11 +268,11 @@ fn expand(
     block.clear();
     block.resize(usize::try_from(bytes).unwrap_or(usize::MAX), 0);
     // The decoder is not ours: whatever it does, it is this block that is wrong.
-    let decoded = catch_unwind(AssertUnwindSafe(|| match codec {
+    let decoded = fenced(|| match codec {
         Codec::Lz4 => lz4_flex::block::decompress_into(&encoded, block).map_err(damaged),
         _ => inflate(&encoded, block),
-    }));
-    let count = decoded.unwrap_or_else(|_| Err(damaged("the decoder gave up")))?;
+    });
+    let count = decoded.unwrap_or_else(|words| Err(damaged(words)))?;
     if count != block.len() {
         let wanted = block.len();
         return Err(damaged(format!(

@@ -1,8 +1,7 @@
-//! Calls into decoders that others wrote: a panic in one is an error about the file, not the end of the program.
+//! Calls into decoders that others wrote, as errors of a format.
 
 use super::problem::{escape, invalid};
 use crate::volume::Problem;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// What `call` gives. `what` names the part of the file that it reads.
 pub(crate) fn fenced<T>(
@@ -10,19 +9,9 @@ pub(crate) fn fenced<T>(
     what: &str,
     call: impl FnOnce() -> Result<T, Problem>,
 ) -> Result<T, Problem> {
-    // What a panic leaves behind is only asked again through a fence.
-    catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| {
-        let word = panic
-            .downcast_ref::<String>()
-            .map(String::as_str)
-            .or_else(|| panic.downcast_ref::<&str>().copied());
-        Err(invalid(
-            format,
-            what,
-            "bytes that its decoder understands",
-            &escape(word.unwrap_or("a panic of the decoder")),
-        ))
-    })
+    let wanted = "bytes that its decoder understands";
+    crate::fence::fenced(call)
+        .unwrap_or_else(|words| Err(invalid(format, what, wanted, &escape(&words))))
 }
 
 #[cfg(test)]

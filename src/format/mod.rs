@@ -221,7 +221,7 @@ const FOLDERS: &[FolderReader] = &[
 ];
 
 const UNKNOWN_FOLDER: &str =
-    ": the folder holds no DICOM pictures, no stack of TIFF pages and no Zarr arrays";
+    ": this is a folder that holds no DICOM pictures, no stack of TIFF pages and no Zarr arrays";
 
 fn first_bytes(path: &Path) -> Result<Vec<u8>, Problem> {
     let (mut file, metadata) = place::open_regular(path)?;

@@ -1,10 +1,12 @@
 //! The transfer function of a volume of which nothing is said: what kind of data it looks like, and what
 //! shows that kind well.
 
-use super::preset::{Stop, ramp, reference_length, sparse, spread, tissue};
+use super::preset::{Stop, ramp, reference_length, sparse, spread, tissue, uptake};
 use super::{
     Classified, ColorPoint, Interpolation, OpacityPoint, TransferFunction, ValueSummary, Window,
 };
+
+use crate::volume::Quantity;
 
 /// What the values of a volume look like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -15,8 +17,10 @@ pub enum Kind {
     Ct,
     /// A dark background and an object of many voxels, as in MRI.
     Tissue,
-    /// A dark background and little signal, as in microscopy and PET.
+    /// A dark background and little signal, as in microscopy.
     Sparse,
+    /// Radioactivity that a body took up, as in PET: by its unit.
+    Uptake,
     /// Values on both sides of zero, as wind or seismic amplitudes.
     Signed,
     /// Values everywhere, as simulations have.
@@ -32,6 +36,9 @@ impl Kind {
         }
         if summary.hounsfield || looks_like_hounsfield(summary) {
             return Self::Ct;
+        }
+        if summary.quantity == Quantity::Uptake {
+            return Self::Uptake;
         }
         if low < 0.0 && high > 0.0 && -low > 0.2 * high && high > 0.2 * -low {
             return Self::Signed;
@@ -49,6 +56,9 @@ impl Kind {
         }
         if 1.0 - summary.share_below(threshold) < 0.03 {
             Self::Sparse
+        } else if summary.quantity == Quantity::Field {
+            // Moist air below dry air looks like tissue below air, and is none.
+            Self::Field
         } else {
             Self::Tissue
         }
@@ -61,6 +71,7 @@ impl Kind {
             Self::Ct => "the values are Hounsfield units: bone, and faint skin",
             Self::Tissue => "the values look like tissue on a dark background",
             Self::Sparse => "the values look like little bright signal on a dark background",
+            Self::Uptake => "the values are radioactivity: hot spots glow in a faint body",
             Self::Signed => "the values lie on both sides of zero: blue below, red above",
             Self::Field => "the values look like a field without background",
         }
@@ -85,6 +96,7 @@ pub fn automatic(
         Kind::Ct => ramp(summary, CT),
         Kind::Tissue => tissue(summary),
         Kind::Sparse => sparse(summary),
+        Kind::Uptake => uptake(summary),
         Kind::Signed => signed(summary),
         Kind::Field => field(summary),
     };

@@ -21,18 +21,21 @@ pub enum Preset {
     Mri,
     /// Bright signal on a dark background. Fits itself to the values.
     Microscopy,
+    /// Hot spots of uptake in a faint body. Fits itself to the values.
+    Pet,
     /// A grey ramp over the window, as `cli.md` has it.
     Grey,
 }
 
 impl Preset {
     /// All of them, in the order of `preset list`.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::CtBone,
         Self::CtSoftTissue,
         Self::CtLung,
         Self::Mri,
         Self::Microscopy,
+        Self::Pet,
         Self::Grey,
     ];
 
@@ -44,6 +47,7 @@ impl Preset {
             Self::CtLung => "ct-lung",
             Self::Mri => "mri",
             Self::Microscopy => "microscopy",
+            Self::Pet => "pet",
             Self::Grey => "grey",
         }
     }
@@ -61,6 +65,7 @@ impl Preset {
             Self::CtLung => "lung tissue and airways in a faint body (Hounsfield units)",
             Self::Mri => "soft tissue without the noise around it (fits the volume)",
             Self::Microscopy => "bright signal on a dark background (fits the volume)",
+            Self::Pet => "hot spots of uptake in a faint body (fits the volume)",
             Self::Grey => "a grey ramp over the window or the volume's range",
         }
     }
@@ -69,7 +74,7 @@ impl Preset {
     pub fn fits_the_volume(self) -> bool {
         match self {
             Self::CtBone | Self::CtSoftTissue | Self::CtLung => false,
-            Self::Mri | Self::Microscopy | Self::Grey => true,
+            Self::Mri | Self::Microscopy | Self::Pet | Self::Grey => true,
         }
     }
 
@@ -93,6 +98,7 @@ impl Preset {
             Self::CtLung => ramp(summary, CT_LUNG),
             Self::Mri => tissue(summary),
             Self::Microscopy => sparse(summary),
+            Self::Pet => uptake(summary),
         };
         match window {
             Some(window) => function.spread_over(window),
@@ -158,6 +164,17 @@ const MICROSCOPY: &[Stop] = &[
     (1.0, [250, 255, 240], 0.6),
 ];
 
+/// Share of the brightest uptake: the body a bluish haze, then a glowing iron.
+const PET: &[Stop] = &[
+    (0.03, [40, 46, 60], 0.0),
+    (0.06, [70, 80, 104], 0.006),
+    (0.14, [96, 60, 90], 0.01),
+    (0.25, [120, 16, 40], 0.03),
+    (0.45, [200, 60, 10], 0.12),
+    (0.7, [250, 160, 20], 0.35),
+    (1.0, [255, 250, 210], 0.7),
+];
+
 /// Stops as they stand.
 pub(super) fn ramp(summary: &ValueSummary, stops: &[Stop]) -> TransferFunction {
     spread(summary, stops, |value| value)
@@ -171,6 +188,13 @@ pub(super) fn tissue(summary: &ValueSummary) -> TransferFunction {
 /// What `microscopy` is, over the bright class of the values and most of the way down to the background.
 pub(super) fn sparse(summary: &ValueSummary) -> TransferFunction {
     fitted(summary, MICROSCOPY, 0.6)
+}
+
+/// What `pet` is, from no uptake to what one voxel in a thousand exceeds.
+pub(super) fn uptake(summary: &ValueSummary) -> TransferFunction {
+    let window = Window::new(0.0, summary.quantile(0.999));
+    let window = window.unwrap_or(Window::of_range(summary.range));
+    spread(summary, PET, |t| window.at(t))
 }
 
 /// Stops over the bright class of the values: 0 lies where a share `early` of the way from the background

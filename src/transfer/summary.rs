@@ -1,5 +1,7 @@
 //! What the values of a volume look like as a whole: enough to choose a transfer function by.
 
+use crate::volume::Quantity;
+
 /// Bins of the largest histogram.
 const MAX_BINS: usize = 4096;
 /// Voxels looked at, at most; more are passed over evenly.
@@ -22,6 +24,8 @@ pub struct ValueSummary {
     pub integers: bool,
     /// Values are known to be Hounsfield units.
     pub hounsfield: bool,
+    /// What values measure, by their unit.
+    pub quantity: Quantity,
     /// World length of the diagonal of the grid box.
     pub diagonal: f64,
 }
@@ -85,8 +89,14 @@ impl ValueSummary {
             labels,
             integers,
             hounsfield,
+            quantity: Quantity::Unknown,
             diagonal,
         }
+    }
+
+    /// The same of values that measure `quantity`.
+    pub fn measuring(self, quantity: Quantity) -> Self {
+        Self { quantity, ..self }
     }
 
     /// The value that a share `q` of the voxels lies below, 0 to 1.

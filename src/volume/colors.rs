@@ -4,7 +4,9 @@
 //! Only so can a sampler interpolate them: what is transparent has no colour to give to its neighbours. The
 //! products of 8-bit codes are whole and fit 16 bits, so that nothing is lost; others are f32.
 
-use super::{Header, Limits, Pick, Problem, ReadError, Rescale, Source, Volume, VoxelType, Voxels};
+use super::{
+    Header, Limits, Pick, Problem, Quantity, ReadError, Rescale, Source, Volume, VoxelType, Voxels,
+};
 
 /// The volumes of one time of a source of `Meaning::Rgb` or `Meaning::Rgba`: three, or four.
 ///
@@ -128,6 +130,7 @@ fn set(volume: &mut Volume, voxels: Option<Voxels>, rescale: Rescale) {
         [low.min(v), high.max(v)]
     });
     volume.hounsfield = false;
+    volume.quantity = Quantity::Unknown;
 }
 
 /// Luma of a voxel of colours that are not multiplied, ITU-R BT.709 on sRGB numbers; `None` for no data.

@@ -17,6 +17,7 @@ mod joint;
 pub mod labels;
 mod magnitude;
 pub mod phantom;
+mod quantity;
 mod read;
 mod reduce;
 pub mod sample;
@@ -29,6 +30,7 @@ pub use grid::Grid;
 pub use histogram::Histogram;
 pub use joint::JointHistogram;
 pub use magnitude::Magnitude;
+pub use quantity::Quantity;
 pub use reduce::Reduced;
 pub use source::{
     Channel, Format, Header, Limits, Loss, Meaning, Pick, Piece, Problem, ReadError, Rescale,
@@ -55,6 +57,8 @@ pub struct Volume {
     pub validity: Option<Vec<u8>>,
     /// True where values are Hounsfield units.
     pub hounsfield: bool,
+    /// What values measure, by their unit.
+    pub quantity: Quantity,
     /// What rounding stored numbers to f32 changed.
     pub loss: Loss,
     /// Smallest and largest valid value; `[0.0, 0.0]` where none is valid.

@@ -2,8 +2,8 @@
 
 use super::voxels::{Stored, with_numbers};
 use super::{
-    Header, Limits, Loss, Pick, Piece, Problem, ReadError, Rescale, Source, Volume, VoxelBox,
-    Voxels, holes,
+    Header, Limits, Loss, Pick, Piece, Problem, Quantity, ReadError, Rescale, Source, Volume,
+    VoxelBox, Voxels, holes,
 };
 use glam::{DAffine3, DVec3};
 
@@ -34,6 +34,7 @@ impl Volume {
             rescale: header.rescale,
             fill: header.fill,
             hounsfield: header.hounsfield,
+            quantity: Quantity::of_unit(header.unit.as_deref()),
             loss,
         };
         let format = header.format.name();
@@ -74,6 +75,7 @@ impl Volume {
             rescale,
             fill,
             hounsfield: false,
+            quantity: Quantity::Unknown,
             loss: Loss::default(),
         };
         let limits = Limits {
@@ -91,6 +93,7 @@ struct Grid {
     rescale: Rescale,
     fill: Option<f64>,
     hounsfield: bool,
+    quantity: Quantity,
     loss: Loss,
 }
 
@@ -129,6 +132,7 @@ fn finish(
         rescale: grid.rescale,
         validity,
         hounsfield: grid.hounsfield,
+        quantity: grid.quantity,
         loss: grid.loss,
     })
 }

@@ -1,6 +1,6 @@
 //! A volume in another format is the same volume: numbers, place, meaning. What gets lost is said.
 
-use crate::person::Folder;
+use crate::person::{Folder, assert_begins};
 use serde_json::Value;
 use std::path::Path;
 use stratavox::{
@@ -338,7 +338,7 @@ fn the_examples_of_the_help_run() {
         .lines()
         .filter_map(|line| line.trim().strip_prefix("stratavox convert "))
         .collect();
-    assert_eq!(examples.len(), 3, "{}", help.out);
+    assert_eq!(examples.len(), 4, "{}", help.out);
     for words in examples {
         folder.run(&format!("convert {words}")).assert_done();
     }
@@ -346,4 +346,28 @@ fn the_examples_of_the_help_run() {
         serde_json::from_str(&folder.run("info bone.nii.gz --json").out).expect("JSON");
     assert_eq!(info["dims"], serde_json::json!([256, 256, 256]));
     assert_eq!(info["type"], "u8");
+}
+
+#[test]
+fn a_surface_is_written_by_the_ending_of_its_file_and_only_of_a_value() {
+    let folder = Folder::new();
+    for (name, first) in [
+        ("a.ply", &b"ply\n"[..]),
+        ("a.stl", b"stratavox"),
+        ("a.glb", b"glTF"),
+    ] {
+        let words = format!("convert phantom:head,n=32 -o {name} --iso 300 --closed");
+        folder.run(&words).assert_done();
+        assert_begins(&folder.path(name), first);
+    }
+    let ran = folder.run("convert phantom:head,n=32 -o b.ply");
+    ran.assert_refused(2, &["b.ply", "--iso"]);
+    let ran = folder.run("convert phantom:head,n=32 -o b.nrrd --iso 300");
+    ran.assert_refused(2, &["b.nrrd", ".ply"]);
+    let ran = folder.run("convert phantom:head,n=32 -o b.ply --iso 1e9");
+    ran.assert_done();
+    assert!(ran.err.contains("the surface is empty"), "{}", ran.err);
+    folder
+        .run("convert phantom:head,n=32 -o a.ply --iso 300")
+        .assert_refused(4, &["a.ply", "--force"]);
 }

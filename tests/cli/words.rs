@@ -39,17 +39,12 @@ fn a_word_that_is_not_built_exits_2_and_is_named() {
             "render phantom:fog -o a.exr --aov position",
             "`--aov position`",
         ),
-        ("render . -o a.png", "folders"),
         ("conformance --device cpu", "`stratavox conformance`"),
     ] {
         folder
             .run(words)
             .assert_refused(2, &[name, "not built yet"]);
     }
-    folder.file("a.tif", "II");
-    folder
-        .run("info a.tif")
-        .assert_refused(2, &["`.tif`", "not built yet"]);
 }
 
 #[test]

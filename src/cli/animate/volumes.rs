@@ -5,7 +5,7 @@
 use crate::{
     cli::{Error, flags::SceneFlags, load, progress::Progress},
     transfer::ValueSummary,
-    volume::{Pick, Problem, ReadError, Source, Volume, Voxels},
+    volume::{Pick, Problem, Quantity, ReadError, Source, Volume, Voxels},
 };
 use glam::DAffine3;
 use std::{collections::BTreeSet, sync::Arc};
@@ -99,7 +99,7 @@ impl<'a> Volumes<'a> {
         let per_time = MAX_SAMPLES / times.len().max(1);
         let mut pool = Vec::new();
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
-        let (mut diagonal, mut hounsfield) = (0.0, false);
+        let (mut diagonal, mut hounsfield, mut quantity) = (0.0, false, Quantity::Unknown);
         for (done, &time) in times.iter().enumerate() {
             self.progress.stage("look at all times", done, times.len());
             let volume = self.at(time.into())?;
@@ -112,18 +112,16 @@ impl<'a> Volumes<'a> {
                 .transform_vector3(volume.grid().far_corner())
                 .length();
             hounsfield = volume.hounsfield;
+            quantity = volume.quantity;
             pool.extend(runs(volume.voxels.len(), per_time).map(|i| value(&volume, i)));
         }
         if range[0] > range[1] {
             range = [0.0; 2];
         }
-        Ok(ValueSummary::of(
-            pool.len(),
-            range,
-            diagonal,
-            hounsfield,
-            |i| pool[i],
-        ))
+        Ok(
+            ValueSummary::of(pool.len(), range, diagonal, hounsfield, |i| pool[i])
+                .measuring(quantity),
+        )
     }
 }
 
@@ -162,6 +160,7 @@ fn blend(a: &Volume, b: &Volume, s: f64) -> Result<Volume, Problem> {
     let blended = Volume::from_voxels(a.dims, a.world_from_voxel, voxels, a.rescale, None)?;
     Ok(Volume {
         hounsfield: a.hounsfield,
+        quantity: a.quantity,
         loss: a.loss.and(b.loss),
         ..blended
     })

@@ -217,6 +217,7 @@ pub fn summary(volume: &Volume) -> ValueSummary {
         volume.hounsfield,
         |i| is_valid(i).then(|| value(i)),
     )
+    .measuring(volume.quantity)
 }
 
 #[cfg(test)]
@@ -233,6 +234,7 @@ mod tests {
             rescale: Rescale::default(),
             validity: None,
             hounsfield: false,
+            quantity: Default::default(),
             loss: Default::default(),
             value_range: [0.0, 70.0],
         }

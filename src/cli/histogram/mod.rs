@@ -15,7 +15,7 @@ use super::{
 use crate::{
     technique::Mode,
     transfer::TransferFunction,
-    volume::{Format, Header, Limits, Pick, Volume},
+    volume::{Format, Header, Pick, Volume},
 };
 use clap::Args;
 use serde_json::{Value, json};
@@ -115,7 +115,7 @@ struct Counted {
 
 impl Counted {
     fn read(input: &InputFlags) -> Result<Self, Error> {
-        let limits = Limits::default();
+        let limits = input.limits();
         let source = load::open(input, &limits)?;
         let header = source.header().clone();
         let (pick, note) = input.pick(&header)?;

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     transfer::{Kind, ValueSummary},
-    volume::{Grid, Header, Meaning, Pick, ReadError, Source, Statistics},
+    volume::{Grid, Header, Meaning, Pick, Quantity, ReadError, Source, Statistics},
 };
 use clap::Args;
 use glam::DVec3;
@@ -156,7 +156,8 @@ fn kind(
         diagonal.length(),
         header.hounsfield,
         value,
-    );
+    )
+    .measuring(Quantity::of_unit(header.unit.as_deref()));
     Ok(Some(Kind::of(&summary)))
 }
 

@@ -1,14 +1,13 @@
 //! A fence around decoders that others wrote: a panic in one is a damaged file, not the end of the program.
 
 use super::pixels::damaged;
+use crate::format::problem::escape;
 use crate::volume::Problem;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Runs `decode`. Nothing that it touched is looked at after a panic.
 pub(super) fn fenced<T>(
     encoding: &'static str,
     decode: impl FnOnce() -> Result<T, Problem>,
 ) -> Result<T, Problem> {
-    catch_unwind(AssertUnwindSafe(decode))
-        .unwrap_or_else(|_| Err(damaged(encoding, "the decoder gave up on it")))
+    crate::fence::fenced(decode).unwrap_or_else(|words| Err(damaged(encoding, &escape(&words))))
 }

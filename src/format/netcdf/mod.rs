@@ -4,6 +4,8 @@
 //! decoded by the crate `netcdf-reader`, which is young: every call is fenced, and given limits. What the
 //! variables mean is [`super::cf`]'s.
 
+mod length;
+
 use super::cf::{self, Arrays, Attributes, Dimension, Kind, Value, Variable};
 use super::convert::{Builder, Endian};
 use super::fence::fenced;
@@ -69,6 +71,7 @@ impl NetCdf {
             let root = file
                 .root_group()
                 .map_err(|error| problem_of("header", &error))?;
+            length::check(file.format(), &root.variables, metadata.len())?;
             let mut variables = Vec::new();
             list(root, "", &mut variables);
             let attributes = attributes(&root.attributes);

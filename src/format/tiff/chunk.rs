@@ -8,12 +8,12 @@ use super::TIFF;
 use super::ifd::{self, Directory, Reader};
 use super::jpeg;
 use super::page::Page;
+use crate::fence::fenced;
 use crate::format::convert::{Endian, to_u64};
 use crate::format::decode::Encoding;
 use crate::format::problem::{escape, invalid, unsupported};
 use crate::volume::{Problem, VoxelType};
 use std::io::{Cursor, Read};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// How chunks are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -273,16 +273,16 @@ fn decode(wrapped: Vec<u8>, page: &Page, wanted: usize) -> Result<Vec<u8>, Probl
             limit_bytes: 0,
         })?;
     bytes.resize(wanted, 0);
-    let outcome = catch_unwind(AssertUnwindSafe(|| {
+    let outcome = fenced(|| {
         let decoder = ::tiff::decoder::Decoder::new(Cursor::new(wrapped))?;
         decoder
             .with_limits(limits)
             .read_chunk_bytes(0, &mut bytes)?;
         Ok::<_, ::tiff::TiffError>(bytes)
-    }));
+    });
     match outcome {
         Ok(Ok(bytes)) => Ok(bytes),
         Ok(Err(cause)) => Err(damaged(&cause.to_string())),
-        Err(_) => Err(damaged("the decoder gave up")),
+        Err(words) => Err(damaged(&words)),
     }
 }

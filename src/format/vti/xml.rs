@@ -4,6 +4,7 @@
 //! depth, bounded numbers of elements and attributes, and a bounded number of bytes that are not text.
 
 use super::VTI;
+use crate::fence::fenced;
 use crate::format::place::open_regular;
 use crate::format::problem::{self, escape, invalid, unsupported};
 use crate::volume::Problem;
@@ -11,7 +12,6 @@ use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
-use std::panic::catch_unwind;
 use std::path::Path;
 
 const MOST_DEPTH: usize = 32;
@@ -66,9 +66,9 @@ impl Element {
 /// Reads the markup of a file, at most `limit_bytes` of it, to its end or to where appended data begin.
 pub(super) fn read(path: &Path, limit_bytes: usize) -> Result<Document, Problem> {
     // The parser is not ours: whatever it does, it is this file that is wrong.
-    catch_unwind(|| parse(path, limit_bytes)).unwrap_or_else(|_| {
+    fenced(|| parse(path, limit_bytes)).unwrap_or_else(|words| {
         let wanted = "XML that the parser can take";
-        Err(invalid(VTI, "markup", wanted, "something else"))
+        Err(invalid(VTI, "markup", wanted, &words))
     })
 }
 

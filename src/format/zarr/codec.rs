@@ -1,12 +1,12 @@
 //! Codecs of bytes, undone: what comes out has exactly the wanted length, and memory follows what came out.
 
 use super::blosc;
+use crate::fence::fenced;
 use crate::format::convert::{Endian, to_u64};
 use crate::format::decode::Encoding;
 use crate::volume::VoxelType;
 use ruzstd::decoding::StreamingDecoder;
 use std::io::{Cursor, Read};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// One codec of bytes, or a filter of numbers that keeps their count.
 #[derive(Clone, Debug)]
@@ -182,7 +182,7 @@ pub(super) fn zstd(bytes: &[u8], length: Length) -> Result<Vec<u8>, Damage> {
         .saturating_mul(2)
         .min(plausible)
         .max(LEAST_WINDOW_BYTES);
-    let decoded = catch_unwind(AssertUnwindSafe(|| {
+    let decoded = fenced(|| {
         let mut source = bytes;
         let stream = StreamingDecoder::new_with_max_window_size(&mut source, window);
         let mut stream = stream.map_err(|error| error.to_string())?;
@@ -199,8 +199,8 @@ pub(super) fn zstd(bytes: &[u8], length: Length) -> Result<Vec<u8>, Damage> {
             true => Ok(out),
             false => Err(format!("{} bytes follow its end", source.len())),
         }
-    }));
-    decoded.unwrap_or_else(|_| Err("the decoder gave up".to_owned()))
+    });
+    decoded.unwrap_or_else(Err)
 }
 
 /// A block of LZ4 with its length in front, as numcodecs writes it.
