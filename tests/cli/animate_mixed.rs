@@ -148,7 +148,7 @@ fn a_stopped_film_does_not_go_on_with_other_labels() {
     labels(&folder, "l.nrrd", |i| u8::from(i % 6 >= 4));
     fs::remove_file(folder.path("1.png")).expect("a frame");
     let ran = folder.run(&format!("{words} --resume"));
-    ran.assert_refused(2, &["`labels"]);
+    ran.assert_refused(2, &["labels.names"]);
 }
 
 #[test]
