@@ -67,7 +67,11 @@ fn figure(counted: &Counted, joint: &JointHistogram) -> Figure {
     plot.frame(&mut figure);
     plot.value_axis(&mut figure, counted, plot.bottom);
 
-    let top = joint.gradient_range[1].max(f64::MIN_POSITIVE);
+    // Without data there is no gradient, and any axis will do.
+    let top = match joint.gradient_range[1] {
+        top if top > 0.0 => top,
+        _ => 1.0,
+    };
     let ticks = Ticks::linear([0.0, top], 6);
     for (gradient, text) in &ticks.at {
         let y = plot.y(gradient / top);
