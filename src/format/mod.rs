@@ -26,14 +26,14 @@
 mod absent;
 mod base64;
 mod blocks;
-#[cfg(feature = "netcdf")]
+#[cfg(any(feature = "grib", feature = "netcdf"))]
 mod cf;
 mod convert;
 mod data;
 mod decode;
 #[cfg(feature = "dicom")]
 mod dicom;
-#[cfg(feature = "netcdf")]
+#[cfg(any(feature = "grib", feature = "netcdf"))]
 mod fence;
 mod file_source;
 mod geometry;
