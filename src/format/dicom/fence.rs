@@ -9,5 +9,5 @@ pub(super) fn fenced<T>(
     encoding: &'static str,
     decode: impl FnOnce() -> Result<T, Problem>,
 ) -> Result<T, Problem> {
-    crate::fence::fenced(decode).unwrap_or_else(|words| Err(damaged(encoding, &escape(&words))))
+    crate::fence::fenced(decode).unwrap_or_else(|words| Err(damaged(encoding, escape(&words))))
 }
