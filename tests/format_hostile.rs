@@ -118,7 +118,7 @@ fn a_folder_a_pipe_a_device_and_an_empty_file_are_named_for_what_they_are() {
     let pipe = folder.path("a.nrrd");
     make_pipe(&pipe);
     for (path, part) in [
-        (folder.path("."), "the folder holds no"),
+        (folder.path("."), "a folder"),
         (pipe, "a pipe"),
         ("/dev/zero".into(), "a device"),
         (folder.write("empty.nrrd", ""), "empty"),
