@@ -2,8 +2,8 @@
 //! output is shown below a line, that is what comes.
 //!
 //! README says so in code blocks of `sh`. A comment at the end of a line is left out, `&&` runs one line after
-//! the other. A line with a word of capitals (`INPUT`, `FILE`) or `[` shows a form, not an example. A block of
-//! `console` shows `$ ` lines with what they print below them.
+//! the other; what stands behind a pipe is another program and is left out. A line with a word of capitals (`INPUT`,
+//! `FILE`), `[` or words to choose from (`list|show`) shows a form, not an example. A block of `console` shows `$ ` lines with what they print below them.
 
 use crate::person::{Folder, Ran};
 use std::fs;
@@ -49,14 +49,15 @@ impl Example {
 
 /// The line without its comment, if it is an example.
 fn example_line(line: &str) -> Option<&str> {
-    let line = line.split(" #").next().unwrap_or_default().trim();
+    let line = line.split(" #").next().unwrap_or_default();
+    let line = line.split(" | ").next().unwrap_or_default().trim();
     let is_form = |word: &str| {
         let word = word.trim_matches(|c: char| !c.is_alphanumeric());
         word.len() > 1 && word.chars().all(|c| c.is_ascii_uppercase())
     };
     let parts = line.split([' ', '|', ',', '.', '=']);
     let is_example =
-        line.starts_with("stratavox ") && !line.contains('[') && !parts.clone().any(is_form);
+        line.starts_with("stratavox ") && !line.contains(['[', '|']) && !parts.clone().any(is_form);
     is_example.then_some(line)
 }
 
