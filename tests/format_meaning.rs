@@ -1,5 +1,7 @@
 //! What the numbers of a voxel are to each other, as NIfTI, NRRD and MetaImage say it.
 
+#![cfg(feature = "files")]
+
 mod shared {
     pub mod nifti;
 }
