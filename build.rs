@@ -106,6 +106,10 @@ const ENTRIES: &[(&str, &[Slot])] = &[
     ("resolve", &[("source", &["picture", "value", "mean"])]),
     ("resolve_cover", &[]),
     ("merge", &[("operator", &["over", "under", "add"])]),
+    (
+        "denoise",
+        &[("kernel", &["gaussian", "median", "bilateral"])],
+    ),
 ];
 
 fn main() {

@@ -7,6 +7,7 @@ mod camera;
 mod channels;
 mod classification;
 mod component;
+mod denoise;
 mod input;
 mod labels;
 mod not_built;
@@ -21,6 +22,7 @@ pub use camera::CameraFlags;
 pub use channels::{ChannelFlags, ChannelWord, Plan};
 pub use classification::{Classification, ClassificationFlags, preset, summary, with_causes};
 pub use component::Component;
+pub use denoise::DenoiseWord;
 pub use input::{InputFlags, relative};
 pub use labels::LabelFlags;
 pub use not_built::NotBuilt;
@@ -58,6 +60,11 @@ pub struct SceneFlags {
     pub section: SectionFlags,
     #[command(flatten)]
     pub picture: PictureFlags,
+    /// Take noise out of the numbers first: gaussian[:SIGMA], median, bilateral[:SIGMA[:VALUE]]; SIGMA in voxels
+    /// [default: 1], VALUE what is no noise any more [default: twice the noise found]
+    #[arg(long, value_name = "FILTER")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub denoise: Option<DenoiseWord>,
     /// A Vulkan device by name, index or UUID, `cpu` for a software one, or `reference` for no Vulkan at all
     #[arg(long, value_name = "DEVICE")]
     #[serde(skip_serializing_if = "Option::is_none")]
