@@ -14,6 +14,7 @@ mod not_built;
 mod numbers;
 mod picture;
 mod sampling;
+mod section;
 mod subject;
 mod words;
 
@@ -28,6 +29,7 @@ pub use not_built::NotBuilt;
 pub use numbers::{Background, Numbers, Size, finite, positive};
 pub use picture::PictureFlags;
 pub use sampling::{Depth, SamplingFlags};
+pub use section::SectionFlags;
 pub use subject::Subject;
 
 use super::Error;
@@ -58,6 +60,8 @@ pub struct SceneFlags {
     #[command(flatten)]
     pub camera: CameraFlags,
     #[command(flatten)]
+    pub section: SectionFlags,
+    #[command(flatten)]
     pub picture: PictureFlags,
     /// A Vulkan device by name, index or UUID, `cpu` for a software one, or `reference` for no Vulkan at all
     #[arg(long, value_name = "DEVICE")]
@@ -73,7 +77,7 @@ impl SceneFlags {
 
     /// The same with other words of sampling.
     pub fn settings_of(&self, sampling: &SamplingFlags, depth: Depth) -> Result<Settings, Error> {
-        let settings = sampling.settings(depth)?;
+        let settings = self.section.settings(sampling, depth)?;
         let shading = self.light.shading(settings.mode)?;
         Ok(Settings {
             shading,
