@@ -18,6 +18,13 @@ use std::{env, fs};
 type Slot = (&'static str, &'static [&'static str]);
 
 const FILTER: Slot = ("filter", &["nearest", "linear", "linear_fetch"]);
+/// Kernels wider than linear, by fetches, for one volume.
+const KERNEL: Slot = ("filter", &["kernel"]);
+/// B-splines by the sampler. Conformance pictures, which search the control points, fetch.
+const SPLINE: Slot = ("filter", &["spline"]);
+/// Both.
+const WIDE: Slot = ("filter", &["kernel", "spline"]);
+const TABLE: Slot = ("transfer", &["table"]);
 const HOLES: Slot = ("holes", &["none", "mask"]);
 const LATTICE: Slot = ("lattice", &["ray", "planes"]);
 const MIXED: Slot = ("mix", &["channels", "colors"]);
@@ -50,6 +57,28 @@ const ENTRIES: &[(&str, &[Slot])] = &[
         ],
     ),
     (
+        "raycast",
+        &[
+            ("mode", &["composite"]),
+            ALONE,
+            LATTICE,
+            KERNEL,
+            HOLES,
+            TRANSFER,
+        ],
+    ),
+    (
+        "raycast",
+        &[
+            ("mode", &["composite"]),
+            ALONE,
+            LATTICE,
+            SPLINE,
+            HOLES,
+            TABLE,
+        ],
+    ),
+    (
         "projection",
         &[
             ("mode", &["mip", "minip", "sum"]),
@@ -60,8 +89,26 @@ const ENTRIES: &[(&str, &[Slot])] = &[
         ],
     ),
     (
+        "projection",
+        &[
+            ("mode", &["mip", "minip", "sum"]),
+            ALONE,
+            LATTICE,
+            WIDE,
+            HOLES,
+        ],
+    ),
+    (
         "slices_3d",
         &[("blend", &["composite"]), ALONE, FILTER, HOLES, TRANSFER],
+    ),
+    (
+        "slices_3d",
+        &[("blend", &["composite"]), ALONE, KERNEL, HOLES, TRANSFER],
+    ),
+    (
+        "slices_3d",
+        &[("blend", &["composite"]), ALONE, SPLINE, HOLES, TABLE],
     ),
     (
         "slices_3d",
@@ -70,6 +117,10 @@ const ENTRIES: &[(&str, &[Slot])] = &[
     (
         "slices_3d",
         &[("blend", &["extreme", "sum"]), ALONE, FILTER, HOLES],
+    ),
+    (
+        "slices_3d",
+        &[("blend", &["extreme", "sum"]), ALONE, WIDE, HOLES],
     ),
     (
         "slices_3d",
@@ -87,11 +138,23 @@ const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "slices_2d",
+        &[("blend", &["composite"]), ALONE, KERNEL, HOLES, TRANSFER],
+    ),
+    (
+        "slices_2d",
+        &[("blend", &["composite"]), ALONE, SPLINE, HOLES, TABLE],
+    ),
+    (
+        "slices_2d",
         &[("blend", &["composite"]), MIXED, FILTER, HOLES, TRANSFER],
     ),
     (
         "slices_2d",
         &[("blend", &["extreme", "sum"]), ALONE, FILTER, HOLES],
+    ),
+    (
+        "slices_2d",
+        &[("blend", &["extreme", "sum"]), ALONE, WIDE, HOLES],
     ),
     (
         "slices_2d",

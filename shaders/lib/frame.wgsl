@@ -83,6 +83,8 @@ struct Frame {
     channel_opacity_point_count: vec4<u32>,
     channel_interpolation_is_step: vec4<u32>,
     channel_reference_length: vec4<f32>,
+    // Which kernel, where the filter is one: see kernel.wgsl.
+    kernel: u32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -1,9 +1,12 @@
 //! How a grid is cut into bricks that a device can hold, and in which order bricks are drawn.
 //!
 //! The cut is regular: n bricks along an axis, each of ceil(dim / n) voxels, the last one smaller. A brick
-//! also stores a halo of one voxel around its own, so that a filter finds its neighbours.
+//! also stores a halo of two voxels around its own, so that the widest filter, the cubic, finds its neighbours.
 
 use crate::volume::VoxelBox;
+
+/// Voxels around a brick's own that a filter may read.
+const HALO_VOXELS: u32 = 2;
 
 /// One brick of a cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +26,11 @@ pub fn cut(dims: [u32; 3], halo: [bool; 3], fits: impl Fn([u32; 3]) -> bool) -> 
     loop {
         let size: [u32; 3] = std::array::from_fn(|k| dims[k].div_ceil(counts[k]));
         let stored = std::array::from_fn(|k| {
-            let margin = if halo[k] && counts[k] > 1 { 2 } else { 0 };
+            let margin = if halo[k] && counts[k] > 1 {
+                2 * HALO_VOXELS
+            } else {
+                0
+            };
             (size[k] + margin).min(dims[k])
         });
         if fits(stored) {
@@ -45,7 +52,7 @@ fn cells(dims: [u32; 3], size: [u32; 3], halo: [bool; 3]) -> Vec<Cell> {
         .map(|index| {
             let min: [u32; 3] = std::array::from_fn(|k| index[k] * size[k]);
             let max = std::array::from_fn(|k| (min[k] + size[k]).min(dims[k]));
-            let margin = halo.map(u32::from);
+            let margin = halo.map(|is_needed| u32::from(is_needed) * HALO_VOXELS);
             let stored = VoxelBox {
                 min: std::array::from_fn(|k| min[k].saturating_sub(margin[k])),
                 max: std::array::from_fn(|k| (max[k] + margin[k]).min(dims[k])),
@@ -99,8 +106,8 @@ mod tests {
             for (k, dim) in dims.into_iter().enumerate() {
                 let (own, stored) = (cell.own, cell.stored);
                 assert!(stored.dims()[k] <= 12, "{cell:?} is too large");
-                assert_eq!(stored.min[k], own.min[k].saturating_sub(1), "{cell:?}");
-                assert_eq!(stored.max[k], (own.max[k] + 1).min(dim), "{cell:?}");
+                assert_eq!(stored.min[k], own.min[k].saturating_sub(2), "{cell:?}");
+                assert_eq!(stored.max[k], (own.max[k] + 2).min(dim), "{cell:?}");
             }
         }
     }

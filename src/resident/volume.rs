@@ -6,7 +6,7 @@
 use super::TexelFormat;
 use super::bricks::{Cell, cut};
 use crate::gpu::{Error, Gpu, Image, ImageDesc, ImageKind, Sampler};
-use crate::volume::{Grid, Volume};
+use crate::volume::{Coefficients, Grid, Spline, Volume};
 use ash::vk;
 use std::sync::Arc;
 
@@ -35,8 +35,8 @@ impl TextureLayout {
         }
     }
 
-    /// Nothing is interpolated between the slices of a stack.
-    fn halo(self) -> [bool; 3] {
+    /// The axes along which filters mix voxels: in a stack not from slice to slice.
+    pub fn filtered_axes(self) -> [bool; 3] {
         std::array::from_fn(|k| self != Self::Stack(k))
     }
 }
@@ -61,6 +61,7 @@ pub struct GpuVolume {
     texel: TexelFormat,
     bricks: Vec<Brick>,
     sampler: Sampler,
+    spline: Option<Spline>,
 }
 
 /// How a volume will lie in textures, before it is cut.
@@ -123,6 +124,7 @@ impl Plan {
             texel: self.texel,
             bricks: cells.iter().map(brick).collect::<Result<_, Error>>()?,
             sampler: Sampler::linear_clamp(gpu)?,
+            spline: None,
         })
     }
 }
@@ -135,6 +137,44 @@ impl GpuVolume {
     pub fn new(gpu: &Arc<Gpu>, volume: &Volume, layout: TextureLayout) -> Result<Self, Error> {
         let mut made = Self::several(gpu, &[volume], layout)?;
         Ok(made.swap_remove(0))
+    }
+
+    /// Objects for the coefficients of a volume's spline, which `Filter::Quadratic` and `Filter::Cubic` read in place of
+    /// its voxels. Uploads then take [`Coefficients::volume`].
+    ///
+    /// ```rust,no_run
+    /// # use std::sync::Arc;
+    /// # use stratavox::{gpu::{Error, Gpu}, resident::{GpuVolume, TextureLayout}};
+    /// # use stratavox::volume::{Coefficients, Spline, Volume};
+    /// # fn made(gpu: &Arc<Gpu>, volume: &Volume) -> Result<GpuVolume, Error> {
+    /// let layout = TextureLayout::Texture3d;
+    /// let coefficients = Coefficients::new(volume, Spline::Cubic, layout.filtered_axes());
+    /// let made = GpuVolume::of_coefficients(gpu, &coefficients, layout)?;
+    /// let staging = made.stage(coefficients.volume())?;
+    /// # Ok(made)
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// As [`GpuVolume::new`].
+    ///
+    /// # Panics
+    /// Where they are not coefficients along [`TextureLayout::filtered_axes`].
+    pub fn of_coefficients(
+        gpu: &Arc<Gpu>,
+        coefficients: &Coefficients,
+        layout: TextureLayout,
+    ) -> Result<Self, Error> {
+        assert_eq!(
+            coefficients.axes(),
+            layout.filtered_axes(),
+            "axes of {layout:?}"
+        );
+        let made = Self::new(gpu, coefficients.volume(), layout)?;
+        Ok(Self {
+            spline: Some(coefficients.spline()),
+            ..made
+        })
     }
 
     /// Objects for volumes of the same dims, all cut into the same bricks, so that they can be put together
@@ -150,7 +190,7 @@ impl GpuVolume {
         let plans: Vec<_> = volumes.iter().map(|v| Plan::of(gpu, v, layout)).collect();
         let dims = volumes.first().map_or([1; 3], |volume| volume.dims);
         let fits = |stored| plans.iter().all(|plan| plan.check(gpu, stored).is_ok());
-        let Some(cells) = cut(dims, layout.halo(), fits) else {
+        let Some(cells) = cut(dims, layout.filtered_axes(), fits) else {
             // The error that names the limit.
             for plan in &plans {
                 plan.check(gpu, dims)?;
@@ -165,6 +205,11 @@ impl GpuVolume {
     /// Where the voxels lie.
     pub fn grid(&self) -> &Grid {
         &self.grid
+    }
+
+    /// The spline that it holds the coefficients of; `None` for voxels.
+    pub fn spline(&self) -> Option<Spline> {
+        self.spline
     }
 
     /// How they lie in the textures.
