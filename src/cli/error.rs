@@ -15,6 +15,7 @@
 use crate::{
     gpu, offscreen,
     picture::{OutputError, PictureError},
+    technique,
     volume::{Problem, ReadError},
 };
 use std::{error::Error as Cause, fmt::Write, io, path::PathBuf};
@@ -81,6 +82,9 @@ impl From<offscreen::Error> for Error {
     fn from(error: offscreen::Error) -> Self {
         match error {
             offscreen::Error::Gpu(error) => Self::Device(error),
+            offscreen::Error::Technique(error @ technique::Error::FilterAlone { .. }) => {
+                Self::usage(error.to_string(), "--filter linear draws them together")
+            }
             offscreen::Error::Technique(error) => Self::Limit(error.to_string()),
             offscreen::Error::NoLayer { .. } => Self::NotBuilt(error.to_string()),
         }

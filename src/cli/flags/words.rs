@@ -88,6 +88,15 @@ pub enum FilterWord {
 }
 
 impl FilterWord {
+    /// The flag with this word.
+    pub fn said(self) -> String {
+        let name = self.to_possible_value();
+        format!(
+            "--filter {}",
+            name.as_ref().map_or("", |name| name.get_name())
+        )
+    }
+
     /// What it stands for.
     pub fn filter(self) -> Filter {
         match self {
