@@ -139,7 +139,9 @@ impl Error {
                 Problem::Limit { .. } => {
                     Some("--max-memory 16G allows more, where --untrusted does not forbid it")
                 }
-                Problem::Invalid { field, .. } if field == "variable" || field == "series" => {
+                Problem::Invalid { field, .. }
+                    if ["variable", "data set", "series"].contains(&field.as_str()) =>
+                {
                     Some("`stratavox info INPUT` lists them")
                 }
                 _ => None,

@@ -88,7 +88,7 @@ impl Render {
             (PictureFormat::Png, BitDepth::Eight) => Depth::Eight,
             _ => Depth::More,
         };
-        let mut settings = scene.sampling.settings(depth)?;
+        let mut settings = scene.section.settings(&scene.sampling, depth)?;
         let extent_pixels = scene.picture.extent_pixels()?;
         scene.classification.check()?;
         let inputs = scene_file::inputs(&scene, self.scene_file.as_deref());
@@ -109,7 +109,9 @@ impl Render {
             classification,
             ..
         } = &shown;
-        let camera = scene.camera.camera(&shown.subject(), extent_pixels)?;
+        let subject = shown.subject();
+        let section = &scene.section;
+        let camera = section.camera(&scene.camera, &subject, extent_pixels, &mut settings)?;
         if let (None, Some(filter)) = (scene.sampling.filter, shown.filter) {
             settings.filter = filter;
         }

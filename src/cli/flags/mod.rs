@@ -13,6 +13,7 @@ mod not_built;
 mod numbers;
 mod picture;
 mod sampling;
+mod section;
 mod subject;
 mod words;
 
@@ -26,6 +27,7 @@ pub use not_built::NotBuilt;
 pub use numbers::{Background, Numbers, Size, finite, positive};
 pub use picture::PictureFlags;
 pub use sampling::{Depth, SamplingFlags};
+pub use section::SectionFlags;
 pub use subject::Subject;
 
 use super::Error;
@@ -52,6 +54,8 @@ pub struct SceneFlags {
     pub labels: LabelFlags,
     #[command(flatten)]
     pub camera: CameraFlags,
+    #[command(flatten)]
+    pub section: SectionFlags,
     #[command(flatten)]
     pub picture: PictureFlags,
     /// A Vulkan device by name, index or UUID, `cpu` for a software one, or `reference` for no Vulkan at all
