@@ -27,7 +27,7 @@ const FILTERS: [(&str, Filter, f64); 7] = [
 ];
 
 const SIDE: u32 = 40;
-const SLABS: u32 = 32;
+const SLABS: u32 = 50;
 const EXTENT: [u32; 2] = [256, 256];
 const FRAMES: usize = 5;
 
@@ -98,7 +98,7 @@ fn rms(
         zoom: 1.0,
     };
     let transfer = Window::of_range(signal.value_range).grey(Classified::Projection);
-    let extent_pixels = [64, 64];
+    let extent_pixels = [100, 100];
     let rays = camera.rays(extent_pixels);
     let side = f64::from(SIDE);
     let (mut squares, mut count) = (0.0, 0);
@@ -128,7 +128,7 @@ fn rms(
         };
         let found = renderer.render(&scene, &[LayerKind::Value])?.picture;
         for (i, value) in found.layers[0].values.iter().enumerate() {
-            let pixel = [i % 64, i / 64].map(|n| n as f64 + 0.5);
+            let pixel = [i % 100, i / 100].map(|n| n as f64 + 0.5);
             let (origin, _) = rays.at(pixel[0], pixel[1]);
             let point = DVec3::new(origin.x, origin.y, middle);
             squares += (f64::from(*value) - field.value(point)).powi(2);
