@@ -18,6 +18,12 @@ use std::{env, fs};
 type Slot = (&'static str, &'static [&'static str]);
 
 const FILTER: Slot = ("filter", &["nearest", "linear", "linear_fetch"]);
+/// Kernels wider than linear, by fetches, for one volume.
+const KERNEL: Slot = ("filter", &["kernel"]);
+/// B-splines by the sampler. Conformance pictures, which search the control points, fetch.
+const SPLINE: Slot = ("filter", &["spline"]);
+/// Both.
+const WIDE: Slot = ("filter", &["kernel", "spline"]);
 const HOLES: Slot = ("holes", &["none", "mask"]);
 const LATTICE: Slot = ("lattice", &["ray", "planes"]);
 const MIXED: Slot = ("mix", &["channels", "colors"]);
@@ -25,8 +31,13 @@ const MIXED: Slot = ("mix", &["channels", "colors"]);
 const ALONE: Slot = ("mix", &["alone"]);
 /// One number a voxel, and its gradient.
 const GRADED: Slot = ("mix", &["graded"]);
-/// Conformance pictures search the points, and never leave filtering to the device.
-const CONFORMANCE_FILTER: Slot = ("filter", &["nearest", "linear_fetch"]);
+/// All of them, for pictures that look into the table.
+const ANY_FILTER: Slot = (
+    "filter",
+    &["nearest", "linear", "linear_fetch", "kernel", "spline"],
+);
+/// Those that do not leave it to the device, for conformance pictures, which search the points.
+const FETCHED: Slot = ("filter", &["nearest", "linear_fetch", "kernel"]);
 const TABLE: Slot = ("transfer", &["table"]);
 const POINTS: Slot = ("transfer", &["points"]);
 const TRANSFER: Slot = ("transfer", &["table", "points"]);
@@ -59,9 +70,20 @@ const ENTRIES: &[(&str, &[Slot])] = &[
         "raycast",
         &[
             ("mode", &["composite"]),
-            GRADED,
+            ALONE,
             LATTICE,
-            FILTER,
+            KERNEL,
+            HOLES,
+            TRANSFER,
+        ],
+    ),
+    (
+        "raycast",
+        &[
+            ("mode", &["composite"]),
+            ALONE,
+            LATTICE,
+            SPLINE,
             HOLES,
             TABLE,
         ],
@@ -72,7 +94,18 @@ const ENTRIES: &[(&str, &[Slot])] = &[
             ("mode", &["composite"]),
             GRADED,
             LATTICE,
-            CONFORMANCE_FILTER,
+            ANY_FILTER,
+            HOLES,
+            TABLE,
+        ],
+    ),
+    (
+        "raycast",
+        &[
+            ("mode", &["composite"]),
+            GRADED,
+            LATTICE,
+            FETCHED,
             HOLES,
             POINTS,
         ],
@@ -88,8 +121,26 @@ const ENTRIES: &[(&str, &[Slot])] = &[
         ],
     ),
     (
+        "projection",
+        &[
+            ("mode", &["mip", "minip", "sum"]),
+            ALONE,
+            LATTICE,
+            WIDE,
+            HOLES,
+        ],
+    ),
+    (
         "slices_3d",
         &[("blend", &["composite"]), ALONE, FILTER, HOLES, TRANSFER],
+    ),
+    (
+        "slices_3d",
+        &[("blend", &["composite"]), ALONE, KERNEL, HOLES, TRANSFER],
+    ),
+    (
+        "slices_3d",
+        &[("blend", &["composite"]), ALONE, SPLINE, HOLES, TABLE],
     ),
     (
         "slices_3d",
@@ -97,21 +148,19 @@ const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "slices_3d",
-        &[("blend", &["composite"]), GRADED, FILTER, HOLES, TABLE],
+        &[("blend", &["composite"]), GRADED, ANY_FILTER, HOLES, TABLE],
     ),
     (
         "slices_3d",
-        &[
-            ("blend", &["composite"]),
-            GRADED,
-            CONFORMANCE_FILTER,
-            HOLES,
-            POINTS,
-        ],
+        &[("blend", &["composite"]), GRADED, FETCHED, HOLES, POINTS],
     ),
     (
         "slices_3d",
         &[("blend", &["extreme", "sum"]), ALONE, FILTER, HOLES],
+    ),
+    (
+        "slices_3d",
+        &[("blend", &["extreme", "sum"]), ALONE, WIDE, HOLES],
     ),
     (
         "slices_3d",
@@ -129,25 +178,31 @@ const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "slices_2d",
+        &[("blend", &["composite"]), ALONE, KERNEL, HOLES, TRANSFER],
+    ),
+    (
+        "slices_2d",
+        &[("blend", &["composite"]), ALONE, SPLINE, HOLES, TABLE],
+    ),
+    (
+        "slices_2d",
         &[("blend", &["composite"]), MIXED, FILTER, HOLES, TRANSFER],
     ),
     (
         "slices_2d",
-        &[("blend", &["composite"]), GRADED, FILTER, HOLES, TABLE],
+        &[("blend", &["composite"]), GRADED, ANY_FILTER, HOLES, TABLE],
     ),
     (
         "slices_2d",
-        &[
-            ("blend", &["composite"]),
-            GRADED,
-            CONFORMANCE_FILTER,
-            HOLES,
-            POINTS,
-        ],
+        &[("blend", &["composite"]), GRADED, FETCHED, HOLES, POINTS],
     ),
     (
         "slices_2d",
         &[("blend", &["extreme", "sum"]), ALONE, FILTER, HOLES],
+    ),
+    (
+        "slices_2d",
+        &[("blend", &["extreme", "sum"]), ALONE, WIDE, HOLES],
     ),
     (
         "slices_2d",

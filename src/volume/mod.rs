@@ -14,9 +14,11 @@ mod grid;
 mod histogram;
 mod holes;
 mod joint;
+pub mod kernel;
 pub mod labels;
 mod magnitude;
 pub mod phantom;
+mod prefilter;
 mod read;
 mod reduce;
 pub mod sample;
@@ -29,6 +31,7 @@ pub use grid::Grid;
 pub use histogram::Histogram;
 pub use joint::JointHistogram;
 pub use magnitude::Magnitude;
+pub use prefilter::{Coefficients, Spline};
 pub use reduce::Reduced;
 pub use source::{
     Channel, Format, Header, Limits, Loss, Meaning, Pick, Piece, Problem, ReadError, Rescale,

@@ -78,6 +78,17 @@ impl Shown {
     ) -> Result<Self, Error> {
         check(scene, settings.mode)?;
         let (plan, note) = plan(scene, source.header())?;
+        let are_several = !matches!(plan, Plan::One) || scene.labels.labels.is_some();
+        if are_several && !settings.mode.is_projection() && settings.filter.kernel().is_some() {
+            let filter = scene.sampling.filter.unwrap_or_default();
+            return Err(Error::usage(
+                format!(
+                    "{} reads one number a voxel, and several are drawn",
+                    filter.said()
+                ),
+                "--filter linear draws them together",
+            ));
+        }
         if let Some(note) = note {
             progress.note(&note);
         }
@@ -339,7 +350,7 @@ impl Reader<'_> {
         let input = &self.scene.input;
         let count = u32::try_from(count).unwrap_or(u32::MAX);
         let held = Held::Volumes(count);
-        let source = fitting(source, input, self.device.memory(), held)?;
+        let source = fitting(source, self.scene, self.device.memory(), held)?;
         let (_, note) = input.time(source.header())?;
         input.check_one(source.header())?;
         for note in source.header().notes.iter().chain(&note) {
