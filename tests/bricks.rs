@@ -56,12 +56,6 @@ fn settings() -> Vec<Settings> {
             Order::BackToFront,
             Filter::CatmullRom,
         ),
-        (
-            Mode::Xray,
-            Lattice::Ray,
-            Order::BackToFront,
-            Filter::Quadratic,
-        ),
     ];
     let techniques = [Technique::Raycast, Technique::Slices3d, Technique::Slices2d];
     let of_technique = |technique| {

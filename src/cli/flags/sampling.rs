@@ -25,7 +25,7 @@ pub struct SamplingFlags {
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mode: Option<ModeWord>,
-    /// How a value between voxels is made [default: linear]
+    /// How a value between voxels is made [default: linear]; quadratic and cubic take more memory, and all but nearest and linear more time
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub filter: Option<FilterWord>,
