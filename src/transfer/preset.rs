@@ -233,6 +233,7 @@ pub(super) fn spread(
         opacity: opacity.collect(),
         reference_length: reference_length(summary),
         interpolation: Interpolation::Linear,
+        graded: None,
     }
 }
 
