@@ -23,6 +23,12 @@ const LATTICE: Slot = ("lattice", &["ray", "planes"]);
 const MIXED: Slot = ("mix", &["channels", "colors"]);
 /// One number a voxel. The word is left out of names.
 const ALONE: Slot = ("mix", &["alone"]);
+/// One number a voxel, and its gradient.
+const GRADED: Slot = ("mix", &["graded"]);
+/// Conformance pictures search the points, and never leave filtering to the device.
+const CONFORMANCE_FILTER: Slot = ("filter", &["nearest", "linear_fetch"]);
+const TABLE: Slot = ("transfer", &["table"]);
+const POINTS: Slot = ("transfer", &["points"]);
 const TRANSFER: Slot = ("transfer", &["table", "points"]);
 
 /// The wanted combinations. Order of the slots is the order of words in a variant's name.
@@ -50,6 +56,28 @@ const ENTRIES: &[(&str, &[Slot])] = &[
         ],
     ),
     (
+        "raycast",
+        &[
+            ("mode", &["composite"]),
+            GRADED,
+            LATTICE,
+            FILTER,
+            HOLES,
+            TABLE,
+        ],
+    ),
+    (
+        "raycast",
+        &[
+            ("mode", &["composite"]),
+            GRADED,
+            LATTICE,
+            CONFORMANCE_FILTER,
+            HOLES,
+            POINTS,
+        ],
+    ),
+    (
         "projection",
         &[
             ("mode", &["mip", "minip", "sum"]),
@@ -66,6 +94,20 @@ const ENTRIES: &[(&str, &[Slot])] = &[
     (
         "slices_3d",
         &[("blend", &["composite"]), MIXED, FILTER, HOLES, TRANSFER],
+    ),
+    (
+        "slices_3d",
+        &[("blend", &["composite"]), GRADED, FILTER, HOLES, TABLE],
+    ),
+    (
+        "slices_3d",
+        &[
+            ("blend", &["composite"]),
+            GRADED,
+            CONFORMANCE_FILTER,
+            HOLES,
+            POINTS,
+        ],
     ),
     (
         "slices_3d",
@@ -88,6 +130,20 @@ const ENTRIES: &[(&str, &[Slot])] = &[
     (
         "slices_2d",
         &[("blend", &["composite"]), MIXED, FILTER, HOLES, TRANSFER],
+    ),
+    (
+        "slices_2d",
+        &[("blend", &["composite"]), GRADED, FILTER, HOLES, TABLE],
+    ),
+    (
+        "slices_2d",
+        &[
+            ("blend", &["composite"]),
+            GRADED,
+            CONFORMANCE_FILTER,
+            HOLES,
+            POINTS,
+        ],
     ),
     (
         "slices_2d",

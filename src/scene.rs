@@ -111,15 +111,20 @@ impl<'a> Scene<'a> {
     /// Whether its volumes can be put together.
     ///
     /// # Errors
-    /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`] and [`Error::NotMixed`].
+    /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`], [`Error::NotMixed`],
+    /// [`Error::NotShaded`] and [`Error::NotShadedTogether`].
     pub fn check(&self) -> Result<(), Error> {
         let volumes = self.volumes();
         let (wanted, limit) = (volumes.len(), MAX_CHANNELS as usize);
         let grid = self.volume.grid();
         let has_labels = self.roles().contains(&Role::Labels);
         let mode = self.settings.mode;
+        if self.settings.shading.is_some() && mode.is_projection() {
+            return Err(Error::NotShaded { mode });
+        }
         match self.mix() {
-            Mix::Alone => Ok(()),
+            Mix::Alone | Mix::Graded => Ok(()),
+            _ if self.settings.shading.is_some() => Err(Error::NotShadedTogether),
             _ if volumes.iter().any(|volume| volume.grid() != grid) => Err(Error::OtherGrid),
             Mix::Colors if !(3..=4).contains(&wanted) => Err(Error::NoColor { found: wanted }),
             Mix::Colors if mode.is_projection() => Err(Error::NotMixed { mode }),
