@@ -95,6 +95,8 @@ struct Frame {
     diffuse: f32,
     specular: f32,
     shininess: f32,
+    // World length of the shortest side of a voxel.
+    smallest_spacing: f32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -33,14 +33,9 @@ pub struct PackedWidgets {
 }
 
 impl PackedWidgets {
-    /// Those of `function`, whose opacities are for `reference_length`, on a grid of this smallest spacing. A
-    /// function of the value alone has none.
-    pub fn new(
-        function: &TransferFunction,
-        reference_length: f64,
-        smallest_spacing: f64,
-        space: ColorSpace,
-    ) -> Self {
+    /// Those of `function`, whose opacities are for `reference_length`, blended in `space`. A function
+    /// of the value alone has none.
+    pub fn new(function: &TransferFunction, reference_length: f64, space: ColorSpace) -> Self {
         let empty = Graded::default();
         let graded = function.graded.as_ref().unwrap_or(&empty);
         // Where nothing is steep no gradient counts.
@@ -48,7 +43,6 @@ impl PackedWidgets {
         let mut packed = Packing {
             widgets: Vec::new(),
             cells: Vec::new(),
-            smallest_spacing,
         };
         for widget in &graded.widgets {
             let srgb = widget.srgb.map(|srgb| match space {
@@ -86,7 +80,6 @@ fn point(p: &OpacityPoint) -> [f32; 4] {
 struct Packing {
     widgets: Vec<[[f32; 4]; STRIDE]>,
     cells: Vec<f32>,
-    smallest_spacing: f64,
 }
 
 impl Packing {
@@ -108,8 +101,7 @@ impl Packing {
         };
         match shape {
             Shape::Contour { value, half_width } => {
-                let half_width_world = half_width * self.smallest_spacing;
-                push(CONTOUR, [*value, half_width_world, 0.0, 0.0], false, image);
+                push(CONTOUR, [*value, *half_width, 0.0, 0.0], false, image);
             }
             Shape::Region { points } => {
                 for (i, pair) in points.windows(2).enumerate() {
@@ -158,12 +150,13 @@ impl Packing {
 }
 
 /// The material (red, green, blue, extinction) of a sample of a value that the function alone gives `material`,
-/// where the values rise by `magnitude` per world length.
+/// where the values rise by `magnitude` per world length, on a grid of this smallest spacing.
 pub fn classify_by_gradient<N: Real>(
     packed: &PackedWidgets,
     material: [N; 4],
     value: N,
     magnitude: N,
+    smallest_spacing: N,
 ) -> [N; 4] {
     let n = N::from_f64;
     let entry = |i: usize| packed.entries[i].map(N::from_f32);
@@ -190,7 +183,7 @@ pub fn classify_by_gradient<N: Real>(
             image: packed.entries[first + 3].map(|x| x as usize),
             entries: &packed.entries,
         };
-        let share = shape.share(value, magnitude, steepness);
+        let share = shape.share(value, smallest_spacing, magnitude, steepness);
         let own = extinction(N::from_f32(opacity) * share, reference_length);
         let color = if has_color != 0.0 {
             entry(first + 2)
@@ -237,12 +230,12 @@ struct Lobe<'a, N> {
 
 impl<N: Real> Lobe<'_, N> {
     /// What is opaque of it.
-    fn share(&self, value: N, magnitude: N, steepness: N) -> N {
+    fn share(&self, value: N, smallest_spacing: N, magnitude: N, steepness: N) -> N {
         let n = N::from_f64;
         let [a, b, c, d] = self.numbers;
         let is_between = |x: N, low: N, high: N| low <= x && x <= high;
         match self.kind {
-            CONTOUR => tent((value - a).abs(), b * magnitude),
+            CONTOUR => tent((value - a).abs(), b * smallest_spacing * magnitude),
             REGION => {
                 let is_in = a <= value && (value < b || (self.end_is_in && value <= b));
                 if !is_in {
