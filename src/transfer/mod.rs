@@ -10,6 +10,7 @@
 //! Colour is linear between its points in sRGB numbers and decoded afterwards.
 
 mod automatic;
+mod boundaries;
 mod channel;
 #[cfg(feature = "json")]
 mod field;
@@ -24,6 +25,7 @@ mod import;
 mod labels;
 mod law;
 mod materials;
+mod parts;
 mod points;
 mod preset;
 mod quantity;
@@ -33,6 +35,7 @@ mod widgets;
 mod window;
 
 pub use automatic::{Kind, automatic};
+pub use boundaries::{JointCounts, boundaries};
 pub use channel::{CHANNEL_COLORS, of_channel, of_colors};
 #[cfg(feature = "json")]
 pub use file::{

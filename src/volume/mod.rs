@@ -27,7 +27,7 @@ mod voxels;
 pub use colors::{luma, read_all, read_colors};
 pub use grid::Grid;
 pub use histogram::Histogram;
-pub use joint::JointHistogram;
+pub use joint::{JointHistogram, steepest_gradient};
 pub use magnitude::Magnitude;
 pub use reduce::Reduced;
 pub use source::{

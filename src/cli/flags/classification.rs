@@ -5,11 +5,11 @@ use crate::cli::output::say_aside;
 use crate::{
     technique::Mode,
     transfer::{
-        Classified, Interpolation, Preset, Quantity, Scale, TransferFunction, ValueSummary, Window,
-        automatic, import_transfer_function, transfer_function_from_json,
-        transfer_function_to_json,
+        Classified, Interpolation, JointCounts, Preset, Quantity, Scale, TransferFunction,
+        ValueSummary, Window, automatic, boundaries, import_transfer_function,
+        transfer_function_from_json, transfer_function_to_json,
     },
-    volume::Volume,
+    volume::{JointHistogram, Volume, steepest_gradient},
 };
 use clap::Args;
 use glam::DVec3;
@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ClassificationFlags {
-    /// A transfer function of ours: ct-bone, ct-soft-tissue, ct-lung, mri, microscopy, pet, grey [default: by the values]
+    /// A transfer function of ours: ct-bone, ct-soft-tissue, ct-lung, mri, microscopy, pet, boundaries, grey [default: by the values]
     #[arg(long, value_name = "NAME", value_parser = preset, conflicts_with = "tf", help_heading = "Colour")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub preset: Option<String>,
@@ -28,6 +28,22 @@ pub struct ClassificationFlags {
     #[arg(long, value_name = "FILE", help_heading = "Colour")]
     #[serde(skip)]
     pub tf: Option<PathBuf>,
+    /// A transfer function file of which the colours are taken, in the place of those of --tf, --preset or the values
+    #[arg(long, value_name = "FILE", help_heading = "Colour")]
+    #[serde(skip)]
+    pub color_tf: Option<PathBuf>,
+    /// A transfer function file of which all is taken but the colours
+    #[arg(long, value_name = "FILE", help_heading = "Colour")]
+    #[serde(skip)]
+    pub opacity_tf: Option<PathBuf>,
+    /// What stood in the file of --color-tf.
+    #[arg(skip)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub color_function: Option<Inlined>,
+    /// What stood in the file of --opacity-tf.
+    #[arg(skip)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub opacity_function: Option<Inlined>,
     /// What stood in that file: a scene carries it with it.
     #[arg(skip)]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -47,6 +63,36 @@ pub struct ClassificationFlags {
     pub window: Option<Numbers<2>>,
 }
 
+/// A function that stood in a file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Inlined {
+    /// Ours.
+    pub transfer_function: serde_json::Value,
+    /// True where its points stand at fractions of the window or of the volume's range.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub of_fractions: bool,
+}
+
+impl Inlined {
+    /// What stands in the file at `path`; what cannot be taken over is said.
+    fn read(path: &Path) -> Result<Self, Error> {
+        let imported = import_transfer_function(path, None).map_err(|error| Error::Input {
+            path: path.to_owned(),
+            problem: with_causes(&error.problem),
+        })?;
+        for piece in &imported.left_out {
+            say_aside(&format!("{}: not taken over: {piece}", path.display()));
+        }
+        let text = transfer_function_to_json(&imported.function);
+        Ok(Self {
+            transfer_function: serde_json::from_str(&text)
+                .expect("what we have just written as JSON"),
+            of_fractions: imported.scale == Scale::Fractions,
+        })
+    }
+}
+
 /// How values become colour.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Classification {
@@ -57,20 +103,19 @@ pub enum Classification {
 }
 
 impl ClassificationFlags {
-    /// Reads the file of `--tf` into `transfer_function`; what a scene says in its place is gone.
+    /// Reads the files of `--tf`, `--color-tf` and `--opacity-tf`; what a scene says in their place is gone.
     pub fn inline_file(&mut self) -> Result<(), Error> {
-        let Some(path) = &self.tf else { return Ok(()) };
-        let imported = import_transfer_function(path, None).map_err(|error| Error::Input {
-            path: path.clone(),
-            problem: with_causes(&error.problem),
-        })?;
-        for piece in &imported.left_out {
-            say_aside(&format!("{}: not taken over: {piece}", path.display()));
+        if let Some(path) = &self.tf {
+            let inlined = Inlined::read(path)?;
+            self.transfer_function = Some(inlined.transfer_function);
+            self.transfer_function_of_fractions = inlined.of_fractions.then_some(true);
         }
-        let text = transfer_function_to_json(&imported.function);
-        let value = serde_json::from_str(&text).expect("what we have just written as JSON");
-        self.transfer_function = Some(value);
-        self.transfer_function_of_fractions = (imported.scale == Scale::Fractions).then_some(true);
+        if let Some(path) = &self.color_tf {
+            self.color_function = Some(Inlined::read(path)?);
+        }
+        if let Some(path) = &self.opacity_tf {
+            self.opacity_function = Some(Inlined::read(path)?);
+        }
         Ok(())
     }
 
@@ -80,6 +125,14 @@ impl ClassificationFlags {
             self.preset = None;
             self.transfer_function = None;
             self.transfer_function_of_fractions = None;
+            self.color_function = None;
+            self.opacity_function = None;
+        }
+        if stronger.color_function.is_some() {
+            self.color_function = None;
+        }
+        if stronger.opacity_function.is_some() {
+            self.opacity_function = None;
         }
     }
 
@@ -87,6 +140,8 @@ impl ClassificationFlags {
     pub fn check(&self) -> Result<(), Error> {
         self.window()?;
         self.function_of_file()?;
+        self.part(&self.color_function)?;
+        self.part(&self.opacity_function)?;
         if let Some(name) = &self.preset {
             preset(name).map_err(|problem| Error::usage(problem, "--preset ct-bone"))?;
         }
@@ -102,14 +157,71 @@ impl ClassificationFlags {
 
     /// The function for this volume and what `mode` classifies.
     pub fn classification(&self, volume: &Volume, mode: Mode) -> Result<Classification, Error> {
-        self.classification_of(mode, || Ok(summary(volume)))
+        let found = match self.boundaries(volume, mode)? {
+            Some(function) => Classification::Function(
+                self.with_parts(function, || Ok(Window::of_range(volume.value_range)))?,
+            ),
+            None => self.classification_of(mode, || Ok(summary(volume)))?,
+        };
+        Ok(match found {
+            Classification::Function(function) => {
+                Classification::Function(function.with_steepest(|| steepest_gradient(volume)))
+            }
+            found @ Classification::RangeOfPicture => found,
+        })
+    }
+
+    /// What preset `boundaries` is for this volume; `None` for another one, and where no boundary is found.
+    fn boundaries(&self, volume: &Volume, mode: Mode) -> Result<Option<TransferFunction>, Error> {
+        let preset = self.preset.as_deref().and_then(Preset::from_name);
+        if preset != Some(Preset::Boundaries) {
+            return Ok(None);
+        }
+        refuse_gradients_in(mode)?;
+        let function = boundaries_of(volume);
+        Ok(match self.window()? {
+            Some(window) => function.map(|function| function.spread_over(window)),
+            None => function,
+        })
+    }
+
+    /// `function` with the colours and the opacity of the files that say them; `range` is where points at fractions
+    /// lie without a window.
+    fn with_parts(
+        &self,
+        mut function: TransferFunction,
+        range: impl FnOnce() -> Result<Window, Error>,
+    ) -> Result<TransferFunction, Error> {
+        let parts = [&self.color_function, &self.opacity_function];
+        let any_fractions = parts
+            .iter()
+            .any(|part| part.as_ref().is_some_and(|p| p.of_fractions));
+        let window = match self.window()? {
+            None if any_fractions => Some(range()?),
+            window => window,
+        };
+        let placed = |part: &Option<Inlined>| -> Result<_, Error> {
+            let of_fractions = part.as_ref().is_some_and(|part| part.of_fractions);
+            Ok(self.part(part)?.map(|found| match window {
+                Some(window) if of_fractions => found.of_fractions(window),
+                Some(window) if self.window.is_some() => found.spread_over(window),
+                _ => found,
+            }))
+        };
+        if let Some(color) = placed(&self.color_function)? {
+            function = function.with_color_of(&color);
+        }
+        if let Some(opacity) = placed(&self.opacity_function)? {
+            function = function.with_opacity_of(&opacity);
+        }
+        Ok(function)
     }
 
     /// The same for values that look like `summary`, which is asked for where it decides anything.
     pub fn classification_of(
         &self,
         mode: Mode,
-        summary: impl FnOnce() -> Result<ValueSummary, Error>,
+        mut summary: impl FnMut() -> Result<ValueSummary, Error>,
     ) -> Result<Classification, Error> {
         let window = self.window()?;
         let classified = match mode {
@@ -146,6 +258,11 @@ impl ClassificationFlags {
                 None => automatic(&summary()?, classified, window),
             },
         };
+        let range = || Ok(Window::of_range(summary()?.range));
+        let function = self.with_parts(function, range)?;
+        if function.is_graded() {
+            refuse_gradients_in(mode)?;
+        }
         Ok(Classification::Function(function))
     }
 
@@ -168,13 +285,53 @@ impl ClassificationFlags {
         let Some(value) = &self.transfer_function else {
             return Ok(None);
         };
-        transfer_function_from_json(value.to_string().as_bytes())
-            .map(Some)
-            .map_err(|problem| Error::Input {
-                path: Path::new("the scene's transfer_function").to_owned(),
-                problem: with_causes(&problem),
-            })
+        function_in(value).map(Some)
     }
+
+    /// The function of a file that gives a part.
+    fn part(&self, part: &Option<Inlined>) -> Result<Option<TransferFunction>, Error> {
+        let part = part
+            .as_ref()
+            .map(|part| function_in(&part.transfer_function));
+        part.transpose()
+    }
+}
+
+fn function_in(value: &serde_json::Value) -> Result<TransferFunction, Error> {
+    transfer_function_from_json(value.to_string().as_bytes()).map_err(|problem| Error::Input {
+        path: Path::new("the scene's transfer_function").to_owned(),
+        problem: with_causes(&problem),
+    })
+}
+
+/// A projected value has no gradient.
+fn refuse_gradients_in(mode: Mode) -> Result<(), Error> {
+    if !mode.is_projection() {
+        return Ok(());
+    }
+    Err(Error::usage(
+        "widgets and gradient opacity need --mode composite: a projected value has no gradient",
+        "leave out --mode, or take a function of the value alone",
+    ))
+}
+
+/// What preset `boundaries` is for a volume; `None` where no boundary is found.
+pub fn boundaries_of(volume: &Volume) -> Option<TransferFunction> {
+    let joint = JointHistogram::of(volume, 256, 192);
+    let [x, y, z] = volume.dims.map(f64::from);
+    let diagonal = volume
+        .world_from_voxel
+        .transform_vector3(DVec3::new(x, y, z));
+    let length = diagonal.length() / 512.0;
+    let counts = JointCounts {
+        value_range: joint.value_range,
+        columns: joint.columns,
+        counts: &joint.counts,
+    };
+    boundaries(
+        &counts,
+        (length > 0.0 && length.is_finite()).then_some(length),
+    )
 }
 
 /// A sentence with all its causes.
