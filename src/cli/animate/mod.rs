@@ -141,7 +141,7 @@ impl Animate {
         let store = self.store(&plan, gate)?;
 
         let progress = Progress::new(self.progress);
-        for note in [plan.scene.sampling.idle(), plan.scene.camera.idle()].concat() {
+        for note in plan.scene.idle() {
             progress.note(note);
         }
         if self.repeat.is_some() {

@@ -81,6 +81,10 @@ impl Shown {
         if let Some(note) = note {
             progress.note(&note);
         }
+        let is_alone = matches!(plan, Plan::One) && scene.labels.labels.is_none();
+        if settings.shading.is_some() && !is_alone {
+            return Err(Error::not_shaded_together());
+        }
         let reader = Reader {
             scene,
             mode: settings.mode,
