@@ -17,6 +17,10 @@ use super::{ColorPoint, Graded, Interpolation, OpacityPoint, Shape, TransferFunc
 pub struct JointCounts<'a> {
     /// Values where the first column begins and the last one ends.
     pub value_range: [f64; 2],
+    /// The gradient, in values per world length, where the last row ends; the first begins at 0.
+    pub steepest: f64,
+    /// World length of the shortest side of a voxel.
+    pub smallest_spacing: f64,
     /// By ascending value.
     pub columns: usize,
     /// Row by row, the smallest gradients first: from 0 up to the steepest.
@@ -28,7 +32,8 @@ pub fn boundaries(joint: &JointCounts, reference_length: Option<f64>) -> Option<
     let [low, high] = joint.value_range;
     let columns = joint.columns as f64;
     let value = |place: f64| low + place / columns * (high - low);
-    let tops = tops(&mean_gradients(joint));
+    let (means, shares) = mean_gradients(joint);
+    let tops = tops(&means, |top| shares[top] >= FEWEST);
     if tops.is_empty() {
         return None;
     }
@@ -40,9 +45,11 @@ pub fn boundaries(joint: &JointCounts, reference_length: Option<f64>) -> Option<
         let after = values.get(i + 1).map_or(high, |next| 0.5 * (next + at));
         let rank = rank(i, values.len());
         let [dark, light] = shades(rank);
-        // The outer half of a contour is dark: a surface seen from the side stands out.
-        color.push(color_point(before + 0.02 * (after - before), dark));
-        color.push(color_point(at + 0.6 * (after - at), light));
+        // How far the contour reaches over the values. Its outer half is dark: what is seen from the side stands out.
+        let gradient = means[tops[i]] * joint.steepest;
+        let reach = HALF_WIDTH * joint.smallest_spacing * gradient;
+        color.push(color_point((at - 0.8 * reach).max(before), dark));
+        color.push(color_point((at + 0.3 * reach).min(after), light));
         widgets.push(Widget {
             srgb: None,
             opacity: FAINTEST * (DENSEST / FAINTEST).powf(rank),
@@ -77,6 +84,8 @@ const HALF_WIDTH: f64 = 1.5;
 const SMOOTHED: f64 = 2.0;
 /// By how much of the highest arch a top stands above what is beside it.
 const PROMINENCE: f64 = 0.1;
+/// Of all voxels, those that have the values of a top: a few outliers are no substance.
+const FEWEST: f64 = 1e-3;
 const MOST: usize = 4;
 
 /// 0 for the first, 1 for the last, 1 for the only one.
@@ -102,9 +111,9 @@ fn color_point(value: f64, srgb: [f64; 3]) -> ColorPoint {
     ColorPoint { value, srgb }
 }
 
-/// The mean gradient over each column, as a share of the steepest, smoothed by neighbours. Columns of few voxels
-/// count for little: a value that occurs once says nothing.
-fn mean_gradients(joint: &JointCounts) -> Vec<f64> {
+/// The mean gradient over each column, as a share of the steepest, smoothed by neighbours; and the share of all
+/// voxels that lie in it and in the neighbours.
+fn mean_gradients(joint: &JointCounts) -> (Vec<f64>, Vec<f64>) {
     let columns = joint.columns.max(1);
     let rows = joint.counts.len() / columns;
     let (mut numbers, mut sums) = (vec![0.0; columns], vec![0.0; columns]);
@@ -114,6 +123,7 @@ fn mean_gradients(joint: &JointCounts) -> Vec<f64> {
         sums[i % columns] += count as f64 * gradient;
     }
     let all: f64 = numbers.iter().sum();
+    // A value that occurs once says nothing.
     let few = all * 1e-4 / columns as f64;
     let radius = (SMOOTHED / 100.0 * columns as f64).ceil() as usize;
     let smooth = |of: &[f64], i: usize| -> f64 {
@@ -128,17 +138,18 @@ fn mean_gradients(joint: &JointCounts) -> Vec<f64> {
         .map(|(sum, number)| sum / (number + few))
         .collect();
     let ones = vec![1.0; columns];
-    (0..columns)
-        .map(|i| smooth(&means, i) / smooth(&ones, i))
-        .collect()
+    let smoothed = |i| smooth(&means, i) / smooth(&ones, i);
+    let share = |i| smooth(&numbers, i) / all.max(1.0);
+    (0..columns).map(|i| (smoothed(i), share(i))).unzip()
 }
 
 /// Where the arches have their tops, by ascending place: those that stand out most.
-fn tops(means: &[f64]) -> Vec<usize> {
-    let highest = means.iter().copied().fold(0.0, f64::max);
+fn tops(means: &[f64], counts: impl Fn(usize) -> bool) -> Vec<usize> {
+    let counted = (0..means.len()).filter(|&i| counts(i));
+    let highest = counted.map(|i| means[i]).fold(0.0, f64::max);
     let mut found: Vec<(usize, f64)> = (0..means.len())
         .filter_map(|i| Some((i, prominence(means, i)?)))
-        .filter(|&(_, prominence)| prominence > PROMINENCE * highest)
+        .filter(|&(top, prominence)| prominence > PROMINENCE * highest && counts(top))
         .collect();
     found.sort_by(|a, b| b.1.total_cmp(&a.1));
     found.truncate(MOST);

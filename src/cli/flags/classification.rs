@@ -1,20 +1,18 @@
 //! Value to colour and opacity: flags to a transfer function, once the volume is known.
 
-use super::{Error, Numbers};
-use crate::cli::output::say_aside;
+use super::{Error, Inlined, Numbers, boundaries_of, function_in, refuse_gradients_in};
 use crate::{
     technique::Mode,
     transfer::{
-        Classified, Interpolation, JointCounts, Preset, Quantity, Scale, TransferFunction,
-        ValueSummary, Window, automatic, boundaries, import_transfer_function,
-        transfer_function_from_json, transfer_function_to_json,
+        Classified, Interpolation, Preset, Quantity, TransferFunction, ValueSummary, Window,
+        automatic,
     },
-    volume::{JointHistogram, Volume, steepest_gradient},
+    volume::{Volume, steepest_gradient},
 };
 use clap::Args;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The flags, none of them filled in.
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -61,36 +59,6 @@ pub struct ClassificationFlags {
     )]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub window: Option<Numbers<2>>,
-}
-
-/// A function that stood in a file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Inlined {
-    /// Ours.
-    pub transfer_function: serde_json::Value,
-    /// True where its points stand at fractions of the window or of the volume's range.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub of_fractions: bool,
-}
-
-impl Inlined {
-    /// What stands in the file at `path`; what cannot be taken over is said.
-    fn read(path: &Path) -> Result<Self, Error> {
-        let imported = import_transfer_function(path, None).map_err(|error| Error::Input {
-            path: path.to_owned(),
-            problem: with_causes(&error.problem),
-        })?;
-        for piece in &imported.left_out {
-            say_aside(&format!("{}: not taken over: {piece}", path.display()));
-        }
-        let text = transfer_function_to_json(&imported.function);
-        Ok(Self {
-            transfer_function: serde_json::from_str(&text)
-                .expect("what we have just written as JSON"),
-            of_fractions: imported.scale == Scale::Fractions,
-        })
-    }
 }
 
 /// How values become colour.
@@ -295,43 +263,6 @@ impl ClassificationFlags {
             .map(|part| function_in(&part.transfer_function));
         part.transpose()
     }
-}
-
-fn function_in(value: &serde_json::Value) -> Result<TransferFunction, Error> {
-    transfer_function_from_json(value.to_string().as_bytes()).map_err(|problem| Error::Input {
-        path: Path::new("the scene's transfer_function").to_owned(),
-        problem: with_causes(&problem),
-    })
-}
-
-/// A projected value has no gradient.
-fn refuse_gradients_in(mode: Mode) -> Result<(), Error> {
-    if !mode.is_projection() {
-        return Ok(());
-    }
-    Err(Error::usage(
-        "widgets and gradient opacity need --mode composite: a projected value has no gradient",
-        "leave out --mode, or take a function of the value alone",
-    ))
-}
-
-/// What preset `boundaries` is for a volume; `None` where no boundary is found.
-pub fn boundaries_of(volume: &Volume) -> Option<TransferFunction> {
-    let joint = JointHistogram::of(volume, 256, 192);
-    let [x, y, z] = volume.dims.map(f64::from);
-    let diagonal = volume
-        .world_from_voxel
-        .transform_vector3(DVec3::new(x, y, z));
-    let length = diagonal.length() / 512.0;
-    let counts = JointCounts {
-        value_range: joint.value_range,
-        columns: joint.columns,
-        counts: &joint.counts,
-    };
-    boundaries(
-        &counts,
-        (length > 0.0 && length.is_finite()).then_some(length),
-    )
 }
 
 /// A sentence with all its causes.
