@@ -44,6 +44,7 @@ impl Inputs<'_> {
         if let Some(transfer) = self.transfer {
             given.push(("transfer_table", Resource::sampled(transfer.table())));
             given.push(("points", Resource::Storage(transfer.points())));
+            given.push(("widgets", Resource::Storage(transfer.widgets())));
         }
         given.extend_from_slice(outputs);
         given.retain(|(name, _)| layout.slots().iter().any(|slot| slot.name == *name));
