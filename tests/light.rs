@@ -8,7 +8,7 @@ use shared::{
 };
 use stratavox::offscreen::{Renderer, reference};
 use stratavox::picture::{ColorSpace, Picture};
-use stratavox::technique::{Filter, Light, Mode, Shading, Stencil};
+use stratavox::technique::{Filter, Light, Mode, Shading};
 use stratavox::transfer::{ColorPoint, TransferFunction};
 use stratavox::volume::{Grid, Volume};
 
@@ -50,15 +50,7 @@ fn assert_drawn_as_computed(volume: &Volume, what: &str) {
     for (i, shot) in oblique_shots(GRID(), Mode::Composite).iter().enumerate() {
         let (filter, shading) = &turns[(i + i / 6) % turns.len()];
         let dark = shot.with(|settings| settings.filter = *filter);
-        let lit = dark.with(|settings| {
-            settings.shading = Some(shading.clone());
-            // Once with each filter.
-            settings.gradient = if i < 6 {
-                Stencil::Central
-            } else {
-                Stencil::Sobel
-            };
-        });
+        let lit = dark.with(|settings| settings.shading = Some(shading.clone()));
         let scene = lit.scene(volume, Some(&transfer));
         let found = renderer.render(&scene, &[]).unwrap().picture;
         let double = reference::render::<f64>(&scene).unwrap();

@@ -89,8 +89,6 @@ struct Frame {
     light_directions: array<vec4<f32>, MAX_LIGHTS>,
     light_colors: array<vec4<f32>, MAX_LIGHTS>,
     light_count: u32,
-    // How gradients are made: see gradient.wgsl.
-    gradient_stencil: u32,
     // Value per world length under which there is no surface.
     flat_gradient: f32,
     ambient: f32,

@@ -154,7 +154,6 @@ impl View<'_> {
             light_directions: [[0.0; 4]; MAX_LIGHTS as usize],
             light_colors: [[0.0; 4]; MAX_LIGHTS as usize],
             light_count: 0,
-            gradient_stencil: self.settings.gradient.number(),
             flat_gradient: 0.0,
             ambient: 0.0,
             diffuse: 0.0,

@@ -19,7 +19,6 @@ pub mod slices_3d;
 
 pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 pub use frame::View;
-pub use gradient::Stencil;
 pub use inputs::{Inputs, Words};
 pub use mixture::{Mix, Part, Role};
 pub use recording::{Recording, parameter_ring};
@@ -150,8 +149,6 @@ pub struct Settings {
     pub crop: Option<[glam::DVec3; 2]>,
     /// At most [`crate::shaders::MAX_CLIP_PLANES`].
     pub clip_planes: Vec<ClipPlane>,
-    /// How gradients are made, for light.
-    pub gradient: Stencil,
     /// Light on composited samples of one volume; `None`: their colour as it is.
     pub shading: Option<Shading>,
     /// Float targets, no early termination, filtering by texel fetch, control points searched exactly.
@@ -279,7 +276,6 @@ impl Default for Settings {
             color_space: crate::picture::ColorSpace::default(),
             crop: None,
             clip_planes: Vec::new(),
-            gradient: Stencil::default(),
             shading: None,
             conformance: false,
         }

@@ -1,9 +1,9 @@
 //! Light on what is composited: flags to [`Shading`].
 
-use super::{Error, Numbers, words::not_built};
+use super::{Error, Numbers};
 use crate::{
     shaders::MAX_LIGHTS,
-    technique::{Filter, Light, Mode, Shading, Stencil},
+    technique::{Light, Mode, Shading},
 };
 use clap::{Args, ValueEnum};
 use glam::DVec3;
@@ -28,10 +28,6 @@ pub struct LightFlags {
     #[arg(long, value_name = "X,Y,Z[,R,G,B]", allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub light: Vec<LightWord>,
-    /// How gradients are made [default: central differences of the filter's values, one voxel before and after]
-    #[arg(long, value_name = "FILTER", help_heading = HEADING)]
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub gradient_filter: Option<GradientWord>,
 }
 
 /// Every word of `--shading`.
@@ -42,29 +38,6 @@ pub enum ShadingWord {
     #[default]
     None,
     Phong,
-}
-
-/// Every word of `--gradient-filter`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum GradientWord {
-    /// Central differences of linear values; of another filter's not built yet
-    Linear,
-    /// Central differences of cubic values; of another filter's not built yet
-    Cubic,
-    /// Sobel's 3 x 3 x 3 operator on values of the filter: smoother where voxels are noisy
-    Sobel,
-}
-
-impl GradientWord {
-    /// What it stands for, where values are made by `filter`.
-    fn stencil(self, filter: Filter) -> Result<Stencil, Error> {
-        match (self, filter) {
-            (Self::Sobel, _) => Ok(Stencil::Sobel),
-            (Self::Linear, Filter::Linear) | (Self::Cubic, Filter::Cubic) => Ok(Stencil::Central),
-            _ => Err(not_built("--gradient-filter", self)),
-        }
-    }
 }
 
 /// `X,Y,Z` or `X,Y,Z,R,G,B`: the way to a light, and its colour.
@@ -121,12 +94,6 @@ impl From<LightWord> for String {
 }
 
 impl LightFlags {
-    /// How gradients are made where values are made by `filter`.
-    pub fn stencil(&self, filter: Filter) -> Result<Stencil, Error> {
-        let word = self.gradient_filter;
-        word.map_or(Ok(Stencil::default()), |word| word.stencil(filter))
-    }
-
     /// The light of a picture in `mode`.
     pub fn shading(&self, mode: Mode) -> Result<Option<Shading>, Error> {
         if self.shading.unwrap_or_default() == ShadingWord::None {
@@ -179,9 +146,6 @@ impl LightFlags {
         if is_dark && self.material.is_some() {
             notes.push("--material has no effect without --shading phong");
         }
-        if is_dark && self.gradient_filter.is_some() {
-            notes.push("--gradient-filter has no effect without --shading phong");
-        }
         if is_dark && !self.light.is_empty() {
             notes.push("--light has no effect without --shading phong");
         }
@@ -202,7 +166,6 @@ mod tests {
             shading: Some(shading),
             material: (!material.is_empty()).then(|| material.parse().expect("numbers")),
             light: light.iter().map(|l| l.parse().expect("a light")).collect(),
-            gradient_filter: None,
         }
     }
 
@@ -242,31 +205,6 @@ mod tests {
         let many = flags(ShadingWord::Phong, "", &["1,0,0"; 5]).shading(Mode::Composite);
         let text = many.expect_err("refused").to_string();
         assert!(text.contains("at most 4"), "{text}");
-    }
-
-    #[test]
-    fn a_gradient_is_of_the_filter_that_makes_the_value() {
-        let stencil = |word, filter| {
-            let flags = LightFlags {
-                gradient_filter: word,
-                ..LightFlags::default()
-            };
-            flags.stencil(filter)
-        };
-        let (linear, cubic) = (Some(GradientWord::Linear), Some(GradientWord::Cubic));
-        for (word, filter) in [
-            (None, Filter::Nearest),
-            (linear, Filter::Linear),
-            (cubic, Filter::Cubic),
-        ] {
-            assert_eq!(stencil(word, filter).expect("there"), Stencil::Central);
-        }
-        let sobel = stencil(Some(GradientWord::Sobel), Filter::Nearest);
-        assert_eq!(sobel.expect("there"), Stencil::Sobel);
-        let text = stencil(cubic, Filter::Linear)
-            .expect_err("refused")
-            .to_string();
-        assert_eq!(text, "`--gradient-filter cubic` is not built yet");
     }
 
     #[test]

@@ -79,9 +79,7 @@ impl SceneFlags {
     pub fn settings_of(&self, sampling: &SamplingFlags, depth: Depth) -> Result<Settings, Error> {
         let settings = self.section.settings(sampling, depth)?;
         let shading = self.light.shading(settings.mode)?;
-        let gradient = self.light.stencil(settings.filter)?;
         Ok(Settings {
-            gradient,
             shading,
             ..settings
         })

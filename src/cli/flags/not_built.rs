@@ -8,6 +8,8 @@ use clap::Args;
 pub struct NotBuilt {
     #[arg(long, value_name = "VALUE,...", allow_hyphen_values = true, help_heading = HEADING)]
     iso: Option<String>,
+    #[arg(long, value_name = "FILTER", help_heading = HEADING)]
+    gradient_filter: Option<String>,
     #[arg(long, help_heading = HEADING)]
     preintegrated: bool,
     #[arg(long, help_heading = HEADING)]
@@ -22,6 +24,7 @@ impl NotBuilt {
     pub fn refuse(&self) -> Result<(), Error> {
         let given = [
             ("--iso", self.iso.as_deref()),
+            ("--gradient-filter", self.gradient_filter.as_deref()),
             ("--preintegrated", self.preintegrated.then_some("")),
             ("--smooth", self.smooth.then_some("")),
         ];

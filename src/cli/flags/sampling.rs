@@ -101,7 +101,6 @@ impl SamplingFlags {
             color_space,
             crop: self.crop.map(crop_box).transpose()?,
             clip_planes: clip_planes(&self.clip)?,
-            gradient: Default::default(),
             shading: None,
             conformance: self.conformance,
         })
