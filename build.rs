@@ -22,14 +22,19 @@ const FILTER: Slot = ("filter", &["nearest", "linear", "linear_fetch"]);
 const KERNEL: Slot = ("filter", &["kernel"]);
 /// B-splines by the sampler. Conformance pictures, which search the control points, fetch.
 const SPLINE: Slot = ("filter", &["spline"]);
-/// Both.
+/// The two.
 const WIDE: Slot = ("filter", &["kernel", "spline"]);
-const TABLE: Slot = ("transfer", &["table"]);
 const HOLES: Slot = ("holes", &["none", "mask"]);
 const LATTICE: Slot = ("lattice", &["ray", "planes"]);
 const MIXED: Slot = ("mix", &["channels", "colors"]);
 /// One number a voxel. The word is left out of names.
 const ALONE: Slot = ("mix", &["alone"]);
+/// One number a voxel, and its gradient.
+const GRADED: Slot = ("mix", &["graded"]);
+/// Conformance pictures search the points, and never leave filtering to the device.
+const CONFORMANCE_FILTER: Slot = ("filter", &["nearest", "linear_fetch"]);
+const TABLE: Slot = ("transfer", &["table"]);
+const POINTS: Slot = ("transfer", &["points"]);
 const TRANSFER: Slot = ("transfer", &["table", "points"]);
 
 /// The wanted combinations. Order of the slots is the order of words in a variant's name.
@@ -79,6 +84,39 @@ const ENTRIES: &[(&str, &[Slot])] = &[
         ],
     ),
     (
+        "raycast",
+        &[
+            ("mode", &["composite"]),
+            GRADED,
+            LATTICE,
+            KERNEL,
+            HOLES,
+            TRANSFER,
+        ],
+    ),
+    (
+        "raycast",
+        &[
+            ("mode", &["composite"]),
+            GRADED,
+            LATTICE,
+            FILTER,
+            HOLES,
+            TABLE,
+        ],
+    ),
+    (
+        "raycast",
+        &[
+            ("mode", &["composite"]),
+            GRADED,
+            LATTICE,
+            CONFORMANCE_FILTER,
+            HOLES,
+            POINTS,
+        ],
+    ),
+    (
         "projection",
         &[
             ("mode", &["mip", "minip", "sum"]),
@@ -116,6 +154,24 @@ const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "slices_3d",
+        &[("blend", &["composite"]), GRADED, FILTER, HOLES, TABLE],
+    ),
+    (
+        "slices_3d",
+        &[("blend", &["composite"]), GRADED, KERNEL, HOLES, TRANSFER],
+    ),
+    (
+        "slices_3d",
+        &[
+            ("blend", &["composite"]),
+            GRADED,
+            CONFORMANCE_FILTER,
+            HOLES,
+            POINTS,
+        ],
+    ),
+    (
+        "slices_3d",
         &[("blend", &["extreme", "sum"]), ALONE, FILTER, HOLES],
     ),
     (
@@ -150,6 +206,24 @@ const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "slices_2d",
+        &[("blend", &["composite"]), GRADED, FILTER, HOLES, TABLE],
+    ),
+    (
+        "slices_2d",
+        &[("blend", &["composite"]), GRADED, KERNEL, HOLES, TRANSFER],
+    ),
+    (
+        "slices_2d",
+        &[
+            ("blend", &["composite"]),
+            GRADED,
+            CONFORMANCE_FILTER,
+            HOLES,
+            POINTS,
+        ],
+    ),
+    (
+        "slices_2d",
         &[("blend", &["extreme", "sum"]), ALONE, FILTER, HOLES],
     ),
     (
@@ -169,6 +243,10 @@ const ENTRIES: &[(&str, &[Slot])] = &[
     ("resolve", &[("source", &["picture", "value", "mean"])]),
     ("resolve_cover", &[]),
     ("merge", &[("operator", &["over", "under", "add"])]),
+    (
+        "denoise",
+        &[("kernel", &["gaussian", "median", "bilateral"])],
+    ),
 ];
 
 fn main() {

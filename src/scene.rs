@@ -111,16 +111,20 @@ impl<'a> Scene<'a> {
     /// Whether its volumes can be put together.
     ///
     /// # Errors
-    /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`], [`Error::NotMixed`] and
-    /// [`Error::FilterAlone`].
+    /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`], [`Error::NotMixed`],
+    /// [`Error::NotShaded`], [`Error::NotShadedTogether`] and [`Error::FilterAlone`].
     pub fn check(&self) -> Result<(), Error> {
         let volumes = self.volumes();
         let (wanted, limit) = (volumes.len(), MAX_CHANNELS as usize);
         let grid = self.volume.grid();
         let has_labels = self.roles().contains(&Role::Labels);
         let Settings { mode, filter, .. } = *self.settings;
+        if self.settings.shading.is_some() && mode.is_projection() {
+            return Err(Error::NotShaded { mode });
+        }
         match self.mix() {
-            Mix::Alone => Ok(()),
+            Mix::Alone | Mix::Graded => Ok(()),
+            _ if self.settings.shading.is_some() => Err(Error::NotShadedTogether),
             // Modes that project draw them one by one.
             _ if filter.kernel().is_some() && !mode.is_projection() => {
                 Err(Error::FilterAlone { filter })

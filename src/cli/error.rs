@@ -85,6 +85,9 @@ impl From<offscreen::Error> for Error {
             offscreen::Error::Technique(error @ technique::Error::FilterAlone { .. }) => {
                 Self::usage(error.to_string(), "--filter linear draws them together")
             }
+            offscreen::Error::Technique(technique::Error::NotShadedTogether) => {
+                Self::not_shaded_together()
+            }
             offscreen::Error::Technique(error) => Self::Limit(error.to_string()),
             offscreen::Error::NoLayer { .. } => Self::NotBuilt(error.to_string()),
         }
@@ -98,6 +101,14 @@ impl Error {
             message: message.into(),
             hint,
         }
+    }
+
+    /// Light is for one volume.
+    pub fn not_shaded_together() -> Self {
+        Self::usage(
+            "--shading phong is for one number a voxel, and several are drawn",
+            "draw one of them: --component 0, without --labels and --channel",
+        )
     }
 
     /// The system would not let us write `path`.

@@ -46,13 +46,17 @@ impl RenderBytes {
     /// Of volumes like this one that are there at once, and what `filter` makes of them.
     fn held(header: &Header, has_holes: bool, held: Held, filter: Filter) -> Self {
         let one = Self::of(header, has_holes);
-        let floats = Header {
-            stored: VoxelType::F32,
-            ..header.clone()
-        };
-        let floats = Self::of(&floats, has_holes);
+        let floats = Self::of_floats(header, has_holes);
         let (count, mut all) = match held {
             Held::Volumes(count) => (count, one.times(count)),
+            Held::Denoised(count) => {
+                let host = one
+                    .times(count)
+                    .host
+                    .saturating_add(floats.times(count + 1).host);
+                let device = floats.times(count).device;
+                (count, Self { host, device })
+            }
             Held::Blend => {
                 let host = one.times(2).host.saturating_add(floats.host);
                 (1, Self { host, ..floats })
@@ -63,6 +67,14 @@ impl RenderBytes {
             all.device = floats.times(count).device;
         }
         all
+    }
+
+    fn of_floats(header: &Header, has_holes: bool) -> Self {
+        let floats = Header {
+            stored: VoxelType::F32,
+            ..header.clone()
+        };
+        Self::of(&floats, has_holes)
     }
 
     fn times(self, volumes: u32) -> Self {
@@ -78,8 +90,20 @@ impl RenderBytes {
 pub enum Held {
     /// So many, on the device too.
     Volumes(u32),
+    /// So many that become floats, one after the other, by a noise filter.
+    Denoised(u32),
     /// Those of two times, and floats between them, which alone are on the device.
     Blend,
+}
+
+impl Held {
+    /// So many volumes of a picture of these flags.
+    pub fn of(scene: &SceneFlags, count: u32) -> Self {
+        match scene.denoise {
+            Some(_) => Self::Denoised(count),
+            None => Self::Volumes(count),
+        }
+    }
 }
 
 /// The memory that a device has for textures.

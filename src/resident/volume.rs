@@ -39,6 +39,12 @@ impl TextureLayout {
     pub fn filtered_axes(self) -> [bool; 3] {
         std::array::from_fn(|k| self != Self::Stack(k))
     }
+
+    /// Voxels on either side that a sample of a brick may need: two for the widest filter, one more for the
+    /// differences that make its gradient. Nothing is interpolated between the slices of a stack.
+    fn halo(self) -> [u32; 3] {
+        std::array::from_fn(|k| if self == Self::Stack(k) { 1 } else { 3 })
+    }
 }
 
 /// A part of a volume that fits the device.
@@ -59,6 +65,7 @@ pub struct GpuVolume {
     grid: Grid,
     layout: TextureLayout,
     texel: TexelFormat,
+    value_range: [f64; 2],
     bricks: Vec<Brick>,
     sampler: Sampler,
     spline: Option<Spline>,
@@ -122,6 +129,7 @@ impl Plan {
             grid: volume.grid(),
             layout: self.layout,
             texel: self.texel,
+            value_range: volume.value_range,
             bricks: cells.iter().map(brick).collect::<Result<_, Error>>()?,
             sampler: Sampler::linear_clamp(gpu)?,
             spline: None,
@@ -190,7 +198,7 @@ impl GpuVolume {
         let plans: Vec<_> = volumes.iter().map(|v| Plan::of(gpu, v, layout)).collect();
         let dims = volumes.first().map_or([1; 3], |volume| volume.dims);
         let fits = |stored| plans.iter().all(|plan| plan.check(gpu, stored).is_ok());
-        let Some(cells) = cut(dims, layout.filtered_axes(), fits) else {
+        let Some(cells) = cut(dims, layout.halo(), fits) else {
             // The error that names the limit.
             for plan in &plans {
                 plan.check(gpu, dims)?;
@@ -220,6 +228,11 @@ impl GpuVolume {
     /// What texels mean.
     pub fn texel(&self) -> &TexelFormat {
         &self.texel
+    }
+
+    /// Smallest and largest valid value.
+    pub fn value_range(&self) -> [f64; 2] {
+        self.value_range
     }
 
     /// At least one.

@@ -5,12 +5,13 @@
 //! `sampling.md` 3 wants them.
 
 use super::blend::extreme_sign;
+use super::shading::set_shading;
 use super::{Filter, MAX_SAMPLES_PER_RAY, Settings, Technique};
 use crate::camera::{Camera, Projection, Rays};
 use crate::picture::ColorSpace;
 use crate::resident::{Cell, Coding, TransferLayout, front_to_back};
 use crate::shaders::{
-    FrameFields, KERNEL_CATMULL_ROM, KERNEL_CUBIC, KERNEL_QUADRATIC, MAX_CLIP_PLANES,
+    FrameFields, KERNEL_CATMULL_ROM, KERNEL_CUBIC, KERNEL_QUADRATIC, MAX_CLIP_PLANES, MAX_LIGHTS,
 };
 use crate::technique::Error;
 use crate::transfer::Interpolation;
@@ -71,7 +72,7 @@ impl View<'_> {
     /// The parameters of the whole grid, without those of slices.
     ///
     /// # Errors
-    /// [`Error::TooManySamples`] and [`Error::TooManyClipPlanes`].
+    /// [`Error::TooManySamples`], [`Error::TooManyClipPlanes`] and those of lights.
     pub fn fields(&self, coding: &Coding, transfer: &TransferLayout) -> Result<FrameFields, Error> {
         let rays = self.rays();
         let world_from_voxel = self.world_from_voxel();
@@ -81,7 +82,7 @@ impl View<'_> {
         let (clip_planes, clip_plane_count) = self.clip_planes()?;
         let v = |v: DVec3| v.as_vec3().to_array();
         let forward_voxel = world_from_voxel.matrix3.transpose() * rays.forward;
-        Ok(FrameFields {
+        let mut fields = FrameFields {
             origin: v(rays.origin),
             origin_dx: v(rays.origin_dx),
             origin_dy: v(rays.origin_dy),
@@ -150,7 +151,19 @@ impl View<'_> {
             channel_reference_length: [0.0; 4],
             kernel: kernel_number(self.settings.filter),
             extreme_sign: extreme_sign(self.settings.mode),
-        })
+            light_directions: [[0.0; 4]; MAX_LIGHTS as usize],
+            light_colors: [[0.0; 4]; MAX_LIGHTS as usize],
+            light_count: 0,
+            flat_gradient: 0.0,
+            ambient: 0.0,
+            diffuse: 0.0,
+            specular: 0.0,
+            shininess: 0.0,
+        };
+        if let Some(shading) = &self.settings.shading {
+            set_shading(shading, self.settings.color_space, &mut fields)?;
+        }
+        Ok(fields)
     }
 
     /// Narrows the parameters to one of several bricks. `is_first`: no nearer one has been recorded.

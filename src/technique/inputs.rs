@@ -87,7 +87,7 @@ pub struct Words {
     pub lattice: &'static str,
     /// How values are classified.
     pub transfer: &'static str,
-    /// How several volumes go together.
+    /// How several volumes go together, or whether the gradient of one counts.
     pub mix: Mix,
 }
 
@@ -102,8 +102,9 @@ impl Words {
         let is_fetched =
             |part: &Part| part.role == Role::Numbers && !part.volume.texel().is_filtered;
         let has_holes = parts.iter().any(|part| part.volume.has_holes());
+        let is_graded = mix == Mix::Alone && settings.shading.is_some();
         Self {
-            mix,
+            mix: if is_graded { Mix::Graded } else { mix },
             filter: match settings.filter {
                 Filter::Nearest => "nearest",
                 Filter::Linear if settings.conformance || parts.iter().any(is_fetched) => {
@@ -111,7 +112,8 @@ impl Words {
                 }
                 Filter::Linear => "linear",
                 Filter::CatmullRom => "kernel",
-                _ if settings.conformance || parts.iter().any(is_fetched) => "kernel",
+                // Differences of what a sampler has rounded to steps would show the steps.
+                _ if is_graded || settings.conformance || parts.iter().any(is_fetched) => "kernel",
                 _ => "spline",
             },
             holes: if has_holes { "mask" } else { "none" },

@@ -4,6 +4,7 @@ mod accumulation;
 pub mod blend;
 pub mod composite;
 mod frame;
+pub mod gradient;
 mod inputs;
 mod march;
 pub mod merge;
@@ -11,6 +12,7 @@ pub mod mixture;
 pub mod projection;
 pub mod raycast;
 mod recording;
+pub mod shading;
 mod slicer;
 pub mod slices_2d;
 pub mod slices_3d;
@@ -20,6 +22,7 @@ pub use frame::View;
 pub use inputs::{Inputs, Words};
 pub use mixture::{Mix, Part, Role};
 pub use recording::{Recording, parameter_ring};
+pub use shading::{Light, Shading};
 pub use slicer::Slicer;
 
 use crate::volume::{Spline, kernel::Kernel};
@@ -146,6 +149,8 @@ pub struct Settings {
     pub crop: Option<[glam::DVec3; 2]>,
     /// At most [`crate::shaders::MAX_CLIP_PLANES`].
     pub clip_planes: Vec<ClipPlane>,
+    /// Light on composited samples of one volume; `None`: their colour as it is.
+    pub shading: Option<Shading>,
     /// Float targets, no early termination, filtering by texel fetch, control points searched exactly.
     pub conformance: bool,
 }
@@ -212,6 +217,28 @@ pub enum Error {
         /// How many there are.
         found: usize,
     },
+    /// Light falls on what is composited.
+    #[error(
+        "{mode:?} projects one number a ray, on which no light falls: shading is for composite"
+    )]
+    NotShaded {
+        /// The mode.
+        mode: Mode,
+    },
+    /// Several volumes have several gradients.
+    #[error("shading is for one volume of numbers, not for several that are mixed")]
+    NotShadedTogether,
+    /// The parameters hold a fixed number of lights.
+    #[error("{wanted} lights, the limit is {limit}")]
+    TooManyLights {
+        /// How many were asked for.
+        wanted: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+    /// A direction has a length.
+    #[error("the way to a light has the length 0")]
+    NoWayToLight,
     /// The parameters hold a fixed number of planes.
     #[error("{wanted} clip planes, the limit is {limit}")]
     TooManyClipPlanes {
@@ -249,6 +276,7 @@ impl Default for Settings {
             color_space: crate::picture::ColorSpace::default(),
             crop: None,
             clip_planes: Vec::new(),
+            shading: None,
             conformance: false,
         }
     }

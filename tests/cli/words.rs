@@ -15,14 +15,6 @@ fn a_word_that_is_not_built_exits_2_and_is_named() {
             "`--gradient-filter`",
         ),
         (
-            "render phantom:fog -o a.png --shading phong",
-            "`--shading phong`",
-        ),
-        (
-            "render phantom:fog -o a.png --material 1,1,1,1",
-            "`--material`",
-        ),
-        (
             "render phantom:fog -o a.png --preintegrated",
             "`--preintegrated`",
         ),
@@ -64,6 +56,19 @@ fn a_word_that_cannot_be_is_a_usage_error() {
         ),
         ("render phantom:fog -o a.png --crop 1,0,0,1,0,1", "--crop"),
         ("render phantom:fog -o a.png --aov depth", "--aov"),
+        (
+            "render phantom:fog -o a.png --shading phong --mode mip",
+            "--shading phong",
+        ),
+        (
+            "render phantom:fog -o a.png --shading phong --material 1,1,1,0",
+            "--material",
+        ),
+        ("render phantom:fog -o a.png --light 0,0,0", "a direction"),
+        (
+            "render phantom:cells,n=8 -o a.png --shading phong --component all",
+            "--shading phong is for one number a voxel",
+        ),
         ("render phantom:fog -o a.png --repeat 0", "--repeat"),
         ("render phantom:fog -o a.png --bit-depth 12", "--bit-depth"),
         ("render phantom:fog -o a.png --timings a.png", "twice"),

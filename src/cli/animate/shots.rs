@@ -168,7 +168,7 @@ impl Maker<'_> {
         }
         classification.check()?;
         let section = &self.scene.section;
-        let mut settings = section.settings(&sampling, self.depth)?;
+        let mut settings = self.scene.settings_of(&sampling, self.depth)?;
         let extent_pixels = self.scene.picture.extent_pixels()?;
         Ok(Shot {
             camera: section.camera(&camera, &self.subject, extent_pixels, &mut settings)?,
