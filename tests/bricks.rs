@@ -16,7 +16,7 @@ use stratavox::volume::Volume;
 /// Caps under which a volume of 17 x 21 x 13 voxels takes bricks along every axis.
 fn small() -> Caps {
     Caps {
-        max_image_dimension_3d: 11,
+        max_image_dimension_3d: 13,
         max_image_array_layers: 8,
         ..Caps::UNLIMITED
     }

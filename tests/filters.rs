@@ -11,7 +11,7 @@ use stratavox::offscreen::{Renderer, reference};
 use stratavox::picture::{LayerKind, Picture};
 use stratavox::resident::{GpuVolume, TextureLayout};
 use stratavox::scene::{Beside, Channel, Scene};
-use stratavox::technique::{Error, Filter, Mode, Role, Settings, Technique};
+use stratavox::technique::{Error, Filter, Mode, Role, Settings, Shading, Technique};
 use stratavox::volume::field::{Field, MarschnerLobb};
 use stratavox::volume::{Coefficients, Grid, Rescale, Spline, Volume, Voxels};
 
@@ -91,6 +91,39 @@ fn holes_and_codes_with_a_rescale_are_those_of_the_twin() {
             check(&mut renderer, &volume, &shot);
         }
     }
+}
+
+#[test]
+fn shaded_pictures_of_wide_filters_are_those_of_the_twin() {
+    let volume = volume_of(GRID().dims, sheared_affine(), waves);
+    let mut renderer = Renderer::new(device(), &volume).unwrap();
+    for shot in oblique_shots(GRID(), Mode::Composite).into_iter().take(6) {
+        for filter in [Filter::Cubic, Filter::CatmullRom] {
+            let shot = small(shot.with(|settings| {
+                settings.filter = filter;
+                settings.shading = Some(Shading::default());
+            }));
+            check(&mut renderer, &volume, &shot);
+        }
+    }
+    // Not a conformance picture: by fetches all the same.
+    let shot = small(oblique_shots(GRID(), Mode::Composite)[0].with(|settings| {
+        settings.filter = Filter::Cubic;
+        settings.shading = Some(Shading::default());
+        settings.conformance = false;
+    }));
+    let transfer = ramps();
+    let scene = shot.scene(&volume, Some(&transfer));
+    let found = renderer.render(&scene, &[]).unwrap().picture;
+    let wanted = reference::render::<f32>(&scene).unwrap();
+    Worst::between(
+        "by the table",
+        found.width,
+        &wanted.pixels,
+        &found.pixels,
+        2e-5,
+    )
+    .assert_holds();
 }
 
 /// Voxels of side 2/39, the centres of the outermost at -1 and 1.
