@@ -106,24 +106,6 @@ fn shaded_pictures_of_wide_filters_are_those_of_the_twin() {
             check(&mut renderer, &volume, &shot);
         }
     }
-    // Not a conformance picture: by fetches all the same.
-    let shot = small(oblique_shots(GRID(), Mode::Composite)[0].with(|settings| {
-        settings.filter = Filter::Cubic;
-        settings.shading = Some(Shading::default());
-        settings.conformance = false;
-    }));
-    let transfer = ramps();
-    let scene = shot.scene(&volume, Some(&transfer));
-    let found = renderer.render(&scene, &[]).unwrap().picture;
-    let wanted = reference::render::<f32>(&scene).unwrap();
-    Worst::between(
-        "by the table",
-        found.width,
-        &wanted.pixels,
-        &found.pixels,
-        2e-5,
-    )
-    .assert_holds();
 }
 
 /// Voxels of side 2/39, the centres of the outermost at -1 and 1.

@@ -84,8 +84,6 @@ struct Frame {
     channel_opacity_point_count: vec4<u32>,
     channel_interpolation_is_step: vec4<u32>,
     channel_reference_length: vec4<f32>,
-    // Which kernel, where the filter is one: see kernel.wgsl.
-    kernel: u32,
     // Light: no lights, no shading. The way to each light is a unit vector of world space; w is not 0 for one
     // that shines along the pixel's ray.
     light_directions: array<vec4<f32>, MAX_LIGHTS>,
@@ -97,6 +95,10 @@ struct Frame {
     diffuse: f32,
     specular: f32,
     shininess: f32,
+    // Which kernel, where the filter is one: see kernel.wgsl.
+    kernel: u32,
+    // World length of the shortest side of a voxel.
+    smallest_spacing: f32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

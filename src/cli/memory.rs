@@ -46,14 +46,16 @@ impl RenderBytes {
     /// Of volumes like this one that are there at once, and what `filter` makes of them.
     fn held(header: &Header, has_holes: bool, held: Held, filter: Filter) -> Self {
         let one = Self::of(header, has_holes);
-        let floats = Self::of_floats(header, has_holes);
+        let floats = Header {
+            stored: VoxelType::F32,
+            ..header.clone()
+        };
+        let floats = Self::of(&floats, has_holes);
         let (count, mut all) = match held {
             Held::Volumes(count) => (count, one.times(count)),
             Held::Denoised(count) => {
-                let host = one
-                    .times(count)
-                    .host
-                    .saturating_add(floats.times(count + 1).host);
+                let noisy = one.times(count).host;
+                let host = noisy.saturating_add(floats.times(count + 1).host);
                 let device = floats.times(count).device;
                 (count, Self { host, device })
             }
@@ -67,14 +69,6 @@ impl RenderBytes {
             all.device = floats.times(count).device;
         }
         all
-    }
-
-    fn of_floats(header: &Header, has_holes: bool) -> Self {
-        let floats = Header {
-            stored: VoxelType::F32,
-            ..header.clone()
-        };
-        Self::of(&floats, has_holes)
     }
 
     fn times(self, volumes: u32) -> Self {

@@ -3,7 +3,7 @@
 use super::sum::sum_of;
 use crate::picture::{Layer, LayerKind, Picture};
 use crate::ray::pixel_ray;
-use crate::real::Real;
+use crate::real::{Real, dot};
 use crate::resolve::reference::{premultiplied, projected_value};
 use crate::scene::{Beside, Scene, positions_in_pixel};
 use crate::shaders::Frame;
@@ -15,8 +15,8 @@ use crate::technique::{
     Error, Filter, Mix, Mode, Recording, Role, Technique, projection, raycast, slices_2d, slices_3d,
 };
 use crate::transfer::{
-    Absorption, Classified, Points, Table, TransferFunction, Window, classify_by_points,
-    classify_by_table,
+    Absorption, Classified, PackedWidgets, Points, Table, TransferFunction, Window,
+    classify_by_gradient, classify_by_points, classify_by_table,
 };
 use crate::volume::kernel::{convolved, convolved_in_slice};
 use crate::volume::sample::{linear, linear_in_slice, nearest};
@@ -130,6 +130,8 @@ struct Walk<'a, R> {
     roles: Vec<Role>,
     /// One a transfer function; none in a projecting mode, which classifies when it resolves.
     classifiers: Vec<Classifier>,
+    /// What the gradient makes of the only function, where it makes something.
+    widgets: Option<PackedWidgets>,
     frame: Frame,
     /// Slices to draw; a ray caster has none.
     slices: u32,
@@ -168,6 +170,8 @@ impl<'a, R: Real> Walk<'a, R> {
             let functions = scene.transfers().into_iter();
             functions.map(classifier).collect::<Result<_, Error>>()?
         };
+        let widgets = scene.transfer.filter(|_| scene.mix() == Mix::Graded);
+        let widgets = widgets.map(|f| PackedWidgets::new(f, scene.length_of(f), space));
         let Recording {
             mut frame, slices, ..
         } = view.on_cpu()?;
@@ -177,6 +181,7 @@ impl<'a, R: Real> Walk<'a, R> {
             volumes: read.map_or_else(|| scene.volumes(), |read| vec![read]),
             roles: scene.roles(),
             classifiers,
+            widgets,
             frame,
             slices,
             real: std::marker::PhantomData,
@@ -309,12 +314,21 @@ impl<'a, R: Real> Walk<'a, R> {
         }
         if let [volume] = self.volumes[..] {
             let value = look(volume, settings.filter)?;
-            let [r, g, b, extinction] = self.classify(0, value);
-            if self.frame.light_count == 0 {
-                return Some([r, g, b, extinction]);
+            let mut material = self.classify(0, value);
+            if self.frame.light_count == 0 && self.widgets.is_none() {
+                return Some(material);
             }
             let tap = |step| look_from(volume, settings.filter, step);
             let gradient = gradient_of(&self.frame, tap);
+            if let Some(widgets) = &self.widgets {
+                let magnitude = dot(gradient, gradient).sqrt();
+                let spacing = R::from_f32(self.frame.smallest_spacing);
+                material = classify_by_gradient(widgets, material, value, magnitude, spacing);
+            }
+            let [r, g, b, extinction] = material;
+            if self.frame.light_count == 0 {
+                return Some(material);
+            }
             let [r, g, b] = shade(&self.frame, [r, g, b], gradient, ray_direction);
             return Some([r, g, b, extinction]);
         }

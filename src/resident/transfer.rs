@@ -6,7 +6,7 @@ use crate::gpu::{
 };
 use crate::picture::ColorSpace;
 use crate::shaders::TABLE_WIDTH;
-use crate::transfer::{Absorption, Interpolation, Points, Table, TransferFunction};
+use crate::transfer::{Absorption, Interpolation, PackedWidgets, Points, Table, TransferFunction};
 use ash::vk;
 use std::sync::Arc;
 
@@ -34,6 +34,7 @@ pub struct GpuTransfer {
     table: Image,
     staging: Buffer,
     points: Buffer,
+    widgets: Buffer,
 }
 
 impl GpuTransfer {
@@ -84,6 +85,11 @@ impl GpuTransfer {
             entries.resize(entries.len().next_multiple_of(width), [0.0; 4]);
             points.extend_from_slice(&own.entries);
         }
+        // Gradients count where a function is alone.
+        let widgets = functions.first();
+        let widgets =
+            widgets.map(|&(function, length)| PackedWidgets::new(function, length, space));
+        let widgets = widgets.map_or_else(|| vec![[0.0; 4]], |packed| packed.entries);
         let desc = ImageDesc {
             kind: ImageKind::D2,
             extent: [width as u32, (entries.len() / width) as u32, 1],
@@ -99,6 +105,7 @@ impl GpuTransfer {
             table: Image::new(gpu, &desc)?,
             staging: filled(gpu, &entries, copied, "transfer staging")?,
             points: filled(gpu, &points, read, "transfer points")?,
+            widgets: filled(gpu, &widgets, read, "transfer widgets")?,
         })
     }
 
@@ -120,6 +127,11 @@ impl GpuTransfer {
     /// The control points.
     pub fn points(&self) -> &Buffer {
         &self.points
+    }
+
+    /// What the gradient makes of the (first) function.
+    pub fn widgets(&self) -> &Buffer {
+        &self.widgets
     }
 
     /// Records the copy that fills the table.

@@ -40,10 +40,11 @@ impl TextureLayout {
         std::array::from_fn(|k| self != Self::Stack(k))
     }
 
-    /// Voxels on either side that a sample of a brick may need: two for the widest filter, one more for the
-    /// differences that make its gradient. Nothing is interpolated between the slices of a stack.
+    /// Voxels on either side that a sample of a brick may need: two for the widest filter, the cubic, one more for
+    /// the differences that make its gradient. Nothing is interpolated between the slices of a stack.
     fn halo(self) -> [u32; 3] {
-        std::array::from_fn(|k| if self == Self::Stack(k) { 1 } else { 3 })
+        self.filtered_axes()
+            .map(|is_filtered| if is_filtered { 3 } else { 1 })
     }
 }
 

@@ -159,6 +159,7 @@ impl View<'_> {
             diffuse: 0.0,
             specular: 0.0,
             shininess: 0.0,
+            smallest_spacing: self.grid.smallest_spacing() as f32,
         };
         if let Some(shading) = &self.settings.shading {
             set_shading(shading, self.settings.color_space, &mut fields)?;

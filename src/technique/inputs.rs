@@ -44,6 +44,7 @@ impl Inputs<'_> {
         if let Some(transfer) = self.transfer {
             given.push(("transfer_table", Resource::sampled(transfer.table())));
             given.push(("points", Resource::Storage(transfer.points())));
+            given.push(("widgets", Resource::Storage(transfer.widgets())));
         }
         given.extend_from_slice(outputs);
         given.retain(|(name, _)| layout.slots().iter().any(|slot| slot.name == *name));
@@ -112,8 +113,7 @@ impl Words {
                 }
                 Filter::Linear => "linear",
                 Filter::CatmullRom => "kernel",
-                // Differences of what a sampler has rounded to steps would show the steps.
-                _ if is_graded || settings.conformance || parts.iter().any(is_fetched) => "kernel",
+                _ if settings.conformance || parts.iter().any(is_fetched) => "kernel",
                 _ => "spline",
             },
             holes: if has_holes { "mask" } else { "none" },

@@ -228,6 +228,19 @@ pub enum Error {
     /// Several volumes have several gradients.
     #[error("shading is for one volume of numbers, not for several that are mixed")]
     NotShadedTogether,
+    /// A projected value has no gradient.
+    #[error(
+        "{mode:?} projects one number a ray, which has no gradient: widgets and gradient opacity are for composite"
+    )]
+    NotGraded {
+        /// The mode.
+        mode: Mode,
+    },
+    /// Several volumes have several gradients.
+    #[error(
+        "widgets and gradient opacity are for one volume of numbers, not for several that are mixed"
+    )]
+    NotGradedTogether,
     /// The parameters hold a fixed number of lights.
     #[error("{wanted} lights, the limit is {limit}")]
     TooManyLights {

@@ -31,7 +31,7 @@ pub use colors::{luma, read_all, read_colors};
 pub use denoise::{Denoise, MAX_SIGMA_VOXELS, Pass, noise_of, with_numbers};
 pub use grid::Grid;
 pub use histogram::Histogram;
-pub use joint::JointHistogram;
+pub use joint::{JointHistogram, steepest_gradient};
 pub use magnitude::Magnitude;
 pub use prefilter::{Coefficients, Spline};
 pub use reduce::Reduced;

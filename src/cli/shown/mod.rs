@@ -114,6 +114,14 @@ impl Shown {
                     "take one of them: --component 0",
                 ));
             };
+            if let Classification::Function(function) = &shown.classification
+                && function.is_graded()
+            {
+                return Err(Error::usage(
+                    "--labels lies over a volume, and widgets and gradient opacity are for one volume alone",
+                    "leave out --labels, or take a function of the value alone",
+                ));
+            }
             let grid = shown.volume.grid();
             let map = labels::read(scene, &grid, shown.height_factor, progress)?;
             let is_drawn = map.function.opacity.iter().any(|point| point.opacity > 0.0);
@@ -199,11 +207,19 @@ pub fn check(scene: &SceneFlags, mode: Mode) -> Result<(), Error> {
             "leave out --mode or --labels",
         ));
     }
-    let ClassificationFlags { preset, window, .. } = &scene.classification;
+    let ClassificationFlags {
+        preset,
+        window,
+        color_function,
+        opacity_function,
+        ..
+    } = &scene.classification;
     let several = scene.channels.are_given() || scene.input.component == Some(Component::All);
     let one_function = [
         ("--preset", preset.is_some()),
         ("--tf", scene.classification.function_of_file()?.is_some()),
+        ("--color-tf", color_function.is_some()),
+        ("--opacity-tf", opacity_function.is_some()),
         ("--window", window.is_some()),
     ];
     match one_function.into_iter().find(|(_, is_given)| *is_given) {
@@ -364,7 +380,8 @@ impl Reader<'_> {
 /// True where no word says how values are seen.
 fn says_nothing(flags: &ClassificationFlags) -> Result<bool, Error> {
     let of_file = flags.function_of_file()?;
-    Ok(flags.preset.is_none() && of_file.is_none() && flags.window.is_none())
+    let of_parts = flags.color_function.is_some() || flags.opacity_function.is_some();
+    Ok(flags.preset.is_none() && of_file.is_none() && !of_parts && flags.window.is_none())
 }
 
 /// Takes most of its opacity from a volume that labels lie inside of.
