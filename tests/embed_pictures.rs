@@ -150,7 +150,7 @@ fn a_projected_maximum_stands_before_what_the_host_has_drawn() {
 #[test]
 fn a_volume_too_large_for_one_texture_is_staged_and_drawn_in_bricks() {
     let host = Host::with_caps(Caps {
-        max_image_dimension_3d: 9,
+        max_image_dimension_3d: 11,
         ..Caps::UNLIMITED
     });
     for mode in [Mode::Composite, Mode::Mip] {

@@ -11,7 +11,7 @@ use stratavox::offscreen::{Renderer, reference};
 use stratavox::picture::{LayerKind, Picture};
 use stratavox::resident::{GpuVolume, TextureLayout};
 use stratavox::scene::{Beside, Channel, Scene};
-use stratavox::technique::{Error, Filter, Mode, Role, Settings, Technique};
+use stratavox::technique::{Error, Filter, Mode, Role, Settings, Shading, Technique};
 use stratavox::volume::field::{Field, MarschnerLobb};
 use stratavox::volume::{Coefficients, Grid, Rescale, Spline, Volume, Voxels};
 
@@ -88,6 +88,21 @@ fn holes_and_codes_with_a_rescale_are_those_of_the_twin() {
     for shot in oblique_shots(GRID(), Mode::Composite).into_iter().take(6) {
         for filter in [Filter::Quadratic, Filter::Cubic, Filter::CatmullRom] {
             let shot = small(shot.with(|settings| settings.filter = filter));
+            check(&mut renderer, &volume, &shot);
+        }
+    }
+}
+
+#[test]
+fn shaded_pictures_of_wide_filters_are_those_of_the_twin() {
+    let volume = volume_of(GRID().dims, sheared_affine(), waves);
+    let mut renderer = Renderer::new(device(), &volume).unwrap();
+    for shot in oblique_shots(GRID(), Mode::Composite).into_iter().take(6) {
+        for filter in [Filter::Cubic, Filter::CatmullRom] {
+            let shot = small(shot.with(|settings| {
+                settings.filter = filter;
+                settings.shading = Some(Shading::default());
+            }));
             check(&mut renderer, &volume, &shot);
         }
     }

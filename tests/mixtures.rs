@@ -429,7 +429,7 @@ fn hidden_labels_cut_away_what_a_crop_box_cuts_away() {
 #[test]
 fn bricks_leave_a_mixture_bit_identical() {
     let caps = Caps {
-        max_image_dimension_3d: 9,
+        max_image_dimension_3d: 11,
         max_image_array_layers: 6,
         ..Caps::UNLIMITED
     };
