@@ -26,4 +26,5 @@ mod presets;
 mod real;
 mod sheet;
 mod weather;
+mod widgets;
 mod words;
