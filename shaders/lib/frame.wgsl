@@ -95,6 +95,8 @@ struct Frame {
     diffuse: f32,
     specular: f32,
     shininess: f32,
+    // Which kernel, where the filter is one: see kernel.wgsl.
+    kernel: u32,
     // World length of the shortest side of a voxel.
     smallest_spacing: f32,
 }
