@@ -306,7 +306,7 @@ fn boundaries_are_found_half_way_between_substances() {
         });
         let found: Vec<_> = found.collect();
         assert_eq!(found.len(), 2, "{found:?}");
-        // An edge is steepest half way; columns are smoothed over five of a hundred to both sides.
+        // An edge is steepest half way; columns are smoothed over three of a hundred to both sides.
         let blur = 0.05 * (values[2] - values[0]);
         for (i, (value, _)) in found.iter().enumerate() {
             let half_way = 0.5 * (values[i] + values[i + 1]);
