@@ -83,9 +83,9 @@ fn opacity_is_the_sum_of_shares_and_colour_their_mean_within_a_4096th() {
             }
             looked += 1;
             let srgb = function.srgb(value);
-            for c in 0..3 {
+            for (c, found) in srgb.into_iter().enumerate() {
                 let light: f64 = materials.iter().map(|m| weight(m) * m.srgb[c]).sum();
-                let off = (srgb[c] - light / opacity).abs();
+                let off = (found - light / opacity).abs();
                 assert!(
                     off <= 1.0 / 4096.0 + 1e-12,
                     "{value}: colour is off by {off}"

@@ -81,7 +81,7 @@ const DENSEST: f64 = 0.9;
 /// Of contours, in smallest spacings: a surface between two voxels is met by some sample.
 const HALF_WIDTH: f64 = 1.5;
 /// Columns on either side over which the mean gradient is smoothed, of a hundred.
-const SMOOTHED: f64 = 2.0;
+const SMOOTHED: f64 = 3.0;
 /// By how much of the highest arch a top stands above what is beside it.
 const PROMINENCE: f64 = 0.1;
 /// Of all voxels, those that have the values of a top: a few outliers are no substance.
@@ -124,7 +124,7 @@ fn mean_gradients(joint: &JointCounts) -> (Vec<f64>, Vec<f64>) {
     }
     let all: f64 = numbers.iter().sum();
     // A value that occurs once says nothing.
-    let few = all * 1e-4 / columns as f64;
+    let few = (all * 1e-4 / columns as f64).max(f64::MIN_POSITIVE);
     let radius = (SMOOTHED / 100.0 * columns as f64).ceil() as usize;
     let smooth = |of: &[f64], i: usize| -> f64 {
         let near = i.saturating_sub(radius)..(i + radius + 1).min(columns);
@@ -132,13 +132,11 @@ fn mean_gradients(joint: &JointCounts) -> (Vec<f64>, Vec<f64>) {
         near.map(|j| of[j] * (1.0 - i.abs_diff(j) as f64 / (radius + 1) as f64))
             .sum()
     };
-    let means: Vec<f64> = sums
-        .iter()
-        .zip(&numbers)
-        .map(|(sum, number)| sum / (number + few))
-        .collect();
-    let ones = vec![1.0; columns];
-    let smoothed = |i| smooth(&means, i) / smooth(&ones, i);
+    // Each column counts as one, whatever its number, but for those of next to none.
+    let weights: Vec<f64> = numbers.iter().map(|n| n / (n + few)).collect();
+    let means = sums.iter().zip(&numbers).map(|(sum, n)| sum / (n + few));
+    let means: Vec<f64> = means.collect();
+    let smoothed = |i| smooth(&means, i) / smooth(&weights, i).max(f64::MIN_POSITIVE);
     let share = |i| smooth(&numbers, i) / all.max(1.0);
     (0..columns).map(|i| (smoothed(i), share(i))).unzip()
 }
@@ -148,8 +146,9 @@ fn tops(means: &[f64], counts: impl Fn(usize) -> bool) -> Vec<usize> {
     let counted = (0..means.len()).filter(|&i| counts(i));
     let highest = counted.map(|i| means[i]).fold(0.0, f64::max);
     let mut found: Vec<(usize, f64)> = (0..means.len())
-        .filter_map(|i| Some((i, prominence(means, i)?)))
-        .filter(|&(top, prominence)| prominence > PROMINENCE * highest && counts(top))
+        .filter(|&i| counts(i))
+        .filter_map(|i| Some((i, prominence(means, i, &counts)?)))
+        .filter(|&(_, prominence)| prominence > PROMINENCE * highest)
         .collect();
     found.sort_by(|a, b| b.1.total_cmp(&a.1));
     found.truncate(MOST);
@@ -159,17 +158,18 @@ fn tops(means: &[f64], counts: impl Fn(usize) -> bool) -> Vec<usize> {
 }
 
 /// How far one has to climb down from a top before something higher comes, on the shallower side; `None` where
-/// there is no top.
-fn prominence(means: &[f64], top: usize) -> Option<f64> {
+/// there is no top. What does not count is as low as can be.
+fn prominence(means: &[f64], top: usize, counts: impl Fn(usize) -> bool) -> Option<f64> {
     let height = means[top];
     let is_top = (top == 0 || means[top - 1] < height)
         && means.get(top + 1).is_none_or(|&next| next <= height);
     if !is_top || height <= 0.0 {
         return None;
     }
-    let lowest = |way: &mut dyn Iterator<Item = &f64>| {
+    let lowest = |way: &mut dyn Iterator<Item = usize>| {
         let mut lowest = height;
-        for &mean in way {
+        for i in way {
+            let mean = if counts(i) { means[i] } else { 0.0 };
             if mean > height {
                 return lowest;
             }
@@ -178,7 +178,7 @@ fn prominence(means: &[f64], top: usize) -> Option<f64> {
         // Beyond the ends there is nothing.
         0.0
     };
-    let left = lowest(&mut means[..top].iter().rev());
-    let right = lowest(&mut means[top + 1..].iter());
+    let left = lowest(&mut (0..top).rev());
+    let right = lowest(&mut (top + 1..means.len()));
     Some(height - left.max(right))
 }

@@ -27,4 +27,5 @@ mod real;
 mod section;
 mod sheet;
 mod weather;
+mod widgets;
 mod words;
