@@ -23,6 +23,11 @@ const LATTICE: Slot = ("lattice", &["ray", "planes"]);
 const MIXED: Slot = ("mix", &["channels", "colors"]);
 /// One number a voxel. The word is left out of names.
 const ALONE: Slot = ("mix", &["alone"]);
+/// One number at both ends of a segment. The word is left out of names.
+const SLAB: Slot = ("mix", &["slab"]);
+/// Words that stand in no name.
+const SILENT: &[&str] = &["alone", "slab"];
+const SLAB_FILTER: Slot = ("filter", &["nearest", "linear", "linear_fetch"]);
 const TRANSFER: Slot = ("transfer", &["table", "points"]);
 
 /// The wanted combinations. Order of the slots is the order of words in a variant's name.
@@ -103,6 +108,72 @@ const ENTRIES: &[(&str, &[Slot])] = &[
         ],
     ),
     ("slices_2d_cover", &[]),
+    (
+        "raycast",
+        &[
+            ("mode", &["composite"]),
+            ALONE,
+            ("lattice", &["jitter"]),
+            SLAB_FILTER,
+            HOLES,
+            TRANSFER,
+        ],
+    ),
+    (
+        "raycast_slab",
+        &[
+            ("mode", &["composite"]),
+            SLAB,
+            ("lattice", &["ray", "planes", "jitter"]),
+            SLAB_FILTER,
+            HOLES,
+        ],
+    ),
+    (
+        "slices_3d_slab",
+        &[("blend", &["composite"]), SLAB, SLAB_FILTER, HOLES],
+    ),
+    (
+        "slices_3d_slab",
+        &[
+            ("blend", &["count"]),
+            SLAB,
+            ("filter", &["nearest"]),
+            ("holes", &["none"]),
+        ],
+    ),
+    (
+        "slices_2d_slab",
+        &[("blend", &["composite"]), SLAB, SLAB_FILTER, HOLES],
+    ),
+    (
+        "slices_2d_slab",
+        &[
+            ("blend", &["count"]),
+            SLAB,
+            ("filter", &["nearest"]),
+            ("holes", &["none"]),
+        ],
+    ),
+    (
+        "slices_2d_smooth",
+        &[
+            ("blend", &["composite"]),
+            ALONE,
+            SLAB_FILTER,
+            HOLES,
+            TRANSFER,
+        ],
+    ),
+    (
+        "slices_2d_smooth",
+        &[
+            ("blend", &["count"]),
+            ALONE,
+            ("filter", &["nearest"]),
+            ("holes", &["none"]),
+        ],
+    ),
     ("resolve", &[("source", &["picture", "value", "mean"])]),
     ("resolve_cover", &[]),
     ("merge", &[("operator", &["over", "under", "add"])]),
@@ -146,7 +217,7 @@ struct Book {
 
 impl Book {
     fn add(&mut self, file: &str, slots: &[Slot], words: &[&str]) {
-        let named = words.iter().copied().filter(|&word| word != ALONE.1[0]);
+        let named = words.iter().copied().filter(|word| !SILENT.contains(word));
         let name = [file]
             .into_iter()
             .chain(named)

@@ -111,13 +111,18 @@ impl<'a> Scene<'a> {
     /// Whether its volumes can be put together.
     ///
     /// # Errors
-    /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`] and [`Error::NotMixed`].
+    /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`], [`Error::NotMixed`] and
+    /// [`Error::NotFor`].
     pub fn check(&self) -> Result<(), Error> {
         let volumes = self.volumes();
         let (wanted, limit) = (volumes.len(), MAX_CHANNELS as usize);
         let grid = self.volume.grid();
         let has_labels = self.roles().contains(&Role::Labels);
         let mode = self.settings.mode;
+        self.settings.check()?;
+        if self.mix() != Mix::Alone {
+            self.settings.check_mixed()?;
+        }
         match self.mix() {
             Mix::Alone => Ok(()),
             _ if volumes.iter().any(|volume| volume.grid() != grid) => Err(Error::OtherGrid),

@@ -7,13 +7,15 @@ use crate::resolve::reference::{premultiplied, projected_value};
 use crate::scene::{Beside, Scene, positions_in_pixel};
 use crate::shaders::Frame;
 use crate::technique::blend::{Fragment, blend, blend_material, clear_color};
+use crate::technique::composite::Composite;
 use crate::technique::mixture::{color_of, colored, mixed};
+use crate::technique::slices_2d::between::Level;
 use crate::technique::{
     Error, Filter, Mix, Mode, Recording, Role, Technique, projection, raycast, slices_2d, slices_3d,
 };
 use crate::transfer::{
-    Absorption, Classified, Points, Table, TransferFunction, Window, classify_by_points,
-    classify_by_table,
+    Absorption, Classified, Points, SlabTable, Table, TransferFunction, Window, classify_by_points,
+    classify_by_table, classify_slab,
 };
 use crate::volume::sample::{linear, linear_in_slice, nearest};
 use crate::volume::{Grid, Volume};
@@ -130,6 +132,8 @@ struct Walk<'a, R> {
 enum Classifier {
     Table(Table),
     Points(Points),
+    /// The same table in both, with the integrals of slabs.
+    Slabs(SlabTable),
 }
 
 impl<'a, R: Real> Walk<'a, R> {
@@ -140,7 +144,10 @@ impl<'a, R: Real> Walk<'a, R> {
             let function = function.ok_or(Error::NoTransferFunction)?;
             let reference_length = scene.length_of(function);
             let absorption = Absorption::Extinction { reference_length };
-            Ok(if scene.settings.conformance {
+            Ok(if scene.settings.preintegrated {
+                let table = Table::new(function, absorption, space);
+                Classifier::Slabs(SlabTable::new(function, &table, absorption, space))
+            } else if scene.settings.conformance {
                 Classifier::Points(Points::new(function, absorption, space))
             } else {
                 Classifier::Table(Table::new(function, absorption, space))
@@ -227,30 +234,96 @@ impl<'a, R: Real> Walk<'a, R> {
         }
     }
 
+    /// Emission and absorption of slabs of one volume.
+    fn composite_slabs(&self, pixel: [R; 2]) -> Gathered<R> {
+        let settings = self.scene.settings;
+        let (volume, frame, filter) = (self.scene.volume, &self.frame, settings.filter);
+        let value_at = |p| filtered(volume, filter, p);
+        let material = |fragment: Fragment<R, [R; 2]>| Fragment {
+            value: self.classify_slab(fragment.value),
+            length: fragment.length,
+        };
+        let blend = |target, fragment: Fragment<R, [R; 4]>| {
+            blend_material(settings.order, target, fragment.value, fragment.length)
+        };
+        match settings.technique {
+            Technique::Raycast => {
+                let found = raycast::reference::radiance_of_slabs(
+                    frame,
+                    settings.lattice,
+                    pixel,
+                    value_at,
+                    |ends| self.classify_slab(ends),
+                );
+                gathered(found)
+            }
+            Technique::Slices3d => {
+                let slab = |i| {
+                    let plane = self.plane_of(i);
+                    let slab = slices_3d::reference::slab(frame, pixel, plane, value_at);
+                    slab.map(|found| found.map(material))
+                };
+                self.blend_all(slab, blend)
+            }
+            Technique::Slices2d => {
+                let value_at = |level, p| self.value_between(level, p);
+                let slab = |i| {
+                    let plane = slices_2d::reference::slice_of(frame, i);
+                    let slab = slices_2d::between::slab(frame, pixel, plane, value_at);
+                    slab.map(|found| found.map(material))
+                };
+                self.blend_all(slab, blend)
+            }
+        }
+    }
+
+    /// The volume's value between the slices of the stack.
+    fn value_between(&self, level: Level<R>, p: [R; 3]) -> Option<R> {
+        let (volume, filter) = (self.scene.volume, self.scene.settings.filter);
+        let axis = self.frame.slice_axis as usize;
+        let slices = volume.dims[axis];
+        let in_slice = |slice| filtered_in_slice(volume, filter, axis, slice, p);
+        match filter {
+            Filter::Nearest => in_slice(level.nearest(slices)),
+            Filter::Linear => level.linear(slices, in_slice),
+        }
+    }
+
     /// Emission and absorption of what the volumes are made of together.
     fn composite(&self, pixel: [R; 2]) -> Gathered<R> {
         let settings = self.scene.settings;
+        if settings.preintegrated {
+            return self.composite_slabs(pixel);
+        }
         let material_at = |p| self.material(|volume, filter| filtered(volume, filter, p));
         let blend = |target, fragment: Fragment<R, [R; 4]>| {
             blend_material(settings.order, target, fragment.value, fragment.length)
         };
         match settings.technique {
             Technique::Raycast => {
-                let (found, samples) = raycast::reference::radiance(
+                let found = raycast::reference::radiance(
                     &self.frame,
                     settings.lattice,
                     pixel,
                     material_at,
                     |material| material,
                 );
-                let [r, g, b] = found.color;
-                Gathered {
-                    accumulation: [r, g, b, R::from_f64(1.0) - found.transmittance],
-                    depth: found.depth,
-                    samples,
-                }
+                gathered(found)
             }
             Technique::Slices3d => self.blend_all(|i| self.on_plane(pixel, i, material_at), blend),
+            Technique::Slices2d if settings.smooth => {
+                let value_at = |level, p| self.value_between(level, p);
+                let sample = |i| {
+                    let plane = slices_2d::reference::slice_of(&self.frame, i);
+                    let found = slices_2d::between::fragment(&self.frame, pixel, plane, value_at);
+                    let material = |fragment: Fragment<R>| Fragment {
+                        value: self.classify(0, fragment.value),
+                        length: fragment.length,
+                    };
+                    found.map(|found| found.map(material))
+                };
+                self.blend_all(sample, blend)
+            }
             Technique::Slices2d => {
                 let material_at = |axis, slice, p| {
                     self.material(|volume, filter| {
@@ -299,8 +372,11 @@ impl<'a, R: Real> Walk<'a, R> {
         instance: u32,
         value_at: impl Fn([R; 3]) -> Option<V>,
     ) -> Option<Option<Fragment<R, V>>> {
-        let plane = self.frame.slice_first + instance as i32 * self.frame.slice_direction;
-        slices_3d::reference::fragment(&self.frame, pixel, plane, value_at)
+        slices_3d::reference::fragment(&self.frame, pixel, self.plane_of(instance), value_at)
+    }
+
+    fn plane_of(&self, instance: u32) -> i32 {
+        self.frame.slice_first + instance as i32 * self.frame.slice_direction
     }
 
     /// The same on the slice of a stack, which is slice number so much of an axis.
@@ -341,7 +417,24 @@ impl<'a, R: Real> Walk<'a, R> {
         match &self.classifiers[channel] {
             Classifier::Table(table) => classify_by_table(table, value),
             Classifier::Points(points) => classify_by_points(points, value),
+            Classifier::Slabs(slabs) => classify_slab(slabs, value, value),
         }
+    }
+
+    fn classify_slab(&self, [front, back]: [R; 2]) -> [R; 4] {
+        match &self.classifiers[0] {
+            Classifier::Slabs(slabs) => classify_slab(slabs, front, back),
+            Classifier::Table(_) | Classifier::Points(_) => self.classify(0, front),
+        }
+    }
+}
+
+fn gathered<R: Real>((found, samples): (Composite<R>, u32)) -> Gathered<R> {
+    let [r, g, b] = found.color;
+    Gathered {
+        accumulation: [r, g, b, R::from_f64(1.0) - found.transmittance],
+        depth: found.depth,
+        samples,
     }
 }
 

@@ -57,6 +57,7 @@ struct Uploaded {
     functions: Vec<TransferFunction>,
     space: ColorSpace,
     made: GpuTransfer,
+    is_preintegrated: bool,
 }
 
 impl<'v> Renderer<'v> {
@@ -214,22 +215,35 @@ impl<'v> Renderer<'v> {
         scene: &Scene,
         functions: &[&TransferFunction],
     ) -> Result<(), Error> {
-        let space = scene.settings.color_space;
+        let Settings {
+            color_space: space,
+            preintegrated: is_preintegrated,
+            ..
+        } = *scene.settings;
         let is_there = |there: &Uploaded| {
-            there.functions.iter().eq(functions.iter().copied()) && there.space == space
+            there.functions.iter().eq(functions.iter().copied())
+                && there.space == space
+                && there.is_preintegrated == is_preintegrated
         };
         if self.transfer.as_ref().is_some_and(is_there) {
             return Ok(());
         }
         let with_length = functions.iter().map(|&f| (f, scene.length_of(f)));
         let with_length: Vec<_> = with_length.collect();
-        let made = GpuTransfer::several(self.device.gpu(), &with_length, space)?;
+        let gpu = self.device.gpu();
+        let made = match with_length[..] {
+            [(function, length)] if is_preintegrated => {
+                GpuTransfer::preintegrated(gpu, function, length, space)?
+            }
+            _ => GpuTransfer::several(gpu, &with_length, space)?,
+        };
         // SAFETY: recorded outside rendering; `run` waits, and `made` lives meanwhile.
         self.device.run(|cmd| unsafe { made.record_upload(cmd) })?;
         self.transfer = Some(Uploaded {
             functions: functions.iter().copied().cloned().collect(),
             space,
             made,
+            is_preintegrated,
         });
         Ok(())
     }

@@ -1,12 +1,13 @@
 //! A transfer function on the device: a table for speed, its control points for exactness.
 
+use super::slabs::GpuSlabs;
 use crate::gpu::{
     Buffer, Error, Gpu, Image, ImageDesc, ImageKind, Memory, Region, Use, buffer_to_image,
     image_barrier,
 };
 use crate::picture::ColorSpace;
 use crate::shaders::TABLE_WIDTH;
-use crate::transfer::{Absorption, Interpolation, Points, Table, TransferFunction};
+use crate::transfer::{Absorption, Interpolation, Points, SlabTable, Table, TransferFunction};
 use ash::vk;
 use std::sync::Arc;
 
@@ -34,6 +35,7 @@ pub struct GpuTransfer {
     table: Image,
     staging: Buffer,
     points: Buffer,
+    slabs: Option<GpuSlabs>,
 }
 
 impl GpuTransfer {
@@ -99,7 +101,26 @@ impl GpuTransfer {
             table: Image::new(gpu, &desc)?,
             staging: filled(gpu, &entries, copied, "transfer staging")?,
             points: filled(gpu, &points, read, "transfer points")?,
+            slabs: None,
         })
+    }
+
+    /// As [`GpuTransfer::new`], with the integrals that pre-integrated classification reads.
+    ///
+    /// # Errors
+    /// Where the device gives no memory.
+    pub fn preintegrated(
+        gpu: &Arc<Gpu>,
+        function: &TransferFunction,
+        reference_length: f64,
+        space: ColorSpace,
+    ) -> Result<Self, Error> {
+        let mut made = Self::new(gpu, function, reference_length, space)?;
+        let absorption = Absorption::Extinction { reference_length };
+        let table = Table::new(function, absorption, space);
+        let slabs = SlabTable::new(function, &table, absorption, space);
+        made.slabs = Some(GpuSlabs::new(gpu, &slabs)?);
+        Ok(made)
     }
 
     /// How table and points of the (first) function are to be read.
@@ -115,6 +136,11 @@ impl GpuTransfer {
     /// The table, in [`Use::Sampled`] after the upload.
     pub fn table(&self) -> &Image {
         &self.table
+    }
+
+    /// The integrals, where it was made with them; in [`Use::Sampled`] after the upload.
+    pub fn slab_table(&self) -> Option<&Image> {
+        self.slabs.as_ref().map(|slabs| &slabs.table)
     }
 
     /// The control points.
@@ -148,12 +174,15 @@ impl GpuTransfer {
                 Use::TransferWrite,
                 Use::Sampled,
             );
+            if let Some(slabs) = &self.slabs {
+                slabs.record_upload(&self.gpu, cmd)?;
+            }
         }
         Ok(())
     }
 }
 
-fn filled(
+pub(super) fn filled(
     gpu: &Arc<Gpu>,
     entries: &[[f32; 4]],
     usage: vk::BufferUsageFlags,

@@ -35,9 +35,10 @@ impl TextureLayout {
         }
     }
 
-    /// Nothing is interpolated between the slices of a stack.
-    fn halo(self) -> [bool; 3] {
-        std::array::from_fn(|k| self != Self::Stack(k))
+    /// Voxels on either side that a sample of a brick may need: one for a filter, one more for the differences
+    /// that make its gradient. Nothing is interpolated between the slices of a stack.
+    fn halo(self) -> [u32; 3] {
+        std::array::from_fn(|k| if self == Self::Stack(k) { 1 } else { 2 })
     }
 }
 

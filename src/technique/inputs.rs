@@ -44,6 +44,8 @@ impl Inputs<'_> {
         if let Some(transfer) = self.transfer {
             given.push(("transfer_table", Resource::sampled(transfer.table())));
             given.push(("points", Resource::Storage(transfer.points())));
+            let slabs = transfer.slab_table().map(Resource::sampled);
+            given.extend(slabs.map(|table| ("slab_table", table)));
         }
         given.extend_from_slice(outputs);
         given.retain(|(name, _)| layout.slots().iter().any(|slot| slot.name == *name));
@@ -89,6 +91,30 @@ pub struct Words {
     pub transfer: &'static str,
     /// How several volumes go together.
     pub mix: Mix,
+    /// What a sample is.
+    pub take: Take,
+}
+
+/// What a sample is: a point of a ray, or a piece of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Take {
+    /// A point.
+    Point,
+    /// A point on a plane between the slices of a stack.
+    Between,
+    /// A piece, by the values at its two ends.
+    Slab,
+}
+
+impl Take {
+    /// Its part of a shader's name.
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Self::Point => "",
+            Self::Between => "_smooth",
+            Self::Slab => "_slab",
+        }
+    }
 }
 
 impl Words {
@@ -115,6 +141,12 @@ impl Words {
             lattice: match settings.lattice {
                 Lattice::Ray => "ray",
                 Lattice::Planes => "planes",
+                Lattice::Jitter => "jitter",
+            },
+            take: match settings.preintegrated {
+                true => Take::Slab,
+                false if settings.smooth => Take::Between,
+                false => Take::Point,
             },
             transfer: if settings.conformance {
                 "points"

@@ -11,13 +11,14 @@ pub mod mixture;
 pub mod projection;
 pub mod raycast;
 mod recording;
+mod slab;
 mod slicer;
 pub mod slices_2d;
 pub mod slices_3d;
 
 pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 pub use frame::View;
-pub use inputs::{Inputs, Words};
+pub use inputs::{Inputs, Take, Words};
 pub use mixture::{Mix, Part, Role};
 pub use recording::{Recording, parameter_ring};
 pub use slicer::Slicer;
@@ -68,6 +69,18 @@ pub enum Lattice {
     Ray,
     /// Where the ray meets the planes that a view-aligned slicer draws.
     Planes,
+    /// Equal steps, of which the first is cut short by a part that hangs on the pixel ([`Jitter`]): grain in place
+    /// of bands. Compositing by ray casting only.
+    Jitter,
+}
+
+/// What moves the pattern of [`Lattice::Jitter`]: same numbers, same picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Jitter {
+    /// Another pattern.
+    pub seed: u32,
+    /// The number of the picture in a film.
+    pub frame: u32,
 }
 
 /// In which order a slicer blends.
@@ -99,8 +112,17 @@ pub struct Settings {
     pub filter: Filter,
     /// Which samples the ray caster takes.
     pub lattice: Lattice,
+    /// What moves the pattern of [`Lattice::Jitter`].
+    pub jitter: Jitter,
     /// How slicers blend.
     pub order: Order,
+    /// Which of the three stacks 2D slicing draws; `None`: the one that faces the eye most.
+    pub stack: Option<usize>,
+    /// 2D stacks with slices interpolated between their own, so that samples keep their distance, and a cross-fade
+    /// of both stacks ([`slices_2d::stack_shares`]) where the eye changes from one to the other.
+    pub smooth: bool,
+    /// Composite: what lies between two samples counts, and not only the samples ([`crate::transfer::SlabTable`]).
+    pub preintegrated: bool,
     /// Samples per smallest voxel spacing; positive. 2D stacks have one a slice.
     pub samples_per_voxel: f64,
     /// Rays per pixel is the square of this; at least 1.
@@ -148,6 +170,26 @@ pub enum Error {
         /// The mode.
         mode: Mode,
     },
+    /// A way to sample that not all techniques and modes have.
+    #[error("{wanted} is for {of}, not for {found}")]
+    NotFor {
+        /// What was asked for.
+        wanted: &'static str,
+        /// What has it.
+        of: &'static str,
+        /// What has not.
+        found: String,
+    },
+    /// The ends of a slab lie in voxels that its brick does not hold.
+    #[error(
+        "the volume lies in bricks, and pre-integrated samples reach {reach:.1} voxels beyond theirs, the limit is {limit}: take more samples per voxel"
+    )]
+    SlabsTooLong {
+        /// Voxels.
+        reach: f64,
+        /// What bricks hold.
+        limit: f64,
+    },
     /// Volumes that are mixed lie on one grid.
     #[error("the volumes to be mixed lie on different grids, or in different bricks")]
     OtherGrid,
@@ -182,6 +224,62 @@ impl Mode {
     }
 }
 
+impl Settings {
+    /// Whether technique and mode have the ways to sample that are asked for.
+    ///
+    /// # Errors
+    /// [`Error::NotFor`].
+    pub fn check(&self) -> Result<(), Error> {
+        let (mode, technique) = (self.mode, self.technique);
+        let of_mode = |is_on: bool, wanted| match is_on && mode.is_projection() {
+            true => Err(Error::NotFor {
+                wanted,
+                of: "composite",
+                found: format!("{mode:?}"),
+            }),
+            false => Ok(()),
+        };
+        let of_technique = |is_on: bool, wanted, right, of| match is_on && technique != right {
+            true => Err(Error::NotFor {
+                wanted,
+                of,
+                found: format!("{technique:?}"),
+            }),
+            false => Ok(()),
+        };
+        let is_jittered = self.lattice == Lattice::Jitter;
+        of_mode(self.preintegrated, PREINTEGRATED)?;
+        of_technique(self.smooth, SMOOTH, Technique::Slices2d, "2D stacks")?;
+        of_mode(self.smooth, SMOOTH)?;
+        of_technique(is_jittered, JITTER, Technique::Raycast, "ray casting")?;
+        of_mode(is_jittered, JITTER)
+    }
+
+    /// The same for several volumes.
+    ///
+    /// # Errors
+    /// [`Error::NotFor`].
+    pub(crate) fn check_mixed(&self) -> Result<(), Error> {
+        let ways = [
+            (self.preintegrated, PREINTEGRATED),
+            (self.smooth, SMOOTH),
+            (self.lattice == Lattice::Jitter, JITTER),
+        ];
+        match ways.into_iter().find(|&(is_on, _)| is_on) {
+            Some((_, wanted)) => Err(Error::NotFor {
+                wanted,
+                of: "one volume of numbers",
+                found: "several that are mixed".to_owned(),
+            }),
+            None => Ok(()),
+        }
+    }
+}
+
+const PREINTEGRATED: &str = "pre-integrated classification";
+const SMOOTH: &str = "interpolation between slices";
+const JITTER: &str = "jitter";
+
 impl Default for Settings {
     fn default() -> Self {
         Self {
@@ -189,7 +287,11 @@ impl Default for Settings {
             mode: Mode::default(),
             filter: Filter::default(),
             lattice: Lattice::default(),
+            jitter: Jitter::default(),
             order: Order::default(),
+            stack: None,
+            smooth: false,
+            preintegrated: false,
             samples_per_voxel: 1.0,
             rays_per_side: 1,
             termination: 0.0,

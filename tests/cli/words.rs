@@ -31,11 +31,6 @@ fn a_word_that_is_not_built_exits_2_and_is_named() {
             "`--material`",
         ),
         (
-            "render phantom:fog -o a.png --preintegrated",
-            "`--preintegrated`",
-        ),
-        ("render phantom:fog -o a.png --smooth", "`--smooth`"),
-        (
             "render phantom:fog -o a.exr --aov position",
             "`--aov position`",
         ),

@@ -15,10 +15,6 @@ pub struct NotBuilt {
     shading: Option<String>,
     #[arg(long, value_name = "A,D,S,N", help_heading = HEADING)]
     material: Option<String>,
-    #[arg(long, help_heading = HEADING)]
-    preintegrated: bool,
-    #[arg(long, help_heading = HEADING)]
-    smooth: bool,
 }
 
 /// Under which these stand in `--help`.
@@ -33,8 +29,6 @@ impl NotBuilt {
             ("--gradient-filter", self.gradient_filter.as_deref()),
             ("--shading", shading),
             ("--material", self.material.as_deref()),
-            ("--preintegrated", self.preintegrated.then_some("")),
-            ("--smooth", self.smooth.then_some("")),
         ];
         match given
             .into_iter()
