@@ -83,6 +83,10 @@ struct Frame {
     channel_opacity_point_count: vec4<u32>,
     channel_interpolation_is_step: vec4<u32>,
     channel_reference_length: vec4<f32>,
+    // The table of pre-integrated classification.
+    slab_first: f32,
+    slab_scale: f32,
+    slab_count: u32,
     // Planes of a 2D stack for each of its slices, and where a cover lies between one plane and the next.
     planes_per_slice: f32,
     cover_offset: f32,

@@ -48,12 +48,11 @@ fn mean_between(front: f32, back: f32) -> vec4<f32> {
 
 // Where a value lies, in cells.
 fn slab_position(value: f32) -> f32 {
-    return clamp((value - frame.table_first) * frame.table_scale, -FARTHEST_CELL, FARTHEST_CELL);
+    return clamp((value - frame.slab_first) * frame.slab_scale, -FARTHEST_CELL, FARTHEST_CELL);
 }
 
-// One cell more than the table of single values has.
 fn slab_cell(position: f32) -> i32 {
-    return i32(clamp(position, 0.0, f32(frame.table_count)));
+    return i32(clamp(position, 0.0, f32(frame.slab_count - 1u)));
 }
 
 fn slab_part(cell: i32, part: i32) -> vec4<f32> {

@@ -2,6 +2,7 @@
 //!
 //! The only place that submits and waits.
 
+mod fade;
 mod passes;
 pub mod reference;
 mod renderer;

@@ -1,5 +1,8 @@
 //! A scene to a picture on the CPU: every technique by its twin, in f32 or f64, no Vulkan anywhere.
 
+mod slabs;
+
+use super::fade::{faded, stacks_of};
 use super::sum::sum_of;
 use crate::picture::{Layer, LayerKind, Picture};
 use crate::real::Real;
@@ -9,7 +12,6 @@ use crate::shaders::Frame;
 use crate::technique::blend::{Fragment, blend, blend_material, clear_color};
 use crate::technique::composite::Composite;
 use crate::technique::mixture::{color_of, colored, mixed};
-use crate::technique::slices_2d::between::Level;
 use crate::technique::{
     Error, Filter, Mix, Mode, Recording, Role, Technique, projection, raycast, slices_2d, slices_3d,
 };
@@ -35,6 +37,13 @@ struct Gathered<R> {
 /// Those of the parameters, too many samples or clip planes, and of volumes that cannot be put together.
 pub fn render<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     scene.check()?;
+    let stacks = stacks_of(scene);
+    if !stacks.is_empty() {
+        return faded(stacks.iter().map(|(settings, share)| {
+            let picture = render_one::<R>(&Scene { settings, ..*scene })?;
+            Ok((picture, *share))
+        }));
+    }
     if scene.mix() == Mix::Channels && scene.settings.mode.is_projection() {
         let pictures = scene.projected().into_iter();
         return sum_of(pictures.map(|one| render_one::<R>(&one)));
@@ -145,8 +154,7 @@ impl<'a, R: Real> Walk<'a, R> {
             let reference_length = scene.length_of(function);
             let absorption = Absorption::Extinction { reference_length };
             Ok(if scene.settings.preintegrated {
-                let table = Table::new(function, absorption, space);
-                Classifier::Slabs(SlabTable::new(function, &table, absorption, space))
+                Classifier::Slabs(SlabTable::new(function, absorption, space))
             } else if scene.settings.conformance {
                 Classifier::Points(Points::new(function, absorption, space))
             } else {
@@ -234,61 +242,6 @@ impl<'a, R: Real> Walk<'a, R> {
         }
     }
 
-    /// Emission and absorption of slabs of one volume.
-    fn composite_slabs(&self, pixel: [R; 2]) -> Gathered<R> {
-        let settings = self.scene.settings;
-        let (volume, frame, filter) = (self.scene.volume, &self.frame, settings.filter);
-        let value_at = |p| filtered(volume, filter, p);
-        let material = |fragment: Fragment<R, [R; 2]>| Fragment {
-            value: self.classify_slab(fragment.value),
-            length: fragment.length,
-        };
-        let blend = |target, fragment: Fragment<R, [R; 4]>| {
-            blend_material(settings.order, target, fragment.value, fragment.length)
-        };
-        match settings.technique {
-            Technique::Raycast => {
-                let found = raycast::reference::radiance_of_slabs(
-                    frame,
-                    settings.lattice,
-                    pixel,
-                    value_at,
-                    |ends| self.classify_slab(ends),
-                );
-                gathered(found)
-            }
-            Technique::Slices3d => {
-                let slab = |i| {
-                    let plane = self.plane_of(i);
-                    let slab = slices_3d::reference::slab(frame, pixel, plane, value_at);
-                    slab.map(|found| found.map(material))
-                };
-                self.blend_all(slab, blend)
-            }
-            Technique::Slices2d => {
-                let value_at = |level, p| self.value_between(level, p);
-                let slab = |i| {
-                    let plane = slices_2d::reference::slice_of(frame, i);
-                    let slab = slices_2d::between::slab(frame, pixel, plane, value_at);
-                    slab.map(|found| found.map(material))
-                };
-                self.blend_all(slab, blend)
-            }
-        }
-    }
-
-    /// The volume's value between the slices of the stack.
-    fn value_between(&self, level: Level<R>, p: [R; 3]) -> Option<R> {
-        let (volume, filter) = (self.scene.volume, self.scene.settings.filter);
-        let axis = self.frame.slice_axis as usize;
-        let slices = volume.dims[axis];
-        let in_slice = |slice| filtered_in_slice(volume, filter, axis, slice, p);
-        match filter {
-            Filter::Nearest => in_slice(level.nearest(slices)),
-            Filter::Linear => level.linear(slices, in_slice),
-        }
-    }
-
     /// Emission and absorption of what the volumes are made of together.
     fn composite(&self, pixel: [R; 2]) -> Gathered<R> {
         let settings = self.scene.settings;
@@ -311,19 +264,7 @@ impl<'a, R: Real> Walk<'a, R> {
                 gathered(found)
             }
             Technique::Slices3d => self.blend_all(|i| self.on_plane(pixel, i, material_at), blend),
-            Technique::Slices2d if settings.smooth => {
-                let value_at = |level, p| self.value_between(level, p);
-                let sample = |i| {
-                    let plane = slices_2d::reference::slice_of(&self.frame, i);
-                    let found = slices_2d::between::fragment(&self.frame, pixel, plane, value_at);
-                    let material = |fragment: Fragment<R>| Fragment {
-                        value: self.classify(0, fragment.value),
-                        length: fragment.length,
-                    };
-                    found.map(|found| found.map(material))
-                };
-                self.blend_all(sample, blend)
-            }
+            Technique::Slices2d if settings.smooth => self.composite_between(pixel),
             Technique::Slices2d => {
                 let material_at = |axis, slice, p| {
                     self.material(|volume, filter| {
@@ -418,13 +359,6 @@ impl<'a, R: Real> Walk<'a, R> {
             Classifier::Table(table) => classify_by_table(table, value),
             Classifier::Points(points) => classify_by_points(points, value),
             Classifier::Slabs(slabs) => classify_slab(slabs, value, value),
-        }
-    }
-
-    fn classify_slab(&self, [front, back]: [R; 2]) -> [R; 4] {
-        match &self.classifiers[0] {
-            Classifier::Slabs(slabs) => classify_slab(slabs, front, back),
-            Classifier::Table(_) | Classifier::Points(_) => self.classify(0, front),
         }
     }
 }

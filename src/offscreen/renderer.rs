@@ -8,6 +8,7 @@
 //! ```
 
 use super::Error;
+use super::fade::{render_faded, stacks_of};
 use super::passes::Passes;
 use super::submission::{self, Submission};
 use super::sum::sum_of;
@@ -104,6 +105,9 @@ impl<'v> Renderer<'v> {
     /// Where something is over a limit of the device.
     pub fn upload(&mut self, scene: &Scene) -> Result<(), Error> {
         scene.check()?;
+        for (settings, _) in &stacks_of(scene) {
+            self.upload(&Scene { settings, ..*scene })?;
+        }
         let layout = scene.view(&scene.volume.grid(), [0.0; 2]).texture_layout();
         let resident = &mut self.resident[place(layout)];
         if resident.is_empty() {
@@ -118,6 +122,10 @@ impl<'v> Renderer<'v> {
     /// Parameters out of range, a limit of the device, a layer that the technique does not have.
     pub fn render(&mut self, scene: &Scene, layers: &[LayerKind]) -> Result<Rendered, Error> {
         check_layers(scene, layers)?;
+        let stacks = stacks_of(scene);
+        if !stacks.is_empty() {
+            return render_faded(self, scene, layers, &stacks);
+        }
         self.upload(scene)?;
         let mut clock = Clock(self.timer.is_some().then_some(0.0));
         if scene.mix() == Mix::Channels && scene.settings.mode.is_projection() {

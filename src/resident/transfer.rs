@@ -25,6 +25,10 @@ pub struct TransferLayout {
     /// Where the table begins in a texture of several, and the points in a list of several.
     pub table_row: u32,
     pub point_first: u32,
+    /// As those of the table, for the integrals of slabs; 0 without them.
+    pub slab_first: f32,
+    pub slab_scale: f32,
+    pub slab_count: u32,
 }
 
 /// One transfer function, or several of which each has a table of its own. The points are there at once; [`GpuTransfer::record_upload`] fills the table.
@@ -81,6 +85,9 @@ impl GpuTransfer {
                 reference_length: length as f32,
                 table_row: (entries.len() / width) as u32,
                 point_first: points.len() as u32,
+                slab_first: 0.0,
+                slab_scale: 0.0,
+                slab_count: 0,
             });
             entries.extend_from_slice(&table.entries);
             entries.resize(entries.len().next_multiple_of(width), [0.0; 4]);
@@ -117,8 +124,10 @@ impl GpuTransfer {
     ) -> Result<Self, Error> {
         let mut made = Self::new(gpu, function, reference_length, space)?;
         let absorption = Absorption::Extinction { reference_length };
-        let table = Table::new(function, absorption, space);
-        let slabs = SlabTable::new(function, &table, absorption, space);
+        let slabs = SlabTable::new(function, absorption, space);
+        let layout = &mut made.layouts[0];
+        (layout.slab_first, layout.slab_scale) = (slabs.first, slabs.scale);
+        layout.slab_count = slabs.cells.len() as u32;
         made.slabs = Some(GpuSlabs::new(gpu, &slabs)?);
         Ok(made)
     }

@@ -15,9 +15,14 @@
 //! A cell of the table keeps its own mean and slope, and the sum of the means before it in two f32, together 48
 //! bits. A mean over several cells is made of three sums without a minus sign: the part of the first cell, the
 //! whole cells between, the part of the last one. So values that are close lose no digits, and two values in one
-//! cell divide by nothing. The cells are those of [`Table`], and one more behind the last.
+//! cell divide by nothing.
+//!
+//! The cells are those of [`super::Table`], and one more behind the last. Inside a cell the law is a line. Where it jumps
+//! there, a segment that ends in that cell misses a quarter of the jump over one cell at most; so the cells of a
+//! function that jumps where no cell begins are as small as 2^16 of them allow.
 
-use super::{Absorption, Interpolation, Table, TransferFunction};
+use super::table::Cut;
+use super::{Absorption, Interpolation, TransferFunction};
 use crate::color::{ColorSpace, decode_srgb};
 use crate::real::Real;
 
@@ -38,7 +43,7 @@ pub struct SlabCell {
 /// A transfer function, integrated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SlabTable {
-    /// The cells of [`Table`] and one more; the first and the last are constant.
+    /// The first and the last are constant.
     pub cells: Vec<SlabCell>,
     /// Value where cell 0 begins.
     pub first: f32,
@@ -50,18 +55,14 @@ pub struct SlabTable {
 const FARTHEST_CELL: f32 = 1e15;
 
 impl SlabTable {
-    /// The integrals of `function` over the cells of `table`, which is its table.
-    pub fn new(
-        function: &TransferFunction,
-        table: &Table,
-        absorption: Absorption,
-        space: ColorSpace,
-    ) -> Self {
+    /// The integrals of `function`.
+    pub fn new(function: &TransferFunction, absorption: Absorption, space: ColorSpace) -> Self {
         let law = Law::new(function, absorption, space);
-        let (first, width) = (f64::from(table.first), 1.0 / f64::from(table.scale));
-        let count = table.entries.len();
+        let cut = Cut::for_slabs(function);
+        let (first, width, count) = (cut.first, cut.width, cut.count);
         let mut sums = [0.0; 4];
         let mut cells = Vec::with_capacity(count + 1);
+        // One more than the table of single values has: the last is constant.
         for i in 0..=count {
             let start = first + i as f64 * width;
             let [mean, slope] = law.line_over(start, start + width);
@@ -77,8 +78,8 @@ impl SlabTable {
         }
         Self {
             cells,
-            first: table.first,
-            scale: table.scale,
+            first: first as f32,
+            scale: (1.0 / width) as f32,
         }
     }
 }
