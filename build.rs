@@ -28,6 +28,12 @@ const SLAB: Slot = ("mix", &["slab"]);
 /// Words that stand in no name.
 const SILENT: &[&str] = &["alone", "slab"];
 const SLAB_FILTER: Slot = ("filter", &["nearest", "linear", "linear_fetch"]);
+/// One number a voxel, and its gradient.
+const GRADED: Slot = ("mix", &["graded"]);
+/// Conformance pictures search the points, and never leave filtering to the device.
+const CONFORMANCE_FILTER: Slot = ("filter", &["nearest", "linear_fetch"]);
+const TABLE: Slot = ("transfer", &["table"]);
+const POINTS: Slot = ("transfer", &["points"]);
 const TRANSFER: Slot = ("transfer", &["table", "points"]);
 
 /// The wanted combinations. Order of the slots is the order of words in a variant's name.
@@ -55,6 +61,28 @@ const ENTRIES: &[(&str, &[Slot])] = &[
         ],
     ),
     (
+        "raycast",
+        &[
+            ("mode", &["composite"]),
+            GRADED,
+            LATTICE,
+            FILTER,
+            HOLES,
+            TABLE,
+        ],
+    ),
+    (
+        "raycast",
+        &[
+            ("mode", &["composite"]),
+            GRADED,
+            LATTICE,
+            CONFORMANCE_FILTER,
+            HOLES,
+            POINTS,
+        ],
+    ),
+    (
         "projection",
         &[
             ("mode", &["mip", "minip", "sum"]),
@@ -71,6 +99,20 @@ const ENTRIES: &[(&str, &[Slot])] = &[
     (
         "slices_3d",
         &[("blend", &["composite"]), MIXED, FILTER, HOLES, TRANSFER],
+    ),
+    (
+        "slices_3d",
+        &[("blend", &["composite"]), GRADED, FILTER, HOLES, TABLE],
+    ),
+    (
+        "slices_3d",
+        &[
+            ("blend", &["composite"]),
+            GRADED,
+            CONFORMANCE_FILTER,
+            HOLES,
+            POINTS,
+        ],
     ),
     (
         "slices_3d",
@@ -93,6 +135,20 @@ const ENTRIES: &[(&str, &[Slot])] = &[
     (
         "slices_2d",
         &[("blend", &["composite"]), MIXED, FILTER, HOLES, TRANSFER],
+    ),
+    (
+        "slices_2d",
+        &[("blend", &["composite"]), GRADED, FILTER, HOLES, TABLE],
+    ),
+    (
+        "slices_2d",
+        &[
+            ("blend", &["composite"]),
+            GRADED,
+            CONFORMANCE_FILTER,
+            HOLES,
+            POINTS,
+        ],
     ),
     (
         "slices_2d",
@@ -177,6 +233,10 @@ const ENTRIES: &[(&str, &[Slot])] = &[
     ("resolve", &[("source", &["picture", "value", "mean"])]),
     ("resolve_cover", &[]),
     ("merge", &[("operator", &["over", "under", "add"])]),
+    (
+        "denoise",
+        &[("kernel", &["gaussian", "median", "bilateral"])],
+    ),
 ];
 
 fn main() {

@@ -111,8 +111,8 @@ impl<'a> Scene<'a> {
     /// Whether its volumes can be put together.
     ///
     /// # Errors
-    /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`], [`Error::NotMixed`] and
-    /// [`Error::NotFor`].
+    /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`], [`Error::NotMixed`],
+    /// [`Error::NotShaded`], [`Error::NotShadedTogether`] and [`Error::NotFor`].
     pub fn check(&self) -> Result<(), Error> {
         let volumes = self.volumes();
         let (wanted, limit) = (volumes.len(), MAX_CHANNELS as usize);
@@ -123,8 +123,12 @@ impl<'a> Scene<'a> {
         if self.mix() != Mix::Alone {
             self.settings.check_mixed()?;
         }
+        if self.settings.shading.is_some() && mode.is_projection() {
+            return Err(Error::NotShaded { mode });
+        }
         match self.mix() {
-            Mix::Alone => Ok(()),
+            Mix::Alone | Mix::Graded => Ok(()),
+            _ if self.settings.shading.is_some() => Err(Error::NotShadedTogether),
             _ if volumes.iter().any(|volume| volume.grid() != grid) => Err(Error::OtherGrid),
             Mix::Colors if !(3..=4).contains(&wanted) => Err(Error::NoColor { found: wanted }),
             Mix::Colors if mode.is_projection() => Err(Error::NotMixed { mode }),

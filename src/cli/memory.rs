@@ -7,7 +7,10 @@
 //!
 //! The textures of a CPU driver lie in the memory of the host: there the sum has to fit.
 
-use super::{Error, flags::InputFlags};
+use super::{
+    Error,
+    flags::{InputFlags, SceneFlags},
+};
 use crate::volume::{Header, Reduced, Source, VoxelType};
 use serde::Serialize;
 
@@ -43,18 +46,32 @@ impl RenderBytes {
         let one = Self::of(header, has_holes);
         match held {
             Held::Volumes(count) => one.times(count),
+            Held::Denoised(count) => {
+                let floats = Self::of_floats(header, has_holes);
+                Self {
+                    host: one
+                        .times(count)
+                        .host
+                        .saturating_add(floats.times(count + 1).host),
+                    device: floats.times(count).device,
+                }
+            }
             Held::Blend => {
-                let floats = Header {
-                    stored: VoxelType::F32,
-                    ..header.clone()
-                };
-                let blend = Self::of(&floats, has_holes);
+                let blend = Self::of_floats(header, has_holes);
                 Self {
                     host: one.times(2).host.saturating_add(blend.host),
                     device: blend.device,
                 }
             }
         }
+    }
+
+    fn of_floats(header: &Header, has_holes: bool) -> Self {
+        let floats = Header {
+            stored: VoxelType::F32,
+            ..header.clone()
+        };
+        Self::of(&floats, has_holes)
     }
 
     fn times(self, volumes: u32) -> Self {
@@ -70,8 +87,20 @@ impl RenderBytes {
 pub enum Held {
     /// So many, on the device too.
     Volumes(u32),
+    /// So many that become floats, one after the other, by a noise filter.
+    Denoised(u32),
     /// Those of two times, and floats between them, which alone are on the device.
     Blend,
+}
+
+impl Held {
+    /// So many volumes of a picture of these flags.
+    pub fn of(scene: &SceneFlags, count: u32) -> Self {
+        match scene.denoise {
+            Some(_) => Self::Denoised(count),
+            None => Self::Volumes(count),
+        }
+    }
 }
 
 /// The memory that a device has for textures.

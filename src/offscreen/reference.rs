@@ -5,13 +5,16 @@ mod slabs;
 use super::fade::{faded, stacks_of};
 use super::sum::sum_of;
 use crate::picture::{Layer, LayerKind, Picture};
+use crate::ray::pixel_ray;
 use crate::real::Real;
 use crate::resolve::reference::{premultiplied, projected_value};
 use crate::scene::{Beside, Scene, positions_in_pixel};
 use crate::shaders::Frame;
 use crate::technique::blend::{Fragment, blend, blend_material, clear_color};
 use crate::technique::composite::Composite;
+use crate::technique::gradient::gradient_of;
 use crate::technique::mixture::{color_of, colored, mixed};
+use crate::technique::shading::shade;
 use crate::technique::{
     Error, Filter, Mix, Mode, Recording, Role, Technique, projection, raycast, slices_2d, slices_3d,
 };
@@ -167,7 +170,10 @@ impl<'a, R: Real> Walk<'a, R> {
             let functions = scene.transfers().into_iter();
             functions.map(classifier).collect::<Result<_, Error>>()?
         };
-        let Recording { frame, slices, .. } = view.on_cpu()?;
+        let Recording {
+            mut frame, slices, ..
+        } = view.on_cpu()?;
+        frame.flat_gradient = view.flat_gradient(scene.volume.value_range);
         Ok(Self {
             scene,
             volumes: scene.volumes(),
@@ -248,7 +254,11 @@ impl<'a, R: Real> Walk<'a, R> {
         if settings.preintegrated {
             return self.composite_slabs(pixel);
         }
-        let material_at = |p| self.material(|volume, filter| filtered(volume, filter, p));
+        let ray_direction = pixel_ray(&self.frame, pixel).direction;
+        let material_at = |p| {
+            let look = |volume: &_, filter, step| filtered(volume, filter, moved(p, step));
+            self.material(look, ray_direction)
+        };
         let blend = |target, fragment: Fragment<R, [R; 4]>| {
             blend_material(settings.order, target, fragment.value, fragment.length)
         };
@@ -266,19 +276,27 @@ impl<'a, R: Real> Walk<'a, R> {
             Technique::Slices3d => self.blend_all(|i| self.on_plane(pixel, i, material_at), blend),
             Technique::Slices2d if settings.smooth => self.composite_between(pixel),
             Technique::Slices2d => {
-                let material_at = |axis, slice, p| {
-                    self.material(|volume, filter| {
-                        filtered_in_slice(volume, filter, axis, slice, p)
-                    })
+                let material_at = |axis, slice: u32, p| {
+                    let look = |volume: &Volume, filter, step: [i32; 3]| {
+                        let last = volume.dims[axis] - 1;
+                        let slice = slice.saturating_add_signed(step[axis]).min(last);
+                        filtered_in_slice(volume, filter, axis, slice, moved(p, step))
+                    };
+                    self.material(look, ray_direction)
                 };
                 self.blend_all(|i| self.on_slice(pixel, i, material_at), blend)
             }
         }
     }
 
-    /// What the volumes are made of where `look` looks; `None` for no data.
-    fn material(&self, look: impl Fn(&Volume, Filter) -> Option<R>) -> Option<[R; 4]> {
+    /// What the volumes are made of where `look_from` looks from, so many voxels away; `None` for no data.
+    fn material(
+        &self,
+        look_from: impl Fn(&Volume, Filter, [i32; 3]) -> Option<R>,
+        ray_direction: [R; 3],
+    ) -> Option<[R; 4]> {
         let settings = self.scene.settings;
+        let look = |volume: &Volume, filter| look_from(volume, filter, [0; 3]);
         if let Beside::Colors(_) = self.scene.beside {
             let mut found = [R::from_f64(0.0); 4];
             for (number, volume) in found.iter_mut().zip(&self.volumes) {
@@ -291,7 +309,15 @@ impl<'a, R: Real> Walk<'a, R> {
             return Some(colored(srgb, extinction, settings.color_space));
         }
         if let [volume] = self.volumes[..] {
-            return look(volume, settings.filter).map(|value| self.classify(0, value));
+            let value = look(volume, settings.filter)?;
+            let [r, g, b, extinction] = self.classify(0, value);
+            if self.frame.light_count == 0 {
+                return Some([r, g, b, extinction]);
+            }
+            let tap = |step| look_from(volume, settings.filter, step);
+            let gradient = gradient_of(&self.frame, tap);
+            let [r, g, b] = shade(&self.frame, [r, g, b], gradient, ray_direction);
+            return Some([r, g, b, extinction]);
         }
         let mut found = [None; crate::shaders::MAX_CHANNELS as usize];
         for (c, (volume, role)) in self.volumes.iter().zip(&self.roles).enumerate() {
@@ -370,6 +396,11 @@ fn gathered<R: Real>((found, samples): (Composite<R>, u32)) -> Gathered<R> {
         depth: found.depth,
         samples,
     }
+}
+
+/// The position so many voxels away.
+fn moved<R: Real>(p: [R; 3], step: [i32; 3]) -> [R; 3] {
+    std::array::from_fn(|k| p[k] + R::from_f64(step[k].into()))
 }
 
 fn filtered<R: Real>(volume: &Volume, filter: Filter, p: [R; 3]) -> Option<R> {

@@ -60,6 +60,7 @@ pub struct GpuVolume {
     grid: Grid,
     layout: TextureLayout,
     texel: TexelFormat,
+    value_range: [f64; 2],
     bricks: Vec<Brick>,
     sampler: Sampler,
 }
@@ -122,6 +123,7 @@ impl Plan {
             grid: volume.grid(),
             layout: self.layout,
             texel: self.texel,
+            value_range: volume.value_range,
             bricks: cells.iter().map(brick).collect::<Result<_, Error>>()?,
             sampler: Sampler::linear_clamp(gpu)?,
         })
@@ -176,6 +178,11 @@ impl GpuVolume {
     /// What texels mean.
     pub fn texel(&self) -> &TexelFormat {
         &self.texel
+    }
+
+    /// Smallest and largest valid value.
+    pub fn value_range(&self) -> [f64; 2] {
+        self.value_range
     }
 
     /// At least one.

@@ -4,6 +4,7 @@ mod accumulation;
 pub mod blend;
 pub mod composite;
 mod frame;
+pub mod gradient;
 mod inputs;
 mod march;
 pub mod merge;
@@ -11,6 +12,7 @@ pub mod mixture;
 pub mod projection;
 pub mod raycast;
 mod recording;
+pub mod shading;
 mod slab;
 mod slicer;
 pub mod slices_2d;
@@ -21,6 +23,7 @@ pub use frame::View;
 pub use inputs::{Inputs, Take, Words};
 pub use mixture::{Mix, Part, Role};
 pub use recording::{Recording, parameter_ring};
+pub use shading::{Light, Shading};
 pub use slicer::Slicer;
 
 /// Where samples lie.
@@ -135,6 +138,8 @@ pub struct Settings {
     pub crop: Option<[glam::DVec3; 2]>,
     /// At most [`crate::shaders::MAX_CLIP_PLANES`].
     pub clip_planes: Vec<ClipPlane>,
+    /// Light on composited samples of one volume; `None`: their colour as it is.
+    pub shading: Option<Shading>,
     /// Float targets, no early termination, filtering by texel fetch, control points searched exactly.
     pub conformance: bool,
 }
@@ -207,6 +212,28 @@ pub enum Error {
         /// How many there are.
         found: usize,
     },
+    /// Light falls on what is composited.
+    #[error(
+        "{mode:?} projects one number a ray, on which no light falls: shading is for composite"
+    )]
+    NotShaded {
+        /// The mode.
+        mode: Mode,
+    },
+    /// Several volumes have several gradients.
+    #[error("shading is for one volume of numbers, not for several that are mixed")]
+    NotShadedTogether,
+    /// The parameters hold a fixed number of lights.
+    #[error("{wanted} lights, the limit is {limit}")]
+    TooManyLights {
+        /// How many were asked for.
+        wanted: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+    /// A direction has a length.
+    #[error("the way to a light has the length 0")]
+    NoWayToLight,
     /// The parameters hold a fixed number of planes.
     #[error("{wanted} clip planes, the limit is {limit}")]
     TooManyClipPlanes {
@@ -252,7 +279,26 @@ impl Settings {
         of_technique(self.smooth, SMOOTH, Technique::Slices2d, "2D stacks")?;
         of_mode(self.smooth, SMOOTH)?;
         of_technique(is_jittered, JITTER, Technique::Raycast, "ray casting")?;
-        of_mode(is_jittered, JITTER)
+        of_mode(is_jittered, JITTER)?;
+        match self.way().filter(|_| self.shading.is_some()) {
+            Some(wanted) => Err(Error::NotFor {
+                wanted,
+                of: "samples without light",
+                found: "shaded ones".to_owned(),
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// A way to sample of its own that is asked for.
+    fn way(&self) -> Option<&'static str> {
+        let ways = [
+            (self.preintegrated, PREINTEGRATED),
+            (self.smooth, SMOOTH),
+            (self.lattice == Lattice::Jitter, JITTER),
+        ];
+        ways.into_iter()
+            .find_map(|(is_on, name)| is_on.then_some(name))
     }
 
     /// The same for several volumes.
@@ -260,13 +306,8 @@ impl Settings {
     /// # Errors
     /// [`Error::NotFor`].
     pub(crate) fn check_mixed(&self) -> Result<(), Error> {
-        let ways = [
-            (self.preintegrated, PREINTEGRATED),
-            (self.smooth, SMOOTH),
-            (self.lattice == Lattice::Jitter, JITTER),
-        ];
-        match ways.into_iter().find(|&(is_on, _)| is_on) {
-            Some((_, wanted)) => Err(Error::NotFor {
+        match self.way() {
+            Some(wanted) => Err(Error::NotFor {
                 wanted,
                 of: "one volume of numbers",
                 found: "several that are mixed".to_owned(),
@@ -298,6 +339,7 @@ impl Default for Settings {
             color_space: crate::picture::ColorSpace::default(),
             crop: None,
             clip_planes: Vec::new(),
+            shading: None,
             conformance: false,
         }
     }

@@ -69,6 +69,7 @@ impl View<'_> {
         if parts.len() > 1 {
             self.settings.check_mixed()?;
         }
+        fields.flat_gradient = self.flat_gradient(volume.value_range());
         let cells: Vec<_> = volume.bricks().iter().map(|brick| brick.cell).collect();
         self.check_slabs(&cells)?;
         let mut order = self.front_to_back(&cells);
@@ -87,7 +88,8 @@ impl View<'_> {
         Ok(order.iter().enumerate().map(recording).collect())
     }
 
-    /// What the CPU twins compute: the whole grid at once, values as they are.
+    /// What the CPU twins compute: the whole grid at once, values as they are. `flat_gradient` is 0, the range of
+    /// the volume is not known here.
     ///
     /// # Errors
     /// As [`View::recordings`].

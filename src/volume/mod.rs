@@ -9,6 +9,7 @@
 //! Knows nothing of Vulkan.
 
 mod colors;
+mod denoise;
 pub mod field;
 mod grid;
 mod histogram;
@@ -25,6 +26,7 @@ mod statistics;
 mod voxels;
 
 pub use colors::{luma, read_all, read_colors};
+pub use denoise::{Denoise, MAX_SIGMA_VOXELS, Pass, noise_of, with_numbers};
 pub use grid::Grid;
 pub use histogram::Histogram;
 pub use joint::JointHistogram;

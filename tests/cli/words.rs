@@ -23,14 +23,6 @@ fn a_word_that_is_not_built_exits_2_and_is_named() {
             "`--gradient-filter`",
         ),
         (
-            "render phantom:fog -o a.png --shading phong",
-            "`--shading phong`",
-        ),
-        (
-            "render phantom:fog -o a.png --material 1,1,1,1",
-            "`--material`",
-        ),
-        (
             "render phantom:fog -o a.exr --aov position",
             "`--aov position`",
         ),
@@ -67,6 +59,19 @@ fn a_word_that_cannot_be_is_a_usage_error() {
         ),
         ("render phantom:fog -o a.png --crop 1,0,0,1,0,1", "--crop"),
         ("render phantom:fog -o a.png --aov depth", "--aov"),
+        (
+            "render phantom:fog -o a.png --shading phong --mode mip",
+            "--shading phong",
+        ),
+        (
+            "render phantom:fog -o a.png --shading phong --material 1,1,1,0",
+            "--material",
+        ),
+        ("render phantom:fog -o a.png --light 0,0,0", "a direction"),
+        (
+            "render phantom:cells,n=8 -o a.png --shading phong --component all",
+            "--shading phong is for one number a voxel",
+        ),
         ("render phantom:fog -o a.png --repeat 0", "--repeat"),
         ("render phantom:fog -o a.png --bit-depth 12", "--bit-depth"),
         ("render phantom:fog -o a.png --timings a.png", "twice"),
@@ -183,4 +188,20 @@ fn a_step_beyond_the_limit_is_refused_with_a_hint_but_not_in_stacks_that_ignore_
     let plain = "render phantom:fog,n=8 --size 8x8 --device reference --technique slices-2d";
     folder.run(&format!("{plain} -o c.png")).assert_done();
     folder.run("compare b.png c.png --at-most 0").assert_done();
+}
+
+/// A way to sample that technique or mode lack: said before anything is read, and where it would be right.
+#[test]
+fn ways_to_sample_are_refused_where_there_are_none() {
+    let folder = Folder::new();
+    for (words, named) in [
+        ("--mode mip --preintegrated", "pre-integrated"),
+        ("--smooth", "between slices"),
+        ("--technique slices-3d --jitter", "jitter"),
+        ("--jitter --lattice planes", "--lattice planes"),
+    ] {
+        folder
+            .run(&format!("render phantom:fog -o a.png {words}"))
+            .assert_refused(2, &[named, "hint"]);
+    }
 }

@@ -141,7 +141,7 @@ impl Animate {
         let store = self.store(&plan, gate)?;
 
         let progress = Progress::new(self.progress);
-        for note in [plan.scene.sampling.idle(), plan.scene.camera.idle()].concat() {
+        for note in plan.scene.idle() {
             progress.note(note);
         }
         if self.repeat.is_some() {
@@ -218,7 +218,7 @@ impl Animate {
             None => {
                 let is_whole = shots.iter().all(|shot| shot.time.fract() == 0.0);
                 let held = if is_whole {
-                    Held::Volumes(1)
+                    Held::of(&scene, 1)
                 } else {
                     Held::Blend
                 };

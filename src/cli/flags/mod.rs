@@ -7,12 +7,15 @@ mod camera;
 mod channels;
 mod classification;
 mod component;
+mod denoise;
 mod input;
 mod labels;
+mod light;
 mod not_built;
 mod numbers;
 mod picture;
 mod sampling;
+mod section;
 mod subject;
 mod words;
 
@@ -20,15 +23,19 @@ pub use camera::CameraFlags;
 pub use channels::{ChannelFlags, ChannelWord, Plan};
 pub use classification::{Classification, ClassificationFlags, preset, summary, with_causes};
 pub use component::Component;
+pub use denoise::DenoiseWord;
 pub use input::{InputFlags, relative};
 pub use labels::LabelFlags;
+pub use light::LightFlags;
 pub use not_built::NotBuilt;
 pub use numbers::{Background, Numbers, Size, finite, positive};
 pub use picture::PictureFlags;
 pub use sampling::{Depth, SamplingFlags};
+pub use section::SectionFlags;
 pub use subject::Subject;
 
 use super::Error;
+use crate::technique::Settings;
 use clap::Args;
 use serde::{Deserialize, Serialize};
 
@@ -51,11 +58,42 @@ pub struct SceneFlags {
     #[command(flatten)]
     pub labels: LabelFlags,
     #[command(flatten)]
+    pub light: LightFlags,
+    #[command(flatten)]
     pub camera: CameraFlags,
     #[command(flatten)]
+    pub section: SectionFlags,
+    #[command(flatten)]
     pub picture: PictureFlags,
+    /// Take noise out of the numbers first: gaussian[:SIGMA], median, bilateral[:SIGMA[:VALUE]]; SIGMA in voxels
+    /// [default: 1], VALUE what is no noise any more [default: twice the noise found]
+    #[arg(long, value_name = "FILTER")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub denoise: Option<DenoiseWord>,
     /// A Vulkan device by name, index or UUID, `cpu` for a software one, or `reference` for no Vulkan at all
     #[arg(long, value_name = "DEVICE")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub device: Option<String>,
+}
+
+impl SceneFlags {
+    /// What to compute, for a picture kept so exactly.
+    pub fn settings(&self, depth: Depth) -> Result<Settings, Error> {
+        self.settings_of(&self.sampling, depth)
+    }
+
+    /// The same with other words of sampling.
+    pub fn settings_of(&self, sampling: &SamplingFlags, depth: Depth) -> Result<Settings, Error> {
+        let settings = self.section.settings(sampling, depth)?;
+        let shading = self.light.shading(settings.mode)?;
+        Ok(Settings {
+            shading,
+            ..settings
+        })
+    }
+
+    /// Flags that change nothing under the others, a sentence each.
+    pub fn idle(&self) -> Vec<&'static str> {
+        [self.sampling.idle(), self.light.idle(), self.camera.idle()].concat()
+    }
 }

@@ -123,6 +123,7 @@ impl SamplingFlags {
             color_space,
             crop: self.crop.map(crop_box).transpose()?,
             clip_planes: clip_planes(&self.clip)?,
+            shading: None,
             conformance: self.conformance,
         };
         settings

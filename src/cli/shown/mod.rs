@@ -9,7 +9,7 @@ use super::{
         summary,
     },
     labels,
-    load::{load_from, open, say_what_was_lost, stretch},
+    load::{denoise, load_from, open, say_what_was_lost, stretch},
     memory::{Held, fitting},
     progress::Progress,
     renderer::Device,
@@ -80,6 +80,10 @@ impl Shown {
         let (plan, note) = plan(scene, source.header())?;
         if let Some(note) = note {
             progress.note(&note);
+        }
+        let is_alone = matches!(plan, Plan::One) && scene.labels.labels.is_none();
+        if settings.shading.is_some() && !is_alone {
+            return Err(Error::not_shaded_together());
         }
         let reader = Reader {
             scene,
@@ -280,6 +284,7 @@ impl Reader<'_> {
         let indices: Vec<u32> = words.iter().map(|word| word.index).collect();
         let limits = self.scene.input.limits();
         let mut volumes = read_all(source.as_ref(), indices, time, &limits)?;
+        denoise(&mut volumes, self.scene)?;
         let height_factor = stretch(&mut volumes, self.scene, header, self.progress)?;
         let known = match &header.meaning {
             Meaning::Channels(known) => known.as_slice(),
@@ -334,7 +339,7 @@ impl Reader<'_> {
     fn fitted(&self, source: Box<dyn Source>, count: usize) -> Result<Box<dyn Source>, Error> {
         let input = &self.scene.input;
         let count = u32::try_from(count).unwrap_or(u32::MAX);
-        let held = Held::Volumes(count);
+        let held = Held::of(self.scene, count);
         let source = fitting(source, input, self.device.memory(), held)?;
         let (_, note) = input.time(source.header())?;
         input.check_one(source.header())?;
