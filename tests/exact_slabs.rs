@@ -335,6 +335,24 @@ fn one_colour_stays_that_colour_whatever_the_density() {
     }
 }
 
+/// The colour that leaves out the attenuation inside a slab, d times the mean emission, is what the ratio form is not.
+#[test]
+fn opaque_slabs_shine_no_more_than_their_colour() {
+    let table = table_of(&functions()[4]);
+    let length = 2.0;
+    let mut cheap_is_over = false;
+    for i in 0..100 {
+        let (front, back) = (0.01 * f64::from(i), 0.9);
+        let [red, green, _, extinction] = classify_slab(&table, front, back);
+        let opacity = -(-extinction * length).exp_m1();
+        for color in [red, green] {
+            assert!((0.0..=1.0).contains(&(opacity * color)), "{front}: {color}");
+            cheap_is_over |= length * extinction * color > 1.0;
+        }
+    }
+    assert!(cheap_is_over, "no slab is opaque, this proves nothing");
+}
+
 /// A1 with slabs: they are cut to the domain, so the length is the chord itself on every lattice.
 #[test]
 fn a_uniform_medium_is_as_deep_as_its_chords() {
