@@ -66,9 +66,16 @@ impl<'a> Scene<'a> {
     pub fn mix(&self) -> Mix {
         match self.beside {
             Beside::Channels(channels) if !channels.is_empty() => Mix::Channels,
-            Beside::Nothing | Beside::Channels(_) => Mix::Alone,
             Beside::Colors(_) => Mix::Colors,
+            _ if self.is_graded() => Mix::Graded,
+            Beside::Nothing | Beside::Channels(_) => Mix::Alone,
         }
+    }
+
+    /// True where a transfer function asks for gradients.
+    fn is_graded(&self) -> bool {
+        let functions = self.transfers().into_iter().flatten();
+        functions.into_iter().any(TransferFunction::is_graded)
     }
 
     /// Its volumes, that of the scene first.
@@ -112,23 +119,35 @@ impl<'a> Scene<'a> {
     ///
     /// # Errors
     /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`], [`Error::NotMixed`],
-    /// [`Error::NotShaded`], [`Error::NotShadedTogether`] and [`Error::NotFor`].
+    /// [`Error::NotShaded`], [`Error::NotShadedTogether`], [`Error::NotGraded`], [`Error::NotGradedTogether`],
+    /// [`Error::FilterAlone`] and [`Error::NotFor`].
     pub fn check(&self) -> Result<(), Error> {
         let volumes = self.volumes();
         let (wanted, limit) = (volumes.len(), MAX_CHANNELS as usize);
         let grid = self.volume.grid();
         let has_labels = self.roles().contains(&Role::Labels);
-        let mode = self.settings.mode;
+        let Settings { mode, filter, .. } = *self.settings;
         self.settings.check()?;
         if self.mix() != Mix::Alone {
             self.settings.check_mixed()?;
         }
+        if self.is_graded() {
+            self.settings.check_graded()?;
+        }
         if self.settings.shading.is_some() && mode.is_projection() {
             return Err(Error::NotShaded { mode });
         }
+        if self.is_graded() && mode.is_projection() {
+            return Err(Error::NotGraded { mode });
+        }
         match self.mix() {
             Mix::Alone | Mix::Graded => Ok(()),
+            _ if self.is_graded() => Err(Error::NotGradedTogether),
             _ if self.settings.shading.is_some() => Err(Error::NotShadedTogether),
+            // Modes that project draw them one by one.
+            _ if filter.kernel().is_some() && !mode.is_projection() => {
+                Err(Error::FilterAlone { filter })
+            }
             _ if volumes.iter().any(|volume| volume.grid() != grid) => Err(Error::OtherGrid),
             Mix::Colors if !(3..=4).contains(&wanted) => Err(Error::NoColor { found: wanted }),
             Mix::Colors if mode.is_projection() => Err(Error::NotMixed { mode }),

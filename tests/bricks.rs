@@ -13,10 +13,10 @@ use stratavox::scene::Scene;
 use stratavox::technique::{Filter, Lattice, Mode, Order, Settings, Shading, Technique};
 use stratavox::volume::Volume;
 
-/// Caps under which a volume of 17 x 21 x 13 voxels takes bricks along every axis.
+/// Caps under which a volume of 17 x 21 x 14 voxels takes bricks along every axis.
 fn small() -> Caps {
     Caps {
-        max_image_dimension_3d: 11,
+        max_image_dimension_3d: 13,
         max_image_array_layers: 8,
         ..Caps::UNLIMITED
     }
@@ -44,6 +44,18 @@ fn settings() -> Vec<Settings> {
             Order::FrontToBack,
             Filter::Linear,
         ),
+        (
+            Mode::Composite,
+            Lattice::Planes,
+            Order::FrontToBack,
+            Filter::Cubic,
+        ),
+        (
+            Mode::Mip,
+            Lattice::Ray,
+            Order::BackToFront,
+            Filter::CatmullRom,
+        ),
     ];
     let techniques = [Technique::Raycast, Technique::Slices3d, Technique::Slices2d];
     let of_technique = |technique| {
@@ -58,21 +70,32 @@ fn settings() -> Vec<Settings> {
             ..Settings::default()
         })
     };
-    let dark: Vec<Settings> = techniques.into_iter().flat_map(of_technique).collect();
-    // Gradients reach one voxel further.
-    let is_lit = |settings: &&Settings| settings.mode == Mode::Composite;
-    let lit = dark.iter().filter(is_lit).map(|settings| Settings {
-        shading: Some(Shading::default()),
-        ..settings.clone()
-    });
-    dark.iter().cloned().chain(lit).collect()
+    techniques.into_iter().flat_map(of_technique).collect()
 }
 
-fn assert_same_picture(volume: &Volume, camera: &Camera) {
+/// Gradients reach one voxel further than their filter.
+fn lit_settings() -> Vec<Settings> {
+    let lit = |(technique, filter)| Settings {
+        technique,
+        filter,
+        shading: Some(Shading::default()),
+        conformance: true,
+        ..Settings::default()
+    };
+    let turns = [
+        (Technique::Raycast, Filter::Cubic),
+        (Technique::Slices3d, Filter::Linear),
+        (Technique::Slices2d, Filter::Cubic),
+        (Technique::Slices2d, Filter::Nearest),
+    ];
+    turns.map(lit).into()
+}
+
+fn assert_same_picture(volume: &Volume, camera: &Camera, settings: Vec<Settings>) {
     let transfer = ramps();
     let mut whole = Renderer::new(device(), volume).unwrap();
     let mut bricked = Renderer::new(device_with(small()), volume).unwrap();
-    for settings in settings() {
+    for settings in settings {
         let scene = Scene {
             beside: Default::default(),
             volume,
@@ -99,15 +122,19 @@ fn assert_same_picture(volume: &Volume, camera: &Camera) {
 
 #[test]
 fn bricks_leave_a_picture_bit_identical() {
-    let volume = volume_of([17, 21, 13], sheared_affine(), waves);
+    let volume = volume_of([17, 21, 14], sheared_affine(), waves);
     for projection in projections(&volume.grid()) {
-        assert_same_picture(&volume, &oblique_camera(&volume.grid(), projection));
+        assert_same_picture(
+            &volume,
+            &oblique_camera(&volume.grid(), projection),
+            settings(),
+        );
     }
 }
 
 #[test]
 fn bricks_leave_a_picture_bit_identical_from_inside() {
-    let volume = volume_of([17, 21, 13], sheared_affine(), waves);
+    let volume = volume_of([17, 21, 14], sheared_affine(), waves);
     let grid = volume.grid();
     let camera = Camera {
         eye: grid
@@ -120,16 +147,29 @@ fn bricks_leave_a_picture_bit_identical_from_inside() {
         projection: Projection::Perspective { fov_degrees: 100.0 },
         zoom: 1.0,
     };
-    assert_same_picture(&volume, &camera);
+    assert_same_picture(&volume, &camera, settings());
+}
+
+/// Few holes: a cubic sample has no data where one of 64 voxels has none.
+fn with_holes() -> Volume {
+    let mut volume = volume_of([17, 21, 14], sheared_affine(), waves);
+    let mask = (0..17 * 21 * 14)
+        .map(|i: u32| u8::from(!i.is_multiple_of(101) && i % 211 != 3))
+        .collect();
+    volume.validity = Some(mask);
+    volume
 }
 
 #[test]
 fn bricks_leave_holes_where_they_are() {
-    let mut volume = volume_of([17, 21, 13], sheared_affine(), waves);
-    let mask = (0..17 * 21 * 13)
-        .map(|i: u32| u8::from(!i.is_multiple_of(7) && i % 11 != 3))
-        .collect();
-    volume.validity = Some(mask);
+    let volume = with_holes();
     let camera = oblique_camera(&volume.grid(), projections(&volume.grid())[1]);
-    assert_same_picture(&volume, &camera);
+    assert_same_picture(&volume, &camera, settings());
+}
+
+#[test]
+fn bricks_leave_light_as_it_falls() {
+    let volume = with_holes();
+    let camera = oblique_camera(&volume.grid(), projections(&volume.grid())[0]);
+    assert_same_picture(&volume, &camera, lit_settings());
 }

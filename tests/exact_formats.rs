@@ -63,6 +63,7 @@ fn drawn(device: &mut Headless, format: vk::Format, order: Order, slices: u32) -
         }],
         reference_length: Some(VOXELS.into()),
         interpolation: Interpolation::Linear,
+        graded: None,
     };
     let gpu = Arc::clone(device.gpu());
     let voxels = uploaded(device, &volume);

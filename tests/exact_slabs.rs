@@ -190,7 +190,11 @@ fn linear_fields_are_exact_at_any_step_with_any_function() {
                 extent: [32, 28],
                 settings,
             };
-            for (nth, function) in functions().iter().enumerate() {
+            let is_perspective = matches!(projection, Projection::Perspective { .. });
+            // Every other function in each projection.
+            let mine = functions().into_iter().enumerate();
+            for (nth, function) in mine.filter(|(nth, _)| (nth % 2 == 0) == is_perspective) {
+                let function = &function;
                 let scene = shot.scene(&volume, Some(function));
                 let device = renderer.render(&scene, &[]).unwrap().picture;
                 let twin = reference::render::<f64>(&scene).unwrap();

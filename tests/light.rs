@@ -37,32 +37,32 @@ fn shadings() -> [Shading; 2] {
     [Shading::default(), lit]
 }
 
-/// Of every technique, filter and kind of light.
+/// In every placement and projection, each technique with each kind of filter, in turns.
 fn assert_drawn_as_computed(volume: &Volume, what: &str) {
     let transfer = ramps();
     let mut renderer = Renderer::new(device(), volume).unwrap();
-    for shot in oblique_shots(GRID(), Mode::Composite) {
-        for (filter, shading) in [Filter::Nearest, Filter::Linear]
-            .into_iter()
-            .zip(shadings())
-        {
-            let dark = shot.with(|settings| settings.filter = filter);
-            let shot = dark.with(|settings| settings.shading = Some(shading));
-            let scene = shot.scene(volume, Some(&transfer));
-            let found = renderer.render(&scene, &[]).unwrap().picture;
-            let double = reference::render::<f64>(&scene).unwrap();
-            let single = reference::render::<f32>(&scene).unwrap();
-            let all = [&double, &single, &found].map(|p| p.pixels.as_flattened());
-            let what = format!("{what}, {filter:?}, {}", shot.what());
-            compare(&what, 4 * found.width, all, 1.0);
-            let dark = renderer.render(&dark.scene(volume, Some(&transfer)), &[]);
-            let dark = dark.unwrap().picture;
-            let changed = dark.pixels.iter().zip(&found.pixels);
-            let changed = changed.filter(|(a, b)| (a[0] - b[0]).abs() > 0.01).count();
-            assert!(changed > 100, "{what}: light changes {changed} pixels");
-            let alpha = |p: &[[f32; 4]]| p.iter().map(|p| p[3]).collect::<Vec<_>>();
-            assert_eq!(alpha(&dark.pixels), alpha(&found.pixels), "{what}: opacity");
-        }
+    let [headlight, lights] = shadings();
+    let turns = [
+        (Filter::Nearest, headlight.clone()),
+        (Filter::Linear, lights),
+        (Filter::Cubic, headlight),
+    ];
+    for (i, shot) in oblique_shots(GRID(), Mode::Composite).iter().enumerate() {
+        let (filter, shading) = &turns[(i + i / 6) % turns.len()];
+        let dark = shot.with(|settings| settings.filter = *filter);
+        let lit = dark.with(|settings| settings.shading = Some(shading.clone()));
+        let scene = lit.scene(volume, Some(&transfer));
+        let found = renderer.render(&scene, &[]).unwrap().picture;
+        let double = reference::render::<f64>(&scene).unwrap();
+        let single = reference::render::<f32>(&scene).unwrap();
+        let all = [&double, &single, &found].map(|p| p.pixels.as_flattened());
+        let what = format!("{what}, {filter:?}, {}", shot.what());
+        compare(&what, 4 * found.width, all, 1.0);
+        let dark = reference::render::<f32>(&dark.scene(volume, Some(&transfer))).unwrap();
+        let pixels = || dark.pixels.iter().zip(&single.pixels);
+        let changed = pixels().filter(|(a, b)| (a[0] - b[0]).abs() > 0.01).count();
+        assert!(changed > 100, "{what}: light changes {changed} pixels");
+        assert!(pixels().all(|(a, b)| a[3] == b[3]), "{what}: opacity");
     }
 }
 
@@ -76,7 +76,7 @@ fn every_technique_and_filter_lights_what_its_twin_lights() {
 fn a_gradient_with_a_hole_in_it_is_dark_on_the_device_as_in_the_twin() {
     let mut volume = volume_of(GRID().dims, sheared_affine(), waves);
     let count = volume.dims.iter().product::<u32>();
-    volume.validity = Some((0..count).map(|i| u8::from(i % 53 != 7)).collect());
+    volume.validity = Some((0..count).map(|i| u8::from(i % 499 != 7)).collect());
     assert_drawn_as_computed(&volume, "with holes");
 }
 

@@ -32,6 +32,7 @@ fn fog(srgb: [f64; 3], extinction: f64) -> TransferFunction {
         }],
         reference_length: Some(1.0),
         interpolation: Interpolation::Linear,
+        graded: None,
     }
 }
 
@@ -89,6 +90,7 @@ fn label_colors() -> TransferFunction {
         opacity: opacity.collect(),
         reference_length: None,
         interpolation: Interpolation::Step,
+        graded: None,
     }
 }
 

@@ -1,33 +1,39 @@
-//! Measures what pictures are worth, on the device of this machine, and prints tables in Markdown:
+//! Measures how good and how fast pictures are, and prints Markdown tables: those of `docs/quality.md`.
 //!
 //! ```text
-//! cargo run --release --example quality -- popping wood-grain
+//! cargo run --release --example quality              all tables
+//! cargo run --release --example quality filters      one of them
 //! ```
 
+mod filters;
 mod popping;
 mod studio;
 mod wood_grain;
 
 use std::error::Error;
 
-/// A word of the command line and what it prints.
-type Measure = fn() -> Result<(), Box<dyn Error>>;
+/// Prints one table.
+type Table = fn() -> Result<(), Box<dyn Error>>;
 
-const MEASURES: &[(&str, Measure)] = &[
+const TABLES: &[(&str, Table)] = &[
+    ("filters", filters::print),
     ("popping", popping::print),
     ("wood-grain", wood_grain::print),
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let words: Vec<String> = std::env::args().skip(1).collect();
-    let names = MEASURES.iter().map(|(name, _)| *name).collect::<Vec<_>>();
-    if let Some(word) = words.iter().find(|word| !names.contains(&word.as_str())) {
-        return Err(format!("no measure `{word}`: there are {}", names.join(", ")).into());
+    let wanted: Vec<String> = std::env::args().skip(1).collect();
+    if let Some(word) = wanted
+        .iter()
+        .find(|word| TABLES.iter().all(|t| t.0 != **word))
+    {
+        let known: Vec<_> = TABLES.iter().map(|table| table.0).collect();
+        return Err(format!("no table `{word}`; there are: {}", known.join(", ")).into());
     }
-    for (name, print) in MEASURES {
-        if words.is_empty() || words.iter().any(|word| word == name) {
-            print()?;
-        }
+    let tables = TABLES.iter();
+    for (name, print) in tables.filter(|t| wanted.is_empty() || wanted.iter().any(|w| w == t.0)) {
+        println!("\n## {name}\n");
+        print()?;
     }
     Ok(())
 }

@@ -106,6 +106,10 @@ struct Frame {
     diffuse: f32,
     specular: f32,
     shininess: f32,
+    // Which kernel, where the filter is one: see kernel.wgsl.
+    kernel: u32,
+    // World length of the shortest side of a voxel.
+    smallest_spacing: f32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

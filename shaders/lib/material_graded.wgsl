@@ -1,10 +1,19 @@
 // What a sample is made of where gradients count: first classified, then lit.
-// Twin: src/technique/shading.rs.
+// Twin: src/technique/shading.rs, src/transfer/widgets.rs.
 
 #import transfer_{transfer}
+#import widgets
 #import shade
 
 fn material_of(sample: Sample) -> Classified {
+    if are_widgets() {
+        let gradient = gradient_at(sample.place);
+        let material = classify_by_gradient(sample.value, length(gradient));
+        if material.extinction == 0.0 || frame.light_count == 0u {
+            return material;
+        }
+        return Classified(shade(material.color, gradient, sample.ray_direction), material.extinction);
+    }
     let material = classify(sample.value);
     // What is transparent shows no light: no gradient is made for it.
     if material.extinction == 0.0 || frame.light_count == 0u {

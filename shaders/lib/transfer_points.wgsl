@@ -1,6 +1,7 @@
 // Classification by the law itself: sigma = -ln(1 - min(opacity, 1 - 2^-12)) / d0.
 
 #import points
+#import extinction
 
 struct Classified {
     color: vec3<f32>,
@@ -9,8 +10,4 @@ struct Classified {
 
 fn classify(value: f32) -> Classified {
     return Classified(color_at(value), extinction_of(opacity_at(value), frame.reference_length));
-}
-
-fn extinction_of(opacity: f32, reference_length: f32) -> f32 {
-    return -log(1.0 - min(opacity, 1.0 - 1.0 / 4096.0)) / reference_length;
 }

@@ -85,6 +85,9 @@ impl From<offscreen::Error> for Error {
             offscreen::Error::Technique(technique::Error::NotShadedTogether) => {
                 Self::not_shaded_together()
             }
+            offscreen::Error::Technique(error @ technique::Error::FilterAlone { .. }) => {
+                Self::usage(error.to_string(), "--filter linear draws them together")
+            }
             offscreen::Error::Technique(error) => Self::Limit(error.to_string()),
             offscreen::Error::NoLayer { .. } => Self::NotBuilt(error.to_string()),
         }

@@ -28,7 +28,7 @@ pub fn load_from(
 ) -> Result<(Volume, f64), Error> {
     // What may be wrong with the words is said before anything about memory.
     scene.input.pick(source.header())?;
-    let source = fitting(source, &scene.input, device.memory(), Held::of(scene, 1))?;
+    let source = fitting(source, scene, device.memory(), Held::of(scene, 1))?;
     read_stretched(source.as_ref(), scene, progress)
 }
 

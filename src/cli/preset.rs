@@ -3,14 +3,14 @@
 use super::{
     Error,
     error::visible,
-    flags::{InputFlags, Numbers, preset, summary, with_causes},
+    flags::{InputFlags, Numbers, boundaries_of, preset, summary, with_causes},
     output::{self, say, say_aside, write_whole},
     readable::short,
     signals::Gate,
 };
 use crate::{
     transfer::{
-        Classified, Preset, Scale, TransferFunction, ValueSummary, Window,
+        Classified, Graded, Preset, Scale, Shape, TransferFunction, ValueSummary, Window,
         import_transfer_function, transfer_function_to_json,
     },
     volume::Volume,
@@ -123,16 +123,23 @@ impl Show {
     fn run(self) -> Result<(), Error> {
         let preset = Preset::from_name(&self.name).expect("a name that was checked");
         let mut window = window(self.window)?;
-        let summary = match self.input.path {
-            Some(_) => self.summary()?,
-            None => nothing_known(),
+        let volume = match self.input.path {
+            Some(_) => Some(self.volume()?),
+            None => None,
         };
+        let summary = volume.as_ref().map_or_else(nothing_known, summary);
         let is_fractions =
             self.input.path.is_none() && window.is_none() && preset.fits_the_volume();
         if is_fractions {
             window = Window::new(0.0, 1.0);
         }
-        let function = preset.function(&summary, Classified::Samples, window);
+        let of_gradients = volume.as_ref().filter(|_| preset == Preset::Boundaries);
+        let of_gradients = of_gradients.and_then(boundaries_of);
+        let function = match (of_gradients, window) {
+            (Some(function), Some(window)) => function.spread_over(window),
+            (Some(function), None) => function,
+            (None, _) => preset.function(&summary, Classified::Samples, window),
+        };
         if is_fractions {
             say_aside(
                 "the preset fits itself to a volume: these are fractions of where it will lie",
@@ -159,7 +166,7 @@ impl Show {
         ))
     }
 
-    fn summary(&self) -> Result<ValueSummary, Error> {
+    fn volume(&self) -> Result<Volume, Error> {
         let limits = self.input.limits();
         let source = self.input.open(&limits)?;
         let (pick, note) = self.input.pick(source.header())?;
@@ -167,8 +174,7 @@ impl Show {
             say_aside(note);
         }
         let whole = source.header().whole();
-        let volume = Volume::read(source.as_ref(), pick, whole, &limits)?;
-        Ok(summary(&volume))
+        Ok(Volume::read(source.as_ref(), pick, whole, &limits)?)
     }
 }
 
@@ -248,6 +254,41 @@ fn table(function: &TransferFunction) -> String {
         let line = format!("{:>12}  {color:<7}  {opacity}", short(value));
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{}", visible(line.trim_end()));
+    }
+    if let Some(graded) = &function.graded {
+        text += &gradients(graded);
+    }
+    text
+}
+
+/// What the gradient makes of the points, a line each.
+fn gradients(graded: &Graded) -> String {
+    let mut text = String::new();
+    let share = graded.share.iter();
+    let share = share.map(|p| format!("{} of it at gradient {}", short(p.opacity), short(p.value)));
+    let widgets = graded.widgets.iter().map(|widget| {
+        let shape = match &widget.shape {
+            Shape::Contour { value, half_width } => {
+                format!(
+                    "contour of {}, {} voxels to both sides",
+                    short(*value),
+                    short(*half_width)
+                )
+            }
+            Shape::Region { points } => format!("region of {} values", points.len()),
+            Shape::Triangle { value, .. } => format!("triangle at {}", short(*value)),
+            Shape::Rectangle { values: [a, b], .. } => {
+                format!("rectangle from {} to {}", short(*a), short(*b))
+            }
+            Shape::Gaussian { value, .. } => format!("gaussian at {}", short(*value)),
+            Shape::Image { columns, cells, .. } => {
+                format!("image of {columns} x {}", cells.len() / (*columns).max(1))
+            }
+        };
+        format!("{shape}: opacity {}", short(widget.opacity))
+    });
+    for line in share.chain(widgets) {
+        let _ = writeln!(text, "{}", visible(&line));
     }
     text
 }

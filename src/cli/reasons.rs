@@ -134,6 +134,7 @@ fn covers_nothing(settings: &Settings, function: &TransferFunction, volume: &Vol
     let inside = inside.filter(|value| (low..=high).contains(value));
     let opacity = |value| classify_by_points(&points, value)[3];
     settings.mode != Mode::Xray
+        && !function.is_graded()
         && [low, high]
             .into_iter()
             .chain(inside)

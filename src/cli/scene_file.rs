@@ -133,6 +133,8 @@ pub fn inputs(scene: &SceneFlags, scene_file: Option<&Path>) -> Vec<PathBuf> {
     let files = [
         scene.input.file(),
         scene.classification.tf.as_deref(),
+        scene.classification.color_tf.as_deref(),
+        scene.classification.opacity_tf.as_deref(),
         labels,
         label_tf,
         scene_file,

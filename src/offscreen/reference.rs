@@ -6,7 +6,7 @@ use super::fade::{faded, stacks_of};
 use super::sum::sum_of;
 use crate::picture::{Layer, LayerKind, Picture};
 use crate::ray::pixel_ray;
-use crate::real::Real;
+use crate::real::{Real, dot};
 use crate::resolve::reference::{premultiplied, projected_value};
 use crate::scene::{Beside, Scene, positions_in_pixel};
 use crate::shaders::Frame;
@@ -19,11 +19,12 @@ use crate::technique::{
     Error, Filter, Mix, Mode, Recording, Role, Technique, projection, raycast, slices_2d, slices_3d,
 };
 use crate::transfer::{
-    Absorption, Classified, Points, SlabTable, Table, TransferFunction, Window, classify_by_points,
-    classify_by_table, classify_slab,
+    Absorption, Classified, PackedWidgets, Points, SlabTable, Table, TransferFunction, Window,
+    classify_by_gradient, classify_by_points, classify_by_table, classify_slab,
 };
+use crate::volume::kernel::{convolved, convolved_in_slice};
 use crate::volume::sample::{linear, linear_in_slice, nearest};
-use crate::volume::{Grid, Volume};
+use crate::volume::{Coefficients, Grid, Volume};
 
 /// What a technique leaves for one pixel, before it is resolved.
 #[derive(Clone, Copy, Debug)]
@@ -57,7 +58,13 @@ pub fn render<R: Real>(scene: &Scene) -> Result<Picture, Error> {
 fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     let grid = scene.volume.grid();
     let mode = scene.settings.mode;
-    let gathered = |in_pixel| Walk::<R>::new(scene, &grid, in_pixel).map(|walk| walk.gather_all());
+    // What the device has in place of the voxels of interpolating splines.
+    let axes = scene.view(&grid, [0.0; 2]).texture_layout().filtered_axes();
+    let spline = scene.settings.filter.spline();
+    let coefficients = spline.map(|spline| Coefficients::new(scene.volume, spline, axes));
+    let read = coefficients.as_ref().map(Coefficients::volume);
+    let gathered =
+        |in_pixel| Walk::<R>::new(scene, read, &grid, in_pixel).map(|walk| walk.gather_all());
     let centers = gathered([0.0; 2])?;
     let transfer = match scene.transfer {
         Some(transfer) => transfer.clone(),
@@ -134,6 +141,8 @@ struct Walk<'a, R> {
     roles: Vec<Role>,
     /// One a transfer function; none in a projecting mode, which classifies when it resolves.
     classifiers: Vec<Classifier>,
+    /// What the gradient makes of the only function, where it makes something.
+    widgets: Option<PackedWidgets>,
     frame: Frame,
     /// Slices to draw; a ray caster has none.
     slices: u32,
@@ -149,7 +158,13 @@ enum Classifier {
 }
 
 impl<'a, R: Real> Walk<'a, R> {
-    fn new(scene: &'a Scene<'a>, grid: &Grid, in_pixel: [f64; 2]) -> Result<Self, Error> {
+    /// `read`: what is filtered in place of the volume, where there is but one.
+    fn new(
+        scene: &'a Scene<'a>,
+        read: Option<&'a Volume>,
+        grid: &'a Grid,
+        in_pixel: [f64; 2],
+    ) -> Result<Self, Error> {
         let view = scene.view(grid, in_pixel);
         let space = scene.settings.color_space;
         let classifier = |function: Option<&TransferFunction>| {
@@ -170,15 +185,18 @@ impl<'a, R: Real> Walk<'a, R> {
             let functions = scene.transfers().into_iter();
             functions.map(classifier).collect::<Result<_, Error>>()?
         };
+        let widgets = scene.transfer.filter(|_| scene.mix() == Mix::Graded);
+        let widgets = widgets.map(|f| PackedWidgets::new(f, scene.length_of(f), space));
         let Recording {
             mut frame, slices, ..
         } = view.on_cpu()?;
         frame.flat_gradient = view.flat_gradient(scene.volume.value_range);
         Ok(Self {
             scene,
-            volumes: scene.volumes(),
+            volumes: read.map_or_else(|| scene.volumes(), |read| vec![read]),
             roles: scene.roles(),
             classifiers,
+            widgets,
             frame,
             slices,
             real: std::marker::PhantomData,
@@ -223,7 +241,7 @@ impl<'a, R: Real> Walk<'a, R> {
     fn project(&self, pixel: [R; 2]) -> Gathered<R> {
         let settings = self.scene.settings;
         let (mode, order) = (settings.mode, settings.order);
-        let (volume, frame) = (self.scene.volume, &self.frame);
+        let (volume, frame) = (self.volumes[0], &self.frame);
         let value_at = |p| filtered(volume, settings.filter, p);
         // A projecting mode classifies when it resolves.
         let unclassified = |_| [R::from_f64(0.0); 4];
@@ -310,12 +328,21 @@ impl<'a, R: Real> Walk<'a, R> {
         }
         if let [volume] = self.volumes[..] {
             let value = look(volume, settings.filter)?;
-            let [r, g, b, extinction] = self.classify(0, value);
-            if self.frame.light_count == 0 {
-                return Some([r, g, b, extinction]);
+            let mut material = self.classify(0, value);
+            if self.frame.light_count == 0 && self.widgets.is_none() {
+                return Some(material);
             }
             let tap = |step| look_from(volume, settings.filter, step);
             let gradient = gradient_of(&self.frame, tap);
+            if let Some(widgets) = &self.widgets {
+                let magnitude = dot(gradient, gradient).sqrt();
+                let spacing = R::from_f32(self.frame.smallest_spacing);
+                material = classify_by_gradient(widgets, material, value, magnitude, spacing);
+            }
+            let [r, g, b, extinction] = material;
+            if self.frame.light_count == 0 {
+                return Some(material);
+            }
             let [r, g, b] = shade(&self.frame, [r, g, b], gradient, ray_direction);
             return Some([r, g, b, extinction]);
         }
@@ -407,6 +434,7 @@ fn filtered<R: Real>(volume: &Volume, filter: Filter, p: [R; 3]) -> Option<R> {
     match filter {
         Filter::Nearest => nearest(volume, p),
         Filter::Linear => linear(volume, p),
+        filter => convolved(volume, filter.kernel()?, p),
     }
 }
 
@@ -423,5 +451,6 @@ fn filtered_in_slice<R: Real>(
             nearest(volume, p)
         }
         Filter::Linear => linear_in_slice(volume, axis, slice, p),
+        filter => convolved_in_slice(volume, filter.kernel()?, axis, slice, p),
     }
 }

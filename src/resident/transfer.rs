@@ -7,7 +7,9 @@ use crate::gpu::{
 };
 use crate::picture::ColorSpace;
 use crate::shaders::TABLE_WIDTH;
-use crate::transfer::{Absorption, Interpolation, Points, SlabTable, Table, TransferFunction};
+use crate::transfer::{
+    Absorption, Interpolation, PackedWidgets, Points, SlabTable, Table, TransferFunction,
+};
 use ash::vk;
 use std::sync::Arc;
 
@@ -40,6 +42,7 @@ pub struct GpuTransfer {
     staging: Buffer,
     points: Buffer,
     slabs: Option<GpuSlabs>,
+    widgets: Buffer,
 }
 
 impl GpuTransfer {
@@ -93,6 +96,11 @@ impl GpuTransfer {
             entries.resize(entries.len().next_multiple_of(width), [0.0; 4]);
             points.extend_from_slice(&own.entries);
         }
+        // Gradients count where a function is alone.
+        let widgets = functions.first();
+        let widgets =
+            widgets.map(|&(function, length)| PackedWidgets::new(function, length, space));
+        let widgets = widgets.map_or_else(|| vec![[0.0; 4]], |packed| packed.entries);
         let desc = ImageDesc {
             kind: ImageKind::D2,
             extent: [width as u32, (entries.len() / width) as u32, 1],
@@ -109,6 +117,7 @@ impl GpuTransfer {
             staging: filled(gpu, &entries, copied, "transfer staging")?,
             points: filled(gpu, &points, read, "transfer points")?,
             slabs: None,
+            widgets: filled(gpu, &widgets, read, "transfer widgets")?,
         })
     }
 
@@ -155,6 +164,11 @@ impl GpuTransfer {
     /// The control points.
     pub fn points(&self) -> &Buffer {
         &self.points
+    }
+
+    /// What the gradient makes of the (first) function.
+    pub fn widgets(&self) -> &Buffer {
+        &self.widgets
     }
 
     /// Records the copy that fills the table.

@@ -46,6 +46,7 @@ impl Inputs<'_> {
             given.push(("points", Resource::Storage(transfer.points())));
             let slabs = transfer.slab_table().map(Resource::sampled);
             given.extend(slabs.map(|table| ("slab_table", table)));
+            given.push(("widgets", Resource::Storage(transfer.widgets())));
         }
         given.extend_from_slice(outputs);
         given.retain(|(name, _)| layout.slots().iter().any(|slot| slot.name == *name));
@@ -137,6 +138,9 @@ impl Words {
                     "linear_fetch"
                 }
                 Filter::Linear => "linear",
+                Filter::CatmullRom => "kernel",
+                _ if settings.conformance || parts.iter().any(is_fetched) => "kernel",
+                _ => "spline",
             },
             holes: if has_holes { "mask" } else { "none" },
             lattice: match settings.lattice {

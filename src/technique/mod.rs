@@ -26,6 +26,8 @@ pub use recording::{Recording, parameter_ring};
 pub use shading::{Light, Shading};
 pub use slicer::Slicer;
 
+use crate::volume::{Spline, kernel::Kernel};
+
 /// Where samples lie.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Technique {
@@ -62,6 +64,37 @@ pub enum Filter {
     /// Trilinear (bilinear inside a 2D stack).
     #[default]
     Linear,
+    /// The quadratic B-spline through the voxels.
+    Quadratic,
+    /// The cubic B-spline through the voxels.
+    Cubic,
+    /// The quadratic B-spline with the voxels as its coefficients: no ringing, and blurred.
+    QuadraticSmooth,
+    /// The cubic B-spline with the voxels as its coefficients: no ringing, and more blurred.
+    CubicSmooth,
+    /// Catmull and Rom's cubic through the voxels.
+    CatmullRom,
+}
+
+impl Filter {
+    /// The kernel that weights the voxels, where it reaches beyond the nearest two of an axis.
+    pub fn kernel(self) -> Option<Kernel> {
+        match self {
+            Self::Nearest | Self::Linear => None,
+            Self::Quadratic | Self::QuadraticSmooth => Some(Kernel::Quadratic),
+            Self::Cubic | Self::CubicSmooth => Some(Kernel::Cubic),
+            Self::CatmullRom => Some(Kernel::CatmullRom),
+        }
+    }
+
+    /// The spline whose coefficients it reads in place of voxels: see [`Coefficients`](crate::volume::Coefficients).
+    pub fn spline(self) -> Option<Spline> {
+        match self {
+            Self::Quadratic => Some(Spline::Quadratic),
+            Self::Cubic => Some(Spline::Cubic),
+            _ => None,
+        }
+    }
 }
 
 /// Which samples a ray caster takes (`sampling.md` 3). Slicers have a lattice of their own.
@@ -198,6 +231,20 @@ pub enum Error {
     /// Volumes that are mixed lie on one grid.
     #[error("the volumes to be mixed lie on different grids, or in different bricks")]
     OtherGrid,
+    /// Interpolating splines read coefficients, all others the voxels.
+    #[error("{filter:?} reads {}, and the volume on the device holds {}", held(.filter.spline()), held(*.found))]
+    WrongCoefficients {
+        /// What was asked for.
+        filter: Filter,
+        /// What the volume on the device was made of.
+        found: Option<Spline>,
+    },
+    /// Filters over more than two voxels of an axis are made for one volume.
+    #[error("{filter:?} reads one volume: several are mixed with Linear or Nearest")]
+    FilterAlone {
+        /// What was asked for.
+        filter: Filter,
+    },
     /// The parameters hold a fixed number of channels.
     #[error("{wanted} volumes are to be mixed, the limit is {limit}")]
     TooManyChannels {
@@ -223,6 +270,19 @@ pub enum Error {
     /// Several volumes have several gradients.
     #[error("shading is for one volume of numbers, not for several that are mixed")]
     NotShadedTogether,
+    /// A projected value has no gradient.
+    #[error(
+        "{mode:?} projects one number a ray, which has no gradient: widgets and gradient opacity are for composite"
+    )]
+    NotGraded {
+        /// The mode.
+        mode: Mode,
+    },
+    /// Several volumes have several gradients.
+    #[error(
+        "widgets and gradient opacity are for one volume of numbers, not for several that are mixed"
+    )]
+    NotGradedTogether,
     /// The parameters hold a fixed number of lights.
     #[error("{wanted} lights, the limit is {limit}")]
     TooManyLights {
@@ -242,6 +302,12 @@ pub enum Error {
         /// How many there may be.
         limit: usize,
     },
+}
+
+fn held(spline: Option<Spline>) -> String {
+    spline.map_or("voxels".to_owned(), |spline| {
+        format!("coefficients of the {spline:?} spline")
+    })
 }
 
 impl Mode {
@@ -280,14 +346,14 @@ impl Settings {
         of_mode(self.smooth, SMOOTH)?;
         of_technique(is_jittered, JITTER, Technique::Raycast, "ray casting")?;
         of_mode(is_jittered, JITTER)?;
-        match self.way().filter(|_| self.shading.is_some()) {
-            Some(wanted) => Err(Error::NotFor {
-                wanted,
-                of: "samples without light",
-                found: "shaded ones".to_owned(),
-            }),
-            None => Ok(()),
+        if self.shading.is_some() {
+            self.refuse_way("samples without light", "shaded ones")?;
         }
+        if self.filter.kernel().is_some() {
+            let found = format!("{:?}", self.filter);
+            self.refuse_way("nearest and linear filters", &found)?;
+        }
+        Ok(())
     }
 
     /// A way to sample of its own that is asked for.
@@ -306,11 +372,26 @@ impl Settings {
     /// # Errors
     /// [`Error::NotFor`].
     pub(crate) fn check_mixed(&self) -> Result<(), Error> {
+        self.refuse_way("one volume of numbers", "several that are mixed")
+    }
+
+    /// The same for functions of gradients.
+    ///
+    /// # Errors
+    /// [`Error::NotFor`].
+    pub(crate) fn check_graded(&self) -> Result<(), Error> {
+        self.refuse_way(
+            "functions of the value alone",
+            "one of the value and its gradient",
+        )
+    }
+
+    fn refuse_way(&self, of: &'static str, found: &str) -> Result<(), Error> {
         match self.way() {
             Some(wanted) => Err(Error::NotFor {
                 wanted,
-                of: "one volume of numbers",
-                found: "several that are mixed".to_owned(),
+                of,
+                found: found.to_owned(),
             }),
             None => Ok(()),
         }

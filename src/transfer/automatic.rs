@@ -188,6 +188,7 @@ fn categorical(summary: &ValueSummary) -> TransferFunction {
         opacity: opacity.collect(),
         reference_length: reference_length(summary),
         interpolation: Interpolation::Step,
+        graded: None,
     }
 }
 

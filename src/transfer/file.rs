@@ -1,5 +1,7 @@
-//! Transfer functions in files: the JSON of `cli.md`, "Transfer function file".
+//! Transfer functions in files: the JSON of `cli.md`, "Transfer function file", and `docs/transfer-functions.md`.
 
+use super::field::{points, wrong};
+use super::file_widgets::{GradedKeys, graded, graded_to_json, materials};
 use super::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
 use serde::Deserialize;
 use serde_json::Value;
@@ -98,36 +100,86 @@ pub fn transfer_function_from_json(text: &[u8]) -> Result<TransferFunction, File
             found,
         ));
     }
-    let color = points("color", "[value, r, g, b]", &keys.color)?;
-    let color = color.into_iter().map(|[value, r, g, b]| ColorPoint {
-        value,
-        srgb: [r, g, b],
-    });
-    let opacity = points("opacity", "[value, opacity]", &keys.opacity)?;
-    let opacity = opacity
-        .into_iter()
-        .map(|[value, opacity]| OpacityPoint { value, opacity });
-    let reference_length = match keys.reference_length {
+    let reference_length = match &keys.reference_length {
         None => None,
         Some(found) => match found.as_f64().filter(|&x| x > 0.0 && x.is_finite()) {
-            None => return Err(wrong("reference_length", "a positive number", &found)),
+            None => return Err(wrong("reference_length", "a positive number", found)),
             length => length,
         },
     };
-    let interpolation = match keys.interpolation {
+    if let Some(found) = &keys.materials {
+        return of_materials(&keys, found, reference_length);
+    }
+    let interpolation = match &keys.interpolation {
         None => Interpolation::Linear,
         Some(found) => match found.as_str() {
             Some("linear") => Interpolation::Linear,
             Some("step") => Interpolation::Step,
-            _ => return Err(wrong("interpolation", "\"linear\" or \"step\"", &found)),
+            _ => return Err(wrong("interpolation", "\"linear\" or \"step\"", found)),
         },
     };
+    let graded = graded(GradedKeys {
+        gradient_opacity: keys.gradient_opacity,
+        steepest: keys.steepest,
+        widgets: keys.widgets,
+    })?;
+    // Widgets may be all there is, each in a colour of its own.
+    let widgets = graded.iter().flat_map(|graded| &graded.widgets);
+    let (mut has_widgets, mut all_have_colors) = (false, true);
+    for widget in widgets {
+        has_widgets = true;
+        all_have_colors &= widget.srgb.is_some();
+    }
+    let color = match &keys.color {
+        Some(found) => points("color", "[value, r, g, b]", found)?,
+        None if has_widgets && all_have_colors => vec![[0.0; 4]],
+        None => return Err(missing("color")),
+    };
+    let opacity = match &keys.opacity {
+        Some(found) => points("opacity", "[value, opacity]", found)?,
+        None if has_widgets => vec![[color[0][0], 0.0]],
+        None => return Err(missing("opacity")),
+    };
+    let color = color.into_iter().map(|[value, r, g, b]| ColorPoint {
+        value,
+        srgb: [r, g, b],
+    });
+    let opacity = opacity
+        .into_iter()
+        .map(|[value, opacity]| OpacityPoint { value, opacity });
     Ok(TransferFunction {
         color: color.collect(),
         opacity: opacity.collect(),
         reference_length,
         interpolation,
+        graded,
     })
+}
+
+/// `materials` say colour and opacity, and between their corners everything is a straight line.
+fn of_materials(
+    keys: &Keys,
+    found: &Value,
+    reference_length: Option<f64>,
+) -> Result<TransferFunction, FileProblem> {
+    let others = [
+        ("color", &keys.color),
+        ("opacity", &keys.opacity),
+        ("interpolation", &keys.interpolation),
+        ("gradient_opacity", &keys.gradient_opacity),
+        ("steepest", &keys.steepest),
+        ("widgets", &keys.widgets),
+    ];
+    for (key, other) in others {
+        if let Some(other) = other {
+            return Err(wrong(key, "no such key beside `materials`", other));
+        }
+    }
+    materials(found, reference_length)
+}
+
+fn missing(key: &str) -> FileProblem {
+    FileProblem::Json(format!("missing field `{key}`"))
 }
 
 /// The text of a file that states `function`; reading it gives the same function back.
@@ -144,10 +196,15 @@ pub fn transfer_function_to_json(function: &TransferFunction) -> String {
     };
     format!(
         "{{\n  \"stratavox_transfer_function\": {VERSION},\n  \"color\": [\n{}\n  ],\n  \"opacity\": \
-         [\n{}\n  ],\n{}  \"interpolation\": \"{interpolation}\"\n}}\n",
+         [\n{}\n  ],\n{}{}  \"interpolation\": \"{interpolation}\"\n}}\n",
         color.collect::<Vec<_>>().join(",\n"),
         opacity.collect::<Vec<_>>().join(",\n"),
         length.unwrap_or_default(),
+        function
+            .graded
+            .as_ref()
+            .map(graded_to_json)
+            .unwrap_or_default(),
     )
 }
 
@@ -159,76 +216,20 @@ pub fn transfer_function_to_json(function: &TransferFunction) -> String {
 )]
 struct Keys {
     stratavox_transfer_function: Value,
-    color: Value,
-    opacity: Value,
+    #[serde(default)]
+    color: Option<Value>,
+    #[serde(default)]
+    opacity: Option<Value>,
+    #[serde(default)]
+    materials: Option<Value>,
     #[serde(default)]
     reference_length: Option<Value>,
     #[serde(default)]
     interpolation: Option<Value>,
-}
-
-/// Rows of a value and `N - 1` numbers from 0 to 1, by ascending value.
-fn points<const N: usize>(
-    field: &str,
-    row_wanted: &'static str,
-    found: &Value,
-) -> Result<Vec<[f64; N]>, FileProblem> {
-    let rows = found.as_array().filter(|rows| !rows.is_empty());
-    let Some(rows) = rows else {
-        return Err(wrong(field, "a list of at least one point", found));
-    };
-    if rows.len() > MAX_POINTS {
-        return Err(FileProblem::Field {
-            field: field.to_owned(),
-            wanted: "at most 4096 points",
-            found: rows.len().to_string(),
-        });
-    }
-    let mut points: Vec<[f64; N]> = Vec::with_capacity(rows.len());
-    for (i, row) in rows.iter().enumerate() {
-        let row_field = || format!("{field}[{i}]");
-        let Some(numbers) = row.as_array().filter(|numbers| numbers.len() == N) else {
-            return Err(wrong(&row_field(), row_wanted, row));
-        };
-        let mut point = [0.0; N];
-        for (c, (number, found)) in point.iter_mut().zip(numbers).enumerate() {
-            let (fits, wanted): (fn(f64) -> bool, _) = match c {
-                0 => (is_value, "a number that a 32-bit float can hold"),
-                _ => (is_fraction, "a number from 0 to 1"),
-            };
-            *number = match found.as_f64() {
-                Some(x) if fits(x) => x,
-                _ => return Err(wrong(&format!("{field}[{i}][{c}]"), wanted, found)),
-            };
-        }
-        if points.last().is_some_and(|last| last[0] > point[0]) {
-            let found = Value::from(point[0]);
-            let field = format!("{field}[{i}][0]");
-            return Err(wrong(&field, "a value not below the one before", &found));
-        }
-        points.push(point);
-    }
-    Ok(points)
-}
-
-fn is_value(x: f64) -> bool {
-    x.abs() <= f64::from(f32::MAX)
-}
-
-fn is_fraction(x: f64) -> bool {
-    (0.0..=1.0).contains(&x)
-}
-
-fn wrong(field: &str, wanted: &'static str, found: &Value) -> FileProblem {
-    // A field can be as long as the file; its beginning says enough. JSON escapes what is not text.
-    let mut text: String = found.to_string().chars().take(61).collect();
-    if text.chars().count() > 60 {
-        text.pop();
-        text.push_str("...");
-    }
-    FileProblem::Field {
-        field: field.to_owned(),
-        wanted,
-        found: text,
-    }
+    #[serde(default)]
+    gradient_opacity: Option<Value>,
+    #[serde(default)]
+    steepest: Option<Value>,
+    #[serde(default)]
+    widgets: Option<Value>,
 }

@@ -113,6 +113,7 @@ impl LabelTable {
             opacity,
             reference_length: own.or(Some(diagonal / 512.0)),
             interpolation: Interpolation::Step,
+            graded: None,
         }
     }
 }

@@ -10,40 +10,53 @@
 //! Colour is linear between its points in sRGB numbers and decoded afterwards.
 
 mod automatic;
+mod boundaries;
 mod channel;
 #[cfg(feature = "json")]
+mod field;
+#[cfg(feature = "json")]
 mod file;
+#[cfg(feature = "json")]
+mod file_widgets;
+mod graded;
 #[cfg(all(feature = "json", feature = "files"))]
 mod import;
 #[cfg(feature = "json")]
 mod labels;
 mod law;
+mod materials;
+mod parts;
 mod points;
 mod preset;
 mod quantity;
 mod slabs;
 mod summary;
 mod table;
+mod widgets;
 mod window;
 
 pub use automatic::{Kind, automatic};
+pub use boundaries::{JointCounts, boundaries};
 pub use channel::{CHANNEL_COLORS, of_channel, of_colors};
 #[cfg(feature = "json")]
 pub use file::{
     FileError, FileProblem, MAX_FILE_BYTES, MAX_POINTS, read_transfer_function,
     transfer_function_from_json, transfer_function_to_json,
 };
+pub use graded::{Graded, Shape, Widget};
 #[cfg(all(feature = "json", feature = "files"))]
 pub use import::{Imported, Scale, import_transfer_function, transfer_function_from_bytes};
 #[cfg(feature = "json")]
 pub use labels::{Label, LabelTable};
 pub use law::{Absorption, MAX_OPACITY, extinction, opacity_over};
+pub use materials::{Material, TooMuch};
 pub use points::{Points, classify_by_points};
 pub use preset::Preset;
 pub use quantity::Quantity;
 pub use slabs::{SlabCell, SlabTable, classify_slab};
 pub use summary::ValueSummary;
 pub use table::{MAX_ENTRIES, MIN_ENTRIES, Table, classify_by_table};
+pub use widgets::{PackedWidgets, classify_by_gradient};
 pub use window::{Classified, Window};
 
 /// A one-dimensional transfer function: colour and opacity have control points of their own.
@@ -57,6 +70,8 @@ pub struct TransferFunction {
     pub reference_length: Option<f64>,
     /// What lies between two points.
     pub interpolation: Interpolation,
+    /// What the gradient makes of it; `None`: nothing.
+    pub graded: Option<Graded>,
 }
 
 /// sRGB colour at a value.

@@ -5,7 +5,8 @@
 //! once; one that grazes it gathers them, and the rim darkens as if it were lit.
 
 use super::{
-    Classified, ColorPoint, Interpolation, OpacityPoint, TransferFunction, ValueSummary, Window,
+    Classified, ColorPoint, Graded, Interpolation, OpacityPoint, TransferFunction, ValueSummary,
+    Window,
 };
 
 /// A transfer function with a name.
@@ -23,19 +24,23 @@ pub enum Preset {
     Microscopy,
     /// Hot spots of uptake in a faint body. Fits itself to the values.
     Pet,
+    /// The boundaries between substances, the lowest faint. Fits itself to values and gradients
+    /// ([`super::boundaries`]).
+    Boundaries,
     /// A grey ramp over the window, as `cli.md` has it.
     Grey,
 }
 
 impl Preset {
     /// All of them, in the order of `preset list`.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::CtBone,
         Self::CtSoftTissue,
         Self::CtLung,
         Self::Mri,
         Self::Microscopy,
         Self::Pet,
+        Self::Boundaries,
         Self::Grey,
     ];
 
@@ -48,6 +53,7 @@ impl Preset {
             Self::Mri => "mri",
             Self::Microscopy => "microscopy",
             Self::Pet => "pet",
+            Self::Boundaries => "boundaries",
             Self::Grey => "grey",
         }
     }
@@ -66,6 +72,9 @@ impl Preset {
             Self::Mri => "soft tissue without the noise around it (fits the volume)",
             Self::Microscopy => "bright signal on a dark background (fits the volume)",
             Self::Pet => "hot spots of uptake in a faint body (fits the volume)",
+            Self::Boundaries => {
+                "surfaces between substances, by value and gradient (fits the volume)"
+            }
             Self::Grey => "a grey ramp over the window or the volume's range",
         }
     }
@@ -74,14 +83,15 @@ impl Preset {
     pub fn fits_the_volume(self) -> bool {
         match self {
             Self::CtBone | Self::CtSoftTissue | Self::CtLung => false,
-            Self::Mri | Self::Microscopy | Self::Pet | Self::Grey => true,
+            Self::Mri | Self::Microscopy | Self::Pet | Self::Boundaries | Self::Grey => true,
         }
     }
 
     /// The preset for values like those of `summary`, spread over `window` if one is given.
     ///
     /// Opacities are for 1/512 of the diagonal of the grid, so that volumes of few and of many voxels look
-    /// alike; those of `grey` are for the smallest voxel spacing.
+    /// alike; those of `grey` are for the smallest voxel spacing. `boundaries` is here what is known of it without
+    /// gradients: what is steep of the bright class.
     pub fn function(
         self,
         summary: &ValueSummary,
@@ -99,6 +109,7 @@ impl Preset {
             Self::Mri => tissue(summary),
             Self::Microscopy => sparse(summary),
             Self::Pet => uptake(summary),
+            Self::Boundaries => steep(summary),
         };
         match window {
             Some(window) => function.spread_over(window),
@@ -185,6 +196,19 @@ pub(super) fn tissue(summary: &ValueSummary) -> TransferFunction {
     fitted(summary, MRI, 0.35)
 }
 
+/// As much of tissue as it is steep.
+fn steep(summary: &ValueSummary) -> TransferFunction {
+    let share = [(0.05, 0.0), (0.4, 1.0)];
+    let share = share.map(|(value, opacity)| OpacityPoint { value, opacity });
+    TransferFunction {
+        graded: Some(Graded {
+            share: share.into(),
+            ..Graded::default()
+        }),
+        ..tissue(summary)
+    }
+}
+
 /// What `microscopy` is, over the bright class of the values and most of the way down to the background.
 pub(super) fn sparse(summary: &ValueSummary) -> TransferFunction {
     fitted(summary, MICROSCOPY, 0.6)
@@ -233,6 +257,7 @@ pub(super) fn spread(
         opacity: opacity.collect(),
         reference_length: reference_length(summary),
         interpolation: Interpolation::Linear,
+        graded: None,
     }
 }
 

@@ -47,6 +47,10 @@ impl Window {
         self.high
     }
 
+    fn length(self) -> f64 {
+        self.high - self.low
+    }
+
     /// The value at a fraction of the window: 0 its low end, 1 its high end.
     pub fn at(self, t: f64) -> f64 {
         self.low + t * (self.high - self.low)
@@ -76,6 +80,7 @@ impl Window {
             opacity: opacity.collect(),
             reference_length: None,
             interpolation: Interpolation::Linear,
+            graded: None,
         }
     }
 }
@@ -90,6 +95,8 @@ impl TransferFunction {
         for point in &mut placed.opacity {
             point.value = window.at(point.value);
         }
+        let graded = self.graded.as_ref();
+        placed.graded = graded.map(|graded| graded.moved(|v| window.at(v), window.length()));
         placed
     }
 
@@ -117,6 +124,13 @@ impl TransferFunction {
         for point in &mut spread.opacity {
             point.value = moved(point.value);
         }
+        let slope = if last > first {
+            window.length() / (last - first)
+        } else {
+            1.0
+        };
+        let graded = self.graded.as_ref();
+        spread.graded = graded.map(|graded| graded.moved(moved, slope));
         spread
     }
 }

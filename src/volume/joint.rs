@@ -43,7 +43,7 @@ impl JointHistogram {
             };
         };
         let gradients = Gradients::of(volume);
-        let steepest = gradients.each().map(|(_, g)| g).fold(0.0, f64::max);
+        let steepest = steepest_gradient(volume);
         // Where nothing changes any height would do.
         let top = if steepest > 0.0 { steepest } else { 1.0 };
         let columns = bins.len();
@@ -76,6 +76,14 @@ impl JointHistogram {
     pub fn gradient_edges(&self) -> Vec<f64> {
         edges(self.gradient_range, self.rows)
     }
+}
+
+/// The largest gradient magnitude of the valid voxels, in values per world length; 0 without one.
+pub fn steepest_gradient(volume: &Volume) -> f64 {
+    Gradients::of(volume)
+        .each()
+        .map(|(_, gradient)| gradient)
+        .fold(0.0, f64::max)
 }
 
 /// The gradient magnitudes of a volume, made anew at each walk: kept, they would take as much as the voxels.

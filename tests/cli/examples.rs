@@ -187,6 +187,32 @@ fn every_example_of_the_readme_runs_and_prints_what_is_shown() {
     assert!(examples.len() >= 3 && shown >= 1, "{examples:#?}");
 }
 
+/// Each block of `json` in `docs/transfer-functions.md` is a file that draws something, and each line of `sh` runs.
+#[test]
+fn every_transfer_function_of_the_docs_draws_something() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/transfer-functions.md");
+    let text = fs::read_to_string(path).expect("the page");
+    let folder = Folder::new();
+    let blocks = text.split("```json\n").skip(1);
+    let blocks = blocks.filter_map(|block| block.split("```").next());
+    let mut drawn = 0;
+    for block in blocks {
+        folder.file("tf.json", block);
+        let ran = folder.run(
+            "render phantom:head,n=16 --tf tf.json --device reference --size 16x16 -o tf.npy --force",
+        );
+        ran.assert_done();
+        assert!(!ran.err.contains("empty"), "{block}: {}", ran.err);
+        drawn += 1;
+    }
+    assert!(drawn >= 3, "only {drawn} functions");
+    let examples = of_markdown(&text, "docs/transfer-functions.md");
+    assert!(examples.len() >= 2, "{examples:#?}");
+    for example in &examples {
+        example.check(&folder);
+    }
+}
+
 #[test]
 fn examples_are_told_from_forms_and_comments() {
     let text = "```sh\ncargo build\nstratavox info phantom:fog   # what\nstratavox info INPUT\n\

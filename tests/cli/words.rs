@@ -11,14 +11,6 @@ fn a_word_that_is_not_built_exits_2_and_is_named() {
         ("render phantom:fog -o a.png --mode mida", "`--mode mida`"),
         ("render phantom:fog -o a.png --iso 3,4", "`--iso`"),
         (
-            "render phantom:fog -o a.png --filter cubic",
-            "`--filter cubic`",
-        ),
-        (
-            "render phantom:fog -o a.png --filter quadratic-smooth",
-            "`--filter quadratic-smooth`",
-        ),
-        (
             "render phantom:fog -o a.png --gradient-filter cubic",
             "`--gradient-filter`",
         ),

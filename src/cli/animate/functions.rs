@@ -48,6 +48,7 @@ pub fn mixed(a: &TransferFunction, b: &TransferFunction, s: f64, spacing: f64) -
             .collect(),
         reference_length,
         interpolation: a.interpolation,
+        graded: None,
     }
 }
 
@@ -139,6 +140,7 @@ mod tests {
                 .collect(),
             reference_length: None,
             interpolation: Interpolation::Linear,
+            graded: None,
         }
     }
 

@@ -169,12 +169,24 @@ fn function(
                 ));
             }
             inputs.push(path);
-            Ok(imported.function)
+            of_value(imported.function)
         }
         Value::Object(_) => transfer_function_from_json(tf.to_string().as_bytes())
-            .map_err(|error| error.to_string()),
+            .map_err(|error| error.to_string())
+            .and_then(of_value),
         _ => Err("wanted the name of a file or a transfer function".to_owned()),
     }
+}
+
+/// Between two functions of gradients there is none.
+fn of_value(function: TransferFunction) -> Result<TransferFunction, String> {
+    if function.is_graded() {
+        return Err(
+            "widgets and gradient opacity have no keys: --tf gives them to the whole film"
+                .to_owned(),
+        );
+    }
+    Ok(function)
 }
 
 impl Words {

@@ -222,7 +222,7 @@ impl Animate {
                 } else {
                     Held::Blend
                 };
-                let source = fitting(source, &scene.input, device.memory(), held)?;
+                let source = fitting(source, scene, device.memory(), held)?;
                 Content::Times(source)
             }
         };

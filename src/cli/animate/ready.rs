@@ -70,10 +70,22 @@ pub fn of_times(
             };
             Ok(known.insert(found).clone())
         };
+        let classification = shot
+            .classification
+            .classification_of(shot.settings.mode, summary)?;
+        if let Classification::Function(function) = &classification
+            && function
+                .graded
+                .as_ref()
+                .is_some_and(|g| g.steepest.is_none() && g.needs_steepest())
+        {
+            return Err(Error::usage(
+                "the steepest gradient of several times is not known, and the transfer function asks for it",
+                "say it in the file: \"steepest\": 300",
+            ));
+        }
         ready.push(Ready {
-            classification: shot
-                .classification
-                .classification_of(shot.settings.mode, summary)?,
+            classification,
             settings: shot.settings.clone(),
             time: shot.time,
         });

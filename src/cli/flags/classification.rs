@@ -1,26 +1,24 @@
 //! Value to colour and opacity: flags to a transfer function, once the volume is known.
 
-use super::{Error, Numbers};
-use crate::cli::output::say_aside;
+use super::{Error, Inlined, Numbers, boundaries_of, function_in, refuse_gradients_in};
 use crate::{
     technique::Mode,
     transfer::{
-        Classified, Interpolation, Preset, Quantity, Scale, TransferFunction, ValueSummary, Window,
-        automatic, import_transfer_function, transfer_function_from_json,
-        transfer_function_to_json,
+        Classified, Interpolation, Preset, Quantity, TransferFunction, ValueSummary, Window,
+        automatic,
     },
-    volume::Volume,
+    volume::{Volume, steepest_gradient},
 };
 use clap::Args;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The flags, none of them filled in.
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ClassificationFlags {
-    /// A transfer function of ours: ct-bone, ct-soft-tissue, ct-lung, mri, microscopy, pet, grey [default: by the values]
+    /// A transfer function of ours: ct-bone, ct-soft-tissue, ct-lung, mri, microscopy, pet, boundaries, grey [default: by the values]
     #[arg(long, value_name = "NAME", value_parser = preset, conflicts_with = "tf", help_heading = "Colour")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub preset: Option<String>,
@@ -28,6 +26,22 @@ pub struct ClassificationFlags {
     #[arg(long, value_name = "FILE", help_heading = "Colour")]
     #[serde(skip)]
     pub tf: Option<PathBuf>,
+    /// A transfer function file of which the colours are taken, in the place of those of --tf, --preset or the values
+    #[arg(long, value_name = "FILE", help_heading = "Colour")]
+    #[serde(skip)]
+    pub color_tf: Option<PathBuf>,
+    /// A transfer function file of which all is taken but the colours
+    #[arg(long, value_name = "FILE", help_heading = "Colour")]
+    #[serde(skip)]
+    pub opacity_tf: Option<PathBuf>,
+    /// What stood in the file of --color-tf.
+    #[arg(skip)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub color_function: Option<Inlined>,
+    /// What stood in the file of --opacity-tf.
+    #[arg(skip)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub opacity_function: Option<Inlined>,
     /// What stood in that file: a scene carries it with it.
     #[arg(skip)]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -57,20 +71,19 @@ pub enum Classification {
 }
 
 impl ClassificationFlags {
-    /// Reads the file of `--tf` into `transfer_function`; what a scene says in its place is gone.
+    /// Reads the files of `--tf`, `--color-tf` and `--opacity-tf`; what a scene says in their place is gone.
     pub fn inline_file(&mut self) -> Result<(), Error> {
-        let Some(path) = &self.tf else { return Ok(()) };
-        let imported = import_transfer_function(path, None).map_err(|error| Error::Input {
-            path: path.clone(),
-            problem: with_causes(&error.problem),
-        })?;
-        for piece in &imported.left_out {
-            say_aside(&format!("{}: not taken over: {piece}", path.display()));
+        if let Some(path) = &self.tf {
+            let inlined = Inlined::read(path)?;
+            self.transfer_function = Some(inlined.transfer_function);
+            self.transfer_function_of_fractions = inlined.of_fractions.then_some(true);
         }
-        let text = transfer_function_to_json(&imported.function);
-        let value = serde_json::from_str(&text).expect("what we have just written as JSON");
-        self.transfer_function = Some(value);
-        self.transfer_function_of_fractions = (imported.scale == Scale::Fractions).then_some(true);
+        if let Some(path) = &self.color_tf {
+            self.color_function = Some(Inlined::read(path)?);
+        }
+        if let Some(path) = &self.opacity_tf {
+            self.opacity_function = Some(Inlined::read(path)?);
+        }
         Ok(())
     }
 
@@ -80,6 +93,14 @@ impl ClassificationFlags {
             self.preset = None;
             self.transfer_function = None;
             self.transfer_function_of_fractions = None;
+            self.color_function = None;
+            self.opacity_function = None;
+        }
+        if stronger.color_function.is_some() {
+            self.color_function = None;
+        }
+        if stronger.opacity_function.is_some() {
+            self.opacity_function = None;
         }
     }
 
@@ -87,6 +108,8 @@ impl ClassificationFlags {
     pub fn check(&self) -> Result<(), Error> {
         self.window()?;
         self.function_of_file()?;
+        self.part(&self.color_function)?;
+        self.part(&self.opacity_function)?;
         if let Some(name) = &self.preset {
             preset(name).map_err(|problem| Error::usage(problem, "--preset ct-bone"))?;
         }
@@ -102,14 +125,71 @@ impl ClassificationFlags {
 
     /// The function for this volume and what `mode` classifies.
     pub fn classification(&self, volume: &Volume, mode: Mode) -> Result<Classification, Error> {
-        self.classification_of(mode, || Ok(summary(volume)))
+        let found = match self.boundaries(volume, mode)? {
+            Some(function) => Classification::Function(
+                self.with_parts(function, || Ok(Window::of_range(volume.value_range)))?,
+            ),
+            None => self.classification_of(mode, || Ok(summary(volume)))?,
+        };
+        Ok(match found {
+            Classification::Function(function) => {
+                Classification::Function(function.with_steepest(|| steepest_gradient(volume)))
+            }
+            found @ Classification::RangeOfPicture => found,
+        })
+    }
+
+    /// What preset `boundaries` is for this volume; `None` for another one, and where no boundary is found.
+    fn boundaries(&self, volume: &Volume, mode: Mode) -> Result<Option<TransferFunction>, Error> {
+        let preset = self.preset.as_deref().and_then(Preset::from_name);
+        if preset != Some(Preset::Boundaries) {
+            return Ok(None);
+        }
+        refuse_gradients_in(mode)?;
+        let function = boundaries_of(volume);
+        Ok(match self.window()? {
+            Some(window) => function.map(|function| function.spread_over(window)),
+            None => function,
+        })
+    }
+
+    /// `function` with the colours and the opacity of the files that say them; `range` is where points at fractions
+    /// lie without a window.
+    fn with_parts(
+        &self,
+        mut function: TransferFunction,
+        range: impl FnOnce() -> Result<Window, Error>,
+    ) -> Result<TransferFunction, Error> {
+        let parts = [&self.color_function, &self.opacity_function];
+        let any_fractions = parts
+            .iter()
+            .any(|part| part.as_ref().is_some_and(|p| p.of_fractions));
+        let window = match self.window()? {
+            None if any_fractions => Some(range()?),
+            window => window,
+        };
+        let placed = |part: &Option<Inlined>| -> Result<_, Error> {
+            let of_fractions = part.as_ref().is_some_and(|part| part.of_fractions);
+            Ok(self.part(part)?.map(|found| match window {
+                Some(window) if of_fractions => found.of_fractions(window),
+                Some(window) if self.window.is_some() => found.spread_over(window),
+                _ => found,
+            }))
+        };
+        if let Some(color) = placed(&self.color_function)? {
+            function = function.with_color_of(&color);
+        }
+        if let Some(opacity) = placed(&self.opacity_function)? {
+            function = function.with_opacity_of(&opacity);
+        }
+        Ok(function)
     }
 
     /// The same for values that look like `summary`, which is asked for where it decides anything.
     pub fn classification_of(
         &self,
         mode: Mode,
-        summary: impl FnOnce() -> Result<ValueSummary, Error>,
+        mut summary: impl FnMut() -> Result<ValueSummary, Error>,
     ) -> Result<Classification, Error> {
         let window = self.window()?;
         let classified = match mode {
@@ -146,6 +226,11 @@ impl ClassificationFlags {
                 None => automatic(&summary()?, classified, window),
             },
         };
+        let range = || Ok(Window::of_range(summary()?.range));
+        let function = self.with_parts(function, range)?;
+        if function.is_graded() {
+            refuse_gradients_in(mode)?;
+        }
         Ok(Classification::Function(function))
     }
 
@@ -168,12 +253,15 @@ impl ClassificationFlags {
         let Some(value) = &self.transfer_function else {
             return Ok(None);
         };
-        transfer_function_from_json(value.to_string().as_bytes())
-            .map(Some)
-            .map_err(|problem| Error::Input {
-                path: Path::new("the scene's transfer_function").to_owned(),
-                problem: with_causes(&problem),
-            })
+        function_in(value).map(Some)
+    }
+
+    /// The function of a file that gives a part.
+    fn part(&self, part: &Option<Inlined>) -> Result<Option<TransferFunction>, Error> {
+        let part = part
+            .as_ref()
+            .map(|part| function_in(&part.transfer_function));
+        part.transpose()
     }
 }
 

@@ -78,6 +78,17 @@ impl Shown {
     ) -> Result<Self, Error> {
         check(scene, settings.mode)?;
         let (plan, note) = plan(scene, source.header())?;
+        let are_several = !matches!(plan, Plan::One) || scene.labels.labels.is_some();
+        if are_several && !settings.mode.is_projection() && settings.filter.kernel().is_some() {
+            let filter = scene.sampling.filter.unwrap_or_default();
+            return Err(Error::usage(
+                format!(
+                    "{} reads one number a voxel, and several are drawn",
+                    filter.said()
+                ),
+                "--filter linear draws them together",
+            ));
+        }
         if let Some(note) = note {
             progress.note(&note);
         }
@@ -103,6 +114,14 @@ impl Shown {
                     "take one of them: --component 0",
                 ));
             };
+            if let Classification::Function(function) = &shown.classification
+                && function.is_graded()
+            {
+                return Err(Error::usage(
+                    "--labels lies over a volume, and widgets and gradient opacity are for one volume alone",
+                    "leave out --labels, or take a function of the value alone",
+                ));
+            }
             let grid = shown.volume.grid();
             let map = labels::read(scene, &grid, shown.height_factor, progress)?;
             let is_drawn = map.function.opacity.iter().any(|point| point.opacity > 0.0);
@@ -188,11 +207,19 @@ pub fn check(scene: &SceneFlags, mode: Mode) -> Result<(), Error> {
             "leave out --mode or --labels",
         ));
     }
-    let ClassificationFlags { preset, window, .. } = &scene.classification;
+    let ClassificationFlags {
+        preset,
+        window,
+        color_function,
+        opacity_function,
+        ..
+    } = &scene.classification;
     let several = scene.channels.are_given() || scene.input.component == Some(Component::All);
     let one_function = [
         ("--preset", preset.is_some()),
         ("--tf", scene.classification.function_of_file()?.is_some()),
+        ("--color-tf", color_function.is_some()),
+        ("--opacity-tf", opacity_function.is_some()),
         ("--window", window.is_some()),
     ];
     match one_function.into_iter().find(|(_, is_given)| *is_given) {
@@ -340,7 +367,7 @@ impl Reader<'_> {
         let input = &self.scene.input;
         let count = u32::try_from(count).unwrap_or(u32::MAX);
         let held = Held::of(self.scene, count);
-        let source = fitting(source, input, self.device.memory(), held)?;
+        let source = fitting(source, self.scene, self.device.memory(), held)?;
         let (_, note) = input.time(source.header())?;
         input.check_one(source.header())?;
         for note in source.header().notes.iter().chain(&note) {
@@ -353,7 +380,8 @@ impl Reader<'_> {
 /// True where no word says how values are seen.
 fn says_nothing(flags: &ClassificationFlags) -> Result<bool, Error> {
     let of_file = flags.function_of_file()?;
-    Ok(flags.preset.is_none() && of_file.is_none() && flags.window.is_none())
+    let of_parts = flags.color_function.is_some() || flags.opacity_function.is_some();
+    Ok(flags.preset.is_none() && of_file.is_none() && !of_parts && flags.window.is_none())
 }
 
 /// Takes most of its opacity from a volume that labels lie inside of.

@@ -77,7 +77,8 @@ impl<R: Real> Walk<'_, R> {
         let in_slice = |slice| filtered_in_slice(volume, filter, axis, slice, p);
         match filter {
             Filter::Nearest => in_slice(level.nearest(slices)),
-            Filter::Linear => level.linear(slices, in_slice),
+            // Wide filters refuse planes between slices.
+            _ => level.linear(slices, in_slice),
         }
     }
 

@@ -1,0 +1,162 @@
+// Opacity by value and gradient magnitude: the function of the value, weighted by how steep it is, and widgets
+// beside it, emitters of their own that add up their extinction,
+//
+//     alpha = 1 - (1 - opacity(f) share(s)) product of (1 - a_n shape_n(f, s))
+//
+// which is Levoy's way to put contours together (1988, section 3). Shapes and their sources: src/transfer/graded.rs;
+// how they lie in the buffer, and the twin: src/transfer/widgets.rs.
+
+#import frame
+#import opacity
+#import extinction
+#import transfer_{transfer}
+
+struct Widgets {
+    // (1 / steepest, count of shares, count of widgets, 0), shares, four entries a widget, cells of images.
+    d: array<vec4<f32>>,
+}
+
+@group(0) @binding(20) var<storage, read> widgets: Widgets;
+
+const WIDGET_ENTRIES: u32 = 4u;
+
+// False where the gradient makes nothing of the value.
+fn are_widgets() -> bool {
+    let head = widgets.d[0];
+    return head.y + head.z > 0.0;
+}
+
+// What a value is made of where it rises by `magnitude` per world length.
+fn classify_by_gradient(value: f32, magnitude: f32) -> Classified {
+    let material = classify(value);
+    let head = widgets.d[0];
+    let share_count = u32(head.y);
+    let steepness = magnitude * head.x;
+    var sum = material.extinction;
+    if share_count > 0u {
+        let opacity = opacity_over(sum, frame.reference_length);
+        sum = extinction_of(opacity * share_at(share_count, steepness), frame.reference_length);
+    }
+    var light = sum * material.color;
+    for (var i = 0u; i < u32(head.z); i++) {
+        let first = 1u + share_count + WIDGET_ENTRIES * i;
+        let widget = widgets.d[first];
+        let share = widget_share(first, value, magnitude, steepness);
+        let own = extinction_of(widget.y * share, frame.reference_length);
+        light += own * select(material.color, widgets.d[first + 2u].xyz, widget.z != 0.0);
+        sum += own;
+    }
+    if sum == 0.0 {
+        return Classified(vec3(0.0), 0.0);
+    }
+    return Classified(light / sum, sum);
+}
+
+// Between the points that a steepness lies between, constant beyond them.
+fn share_at(count: u32, steepness: f32) -> f32 {
+    var share = widgets.d[1].y;
+    for (var i = 1u; i <= count; i++) {
+        let left = widgets.d[i];
+        if left.x > steepness {
+            break;
+        }
+        share = left.y;
+        if i < count {
+            let right = widgets.d[i + 1u];
+            if right.x > steepness {
+                share = left.y + (steepness - left.x) / (right.x - left.x) * (right.y - left.y);
+            }
+        }
+    }
+    return share;
+}
+
+// What is opaque of the widget that begins at entry `first`.
+fn widget_share(first: u32, value: f32, magnitude: f32, steepness: f32) -> f32 {
+    let widget = widgets.d[first];
+    let n = widgets.d[first + 1u];
+    switch u32(widget.x) {
+        // Contour: value, half-width in smallest spacings.
+        case 0u: {
+            return tent(abs(value - n.x), n.y * frame.smallest_spacing * magnitude);
+        }
+        // One piece of a region: its values, its opacities.
+        case 1u: {
+            if !(n.x <= value && (value < n.y || (widget.w != 0.0 && value <= n.y))) {
+                return 0.0;
+            }
+            var part = 1.0;
+            if n.y > n.x {
+                part = (value - n.x) / (n.y - n.x);
+            }
+            return min(steepness, 1.0) * (n.z + part * (n.w - n.z));
+        }
+        // Triangle: value, half-width at the top, threshold, top.
+        case 2u: {
+            if !(n.z <= steepness && steepness <= n.w) {
+                return 0.0;
+            }
+            return tent(abs(value - n.x), n.y * steepness / n.w);
+        }
+        // Rectangle.
+        case 3u: {
+            return select(0.0, 1.0, is_in_rectangle(n, value, steepness));
+        }
+        // Gaussian: its middle, one over its deviations.
+        case 4u: {
+            let x = (value - n.x) * n.z;
+            let y = (steepness - n.y) * n.w;
+            return exp(-0.5 * (x * x + y * y));
+        }
+        // Image.
+        case 5u: {
+            if !is_in_rectangle(n, value, steepness) {
+                return 0.0;
+            }
+            let at = vec2((value - n.x) / (n.y - n.x), (steepness - n.z) / (n.w - n.z));
+            return image_share(widgets.d[first + 3u].xyz, at);
+        }
+        default: {
+            return 0.0;
+        }
+    }
+}
+
+// (from value, to value, from gradient, to gradient), ends included.
+fn is_in_rectangle(sides: vec4<f32>, value: f32, steepness: f32) -> bool {
+    return sides.x <= value && value <= sides.y && sides.z <= steepness && steepness <= sides.w;
+}
+
+// 1 at no distance, 0 at `reach`.
+fn tent(distance: f32, reach: f32) -> f32 {
+    if distance == 0.0 {
+        return 1.0;
+    }
+    if distance <= reach {
+        return 1.0 - distance / reach;
+    }
+    return 0.0;
+}
+
+// Between the middles of cells, at fractions of an image (first entry, columns, rows).
+fn image_share(image: vec3<f32>, at: vec2<f32>) -> f32 {
+    let last = vec2<i32>(image.yz) - 1;
+    let cell = at * image.yz - 0.5;
+    let below = floor(cell);
+    let part = cell - below;
+    let low = clamp(vec2<i32>(below), vec2(0), last);
+    let high = clamp(vec2<i32>(below) + 1, vec2(0), last);
+    let first = i32(image.x);
+    let columns = last.x + 1;
+    let bottom = between(cell_at(first + low.y * columns + low.x), cell_at(first + low.y * columns + high.x), part.x);
+    let top = between(cell_at(first + high.y * columns + low.x), cell_at(first + high.y * columns + high.x), part.x);
+    return between(bottom, top, part.y);
+}
+
+fn cell_at(entry: i32) -> f32 {
+    return widgets.d[entry].x;
+}
+
+fn between(a: f32, b: f32, part: f32) -> f32 {
+    return a + part * (b - a);
+}
