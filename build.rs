@@ -29,6 +29,11 @@ const NARROW: Slot = ("filter", &["nearest", "linear", "linear_fetch"]);
 const NARROW_FETCHED: Slot = ("filter", &["nearest", "linear_fetch"]);
 const TABLE: Slot = ("transfer", &["table"]);
 const POINTS: Slot = ("transfer", &["points"]);
+/// One number at both ends of a segment. The word is left out of names.
+const SLAB: Slot = ("mix", &["slab"]);
+/// Words that stand in no name.
+const SILENT: &[&str] = &["alone", "slab"];
+const TRANSFER: Slot = ("transfer", &["table", "points"]);
 const HOLES: Slot = ("holes", &["none", "mask"]);
 const LATTICE: Slot = ("lattice", &["ray", "planes"]);
 /// One number a voxel, alone or with its gradient. The word `alone` is left out of names.
@@ -93,6 +98,66 @@ const ENTRIES: &[(&str, &[Slot])] = &[
         ],
     ),
     ("slices_2d_cover", &[]),
+    (
+        "raycast",
+        &[
+            ("mode", &["composite"]),
+            ALONE,
+            ("lattice", &["jitter"]),
+            NARROW,
+            HOLES,
+            TRANSFER,
+        ],
+    ),
+    (
+        "raycast_slab",
+        &[
+            ("mode", &["composite"]),
+            SLAB,
+            ("lattice", &["ray", "planes", "jitter"]),
+            NARROW,
+            HOLES,
+        ],
+    ),
+    (
+        "slices_3d_slab",
+        &[("blend", &["composite"]), SLAB, NARROW, HOLES],
+    ),
+    (
+        "slices_3d_slab",
+        &[
+            ("blend", &["count"]),
+            SLAB,
+            ("filter", &["nearest"]),
+            ("holes", &["none"]),
+        ],
+    ),
+    (
+        "slices_2d_slab",
+        &[("blend", &["composite"]), SLAB, NARROW, HOLES],
+    ),
+    (
+        "slices_2d_slab",
+        &[
+            ("blend", &["count"]),
+            SLAB,
+            ("filter", &["nearest"]),
+            ("holes", &["none"]),
+        ],
+    ),
+    (
+        "slices_2d_smooth",
+        &[("blend", &["composite"]), ALONE, NARROW, HOLES, TRANSFER],
+    ),
+    (
+        "slices_2d_smooth",
+        &[
+            ("blend", &["count"]),
+            ALONE,
+            ("filter", &["nearest"]),
+            ("holes", &["none"]),
+        ],
+    ),
     ("resolve", &[("source", &["picture", "value", "mean"])]),
     ("resolve_cover", &[]),
     ("merge", &[("operator", &["over", "under", "add"])]),
@@ -140,7 +205,7 @@ struct Book {
 
 impl Book {
     fn add(&mut self, file: &str, slots: &[Slot], words: &[&str]) {
-        let named = words.iter().copied().filter(|&word| word != ALONE.1[0]);
+        let named = words.iter().copied().filter(|word| !SILENT.contains(word));
         let name = [file]
             .into_iter()
             .chain(named)

@@ -1,4 +1,5 @@
-// 2D texture slicing, the cover: one rectangle a slice, as large as the enlarged domain.
+// 2D texture slicing, the cover: one rectangle a slice (or a plane, or a slab between planes), as large as the
+// enlarged domain.
 //
 // Seen from inside, both halves of the stack run towards the eye: the instances from `slice_turn` on
 // start again at the other end, so every pixel meets its slices in order.
@@ -27,14 +28,15 @@ fn main(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u3
     // A slice that the eye lies in has no picture of its own, yet every ray has its first sample there: the
     // fragments decide, all of them.
     let eye = vec4(frame.origin, 1.0) * frame.voxel_from_world;
-    if abs(eye[axis] - (f32(slice) + 0.5)) < 0.01 {
+    let height = 0.5 + (f32(slice) + frame.cover_offset) / frame.planes_per_slice;
+    if abs(eye[axis] - height) < frame.cover_eye_reach {
         return Vertex(vec4(2.0 * corners[index] - 1.0, 0.5, 1.0), slice);
     }
     var part = vec3(0.0);
     part[(axis + 1u) % 3u] = corners[index].x;
     part[(axis + 2u) % 3u] = corners[index].y;
     var voxel = mix(frame.cover_min, frame.cover_max, part);
-    voxel[axis] = f32(slice) + 0.5;
+    voxel[axis] = height;
     let world = vec4(voxel, 1.0) * frame.world_from_voxel;
     return Vertex(vec4(world, 1.0) * frame.clip_from_world, slice);
 }

@@ -41,6 +41,13 @@ fn main(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u
     let plane = frame.slice_first + i32(instance) * frame.slice_direction;
     let height = (f32(plane) + 0.5) * frame.step_world;
     var fan = FAN;
+    // A slab around the eye reaches into the picture from a plane behind it.
+    if abs(height - dot(frame.forward, frame.origin)) < frame.cover_eye_reach {
+        // Corners 0 to 3 of the hexagon; the others fall together with the last.
+        let turn = min(fan[corner], 3u);
+        let is_right = turn == 1u || turn == 2u;
+        return Vertex(vec4(select(-1.0, 1.0, is_right), select(-1.0, 1.0, turn >= 2u), 0.5, 1.0), plane);
+    }
     let world = plane_vertex(fan[corner], height);
     return Vertex(vec4(world, 1.0) * frame.clip_from_world, plane);
 }

@@ -119,14 +119,21 @@ impl<'a> Scene<'a> {
     ///
     /// # Errors
     /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`], [`Error::NotMixed`],
-    /// [`Error::NotShaded`], [`Error::NotShadedTogether`], [`Error::NotGraded`], [`Error::NotGradedTogether`] and
-    /// [`Error::FilterAlone`].
+    /// [`Error::NotShaded`], [`Error::NotShadedTogether`], [`Error::NotGraded`], [`Error::NotGradedTogether`],
+    /// [`Error::FilterAlone`] and [`Error::NotFor`].
     pub fn check(&self) -> Result<(), Error> {
         let volumes = self.volumes();
         let (wanted, limit) = (volumes.len(), MAX_CHANNELS as usize);
         let grid = self.volume.grid();
         let has_labels = self.roles().contains(&Role::Labels);
         let Settings { mode, filter, .. } = *self.settings;
+        self.settings.check()?;
+        if self.mix() != Mix::Alone {
+            self.settings.check_mixed()?;
+        }
+        if self.is_graded() {
+            self.settings.check_graded()?;
+        }
         if self.settings.shading.is_some() && mode.is_projection() {
             return Err(Error::NotShaded { mode });
         }

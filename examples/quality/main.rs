@@ -6,13 +6,20 @@
 //! ```
 
 mod filters;
+mod popping;
+mod studio;
+mod wood_grain;
 
 use std::error::Error;
 
 /// Prints one table.
 type Table = fn() -> Result<(), Box<dyn Error>>;
 
-const TABLES: &[(&str, Table)] = &[("filters", filters::print)];
+const TABLES: &[(&str, Table)] = &[
+    ("filters", filters::print),
+    ("popping", popping::print),
+    ("wood-grain", wood_grain::print),
+];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let wanted: Vec<String> = std::env::args().skip(1).collect();

@@ -84,6 +84,17 @@ struct Frame {
     channel_opacity_point_count: vec4<u32>,
     channel_interpolation_is_step: vec4<u32>,
     channel_reference_length: vec4<f32>,
+    // The table of pre-integrated classification.
+    slab_first: f32,
+    slab_scale: f32,
+    slab_count: u32,
+    // Planes of a 2D stack for each of its slices, and where a cover lies between one plane and the next.
+    planes_per_slice: f32,
+    cover_offset: f32,
+    // Covers that lie so near the eye are the whole picture: voxels along a stack, world length for planes.
+    cover_eye_reach: f32,
+    // By how much the pattern of jittered rays is moved, in parts of 2^32.
+    jitter: u32,
     // Light: no lights, no shading. The way to each light is a unit vector of world space; w is not 0 for one
     // that shines along the pixel's ray.
     light_directions: array<vec4<f32>, MAX_LIGHTS>,

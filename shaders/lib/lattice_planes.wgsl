@@ -15,7 +15,7 @@ struct Segment {
 }
 
 // One plane more at each end: rounding may not lose one, and `segment_of` has the last word.
-fn lattice_of(world: Ray, interval: vec2<f32>) -> Lattice {
+fn lattice_of(world: Ray, interval: vec2<f32>, pixel: vec2<f32>) -> Lattice {
     let origin = dot(frame.forward, world.origin);
     let slope = dot(frame.forward, world.direction);
     let first = i32(floor((origin + interval.x * slope) / frame.step_world - 0.5));

@@ -15,7 +15,7 @@ struct Segment {
     length: f32,
 }
 
-fn lattice_of(world: Ray, interval: vec2<f32>) -> Lattice {
+fn lattice_of(world: Ray, interval: vec2<f32>, pixel: vec2<f32>) -> Lattice {
     let full = floor((interval.y - interval.x) / frame.step_world);
     return Lattice(0, i32(full) + 1, interval.x, interval.y);
 }

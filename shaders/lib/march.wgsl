@@ -20,7 +20,7 @@ fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
     if !(interval.x < interval.y && inside.x < inside.y) || is_finished(before) {
         return so_far;
     }
-    let lattice = lattice_of(world, interval);
+    let lattice = lattice_of(world, interval, pixel);
     let first = max(lattice.first, i32(floor(index_at(lattice, world, inside.x))) - 1);
     let end = min(lattice.first + lattice.count, i32(ceil(index_at(lattice, world, inside.y))) + 2);
     for (var k = first; k < end; k++) {

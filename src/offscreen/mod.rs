@@ -3,6 +3,7 @@
 //! The only place that submits and waits.
 
 mod denoise;
+mod fade;
 mod passes;
 pub mod reference;
 mod renderer;

@@ -1,5 +1,8 @@
 //! A scene to a picture on the CPU: every technique by its twin, in f32 or f64, no Vulkan anywhere.
 
+mod slabs;
+
+use super::fade::{faded, stacks_of};
 use super::sum::sum_of;
 use crate::picture::{Layer, LayerKind, Picture};
 use crate::ray::pixel_ray;
@@ -8,6 +11,7 @@ use crate::resolve::reference::{premultiplied, projected_value};
 use crate::scene::{Beside, Scene, positions_in_pixel};
 use crate::shaders::Frame;
 use crate::technique::blend::{Fragment, blend, blend_material, clear_color};
+use crate::technique::composite::Composite;
 use crate::technique::gradient::gradient_of;
 use crate::technique::mixture::{color_of, colored, mixed};
 use crate::technique::shading::shade;
@@ -15,8 +19,8 @@ use crate::technique::{
     Error, Filter, Mix, Mode, Recording, Role, Technique, projection, raycast, slices_2d, slices_3d,
 };
 use crate::transfer::{
-    Absorption, Classified, PackedWidgets, Points, Table, TransferFunction, Window,
-    classify_by_gradient, classify_by_points, classify_by_table,
+    Absorption, Classified, PackedWidgets, Points, SlabTable, Table, TransferFunction, Window,
+    classify_by_gradient, classify_by_points, classify_by_table, classify_slab,
 };
 use crate::volume::kernel::{convolved, convolved_in_slice};
 use crate::volume::sample::{linear, linear_in_slice, nearest};
@@ -37,6 +41,13 @@ struct Gathered<R> {
 /// Those of the parameters, too many samples or clip planes, and of volumes that cannot be put together.
 pub fn render<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     scene.check()?;
+    let stacks = stacks_of(scene);
+    if !stacks.is_empty() {
+        return faded(stacks.iter().map(|(settings, share)| {
+            let picture = render_one::<R>(&Scene { settings, ..*scene })?;
+            Ok((picture, *share))
+        }));
+    }
     if scene.mix() == Mix::Channels && scene.settings.mode.is_projection() {
         let pictures = scene.projected().into_iter();
         return sum_of(pictures.map(|one| render_one::<R>(&one)));
@@ -142,6 +153,8 @@ struct Walk<'a, R> {
 enum Classifier {
     Table(Table),
     Points(Points),
+    /// The same table in both, with the integrals of slabs.
+    Slabs(SlabTable),
 }
 
 impl<'a, R: Real> Walk<'a, R> {
@@ -158,7 +171,9 @@ impl<'a, R: Real> Walk<'a, R> {
             let function = function.ok_or(Error::NoTransferFunction)?;
             let reference_length = scene.length_of(function);
             let absorption = Absorption::Extinction { reference_length };
-            Ok(if scene.settings.conformance {
+            Ok(if scene.settings.preintegrated {
+                Classifier::Slabs(SlabTable::new(function, absorption, space))
+            } else if scene.settings.conformance {
                 Classifier::Points(Points::new(function, absorption, space))
             } else {
                 Classifier::Table(Table::new(function, absorption, space))
@@ -254,6 +269,9 @@ impl<'a, R: Real> Walk<'a, R> {
     /// Emission and absorption of what the volumes are made of together.
     fn composite(&self, pixel: [R; 2]) -> Gathered<R> {
         let settings = self.scene.settings;
+        if settings.preintegrated {
+            return self.composite_slabs(pixel);
+        }
         let ray_direction = pixel_ray(&self.frame, pixel).direction;
         let material_at = |p| {
             let look = |volume: &_, filter, step| filtered(volume, filter, moved(p, step));
@@ -264,21 +282,17 @@ impl<'a, R: Real> Walk<'a, R> {
         };
         match settings.technique {
             Technique::Raycast => {
-                let (found, samples) = raycast::reference::radiance(
+                let found = raycast::reference::radiance(
                     &self.frame,
                     settings.lattice,
                     pixel,
                     material_at,
                     |material| material,
                 );
-                let [r, g, b] = found.color;
-                Gathered {
-                    accumulation: [r, g, b, R::from_f64(1.0) - found.transmittance],
-                    depth: found.depth,
-                    samples,
-                }
+                gathered(found)
             }
             Technique::Slices3d => self.blend_all(|i| self.on_plane(pixel, i, material_at), blend),
+            Technique::Slices2d if settings.smooth => self.composite_between(pixel),
             Technique::Slices2d => {
                 let material_at = |axis, slice: u32, p| {
                     let look = |volume: &Volume, filter, step: [i32; 3]| {
@@ -352,8 +366,11 @@ impl<'a, R: Real> Walk<'a, R> {
         instance: u32,
         value_at: impl Fn([R; 3]) -> Option<V>,
     ) -> Option<Option<Fragment<R, V>>> {
-        let plane = self.frame.slice_first + instance as i32 * self.frame.slice_direction;
-        slices_3d::reference::fragment(&self.frame, pixel, plane, value_at)
+        slices_3d::reference::fragment(&self.frame, pixel, self.plane_of(instance), value_at)
+    }
+
+    fn plane_of(&self, instance: u32) -> i32 {
+        self.frame.slice_first + instance as i32 * self.frame.slice_direction
     }
 
     /// The same on the slice of a stack, which is slice number so much of an axis.
@@ -394,7 +411,17 @@ impl<'a, R: Real> Walk<'a, R> {
         match &self.classifiers[channel] {
             Classifier::Table(table) => classify_by_table(table, value),
             Classifier::Points(points) => classify_by_points(points, value),
+            Classifier::Slabs(slabs) => classify_slab(slabs, value, value),
         }
+    }
+}
+
+fn gathered<R: Real>((found, samples): (Composite<R>, u32)) -> Gathered<R> {
+    let [r, g, b] = found.color;
+    Gathered {
+        accumulation: [r, g, b, R::from_f64(1.0) - found.transmittance],
+        depth: found.depth,
+        samples,
     }
 }
 

@@ -8,6 +8,7 @@
 //! ```
 
 use super::Error;
+use super::fade::{render_faded, stacks_of};
 use super::passes::Passes;
 use super::submission::{self, Submission};
 use super::sum::sum_of;
@@ -75,6 +76,7 @@ struct Uploaded {
     functions: Vec<TransferFunction>,
     space: ColorSpace,
     made: GpuTransfer,
+    is_preintegrated: bool,
 }
 
 impl<'v> Renderer<'v> {
@@ -121,6 +123,9 @@ impl<'v> Renderer<'v> {
     /// Where something is over a limit of the device.
     pub fn upload(&mut self, scene: &Scene) -> Result<(), Error> {
         scene.check()?;
+        for (settings, _) in &stacks_of(scene) {
+            self.upload(&Scene { settings, ..*scene })?;
+        }
         let copied = Copied::of(scene);
         if !self.resident.contains_key(&copied) {
             let Copied { layout, spline } = copied;
@@ -136,6 +141,10 @@ impl<'v> Renderer<'v> {
     /// Parameters out of range, a limit of the device, a layer that the technique does not have.
     pub fn render(&mut self, scene: &Scene, layers: &[LayerKind]) -> Result<Rendered, Error> {
         check_layers(scene, layers)?;
+        let stacks = stacks_of(scene);
+        if !stacks.is_empty() {
+            return render_faded(self, scene, layers, &stacks);
+        }
         self.upload(scene)?;
         let mut clock = Clock(self.timer.is_some().then_some(0.0));
         if scene.mix() == Mix::Channels && scene.settings.mode.is_projection() {
@@ -233,22 +242,35 @@ impl<'v> Renderer<'v> {
         scene: &Scene,
         functions: &[&TransferFunction],
     ) -> Result<(), Error> {
-        let space = scene.settings.color_space;
+        let Settings {
+            color_space: space,
+            preintegrated: is_preintegrated,
+            ..
+        } = *scene.settings;
         let is_there = |there: &Uploaded| {
-            there.functions.iter().eq(functions.iter().copied()) && there.space == space
+            there.functions.iter().eq(functions.iter().copied())
+                && there.space == space
+                && there.is_preintegrated == is_preintegrated
         };
         if self.transfer.as_ref().is_some_and(is_there) {
             return Ok(());
         }
         let with_length = functions.iter().map(|&f| (f, scene.length_of(f)));
         let with_length: Vec<_> = with_length.collect();
-        let made = GpuTransfer::several(self.device.gpu(), &with_length, space)?;
+        let gpu = self.device.gpu();
+        let made = match with_length[..] {
+            [(function, length)] if is_preintegrated => {
+                GpuTransfer::preintegrated(gpu, function, length, space)?
+            }
+            _ => GpuTransfer::several(gpu, &with_length, space)?,
+        };
         // SAFETY: recorded outside rendering; `run` waits, and `made` lives meanwhile.
         self.device.run(|cmd| unsafe { made.record_upload(cmd) })?;
         self.transfer = Some(Uploaded {
             functions: functions.iter().copied().cloned().collect(),
             space,
             made,
+            is_preintegrated,
         });
         Ok(())
     }

@@ -4,6 +4,7 @@
 //! reaches the memory, written at once); nothing here submits or waits.
 
 mod bricks;
+mod slabs;
 mod texel;
 mod transfer;
 mod upload;

@@ -1,12 +1,15 @@
 //! A transfer function on the device: a table for speed, its control points for exactness.
 
+use super::slabs::GpuSlabs;
 use crate::gpu::{
     Buffer, Error, Gpu, Image, ImageDesc, ImageKind, Memory, Region, Use, buffer_to_image,
     image_barrier,
 };
 use crate::picture::ColorSpace;
 use crate::shaders::TABLE_WIDTH;
-use crate::transfer::{Absorption, Interpolation, PackedWidgets, Points, Table, TransferFunction};
+use crate::transfer::{
+    Absorption, Interpolation, PackedWidgets, Points, SlabTable, Table, TransferFunction,
+};
 use ash::vk;
 use std::sync::Arc;
 
@@ -24,6 +27,10 @@ pub struct TransferLayout {
     /// Where the table begins in a texture of several, and the points in a list of several.
     pub table_row: u32,
     pub point_first: u32,
+    /// As those of the table, for the integrals of slabs; 0 without them.
+    pub slab_first: f32,
+    pub slab_scale: f32,
+    pub slab_count: u32,
 }
 
 /// One transfer function, or several of which each has a table of its own. The points are there at once; [`GpuTransfer::record_upload`] fills the table.
@@ -34,6 +41,7 @@ pub struct GpuTransfer {
     table: Image,
     staging: Buffer,
     points: Buffer,
+    slabs: Option<GpuSlabs>,
     widgets: Buffer,
 }
 
@@ -80,6 +88,9 @@ impl GpuTransfer {
                 reference_length: length as f32,
                 table_row: (entries.len() / width) as u32,
                 point_first: points.len() as u32,
+                slab_first: 0.0,
+                slab_scale: 0.0,
+                slab_count: 0,
             });
             entries.extend_from_slice(&table.entries);
             entries.resize(entries.len().next_multiple_of(width), [0.0; 4]);
@@ -105,8 +116,29 @@ impl GpuTransfer {
             table: Image::new(gpu, &desc)?,
             staging: filled(gpu, &entries, copied, "transfer staging")?,
             points: filled(gpu, &points, read, "transfer points")?,
+            slabs: None,
             widgets: filled(gpu, &widgets, read, "transfer widgets")?,
         })
+    }
+
+    /// As [`GpuTransfer::new`], with the integrals that pre-integrated classification reads.
+    ///
+    /// # Errors
+    /// Where the device gives no memory.
+    pub fn preintegrated(
+        gpu: &Arc<Gpu>,
+        function: &TransferFunction,
+        reference_length: f64,
+        space: ColorSpace,
+    ) -> Result<Self, Error> {
+        let mut made = Self::new(gpu, function, reference_length, space)?;
+        let absorption = Absorption::Extinction { reference_length };
+        let slabs = SlabTable::new(function, absorption, space);
+        let layout = &mut made.layouts[0];
+        (layout.slab_first, layout.slab_scale) = (slabs.first, slabs.scale);
+        layout.slab_count = slabs.cells.len() as u32;
+        made.slabs = Some(GpuSlabs::new(gpu, &slabs)?);
+        Ok(made)
     }
 
     /// How table and points of the (first) function are to be read.
@@ -122,6 +154,11 @@ impl GpuTransfer {
     /// The table, in [`Use::Sampled`] after the upload.
     pub fn table(&self) -> &Image {
         &self.table
+    }
+
+    /// The integrals, where it was made with them; in [`Use::Sampled`] after the upload.
+    pub fn slab_table(&self) -> Option<&Image> {
+        self.slabs.as_ref().map(|slabs| &slabs.table)
     }
 
     /// The control points.
@@ -160,12 +197,15 @@ impl GpuTransfer {
                 Use::TransferWrite,
                 Use::Sampled,
             );
+            if let Some(slabs) = &self.slabs {
+                slabs.record_upload(&self.gpu, cmd)?;
+            }
         }
         Ok(())
     }
 }
 
-fn filled(
+pub(super) fn filled(
     gpu: &Arc<Gpu>,
     entries: &[[f32; 4]],
     usage: vk::BufferUsageFlags,

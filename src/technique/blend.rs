@@ -8,7 +8,7 @@
 //!
 //! All colours are premultiplied (Porter and Duff 1984); `algorithms.md` 1.6.
 
-use super::{Mode, Order, Words};
+use super::{Mode, Order, Take, Words};
 use crate::gpu::Blend;
 use crate::real::Real;
 use crate::transfer::opacity_over;
@@ -39,10 +39,15 @@ impl Drawn {
             holes,
             transfer,
             mix,
+            take,
             ..
         } = words;
         let mix = mix.word();
+        let slicer = format!("{slicer}{}", take.word());
         match self {
+            Self::Picture(Mode::Composite) if *take == Take::Slab => {
+                format!("{slicer}.composite.{filter}.{holes}")
+            }
             Self::Picture(Mode::Composite) => {
                 format!("{slicer}.composite{mix}.{filter}.{holes}.{transfer}")
             }

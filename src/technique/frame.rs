@@ -77,8 +77,10 @@ impl View<'_> {
         let rays = self.rays();
         let world_from_voxel = self.world_from_voxel();
         let [domain_min, domain_max] = self.domain();
+        self.settings.check()?;
         self.check_sample_count(&world_from_voxel)?;
-        let margin = self.cover_margin(&rays, &world_from_voxel);
+        let reach = self.cover_reach();
+        let margin = self.cover_margin(&rays, &world_from_voxel) + reach.voxels;
         let (clip_planes, clip_plane_count) = self.clip_planes()?;
         let v = |v: DVec3| v.as_vec3().to_array();
         let forward_voxel = world_from_voxel.matrix3.transpose() * rays.forward;
@@ -149,6 +151,13 @@ impl View<'_> {
             channel_opacity_point_count: [0; 4],
             channel_interpolation_is_step: [0; 4],
             channel_reference_length: [0.0; 4],
+            slab_first: transfer.slab_first,
+            slab_scale: transfer.slab_scale,
+            slab_count: transfer.slab_count,
+            planes_per_slice: 1.0,
+            cover_offset: 0.0,
+            cover_eye_reach: reach.eye,
+            jitter: self.jitter(),
             kernel: kernel_number(self.settings.filter),
             extreme_sign: extreme_sign(self.settings.mode),
             light_directions: [[0.0; 4]; MAX_LIGHTS as usize],
@@ -165,6 +174,19 @@ impl View<'_> {
             set_shading(shading, self.settings.color_space, &mut fields)?;
         }
         Ok(fields)
+    }
+
+    /// What the pattern of jittered rays is moved by: another number for each ray of a pixel.
+    fn jitter(&self) -> u32 {
+        let super::Jitter { seed, frame } = self.settings.jitter;
+        // Steps of the golden ratio are far apart for any run of pictures.
+        const GOLDEN: u32 = 2_654_435_769;
+        let scattered = |x: u64| x.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
+        let seed = scattered(seed.into()) as u32;
+        let in_pixel = self.in_pixel.map(|x| (x * 4096.0).round() as i64 as u64);
+        let ray = scattered(scattered(in_pixel[0]) ^ in_pixel[1]) as u32;
+        seed.wrapping_add(frame.wrapping_mul(GOLDEN))
+            .wrapping_add(ray)
     }
 
     /// Narrows the parameters to one of several bricks. `is_first`: no nearer one has been recorded.

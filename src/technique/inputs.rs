@@ -44,6 +44,8 @@ impl Inputs<'_> {
         if let Some(transfer) = self.transfer {
             given.push(("transfer_table", Resource::sampled(transfer.table())));
             given.push(("points", Resource::Storage(transfer.points())));
+            let slabs = transfer.slab_table().map(Resource::sampled);
+            given.extend(slabs.map(|table| ("slab_table", table)));
             given.push(("widgets", Resource::Storage(transfer.widgets())));
         }
         given.extend_from_slice(outputs);
@@ -90,6 +92,30 @@ pub struct Words {
     pub transfer: &'static str,
     /// How several volumes go together, or whether the gradient of one counts.
     pub mix: Mix,
+    /// What a sample is.
+    pub take: Take,
+}
+
+/// What a sample is: a point of a ray, or a piece of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Take {
+    /// A point.
+    Point,
+    /// A point on a plane between the slices of a stack.
+    Between,
+    /// A piece, by the values at its two ends.
+    Slab,
+}
+
+impl Take {
+    /// Its part of a shader's name.
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Self::Point => "",
+            Self::Between => "_smooth",
+            Self::Slab => "_slab",
+        }
+    }
 }
 
 impl Words {
@@ -120,6 +146,12 @@ impl Words {
             lattice: match settings.lattice {
                 Lattice::Ray => "ray",
                 Lattice::Planes => "planes",
+                Lattice::Jitter => "jitter",
+            },
+            take: match settings.preintegrated {
+                true => Take::Slab,
+                false if settings.smooth => Take::Between,
+                false => Take::Point,
             },
             transfer: if settings.conformance {
                 "points"

@@ -13,13 +13,14 @@ pub mod projection;
 pub mod raycast;
 mod recording;
 pub mod shading;
+mod slab;
 mod slicer;
 pub mod slices_2d;
 pub mod slices_3d;
 
 pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 pub use frame::View;
-pub use inputs::{Inputs, Words};
+pub use inputs::{Inputs, Take, Words};
 pub use mixture::{Mix, Part, Role};
 pub use recording::{Recording, parameter_ring};
 pub use shading::{Light, Shading};
@@ -104,6 +105,18 @@ pub enum Lattice {
     Ray,
     /// Where the ray meets the planes that a view-aligned slicer draws.
     Planes,
+    /// Equal steps, of which the first is cut short by a part that hangs on the pixel ([`Jitter`]): grain in place
+    /// of bands. Compositing by ray casting only.
+    Jitter,
+}
+
+/// What moves the pattern of [`Lattice::Jitter`]: same numbers, same picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Jitter {
+    /// Another pattern.
+    pub seed: u32,
+    /// The number of the picture in a film.
+    pub frame: u32,
 }
 
 /// In which order a slicer blends.
@@ -135,8 +148,17 @@ pub struct Settings {
     pub filter: Filter,
     /// Which samples the ray caster takes.
     pub lattice: Lattice,
+    /// What moves the pattern of [`Lattice::Jitter`].
+    pub jitter: Jitter,
     /// How slicers blend.
     pub order: Order,
+    /// Which of the three stacks 2D slicing draws; `None`: the one that faces the eye most.
+    pub stack: Option<usize>,
+    /// 2D stacks with slices interpolated between their own, so that samples keep their distance, and a cross-fade
+    /// of both stacks ([`slices_2d::stack_shares`]) where the eye changes from one to the other.
+    pub smooth: bool,
+    /// Composite: what lies between two samples counts, and not only the samples ([`crate::transfer::SlabTable`]).
+    pub preintegrated: bool,
     /// Samples per smallest voxel spacing; positive. 2D stacks have one a slice.
     pub samples_per_voxel: f64,
     /// Rays per pixel is the square of this; at least 1.
@@ -185,6 +207,26 @@ pub enum Error {
     NotMixed {
         /// The mode.
         mode: Mode,
+    },
+    /// A way to sample that not all techniques and modes have.
+    #[error("{wanted} is for {of}, not for {found}")]
+    NotFor {
+        /// What was asked for.
+        wanted: &'static str,
+        /// What has it.
+        of: &'static str,
+        /// What has not.
+        found: String,
+    },
+    /// The ends of a slab lie in voxels that its brick does not hold.
+    #[error(
+        "the volume lies in bricks, and pre-integrated samples reach {reach:.1} voxels beyond theirs, the limit is {limit}: take more samples per voxel"
+    )]
+    SlabsTooLong {
+        /// Voxels.
+        reach: f64,
+        /// What bricks hold.
+        limit: f64,
     },
     /// Volumes that are mixed lie on one grid.
     #[error("the volumes to be mixed lie on different grids, or in different bricks")]
@@ -275,6 +317,91 @@ impl Mode {
     }
 }
 
+impl Settings {
+    /// Whether technique and mode have the ways to sample that are asked for.
+    ///
+    /// # Errors
+    /// [`Error::NotFor`].
+    pub fn check(&self) -> Result<(), Error> {
+        let (mode, technique) = (self.mode, self.technique);
+        let of_mode = |is_on: bool, wanted| match is_on && mode.is_projection() {
+            true => Err(Error::NotFor {
+                wanted,
+                of: "composite",
+                found: format!("{mode:?}"),
+            }),
+            false => Ok(()),
+        };
+        let of_technique = |is_on: bool, wanted, right, of| match is_on && technique != right {
+            true => Err(Error::NotFor {
+                wanted,
+                of,
+                found: format!("{technique:?}"),
+            }),
+            false => Ok(()),
+        };
+        let is_jittered = self.lattice == Lattice::Jitter;
+        of_mode(self.preintegrated, PREINTEGRATED)?;
+        of_technique(self.smooth, SMOOTH, Technique::Slices2d, "2D stacks")?;
+        of_mode(self.smooth, SMOOTH)?;
+        of_technique(is_jittered, JITTER, Technique::Raycast, "ray casting")?;
+        of_mode(is_jittered, JITTER)?;
+        if self.shading.is_some() {
+            self.refuse_way("samples without light", "shaded ones")?;
+        }
+        if self.filter.kernel().is_some() {
+            let found = format!("{:?}", self.filter);
+            self.refuse_way("nearest and linear filters", &found)?;
+        }
+        Ok(())
+    }
+
+    /// A way to sample of its own that is asked for.
+    fn way(&self) -> Option<&'static str> {
+        let ways = [
+            (self.preintegrated, PREINTEGRATED),
+            (self.smooth, SMOOTH),
+            (self.lattice == Lattice::Jitter, JITTER),
+        ];
+        ways.into_iter()
+            .find_map(|(is_on, name)| is_on.then_some(name))
+    }
+
+    /// The same for several volumes.
+    ///
+    /// # Errors
+    /// [`Error::NotFor`].
+    pub(crate) fn check_mixed(&self) -> Result<(), Error> {
+        self.refuse_way("one volume of numbers", "several that are mixed")
+    }
+
+    /// The same for functions of gradients.
+    ///
+    /// # Errors
+    /// [`Error::NotFor`].
+    pub(crate) fn check_graded(&self) -> Result<(), Error> {
+        self.refuse_way(
+            "functions of the value alone",
+            "one of the value and its gradient",
+        )
+    }
+
+    fn refuse_way(&self, of: &'static str, found: &str) -> Result<(), Error> {
+        match self.way() {
+            Some(wanted) => Err(Error::NotFor {
+                wanted,
+                of,
+                found: found.to_owned(),
+            }),
+            None => Ok(()),
+        }
+    }
+}
+
+const PREINTEGRATED: &str = "pre-integrated classification";
+const SMOOTH: &str = "interpolation between slices";
+const JITTER: &str = "jitter";
+
 impl Default for Settings {
     fn default() -> Self {
         Self {
@@ -282,7 +409,11 @@ impl Default for Settings {
             mode: Mode::default(),
             filter: Filter::default(),
             lattice: Lattice::default(),
+            jitter: Jitter::default(),
             order: Order::default(),
+            stack: None,
+            smooth: false,
+            preintegrated: false,
             samples_per_voxel: 1.0,
             rays_per_side: 1,
             termination: 0.0,

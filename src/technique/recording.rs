@@ -39,8 +39,8 @@ impl View<'_> {
     /// from front to back, slicers as they blend.
     ///
     /// # Errors
-    /// [`Error::WrongLayout`], [`Error::WrongCoefficients`], [`Error::TooManySamples`] and
-    /// [`Error::TooManyClipPlanes`].
+    /// [`Error::WrongLayout`], [`Error::WrongCoefficients`], [`Error::TooManySamples`],
+    /// [`Error::TooManyClipPlanes`], [`Error::NotFor`] and [`Error::SlabsTooLong`].
     pub fn recordings(
         &self,
         volume: &GpuVolume,
@@ -67,8 +67,12 @@ impl View<'_> {
         let layout = transfer.map_or_else(TransferLayout::default, |t| *t.layout());
         let mut fields = self.fields(&volume.texel().coding, &layout)?;
         set_channels(parts, transfer, &mut fields)?;
+        if parts.len() > 1 {
+            self.settings.check_mixed()?;
+        }
         fields.flat_gradient = self.flat_gradient(volume.value_range());
         let cells: Vec<_> = volume.bricks().iter().map(|brick| brick.cell).collect();
+        self.check_slabs(&cells)?;
         let mut order = self.front_to_back(&cells);
         let settings = self.settings;
         if settings.technique != Technique::Raycast && settings.order == Order::BackToFront {
@@ -113,7 +117,10 @@ impl View<'_> {
         let slices = match self.settings.technique {
             Technique::Raycast => 0,
             Technique::Slices3d => set_planes(self, part, &mut fields),
-            Technique::Slices2d => set_slices(self, stack_axis(self), part, &mut fields),
+            Technique::Slices2d => {
+                self.set_between(&mut fields);
+                set_slices(self, stack_axis(self), part, &mut fields)
+            }
         };
         Recording {
             brick,

@@ -40,9 +40,39 @@ pub struct Table {
     pub off_by: f64,
 }
 
-impl Table {
-    /// The table of `function`.
-    pub fn new(function: &TransferFunction, absorption: Absorption, space: ColorSpace) -> Self {
+/// How values are cut into cells.
+pub(super) struct Cut {
+    /// Where cell 0 begins.
+    pub first: f64,
+    /// A power of two.
+    pub width: f64,
+    /// A power of two.
+    pub count: usize,
+    off_by: f64,
+}
+
+/// Cells of a function that jumps where no cell of its table begins.
+const SLAB_CELLS: usize = 65_536;
+
+impl Cut {
+    /// The cut of a table of single values.
+    fn new(function: &TransferFunction) -> Self {
+        Self::with(function, |_| false)
+    }
+
+    /// That of a table of integrals.
+    pub(super) fn for_slabs(function: &TransferFunction) -> Self {
+        let is_coarse = |cells: f64| cells * 2.0 < SLAB_CELLS as f64;
+        let jumps = jumps(function);
+        let plain = Self::new(function);
+        match jumps.iter().all(|jump| (jump / plain.width).fract() == 0.0) {
+            true => plain,
+            false => Self::with(function, is_coarse),
+        }
+    }
+
+    /// As wide as the tolerance allows, but not while `is_coarse` says so of the cells over the span.
+    fn with(function: &TransferFunction, is_coarse: impl Fn(f64) -> bool) -> Self {
         let limit = f64::from(f32::MAX);
         let values = || {
             let color = function.color.iter().map(|p| p.value);
@@ -62,7 +92,7 @@ impl Table {
             power_of_two_at_or_above((end - start) / (MAX_ENTRIES - 4) as f64).max(finest);
         let largest = power_of_two_at_or_above((end - start) / MIN_ENTRIES as f64).max(smallest);
         let off_by = |w: f64| slope * w * CELLS_OFF;
-        let fits = |w: f64| off_by(w) <= TOLERANCE;
+        let fits = |w: f64| off_by(w) <= TOLERANCE && !is_coarse((end - start) / w);
         let on_borders = |w: f64| jumps.iter().all(|&jump| (jump / w).fract() == 0.0);
         let widths = || {
             std::iter::successors(Some(largest), |w| Some(w / 2.0)).take_while(|&w| w >= smallest)
@@ -74,7 +104,24 @@ impl Table {
 
         let first = (start / width).floor() * width - width;
         let wanted = ((end - first) / width).floor() as usize + 1;
-        let count = wanted.next_power_of_two().clamp(MIN_ENTRIES, MAX_ENTRIES);
+        Self {
+            first,
+            width,
+            count: wanted.next_power_of_two().clamp(MIN_ENTRIES, MAX_ENTRIES),
+            off_by: off_by(width),
+        }
+    }
+}
+
+impl Table {
+    /// The table of `function`.
+    pub fn new(function: &TransferFunction, absorption: Absorption, space: ColorSpace) -> Self {
+        let Cut {
+            first,
+            width,
+            count,
+            off_by,
+        } = Cut::new(function);
         let entries = (0..count).map(|i| {
             let value = first + (i as f64 + 0.5) * width;
             let [r, g, b] = function.color(value, space);
@@ -84,7 +131,7 @@ impl Table {
             entries: entries.collect(),
             first: first as f32,
             scale: (1.0 / width) as f32,
-            off_by: off_by(width),
+            off_by,
         }
     }
 }

@@ -15,11 +15,6 @@ fn a_word_that_is_not_built_exits_2_and_is_named() {
             "`--gradient-filter`",
         ),
         (
-            "render phantom:fog -o a.png --preintegrated",
-            "`--preintegrated`",
-        ),
-        ("render phantom:fog -o a.png --smooth", "`--smooth`"),
-        (
             "render phantom:fog -o a.exr --aov position",
             "`--aov position`",
         ),
@@ -185,4 +180,20 @@ fn a_step_beyond_the_limit_is_refused_with_a_hint_but_not_in_stacks_that_ignore_
     let plain = "render phantom:fog,n=8 --size 8x8 --device reference --technique slices-2d";
     folder.run(&format!("{plain} -o c.png")).assert_done();
     folder.run("compare b.png c.png --at-most 0").assert_done();
+}
+
+/// A way to sample that technique or mode lack: said before anything is read, and where it would be right.
+#[test]
+fn ways_to_sample_are_refused_where_there_are_none() {
+    let folder = Folder::new();
+    for (words, named) in [
+        ("--mode mip --preintegrated", "pre-integrated"),
+        ("--smooth", "between slices"),
+        ("--technique slices-3d --jitter", "jitter"),
+        ("--jitter --lattice planes", "--lattice planes"),
+    ] {
+        folder
+            .run(&format!("render phantom:fog -o a.png {words}"))
+            .assert_refused(2, &[named, "hint"]);
+    }
 }

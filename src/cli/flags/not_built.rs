@@ -10,10 +10,6 @@ pub struct NotBuilt {
     iso: Option<String>,
     #[arg(long, value_name = "FILTER", help_heading = HEADING)]
     gradient_filter: Option<String>,
-    #[arg(long, help_heading = HEADING)]
-    preintegrated: bool,
-    #[arg(long, help_heading = HEADING)]
-    smooth: bool,
 }
 
 /// Under which these stand in `--help`.
@@ -25,8 +21,6 @@ impl NotBuilt {
         let given = [
             ("--iso", self.iso.as_deref()),
             ("--gradient-filter", self.gradient_filter.as_deref()),
-            ("--preintegrated", self.preintegrated.then_some("")),
-            ("--smooth", self.smooth.then_some("")),
         ];
         match given
             .into_iter()

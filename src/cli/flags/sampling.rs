@@ -7,7 +7,7 @@ use super::{
 use crate::{
     picture::ColorSpace,
     shaders::MAX_CLIP_PLANES,
-    technique::{ClipPlane, Settings},
+    technique::{ClipPlane, Jitter, Lattice, Settings},
 };
 use clap::Args;
 use glam::DVec3;
@@ -33,6 +33,18 @@ pub struct SamplingFlags {
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lattice: Option<LatticeWord>,
+    /// What lies between two samples counts: no bands where the transfer function is steep
+    #[arg(long)]
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub preintegrated: bool,
+    /// 2D stacks: slices interpolated between those of the volume, and a cross-fade from stack to stack
+    #[arg(long)]
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub smooth: bool,
+    /// Rays: steps begin elsewhere in each pixel, which turns bands into grain; another number, another pattern
+    #[arg(long, value_name = "SEED", num_args = 0..=1, default_missing_value = "0", require_equals = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub jitter: Option<u32>,
     /// How slicers blend [default: back-to-front]
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -76,6 +88,9 @@ pub enum Depth {
 const TERMINATION_LINEAR: f32 = 1.0 / 8192.0;
 /// Early termination of an 8-bit picture in display space.
 const TERMINATION_DISPLAY: f32 = 1.0 / 512.0;
+/// Which ways to sample go with which technique.
+const WAYS: &str = "--preintegrated is for --mode composite, --smooth for that with --technique slices-2d, --jitter for \
+                    that with --technique raycast";
 /// Rays along one side of a pixel.
 const MAX_RAYS_PER_SIDE: u32 = 64;
 
@@ -89,11 +104,18 @@ impl SamplingFlags {
             (Depth::Eight, ColorSpace::Linear) => TERMINATION_LINEAR,
             (Depth::Eight, ColorSpace::Display) => TERMINATION_DISPLAY,
         };
-        Ok(Settings {
+        let settings = Settings {
             technique: self.technique.unwrap_or_default().technique(),
             mode: self.mode.unwrap_or_default().mode()?,
             filter: self.filter.unwrap_or_default().filter(),
-            lattice: self.lattice.unwrap_or_default().lattice(),
+            lattice: self.lattice()?,
+            jitter: Jitter {
+                seed: self.jitter.unwrap_or_default(),
+                frame: 0,
+            },
+            stack: None,
+            smooth: self.smooth,
+            preintegrated: self.preintegrated,
             order: self.order.unwrap_or_default().order(),
             samples_per_voxel: samples_per_voxel(self.samples_per_voxel.unwrap_or(1.0))?,
             rays_per_side: rays_per_side(self.aa.unwrap_or(1))?,
@@ -103,7 +125,22 @@ impl SamplingFlags {
             clip_planes: clip_planes(&self.clip)?,
             shading: None,
             conformance: self.conformance,
-        })
+        };
+        settings
+            .check()
+            .map_err(|problem| Error::usage(problem.to_string(), WAYS))?;
+        Ok(settings)
+    }
+
+    fn lattice(&self) -> Result<Lattice, Error> {
+        match (self.jitter, self.lattice) {
+            (Some(_), Some(LatticeWord::Planes)) => Err(Error::usage(
+                "--jitter --lattice planes: planes begin at the same place for all rays",
+                "--jitter alone moves the steps of --lattice ray",
+            )),
+            (Some(_), _) => Ok(Lattice::Jitter),
+            (None, word) => Ok(word.unwrap_or_default().lattice()),
+        }
     }
 
     /// Flags that change nothing under the others, a sentence each.
@@ -116,7 +153,8 @@ impl SamplingFlags {
         if self.lattice == Some(LatticeWord::Ray) && technique != TechniqueWord::Raycast {
             notes.push("--lattice ray has no effect on slices, they have a lattice of their own");
         }
-        if self.samples_per_voxel.is_some() && technique == TechniqueWord::Slices2d {
+        if self.samples_per_voxel.is_some() && technique == TechniqueWord::Slices2d && !self.smooth
+        {
             notes.push(
                 "--samples-per-voxel has no effect on 2D stacks, they have one sample a slice",
             );

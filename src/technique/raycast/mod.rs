@@ -2,7 +2,7 @@
 
 pub mod reference;
 
-use super::{Inputs, Words};
+use super::{Inputs, Take, Words};
 use crate::gpu::{Bindings, ComputePipeline, Error, Gpu, Image, Resource};
 use crate::shaders::shader;
 use ash::vk;
@@ -27,9 +27,13 @@ impl Raycast {
             lattice,
             transfer,
             mix,
+            take,
         } = words;
         let mix = mix.word();
-        let name = format!("raycast.composite{mix}.{lattice}.{filter}.{holes}.{transfer}");
+        let name = match take {
+            Take::Slab => format!("raycast_slab.composite.{lattice}.{filter}.{holes}"),
+            _ => format!("raycast.composite{mix}.{lattice}.{filter}.{holes}.{transfer}"),
+        };
         Ok(Self {
             gpu: Arc::clone(gpu),
             pipeline: ComputePipeline::new(gpu, shader(&name))?,

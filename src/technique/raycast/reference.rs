@@ -1,10 +1,11 @@
 //! Ray casting on the CPU: twin of `shaders/raycast.wgsl`.
 
+use crate::lattice::Segment;
 use crate::real::Real;
 use crate::shaders::Frame;
 use crate::technique::Lattice;
 use crate::technique::composite::Composite;
-use crate::technique::march::march;
+use crate::technique::march::{march, march_slabs};
 use std::ops::ControlFlow;
 
 /// What one ray gathers, and how many samples it took. `value_at` filters the volume at a position in voxel
@@ -16,14 +17,37 @@ pub fn radiance<R: Real, V>(
     value_at: impl Fn([R; 3]) -> Option<V>,
     classify: impl Fn(V) -> [R; 4],
 ) -> (Composite<R>, u32) {
-    let termination = R::from_f32(frame.termination);
     let mut so_far = Composite::default();
     let samples = march(frame, lattice, pixel, value_at, |value, segment| {
-        so_far.add(classify(value), segment.length, segment.t);
-        if so_far.transmittance < termination {
-            return ControlFlow::Break(());
-        }
-        ControlFlow::Continue(())
+        gather(frame, &mut so_far, classify(value), segment)
     });
     (so_far, samples)
+}
+
+/// The same of slabs: twin of `shaders/raycast_slab.wgsl`. `classify` takes the values at both ends.
+pub fn radiance_of_slabs<R: Real>(
+    frame: &Frame,
+    lattice: Lattice,
+    pixel: [R; 2],
+    value_at: impl Fn([R; 3]) -> Option<R>,
+    classify: impl Fn([R; 2]) -> [R; 4],
+) -> (Composite<R>, u32) {
+    let mut so_far = Composite::default();
+    let samples = march_slabs(frame, lattice, pixel, value_at, |ends, segment| {
+        gather(frame, &mut so_far, classify(ends), segment)
+    });
+    (so_far, samples)
+}
+
+fn gather<R: Real>(
+    frame: &Frame,
+    so_far: &mut Composite<R>,
+    material: [R; 4],
+    segment: Segment<R>,
+) -> ControlFlow<()> {
+    so_far.add(material, segment.length, segment.t);
+    if so_far.transmittance < R::from_f32(frame.termination) {
+        return ControlFlow::Break(());
+    }
+    ControlFlow::Continue(())
 }

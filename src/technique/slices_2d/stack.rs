@@ -4,6 +4,7 @@
 //! from the eye to the centre of the box (orthographic, or the eye at the centre: the forward vector). On
 //! orthogonal grids that switches at 45 degrees; spacing does not weigh.
 
+use super::planes_per_slice;
 use crate::camera::Projection;
 use crate::shaders::FrameFields;
 use crate::technique::{Order, View};
@@ -12,8 +13,20 @@ use glam::DVec3;
 /// Two axes that face the eye alike by this much are a tie: the lower one wins.
 const TIE: f64 = 1e-12;
 
-/// The axis whose slices face the eye most.
+/// The axis whose slices face the eye most, or the one that the settings name.
 pub fn stack_axis(view: &View) -> usize {
+    if let Some(axis) = view.settings.stack {
+        return axis.min(2);
+    }
+    let facing = facing(view);
+    let largest = facing.into_iter().fold(0.0, f64::max);
+    (0..3)
+        .find(|&k| facing[k] >= largest - TIE)
+        .expect("one of three is the largest")
+}
+
+/// |n_k . v| of each axis.
+pub(super) fn facing(view: &View) -> [f64; 3] {
     let forward = view.rays().forward;
     let towards = match view.camera.projection {
         Projection::Orthographic { .. } => forward,
@@ -21,18 +34,43 @@ pub fn stack_axis(view: &View) -> usize {
             .try_normalize()
             .unwrap_or(forward),
     };
-    let facing = view
-        .grid
+    view.grid
         .voxel_rows()
-        .map(|row| row.normalize().dot(towards).abs());
-    let largest = facing.into_iter().fold(0.0, f64::max);
-    (0..3)
-        .find(|&k| facing[k] >= largest - TIE)
-        .expect("one of three is the largest")
+        .map(|row| row.normalize().dot(towards).abs())
+}
+
+/// Half the band, in degrees of the eye's way, in which both stacks are seen.
+pub const BAND_DEGREES: f64 = 6.0;
+
+/// The stacks whose pictures together are the picture, with the share of each; only smooth pictures have more than
+/// one. Whatever the shares, they change without a jump where the eye goes.
+///
+/// With theta_k the angle between the eye's direction and the normal of stack k, and B the half band,
+///
+/// ```text
+/// x_k = (theta_k - min theta) / (2 B)        r_k = 1 - x_k^2 (3 - 2 x_k), 0 from x_k = 1 on
+/// share of stack k = r_k / (sum of r)
+/// ```
+///
+/// At the switch both have one half; an angle B away from it one has all.
+pub fn stack_shares(view: &View) -> Vec<(usize, f64)> {
+    if !view.settings.smooth || view.settings.stack.is_some() {
+        return vec![(stack_axis(view), 1.0)];
+    }
+    let angles = facing(view).map(|cosine| cosine.min(1.0).acos().to_degrees());
+    let least = angles.into_iter().fold(f64::INFINITY, f64::min);
+    let weights = angles.map(|angle| {
+        let x = ((angle - least) / (2.0 * BAND_DEGREES)).min(1.0);
+        1.0 - x * x * (3.0 - 2.0 * x)
+    });
+    let sum: f64 = weights.iter().sum();
+    let shares = weights.into_iter().enumerate();
+    let shares = shares.map(|(axis, weight)| (axis, weight / sum));
+    shares.filter(|&(_, share)| share > 0.0).collect()
 }
 
 /// Fills in the slice parameters for a part of the grid ([`View::part`]) in the stack along `axis`, and
-/// returns how many slices to draw.
+/// returns how many slices (or planes, or slabs between planes) to draw.
 ///
 /// Rays that rise along the axis meet only slices above the eye, the others only slices below it. So both
 /// sides are drawn towards (or away from) the eye one after the other, and every pixel has its order.
@@ -42,10 +80,16 @@ pub fn set_slices(
     [low, high]: [DVec3; 2],
     fields: &mut FrameFields,
 ) -> u32 {
-    let count = view.grid.dims[axis] as i32;
-    let first = ((low[axis] - 0.5).ceil() as i32).clamp(0, count);
-    let end = ((high[axis] - 0.5).floor() as i32 + 1).clamp(first, count);
-    let above = first_slice_above_eye(view, axis).clamp(first, end);
+    let planes = f64::from(planes_per_slice(view, axis));
+    let [low, high] = [low, high].map(|end| (end[axis] - 0.5) * planes);
+    let [first, end] = if view.settings.preintegrated {
+        // A slab is named by its lower plane; it counts where any of it does.
+        [low.floor() as i32, high.ceil() as i32]
+    } else {
+        [low.ceil() as i32, high.floor() as i32 + 1]
+    };
+    let end = end.max(first);
+    let above = first_plane_above_eye(view, axis, planes).clamp(first, end);
     let (slices_above, slices_below) = (end - above, above - first);
     fields.slice_axis = axis as u32;
     // A slice that the eye lies in counts as below. It is the nearest of all: drawn last, or first.
@@ -65,8 +109,8 @@ pub fn set_slices(
     (slices_above + slices_below) as u32
 }
 
-/// The first slice whose centre lies above the eye along the axis.
-fn first_slice_above_eye(view: &View, axis: usize) -> i32 {
+/// The first plane that lies above the eye along the axis.
+fn first_plane_above_eye(view: &View, axis: usize, planes_per_slice: f64) -> i32 {
     match view.camera.projection {
         Projection::Perspective { .. } => {
             let eye = view
@@ -75,7 +119,7 @@ fn first_slice_above_eye(view: &View, axis: usize) -> i32 {
                 .inverse()
                 .transform_point3(view.camera.eye);
             // Outside i32 the cast goes to its ends, which is where such an eye is.
-            (eye[axis] - 0.5).floor() as i32 + 1
+            ((eye[axis] - 0.5) * planes_per_slice).floor() as i32 + 1
         }
         // The eye is infinitely far below or above.
         Projection::Orthographic { .. } => {

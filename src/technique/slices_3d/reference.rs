@@ -1,9 +1,11 @@
 //! View-aligned slicing on the CPU: twin of `shaders/slices_3d.wgsl`.
 
+use crate::lattice::plane_slab;
 use crate::ray::{domain_interval, pixel_ray, plane_length, plane_t, voxel_ray};
 use crate::real::Real;
 use crate::shaders::Frame;
 use crate::technique::blend::Fragment;
+use std::cmp::Ordering;
 
 /// The sample of a pixel's ray on one plane; `None` outside the domain, `Some(None)` for no data.
 pub fn fragment<R: Real, V>(
@@ -21,4 +23,28 @@ pub fn fragment<R: Real, V>(
     }
     let length = plane_length(frame, &world);
     Some(value_at(voxel.at(t)).map(|value| Fragment { value, length }))
+}
+
+/// The slab of a pixel's ray around one plane, its value the values at both ends: twin of
+/// `shaders/slices_3d_slab.wgsl`.
+pub fn slab<R: Real>(
+    frame: &Frame,
+    pixel: [R; 2],
+    plane: i32,
+    value_at: impl Fn([R; 3]) -> Option<R>,
+) -> Option<Option<Fragment<R, [R; 2]>>> {
+    let world = pixel_ray(frame, pixel);
+    let voxel = voxel_ray(frame, &world);
+    let interval = domain_interval(frame, &world, &voxel);
+    let slab = plane_slab(frame, &world, interval, plane);
+    if slab.length.partial_cmp(&R::from_f64(0.0)) != Some(Ordering::Greater) {
+        return None;
+    }
+    let [front, back] = slab.ends.map(|t| value_at(voxel.at(t)));
+    let length = slab.length;
+    let fragment = |front| Some((front, back?));
+    Some(front.and_then(fragment).map(|(front, back)| Fragment {
+        value: [front, back],
+        length,
+    }))
 }

@@ -1,0 +1,3 @@
+// As with the device's own filtering.
+
+#import between_linear

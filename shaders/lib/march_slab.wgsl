@@ -1,0 +1,50 @@
+// The walk along one ray in slabs: the value where one ends is the value where the next begins. A slab belongs to
+// the brick that its middle lies in. Twin: src/technique/march.rs.
+
+#import ray
+#import brick
+#import slab_{lattice}
+#import filter_{filter}
+#import nearest
+#import mask
+#import sample_slab
+#import mode_{mode}
+
+// `before` is what bricks nearer to the eye have gathered.
+fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
+    let world = pixel_ray(pixel);
+    let voxel = voxel_ray(world);
+    let interval = domain_interval(world, voxel);
+    var so_far = before;
+    let inside = brick_interval(voxel, interval);
+    if !(interval.x < interval.y && inside.x < inside.y) || is_finished(before) {
+        return so_far;
+    }
+    let lattice = lattice_of(world, interval, pixel);
+    let first = max(lattice.first, i32(floor(index_at(lattice, world, inside.x))) - 1);
+    let end = min(lattice.first + lattice.count, i32(ceil(index_at(lattice, world, inside.y))) + 2);
+    var back = End(0.0, false);
+    var back_of = first - 2;
+    for (var k = first; k < end; k++) {
+        let slab = slab_of(lattice, world, k);
+        let t = 0.5 * (slab.front + slab.back);
+        if slab.length <= 0.0 || !is_in_brick(voxel.origin + t * voxel.direction) {
+            continue;
+        }
+        so_far.samples += 1.0;
+        var front = back;
+        if back_of != k - 1 {
+            front = end_at(voxel.origin + slab.front * voxel.direction);
+        }
+        back = end_at(voxel.origin + slab.back * voxel.direction);
+        back_of = k;
+        if !front.is_valid || !back.is_valid {
+            continue;
+        }
+        so_far = add(so_far, Sample(front.value, back.value), Segment(t, slab.length));
+        if is_finished(so_far) {
+            break;
+        }
+    }
+    return so_far;
+}

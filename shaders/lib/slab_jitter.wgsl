@@ -1,0 +1,3 @@
+// Slabs of one step each, of which the first is cut short.
+
+#import lattice_jitter

@@ -1,0 +1,28 @@
+// Ray casting with pre-integrated classification: the samples are slabs, from front to back.
+// Twin: src/technique/raycast/reference.rs.
+
+#import march_slab
+
+// Premultiplied colour and alpha.
+@group(0) @binding(6) var picture: texture_storage_2d<rgba32float, read_write>;
+// 0, depth (negative: none), transmittance, samples.
+@group(0) @binding(7) var layers: texture_storage_2d<rgba32float, read_write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if any(id.xy >= frame.extent_pixels) {
+        return;
+    }
+    let found = march(vec2<f32>(id.xy) + 0.5, gathered_before(id.xy));
+    textureStore(picture, id.xy, vec4(found.color, 1.0 - found.transmittance));
+    textureStore(layers, id.xy, vec4(0.0, found.depth, found.transmittance, found.samples));
+}
+
+// What nearer bricks have left in the images.
+fn gathered_before(pixel: vec2<u32>) -> Accumulator {
+    if frame.is_first_brick != 0u {
+        return begin();
+    }
+    let beside = textureLoad(layers, pixel);
+    return Accumulator(textureLoad(picture, pixel).xyz, beside.z, beside.y, beside.w);
+}
