@@ -142,7 +142,7 @@ pub fn noise_of(volume: &Volume) -> f64 {
     let count = volume.voxels.len();
     let step = (count / PAIRS).max(1);
     let difference = |i: usize| {
-        let is_pair = (i + 1) % width != 0;
+        let is_pair = !(i + 1).is_multiple_of(width);
         let valid = |i: usize| volume.validity.as_ref().is_none_or(|mask| mask[i] != 0);
         let both = is_pair && valid(i) && valid(i + 1);
         both.then(|| (volume.voxels.stored(i + 1) - volume.voxels.stored(i)).abs())

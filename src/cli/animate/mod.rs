@@ -218,7 +218,7 @@ impl Animate {
             None => {
                 let is_whole = shots.iter().all(|shot| shot.time.fract() == 0.0);
                 let held = if is_whole {
-                    Held::of(&scene, 1)
+                    Held::of(scene, 1)
                 } else {
                     Held::Blend
                 };
