@@ -50,9 +50,13 @@ const ENTRIES: &[(&str, &[Slot])] = &[
         ],
     ),
     (
+        "raycast",
+        &[("mode", &["mida"]), ALONE, LATTICE, FILTER, HOLES, TRANSFER],
+    ),
+    (
         "projection",
         &[
-            ("mode", &["mip", "minip", "sum"]),
+            ("mode", &["mip", "minip", "sum", "lmip", "attenuated_mip"]),
             ALONE,
             LATTICE,
             FILTER,
@@ -103,7 +107,10 @@ const ENTRIES: &[(&str, &[Slot])] = &[
         ],
     ),
     ("slices_2d_cover", &[]),
-    ("resolve", &[("source", &["picture", "value", "mean"])]),
+    (
+        "resolve",
+        &[("source", &["picture", "value", "mean", "cued"])],
+    ),
     ("resolve_cover", &[]),
     ("merge", &[("operator", &["over", "under", "add"])]),
 ];

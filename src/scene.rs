@@ -2,7 +2,7 @@
 
 use crate::camera::Camera;
 use crate::shaders::MAX_CHANNELS;
-use crate::technique::{Error, Mix, Role, Settings, View};
+use crate::technique::{Error, Mix, Mode, Role, Settings, View};
 use crate::transfer::TransferFunction;
 use crate::volume::Volume;
 
@@ -111,18 +111,21 @@ impl<'a> Scene<'a> {
     /// Whether its volumes can be put together.
     ///
     /// # Errors
-    /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`] and [`Error::NotMixed`].
+    /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`], [`Error::NotMixed`], and those of
+    /// [`Settings::check`].
     pub fn check(&self) -> Result<(), Error> {
         let volumes = self.volumes();
         let (wanted, limit) = (volumes.len(), MAX_CHANNELS as usize);
         let grid = self.volume.grid();
         let has_labels = self.roles().contains(&Role::Labels);
         let mode = self.settings.mode;
+        self.settings.check()?;
         match self.mix() {
             Mix::Alone => Ok(()),
             _ if volumes.iter().any(|volume| volume.grid() != grid) => Err(Error::OtherGrid),
             Mix::Colors if !(3..=4).contains(&wanted) => Err(Error::NoColor { found: wanted }),
-            Mix::Colors if mode.is_projection() => Err(Error::NotMixed { mode }),
+            Mix::Colors if mode != Mode::Composite => Err(Error::NotMixed { mode }),
+            Mix::Channels if mode == Mode::Mida => Err(Error::NotMixed { mode }),
             Mix::Channels if mode.is_projection() && has_labels => Err(Error::NotMixed { mode }),
             _ if wanted > limit => Err(Error::TooManyChannels { wanted, limit }),
             _ => Ok(()),

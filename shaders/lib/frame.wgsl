@@ -83,6 +83,19 @@ struct Frame {
     channel_opacity_point_count: vec4<u32>,
     channel_interpolation_is_step: vec4<u32>,
     channel_reference_length: vec4<f32>,
+    // Values without a unit: (value - value_low) * value_scale, 0 to 1.
+    value_low: f32,
+    value_scale: f32,
+    // A local maximum counts over this.
+    lmip_threshold: f32,
+    // How much of a new maximum's height is taken from what lies before it: 1 + gamma.
+    mida_fade: f32,
+    // Per world length of matter of value 1.
+    attenuation: f32,
+    // How dark it is at depth 1 of (depth - depth_near) * depth_scale.
+    depth_cue: f32,
+    depth_near: f32,
+    depth_scale: f32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -95,7 +95,13 @@ impl Render {
         output::check(&self.outputs(format, &layers), &inputs, self.force)?;
 
         let progress = Progress::new(self.progress);
-        for note in [scene.sampling.idle(), scene.camera.idle()].concat() {
+        for note in [
+            scene.sampling.idle(),
+            scene.modes.idle(settings.mode),
+            scene.camera.idle(),
+        ]
+        .concat()
+        {
             progress.note(note);
         }
         progress.stage("prepare", 0, 1);
@@ -113,6 +119,7 @@ impl Render {
         if let (None, Some(filter)) = (scene.sampling.filter, shown.filter) {
             settings.filter = filter;
         }
+        settings.per_mode = shown.per_mode.clone();
         let load_ms = ms_since(start);
 
         progress.stage("prepare", 0, 1);

@@ -3,6 +3,7 @@
 //! The only place that submits and waits.
 
 mod passes;
+mod position;
 pub mod reference;
 mod renderer;
 mod slicing;

@@ -1,9 +1,10 @@
 //! A scene to a picture on the CPU: every technique by its twin, in f32 or f64, no Vulkan anywhere.
 
+use super::position::positions;
 use super::sum::sum_of;
 use crate::picture::{Layer, LayerKind, Picture};
 use crate::real::Real;
-use crate::resolve::reference::{premultiplied, projected_value};
+use crate::resolve::reference::{light_at, premultiplied, projected_value};
 use crate::scene::{Beside, Scene, positions_in_pixel};
 use crate::shaders::Frame;
 use crate::technique::blend::{Fragment, blend, blend_material, clear_color};
@@ -24,6 +25,8 @@ struct Gathered<R> {
     /// Composite: premultiplied colour. Else (value, weight, unused, unused).
     accumulation: [R; 4],
     depth: Option<R>,
+    /// What a depth cue leaves of the colour.
+    light: R,
     samples: u32,
 }
 
@@ -51,8 +54,11 @@ fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     };
     let space = scene.settings.color_space;
     let points = Points::new(&transfer, Absorption::Opacity, space);
-    let resolve =
-        |g: &Gathered<R>| premultiplied(mode, g.accumulation, |v| classify_by_points(&points, v));
+    let resolve = |g: &Gathered<R>| {
+        let [red, green, blue, alpha] =
+            premultiplied(mode, g.accumulation, |v| classify_by_points(&points, v));
+        [g.light * red, g.light * green, g.light * blue, alpha]
+    };
 
     let per_side = scene.settings.rays_per_side;
     let weight = R::from_f64(1.0 / f64::from(per_side * per_side));
@@ -108,7 +114,14 @@ fn layers<R: Real>(scene: &Scene, gathered: &[Gathered<R>]) -> Vec<Layer> {
         }));
     }
     if scene.settings.technique == Technique::Raycast {
-        layers.push(layer(LayerKind::Depth, &|g| number(g.depth)));
+        let depth = layer(LayerKind::Depth, &|g| number(g.depth));
+        if mode.has_depth() {
+            layers.push(Layer {
+                kind: LayerKind::Position,
+                values: positions(scene, &depth.values),
+            });
+        }
+        layers.push(depth);
     }
     layers
 }
@@ -215,6 +228,7 @@ impl<'a, R: Real> Walk<'a, R> {
                 Gathered {
                     accumulation: [found.value, found.weight, zero, zero],
                     depth: found.depth,
+                    light: found.depth.map_or(R::from_f64(1.0), |t| light_at(frame, t)),
                     samples,
                 }
             }
@@ -236,17 +250,20 @@ impl<'a, R: Real> Walk<'a, R> {
         };
         match settings.technique {
             Technique::Raycast => {
-                let (found, samples) = raycast::reference::radiance(
-                    &self.frame,
-                    settings.lattice,
-                    pixel,
-                    material_at,
-                    |material| material,
-                );
+                let (frame, lattice) = (&self.frame, settings.lattice);
+                let (found, samples) = if settings.mode == Mode::Mida {
+                    let value_at = |p| filtered(self.scene.volume, settings.filter, p);
+                    let classify = |value| self.classify(0, value);
+                    raycast::reference::accumulated(frame, lattice, pixel, value_at, classify)
+                } else {
+                    let same = |material| material;
+                    raycast::reference::radiance(frame, lattice, pixel, material_at, same)
+                };
                 let [r, g, b] = found.color;
                 Gathered {
                     accumulation: [r, g, b, R::from_f64(1.0) - found.transmittance],
                     depth: found.depth,
+                    light: R::from_f64(1.0),
                     samples,
                 }
             }
@@ -333,6 +350,7 @@ impl<'a, R: Real> Walk<'a, R> {
         Gathered {
             accumulation: target,
             depth: None,
+            light: R::from_f64(1.0),
             samples,
         }
     }

@@ -8,7 +8,8 @@
 //! ```
 
 use super::Error;
-use super::passes::Passes;
+use super::passes::{Passes, key_of};
+use super::position::positions;
 use super::submission::{self, Submission};
 use super::sum::sum_of;
 use super::tally::{Clock, Mean, check_layers};
@@ -192,13 +193,7 @@ impl<'v> Renderer<'v> {
         if self.ring.slots() < slots {
             self.ring = parameter_ring(&gpu, slots)?;
         }
-        let Settings {
-            technique,
-            mode,
-            order,
-            ..
-        } = *scene.settings;
-        let key = (technique, mode, order, words);
+        let key = key_of(scene.settings, &words);
         if self
             .passes
             .as_ref()
@@ -346,15 +341,17 @@ impl<'v> Renderer<'v> {
         let layer = |kind| {
             let number = |(left, beside): (&[f32; 4], &[f32; 4])| match kind {
                 LayerKind::Value => projected_value(mode, *left).unwrap_or(f32::NAN),
-                LayerKind::Depth if beside[1] < 0.0 => f32::NAN,
-                LayerKind::Depth => beside[1],
+                LayerKind::Depth | LayerKind::Position if beside[1] < 0.0 => f32::NAN,
+                LayerKind::Depth | LayerKind::Position => beside[1],
                 LayerKind::Transmittance => 1.0 - left[3],
                 LayerKind::Samples => beside[3],
             };
-            Layer {
-                kind,
-                values: left.iter().zip(&beside).map(number).collect(),
-            }
+            let values: Vec<f32> = left.iter().zip(&beside).map(number).collect();
+            let values = match kind {
+                LayerKind::Position => positions(scene, &values),
+                _ => values,
+            };
+            Layer { kind, values }
         };
         Ok(wanted.iter().map(|&kind| layer(kind)).collect())
     }

@@ -60,12 +60,14 @@ impl View<'_> {
     /// The parameters of the whole grid, without those of slices.
     ///
     /// # Errors
-    /// [`Error::TooManySamples`] and [`Error::TooManyClipPlanes`].
+    /// [`Error::TooManySamples`], [`Error::TooManyClipPlanes`] and those of [`Settings::check`].
     pub fn fields(&self, coding: &Coding, transfer: &TransferLayout) -> Result<FrameFields, Error> {
         let rays = self.rays();
         let world_from_voxel = self.world_from_voxel();
         let [domain_min, domain_max] = self.domain();
+        self.settings.check()?;
         self.check_sample_count(&world_from_voxel)?;
+        let of_mode = self.of_mode();
         let margin = self.cover_margin(&rays, &world_from_voxel);
         let (clip_planes, clip_plane_count) = self.clip_planes()?;
         let v = |v: DVec3| v.as_vec3().to_array();
@@ -138,6 +140,14 @@ impl View<'_> {
             channel_interpolation_is_step: [0; 4],
             channel_reference_length: [0.0; 4],
             extreme_sign: extreme_sign(self.settings.mode),
+            value_low: of_mode.value_low,
+            value_scale: of_mode.value_scale,
+            lmip_threshold: of_mode.lmip_threshold,
+            mida_fade: of_mode.mida_fade,
+            attenuation: of_mode.attenuation,
+            depth_cue: of_mode.depth_cue,
+            depth_near: of_mode.depth_near,
+            depth_scale: of_mode.depth_scale,
         })
     }
 

@@ -4,10 +4,13 @@ mod accumulation;
 pub mod blend;
 pub mod composite;
 mod frame;
+mod frame_of_mode;
 mod inputs;
 mod march;
 pub mod merge;
+pub mod mida;
 pub mod mixture;
+mod per_mode;
 pub mod projection;
 pub mod raycast;
 mod recording;
@@ -19,6 +22,7 @@ pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 pub use frame::View;
 pub use inputs::{Inputs, Words};
 pub use mixture::{Mix, Part, Role};
+pub use per_mode::{DEFAULT_ATTENUATION, PerMode};
 pub use recording::{Recording, parameter_ring};
 pub use slicer::Slicer;
 
@@ -48,6 +52,12 @@ pub enum Mode {
     Average,
     /// Integral of the value over world length.
     Xray,
+    /// First local maximum over a threshold, the maximum where there is none (Sato et al. 1998).
+    Lmip,
+    /// Maximum of values that what lies before them fades.
+    AttenuatedMip,
+    /// Emission and absorption in which a new maximum takes from what lies before it (Bruckner and Groeller 2009).
+    Mida,
 }
 
 /// How a value between voxel centres is made.
@@ -115,6 +125,8 @@ pub struct Settings {
     pub clip_planes: Vec<ClipPlane>,
     /// Float targets, no early termination, filtering by texel fetch, control points searched exactly.
     pub conformance: bool,
+    /// What single modes want to know.
+    pub per_mode: PerMode,
 }
 
 /// Samples that one ray may take: no wish of a host makes a shader run without end.
@@ -165,6 +177,32 @@ pub enum Error {
         /// How many there are.
         found: usize,
     },
+    /// A mode whose samples must come from front to back, in a technique that blends them.
+    #[error("{technique:?} has no mode {mode:?}, in which a sample depends on those before it")]
+    NeedsRays {
+        /// Where samples lie.
+        technique: Technique,
+        /// The mode.
+        mode: Mode,
+    },
+    /// Darkness by depth needs a depth.
+    #[error("{technique:?} in mode {mode:?} has no one depth a ray: no depth cue")]
+    NoDepth {
+        /// Where samples lie.
+        technique: Technique,
+        /// The mode.
+        mode: Mode,
+    },
+    /// A number of a mode that means nothing.
+    #[error("{name} is {found}, wanted {wanted}")]
+    OutOfRange {
+        /// Which number.
+        name: &'static str,
+        /// What would do.
+        wanted: &'static str,
+        /// What was given.
+        found: f64,
+    },
     /// The parameters hold a fixed number of planes.
     #[error("{wanted} clip planes, the limit is {limit}")]
     TooManyClipPlanes {
@@ -178,7 +216,43 @@ pub enum Error {
 impl Mode {
     /// True where one value a ray is projected and classified once.
     pub fn is_projection(self) -> bool {
-        self != Self::Composite
+        !matches!(self, Self::Composite | Self::Mida)
+    }
+
+    /// True where samples must come from front to back, one after the other: blending units cannot do it.
+    pub fn needs_rays(self) -> bool {
+        matches!(self, Self::Lmip | Self::AttenuatedMip | Self::Mida)
+    }
+
+    /// True where the ray caster finds a place of the ray that stands for the picture.
+    pub fn has_depth(self) -> bool {
+        !matches!(self, Self::Average | Self::Xray)
+    }
+
+    /// True where what is projected lies at one place of the ray.
+    pub fn projects_one_place(self) -> bool {
+        matches!(
+            self,
+            Self::Mip | Self::Minip | Self::Lmip | Self::AttenuatedMip
+        )
+    }
+}
+
+impl Settings {
+    /// Whether technique, mode and the numbers of the mode go together.
+    ///
+    /// # Errors
+    /// [`Error::NeedsRays`], [`Error::NoDepth`] and [`Error::OutOfRange`].
+    pub fn check(&self) -> Result<(), Error> {
+        let (technique, mode) = (self.technique, self.mode);
+        if technique != Technique::Raycast && mode.needs_rays() {
+            return Err(Error::NeedsRays { technique, mode });
+        }
+        let has_depth = technique == Technique::Raycast && mode.projects_one_place();
+        if self.per_mode.depth_cue != 0.0 && !has_depth {
+            return Err(Error::NoDepth { technique, mode });
+        }
+        self.per_mode.check(mode)
     }
 }
 
@@ -197,6 +271,7 @@ impl Default for Settings {
             crop: None,
             clip_planes: Vec::new(),
             conformance: false,
+            per_mode: PerMode::default(),
         }
     }
 }

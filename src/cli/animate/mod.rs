@@ -141,7 +141,15 @@ impl Animate {
         let store = self.store(&plan, gate)?;
 
         let progress = Progress::new(self.progress);
-        for note in [plan.scene.sampling.idle(), plan.scene.camera.idle()].concat() {
+        for note in [
+            plan.scene.sampling.idle(),
+            plan.scene
+                .modes
+                .idle(plan.scene.sampling.mode.unwrap_or_default().mode()?),
+            plan.scene.camera.idle(),
+        ]
+        .concat()
+        {
             progress.note(note);
         }
         if self.repeat.is_some() {
@@ -276,7 +284,7 @@ impl Animate {
         let source = load::open(&scene.input, &scene.input.limits())?;
         let header = source.header();
         let shots = film.shots(&scene, depth, header, &shots::grid(&scene, header)?)?;
-        shown::check(&scene, shots[0].settings.mode)?;
+        shown::check(&scene, &shots[0].settings)?;
         check_several(&scene, header, &shots)?;
         let plan = Plan {
             scene,

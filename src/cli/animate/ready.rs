@@ -39,6 +39,7 @@ pub fn of_still(shots: &[Shot], scene: &SceneFlags, shown: &Shown) -> Result<Vec
         if let (None, Some(filter)) = (scene.sampling.filter, filter) {
             settings.filter = filter;
         }
+        settings.per_mode = shown.per_mode.clone();
         Ok(Ready {
             classification,
             settings,
@@ -63,18 +64,27 @@ pub fn of_times(
     let mut known: Option<ValueSummary> = None;
     let mut ready = Vec::with_capacity(shots.len());
     for shot in shots {
-        let summary = || {
+        let mut summary = || {
             let found = match known.take() {
                 Some(found) => found,
                 None => volumes.summary(&times)?,
             };
             Ok(known.insert(found).clone())
         };
+        let mode = shot.settings.mode;
+        let classification = shot.classification.classification_of(mode, &mut summary)?;
+        let window = shot.classification.window()?;
+        let (per_mode, note) = scene.modes.per_mode(mode, window, &mut summary)?;
+        // The same for all frames, unless keys move the window.
+        if let (Some(note), true) = (note, ready.is_empty()) {
+            progress.note(&note);
+        }
         ready.push(Ready {
-            classification: shot
-                .classification
-                .classification_of(shot.settings.mode, summary)?,
-            settings: shot.settings.clone(),
+            classification,
+            settings: Settings {
+                per_mode,
+                ..shot.settings.clone()
+            },
             time: shot.time,
         });
     }

@@ -112,9 +112,10 @@ impl ClassificationFlags {
         summary: impl FnOnce() -> Result<ValueSummary, Error>,
     ) -> Result<Classification, Error> {
         let window = self.window()?;
-        let classified = match mode {
-            Mode::Composite => Classified::Samples,
-            Mode::Mip | Mode::Minip | Mode::Average | Mode::Xray => Classified::Projection,
+        let classified = if mode.is_projection() {
+            Classified::Projection
+        } else {
+            Classified::Samples
         };
         let preset = self.preset.as_deref().and_then(Preset::from_name);
         let function = match (self.function_of_file()?, preset) {

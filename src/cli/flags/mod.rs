@@ -9,6 +9,7 @@ mod classification;
 mod component;
 mod input;
 mod labels;
+mod modes;
 mod not_built;
 mod numbers;
 mod picture;
@@ -22,6 +23,7 @@ pub use classification::{Classification, ClassificationFlags, preset, summary, w
 pub use component::Component;
 pub use input::{InputFlags, relative};
 pub use labels::LabelFlags;
+pub use modes::{ModeFlags, mode_name};
 pub use not_built::NotBuilt;
 pub use numbers::{Background, Numbers, Size, finite, positive};
 pub use picture::PictureFlags;
@@ -44,6 +46,8 @@ pub struct SceneFlags {
     pub input: InputFlags,
     #[command(flatten)]
     pub sampling: SamplingFlags,
+    #[command(flatten)]
+    pub modes: ModeFlags,
     #[command(flatten)]
     pub classification: ClassificationFlags,
     #[command(flatten)]

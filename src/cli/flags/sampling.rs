@@ -102,6 +102,8 @@ impl SamplingFlags {
             crop: self.crop.map(crop_box).transpose()?,
             clip_planes: clip_planes(&self.clip)?,
             conformance: self.conformance,
+            // Of the values, which are not known yet.
+            per_mode: Default::default(),
         })
     }
 

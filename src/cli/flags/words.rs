@@ -45,9 +45,11 @@ pub enum ModeWord {
     Minip,
     Average,
     Xray,
-    #[value(help = "not built yet")]
+    /// The first local maximum over a threshold
     Lmip,
-    #[value(help = "not built yet")]
+    /// The maximum of values that fade behind others
+    AttenuatedMip,
+    /// Composite in which a new maximum clears what lies before it
     Mida,
     #[value(help = "not built yet")]
     Iso,
@@ -62,7 +64,10 @@ impl ModeWord {
             Self::Minip => Mode::Minip,
             Self::Average => Mode::Average,
             Self::Xray => Mode::Xray,
-            Self::Lmip | Self::Mida | Self::Iso => return Err(not_built("--mode", self)),
+            Self::Lmip => Mode::Lmip,
+            Self::AttenuatedMip => Mode::AttenuatedMip,
+            Self::Mida => Mode::Mida,
+            Self::Iso => return Err(not_built("--mode", self)),
         })
     }
 }

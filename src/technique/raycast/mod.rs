@@ -2,7 +2,8 @@
 
 pub mod reference;
 
-use super::{Inputs, Words};
+use super::inputs::mode_word;
+use super::{Inputs, Mode, Words};
 use crate::gpu::{Bindings, ComputePipeline, Error, Gpu, Image, Resource};
 use crate::shaders::shader;
 use ash::vk;
@@ -16,11 +17,19 @@ pub struct Raycast {
 }
 
 impl Raycast {
-    /// Compiles the variant of these words.
+    /// Compiles the variant of these words, for [`Mode::Composite`].
     ///
     /// # Errors
     /// Where the device refuses.
     pub fn new(gpu: &Arc<Gpu>, words: &Words) -> Result<Self, Error> {
+        Self::of_mode(gpu, Mode::Composite, words)
+    }
+
+    /// The same for a mode that composites: [`Mode::Composite`], or of one volume [`Mode::Mida`].
+    ///
+    /// # Errors
+    /// Where the device refuses.
+    pub fn of_mode(gpu: &Arc<Gpu>, mode: Mode, words: &Words) -> Result<Self, Error> {
         let Words {
             filter,
             holes,
@@ -28,8 +37,8 @@ impl Raycast {
             transfer,
             mix,
         } = words;
-        let mix = mix.word();
-        let name = format!("raycast.composite{mix}.{lattice}.{filter}.{holes}.{transfer}");
+        let (mode, mix) = (mode_word(mode), mix.word());
+        let name = format!("raycast.{mode}{mix}.{lattice}.{filter}.{holes}.{transfer}");
         Ok(Self {
             gpu: Arc::clone(gpu),
             pipeline: ComputePipeline::new(gpu, shader(&name))?,
@@ -37,7 +46,8 @@ impl Raycast {
     }
 
     /// Binds inputs and the two images that a recording fills, both R32G32B32A32_SFLOAT storage images:
-    /// `picture` gets premultiplied colour and alpha, `layers` (0, depth or -1, transmittance, samples).
+    /// `picture` gets premultiplied colour and alpha, `layers` (what the mode keeps, depth or -1,
+    /// transmittance, samples).
     ///
     /// # Errors
     /// Where an input is missing.

@@ -5,6 +5,7 @@ use crate::shaders::Frame;
 use crate::technique::Lattice;
 use crate::technique::composite::Composite;
 use crate::technique::march::march;
+use crate::technique::mida::Mida;
 use std::ops::ControlFlow;
 
 /// What one ray gathers, and how many samples it took. `value_at` filters the volume at a position in voxel
@@ -26,4 +27,23 @@ pub fn radiance<R: Real, V>(
         ControlFlow::Continue(())
     });
     (so_far, samples)
+}
+
+/// The same in [`crate::technique::Mode::Mida`], which looks at values too.
+pub fn accumulated<R: Real>(
+    frame: &Frame,
+    lattice: Lattice,
+    pixel: [R; 2],
+    value_at: impl Fn([R; 3]) -> Option<R>,
+    classify: impl Fn(R) -> [R; 4],
+) -> (Composite<R>, u32) {
+    let mut so_far = Mida::default();
+    let samples = march(frame, lattice, pixel, value_at, |value, segment| {
+        so_far.add(frame, value, classify(value), segment.length, segment.t);
+        if so_far.is_finished(frame) {
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    });
+    (so_far.gathered, samples)
 }

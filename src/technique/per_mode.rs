@@ -1,0 +1,90 @@
+//! What single modes want to know beside the words that all of them share.
+
+use super::{Error, Mode};
+use crate::real::Real;
+use crate::shaders::Frame;
+
+/// Parameters of single modes; the others do not look at them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PerMode {
+    /// The values that count as 0 and as 1 where a mode wants values without a unit ([`Mode::Mida`],
+    /// [`Mode::AttenuatedMip`]): a window, or the range of the volume. The first is the lower one.
+    pub unit_values: [f64; 2],
+    /// [`Mode::Lmip`]: the first local maximum over this is shown. Infinity makes it a MIP.
+    pub lmip_threshold: f64,
+    /// [`Mode::Mida`]: from -1, compositing, to 0, where a new maximum clears what lies before it.
+    pub mida_gamma: f64,
+    /// [`Mode::AttenuatedMip`]: a value has faded to 1/e behind matter of value 1 whose length is the diagonal of
+    /// the grid box over this; not negative. 0 makes it a MIP of the values between those of `unit_values`.
+    pub attenuation: f64,
+    /// Modes that show one place of a ray: how much darker a picture is at its far end, 0 to 1.
+    pub depth_cue: f64,
+}
+
+/// Fades a value to a fifth behind a tenth of the diagonal full of matter.
+pub const DEFAULT_ATTENUATION: f64 = 16.0;
+
+impl Default for PerMode {
+    fn default() -> Self {
+        Self {
+            unit_values: [0.0, 1.0],
+            lmip_threshold: f64::INFINITY,
+            mida_gamma: 0.0,
+            attenuation: DEFAULT_ATTENUATION,
+            depth_cue: 0.0,
+        }
+    }
+}
+
+impl PerMode {
+    /// Whether these numbers mean something for `mode`.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] by the name of the number.
+    pub fn check(&self, mode: Mode) -> Result<(), Error> {
+        let within = |name, wanted, found: f64, right: bool| match right {
+            true => Ok(()),
+            false => Err(Error::OutOfRange {
+                name,
+                wanted,
+                found,
+            }),
+        };
+        let [low, high] = self.unit_values;
+        let (gamma, attenuation, cue) = (self.mida_gamma, self.attenuation, self.depth_cue);
+        let has_width = low < high && (high - low).is_finite();
+        let is_share = (0.0..=1.0).contains(&cue);
+        within("the depth cue", "0 to 1", cue, is_share)?;
+        if matches!(mode, Mode::Mida | Mode::AttenuatedMip) {
+            let wanted = "a higher number than the first, both finite";
+            within("the second of the unit values", wanted, high, has_width)?;
+        }
+        match mode {
+            Mode::Lmip => {
+                let found = self.lmip_threshold;
+                within("the threshold of LMIP", "a number", found, !found.is_nan())
+            }
+            Mode::Mida => {
+                let is_right = (-1.0..=0.0).contains(&gamma);
+                within("the gamma of MIDA", "-1 to 0", gamma, is_right)
+            }
+            Mode::AttenuatedMip => {
+                let is_right = attenuation >= 0.0 && attenuation.is_finite();
+                let wanted = "0 or more";
+                within("the attenuation", wanted, attenuation, is_right)
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// A value from 0 to 1: twin of `shaders/lib/unit.wgsl`.
+pub fn unit_from_value<R: Real>(frame: &Frame, value: R) -> R {
+    let unit = (value - R::from_f32(frame.value_low)) * R::from_f32(frame.value_scale);
+    unit.max(R::from_f64(0.0)).min(R::from_f64(1.0))
+}
+
+/// The value of such a number: twin of `shaders/lib/unit.wgsl`.
+pub fn value_from_unit<R: Real>(frame: &Frame, unit: R) -> R {
+    R::from_f32(frame.value_low) + unit / R::from_f32(frame.value_scale)
+}
