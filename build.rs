@@ -20,9 +20,18 @@ type Slot = (&'static str, &'static [&'static str]);
 const FILTER: Slot = ("filter", &["nearest", "linear", "linear_fetch"]);
 const HOLES: Slot = ("holes", &["none", "mask"]);
 const LATTICE: Slot = ("lattice", &["ray", "planes"]);
+/// Modes that slicers do not have leave the lattice of slicers to them.
+const RAY: Slot = ("lattice", &["ray"]);
 const MIXED: Slot = ("mix", &["channels", "colors"]);
 /// One number a voxel. The word is left out of names.
 const ALONE: Slot = ("mix", &["alone"]);
+/// One number a voxel, and its gradient.
+const GRADED: Slot = ("mix", &["graded"]);
+const MIDA_MIX: Slot = ("mix", &["alone", "graded"]);
+/// Conformance pictures search the points, and never leave filtering to the device.
+const CONFORMANCE_FILTER: Slot = ("filter", &["nearest", "linear_fetch"]);
+const TABLE: Slot = ("transfer", &["table"]);
+const POINTS: Slot = ("transfer", &["points"]);
 const TRANSFER: Slot = ("transfer", &["table", "points"]);
 
 /// The wanted combinations. Order of the slots is the order of words in a variant's name.
@@ -51,14 +60,57 @@ const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "raycast",
-        &[("mode", &["mida"]), ALONE, LATTICE, FILTER, HOLES, TRANSFER],
+        &[("mode", &["mida"]), MIDA_MIX, RAY, FILTER, HOLES, TABLE],
+    ),
+    (
+        "raycast",
+        &[
+            ("mode", &["mida"]),
+            MIDA_MIX,
+            RAY,
+            CONFORMANCE_FILTER,
+            HOLES,
+            POINTS,
+        ],
+    ),
+    (
+        "raycast",
+        &[
+            ("mode", &["composite"]),
+            GRADED,
+            LATTICE,
+            FILTER,
+            HOLES,
+            TABLE,
+        ],
+    ),
+    (
+        "raycast",
+        &[
+            ("mode", &["composite"]),
+            GRADED,
+            LATTICE,
+            CONFORMANCE_FILTER,
+            HOLES,
+            POINTS,
+        ],
     ),
     (
         "projection",
         &[
-            ("mode", &["mip", "minip", "sum", "lmip", "attenuated_mip"]),
+            ("mode", &["mip", "minip", "sum"]),
             ALONE,
             LATTICE,
+            FILTER,
+            HOLES,
+        ],
+    ),
+    (
+        "projection",
+        &[
+            ("mode", &["lmip", "attenuated_mip"]),
+            ALONE,
+            RAY,
             FILTER,
             HOLES,
         ],
@@ -70,6 +122,20 @@ const ENTRIES: &[(&str, &[Slot])] = &[
     (
         "slices_3d",
         &[("blend", &["composite"]), MIXED, FILTER, HOLES, TRANSFER],
+    ),
+    (
+        "slices_3d",
+        &[("blend", &["composite"]), GRADED, FILTER, HOLES, TABLE],
+    ),
+    (
+        "slices_3d",
+        &[
+            ("blend", &["composite"]),
+            GRADED,
+            CONFORMANCE_FILTER,
+            HOLES,
+            POINTS,
+        ],
     ),
     (
         "slices_3d",
@@ -92,6 +158,20 @@ const ENTRIES: &[(&str, &[Slot])] = &[
     (
         "slices_2d",
         &[("blend", &["composite"]), MIXED, FILTER, HOLES, TRANSFER],
+    ),
+    (
+        "slices_2d",
+        &[("blend", &["composite"]), GRADED, FILTER, HOLES, TABLE],
+    ),
+    (
+        "slices_2d",
+        &[
+            ("blend", &["composite"]),
+            GRADED,
+            CONFORMANCE_FILTER,
+            HOLES,
+            POINTS,
+        ],
     ),
     (
         "slices_2d",

@@ -31,7 +31,7 @@ fn main(
     if !is_in_brick(on_slice(place)) || !has_data(place) {
         discard;
     }
-    return blend_source(sample_at(place), 1.0 / abs(slope));
+    return blend_source(sample_at(place, world.direction), 1.0 / abs(slope));
 }
 
 // The position with its coordinate along the stack as it is meant: no rounding takes it out of its slice.

@@ -27,5 +27,5 @@ fn main(
     if !is_in_brick(place) || !has_data(place) {
         discard;
     }
-    return blend_source(sample_at(place), plane_length(world));
+    return blend_source(sample_at(place, world.direction), plane_length(world));
 }

@@ -111,8 +111,8 @@ impl<'a> Scene<'a> {
     /// Whether its volumes can be put together.
     ///
     /// # Errors
-    /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`], [`Error::NotMixed`], and those of
-    /// [`Settings::check`].
+    /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`], [`Error::NotMixed`],
+    /// [`Error::NotShaded`], [`Error::NotShadedTogether`], and those of [`Settings::check`].
     pub fn check(&self) -> Result<(), Error> {
         let volumes = self.volumes();
         let (wanted, limit) = (volumes.len(), MAX_CHANNELS as usize);
@@ -120,8 +120,12 @@ impl<'a> Scene<'a> {
         let has_labels = self.roles().contains(&Role::Labels);
         let mode = self.settings.mode;
         self.settings.check()?;
+        if self.settings.shading.is_some() && mode.is_projection() {
+            return Err(Error::NotShaded { mode });
+        }
         match self.mix() {
-            Mix::Alone => Ok(()),
+            Mix::Alone | Mix::Graded => Ok(()),
+            _ if self.settings.shading.is_some() => Err(Error::NotShadedTogether),
             _ if volumes.iter().any(|volume| volume.grid() != grid) => Err(Error::OtherGrid),
             Mix::Colors if !(3..=4).contains(&wanted) => Err(Error::NoColor { found: wanted }),
             Mix::Colors if mode != Mode::Composite => Err(Error::NotMixed { mode }),

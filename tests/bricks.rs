@@ -10,14 +10,14 @@ use stratavox::gpu::Caps;
 use stratavox::offscreen::Renderer;
 use stratavox::picture::LayerKind;
 use stratavox::scene::Scene;
-use stratavox::technique::{Filter, Lattice, Mode, Order, Settings, Technique};
+use stratavox::technique::{Filter, Lattice, Mode, Order, Settings, Shading, Technique};
 use stratavox::volume::Volume;
 
 /// Caps under which a volume of 17 x 21 x 13 voxels takes bricks along every axis.
 fn small() -> Caps {
     Caps {
-        max_image_dimension_3d: 9,
-        max_image_array_layers: 6,
+        max_image_dimension_3d: 11,
+        max_image_array_layers: 8,
         ..Caps::UNLIMITED
     }
 }
@@ -58,7 +58,14 @@ fn settings() -> Vec<Settings> {
             ..Settings::default()
         })
     };
-    techniques.into_iter().flat_map(of_technique).collect()
+    let dark: Vec<Settings> = techniques.into_iter().flat_map(of_technique).collect();
+    // Gradients reach one voxel further.
+    let is_lit = |settings: &&Settings| settings.mode == Mode::Composite;
+    let lit = dark.iter().filter(is_lit).map(|settings| Settings {
+        shading: Some(Shading::default()),
+        ..settings.clone()
+    });
+    dark.iter().cloned().chain(lit).collect()
 }
 
 fn assert_same_picture(volume: &Volume, camera: &Camera) {

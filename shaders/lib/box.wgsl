@@ -9,6 +9,11 @@ alias Place = vec3<f32>;
 
 @group(0) @binding(1) var volume: Values;
 
+// The position so many voxels away.
+fn shifted(place: Place, voxels: vec3<f32>) -> Place {
+    return place + voxels;
+}
+
 fn volume_value(place: Place) -> f32 {
     return filtered(volume, volume_coding(), place);
 }

@@ -7,6 +7,7 @@
 const MAX_CLIP_PLANES: u32 = 8u;
 // One lane of a vector each.
 const MAX_CHANNELS: u32 = 4u;
+const MAX_LIGHTS: u32 = 4u;
 
 struct Frame {
     // A pixel's ray: origin + x * origin_dx + y * origin_dy, and the same for its direction, which is
@@ -96,6 +97,17 @@ struct Frame {
     depth_cue: f32,
     depth_near: f32,
     depth_scale: f32,
+    // Light: no lights, no shading. The way to each light is a unit vector of world space; w is not 0 for one
+    // that shines along the pixel's ray.
+    light_directions: array<vec4<f32>, MAX_LIGHTS>,
+    light_colors: array<vec4<f32>, MAX_LIGHTS>,
+    light_count: u32,
+    // Value per world length under which there is no surface.
+    flat_gradient: f32,
+    ambient: f32,
+    diffuse: f32,
+    specular: f32,
+    shininess: f32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -33,7 +33,7 @@ fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
         if !has_data(position) {
             continue;
         }
-        so_far = add(so_far, sample_at(position), segment);
+        so_far = add(so_far, sample_at(position, world.direction), segment);
         if is_finished(so_far) {
             break;
         }

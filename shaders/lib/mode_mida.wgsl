@@ -38,7 +38,7 @@ fn beside_of(found: Accumulator) -> vec4<f32> {
 fn add(so_far: Accumulator, sample: Sample, segment: Segment) -> Accumulator {
     let material = material_of(sample);
     let opacity = opacity_over(material.extinction, segment.length);
-    let unit = unit_from_value(sample);
+    let unit = unit_from_value(value_of(sample));
     let taken = max(unit - so_far.largest, 0.0) * frame.mida_fade;
     let transmittance = so_far.transmittance + taken * (1.0 - so_far.transmittance);
     var next = so_far;

@@ -20,7 +20,7 @@ fn has_data(place: Place) -> bool {
     return any_has;
 }
 
-fn sample_at(place: Place) -> Sample {
+fn sample_at(place: Place, ray_direction: vec3<f32>) -> Sample {
     var found = Sample(vec4(0.0), vec4(false));
     for (var c = 0u; c < frame.channel_count; c++) {
         if channel_has_data(c, place) {

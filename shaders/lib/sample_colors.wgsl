@@ -18,7 +18,7 @@ fn has_data(place: Place) -> bool {
     return true;
 }
 
-fn sample_at(place: Place) -> Sample {
+fn sample_at(place: Place, ray_direction: vec3<f32>) -> Sample {
     let color = vec3(channel_value(0u, place), channel_value(1u, place), channel_value(2u, place));
     if frame.channel_count == 3u {
         return Sample(color, luma(color));

@@ -17,6 +17,13 @@ fn volume_value(place: Place) -> f32 {
     return filtered(stack, volume_coding(), place);
 }
 
+// The position so many voxels away: across the stack in another slice, the outermost at most.
+fn shifted(place: Place, voxels: vec3<f32>) -> Place {
+    let axis = frame.slice_axis;
+    let slice = clamp(place.slice + i32(voxels[axis]), 0, i32(frame.dims[axis]) - 1);
+    return Place(place.voxel + voxels, slice);
+}
+
 // A vector of voxel space by the axes of the stack's images: across, down, layer.
 fn in_stack(voxel: vec3<f32>) -> vec3<f32> {
     let axis = frame.slice_axis;

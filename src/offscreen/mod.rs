@@ -2,6 +2,7 @@
 //!
 //! The only place that submits and waits.
 
+mod gathered;
 mod passes;
 mod position;
 pub mod reference;

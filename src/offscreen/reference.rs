@@ -1,34 +1,25 @@
 //! A scene to a picture on the CPU: every technique by its twin, in f32 or f64, no Vulkan anywhere.
 
-use super::position::positions;
+use super::gathered::{Gathered, grey_of_picture, layers};
 use super::sum::sum_of;
-use crate::picture::{Layer, LayerKind, Picture};
+use crate::picture::Picture;
+use crate::ray::pixel_ray;
 use crate::real::Real;
-use crate::resolve::reference::{light_at, premultiplied, projected_value};
+use crate::resolve::reference::{light_at, premultiplied};
 use crate::scene::{Beside, Scene, positions_in_pixel};
 use crate::shaders::Frame;
 use crate::technique::blend::{Fragment, blend, blend_material, clear_color};
+use crate::technique::gradient::gradient_of;
 use crate::technique::mixture::{color_of, colored, mixed};
+use crate::technique::shading::shade;
 use crate::technique::{
     Error, Filter, Mix, Mode, Recording, Role, Technique, projection, raycast, slices_2d, slices_3d,
 };
 use crate::transfer::{
-    Absorption, Classified, Points, Table, TransferFunction, Window, classify_by_points,
-    classify_by_table,
+    Absorption, Points, Table, TransferFunction, classify_by_points, classify_by_table,
 };
 use crate::volume::sample::{linear, linear_in_slice, nearest};
 use crate::volume::{Grid, Volume};
-
-/// What a technique leaves for one pixel, before it is resolved.
-#[derive(Clone, Copy, Debug)]
-struct Gathered<R> {
-    /// Composite: premultiplied colour. Else (value, weight, unused, unused).
-    accumulation: [R; 4],
-    depth: Option<R>,
-    /// What a depth cue leaves of the colour.
-    light: R,
-    samples: u32,
-}
 
 /// The picture of `scene` with all layers that its technique has.
 ///
@@ -84,48 +75,6 @@ fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     })
 }
 
-/// The default window of a projecting mode without a transfer function: the range of this picture.
-fn grey_of_picture<R: Real>(mode: Mode, gathered: &[Gathered<R>]) -> TransferFunction {
-    let values = gathered
-        .iter()
-        .filter_map(|g| projected_value(mode, g.accumulation))
-        .map(R::to_f64);
-    let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
-        [low.min(v), high.max(v)]
-    });
-    Window::of_range(range).grey(Classified::Projection)
-}
-
-fn layers<R: Real>(scene: &Scene, gathered: &[Gathered<R>]) -> Vec<Layer> {
-    let mode = scene.settings.mode;
-    let layer = |kind, number: &dyn Fn(&Gathered<R>) -> f32| Layer {
-        kind,
-        values: gathered.iter().map(number).collect(),
-    };
-    let number = |found: Option<R>| found.map_or(f32::NAN, R::to_f32);
-    let mut layers = vec![layer(LayerKind::Samples, &|g| g.samples as f32)];
-    if mode.is_projection() {
-        layers.push(layer(LayerKind::Value, &|g| {
-            number(projected_value(mode, g.accumulation))
-        }));
-    } else {
-        layers.push(layer(LayerKind::Transmittance, &|g| {
-            1.0 - g.accumulation[3].to_f32()
-        }));
-    }
-    if scene.settings.technique == Technique::Raycast {
-        let depth = layer(LayerKind::Depth, &|g| number(g.depth));
-        if mode.has_depth() {
-            layers.push(Layer {
-                kind: LayerKind::Position,
-                values: positions(scene, &depth.values),
-            });
-        }
-        layers.push(depth);
-    }
-    layers
-}
-
 /// One walk over the pixels of a picture.
 struct Walk<'a, R> {
     scene: &'a Scene<'a>,
@@ -165,7 +114,10 @@ impl<'a, R: Real> Walk<'a, R> {
             let functions = scene.transfers().into_iter();
             functions.map(classifier).collect::<Result<_, Error>>()?
         };
-        let Recording { frame, slices, .. } = view.on_cpu()?;
+        let Recording {
+            mut frame, slices, ..
+        } = view.on_cpu()?;
+        frame.flat_gradient = view.flat_gradient(scene.volume.value_range);
         Ok(Self {
             scene,
             volumes: scene.volumes(),
@@ -244,7 +196,11 @@ impl<'a, R: Real> Walk<'a, R> {
     /// Emission and absorption of what the volumes are made of together.
     fn composite(&self, pixel: [R; 2]) -> Gathered<R> {
         let settings = self.scene.settings;
-        let material_at = |p| self.material(|volume, filter| filtered(volume, filter, p));
+        let ray_direction = pixel_ray(&self.frame, pixel).direction;
+        let material_at = |p| {
+            let look = |volume: &_, filter, step| filtered(volume, filter, moved(p, step));
+            self.material(look, ray_direction)
+        };
         let blend = |target, fragment: Fragment<R, [R; 4]>| {
             blend_material(settings.order, target, fragment.value, fragment.length)
         };
@@ -253,8 +209,8 @@ impl<'a, R: Real> Walk<'a, R> {
                 let (frame, lattice) = (&self.frame, settings.lattice);
                 let (found, samples) = if settings.mode == Mode::Mida {
                     let value_at = |p| filtered(self.scene.volume, settings.filter, p);
-                    let classify = |value| self.classify(0, value);
-                    raycast::reference::accumulated(frame, lattice, pixel, value_at, classify)
+                    let sample_at = |p| value_at(p).zip(material_at(p));
+                    raycast::reference::accumulated(frame, lattice, pixel, sample_at)
                 } else {
                     let same = |material| material;
                     raycast::reference::radiance(frame, lattice, pixel, material_at, same)
@@ -269,19 +225,27 @@ impl<'a, R: Real> Walk<'a, R> {
             }
             Technique::Slices3d => self.blend_all(|i| self.on_plane(pixel, i, material_at), blend),
             Technique::Slices2d => {
-                let material_at = |axis, slice, p| {
-                    self.material(|volume, filter| {
-                        filtered_in_slice(volume, filter, axis, slice, p)
-                    })
+                let material_at = |axis, slice: u32, p| {
+                    let look = |volume: &Volume, filter, step: [i32; 3]| {
+                        let last = volume.dims[axis] - 1;
+                        let slice = slice.saturating_add_signed(step[axis]).min(last);
+                        filtered_in_slice(volume, filter, axis, slice, moved(p, step))
+                    };
+                    self.material(look, ray_direction)
                 };
                 self.blend_all(|i| self.on_slice(pixel, i, material_at), blend)
             }
         }
     }
 
-    /// What the volumes are made of where `look` looks; `None` for no data.
-    fn material(&self, look: impl Fn(&Volume, Filter) -> Option<R>) -> Option<[R; 4]> {
+    /// What the volumes are made of where `look_from` looks from, so many voxels away; `None` for no data.
+    fn material(
+        &self,
+        look_from: impl Fn(&Volume, Filter, [i32; 3]) -> Option<R>,
+        ray_direction: [R; 3],
+    ) -> Option<[R; 4]> {
         let settings = self.scene.settings;
+        let look = |volume: &Volume, filter| look_from(volume, filter, [0; 3]);
         if let Beside::Colors(_) = self.scene.beside {
             let mut found = [R::from_f64(0.0); 4];
             for (number, volume) in found.iter_mut().zip(&self.volumes) {
@@ -294,7 +258,15 @@ impl<'a, R: Real> Walk<'a, R> {
             return Some(colored(srgb, extinction, settings.color_space));
         }
         if let [volume] = self.volumes[..] {
-            return look(volume, settings.filter).map(|value| self.classify(0, value));
+            let value = look(volume, settings.filter)?;
+            let [r, g, b, extinction] = self.classify(0, value);
+            if self.frame.light_count == 0 {
+                return Some([r, g, b, extinction]);
+            }
+            let tap = |step| look_from(volume, settings.filter, step);
+            let gradient = gradient_of(&self.frame, tap);
+            let [r, g, b] = shade(&self.frame, [r, g, b], gradient, ray_direction);
+            return Some([r, g, b, extinction]);
         }
         let mut found = [None; crate::shaders::MAX_CHANNELS as usize];
         for (c, (volume, role)) in self.volumes.iter().zip(&self.roles).enumerate() {
@@ -361,6 +333,11 @@ impl<'a, R: Real> Walk<'a, R> {
             Classifier::Points(points) => classify_by_points(points, value),
         }
     }
+}
+
+/// The position so many voxels away.
+fn moved<R: Real>(p: [R; 3], step: [i32; 3]) -> [R; 3] {
+    std::array::from_fn(|k| p[k] + R::from_f64(step[k].into()))
 }
 
 fn filtered<R: Real>(volume: &Volume, filter: Filter, p: [R; 3]) -> Option<R> {

@@ -1,7 +1,7 @@
 //! How a grid is cut into bricks that a device can hold, and in which order bricks are drawn.
 //!
 //! The cut is regular: n bricks along an axis, each of ceil(dim / n) voxels, the last one smaller. A brick
-//! also stores a halo of one voxel around its own, so that a filter finds its neighbours.
+//! also stores a halo of voxels around its own, so that filters and gradients find their neighbours.
 
 use crate::volume::VoxelBox;
 
@@ -16,14 +16,14 @@ pub struct Cell {
     pub stored: VoxelBox,
 }
 
-/// The fewest bricks whose stored voxels fit; `None` where not even single voxels do. `halo` says on which
-/// axes neighbours are needed.
-pub fn cut(dims: [u32; 3], halo: [bool; 3], fits: impl Fn([u32; 3]) -> bool) -> Option<Vec<Cell>> {
+/// The fewest bricks whose stored voxels fit; `None` where not even single voxels do. `halo` says how many
+/// neighbours are needed on either side along each axis.
+pub fn cut(dims: [u32; 3], halo: [u32; 3], fits: impl Fn([u32; 3]) -> bool) -> Option<Vec<Cell>> {
     let mut counts = [1; 3];
     loop {
         let size: [u32; 3] = std::array::from_fn(|k| dims[k].div_ceil(counts[k]));
         let stored = std::array::from_fn(|k| {
-            let margin = if halo[k] && counts[k] > 1 { 2 } else { 0 };
+            let margin = if counts[k] > 1 { 2 * halo[k] } else { 0 };
             (size[k] + margin).min(dims[k])
         });
         if fits(stored) {
@@ -37,7 +37,7 @@ pub fn cut(dims: [u32; 3], halo: [bool; 3], fits: impl Fn([u32; 3]) -> bool) -> 
     }
 }
 
-fn cells(dims: [u32; 3], size: [u32; 3], halo: [bool; 3]) -> Vec<Cell> {
+fn cells(dims: [u32; 3], size: [u32; 3], halo: [u32; 3]) -> Vec<Cell> {
     let counts: [u32; 3] = std::array::from_fn(|k| dims[k].div_ceil(size[k]));
     let [nx, ny, nz] = counts;
     let indices = (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));
@@ -45,10 +45,9 @@ fn cells(dims: [u32; 3], size: [u32; 3], halo: [bool; 3]) -> Vec<Cell> {
         .map(|index| {
             let min: [u32; 3] = std::array::from_fn(|k| index[k] * size[k]);
             let max = std::array::from_fn(|k| (min[k] + size[k]).min(dims[k]));
-            let margin = halo.map(u32::from);
             let stored = VoxelBox {
-                min: std::array::from_fn(|k| min[k].saturating_sub(margin[k])),
-                max: std::array::from_fn(|k| (max[k] + margin[k]).min(dims[k])),
+                min: std::array::from_fn(|k| min[k].saturating_sub(halo[k])),
+                max: std::array::from_fn(|k| (max[k] + halo[k]).min(dims[k])),
             };
             Cell {
                 index,
@@ -89,7 +88,7 @@ mod tests {
     #[test]
     fn every_voxel_belongs_to_one_brick_and_has_its_neighbours() {
         let dims = [23, 9, 40];
-        let cells = cut(dims, [true; 3], |stored| stored.iter().all(|&n| n <= 12)).unwrap();
+        let cells = cut(dims, [1, 2, 3], |stored| stored.iter().all(|&n| n <= 12)).unwrap();
         let own: u64 = cells
             .iter()
             .map(|c| c.own.dims().iter().map(|&n| u64::from(n)).product::<u64>())
@@ -97,25 +96,25 @@ mod tests {
         assert_eq!(own, 23 * 9 * 40, "own voxels of all bricks");
         for cell in &cells {
             for (k, dim) in dims.into_iter().enumerate() {
-                let (own, stored) = (cell.own, cell.stored);
+                let (own, stored, halo) = (cell.own, cell.stored, k as u32 + 1);
                 assert!(stored.dims()[k] <= 12, "{cell:?} is too large");
-                assert_eq!(stored.min[k], own.min[k].saturating_sub(1), "{cell:?}");
-                assert_eq!(stored.max[k], (own.max[k] + 1).min(dim), "{cell:?}");
+                assert_eq!(stored.min[k], own.min[k].saturating_sub(halo), "{cell:?}");
+                assert_eq!(stored.max[k], (own.max[k] + halo).min(dim), "{cell:?}");
             }
         }
     }
 
     #[test]
     fn what_fits_stays_in_one_piece() {
-        let cells = cut([5, 6, 7], [true; 3], |_| true).unwrap();
+        let cells = cut([5, 6, 7], [1; 3], |_| true).unwrap();
         assert_eq!(cells.len(), 1);
         assert_eq!(cells[0].own, cells[0].stored);
-        assert_eq!(cut([5, 6, 7], [true; 3], |_| false), None, "nothing fits");
+        assert_eq!(cut([5, 6, 7], [1; 3], |_| false), None, "nothing fits");
     }
 
     #[test]
     fn a_ray_meets_bricks_in_their_order() {
-        let cells = cut([40, 40, 40], [true; 3], |stored| {
+        let cells = cut([40, 40, 40], [1; 3], |stored| {
             stored.iter().all(|&n| n <= 12)
         })
         .unwrap();

@@ -35,9 +35,10 @@ impl TextureLayout {
         }
     }
 
-    /// Nothing is interpolated between the slices of a stack.
-    fn halo(self) -> [bool; 3] {
-        std::array::from_fn(|k| self != Self::Stack(k))
+    /// Voxels on either side that a sample of a brick may need: one for a filter, one more for the differences
+    /// that make its gradient. Nothing is interpolated between the slices of a stack.
+    fn halo(self) -> [u32; 3] {
+        std::array::from_fn(|k| if self == Self::Stack(k) { 1 } else { 2 })
     }
 }
 
@@ -59,6 +60,7 @@ pub struct GpuVolume {
     grid: Grid,
     layout: TextureLayout,
     texel: TexelFormat,
+    value_range: [f64; 2],
     bricks: Vec<Brick>,
     sampler: Sampler,
 }
@@ -121,6 +123,7 @@ impl Plan {
             grid: volume.grid(),
             layout: self.layout,
             texel: self.texel,
+            value_range: volume.value_range,
             bricks: cells.iter().map(brick).collect::<Result<_, Error>>()?,
             sampler: Sampler::linear_clamp(gpu)?,
         })
@@ -175,6 +178,11 @@ impl GpuVolume {
     /// What texels mean.
     pub fn texel(&self) -> &TexelFormat {
         &self.texel
+    }
+
+    /// Smallest and largest valid value.
+    pub fn value_range(&self) -> [f64; 2] {
+        self.value_range
     }
 
     /// At least one.

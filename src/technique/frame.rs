@@ -5,11 +5,12 @@
 //! `sampling.md` 3 wants them.
 
 use super::blend::extreme_sign;
+use super::shading::set_shading;
 use super::{MAX_SAMPLES_PER_RAY, Settings, Technique};
 use crate::camera::{Camera, Projection, Rays};
 use crate::picture::ColorSpace;
 use crate::resident::{Cell, Coding, TransferLayout, front_to_back};
-use crate::shaders::{FrameFields, MAX_CLIP_PLANES};
+use crate::shaders::{FrameFields, MAX_CLIP_PLANES, MAX_LIGHTS};
 use crate::technique::Error;
 use crate::transfer::Interpolation;
 use crate::volume::Grid;
@@ -60,7 +61,7 @@ impl View<'_> {
     /// The parameters of the whole grid, without those of slices.
     ///
     /// # Errors
-    /// [`Error::TooManySamples`], [`Error::TooManyClipPlanes`] and those of [`Settings::check`].
+    /// [`Error::TooManySamples`], [`Error::TooManyClipPlanes`], those of lights and of [`Settings::check`].
     pub fn fields(&self, coding: &Coding, transfer: &TransferLayout) -> Result<FrameFields, Error> {
         let rays = self.rays();
         let world_from_voxel = self.world_from_voxel();
@@ -72,7 +73,7 @@ impl View<'_> {
         let (clip_planes, clip_plane_count) = self.clip_planes()?;
         let v = |v: DVec3| v.as_vec3().to_array();
         let forward_voxel = world_from_voxel.matrix3.transpose() * rays.forward;
-        Ok(FrameFields {
+        let mut fields = FrameFields {
             origin: v(rays.origin),
             origin_dx: v(rays.origin_dx),
             origin_dy: v(rays.origin_dy),
@@ -148,7 +149,19 @@ impl View<'_> {
             depth_cue: of_mode.depth_cue,
             depth_near: of_mode.depth_near,
             depth_scale: of_mode.depth_scale,
-        })
+            light_directions: [[0.0; 4]; MAX_LIGHTS as usize],
+            light_colors: [[0.0; 4]; MAX_LIGHTS as usize],
+            light_count: 0,
+            flat_gradient: 0.0,
+            ambient: 0.0,
+            diffuse: 0.0,
+            specular: 0.0,
+            shininess: 0.0,
+        };
+        if let Some(shading) = &self.settings.shading {
+            set_shading(shading, self.settings.color_space, &mut fields)?;
+        }
+        Ok(fields)
     }
 
     /// Narrows the parameters to one of several bricks. `is_first`: no nearer one has been recorded.

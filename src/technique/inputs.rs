@@ -87,7 +87,7 @@ pub struct Words {
     pub lattice: &'static str,
     /// How values are classified.
     pub transfer: &'static str,
-    /// How several volumes go together.
+    /// How several volumes go together, or whether the gradient of one counts.
     pub mix: Mix,
 }
 
@@ -102,8 +102,9 @@ impl Words {
         let is_fetched =
             |part: &Part| part.role == Role::Numbers && !part.volume.texel().is_filtered;
         let has_holes = parts.iter().any(|part| part.volume.has_holes());
+        let is_graded = mix == Mix::Alone && settings.shading.is_some();
         Self {
-            mix,
+            mix: if is_graded { Mix::Graded } else { mix },
             filter: match settings.filter {
                 Filter::Nearest => "nearest",
                 Filter::Linear if settings.conformance || parts.iter().any(is_fetched) => {

@@ -22,6 +22,8 @@ pub enum Mix {
     /// There is one.
     #[default]
     Alone,
+    /// There is one, and its gradient counts.
+    Graded,
     /// Each is a thing of its own with a transfer function of its own.
     Channels,
     /// Red, green, blue, and perhaps alpha, of one colour.
@@ -33,6 +35,7 @@ impl Mix {
     pub(super) fn word(self) -> &'static str {
         match self {
             Self::Alone => "",
+            Self::Graded => ".graded",
             Self::Channels => ".channels",
             Self::Colors => ".colors",
         }

@@ -5,6 +5,7 @@ pub mod blend;
 pub mod composite;
 mod frame;
 mod frame_of_mode;
+pub mod gradient;
 mod inputs;
 mod march;
 pub mod merge;
@@ -14,6 +15,7 @@ mod per_mode;
 pub mod projection;
 pub mod raycast;
 mod recording;
+pub mod shading;
 mod slicer;
 pub mod slices_2d;
 pub mod slices_3d;
@@ -24,6 +26,7 @@ pub use inputs::{Inputs, Words};
 pub use mixture::{Mix, Part, Role};
 pub use per_mode::{DEFAULT_ATTENUATION, PerMode};
 pub use recording::{Recording, parameter_ring};
+pub use shading::{Light, Shading};
 pub use slicer::Slicer;
 
 /// Where samples lie.
@@ -123,6 +126,8 @@ pub struct Settings {
     pub crop: Option<[glam::DVec3; 2]>,
     /// At most [`crate::shaders::MAX_CLIP_PLANES`].
     pub clip_planes: Vec<ClipPlane>,
+    /// Light on composited samples of one volume; `None`: their colour as it is.
+    pub shading: Option<Shading>,
     /// Float targets, no early termination, filtering by texel fetch, control points searched exactly.
     pub conformance: bool,
     /// What single modes want to know.
@@ -185,6 +190,14 @@ pub enum Error {
         /// The mode.
         mode: Mode,
     },
+    /// The planes of slicers, in a mode that slicers do not have.
+    #[error(
+        "{mode:?} takes samples along rays, not on the planes of a slicer, which has no such mode"
+    )]
+    NeedsRayLattice {
+        /// The mode.
+        mode: Mode,
+    },
     /// Darkness by depth needs a depth.
     #[error("{technique:?} in mode {mode:?} has no one depth a ray: no depth cue")]
     NoDepth {
@@ -203,6 +216,28 @@ pub enum Error {
         /// What was given.
         found: f64,
     },
+    /// Light falls on what is composited.
+    #[error(
+        "{mode:?} projects one number a ray, on which no light falls: shading is for composite"
+    )]
+    NotShaded {
+        /// The mode.
+        mode: Mode,
+    },
+    /// Several volumes have several gradients.
+    #[error("shading is for one volume of numbers, not for several that are mixed")]
+    NotShadedTogether,
+    /// The parameters hold a fixed number of lights.
+    #[error("{wanted} lights, the limit is {limit}")]
+    TooManyLights {
+        /// How many were asked for.
+        wanted: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+    /// A direction has a length.
+    #[error("the way to a light has the length 0")]
+    NoWayToLight,
     /// The parameters hold a fixed number of planes.
     #[error("{wanted} clip planes, the limit is {limit}")]
     TooManyClipPlanes {
@@ -242,11 +277,14 @@ impl Settings {
     /// Whether technique, mode and the numbers of the mode go together.
     ///
     /// # Errors
-    /// [`Error::NeedsRays`], [`Error::NoDepth`] and [`Error::OutOfRange`].
+    /// [`Error::NeedsRays`], [`Error::NeedsRayLattice`], [`Error::NoDepth`] and [`Error::OutOfRange`].
     pub fn check(&self) -> Result<(), Error> {
         let (technique, mode) = (self.technique, self.mode);
         if technique != Technique::Raycast && mode.needs_rays() {
             return Err(Error::NeedsRays { technique, mode });
+        }
+        if self.lattice != Lattice::Ray && mode.needs_rays() {
+            return Err(Error::NeedsRayLattice { mode });
         }
         let has_depth = technique == Technique::Raycast && mode.projects_one_place();
         if self.per_mode.depth_cue != 0.0 && !has_depth {
@@ -270,6 +308,7 @@ impl Default for Settings {
             color_space: crate::picture::ColorSpace::default(),
             crop: None,
             clip_planes: Vec::new(),
+            shading: None,
             conformance: false,
             per_mode: PerMode::default(),
         }

@@ -65,6 +65,7 @@ impl View<'_> {
         let layout = transfer.map_or_else(TransferLayout::default, |t| *t.layout());
         let mut fields = self.fields(&volume.texel().coding, &layout)?;
         set_channels(parts, transfer, &mut fields)?;
+        fields.flat_gradient = self.flat_gradient(volume.value_range());
         let cells: Vec<_> = volume.bricks().iter().map(|brick| brick.cell).collect();
         let mut order = self.front_to_back(&cells);
         let settings = self.settings;
@@ -82,7 +83,8 @@ impl View<'_> {
         Ok(order.iter().enumerate().map(recording).collect())
     }
 
-    /// What the CPU twins compute: the whole grid at once, values as they are.
+    /// What the CPU twins compute: the whole grid at once, values as they are. `flat_gradient` is 0, the range of
+    /// the volume is not known here.
     ///
     /// # Errors
     /// As [`View::recordings`].

@@ -2,7 +2,7 @@
 
 use super::{Error, finite};
 use crate::{
-    technique::{DEFAULT_ATTENUATION, Mode, PerMode, Technique},
+    technique::{DEFAULT_ATTENUATION, Lattice, Mode, PerMode, Settings, Technique},
     transfer::{ValueSummary, Window},
 };
 use clap::Args;
@@ -35,7 +35,13 @@ const HEADING: &str = "Modes";
 
 impl ModeFlags {
     /// What can be said wrong before a voxel is read.
-    pub fn check(&self, technique: Technique, mode: Mode) -> Result<(), Error> {
+    pub fn check(&self, settings: &Settings) -> Result<(), Error> {
+        let Settings {
+            technique,
+            mode,
+            lattice,
+            ..
+        } = *settings;
         let word = mode_name(mode);
         if technique != Technique::Raycast && mode.needs_rays() {
             return Err(Error::usage(
@@ -43,6 +49,14 @@ impl ModeFlags {
                     "--mode {word} needs --technique raycast: in it a sample depends on those before it"
                 ),
                 "leave out --technique, or take --mode mip",
+            ));
+        }
+        if lattice != Lattice::Ray && mode.needs_rays() {
+            return Err(Error::usage(
+                format!(
+                    "--mode {word} takes samples along rays: --lattice planes is for modes that slicers have"
+                ),
+                "leave out --lattice",
             ));
         }
         if self.depth_cue.is_some_and(|cue| cue != 0.0) {
@@ -221,8 +235,14 @@ mod tests {
 
     #[test]
     fn numbers_that_mean_nothing_and_flags_of_other_modes_are_named() {
+        let settings = |technique, mode| Settings {
+            technique,
+            mode,
+            ..Settings::default()
+        };
         let refused = |flags: &ModeFlags, technique, mode| {
-            let error = flags.check(technique, mode).expect_err("refused");
+            let error = flags.check(&settings(technique, mode));
+            let error = error.expect_err("refused");
             assert_eq!(error.exit_code(), 2);
             error.to_string()
         };
@@ -246,7 +266,11 @@ mod tests {
         for mode in [Mode::Lmip, Mode::AttenuatedMip, Mode::Mida] {
             let text = refused(&none, Technique::Slices2d, mode);
             assert!(text.contains(mode_name(mode)), "{text}");
-            none.check(Technique::Raycast, mode).expect("right");
+            let mut right = settings(Technique::Raycast, mode);
+            none.check(&right).expect("right");
+            right.lattice = Lattice::Planes;
+            let text = none.check(&right).expect_err("refused").to_string();
+            assert!(text.contains("--lattice planes"), "{text}");
         }
     }
 }

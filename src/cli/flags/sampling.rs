@@ -101,6 +101,7 @@ impl SamplingFlags {
             color_space,
             crop: self.crop.map(crop_box).transpose()?,
             clip_planes: clip_planes(&self.clip)?,
+            shading: None,
             conformance: self.conformance,
             // Of the values, which are not known yet.
             per_mode: Default::default(),

@@ -190,7 +190,7 @@ pub fn shows_several(scene: &SceneFlags, header: &Header) -> Result<bool, Error>
 /// What can be said wrong before anything is opened.
 pub fn check(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
     let mode = settings.mode;
-    scene.modes.check(settings.technique, mode)?;
+    scene.modes.check(settings)?;
     if scene.labels.labels.is_some() && mode != Mode::Composite {
         return Err(Error::usage(
             "--labels needs --mode composite: the others have no place for labels",

@@ -29,17 +29,18 @@ pub fn radiance<R: Real, V>(
     (so_far, samples)
 }
 
-/// The same in [`crate::technique::Mode::Mida`], which looks at values too.
+/// The same in [`crate::technique::Mode::Mida`]; `sample_at` gives the value and what it is made of, (red, green,
+/// blue, extinction).
 pub fn accumulated<R: Real>(
     frame: &Frame,
     lattice: Lattice,
     pixel: [R; 2],
-    value_at: impl Fn([R; 3]) -> Option<R>,
-    classify: impl Fn(R) -> [R; 4],
+    sample_at: impl Fn([R; 3]) -> Option<(R, [R; 4])>,
 ) -> (Composite<R>, u32) {
     let mut so_far = Mida::default();
-    let samples = march(frame, lattice, pixel, value_at, |value, segment| {
-        so_far.add(frame, value, classify(value), segment.length, segment.t);
+    let samples = march(frame, lattice, pixel, sample_at, |sample, segment| {
+        let (value, material) = sample;
+        so_far.add(frame, value, material, segment.length, segment.t);
         if so_far.is_finished(frame) {
             return ControlFlow::Break(());
         }

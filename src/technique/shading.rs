@@ -1,0 +1,131 @@
+//! Two-sided light of Blinn and Phong on the surface that stands across the gradient: the words, the parameters,
+//! and the twin of `shaders/lib/shade.wgsl` (`sampling.md` 7).
+//!
+//! ```text
+//! c (ambient + diffuse sum of L |n.l|) + specular sum of L |n.h|^shininess        h = (l + v) / |l + v|
+//! ```
+//!
+//! L is a light's colour, l the way to it, v the way to the eye, n the gradient made a unit vector after
+//! interpolation. Where the gradient over one voxel is under 1e-4 of the volume's range there is no surface and the
+//! colour stays. Blinn, "Models of Light Reflection for Computer Synthesized Pictures", SIGGRAPH 1977.
+
+use super::{Error, View};
+use crate::color::decode_srgb;
+use crate::picture::ColorSpace;
+use crate::real::{Real, add, dot, scale, sub};
+use crate::shaders::{Frame, FrameFields, MAX_LIGHTS};
+use glam::DVec3;
+
+/// How samples are lit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shading {
+    /// Part of the colour that needs no light.
+    pub ambient: f64,
+    /// Part of the colour that a surface across the light has.
+    pub diffuse: f64,
+    /// White that a surface mirrors.
+    pub specular: f64,
+    /// How sharply it mirrors; positive.
+    pub shininess: f64,
+    /// At most [`MAX_LIGHTS`]; none stands for a white headlight, which shines along the ray of each pixel.
+    pub lights: Vec<Light>,
+}
+
+/// A light that is infinitely far away.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Light {
+    /// The way to it, in world space, of any length but zero.
+    pub towards: DVec3,
+    /// sRGB numbers from 0 to 1.
+    pub srgb: [f64; 3],
+}
+
+impl Default for Shading {
+    fn default() -> Self {
+        Self {
+            ambient: 0.1,
+            diffuse: 0.7,
+            specular: 0.2,
+            shininess: 10.0,
+            lights: Vec::new(),
+        }
+    }
+}
+
+/// Under this part of the volume's range over one voxel a gradient is flat.
+const FLAT_PART: f64 = 1e-4;
+
+impl View<'_> {
+    /// Value per world length under which a gradient is no surface, in a volume of this range.
+    pub fn flat_gradient(&self, [low, high]: [f64; 2]) -> f32 {
+        (FLAT_PART * (high - low) / self.grid.smallest_spacing()) as f32
+    }
+}
+
+/// Fills the parameters of light.
+pub(super) fn set_shading(
+    shading: &Shading,
+    space: ColorSpace,
+    fields: &mut FrameFields,
+) -> Result<(), Error> {
+    let (wanted, limit) = (shading.lights.len(), MAX_LIGHTS as usize);
+    if wanted > limit {
+        return Err(Error::TooManyLights { wanted, limit });
+    }
+    fields.ambient = shading.ambient as f32;
+    fields.diffuse = shading.diffuse as f32;
+    fields.specular = shading.specular as f32;
+    fields.shininess = shading.shininess as f32;
+    if shading.lights.is_empty() {
+        fields.light_count = 1;
+        fields.light_directions[0] = [0.0, 0.0, 0.0, 1.0];
+        fields.light_colors[0] = [1.0; 4];
+        return Ok(());
+    }
+    fields.light_count = wanted as u32;
+    for (i, light) in shading.lights.iter().enumerate() {
+        let towards = light.towards.try_normalize().ok_or(Error::NoWayToLight)?;
+        let shown = |c: f64| match space {
+            ColorSpace::Linear => decode_srgb(c),
+            ColorSpace::Display => c,
+        };
+        let [r, g, b] = light.srgb.map(|c| shown(c) as f32);
+        fields.light_directions[i] = towards.extend(0.0).as_vec4().to_array();
+        fields.light_colors[i] = [r, g, b, 1.0];
+    }
+    Ok(())
+}
+
+/// The colour of a surface across `gradient` (value per world length), seen along `ray_direction`.
+pub fn shade<R: Real>(
+    frame: &Frame,
+    color: [R; 3],
+    gradient: [R; 3],
+    ray_direction: [R; 3],
+) -> [R; 3] {
+    let zero = R::from_f64(0.0);
+    let length = |v: [R; 3]| dot(v, v).sqrt();
+    let steepness = length(gradient);
+    if steepness < R::from_f32(frame.flat_gradient) || steepness == zero {
+        return color;
+    }
+    let normal = scale(gradient, R::from_f64(1.0) / steepness);
+    let mut lit = scale(color, R::from_f32(frame.ambient));
+    let lights = frame.light_directions.iter().zip(&frame.light_colors);
+    for (&[x, y, z, w], light_color) in lights.take(frame.light_count as usize) {
+        let towards_light = if w == 0.0 {
+            [x, y, z].map(R::from_f32)
+        } else {
+            ray_direction.map(|d| -d)
+        };
+        let halfway = sub(towards_light, ray_direction);
+        // Behind the surface and against the eye no halfway stands out.
+        let facing = dot(normal, halfway).abs() / length(halfway).max(R::from_f32(1e-6));
+        let facing = facing.min(R::from_f64(1.0));
+        let diffuse = R::from_f32(frame.diffuse) * dot(normal, towards_light).abs();
+        let specular = R::from_f32(frame.specular) * facing.powf(R::from_f32(frame.shininess));
+        let added = |c: usize| R::from_f32(light_color[c]) * (diffuse * color[c] + specular);
+        lit = add(lit, [added(0), added(1), added(2)]);
+    }
+    lit
+}
