@@ -95,6 +95,7 @@ const ENTRIES: &[(&str, &[Slot])] = &[
             POINTS,
         ],
     ),
+    ("isosurface", &[FILTER, HOLES]),
     (
         "projection",
         &[

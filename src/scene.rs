@@ -129,7 +129,9 @@ impl<'a> Scene<'a> {
             _ if volumes.iter().any(|volume| volume.grid() != grid) => Err(Error::OtherGrid),
             Mix::Colors if !(3..=4).contains(&wanted) => Err(Error::NoColor { found: wanted }),
             Mix::Colors if mode != Mode::Composite => Err(Error::NotMixed { mode }),
-            Mix::Channels if mode == Mode::Mida => Err(Error::NotMixed { mode }),
+            Mix::Channels if matches!(mode, Mode::Mida | Mode::Iso) => {
+                Err(Error::NotMixed { mode })
+            }
             Mix::Channels if mode.is_projection() && has_labels => Err(Error::NotMixed { mode }),
             _ if wanted > limit => Err(Error::TooManyChannels { wanted, limit }),
             _ => Ok(()),

@@ -8,6 +8,7 @@ const MAX_CLIP_PLANES: u32 = 8u;
 // One lane of a vector each.
 const MAX_CHANNELS: u32 = 4u;
 const MAX_LIGHTS: u32 = 4u;
+const MAX_LEVELS: u32 = 8u;
 
 struct Frame {
     // A pixel's ray: origin + x * origin_dx + y * origin_dy, and the same for its direction, which is
@@ -97,6 +98,10 @@ struct Frame {
     depth_cue: f32,
     depth_near: f32,
     depth_scale: f32,
+    // Surfaces, ascending: the value in x; colour as it is blended, not premultiplied, and opacity.
+    level_count: u32,
+    level_values: array<vec4<f32>, MAX_LEVELS>,
+    level_colors: array<vec4<f32>, MAX_LEVELS>,
     // Light: no lights, no shading. The way to each light is a unit vector of world space; w is not 0 for one
     // that shines along the pixel's ray.
     light_directions: array<vec4<f32>, MAX_LIGHTS>,

@@ -243,7 +243,7 @@ fn check_layers(job: &Job) -> Result<(), Error> {
             LayerKind::Value | LayerKind::Depth | LayerKind::Position if is_sum => {
                 "one number a voxel: --component 0"
             }
-            LayerKind::Value if !mode.is_projection() => "a mode that projects, such as --mode mip",
+            LayerKind::Value if !mode.has_value() => "a mode with one value, such as --mode mip",
             LayerKind::Transmittance if mode.is_projection() => "--mode composite",
             LayerKind::Depth | LayerKind::Position if technique != Technique::Raycast => {
                 "--technique raycast"

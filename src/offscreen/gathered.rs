@@ -14,6 +14,8 @@ pub(super) struct Gathered<R> {
     /// Composite: premultiplied colour. Else (value, weight, unused, unused).
     pub accumulation: [R; 4],
     pub depth: Option<R>,
+    /// The value of a surface that was hit first.
+    pub level: Option<R>,
     /// What a depth cue leaves of the colour.
     pub light: R,
     pub samples: u32,
@@ -47,6 +49,9 @@ pub(super) fn layers<R: Real>(scene: &Scene, gathered: &[Gathered<R>]) -> Vec<La
         layers.push(layer(LayerKind::Transmittance, &|g| {
             1.0 - g.accumulation[3].to_f32()
         }));
+    }
+    if mode == Mode::Iso {
+        layers.push(layer(LayerKind::Value, &|g| number(g.level)));
     }
     if scene.settings.technique == Technique::Raycast {
         let depth = layer(LayerKind::Depth, &|g| number(g.depth));

@@ -13,7 +13,8 @@ use crate::technique::gradient::gradient_of;
 use crate::technique::mixture::{color_of, colored, mixed};
 use crate::technique::shading::shade;
 use crate::technique::{
-    Error, Filter, Mix, Mode, Recording, Role, Technique, projection, raycast, slices_2d, slices_3d,
+    Error, Filter, Mix, Mode, Recording, Role, Technique, isosurface, projection, raycast,
+    slices_2d, slices_3d,
 };
 use crate::transfer::{
     Absorption, Points, Table, TransferFunction, classify_by_points, classify_by_table,
@@ -108,7 +109,7 @@ impl<'a, R: Real> Walk<'a, R> {
                 Classifier::Table(Table::new(function, absorption, space))
             })
         };
-        let classifiers = if scene.settings.mode.is_projection() {
+        let classifiers = if scene.settings.mode.has_value() {
             Vec::new()
         } else {
             let functions = scene.transfers().into_iter();
@@ -156,10 +157,10 @@ impl<'a, R: Real> Walk<'a, R> {
 
     fn gather(&self, x: u32, y: u32) -> Gathered<R> {
         let pixel = [x, y].map(|n| R::from_f64(f64::from(n)) + R::from_f64(0.5));
-        if self.scene.settings.mode.is_projection() {
-            self.project(pixel)
-        } else {
-            self.composite(pixel)
+        match self.scene.settings.mode {
+            Mode::Iso => self.surfaces(pixel),
+            mode if mode.is_projection() => self.project(pixel),
+            _ => self.composite(pixel),
         }
     }
 
@@ -180,6 +181,7 @@ impl<'a, R: Real> Walk<'a, R> {
                 Gathered {
                     accumulation: [found.value, found.weight, zero, zero],
                     depth: found.depth,
+                    level: None,
                     light: found.depth.map_or(R::from_f64(1.0), |t| light_at(frame, t)),
                     samples,
                 }
@@ -190,6 +192,28 @@ impl<'a, R: Real> Walk<'a, R> {
                     |axis, slice, p| filtered_in_slice(volume, settings.filter, axis, slice, p);
                 self.blend_all(|i| self.on_slice(pixel, i, value_at), blend)
             }
+        }
+    }
+
+    /// The surfaces that a ray meets.
+    fn surfaces(&self, pixel: [R; 2]) -> Gathered<R> {
+        let (frame, filter) = (&self.frame, self.scene.settings.filter);
+        let value_at = |p| filtered(self.scene.volume, filter, p);
+        let lit = |color, p, ray_direction| {
+            if frame.light_count == 0 {
+                return color;
+            }
+            let gradient = gradient_of(frame, |step| value_at(moved(p, step)));
+            shade(frame, color, gradient, ray_direction)
+        };
+        let found = isosurface::surfaces(frame, pixel, value_at, lit);
+        let ([r, g, b], one) = (found.color, R::from_f64(1.0));
+        Gathered {
+            accumulation: [r, g, b, one - found.transmittance],
+            depth: found.first.map(|(_, t)| t),
+            level: found.first.map(|(level, _)| level),
+            light: one,
+            samples: found.samples,
         }
     }
 
@@ -219,6 +243,7 @@ impl<'a, R: Real> Walk<'a, R> {
                 Gathered {
                     accumulation: [r, g, b, R::from_f64(1.0) - found.transmittance],
                     depth: found.depth,
+                    level: None,
                     light: R::from_f64(1.0),
                     samples,
                 }
@@ -322,6 +347,7 @@ impl<'a, R: Real> Walk<'a, R> {
         Gathered {
             accumulation: target,
             depth: None,
+            level: None,
             light: R::from_f64(1.0),
             samples,
         }

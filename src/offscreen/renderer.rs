@@ -21,7 +21,7 @@ use crate::resident::{GpuTransfer, GpuVolume, TextureLayout};
 use crate::resolve::reference::projected_value;
 use crate::scene::{Scene, positions_in_pixel};
 use crate::technique::{
-    self, Inputs, Mix, Part, Recording, Settings, Technique, Words, parameter_ring,
+    self, Inputs, Mix, Mode, Part, Recording, Settings, Technique, Words, parameter_ring,
 };
 use crate::transfer::{Classified, TransferFunction, Window};
 use crate::volume::Volume;
@@ -147,6 +147,7 @@ impl<'v> Renderer<'v> {
         self.prepare(scene)?;
         let functions = scene.transfers().into_iter();
         match functions.collect::<Option<Vec<_>>>() {
+            _ if scene.settings.mode == Mode::Iso => {}
             Some(functions) => self.set_transfers(scene, &functions)?,
             None if scene.settings.mode.is_projection() => {
                 clock.add(self.gather(scene, [0.0; 2])?);
@@ -340,6 +341,8 @@ impl<'v> Renderer<'v> {
         };
         let layer = |kind| {
             let number = |(left, beside): (&[f32; 4], &[f32; 4])| match kind {
+                LayerKind::Value if mode == Mode::Iso && beside[1] < 0.0 => f32::NAN,
+                LayerKind::Value if mode == Mode::Iso => beside[0],
                 LayerKind::Value => projected_value(mode, *left).unwrap_or(f32::NAN),
                 LayerKind::Depth | LayerKind::Position if beside[1] < 0.0 => f32::NAN,
                 LayerKind::Depth | LayerKind::Position => beside[1],

@@ -33,7 +33,7 @@ impl Resolve {
         format: vk::Format,
     ) -> Result<Self, Error> {
         let fragment = match mode {
-            Mode::Composite | Mode::Mida => "resolve.picture",
+            Mode::Composite | Mode::Mida | Mode::Iso => "resolve.picture",
             Mode::Mip | Mode::Minip | Mode::Xray | Mode::Lmip | Mode::AttenuatedMip => {
                 "resolve.value"
             }

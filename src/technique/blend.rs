@@ -44,7 +44,7 @@ impl Drawn {
         let mix = mix.word();
         match self {
             // Modes that need rays are refused where parameters are made: nothing is drawn by these.
-            Self::Picture(Mode::Composite | Mode::Mida) => {
+            Self::Picture(Mode::Composite | Mode::Mida | Mode::Iso) => {
                 format!("{slicer}.composite{mix}.{filter}.{holes}.{transfer}")
             }
             Self::Picture(Mode::Mip | Mode::Minip | Mode::Lmip | Mode::AttenuatedMip) => {
@@ -59,8 +59,12 @@ impl Drawn {
 /// The fixed-function operator.
 pub fn operator(drawn: Drawn, order: Order) -> Blend {
     match (drawn, order) {
-        (Drawn::Picture(Mode::Composite | Mode::Mida), Order::BackToFront) => Blend::Over,
-        (Drawn::Picture(Mode::Composite | Mode::Mida), Order::FrontToBack) => Blend::Under,
+        (Drawn::Picture(Mode::Composite | Mode::Mida | Mode::Iso), Order::BackToFront) => {
+            Blend::Over
+        }
+        (Drawn::Picture(Mode::Composite | Mode::Mida | Mode::Iso), Order::FrontToBack) => {
+            Blend::Under
+        }
         (Drawn::Picture(Mode::Mip | Mode::Lmip | Mode::AttenuatedMip), _) => Blend::Max,
         (Drawn::Picture(Mode::Minip), _) => Blend::Min,
         (Drawn::Picture(Mode::Average | Mode::Xray) | Drawn::Count, _) => Blend::Add,
@@ -73,7 +77,7 @@ pub fn clear_color(mode: Mode) -> [f32; 4] {
     match mode {
         Mode::Mip | Mode::Lmip | Mode::AttenuatedMip => [-f32::MAX, 0.0, 0.0, 0.0],
         Mode::Minip => [f32::MAX, 0.0, 0.0, 0.0],
-        Mode::Composite | Mode::Mida | Mode::Average | Mode::Xray => [0.0; 4],
+        Mode::Composite | Mode::Mida | Mode::Iso | Mode::Average | Mode::Xray => [0.0; 4],
     }
 }
 
@@ -93,7 +97,7 @@ pub fn blend<R: Real>(
     let zero = R::from_f64(0.0);
     let sign = R::from_f32(extreme_sign(mode));
     match mode {
-        Mode::Composite | Mode::Mida => {
+        Mode::Composite | Mode::Mida | Mode::Iso => {
             blend_material(order, target, classify(fragment.value), fragment.length)
         }
         Mode::Mip | Mode::Lmip | Mode::AttenuatedMip => {

@@ -2,6 +2,9 @@
 
 use super::View;
 use crate::camera::Projection;
+use crate::color::decode_srgb;
+use crate::picture::ColorSpace;
+use crate::shaders::MAX_LEVELS;
 use glam::{DVec3, dvec3};
 
 /// Fields of the frame by the same names.
@@ -14,6 +17,9 @@ pub(super) struct OfMode {
     pub depth_cue: f32,
     pub depth_near: f32,
     pub depth_scale: f32,
+    pub level_count: u32,
+    pub level_values: [[f32; 4]; MAX_LEVELS as usize],
+    pub level_colors: [[f32; 4]; MAX_LEVELS as usize],
 }
 
 impl View<'_> {
@@ -22,6 +28,16 @@ impl View<'_> {
         let per_mode = &self.settings.per_mode;
         let [low, high] = per_mode.unit_values;
         let [near, far] = self.depth_range();
+        let mut levels = per_mode.levels.clone();
+        levels.sort_by(|a, b| a.value.total_cmp(&b.value));
+        levels.truncate(MAX_LEVELS as usize);
+        let mut level_values = [[0.0; 4]; MAX_LEVELS as usize];
+        let mut level_colors = level_values;
+        for (i, level) in levels.iter().enumerate() {
+            level_values[i][0] = level.value as f32;
+            let [r, g, b] = level.srgb.map(|c| self.shown(c) as f32);
+            level_colors[i] = [r, g, b, level.opacity as f32];
+        }
         // No infinity reaches a shader.
         let finite = |x: f64| (x as f32).clamp(f32::MIN, f32::MAX);
         OfMode {
@@ -33,6 +49,17 @@ impl View<'_> {
             depth_cue: per_mode.depth_cue as f32,
             depth_near: near as f32,
             depth_scale: finite(1.0 / (far - near)),
+            level_count: levels.len() as u32,
+            level_values,
+            level_colors,
+        }
+    }
+
+    /// An sRGB number as it is blended.
+    fn shown(&self, srgb: f64) -> f64 {
+        match self.settings.color_space {
+            ColorSpace::Linear => decode_srgb(srgb),
+            ColorSpace::Display => srgb,
         }
     }
 

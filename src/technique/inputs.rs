@@ -136,5 +136,6 @@ pub fn mode_word(mode: Mode) -> &'static str {
         Mode::Lmip => "lmip",
         Mode::AttenuatedMip => "attenuated_mip",
         Mode::Mida => "mida",
+        Mode::Iso => "iso",
     }
 }

@@ -7,6 +7,7 @@ mod frame;
 mod frame_of_mode;
 pub mod gradient;
 mod inputs;
+pub mod isosurface;
 mod march;
 pub mod merge;
 pub mod mida;
@@ -24,7 +25,7 @@ pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 pub use frame::View;
 pub use inputs::{Inputs, Words};
 pub use mixture::{Mix, Part, Role};
-pub use per_mode::{DEFAULT_ATTENUATION, PerMode};
+pub use per_mode::{DEFAULT_ATTENUATION, Level, PerMode};
 pub use recording::{Recording, parameter_ring};
 pub use shading::{Light, Shading};
 pub use slicer::Slicer;
@@ -59,6 +60,8 @@ pub enum Mode {
     Lmip,
     /// Maximum of values that what lies before them fades.
     AttenuatedMip,
+    /// Surfaces where the volume has one value, or one of several.
+    Iso,
     /// Emission and absorption in which a new maximum takes from what lies before it (Bruckner and Groeller 2009).
     Mida,
 }
@@ -198,6 +201,22 @@ pub enum Error {
         /// The mode.
         mode: Mode,
     },
+    /// Surfaces of no value, or of more than the parameters hold.
+    #[error("surfaces of {found} values, wanted 1 to {limit}")]
+    LevelCount {
+        /// How many were asked for.
+        found: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+    /// A segment of a ray that crosses a surface must lie in one texture.
+    #[error("a volume of {bricks} bricks: {mode:?} needs it in one texture of the device")]
+    NeedsOneBrick {
+        /// The mode.
+        mode: Mode,
+        /// How many bricks the volume lies in.
+        bricks: usize,
+    },
     /// Darkness by depth needs a depth.
     #[error("{technique:?} in mode {mode:?} has no one depth a ray: no depth cue")]
     NoDepth {
@@ -251,12 +270,20 @@ pub enum Error {
 impl Mode {
     /// True where one value a ray is projected and classified once.
     pub fn is_projection(self) -> bool {
-        !matches!(self, Self::Composite | Self::Mida)
+        !matches!(self, Self::Composite | Self::Mida | Self::Iso)
     }
 
     /// True where samples must come from front to back, one after the other: blending units cannot do it.
     pub fn needs_rays(self) -> bool {
-        matches!(self, Self::Lmip | Self::AttenuatedMip | Self::Mida)
+        matches!(
+            self,
+            Self::Lmip | Self::AttenuatedMip | Self::Mida | Self::Iso
+        )
+    }
+
+    /// True where one number a ray is found, before any colour.
+    pub fn has_value(self) -> bool {
+        self.is_projection() || self == Self::Iso
     }
 
     /// True where the ray caster finds a place of the ray that stands for the picture.
@@ -277,7 +304,7 @@ impl Settings {
     /// Whether technique, mode and the numbers of the mode go together.
     ///
     /// # Errors
-    /// [`Error::NeedsRays`], [`Error::NeedsRayLattice`], [`Error::NoDepth`] and [`Error::OutOfRange`].
+    /// [`Error::NeedsRays`], [`Error::NeedsRayLattice`], [`Error::NoDepth`], [`Error::LevelCount`] and [`Error::OutOfRange`].
     pub fn check(&self) -> Result<(), Error> {
         let (technique, mode) = (self.technique, self.mode);
         if technique != Technique::Raycast && mode.needs_rays() {

@@ -2,7 +2,7 @@
 
 use super::{Error, Mode};
 use crate::real::Real;
-use crate::shaders::Frame;
+use crate::shaders::{Frame, MAX_LEVELS};
 
 /// Parameters of single modes; the others do not look at them.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +19,19 @@ pub struct PerMode {
     pub attenuation: f64,
     /// Modes that show one place of a ray: how much darker a picture is at its far end, 0 to 1.
     pub depth_cue: f64,
+    /// [`Mode::Iso`]: 1 to [`MAX_LEVELS`] surfaces, in any order.
+    pub levels: Vec<Level>,
+}
+
+/// A surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Level {
+    /// The value that the volume has there.
+    pub value: f64,
+    /// Its colour before light, in sRGB numbers.
+    pub srgb: [f64; 3],
+    /// What it takes of the light from behind, 0 to 1.
+    pub opacity: f64,
 }
 
 /// Fades a value to a fifth behind a tenth of the diagonal full of matter.
@@ -32,6 +45,7 @@ impl Default for PerMode {
             mida_gamma: 0.0,
             attenuation: DEFAULT_ATTENUATION,
             depth_cue: 0.0,
+            levels: Vec::new(),
         }
     }
 }
@@ -40,7 +54,7 @@ impl PerMode {
     /// Whether these numbers mean something for `mode`.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] by the name of the number.
+    /// [`Error::OutOfRange`] by the name of the number, [`Error::LevelCount`].
     pub fn check(&self, mode: Mode) -> Result<(), Error> {
         let within = |name, wanted, found: f64, right: bool| match right {
             true => Ok(()),
@@ -72,6 +86,23 @@ impl PerMode {
                 let is_right = attenuation >= 0.0 && attenuation.is_finite();
                 let wanted = "0 or more";
                 within("the attenuation", wanted, attenuation, is_right)
+            }
+            Mode::Iso => {
+                let (found, limit) = (self.levels.len(), MAX_LEVELS as usize);
+                if !(1..=limit).contains(&found) {
+                    return Err(Error::LevelCount { found, limit });
+                }
+                self.levels.iter().try_for_each(|level| {
+                    let Level { value, opacity, .. } = *level;
+                    let is_share = (0.0..=1.0).contains(&opacity);
+                    within(
+                        "the value of a surface",
+                        "a number",
+                        value,
+                        value.is_finite(),
+                    )?;
+                    within("the opacity of a surface", "0 to 1", opacity, is_share)
+                })
             }
             _ => Ok(()),
         }

@@ -186,6 +186,7 @@ pub fn mode_name(mode: Mode) -> &'static str {
         Mode::Lmip => "lmip",
         Mode::AttenuatedMip => "attenuated-mip",
         Mode::Mida => "mida",
+        Mode::Iso => "iso",
     }
 }
 

@@ -60,7 +60,7 @@ impl<R: Real> Projected<R> {
             }
             Mode::Mip | Mode::Minip => {}
             Mode::AttenuatedMip => self.attenuate(frame, value, segment),
-            Mode::Average | Mode::Xray | Mode::Composite | Mode::Mida => {
+            Mode::Average | Mode::Xray | Mode::Composite | Mode::Mida | Mode::Iso => {
                 self.value = self.value + value * segment.length;
                 self.weight = self.weight + segment.length;
             }

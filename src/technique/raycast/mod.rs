@@ -25,11 +25,12 @@ impl Raycast {
         Self::of_mode(gpu, Mode::Composite, words)
     }
 
-    /// The same for a mode that composites: [`Mode::Composite`], or of one volume [`Mode::Mida`].
+    /// The same for a mode that composites: [`Mode::Composite`], or of one volume [`Mode::Mida`] and
+    /// [`Mode::Iso`].
     ///
     /// # Errors
     /// Where the device refuses.
-    pub fn of_mode(gpu: &Arc<Gpu>, mode: Mode, words: &Words) -> Result<Self, Error> {
+    pub fn of_mode(gpu: &Arc<Gpu>, of: Mode, words: &Words) -> Result<Self, Error> {
         let Words {
             filter,
             holes,
@@ -37,8 +38,12 @@ impl Raycast {
             transfer,
             mix,
         } = words;
-        let (mode, mix) = (mode_word(mode), mix.word());
-        let name = format!("raycast.{mode}{mix}.{lattice}.{filter}.{holes}.{transfer}");
+        let (mode, mix) = (mode_word(of), mix.word());
+        let name = if of == Mode::Iso {
+            format!("isosurface.{filter}.{holes}")
+        } else {
+            format!("raycast.{mode}{mix}.{lattice}.{filter}.{holes}.{transfer}")
+        };
         Ok(Self {
             gpu: Arc::clone(gpu),
             pipeline: ComputePipeline::new(gpu, shader(&name))?,
