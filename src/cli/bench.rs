@@ -100,7 +100,7 @@ impl Bench {
     /// One scene from each of the views.
     fn views(&self, scene: &SceneFlags, cameras: &[Camera]) -> Result<String, Error> {
         let progress = Progress::new(self.progress);
-        let settings = scene.sampling.settings(Depth::Eight)?;
+        let settings = scene.settings(Depth::Eight)?;
         progress.stage("prepare", 0, 1);
         let word = scene.device.as_deref();
         let device = Device::find(word)?;
@@ -156,7 +156,7 @@ impl Bench {
     fn techniques(&self, scene: &SceneFlags) -> Result<String, Error> {
         let progress = Progress::new(self.progress);
         progress.stage("read", 0, 1);
-        let base = scene.sampling.settings(Depth::Eight)?;
+        let base = scene.settings(Depth::Eight)?;
         let word = scene.device.as_deref();
         let extent_pixels = scene.picture.extent_pixels()?;
         let mut rows = Vec::new();
@@ -166,8 +166,11 @@ impl Bench {
             if mode.is_projection() && scene.labels.labels.is_some() {
                 continue;
             }
+            // No light falls on projections.
+            let shading = base.shading.clone().filter(|_| !mode.is_projection());
             let base = Settings {
                 mode,
+                shading,
                 ..base.clone()
             };
             // What is shown depends on the mode: channels are read for each.

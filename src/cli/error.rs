@@ -15,6 +15,7 @@
 use crate::{
     gpu, offscreen,
     picture::{OutputError, PictureError},
+    technique,
     volume::{Problem, ReadError},
 };
 use std::{error::Error as Cause, fmt::Write, io, path::PathBuf};
@@ -81,6 +82,9 @@ impl From<offscreen::Error> for Error {
     fn from(error: offscreen::Error) -> Self {
         match error {
             offscreen::Error::Gpu(error) => Self::Device(error),
+            offscreen::Error::Technique(technique::Error::NotShadedTogether) => {
+                Self::not_shaded_together()
+            }
             offscreen::Error::Technique(error) => Self::Limit(error.to_string()),
             offscreen::Error::NoLayer { .. } => Self::NotBuilt(error.to_string()),
         }
@@ -94,6 +98,14 @@ impl Error {
             message: message.into(),
             hint,
         }
+    }
+
+    /// Light is for one volume.
+    pub fn not_shaded_together() -> Self {
+        Self::usage(
+            "--shading phong is for one number a voxel, and several are drawn",
+            "draw one of them: --component 0, without --labels and --channel",
+        )
     }
 
     /// The system would not let us write `path`.

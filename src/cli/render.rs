@@ -88,20 +88,14 @@ impl Render {
             (PictureFormat::Png, BitDepth::Eight) => Depth::Eight,
             _ => Depth::More,
         };
-        let mut settings = scene.sampling.settings(depth)?;
+        let mut settings = scene.settings(depth)?;
         let extent_pixels = scene.picture.extent_pixels()?;
         scene.classification.check()?;
         let inputs = scene_file::inputs(&scene, self.scene_file.as_deref());
         output::check(&self.outputs(format, &layers), &inputs, self.force)?;
 
         let progress = Progress::new(self.progress);
-        for note in [
-            scene.sampling.idle(),
-            scene.modes.idle(settings.mode),
-            scene.camera.idle(),
-        ]
-        .concat()
-        {
+        for note in scene.idle() {
             progress.note(note);
         }
         progress.stage("prepare", 0, 1);

@@ -119,7 +119,7 @@ fn draw(
     device_word: &Option<String>,
     progress: &Progress,
 ) -> Result<Picture, Error> {
-    let mut settings = scene.sampling.settings(Depth::Eight)?;
+    let mut settings = scene.settings(Depth::Eight)?;
     let shown = Shown::read(scene, &settings, device, progress)?;
     settings.per_mode = shown.per_mode.clone();
     if let Some(filter) = shown.filter {

@@ -23,14 +23,6 @@ fn a_word_that_is_not_built_exits_2_and_is_named() {
             "`--gradient-filter`",
         ),
         (
-            "render phantom:fog -o a.png --shading phong",
-            "`--shading phong`",
-        ),
-        (
-            "render phantom:fog -o a.png --material 1,1,1,1",
-            "`--material`",
-        ),
-        (
             "render phantom:fog -o a.png --preintegrated",
             "`--preintegrated`",
         ),

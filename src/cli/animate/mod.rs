@@ -141,15 +141,7 @@ impl Animate {
         let store = self.store(&plan, gate)?;
 
         let progress = Progress::new(self.progress);
-        for note in [
-            plan.scene.sampling.idle(),
-            plan.scene
-                .modes
-                .idle(plan.scene.sampling.mode.unwrap_or_default().mode()?),
-            plan.scene.camera.idle(),
-        ]
-        .concat()
-        {
+        for note in plan.scene.idle() {
             progress.note(note);
         }
         if self.repeat.is_some() {

@@ -169,7 +169,7 @@ impl Maker<'_> {
         classification.check()?;
         Ok(Shot {
             camera: camera.camera(&self.subject, self.scene.picture.extent_pixels()?)?,
-            settings: sampling.settings(self.depth)?,
+            settings: self.scene.settings_of(&sampling, self.depth)?,
             classification,
             time,
         })

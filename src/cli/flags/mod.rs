@@ -9,6 +9,8 @@ mod classification;
 mod component;
 mod input;
 mod labels;
+mod levels;
+mod light;
 mod modes;
 mod not_built;
 mod numbers;
@@ -23,6 +25,8 @@ pub use classification::{Classification, ClassificationFlags, preset, summary, w
 pub use component::Component;
 pub use input::{InputFlags, relative};
 pub use labels::LabelFlags;
+pub use levels::LevelFlags;
+pub use light::LightFlags;
 pub use modes::{ModeFlags, mode_name};
 pub use not_built::NotBuilt;
 pub use numbers::{Background, Numbers, Size, finite, positive};
@@ -31,6 +35,7 @@ pub use sampling::{Depth, SamplingFlags};
 pub use subject::Subject;
 
 use super::Error;
+use crate::technique::Settings;
 use clap::Args;
 use serde::{Deserialize, Serialize};
 
@@ -55,6 +60,8 @@ pub struct SceneFlags {
     #[command(flatten)]
     pub labels: LabelFlags,
     #[command(flatten)]
+    pub light: LightFlags,
+    #[command(flatten)]
     pub camera: CameraFlags,
     #[command(flatten)]
     pub picture: PictureFlags,
@@ -62,4 +69,33 @@ pub struct SceneFlags {
     #[arg(long, value_name = "DEVICE")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub device: Option<String>,
+}
+
+impl SceneFlags {
+    /// What to compute, for a picture kept so exactly.
+    pub fn settings(&self, depth: Depth) -> Result<Settings, Error> {
+        self.settings_of(&self.sampling, depth)
+    }
+
+    /// The same with other words of sampling.
+    pub fn settings_of(&self, sampling: &SamplingFlags, depth: Depth) -> Result<Settings, Error> {
+        let settings = sampling.settings(depth)?;
+        let shading = self.light.shading(settings.mode)?;
+        Ok(Settings {
+            shading,
+            ..settings
+        })
+    }
+
+    /// Flags that change nothing under the others, a sentence each.
+    pub fn idle(&self) -> Vec<&'static str> {
+        let mode = self.sampling.mode.unwrap_or_default().mode();
+        let topics = [
+            self.sampling.idle(),
+            self.modes.idle(mode),
+            self.light.idle(mode),
+            self.camera.idle(),
+        ];
+        topics.concat()
+    }
 }

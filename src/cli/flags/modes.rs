@@ -1,6 +1,6 @@
 //! What single modes want to know: flags to [`PerMode`], once the volume is known.
 
-use super::{Error, finite};
+use super::{Classification, Error, LevelFlags, finite};
 use crate::{
     technique::{DEFAULT_ATTENUATION, Lattice, Mode, PerMode, Settings, Technique},
     transfer::{ValueSummary, Window},
@@ -28,6 +28,9 @@ pub struct ModeFlags {
     #[arg(long, value_name = "F", value_parser = finite, allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub depth_cue: Option<f64>,
+    #[command(flatten)]
+    #[serde(skip_serializing_if = "LevelFlags::say_nothing")]
+    pub levels: LevelFlags,
 }
 
 /// Under which these stand in `--help`.
@@ -73,6 +76,10 @@ impl ModeFlags {
                 ));
             }
         }
+        self.levels.check()?;
+        if mode == Mode::Iso {
+            return Ok(());
+        }
         self.given().check(mode).map_err(|error| {
             Error::usage(
                 error.to_string(),
@@ -97,12 +104,13 @@ impl ModeFlags {
         }
     }
 
-    /// All of it for values that look like `summary`, which is asked for where it decides anything, and what a
-    /// person should know of what was chosen.
+    /// All of it for values that look like `summary`, which is asked for where it decides anything, and are seen by
+    /// `classification`; and what a person should know of what was chosen.
     pub fn per_mode(
         &self,
         mode: Mode,
         window: Option<Window>,
+        classification: &Classification,
         summary: impl FnOnce() -> Result<ValueSummary, Error>,
     ) -> Result<(PerMode, Option<String>), Error> {
         let mut per_mode = self.given();
@@ -138,6 +146,11 @@ impl ModeFlags {
                     window.high()
                 ));
             }
+            Mode::Iso => {
+                if let Classification::Function(function) = classification {
+                    (per_mode.levels, note) = self.levels.levels(function, summary)?;
+                }
+            }
             _ => {}
         }
         Ok((per_mode, note))
@@ -162,10 +175,15 @@ impl ModeFlags {
                 "--attenuation has no effect without --mode attenuated-mip",
             ),
         ];
+        let mut notes = Vec::new();
+        if !self.levels.say_nothing() && mode != Mode::Iso {
+            notes.push("--iso and its colours have no effect without --mode iso");
+        }
         let idle = given
             .into_iter()
             .filter(|&(given, of, _)| given.is_some() && mode != of);
-        idle.map(|(_, _, note)| note).collect()
+        notes.extend(idle.map(|(_, _, note)| note));
+        notes
     }
 }
 
@@ -202,8 +220,9 @@ mod tests {
         let place = DAffine3::IDENTITY;
         let volume = Volume::from_voxels([2, 2, 2], place, voxels, Rescale::default(), None);
         let volume = volume.expect("a volume");
+        let grey = Classification::RangeOfPicture;
         flags
-            .per_mode(mode, window, || Ok(summary(&volume)))
+            .per_mode(mode, window, &grey, || Ok(summary(&volume)))
             .expect("numbers")
     }
 

@@ -83,6 +83,10 @@ impl Shown {
         if let Some(note) = note {
             progress.note(&note);
         }
+        let is_alone = matches!(plan, Plan::One) && scene.labels.labels.is_none();
+        if settings.shading.is_some() && !is_alone {
+            return Err(Error::not_shaded_together());
+        }
         let reader = Reader {
             scene,
             mode: settings.mode,
@@ -249,7 +253,9 @@ impl Reader<'_> {
         let classification = flags.classification(&volume, self.mode)?;
         let modes = &self.scene.modes;
         let (per_mode, note) =
-            modes.per_mode(self.mode, flags.window()?, || Ok(summary(&volume)))?;
+            modes.per_mode(self.mode, flags.window()?, &classification, || {
+                Ok(summary(&volume))
+            })?;
         if let Some(note) = note {
             self.progress.note(&note);
         }

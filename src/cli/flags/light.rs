@@ -1,0 +1,237 @@
+//! Light on what is composited: flags to [`Shading`].
+
+use super::{Error, Numbers};
+use crate::{
+    shaders::MAX_LIGHTS,
+    technique::{Light, Mode, Shading},
+};
+use clap::{Args, ValueEnum};
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use std::{fmt, str::FromStr};
+
+const HEADING: &str = "Light";
+
+/// The flags, none of them filled in.
+#[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct LightFlags {
+    /// Colours as they are, or surfaces lit from both sides; presets are drawn without light [default: none, phong in --mode iso]
+    #[arg(long, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shading: Option<ShadingWord>,
+    /// Ambient, diffuse and specular part, and shininess [default: 0.1,0.7,0.2,10]
+    #[arg(long, value_name = "A,D,S,N", allow_hyphen_values = true, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub material: Option<Numbers<4>>,
+    /// A light in this direction of the world, of a colour in sRGB numbers (repeatable) [default: from the eye, white]
+    #[arg(long, value_name = "X,Y,Z[,R,G,B]", allow_hyphen_values = true, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub light: Vec<LightWord>,
+}
+
+/// Every word of `--shading`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum ShadingWord {
+    #[default]
+    None,
+    Phong,
+}
+
+/// `X,Y,Z` or `X,Y,Z,R,G,B`: the way to a light, and its colour.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct LightWord(Light);
+
+impl FromStr for LightWord {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (towards, srgb) = match text.matches(',').count() {
+            2 => (Numbers::<3>::from_str(text)?.0, [1.0; 3]),
+            5 => {
+                let [x, y, z, r, g, b] = Numbers::<6>::from_str(text)?.0;
+                ([x, y, z], [r, g, b])
+            }
+            _ => return Err("wanted X,Y,Z or X,Y,Z,R,G,B".to_owned()),
+        };
+        let towards = DVec3::from_array(towards);
+        if towards.try_normalize().is_none() {
+            return Err("the way to a light needs a direction".to_owned());
+        }
+        if !srgb.iter().all(|c| (0.0..=1.0).contains(c)) {
+            return Err("wanted a colour of numbers from 0 to 1".to_owned());
+        }
+        Ok(Self(Light { towards, srgb }))
+    }
+}
+
+impl fmt::Display for LightWord {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Light { towards, srgb } = self.0;
+        Numbers(towards.to_array()).fmt(f)?;
+        if srgb != [1.0; 3] {
+            write!(f, ",{}", Numbers(srgb))?;
+        }
+        Ok(())
+    }
+}
+
+impl TryFrom<String> for LightWord {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+impl From<LightWord> for String {
+    fn from(light: LightWord) -> Self {
+        light.to_string()
+    }
+}
+
+impl LightFlags {
+    /// Surfaces are lit unless another word is said: without light they have no shape.
+    fn word(&self, mode: Mode) -> ShadingWord {
+        let of_mode = match mode {
+            Mode::Iso => ShadingWord::Phong,
+            _ => ShadingWord::None,
+        };
+        self.shading.unwrap_or(of_mode)
+    }
+
+    /// The light of a picture in `mode`.
+    pub fn shading(&self, mode: Mode) -> Result<Option<Shading>, Error> {
+        if self.word(mode) == ShadingWord::None {
+            return Ok(None);
+        }
+        if mode.is_projection() {
+            return Err(Error::usage(
+                "--shading phong needs --mode composite, mida or iso: no light falls on a projection",
+                "leave out --mode or --shading",
+            ));
+        }
+        if self.light.len() > MAX_LIGHTS as usize {
+            let found = self.light.len();
+            return Err(Error::usage(
+                format!("{found} lights, at most {MAX_LIGHTS} are possible"),
+                "give --light at most four times",
+            ));
+        }
+        let mut shading = Shading {
+            lights: self.light.iter().map(|word| word.0).collect(),
+            ..Shading::default()
+        };
+        if let Some(Numbers(material)) = self.material {
+            let [ambient, diffuse, specular, shininess] = material;
+            let are_parts = material.iter().all(|&part| part >= 0.0);
+            if !are_parts || !(MIN_SHININESS..=MAX_SHININESS).contains(&shininess) {
+                return Err(Error::usage(
+                    format!(
+                        "--material {}: wanted three numbers from 0 and a shininess from {MIN_SHININESS} to {MAX_SHININESS}",
+                        Numbers(material)
+                    ),
+                    "--material 0.1,0.7,0.2,10 is ambient, diffuse, specular, shininess",
+                ));
+            }
+            shading = Shading {
+                ambient,
+                diffuse,
+                specular,
+                shininess,
+                ..shading
+            };
+        }
+        Ok(Some(shading))
+    }
+
+    /// Flags that change nothing under the others, a sentence each.
+    pub fn idle(&self, mode: Mode) -> Vec<&'static str> {
+        let is_dark = self.word(mode) == ShadingWord::None;
+        let mut notes = Vec::new();
+        if is_dark && self.material.is_some() {
+            notes.push("--material has no effect without --shading phong");
+        }
+        if is_dark && !self.light.is_empty() {
+            notes.push("--light has no effect without --shading phong");
+        }
+        notes
+    }
+}
+
+/// A power of 0 would mirror everywhere, and over a thousand no pixel would.
+const MIN_SHININESS: f64 = 0.1;
+const MAX_SHININESS: f64 = 1000.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn flags(shading: ShadingWord, material: &str, light: &[&str]) -> LightFlags {
+        LightFlags {
+            shading: Some(shading),
+            material: (!material.is_empty()).then(|| material.parse().expect("numbers")),
+            light: light.iter().map(|l| l.parse().expect("a light")).collect(),
+        }
+    }
+
+    #[test]
+    fn light_is_a_headlight_and_the_material_that_of_the_help_unless_given() {
+        let shading = flags(ShadingWord::Phong, "", &[]).shading(Mode::Composite);
+        assert_eq!(shading.expect("light"), Some(Shading::default()));
+        assert_eq!(
+            LightFlags::default().shading(Mode::Mip).expect("dark"),
+            None
+        );
+        let lit = flags(ShadingWord::Phong, "0,1,2,3", &["0,-2,0", "1,0,0,1,0.5,0"]);
+        let lit = lit.shading(Mode::Composite).expect("light").expect("lit");
+        let parts = [lit.ambient, lit.diffuse, lit.specular, lit.shininess];
+        assert_eq!(parts, [0.0, 1.0, 2.0, 3.0]);
+        let way = |light: &Light| (light.towards.to_array(), light.srgb);
+        assert_eq!(way(&lit.lights[0]), ([0.0, -2.0, 0.0], [1.0; 3]));
+        assert_eq!(way(&lit.lights[1]), ([1.0, 0.0, 0.0], [1.0, 0.5, 0.0]));
+    }
+
+    #[test]
+    fn what_is_no_light_is_refused_with_a_reason() {
+        for (text, wanted) in [
+            ("1,2", "X,Y,Z or X,Y,Z,R,G,B"),
+            ("0,0,0", "a direction"),
+            ("1,0,0,2,0,0", "from 0 to 1"),
+            ("1,0,up", "a number"),
+        ] {
+            let problem = text.parse::<LightWord>().expect_err("refused");
+            assert!(problem.contains(wanted), "{text}: {problem}");
+        }
+        for material in ["-1,0,0,10", "1,1,1,0", "1,1,1,1001"] {
+            let refused = flags(ShadingWord::Phong, material, &[]).shading(Mode::Composite);
+            let text = refused.expect_err("refused").to_string();
+            assert!(text.contains("--material"), "{text}");
+        }
+        let many = flags(ShadingWord::Phong, "", &["1,0,0"; 5]).shading(Mode::Composite);
+        let text = many.expect_err("refused").to_string();
+        assert!(text.contains("at most 4"), "{text}");
+    }
+
+    #[test]
+    fn a_light_comes_back_from_its_own_text() {
+        for text in ["0.5,-1,2", "0,0,1,0.25,0.5,1"] {
+            let light: LightWord = text.parse().expect("a light");
+            assert_eq!(light.to_string(), text);
+        }
+    }
+
+    #[test]
+    fn light_without_shading_is_mentioned() {
+        let idle = flags(ShadingWord::None, "1,1,1,1", &["1,0,0"]).idle(Mode::Composite);
+        assert_eq!(idle.len(), 2, "{idle:?}");
+        assert!(
+            flags(ShadingWord::Phong, "1,1,1,1", &["1,0,0"])
+                .idle(Mode::Composite)
+                .is_empty()
+        );
+    }
+}
