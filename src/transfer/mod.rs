@@ -38,7 +38,7 @@ pub use import::{Imported, Scale, import_transfer_function, transfer_function_fr
 #[cfg(feature = "json")]
 pub use labels::{Label, LabelTable};
 pub use law::{Absorption, MAX_OPACITY, extinction, opacity_over};
-pub use levels::levels;
+pub use levels::{SURFACE_COLORS, Surface, surfaces};
 pub use points::{Points, classify_by_points};
 pub use preset::Preset;
 pub use quantity::Quantity;

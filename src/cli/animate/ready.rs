@@ -74,9 +74,12 @@ pub fn of_times(
         let mode = shot.settings.mode;
         let classification = shot.classification.classification_of(mode, &mut summary)?;
         let window = shot.classification.window()?;
-        let (per_mode, note) = scene
-            .modes
-            .per_mode(mode, window, &classification, &mut summary)?;
+        let (per_mode, note) = scene.modes.per_mode(
+            mode,
+            window,
+            shot.classification.named(&classification),
+            &mut summary,
+        )?;
         // The same for all frames, unless keys move the window.
         if let (Some(note), true) = (note, ready.is_empty()) {
             progress.note(&note);

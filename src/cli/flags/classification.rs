@@ -150,6 +150,16 @@ impl ClassificationFlags {
         Ok(Classification::Function(function))
     }
 
+    /// `found` where words named it: a preset, a file or a window.
+    pub fn named<'a>(&self, found: &'a Classification) -> Option<&'a TransferFunction> {
+        let is_named =
+            self.preset.is_some() || self.transfer_function.is_some() || self.window.is_some();
+        match found {
+            Classification::Function(function) if is_named => Some(function),
+            _ => None,
+        }
+    }
+
     /// The window of `--window`.
     pub fn window(&self) -> Result<Option<Window>, Error> {
         let Some(Numbers([low, high])) = self.window else {

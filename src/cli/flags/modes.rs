@@ -1,9 +1,9 @@
 //! What single modes want to know: flags to [`PerMode`], once the volume is known.
 
-use super::{Classification, Error, LevelFlags, finite};
+use super::{Error, LevelFlags, finite};
 use crate::{
     technique::{DEFAULT_ATTENUATION, Lattice, Mode, PerMode, Settings, Technique},
-    transfer::{ValueSummary, Window},
+    transfer::{TransferFunction, ValueSummary, Window},
 };
 use clap::Args;
 use serde::{Deserialize, Serialize};
@@ -104,13 +104,13 @@ impl ModeFlags {
         }
     }
 
-    /// All of it for values that look like `summary`, which is asked for where it decides anything, and are seen by
-    /// `classification`; and what a person should know of what was chosen.
+    /// All of it for values that look like `summary`, which is asked for where it decides anything, and are coloured
+    /// by `function` where one is named; and what a person should know of what was chosen.
     pub fn per_mode(
         &self,
         mode: Mode,
         window: Option<Window>,
-        classification: &Classification,
+        function: Option<&TransferFunction>,
         summary: impl FnOnce() -> Result<ValueSummary, Error>,
     ) -> Result<(PerMode, Option<String>), Error> {
         let mut per_mode = self.given();
@@ -147,9 +147,7 @@ impl ModeFlags {
                 ));
             }
             Mode::Iso => {
-                if let Classification::Function(function) = classification {
-                    (per_mode.levels, note) = self.levels.levels(function, summary)?;
-                }
+                (per_mode.levels, note) = self.levels.levels(function, summary)?;
             }
             _ => {}
         }
@@ -220,9 +218,8 @@ mod tests {
         let place = DAffine3::IDENTITY;
         let volume = Volume::from_voxels([2, 2, 2], place, voxels, Rescale::default(), None);
         let volume = volume.expect("a volume");
-        let grey = Classification::RangeOfPicture;
         flags
-            .per_mode(mode, window, &grey, || Ok(summary(&volume)))
+            .per_mode(mode, window, None, || Ok(summary(&volume)))
             .expect("numbers")
     }
 

@@ -252,10 +252,12 @@ impl Reader<'_> {
         }
         let classification = flags.classification(&volume, self.mode)?;
         let modes = &self.scene.modes;
-        let (per_mode, note) =
-            modes.per_mode(self.mode, flags.window()?, &classification, || {
-                Ok(summary(&volume))
-            })?;
+        let (per_mode, note) = modes.per_mode(
+            self.mode,
+            flags.window()?,
+            flags.named(&classification),
+            || Ok(summary(&volume)),
+        )?;
         if let Some(note) = note {
             self.progress.note(&note);
         }
