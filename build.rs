@@ -96,6 +96,7 @@ const ENTRIES: &[(&str, &[Slot])] = &[
         ],
     ),
     ("isosurface", &[FILTER, HOLES]),
+    ("projection_cells", &[("mode", &["mip", "minip"]), HOLES]),
     (
         "projection",
         &[

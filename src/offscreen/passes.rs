@@ -16,7 +16,7 @@ use crate::technique::{ACCUMULATION_FORMAT, Mode, Order, Settings, Technique, Wo
 use std::sync::Arc;
 
 /// What pipelines depend on.
-pub type Key = (Technique, Mode, Order, bool, Words);
+pub type Key = (Technique, Mode, Order, [bool; 2], Words);
 
 /// The key of such pictures.
 pub fn key_of(settings: &Settings, words: &Words) -> Key {
@@ -26,8 +26,9 @@ pub fn key_of(settings: &Settings, words: &Words) -> Key {
         order,
         ..
     } = *settings;
-    let is_cued = settings.per_mode.depth_cue != 0.0;
-    (technique, mode, order, is_cued, *words)
+    let per_mode = &settings.per_mode;
+    let marks = [per_mode.depth_cue != 0.0, per_mode.exact_maximum];
+    (technique, mode, order, marks, *words)
 }
 
 /// The pipelines of one kind of picture.
@@ -56,6 +57,10 @@ impl Passes {
         } = *settings;
         let slicing = |drawn| Slicing::new(gpu, settings, drawn, words);
         let (gather, count) = match technique {
+            Technique::Raycast if settings.per_mode.exact_maximum => (
+                Gather::Projection(Projection::exact(gpu, mode, words)?),
+                None,
+            ),
             Technique::Raycast if mode.is_projection() => {
                 (Gather::Projection(Projection::new(gpu, mode, words)?), None)
             }

@@ -175,8 +175,14 @@ impl<'a, R: Real> Walk<'a, R> {
         let blend = |target, fragment| blend(mode, order, target, fragment, unclassified);
         match settings.technique {
             Technique::Raycast => {
-                let (found, samples) =
-                    projection::reference::project(frame, settings.lattice, mode, pixel, value_at);
+                let (found, samples) = if settings.per_mode.exact_maximum {
+                    let center = |i: i32| R::from_f64(f64::from(i) + 0.5);
+                    let voxel_at = |index: [i32; 3]| nearest(volume, index.map(center));
+                    projection::exact::project_exactly(frame, mode, pixel, voxel_at)
+                } else {
+                    let lattice = settings.lattice;
+                    projection::reference::project(frame, lattice, mode, pixel, value_at)
+                };
                 let zero = R::from_f64(0.0);
                 Gathered {
                     accumulation: [found.value, found.weight, zero, zero],

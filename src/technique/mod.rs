@@ -217,6 +217,16 @@ pub enum Error {
         /// How many bricks the volume lies in.
         bricks: usize,
     },
+    /// What has an exact extreme is a trilinear field along rays.
+    #[error(
+        "{technique:?} in mode {mode:?}: an exact extreme is one of Mip or Minip along rays, filtered linearly"
+    )]
+    NotExact {
+        /// Where samples lie.
+        technique: Technique,
+        /// The mode.
+        mode: Mode,
+    },
     /// Darkness by depth needs a depth.
     #[error("{technique:?} in mode {mode:?} has no one depth a ray: no depth cue")]
     NoDepth {
@@ -304,7 +314,8 @@ impl Settings {
     /// Whether technique, mode and the numbers of the mode go together.
     ///
     /// # Errors
-    /// [`Error::NeedsRays`], [`Error::NeedsRayLattice`], [`Error::NoDepth`], [`Error::LevelCount`] and [`Error::OutOfRange`].
+    /// [`Error::NeedsRays`], [`Error::NeedsRayLattice`], [`Error::NoDepth`], [`Error::NotExact`],
+    /// [`Error::LevelCount`] and [`Error::OutOfRange`].
     pub fn check(&self) -> Result<(), Error> {
         let (technique, mode) = (self.technique, self.mode);
         if technique != Technique::Raycast && mode.needs_rays() {
@@ -316,6 +327,12 @@ impl Settings {
         let has_depth = technique == Technique::Raycast && mode.projects_one_place();
         if self.per_mode.depth_cue != 0.0 && !has_depth {
             return Err(Error::NoDepth { technique, mode });
+        }
+        let is_trilinear = self.filter == Filter::Linear;
+        let has_extreme = matches!(mode, Mode::Mip | Mode::Minip);
+        let is_along_rays = technique == Technique::Raycast && self.lattice == Lattice::Ray;
+        if self.per_mode.exact_maximum && !(is_trilinear && has_extreme && is_along_rays) {
+            return Err(Error::NotExact { technique, mode });
         }
         self.per_mode.check(mode)
     }

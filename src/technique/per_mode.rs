@@ -19,6 +19,8 @@ pub struct PerMode {
     pub attenuation: f64,
     /// Modes that show one place of a ray: how much darker a picture is at its far end, 0 to 1.
     pub depth_cue: f64,
+    /// [`Mode::Mip`] and [`Mode::Minip`]: the extreme of the trilinear field itself, not of samples of it.
+    pub exact_maximum: bool,
     /// [`Mode::Iso`]: 1 to [`MAX_LEVELS`] surfaces, in any order.
     pub levels: Vec<Level>,
 }
@@ -45,6 +47,7 @@ impl Default for PerMode {
             mida_gamma: 0.0,
             attenuation: DEFAULT_ATTENUATION,
             depth_cue: 0.0,
+            exact_maximum: false,
             levels: Vec::new(),
         }
     }

@@ -2,7 +2,7 @@
 
 use super::{Error, LevelFlags, finite};
 use crate::{
-    technique::{DEFAULT_ATTENUATION, Lattice, Mode, PerMode, Settings, Technique},
+    technique::{DEFAULT_ATTENUATION, Filter, Lattice, Mode, PerMode, Settings, Technique},
     transfer::{TransferFunction, ValueSummary, Window},
 };
 use clap::Args;
@@ -28,6 +28,10 @@ pub struct ModeFlags {
     #[arg(long, value_name = "F", value_parser = finite, allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub depth_cue: Option<f64>,
+    /// mip, minip: the extreme of the interpolated volume itself, between samples too
+    #[arg(long, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub exact_maximum: bool,
     #[command(flatten)]
     #[serde(skip_serializing_if = "LevelFlags::say_nothing")]
     pub levels: LevelFlags,
@@ -43,6 +47,7 @@ impl ModeFlags {
             technique,
             mode,
             lattice,
+            filter,
             ..
         } = *settings;
         let word = mode_name(mode);
@@ -76,6 +81,14 @@ impl ModeFlags {
                 ));
             }
         }
+        let is_along_rays = technique == Technique::Raycast && lattice == Lattice::Ray;
+        let has_extreme = matches!(mode, Mode::Mip | Mode::Minip);
+        if self.exact_maximum && !(is_along_rays && has_extreme && filter == Filter::Linear) {
+            return Err(Error::usage(
+                "--exact-maximum is one of --mode mip or minip along rays, filtered linearly",
+                "leave out --technique, --lattice and --filter",
+            ));
+        }
         self.levels.check()?;
         if mode == Mode::Iso {
             return Ok(());
@@ -100,6 +113,7 @@ impl ModeFlags {
             attenuation: self.attenuation.unwrap_or(DEFAULT_ATTENUATION),
             depth_cue: self.depth_cue.unwrap_or(0.0),
             lmip_threshold: self.lmip_threshold.unwrap_or(0.0),
+            exact_maximum: self.exact_maximum,
             ..PerMode::default()
         }
     }
