@@ -17,84 +17,41 @@ use std::{env, fs};
 /// A slot of `#import` names and the words that fill it.
 type Slot = (&'static str, &'static [&'static str]);
 
-const FILTER: Slot = ("filter", &["nearest", "linear", "linear_fetch"]);
-const HOLES: Slot = ("holes", &["none", "mask"]);
-const LATTICE: Slot = ("lattice", &["ray", "planes"]);
-/// Modes that slicers do not have leave the lattice of slicers to them.
-const RAY: Slot = ("lattice", &["ray"]);
-const MIXED: Slot = ("mix", &["channels", "colors"]);
-/// One number a voxel. The word is left out of names.
-const ALONE: Slot = ("mix", &["alone"]);
-/// One number a voxel, and its gradient.
-const GRADED: Slot = ("mix", &["graded"]);
-const MIDA_MIX: Slot = ("mix", &["alone", "graded"]);
+/// A kernel is wider than linear, by fetches; a spline is a B-spline by the sampler.
+const FILTER: Slot = (
+    "filter",
+    &["nearest", "linear", "linear_fetch", "kernel", "spline"],
+);
 /// Conformance pictures search the points, and never leave filtering to the device.
-const CONFORMANCE_FILTER: Slot = ("filter", &["nearest", "linear_fetch"]);
+const FETCHED: Slot = ("filter", &["nearest", "linear_fetch", "kernel"]);
+/// Several volumes are mixed by narrow filters.
+const NARROW: Slot = ("filter", &["nearest", "linear", "linear_fetch"]);
+const NARROW_FETCHED: Slot = ("filter", &["nearest", "linear_fetch"]);
 const TABLE: Slot = ("transfer", &["table"]);
 const POINTS: Slot = ("transfer", &["points"]);
-const TRANSFER: Slot = ("transfer", &["table", "points"]);
+const HOLES: Slot = ("holes", &["none", "mask"]);
+const LATTICE: Slot = ("lattice", &["ray", "planes"]);
+/// One number a voxel, alone or with its gradient. The word `alone` is left out of names.
+const ONE: Slot = ("mix", &["alone", "graded"]);
+const ALONE: Slot = ("mix", &["alone"]);
+const MIXED: Slot = ("mix", &["channels", "colors"]);
+const MODE: Slot = ("mode", &["composite"]);
+/// Modes that slicers do not have leave the lattice of slicers to them.
+const RAY: Slot = ("lattice", &["ray"]);
+const MIDA: Slot = ("mode", &["mida"]);
+const BLEND: Slot = ("blend", &["composite"]);
 
 /// The wanted combinations. Order of the slots is the order of words in a variant's name.
 const ENTRIES: &[(&str, &[Slot])] = &[
+    ("raycast", &[MODE, ONE, LATTICE, FILTER, HOLES, TABLE]),
+    ("raycast", &[MODE, ONE, LATTICE, FETCHED, HOLES, POINTS]),
+    ("raycast", &[MODE, MIXED, LATTICE, NARROW, HOLES, TABLE]),
     (
         "raycast",
-        &[
-            ("mode", &["composite"]),
-            ALONE,
-            LATTICE,
-            FILTER,
-            HOLES,
-            TRANSFER,
-        ],
+        &[MODE, MIXED, LATTICE, NARROW_FETCHED, HOLES, POINTS],
     ),
-    (
-        "raycast",
-        &[
-            ("mode", &["composite"]),
-            MIXED,
-            LATTICE,
-            FILTER,
-            HOLES,
-            TRANSFER,
-        ],
-    ),
-    (
-        "raycast",
-        &[("mode", &["mida"]), MIDA_MIX, RAY, FILTER, HOLES, TABLE],
-    ),
-    (
-        "raycast",
-        &[
-            ("mode", &["mida"]),
-            MIDA_MIX,
-            RAY,
-            CONFORMANCE_FILTER,
-            HOLES,
-            POINTS,
-        ],
-    ),
-    (
-        "raycast",
-        &[
-            ("mode", &["composite"]),
-            GRADED,
-            LATTICE,
-            FILTER,
-            HOLES,
-            TABLE,
-        ],
-    ),
-    (
-        "raycast",
-        &[
-            ("mode", &["composite"]),
-            GRADED,
-            LATTICE,
-            CONFORMANCE_FILTER,
-            HOLES,
-            POINTS,
-        ],
-    ),
+    ("raycast", &[MIDA, ONE, RAY, FILTER, HOLES, TABLE]),
+    ("raycast", &[MIDA, ONE, RAY, FETCHED, HOLES, POINTS]),
     ("isosurface", &[FILTER, HOLES]),
     ("projection_cells", &[("mode", &["mip", "minip"]), HOLES]),
     (
@@ -117,28 +74,10 @@ const ENTRIES: &[(&str, &[Slot])] = &[
             HOLES,
         ],
     ),
-    (
-        "slices_3d",
-        &[("blend", &["composite"]), ALONE, FILTER, HOLES, TRANSFER],
-    ),
-    (
-        "slices_3d",
-        &[("blend", &["composite"]), MIXED, FILTER, HOLES, TRANSFER],
-    ),
-    (
-        "slices_3d",
-        &[("blend", &["composite"]), GRADED, FILTER, HOLES, TABLE],
-    ),
-    (
-        "slices_3d",
-        &[
-            ("blend", &["composite"]),
-            GRADED,
-            CONFORMANCE_FILTER,
-            HOLES,
-            POINTS,
-        ],
-    ),
+    ("slices_3d", &[BLEND, ONE, FILTER, HOLES, TABLE]),
+    ("slices_3d", &[BLEND, ONE, FETCHED, HOLES, POINTS]),
+    ("slices_3d", &[BLEND, MIXED, NARROW, HOLES, TABLE]),
+    ("slices_3d", &[BLEND, MIXED, NARROW_FETCHED, HOLES, POINTS]),
     (
         "slices_3d",
         &[("blend", &["extreme", "sum"]), ALONE, FILTER, HOLES],
@@ -153,28 +92,10 @@ const ENTRIES: &[(&str, &[Slot])] = &[
         ],
     ),
     ("slices_3d_cover", &[]),
-    (
-        "slices_2d",
-        &[("blend", &["composite"]), ALONE, FILTER, HOLES, TRANSFER],
-    ),
-    (
-        "slices_2d",
-        &[("blend", &["composite"]), MIXED, FILTER, HOLES, TRANSFER],
-    ),
-    (
-        "slices_2d",
-        &[("blend", &["composite"]), GRADED, FILTER, HOLES, TABLE],
-    ),
-    (
-        "slices_2d",
-        &[
-            ("blend", &["composite"]),
-            GRADED,
-            CONFORMANCE_FILTER,
-            HOLES,
-            POINTS,
-        ],
-    ),
+    ("slices_2d", &[BLEND, ONE, FILTER, HOLES, TABLE]),
+    ("slices_2d", &[BLEND, ONE, FETCHED, HOLES, POINTS]),
+    ("slices_2d", &[BLEND, MIXED, NARROW, HOLES, TABLE]),
+    ("slices_2d", &[BLEND, MIXED, NARROW_FETCHED, HOLES, POINTS]),
     (
         "slices_2d",
         &[("blend", &["extreme", "sum"]), ALONE, FILTER, HOLES],
@@ -195,6 +116,10 @@ const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     ("resolve_cover", &[]),
     ("merge", &[("operator", &["over", "under", "add"])]),
+    (
+        "denoise",
+        &[("kernel", &["gaussian", "median", "bilateral"])],
+    ),
 ];
 
 fn main() {

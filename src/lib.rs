@@ -149,6 +149,12 @@
 //! [`technique::Words::mixed`] and the parameters of [`technique::View::recordings_of`], and binds the bricks of all of
 //! them by [`technique::Inputs`].
 //!
+//! # Filters through the voxels
+//!
+//! [`technique::Filter::Quadratic`] and [`technique::Filter::Cubic`] read coefficients in place of voxels: a host makes
+//! them by [`volume::Coefficients::new`] and puts them on the device by [`resident::GpuVolume::of_coefficients`]. A
+//! recording that would read the one for the other is refused.
+//!
 //! # What holds everywhere
 //!
 //! Recording creates, destroys and waits for nothing. Only `gpu/headless.rs` makes a device. Files are

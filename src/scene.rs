@@ -112,13 +112,14 @@ impl<'a> Scene<'a> {
     ///
     /// # Errors
     /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`], [`Error::NotMixed`],
-    /// [`Error::NotShaded`], [`Error::NotShadedTogether`], and those of [`Settings::check`].
+    /// [`Error::NotShaded`], [`Error::NotShadedTogether`], [`Error::FilterAlone`], and those of
+    /// [`Settings::check`].
     pub fn check(&self) -> Result<(), Error> {
         let volumes = self.volumes();
         let (wanted, limit) = (volumes.len(), MAX_CHANNELS as usize);
         let grid = self.volume.grid();
         let has_labels = self.roles().contains(&Role::Labels);
-        let mode = self.settings.mode;
+        let Settings { mode, filter, .. } = *self.settings;
         self.settings.check()?;
         if self.settings.shading.is_some() && mode.is_projection() {
             return Err(Error::NotShaded { mode });
@@ -126,6 +127,10 @@ impl<'a> Scene<'a> {
         match self.mix() {
             Mix::Alone | Mix::Graded => Ok(()),
             _ if self.settings.shading.is_some() => Err(Error::NotShadedTogether),
+            // Modes that project draw them one by one.
+            _ if filter.kernel().is_some() && !mode.is_projection() => {
+                Err(Error::FilterAlone { filter })
+            }
             _ if volumes.iter().any(|volume| volume.grid() != grid) => Err(Error::OtherGrid),
             Mix::Colors if !(3..=4).contains(&wanted) => Err(Error::NoColor { found: wanted }),
             Mix::Colors if mode != Mode::Composite => Err(Error::NotMixed { mode }),

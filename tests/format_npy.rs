@@ -39,6 +39,8 @@ fn every_type_order_and_shape_holds_what_numpy_reads() {
         assert_eq!(Value::from(header.times), row["times"], "{name}");
         assert_eq!(Value::from(header.components), row["components"], "{name}");
         assert_eq!(Value::from(header.stored.name()), row["stored"], "{name}");
+        // Nothing is said of space: it is that of voxels, the corner of the grid at 0.
+        assert_eq!(header.world_from_voxel, glam::DAffine3::IDENTITY, "{name}");
         let meaning = match row["meaning"].as_str() {
             Some("rgb") => Meaning::Rgb,
             Some("rgba") => Meaning::Rgba,

@@ -58,6 +58,11 @@ fn steps(header: &Header) -> [f64; 3] {
 /// Every volume of one file against the table's row.
 fn compare_numbers(name: &str, row: &Value, source: &dyn Source) -> usize {
     let header = source.header();
+    let corner = header.world_from_voxel.translation;
+    assert!(
+        corner.length() < 1e-9,
+        "{name}: the grid starts at {corner}"
+    );
     let mut compared = 0;
     let volumes = row["volumes"].as_array().unwrap().iter();
     let picks = (0..header.times)

@@ -8,7 +8,7 @@ mod files;
 mod vtk;
 
 use files::{Folder, numbers};
-use glam::dvec3;
+use glam::{DVec3, dvec3};
 use stratavox::format;
 use stratavox::volume::{Limits, Meaning, VoxelType, Voxels, Wanted};
 
@@ -75,6 +75,21 @@ fn old_keywords_lookup_tables_and_fields_are_understood() {
         .world_from_voxel
         .transform_point3(dvec3(0.5, 0.5, 0.5));
     assert_eq!(at, dvec3(11.0, 21.5, 30.0));
+}
+
+#[test]
+fn an_extent_says_where_the_first_point_lies() {
+    let folder = Folder::new();
+    let text = file(
+        "ASCII",
+        "POINT_DATA 6\nSCALARS s int\nLOOKUP_TABLE default\n1 2 3 4 5 6\n",
+    )
+    .replace("DIMENSIONS 3 2 1", "EXTENT 4 6 -1 0 7 7");
+    let (header, _) = folder.read("a.vtk", &text).unwrap();
+    assert_eq!(header.dims, [3, 2, 1]);
+    let first = header.world_from_voxel.transform_point3(DVec3::splat(0.5));
+    let at = |index: DVec3| dvec3(10.0, 20.0, 30.0) + index * dvec3(2.0, 3.0, 4.0);
+    assert_eq!(first, at(dvec3(4.0, -1.0, 7.0)));
 }
 
 #[test]

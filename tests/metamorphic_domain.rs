@@ -210,7 +210,7 @@ fn a_sample_counts_where_its_whole_footprint_has_data() {
                         let p = voxel_from_world.transform_point3(chord.at(t)).to_array();
                         let lattice = |k: usize| match filter {
                             Filter::Nearest => p[k],
-                            Filter::Linear => p[k] - 0.5,
+                            _ => p[k] - 0.5,
                         };
                         let fixed = |k: usize| in_slice && k == axis;
                         hangs |= (0..3)
@@ -220,7 +220,7 @@ fn a_sample_counts_where_its_whole_footprint_has_data() {
                             let last = match filter {
                                 _ if fixed(k) => return p[k].floor() as i64..=p[k].floor() as i64,
                                 Filter::Nearest => first,
-                                Filter::Linear => first + 1,
+                                _ => first + 1,
                             };
                             first..=last
                         };

@@ -113,6 +113,8 @@ struct Frame {
     diffuse: f32,
     specular: f32,
     shininess: f32,
+    // Which kernel, where the filter is one: see kernel.wgsl.
+    kernel: u32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -75,6 +75,12 @@ impl Bench {
         inputs.extend(self.cameras.clone());
         output::check(self.json.as_slice(), &inputs, self.force)?;
         scene.classification.check()?;
+        if scene.section.section.is_some() {
+            return Err(Error::usage(
+                "--section is for one picture: a bench looks from all around",
+                "leave out --section",
+            ));
+        }
         let cameras = self
             .cameras
             .as_deref()

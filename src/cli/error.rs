@@ -85,6 +85,9 @@ impl From<offscreen::Error> for Error {
             offscreen::Error::Technique(technique::Error::NotShadedTogether) => {
                 Self::not_shaded_together()
             }
+            offscreen::Error::Technique(error @ technique::Error::FilterAlone { .. }) => {
+                Self::usage(error.to_string(), "--filter linear draws them together")
+            }
             offscreen::Error::Technique(error) => Self::Limit(error.to_string()),
             offscreen::Error::NoLayer { .. } => Self::NotBuilt(error.to_string()),
         }
@@ -147,7 +150,9 @@ impl Error {
                 Problem::Limit { .. } => {
                     Some("--max-memory 16G allows more, where --untrusted does not forbid it")
                 }
-                Problem::Invalid { field, .. } if field == "variable" || field == "series" => {
+                Problem::Invalid { field, .. }
+                    if ["variable", "data set", "series"].contains(&field.as_str()) =>
+                {
                     Some("`stratavox info INPUT` lists them")
                 }
                 _ => None,

@@ -16,6 +16,8 @@ use glam::DVec3;
 
 /// Names that are said, at most.
 const NAMES: usize = 4;
+/// More unnamed labels than atlases have: numbers that were measured, perhaps.
+const MANY: usize = 150;
 
 /// The map that `--labels` names, on `grid`, with what it looks like. The volume is drawn so much higher than it is,
 /// and the map with it.
@@ -125,6 +127,9 @@ fn say_names(
         ),
         n => format!("{n} labels are drawn: {first}{more}"),
     });
+    if names.len() > MANY && table.is_none() {
+        progress.note("so many labels without names: is the map a scan and no map of labels?");
+    }
 }
 
 /// No colour and no opacity anywhere.

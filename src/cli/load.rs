@@ -2,7 +2,7 @@
 
 use super::{
     Error, exaggerate,
-    flags::{InputFlags, SceneFlags},
+    flags::{DenoiseWord, InputFlags, SceneFlags},
     memory::{Held, fitting},
     progress::Progress,
     renderer::Device,
@@ -28,7 +28,7 @@ pub fn load_from(
 ) -> Result<(Volume, f64), Error> {
     // What may be wrong with the words is said before anything about memory.
     scene.input.pick(source.header())?;
-    let source = fitting(source, &scene.input, device.memory(), Held::Volumes(1))?;
+    let source = fitting(source, scene, device.memory(), Held::of(scene, 1))?;
     read_stretched(source.as_ref(), scene, progress)
 }
 
@@ -49,14 +49,27 @@ fn read_stretched(
     }
     let whole = source.header().whole();
     let mut volume = Volume::read(source, pick, whole, &scene.input.limits())?;
+    say_what_was_lost(&volume, "voxels", progress);
+    denoise(std::slice::from_mut(&mut volume), scene)?;
     let factor = stretch(
         std::slice::from_mut(&mut volume),
         scene,
         source.header(),
         progress,
     )?;
-    say_what_was_lost(&volume, "voxels", progress);
     Ok((volume, factor))
+}
+
+/// Takes the noise out of volumes where a word wants it.
+pub fn denoise(volumes: &mut [Volume], scene: &SceneFlags) -> Result<(), Error> {
+    let Some(DenoiseWord(filter)) = scene.denoise else {
+        return Ok(());
+    };
+    let mut device = Device::find(scene.device.as_deref())?;
+    for volume in volumes {
+        *volume = device.denoised(volume, &filter)?;
+    }
+    Ok(())
 }
 
 /// Stretches volumes of one grid upward as far as the words or the planet want it, says so, and gives the factor.

@@ -5,10 +5,15 @@
 //! device = voxels as texels        + the same
 //! ```
 //!
+//! Filters that read coefficients have floats as texels, made of one volume after the other in memory of the host.
+//!
 //! The textures of a CPU driver lie in the memory of the host: there the sum has to fit.
 
-use super::{Error, flags::InputFlags};
-use crate::volume::{Header, Reduced, Source, VoxelType};
+use super::{Error, flags::SceneFlags};
+use crate::{
+    technique::Filter,
+    volume::{Header, Reduced, Source, VoxelType},
+};
 use serde::Serialize;
 
 /// What one time and component takes, pictures left out.
@@ -38,23 +43,32 @@ impl RenderBytes {
         }
     }
 
-    /// Of volumes like this one that are there at once.
-    fn held(header: &Header, has_holes: bool, held: Held) -> Self {
+    /// Of volumes like this one that are there at once, and what `filter` makes of them.
+    fn held(header: &Header, has_holes: bool, held: Held, filter: Filter) -> Self {
         let one = Self::of(header, has_holes);
-        match held {
-            Held::Volumes(count) => one.times(count),
-            Held::Blend => {
-                let floats = Header {
-                    stored: VoxelType::F32,
-                    ..header.clone()
-                };
-                let blend = Self::of(&floats, has_holes);
-                Self {
-                    host: one.times(2).host.saturating_add(blend.host),
-                    device: blend.device,
-                }
+        let floats = Header {
+            stored: VoxelType::F32,
+            ..header.clone()
+        };
+        let floats = Self::of(&floats, has_holes);
+        let (count, mut all) = match held {
+            Held::Volumes(count) => (count, one.times(count)),
+            Held::Denoised(count) => {
+                let noisy = one.times(count).host;
+                let host = noisy.saturating_add(floats.times(count + 1).host);
+                let device = floats.times(count).device;
+                (count, Self { host, device })
             }
+            Held::Blend => {
+                let host = one.times(2).host.saturating_add(floats.host);
+                (1, Self { host, ..floats })
+            }
+        };
+        if filter.spline().is_some() {
+            all.host = all.host.saturating_add(floats.host);
+            all.device = floats.times(count).device;
         }
+        all
     }
 
     fn times(self, volumes: u32) -> Self {
@@ -70,8 +84,20 @@ impl RenderBytes {
 pub enum Held {
     /// So many, on the device too.
     Volumes(u32),
+    /// So many that become floats, one after the other, by a noise filter.
+    Denoised(u32),
     /// Those of two times, and floats between them, which alone are on the device.
     Blend,
+}
+
+impl Held {
+    /// So many volumes of a picture of these flags.
+    pub fn of(scene: &SceneFlags, count: u32) -> Self {
+        match scene.denoise {
+            Some(_) => Self::Denoised(count),
+            None => Self::Volumes(count),
+        }
+    }
 }
 
 /// The memory that a device has for textures.
@@ -95,12 +121,14 @@ const SHARE: f64 = 0.9;
 /// Where the memory is not there, and `--fit` is not given.
 pub fn fitting(
     source: Box<dyn Source>,
-    input: &InputFlags,
+    scene: &SceneFlags,
     device: Option<DeviceMemory>,
     held: Held,
 ) -> Result<Box<dyn Source>, Error> {
+    let input = &scene.input;
+    let filter = scene.sampling.filter.unwrap_or_default().filter();
     let host_bytes = input.max_memory.or_else(available_bytes);
-    let factor = least_factor(source.header(), held, host_bytes, device);
+    let factor = least_factor(source.header(), held, filter, host_bytes, device);
     if factor == 1 {
         return Ok(source);
     }
@@ -108,7 +136,7 @@ pub fn fitting(
         let slab_bytes = host_bytes.map_or(SLAB_BYTES, |there| (there / 16).min(SLAB_BYTES));
         return Ok(Box::new(Reduced::new(source, factor, slab_bytes)));
     }
-    let needed = RenderBytes::held(source.header(), false, held);
+    let needed = RenderBytes::held(source.header(), false, held, filter);
     let there = |bytes: Option<u64>| bytes.map_or("an unknown amount".to_owned(), in_units);
     Err(Error::Memory(format!(
         "{}: the volume needs {} of memory and {} of the device's; there are {} and {}",
@@ -124,10 +152,11 @@ pub fn fitting(
 fn least_factor(
     header: &Header,
     held: Held,
+    filter: Filter,
     host_bytes: Option<u64>,
     device: Option<DeviceMemory>,
 ) -> u32 {
-    let whole = RenderBytes::held(header, header.fill.is_some(), held);
+    let whole = RenderBytes::held(header, header.fill.is_some(), held, filter);
     let largest = header.dims.iter().copied().max().unwrap_or(1);
     let fits = |&factor: &u32| {
         let part = |bytes: u64| bytes as f64 / f64::from(factor).powi(3);
@@ -207,6 +236,7 @@ mod tests {
     use glam::DAffine3;
 
     const ONE: Held = Held::Volumes(1);
+    const LINEAR: Filter = Filter::Linear;
 
     fn header(side: u32, stored: VoxelType) -> Header {
         Header::new(Format::Raw, [side; 3], stored, DAffine3::IDENTITY)
@@ -228,19 +258,42 @@ mod tests {
                 is_of_host: true,
             })
         };
-        assert_eq!(least_factor(&header, ONE, None, None), 1);
-        assert_eq!(least_factor(&header, ONE, Some(2_300_000), None), 1);
-        assert_eq!(least_factor(&header, ONE, Some(2_200_000), None), 2);
+        assert_eq!(least_factor(&header, ONE, LINEAR, None, None), 1);
+        assert_eq!(least_factor(&header, ONE, LINEAR, Some(2_300_000), None), 1);
+        assert_eq!(least_factor(&header, ONE, LINEAR, Some(2_200_000), None), 2);
         assert_eq!(
-            least_factor(&header, ONE, Some(2_300_000), card(2_300_000)),
+            least_factor(&header, ONE, LINEAR, Some(2_300_000), card(2_300_000)),
             1
         );
         assert_eq!(
-            least_factor(&header, ONE, Some(2_300_000), cpu(2_300_000)),
+            least_factor(&header, ONE, LINEAR, Some(2_300_000), cpu(2_300_000)),
             2
         );
-        assert_eq!(least_factor(&header, ONE, Some(1 << 40), card(80_000)), 4);
-        assert_eq!(least_factor(&header, ONE, Some(1 << 40), card(0)), 100);
+        assert_eq!(
+            least_factor(&header, ONE, LINEAR, Some(1 << 40), card(80_000)),
+            4
+        );
+        assert_eq!(
+            least_factor(&header, ONE, LINEAR, Some(1 << 40), card(0)),
+            100
+        );
+    }
+
+    #[test]
+    fn coefficients_are_floats_on_the_device_and_once_more_in_memory() {
+        // 100^3 u16: 2 MB and 4 MB of floats a volume.
+        let header = header(100, VoxelType::U16);
+        let held = |held, filter| {
+            let RenderBytes { host, device } = RenderBytes::held(&header, false, held, filter);
+            (host / 1_000_000, device / 1_000_000)
+        };
+        assert_eq!(held(ONE, Filter::Linear), (2, 2));
+        assert_eq!(held(ONE, Filter::CubicSmooth), (2, 2));
+        assert_eq!(held(ONE, Filter::CatmullRom), (2, 2));
+        assert_eq!(held(ONE, Filter::Cubic), (6, 4));
+        assert_eq!(held(Held::Volumes(3), Filter::Quadratic), (10, 12));
+        assert_eq!(held(Held::Blend, Filter::Linear), (8, 4));
+        assert_eq!(held(Held::Blend, Filter::Cubic), (12, 4));
     }
 
     #[test]
@@ -252,7 +305,7 @@ mod tests {
                 heap_bytes,
                 is_of_host,
             };
-            least_factor(&header, Held::Blend, Some(host), Some(device)) == 1
+            least_factor(&header, Held::Blend, LINEAR, Some(host), Some(device)) == 1
         };
         assert!(fits(8_900_000, 4_500_000, false));
         assert!(!fits(8_800_000, 4_500_000, false));

@@ -109,7 +109,9 @@ impl Render {
             classification,
             ..
         } = &shown;
-        let camera = scene.camera.camera(&shown.subject(), extent_pixels)?;
+        let subject = shown.subject();
+        let section = &scene.section;
+        let camera = section.camera(&scene.camera, &subject, extent_pixels, &mut settings)?;
         if let (None, Some(filter)) = (scene.sampling.filter, shown.filter) {
             settings.filter = filter;
         }

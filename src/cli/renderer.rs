@@ -8,7 +8,7 @@ use crate::{
     picture::{LayerKind, Picture},
     scene::{Beside, Scene},
     technique::{Settings, Technique},
-    volume::Volume,
+    volume::{Denoise, Volume},
 };
 use std::time::Instant;
 
@@ -75,6 +75,14 @@ impl Device {
         Ok(Self {
             on,
             found_ms: ms_since(start),
+        })
+    }
+
+    /// The volume without noise.
+    pub fn denoised(&mut self, volume: &Volume, filter: &Denoise) -> Result<Volume, Error> {
+        Ok(match &mut self.on {
+            Some(device) => offscreen::denoised(device, volume, filter)?,
+            None => filter.denoised(volume),
         })
     }
 

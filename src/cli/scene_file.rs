@@ -77,6 +77,11 @@ pub fn overlay(mut scene: SceneFlags, flags: &SceneFlags) -> SceneFlags {
         scene.channels = Default::default();
     }
     scene.camera.give_way_to(&flags.camera);
+    if flags.section.section.is_some() {
+        scene.camera.leave_the_eye();
+    } else if flags.camera.places_the_eye() {
+        scene.section = Default::default();
+    }
     scene.classification.give_way_to(&flags.classification);
     let below = serde_json::to_value(scene).expect("flags as JSON");
     let above = serde_json::to_value(flags).expect("flags as JSON");

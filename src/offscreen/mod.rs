@@ -2,6 +2,7 @@
 //!
 //! The only place that submits and waits.
 
+mod denoise;
 mod gathered;
 mod passes;
 mod position;
@@ -14,6 +15,7 @@ mod tally;
 mod targets;
 mod upload;
 
+pub use denoise::denoised;
 pub use renderer::{Rendered, Renderer};
 
 /// Why there is no picture.

@@ -19,8 +19,9 @@ use crate::technique::{
 use crate::transfer::{
     Absorption, Points, Table, TransferFunction, classify_by_points, classify_by_table,
 };
+use crate::volume::kernel::{convolved, convolved_in_slice};
 use crate::volume::sample::{linear, linear_in_slice, nearest};
-use crate::volume::{Grid, Volume};
+use crate::volume::{Coefficients, Grid, Volume};
 
 /// The picture of `scene` with all layers that its technique has.
 ///
@@ -38,7 +39,13 @@ pub fn render<R: Real>(scene: &Scene) -> Result<Picture, Error> {
 fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     let grid = scene.volume.grid();
     let mode = scene.settings.mode;
-    let gathered = |in_pixel| Walk::<R>::new(scene, &grid, in_pixel).map(|walk| walk.gather_all());
+    // What the device has in place of the voxels of interpolating splines.
+    let axes = scene.view(&grid, [0.0; 2]).texture_layout().filtered_axes();
+    let spline = scene.settings.filter.spline();
+    let coefficients = spline.map(|spline| Coefficients::new(scene.volume, spline, axes));
+    let read = coefficients.as_ref().map(Coefficients::volume);
+    let gathered =
+        |in_pixel| Walk::<R>::new(scene, read, &grid, in_pixel).map(|walk| walk.gather_all());
     let centers = gathered([0.0; 2])?;
     let transfer = match scene.transfer {
         Some(transfer) => transfer.clone(),
@@ -96,7 +103,13 @@ enum Classifier {
 }
 
 impl<'a, R: Real> Walk<'a, R> {
-    fn new(scene: &'a Scene<'a>, grid: &Grid, in_pixel: [f64; 2]) -> Result<Self, Error> {
+    /// `read`: what is filtered in place of the volume, where there is but one.
+    fn new(
+        scene: &'a Scene<'a>,
+        read: Option<&'a Volume>,
+        grid: &'a Grid,
+        in_pixel: [f64; 2],
+    ) -> Result<Self, Error> {
         let view = scene.view(grid, in_pixel);
         let space = scene.settings.color_space;
         let classifier = |function: Option<&TransferFunction>| {
@@ -121,7 +134,7 @@ impl<'a, R: Real> Walk<'a, R> {
         frame.flat_gradient = view.flat_gradient(scene.volume.value_range);
         Ok(Self {
             scene,
-            volumes: scene.volumes(),
+            volumes: read.map_or_else(|| scene.volumes(), |read| vec![read]),
             roles: scene.roles(),
             classifiers,
             frame,
@@ -168,7 +181,7 @@ impl<'a, R: Real> Walk<'a, R> {
     fn project(&self, pixel: [R; 2]) -> Gathered<R> {
         let settings = self.scene.settings;
         let (mode, order) = (settings.mode, settings.order);
-        let (volume, frame) = (self.scene.volume, &self.frame);
+        let (volume, frame) = (self.volumes[0], &self.frame);
         let value_at = |p| filtered(volume, settings.filter, p);
         // A projecting mode classifies when it resolves.
         let unclassified = |_| [R::from_f64(0.0); 4];
@@ -376,6 +389,7 @@ fn filtered<R: Real>(volume: &Volume, filter: Filter, p: [R; 3]) -> Option<R> {
     match filter {
         Filter::Nearest => nearest(volume, p),
         Filter::Linear => linear(volume, p),
+        filter => convolved(volume, filter.kernel()?, p),
     }
 }
 
@@ -392,5 +406,6 @@ fn filtered_in_slice<R: Real>(
             nearest(volume, p)
         }
         Filter::Linear => linear_in_slice(volume, axis, slice, p),
+        filter => convolved_in_slice(volume, filter.kernel()?, axis, slice, p),
     }
 }

@@ -24,7 +24,8 @@ use crate::technique::{
     self, Inputs, Mix, Mode, Part, Recording, Settings, Technique, Words, parameter_ring,
 };
 use crate::transfer::{Classified, TransferFunction, Window};
-use crate::volume::Volume;
+use crate::volume::{Spline, Volume};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// A picture and what it took.
@@ -42,14 +43,31 @@ pub struct Renderer<'v> {
     volumes: Vec<&'v Volume>,
     /// Which of them is drawn, where they are drawn one by one; else the first.
     shown: usize,
-    /// As 3D textures, then as the stacks along x, y, z: what has been needed so far.
-    resident: [Vec<GpuVolume>; 4],
+    /// What has been needed so far.
+    resident: HashMap<Copied, Vec<GpuVolume>>,
     transfer: Option<Uploaded>,
     targets: Option<Targets>,
     passes: Option<Passes>,
     ring: ParameterRing,
     timer: Option<Timer>,
     device: Headless,
+}
+
+/// In which form the volumes are on the device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct Copied {
+    layout: TextureLayout,
+    /// Coefficients in place of voxels.
+    spline: Option<Spline>,
+}
+
+impl Copied {
+    fn of(scene: &Scene) -> Self {
+        Self {
+            layout: scene.view(&scene.volume.grid(), [0.0; 2]).texture_layout(),
+            spline: scene.settings.filter.spline(),
+        }
+    }
 }
 
 /// A transfer function on the device, and what it was made of.
@@ -78,7 +96,7 @@ impl<'v> Renderer<'v> {
         Ok(Self {
             volumes,
             shown: 0,
-            resident: [const { Vec::new() }; 4],
+            resident: HashMap::new(),
             transfer: None,
             targets: None,
             passes: None,
@@ -104,10 +122,11 @@ impl<'v> Renderer<'v> {
     /// Where something is over a limit of the device.
     pub fn upload(&mut self, scene: &Scene) -> Result<(), Error> {
         scene.check()?;
-        let layout = scene.view(&scene.volume.grid(), [0.0; 2]).texture_layout();
-        let resident = &mut self.resident[place(layout)];
-        if resident.is_empty() {
-            *resident = upload(&mut self.device, &self.volumes, layout)?;
+        let copied = Copied::of(scene);
+        if !self.resident.contains_key(&copied) {
+            let Copied { layout, spline } = copied;
+            let made = upload(&mut self.device, &self.volumes, layout, spline)?;
+            self.resident.insert(copied, made);
         }
         Ok(())
     }
@@ -361,17 +380,12 @@ impl<'v> Renderer<'v> {
 }
 
 /// The volumes of the scene as they lie on the device, from the first that is shown on.
-fn parts_of<'a>(resident: &'a [Vec<GpuVolume>; 4], shown: usize, scene: &Scene) -> Vec<Part<'a>> {
-    let layout = scene.view(&scene.volume.grid(), [0.0; 2]).texture_layout();
-    let there = &resident[place(layout)][shown..];
+fn parts_of<'a>(
+    resident: &'a HashMap<Copied, Vec<GpuVolume>>,
+    shown: usize,
+    scene: &Scene,
+) -> Vec<Part<'a>> {
+    let there = &resident[&Copied::of(scene)][shown..];
     let parts = there.iter().zip(scene.roles());
     parts.map(|(volume, role)| Part { volume, role }).collect()
-}
-
-/// Where a layout is kept among those that are resident.
-fn place(layout: TextureLayout) -> usize {
-    match layout {
-        TextureLayout::Texture3d => 0,
-        TextureLayout::Stack(axis) => 1 + axis,
-    }
 }

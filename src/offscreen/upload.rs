@@ -2,23 +2,34 @@
 
 use crate::gpu::{Buffer, Error, Headless, Memory};
 use crate::resident::{GpuVolume, TextureLayout};
-use crate::volume::Volume;
+use crate::volume::{Coefficients, Spline, Volume};
 use ash::vk;
 
 /// A slab is as many slices as fit into this.
 const STAGING_BYTES: u64 = 32 << 20;
 
-/// Makes and fills the textures of volumes on one grid.
+/// Makes and fills the textures of volumes on one grid: their voxels, or the coefficients of their splines.
 pub fn upload(
     device: &mut Headless,
     volumes: &[&Volume],
     layout: TextureLayout,
+    spline: Option<Spline>,
 ) -> Result<Vec<GpuVolume>, Error> {
-    let made = GpuVolume::several(device.gpu(), volumes, layout)?;
-    for (made, volume) in made.iter().zip(volumes) {
-        fill(device, made, volume)?;
-    }
-    Ok(made)
+    let Some(spline) = spline else {
+        let made = GpuVolume::several(device.gpu(), volumes, layout)?;
+        for (made, volume) in made.iter().zip(volumes) {
+            fill(device, made, volume)?;
+        }
+        return Ok(made);
+    };
+    // One after the other: coefficients are larger than voxels.
+    let of_spline = |volume: &&Volume| {
+        let coefficients = Coefficients::new(volume, spline, layout.filtered_axes());
+        let made = GpuVolume::of_coefficients(device.gpu(), &coefficients, layout)?;
+        fill(device, &made, coefficients.volume())?;
+        Ok(made)
+    };
+    volumes.iter().map(of_spline).collect()
 }
 
 fn fill(device: &mut Headless, made: &GpuVolume, volume: &Volume) -> Result<(), Error> {

@@ -6,7 +6,7 @@
 use super::TexelFormat;
 use super::bricks::{Cell, cut};
 use crate::gpu::{Error, Gpu, Image, ImageDesc, ImageKind, Sampler};
-use crate::volume::{Grid, Volume};
+use crate::volume::{Coefficients, Grid, Spline, Volume};
 use ash::vk;
 use std::sync::Arc;
 
@@ -35,10 +35,16 @@ impl TextureLayout {
         }
     }
 
-    /// Voxels on either side that a sample of a brick may need: one for a filter, one more for the differences
-    /// that make its gradient. Nothing is interpolated between the slices of a stack.
+    /// The axes along which filters mix voxels: in a stack not from slice to slice.
+    pub fn filtered_axes(self) -> [bool; 3] {
+        std::array::from_fn(|k| self != Self::Stack(k))
+    }
+
+    /// Voxels on either side that a sample of a brick may need: two for the widest filter, the cubic, one more for
+    /// the differences that make its gradient. Nothing is interpolated between the slices of a stack.
     fn halo(self) -> [u32; 3] {
-        std::array::from_fn(|k| if self == Self::Stack(k) { 1 } else { 2 })
+        self.filtered_axes()
+            .map(|is_filtered| if is_filtered { 3 } else { 1 })
     }
 }
 
@@ -63,6 +69,7 @@ pub struct GpuVolume {
     value_range: [f64; 2],
     bricks: Vec<Brick>,
     sampler: Sampler,
+    spline: Option<Spline>,
 }
 
 /// How a volume will lie in textures, before it is cut.
@@ -126,6 +133,7 @@ impl Plan {
             value_range: volume.value_range,
             bricks: cells.iter().map(brick).collect::<Result<_, Error>>()?,
             sampler: Sampler::linear_clamp(gpu)?,
+            spline: None,
         })
     }
 }
@@ -138,6 +146,44 @@ impl GpuVolume {
     pub fn new(gpu: &Arc<Gpu>, volume: &Volume, layout: TextureLayout) -> Result<Self, Error> {
         let mut made = Self::several(gpu, &[volume], layout)?;
         Ok(made.swap_remove(0))
+    }
+
+    /// Objects for the coefficients of a volume's spline, which `Filter::Quadratic` and `Filter::Cubic` read in place of
+    /// its voxels. Uploads then take [`Coefficients::volume`].
+    ///
+    /// ```rust,no_run
+    /// # use std::sync::Arc;
+    /// # use stratavox::{gpu::{Error, Gpu}, resident::{GpuVolume, TextureLayout}};
+    /// # use stratavox::volume::{Coefficients, Spline, Volume};
+    /// # fn made(gpu: &Arc<Gpu>, volume: &Volume) -> Result<GpuVolume, Error> {
+    /// let layout = TextureLayout::Texture3d;
+    /// let coefficients = Coefficients::new(volume, Spline::Cubic, layout.filtered_axes());
+    /// let made = GpuVolume::of_coefficients(gpu, &coefficients, layout)?;
+    /// let staging = made.stage(coefficients.volume())?;
+    /// # Ok(made)
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// As [`GpuVolume::new`].
+    ///
+    /// # Panics
+    /// Where they are not coefficients along [`TextureLayout::filtered_axes`].
+    pub fn of_coefficients(
+        gpu: &Arc<Gpu>,
+        coefficients: &Coefficients,
+        layout: TextureLayout,
+    ) -> Result<Self, Error> {
+        assert_eq!(
+            coefficients.axes(),
+            layout.filtered_axes(),
+            "axes of {layout:?}"
+        );
+        let made = Self::new(gpu, coefficients.volume(), layout)?;
+        Ok(Self {
+            spline: Some(coefficients.spline()),
+            ..made
+        })
     }
 
     /// Objects for volumes of the same dims, all cut into the same bricks, so that they can be put together
@@ -168,6 +214,11 @@ impl GpuVolume {
     /// Where the voxels lie.
     pub fn grid(&self) -> &Grid {
         &self.grid
+    }
+
+    /// The spline that it holds the coefficients of; `None` for voxels.
+    pub fn spline(&self) -> Option<Spline> {
+        self.spline
     }
 
     /// How they lie in the textures.

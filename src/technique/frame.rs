@@ -6,14 +6,16 @@
 
 use super::blend::extreme_sign;
 use super::shading::set_shading;
-use super::{MAX_SAMPLES_PER_RAY, Settings, Technique};
+use super::{Filter, MAX_SAMPLES_PER_RAY, Settings, Technique};
 use crate::camera::{Camera, Projection, Rays};
 use crate::picture::ColorSpace;
 use crate::resident::{Cell, Coding, TransferLayout, front_to_back};
-use crate::shaders::{FrameFields, MAX_CLIP_PLANES, MAX_LIGHTS};
+use crate::shaders::{
+    FrameFields, KERNEL_CATMULL_ROM, KERNEL_CUBIC, KERNEL_QUADRATIC, MAX_CLIP_PLANES, MAX_LIGHTS,
+};
 use crate::technique::Error;
 use crate::transfer::Interpolation;
-use crate::volume::Grid;
+use crate::volume::{Grid, kernel::Kernel};
 use glam::{DAffine3, DVec3, dvec3};
 
 /// What one picture is taken of, and how.
@@ -29,6 +31,15 @@ pub struct View<'a> {
     pub in_pixel: [f64; 2],
     /// The words of the picture.
     pub settings: &'a Settings,
+}
+
+/// The number of the kernel in the parameters.
+fn kernel_number(filter: Filter) -> u32 {
+    match filter.kernel() {
+        Some(Kernel::Cubic) => KERNEL_CUBIC,
+        Some(Kernel::CatmullRom) => KERNEL_CATMULL_ROM,
+        Some(Kernel::Quadratic) | None => KERNEL_QUADRATIC,
+    }
 }
 
 impl View<'_> {
@@ -140,6 +151,7 @@ impl View<'_> {
             channel_opacity_point_count: [0; 4],
             channel_interpolation_is_step: [0; 4],
             channel_reference_length: [0.0; 4],
+            kernel: kernel_number(self.settings.filter),
             extreme_sign: extreme_sign(self.settings.mode),
             value_low: of_mode.value_low,
             value_scale: of_mode.value_scale,

@@ -111,6 +111,9 @@ impl Words {
                     "linear_fetch"
                 }
                 Filter::Linear => "linear",
+                Filter::CatmullRom => "kernel",
+                _ if settings.conformance || parts.iter().any(is_fetched) => "kernel",
+                _ => "spline",
             },
             holes: if has_holes { "mask" } else { "none" },
             lattice: match settings.lattice {

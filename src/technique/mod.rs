@@ -30,6 +30,8 @@ pub use recording::{Recording, parameter_ring};
 pub use shading::{Light, Shading};
 pub use slicer::Slicer;
 
+use crate::volume::{Spline, kernel::Kernel};
+
 /// Where samples lie.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Technique {
@@ -74,6 +76,37 @@ pub enum Filter {
     /// Trilinear (bilinear inside a 2D stack).
     #[default]
     Linear,
+    /// The quadratic B-spline through the voxels.
+    Quadratic,
+    /// The cubic B-spline through the voxels.
+    Cubic,
+    /// The quadratic B-spline with the voxels as its coefficients: no ringing, and blurred.
+    QuadraticSmooth,
+    /// The cubic B-spline with the voxels as its coefficients: no ringing, and more blurred.
+    CubicSmooth,
+    /// Catmull and Rom's cubic through the voxels.
+    CatmullRom,
+}
+
+impl Filter {
+    /// The kernel that weights the voxels, where it reaches beyond the nearest two of an axis.
+    pub fn kernel(self) -> Option<Kernel> {
+        match self {
+            Self::Nearest | Self::Linear => None,
+            Self::Quadratic | Self::QuadraticSmooth => Some(Kernel::Quadratic),
+            Self::Cubic | Self::CubicSmooth => Some(Kernel::Cubic),
+            Self::CatmullRom => Some(Kernel::CatmullRom),
+        }
+    }
+
+    /// The spline whose coefficients it reads in place of voxels: see [`Coefficients`](crate::volume::Coefficients).
+    pub fn spline(self) -> Option<Spline> {
+        match self {
+            Self::Quadratic => Some(Spline::Quadratic),
+            Self::Cubic => Some(Spline::Cubic),
+            _ => None,
+        }
+    }
 }
 
 /// Which samples a ray caster takes (`sampling.md` 3). Slicers have a lattice of their own.
@@ -171,6 +204,20 @@ pub enum Error {
     /// Volumes that are mixed lie on one grid.
     #[error("the volumes to be mixed lie on different grids, or in different bricks")]
     OtherGrid,
+    /// Interpolating splines read coefficients, all others the voxels.
+    #[error("{filter:?} reads {}, and the volume on the device holds {}", held(.filter.spline()), held(*.found))]
+    WrongCoefficients {
+        /// What was asked for.
+        filter: Filter,
+        /// What the volume on the device was made of.
+        found: Option<Spline>,
+    },
+    /// Filters over more than two voxels of an axis are made for one volume.
+    #[error("{filter:?} reads one volume: several are mixed with Linear or Nearest")]
+    FilterAlone {
+        /// What was asked for.
+        filter: Filter,
+    },
     /// The parameters hold a fixed number of channels.
     #[error("{wanted} volumes are to be mixed, the limit is {limit}")]
     TooManyChannels {
@@ -275,6 +322,12 @@ pub enum Error {
         /// How many there may be.
         limit: usize,
     },
+}
+
+fn held(spline: Option<Spline>) -> String {
+    spline.map_or("voxels".to_owned(), |spline| {
+        format!("coefficients of the {spline:?} spline")
+    })
 }
 
 impl Mode {

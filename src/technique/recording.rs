@@ -39,7 +39,8 @@ impl View<'_> {
     /// from front to back, slicers as they blend.
     ///
     /// # Errors
-    /// [`Error::WrongLayout`], [`Error::TooManySamples`] and [`Error::TooManyClipPlanes`].
+    /// [`Error::WrongLayout`], [`Error::WrongCoefficients`], [`Error::TooManySamples`] and
+    /// [`Error::TooManyClipPlanes`].
     pub fn recordings(
         &self,
         volume: &GpuVolume,
@@ -51,7 +52,7 @@ impl View<'_> {
     /// The same for several volumes that are put together sample by sample; `transfer` holds a function for each.
     ///
     /// # Errors
-    /// Those of [`View::recordings`], [`Error::OtherGrid`] and [`Error::TooManyChannels`].
+    /// Those of [`View::recordings`], [`Error::OtherGrid`], [`Error::FilterAlone`] and [`Error::TooManyChannels`].
     pub fn recordings_of(
         &self,
         parts: &[Part],
@@ -62,6 +63,7 @@ impl View<'_> {
         if wanted != found {
             return Err(Error::WrongLayout { wanted, found });
         }
+        self.check_coefficients(parts)?;
         let layout = transfer.map_or_else(TransferLayout::default, |t| *t.layout());
         let mut fields = self.fields(&volume.texel().coding, &layout)?;
         set_channels(parts, transfer, &mut fields)?;
@@ -85,6 +87,19 @@ impl View<'_> {
             self.recording(brick, Some(cell), fields)
         };
         Ok(order.iter().enumerate().map(recording).collect())
+    }
+
+    /// The filter reads what the volumes hold.
+    fn check_coefficients(&self, parts: &[Part]) -> Result<(), Error> {
+        let filter = self.settings.filter;
+        if filter.kernel().is_some() && parts.len() > 1 {
+            return Err(Error::FilterAlone { filter });
+        }
+        let held = parts.iter().map(|part| part.volume.spline());
+        match held.into_iter().find(|&found| found != filter.spline()) {
+            Some(found) => Err(Error::WrongCoefficients { filter, found }),
+            None => Ok(()),
+        }
     }
 
     /// What the CPU twins compute: the whole grid at once, values as they are. `flat_gradient` is 0, the range of

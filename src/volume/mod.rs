@@ -9,14 +9,17 @@
 //! Knows nothing of Vulkan.
 
 mod colors;
+mod denoise;
 pub mod field;
 mod grid;
 mod histogram;
 mod holes;
 mod joint;
+pub mod kernel;
 pub mod labels;
 mod magnitude;
 pub mod phantom;
+mod prefilter;
 mod read;
 mod reduce;
 pub mod sample;
@@ -25,10 +28,12 @@ mod statistics;
 mod voxels;
 
 pub use colors::{luma, read_all, read_colors};
+pub use denoise::{Denoise, MAX_SIGMA_VOXELS, Pass, noise_of, with_numbers};
 pub use grid::Grid;
 pub use histogram::Histogram;
 pub use joint::JointHistogram;
 pub use magnitude::Magnitude;
+pub use prefilter::{Coefficients, Spline};
 pub use reduce::Reduced;
 pub use source::{
     Channel, Format, Header, Limits, Loss, Meaning, Pick, Piece, Problem, ReadError, Rescale,

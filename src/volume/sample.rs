@@ -18,7 +18,7 @@ use crate::real::{Real, lerp};
 pub fn nearest<R: Real>(volume: &Volume, p: [R; 3]) -> Option<R> {
     let voxel = std::array::from_fn(|k| clamped(p[k].floor().to_i32(), volume.dims[k]));
     let (code, valid) = fetch(volume, voxel);
-    valid.then(|| rescaled(volume, code))
+    valid.then(|| rescaled(volume, R::from_f32(code)))
 }
 
 /// The trilinear value at `p`.
@@ -86,16 +86,16 @@ fn interpolated<R: Real>(volume: &Volume, taps: [Taps<R>; 3]) -> Option<R> {
         .then(|| code * R::from_f64(volume.rescale.slope) + R::from_f64(volume.rescale.intercept))
 }
 
-fn rescaled<R: Real>(volume: &Volume, code: f32) -> R {
-    R::from_f32(code) * R::from_f64(volume.rescale.slope) + R::from_f64(volume.rescale.intercept)
+pub(super) fn rescaled<R: Real>(volume: &Volume, code: R) -> R {
+    code * R::from_f64(volume.rescale.slope) + R::from_f64(volume.rescale.intercept)
 }
 
-fn clamped(voxel: i32, dim: u32) -> u32 {
+pub(super) fn clamped(voxel: i32, dim: u32) -> u32 {
     u32::try_from(voxel).unwrap_or(0).min(dim - 1)
 }
 
 /// The stored number of a voxel, and whether it is valid.
-fn fetch(volume: &Volume, [x, y, z]: [u32; 3]) -> (f32, bool) {
+pub(super) fn fetch(volume: &Volume, [x, y, z]: [u32; 3]) -> (f32, bool) {
     let [nx, ny, _] = volume.dims.map(|n| n as usize);
     let index = (z as usize * ny + y as usize) * nx + x as usize;
     let valid = volume.validity.as_ref().is_none_or(|mask| mask[index] != 0);

@@ -24,6 +24,7 @@ mod person;
 mod pictures;
 mod presets;
 mod real;
+mod section;
 mod sheet;
 mod weather;
 mod words;

@@ -260,6 +260,21 @@ fn words_that_do_not_go_together_are_refused_by_name() {
             2,
             &["--labels", "composite"],
         ),
+        (
+            "v.nrrd --labels v.nrrd --filter cubic",
+            2,
+            &["--filter cubic", "--filter linear"],
+        ),
+        (
+            "list.nrrd --channels 1,2 --filter catmull-rom",
+            2,
+            &["--filter catmull-rom", "--filter linear"],
+        ),
+        (
+            "rgb.nrrd --filter quadratic-smooth",
+            2,
+            &["--filter quadratic-smooth", "--filter linear"],
+        ),
         ("v.nrrd --label-show 1", 2, &["--labels"]),
         ("v.nrrd --labels v.nrrd --label-show 1-", 2, &["1,2,5-9"]),
         ("v.nrrd --labels rgb.nrrd", 3, &["one number a voxel"]),

@@ -45,6 +45,27 @@ fn layers_go_beside_an_array_under_their_names() {
 }
 
 #[test]
+fn a_noise_filter_changes_the_picture_and_is_kept_in_a_scene() {
+    let folder = Folder::new();
+    let draw = |words: &str, out: &str| {
+        folder
+            .run(&format!("render {words} -o {out} --mode mip {SMALL}"))
+            .assert_done();
+        fs::read(folder.path(out)).expect("a picture")
+    };
+    let plain = draw("phantom:head,n=12", "plain.npy");
+    let saved = draw(
+        "phantom:head,n=12 --denoise gaussian:1.5 --save-scene s.json",
+        "a.npy",
+    );
+    assert!(plain != saved, "the filter changes nothing");
+    assert!(draw("--scene s.json", "b.npy") == saved, "another picture");
+    folder
+        .run("render phantom:head,n=8 -o c.png --denoise blur")
+        .assert_refused(2, &["gaussian[:SIGMA]"]);
+}
+
+#[test]
 fn a_layer_that_a_mode_does_not_have_is_a_usage_error() {
     let folder = Folder::new();
     let words = format!("render phantom:fog,n=8 -o a.npy --aov value {SMALL}");

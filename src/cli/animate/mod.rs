@@ -218,11 +218,11 @@ impl Animate {
             None => {
                 let is_whole = shots.iter().all(|shot| shot.time.fract() == 0.0);
                 let held = if is_whole {
-                    Held::Volumes(1)
+                    Held::of(&scene, 1)
                 } else {
                     Held::Blend
                 };
-                let source = fitting(source, &scene.input, device.memory(), held)?;
+                let source = fitting(source, scene, device.memory(), held)?;
                 Content::Times(source)
             }
         };

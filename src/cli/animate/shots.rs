@@ -167,9 +167,12 @@ impl Maker<'_> {
             ));
         }
         classification.check()?;
+        let section = &self.scene.section;
+        let mut settings = self.scene.settings_of(&sampling, self.depth)?;
+        let extent_pixels = self.scene.picture.extent_pixels()?;
         Ok(Shot {
-            camera: camera.camera(&self.subject, self.scene.picture.extent_pixels()?)?,
-            settings: self.scene.settings_of(&sampling, self.depth)?,
+            camera: section.camera(&camera, &self.subject, extent_pixels, &mut settings)?,
+            settings,
             classification,
             time,
         })

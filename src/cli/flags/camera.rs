@@ -112,6 +112,23 @@ impl CameraFlags {
         Ok(camera)
     }
 
+    /// True where a word says how rays spread or where they start.
+    pub fn places_the_eye(&self) -> bool {
+        self.eye.is_some()
+            || self.view.is_some()
+            || self.azimuth.is_some()
+            || self.elevation.is_some()
+            || self.projection == Some(ProjectionWord::Perspective)
+            || self.fov.is_some()
+    }
+
+    /// Takes back what [`Self::places_the_eye`] asks for.
+    pub fn leave_the_eye(&mut self) {
+        (self.eye, self.view) = (None, None);
+        (self.azimuth, self.elevation) = (None, None);
+        (self.projection, self.fov) = (None, None);
+    }
+
     fn orbit(&self, subject: &Subject) -> Orbit {
         let side = match (self.view, self.azimuth, self.elevation) {
             (Some(view), _, _) => view.view().orbit(),
@@ -193,7 +210,8 @@ impl CameraFlags {
     }
 }
 
-fn refused(error: camera::Error) -> Error {
+/// A camera that sees nothing, as words that cannot be followed.
+pub fn refused(error: camera::Error) -> Error {
     Error::usage(
         error.to_string(),
         "a camera stands at --eye, looks at --target, and --up points elsewhere",
@@ -248,6 +266,8 @@ mod tests {
 
     const SUBJECT: Subject = Subject {
         bounds: BOUNDS,
+        half_axes: [DVec3::X, DVec3::Y, DVec3::Z],
+        smallest_spacing: 1.0,
         is_earth: false,
     };
 

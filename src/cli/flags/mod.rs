@@ -7,6 +7,7 @@ mod camera;
 mod channels;
 mod classification;
 mod component;
+mod denoise;
 mod input;
 mod labels;
 mod levels;
@@ -16,6 +17,7 @@ mod not_built;
 mod numbers;
 mod picture;
 mod sampling;
+mod section;
 mod subject;
 mod words;
 
@@ -23,6 +25,7 @@ pub use camera::CameraFlags;
 pub use channels::{ChannelFlags, ChannelWord, Plan};
 pub use classification::{Classification, ClassificationFlags, preset, summary, with_causes};
 pub use component::Component;
+pub use denoise::DenoiseWord;
 pub use input::{InputFlags, relative};
 pub use labels::LabelFlags;
 pub use levels::LevelFlags;
@@ -32,6 +35,7 @@ pub use not_built::NotBuilt;
 pub use numbers::{Background, Numbers, Size, finite, positive};
 pub use picture::PictureFlags;
 pub use sampling::{Depth, SamplingFlags};
+pub use section::SectionFlags;
 pub use subject::Subject;
 
 use super::Error;
@@ -64,7 +68,14 @@ pub struct SceneFlags {
     #[command(flatten)]
     pub camera: CameraFlags,
     #[command(flatten)]
+    pub section: SectionFlags,
+    #[command(flatten)]
     pub picture: PictureFlags,
+    /// Take noise out of the numbers first: gaussian[:SIGMA], median, bilateral[:SIGMA[:VALUE]]; SIGMA in voxels
+    /// [default: 1], VALUE what is no noise any more [default: twice the noise found]
+    #[arg(long, value_name = "FILTER")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub denoise: Option<DenoiseWord>,
     /// A Vulkan device by name, index or UUID, `cpu` for a software one, or `reference` for no Vulkan at all
     #[arg(long, value_name = "DEVICE")]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -79,7 +90,7 @@ impl SceneFlags {
 
     /// The same with other words of sampling.
     pub fn settings_of(&self, sampling: &SamplingFlags, depth: Depth) -> Result<Settings, Error> {
-        let settings = sampling.settings(depth)?;
+        let settings = self.section.settings(sampling, depth)?;
         let shading = self.light.shading(settings.mode)?;
         Ok(Settings {
             shading,

@@ -72,7 +72,7 @@ impl ModeWord {
     }
 }
 
-/// Every word of `--filter`, built or not.
+/// Every word of `--filter`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[allow(missing_docs, reason = "the names say it")]
@@ -80,25 +80,38 @@ pub enum FilterWord {
     Nearest,
     #[default]
     Linear,
-    #[value(help = "not built yet")]
+    #[value(help = "quadratic B-spline through the voxels")]
     Quadratic,
-    #[value(help = "not built yet")]
+    #[value(help = "cubic B-spline through the voxels, the most exact")]
     Cubic,
-    #[value(help = "not built yet")]
+    #[value(help = "quadratic B-spline of the voxels: never rings, blurs more than linear")]
     QuadraticSmooth,
-    #[value(help = "not built yet")]
+    #[value(help = "cubic B-spline of the voxels: never rings, blurs most")]
     CubicSmooth,
-    #[value(help = "not built yet")]
+    #[value(help = "Catmull-Rom cubic through the voxels")]
     CatmullRom,
 }
 
 impl FilterWord {
-    /// What it stands for, where it is built.
-    pub fn filter(self) -> Result<Filter, Error> {
+    /// The flag with this word.
+    pub fn said(self) -> String {
+        let name = self.to_possible_value();
+        format!(
+            "--filter {}",
+            name.as_ref().map_or("", |name| name.get_name())
+        )
+    }
+
+    /// What it stands for.
+    pub fn filter(self) -> Filter {
         match self {
-            Self::Nearest => Ok(Filter::Nearest),
-            Self::Linear => Ok(Filter::Linear),
-            _ => Err(not_built("--filter", self)),
+            Self::Nearest => Filter::Nearest,
+            Self::Linear => Filter::Linear,
+            Self::Quadratic => Filter::Quadratic,
+            Self::Cubic => Filter::Cubic,
+            Self::QuadraticSmooth => Filter::QuadraticSmooth,
+            Self::CubicSmooth => Filter::CubicSmooth,
+            Self::CatmullRom => Filter::CatmullRom,
         }
     }
 }

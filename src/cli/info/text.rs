@@ -145,9 +145,13 @@ impl Page<'_> {
             lines.say("sheared", shear);
         }
         let rows = report.world_from_voxel;
+        // What rounding left of a turn by right angles is no number to show.
+        let largest = rows.iter().flat_map(|row| &row[..3]);
+        let largest = largest.fold(0.0, |m: f64, n| m.max(n.abs()));
+        let shown = |n: f64| if n.abs() < 1e-12 * largest { 0.0 } else { n };
         let row = |k: usize| {
             rows[k]
-                .map(|number| format!("{:>12}", short(number)))
+                .map(|number| format!("{:>12}", short(shown(number))))
                 .concat()
         };
         lines.say("world", format!("{}   from voxel centres", row(0)));

@@ -4,7 +4,7 @@ use super::super::{
     Error,
     flags::Classification,
     labels,
-    load::{say_what_was_lost, stretch},
+    load::{denoise, say_what_was_lost, stretch},
 };
 use super::{Other, Others, Reader, Shown};
 use crate::{
@@ -29,6 +29,7 @@ impl Reader<'_> {
         let (time, _) = self.scene.input.time(source.header())?;
         let limits = self.scene.input.limits();
         let mut volumes = read_colors(source.as_ref(), time, &limits)?;
+        denoise(&mut volumes, self.scene)?;
         let height_factor = stretch(&mut volumes, self.scene, source.header(), self.progress)?;
         for volume in &volumes {
             say_what_was_lost(volume, "voxels", self.progress);

@@ -9,7 +9,7 @@ use super::{
         mode_name, summary,
     },
     labels,
-    load::{load_from, open, say_what_was_lost, stretch},
+    load::{denoise, load_from, open, say_what_was_lost, stretch},
     memory::{Held, fitting},
     progress::Progress,
     renderer::Device,
@@ -80,6 +80,17 @@ impl Shown {
     ) -> Result<Self, Error> {
         check(scene, settings)?;
         let (plan, note) = plan(scene, source.header())?;
+        let are_several = !matches!(plan, Plan::One) || scene.labels.labels.is_some();
+        if are_several && !settings.mode.is_projection() && settings.filter.kernel().is_some() {
+            let filter = scene.sampling.filter.unwrap_or_default();
+            return Err(Error::usage(
+                format!(
+                    "{} reads one number a voxel, and several are drawn",
+                    filter.said()
+                ),
+                "--filter linear draws them together",
+            ));
+        }
         if let Some(note) = note {
             progress.note(&note);
         }
@@ -309,6 +320,7 @@ impl Reader<'_> {
         let indices: Vec<u32> = words.iter().map(|word| word.index).collect();
         let limits = self.scene.input.limits();
         let mut volumes = read_all(source.as_ref(), indices, time, &limits)?;
+        denoise(&mut volumes, self.scene)?;
         let height_factor = stretch(&mut volumes, self.scene, header, self.progress)?;
         let known = match &header.meaning {
             Meaning::Channels(known) => known.as_slice(),
@@ -364,8 +376,8 @@ impl Reader<'_> {
     fn fitted(&self, source: Box<dyn Source>, count: usize) -> Result<Box<dyn Source>, Error> {
         let input = &self.scene.input;
         let count = u32::try_from(count).unwrap_or(u32::MAX);
-        let held = Held::Volumes(count);
-        let source = fitting(source, input, self.device.memory(), held)?;
+        let held = Held::of(self.scene, count);
+        let source = fitting(source, self.scene, self.device.memory(), held)?;
         let (_, note) = input.time(source.header())?;
         input.check_one(source.header())?;
         for note in source.header().notes.iter().chain(&note) {

@@ -1,0 +1,12 @@
+// One pass of a noise filter over slices of numbers in a buffer: one thread a voxel.
+// Twin: src/volume/denoise.rs, which says what the kernels are.
+
+#import denoise_{kernel}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if any(id >= denoise.dims) {
+        return;
+    }
+    after.d[place(vec3<i32>(id))] = filtered(vec3<i32>(id));
+}

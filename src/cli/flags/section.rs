@@ -1,0 +1,290 @@
+//! A cut through the volume, seen from straight in front: what radiologists call multiplanar reformation.
+//!
+//! ```text
+//! plane       n . (x - target) = 0,   the eye on the side of n, orthographic
+//! slab        |n . (x - target)| <= thickness / 2,   by two clip planes
+//! height      2 max(H_up, H_right height / width),   H_v = |v . (c - target)| + sum of |v . a_k|
+//! ```
+//!
+//! with c the middle of the grid box and a_k half of its edges: all of the box fits. A slab thinner than a step of
+//! the ray holds one sample a ray, at its middle: on the plane itself.
+
+use super::{
+    CameraFlags, Depth, Error, Numbers, SamplingFlags, Subject, camera::refused, positive,
+};
+use crate::{
+    camera::{Camera, Frame, Projection, up_for},
+    technique::{ClipPlane, Lattice, Mode, Settings, Technique},
+};
+use clap::Args;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use std::{fmt, str::FromStr};
+
+/// The flags, none of them filled in.
+#[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SectionFlags {
+    /// Show a cut through --target, seen from in front: axial (from below), coronal (from anterior), sagittal (from
+    /// the left), or by its normal; --mode is average unless given
+    #[arg(long, value_name = "PLANE", allow_hyphen_values = true, help_heading = "Camera",
+          conflicts_with_all = ["projection", "fov", "view", "azimuth", "elevation", "eye"])]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub section: Option<Plane>,
+    /// World thickness of the cut; --mode says what becomes of its values [default: one sample]
+    #[arg(long, value_name = "T", value_parser = positive, requires = "section", help_heading = "Camera")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub thickness: Option<f64>,
+}
+
+/// Every word of `--section`, and the direction that a plane faces.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum Plane {
+    Axial,
+    Coronal,
+    Sagittal,
+    Normal(Numbers<3>),
+}
+
+/// A cut of no thickness is so thick, in smallest voxel spacings: less than any step, and more than f32 loses
+/// between the eye and the plane.
+const THINNEST: f64 = 0.01;
+
+impl SectionFlags {
+    /// What to compute: a cut is the mean over its thickness unless another mode is asked for.
+    pub fn settings(&self, sampling: &SamplingFlags, depth: Depth) -> Result<Settings, Error> {
+        let mut settings = sampling.settings(depth)?;
+        if self.section.is_none() {
+            return Ok(settings);
+        }
+        if sampling.mode.is_none() {
+            settings.mode = Mode::Average;
+        }
+        if settings.technique != Technique::Raycast || settings.lattice != Lattice::Ray {
+            return Err(Error::usage(
+                "--section takes its samples on the cut: the lattices of slicers have none there",
+                "leave out --technique and --lattice",
+            ));
+        }
+        Ok(settings)
+    }
+
+    /// The camera on this subject; a cut adds its two clip planes to `settings`.
+    pub fn camera(
+        &self,
+        camera: &CameraFlags,
+        subject: &Subject,
+        extent_pixels: [u32; 2],
+        settings: &mut Settings,
+    ) -> Result<Camera, Error> {
+        let Some(plane) = self.section else {
+            return camera.camera(subject, extent_pixels);
+        };
+        if camera.places_the_eye() {
+            return Err(Error::usage(
+                "--section looks straight at its plane: nothing else may place the camera",
+                "--target moves the plane, --up and --roll turn the picture",
+            ));
+        }
+        let center = subject.bounds.center;
+        let target = camera.target.map_or(center, |Numbers(p)| p.into());
+        let normal = plane.normal()?;
+        let up = camera
+            .up
+            .map_or_else(|| up_for(normal), |Numbers(v)| v.into());
+        let upright = Camera {
+            eye: target + 2.0 * subject.bounds.radius * normal,
+            target,
+            up,
+            projection: Projection::Orthographic { view_height: 1.0 },
+            zoom: camera.zoom.unwrap_or(1.0),
+        };
+        upright.check().map_err(refused)?;
+        let (sine, cosine) = camera.roll.unwrap_or(0.0).to_radians().sin_cos();
+        let Frame { right, up, .. } = upright.frame();
+        let rolled = Camera {
+            up: cosine * up - sine * right,
+            ..upright
+        };
+        let Frame { right, up, .. } = rolled.frame();
+        let half = |v: DVec3| subject.half_extent(v) + v.dot(center - target).abs();
+        let [width, height] = extent_pixels.map(f64::from);
+        let fitted = 2.0 * half(up).max(half(right) * height / width);
+        let view_height = camera.view_height.unwrap_or(fitted);
+
+        let half_thickness = 0.5
+            * self
+                .thickness
+                .unwrap_or(THINNEST * subject.smallest_spacing);
+        for side in [normal, -normal] {
+            settings.clip_planes.push(ClipPlane {
+                normal: side,
+                offset: side.dot(target) - half_thickness,
+            });
+        }
+        Ok(Camera {
+            projection: Projection::Orthographic { view_height },
+            ..rolled
+        })
+    }
+}
+
+impl Plane {
+    /// The unit vector towards the eye. Radiologists look so that the patient's right is left in the picture.
+    fn normal(self) -> Result<DVec3, Error> {
+        match self {
+            Self::Axial => Ok(DVec3::NEG_Z),
+            Self::Coronal => Ok(DVec3::Y),
+            Self::Sagittal => Ok(DVec3::NEG_X),
+            Self::Normal(Numbers(normal)) => DVec3::from(normal).try_normalize().ok_or_else(|| {
+                Error::usage(
+                    "--section 0,0,0: a plane needs a direction",
+                    "--section 0,0,1 is seen from above",
+                )
+            }),
+        }
+    }
+}
+
+impl FromStr for Plane {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "axial" => Ok(Self::Axial),
+            "coronal" => Ok(Self::Coronal),
+            "sagittal" => Ok(Self::Sagittal),
+            _ => text.parse().map(Self::Normal).map_err(|_| {
+                "wanted axial, coronal, sagittal, or the normal NX,NY,NZ of a plane".to_owned()
+            }),
+        }
+    }
+}
+
+impl fmt::Display for Plane {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Axial => f.write_str("axial"),
+            Self::Coronal => f.write_str("coronal"),
+            Self::Sagittal => f.write_str("sagittal"),
+            Self::Normal(normal) => normal.fmt(f),
+        }
+    }
+}
+
+impl TryFrom<String> for Plane {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+impl From<Plane> for String {
+    fn from(plane: Plane) -> Self {
+        plane.to_string()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::flags::words::TechniqueWord;
+    use crate::volume::Grid;
+    use glam::{DAffine3, DMat3, dvec3};
+
+    /// A box of 40 x 60 x 100 around (1, 2, 3).
+    fn subject() -> Subject {
+        let matrix = DMat3::from_diagonal(dvec3(4.0, 6.0, 5.0));
+        let grid = Grid {
+            dims: [10, 10, 20],
+            world_from_voxel: DAffine3::from_mat3_translation(matrix, dvec3(-19.0, -28.0, -47.0)),
+        };
+        Subject::new(&grid, false)
+    }
+
+    fn seen(
+        word: &str,
+        change: impl FnOnce(&mut CameraFlags, &mut SectionFlags),
+    ) -> (Camera, Settings) {
+        let mut camera = CameraFlags::default();
+        let mut section = SectionFlags {
+            section: Some(word.parse().expect("a plane")),
+            thickness: None,
+        };
+        change(&mut camera, &mut section);
+        let sampling = SamplingFlags::default();
+        let mut settings = section.settings(&sampling, Depth::Eight).expect("settings");
+        let camera = section.camera(&camera, &subject(), [300, 200], &mut settings);
+        (camera.expect("a camera"), settings)
+    }
+
+    #[test]
+    fn the_patients_right_is_on_the_left_and_the_box_fits() {
+        for (word, right, up, height) in [
+            ("axial", DVec3::X * -1.0, DVec3::Y, 60.0),
+            ("coronal", DVec3::X * -1.0, DVec3::Z, 100.0),
+            ("sagittal", DVec3::Y * -1.0, DVec3::Z, 100.0),
+        ] {
+            let (camera, settings) = seen(word, |_, _| {});
+            let frame = camera.frame();
+            assert!((frame.right - right).length() < 1e-12, "{word}: {frame:?}");
+            assert!((frame.up - up).length() < 1e-12, "{word}: {frame:?}");
+            let Projection::Orthographic { view_height } = camera.projection else {
+                panic!("{camera:?}");
+            };
+            assert!((view_height - height).abs() < 1e-9, "{word}: {view_height}");
+            assert_eq!(settings.mode, Mode::Average);
+        }
+        // A box wider than the picture is fitted by its width: 100 across, and 2 of 3 of that in height.
+        let (camera, _) = seen("1,0,0", |camera, _| camera.roll = Some(90.0));
+        let Projection::Orthographic { view_height } = camera.projection else {
+            panic!("{camera:?}");
+        };
+        assert!(
+            (view_height - 100.0 * 2.0 / 3.0).abs() < 1e-9,
+            "{view_height}"
+        );
+    }
+
+    #[test]
+    fn the_slab_lies_on_both_sides_of_the_target() {
+        let (_, settings) = seen("0,0,2", |camera, section| {
+            camera.target = Some(Numbers([5.0, 5.0, 7.0]));
+            section.thickness = Some(3.0);
+        });
+        let [above, below] = &settings.clip_planes[..] else {
+            panic!("{settings:?}");
+        };
+        assert_eq!((above.normal, above.offset), (DVec3::Z, 5.5));
+        assert_eq!((below.normal, below.offset), (-DVec3::Z, -8.5));
+    }
+
+    #[test]
+    fn what_goes_against_a_section_is_refused() {
+        let section = SectionFlags {
+            section: Some(Plane::Axial),
+            thickness: None,
+        };
+        let turned = CameraFlags {
+            azimuth: Some(20.0),
+            ..CameraFlags::default()
+        };
+        let mut settings = Settings::default();
+        let refused = section.camera(&turned, &subject(), [8, 8], &mut settings);
+        assert_eq!(refused.expect_err("refused").exit_code(), 2);
+        let slices = SamplingFlags {
+            technique: Some(TechniqueWord::Slices3d),
+            ..SamplingFlags::default()
+        };
+        let refused = section.settings(&slices, Depth::Eight);
+        assert_eq!(refused.expect_err("refused").exit_code(), 2);
+        for text in ["axial", "coronal", "sagittal", "1,0,-0.5"] {
+            let plane: Plane = text.parse().expect("a plane");
+            assert_eq!(plane.to_string(), text);
+        }
+        assert!("flat".parse::<Plane>().is_err());
+    }
+}
