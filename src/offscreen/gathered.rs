@@ -5,6 +5,7 @@ use crate::picture::{Layer, LayerKind};
 use crate::real::Real;
 use crate::resolve::reference::projected_value;
 use crate::scene::Scene;
+use crate::technique::isosurface::Surfaces;
 use crate::technique::{Mode, Technique};
 use crate::transfer::{Classified, TransferFunction, Window};
 
@@ -19,6 +20,20 @@ pub(super) struct Gathered<R> {
     /// What a depth cue leaves of the colour.
     pub light: R,
     pub samples: u32,
+}
+
+impl<R: Real> Gathered<R> {
+    /// Of a ray that has met surfaces.
+    pub fn of_surfaces(found: Surfaces<R>) -> Self {
+        let ([r, g, b], one) = (found.color, R::from_f64(1.0));
+        Self {
+            accumulation: [r, g, b, one - found.transmittance],
+            depth: found.first.map(|(_, t)| t),
+            level: found.first.map(|(level, _)| level),
+            light: one,
+            samples: found.samples,
+        }
+    }
 }
 
 /// The default window of a projecting mode without a transfer function: the range of this picture.

@@ -226,14 +226,7 @@ impl<'a, R: Real> Walk<'a, R> {
             shade(frame, color, gradient, ray_direction)
         };
         let found = isosurface::surfaces(frame, pixel, value_at, lit);
-        let ([r, g, b], one) = (found.color, R::from_f64(1.0));
-        Gathered {
-            accumulation: [r, g, b, one - found.transmittance],
-            depth: found.first.map(|(_, t)| t),
-            level: found.first.map(|(level, _)| level),
-            light: one,
-            samples: found.samples,
-        }
+        Gathered::of_surfaces(found)
     }
 
     /// Emission and absorption of what the volumes are made of together.

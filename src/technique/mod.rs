@@ -330,67 +330,6 @@ fn held(spline: Option<Spline>) -> String {
     })
 }
 
-impl Mode {
-    /// True where one value a ray is projected and classified once.
-    pub fn is_projection(self) -> bool {
-        !matches!(self, Self::Composite | Self::Mida | Self::Iso)
-    }
-
-    /// True where samples must come from front to back, one after the other: blending units cannot do it.
-    pub fn needs_rays(self) -> bool {
-        matches!(
-            self,
-            Self::Lmip | Self::AttenuatedMip | Self::Mida | Self::Iso
-        )
-    }
-
-    /// True where one number a ray is found, before any colour.
-    pub fn has_value(self) -> bool {
-        self.is_projection() || self == Self::Iso
-    }
-
-    /// True where the ray caster finds a place of the ray that stands for the picture.
-    pub fn has_depth(self) -> bool {
-        !matches!(self, Self::Average | Self::Xray)
-    }
-
-    /// True where what is projected lies at one place of the ray.
-    pub fn projects_one_place(self) -> bool {
-        matches!(
-            self,
-            Self::Mip | Self::Minip | Self::Lmip | Self::AttenuatedMip
-        )
-    }
-}
-
-impl Settings {
-    /// Whether technique, mode and the numbers of the mode go together.
-    ///
-    /// # Errors
-    /// [`Error::NeedsRays`], [`Error::NeedsRayLattice`], [`Error::NoDepth`], [`Error::NotExact`],
-    /// [`Error::LevelCount`] and [`Error::OutOfRange`].
-    pub fn check(&self) -> Result<(), Error> {
-        let (technique, mode) = (self.technique, self.mode);
-        if technique != Technique::Raycast && mode.needs_rays() {
-            return Err(Error::NeedsRays { technique, mode });
-        }
-        if self.lattice != Lattice::Ray && mode.needs_rays() {
-            return Err(Error::NeedsRayLattice { mode });
-        }
-        let has_depth = technique == Technique::Raycast && mode.projects_one_place();
-        if self.per_mode.depth_cue != 0.0 && !has_depth {
-            return Err(Error::NoDepth { technique, mode });
-        }
-        let is_trilinear = self.filter == Filter::Linear;
-        let has_extreme = matches!(mode, Mode::Mip | Mode::Minip);
-        let is_along_rays = technique == Technique::Raycast && self.lattice == Lattice::Ray;
-        if self.per_mode.exact_maximum && !(is_trilinear && has_extreme && is_along_rays) {
-            return Err(Error::NotExact { technique, mode });
-        }
-        self.per_mode.check(mode)
-    }
-}
-
 impl Default for Settings {
     fn default() -> Self {
         Self {

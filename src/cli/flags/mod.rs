@@ -30,7 +30,7 @@ pub use input::{InputFlags, relative};
 pub use labels::LabelFlags;
 pub use levels::LevelFlags;
 pub use light::LightFlags;
-pub use modes::{ModeFlags, mode_name};
+pub use modes::ModeFlags;
 pub use not_built::NotBuilt;
 pub use numbers::{Background, Numbers, Size, finite, positive};
 pub use picture::PictureFlags;

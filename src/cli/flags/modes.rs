@@ -101,6 +101,18 @@ impl ModeFlags {
         })
     }
 
+    /// Of several numbers a voxel.
+    pub fn check_several(&self, mode: Mode) -> Result<(), Error> {
+        if !mode.needs_rays() {
+            return Ok(());
+        }
+        let word = mode_name(mode);
+        Err(Error::usage(
+            format!("--mode {word} shows one number a voxel, and several are drawn"),
+            "take one of them: --component 0",
+        ))
+    }
+
     /// Of values that decide nothing.
     pub fn alone(&self) -> PerMode {
         self.given()
@@ -206,7 +218,7 @@ fn usual(summary: &ValueSummary) -> Window {
 }
 
 /// The word of `--mode`.
-pub fn mode_name(mode: Mode) -> &'static str {
+fn mode_name(mode: Mode) -> &'static str {
     match mode {
         Mode::Composite => "composite",
         Mode::Mip => "mip",

@@ -6,7 +6,7 @@ use super::{
     Error,
     flags::{
         ChannelWord, Classification, ClassificationFlags, Component, Plan, SceneFlags, Subject,
-        mode_name, summary,
+        summary,
     },
     labels,
     load::{denoise, load_from, open, say_what_was_lost, stretch},
@@ -104,14 +104,8 @@ impl Shown {
             device,
             progress,
         };
-        if settings.mode.needs_rays() && plan != Plan::One {
-            return Err(Error::usage(
-                format!(
-                    "--mode {} shows one number a voxel, and several are drawn",
-                    mode_name(settings.mode)
-                ),
-                "take one of them: --component 0",
-            ));
+        if plan != Plan::One {
+            scene.modes.check_several(settings.mode)?;
         }
         let mut shown = match plan {
             Plan::One => reader.one(source)?,
