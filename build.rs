@@ -41,6 +41,9 @@ const ONE: Slot = ("mix", &["alone", "graded"]);
 const ALONE: Slot = ("mix", &["alone"]);
 const MIXED: Slot = ("mix", &["channels", "colors"]);
 const MODE: Slot = ("mode", &["composite"]);
+/// Modes that slicers do not have leave the lattice of slicers to them.
+const RAY: Slot = ("lattice", &["ray"]);
+const MIDA: Slot = ("mode", &["mida"]);
 const BLEND: Slot = ("blend", &["composite"]);
 
 /// The wanted combinations. Order of the slots is the order of words in a variant's name.
@@ -52,12 +55,26 @@ const ENTRIES: &[(&str, &[Slot])] = &[
         "raycast",
         &[MODE, MIXED, LATTICE, NARROW_FETCHED, HOLES, POINTS],
     ),
+    ("raycast", &[MIDA, ONE, RAY, FILTER, HOLES, TABLE]),
+    ("raycast", &[MIDA, ONE, RAY, FETCHED, HOLES, POINTS]),
+    ("isosurface", &[FILTER, HOLES]),
+    ("projection_cells", &[("mode", &["mip", "minip"]), HOLES]),
     (
         "projection",
         &[
             ("mode", &["mip", "minip", "sum"]),
             ALONE,
             LATTICE,
+            FILTER,
+            HOLES,
+        ],
+    ),
+    (
+        "projection",
+        &[
+            ("mode", &["lmip", "attenuated_mip"]),
+            ALONE,
+            RAY,
             FILTER,
             HOLES,
         ],
@@ -158,7 +175,10 @@ const ENTRIES: &[(&str, &[Slot])] = &[
             ("holes", &["none"]),
         ],
     ),
-    ("resolve", &[("source", &["picture", "value", "mean"])]),
+    (
+        "resolve",
+        &[("source", &["picture", "value", "mean", "cued"])],
+    ),
     ("resolve_cover", &[]),
     ("merge", &[("operator", &["over", "under", "add"])]),
     (

@@ -2,7 +2,7 @@
 
 use crate::camera::Camera;
 use crate::shaders::MAX_CHANNELS;
-use crate::technique::{Error, Mix, Role, Settings, View};
+use crate::technique::{Error, Mix, Mode, Role, Settings, View};
 use crate::transfer::TransferFunction;
 use crate::volume::Volume;
 
@@ -120,7 +120,7 @@ impl<'a> Scene<'a> {
     /// # Errors
     /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`], [`Error::NotMixed`],
     /// [`Error::NotShaded`], [`Error::NotShadedTogether`], [`Error::NotGraded`], [`Error::NotGradedTogether`],
-    /// [`Error::FilterAlone`] and [`Error::NotFor`].
+    /// [`Error::FilterAlone`], and those of [`Settings::check`].
     pub fn check(&self) -> Result<(), Error> {
         let volumes = self.volumes();
         let (wanted, limit) = (volumes.len(), MAX_CHANNELS as usize);
@@ -150,7 +150,10 @@ impl<'a> Scene<'a> {
             }
             _ if volumes.iter().any(|volume| volume.grid() != grid) => Err(Error::OtherGrid),
             Mix::Colors if !(3..=4).contains(&wanted) => Err(Error::NoColor { found: wanted }),
-            Mix::Colors if mode.is_projection() => Err(Error::NotMixed { mode }),
+            Mix::Colors if mode != Mode::Composite => Err(Error::NotMixed { mode }),
+            Mix::Channels if matches!(mode, Mode::Mida | Mode::Iso) => {
+                Err(Error::NotMixed { mode })
+            }
             Mix::Channels if mode.is_projection() && has_labels => Err(Error::NotMixed { mode }),
             _ if wanted > limit => Err(Error::TooManyChannels { wanted, limit }),
             _ => Ok(()),

@@ -34,6 +34,7 @@ fn layers_of(shot: &Shot) -> Vec<LayerKind> {
         LayerKind::Value => mode.is_projection(),
         LayerKind::Depth => shot.settings.technique == Technique::Raycast,
         LayerKind::Transmittance => !mode.is_projection(),
+        LayerKind::Position => shot.settings.technique == Technique::Raycast && mode.has_depth(),
         LayerKind::Samples => true,
     })
     .collect()
@@ -75,7 +76,8 @@ fn check(
         let size = |values: &Vec<f32>| values.iter().copied().fold(1.0, f32::max);
         let scale = size(&lists[0]);
         let lists = [&lists[0][..], &lists[1][..], &lists[2][..]];
-        compare(&format!("{kind:?} of {what}"), found.width, lists, scale);
+        let width = found.width * kind.numbers() as u32;
+        compare(&format!("{kind:?} of {what}"), width, lists, scale);
     }
 }
 

@@ -8,6 +8,7 @@ const MAX_CLIP_PLANES: u32 = 8u;
 // One lane of a vector each.
 const MAX_CHANNELS: u32 = 4u;
 const MAX_LIGHTS: u32 = 4u;
+const MAX_LEVELS: u32 = 8u;
 
 struct Frame {
     // A pixel's ray: origin + x * origin_dx + y * origin_dy, and the same for its direction, which is
@@ -95,6 +96,23 @@ struct Frame {
     cover_eye_reach: f32,
     // By how much the pattern of jittered rays is moved, in parts of 2^32.
     jitter: u32,
+    // Values without a unit: (value - value_low) * value_scale, 0 to 1.
+    value_low: f32,
+    value_scale: f32,
+    // A local maximum counts over this.
+    lmip_threshold: f32,
+    // How much of a new maximum's height is taken from what lies before it: 1 + gamma.
+    mida_fade: f32,
+    // Per world length of matter of value 1.
+    attenuation: f32,
+    // How dark it is at depth 1 of (depth - depth_near) * depth_scale.
+    depth_cue: f32,
+    depth_near: f32,
+    depth_scale: f32,
+    // Surfaces, ascending: the value in x; colour as it is blended, not premultiplied, and opacity.
+    level_count: u32,
+    level_values: array<vec4<f32>, MAX_LEVELS>,
+    level_colors: array<vec4<f32>, MAX_LEVELS>,
     // Light: no lights, no shading. The way to each light is a unit vector of world space; w is not 0 for one
     // that shines along the pixel's ray.
     light_directions: array<vec4<f32>, MAX_LIGHTS>,

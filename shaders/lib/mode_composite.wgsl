@@ -19,6 +19,16 @@ fn begin() -> Accumulator {
     return Accumulator(vec3(0.0), 1.0, -1.0, 0.0);
 }
 
+// As it was left in the images of the picture and beside it.
+fn resumed(picture: vec4<f32>, beside: vec4<f32>) -> Accumulator {
+    return Accumulator(picture.xyz, beside.z, beside.y, beside.w);
+}
+
+// 0, depth, transmittance, samples.
+fn beside_of(found: Accumulator) -> vec4<f32> {
+    return vec4(0.0, found.depth, found.transmittance, found.samples);
+}
+
 fn add(so_far: Accumulator, sample: Sample, segment: Segment) -> Accumulator {
     let material = material_of(sample);
     let opacity = opacity_over(material.extinction, segment.length);

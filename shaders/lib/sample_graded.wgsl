@@ -17,3 +17,7 @@ fn has_data(place: Place) -> bool {
 fn sample_at(place: Place, ray_direction: vec3<f32>) -> Sample {
     return Sample(volume_value(place), place, ray_direction);
 }
+
+fn value_of(sample: Sample) -> f32 {
+    return sample.value;
+}

@@ -262,11 +262,17 @@ const MEASURED: [(Mode, [(&str, Technique); 3]); 2] = [
     ),
 ];
 
-/// The settings, with the filter that the values ask for where no word does.
+/// The settings, with what depends on the values.
 fn filtered(settings: Settings, scene: &SceneFlags, shown: &Shown) -> Settings {
-    match (scene.sampling.filter, shown.filter) {
-        (None, Some(filter)) => Settings { filter, ..settings },
-        _ => settings,
+    let per_mode = shown.per_mode.clone();
+    let filter = match (scene.sampling.filter, shown.filter) {
+        (None, Some(filter)) => filter,
+        _ => settings.filter,
+    };
+    Settings {
+        filter,
+        per_mode,
+        ..settings
     }
 }
 

@@ -115,6 +115,7 @@ impl Render {
         if let (None, Some(filter)) = (scene.sampling.filter, shown.filter) {
             settings.filter = filter;
         }
+        settings.per_mode = shown.per_mode.clone();
         let load_ms = ms_since(start);
 
         progress.stage("prepare", 0, 1);

@@ -7,7 +7,7 @@ use crate::{
     offscreen::{self, reference},
     picture::{LayerKind, Picture},
     scene::{Beside, Scene},
-    technique::{Mode, Settings, Technique},
+    technique::{Settings, Technique},
     volume::{Denoise, Volume},
 };
 use std::time::Instant;
@@ -248,12 +248,15 @@ fn check_layers(job: &Job) -> Result<(), Error> {
     let is_sum = !matches!(job.beside, Beside::Nothing) && mode.is_projection();
     for layer in job.layers {
         let missing = match layer {
-            LayerKind::Value | LayerKind::Depth if is_sum => "one number a voxel: --component 0",
-            LayerKind::Value if mode == Mode::Composite => {
-                "a mode that projects, such as --mode mip"
+            LayerKind::Value | LayerKind::Depth | LayerKind::Position if is_sum => {
+                "one number a voxel: --component 0"
             }
-            LayerKind::Transmittance if mode != Mode::Composite => "--mode composite",
-            LayerKind::Depth if technique != Technique::Raycast => "--technique raycast",
+            LayerKind::Value if !mode.has_value() => "a mode with one value, such as --mode mip",
+            LayerKind::Transmittance if mode.is_projection() => "--mode composite",
+            LayerKind::Depth | LayerKind::Position if technique != Technique::Raycast => {
+                "--technique raycast"
+            }
+            LayerKind::Position if !mode.has_depth() => "a mode with a depth, such as --mode mip",
             _ => continue,
         };
         return Err(Error::Usage {

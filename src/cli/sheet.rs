@@ -121,6 +121,7 @@ fn draw(
 ) -> Result<Picture, Error> {
     let mut settings = scene.settings(Depth::Eight)?;
     let shown = Shown::read(scene, &settings, device, progress)?;
+    settings.per_mode = shown.per_mode.clone();
     if let Some(filter) = shown.filter {
         settings.filter = filter;
     }

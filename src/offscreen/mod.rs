@@ -4,7 +4,9 @@
 
 mod denoise;
 mod fade;
+mod gathered;
 mod passes;
+mod position;
 pub mod reference;
 mod renderer;
 mod slicing;

@@ -16,7 +16,20 @@ use crate::technique::{ACCUMULATION_FORMAT, Mode, Order, Settings, Technique, Wo
 use std::sync::Arc;
 
 /// What pipelines depend on.
-pub type Key = (Technique, Mode, Order, Words);
+pub type Key = (Technique, Mode, Order, [bool; 2], Words);
+
+/// The key of such pictures.
+pub fn key_of(settings: &Settings, words: &Words) -> Key {
+    let Settings {
+        technique,
+        mode,
+        order,
+        ..
+    } = *settings;
+    let per_mode = &settings.per_mode;
+    let marks = [per_mode.depth_cue != 0.0, per_mode.exact_maximum];
+    (technique, mode, order, marks, *words)
+}
 
 /// The pipelines of one kind of picture.
 #[derive(Debug)]
@@ -40,27 +53,32 @@ impl Passes {
     /// Compiles for such pictures.
     pub fn new(gpu: &Arc<Gpu>, settings: &Settings, words: &Words) -> Result<Self, Error> {
         let Settings {
-            technique,
-            mode,
-            order,
-            ..
+            technique, mode, ..
         } = *settings;
         let slicing = |drawn| Slicing::new(gpu, settings, drawn, words);
         let (gather, count) = match technique {
+            Technique::Raycast if settings.per_mode.exact_maximum => (
+                Gather::Projection(Projection::exact(gpu, mode, words)?),
+                None,
+            ),
             Technique::Raycast if mode.is_projection() => {
                 (Gather::Projection(Projection::new(gpu, mode, words)?), None)
             }
-            Technique::Raycast => (Gather::Raycast(Raycast::new(gpu, words)?), None),
+            Technique::Raycast => (Gather::Raycast(Raycast::of_mode(gpu, mode, words)?), None),
             Technique::Slices3d | Technique::Slices2d => (
                 Gather::Slices(slicing(Drawn::Picture(mode))?),
                 Some(slicing(Drawn::Count)?),
             ),
         };
         Ok(Self {
-            key: (technique, mode, order, *words),
+            key: key_of(settings, words),
             gather,
             count,
-            resolve: Resolve::new(gpu, mode, Blend::Replace, ACCUMULATION_FORMAT)?,
+            resolve: if settings.per_mode.depth_cue == 0.0 {
+                Resolve::new(gpu, mode, Blend::Replace, ACCUMULATION_FORMAT)?
+            } else {
+                Resolve::cued(gpu, Blend::Replace, ACCUMULATION_FORMAT)?
+            },
         })
     }
 

@@ -3,37 +3,29 @@
 mod slabs;
 
 use super::fade::{faded, stacks_of};
+use super::gathered::{Gathered, grey_of_picture, layers};
 use super::sum::sum_of;
-use crate::picture::{Layer, LayerKind, Picture};
+use crate::picture::Picture;
 use crate::ray::pixel_ray;
 use crate::real::{Real, dot};
-use crate::resolve::reference::{premultiplied, projected_value};
+use crate::resolve::reference::{light_at, premultiplied};
 use crate::scene::{Beside, Scene, positions_in_pixel};
 use crate::shaders::Frame;
 use crate::technique::blend::{Fragment, blend, blend_material, clear_color};
-use crate::technique::composite::Composite;
 use crate::technique::gradient::gradient_of;
 use crate::technique::mixture::{color_of, colored, mixed};
 use crate::technique::shading::shade;
 use crate::technique::{
-    Error, Filter, Mix, Mode, Recording, Role, Technique, projection, raycast, slices_2d, slices_3d,
+    Error, Filter, Mix, Mode, Recording, Role, Technique, isosurface, projection, raycast,
+    slices_2d, slices_3d,
 };
 use crate::transfer::{
-    Absorption, Classified, PackedWidgets, Points, SlabTable, Table, TransferFunction, Window,
-    classify_by_gradient, classify_by_points, classify_by_table, classify_slab,
+    Absorption, PackedWidgets, Points, SlabTable, Table, TransferFunction, classify_by_gradient,
+    classify_by_points, classify_by_table, classify_slab,
 };
 use crate::volume::kernel::{convolved, convolved_in_slice};
 use crate::volume::sample::{linear, linear_in_slice, nearest};
 use crate::volume::{Coefficients, Grid, Volume};
-
-/// What a technique leaves for one pixel, before it is resolved.
-#[derive(Clone, Copy, Debug)]
-struct Gathered<R> {
-    /// Composite: premultiplied colour. Else (value, weight, unused, unused).
-    accumulation: [R; 4],
-    depth: Option<R>,
-    samples: u32,
-}
 
 /// The picture of `scene` with all layers that its technique has.
 ///
@@ -72,8 +64,11 @@ fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     };
     let space = scene.settings.color_space;
     let points = Points::new(&transfer, Absorption::Opacity, space);
-    let resolve =
-        |g: &Gathered<R>| premultiplied(mode, g.accumulation, |v| classify_by_points(&points, v));
+    let resolve = |g: &Gathered<R>| {
+        let [red, green, blue, alpha] =
+            premultiplied(mode, g.accumulation, |v| classify_by_points(&points, v));
+        [g.light * red, g.light * green, g.light * blue, alpha]
+    };
 
     let per_side = scene.settings.rays_per_side;
     let weight = R::from_f64(1.0 / f64::from(per_side * per_side));
@@ -97,41 +92,6 @@ fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
         color_space: space,
         layers: layers(scene, &centers),
     })
-}
-
-/// The default window of a projecting mode without a transfer function: the range of this picture.
-fn grey_of_picture<R: Real>(mode: Mode, gathered: &[Gathered<R>]) -> TransferFunction {
-    let values = gathered
-        .iter()
-        .filter_map(|g| projected_value(mode, g.accumulation))
-        .map(R::to_f64);
-    let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
-        [low.min(v), high.max(v)]
-    });
-    Window::of_range(range).grey(Classified::Projection)
-}
-
-fn layers<R: Real>(scene: &Scene, gathered: &[Gathered<R>]) -> Vec<Layer> {
-    let mode = scene.settings.mode;
-    let layer = |kind, number: &dyn Fn(&Gathered<R>) -> f32| Layer {
-        kind,
-        values: gathered.iter().map(number).collect(),
-    };
-    let number = |found: Option<R>| found.map_or(f32::NAN, R::to_f32);
-    let mut layers = vec![layer(LayerKind::Samples, &|g| g.samples as f32)];
-    if mode.is_projection() {
-        layers.push(layer(LayerKind::Value, &|g| {
-            number(projected_value(mode, g.accumulation))
-        }));
-    } else {
-        layers.push(layer(LayerKind::Transmittance, &|g| {
-            1.0 - g.accumulation[3].to_f32()
-        }));
-    }
-    if scene.settings.technique == Technique::Raycast {
-        layers.push(layer(LayerKind::Depth, &|g| number(g.depth)));
-    }
-    layers
 }
 
 /// One walk over the pixels of a picture.
@@ -179,7 +139,7 @@ impl<'a, R: Real> Walk<'a, R> {
                 Classifier::Table(Table::new(function, absorption, space))
             })
         };
-        let classifiers = if scene.settings.mode.is_projection() {
+        let classifiers = if scene.settings.mode.has_value() {
             Vec::new()
         } else {
             let functions = scene.transfers().into_iter();
@@ -230,10 +190,10 @@ impl<'a, R: Real> Walk<'a, R> {
 
     fn gather(&self, x: u32, y: u32) -> Gathered<R> {
         let pixel = [x, y].map(|n| R::from_f64(f64::from(n)) + R::from_f64(0.5));
-        if self.scene.settings.mode.is_projection() {
-            self.project(pixel)
-        } else {
-            self.composite(pixel)
+        match self.scene.settings.mode {
+            Mode::Iso => self.surfaces(pixel),
+            mode if mode.is_projection() => self.project(pixel),
+            _ => self.composite(pixel),
         }
     }
 
@@ -248,12 +208,20 @@ impl<'a, R: Real> Walk<'a, R> {
         let blend = |target, fragment| blend(mode, order, target, fragment, unclassified);
         match settings.technique {
             Technique::Raycast => {
-                let (found, samples) =
-                    projection::reference::project(frame, settings.lattice, mode, pixel, value_at);
+                let (found, samples) = if settings.per_mode.exact_maximum {
+                    let center = |i: i32| R::from_f64(f64::from(i) + 0.5);
+                    let voxel_at = |index: [i32; 3]| nearest(volume, index.map(center));
+                    projection::exact::project_exactly(frame, mode, pixel, voxel_at)
+                } else {
+                    let lattice = settings.lattice;
+                    projection::reference::project(frame, lattice, mode, pixel, value_at)
+                };
                 let zero = R::from_f64(0.0);
                 Gathered {
                     accumulation: [found.value, found.weight, zero, zero],
                     depth: found.depth,
+                    level: None,
+                    light: found.depth.map_or(R::from_f64(1.0), |t| light_at(frame, t)),
                     samples,
                 }
             }
@@ -264,6 +232,21 @@ impl<'a, R: Real> Walk<'a, R> {
                 self.blend_all(|i| self.on_slice(pixel, i, value_at), blend)
             }
         }
+    }
+
+    /// The surfaces that a ray meets.
+    fn surfaces(&self, pixel: [R; 2]) -> Gathered<R> {
+        let (frame, filter) = (&self.frame, self.scene.settings.filter);
+        let value_at = |p| filtered(self.scene.volume, filter, p);
+        let lit = |color, p, ray_direction| {
+            if frame.light_count == 0 {
+                return color;
+            }
+            let gradient = gradient_of(frame, |step| value_at(moved(p, step)));
+            shade(frame, color, gradient, ray_direction)
+        };
+        let found = isosurface::surfaces(frame, pixel, value_at, lit);
+        Gathered::of_surfaces(found)
     }
 
     /// Emission and absorption of what the volumes are made of together.
@@ -282,14 +265,15 @@ impl<'a, R: Real> Walk<'a, R> {
         };
         match settings.technique {
             Technique::Raycast => {
-                let found = raycast::reference::radiance(
-                    &self.frame,
-                    settings.lattice,
-                    pixel,
-                    material_at,
-                    |material| material,
-                );
-                gathered(found)
+                let (frame, lattice) = (&self.frame, settings.lattice);
+                Gathered::of_composite(if settings.mode == Mode::Mida {
+                    let value_at = |p| filtered(self.scene.volume, settings.filter, p);
+                    let sample_at = |p| value_at(p).zip(material_at(p));
+                    raycast::reference::accumulated(frame, lattice, pixel, sample_at)
+                } else {
+                    let same = |material| material;
+                    raycast::reference::radiance(frame, lattice, pixel, material_at, same)
+                })
             }
             Technique::Slices3d => self.blend_all(|i| self.on_plane(pixel, i, material_at), blend),
             Technique::Slices2d if settings.smooth => self.composite_between(pixel),
@@ -403,6 +387,8 @@ impl<'a, R: Real> Walk<'a, R> {
         Gathered {
             accumulation: target,
             depth: None,
+            level: None,
+            light: R::from_f64(1.0),
             samples,
         }
     }
@@ -413,15 +399,6 @@ impl<'a, R: Real> Walk<'a, R> {
             Classifier::Points(points) => classify_by_points(points, value),
             Classifier::Slabs(slabs) => classify_slab(slabs, value, value),
         }
-    }
-}
-
-fn gathered<R: Real>((found, samples): (Composite<R>, u32)) -> Gathered<R> {
-    let [r, g, b] = found.color;
-    Gathered {
-        accumulation: [r, g, b, R::from_f64(1.0) - found.transmittance],
-        depth: found.depth,
-        samples,
     }
 }
 

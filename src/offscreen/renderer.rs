@@ -9,7 +9,8 @@
 
 use super::Error;
 use super::fade::{render_faded, stacks_of};
-use super::passes::Passes;
+use super::passes::{Passes, key_of};
+use super::position::positions;
 use super::submission::{self, Submission};
 use super::sum::sum_of;
 use super::tally::{Clock, Mean, check_layers};
@@ -21,7 +22,7 @@ use crate::resident::{GpuTransfer, GpuVolume, TextureLayout};
 use crate::resolve::reference::projected_value;
 use crate::scene::{Scene, positions_in_pixel};
 use crate::technique::{
-    self, Inputs, Mix, Part, Recording, Settings, Technique, Words, parameter_ring,
+    self, Inputs, Mix, Mode, Part, Recording, Settings, Technique, Words, parameter_ring,
 };
 use crate::transfer::{Classified, TransferFunction, Window};
 use crate::volume::{Spline, Volume};
@@ -174,6 +175,7 @@ impl<'v> Renderer<'v> {
         self.prepare(scene)?;
         let functions = scene.transfers().into_iter();
         match functions.collect::<Option<Vec<_>>>() {
+            _ if scene.settings.mode == Mode::Iso => {}
             Some(functions) => self.set_transfers(scene, &functions)?,
             None if scene.settings.mode.is_projection() => {
                 clock.add(self.gather(scene, [0.0; 2])?);
@@ -220,13 +222,7 @@ impl<'v> Renderer<'v> {
         if self.ring.slots() < slots {
             self.ring = parameter_ring(&gpu, slots)?;
         }
-        let Settings {
-            technique,
-            mode,
-            order,
-            ..
-        } = *scene.settings;
-        let key = (technique, mode, order, words);
+        let key = key_of(scene.settings, &words);
         if self
             .passes
             .as_ref()
@@ -386,16 +382,20 @@ impl<'v> Renderer<'v> {
         };
         let layer = |kind| {
             let number = |(left, beside): (&[f32; 4], &[f32; 4])| match kind {
+                LayerKind::Value if mode == Mode::Iso && beside[1] < 0.0 => f32::NAN,
+                LayerKind::Value if mode == Mode::Iso => beside[0],
                 LayerKind::Value => projected_value(mode, *left).unwrap_or(f32::NAN),
-                LayerKind::Depth if beside[1] < 0.0 => f32::NAN,
-                LayerKind::Depth => beside[1],
+                LayerKind::Depth | LayerKind::Position if beside[1] < 0.0 => f32::NAN,
+                LayerKind::Depth | LayerKind::Position => beside[1],
                 LayerKind::Transmittance => 1.0 - left[3],
                 LayerKind::Samples => beside[3],
             };
-            Layer {
-                kind,
-                values: left.iter().zip(&beside).map(number).collect(),
-            }
+            let values: Vec<f32> = left.iter().zip(&beside).map(number).collect();
+            let values = match kind {
+                LayerKind::Position => positions(scene, &values),
+                _ => values,
+            };
+            Layer { kind, values }
         };
         Ok(wanted.iter().map(|&kind| layer(kind)).collect())
     }

@@ -14,9 +14,10 @@ pub fn check_layers(scene: &Scene, wanted: &[LayerKind]) -> Result<(), Error> {
     let is_sum = scene.mix() == Mix::Channels && mode.is_projection();
     for &layer in wanted {
         let is_there = match layer {
-            LayerKind::Value | LayerKind::Depth if is_sum => false,
-            LayerKind::Value => mode.is_projection(),
+            LayerKind::Value | LayerKind::Depth | LayerKind::Position if is_sum => false,
+            LayerKind::Value => mode.has_value(),
             LayerKind::Depth => technique == Technique::Raycast,
+            LayerKind::Position => technique == Technique::Raycast && mode.has_depth(),
             LayerKind::Transmittance => !mode.is_projection(),
             LayerKind::Samples => true,
         };

@@ -24,7 +24,15 @@ pub(super) fn encode(picture: &Picture) -> std::result::Result<Vec<u8>, OutputPr
         .map(|(c, name)| channel(name, pixels.iter().map(|pixel| pixel[c]).collect()))
         .collect();
     for layer in &picture.layers {
-        channels.push(channel(layer.kind.name(), layer.values.clone()));
+        let (name, numbers) = (layer.kind.name(), layer.kind.numbers());
+        if numbers == 1 {
+            channels.push(channel(name, layer.values.clone()));
+            continue;
+        }
+        for (k, axis) in ["X", "Y", "Z"].into_iter().enumerate().take(numbers) {
+            let along = layer.values.iter().skip(k).step_by(numbers);
+            channels.push(channel(&format!("{name}.{axis}"), along.copied().collect()));
+        }
     }
     let size = (picture.width as usize, picture.height as usize);
     let layer = ::exr::image::Layer::new(

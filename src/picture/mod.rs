@@ -47,7 +47,8 @@ pub struct Picture {
 pub struct Layer {
     /// Which.
     pub kind: LayerKind,
-    /// `width * height` numbers, rows from the top; NaN where there is none.
+    /// `width * height` times as many numbers as the kind has, rows from the top, those of a pixel side by side;
+    /// NaN where there is none.
     pub values: Vec<f32>,
 }
 
@@ -62,11 +63,19 @@ pub enum LayerKind {
     Transmittance,
     /// Samples taken.
     Samples,
+    /// World position of the first hit: x, y, z.
+    Position,
 }
 
 impl LayerKind {
     /// All of them, in the order of `--aov`'s help.
-    pub const ALL: [Self; 4] = [Self::Value, Self::Depth, Self::Transmittance, Self::Samples];
+    pub const ALL: [Self; 5] = [
+        Self::Value,
+        Self::Depth,
+        Self::Transmittance,
+        Self::Samples,
+        Self::Position,
+    ];
 
     /// The word of `--aov`, the name of the EXR channel, and the `NAME` of `OUT.NAME.npy`.
     pub fn name(self) -> &'static str {
@@ -75,6 +84,15 @@ impl LayerKind {
             Self::Depth => "depth",
             Self::Transmittance => "transmittance",
             Self::Samples => "samples",
+            Self::Position => "position",
+        }
+    }
+
+    /// How many numbers a pixel has.
+    pub fn numbers(self) -> usize {
+        match self {
+            Self::Position => 3,
+            _ => 1,
         }
     }
 }

@@ -175,7 +175,10 @@ fn encode(
             )];
             for layer in &picture.layers {
                 let beside = path.with_extension(format!("{}.npy", layer.kind.name()));
-                files.push((beside, npy::encode(&layer.values, &[height, width])));
+                let numbers = layer.kind.numbers() as u32;
+                let shape = [height, width, numbers];
+                let shape = &shape[..if numbers == 1 { 2 } else { 3 }];
+                files.push((beside, npy::encode(&layer.values, shape)));
             }
             Ok(files)
         }
@@ -192,9 +195,12 @@ fn check_sizes(picture: &Picture) -> Result<(), OutputProblem> {
     let (width, height) = (picture.width, picture.height);
     let wanted = width as usize * height as usize;
     let layers = picture.layers.iter();
-    let parts = layers.map(|layer| (layer.kind.name(), layer.values.len()));
-    for (what, found) in parts.chain([("pixels", picture.pixels.len())]) {
-        if found != wanted {
+    let parts = layers.map(|layer| {
+        let kind = layer.kind;
+        (kind.name(), kind.numbers(), layer.values.len())
+    });
+    for (what, numbers, found) in parts.chain([("pixels", 1, picture.pixels.len())]) {
+        if found != wanted * numbers {
             return Err(OutputProblem::Size {
                 width,
                 height,

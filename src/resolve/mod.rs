@@ -33,10 +33,29 @@ impl Resolve {
         format: vk::Format,
     ) -> Result<Self, Error> {
         let fragment = match mode {
-            Mode::Composite => "resolve.picture",
-            Mode::Mip | Mode::Minip | Mode::Xray => "resolve.value",
+            Mode::Composite | Mode::Mida | Mode::Iso => "resolve.picture",
+            Mode::Mip | Mode::Minip | Mode::Xray | Mode::Lmip | Mode::AttenuatedMip => {
+                "resolve.value"
+            }
             Mode::Average => "resolve.mean",
         };
+        Self::of_shader(gpu, fragment, blend, format)
+    }
+
+    /// The same for a mode that projects one place of a ray, darker with its depth.
+    ///
+    /// # Errors
+    /// Where the device does not blend that format, by its name.
+    pub fn cued(gpu: &Arc<Gpu>, blend: Blend, format: vk::Format) -> Result<Self, Error> {
+        Self::of_shader(gpu, "resolve.cued", blend, format)
+    }
+
+    fn of_shader(
+        gpu: &Arc<Gpu>,
+        fragment: &str,
+        blend: Blend,
+        format: vk::Format,
+    ) -> Result<Self, Error> {
         let desc = RasterDesc {
             vertex: shader("resolve_cover"),
             fragment: shader(fragment),

@@ -6,6 +6,7 @@
 //! ```
 
 use crate::real::Real;
+use crate::shaders::Frame;
 use crate::technique::Mode;
 
 /// The value that a projecting mode shows, from (value, weight, .., ..); `None` without a valid sample.
@@ -26,7 +27,7 @@ pub fn premultiplied<R: Real>(
     accumulation: [R; 4],
     classify_once: impl Fn(R) -> [R; 4],
 ) -> [R; 4] {
-    if mode == Mode::Composite {
+    if !mode.is_projection() {
         return accumulation;
     }
     let Some(value) = projected_value(mode, accumulation) else {
@@ -34,4 +35,11 @@ pub fn premultiplied<R: Real>(
     };
     let [r, g, b, opacity] = classify_once(value);
     [opacity * r, opacity * g, opacity * b, opacity]
+}
+
+/// How much light is left at a depth: twin of `shaders/lib/resolve_cued.wgsl`.
+pub fn light_at<R: Real>(frame: &Frame, depth: R) -> R {
+    let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
+    let far = (depth - R::from_f32(frame.depth_near)) * R::from_f32(frame.depth_scale);
+    one - R::from_f32(frame.depth_cue) * far.max(zero).min(one)
 }

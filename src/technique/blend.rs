@@ -48,10 +48,13 @@ impl Drawn {
             Self::Picture(Mode::Composite) if *take == Take::Slab => {
                 format!("{slicer}.composite.{filter}.{holes}")
             }
-            Self::Picture(Mode::Composite) => {
+            // Modes that need rays are refused where parameters are made: nothing is drawn by these.
+            Self::Picture(Mode::Composite | Mode::Mida | Mode::Iso) => {
                 format!("{slicer}.composite{mix}.{filter}.{holes}.{transfer}")
             }
-            Self::Picture(Mode::Mip | Mode::Minip) => format!("{slicer}.extreme.{filter}.{holes}"),
+            Self::Picture(Mode::Mip | Mode::Minip | Mode::Lmip | Mode::AttenuatedMip) => {
+                format!("{slicer}.extreme.{filter}.{holes}")
+            }
             Self::Picture(Mode::Average | Mode::Xray) => format!("{slicer}.sum.{filter}.{holes}"),
             Self::Count => format!("{slicer}.count.nearest.none"),
         }
@@ -61,9 +64,13 @@ impl Drawn {
 /// The fixed-function operator.
 pub fn operator(drawn: Drawn, order: Order) -> Blend {
     match (drawn, order) {
-        (Drawn::Picture(Mode::Composite), Order::BackToFront) => Blend::Over,
-        (Drawn::Picture(Mode::Composite), Order::FrontToBack) => Blend::Under,
-        (Drawn::Picture(Mode::Mip), _) => Blend::Max,
+        (Drawn::Picture(Mode::Composite | Mode::Mida | Mode::Iso), Order::BackToFront) => {
+            Blend::Over
+        }
+        (Drawn::Picture(Mode::Composite | Mode::Mida | Mode::Iso), Order::FrontToBack) => {
+            Blend::Under
+        }
+        (Drawn::Picture(Mode::Mip | Mode::Lmip | Mode::AttenuatedMip), _) => Blend::Max,
         (Drawn::Picture(Mode::Minip), _) => Blend::Min,
         (Drawn::Picture(Mode::Average | Mode::Xray) | Drawn::Count, _) => Blend::Add,
     }
@@ -73,9 +80,9 @@ pub fn operator(drawn: Drawn, order: Order) -> Blend {
 /// projection stays 0.
 pub fn clear_color(mode: Mode) -> [f32; 4] {
     match mode {
-        Mode::Mip => [-f32::MAX, 0.0, 0.0, 0.0],
+        Mode::Mip | Mode::Lmip | Mode::AttenuatedMip => [-f32::MAX, 0.0, 0.0, 0.0],
         Mode::Minip => [f32::MAX, 0.0, 0.0, 0.0],
-        Mode::Composite | Mode::Average | Mode::Xray => [0.0; 4],
+        Mode::Composite | Mode::Mida | Mode::Iso | Mode::Average | Mode::Xray => [0.0; 4],
     }
 }
 
@@ -95,8 +102,12 @@ pub fn blend<R: Real>(
     let zero = R::from_f64(0.0);
     let sign = R::from_f32(extreme_sign(mode));
     match mode {
-        Mode::Composite => blend_material(order, target, classify(fragment.value), fragment.length),
-        Mode::Mip => each([fragment.value, sign, zero, zero], target, R::max),
+        Mode::Composite | Mode::Mida | Mode::Iso => {
+            blend_material(order, target, classify(fragment.value), fragment.length)
+        }
+        Mode::Mip | Mode::Lmip | Mode::AttenuatedMip => {
+            each([fragment.value, sign, zero, zero], target, R::max)
+        }
         Mode::Minip => each([fragment.value, sign, zero, zero], target, R::min),
         Mode::Average | Mode::Xray => {
             let Fragment { value, length } = fragment;

@@ -72,13 +72,14 @@ impl View<'_> {
     /// The parameters of the whole grid, without those of slices.
     ///
     /// # Errors
-    /// [`Error::TooManySamples`], [`Error::TooManyClipPlanes`] and those of lights.
+    /// [`Error::TooManySamples`], [`Error::TooManyClipPlanes`], those of lights and of [`Settings::check`].
     pub fn fields(&self, coding: &Coding, transfer: &TransferLayout) -> Result<FrameFields, Error> {
         let rays = self.rays();
         let world_from_voxel = self.world_from_voxel();
         let [domain_min, domain_max] = self.domain();
         self.settings.check()?;
         self.check_sample_count(&world_from_voxel)?;
+        let of_mode = self.of_mode();
         let reach = self.cover_reach();
         let margin = self.cover_margin(&rays, &world_from_voxel) + reach.voxels;
         let (clip_planes, clip_plane_count) = self.clip_planes()?;
@@ -160,6 +161,17 @@ impl View<'_> {
             jitter: self.jitter(),
             kernel: kernel_number(self.settings.filter),
             extreme_sign: extreme_sign(self.settings.mode),
+            value_low: of_mode.value_low,
+            value_scale: of_mode.value_scale,
+            lmip_threshold: of_mode.lmip_threshold,
+            mida_fade: of_mode.mida_fade,
+            attenuation: of_mode.attenuation,
+            depth_cue: of_mode.depth_cue,
+            depth_near: of_mode.depth_near,
+            depth_scale: of_mode.depth_scale,
+            level_count: of_mode.level_count,
+            level_values: of_mode.level_values,
+            level_colors: of_mode.level_colors,
             light_directions: [[0.0; 4]; MAX_LIGHTS as usize],
             light_colors: [[0.0; 4]; MAX_LIGHTS as usize],
             light_count: 0,

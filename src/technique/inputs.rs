@@ -169,5 +169,9 @@ pub fn mode_word(mode: Mode) -> &'static str {
         Mode::Mip => "mip",
         Mode::Minip => "minip",
         Mode::Average | Mode::Xray => "sum",
+        Mode::Lmip => "lmip",
+        Mode::AttenuatedMip => "attenuated_mip",
+        Mode::Mida => "mida",
+        Mode::Iso => "iso",
     }
 }

@@ -4,11 +4,15 @@ mod accumulation;
 pub mod blend;
 pub mod composite;
 mod frame;
+mod frame_of_mode;
 pub mod gradient;
 mod inputs;
+pub mod isosurface;
 mod march;
 pub mod merge;
+pub mod mida;
 pub mod mixture;
+mod per_mode;
 pub mod projection;
 pub mod raycast;
 mod recording;
@@ -17,11 +21,13 @@ mod slab;
 mod slicer;
 pub mod slices_2d;
 pub mod slices_3d;
+mod ways;
 
 pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 pub use frame::View;
 pub use inputs::{Inputs, Take, Words};
 pub use mixture::{Mix, Part, Role};
+pub use per_mode::{DEFAULT_ATTENUATION, Level, PerMode};
 pub use recording::{Recording, parameter_ring};
 pub use shading::{Light, Shading};
 pub use slicer::Slicer;
@@ -54,6 +60,14 @@ pub enum Mode {
     Average,
     /// Integral of the value over world length.
     Xray,
+    /// First local maximum over a threshold, the maximum where there is none (Sato et al. 1998).
+    Lmip,
+    /// Maximum of values that what lies before them fades.
+    AttenuatedMip,
+    /// Surfaces where the volume has one value, or one of several.
+    Iso,
+    /// Emission and absorption in which a new maximum takes from what lies before it (Bruckner and Groeller 2009).
+    Mida,
 }
 
 /// How a value between voxel centres is made.
@@ -175,6 +189,8 @@ pub struct Settings {
     pub shading: Option<Shading>,
     /// Float targets, no early termination, filtering by texel fetch, control points searched exactly.
     pub conformance: bool,
+    /// What single modes want to know.
+    pub per_mode: PerMode,
 }
 
 /// Samples that one ray may take: no wish of a host makes a shader run without end.
@@ -259,6 +275,66 @@ pub enum Error {
         /// How many there are.
         found: usize,
     },
+    /// A mode whose samples must come from front to back, in a technique that blends them.
+    #[error("{technique:?} has no mode {mode:?}, in which a sample depends on those before it")]
+    NeedsRays {
+        /// Where samples lie.
+        technique: Technique,
+        /// The mode.
+        mode: Mode,
+    },
+    /// The planes of slicers, in a mode that slicers do not have.
+    #[error(
+        "{mode:?} takes samples along rays, not on the planes of a slicer, which has no such mode"
+    )]
+    NeedsRayLattice {
+        /// The mode.
+        mode: Mode,
+    },
+    /// Surfaces of no value, or of more than the parameters hold.
+    #[error("surfaces of {found} values, wanted 1 to {limit}")]
+    LevelCount {
+        /// How many were asked for.
+        found: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+    /// A segment of a ray that crosses a surface must lie in one texture.
+    #[error("a volume of {bricks} bricks: {mode:?} needs it in one texture of the device")]
+    NeedsOneBrick {
+        /// The mode.
+        mode: Mode,
+        /// How many bricks the volume lies in.
+        bricks: usize,
+    },
+    /// What has an exact extreme is a trilinear field along rays.
+    #[error(
+        "{technique:?} in mode {mode:?}: an exact extreme is one of Mip or Minip along rays, filtered linearly"
+    )]
+    NotExact {
+        /// Where samples lie.
+        technique: Technique,
+        /// The mode.
+        mode: Mode,
+    },
+    /// Darkness by depth needs a depth.
+    #[error("{technique:?} in mode {mode:?} has no one depth a ray: no depth cue")]
+    NoDepth {
+        /// Where samples lie.
+        technique: Technique,
+        /// The mode.
+        mode: Mode,
+    },
+    /// A number of a mode that means nothing.
+    #[error("{name} is {found}, wanted {wanted}")]
+    OutOfRange {
+        /// Which number.
+        name: &'static str,
+        /// What would do.
+        wanted: &'static str,
+        /// What was given.
+        found: f64,
+    },
     /// Light falls on what is composited.
     #[error(
         "{mode:?} projects one number a ray, on which no light falls: shading is for composite"
@@ -310,98 +386,6 @@ fn held(spline: Option<Spline>) -> String {
     })
 }
 
-impl Mode {
-    /// True where one value a ray is projected and classified once.
-    pub fn is_projection(self) -> bool {
-        self != Self::Composite
-    }
-}
-
-impl Settings {
-    /// Whether technique and mode have the ways to sample that are asked for.
-    ///
-    /// # Errors
-    /// [`Error::NotFor`].
-    pub fn check(&self) -> Result<(), Error> {
-        let (mode, technique) = (self.mode, self.technique);
-        let of_mode = |is_on: bool, wanted| match is_on && mode.is_projection() {
-            true => Err(Error::NotFor {
-                wanted,
-                of: "composite",
-                found: format!("{mode:?}"),
-            }),
-            false => Ok(()),
-        };
-        let of_technique = |is_on: bool, wanted, right, of| match is_on && technique != right {
-            true => Err(Error::NotFor {
-                wanted,
-                of,
-                found: format!("{technique:?}"),
-            }),
-            false => Ok(()),
-        };
-        let is_jittered = self.lattice == Lattice::Jitter;
-        of_mode(self.preintegrated, PREINTEGRATED)?;
-        of_technique(self.smooth, SMOOTH, Technique::Slices2d, "2D stacks")?;
-        of_mode(self.smooth, SMOOTH)?;
-        of_technique(is_jittered, JITTER, Technique::Raycast, "ray casting")?;
-        of_mode(is_jittered, JITTER)?;
-        if self.shading.is_some() {
-            self.refuse_way("samples without light", "shaded ones")?;
-        }
-        if self.filter.kernel().is_some() {
-            let found = format!("{:?}", self.filter);
-            self.refuse_way("nearest and linear filters", &found)?;
-        }
-        Ok(())
-    }
-
-    /// A way to sample of its own that is asked for.
-    fn way(&self) -> Option<&'static str> {
-        let ways = [
-            (self.preintegrated, PREINTEGRATED),
-            (self.smooth, SMOOTH),
-            (self.lattice == Lattice::Jitter, JITTER),
-        ];
-        ways.into_iter()
-            .find_map(|(is_on, name)| is_on.then_some(name))
-    }
-
-    /// The same for several volumes.
-    ///
-    /// # Errors
-    /// [`Error::NotFor`].
-    pub(crate) fn check_mixed(&self) -> Result<(), Error> {
-        self.refuse_way("one volume of numbers", "several that are mixed")
-    }
-
-    /// The same for functions of gradients.
-    ///
-    /// # Errors
-    /// [`Error::NotFor`].
-    pub(crate) fn check_graded(&self) -> Result<(), Error> {
-        self.refuse_way(
-            "functions of the value alone",
-            "one of the value and its gradient",
-        )
-    }
-
-    fn refuse_way(&self, of: &'static str, found: &str) -> Result<(), Error> {
-        match self.way() {
-            Some(wanted) => Err(Error::NotFor {
-                wanted,
-                of,
-                found: found.to_owned(),
-            }),
-            None => Ok(()),
-        }
-    }
-}
-
-const PREINTEGRATED: &str = "pre-integrated classification";
-const SMOOTH: &str = "interpolation between slices";
-const JITTER: &str = "jitter";
-
 impl Default for Settings {
     fn default() -> Self {
         Self {
@@ -422,6 +406,7 @@ impl Default for Settings {
             clip_planes: Vec::new(),
             shading: None,
             conformance: false,
+            per_mode: PerMode::default(),
         }
     }
 }

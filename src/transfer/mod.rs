@@ -24,6 +24,7 @@ mod import;
 #[cfg(feature = "json")]
 mod labels;
 mod law;
+mod levels;
 mod materials;
 mod parts;
 mod points;
@@ -49,6 +50,7 @@ pub use import::{Imported, Scale, import_transfer_function, transfer_function_fr
 #[cfg(feature = "json")]
 pub use labels::{Label, LabelTable};
 pub use law::{Absorption, MAX_OPACITY, extinction, opacity_over};
+pub use levels::{SURFACE_COLORS, Surface, surfaces};
 pub use materials::{Material, TooMuch};
 pub use points::{Points, classify_by_points};
 pub use preset::Preset;

@@ -6,23 +6,57 @@ use crate::person::Folder;
 fn a_word_that_is_not_built_exits_2_and_is_named() {
     let folder = Folder::new();
     for (words, name) in [
-        ("render phantom:fog -o a.png --mode iso", "`--mode iso`"),
-        ("render phantom:fog -o a.png --mode lmip", "`--mode lmip`"),
-        ("render phantom:fog -o a.png --mode mida", "`--mode mida`"),
-        ("render phantom:fog -o a.png --iso 3,4", "`--iso`"),
         (
             "render phantom:fog -o a.png --gradient-filter cubic",
             "`--gradient-filter`",
         ),
-        (
-            "render phantom:fog -o a.exr --aov position",
-            "`--aov position`",
-        ),
+        ("render phantom:fog -o a.exr --aov label", "`--aov label`"),
         ("conformance --device cpu", "`stratavox conformance`"),
     ] {
         folder
             .run(words)
             .assert_refused(2, &[name, "not built yet"]);
+    }
+}
+
+#[test]
+fn modes_that_walk_along_rays_are_drawn_and_what_they_lack_is_refused_by_name() {
+    let folder = Folder::new();
+    let of_head = "render phantom:head,n=16 --size 16x16 -o";
+    for (nth, (words, note)) in [
+        ("--mode iso", "surfaces of the value"),
+        (
+            "--mode iso --iso -300,250 --iso-color orange,white --aov value,position",
+            "",
+        ),
+        (
+            "--mode mida --aov transmittance",
+            "maxima are compared between",
+        ),
+        ("--mode lmip --depth-cue 0.5", "local maxima count over"),
+        ("--mode attenuated-mip", ""),
+        ("--mode mip --exact-maximum", ""),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let ran = folder.run(&format!("{of_head} {nth}.exr {words}"));
+        ran.assert_done();
+        assert!(ran.err.contains(note), "{words}: {}", ran.err);
+    }
+    for (words, named) in [
+        (
+            "--mode iso --technique slices-3d",
+            "--mode iso needs --technique raycast",
+        ),
+        ("--mode mida --lattice planes", "--lattice planes"),
+        ("--mode xray --depth-cue 0.5", "--mode xray"),
+        ("--mode average --exact-maximum", "--exact-maximum"),
+        ("--mode iso --iso 1,2 --iso-color red", "--iso-color"),
+        ("--mode mida --mida-gamma 1", "the gamma of MIDA is 1"),
+    ] {
+        let ran = folder.run(&format!("{of_head} a.png {words}"));
+        ran.assert_refused(2, &[named, "hint"]);
     }
 }
 

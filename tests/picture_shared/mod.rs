@@ -38,7 +38,7 @@ pub fn rich() -> Picture {
         .enumerate()
         .map(|(n, kind)| Layer {
             kind,
-            values: (0..15)
+            values: (0..15 * kind.numbers())
                 .map(|i| {
                     if n == 1 && i % 4 == 0 {
                         f32::NAN

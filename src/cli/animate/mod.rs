@@ -276,7 +276,7 @@ impl Animate {
         let source = load::open(&scene.input, &scene.input.limits())?;
         let header = source.header();
         let shots = film.shots(&scene, depth, header, &shots::grid(&scene, header)?)?;
-        shown::check(&scene, shots[0].settings.mode)?;
+        shown::check(&scene, &shots[0].settings)?;
         check_several(&scene, header, &shots)?;
         let plan = Plan {
             scene,

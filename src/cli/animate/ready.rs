@@ -39,6 +39,7 @@ pub fn of_still(shots: &[Shot], scene: &SceneFlags, shown: &Shown) -> Result<Vec
         if let (None, Some(filter)) = (scene.sampling.filter, filter) {
             settings.filter = filter;
         }
+        settings.per_mode = shown.per_mode.clone();
         Ok(Ready {
             classification,
             settings,
@@ -63,16 +64,15 @@ pub fn of_times(
     let mut known: Option<ValueSummary> = None;
     let mut ready = Vec::with_capacity(shots.len());
     for shot in shots {
-        let summary = || {
+        let mut summary = || {
             let found = match known.take() {
                 Some(found) => found,
                 None => volumes.summary(&times)?,
             };
             Ok(known.insert(found).clone())
         };
-        let classification = shot
-            .classification
-            .classification_of(shot.settings.mode, summary)?;
+        let mode = shot.settings.mode;
+        let classification = shot.classification.classification_of(mode, &mut summary)?;
         if let Classification::Function(function) = &classification
             && function
                 .graded
@@ -84,9 +84,23 @@ pub fn of_times(
                 "say it in the file: \"steepest\": 300",
             ));
         }
+        let window = shot.classification.window()?;
+        let (per_mode, note) = scene.modes.per_mode(
+            mode,
+            window,
+            shot.classification.named(&classification),
+            &mut summary,
+        )?;
+        // The same for all frames, unless keys move the window.
+        if let (Some(note), true) = (note, ready.is_empty()) {
+            progress.note(&note);
+        }
         ready.push(Ready {
             classification,
-            settings: shot.settings.clone(),
+            settings: Settings {
+                per_mode,
+                ..shot.settings.clone()
+            },
             time: shot.time,
         });
     }

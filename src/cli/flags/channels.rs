@@ -183,7 +183,8 @@ impl FromStr for ChannelWord {
     }
 }
 
-fn color_of(text: &str) -> Result<[f64; 3], String> {
+/// A colour by its name or as `R:G:B`, sRGB.
+pub(super) fn color_of(text: &str) -> Result<[f64; 3], String> {
     if let Some(&(_, srgb)) = COLORS.iter().find(|(name, _)| *name == text) {
         return Ok(srgb);
     }

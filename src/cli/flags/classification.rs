@@ -192,9 +192,10 @@ impl ClassificationFlags {
         mut summary: impl FnMut() -> Result<ValueSummary, Error>,
     ) -> Result<Classification, Error> {
         let window = self.window()?;
-        let classified = match mode {
-            Mode::Composite => Classified::Samples,
-            Mode::Mip | Mode::Minip | Mode::Average | Mode::Xray => Classified::Projection,
+        let classified = if mode.is_projection() {
+            Classified::Projection
+        } else {
+            Classified::Samples
         };
         let preset = self.preset.as_deref().and_then(Preset::from_name);
         let function = match (self.function_of_file()?, preset) {
@@ -232,6 +233,16 @@ impl ClassificationFlags {
             refuse_gradients_in(mode)?;
         }
         Ok(Classification::Function(function))
+    }
+
+    /// `found` where words named it: a preset, a file or a window.
+    pub fn named<'a>(&self, found: &'a Classification) -> Option<&'a TransferFunction> {
+        let is_named =
+            self.preset.is_some() || self.transfer_function.is_some() || self.window.is_some();
+        match found {
+            Classification::Function(function) if is_named => Some(function),
+            _ => None,
+        }
     }
 
     /// The window of `--window`.

@@ -16,7 +16,7 @@ const HEADING: &str = "Light";
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LightFlags {
-    /// Colours as they are, or surfaces lit from both sides; presets are drawn without light [default: none]
+    /// Colours as they are, or surfaces lit from both sides; presets are drawn without light [default: none, phong in --mode iso]
     #[arg(long, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shading: Option<ShadingWord>,
@@ -94,14 +94,23 @@ impl From<LightWord> for String {
 }
 
 impl LightFlags {
+    /// Surfaces are lit unless another word is said: without light they have no shape.
+    fn word(&self, mode: Mode) -> ShadingWord {
+        let of_mode = match mode {
+            Mode::Iso => ShadingWord::Phong,
+            _ => ShadingWord::None,
+        };
+        self.shading.unwrap_or(of_mode)
+    }
+
     /// The light of a picture in `mode`.
     pub fn shading(&self, mode: Mode) -> Result<Option<Shading>, Error> {
-        if self.shading.unwrap_or_default() == ShadingWord::None {
+        if self.word(mode) == ShadingWord::None {
             return Ok(None);
         }
         if mode.is_projection() {
             return Err(Error::usage(
-                "--shading phong needs --mode composite: no light falls on a projection",
+                "--shading phong needs --mode composite, mida or iso: no light falls on a projection",
                 "leave out --mode or --shading",
             ));
         }
@@ -140,8 +149,8 @@ impl LightFlags {
     }
 
     /// Flags that change nothing under the others, a sentence each.
-    pub fn idle(&self) -> Vec<&'static str> {
-        let is_dark = self.shading.unwrap_or_default() == ShadingWord::None;
+    pub fn idle(&self, mode: Mode) -> Vec<&'static str> {
+        let is_dark = self.word(mode) == ShadingWord::None;
         let mut notes = Vec::new();
         if is_dark && self.material.is_some() {
             notes.push("--material has no effect without --shading phong");
@@ -217,11 +226,11 @@ mod tests {
 
     #[test]
     fn light_without_shading_is_mentioned() {
-        let idle = flags(ShadingWord::None, "1,1,1,1", &["1,0,0"]).idle();
+        let idle = flags(ShadingWord::None, "1,1,1,1", &["1,0,0"]).idle(Mode::Composite);
         assert_eq!(idle.len(), 2, "{idle:?}");
         assert!(
             flags(ShadingWord::Phong, "1,1,1,1", &["1,0,0"])
-                .idle()
+                .idle(Mode::Composite)
                 .is_empty()
         );
     }

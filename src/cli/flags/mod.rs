@@ -12,7 +12,9 @@ mod gradients;
 mod inlined;
 mod input;
 mod labels;
+mod levels;
 mod light;
+mod modes;
 mod not_built;
 mod numbers;
 mod picture;
@@ -30,7 +32,9 @@ pub use gradients::{boundaries_of, refuse_gradients_in};
 pub use inlined::{Inlined, function_in};
 pub use input::{InputFlags, relative};
 pub use labels::LabelFlags;
+pub use levels::LevelFlags;
 pub use light::LightFlags;
+pub use modes::ModeFlags;
 pub use not_built::NotBuilt;
 pub use numbers::{Background, Numbers, Size, finite, positive};
 pub use picture::PictureFlags;
@@ -55,6 +59,8 @@ pub struct SceneFlags {
     pub input: InputFlags,
     #[command(flatten)]
     pub sampling: SamplingFlags,
+    #[command(flatten)]
+    pub modes: ModeFlags,
     #[command(flatten)]
     pub classification: ClassificationFlags,
     #[command(flatten)]
@@ -98,6 +104,13 @@ impl SceneFlags {
 
     /// Flags that change nothing under the others, a sentence each.
     pub fn idle(&self) -> Vec<&'static str> {
-        [self.sampling.idle(), self.light.idle(), self.camera.idle()].concat()
+        let mode = self.sampling.mode.unwrap_or_default().mode();
+        let topics = [
+            self.sampling.idle(),
+            self.modes.idle(mode),
+            self.light.idle(mode),
+            self.camera.idle(),
+        ];
+        topics.concat()
     }
 }

@@ -6,8 +6,6 @@ use clap::Args;
 /// Flags of `render` that come later.
 #[derive(Args, Clone, Debug, Default)]
 pub struct NotBuilt {
-    #[arg(long, value_name = "VALUE,...", allow_hyphen_values = true, help_heading = HEADING)]
-    iso: Option<String>,
     #[arg(long, value_name = "FILTER", help_heading = HEADING)]
     gradient_filter: Option<String>,
 }
@@ -18,10 +16,7 @@ pub const HEADING: &str = "Not built yet";
 impl NotBuilt {
     /// Refuses the first flag that was given.
     pub fn refuse(&self) -> Result<(), Error> {
-        let given = [
-            ("--iso", self.iso.as_deref()),
-            ("--gradient-filter", self.gradient_filter.as_deref()),
-        ];
+        let given = [("--gradient-filter", self.gradient_filter.as_deref())];
         match given
             .into_iter()
             .find_map(|(flag, value)| Some((flag, value?)))

@@ -76,7 +76,7 @@ pub enum LayerWord {
     Samples,
     #[value(help = "not built yet")]
     Label,
-    #[value(help = "not built yet")]
+    /// World position at the depth, three numbers a pixel
     Position,
 }
 
@@ -87,7 +87,8 @@ impl LayerWord {
             Self::Depth => LayerKind::Depth,
             Self::Transmittance => LayerKind::Transmittance,
             Self::Samples => LayerKind::Samples,
-            Self::Label | Self::Position => return Err(not_built("--aov", self)),
+            Self::Position => LayerKind::Position,
+            Self::Label => return Err(not_built("--aov", self)),
         })
     }
 }
@@ -111,11 +112,11 @@ mod tests {
     #[test]
     fn a_layer_that_is_not_built_is_named() {
         let flags = PictureFlags {
-            aov: vec![LayerWord::Position],
+            aov: vec![LayerWord::Label],
             ..PictureFlags::default()
         };
         let error = flags.layers().expect_err("refused");
-        assert_eq!(error.to_string(), "`--aov position` is not built yet");
+        assert_eq!(error.to_string(), "`--aov label` is not built yet");
     }
 
     #[test]

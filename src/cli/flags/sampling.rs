@@ -106,7 +106,7 @@ impl SamplingFlags {
         };
         let settings = Settings {
             technique: self.technique.unwrap_or_default().technique(),
-            mode: self.mode.unwrap_or_default().mode()?,
+            mode: self.mode.unwrap_or_default().mode(),
             filter: self.filter.unwrap_or_default().filter(),
             lattice: self.lattice()?,
             jitter: Jitter {
@@ -125,9 +125,11 @@ impl SamplingFlags {
             clip_planes: clip_planes(&self.clip)?,
             shading: None,
             conformance: self.conformance,
+            // Of the values, which are not known yet.
+            per_mode: Default::default(),
         };
         settings
-            .check()
+            .check_ways()
             .map_err(|problem| Error::usage(problem.to_string(), WAYS))?;
         Ok(settings)
     }
@@ -269,12 +271,6 @@ mod tests {
             let text = refusal(&flags(|f| f.aa = Some(rays)));
             assert!(text.contains("square number"), "{text}");
         }
-    }
-
-    #[test]
-    fn a_word_that_is_not_built_is_named() {
-        let text = refusal(&flags(|f| f.mode = Some(ModeWord::Iso)));
-        assert_eq!(text, "`--mode iso` is not built yet");
     }
 
     #[test]

@@ -34,7 +34,7 @@ impl TechniqueWord {
     }
 }
 
-/// Every word of `--mode`, built or not.
+/// Every word of `--mode`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[allow(missing_docs, reason = "the names say it")]
@@ -45,25 +45,30 @@ pub enum ModeWord {
     Minip,
     Average,
     Xray,
-    #[value(help = "not built yet")]
+    /// The first local maximum over a threshold
     Lmip,
-    #[value(help = "not built yet")]
+    /// The maximum of values that fade behind others
+    AttenuatedMip,
+    /// Composite in which a new maximum clears what lies before it
     Mida,
-    #[value(help = "not built yet")]
+    /// Surfaces where the volume has a value, or several
     Iso,
 }
 
 impl ModeWord {
-    /// What it stands for, where it is built.
-    pub fn mode(self) -> Result<Mode, Error> {
-        Ok(match self {
+    /// What it stands for.
+    pub fn mode(self) -> Mode {
+        match self {
             Self::Composite => Mode::Composite,
             Self::Mip => Mode::Mip,
             Self::Minip => Mode::Minip,
             Self::Average => Mode::Average,
             Self::Xray => Mode::Xray,
-            Self::Lmip | Self::Mida | Self::Iso => return Err(not_built("--mode", self)),
-        })
+            Self::Lmip => Mode::Lmip,
+            Self::AttenuatedMip => Mode::AttenuatedMip,
+            Self::Mida => Mode::Mida,
+            Self::Iso => Mode::Iso,
+        }
     }
 }
 

@@ -17,7 +17,7 @@ use super::{
 use crate::{
     scene::{Beside, Channel},
     shaders::MAX_CHANNELS,
-    technique::{Filter, Mode, Role, Settings},
+    technique::{Filter, Mode, PerMode, Role, Settings},
     transfer::{CHANNEL_COLORS, Classified, LabelTable, TransferFunction, Window, of_channel},
     volume::{Header, Meaning, Source, Volume, labels::labels_of, read_all},
 };
@@ -31,6 +31,8 @@ pub struct Shown {
     is_earth: bool,
     /// How its values are seen.
     pub classification: Classification,
+    /// What the mode wants to know of the values.
+    pub per_mode: PerMode,
     /// Where the values themselves ask for one.
     pub filter: Option<Filter>,
     /// How much higher than it is the volume is drawn.
@@ -63,7 +65,7 @@ impl Shown {
         device: &Device,
         progress: &Progress,
     ) -> Result<Self, Error> {
-        check(scene, settings.mode)?;
+        check(scene, settings)?;
         let source = open(&scene.input, &scene.input.limits())?;
         Self::of(source, scene, settings, device, progress)
     }
@@ -76,7 +78,7 @@ impl Shown {
         device: &Device,
         progress: &Progress,
     ) -> Result<Self, Error> {
-        check(scene, settings.mode)?;
+        check(scene, settings)?;
         let (plan, note) = plan(scene, source.header())?;
         let are_several = !matches!(plan, Plan::One) || scene.labels.labels.is_some();
         if are_several && !settings.mode.is_projection() && settings.filter.kernel().is_some() {
@@ -102,6 +104,9 @@ impl Shown {
             device,
             progress,
         };
+        if plan != Plan::One {
+            scene.modes.check_several(settings.mode)?;
+        }
         let mut shown = match plan {
             Plan::One => reader.one(source)?,
             Plan::Channels(words) => reader.channels(source, &words)?,
@@ -200,10 +205,12 @@ pub fn shows_several(scene: &SceneFlags, header: &Header) -> Result<bool, Error>
 }
 
 /// What can be said wrong before anything is opened.
-pub fn check(scene: &SceneFlags, mode: Mode) -> Result<(), Error> {
-    if scene.labels.labels.is_some() && mode.is_projection() {
+pub fn check(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
+    let mode = settings.mode;
+    scene.modes.check(settings)?;
+    if scene.labels.labels.is_some() && mode != Mode::Composite {
         return Err(Error::usage(
-            "--labels needs --mode composite: a projection has no place for labels",
+            "--labels needs --mode composite: the others have no place for labels",
             "leave out --mode or --labels",
         ));
     }
@@ -258,12 +265,23 @@ impl Reader<'_> {
                 volume: Arc::new(volume),
                 is_earth,
                 classification: Classification::Function(function),
+                per_mode: PerMode::default(),
                 filter: Some(Filter::Nearest),
                 height_factor,
                 others: Others::Channels(Vec::new()),
             });
         }
         let classification = flags.classification(&volume, self.mode)?;
+        let modes = &self.scene.modes;
+        let (per_mode, note) = modes.per_mode(
+            self.mode,
+            flags.window()?,
+            flags.named(&classification),
+            || Ok(summary(&volume)),
+        )?;
+        if let Some(note) = note {
+            self.progress.note(&note);
+        }
         let found_labels = flags.found_labels(&classification);
         if found_labels && self.scene.sampling.filter.is_none() {
             self.progress
@@ -273,6 +291,7 @@ impl Reader<'_> {
             volume: Arc::new(volume),
             is_earth,
             classification,
+            per_mode,
             filter: found_labels.then_some(Filter::Nearest),
             height_factor,
             others: Others::Channels(Vec::new()),
@@ -356,6 +375,7 @@ impl Reader<'_> {
             volume: Arc::new(first.volume),
             is_earth: header.is_earth,
             classification: Classification::Function(first.function),
+            per_mode: self.scene.modes.alone(),
             filter: None,
             height_factor,
             others: Others::Channels(made),

@@ -1,6 +1,6 @@
 //! The walk of slabs, and of planes between the slices of a stack.
 
-use super::{Classifier, Gathered, Walk, filtered, filtered_in_slice, gathered};
+use super::{Classifier, Gathered, Walk, filtered, filtered_in_slice};
 use crate::real::Real;
 use crate::technique::blend::{Fragment, blend_material};
 use crate::technique::slices_2d::between::Level;
@@ -29,7 +29,7 @@ impl<R: Real> Walk<'_, R> {
                     value_at,
                     |ends| self.classify_slab(ends),
                 );
-                gathered(found)
+                Gathered::of_composite(found)
             }
             Technique::Slices3d => {
                 let slab = |i| {

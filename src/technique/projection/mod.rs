@@ -1,5 +1,6 @@
 //! MIP and its relatives: one ray a pixel in a compute pass, one number a ray.
 
+pub mod exact;
 pub mod reference;
 
 use super::inputs::mode_word;
@@ -29,9 +30,22 @@ impl Projection {
             ..
         } = words;
         let name = format!("projection.{}.{lattice}.{filter}.{holes}", mode_word(mode));
+        Self::of_shader(gpu, &name)
+    }
+
+    /// The same for the exact extreme of the trilinear field, of [`Mode::Mip`] or [`Mode::Minip`].
+    ///
+    /// # Errors
+    /// Where the device refuses.
+    pub fn exact(gpu: &Arc<Gpu>, mode: Mode, words: &Words) -> Result<Self, Error> {
+        let name = format!("projection_cells.{}.{}", mode_word(mode), words.holes);
+        Self::of_shader(gpu, &name)
+    }
+
+    fn of_shader(gpu: &Arc<Gpu>, name: &str) -> Result<Self, Error> {
         Ok(Self {
             gpu: Arc::clone(gpu),
-            pipeline: ComputePipeline::new(gpu, shader(&name))?,
+            pipeline: ComputePipeline::new(gpu, shader(name))?,
         })
     }
 

@@ -2,7 +2,8 @@
 
 pub mod reference;
 
-use super::{Inputs, Take, Words};
+use super::inputs::mode_word;
+use super::{Inputs, Mode, Take, Words};
 use crate::gpu::{Bindings, ComputePipeline, Error, Gpu, Image, Resource};
 use crate::shaders::shader;
 use ash::vk;
@@ -16,11 +17,20 @@ pub struct Raycast {
 }
 
 impl Raycast {
-    /// Compiles the variant of these words.
+    /// Compiles the variant of these words, for [`Mode::Composite`].
     ///
     /// # Errors
     /// Where the device refuses.
     pub fn new(gpu: &Arc<Gpu>, words: &Words) -> Result<Self, Error> {
+        Self::of_mode(gpu, Mode::Composite, words)
+    }
+
+    /// The same for a mode that composites: [`Mode::Composite`], or of one volume [`Mode::Mida`] and
+    /// [`Mode::Iso`].
+    ///
+    /// # Errors
+    /// Where the device refuses.
+    pub fn of_mode(gpu: &Arc<Gpu>, of: Mode, words: &Words) -> Result<Self, Error> {
         let Words {
             filter,
             holes,
@@ -29,10 +39,11 @@ impl Raycast {
             mix,
             take,
         } = words;
-        let mix = mix.word();
+        let (mode, mix) = (mode_word(of), mix.word());
         let name = match take {
+            _ if of == Mode::Iso => format!("isosurface.{filter}.{holes}"),
             Take::Slab => format!("raycast_slab.composite.{lattice}.{filter}.{holes}"),
-            _ => format!("raycast.composite{mix}.{lattice}.{filter}.{holes}.{transfer}"),
+            _ => format!("raycast.{mode}{mix}.{lattice}.{filter}.{holes}.{transfer}"),
         };
         Ok(Self {
             gpu: Arc::clone(gpu),
@@ -41,7 +52,8 @@ impl Raycast {
     }
 
     /// Binds inputs and the two images that a recording fills, both R32G32B32A32_SFLOAT storage images:
-    /// `picture` gets premultiplied colour and alpha, `layers` (0, depth or -1, transmittance, samples).
+    /// `picture` gets premultiplied colour and alpha, `layers` (what the mode keeps, depth or -1,
+    /// transmittance, samples).
     ///
     /// # Errors
     /// Where an input is missing.

@@ -6,6 +6,7 @@ use crate::shaders::Frame;
 use crate::technique::Lattice;
 use crate::technique::composite::Composite;
 use crate::technique::march::{march, march_slabs};
+use crate::technique::mida::Mida;
 use std::ops::ControlFlow;
 
 /// What one ray gathers, and how many samples it took. `value_at` filters the volume at a position in voxel
@@ -50,4 +51,24 @@ fn gather<R: Real>(
         return ControlFlow::Break(());
     }
     ControlFlow::Continue(())
+}
+
+/// The same in [`crate::technique::Mode::Mida`]; `sample_at` gives the value and what it is made of, (red, green,
+/// blue, extinction).
+pub fn accumulated<R: Real>(
+    frame: &Frame,
+    lattice: Lattice,
+    pixel: [R; 2],
+    sample_at: impl Fn([R; 3]) -> Option<(R, [R; 4])>,
+) -> (Composite<R>, u32) {
+    let mut so_far = Mida::default();
+    let samples = march(frame, lattice, pixel, sample_at, |sample, segment| {
+        let (value, material) = sample;
+        so_far.add(frame, value, material, segment.length, segment.t);
+        if so_far.is_finished(frame) {
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    });
+    (so_far.gathered, samples)
 }

@@ -1,0 +1,148 @@
+// Surfaces of one value or of several, front to back: one ray a pixel, a crossing wherever one end of a segment
+// is under a level and the other is not, found by halving the segment ten times and a straight line between what
+// is left (Hadwiger et al. 2005 refine so). A crossing is lit by the gradient there, and lets through what its
+// opacity leaves. Twin: src/technique/isosurface.rs.
+
+#import ray
+#import filter_{filter}
+#import nearest
+#import mask
+#import holes_{holes}
+#import gradient
+#import shade
+
+// Premultiplied colour and alpha.
+@group(0) @binding(6) var picture: texture_storage_2d<rgba32float, write>;
+// Level of the first crossing, its depth (negative: none), transmittance, samples.
+@group(0) @binding(7) var layers: texture_storage_2d<rgba32float, write>;
+
+// Halvings of a segment: 2^-10 of a step.
+const HALVINGS: u32 = 10u;
+
+struct Surfaces {
+    color: vec3<f32>,
+    transmittance: f32,
+    level: f32,
+    depth: f32,
+    samples: f32,
+}
+
+// One end of a segment.
+struct End {
+    t: f32,
+    value: f32,
+    has_data: bool,
+}
+
+struct Bracket {
+    near: End,
+    far: End,
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    if any(id.xy >= frame.extent_pixels) {
+        return;
+    }
+    let found = surfaces(vec2<f32>(id.xy) + 0.5);
+    textureStore(picture, id.xy, vec4(found.color, 1.0 - found.transmittance));
+    textureStore(layers, id.xy, vec4(found.level, found.depth, found.transmittance, found.samples));
+}
+
+fn surfaces(pixel: vec2<f32>) -> Surfaces {
+    let world = pixel_ray(pixel);
+    let voxel = voxel_ray(world);
+    let interval = domain_interval(world, voxel);
+    var so_far = Surfaces(vec3(0.0), 1.0, 0.0, -1.0, 0.0);
+    if !(interval.x < interval.y) {
+        return so_far;
+    }
+    let full = i32(floor((interval.y - interval.x) / frame.step_world));
+    var near = end_at(voxel, interval.x);
+    so_far.samples = 1.0;
+    for (var k = 1; k <= full + 1; k++) {
+        let far = end_at(voxel, min(interval.x + f32(k) * frame.step_world, interval.y));
+        so_far.samples += 1.0;
+        // Between a value and no data there is no surface.
+        if near.has_data && far.has_data {
+            so_far = crossed(so_far, world, voxel, near, far);
+            // Nothing is seen behind what is opaque.
+            if so_far.transmittance < frame.termination || so_far.transmittance == 0.0 {
+                break;
+            }
+        }
+        near = far;
+    }
+    return so_far;
+}
+
+fn end_at(voxel: Ray, t: f32) -> End {
+    let place = voxel.origin + t * voxel.direction;
+    return End(t, volume_value(place), volume_is_valid(footprint_of(place)));
+}
+
+// All levels between two ends, in the order in which the ray meets them.
+fn crossed(before: Surfaces, world: Ray, voxel: Ray, near: End, far: End) -> Surfaces {
+    var so_far = before;
+    var start = near;
+    for (var i = 0u; i < frame.level_count; i++) {
+        let index = select(frame.level_count - 1u - i, i, far.value > near.value);
+        let level = frame.level_values[index].x;
+        if is_under(start, level) == is_under(far, level) || frame.level_colors[index].w == 0.0 {
+            continue;
+        }
+        let bracket = narrowed(voxel, level, start, far);
+        if !bracket.near.has_data {
+            continue;
+        }
+        let t = crossing(bracket, level);
+        so_far = passed(so_far, world, voxel, index, t);
+        // The next level lies behind.
+        start = bracket.near;
+    }
+    return so_far;
+}
+
+fn is_under(end: End, level: f32) -> bool {
+    return end.value < level;
+}
+
+// The 2^-10 of the segment that a crossing lies in; without data where a half has none.
+fn narrowed(voxel: Ray, level: f32, near: End, far: End) -> Bracket {
+    var bracket = Bracket(near, far);
+    for (var i = 0u; i < HALVINGS; i++) {
+        let middle = end_at(voxel, 0.5 * (bracket.near.t + bracket.far.t));
+        if !middle.has_data {
+            bracket.near.has_data = false;
+            return bracket;
+        }
+        if is_under(middle, level) == is_under(bracket.near, level) {
+            bracket.near = middle;
+        } else {
+            bracket.far = middle;
+        }
+    }
+    return bracket;
+}
+
+// Where a straight line between the ends meets the level.
+fn crossing(bracket: Bracket, level: f32) -> f32 {
+    let part = (level - bracket.near.value) / (bracket.far.value - bracket.near.value);
+    return bracket.near.t + clamp(part, 0.0, 1.0) * (bracket.far.t - bracket.near.t);
+}
+
+fn passed(before: Surfaces, world: Ray, voxel: Ray, index: u32, t: f32) -> Surfaces {
+    let level = frame.level_colors[index];
+    var color = level.xyz;
+    if frame.light_count != 0u {
+        color = shade(color, gradient_at(voxel.origin + t * voxel.direction), world.direction);
+    }
+    var next = before;
+    next.color += before.transmittance * level.w * color;
+    next.transmittance *= 1.0 - level.w;
+    if before.depth < 0.0 {
+        next.depth = t;
+        next.level = frame.level_values[index].x;
+    }
+    return next;
+}

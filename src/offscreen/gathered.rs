@@ -1,0 +1,95 @@
+//! What the CPU twins leave for each pixel, and the layers that come of it.
+
+use super::position::positions;
+use crate::picture::{Layer, LayerKind};
+use crate::real::Real;
+use crate::resolve::reference::projected_value;
+use crate::scene::Scene;
+use crate::technique::composite::Composite;
+use crate::technique::isosurface::Surfaces;
+use crate::technique::{Mode, Technique};
+use crate::transfer::{Classified, TransferFunction, Window};
+
+/// What a technique leaves for one pixel, before it is resolved.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Gathered<R> {
+    /// Composite: premultiplied colour. Else (value, weight, unused, unused).
+    pub accumulation: [R; 4],
+    pub depth: Option<R>,
+    /// The value of a surface that was hit first.
+    pub level: Option<R>,
+    /// What a depth cue leaves of the colour.
+    pub light: R,
+    pub samples: u32,
+}
+
+impl<R: Real> Gathered<R> {
+    /// Of a ray that has composited so many samples.
+    pub fn of_composite((found, samples): (Composite<R>, u32)) -> Self {
+        let ([r, g, b], one) = (found.color, R::from_f64(1.0));
+        Self {
+            accumulation: [r, g, b, one - found.transmittance],
+            depth: found.depth,
+            level: None,
+            light: one,
+            samples,
+        }
+    }
+
+    /// Of a ray that has met surfaces.
+    pub fn of_surfaces(found: Surfaces<R>) -> Self {
+        let ([r, g, b], one) = (found.color, R::from_f64(1.0));
+        Self {
+            accumulation: [r, g, b, one - found.transmittance],
+            depth: found.first.map(|(_, t)| t),
+            level: found.first.map(|(level, _)| level),
+            light: one,
+            samples: found.samples,
+        }
+    }
+}
+
+/// The default window of a projecting mode without a transfer function: the range of this picture.
+pub(super) fn grey_of_picture<R: Real>(mode: Mode, gathered: &[Gathered<R>]) -> TransferFunction {
+    let values = gathered
+        .iter()
+        .filter_map(|g| projected_value(mode, g.accumulation))
+        .map(R::to_f64);
+    let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
+        [low.min(v), high.max(v)]
+    });
+    Window::of_range(range).grey(Classified::Projection)
+}
+
+pub(super) fn layers<R: Real>(scene: &Scene, gathered: &[Gathered<R>]) -> Vec<Layer> {
+    let mode = scene.settings.mode;
+    let layer = |kind, number: &dyn Fn(&Gathered<R>) -> f32| Layer {
+        kind,
+        values: gathered.iter().map(number).collect(),
+    };
+    let number = |found: Option<R>| found.map_or(f32::NAN, R::to_f32);
+    let mut layers = vec![layer(LayerKind::Samples, &|g| g.samples as f32)];
+    if mode.is_projection() {
+        layers.push(layer(LayerKind::Value, &|g| {
+            number(projected_value(mode, g.accumulation))
+        }));
+    } else {
+        layers.push(layer(LayerKind::Transmittance, &|g| {
+            1.0 - g.accumulation[3].to_f32()
+        }));
+    }
+    if mode == Mode::Iso {
+        layers.push(layer(LayerKind::Value, &|g| number(g.level)));
+    }
+    if scene.settings.technique == Technique::Raycast {
+        let depth = layer(LayerKind::Depth, &|g| number(g.depth));
+        if mode.has_depth() {
+            layers.push(Layer {
+                kind: LayerKind::Position,
+                values: positions(scene, &depth.values),
+            });
+        }
+        layers.push(depth);
+    }
+    layers
+}

@@ -1,0 +1,88 @@
+//! Ways to take samples of their own, and what does not go together with them.
+
+use super::{Error, Lattice, Mode, Settings, Technique};
+
+impl Settings {
+    /// Whether technique and mode have the ways to sample that are asked for.
+    ///
+    /// # Errors
+    /// [`Error::NotFor`].
+    pub fn check_ways(&self) -> Result<(), Error> {
+        let (mode, technique) = (self.mode, self.technique);
+        let of_mode = |is_on: bool, wanted| match is_on && mode != Mode::Composite {
+            true => Err(Error::NotFor {
+                wanted,
+                of: "composite",
+                found: format!("{mode:?}"),
+            }),
+            false => Ok(()),
+        };
+        let of_technique = |is_on: bool, wanted, right, of| match is_on && technique != right {
+            true => Err(Error::NotFor {
+                wanted,
+                of,
+                found: format!("{technique:?}"),
+            }),
+            false => Ok(()),
+        };
+        let is_jittered = self.lattice == Lattice::Jitter;
+        of_mode(self.preintegrated, PREINTEGRATED)?;
+        of_technique(self.smooth, SMOOTH, Technique::Slices2d, "2D stacks")?;
+        of_mode(self.smooth, SMOOTH)?;
+        of_technique(is_jittered, JITTER, Technique::Raycast, "ray casting")?;
+        of_mode(is_jittered, JITTER)?;
+        if self.shading.is_some() {
+            self.refuse_way("samples without light", "shaded ones")?;
+        }
+        if self.filter.kernel().is_some() {
+            let found = format!("{:?}", self.filter);
+            self.refuse_way("nearest and linear filters", &found)?;
+        }
+        Ok(())
+    }
+
+    /// A way to sample of its own that is asked for.
+    fn way(&self) -> Option<&'static str> {
+        let ways = [
+            (self.preintegrated, PREINTEGRATED),
+            (self.smooth, SMOOTH),
+            (self.lattice == Lattice::Jitter, JITTER),
+        ];
+        ways.into_iter()
+            .find_map(|(is_on, name)| is_on.then_some(name))
+    }
+
+    /// The same for several volumes.
+    ///
+    /// # Errors
+    /// [`Error::NotFor`].
+    pub(crate) fn check_mixed(&self) -> Result<(), Error> {
+        self.refuse_way("one volume of numbers", "several that are mixed")
+    }
+
+    /// The same for functions of gradients.
+    ///
+    /// # Errors
+    /// [`Error::NotFor`].
+    pub(crate) fn check_graded(&self) -> Result<(), Error> {
+        self.refuse_way(
+            "functions of the value alone",
+            "one of the value and its gradient",
+        )
+    }
+
+    fn refuse_way(&self, of: &'static str, found: &str) -> Result<(), Error> {
+        match self.way() {
+            Some(wanted) => Err(Error::NotFor {
+                wanted,
+                of,
+                found: found.to_owned(),
+            }),
+            None => Ok(()),
+        }
+    }
+}
+
+const PREINTEGRATED: &str = "pre-integrated classification";
+const SMOOTH: &str = "interpolation between slices";
+const JITTER: &str = "jitter";
