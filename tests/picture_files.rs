@@ -52,6 +52,10 @@ fn png_files_hold_the_codes() {
     }
 }
 
+fn bytes_of(numbers: &[f32]) -> Vec<u8> {
+    numbers.iter().flat_map(|n| n.to_le_bytes()).collect()
+}
+
 #[test]
 fn npy_files_are_what_numpy_writes() {
     let folder = tempfile::tempdir().unwrap();
@@ -62,6 +66,7 @@ fn npy_files_are_what_numpy_writes() {
         [
             "out.depth.npy",
             "out.npy",
+            "out.position.npy",
             "out.samples.npy",
             "out.transmittance.npy",
             "out.value.npy"
@@ -89,6 +94,12 @@ fn npy_files_are_what_numpy_writes() {
     );
     let values = depth.pixels.iter().map(|pixel| pixel[0].to_bits());
     assert!(values.eq(rich().layers[1].values.iter().map(|x| x.to_bits())));
+    // Three numbers a pixel, as numpy.save writes float32 of (3, 5, 3).
+    let positions = std::fs::read(folder.path().join("out.position.npy")).unwrap();
+    assert!(String::from_utf8_lossy(&positions[..128]).contains("'shape': (3, 5, 3), }"));
+    let kind = stratavox::picture::LayerKind::Position;
+    let layer = rich().layers.into_iter().find(|layer| layer.kind == kind);
+    assert_eq!(positions[128..], *bytes_of(&layer.unwrap().values));
 }
 
 #[test]
@@ -117,22 +128,28 @@ fn exr_files_hold_the_same_floats_and_a_channel_for_each_layer() {
             "G",
             "R",
             "depth",
+            "position.X",
+            "position.Y",
+            "position.Z",
             "samples",
             "transmittance",
             "value"
         ]
     );
     for layer in rich().layers {
-        let channel = channels
-            .iter()
-            .find(|c| c.name.eq(layer.kind.name()))
-            .unwrap();
-        let found = channel.sample_data.values_as_f32().map(f32::to_bits);
-        assert!(
-            found.eq(layer.values.iter().map(|x| x.to_bits())),
-            "{:?}",
-            layer.kind
-        );
+        let (name, count) = (layer.kind.name(), layer.kind.numbers());
+        for (k, axis) in [".X", ".Y", ".Z"].into_iter().enumerate().take(count) {
+            let name = format!("{name}{}", if count == 1 { "" } else { axis });
+            let channel = channels.iter().find(|c| c.name.eq(name.as_str()));
+            let found = channel.unwrap().sample_data.values_as_f32();
+            let wanted = layer.values.iter().skip(k).step_by(count);
+            assert!(
+                found
+                    .map(f32::to_bits)
+                    .eq(wanted.map(|number| number.to_bits())),
+                "{name}"
+            );
+        }
     }
 }
 
