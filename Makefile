@@ -5,7 +5,7 @@
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := test
-.PHONY: test demo sheet bench driver layers
+.PHONY: test plain demo sheet bench driver layers
 
 CARGO ?= cargo
 ROOT := $(if $(filter 0,$(shell id -u)),,sudo )
@@ -55,7 +55,8 @@ WITHOUT_DEVICE := $(filter cf_% floors format_% isosurface mutations% phantoms p
 WITH_DEVICE := $(filter-out $(WITHOUT_DEVICE),$(TESTS))
 ON_DEVICE := RUST_TEST_THREADS=1 $(TEST) --lib --examples $(addprefix --test ,$(WITH_DEVICE))
 
-# One device at a time: a software driver uses all cores anyway.
+# One device at a time: a software driver uses all cores anyway. What draws runs under the validation layer with
+# synchronization in; `make plain` runs the same without that, as a cross-check by hand.
 test: driver layers
 	$(CARGO) fmt --check
 	$(CARGO) clippy --locked --all-targets -- -D warnings
@@ -63,9 +64,12 @@ test: driver layers
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --locked --no-deps
 	$(TEST) --doc
 	$(TEST) $(addprefix --test ,$(WITHOUT_DEVICE))
-	$(ON_DEVICE) --test cli
+	RUST_TEST_THREADS=1 $(TEST) --test cli
 	STRATAVOX_VALIDATION=sync $(ON_DEVICE)
 	STRATAVOX_VALIDATION=sync RUST_TEST_THREADS=1 $(TEST) --test cli -- device:: mixed:: pictures::
+
+plain: driver layers
+	$(ON_DEVICE)
 
 demo: driver
 	$(CARGO) build --locked --release

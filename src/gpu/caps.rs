@@ -34,6 +34,9 @@ pub struct Caps {
     pub float32_blend: bool,
     /// A dynamic offset is a multiple of it.
     pub min_uniform_offset_alignment: u64,
+    /// Turns that the loops of one invocation may take together. Vulkan has no such limit; llvmpipe has one
+    /// (`LP_MAX_TGSI_LOOP_ITERATIONS` of Mesa) and ends loops there without a word.
+    pub max_loop_turns: u32,
     /// Bits of a filter weight: one look-up may be off by `2^-bits` of the step between two texels.
     pub subtexel_bits: u32,
     /// Nanoseconds per tick of a timestamp.
@@ -61,6 +64,7 @@ impl Caps {
         max_viewport: [u32::MAX; 2],
         float32_blend: true,
         min_uniform_offset_alignment: 1,
+        max_loop_turns: u32::MAX,
         subtexel_bits: u32::MAX,
         timestamp_period_ns: 0.0,
     };
@@ -85,6 +89,7 @@ impl Caps {
         max_viewport: [4096; 2],
         float32_blend: false,
         min_uniform_offset_alignment: 256,
+        max_loop_turns: u32::MAX,
         subtexel_bits: 4,
         timestamp_period_ns: 0.0,
     };
@@ -95,9 +100,11 @@ impl Caps {
     /// `physical_device` belongs to `instance`, which speaks Vulkan 1.3; so does the device.
     pub(super) unsafe fn of(instance: &ash::Instance, physical_device: vk::PhysicalDevice) -> Self {
         let mut properties11 = vk::PhysicalDeviceVulkan11Properties::default();
+        let mut properties12 = vk::PhysicalDeviceVulkan12Properties::default();
         let mut properties13 = vk::PhysicalDeviceVulkan13Properties::default();
         let mut properties2 = vk::PhysicalDeviceProperties2::default()
             .push_next(&mut properties11)
+            .push_next(&mut properties12)
             .push_next(&mut properties13);
         // SAFETY: the caller's promise.
         let memory = unsafe {
@@ -125,6 +132,10 @@ impl Caps {
             max_viewport: limits.max_viewport_dimensions,
             float32_blend: true,
             min_uniform_offset_alignment: limits.min_uniform_buffer_offset_alignment,
+            max_loop_turns: match properties12.driver_id {
+                vk::DriverId::MESA_LLVMPIPE => 65_535,
+                _ => u32::MAX,
+            },
             subtexel_bits: limits.sub_texel_precision_bits,
             timestamp_period_ns: limits.timestamp_period,
         }
@@ -168,6 +179,7 @@ impl Caps {
             min_uniform_offset_alignment: self
                 .min_uniform_offset_alignment
                 .max(other.min_uniform_offset_alignment),
+            max_loop_turns: self.max_loop_turns.min(other.max_loop_turns),
             subtexel_bits: self.subtexel_bits.min(other.subtexel_bits),
             timestamp_period_ns: self.timestamp_period_ns,
         }

@@ -219,6 +219,14 @@ impl<'v> Renderer<'v> {
         let parts = parts_of(&self.resident, self.shown, scene);
         let slots = parts[0].volume.bricks().len() as u32;
         let words = Words::mixed(scene.settings, scene.mix(), &parts);
+        let functions = scene.transfers().into_iter().flatten();
+        let points = functions.map(|f| f.color.len().max(f.opacity.len())).max();
+        scene.view(&scene.volume.grid(), [0.0; 2]).check_turns(
+            &words,
+            parts.len(),
+            points.unwrap_or(0),
+            gpu.limits().max_loop_turns,
+        )?;
         if self.ring.slots() < slots {
             self.ring = parameter_ring(&gpu, slots)?;
         }

@@ -78,7 +78,7 @@ impl View<'_> {
         let world_from_voxel = self.world_from_voxel();
         let [domain_min, domain_max] = self.domain();
         self.settings.check()?;
-        self.check_sample_count(&world_from_voxel)?;
+        self.check_sample_count()?;
         let of_mode = self.of_mode();
         let reach = self.cover_reach();
         let margin = self.cover_margin(&rays, &world_from_voxel) + reach.voxels;
@@ -263,12 +263,24 @@ impl View<'_> {
         front_to_back(cells, eye_cell)
     }
 
-    /// The longest ray is the box's diagonal. A 2D stack takes one sample a slice, whatever the step.
-    fn check_sample_count(&self, world_from_voxel: &DAffine3) -> Result<(), Error> {
+    /// A 2D stack takes one sample a slice, whatever the step.
+    fn check_sample_count(&self) -> Result<(), Error> {
         if self.settings.technique == Technique::Slices2d {
             return Ok(());
         }
-        let m = world_from_voxel.matrix3;
+        let wanted = self.longest_sample_count();
+        if wanted <= f64::from(MAX_SAMPLES_PER_RAY) {
+            return Ok(());
+        }
+        Err(Error::TooManySamples {
+            wanted,
+            limit: MAX_SAMPLES_PER_RAY,
+        })
+    }
+
+    /// How many steps the longest ray takes, which is the longest diagonal of the box.
+    pub(super) fn longest_sample_count(&self) -> f64 {
+        let m = self.world_from_voxel().matrix3;
         let far = self.grid.far_corner();
         let diagonals = [
             dvec3(1., 1., 1.),
@@ -280,14 +292,7 @@ impl View<'_> {
             .map(|d| (m * (d * far)).length())
             .into_iter()
             .fold(0.0, f64::max);
-        let wanted = longest / self.step_world();
-        if wanted <= f64::from(MAX_SAMPLES_PER_RAY) {
-            return Ok(());
-        }
-        Err(Error::TooManySamples {
-            wanted,
-            limit: MAX_SAMPLES_PER_RAY,
-        })
+        longest / self.step_world()
     }
 
     /// By how many voxels a slicer's cover is larger than the domain: two pixels, as the farthest corner

@@ -21,6 +21,7 @@ mod slab;
 mod slicer;
 pub mod slices_2d;
 pub mod slices_3d;
+mod turns;
 mod ways;
 
 pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
@@ -206,6 +207,17 @@ pub enum Error {
         wanted: f64,
         /// What a ray may take.
         limit: u32,
+    },
+    /// The driver would cut the ray short.
+    #[error(
+        "a ray through the volume would take {wanted:.0} samples, and this driver ends its loops after {limit:.0} such \
+         samples"
+    )]
+    LoopsEnd {
+        /// What the longest ray would take.
+        wanted: f64,
+        /// How many there are turns for.
+        limit: f64,
     },
     /// Compositing classifies every sample.
     #[error("compositing needs a transfer function")]

@@ -2,6 +2,7 @@
 
 use super::{Error, channels::color_of};
 use crate::{
+    cli::readable::short,
     picture::ColorSpace,
     shaders::MAX_LEVELS,
     technique::Level,
@@ -111,7 +112,7 @@ impl LevelFlags {
     ) -> Result<(Vec<Level>, Option<String>), Error> {
         let (chosen, note) = if self.iso.is_empty() {
             let chosen = surfaces(&summary()?);
-            let words: Vec<_> = chosen.iter().map(|s| format!("{:.6}", s.value)).collect();
+            let words: Vec<_> = chosen.iter().map(|s| short(s.value)).collect();
             let values = words.join(" and of ");
             (
                 chosen,

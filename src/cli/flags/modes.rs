@@ -2,6 +2,7 @@
 
 use super::{Error, LevelFlags, finite};
 use crate::{
+    cli::readable::short,
     technique::{DEFAULT_ATTENUATION, Filter, Lattice, Mode, PerMode, Settings, Technique},
     transfer::{TransferFunction, ValueSummary, Window},
 };
@@ -150,7 +151,7 @@ impl ModeFlags {
                 per_mode.lmip_threshold = window.at(0.5);
                 note = Some(format!(
                     "local maxima count over {}, the middle of the window; --lmip-threshold sets it",
-                    per_mode.lmip_threshold
+                    short(per_mode.lmip_threshold)
                 ));
             }
             Mode::AttenuatedMip => {
@@ -168,8 +169,8 @@ impl ModeFlags {
                 per_mode.unit_values = [window.low(), window.high()];
                 note = Some(format!(
                     "maxima are compared between {} and {}; --window sets it",
-                    window.low(),
-                    window.high()
+                    short(window.low()),
+                    short(window.high())
                 ));
             }
             Mode::Iso => {

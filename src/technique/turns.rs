@@ -1,0 +1,74 @@
+//! How often the loops of a ray go round: some drivers end all loops of an invocation after so many turns, without a
+//! word ([`crate::gpu::Caps::max_loop_turns`]), and what lies behind would be missing from the picture.
+//!
+//! ```text
+//! turns of a sample = 1 + n (looks (mask + filter) + search)
+//! ```
+//!
+//! for n volumes, with 7 looks where there is a gradient, two where there are slabs, and else one. A mask goes round
+//! for the layers and rows of the footprint, a kernel for those of its taps, a search for the halvings of the points.
+
+use super::{Error, Filter, Mix, Settings, Take, Technique, View, Words};
+
+/// Of what is rare: surfaces that are refined, the first turns of everything.
+const SPARE: f64 = 2048.0;
+
+/// How often the loops of one sample go round, at most. `points` are the control points of the longest function.
+pub fn turns_per_sample(settings: &Settings, words: &Words, volumes: usize, points: usize) -> u64 {
+    let width = match settings.filter {
+        Filter::Nearest => 1,
+        Filter::Linear => 2,
+        Filter::Quadratic | Filter::QuadraticSmooth => 3,
+        Filter::Cubic | Filter::CubicSmooth | Filter::CatmullRom => 4,
+    };
+    let layers_and_rows = width + width * width;
+    let mask = if words.holes == "mask" {
+        layers_and_rows
+    } else {
+        0
+    };
+    let filter = if words.filter == "kernel" {
+        layers_and_rows + 4
+    } else {
+        0
+    };
+    let looks = match (words.mix, words.take) {
+        (Mix::Graded, _) => 7,
+        (_, Take::Slab) => 2,
+        _ => 1,
+    };
+    let search = if words.transfer == "points" {
+        2 * u64::from((points + 1).ilog2() + 1)
+    } else {
+        0
+    };
+    // Channels are gone over when they are asked for data, looked at and classified.
+    let of_each = if volumes > 1 { 3 } else { 0 };
+    1 + volumes as u64 * (of_each + looks * (mask + filter) + search)
+}
+
+impl View<'_> {
+    /// Whether the loops of the longest ray end where they should on a device that counts their turns.
+    ///
+    /// # Errors
+    /// [`Error::LoopsEnd`].
+    pub fn check_turns(
+        &self,
+        words: &Words,
+        volumes: usize,
+        points: usize,
+        max_loop_turns: u32,
+    ) -> Result<(), Error> {
+        // Of a slicer every invocation takes one sample.
+        if self.settings.technique != Technique::Raycast || max_loop_turns == u32::MAX {
+            return Ok(());
+        }
+        let turns = turns_per_sample(self.settings, words, volumes, points);
+        let limit = (f64::from(max_loop_turns) - SPARE).max(0.0) / turns as f64;
+        let wanted = self.longest_sample_count();
+        if wanted <= limit {
+            return Ok(());
+        }
+        Err(Error::LoopsEnd { wanted, limit })
+    }
+}

@@ -1,0 +1,103 @@
+//! Rays as long as a device allows are whole, and longer ones are refused: llvmpipe ends the loops of an invocation
+//! after 65 535 turns, all of them counted together, without a word.
+
+#[path = "shared/mod.rs"]
+mod shared;
+
+use glam::{DAffine3, DVec3, dvec3};
+use shared::{device, ramps, volume_of};
+use stratavox::camera::{Camera, Projection};
+use stratavox::offscreen::{Error, Renderer, reference};
+use stratavox::picture::{LayerKind, Picture};
+use stratavox::scene::{Beside, Scene};
+use stratavox::technique::{self, Filter, Settings, Shading};
+use stratavox::volume::Volume;
+
+const LENGTH: u32 = 400;
+
+fn long_volume(has_holes: bool) -> Volume {
+    let mut volume = volume_of([4, 4, LENGTH], DAffine3::IDENTITY, |p| {
+        0.3 + 0.2 * (0.7 * p.z).sin() + 0.02 * p.x
+    });
+    if has_holes {
+        let count = volume.voxels.len();
+        volume.validity = Some((0..count).map(|i| u8::from(i != 7)).collect());
+    }
+    volume
+}
+
+fn along_z() -> Camera {
+    Camera {
+        eye: dvec3(2.0, 2.0, -10.0),
+        target: dvec3(2.0, 2.0, 0.0),
+        up: DVec3::Y,
+        projection: Projection::Orthographic { view_height: 3.0 },
+        zoom: 1.0,
+    }
+}
+
+fn samples(picture: &Picture) -> &[f32] {
+    let mut layers = picture.layers.iter();
+    let layer = layers.find(|layer| layer.kind == LayerKind::Samples);
+    &layer.expect("the layer that was asked for").values
+}
+
+#[test]
+fn a_ray_is_as_long_as_its_twin_up_to_the_limit_of_the_driver() {
+    let transfer = ramps();
+    let camera = along_z();
+    let [plain, holes] = [false, true].map(long_volume);
+    let mut refused = 0;
+    for (volume, filter, conformance, shading) in [
+        (&plain, Filter::Linear, false, None),
+        (&plain, Filter::Linear, true, None),
+        (&plain, Filter::CatmullRom, false, None),
+        (&plain, Filter::Cubic, true, Some(Shading::default())),
+        (&holes, Filter::Nearest, false, None),
+        (&holes, Filter::Linear, false, None),
+        (&holes, Filter::Linear, false, Some(Shading::default())),
+        (&holes, Filter::Cubic, false, None),
+        (&holes, Filter::Cubic, false, Some(Shading::default())),
+        (&holes, Filter::Quadratic, true, Some(Shading::default())),
+    ] {
+        let what = format!(
+            "{filter:?}, conformance {conformance}, {}",
+            shading.is_some()
+        );
+        let mut renderer = Renderer::new(device(), volume).unwrap();
+        let mut draw = |samples_per_voxel: f64| {
+            let settings = Settings {
+                filter,
+                conformance,
+                shading: shading.clone(),
+                samples_per_voxel,
+                ..Settings::default()
+            };
+            let scene = Scene {
+                volume,
+                transfer: Some(&transfer),
+                beside: Beside::Nothing,
+                camera: &camera,
+                extent_pixels: [4, 3],
+                settings: &settings,
+            };
+            let drawn = renderer.render(&scene, &[LayerKind::Samples]);
+            drawn.map(|drawn| (drawn.picture, reference::render::<f32>(&scene).unwrap()))
+        };
+        // 400 000 samples are over the limit of every picture on a driver that has one.
+        let error = draw(1000.0).err();
+        let at_most = match error {
+            Some(Error::Technique(technique::Error::LoopsEnd { wanted, limit })) => {
+                refused += 1;
+                assert!(wanted > 399_999.0, "{what}: {wanted}");
+                0.995 * limit / f64::from(LENGTH)
+            }
+            Some(error) => panic!("{what}: {error}"),
+            None => 4.0,
+        };
+        let (found, twin) = draw(at_most).unwrap();
+        assert_eq!(samples(&found), samples(&twin), "{what}: {at_most} a voxel");
+        assert!(samples(&found)[0] > 90.0, "{what}");
+    }
+    println!("{refused} of 10 kinds of picture have a limit here");
+}
