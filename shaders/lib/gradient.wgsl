@@ -8,20 +8,16 @@
 // (`sampling.md` 2). Across the slices of a stack the taps lie in the slices beside. Twin: src/technique/gradient.rs.
 
 fn gradient_at(place: Place) -> vec3<f32> {
-    let x = vec3(1.0, 0.0, 0.0);
-    let y = vec3(0.0, 1.0, 0.0);
-    let z = vec3(0.0, 0.0, 1.0);
-    if !(taps_have_data(place, x) && taps_have_data(place, y) && taps_have_data(place, z)) {
-        return vec3(0.0);
+    var voxel = vec3(0.0);
+    var have_data = true;
+    // One look-up in a loop, not six: LLVM takes exponential time over six wide kernels, which are loops themselves.
+    for (var tap = 0u; tap < 6u; tap++) {
+        let sign = select(1.0, -1.0, (tap & 1u) != 0u);
+        var step = vec3(0.0);
+        step[tap >> 1u] = sign;
+        let at = shifted(place, step);
+        have_data = have_data && volume_is_valid(footprint_of(at));
+        voxel[tap >> 1u] += 0.5 * sign * volume_value(at);
     }
-    let voxel = vec3(difference(place, x), difference(place, y), difference(place, z));
-    return (frame.voxel_from_world * voxel).xyz;
-}
-
-fn difference(place: Place, step: vec3<f32>) -> f32 {
-    return 0.5 * (volume_value(shifted(place, step)) - volume_value(shifted(place, -step)));
-}
-
-fn taps_have_data(place: Place, step: vec3<f32>) -> bool {
-    return volume_is_valid(footprint_of(shifted(place, step))) && volume_is_valid(footprint_of(shifted(place, -step)));
+    return select(vec3(0.0), (frame.voxel_from_world * voxel).xyz, have_data);
 }

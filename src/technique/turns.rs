@@ -2,7 +2,7 @@
 //! word ([`crate::gpu::Caps::max_loop_turns`]), and what lies behind would be missing from the picture.
 //!
 //! ```text
-//! turns of a sample = 1 + n (looks (mask + filter) + search)
+//! turns of a sample = 1 + n (looks (1 + mask + filter) + search)
 //! ```
 //!
 //! for n volumes, with 7 looks where there is a gradient, two where there are slabs, and else one. A mask goes round
@@ -21,14 +21,17 @@ pub fn turns_per_sample(settings: &Settings, words: &Words, volumes: usize, poin
         Filter::Quadratic | Filter::QuadraticSmooth => 3,
         Filter::Cubic | Filter::CubicSmooth | Filter::CatmullRom => 4,
     };
-    let layers_and_rows = width + width * width;
+    // Two nested loops, with the turns that end them.
+    let layers_and_rows = (width + 1) * (width + 1);
+    // A function that returns early is a loop of one turn.
     let mask = if words.holes == "mask" {
-        layers_and_rows
+        layers_and_rows + 1
     } else {
         0
     };
+    // Texels are made in a loop over taps.
     let filter = if words.filter == "kernel" {
-        layers_and_rows + 4
+        layers_and_rows + 5
     } else {
         0
     };
@@ -38,13 +41,13 @@ pub fn turns_per_sample(settings: &Settings, words: &Words, volumes: usize, poin
         _ => 1,
     };
     let search = if words.transfer == "points" {
-        2 * u64::from((points + 1).ilog2() + 1)
+        2 * u64::from((points + 1).ilog2() + 2)
     } else {
         0
     };
     // Channels are gone over when they are asked for data, looked at and classified.
     let of_each = if volumes > 1 { 3 } else { 0 };
-    1 + volumes as u64 * (of_each + looks * (mask + filter) + search)
+    1 + volumes as u64 * (of_each + looks * (1 + mask + filter) + search)
 }
 
 impl View<'_> {
