@@ -1,5 +1,6 @@
 # make test    everything that must hold, on whatever Vulkan device is here (a software driver is installed
 #              by apt where there is none)
+# make plain   what draws once more, without validation of synchronization
 # make demo    the built-in head with each technique, and with DATA=path a file of yours, into target/demo
 # make bench   frame times of each technique on this device
 

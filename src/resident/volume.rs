@@ -41,7 +41,8 @@ impl TextureLayout {
     }
 
     /// Voxels on either side that a sample of a brick may need: two for the widest filter, the cubic, one more for
-    /// the differences that make its gradient. Nothing is interpolated between the slices of a stack.
+    /// the differences that make its gradient. Across the slices of a stack one does for both: nothing there looks
+    /// farther than the next slice.
     fn halo(self) -> [u32; 3] {
         self.filtered_axes()
             .map(|is_filtered| if is_filtered { 3 } else { 1 })
