@@ -80,7 +80,10 @@ fn assert_changes(
     let changed = pixels()
         .filter(|(a, b)| (a[0] - b[0]).abs() > 0.002)
         .count();
-    assert!(changed > 100, "{what}: {changed} pixels change");
+    assert!(
+        20 * changed > found.pixels.len(),
+        "{what}: {changed} pixels change"
+    );
     assert!(pixels().all(|(a, b)| a[3] == b[3]), "{what}: opacity");
 }
 
@@ -104,7 +107,11 @@ fn assert_gradients_drawn_as_computed(volume: &Volume, what: &str) {
         // One of the two placements of each technique, in one of the two projections.
         for technique in [0, 2, 4] {
             let shot = &shots[(technique + i % 2 + 6 * (i / 2 % 2)) % shots.len()];
-            let central = shot.with(|settings| {
+            let small = Shot {
+                extent: [24, 20],
+                ..shot.clone()
+            };
+            let central = small.with(|settings| {
                 settings.filter = filter;
                 settings.shading = Some([&headlight, &lights][i % 2].clone());
                 settings.gradient_filter = Central;
