@@ -78,6 +78,11 @@ impl<'a> Scene<'a> {
         functions.into_iter().any(TransferFunction::is_graded)
     }
 
+    /// True where gradients make something of the picture.
+    pub fn has_gradients(&self) -> bool {
+        self.settings.shading.is_some() || self.is_graded()
+    }
+
     /// Its volumes, that of the scene first.
     pub fn volumes(&self) -> Vec<&'a Volume> {
         let beside = self.beside.volumes();

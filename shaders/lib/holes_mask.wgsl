@@ -5,3 +5,7 @@
 fn volume_is_valid(footprint: Footprint) -> bool {
     return all_valid(validity, footprint);
 }
+
+fn voxel_is_valid(voxel: vec3<i32>) -> bool {
+    return is_valid_at(validity, voxel);
+}

@@ -6,19 +6,19 @@
 #import shade
 
 fn material_of(sample: Sample) -> Classified {
-    if are_widgets() {
-        let gradient = gradient_at(sample.place);
-        let material = classify_by_gradient(sample.value, length(gradient));
+    let has_widgets = are_widgets();
+    var material = classify(sample.value);
+    // What is transparent shows no light: no gradient is made for it.
+    if !has_widgets && (material.extinction == 0.0 || frame.light_count == 0u) {
+        return material;
+    }
+    // In one place: look-ups of a wide filter take drivers long to compile.
+    let gradient = gradient_at(sample.place);
+    if has_widgets {
+        material = classify_by_gradient(material, sample.value, length(gradient));
         if material.extinction == 0.0 || frame.light_count == 0u {
             return material;
         }
-        return Classified(shade(material.color, gradient, sample.ray_direction), material.extinction);
     }
-    let material = classify(sample.value);
-    // What is transparent shows no light: no gradient is made for it.
-    if material.extinction == 0.0 || frame.light_count == 0u {
-        return material;
-    }
-    let gradient = gradient_at(sample.place);
     return Classified(shade(material.color, gradient, sample.ray_direction), material.extinction);
 }

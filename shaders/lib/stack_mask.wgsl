@@ -3,6 +3,11 @@
 #import stack
 #import footprint
 
+fn is_valid_at(mask: Mask, voxel: vec3<i32>) -> bool {
+    let texel = texel_in_brick(voxel);
+    return textureLoad(mask, texel.xy, texel.z, 0).x != 0u;
+}
+
 fn all_valid(mask: Mask, footprint: Footprint) -> bool {
     let low = texel_of(footprint.min);
     let high = texel_of(footprint.max);

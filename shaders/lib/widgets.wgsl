@@ -26,9 +26,8 @@ fn are_widgets() -> bool {
     return head.y + head.z > 0.0;
 }
 
-// What a value is made of where it rises by `magnitude` per world length.
-fn classify_by_gradient(value: f32, magnitude: f32) -> Classified {
-    let material = classify(value);
+// What a value is made of where it rises by `magnitude` per world length; `material` is what it is made of anyway.
+fn classify_by_gradient(material: Classified, value: f32, magnitude: f32) -> Classified {
     let head = widgets.d[0];
     let share_count = u32(head.y);
     let steepness = magnitude * head.x;

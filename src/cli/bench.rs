@@ -5,7 +5,7 @@
 
 use super::{
     Error, cameras_file,
-    flags::{Classification, Depth, NotBuilt, SceneFlags},
+    flags::{Classification, Depth, SceneFlags},
     output::{self, say, say_aside, write_whole},
     progress::{Progress, ProgressWord},
     renderer::{Device, Job, Renderer},
@@ -52,8 +52,6 @@ pub struct Bench {
     /// No empty-space skipping: the picture is the same without
     #[arg(long)]
     no_skip: bool,
-    #[command(flatten)]
-    not_built: NotBuilt,
 }
 
 /// What is drawn where no INPUT is given.
@@ -62,7 +60,6 @@ const DEFAULT_INPUT: &str = "phantom:head";
 impl Bench {
     /// Measures, prints, writes.
     pub fn run(mut self, gate: &Gate) -> Result<(), Error> {
-        self.not_built.refuse()?;
         self.scene.classification.inline_file()?;
         let mut scene = match &self.scene_file {
             Some(path) => scene_file::overlay(scene_file::read(path)?, &self.scene),

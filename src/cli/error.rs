@@ -88,6 +88,12 @@ impl From<offscreen::Error> for Error {
             offscreen::Error::Technique(error @ technique::Error::FilterAlone { .. }) => {
                 Self::usage(error.to_string(), "--filter linear draws them together")
             }
+            offscreen::Error::Technique(error @ technique::Error::NoDerivative { .. }) => {
+                Self::usage(
+                    error.to_string(),
+                    "--gradient-filter cubic is for every --filter",
+                )
+            }
             offscreen::Error::Technique(error) => Self::Limit(error.to_string()),
             offscreen::Error::NoLayer { .. } => Self::NotBuilt(error.to_string()),
         }

@@ -2,7 +2,7 @@
 
 use super::{
     Error,
-    flags::{Depth, NotBuilt, SceneFlags},
+    flags::{Depth, SceneFlags},
     output::{self, write_whole},
     progress::{Progress, ProgressWord},
     reasons::why_empty,
@@ -58,8 +58,6 @@ pub struct Render {
     /// No empty-space skipping: the picture is the same without
     #[arg(long)]
     no_skip: bool,
-    #[command(flatten)]
-    not_built: NotBuilt,
 }
 
 /// Reads the word of `--bit-depth`.
@@ -74,7 +72,6 @@ pub fn bit_depth(word: &str) -> Result<BitDepth, String> {
 impl Render {
     /// Draws and writes.
     pub fn run(mut self, gate: &Gate) -> Result<(), Error> {
-        self.not_built.refuse()?;
         let scene = self.whole_scene()?;
         let format = picture_format(&self.output)?;
         let layers = scene.picture.layers()?;

@@ -13,11 +13,12 @@ use crate::scene::{Beside, Scene, positions_in_pixel};
 use crate::shaders::Frame;
 use crate::technique::blend::{Fragment, blend, blend_material, clear_color};
 use crate::technique::gradient::gradient_of;
+use crate::technique::gradient_taps::weighted_gradient;
 use crate::technique::mixture::{color_of, colored, mixed};
 use crate::technique::shading::shade;
 use crate::technique::{
-    Error, Filter, Mix, Mode, Recording, Role, Technique, isosurface, projection, raycast,
-    slices_2d, slices_3d,
+    Error, Filter, GradientSource, Mix, Mode, Recording, Role, Technique, isosurface, projection,
+    raycast, slices_2d, slices_3d,
 };
 use crate::transfer::{
     Absorption, PackedWidgets, Points, SlabTable, Table, TransferFunction, classify_by_gradient,
@@ -55,8 +56,19 @@ fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     let spline = scene.settings.filter.spline();
     let coefficients = spline.map(|spline| Coefficients::new(scene.volume, spline, axes));
     let read = coefficients.as_ref().map(Coefficients::volume);
-    let gathered =
-        |in_pixel| Walk::<R>::new(scene, read, &grid, in_pixel).map(|walk| walk.gather_all());
+    let source = scene.settings.gradient_source();
+    let source = source.filter(|_| scene.has_gradients());
+    let of_gradients = source.and_then(GradientSource::spline);
+    let of_gradients =
+        of_gradients.map(|spline| Coefficients::new(scene.volume, spline, [true; 3]));
+    let of_gradients = of_gradients
+        .as_ref()
+        .map_or(scene.volume, Coefficients::volume);
+    let gathered = |in_pixel| {
+        let walk = Walk::<R>::new(scene, read, &grid, in_pixel)?;
+        let gradients = source.map(|_| of_gradients);
+        Ok::<_, Error>(Walk { gradients, ..walk }.gather_all())
+    };
     let centers = gathered([0.0; 2])?;
     let transfer = match scene.transfer {
         Some(transfer) => transfer.clone(),
@@ -99,6 +111,8 @@ struct Walk<'a, R> {
     scene: &'a Scene<'a>,
     volumes: Vec<&'a Volume>,
     roles: Vec<Role>,
+    /// What gradients are made of, where that is not values as the filter makes them.
+    gradients: Option<&'a Volume>,
     /// One a transfer function; none in a projecting mode, which classifies when it resolves.
     classifiers: Vec<Classifier>,
     /// What the gradient makes of the only function, where it makes something.
@@ -155,6 +169,7 @@ impl<'a, R: Real> Walk<'a, R> {
             scene,
             volumes: read.map_or_else(|| scene.volumes(), |read| vec![read]),
             roles: scene.roles(),
+            gradients: None,
             classifiers,
             widgets,
             frame,
@@ -242,7 +257,7 @@ impl<'a, R: Real> Walk<'a, R> {
             if frame.light_count == 0 {
                 return color;
             }
-            let gradient = gradient_of(frame, |step| value_at(moved(p, step)));
+            let gradient = self.gradient(p, |step| value_at(moved(p, step)));
             shade(frame, color, gradient, ray_direction)
         };
         let found = isosurface::surfaces(frame, pixel, value_at, lit);
@@ -258,7 +273,7 @@ impl<'a, R: Real> Walk<'a, R> {
         let ray_direction = pixel_ray(&self.frame, pixel).direction;
         let material_at = |p| {
             let look = |volume: &_, filter, step| filtered(volume, filter, moved(p, step));
-            self.material(look, ray_direction)
+            self.material(look, p, ray_direction)
         };
         let blend = |target, fragment: Fragment<R, [R; 4]>| {
             blend_material(settings.order, target, fragment.value, fragment.length)
@@ -278,23 +293,35 @@ impl<'a, R: Real> Walk<'a, R> {
             Technique::Slices3d => self.blend_all(|i| self.on_plane(pixel, i, material_at), blend),
             Technique::Slices2d if settings.smooth => self.composite_between(pixel),
             Technique::Slices2d => {
-                let material_at = |axis, slice: u32, p| {
+                let material_at = |axis: usize, slice: u32, p: [R; 3]| {
                     let look = |volume: &Volume, filter, step: [i32; 3]| {
                         let last = volume.dims[axis] - 1;
                         let slice = slice.saturating_add_signed(step[axis]).min(last);
                         filtered_in_slice(volume, filter, axis, slice, moved(p, step))
                     };
-                    self.material(look, ray_direction)
+                    let mut on_slice = p;
+                    on_slice[axis] = R::from_f64(f64::from(slice) + 0.5);
+                    self.material(look, on_slice, ray_direction)
                 };
                 self.blend_all(|i| self.on_slice(pixel, i, material_at), blend)
             }
         }
     }
 
-    /// What the volumes are made of where `look_from` looks from, so many voxels away; `None` for no data.
+    /// The gradient at `p`; `tap` filters values so many voxels away.
+    fn gradient(&self, p: [R; 3], tap: impl Fn([i32; 3]) -> Option<R>) -> [R; 3] {
+        let operator = self.scene.settings.gradient_operator();
+        match self.gradients {
+            Some(source) => weighted_gradient(&self.frame, source, operator, p),
+            None => gradient_of(&self.frame, tap),
+        }
+    }
+
+    /// What the volumes are made of at `p`, where `look_from` looks from, so many voxels away; `None` for no data.
     fn material(
         &self,
         look_from: impl Fn(&Volume, Filter, [i32; 3]) -> Option<R>,
+        p: [R; 3],
         ray_direction: [R; 3],
     ) -> Option<[R; 4]> {
         let settings = self.scene.settings;
@@ -317,7 +344,7 @@ impl<'a, R: Real> Walk<'a, R> {
                 return Some(material);
             }
             let tap = |step| look_from(volume, settings.filter, step);
-            let gradient = gradient_of(&self.frame, tap);
+            let gradient = self.gradient(p, tap);
             if let Some(widgets) = &self.widgets {
                 let magnitude = dot(gradient, gradient).sqrt();
                 let spacing = R::from_f32(self.frame.smallest_spacing);

@@ -15,14 +15,15 @@ use super::submission::{self, Submission};
 use super::sum::sum_of;
 use super::tally::{Clock, Mean, check_layers};
 use super::targets::Targets;
-use super::upload::upload;
+use super::upload::{upload, upload_with_gradient_source};
 use crate::gpu::{Headless, ParameterRing, Timer, Use};
 use crate::picture::{ColorSpace, Layer, LayerKind, Picture};
 use crate::resident::{GpuTransfer, GpuVolume, TextureLayout};
 use crate::resolve::reference::projected_value;
 use crate::scene::{Scene, positions_in_pixel};
 use crate::technique::{
-    self, Inputs, Mix, Mode, Part, Recording, Settings, Technique, Words, parameter_ring,
+    self, GradientSource, Inputs, Mix, Mode, Part, Recording, Settings, Technique, Words,
+    parameter_ring,
 };
 use crate::transfer::{Classified, TransferFunction, Window};
 use crate::volume::{Spline, Volume};
@@ -60,13 +61,18 @@ struct Copied {
     layout: TextureLayout,
     /// Coefficients in place of voxels.
     spline: Option<Spline>,
+    /// What gradients are made of beside the values.
+    gradient_source: Option<GradientSource>,
 }
 
 impl Copied {
     fn of(scene: &Scene) -> Self {
+        let layout = scene.view(&scene.volume.grid(), [0.0; 2]).texture_layout();
+        let gradient_source = scene.settings.gradient_source_beside(layout);
         Self {
-            layout: scene.view(&scene.volume.grid(), [0.0; 2]).texture_layout(),
+            layout,
             spline: scene.settings.filter.spline(),
+            gradient_source: gradient_source.filter(|_| scene.has_gradients()),
         }
     }
 }
@@ -129,8 +135,22 @@ impl<'v> Renderer<'v> {
         }
         let copied = Copied::of(scene);
         if !self.resident.contains_key(&copied) {
-            let Copied { layout, spline } = copied;
-            let made = upload(&mut self.device, &self.volumes, layout, spline)?;
+            let Copied {
+                layout,
+                spline,
+                gradient_source,
+            } = copied;
+            let device = &mut self.device;
+            let made = match gradient_source {
+                None => upload(device, &self.volumes, layout, spline)?,
+                Some(source) => vec![upload_with_gradient_source(
+                    device,
+                    self.volumes[0],
+                    layout,
+                    spline,
+                    source,
+                )?],
+            };
             self.resident.insert(copied, made);
         }
         Ok(())

@@ -182,6 +182,9 @@ impl View<'_> {
             specular: 0.0,
             shininess: 0.0,
             smallest_spacing: self.grid.smallest_spacing() as f32,
+            gradient_operator: self.settings.gradient_operator().number(),
+            gradient_scale: coding.scale,
+            gradient_codes_are_integers: coding.is_integer.into(),
         };
         if let Some(shading) = &self.settings.shading {
             set_shading(shading, self.settings.color_space, &mut fields)?;

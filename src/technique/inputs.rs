@@ -2,7 +2,7 @@
 //! asks for.
 
 use super::{Filter, Lattice, Mix, Mode, Part, Role, Settings};
-use crate::gpu::{Bindings, Error, Gpu, Layout, ParameterRing, Resource};
+use crate::gpu::{Bindings, Error, Gpu, Image, Layout, ParameterRing, Resource};
 use crate::resident::{Brick, GpuTransfer, GpuVolume, TextureLayout};
 use crate::shaders::MAX_CHANNELS;
 use std::sync::Arc;
@@ -39,6 +39,7 @@ impl Inputs<'_> {
             TextureLayout::Stack(_) => "stack",
         };
         given.push((values, Resource::sampled(&self.brick.values)));
+        given.push(("gradient_source", Resource::sampled(self.gradient_source())));
         given.push(("volume_sampler", Resource::Sampler(self.volume.sampler())));
         given.extend(self.channels());
         if let Some(transfer) = self.transfer {
@@ -51,6 +52,16 @@ impl Inputs<'_> {
         given.extend_from_slice(outputs);
         given.retain(|(name, _)| layout.slots().iter().any(|slot| slot.name == *name));
         Bindings::new(gpu, layout, &given)
+    }
+}
+
+impl Inputs<'_> {
+    /// What gradients are made of: the values themselves, unless something lies beside them.
+    fn gradient_source(&self) -> &Image {
+        let beside = self.volume.gradient_source();
+        let bricks = beside.into_iter().flat_map(GpuVolume::bricks);
+        let mut same = bricks.filter(|brick| brick.cell == self.brick.cell);
+        &same.next().unwrap_or(self.brick).values
     }
 }
 

@@ -6,6 +6,8 @@ pub mod composite;
 mod frame;
 mod frame_of_mode;
 pub mod gradient;
+mod gradient_filter;
+pub mod gradient_taps;
 mod inputs;
 pub mod isosurface;
 mod march;
@@ -26,6 +28,7 @@ mod ways;
 
 pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 pub use frame::View;
+pub use gradient_filter::{GradientFilter, GradientSource, Operator};
 pub use inputs::{Inputs, Take, Words};
 pub use mixture::{Mix, Part, Role};
 pub use per_mode::{DEFAULT_ATTENUATION, Level, PerMode};
@@ -188,6 +191,8 @@ pub struct Settings {
     pub clip_planes: Vec<ClipPlane>,
     /// Light on composited samples of one volume; `None`: their colour as it is.
     pub shading: Option<Shading>,
+    /// How gradients are made, for light and for transfer functions of gradients.
+    pub gradient_filter: GradientFilter,
     /// Float targets, no early termination, filtering by texel fetch, control points searched exactly.
     pub conformance: bool,
     /// What single modes want to know.
@@ -371,6 +376,22 @@ pub enum Error {
         "widgets and gradient opacity are for one volume of numbers, not for several that are mixed"
     )]
     NotGradedTogether,
+    /// Nearest and linear filters have no derivative that is of use.
+    #[error(
+        "{filter:?} has no analytic gradient: its derivative is zero, or jumps from voxel to voxel"
+    )]
+    NoDerivative {
+        /// The filter.
+        filter: Filter,
+    },
+    /// Gradients are made of what lies on the device.
+    #[error("gradients read {}, and the volume on the device holds {} for them", held(.wanted.spline()), held(*.found))]
+    WrongGradientSource {
+        /// What [`Settings::gradient_source`] says.
+        wanted: GradientSource,
+        /// What the texture holds that they would read.
+        found: Option<Spline>,
+    },
     /// The parameters hold a fixed number of lights.
     #[error("{wanted} lights, the limit is {limit}")]
     TooManyLights {
@@ -417,6 +438,7 @@ impl Default for Settings {
             crop: None,
             clip_planes: Vec::new(),
             shading: None,
+            gradient_filter: GradientFilter::default(),
             conformance: false,
             per_mode: PerMode::default(),
         }

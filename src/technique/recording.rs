@@ -73,6 +73,7 @@ impl View<'_> {
         fields.flat_gradient = self.flat_gradient(volume.value_range());
         let cells: Vec<_> = volume.bricks().iter().map(|brick| brick.cell).collect();
         self.check_slabs(&cells)?;
+        self.set_gradients(volume, transfer, &mut fields)?;
         if self.settings.mode == Mode::Iso && cells.len() > 1 {
             let (mode, bricks) = (Mode::Iso, cells.len());
             return Err(Error::NeedsOneBrick { mode, bricks });

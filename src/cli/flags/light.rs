@@ -103,6 +103,11 @@ impl LightFlags {
         self.shading.unwrap_or(of_mode)
     }
 
+    /// True where a picture in `mode` is lit.
+    pub fn is_lit(&self, mode: Mode) -> bool {
+        self.word(mode) == ShadingWord::Phong
+    }
+
     /// The light of a picture in `mode`.
     pub fn shading(&self, mode: Mode) -> Result<Option<Shading>, Error> {
         if self.word(mode) == ShadingWord::None {

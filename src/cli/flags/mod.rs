@@ -8,6 +8,7 @@ mod channels;
 mod classification;
 mod component;
 mod denoise;
+mod gradient_filter;
 mod gradients;
 mod inlined;
 mod input;
@@ -15,7 +16,6 @@ mod labels;
 mod levels;
 mod light;
 mod modes;
-mod not_built;
 mod numbers;
 mod picture;
 mod sampling;
@@ -28,6 +28,7 @@ pub use channels::{ChannelFlags, ChannelWord, Plan};
 pub use classification::{Classification, ClassificationFlags, preset, summary, with_causes};
 pub use component::Component;
 pub use denoise::DenoiseWord;
+pub use gradient_filter::GradientFlags;
 pub use gradients::{boundaries_of, refuse_gradients_in};
 pub use inlined::{Inlined, function_in};
 pub use input::{InputFlags, relative};
@@ -35,7 +36,6 @@ pub use labels::LabelFlags;
 pub use levels::LevelFlags;
 pub use light::LightFlags;
 pub use modes::ModeFlags;
-pub use not_built::NotBuilt;
 pub use numbers::{Background, Numbers, Size, finite, positive};
 pub use picture::PictureFlags;
 pub use sampling::{Depth, SamplingFlags};
@@ -70,6 +70,8 @@ pub struct SceneFlags {
     #[command(flatten)]
     pub light: LightFlags,
     #[command(flatten)]
+    pub gradient: GradientFlags,
+    #[command(flatten)]
     pub camera: CameraFlags,
     #[command(flatten)]
     pub section: SectionFlags,
@@ -98,8 +100,15 @@ impl SceneFlags {
         let shading = self.light.shading(settings.mode)?;
         Ok(Settings {
             shading,
+            gradient_filter: self.gradient.filter(),
             ..settings
         })
+    }
+
+    /// False where nothing in the picture hangs on a gradient; a function that is read may make something of it.
+    fn may_have_gradients(&self) -> bool {
+        let mode = self.sampling.mode.unwrap_or_default().mode();
+        self.light.is_lit(mode) || !mode.is_projection() && self.classification.names_a_function()
     }
 
     /// Flags that change nothing under the others, a sentence each.
@@ -109,6 +118,7 @@ impl SceneFlags {
             self.sampling.idle(),
             self.modes.idle(mode),
             self.light.idle(mode),
+            self.gradient.idle(self.may_have_gradients()),
             self.camera.idle(),
         ];
         topics.concat()
