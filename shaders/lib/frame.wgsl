@@ -128,6 +128,12 @@ struct Frame {
     kernel: u32,
     // World length of the shortest side of a voxel.
     smallest_spacing: f32,
+    // What is left of extinction and colour where a label is dimmed.
+    dim: f32,
+    // Cut faces: 0 none, 1 in the picture's own colours, 2 in greys, by (value - cut_low) * cut_scale.
+    cut_faces: u32,
+    cut_low: f32,
+    cut_scale: f32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

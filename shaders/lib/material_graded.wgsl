@@ -5,18 +5,23 @@
 #import widgets
 #import shade
 
+// Not on a cut face, which is seen along no direction.
+fn is_lit(sample: Sample) -> bool {
+    return frame.light_count != 0u && any(sample.ray_direction != vec3(0.0));
+}
+
 fn material_of(sample: Sample) -> Classified {
     if are_widgets() {
         let gradient = gradient_at(sample.place);
         let material = classify_by_gradient(sample.value, length(gradient));
-        if material.extinction == 0.0 || frame.light_count == 0u {
+        if material.extinction == 0.0 || !is_lit(sample) {
             return material;
         }
         return Classified(shade(material.color, gradient, sample.ray_direction), material.extinction);
     }
     let material = classify(sample.value);
     // What is transparent shows no light: no gradient is made for it.
-    if material.extinction == 0.0 || frame.light_count == 0u {
+    if material.extinction == 0.0 || !is_lit(sample) {
         return material;
     }
     let gradient = gradient_at(sample.place);

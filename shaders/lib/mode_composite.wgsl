@@ -6,6 +6,7 @@
 
 #import opacity
 #import material_{mix}
+#import face_grey
 
 struct Accumulator {
     color: vec3<f32>,
@@ -30,7 +31,10 @@ fn beside_of(found: Accumulator) -> vec4<f32> {
 }
 
 fn add(so_far: Accumulator, sample: Sample, segment: Segment) -> Accumulator {
-    let material = material_of(sample);
+    var material = material_of(sample);
+    if segment.length == FACE_LENGTH {
+        material = on_face(material, value_of(sample));
+    }
     let opacity = opacity_over(material.extinction, segment.length);
     var next = so_far;
     next.color += so_far.transmittance * opacity * material.color;
@@ -41,7 +45,7 @@ fn add(so_far: Accumulator, sample: Sample, segment: Segment) -> Accumulator {
     return next;
 }
 
-// The ray ends after the sample at which transmittance falls under the threshold.
+// The ray ends after the sample at which transmittance falls under the threshold, and at a cut face that is opaque.
 fn is_finished(so_far: Accumulator) -> bool {
-    return so_far.transmittance < frame.termination;
+    return so_far.transmittance < frame.termination || (frame.cut_faces != 0u && so_far.transmittance == 0.0);
 }

@@ -10,7 +10,7 @@
 use super::Error;
 use super::fade::{render_faded, stacks_of};
 use super::passes::{Passes, key_of};
-use super::position::positions;
+use super::position::{labels, positions};
 use super::submission::{self, Submission};
 use super::sum::sum_of;
 use super::tally::{Clock, Mean, check_layers};
@@ -393,14 +393,17 @@ impl<'v> Renderer<'v> {
                 LayerKind::Value if mode == Mode::Iso && beside[1] < 0.0 => f32::NAN,
                 LayerKind::Value if mode == Mode::Iso => beside[0],
                 LayerKind::Value => projected_value(mode, *left).unwrap_or(f32::NAN),
-                LayerKind::Depth | LayerKind::Position if beside[1] < 0.0 => f32::NAN,
-                LayerKind::Depth | LayerKind::Position => beside[1],
+                LayerKind::Depth | LayerKind::Position | LayerKind::Label => match beside[1] {
+                    depth if depth < 0.0 => f32::NAN,
+                    depth => depth,
+                },
                 LayerKind::Transmittance => 1.0 - left[3],
                 LayerKind::Samples => beside[3],
             };
             let values: Vec<f32> = left.iter().zip(&beside).map(number).collect();
             let values = match kind {
                 LayerKind::Position => positions(scene, &values),
+                LayerKind::Label => labels(scene, &values),
                 _ => values,
             };
             Layer { kind, values }

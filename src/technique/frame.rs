@@ -80,6 +80,7 @@ impl View<'_> {
         self.settings.check()?;
         self.check_sample_count()?;
         let of_mode = self.of_mode();
+        let of_faces = self.settings.of_faces();
         let reach = self.cover_reach();
         let margin = self.cover_margin(&rays, &world_from_voxel) + reach.voxels;
         let (clip_planes, clip_plane_count) = self.clip_planes()?;
@@ -181,6 +182,10 @@ impl View<'_> {
             specular: 0.0,
             shininess: 0.0,
             smallest_spacing: self.grid.smallest_spacing() as f32,
+            dim: self.settings.dim as f32,
+            cut_faces: of_faces.cut_faces,
+            cut_low: of_faces.cut_low,
+            cut_scale: of_faces.cut_scale,
         };
         if let Some(shading) = &self.settings.shading {
             set_shading(shading, self.settings.color_space, &mut fields)?;

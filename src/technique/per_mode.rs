@@ -170,6 +170,13 @@ impl Settings {
         if self.per_mode.exact_maximum && !(is_trilinear && has_extreme && is_along_rays) {
             return Err(Error::NotExact { technique, mode });
         }
+        if !(0.0..=1.0).contains(&self.dim) {
+            return Err(Error::OutOfRange {
+                name: "what is left of dimmed labels",
+                wanted: "0 to 1",
+                found: self.dim,
+            });
+        }
         self.per_mode.check(mode)
     }
 }

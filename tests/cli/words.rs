@@ -10,7 +10,6 @@ fn a_word_that_is_not_built_exits_2_and_is_named() {
             "render phantom:fog -o a.png --gradient-filter cubic",
             "`--gradient-filter`",
         ),
-        ("render phantom:fog -o a.exr --aov label", "`--aov label`"),
         ("conformance --device cpu", "`stratavox conformance`"),
     ] {
         folder

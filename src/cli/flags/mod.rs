@@ -7,6 +7,7 @@ mod camera;
 mod channels;
 mod classification;
 mod component;
+mod cuts;
 mod denoise;
 mod gradients;
 mod inlined;
@@ -98,6 +99,7 @@ impl SceneFlags {
         let shading = self.light.shading(settings.mode)?;
         Ok(Settings {
             shading,
+            dim: self.labels.dim()?,
             ..settings
         })
     }

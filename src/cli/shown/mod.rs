@@ -255,7 +255,8 @@ impl Reader<'_> {
         } = *source.header();
         let (volume, height_factor) = load_from(source, self.scene, self.device, self.progress)?;
         let flags = &self.scene.classification;
-        let has_table = self.scene.labels.label_tf.is_some() && self.scene.labels.labels.is_none();
+        let words = &self.scene.labels;
+        let has_table = (words.label_tf.is_some() || words.cut()) && words.labels.is_none();
         let may_name = says_nothing(flags)? && self.mode == Mode::Composite;
         if (has_table || is_labels)
             && may_name
@@ -270,6 +271,12 @@ impl Reader<'_> {
                 height_factor,
                 others: Others::Channels(Vec::new()),
             });
+        }
+        if words.cut() && words.labels.is_none() {
+            return Err(Error::usage(
+                "--label-show, --label-hide and --label-dim are for labels in their own colours, in --mode composite",
+                "leave out --preset, --tf, --window and --mode, or lay a map over INPUT with --labels FILE",
+            ));
         }
         let classification = flags.classification(&volume, self.mode)?;
         let modes = &self.scene.modes;
@@ -305,15 +312,22 @@ impl Reader<'_> {
         Ok(match (table, present) {
             (table, Some(present)) => {
                 let table = table.unwrap_or_else(LabelTable::default);
-                Some(table.function(present.into_keys(), labels::diagonal(volume)))
+                let function = table.function(present.into_keys(), labels::diagonal(volume));
+                let words = &self.scene.labels;
+                Some(LabelTable::cut(
+                    function,
+                    |label| words.shows(label),
+                    |label| words.dims(Some(&table), label),
+                    words.dim()?,
+                ))
             }
-            (Some(_), None) => {
+            (_, None) if self.scene.labels.label_tf.is_some() || self.scene.labels.cut() => {
                 return Err(Error::usage(
-                    "--label-tf names labels, and the values of INPUT are none",
+                    "--label-tf, --label-show, --label-hide and --label-dim are for labels, and the values of INPUT are none",
                     "--labels FILE lays a label map over INPUT",
                 ));
             }
-            (None, None) => None,
+            (_, None) => None,
         })
     }
 
