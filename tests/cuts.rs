@@ -1,14 +1,22 @@
-//! What a picture leaves out, makes faint and names: labels that are dimmed, and the layer of labels.
+//! What a picture leaves out, makes faint and names: labels that are dimmed, the layer of labels, and faces of cuts.
 
 mod shared;
 
-use glam::{DAffine3, dvec3};
-use shared::{Shot, Worst, device, oblique_shots, sheared_affine, straight_shots, volume_of};
+use glam::{DAffine3, DVec3, dvec3};
+use shared::{
+    Shot, Worst, compare, device, oblique_shots, ramps, sheared_affine, straight_shots, volume_of,
+    waves,
+};
+use stratavox::camera::{Camera, Projection};
 use stratavox::offscreen::{self, Renderer, reference};
 use stratavox::picture::{ColorSpace, LayerKind, Picture};
 use stratavox::scene::{Beside, Channel, Scene};
-use stratavox::technique::{Filter, Lattice, Mode, Role, Technique};
-use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
+use stratavox::technique::{
+    ClipPlane, CutFaces, Filter, Lattice, Mode, Role, Settings, Shading, Technique,
+};
+use stratavox::transfer::{
+    Classified, ColorPoint, Interpolation, OpacityPoint, TransferFunction, Window,
+};
 use stratavox::volume::{Grid, Volume, labels::dim};
 
 const GRID: fn() -> Grid = || Grid {
@@ -219,4 +227,306 @@ fn a_picture_without_labels_has_no_layer_of_them() {
     let scene = nearest.scene(&map, Some(&names));
     let projected = renderer.render(&scene, &[LayerKind::Label]).unwrap_err();
     assert!(projected.to_string().contains("Average"), "{projected}");
+}
+
+/// Rays along both lattices, and jittered ones.
+fn ray_shots(grid: Grid) -> Vec<Shot> {
+    let all = oblique_shots(grid, Mode::Composite).into_iter();
+    let on_rays = all.filter(|shot| shot.settings.technique == Technique::Raycast);
+    on_rays
+        .flat_map(|shot| {
+            let jittered = shot.with(|settings| settings.lattice = Lattice::Jitter);
+            match shot.settings.lattice {
+                Lattice::Ray => vec![shot, jittered],
+                _ => vec![shot],
+            }
+        })
+        .map(|shot| Shot {
+            extent: [28, 24],
+            ..shot
+        })
+        .collect()
+}
+
+/// A crop box with three faces inside of the grid, and a plane that is oblique to everything.
+fn cut(settings: &mut Settings) {
+    settings.crop = Some([dvec3(0.0, 5.0, 0.0), dvec3(14.5, 21.0, 10.0)]);
+    settings.clip_planes = vec![ClipPlane {
+        normal: dvec3(-1.0, -0.4, 0.3),
+        offset: -GRID().center().dot(dvec3(1.0, 0.4, -0.3)) - 1.0,
+    }];
+    settings.cut_faces = Some(CutFaces::Own);
+}
+
+#[test]
+fn a_cut_face_has_the_colour_of_what_lies_there_and_its_depth() {
+    // The field is x: what a pixel shows says where its ray has met the face.
+    let volume = volume_of(CUBE.dims, CUBE.world_from_voxel, |p| p.x);
+    let transfer = TransferFunction {
+        color: [(0.0, [0.0, 1.0, 0.25]), (12.0, [1.0, 0.0, 0.25])]
+            .map(|(value, srgb)| ColorPoint { value, srgb })
+            .into(),
+        // Hardly anything, and nothing under 3.
+        opacity: [(3.0, 0.0), (3.0, 0.001)]
+            .map(|(value, opacity)| OpacityPoint { value, opacity })
+            .into(),
+        reference_length: None,
+        interpolation: Interpolation::Linear,
+        graded: None,
+    };
+    let mut renderer = Renderer::new(device(), &volume).unwrap();
+    for preintegrated in [false, true] {
+        for shot in ray_shots(CUBE).into_iter().take(3) {
+            let shot = shot.with(|settings| {
+                settings.preintegrated = preintegrated;
+                settings.color_space = ColorSpace::Display;
+                // All but the face that looks at the eye is grid.
+                settings.crop = Some([DVec3::ZERO, dvec3(12.0, 12.0, 8.0)]);
+                settings.cut_faces = Some(CutFaces::Own);
+                settings.shading =
+                    (!preintegrated && settings.lattice != Lattice::Jitter).then(Shading::default);
+            });
+            let scene = shot.scene(&volume, Some(&transfer));
+            let found = renderer.render(&scene, &[LayerKind::Depth]).unwrap();
+            let depths = layer(&found.picture, LayerKind::Depth);
+            let rays = shot.camera.rays(shot.extent);
+            let mut worst = Worst::new(format!("face, {preintegrated}, {}", shot.what()));
+            let mut seen = 0;
+            for (i, [x, y]) in shot.pixels().enumerate() {
+                let (origin, direction) = rays.at(f64::from(x) + 0.5, f64::from(y) + 0.5);
+                let t = (8.0 - origin.z) / direction.z;
+                let place = origin + t * direction;
+                let pixel = found.picture.pixels[i];
+                let margin = 1e-3;
+                let inside = |x: f64| (0.5 + margin..11.5 - margin).contains(&x);
+                if direction.z > 0.0 || !inside(place.x) || !inside(place.y) {
+                    continue;
+                }
+                if place.x < 3.0 - margin {
+                    // Transparent there: what lies behind is seen, or nothing.
+                    assert!(pixel[3] < 0.1, "{pixel:?}");
+                    continue;
+                }
+                if place.x < 3.0 + 2.0 * margin {
+                    continue;
+                }
+                seen += 1;
+                let share = place.x / 12.0;
+                let wanted = [share, 1.0 - share, 0.25, 1.0];
+                for c in 0..4 {
+                    // A table is within 1/4096 of the law, and where a ray lies f32 says to 1e-5 here.
+                    let allowed = if c < 2 { 1.0 / 4096.0 + 1e-5 } else { 1e-6 };
+                    worst.take([x, y], f64::from(pixel[c]) - wanted[c], allowed);
+                }
+                worst.take([x, y], f64::from(depths[i]) - t, 5e-5);
+            }
+            worst.assert_holds();
+            assert!(seen > 30, "{seen} pixels of the face, {}", shot.what());
+        }
+    }
+}
+
+#[test]
+fn a_face_in_greys_is_the_section_through_the_same_plane() {
+    let volume = volume_of(GRID().dims, sheared_affine(), waves);
+    let window = [0.1, 0.9];
+    let grey = Window::new(window[0], window[1]).unwrap();
+    let section = grey.grey(Classified::Projection);
+    let normal = dvec3(0.3, -0.5, 0.8).normalize();
+    let center = GRID().center();
+    let camera = Camera {
+        eye: center + 60.0 * normal,
+        target: center,
+        up: DVec3::Y,
+        projection: Projection::Orthographic { view_height: 30.0 },
+        zoom: 1.0,
+    };
+    let plane = |normal: DVec3, thickness: f64| ClipPlane {
+        normal,
+        offset: normal.dot(center) - 0.5 * thickness,
+    };
+    let thinnest = 0.01 * GRID().smallest_spacing();
+    let mut renderer = Renderer::new(device(), &volume).unwrap();
+    for filter in [Filter::Linear, Filter::Cubic] {
+        let shot = |mode, clip_planes, cut_faces| Shot {
+            grid: GRID(),
+            camera,
+            extent: [48, 40],
+            settings: Settings {
+                mode,
+                filter,
+                clip_planes,
+                cut_faces,
+                conformance: true,
+                ..Settings::default()
+            },
+        };
+        let thin = vec![plane(normal, thinnest), plane(-normal, thinnest)];
+        let cut = shot(Mode::Average, thin, None);
+        let wanted = cut.scene(&volume, Some(&section));
+        let wanted = renderer.render(&wanted, &[]).unwrap().picture;
+        // Nothing but the face: no opacity anywhere, as the other colours do not count.
+        let half = vec![plane(-normal, 0.0)];
+        let faced = shot(Mode::Composite, half, Some(CutFaces::Grey(window)));
+        let nothing = fog([1.0, 0.0, 0.0], 0.0);
+        let scene = faced.scene(&volume, Some(&nothing));
+        let found = [
+            renderer.render(&scene, &[]).unwrap().picture,
+            reference::render::<f32>(&scene).unwrap(),
+        ];
+        for found in found {
+            let mut worst = Worst::new(format!("face and section, {filter:?}"));
+            let mut seen = 0;
+            for (i, pixel) in faced.pixels().enumerate() {
+                let (wanted, found) = (wanted.pixels[i], found.pixels[i]);
+                let is_open = wanted[0] < 1e-4;
+                let is_edge = wanted[3] != 1.0;
+                if is_open || is_edge {
+                    continue;
+                }
+                seen += 1;
+                assert_eq!(found[3], 1.0, "{pixel:?}");
+                for c in 0..3 {
+                    // Both places are known to some 1e-5 (f32, 60 away from the eye); the waves rise by at most 1 a
+                    // world length, the window by 1.25 a value, light by 2.3 a grey.
+                    let allowed = 2.0 * 1e-5 * 1.25 * 2.3 + 2e-6;
+                    worst.take(pixel, f64::from(wanted[c]) - f64::from(found[c]), allowed);
+                }
+            }
+            worst.assert_holds();
+            assert!(seen > 200, "{seen} pixels");
+        }
+    }
+}
+
+#[test]
+fn cut_faces_are_drawn_as_their_twin_computes_them() {
+    let volume = volume_of(GRID().dims, sheared_affine(), waves);
+    let (second, names) = (volume_of(GRID().dims, sheared_affine(), |p| p.x), ramps());
+    let mut holes = volume_of(GRID().dims, sheared_affine(), waves);
+    let mask = (0..holes.voxels.len()).map(|i| u8::from(!i.is_multiple_of(17)));
+    holes.validity = Some(mask.collect());
+    let channels = [Channel {
+        volume: &second,
+        transfer: Some(&names),
+        role: Role::Numbers,
+    }];
+    let colors = [&volume, &volume, &second];
+    let transfer = ramps();
+    let ways = [Some(CutFaces::Own), Some(CutFaces::Grey([0.3, 0.8]))];
+    for (shown, beside) in [
+        (&volume, Beside::Nothing),
+        (&holes, Beside::Nothing),
+        (&holes, Beside::Channels(&channels)),
+        (&volume, Beside::Colors(&colors)),
+    ] {
+        let others = beside.volumes();
+        let volumes = [shown].into_iter().chain(others).collect();
+        let mut renderer = Renderer::several(device(), volumes).unwrap();
+        let is_alone = matches!(beside, Beside::Nothing);
+        for (nth, shot) in ray_shots(GRID()).into_iter().enumerate() {
+            let is_jittered = shot.settings.lattice == Lattice::Jitter;
+            if is_jittered && !is_alone {
+                continue;
+            }
+            let shot = shot.with(|settings| {
+                cut(settings);
+                settings.cut_faces = ways[nth % 2];
+                settings.preintegrated = is_alone && nth >= 4;
+                settings.shading = (is_alone && !is_jittered && nth < 4).then(Shading::default);
+            });
+            let scene = Scene {
+                beside,
+                ..shot.scene(shown, Some(&transfer))
+            };
+            let all = [
+                reference::render::<f64>(&scene).unwrap(),
+                reference::render::<f32>(&scene).unwrap(),
+                renderer.render(&scene, &[]).unwrap().picture,
+            ];
+            let opaque = all[2].pixels.iter().filter(|p| p[3] == 1.0).count();
+            let what = format!("faces, {nth}, {}", shot.what());
+            assert!(opaque > 20, "{what}: {opaque} pixels of faces");
+            let lists = all.each_ref().map(|p| p.pixels.as_flattened());
+            compare(&what, 4 * all[0].width, lists, 1.0);
+        }
+    }
+}
+
+#[test]
+fn where_a_face_shows_nothing_the_picture_stays_as_it_is() {
+    // Nothing lies outside of a ball that no cut reaches.
+    let far = GRID().far_corner() / 2.0;
+    let volume = volume_of(GRID().dims, sheared_affine(), |p| {
+        if p.distance(far) < 4.0 {
+            waves(p).max(0.5)
+        } else {
+            0.0
+        }
+    });
+    let mut transfer = ramps();
+    transfer.opacity.insert(
+        0,
+        OpacityPoint {
+            value: 0.0,
+            opacity: 0.0,
+        },
+    );
+    transfer.opacity[1] = OpacityPoint {
+        value: 0.1,
+        opacity: 0.0,
+    };
+    let mut renderer = Renderer::new(device(), &volume).unwrap();
+    let inside = Camera {
+        eye: GRID().center(),
+        target: GRID().center() + DVec3::X,
+        up: DVec3::Z,
+        projection: Projection::Perspective { fov_degrees: 90.0 },
+        zoom: 1.0,
+    };
+    for shot in ray_shots(GRID()) {
+        for camera in [shot.camera, inside] {
+            let shot = Shot {
+                camera,
+                ..shot.with(|settings| {
+                    settings.crop = Some([DVec3::splat(1.25), GRID().far_corner() - 1.25]);
+                })
+            };
+            let faced = shot.with(|settings| settings.cut_faces = Some(CutFaces::Own));
+            let [without, with] = [&shot, &faced].map(|shot| {
+                let scene = shot.scene(&volume, Some(&transfer));
+                renderer.render(&scene, &[]).unwrap().picture
+            });
+            assert!(without.pixels.iter().any(|pixel| pixel[3] > 0.1));
+            assert!(without.pixels == with.pixels, "{}", shot.what());
+        }
+    }
+}
+
+#[test]
+fn faces_are_refused_by_name_where_there_are_none() {
+    let volume = volume_of(CUBE.dims, CUBE.world_from_voxel, |p| p.x);
+    let transfer = ramps();
+    for (technique, mode) in [
+        (Technique::Slices2d, Mode::Composite),
+        (Technique::Raycast, Mode::Mip),
+        (Technique::Raycast, Mode::Mida),
+    ] {
+        let settings = Settings {
+            technique,
+            mode,
+            cut_faces: Some(CutFaces::Own),
+            ..Settings::default()
+        };
+        let shot = oblique_shots(CUBE, mode).swap_remove(0);
+        let shot = Shot { settings, ..shot };
+        let scene = shot.scene(&volume, Some(&transfer));
+        let problem = reference::render::<f32>(&scene).unwrap_err().to_string();
+        assert!(problem.contains("opaque cut face"), "{problem}");
+    }
+    let shot = oblique_shots(CUBE, Mode::Composite).swap_remove(0);
+    let shot = shot.with(|settings| settings.cut_faces = Some(CutFaces::Grey([2.0, 2.0])));
+    let scene = shot.scene(&volume, Some(&transfer));
+    let problem = reference::render::<f32>(&scene).unwrap_err().to_string();
+    assert!(problem.contains("window of cut faces"), "{problem}");
 }

@@ -37,6 +37,7 @@ fn layers_of(shot: &Shot) -> Vec<LayerKind> {
         LayerKind::Position => shot.settings.technique == Technique::Raycast && mode.has_depth(),
         // Waves are no labels.
         LayerKind::Label => false,
+        LayerKind::Samples => true,
     })
     .collect()
 }

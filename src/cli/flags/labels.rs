@@ -263,10 +263,8 @@ mod tests {
 
     #[test]
     fn the_words_on_dimming_count_more_than_the_table() {
-        let table = LabelTable {
-            dimmed: vec![7],
-            ..LabelTable::default()
-        };
+        let text = r#"{"stratavox_transfer_function":1,"dim":[7],"labels":[[1,"a",0,0,1,1]]}"#;
+        let table = LabelTable::parse(text.as_bytes()).expect("a table");
         let silent = LabelFlags::default();
         assert!(silent.dims(Some(&table), 7) && !silent.dims(Some(&table), 3));
         let flags = LabelFlags {
