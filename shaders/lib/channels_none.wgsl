@@ -1,5 +1,7 @@
 // Channels in which every voxel has a value.
 
+#import holes_none
+
 fn channel_has_data(channel: u32, place: Place) -> bool {
     return true;
 }

@@ -106,6 +106,8 @@ struct Walk<'a, R> {
     marks: Vec<Volume>,
     /// One a transfer function; none in a projecting mode, which classifies when it resolves.
     classifiers: Vec<Classifier>,
+    /// What colours surfaces by another volume.
+    paint: Option<Points>,
     /// What the gradient makes of the only function, where it makes something.
     widgets: Option<PackedWidgets>,
     frame: Frame,
@@ -162,6 +164,7 @@ impl<'a, R: Real> Walk<'a, R> {
             roles: scene.roles(),
             marks: marks_of_scene(scene),
             classifiers,
+            paint: paint_of(scene),
             widgets,
             frame,
             slices,
@@ -243,8 +246,14 @@ impl<'a, R: Real> Walk<'a, R> {
     /// The surfaces that a ray meets.
     fn surfaces(&self, pixel: [R; 2]) -> Gathered<R> {
         let (frame, filter) = (&self.frame, self.scene.settings.filter);
-        let value_at = |p| filtered(self.scene.volume, filter, p);
-        let lit = |color, p, ray_direction| {
+        let value_at = |p| filtered(self.volumes[0], filter, p);
+        let lit = |own: [R; 3], p, ray_direction| {
+            let other = self.volumes.get(1).zip(self.paint.as_ref());
+            let color = other.and_then(|(volume, points)| {
+                let [r, g, b, _] = classify_by_points(points, filtered(volume, filter, p)?);
+                Some([r, g, b])
+            });
+            let color = color.unwrap_or(own);
             if frame.light_count == 0 {
                 return color;
             }
@@ -309,7 +318,7 @@ impl<'a, R: Real> Walk<'a, R> {
             Technique::Raycast => {
                 let (frame, lattice) = (&self.frame, settings.lattice);
                 Gathered::of_composite(if settings.mode == Mode::Mida {
-                    let value_at = |p| filtered(self.scene.volume, settings.filter, p);
+                    let value_at = |p| filtered(self.volumes[0], settings.filter, p);
                     let sample_at = |p| value_at(p).zip(material_at(p));
                     raycast::reference::accumulated(frame, lattice, pixel, sample_at)
                 } else {
@@ -450,6 +459,17 @@ impl<'a, R: Real> Walk<'a, R> {
             Classifier::Slabs(slabs) => classify_slab(slabs, value, value),
         }
     }
+}
+
+/// The function of the volume that colours surfaces.
+fn paint_of(scene: &Scene) -> Option<Points> {
+    let function = scene.transfers().get(1).copied().flatten();
+    let function = function.filter(|_| scene.settings.mode == Mode::Iso)?;
+    let absorption = Absorption::Extinction {
+        reference_length: scene.length_of(function),
+    };
+    let space = scene.settings.color_space;
+    Some(Points::new(function, absorption, space))
 }
 
 fn marks_of_scene(scene: &Scene) -> Vec<Volume> {

@@ -175,7 +175,12 @@ impl<'v> Renderer<'v> {
         self.prepare(scene)?;
         let functions = scene.transfers().into_iter();
         match functions.collect::<Option<Vec<_>>>() {
-            _ if scene.settings.mode == Mode::Iso => {}
+            _ if scene.settings.mode == Mode::Iso => {
+                // What colours the surfaces.
+                if let Some(&Some(function)) = scene.transfers().get(1) {
+                    self.set_transfers(scene, &[function])?;
+                }
+            }
             Some(functions) => self.set_transfers(scene, &functions)?,
             None if scene.settings.mode.is_projection() => {
                 clock.add(self.gather(scene, [0.0; 2])?);

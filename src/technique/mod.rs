@@ -264,11 +264,13 @@ pub enum Error {
         /// What has not.
         found: String,
     },
-    /// The ends of a slab lie in voxels that its brick does not hold.
+    /// The ends of a slab, or of a segment that crosses a surface, lie in voxels that its brick does not hold.
     #[error(
-        "the volume lies in bricks, and pre-integrated samples reach {reach:.1} voxels beyond theirs, the limit is {limit}: take more samples per voxel"
+        "the volume lies in bricks, and {what} reach {reach:.1} voxels beyond theirs, the limit is {limit}: take more samples per voxel"
     )]
     SlabsTooLong {
+        /// What is long.
+        what: &'static str,
         /// Voxels.
         reach: f64,
         /// What bricks hold.
@@ -328,14 +330,6 @@ pub enum Error {
         found: usize,
         /// How many there may be.
         limit: usize,
-    },
-    /// A segment of a ray that crosses a surface must lie in one texture.
-    #[error("a volume of {bricks} bricks: {mode:?} needs it in one texture of the device")]
-    NeedsOneBrick {
-        /// The mode.
-        mode: Mode,
-        /// How many bricks the volume lies in.
-        bricks: usize,
     },
     /// What has an exact extreme is a trilinear field along rays.
     #[error(

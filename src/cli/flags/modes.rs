@@ -102,6 +102,12 @@ impl ModeFlags {
         })
     }
 
+    /// The other variable that surfaces are coloured by.
+    pub fn paint(&self, mode: Mode) -> Option<&str> {
+        let word = self.levels.iso_color_by.as_deref();
+        word.filter(|_| mode == Mode::Iso)
+    }
+
     /// Of several numbers a voxel.
     pub fn check_several(&self, mode: Mode) -> Result<(), Error> {
         if !mode.needs_rays() {
