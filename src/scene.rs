@@ -141,6 +141,10 @@ impl<'a> Scene<'a> {
         if self.is_graded() && mode.is_projection() {
             return Err(Error::NotGraded { mode });
         }
+        // The picture of the maximum has no gradient.
+        if self.is_graded() && mode == Mode::Mida && self.settings.per_mode.mida_gamma > 0.0 {
+            return Err(Error::NotGraded { mode });
+        }
         match self.mix() {
             Mix::Alone | Mix::Graded => Ok(()),
             _ if self.is_graded() => Err(Error::NotGradedTogether),

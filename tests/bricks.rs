@@ -216,6 +216,9 @@ fn ways(center: glam::DVec3) -> Vec<Settings> {
     let mut exact = by_rays(Mode::Mip, Filter::Linear);
     exact.per_mode.exact_maximum = true;
     ways.push(exact);
+    let mut mixed = by_rays(Mode::Mida, Filter::Linear);
+    mixed.per_mode.mida_gamma = 0.5;
+    ways.push(mixed);
     let cut = |settings: Settings| Settings {
         crop: Some([glam::dvec3(0.0, 4.3, 0.0), glam::dvec3(12.2, 21.0, 9.7)]),
         cut_faces: Some(CutFaces::Own),

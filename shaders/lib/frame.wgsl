@@ -103,6 +103,8 @@ struct Frame {
     lmip_threshold: f32,
     // How much of a new maximum's height is taken from what lies before it: 1 + gamma.
     mida_fade: f32,
+    // The share of the maximum's picture: gamma over 0.
+    mida_mip: f32,
     // Per world length of matter of value 1.
     attenuation: f32,
     // How dark it is at depth 1 of (depth - depth_near) * depth_scale.
@@ -134,6 +136,8 @@ struct Frame {
     cut_faces: u32,
     cut_low: f32,
     cut_scale: f32,
+    // Nothing lies behind this recording.
+    is_last_brick: u32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -25,6 +25,11 @@ fn resumed(picture: vec4<f32>, beside: vec4<f32>) -> Accumulator {
     return Accumulator(picture.xyz, beside.z, beside.y, beside.w);
 }
 
+// What the picture gets.
+fn picture_of(found: Accumulator) -> vec4<f32> {
+    return vec4(found.color, 1.0 - found.transmittance);
+}
+
 // 0, depth, transmittance, samples.
 fn beside_of(found: Accumulator) -> vec4<f32> {
     return vec4(0.0, found.depth, found.transmittance, found.samples);

@@ -320,7 +320,8 @@ impl<'a, R: Real> Walk<'a, R> {
                 Gathered::of_composite(if settings.mode == Mode::Mida {
                     let value_at = |p| filtered(self.volumes[0], settings.filter, p);
                     let sample_at = |p| value_at(p).zip(material_at(p));
-                    raycast::reference::accumulated(frame, lattice, pixel, sample_at)
+                    let classify = |value| self.classify(0, value);
+                    raycast::reference::accumulated(frame, lattice, pixel, sample_at, classify)
                 } else {
                     let same = |material| material;
                     raycast::reference::radiance(frame, lattice, pixel, material_at, same)

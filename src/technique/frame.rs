@@ -166,6 +166,7 @@ impl View<'_> {
             value_scale: of_mode.value_scale,
             lmip_threshold: of_mode.lmip_threshold,
             mida_fade: of_mode.mida_fade,
+            mida_mip: of_mode.mida_mip,
             attenuation: of_mode.attenuation,
             depth_cue: of_mode.depth_cue,
             depth_near: of_mode.depth_near,
@@ -186,6 +187,7 @@ impl View<'_> {
             cut_faces: of_faces.cut_faces,
             cut_low: of_faces.cut_low,
             cut_scale: of_faces.cut_scale,
+            is_last_brick: 1,
         };
         if let Some(shading) = &self.settings.shading {
             set_shading(shading, self.settings.color_space, &mut fields)?;

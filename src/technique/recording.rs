@@ -83,6 +83,7 @@ impl View<'_> {
             let mut fields = fields;
             if cells.len() > 1 {
                 self.set_brick(cell, nth == 0, &mut fields);
+                fields.is_last_brick = (nth + 1 == cells.len()).into();
             }
             self.recording(brick, Some(cell), fields)
         };
