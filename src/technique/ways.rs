@@ -30,7 +30,6 @@ impl Settings {
         of_technique(self.smooth, SMOOTH, Technique::Slices2d, "2D stacks")?;
         of_mode(self.smooth, SMOOTH)?;
         of_technique(is_jittered, JITTER, Technique::Raycast, "ray casting")?;
-        of_mode(is_jittered, JITTER)?;
         let is_cut = self.cut_faces.is_some();
         of_technique(is_cut, CUT_FACES, Technique::Raycast, "ray casting")?;
         of_mode(is_cut, CUT_FACES)?;
@@ -41,6 +40,13 @@ impl Settings {
                 name: "the upper end of the window of cut faces",
                 wanted: "a higher number than the lower, both finite",
                 found: high,
+            });
+        }
+        if is_jittered && mode == Mode::Iso {
+            return Err(Error::NotFor {
+                wanted: JITTER,
+                of: "modes of samples",
+                found: "surfaces, whose places do not hang on where steps begin".to_owned(),
             });
         }
         if self.shading.is_some() {
@@ -55,11 +61,7 @@ impl Settings {
 
     /// A way to sample of its own that is asked for.
     fn way(&self) -> Option<&'static str> {
-        let ways = [
-            (self.preintegrated, PREINTEGRATED),
-            (self.smooth, SMOOTH),
-            (self.lattice == Lattice::Jitter, JITTER),
-        ];
+        let ways = [(self.preintegrated, PREINTEGRATED), (self.smooth, SMOOTH)];
         ways.into_iter()
             .find_map(|(is_on, name)| is_on.then_some(name))
     }
