@@ -24,7 +24,8 @@ pub enum Beside<'a> {
     #[default]
     Nothing,
     /// Other things in the same place, each with a transfer function of its own: in composite a physical mixture,
-    /// in modes that project the sum of the pictures of each.
+    /// in modes that project the sum of the pictures of each, and one alone, of numbers, in iso: what colours the
+    /// surfaces, by the colours of its function.
     Channels(&'a [Channel<'a>]),
     /// Green, blue, and perhaps alpha; the scene's volume is red. All hold sRGB numbers from 0 to 1, the first
     /// three multiplied with alpha where there is one ([`crate::volume::read_colors`] makes them so). The transfer
@@ -145,9 +146,14 @@ impl<'a> Scene<'a> {
         if self.is_graded() && mode.is_projection() {
             return Err(Error::NotGraded { mode });
         }
+        // The picture of the maximum has no gradient.
+        if self.is_graded() && mode == Mode::Mida && self.settings.per_mode.mida_gamma > 0.0 {
+            return Err(Error::NotGraded { mode });
+        }
         match self.mix() {
             Mix::Alone | Mix::Graded => Ok(()),
             _ if self.is_graded() => Err(Error::NotGradedTogether),
+            Mix::Channels if mode == Mode::Iso => self.check_painted(),
             _ if self.settings.shading.is_some() => Err(Error::NotShadedTogether),
             // Modes that project draw them one by one.
             _ if filter.kernel().is_some() && !mode.is_projection() => {
@@ -156,12 +162,31 @@ impl<'a> Scene<'a> {
             _ if volumes.iter().any(|volume| volume.grid() != grid) => Err(Error::OtherGrid),
             Mix::Colors if !(3..=4).contains(&wanted) => Err(Error::NoColor { found: wanted }),
             Mix::Colors if mode != Mode::Composite => Err(Error::NotMixed { mode }),
-            Mix::Channels if matches!(mode, Mode::Mida | Mode::Iso) => {
-                Err(Error::NotMixed { mode })
-            }
+            Mix::Channels if mode == Mode::Mida => Err(Error::NotMixed { mode }),
             Mix::Channels if mode.is_projection() && has_labels => Err(Error::NotMixed { mode }),
             _ if wanted > limit => Err(Error::TooManyChannels { wanted, limit }),
             _ => Ok(()),
+        }
+    }
+
+    /// Surfaces of the first volume are coloured by one other, of numbers.
+    fn check_painted(&self) -> Result<(), Error> {
+        let Settings { mode, filter, .. } = *self.settings;
+        match self.beside {
+            Beside::Channels([one]) if one.role == Role::Numbers => {
+                if filter.kernel().is_some() {
+                    return Err(Error::FilterAlone { filter });
+                }
+                if one.volume.grid() != self.volume.grid() {
+                    return Err(Error::OtherGrid);
+                }
+                match one.transfer {
+                    None => Err(Error::NoTransferFunction),
+                    Some(function) if function.is_graded() => Err(Error::NotGradedTogether),
+                    Some(_) => Ok(()),
+                }
+            }
+            _ => Err(Error::NotMixed { mode }),
         }
     }
 

@@ -104,6 +104,8 @@ struct Frame {
     lmip_threshold: f32,
     // How much of a new maximum's height is taken from what lies before it: 1 + gamma.
     mida_fade: f32,
+    // The share of the maximum's picture: gamma over 0.
+    mida_mip: f32,
     // Per world length of matter of value 1.
     attenuation: f32,
     // How dark it is at depth 1 of (depth - depth_near) * depth_scale.
@@ -133,6 +135,14 @@ struct Frame {
     gradient_operator: u32,
     gradient_scale: f32,
     gradient_codes_are_integers: u32,
+    // What is left of extinction and colour where a label is dimmed.
+    dim: f32,
+    // Cut faces: 0 none, 1 in the picture's own colours, 2 in greys, by (value - cut_low) * cut_scale.
+    cut_faces: u32,
+    cut_low: f32,
+    cut_scale: f32,
+    // Nothing lies behind this recording.
+    is_last_brick: u32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

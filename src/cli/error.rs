@@ -96,6 +96,9 @@ impl From<offscreen::Error> for Error {
             }
             offscreen::Error::Technique(error) => Self::Limit(error.to_string()),
             offscreen::Error::NoLayer { .. } => Self::NotBuilt(error.to_string()),
+            offscreen::Error::NoLabels => {
+                Self::usage(error.to_string(), "--labels FILE lays a map over INPUT")
+            }
         }
     }
 }

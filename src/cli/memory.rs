@@ -110,6 +110,8 @@ pub enum Held {
 impl Held {
     /// So many volumes of a picture of these flags.
     pub fn of(scene: &SceneFlags, count: u32) -> Self {
+        let mode = scene.sampling.mode.unwrap_or_default().mode();
+        let count = count + u32::from(scene.modes.paint(mode).is_some());
         match scene.denoise {
             Some(_) => Self::Denoised(count),
             None => Self::Volumes(count),

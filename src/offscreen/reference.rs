@@ -12,9 +12,11 @@ use crate::resolve::reference::{light_at, premultiplied};
 use crate::scene::{Beside, Scene, positions_in_pixel};
 use crate::shaders::Frame;
 use crate::technique::blend::{Fragment, blend, blend_material, clear_color};
+use crate::technique::composite::Composite;
+use crate::technique::faces::{FACE_LENGTH, cut_face, on_face};
 use crate::technique::gradient::gradient_of;
 use crate::technique::gradient_taps::weighted_gradient;
-use crate::technique::mixture::{color_of, colored, mixed};
+use crate::technique::mixture::{color_of, colored, dimmed, mixed};
 use crate::technique::shading::shade;
 use crate::technique::{
     Error, Filter, GradientSource, Mix, Mode, Recording, Role, Technique, isosurface, projection,
@@ -25,6 +27,7 @@ use crate::transfer::{
     classify_by_points, classify_by_table, classify_slab,
 };
 use crate::volume::kernel::{convolved, convolved_in_slice};
+use crate::volume::labels::{DIMMED, marks_of};
 use crate::volume::sample::{linear, linear_in_slice, nearest};
 use crate::volume::{Coefficients, Grid, Volume};
 
@@ -113,8 +116,12 @@ struct Walk<'a, R> {
     roles: Vec<Role>,
     /// What gradients are made of, where that is not values as the filter makes them.
     gradients: Option<&'a Volume>,
+    /// Which voxels of label maps are dimmed.
+    marks: Vec<Volume>,
     /// One a transfer function; none in a projecting mode, which classifies when it resolves.
     classifiers: Vec<Classifier>,
+    /// What colours surfaces by another volume.
+    paint: Option<Points>,
     /// What the gradient makes of the only function, where it makes something.
     widgets: Option<PackedWidgets>,
     frame: Frame,
@@ -170,7 +177,9 @@ impl<'a, R: Real> Walk<'a, R> {
             volumes: read.map_or_else(|| scene.volumes(), |read| vec![read]),
             roles: scene.roles(),
             gradients: None,
+            marks: marks_of_scene(scene),
             classifiers,
+            paint: paint_of(scene),
             widgets,
             frame,
             slices,
@@ -253,7 +262,13 @@ impl<'a, R: Real> Walk<'a, R> {
     fn surfaces(&self, pixel: [R; 2]) -> Gathered<R> {
         let (frame, filter) = (&self.frame, self.scene.settings.filter);
         let value_at = |p| filtered(self.volumes[0], filter, p);
-        let lit = |color, p, ray_direction| {
+        let lit = |own: [R; 3], p, ray_direction| {
+            let other = self.volumes.get(1).zip(self.paint.as_ref());
+            let color = other.and_then(|(volume, points)| {
+                let [r, g, b, _] = classify_by_points(points, filtered(volume, filter, p)?);
+                Some([r, g, b])
+            });
+            let color = color.unwrap_or(own);
             if frame.light_count == 0 {
                 return color;
             }
@@ -264,8 +279,44 @@ impl<'a, R: Real> Walk<'a, R> {
         Gathered::of_surfaces(found)
     }
 
-    /// Emission and absorption of what the volumes are made of together.
+    /// Emission and absorption of what the volumes are made of together, behind what a cut has laid bare.
     fn composite(&self, pixel: [R; 2]) -> Gathered<R> {
+        let Some((t, p)) = cut_face(&self.frame, pixel) else {
+            return self.composite_samples(pixel);
+        };
+        let look = |volume: &_, filter, step| filtered(volume, filter, moved(p, step));
+        // No light falls along no direction.
+        let own = self.material(look, p, [R::from_f64(0.0); 3]);
+        let mut face = Composite::default();
+        if let Some(own) = own {
+            let material = on_face(&self.frame, own, self.value_on_face(p));
+            face.add(material, R::from_f32(FACE_LENGTH), t);
+        }
+        if face.transmittance == R::from_f64(0.0) {
+            return Gathered::of_composite((face, 1));
+        }
+        let mut found = self.composite_samples(pixel);
+        found.samples += 1;
+        found
+    }
+
+    /// What the greys of a cut face are of: the first volume, or what the opacity of colours is classified by.
+    fn value_on_face(&self, p: [R; 3]) -> R {
+        let zero = R::from_f64(0.0);
+        let number = |volume: &Volume| {
+            let found = filtered(volume, self.scene.settings.filter, p);
+            found.unwrap_or(zero)
+        };
+        match (self.scene.beside, &self.volumes[..]) {
+            (Beside::Colors(_), [r, g, b, rest @ ..]) => {
+                let alpha = rest.first().map(|alpha| number(alpha));
+                color_of([r, g, b].map(|c| number(c)), alpha).1
+            }
+            _ => number(self.volumes[0]),
+        }
+    }
+
+    fn composite_samples(&self, pixel: [R; 2]) -> Gathered<R> {
         let settings = self.scene.settings;
         if settings.preintegrated {
             return self.composite_slabs(pixel);
@@ -284,7 +335,8 @@ impl<'a, R: Real> Walk<'a, R> {
                 Gathered::of_composite(if settings.mode == Mode::Mida {
                     let value_at = |p| filtered(self.volumes[0], settings.filter, p);
                     let sample_at = |p| value_at(p).zip(material_at(p));
-                    raycast::reference::accumulated(frame, lattice, pixel, sample_at)
+                    let classify = |value| self.classify(0, value);
+                    raycast::reference::accumulated(frame, lattice, pixel, sample_at, classify)
                 } else {
                     let same = |material| material;
                     raycast::reference::radiance(frame, lattice, pixel, material_at, same)
@@ -340,7 +392,8 @@ impl<'a, R: Real> Walk<'a, R> {
         if let [volume] = self.volumes[..] {
             let value = look(volume, settings.filter)?;
             let mut material = self.classify(0, value);
-            if self.frame.light_count == 0 && self.widgets.is_none() {
+            let is_lit = self.frame.light_count != 0 && ray_direction != [R::from_f64(0.0); 3];
+            if !is_lit && self.widgets.is_none() {
                 return Some(material);
             }
             let tap = |step| look_from(volume, settings.filter, step);
@@ -351,7 +404,7 @@ impl<'a, R: Real> Walk<'a, R> {
                 material = classify_by_gradient(widgets, material, value, magnitude, spacing);
             }
             let [r, g, b, extinction] = material;
-            if self.frame.light_count == 0 {
+            if !is_lit {
                 return Some(material);
             }
             let [r, g, b] = shade(&self.frame, [r, g, b], gradient, ray_direction);
@@ -367,7 +420,14 @@ impl<'a, R: Real> Walk<'a, R> {
         let has_data = found.iter().any(Option::is_some);
         let there = found.into_iter().enumerate();
         let materials = there.filter_map(|(c, value)| Some(self.classify(c, value?)));
-        has_data.then(|| mixed(materials))
+        let material = mixed(materials);
+        let dimmed_mark = Some(R::from_f64(DIMMED.into()));
+        let is_dimmed = |marks| look(marks, Filter::Nearest) == dimmed_mark;
+        let material = match self.marks.iter().any(is_dimmed) {
+            true => dimmed(material, R::from_f32(self.frame.dim)),
+            false => material,
+        };
+        has_data.then_some(material)
     }
 
     /// The sample of a pixel's ray on the view-aligned plane of an instance.
@@ -427,6 +487,23 @@ impl<'a, R: Real> Walk<'a, R> {
             Classifier::Slabs(slabs) => classify_slab(slabs, value, value),
         }
     }
+}
+
+/// The function of the volume that colours surfaces.
+fn paint_of(scene: &Scene) -> Option<Points> {
+    let function = scene.transfers().get(1).copied().flatten();
+    let function = function.filter(|_| scene.settings.mode == Mode::Iso)?;
+    let absorption = Absorption::Extinction {
+        reference_length: scene.length_of(function),
+    };
+    let space = scene.settings.color_space;
+    Some(Points::new(function, absorption, space))
+}
+
+fn marks_of_scene(scene: &Scene) -> Vec<Volume> {
+    let parts = scene.volumes().into_iter().zip(scene.roles());
+    let maps = parts.filter(|(_, role)| *role == Role::Labels);
+    maps.filter_map(|(map, _)| marks_of(map)).collect()
 }
 
 /// The position so many voxels away.

@@ -10,7 +10,7 @@
 use super::Error;
 use super::fade::{render_faded, stacks_of};
 use super::passes::{Passes, key_of};
-use super::position::positions;
+use super::position::{labels, positions};
 use super::submission::{self, Submission};
 use super::sum::sum_of;
 use super::tally::{Clock, Mean, check_layers};
@@ -195,7 +195,12 @@ impl<'v> Renderer<'v> {
         self.prepare(scene)?;
         let functions = scene.transfers().into_iter();
         match functions.collect::<Option<Vec<_>>>() {
-            _ if scene.settings.mode == Mode::Iso => {}
+            _ if scene.settings.mode == Mode::Iso => {
+                // What colours the surfaces.
+                if let Some(&Some(function)) = scene.transfers().get(1) {
+                    self.set_transfers(scene, &[function])?;
+                }
+            }
             Some(functions) => self.set_transfers(scene, &functions)?,
             None if scene.settings.mode.is_projection() => {
                 clock.add(self.gather(scene, [0.0; 2])?);
@@ -413,14 +418,17 @@ impl<'v> Renderer<'v> {
                 LayerKind::Value if mode == Mode::Iso && beside[1] < 0.0 => f32::NAN,
                 LayerKind::Value if mode == Mode::Iso => beside[0],
                 LayerKind::Value => projected_value(mode, *left).unwrap_or(f32::NAN),
-                LayerKind::Depth | LayerKind::Position if beside[1] < 0.0 => f32::NAN,
-                LayerKind::Depth | LayerKind::Position => beside[1],
+                LayerKind::Depth | LayerKind::Position | LayerKind::Label => match beside[1] {
+                    depth if depth < 0.0 => f32::NAN,
+                    depth => depth,
+                },
                 LayerKind::Transmittance => 1.0 - left[3],
                 LayerKind::Samples => beside[3],
             };
             let values: Vec<f32> = left.iter().zip(&beside).map(number).collect();
             let values = match kind {
                 LayerKind::Position => positions(scene, &values),
+                LayerKind::Label => labels(scene, &values),
                 _ => values,
             };
             Layer { kind, values }

@@ -80,6 +80,7 @@ impl View<'_> {
         self.settings.check()?;
         self.check_sample_count()?;
         let of_mode = self.of_mode();
+        let of_faces = self.settings.of_faces();
         let reach = self.cover_reach();
         let margin = self.cover_margin(&rays, &world_from_voxel) + reach.voxels;
         let (clip_planes, clip_plane_count) = self.clip_planes()?;
@@ -166,6 +167,7 @@ impl View<'_> {
             value_scale: of_mode.value_scale,
             lmip_threshold: of_mode.lmip_threshold,
             mida_fade: of_mode.mida_fade,
+            mida_mip: of_mode.mida_mip,
             attenuation: of_mode.attenuation,
             depth_cue: of_mode.depth_cue,
             depth_near: of_mode.depth_near,
@@ -185,6 +187,11 @@ impl View<'_> {
             gradient_operator: self.settings.gradient_operator().number(),
             gradient_scale: coding.scale,
             gradient_codes_are_integers: coding.is_integer.into(),
+            dim: self.settings.dim as f32,
+            cut_faces: of_faces.cut_faces,
+            cut_low: of_faces.cut_low,
+            cut_scale: of_faces.cut_scale,
+            is_last_brick: 1,
         };
         if let Some(shading) = &self.settings.shading {
             set_shading(shading, self.settings.color_space, &mut fields)?;

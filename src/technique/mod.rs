@@ -3,6 +3,7 @@
 mod accumulation;
 pub mod blend;
 pub mod composite;
+pub mod faces;
 mod frame;
 mod frame_of_mode;
 pub mod gradient;
@@ -155,6 +156,16 @@ pub struct ClipPlane {
     pub offset: f64,
 }
 
+/// How a cut through the volume looks. It is not lit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CutFaces {
+    /// As the transfer functions say, opaque wherever they have any opacity.
+    Own,
+    /// The greys of a window, its lower end first: opaque wherever the value is over that, as a slice of a scanner
+    /// shows it. Of several volumes the first counts, of colours what their opacity is classified by.
+    Grey([f64; 2]),
+}
+
 /// What to compute. Words of the command line, once checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
@@ -189,6 +200,8 @@ pub struct Settings {
     pub crop: Option<[glam::DVec3; 2]>,
     /// At most [`crate::shaders::MAX_CLIP_PLANES`].
     pub clip_planes: Vec<ClipPlane>,
+    /// Composite by rays: what the crop box and the clip planes lay bare is an opaque cross-section.
+    pub cut_faces: Option<CutFaces>,
     /// Light on composited samples of one volume; `None`: their colour as it is.
     pub shading: Option<Shading>,
     /// How gradients are made, for light and for transfer functions of gradients.
@@ -197,7 +210,12 @@ pub struct Settings {
     pub conformance: bool,
     /// What single modes want to know.
     pub per_mode: PerMode,
+    /// What is left of the extinction and of the colour of a dimmed label ([`crate::volume::labels::dim`]), 0 to 1.
+    pub dim: f64,
 }
+
+/// Faint, and still seen.
+pub const DEFAULT_DIM: f64 = 0.2;
 
 /// Samples that one ray may take: no wish of a host makes a shader run without end.
 pub const MAX_SAMPLES_PER_RAY: u32 = 1 << 20;
@@ -251,11 +269,13 @@ pub enum Error {
         /// What has not.
         found: String,
     },
-    /// The ends of a slab lie in voxels that its brick does not hold.
+    /// The ends of a slab, or of a segment that crosses a surface, lie in voxels that its brick does not hold.
     #[error(
-        "the volume lies in bricks, and pre-integrated samples reach {reach:.1} voxels beyond theirs, the limit is {limit}: take more samples per voxel"
+        "the volume lies in bricks, and {what} reach {reach:.1} voxels beyond theirs, the limit is {limit}: take more samples per voxel"
     )]
     SlabsTooLong {
+        /// What is long.
+        what: &'static str,
         /// Voxels.
         reach: f64,
         /// What bricks hold.
@@ -315,14 +335,6 @@ pub enum Error {
         found: usize,
         /// How many there may be.
         limit: usize,
-    },
-    /// A segment of a ray that crosses a surface must lie in one texture.
-    #[error("a volume of {bricks} bricks: {mode:?} needs it in one texture of the device")]
-    NeedsOneBrick {
-        /// The mode.
-        mode: Mode,
-        /// How many bricks the volume lies in.
-        bricks: usize,
     },
     /// What has an exact extreme is a trilinear field along rays.
     #[error(
@@ -437,10 +449,12 @@ impl Default for Settings {
             color_space: crate::picture::ColorSpace::default(),
             crop: None,
             clip_planes: Vec::new(),
+            cut_faces: None,
             shading: None,
             gradient_filter: GradientFilter::default(),
             conformance: false,
             per_mode: PerMode::default(),
+            dim: DEFAULT_DIM,
         }
     }
 }

@@ -9,7 +9,7 @@
 use super::mixture::{Part, set_channels};
 use super::slices_2d::{set_slices, stack_axis};
 use super::slices_3d::set_planes;
-use super::{Error, Mode, Order, Technique, View};
+use super::{Error, Order, Technique, View};
 use crate::gpu::{self, Gpu, ParameterRing};
 use crate::resident::{Cell, Coding, GpuTransfer, GpuVolume, TextureLayout, TransferLayout};
 use crate::shaders::{Frame, FrameFields};
@@ -74,10 +74,6 @@ impl View<'_> {
         let cells: Vec<_> = volume.bricks().iter().map(|brick| brick.cell).collect();
         self.check_slabs(&cells)?;
         self.set_gradients(volume, transfer, &mut fields)?;
-        if self.settings.mode == Mode::Iso && cells.len() > 1 {
-            let (mode, bricks) = (Mode::Iso, cells.len());
-            return Err(Error::NeedsOneBrick { mode, bricks });
-        }
         let mut order = self.front_to_back(&cells);
         let settings = self.settings;
         if settings.technique != Technique::Raycast && settings.order == Order::BackToFront {
@@ -88,6 +84,7 @@ impl View<'_> {
             let mut fields = fields;
             if cells.len() > 1 {
                 self.set_brick(cell, nth == 0, &mut fields);
+                fields.is_last_brick = (nth + 1 == cells.len()).into();
             }
             self.recording(brick, Some(cell), fields)
         };

@@ -1,12 +1,12 @@
 //! Ways to take samples of their own, and what does not go together with them.
 
-use super::{Error, Lattice, Mode, Settings, Technique};
+use super::{CutFaces, Error, Lattice, Mode, Settings, Technique};
 
 impl Settings {
     /// Whether technique and mode have the ways to sample that are asked for.
     ///
     /// # Errors
-    /// [`Error::NotFor`].
+    /// [`Error::NotFor`], and [`Error::OutOfRange`] for a window that is none.
     pub fn check_ways(&self) -> Result<(), Error> {
         let (mode, technique) = (self.mode, self.technique);
         let of_mode = |is_on: bool, wanted| match is_on && mode != Mode::Composite {
@@ -30,6 +30,18 @@ impl Settings {
         of_technique(self.smooth, SMOOTH, Technique::Slices2d, "2D stacks")?;
         of_mode(self.smooth, SMOOTH)?;
         of_technique(is_jittered, JITTER, Technique::Raycast, "ray casting")?;
+        let is_cut = self.cut_faces.is_some();
+        of_technique(is_cut, CUT_FACES, Technique::Raycast, "ray casting")?;
+        of_mode(is_cut, CUT_FACES)?;
+        if let Some(CutFaces::Grey([low, high])) = self.cut_faces
+            && !(low < high && (high - low).is_finite())
+        {
+            return Err(Error::OutOfRange {
+                name: "the upper end of the window of cut faces",
+                wanted: "a higher number than the lower, both finite",
+                found: high,
+            });
+        }
         if is_jittered && mode == Mode::Iso {
             return Err(Error::NotFor {
                 wanted: JITTER,
@@ -87,4 +99,5 @@ impl Settings {
 
 const PREINTEGRATED: &str = "pre-integrated classification";
 const SMOOTH: &str = "interpolation between slices";
+const CUT_FACES: &str = "an opaque cut face";
 const JITTER: &str = "jitter";

@@ -251,7 +251,7 @@ impl Animate {
             None => self.scene.clone(),
         };
         let target = Target::new(&self.output)?;
-        let layers = scene.picture.layers()?;
+        let layers = scene.picture.layers();
         self.check_target(&target, &layers)?;
         let keyframes = self
             .keyframes

@@ -7,6 +7,7 @@ mod camera;
 mod channels;
 mod classification;
 mod component;
+mod cuts;
 mod denoise;
 mod gradient_filter;
 mod gradients;
@@ -101,6 +102,7 @@ impl SceneFlags {
         Ok(Settings {
             shading,
             gradient_filter: self.gradient.filter(),
+            dim: self.labels.dim()?,
             ..settings
         })
     }
