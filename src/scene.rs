@@ -2,6 +2,7 @@
 
 use crate::camera::Camera;
 use crate::shaders::MAX_CHANNELS;
+use crate::technique::mixture::opacities_have_colors;
 use crate::technique::{Error, Mix, Mode, Role, Settings, View};
 use crate::transfer::TransferFunction;
 use crate::volume::Volume;
@@ -13,7 +14,7 @@ pub struct Channel<'a> {
     pub volume: &'a Volume,
     /// As [`Scene::transfer`].
     pub transfer: Option<&'a TransferFunction>,
-    /// Numbers, or labels that lie over (or hide) what the others show.
+    /// Numbers, labels that lie over (or hide) what the others show, or how opaque the channel before it is.
     pub role: Role,
 }
 
@@ -120,12 +121,14 @@ impl<'a> Scene<'a> {
     /// # Errors
     /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`], [`Error::NotMixed`],
     /// [`Error::NotShaded`], [`Error::NotShadedTogether`], [`Error::NotGraded`], [`Error::NotGradedTogether`],
-    /// [`Error::FilterAlone`], and those of [`Settings::check`].
+    /// [`Error::FilterAlone`], [`Error::OpacityOfNothing`], and those of [`Settings::check`].
     pub fn check(&self) -> Result<(), Error> {
         let volumes = self.volumes();
         let (wanted, limit) = (volumes.len(), MAX_CHANNELS as usize);
         let grid = self.volume.grid();
-        let has_labels = self.roles().contains(&Role::Labels);
+        let roles = self.roles();
+        // What a voxel is called, and what makes it opaque, are no numbers that can be projected.
+        let only_composite = |role: &Role| matches!(role, Role::Labels | Role::Opacity);
         let Settings { mode, filter, .. } = *self.settings;
         self.settings.check()?;
         if self.mix() != Mix::Alone {
@@ -154,7 +157,10 @@ impl<'a> Scene<'a> {
             Mix::Channels if matches!(mode, Mode::Mida | Mode::Iso) => {
                 Err(Error::NotMixed { mode })
             }
-            Mix::Channels if mode.is_projection() && has_labels => Err(Error::NotMixed { mode }),
+            Mix::Channels if mode.is_projection() && roles.iter().any(only_composite) => {
+                Err(Error::NotMixed { mode })
+            }
+            Mix::Channels if !opacities_have_colors(&roles) => Err(Error::OpacityOfNothing),
             _ if wanted > limit => Err(Error::TooManyChannels { wanted, limit }),
             _ => Ok(()),
         }

@@ -3,6 +3,9 @@
 
 mod shared;
 
+#[path = "mixtures/opacity.rs"]
+mod opacity;
+
 use glam::{DAffine3, DVec3};
 use shared::{
     Shot, Worst, compare, device, device_with, oblique_shots, ramps, sheared_affine, volume_of,

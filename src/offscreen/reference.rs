@@ -13,7 +13,7 @@ use crate::scene::{Beside, Scene, positions_in_pixel};
 use crate::shaders::Frame;
 use crate::technique::blend::{Fragment, blend, blend_material, clear_color};
 use crate::technique::gradient::gradient_of;
-use crate::technique::mixture::{color_of, colored, mixed};
+use crate::technique::mixture::{color_of, colored, material_of};
 use crate::technique::shading::shade;
 use crate::technique::{
     Error, Filter, Mix, Mode, Recording, Role, Technique, isosurface, projection, raycast,
@@ -333,14 +333,12 @@ impl<'a, R: Real> Walk<'a, R> {
         let mut found = [None; crate::shaders::MAX_CHANNELS as usize];
         for (c, (volume, role)) in self.volumes.iter().zip(&self.roles).enumerate() {
             found[c] = match role {
-                Role::Numbers => look(volume, settings.filter),
+                Role::Numbers | Role::Opacity => look(volume, settings.filter),
                 Role::Labels => Some(look(volume, Filter::Nearest)?),
             };
         }
-        let has_data = found.iter().any(Option::is_some);
-        let there = found.into_iter().enumerate();
-        let materials = there.filter_map(|(c, value)| Some(self.classify(c, value?)));
-        has_data.then(|| mixed(materials))
+        let found = &found[..self.roles.len()];
+        material_of(&self.roles, found, |c, value| self.classify(c, value))
     }
 
     /// The sample of a pixel's ray on the view-aligned plane of an instance.

@@ -281,6 +281,11 @@ pub enum Error {
         /// How many there may be.
         limit: usize,
     },
+    /// What makes something opaque needs something that it makes opaque.
+    #[error(
+        "a volume that says how opaque another is stands right behind the numbers that are coloured"
+    )]
+    OpacityOfNothing,
     /// Colours are red, green, blue, and perhaps alpha.
     #[error("a colour is made of 3 or 4 volumes, not of {found}")]
     NoColor {

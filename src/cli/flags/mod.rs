@@ -17,6 +17,7 @@ mod light;
 mod modes;
 mod not_built;
 mod numbers;
+mod opacity;
 mod picture;
 mod sampling;
 mod section;
@@ -37,6 +38,7 @@ pub use light::LightFlags;
 pub use modes::ModeFlags;
 pub use not_built::NotBuilt;
 pub use numbers::{Background, Numbers, Size, finite, positive};
+pub use opacity::OpacityFlags;
 pub use picture::PictureFlags;
 pub use sampling::{Depth, SamplingFlags};
 pub use section::SectionFlags;
@@ -63,6 +65,8 @@ pub struct SceneFlags {
     pub modes: ModeFlags,
     #[command(flatten)]
     pub classification: ClassificationFlags,
+    #[command(flatten)]
+    pub opacity: OpacityFlags,
     #[command(flatten)]
     pub channels: ChannelFlags,
     #[command(flatten)]

@@ -1,6 +1,7 @@
 //! What a picture shows: a volume and how it is classified, and what it is seen together with.
 
 mod colors;
+mod opacity;
 
 use super::{
     Error,
@@ -80,7 +81,17 @@ impl Shown {
     ) -> Result<Self, Error> {
         check(scene, settings)?;
         let (plan, note) = plan(scene, source.header())?;
-        let are_several = !matches!(plan, Plan::One) || scene.labels.labels.is_some();
+        if scene.opacity.are_given() && plan != Plan::One {
+            return Err(Error::usage(
+                format!(
+                    "{} makes one number a voxel opaque, and several are drawn",
+                    scene.opacity.word()
+                ),
+                "say which one is coloured: --component 0",
+            ));
+        }
+        let is_alone = plan == Plan::One && !has_beside(scene);
+        let are_several = !is_alone;
         if are_several && !settings.mode.is_projection() && settings.filter.kernel().is_some() {
             let filter = scene.sampling.filter.unwrap_or_default();
             return Err(Error::usage(
@@ -94,7 +105,6 @@ impl Shown {
         if let Some(note) = note {
             progress.note(&note);
         }
-        let is_alone = matches!(plan, Plan::One) && scene.labels.labels.is_none();
         if settings.shading.is_some() && !is_alone {
             return Err(Error::not_shaded_together());
         }
@@ -112,6 +122,24 @@ impl Shown {
             Plan::Channels(words) => reader.channels(source, &words)?,
             Plan::Colors => reader.colors(source)?,
         };
+        if scene.opacity.are_given() {
+            let by = reader.opacity(&shown.volume.grid(), shown.height_factor)?;
+            let Others::Channels(others) = &mut shown.others else {
+                unreachable!("one number a voxel is no colour");
+            };
+            if let Classification::Function(function) = &shown.classification
+                && function.is_graded()
+            {
+                return Err(Error::usage(
+                    format!(
+                        "{} makes a volume opaque by other numbers, and widgets and gradient opacity are for one volume alone",
+                        scene.opacity.word()
+                    ),
+                    "take a function of the value alone",
+                ));
+            }
+            others.push(by);
+        }
         if scene.labels.labels.is_some() {
             let Others::Channels(others) = &mut shown.others else {
                 return Err(Error::usage(
@@ -130,7 +158,8 @@ impl Shown {
             let grid = shown.volume.grid();
             let map = labels::read(scene, &grid, shown.height_factor, progress)?;
             let is_drawn = map.function.opacity.iter().any(|point| point.opacity > 0.0);
-            if is_drawn && says_nothing(&scene.classification)? {
+            let is_plain = says_nothing(&scene.classification)? && !scene.opacity.are_given();
+            if is_drawn && is_plain {
                 fade(&mut shown.classification);
                 progress.note(
                     "the volume is drawn faint, so that labels inside are seen; a --preset or --tf is drawn as it is",
@@ -201,7 +230,12 @@ fn plan(scene: &SceneFlags, header: &Header) -> Result<(Plan, Option<String>), E
 /// True where more than one number a voxel is seen.
 pub fn shows_several(scene: &SceneFlags, header: &Header) -> Result<bool, Error> {
     let (plan, _) = plan(scene, header)?;
-    Ok(plan != Plan::One || scene.labels.labels.is_some())
+    Ok(plan != Plan::One || has_beside(scene))
+}
+
+/// True where words name something that is seen together with the volume.
+fn has_beside(scene: &SceneFlags) -> bool {
+    scene.labels.labels.is_some() || scene.opacity.are_given()
 }
 
 /// What can be said wrong before anything is opened.
@@ -212,6 +246,25 @@ pub fn check(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
         return Err(Error::usage(
             "--labels needs --mode composite: the others have no place for labels",
             "leave out --mode or --labels",
+        ));
+    }
+    scene.opacity.check()?;
+    if scene.opacity.are_given() && mode != Mode::Composite {
+        return Err(Error::usage(
+            format!(
+                "{} needs --mode composite: the others show one number a ray",
+                scene.opacity.word()
+            ),
+            "leave out --mode",
+        ));
+    }
+    if scene.opacity.are_given() && settings.preintegrated {
+        return Err(Error::usage(
+            format!(
+                "{} and --preintegrated: slabs are integrated over one number",
+                scene.opacity.word()
+            ),
+            "leave out one of them",
         ));
     }
     let ClassificationFlags {
@@ -254,7 +307,14 @@ impl Reader<'_> {
             ..
         } = *source.header();
         let (volume, height_factor) = load_from(source, self.scene, self.device, self.progress)?;
-        let flags = &self.scene.classification;
+        let flags = &ClassificationFlags {
+            // That of other numbers says nothing of these.
+            opacity_function: match self.scene.opacity.are_given() {
+                true => None,
+                false => self.scene.classification.opacity_function.clone(),
+            },
+            ..self.scene.classification.clone()
+        };
         let has_table = self.scene.labels.label_tf.is_some() && self.scene.labels.labels.is_none();
         let may_name = says_nothing(flags)? && self.mode == Mode::Composite;
         if (has_table || is_labels)
