@@ -20,6 +20,7 @@ mod interrupt;
 mod manuals;
 mod memory;
 mod mixed;
+mod opacity;
 mod person;
 mod pictures;
 mod presets;
