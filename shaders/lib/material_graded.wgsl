@@ -3,12 +3,17 @@
 
 #import transfer_{transfer}
 #import widgets
+#import second
 #import shade
 
 fn material_of(sample: Sample) -> Classified {
     if are_widgets() {
         let gradient = gradient_at(sample.place);
-        let material = classify_by_gradient(sample.value, length(gradient));
+        var second = 0.0;
+        if wants_second() {
+            second = second_derivative_at(sample.place, gradient);
+        }
+        let material = classify_by_gradient(sample.value, length(gradient), second);
         if material.extinction == 0.0 || frame.light_count == 0u {
             return material;
         }

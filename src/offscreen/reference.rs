@@ -14,14 +14,15 @@ use crate::shaders::Frame;
 use crate::technique::blend::{Fragment, blend, blend_material, clear_color};
 use crate::technique::gradient::gradient_of;
 use crate::technique::mixture::{color_of, colored, material_of};
+use crate::technique::second::second_derivative_of;
 use crate::technique::shading::shade;
 use crate::technique::{
     Error, Filter, Mix, Mode, Recording, Role, Technique, isosurface, projection, raycast,
     slices_2d, slices_3d,
 };
 use crate::transfer::{
-    Absorption, PackedWidgets, Points, SlabTable, Table, TransferFunction, classify_by_gradient,
-    classify_by_points, classify_by_table, classify_slab,
+    Absorption, PackedWidgets, Points, SlabTable, Steepness, Table, TransferFunction,
+    classify_by_gradient, classify_by_points, classify_by_table, classify_slab,
 };
 use crate::volume::kernel::{convolved, convolved_in_slice};
 use crate::volume::sample::{linear, linear_in_slice, nearest};
@@ -319,9 +320,17 @@ impl<'a, R: Real> Walk<'a, R> {
             let tap = |step| look_from(volume, settings.filter, step);
             let gradient = gradient_of(&self.frame, tap);
             if let Some(widgets) = &self.widgets {
-                let magnitude = dot(gradient, gradient).sqrt();
-                let spacing = R::from_f32(self.frame.smallest_spacing);
-                material = classify_by_gradient(widgets, material, value, magnitude, spacing);
+                let second = if widgets.needs_second() {
+                    second_derivative_of(&self.frame, gradient, tap)
+                } else {
+                    R::from_f64(0.0)
+                };
+                let steep = Steepness {
+                    magnitude: dot(gradient, gradient).sqrt(),
+                    second,
+                    smallest_spacing: R::from_f32(self.frame.smallest_spacing),
+                };
+                material = classify_by_gradient(widgets, material, value, steep);
             }
             let [r, g, b, extinction] = material;
             if self.frame.light_count == 0 {

@@ -16,6 +16,7 @@ mod per_mode;
 pub mod projection;
 pub mod raycast;
 mod recording;
+pub mod second;
 pub mod shading;
 mod slab;
 mod slicer;
@@ -32,6 +33,7 @@ pub use per_mode::{DEFAULT_ATTENUATION, Level, PerMode};
 pub use recording::{Recording, parameter_ring};
 pub use shading::{Light, Shading};
 pub use slicer::Slicer;
+pub use turns::Functions;
 
 use crate::volume::{Spline, kernel::Kernel};
 
