@@ -31,6 +31,10 @@ pub enum Beside<'a> {
     /// three multiplied with alpha where there is one ([`crate::volume::read_colors`] makes them so). The transfer
     /// function is over alpha, or over luma (0 black to 1 white); its own colours are not used. Composite only.
     Colors(&'a [&'a Volume]),
+    /// Green, blue and depth of voxels that are classified already, the scene's volume is red
+    /// ([`crate::technique::preclassified::preclassified`] makes them). Of the transfer function only the reference
+    /// length is used, which must be that of the depths. Composite only.
+    Classified(&'a [&'a Volume]),
 }
 
 impl<'a> Beside<'a> {
@@ -39,7 +43,7 @@ impl<'a> Beside<'a> {
         match *self {
             Beside::Nothing => Vec::new(),
             Beside::Channels(channels) => channels.iter().map(|c| c.volume).collect(),
-            Beside::Colors(volumes) => volumes.to_vec(),
+            Beside::Colors(volumes) | Beside::Classified(volumes) => volumes.to_vec(),
         }
     }
 }
@@ -67,7 +71,7 @@ impl<'a> Scene<'a> {
     pub fn mix(&self) -> Mix {
         match self.beside {
             Beside::Channels(channels) if !channels.is_empty() => Mix::Channels,
-            Beside::Colors(_) => Mix::Colors,
+            Beside::Colors(_) | Beside::Classified(_) => Mix::Colors,
             _ if self.is_graded() => Mix::Graded,
             Beside::Nothing | Beside::Channels(_) => Mix::Alone,
         }
@@ -91,6 +95,7 @@ impl<'a> Scene<'a> {
             Beside::Channels(channels) => channels.iter().map(|c| c.role).collect(),
             Beside::Nothing => Vec::new(),
             Beside::Colors(volumes) => vec![Role::Numbers; volumes.len()],
+            Beside::Classified(volumes) => vec![Role::Material; volumes.len()],
         };
         [Role::Numbers].into_iter().chain(beside).collect()
     }
@@ -99,7 +104,7 @@ impl<'a> Scene<'a> {
     pub fn transfers(&self) -> Vec<Option<&'a TransferFunction>> {
         let beside = match self.beside {
             Beside::Channels(channels) => channels.iter().map(|c| c.transfer).collect(),
-            Beside::Nothing | Beside::Colors(_) => Vec::new(),
+            Beside::Nothing | Beside::Colors(_) | Beside::Classified(_) => Vec::new(),
         };
         [self.transfer].into_iter().chain(beside).collect()
     }
@@ -152,6 +157,9 @@ impl<'a> Scene<'a> {
                 Err(Error::FilterAlone { filter })
             }
             _ if volumes.iter().any(|volume| volume.grid() != grid) => Err(Error::OtherGrid),
+            Mix::Colors if matches!(self.beside, Beside::Classified(_)) && wanted != 4 => {
+                Err(Error::NoColor { found: wanted })
+            }
             Mix::Colors if !(3..=4).contains(&wanted) => Err(Error::NoColor { found: wanted }),
             Mix::Colors if mode != Mode::Composite => Err(Error::NotMixed { mode }),
             Mix::Channels if matches!(mode, Mode::Mida | Mode::Iso) => {

@@ -90,6 +90,7 @@ pub fn overlay(mut scene: SceneFlags, flags: &SceneFlags) -> SceneFlags {
     } else if flags.camera.places_the_eye() {
         scene.section = Default::default();
     }
+    scene.sampling.give_way_to(&flags.sampling);
     scene.classification.give_way_to(&flags.classification);
     let below = serde_json::to_value(scene).expect("flags as JSON");
     let above = serde_json::to_value(flags).expect("flags as JSON");

@@ -300,7 +300,7 @@ impl<'a, R: Real> Walk<'a, R> {
     ) -> Option<[R; 4]> {
         let settings = self.scene.settings;
         let look = |volume: &Volume, filter| look_from(volume, filter, [0; 3]);
-        if let Beside::Colors(_) = self.scene.beside {
+        if let Beside::Colors(_) | Beside::Classified(_) = self.scene.beside {
             let mut found = [R::from_f64(0.0); 4];
             for (number, volume) in found.iter_mut().zip(&self.volumes) {
                 *number = look(volume, settings.filter)?;
@@ -308,6 +308,10 @@ impl<'a, R: Real> Walk<'a, R> {
             let [r, g, b, alpha] = found;
             let alpha = (self.volumes.len() == 4).then_some(alpha);
             let (srgb, value) = color_of([r, g, b], alpha);
+            if let Beside::Classified(_) = self.scene.beside {
+                let [r, g, b] = srgb;
+                return Some([r, g, b, value / R::from_f64(self.scene.reference_length())]);
+            }
             let extinction = self.classify(0, value)[3];
             return Some(colored(srgb, extinction, settings.color_space));
         }

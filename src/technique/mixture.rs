@@ -51,6 +51,8 @@ pub enum Role {
     Numbers,
     /// Names of things: always the nearest, and where they are no data the whole sample is hidden.
     Labels,
+    /// Of classified voxels: light, and the optical depth over the reference length ([`super::preclassified`]).
+    Material,
     /// How opaque the numbers right before it are, which say the colour. What it is itself is not seen, and where
     /// one of the two has no data neither is the other.
     Opacity,
@@ -91,6 +93,8 @@ pub(super) fn set_channels(
         let bricks = part.volume.bricks().iter();
         bricks.map(|brick| brick.cell).collect::<Vec<_>>()
     };
+    let is_classified = parts.iter().any(|part| part.role == Role::Material);
+    fields.colors_are_classified = is_classified.into();
     for (c, part) in parts.iter().enumerate() {
         let (volume, first) = (part.volume, parts[0].volume);
         if volume.grid() != first.grid() || cells(part) != cells(&parts[0]) {

@@ -13,6 +13,7 @@ pub mod merge;
 pub mod mida;
 pub mod mixture;
 mod per_mode;
+pub mod preclassified;
 pub mod projection;
 pub mod raycast;
 mod recording;

@@ -22,11 +22,12 @@ mod picture;
 mod sampling;
 mod section;
 mod subject;
+mod values;
 mod words;
 
 pub use camera::CameraFlags;
 pub use channels::{ChannelFlags, ChannelWord, Plan};
-pub use classification::{Classification, ClassificationFlags, preset, summary, with_causes};
+pub use classification::{Classification, ClassificationFlags};
 pub use component::Component;
 pub use denoise::DenoiseWord;
 pub use gradients::{boundaries_of, refuse_gradients_in};
@@ -43,6 +44,7 @@ pub use picture::PictureFlags;
 pub use sampling::{Depth, SamplingFlags};
 pub use section::SectionFlags;
 pub use subject::Subject;
+pub use values::{preset, summary, with_causes};
 
 use super::Error;
 use crate::technique::Settings;
@@ -100,10 +102,31 @@ impl SceneFlags {
     pub fn settings_of(&self, sampling: &SamplingFlags, depth: Depth) -> Result<Settings, Error> {
         let settings = self.section.settings(sampling, depth)?;
         let shading = self.light.shading(settings.mode)?;
-        Ok(Settings {
+        let settings = Settings {
             shading,
             ..settings
+        };
+        if !self.wants_slabs() {
+            return Ok(settings);
+        }
+        let slabs = Settings {
+            preintegrated: true,
+            ..settings.clone()
+        };
+        // What a file asks for gives way to what a person does.
+        Ok(match slabs.check_ways() {
+            Ok(()) => slabs,
+            Err(_) => settings,
         })
+    }
+
+    /// True where the function asks for slabs and no word is against it.
+    fn wants_slabs(&self) -> bool {
+        let is_one = !self.channels.are_given()
+            && self.input.component != Some(Component::All)
+            && self.labels.labels.is_none()
+            && !self.opacity.are_given();
+        is_one && self.classification.wants_slabs() && !self.sampling.says_how()
     }
 
     /// Flags that change nothing under the others, a sentence each.

@@ -2,6 +2,7 @@
 
 mod colors;
 mod opacity;
+mod preclassified;
 
 use super::{
     Error,
@@ -45,6 +46,7 @@ pub struct Shown {
 enum Others {
     Channels(Vec<Other>),
     Colors(Vec<Volume>),
+    Classified(Vec<Volume>),
 }
 
 /// A volume that is seen together with the first.
@@ -90,6 +92,12 @@ impl Shown {
                 "say which one is coloured: --component 0",
             ));
         }
+        if scene.sampling.preclassified && plan != Plan::One {
+            return Err(Error::usage(
+                "--preclassified is for one number a voxel, and several are drawn",
+                "take one of them: --component 0",
+            ));
+        }
         let is_alone = plan == Plan::One && !has_beside(scene);
         let are_several = !is_alone;
         if are_several && !settings.mode.is_projection() && settings.filter.kernel().is_some() {
@@ -122,6 +130,9 @@ impl Shown {
             Plan::Channels(words) => reader.channels(source, &words)?,
             Plan::Colors => reader.colors(source)?,
         };
+        if scene.sampling.preclassified {
+            return preclassified::classified(shown, settings.color_space);
+        }
         if scene.opacity.are_given() {
             let by = reader.opacity(&shown.volume.grid(), shown.height_factor)?;
             let Others::Channels(others) = &mut shown.others else {
@@ -189,6 +200,7 @@ impl Shown {
                     .collect(),
             ),
             Others::Colors(volumes) => Parts::Colors(volumes.iter().collect()),
+            Others::Classified(volumes) => Parts::Classified(volumes.iter().collect()),
         }
     }
 }
@@ -200,6 +212,8 @@ pub enum Parts<'a> {
     Channels(Vec<Channel<'a>>),
     /// Green, blue, and perhaps alpha.
     Colors(Vec<&'a Volume>),
+    /// Green, blue and depth of classified voxels.
+    Classified(Vec<&'a Volume>),
 }
 
 impl Parts<'_> {
@@ -207,7 +221,9 @@ impl Parts<'_> {
     pub fn only<'a>(&self, classification: &'a Classification) -> &'a Classification {
         match self.beside() {
             Beside::Nothing => classification,
-            Beside::Channels(_) | Beside::Colors(_) => &Classification::RangeOfPicture,
+            Beside::Channels(_) | Beside::Colors(_) | Beside::Classified(_) => {
+                &Classification::RangeOfPicture
+            }
         }
     }
 
@@ -217,6 +233,7 @@ impl Parts<'_> {
             Self::Channels(channels) if channels.is_empty() => Beside::Nothing,
             Self::Channels(channels) => Beside::Channels(channels),
             Self::Colors(volumes) => Beside::Colors(volumes),
+            Self::Classified(volumes) => Beside::Classified(volumes),
         }
     }
 }
@@ -235,7 +252,7 @@ pub fn shows_several(scene: &SceneFlags, header: &Header) -> Result<bool, Error>
 
 /// True where words name something that is seen together with the volume.
 fn has_beside(scene: &SceneFlags) -> bool {
-    scene.labels.labels.is_some() || scene.opacity.are_given()
+    scene.labels.labels.is_some() || scene.opacity.are_given() || scene.sampling.preclassified
 }
 
 /// What can be said wrong before anything is opened.
@@ -249,6 +266,7 @@ pub fn check(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
         ));
     }
     scene.opacity.check()?;
+    preclassified::check(scene, settings)?;
     if scene.opacity.are_given() && mode != Mode::Composite {
         return Err(Error::usage(
             format!(
