@@ -76,6 +76,10 @@ struct Frame {
     channel_codes_are_integers: vec4<u32>,
     channel_is_labels: vec4<u32>,
     channel_has_holes: vec4<u32>,
+    // 1: says how opaque the channel before it is, and is not seen itself.
+    channel_is_opacity: vec4<u32>,
+    // Not 0: the four are light and optical depth per reference length of classified voxels, not a colour.
+    colors_are_classified: u32,
     channel_table_first: vec4<f32>,
     channel_table_scale: vec4<f32>,
     channel_table_count: vec4<u32>,

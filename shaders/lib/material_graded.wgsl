@@ -3,6 +3,7 @@
 
 #import transfer_{transfer}
 #import widgets
+#import second
 #import shade
 
 // Not on a cut face, which is seen along no direction.
@@ -20,7 +21,11 @@ fn material_of(sample: Sample) -> Classified {
     // In one place: look-ups of a wide filter take drivers long to compile.
     let gradient = gradient_at(sample.place);
     if has_widgets {
-        material = classify_by_gradient(material, sample.value, length(gradient));
+        var second = 0.0;
+        if wants_second() {
+            second = second_derivative_at(sample.place, gradient);
+        }
+        material = classify_by_gradient(material, sample.value, length(gradient), second);
         if material.extinction == 0.0 || !is_lit(sample) {
             return material;
         }

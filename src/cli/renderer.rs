@@ -247,7 +247,7 @@ fn has_labels(job: &Job) -> bool {
             job.settings.filter == Filter::Nearest && labels_of(job.volume).is_some()
         }
         Beside::Channels(channels) => channels.iter().any(|one| one.role == Role::Labels),
-        Beside::Colors(_) => false,
+        Beside::Colors(_) | Beside::Classified(_) => false,
     }
 }
 

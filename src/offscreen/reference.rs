@@ -16,15 +16,16 @@ use crate::technique::composite::Composite;
 use crate::technique::faces::{FACE_LENGTH, cut_face, on_face};
 use crate::technique::gradient::gradient_of;
 use crate::technique::gradient_taps::weighted_gradient;
-use crate::technique::mixture::{color_of, colored, dimmed, mixed};
+use crate::technique::mixture::{color_of, colored, dimmed, material_of};
+use crate::technique::second::second_derivative_of;
 use crate::technique::shading::shade;
 use crate::technique::{
     Error, Filter, GradientSource, Mix, Mode, Recording, Role, Technique, isosurface, projection,
     raycast, slices_2d, slices_3d,
 };
 use crate::transfer::{
-    Absorption, PackedWidgets, Points, SlabTable, Table, TransferFunction, classify_by_gradient,
-    classify_by_points, classify_by_table, classify_slab,
+    Absorption, PackedWidgets, Points, SlabTable, Steepness, Table, TransferFunction,
+    classify_by_gradient, classify_by_points, classify_by_table, classify_slab,
 };
 use crate::volume::kernel::{convolved, convolved_in_slice};
 use crate::volume::labels::{DIMMED, marks_of};
@@ -378,7 +379,7 @@ impl<'a, R: Real> Walk<'a, R> {
     ) -> Option<[R; 4]> {
         let settings = self.scene.settings;
         let look = |volume: &Volume, filter| look_from(volume, filter, [0; 3]);
-        if let Beside::Colors(_) = self.scene.beside {
+        if let Beside::Colors(_) | Beside::Classified(_) = self.scene.beside {
             let mut found = [R::from_f64(0.0); 4];
             for (number, volume) in found.iter_mut().zip(&self.volumes) {
                 *number = look(volume, settings.filter)?;
@@ -386,6 +387,10 @@ impl<'a, R: Real> Walk<'a, R> {
             let [r, g, b, alpha] = found;
             let alpha = (self.volumes.len() == 4).then_some(alpha);
             let (srgb, value) = color_of([r, g, b], alpha);
+            if let Beside::Classified(_) = self.scene.beside {
+                let [r, g, b] = srgb;
+                return Some([r, g, b, value / R::from_f64(self.scene.reference_length())]);
+            }
             let extinction = self.classify(0, value)[3];
             return Some(colored(srgb, extinction, settings.color_space));
         }
@@ -399,9 +404,17 @@ impl<'a, R: Real> Walk<'a, R> {
             let tap = |step| look_from(volume, settings.filter, step);
             let gradient = self.gradient(p, tap);
             if let Some(widgets) = &self.widgets {
-                let magnitude = dot(gradient, gradient).sqrt();
-                let spacing = R::from_f32(self.frame.smallest_spacing);
-                material = classify_by_gradient(widgets, material, value, magnitude, spacing);
+                let second = if widgets.needs_second() {
+                    second_derivative_of(&self.frame, gradient, tap)
+                } else {
+                    R::from_f64(0.0)
+                };
+                let steep = Steepness {
+                    magnitude: dot(gradient, gradient).sqrt(),
+                    second,
+                    smallest_spacing: R::from_f32(self.frame.smallest_spacing),
+                };
+                material = classify_by_gradient(widgets, material, value, steep);
             }
             let [r, g, b, extinction] = material;
             if !is_lit {
@@ -413,21 +426,18 @@ impl<'a, R: Real> Walk<'a, R> {
         let mut found = [None; crate::shaders::MAX_CHANNELS as usize];
         for (c, (volume, role)) in self.volumes.iter().zip(&self.roles).enumerate() {
             found[c] = match role {
-                Role::Numbers => look(volume, settings.filter),
+                Role::Numbers | Role::Opacity | Role::Material => look(volume, settings.filter),
                 Role::Labels => Some(look(volume, Filter::Nearest)?),
             };
         }
-        let has_data = found.iter().any(Option::is_some);
-        let there = found.into_iter().enumerate();
-        let materials = there.filter_map(|(c, value)| Some(self.classify(c, value?)));
-        let material = mixed(materials);
+        let found = &found[..self.roles.len()];
+        let material = material_of(&self.roles, found, |c, value| self.classify(c, value))?;
         let dimmed_mark = Some(R::from_f64(DIMMED.into()));
         let is_dimmed = |marks| look(marks, Filter::Nearest) == dimmed_mark;
-        let material = match self.marks.iter().any(is_dimmed) {
+        Some(match self.marks.iter().any(is_dimmed) {
             true => dimmed(material, R::from_f32(self.frame.dim)),
             false => material,
-        };
-        has_data.then_some(material)
+        })
     }
 
     /// The sample of a pixel's ray on the view-aligned plane of an instance.

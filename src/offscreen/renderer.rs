@@ -22,10 +22,10 @@ use crate::resident::{GpuTransfer, GpuVolume, TextureLayout};
 use crate::resolve::reference::projected_value;
 use crate::scene::{Scene, positions_in_pixel};
 use crate::technique::{
-    self, GradientSource, Inputs, Mix, Mode, Part, Recording, Settings, Technique, Words,
-    parameter_ring,
+    self, Functions, GradientSource, Inputs, Mix, Mode, Part, Recording, Settings, Technique,
+    Words, parameter_ring,
 };
-use crate::transfer::{Classified, TransferFunction, Window};
+use crate::transfer::{Classified, Graded, TransferFunction, Window};
 use crate::volume::{Spline, Volume};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -246,10 +246,15 @@ impl<'v> Renderer<'v> {
         let words = Words::mixed(scene.settings, scene.mix(), &parts);
         let functions = scene.transfers().into_iter().flatten();
         let points = functions.map(|f| f.color.len().max(f.opacity.len())).max();
+        let graded = scene.transfer.and_then(|function| function.graded.as_ref());
+        let functions = Functions {
+            points: points.unwrap_or(0),
+            second: graded.is_some_and(Graded::needs_second),
+        };
         scene.view(&scene.volume.grid(), [0.0; 2]).check_turns(
             &words,
             parts.len(),
-            points.unwrap_or(0),
+            functions,
             gpu.limits().max_loop_turns,
         )?;
         if self.ring.slots() < slots {

@@ -144,6 +144,8 @@ impl View<'_> {
             channel_codes_are_integers: [0; 4],
             channel_is_labels: [0; 4],
             channel_has_holes: [0; 4],
+            channel_is_opacity: [0; 4],
+            colors_are_classified: 0,
             channel_table_first: [0.0; 4],
             channel_table_scale: [0.0; 4],
             channel_table_count: [0; 4],

@@ -138,7 +138,7 @@ impl Words {
     /// The variant for a picture of several volumes.
     pub fn mixed(settings: &Settings, mix: Mix, parts: &[Part]) -> Self {
         let is_fetched =
-            |part: &Part| part.role == Role::Numbers && !part.volume.texel().is_filtered;
+            |part: &Part| part.role != Role::Labels && !part.volume.texel().is_filtered;
         let has_holes = parts.iter().any(|part| part.volume.has_holes());
         let is_graded = mix == Mix::Alone && settings.shading.is_some();
         Self {

@@ -16,9 +16,11 @@ pub mod merge;
 pub mod mida;
 pub mod mixture;
 mod per_mode;
+pub mod preclassified;
 pub mod projection;
 pub mod raycast;
 mod recording;
+pub mod second;
 pub mod shading;
 mod slab;
 mod slicer;
@@ -36,6 +38,7 @@ pub use per_mode::{DEFAULT_ATTENUATION, Level, PerMode};
 pub use recording::{Recording, parameter_ring};
 pub use shading::{Light, Shading};
 pub use slicer::Slicer;
+pub use turns::Functions;
 
 use crate::volume::{Spline, kernel::Kernel};
 
@@ -306,6 +309,11 @@ pub enum Error {
         /// How many there may be.
         limit: usize,
     },
+    /// What makes something opaque needs something that it makes opaque.
+    #[error(
+        "a volume that says how opaque another is stands right behind the numbers that are coloured"
+    )]
+    OpacityOfNothing,
     /// Colours are red, green, blue, and perhaps alpha.
     #[error("a colour is made of 3 or 4 volumes, not of {found}")]
     NoColor {

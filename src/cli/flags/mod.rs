@@ -18,15 +18,17 @@ mod levels;
 mod light;
 mod modes;
 mod numbers;
+mod opacity;
 mod picture;
 mod sampling;
 mod section;
 mod subject;
+mod values;
 mod words;
 
 pub use camera::CameraFlags;
 pub use channels::{ChannelFlags, ChannelWord, Plan};
-pub use classification::{Classification, ClassificationFlags, preset, summary, with_causes};
+pub use classification::{Classification, ClassificationFlags};
 pub use component::Component;
 pub use denoise::DenoiseWord;
 pub use gradient_filter::GradientFlags;
@@ -38,10 +40,12 @@ pub use levels::LevelFlags;
 pub use light::LightFlags;
 pub use modes::ModeFlags;
 pub use numbers::{Background, Numbers, Size, finite, positive};
+pub use opacity::OpacityFlags;
 pub use picture::PictureFlags;
 pub use sampling::{Depth, SamplingFlags};
 pub use section::SectionFlags;
 pub use subject::Subject;
+pub use values::{preset, summary, with_causes};
 
 use super::Error;
 use crate::technique::Settings;
@@ -64,6 +68,8 @@ pub struct SceneFlags {
     pub modes: ModeFlags,
     #[command(flatten)]
     pub classification: ClassificationFlags,
+    #[command(flatten)]
+    pub opacity: OpacityFlags,
     #[command(flatten)]
     pub channels: ChannelFlags,
     #[command(flatten)]
@@ -99,11 +105,23 @@ impl SceneFlags {
     pub fn settings_of(&self, sampling: &SamplingFlags, depth: Depth) -> Result<Settings, Error> {
         let settings = self.section.settings(sampling, depth)?;
         let shading = self.light.shading(settings.mode)?;
-        Ok(Settings {
+        let settings = Settings {
             shading,
             gradient_filter: self.gradient.filter(),
             dim: self.labels.dim()?,
             ..settings
+        };
+        if !self.wants_slabs() {
+            return Ok(settings);
+        }
+        let slabs = Settings {
+            preintegrated: true,
+            ..settings.clone()
+        };
+        // What a file asks for gives way to what a person does.
+        Ok(match slabs.check_ways() {
+            Ok(()) => slabs,
+            Err(_) => settings,
         })
     }
 
@@ -111,6 +129,15 @@ impl SceneFlags {
     fn may_have_gradients(&self) -> bool {
         let mode = self.sampling.mode.unwrap_or_default().mode();
         self.light.is_lit(mode) || !mode.is_projection() && self.classification.names_a_function()
+    }
+
+    /// True where the function asks for slabs and no word is against it.
+    fn wants_slabs(&self) -> bool {
+        let is_one = !self.channels.are_given()
+            && self.input.component != Some(Component::All)
+            && self.labels.labels.is_none()
+            && !self.opacity.are_given();
+        is_one && self.classification.wants_slabs() && !self.sampling.says_how()
     }
 
     /// Flags that change nothing under the others, a sentence each.
