@@ -135,7 +135,10 @@ fn passed(before: Surfaces, world: Ray, voxel: Ray, index: u32, t: f32) -> Surfa
     let level = frame.level_colors[index];
     var color = level.xyz;
     if frame.light_count != 0u {
-        color = shade(color, gradient_at(voxel.origin + t * voxel.direction), world.direction);
+        let place = voxel.origin + t * voxel.direction;
+        color = shade(color, gradient_at(place), world.direction, place);
+    } else {
+        color *= ambient_at(voxel.origin + t * voxel.direction);
     }
     var next = before;
     next.color += before.transmittance * level.w * color;

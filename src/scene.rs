@@ -120,7 +120,7 @@ impl<'a> Scene<'a> {
     /// # Errors
     /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`], [`Error::NotMixed`],
     /// [`Error::NotShaded`], [`Error::NotShadedTogether`], [`Error::NotGraded`], [`Error::NotGradedTogether`],
-    /// [`Error::FilterAlone`], and those of [`Settings::check`].
+    /// [`Error::NotOccluded`], [`Error::NotOccludedTogether`], [`Error::FilterAlone`], and those of [`Settings::check`].
     pub fn check(&self) -> Result<(), Error> {
         let volumes = self.volumes();
         let (wanted, limit) = (volumes.len(), MAX_CHANNELS as usize);
@@ -137,6 +137,9 @@ impl<'a> Scene<'a> {
         if self.settings.shading.is_some() && mode.is_projection() {
             return Err(Error::NotShaded { mode });
         }
+        if self.settings.ambient_occlusion.is_some() && mode.is_projection() {
+            return Err(Error::NotOccluded { mode });
+        }
         if self.is_graded() && mode.is_projection() {
             return Err(Error::NotGraded { mode });
         }
@@ -144,6 +147,7 @@ impl<'a> Scene<'a> {
             Mix::Alone | Mix::Graded => Ok(()),
             _ if self.is_graded() => Err(Error::NotGradedTogether),
             _ if self.settings.shading.is_some() => Err(Error::NotShadedTogether),
+            _ if self.settings.ambient_occlusion.is_some() => Err(Error::NotOccludedTogether),
             // Modes that project draw them one by one.
             _ if filter.kernel().is_some() && !mode.is_projection() => {
                 Err(Error::FilterAlone { filter })

@@ -14,6 +14,11 @@ fn shifted(place: Place, voxels: vec3<f32>) -> Place {
     return place + voxels;
 }
 
+// Where a place is in voxel space.
+fn voxel_of(place: Place) -> vec3<f32> {
+    return place;
+}
+
 fn volume_value(place: Place) -> f32 {
     return filtered(volume, volume_coding(), place);
 }

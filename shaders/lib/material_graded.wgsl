@@ -9,16 +9,28 @@ fn material_of(sample: Sample) -> Classified {
     if are_widgets() {
         let gradient = gradient_at(sample.place);
         let material = classify_by_gradient(sample.value, length(gradient));
-        if material.extinction == 0.0 || frame.light_count == 0u {
+        if material.extinction == 0.0 {
             return material;
         }
-        return Classified(shade(material.color, gradient, sample.ray_direction), material.extinction);
+        return Classified(lit(material.color, gradient, sample), material.extinction);
     }
     let material = classify(sample.value);
     // What is transparent shows no light: no gradient is made for it.
-    if material.extinction == 0.0 || frame.light_count == 0u {
+    if material.extinction == 0.0 {
         return material;
     }
-    let gradient = gradient_at(sample.place);
-    return Classified(shade(material.color, gradient, sample.ray_direction), material.extinction);
+    var gradient = vec3(0.0);
+    if frame.light_count != 0u {
+        gradient = gradient_at(sample.place);
+    }
+    return Classified(lit(material.color, gradient, sample), material.extinction);
+}
+
+// Without lights all light is ambient.
+fn lit(color: vec3<f32>, gradient: vec3<f32>, sample: Sample) -> vec3<f32> {
+    let voxel = voxel_of(sample.place);
+    if frame.light_count == 0u {
+        return ambient_at(voxel) * color;
+    }
+    return shade(color, gradient, sample.ray_direction, voxel);
 }

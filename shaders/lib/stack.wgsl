@@ -13,6 +13,11 @@ struct Place {
 
 @group(0) @binding(1) var stack: Values;
 
+// Where a place is in voxel space.
+fn voxel_of(place: Place) -> vec3<f32> {
+    return place.voxel;
+}
+
 fn volume_value(place: Place) -> f32 {
     return filtered(stack, volume_coding(), place);
 }

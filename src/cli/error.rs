@@ -88,6 +88,15 @@ impl From<offscreen::Error> for Error {
             offscreen::Error::Technique(error @ technique::Error::FilterAlone { .. }) => {
                 Self::usage(error.to_string(), "--filter linear draws them together")
             }
+            offscreen::Error::Technique(technique::Error::NotOccludedTogether) => {
+                Self::not_occluded_together()
+            }
+            offscreen::Error::Technique(error @ technique::Error::OutOfRange { .. }) => {
+                Self::usage(
+                    error.to_string(),
+                    "`stratavox render --help` says what each word takes",
+                )
+            }
             offscreen::Error::Technique(error) => Self::Limit(error.to_string()),
             offscreen::Error::NoLayer { .. } => Self::NotBuilt(error.to_string()),
         }
@@ -107,6 +116,14 @@ impl Error {
     pub fn not_shaded_together() -> Self {
         Self::usage(
             "--shading phong is for one number a voxel, and several are drawn",
+            "draw one of them: --component 0, without --labels and --channel",
+        )
+    }
+
+    /// Light is followed through one volume.
+    pub fn not_occluded_together() -> Self {
+        Self::usage(
+            "--ambient-occlusion is for one number a voxel, and several are drawn",
             "draw one of them: --component 0, without --labels and --channel",
         )
     }

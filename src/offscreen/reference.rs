@@ -1,5 +1,6 @@
 //! A scene to a picture on the CPU: every technique by its twin, in f32 or f64, no Vulkan anywhere.
 
+mod light;
 mod slabs;
 
 use super::fade::{faded, stacks_of};
@@ -7,17 +8,17 @@ use super::gathered::{Gathered, grey_of_picture, layers};
 use super::sum::sum_of;
 use crate::picture::Picture;
 use crate::ray::pixel_ray;
-use crate::real::{Real, dot};
+use crate::real::{Real, dot, scale};
 use crate::resolve::reference::{light_at, premultiplied};
 use crate::scene::{Beside, Scene, positions_in_pixel};
 use crate::shaders::Frame;
 use crate::technique::blend::{Fragment, blend, blend_material, clear_color};
 use crate::technique::gradient::gradient_of;
 use crate::technique::mixture::{color_of, colored, mixed};
-use crate::technique::shading::shade;
+use crate::technique::shading::{Lamps, shade};
 use crate::technique::{
-    Error, Filter, Mix, Mode, Recording, Role, Technique, isosurface, projection, raycast,
-    slices_2d, slices_3d,
+    Error, Filter, LightField, Mix, Mode, Recording, Role, Technique, isosurface, projection,
+    raycast, slices_2d, slices_3d,
 };
 use crate::transfer::{
     Absorption, PackedWidgets, Points, SlabTable, Table, TransferFunction, classify_by_gradient,
@@ -26,6 +27,7 @@ use crate::transfer::{
 use crate::volume::kernel::{convolved, convolved_in_slice};
 use crate::volume::sample::{linear, linear_in_slice, nearest};
 use crate::volume::{Coefficients, Grid, Volume};
+use light::light_of;
 
 /// The picture of `scene` with all layers that its technique has.
 ///
@@ -55,8 +57,11 @@ fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     let spline = scene.settings.filter.spline();
     let coefficients = spline.map(|spline| Coefficients::new(scene.volume, spline, axes));
     let read = coefficients.as_ref().map(Coefficients::volume);
-    let gathered =
-        |in_pixel| Walk::<R>::new(scene, read, &grid, in_pixel).map(|walk| walk.gather_all());
+    let light = light_of::<R>(scene, read, &grid)?;
+    let gathered = |in_pixel| {
+        let walk = Walk::new(scene, read, light.as_ref(), &grid, in_pixel)?;
+        Ok::<_, Error>(walk.gather_all())
+    };
     let centers = gathered([0.0; 2])?;
     let transfer = match scene.transfer {
         Some(transfer) => transfer.clone(),
@@ -104,9 +109,10 @@ struct Walk<'a, R> {
     /// What the gradient makes of the only function, where it makes something.
     widgets: Option<PackedWidgets>,
     frame: Frame,
+    /// What comes through to samples, where occlusion or shadows are asked for.
+    light: Option<&'a LightField<R>>,
     /// Slices to draw; a ray caster has none.
     slices: u32,
-    real: std::marker::PhantomData<R>,
 }
 
 /// Conformance pictures search the points, the others look into the table: both as the shaders do.
@@ -122,6 +128,7 @@ impl<'a, R: Real> Walk<'a, R> {
     fn new(
         scene: &'a Scene<'a>,
         read: Option<&'a Volume>,
+        light: Option<&'a LightField<R>>,
         grid: &'a Grid,
         in_pixel: [f64; 2],
     ) -> Result<Self, Error> {
@@ -158,8 +165,8 @@ impl<'a, R: Real> Walk<'a, R> {
             classifiers,
             widgets,
             frame,
+            light,
             slices,
-            real: std::marker::PhantomData,
         })
     }
 
@@ -239,11 +246,12 @@ impl<'a, R: Real> Walk<'a, R> {
         let (frame, filter) = (&self.frame, self.scene.settings.filter);
         let value_at = |p| filtered(self.scene.volume, filter, p);
         let lit = |color, p, ray_direction| {
+            let lamps = self.lamps(p);
             if frame.light_count == 0 {
-                return color;
+                return scale(color, lamps.ambient(frame));
             }
             let gradient = gradient_of(frame, |step| value_at(moved(p, step)));
-            shade(frame, color, gradient, ray_direction)
+            shade(frame, color, gradient, ray_direction, &lamps)
         };
         let found = isosurface::surfaces(frame, pixel, value_at, lit);
         Gathered::of_surfaces(found)
@@ -258,7 +266,7 @@ impl<'a, R: Real> Walk<'a, R> {
         let ray_direction = pixel_ray(&self.frame, pixel).direction;
         let material_at = |p| {
             let look = |volume: &_, filter, step| filtered(volume, filter, moved(p, step));
-            self.material(look, ray_direction)
+            self.material(look, p, ray_direction)
         };
         let blend = |target, fragment: Fragment<R, [R; 4]>| {
             blend_material(settings.order, target, fragment.value, fragment.length)
@@ -284,17 +292,24 @@ impl<'a, R: Real> Walk<'a, R> {
                         let slice = slice.saturating_add_signed(step[axis]).min(last);
                         filtered_in_slice(volume, filter, axis, slice, moved(p, step))
                     };
-                    self.material(look, ray_direction)
+                    self.material(look, p, ray_direction)
                 };
                 self.blend_all(|i| self.on_slice(pixel, i, material_at), blend)
             }
         }
     }
 
-    /// What the volumes are made of where `look_from` looks from, so many voxels away; `None` for no data.
+    /// What comes through to a position in voxel space.
+    fn lamps(&self, voxel: [R; 3]) -> Lamps<'_, R> {
+        let field = self.light;
+        Lamps { field, voxel }
+    }
+
+    /// What the volumes are made of at `p`, where `look_from` looks from, so many voxels away; `None` for no data.
     fn material(
         &self,
         look_from: impl Fn(&Volume, Filter, [i32; 3]) -> Option<R>,
+        p: [R; 3],
         ray_direction: [R; 3],
     ) -> Option<[R; 4]> {
         let settings = self.scene.settings;
@@ -313,8 +328,9 @@ impl<'a, R: Real> Walk<'a, R> {
         if let [volume] = self.volumes[..] {
             let value = look(volume, settings.filter)?;
             let mut material = self.classify(0, value);
+            let lamps = self.lamps(p);
             if self.frame.light_count == 0 && self.widgets.is_none() {
-                return Some(material);
+                return Some(ambient_of(&self.frame, material, &lamps));
             }
             let tap = |step| look_from(volume, settings.filter, step);
             let gradient = gradient_of(&self.frame, tap);
@@ -325,9 +341,9 @@ impl<'a, R: Real> Walk<'a, R> {
             }
             let [r, g, b, extinction] = material;
             if self.frame.light_count == 0 {
-                return Some(material);
+                return Some(ambient_of(&self.frame, material, &lamps));
             }
-            let [r, g, b] = shade(&self.frame, [r, g, b], gradient, ray_direction);
+            let [r, g, b] = shade(&self.frame, [r, g, b], gradient, ray_direction, &lamps);
             return Some([r, g, b, extinction]);
         }
         let mut found = [None; crate::shaders::MAX_CHANNELS as usize];
@@ -400,6 +416,12 @@ impl<'a, R: Real> Walk<'a, R> {
             Classifier::Slabs(slabs) => classify_slab(slabs, value, value),
         }
     }
+}
+
+/// A material without lights: all light is ambient.
+fn ambient_of<R: Real>(frame: &Frame, [r, g, b, extinction]: [R; 4], lamps: &Lamps<R>) -> [R; 4] {
+    let [r, g, b] = scale([r, g, b], lamps.ambient(frame));
+    [r, g, b, extinction]
 }
 
 /// The position so many voxels away.

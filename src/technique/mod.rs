@@ -8,6 +8,10 @@ mod frame_of_mode;
 pub mod gradient;
 mod inputs;
 pub mod isosurface;
+mod light_field;
+mod light_paths;
+mod light_plan;
+mod light_volume;
 mod march;
 pub mod merge;
 pub mod mida;
@@ -27,6 +31,9 @@ mod ways;
 pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 pub use frame::View;
 pub use inputs::{Inputs, Take, Words};
+pub use light_field::LightField;
+pub use light_plan::{AmbientOcclusion, LightPlan, MAX_LIGHT_CELLS, MAX_RADIUS_CELLS, Shadows};
+pub use light_volume::LightVolume;
 pub use mixture::{Mix, Part, Role};
 pub use per_mode::{DEFAULT_ATTENUATION, Level, PerMode};
 pub use recording::{Recording, parameter_ring};
@@ -188,6 +195,8 @@ pub struct Settings {
     pub clip_planes: Vec<ClipPlane>,
     /// Light on composited samples of one volume; `None`: their colour as it is.
     pub shading: Option<Shading>,
+    /// Ambient light that matter nearby takes away, with lights or without, of one volume that is composited.
+    pub ambient_occlusion: Option<AmbientOcclusion>,
     /// Float targets, no early termination, filtering by texel fetch, control points searched exactly.
     pub conformance: bool,
     /// What single modes want to know.
@@ -358,6 +367,17 @@ pub enum Error {
     /// Several volumes have several gradients.
     #[error("shading is for one volume of numbers, not for several that are mixed")]
     NotShadedTogether,
+    /// Light falls on what is composited.
+    #[error(
+        "{mode:?} projects one number a ray, on which no light falls: ambient occlusion is for composite"
+    )]
+    NotOccluded {
+        /// The mode.
+        mode: Mode,
+    },
+    /// Light is followed through one volume.
+    #[error("ambient occlusion is for one volume of numbers, not for several that are mixed")]
+    NotOccludedTogether,
     /// A projected value has no gradient.
     #[error(
         "{mode:?} projects one number a ray, which has no gradient: widgets and gradient opacity are for composite"
@@ -417,6 +437,7 @@ impl Default for Settings {
             crop: None,
             clip_planes: Vec::new(),
             shading: None,
+            ambient_occlusion: None,
             conformance: false,
             per_mode: PerMode::default(),
         }

@@ -153,6 +153,7 @@ impl Settings {
     /// [`Error::LevelCount`] and [`Error::OutOfRange`].
     pub fn check(&self) -> Result<(), Error> {
         self.check_ways()?;
+        self.check_light()?;
         let (technique, mode) = (self.technique, self.mode);
         if technique != Technique::Raycast && mode.needs_rays() {
             return Err(Error::NeedsRays { technique, mode });

@@ -31,7 +31,7 @@ impl Settings {
         of_mode(self.smooth, SMOOTH)?;
         of_technique(is_jittered, JITTER, Technique::Raycast, "ray casting")?;
         of_mode(is_jittered, JITTER)?;
-        if self.shading.is_some() {
+        if self.shading.is_some() || self.ambient_occlusion.is_some() {
             self.refuse_way("samples without light", "shaded ones")?;
         }
         if self.filter.kernel().is_some() {

@@ -17,6 +17,7 @@ mod light;
 mod modes;
 mod not_built;
 mod numbers;
+mod occlusion;
 mod picture;
 mod sampling;
 mod section;
@@ -95,11 +96,13 @@ impl SceneFlags {
     /// The same with other words of sampling.
     pub fn settings_of(&self, sampling: &SamplingFlags, depth: Depth) -> Result<Settings, Error> {
         let settings = self.section.settings(sampling, depth)?;
-        let shading = self.light.shading(settings.mode)?;
-        Ok(Settings {
-            shading,
+        let settings = Settings {
+            shading: self.light.shading(settings.mode)?,
+            ambient_occlusion: self.light.occlusion(settings.mode)?,
             ..settings
-        })
+        };
+        sampling.check_ways(&settings)?;
+        Ok(settings)
     }
 
     /// Flags that change nothing under the others, a sentence each.

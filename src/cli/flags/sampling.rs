@@ -124,14 +124,19 @@ impl SamplingFlags {
             crop: self.crop.map(crop_box).transpose()?,
             clip_planes: clip_planes(&self.clip)?,
             shading: None,
+            ambient_occlusion: None,
             conformance: self.conformance,
             // Of the values, which are not known yet.
             per_mode: Default::default(),
         };
-        settings
-            .check_ways()
-            .map_err(|problem| Error::usage(problem.to_string(), WAYS))?;
+        self.check_ways(&settings)?;
         Ok(settings)
+    }
+
+    /// Whether these settings go with the ways to sample that are asked for.
+    pub fn check_ways(&self, settings: &Settings) -> Result<(), Error> {
+        let checked = settings.check_ways();
+        checked.map_err(|problem| Error::usage(problem.to_string(), WAYS))
     }
 
     fn lattice(&self) -> Result<Lattice, Error> {
