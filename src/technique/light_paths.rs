@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 /// Paths all around: each has its opposite, and none lies in a plane of two world axes. So half of them end in a wall.
 const AROUND: u32 = 32;
 /// Paths to a light that is no point.
-const TO_LIGHT: u32 = 16;
+const TO_LIGHT: u32 = 8;
 /// Turns between neighbours of a spiral that leaves no gaps: 1 - 1/golden ratio, in radians.
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 

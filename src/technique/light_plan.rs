@@ -4,7 +4,7 @@
 //! cells of an axis   min(voxels, 128), all of one size: none is smaller than a voxel
 //! looks at a cell    ceil(voxels of the cell) along each axis, at most 4
 //! occlusion          32 paths all around, from one cell to the radius
-//! shadow             16 paths over the disc of the light, from the node to the end of the grid
+//! shadow             8 paths over the disc of the light, from the node to the end of the grid
 //! ```
 //!
 //! The first piece of a path is left out for occlusion: else a surface, which is never thinner than a cell there,
