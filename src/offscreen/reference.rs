@@ -244,7 +244,7 @@ impl<'a, R: Real> Walk<'a, R> {
     /// The surfaces that a ray meets.
     fn surfaces(&self, pixel: [R; 2]) -> Gathered<R> {
         let (frame, filter) = (&self.frame, self.scene.settings.filter);
-        let value_at = |p| filtered(self.scene.volume, filter, p);
+        let value_at = |p| filtered(self.volumes[0], filter, p);
         let lit = |color, p, ray_direction| {
             let lamps = self.lamps(p);
             if frame.light_count == 0 {
@@ -275,7 +275,7 @@ impl<'a, R: Real> Walk<'a, R> {
             Technique::Raycast => {
                 let (frame, lattice) = (&self.frame, settings.lattice);
                 Gathered::of_composite(if settings.mode == Mode::Mida {
-                    let value_at = |p| filtered(self.scene.volume, settings.filter, p);
+                    let value_at = |p| filtered(self.volumes[0], settings.filter, p);
                     let sample_at = |p| value_at(p).zip(material_at(p));
                     raycast::reference::accumulated(frame, lattice, pixel, sample_at)
                 } else {

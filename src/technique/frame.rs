@@ -6,7 +6,7 @@
 
 use super::blend::extreme_sign;
 use super::shading::set_shading;
-use super::{Filter, MAX_SAMPLES_PER_RAY, Settings, Technique};
+use super::{Filter, Lattice, MAX_SAMPLES_PER_RAY, Settings, Technique};
 use crate::camera::{Camera, Projection, Rays};
 use crate::picture::ColorSpace;
 use crate::resident::{Cell, Coding, TransferLayout, front_to_back};
@@ -158,6 +158,7 @@ impl View<'_> {
             planes_per_slice: 1.0,
             cover_offset: 0.0,
             cover_eye_reach: reach.eye,
+            is_jittered: (self.settings.lattice == Lattice::Jitter).into(),
             jitter: self.jitter(),
             kernel: kernel_number(self.settings.filter),
             extreme_sign: extreme_sign(self.settings.mode),

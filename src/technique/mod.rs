@@ -128,7 +128,7 @@ pub enum Lattice {
     /// Where the ray meets the planes that a view-aligned slicer draws.
     Planes,
     /// Equal steps, of which the first is cut short by a part that hangs on the pixel ([`Jitter`]): grain in place
-    /// of bands. Compositing by ray casting only.
+    /// of bands. Ray casting only, and not for surfaces.
     Jitter,
 }
 
@@ -239,8 +239,8 @@ pub enum Error {
         /// How the volume lies.
         found: crate::resident::TextureLayout,
     },
-    /// A mode that projects shows one volume at a time.
-    #[error("{mode:?} projects one number a ray: volumes are mixed in composite only")]
+    /// Several volumes in a mode that has no mixture of them.
+    #[error("{mode:?} shows one volume: several are mixed in Composite")]
     NotMixed {
         /// The mode.
         mode: Mode,

@@ -30,7 +30,13 @@ impl Settings {
         of_technique(self.smooth, SMOOTH, Technique::Slices2d, "2D stacks")?;
         of_mode(self.smooth, SMOOTH)?;
         of_technique(is_jittered, JITTER, Technique::Raycast, "ray casting")?;
-        of_mode(is_jittered, JITTER)?;
+        if is_jittered && mode == Mode::Iso {
+            return Err(Error::NotFor {
+                wanted: JITTER,
+                of: "modes of samples",
+                found: "surfaces, whose places do not hang on where steps begin".to_owned(),
+            });
+        }
         if self.shading.is_some() || self.ambient_occlusion.is_some() {
             self.refuse_way("samples without light", "shaded ones")?;
         }
@@ -43,11 +49,7 @@ impl Settings {
 
     /// A way to sample of its own that is asked for.
     fn way(&self) -> Option<&'static str> {
-        let ways = [
-            (self.preintegrated, PREINTEGRATED),
-            (self.smooth, SMOOTH),
-            (self.lattice == Lattice::Jitter, JITTER),
-        ];
+        let ways = [(self.preintegrated, PREINTEGRATED), (self.smooth, SMOOTH)];
         ways.into_iter()
             .find_map(|(is_on, name)| is_on.then_some(name))
     }
