@@ -169,6 +169,17 @@ const ENTRIES: &[(&str, &[Slot])] = &[
         "denoise",
         &[("kernel", &["gaussian", "median", "bilateral"])],
     ),
+    // Once for many pictures: classified by the points in all of them.
+    (
+        "light_cells",
+        &[
+            ("layout", &["box", "stack"]),
+            ("filter", &["nearest", "kernel"]),
+            HOLES,
+            POINTS,
+        ],
+    ),
+    ("light_volume", &[]),
 ];
 
 fn main() {

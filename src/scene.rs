@@ -132,7 +132,8 @@ impl<'a> Scene<'a> {
     /// # Errors
     /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`], [`Error::NotMixed`],
     /// [`Error::NotShaded`], [`Error::NotShadedTogether`], [`Error::NotGraded`], [`Error::NotGradedTogether`],
-    /// [`Error::FilterAlone`], [`Error::OpacityOfNothing`], and those of [`Settings::check`].
+    /// [`Error::NotOccluded`], [`Error::NotOccludedTogether`], [`Error::FilterAlone`], [`Error::OpacityOfNothing`],
+    /// and those of [`Settings::check`].
     pub fn check(&self) -> Result<(), Error> {
         let volumes = self.volumes();
         let (wanted, limit) = (volumes.len(), MAX_CHANNELS as usize);
@@ -151,6 +152,9 @@ impl<'a> Scene<'a> {
         if self.settings.shading.is_some() && mode.is_projection() {
             return Err(Error::NotShaded { mode });
         }
+        if self.settings.ambient_occlusion.is_some() && mode.is_projection() {
+            return Err(Error::NotOccluded { mode });
+        }
         if self.is_graded() && mode.is_projection() {
             return Err(Error::NotGraded { mode });
         }
@@ -163,6 +167,7 @@ impl<'a> Scene<'a> {
             _ if self.is_graded() => Err(Error::NotGradedTogether),
             Mix::Channels if mode == Mode::Iso => self.check_painted(),
             _ if self.settings.shading.is_some() => Err(Error::NotShadedTogether),
+            _ if self.settings.ambient_occlusion.is_some() => Err(Error::NotOccludedTogether),
             // Modes that project draw them one by one.
             _ if filter.kernel().is_some() && !mode.is_projection() => {
                 Err(Error::FilterAlone { filter })
@@ -190,6 +195,9 @@ impl<'a> Scene<'a> {
             Beside::Channels([one]) if one.role == Role::Numbers => {
                 if filter.kernel().is_some() {
                     return Err(Error::FilterAlone { filter });
+                }
+                if self.settings.wants_light_volume() {
+                    return Err(Error::NotOccludedTogether);
                 }
                 if one.volume.grid() != self.volume.grid() {
                     return Err(Error::OtherGrid);

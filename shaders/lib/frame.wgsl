@@ -147,6 +147,16 @@ struct Frame {
     cut_scale: f32,
     // Nothing lies behind this recording.
     is_last_brick: u32,
+    // The light volume: cells of its grid along each axis, and how many of them a voxel is long.
+    light_cells: vec3<f32>,
+    // How much darker ambient light is where nothing comes in, 0 to 1; 0 without occlusion.
+    occlusion_strength: f32,
+    light_cells_per_voxel: vec3<f32>,
+    // World length by which a sample asks for shadow nearer to the light.
+    shadow_reach: f32,
+    has_shadows: u32,
+    // The bundle of the first light.
+    shadow_bundle: u32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

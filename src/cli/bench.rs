@@ -174,6 +174,7 @@ impl Bench {
             let base = Settings {
                 mode,
                 shading,
+                ambient_occlusion: base.ambient_occlusion.filter(|_| !mode.is_projection()),
                 ..base.clone()
             };
             // What is shown depends on the mode: channels are read for each.

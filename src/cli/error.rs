@@ -94,6 +94,15 @@ impl From<offscreen::Error> for Error {
                     "--gradient-filter cubic is for every --filter",
                 )
             }
+            offscreen::Error::Technique(technique::Error::NotOccludedTogether) => {
+                Self::not_occluded_together()
+            }
+            offscreen::Error::Technique(error @ technique::Error::OutOfRange { .. }) => {
+                Self::usage(
+                    error.to_string(),
+                    "`stratavox render --help` says what each word takes",
+                )
+            }
             offscreen::Error::Technique(error) => Self::Limit(error.to_string()),
             offscreen::Error::NoLayer { .. } => Self::NotBuilt(error.to_string()),
             offscreen::Error::NoLabels => {
@@ -116,7 +125,15 @@ impl Error {
     pub fn not_shaded_together() -> Self {
         Self::usage(
             "--shading phong is for one number a voxel, and several are drawn",
-            "draw one of them: --component 0, without --labels and --channel",
+            "draw one of them: --component 0, without --labels, --channel and --iso-color-by",
+        )
+    }
+
+    /// Light is followed through one volume.
+    pub fn not_occluded_together() -> Self {
+        Self::usage(
+            "--ambient-occlusion and --shadows volume are for one number a voxel, and several are drawn",
+            "draw one of them: --component 0, without --labels, --channel and --iso-color-by",
         )
     }
 

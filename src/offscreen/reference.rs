@@ -1,5 +1,6 @@
 //! A scene to a picture on the CPU: every technique by its twin, in f32 or f64, no Vulkan anywhere.
 
+mod light;
 mod slabs;
 
 use super::fade::{faded, stacks_of};
@@ -7,7 +8,7 @@ use super::gathered::{Gathered, grey_of_picture, layers};
 use super::sum::sum_of;
 use crate::picture::Picture;
 use crate::ray::pixel_ray;
-use crate::real::{Real, dot};
+use crate::real::{Real, dot, scale};
 use crate::resolve::reference::{light_at, premultiplied};
 use crate::scene::{Beside, Scene, positions_in_pixel};
 use crate::shaders::Frame;
@@ -18,10 +19,10 @@ use crate::technique::gradient::gradient_of;
 use crate::technique::gradient_taps::weighted_gradient;
 use crate::technique::mixture::{color_of, colored, dimmed, material_of};
 use crate::technique::second::second_derivative_of;
-use crate::technique::shading::shade;
+use crate::technique::shading::{Lamps, shade};
 use crate::technique::{
-    Error, Filter, GradientSource, Mix, Mode, Recording, Role, Technique, isosurface, projection,
-    raycast, slices_2d, slices_3d,
+    Error, Filter, GradientSource, LightField, Mix, Mode, Operator, Recording, Role, Technique,
+    isosurface, projection, raycast, slices_2d, slices_3d,
 };
 use crate::transfer::{
     Absorption, PackedWidgets, Points, SlabTable, Steepness, Table, TransferFunction,
@@ -31,6 +32,7 @@ use crate::volume::kernel::{convolved, convolved_in_slice};
 use crate::volume::labels::{DIMMED, marks_of};
 use crate::volume::sample::{linear, linear_in_slice, nearest};
 use crate::volume::{Coefficients, Grid, Volume};
+use light::light_of;
 
 /// The picture of `scene` with all layers that its technique has.
 ///
@@ -68,9 +70,10 @@ fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     let of_gradients = of_gradients
         .as_ref()
         .map_or(scene.volume, Coefficients::volume);
+    let gradients = source.map(|_| of_gradients);
+    let light = light_of::<R>(scene, read, gradients, &grid)?;
     let gathered = |in_pixel| {
-        let walk = Walk::<R>::new(scene, read, &grid, in_pixel)?;
-        let gradients = source.map(|_| of_gradients);
+        let walk = Walk::new(scene, read, light.as_ref(), &grid, in_pixel)?;
         Ok::<_, Error>(Walk { gradients, ..walk }.gather_all())
     };
     let centers = gathered([0.0; 2])?;
@@ -126,9 +129,10 @@ struct Walk<'a, R> {
     /// What the gradient makes of the only function, where it makes something.
     widgets: Option<PackedWidgets>,
     frame: Frame,
+    /// What comes through to samples, where occlusion or shadows are asked for.
+    light: Option<&'a LightField<R>>,
     /// Slices to draw; a ray caster has none.
     slices: u32,
-    real: std::marker::PhantomData<R>,
 }
 
 /// Conformance pictures search the points, the others look into the table: both as the shaders do.
@@ -144,6 +148,7 @@ impl<'a, R: Real> Walk<'a, R> {
     fn new(
         scene: &'a Scene<'a>,
         read: Option<&'a Volume>,
+        light: Option<&'a LightField<R>>,
         grid: &'a Grid,
         in_pixel: [f64; 2],
     ) -> Result<Self, Error> {
@@ -183,8 +188,8 @@ impl<'a, R: Real> Walk<'a, R> {
             paint: paint_of(scene),
             widgets,
             frame,
+            light,
             slices,
-            real: std::marker::PhantomData,
         })
     }
 
@@ -270,11 +275,12 @@ impl<'a, R: Real> Walk<'a, R> {
                 Some([r, g, b])
             });
             let color = color.unwrap_or(own);
+            let lamps = self.lamps(p);
             if frame.light_count == 0 {
-                return color;
+                return scale(color, lamps.ambient(frame));
             }
             let gradient = self.gradient(p, |step| value_at(moved(p, step)));
-            shade(frame, color, gradient, ray_direction)
+            shade(frame, color, gradient, ray_direction, &lamps)
         };
         let found = isosurface::surfaces(frame, pixel, value_at, lit);
         Gathered::of_surfaces(found)
@@ -364,10 +370,18 @@ impl<'a, R: Real> Walk<'a, R> {
     /// The gradient at `p`; `tap` filters values so many voxels away.
     fn gradient(&self, p: [R; 3], tap: impl Fn([i32; 3]) -> Option<R>) -> [R; 3] {
         let operator = self.scene.settings.gradient_operator();
-        match self.gradients {
-            Some(source) => weighted_gradient(&self.frame, source, operator, p),
-            None => gradient_of(&self.frame, tap),
-        }
+        gradient_at(
+            &self.frame,
+            self.gradients.map(|source| (source, operator)),
+            p,
+            tap,
+        )
+    }
+
+    /// What comes through to a position in voxel space.
+    fn lamps(&self, voxel: [R; 3]) -> Lamps<'_, R> {
+        let field = self.light;
+        Lamps { field, voxel }
     }
 
     /// What the volumes are made of at `p`, where `look_from` looks from, so many voxels away; `None` for no data.
@@ -397,30 +411,27 @@ impl<'a, R: Real> Walk<'a, R> {
         if let [volume] = self.volumes[..] {
             let value = look(volume, settings.filter)?;
             let mut material = self.classify(0, value);
-            let is_lit = self.frame.light_count != 0 && ray_direction != [R::from_f64(0.0); 3];
+            let is_on_face = ray_direction == [R::from_f64(0.0); 3];
+            let is_lit = self.frame.light_count != 0 && !is_on_face;
+            let lamps = self.lamps(p);
+            let unlit = |material| match is_on_face {
+                true => material,
+                false => ambient_of(&self.frame, material, &lamps),
+            };
             if !is_lit && self.widgets.is_none() {
-                return Some(material);
+                return Some(unlit(material));
             }
             let tap = |step| look_from(volume, settings.filter, step);
             let gradient = self.gradient(p, tap);
             if let Some(widgets) = &self.widgets {
-                let second = if widgets.needs_second() {
-                    second_derivative_of(&self.frame, gradient, tap)
-                } else {
-                    R::from_f64(0.0)
-                };
-                let steep = Steepness {
-                    magnitude: dot(gradient, gradient).sqrt(),
-                    second,
-                    smallest_spacing: R::from_f32(self.frame.smallest_spacing),
-                };
+                let steep = steepness(&self.frame, widgets, gradient, tap);
                 material = classify_by_gradient(widgets, material, value, steep);
             }
             let [r, g, b, extinction] = material;
             if !is_lit {
-                return Some(material);
+                return Some(unlit(material));
             }
-            let [r, g, b] = shade(&self.frame, [r, g, b], gradient, ray_direction);
+            let [r, g, b] = shade(&self.frame, [r, g, b], gradient, ray_direction, &lamps);
             return Some([r, g, b, extinction]);
         }
         let mut found = [None; crate::shaders::MAX_CHANNELS as usize];
@@ -499,6 +510,38 @@ impl<'a, R: Real> Walk<'a, R> {
     }
 }
 
+/// The gradient at `p`: by the weights of an operator over a volume, or else by differences of what `tap` finds so
+/// many voxels away.
+fn gradient_at<R: Real>(
+    frame: &Frame,
+    weighted: Option<(&Volume, Operator)>,
+    p: [R; 3],
+    tap: impl Fn([i32; 3]) -> Option<R>,
+) -> [R; 3] {
+    match weighted {
+        Some((source, operator)) => weighted_gradient(frame, source, operator, p),
+        None => gradient_of(frame, tap),
+    }
+}
+
+/// What widgets want to know where the field has this gradient.
+fn steepness<R: Real>(
+    frame: &Frame,
+    widgets: &PackedWidgets,
+    gradient: [R; 3],
+    tap: impl Fn([i32; 3]) -> Option<R>,
+) -> Steepness<R> {
+    let second = match widgets.needs_second() {
+        true => second_derivative_of(frame, gradient, tap),
+        false => R::from_f64(0.0),
+    };
+    Steepness {
+        magnitude: dot(gradient, gradient).sqrt(),
+        second,
+        smallest_spacing: R::from_f32(frame.smallest_spacing),
+    }
+}
+
 /// The function of the volume that colours surfaces.
 fn paint_of(scene: &Scene) -> Option<Points> {
     let function = scene.transfers().get(1).copied().flatten();
@@ -514,6 +557,12 @@ fn marks_of_scene(scene: &Scene) -> Vec<Volume> {
     let parts = scene.volumes().into_iter().zip(scene.roles());
     let maps = parts.filter(|(_, role)| *role == Role::Labels);
     maps.filter_map(|(map, _)| marks_of(map)).collect()
+}
+
+/// A material without lights: all light is ambient.
+fn ambient_of<R: Real>(frame: &Frame, [r, g, b, extinction]: [R; 4], lamps: &Lamps<R>) -> [R; 4] {
+    let [r, g, b] = scale([r, g, b], lamps.ambient(frame));
+    [r, g, b, extinction]
 }
 
 /// The position so many voxels away.

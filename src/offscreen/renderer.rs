@@ -9,6 +9,7 @@
 
 use super::Error;
 use super::fade::{render_faded, stacks_of};
+use super::light::{Matter, made_light};
 use super::passes::{Passes, key_of};
 use super::position::{labels, positions};
 use super::submission::{self, Submission};
@@ -22,8 +23,8 @@ use crate::resident::{GpuTransfer, GpuVolume, TextureLayout};
 use crate::resolve::reference::projected_value;
 use crate::scene::{Scene, positions_in_pixel};
 use crate::technique::{
-    self, Functions, GradientSource, Inputs, Mix, Mode, Part, Recording, Settings, Technique,
-    Words, parameter_ring,
+    self, Functions, GradientSource, Inputs, LightVolume, Mix, Mode, Part, Recording, Settings,
+    Technique, Words, parameter_ring,
 };
 use crate::transfer::{Classified, Graded, TransferFunction, Window};
 use crate::volume::{Spline, Volume};
@@ -48,6 +49,7 @@ pub struct Renderer<'v> {
     /// What has been needed so far.
     resident: HashMap<Copied, Vec<GpuVolume>>,
     transfer: Option<Uploaded>,
+    light: Option<Lit>,
     targets: Option<Targets>,
     passes: Option<Passes>,
     ring: ParameterRing,
@@ -86,6 +88,13 @@ struct Uploaded {
     is_preintegrated: bool,
 }
 
+/// A light volume on the device, and the matter that it was made of.
+#[derive(Debug)]
+struct Lit {
+    matter: Matter,
+    made: LightVolume,
+}
+
 impl<'v> Renderer<'v> {
     /// A renderer of `volume` on `device`. Nothing is uploaded yet.
     ///
@@ -106,6 +115,7 @@ impl<'v> Renderer<'v> {
             shown: 0,
             resident: HashMap::new(),
             transfer: None,
+            light: None,
             targets: None,
             passes: None,
             ring: parameter_ring(gpu, 1)?,
@@ -195,12 +205,12 @@ impl<'v> Renderer<'v> {
         self.prepare(scene)?;
         let functions = scene.transfers().into_iter();
         match functions.collect::<Option<Vec<_>>>() {
-            _ if scene.settings.mode == Mode::Iso => {
+            _ if scene.settings.mode == Mode::Iso => match scene.transfers().get(1) {
                 // What colours the surfaces.
-                if let Some(&Some(function)) = scene.transfers().get(1) {
-                    self.set_transfers(scene, &[function])?;
-                }
-            }
+                Some(&Some(function)) => self.set_transfers(scene, &[function])?,
+                _ => self.prepare_light(scene)?,
+            },
+            Some(_) if !scene.settings.mode.is_projection() => self.prepare_light(scene)?,
             Some(functions) => self.set_transfers(scene, &functions)?,
             None if scene.settings.mode.is_projection() => {
                 clock.add(self.gather(scene, [0.0; 2])?);
@@ -268,6 +278,38 @@ impl<'v> Renderer<'v> {
         {
             self.passes = Some(Passes::new(&gpu, scene.settings, &words)?);
         }
+        Ok(())
+    }
+
+    /// Puts on the device what classifies samples, and follows light through it where pictures of `scene` ask for
+    /// that. Nothing to do where both are there.
+    ///
+    /// # Errors
+    /// Where no function says what samples are made of, or the device gives no memory.
+    pub fn prepare_light(&mut self, scene: &Scene) -> Result<(), Error> {
+        let grid = scene.volume.grid();
+        let view = scene.view(&grid, [0.0; 2]);
+        let plan = view.light_plan()?;
+        let surfaces = view.matter_of_surfaces();
+        let functions: Option<Vec<_>> = match &surfaces {
+            Some(_) if plan.is_none() => return Ok(()),
+            Some(function) => Some(vec![function]),
+            None => scene.transfers().into_iter().collect(),
+        };
+        let functions = functions.ok_or(technique::Error::NoTransferFunction)?;
+        self.set_transfers(scene, &functions)?;
+        let Some(plan) = plan else { return Ok(()) };
+        let matter = Matter::of(scene, functions[0]);
+        let is_there = |lit: &Lit| *lit.made.plan() == plan && lit.matter == matter;
+        if self.light.as_ref().is_some_and(is_there) {
+            return Ok(());
+        }
+        // Its memory first.
+        self.light = None;
+        let parts = parts_of(&self.resident, self.shown, scene);
+        let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
+        let made = made_light(&mut self.device, scene, plan, &parts, transfer)?;
+        self.light = Some(Lit { matter, made });
         Ok(())
     }
 
@@ -341,6 +383,7 @@ impl<'v> Renderer<'v> {
                 brick: &volume.bricks()[recording.brick],
                 transfer,
                 beside,
+                light: self.light.as_ref().map(|lit| &lit.made),
             };
             Ok(submission::Part {
                 inputs,

@@ -194,7 +194,14 @@ impl View<'_> {
             cut_low: of_faces.cut_low,
             cut_scale: of_faces.cut_scale,
             is_last_brick: 1,
+            light_cells: [0.0; 3],
+            occlusion_strength: 0.0,
+            light_cells_per_voxel: [0.0; 3],
+            shadow_reach: 0.0,
+            has_shadows: 0,
+            shadow_bundle: 0,
         };
+        self.set_light(&mut fields);
         if let Some(shading) = &self.settings.shading {
             set_shading(shading, self.settings.color_space, &mut fields)?;
         }

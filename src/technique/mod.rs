@@ -11,6 +11,10 @@ mod gradient_filter;
 pub mod gradient_taps;
 mod inputs;
 pub mod isosurface;
+mod light_field;
+mod light_paths;
+mod light_plan;
+mod light_volume;
 mod march;
 pub mod merge;
 pub mod mida;
@@ -33,6 +37,9 @@ pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 pub use frame::View;
 pub use gradient_filter::{GradientFilter, GradientSource, Operator};
 pub use inputs::{Inputs, Take, Words};
+pub use light_field::LightField;
+pub use light_plan::{AmbientOcclusion, LightPlan, MAX_LIGHT_CELLS, MAX_RADIUS_CELLS, Shadows};
+pub use light_volume::LightVolume;
 pub use mixture::{Mix, Part, Role};
 pub use per_mode::{DEFAULT_ATTENUATION, Level, PerMode};
 pub use recording::{Recording, parameter_ring};
@@ -209,6 +216,8 @@ pub struct Settings {
     pub shading: Option<Shading>,
     /// How gradients are made, for light and for transfer functions of gradients.
     pub gradient_filter: GradientFilter,
+    /// Ambient light that matter nearby takes away, with lights or without, of one volume that is composited.
+    pub ambient_occlusion: Option<AmbientOcclusion>,
     /// Float targets, no early termination, filtering by texel fetch, control points searched exactly.
     pub conformance: bool,
     /// What single modes want to know.
@@ -383,6 +392,19 @@ pub enum Error {
     /// Several volumes have several gradients.
     #[error("shading is for one volume of numbers, not for several that are mixed")]
     NotShadedTogether,
+    /// Light falls on what is composited.
+    #[error(
+        "{mode:?} projects one number a ray, on which no light falls: ambient occlusion is for composite"
+    )]
+    NotOccluded {
+        /// The mode.
+        mode: Mode,
+    },
+    /// Light is followed through one volume.
+    #[error(
+        "ambient occlusion and shadows are for one volume of numbers, not for several that are seen together"
+    )]
+    NotOccludedTogether,
     /// A projected value has no gradient.
     #[error(
         "{mode:?} projects one number a ray, which has no gradient: widgets and gradient opacity are for composite"
@@ -460,6 +482,7 @@ impl Default for Settings {
             cut_faces: None,
             shading: None,
             gradient_filter: GradientFilter::default(),
+            ambient_occlusion: None,
             conformance: false,
             per_mode: PerMode::default(),
             dim: DEFAULT_DIM,

@@ -155,6 +155,7 @@ impl Settings {
     pub fn check(&self) -> Result<(), Error> {
         self.check_ways()?;
         self.check_gradient_filter()?;
+        self.check_light()?;
         let (technique, mode) = (self.technique, self.mode);
         if technique != Technique::Raycast && mode.needs_rays() {
             return Err(Error::NeedsRays { technique, mode });

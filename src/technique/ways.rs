@@ -49,7 +49,7 @@ impl Settings {
                 found: "surfaces, whose places do not hang on where steps begin".to_owned(),
             });
         }
-        if self.shading.is_some() {
+        if self.shading.is_some() || self.ambient_occlusion.is_some() {
             self.refuse_way("samples without light", "shaded ones")?;
         }
         if self.filter.kernel().is_some() {

@@ -1,9 +1,10 @@
 //! Light on what is composited: flags to [`Shading`].
 
+use super::occlusion::{OcclusionWord, ShadowsWord};
 use super::{Error, Numbers};
 use crate::{
     shaders::MAX_LIGHTS,
-    technique::{Light, Mode, Shading},
+    technique::{AmbientOcclusion, Light, Mode, Shading, Shadows},
 };
 use clap::{Args, ValueEnum};
 use glam::DVec3;
@@ -28,6 +29,19 @@ pub struct LightFlags {
     #[arg(long, value_name = "X,Y,Z[,R,G,B]", allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub light: Vec<LightWord>,
+    /// Darkness where matter within RADIUS (world length) keeps light from all around away; of the ambient part with
+    /// --shading phong, of the whole colour without [default radius: a twentieth of the diagonal of the volume]
+    #[arg(long, value_name = "STRENGTH[,RADIUS]", allow_hyphen_values = true, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ambient_occlusion: Option<OcclusionWord>,
+    /// Whether matter on the way to a --light keeps it away [default: off]
+    #[arg(long, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shadows: Option<ShadowsWord>,
+    /// How wide lights look, in degrees: 0 for sharp shadows [default: 5]
+    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light_size: Option<f64>,
 }
 
 /// Every word of `--shading`.
@@ -128,6 +142,7 @@ impl LightFlags {
         }
         let mut shading = Shading {
             lights: self.light.iter().map(|word| word.0).collect(),
+            shadows: self.shadows()?,
             ..Shading::default()
         };
         if let Some(Numbers(material)) = self.material {
@@ -153,6 +168,29 @@ impl LightFlags {
         Ok(Some(shading))
     }
 
+    fn shadows(&self) -> Result<Shadows, Error> {
+        let size = self.light_size.unwrap_or(DEFAULT_LIGHT_SIZE);
+        if !(0.0..=MAX_LIGHT_SIZE).contains(&size) {
+            return Err(Error::usage(
+                format!("--light-size {size}: wanted degrees from 0 to {MAX_LIGHT_SIZE}"),
+                "--light-size 0 makes shadows sharp, the sun is half a degree wide",
+            ));
+        }
+        Ok(self.shadows.unwrap_or_default().shadows(size))
+    }
+
+    /// The ambient occlusion of a picture in `mode`.
+    pub fn occlusion(&self, mode: Mode) -> Result<Option<AmbientOcclusion>, Error> {
+        let occlusion = self.ambient_occlusion.map(OcclusionWord::occlusion);
+        if occlusion.is_some() && mode.is_projection() {
+            return Err(Error::usage(
+                "--ambient-occlusion needs --mode composite, mida or iso: no light falls on a projection",
+                "leave out --mode or --ambient-occlusion",
+            ));
+        }
+        Ok(occlusion)
+    }
+
     /// Flags that change nothing under the others, a sentence each.
     pub fn idle(&self, mode: Mode) -> Vec<&'static str> {
         let is_dark = self.word(mode) == ShadingWord::None;
@@ -163,9 +201,27 @@ impl LightFlags {
         if is_dark && !self.light.is_empty() {
             notes.push("--light has no effect without --shading phong");
         }
+        let has_shadows = self.shadows.unwrap_or_default() != ShadowsWord::Off;
+        if has_shadows && (is_dark || self.light.is_empty()) {
+            notes.push(
+                "--shadows has no effect without --shading phong and --light: nothing seen is in the shadow of the eye's own light",
+            );
+        }
+        if self.light_size.is_some() && !has_shadows {
+            notes.push("--light-size has no effect without --shadows volume");
+        }
+        if self.ambient_occlusion.is_some() && !is_dark && self.material.is_none() {
+            notes.push(
+                "--ambient-occlusion takes ambient light, a tenth of it all unless --material says so: --material 0.5,0.5,0.2,10 shows more",
+            );
+        }
         notes
     }
 }
+
+/// Soft where matter is far, and no blur where it is near.
+const DEFAULT_LIGHT_SIZE: f64 = 5.0;
+const MAX_LIGHT_SIZE: f64 = 90.0;
 
 /// A power of 0 would mirror everywhere, and over a thousand no pixel would.
 const MIN_SHININESS: f64 = 0.1;
@@ -180,6 +236,7 @@ mod tests {
             shading: Some(shading),
             material: (!material.is_empty()).then(|| material.parse().expect("numbers")),
             light: light.iter().map(|l| l.parse().expect("a light")).collect(),
+            ..LightFlags::default()
         }
     }
 

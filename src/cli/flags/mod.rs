@@ -18,6 +18,7 @@ mod levels;
 mod light;
 mod modes;
 mod numbers;
+mod occlusion;
 mod opacity;
 mod picture;
 mod sampling;
@@ -104,13 +105,14 @@ impl SceneFlags {
     /// The same with other words of sampling.
     pub fn settings_of(&self, sampling: &SamplingFlags, depth: Depth) -> Result<Settings, Error> {
         let settings = self.section.settings(sampling, depth)?;
-        let shading = self.light.shading(settings.mode)?;
         let settings = Settings {
-            shading,
+            shading: self.light.shading(settings.mode)?,
+            ambient_occlusion: self.light.occlusion(settings.mode)?,
             gradient_filter: self.gradient.filter(),
             dim: self.labels.dim()?,
             ..settings
         };
+        sampling.check_ways(&settings)?;
         if !self.wants_slabs() {
             return Ok(settings);
         }

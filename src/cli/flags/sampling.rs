@@ -151,13 +151,12 @@ impl SamplingFlags {
             shading: None,
             gradient_filter: Default::default(),
             dim: DEFAULT_DIM,
+            ambient_occlusion: None,
             conformance: self.conformance,
             // Of the values, which are not known yet.
             per_mode: Default::default(),
         };
-        settings
-            .check_ways()
-            .map_err(|problem| Error::usage(problem.to_string(), WAYS))?;
+        self.check_ways(&settings)?;
         Ok(settings)
     }
 
@@ -189,6 +188,12 @@ impl SamplingFlags {
             (self.preintegrated, self.preclassified) = (false, false);
             self.postclassified = false;
         }
+    }
+
+    /// Whether these settings go with the ways to sample that are asked for.
+    pub fn check_ways(&self, settings: &Settings) -> Result<(), Error> {
+        let checked = settings.check_ways();
+        checked.map_err(|problem| Error::usage(problem.to_string(), WAYS))
     }
 
     fn lattice(&self) -> Result<Lattice, Error> {

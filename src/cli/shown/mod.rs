@@ -116,6 +116,9 @@ impl Shown {
         if settings.shading.is_some() && !is_alone {
             return Err(Error::not_shaded_together());
         }
+        if settings.ambient_occlusion.is_some() && !is_alone {
+            return Err(Error::not_occluded_together());
+        }
         let reader = Reader {
             scene,
             mode: settings.mode,
