@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     camera::Camera,
-    technique::{Mode, Settings, Technique},
+    technique::{Mode, Settings, Shadows, Technique},
     transfer::{Classified, Window},
 };
 use clap::Args;
@@ -186,8 +186,11 @@ impl Bench {
             let parts = shown.parts();
             for (name, technique) in of_mode {
                 progress.stage("measure", rows.len(), 2 * of_mode.len());
+                // Half-angle slices are those of one technique and mode.
+                let casts = technique == Technique::Slices3d && mode == Mode::Composite;
                 let settings = Settings {
                     technique,
+                    shadows: if casts { base.shadows } else { Shadows::Off },
                     ..base.clone()
                 };
                 let job = Job {

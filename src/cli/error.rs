@@ -88,6 +88,13 @@ impl From<offscreen::Error> for Error {
             offscreen::Error::Technique(error @ technique::Error::FilterAlone { .. }) => {
                 Self::usage(error.to_string(), "--filter linear draws them together")
             }
+            offscreen::Error::Technique(error @ technique::Error::TooSteep { .. }) => Self::usage(
+                error.to_string(),
+                "--projection orthographic has no such rays; a smaller --fov or a light from elsewhere has fewer",
+            ),
+            offscreen::Error::Technique(error @ technique::Error::ShadowsNeedOneBrick { .. }) => {
+                Self::Memory(error.to_string())
+            }
             offscreen::Error::Technique(error) => Self::Limit(error.to_string()),
             offscreen::Error::NoLayer { .. } => Self::NotBuilt(error.to_string()),
         }

@@ -1,5 +1,6 @@
 //! A scene to a picture on the CPU: every technique by its twin, in f32 or f64, no Vulkan anywhere.
 
+mod half_angle;
 mod slabs;
 
 use super::fade::{faded, stacks_of};
@@ -16,7 +17,7 @@ use crate::technique::gradient::gradient_of;
 use crate::technique::mixture::{color_of, colored, mixed};
 use crate::technique::shading::shade;
 use crate::technique::{
-    Error, Filter, Mix, Mode, Recording, Role, Technique, isosurface, projection, raycast,
+    Error, Filter, Mix, Mode, Recording, Role, Shadows, Technique, isosurface, projection, raycast,
     slices_2d, slices_3d,
 };
 use crate::transfer::{
@@ -55,8 +56,14 @@ fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     let spline = scene.settings.filter.spline();
     let coefficients = spline.map(|spline| Coefficients::new(scene.volume, spline, axes));
     let read = coefficients.as_ref().map(Coefficients::volume);
-    let gathered =
-        |in_pixel| Walk::<R>::new(scene, read, &grid, in_pixel).map(|walk| walk.gather_all());
+    let gathered = |in_pixel| -> Result<_, Error> {
+        let walk = Walk::<R>::new(scene, read, &grid, in_pixel)?;
+        if scene.settings.shadows == Shadows::HalfAngle {
+            let [_, light] = scene.view(&grid, in_pixel).half_angle_on_cpu()?;
+            return Ok(walk.gather_in_light(&light));
+        }
+        Ok(walk.gather_all())
+    };
     let centers = gathered([0.0; 2])?;
     let transfer = match scene.transfer {
         Some(transfer) => transfer.clone(),

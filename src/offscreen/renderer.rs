@@ -22,7 +22,7 @@ use crate::resident::{GpuTransfer, GpuVolume, TextureLayout};
 use crate::resolve::reference::projected_value;
 use crate::scene::{Scene, positions_in_pixel};
 use crate::technique::{
-    self, Inputs, Mix, Mode, Part, Recording, Settings, Technique, Words, parameter_ring,
+    self, Inputs, Mix, Mode, Part, Recording, Settings, Shadows, Technique, Words, parameter_ring,
 };
 use crate::transfer::{Classified, TransferFunction, Window};
 use crate::volume::{Spline, Volume};
@@ -217,7 +217,14 @@ impl<'v> Renderer<'v> {
             self.targets = Some(Targets::new(&gpu, scene.extent_pixels)?);
         }
         let parts = parts_of(&self.resident, self.shown, scene);
-        let slots = parts[0].volume.bricks().len() as u32;
+        // Half-angle slices have parameters of the eye and of the light.
+        let is_half = scene.settings.shadows == Shadows::HalfAngle;
+        let slots = (parts[0].volume.bricks().len() as u32).max(if is_half { 2 } else { 1 });
+        if is_half {
+            let extent = scene.view(&scene.volume.grid(), [0.0; 2]).light_extent();
+            let targets = self.targets.as_mut().expect("made above");
+            targets.prepare_light_buffer(&gpu, extent)?;
+        }
         let words = Words::mixed(scene.settings, scene.mix(), &parts);
         let functions = scene.transfers().into_iter().flatten();
         let points = functions.map(|f| f.color.len().max(f.opacity.len())).max();
@@ -316,6 +323,7 @@ impl<'v> Renderer<'v> {
                 inputs,
                 offset: recording.write(&self.ring, slot)?,
                 slices: recording.slices,
+                order: recording.order,
             })
         };
         let with_others = recordings.into_iter().zip(beside.iter().map(Vec::as_slice));

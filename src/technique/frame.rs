@@ -6,7 +6,7 @@
 
 use super::blend::extreme_sign;
 use super::shading::set_shading;
-use super::{Filter, MAX_SAMPLES_PER_RAY, Settings, Technique};
+use super::{Filter, MAX_SAMPLES_PER_RAY, Settings, Shading, Shadows, Technique};
 use crate::camera::{Camera, Projection, Rays};
 use crate::picture::ColorSpace;
 use crate::resident::{Cell, Coding, TransferLayout, front_to_back};
@@ -181,8 +181,10 @@ impl View<'_> {
             specular: 0.0,
             shininess: 0.0,
             smallest_spacing: self.grid.smallest_spacing() as f32,
+            light_rows: [[0.0; 4]; 2],
         };
-        if let Some(shading) = &self.settings.shading {
+        let plain = (self.settings.shadows != Shadows::Off).then(Shading::plain);
+        if let Some(shading) = self.settings.shading.as_ref().or(plain.as_ref()) {
             set_shading(shading, self.settings.color_space, &mut fields)?;
         }
         Ok(fields)
@@ -335,7 +337,7 @@ fn affine_rows(affine: &DAffine3) -> [[f32; 4]; 3] {
 /// Clip space from the centred world, as rows, from the rays themselves: with w the depth and d the ray
 /// direction of depth 1, pixel x of a point p is where (p/w - d) . dx / |dx|^2 finds it. Depth is 1/2
 /// everywhere: w > 0 alone clips.
-fn clip_rows(rays: &Rays, [width, height]: [u32; 2]) -> [[f32; 4]; 4] {
+pub(super) fn clip_rows(rays: &Rays, [width, height]: [u32; 2]) -> [[f32; 4]; 4] {
     let is_perspective = rays.origin_dx == DVec3::ZERO;
     let row = |dx_origin: DVec3, dx_direction: DVec3, pixels: u32| {
         // A point's pixel coordinate times w is dot(slope, p - origin) + at_origin.

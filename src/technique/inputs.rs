@@ -129,7 +129,8 @@ impl Words {
         let is_fetched =
             |part: &Part| part.role == Role::Numbers && !part.volume.texel().is_filtered;
         let has_holes = parts.iter().any(|part| part.volume.has_holes());
-        let is_graded = mix == Mix::Alone && settings.shading.is_some();
+        let has_surfaces = settings.shading.as_ref().is_some_and(|s| s.has_surfaces);
+        let is_graded = mix == Mix::Alone && has_surfaces;
         Self {
             mix: if is_graded { Mix::Graded } else { mix },
             filter: match settings.filter {

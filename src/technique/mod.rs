@@ -17,6 +17,7 @@ pub mod projection;
 pub mod raycast;
 mod recording;
 pub mod shading;
+mod shadows;
 mod slab;
 mod slicer;
 pub mod slices_2d;
@@ -31,6 +32,7 @@ pub use mixture::{Mix, Part, Role};
 pub use per_mode::{DEFAULT_ATTENUATION, Level, PerMode};
 pub use recording::{Recording, parameter_ring};
 pub use shading::{Light, Shading};
+pub use shadows::Shadows;
 pub use slicer::Slicer;
 
 use crate::volume::{Spline, kernel::Kernel};
@@ -188,6 +190,8 @@ pub struct Settings {
     pub clip_planes: Vec<ClipPlane>,
     /// Light on composited samples of one volume; `None`: their colour as it is.
     pub shading: Option<Shading>,
+    /// What keeps light from samples.
+    pub shadows: Shadows,
     /// Float targets, no early termination, filtering by texel fetch, control points searched exactly.
     pub conformance: bool,
     /// What single modes want to know.
@@ -382,6 +386,30 @@ pub enum Error {
     /// A direction has a length.
     #[error("the way to a light has the length 0")]
     NoWayToLight,
+    /// The light's picture is that of one light.
+    #[error("half-angle slices lie half way to one light, and {wanted} were given")]
+    SeveralShadowLights {
+        /// How many were asked for.
+        wanted: usize,
+    },
+    /// Slices of all bricks in turn would have to be drawn before the light of the next slice is known.
+    #[error(
+        "half-angle slices go through all of the volume one by one, from the light: it must lie in one texture of the device, and lies in {bricks} bricks"
+    )]
+    ShadowsNeedOneBrick {
+        /// How many bricks the volume lies in.
+        bricks: usize,
+    },
+    /// Rays that are nearly as flat as the slices, or meet them from the other side.
+    #[error(
+        "rays of this perspective are up to {degrees:.0} degrees off the normal of slices half way to the light, the limit is {limit_degrees:.0}"
+    )]
+    TooSteep {
+        /// The angle of the ray that is farthest off.
+        degrees: f64,
+        /// What may be.
+        limit_degrees: f64,
+    },
     /// The parameters hold a fixed number of planes.
     #[error("{wanted} clip planes, the limit is {limit}")]
     TooManyClipPlanes {
@@ -417,6 +445,7 @@ impl Default for Settings {
             crop: None,
             clip_planes: Vec::new(),
             shading: None,
+            shadows: Shadows::default(),
             conformance: false,
             per_mode: PerMode::default(),
         }

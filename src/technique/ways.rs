@@ -1,6 +1,6 @@
 //! Ways to take samples of their own, and what does not go together with them.
 
-use super::{Error, Lattice, Mode, Settings, Technique};
+use super::{Error, Lattice, Mode, Settings, Shadows, Technique};
 
 impl Settings {
     /// Whether technique and mode have the ways to sample that are asked for.
@@ -31,6 +31,19 @@ impl Settings {
         of_mode(self.smooth, SMOOTH)?;
         of_technique(is_jittered, JITTER, Technique::Raycast, "ray casting")?;
         of_mode(is_jittered, JITTER)?;
+        let is_half = self.shadows == Shadows::HalfAngle;
+        of_technique(is_half, HALF_ANGLE, Technique::Slices3d, "3D slices")?;
+        of_mode(is_half, HALF_ANGLE)?;
+        if is_half {
+            self.refuse_way("samples without shadows", HALF_ANGLE)?;
+            if self.filter.kernel().is_some() {
+                return Err(Error::NotFor {
+                    wanted: HALF_ANGLE,
+                    of: "nearest and linear filters",
+                    found: format!("{:?}", self.filter),
+                });
+            }
+        }
         if self.shading.is_some() {
             self.refuse_way("samples without light", "shaded ones")?;
         }
@@ -60,6 +73,21 @@ impl Settings {
         self.refuse_way("one volume of numbers", "several that are mixed")
     }
 
+    /// The same for several volumes where there are shadows.
+    ///
+    /// # Errors
+    /// [`Error::NotFor`].
+    pub(crate) fn check_shadows_mixed(&self) -> Result<(), Error> {
+        match self.shadows {
+            Shadows::Off => Ok(()),
+            Shadows::HalfAngle => Err(Error::NotFor {
+                wanted: HALF_ANGLE,
+                of: "one volume of numbers",
+                found: "several that are mixed".to_owned(),
+            }),
+        }
+    }
+
     /// The same for functions of gradients.
     ///
     /// # Errors
@@ -86,3 +114,4 @@ impl Settings {
 const PREINTEGRATED: &str = "pre-integrated classification";
 const SMOOTH: &str = "interpolation between slices";
 const JITTER: &str = "jitter";
+const HALF_ANGLE: &str = "half-angle slicing";

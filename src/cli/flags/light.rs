@@ -1,9 +1,9 @@
 //! Light on what is composited: flags to [`Shading`].
 
-use super::{Error, Numbers};
+use super::{Error, Numbers, shadows::ShadowsWord};
 use crate::{
     shaders::MAX_LIGHTS,
-    technique::{Light, Mode, Shading},
+    technique::{Light, Mode, Settings, Shading},
 };
 use clap::{Args, ValueEnum};
 use glam::DVec3;
@@ -28,6 +28,10 @@ pub struct LightFlags {
     #[arg(long, value_name = "X,Y,Z[,R,G,B]", allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub light: Vec<LightWord>,
+    /// What keeps light from matter; --material A is what stays in the shadow [default: off]
+    #[arg(long, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shadows: Option<ShadowsWord>,
 }
 
 /// Every word of `--shading`.
@@ -103,9 +107,21 @@ impl LightFlags {
         self.shading.unwrap_or(of_mode)
     }
 
+    /// The settings with the shadows of these lights.
+    pub fn cast(&self, settings: Settings) -> Result<Settings, Error> {
+        let word = self.shadows.unwrap_or_default();
+        word.cast(settings, self.light.len())
+    }
+
+    /// Whether slices lie half way to the light.
+    pub fn is_half_angle(&self) -> bool {
+        self.shadows == Some(ShadowsWord::HalfAngle)
+    }
+
     /// The light of a picture in `mode`.
     pub fn shading(&self, mode: Mode) -> Result<Option<Shading>, Error> {
-        if self.word(mode) == ShadingWord::None {
+        let has_surfaces = self.word(mode) == ShadingWord::Phong;
+        if !has_surfaces && !self.is_half_angle() {
             return Ok(None);
         }
         if mode.is_projection() {
@@ -123,6 +139,7 @@ impl LightFlags {
         }
         let mut shading = Shading {
             lights: self.light.iter().map(|word| word.0).collect(),
+            has_surfaces,
             ..Shading::default()
         };
         if let Some(Numbers(material)) = self.material {
@@ -150,7 +167,7 @@ impl LightFlags {
 
     /// Flags that change nothing under the others, a sentence each.
     pub fn idle(&self, mode: Mode) -> Vec<&'static str> {
-        let is_dark = self.word(mode) == ShadingWord::None;
+        let is_dark = self.word(mode) == ShadingWord::None && !self.is_half_angle();
         let mut notes = Vec::new();
         if is_dark && self.material.is_some() {
             notes.push("--material has no effect without --shading phong");
@@ -175,6 +192,7 @@ mod tests {
             shading: Some(shading),
             material: (!material.is_empty()).then(|| material.parse().expect("numbers")),
             light: light.iter().map(|l| l.parse().expect("a light")).collect(),
+            shadows: None,
         }
     }
 

@@ -20,6 +20,7 @@ mod numbers;
 mod picture;
 mod sampling;
 mod section;
+mod shadows;
 mod subject;
 mod words;
 
@@ -95,6 +96,7 @@ impl SceneFlags {
     /// The same with other words of sampling.
     pub fn settings_of(&self, sampling: &SamplingFlags, depth: Depth) -> Result<Settings, Error> {
         let settings = self.section.settings(sampling, depth)?;
+        let settings = self.light.cast(settings)?;
         let shading = self.light.shading(settings.mode)?;
         Ok(Settings {
             shading,
@@ -111,6 +113,10 @@ impl SceneFlags {
             self.light.idle(mode),
             self.camera.idle(),
         ];
-        topics.concat()
+        let mut notes = topics.concat();
+        if self.light.is_half_angle() && self.sampling.order.is_some() {
+            notes.push("--order has no effect on half-angle slices, they come from the light");
+        }
+        notes
     }
 }

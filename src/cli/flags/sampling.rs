@@ -124,6 +124,7 @@ impl SamplingFlags {
             crop: self.crop.map(crop_box).transpose()?,
             clip_planes: clip_planes(&self.clip)?,
             shading: None,
+            shadows: Default::default(),
             conformance: self.conformance,
             // Of the values, which are not known yet.
             per_mode: Default::default(),

@@ -1,0 +1,12 @@
+//! What keeps light from matter.
+
+/// How shadows are made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Shadows {
+    /// Light goes through everything.
+    #[default]
+    Off,
+    /// Composite by [`super::Technique::Slices3d`], of one volume in one texture: slices half way between eye and
+    /// light, drawn into the picture and into what the light sees ([`super::slices_3d::HalfAngleSlicer`]).
+    HalfAngle,
+}
