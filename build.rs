@@ -116,25 +116,8 @@ const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     ("slices_2d_cover", &[]),
     (
-        "raycast",
-        &[
-            ("mode", &["composite"]),
-            ALONE,
-            ("lattice", &["jitter"]),
-            NARROW,
-            HOLES,
-            TRANSFER,
-        ],
-    ),
-    (
         "raycast_slab",
-        &[
-            ("mode", &["composite"]),
-            SLAB,
-            ("lattice", &["ray", "planes", "jitter"]),
-            NARROW,
-            HOLES,
-        ],
+        &[("mode", &["composite"]), SLAB, LATTICE, NARROW, HOLES],
     ),
     (
         "slices_3d_slab",

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! ray:     t = t0 + (k + 1/2) h, by multiplication; the last, shorter segment at its own middle
+//! jitter:  t0 less a part of h that hangs on the pixel; the first, shorter segment at its own middle too
 //! planes:  n . (o + t r) = (k + 1/2) h, a sample stands for h / (n . r)
 //! ```
 
@@ -18,23 +19,78 @@ pub struct Segment<R> {
     pub length: R,
 }
 
-/// Samples at equal steps from where the ray enters.
-pub fn along_ray<R: Real>(frame: &Frame, [t0, t1]: [R; 2]) -> impl Iterator<Item = Segment<R>> {
-    let step = R::from_f32(frame.step_world);
-    let half = R::from_f64(0.5);
-    let full = ((t1 - t0) / step).floor().to_i32();
-    (0..=full).map(move |k| {
+/// Equal steps from where a ray enters, or with jitter from a part of a step before.
+#[derive(Clone, Copy, Debug)]
+struct Steps<R> {
+    /// Where the ray is in the domain.
+    ends: [R; 2],
+    /// Where the first step begins.
+    start: R,
+    step: R,
+    /// How many whole steps end in the domain.
+    full: i32,
+}
+
+impl<R: Real> Steps<R> {
+    fn new(frame: &Frame, pixel: [R; 2], ends: [R; 2]) -> Self {
+        let step = R::from_f32(frame.step_world);
+        let mut start = ends[0];
+        if frame.is_jittered != 0 {
+            let place = pixel.map(|x| x.to_i32() as u32);
+            start = start + (R::from_f32(jitter_of(frame, place)) - R::from_f64(1.0)) * step;
+        }
+        Self {
+            ends,
+            start,
+            step,
+            full: ((ends[1] - start) / step).floor().to_i32(),
+        }
+    }
+
+    /// Where so many steps after the first begins.
+    fn at(&self, steps: R) -> R {
+        self.start + steps * self.step
+    }
+
+    /// Step `k`, cut to where the ray is in the domain.
+    fn slab(&self, k: i32) -> Slab<R> {
         let index = R::from_f64(f64::from(k));
-        if k < full {
+        let [t0, t1] = self.ends;
+        let (enter, is_last) = (self.at(index), k == self.full);
+        let front = enter.max(t0);
+        let back = if is_last {
+            t1
+        } else {
+            self.at(index + R::from_f64(1.0))
+        };
+        let is_whole = !is_last && enter >= t0;
+        Slab {
+            ends: [front, back],
+            length: if is_whole { self.step } else { back - front },
+        }
+    }
+}
+
+/// Samples at equal steps from where the ray enters.
+pub fn along_ray<R: Real>(
+    frame: &Frame,
+    pixel: [R; 2],
+    ends: [R; 2],
+) -> impl Iterator<Item = Segment<R>> {
+    let steps = Steps::new(frame, pixel, ends);
+    let half = R::from_f64(0.5);
+    (0..=steps.full).map(move |k| {
+        let index = R::from_f64(f64::from(k));
+        if k < steps.full && steps.at(index) >= ends[0] {
             return Segment {
-                t: t0 + (index + half) * step,
-                length: step,
+                t: steps.at(index + half),
+                length: steps.step,
             };
         }
-        let start = t0 + index * step;
-        let length = (t1 - start).max(R::from_f64(0.0));
+        let slab = steps.slab(k);
+        let length = slab.length.max(R::from_f64(0.0));
         Segment {
-            t: start + half * length,
+            t: slab.ends[0] + half * length,
             length,
         }
     })
@@ -89,18 +145,14 @@ impl<R: Real> Slab<R> {
     }
 }
 
-/// Slabs of one step each from where the ray enters; the last is shorter. Twin of `slab_ray.wgsl`.
-pub fn slabs_along_ray<R: Real>(frame: &Frame, [t0, t1]: [R; 2]) -> impl Iterator<Item = Slab<R>> {
-    let step = R::from_f32(frame.step_world);
-    let full = ((t1 - t0) / step).floor().to_i32();
-    let edge = move |k: i32| t0 + R::from_f64(f64::from(k)) * step;
-    (0..=full).map(move |k| {
-        let (front, is_last) = (edge(k), k == full);
-        Slab {
-            ends: [front, if is_last { t1 } else { edge(k + 1) }],
-            length: if is_last { t1 - front } else { step },
-        }
-    })
+/// Slabs of one step each; the last is shorter, and with jitter the first too. Twin of `slab_ray.wgsl`.
+pub fn slabs_along_ray<R: Real>(
+    frame: &Frame,
+    pixel: [R; 2],
+    ends: [R; 2],
+) -> impl Iterator<Item = Slab<R>> {
+    let steps = Steps::new(frame, pixel, ends);
+    (0..=steps.full).map(move |k| steps.slab(k))
 }
 
 /// The slab around plane `k`, cut to the interval. Twin of `slab.wgsl`.
@@ -133,18 +185,4 @@ pub fn jitter_of(frame: &Frame, pixel: [u32; 2]) -> f32 {
         .wrapping_add(y.wrapping_mul(2_447_445_414))
         .wrapping_add(frame.jitter);
     ((pattern >> 8) as f32 + 0.5) / 16_777_216.0
-}
-
-/// Steps of which the first is cut short, as slabs. Twin of `slab_jitter.wgsl` and `lattice_jitter.wgsl`.
-pub fn slabs_jittered<R: Real>(
-    frame: &Frame,
-    pixel: [R; 2],
-    [t0, t1]: [R; 2],
-) -> impl Iterator<Item = Slab<R>> {
-    let step = R::from_f32(frame.step_world);
-    let place = pixel.map(|x| x.to_i32() as u32);
-    let start = t0 + (R::from_f32(jitter_of(frame, place)) - R::from_f64(1.0)) * step;
-    let full = ((t1 - start) / step).floor().to_i32();
-    let edge = move |k: i32| start + R::from_f64(f64::from(k)) * step;
-    (0..=full).map(move |k| Slab::cut([edge(k), edge(k + 1)], [t0, t1], step))
 }

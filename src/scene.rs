@@ -140,9 +140,6 @@ impl<'a> Scene<'a> {
         if self.is_graded() && mode.is_projection() {
             return Err(Error::NotGraded { mode });
         }
-        if !matches!(self.mix(), Mix::Alone | Mix::Graded) {
-            self.settings.check_shadows_mixed()?;
-        }
         match self.mix() {
             Mix::Alone | Mix::Graded => Ok(()),
             _ if self.is_graded() => Err(Error::NotGradedTogether),

@@ -33,7 +33,7 @@ fn shadings() -> [Shading; 2] {
         specular: 0.4,
         shininess: 23.0,
         lights: lights(),
-        has_surfaces: true,
+        ..Shading::default()
     };
     [Shading::default(), lit]
 }

@@ -272,9 +272,9 @@ fn what_has_no_such_way_to_sample_is_refused_by_name() {
             "Slices3d",
         ),
         (
-            settings(Raycast, Mode::Xray, Lattice::Jitter),
+            settings(Raycast, Mode::Iso, Lattice::Jitter),
             "jitter",
-            "Xray",
+            "surfaces",
         ),
     ] {
         let error = settings.check().unwrap_err();

@@ -94,7 +94,8 @@ struct Frame {
     cover_offset: f32,
     // Covers that lie so near the eye are the whole picture: voxels along a stack, world length for planes.
     cover_eye_reach: f32,
-    // By how much the pattern of jittered rays is moved, in parts of 2^32.
+    // Whether rays are jittered, and by how much the pattern is moved, in parts of 2^32.
+    is_jittered: u32,
     jitter: u32,
     // Values without a unit: (value - value_low) * value_scale, 0 to 1.
     value_low: f32,

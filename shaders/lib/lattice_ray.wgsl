@@ -1,13 +1,18 @@
 // Samples at equal steps from where the ray enters: t0 + (k + 1/2) h; the last, shorter segment is
-// sampled at its own middle with its own length. Twin: src/lattice.rs.
+// sampled at its own middle with its own length. Jittered rays begin by a part of a step earlier, which hangs on the
+// pixel, and their first segment is cut short in the same way. Twin: src/lattice.rs.
 
 #import ray
+#import jitter
 
 struct Lattice {
     first: i32,
     count: i32,
+    // Where the ray is in the domain.
     t0: f32,
     t1: f32,
+    // Where the first step begins: t0 without jitter.
+    start: f32,
 }
 
 struct Segment {
@@ -16,21 +21,28 @@ struct Segment {
 }
 
 fn lattice_of(world: Ray, interval: vec2<f32>, pixel: vec2<f32>) -> Lattice {
-    let full = floor((interval.y - interval.x) / frame.step_world);
-    return Lattice(0, i32(full) + 1, interval.x, interval.y);
+    var start = interval.x;
+    if frame.is_jittered != 0u {
+        start += (jitter_of(pixel) - 1.0) * frame.step_world;
+    }
+    let full = floor((interval.y - start) / frame.step_world);
+    return Lattice(0, i32(full) + 1, interval.x, interval.y, start);
 }
 
 // A segment of no length is outside.
 fn segment_of(lattice: Lattice, world: Ray, k: i32) -> Segment {
-    if k + 1 < lattice.count {
-        return Segment(lattice.t0 + (f32(k) + 0.5) * frame.step_world, frame.step_world);
+    let enter = lattice.start + f32(k) * frame.step_world;
+    let is_last = k + 1 >= lattice.count;
+    if !is_last && enter >= lattice.t0 {
+        return Segment(lattice.start + (f32(k) + 0.5) * frame.step_world, frame.step_world);
     }
-    let start = lattice.t0 + f32(k) * frame.step_world;
-    let length = max(lattice.t1 - start, 0.0);
-    return Segment(start + 0.5 * length, length);
+    let front = max(enter, lattice.t0);
+    let back = select(lattice.start + f32(k + 1) * frame.step_world, lattice.t1, is_last);
+    let length = max(back - front, 0.0);
+    return Segment(front + 0.5 * length, length);
 }
 
 // Which sample lies at t, as a fraction.
 fn index_at(lattice: Lattice, world: Ray, t: f32) -> f32 {
-    return (t - lattice.t0) / frame.step_world - 0.5;
+    return (t - lattice.start) / frame.step_world - 0.5;
 }

@@ -1,12 +1,14 @@
-// Slabs of one step each from where the ray enters; the last is shorter. Twin: src/lattice.rs.
+// Slabs of one step each from where the steps begin; the last is shorter, and with jitter the first too.
+// Twin: src/lattice.rs.
 
 #import slab
 #import lattice_ray
 
 fn slab_of(lattice: Lattice, world: Ray, k: i32) -> Slab {
-    let front = lattice.t0 + f32(k) * frame.step_world;
-    if k + 1 < lattice.count {
-        return Slab(front, lattice.t0 + f32(k + 1) * frame.step_world, frame.step_world);
-    }
-    return Slab(front, lattice.t1, lattice.t1 - front);
+    let enter = lattice.start + f32(k) * frame.step_world;
+    let is_last = k + 1 >= lattice.count;
+    let front = max(enter, lattice.t0);
+    let back = select(lattice.start + f32(k + 1) * frame.step_world, lattice.t1, is_last);
+    let is_whole = !is_last && enter >= lattice.t0;
+    return Slab(front, back, select(back - front, frame.step_world, is_whole));
 }

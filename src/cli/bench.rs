@@ -186,13 +186,15 @@ impl Bench {
             let parts = shown.parts();
             for (name, technique) in of_mode {
                 progress.stage("measure", rows.len(), 2 * of_mode.len());
-                // Half-angle slices are those of one technique and mode.
-                let casts = technique == Technique::Slices3d && mode == Mode::Composite;
-                let settings = Settings {
+                let mut settings = Settings {
                     technique,
-                    shadows: if casts { base.shadows } else { Shadows::Off },
                     ..base.clone()
                 };
+                // Half-angle slices are those of one technique and mode.
+                if technique != Technique::Slices3d || mode != Mode::Composite {
+                    let shading = settings.shading.as_mut();
+                    shading.map(|shading| shading.shadows = Shadows::Off);
+                }
                 let job = Job {
                     volume: &shown.volume,
                     classification: &shown.classification,

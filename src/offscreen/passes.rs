@@ -14,11 +14,11 @@ use crate::technique::projection::Projection;
 use crate::technique::raycast::Raycast;
 use crate::technique::slices_3d::HalfAngleSlicer;
 use crate::technique::slices_3d::half_angle::HalfAngleSlices;
-use crate::technique::{ACCUMULATION_FORMAT, Mode, Order, Settings, Shadows, Technique, Words};
+use crate::technique::{ACCUMULATION_FORMAT, Mode, Order, Settings, Technique, Words};
 use std::sync::Arc;
 
 /// What pipelines depend on.
-pub type Key = (Technique, Mode, Order, Shadows, [bool; 2], Words);
+pub type Key = (Technique, Mode, Order, [bool; 3], Words);
 
 /// The key of such pictures.
 pub fn key_of(settings: &Settings, words: &Words) -> Key {
@@ -26,12 +26,12 @@ pub fn key_of(settings: &Settings, words: &Words) -> Key {
         technique,
         mode,
         order,
-        shadows,
         ..
     } = *settings;
     let per_mode = &settings.per_mode;
-    let marks = [per_mode.depth_cue != 0.0, per_mode.exact_maximum];
-    (technique, mode, order, shadows, marks, *words)
+    let is_cued = per_mode.depth_cue != 0.0;
+    let marks = [is_cued, per_mode.exact_maximum, settings.is_half_angle()];
+    (technique, mode, order, marks, *words)
 }
 
 /// The pipelines of one kind of picture.
@@ -69,7 +69,7 @@ impl Passes {
                 (Gather::Projection(Projection::new(gpu, mode, words)?), None)
             }
             Technique::Raycast => (Gather::Raycast(Raycast::of_mode(gpu, mode, words)?), None),
-            Technique::Slices3d if settings.shadows == Shadows::HalfAngle => (
+            Technique::Slices3d if settings.is_half_angle() => (
                 Gather::HalfAngle(HalfAngleSlicer::new(gpu, words)?),
                 Some(slicing(Drawn::Count)?),
             ),

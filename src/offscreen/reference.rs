@@ -17,7 +17,7 @@ use crate::technique::gradient::gradient_of;
 use crate::technique::mixture::{color_of, colored, mixed};
 use crate::technique::shading::shade;
 use crate::technique::{
-    Error, Filter, Mix, Mode, Recording, Role, Shadows, Technique, isosurface, projection, raycast,
+    Error, Filter, Mix, Mode, Recording, Role, Technique, isosurface, projection, raycast,
     slices_2d, slices_3d,
 };
 use crate::transfer::{
@@ -58,7 +58,7 @@ fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     let read = coefficients.as_ref().map(Coefficients::volume);
     let gathered = |in_pixel| -> Result<_, Error> {
         let walk = Walk::<R>::new(scene, read, &grid, in_pixel)?;
-        if scene.settings.shadows == Shadows::HalfAngle {
+        if scene.settings.is_half_angle() {
             let [_, light] = scene.view(&grid, in_pixel).half_angle_on_cpu()?;
             return Ok(walk.gather_in_light(&light));
         }
@@ -244,7 +244,7 @@ impl<'a, R: Real> Walk<'a, R> {
     /// The surfaces that a ray meets.
     fn surfaces(&self, pixel: [R; 2]) -> Gathered<R> {
         let (frame, filter) = (&self.frame, self.scene.settings.filter);
-        let value_at = |p| filtered(self.scene.volume, filter, p);
+        let value_at = |p| filtered(self.volumes[0], filter, p);
         let lit = |color, p, ray_direction| {
             if frame.light_count == 0 {
                 return color;
@@ -274,7 +274,7 @@ impl<'a, R: Real> Walk<'a, R> {
             Technique::Raycast => {
                 let (frame, lattice) = (&self.frame, settings.lattice);
                 Gathered::of_composite(if settings.mode == Mode::Mida {
-                    let value_at = |p| filtered(self.scene.volume, settings.filter, p);
+                    let value_at = |p| filtered(self.volumes[0], settings.filter, p);
                     let sample_at = |p| value_at(p).zip(material_at(p));
                     raycast::reference::accumulated(frame, lattice, pixel, sample_at)
                 } else {

@@ -22,7 +22,7 @@ use crate::resident::{GpuTransfer, GpuVolume, TextureLayout};
 use crate::resolve::reference::projected_value;
 use crate::scene::{Scene, positions_in_pixel};
 use crate::technique::{
-    self, Inputs, Mix, Mode, Part, Recording, Settings, Shadows, Technique, Words, parameter_ring,
+    self, Inputs, Mix, Mode, Part, Recording, Settings, Technique, Words, parameter_ring,
 };
 use crate::transfer::{Classified, TransferFunction, Window};
 use crate::volume::{Spline, Volume};
@@ -218,7 +218,7 @@ impl<'v> Renderer<'v> {
         }
         let parts = parts_of(&self.resident, self.shown, scene);
         // Half-angle slices have parameters of the eye and of the light.
-        let is_half = scene.settings.shadows == Shadows::HalfAngle;
+        let is_half = scene.settings.is_half_angle();
         let slots = (parts[0].volume.bricks().len() as u32).max(if is_half { 2 } else { 1 });
         if is_half {
             let extent = scene.view(&scene.volume.grid(), [0.0; 2]).light_extent();

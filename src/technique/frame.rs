@@ -6,7 +6,7 @@
 
 use super::blend::extreme_sign;
 use super::shading::set_shading;
-use super::{Filter, MAX_SAMPLES_PER_RAY, Settings, Shading, Shadows, Technique};
+use super::{Filter, Lattice, MAX_SAMPLES_PER_RAY, Settings, Technique};
 use crate::camera::{Camera, Projection, Rays};
 use crate::picture::ColorSpace;
 use crate::resident::{Cell, Coding, TransferLayout, front_to_back};
@@ -158,6 +158,7 @@ impl View<'_> {
             planes_per_slice: 1.0,
             cover_offset: 0.0,
             cover_eye_reach: reach.eye,
+            is_jittered: (self.settings.lattice == Lattice::Jitter).into(),
             jitter: self.jitter(),
             kernel: kernel_number(self.settings.filter),
             extreme_sign: extreme_sign(self.settings.mode),
@@ -183,8 +184,7 @@ impl View<'_> {
             smallest_spacing: self.grid.smallest_spacing() as f32,
             light_rows: [[0.0; 4]; 2],
         };
-        let plain = (self.settings.shadows != Shadows::Off).then(Shading::plain);
-        if let Some(shading) = self.settings.shading.as_ref().or(plain.as_ref()) {
+        if let Some(shading) = &self.settings.shading {
             set_shading(shading, self.settings.color_space, &mut fields)?;
         }
         Ok(fields)

@@ -145,9 +145,8 @@ impl Words {
             },
             holes: if has_holes { "mask" } else { "none" },
             lattice: match settings.lattice {
-                Lattice::Ray => "ray",
+                Lattice::Ray | Lattice::Jitter => "ray",
                 Lattice::Planes => "planes",
-                Lattice::Jitter => "jitter",
             },
             take: match settings.preintegrated {
                 true => Take::Slab,

@@ -1,9 +1,7 @@
 //! The walk along one ray that every compute pass shares: twin of `shaders/lib/march.wgsl`.
 
 use super::Lattice;
-use crate::lattice::{
-    Segment, Slab, along_ray, on_planes, slabs_along_ray, slabs_jittered, slabs_on_planes,
-};
+use crate::lattice::{Segment, Slab, along_ray, on_planes, slabs_along_ray, slabs_on_planes};
 use crate::ray::{domain_interval, pixel_ray, voxel_ray};
 use crate::real::Real;
 use crate::shaders::Frame;
@@ -35,14 +33,10 @@ pub fn march<R: Real, V>(
     // What breaks the walk is the mode's own affair; here it only ends.
     let has_length = |s: &Segment<R>| s.length > R::from_f64(0.0);
     let _ended = match lattice {
-        Lattice::Ray => along_ray(frame, interval)
+        Lattice::Ray | Lattice::Jitter => along_ray(frame, pixel, interval)
             .filter(has_length)
             .try_for_each(&mut take),
         Lattice::Planes => on_planes(frame, &world, interval).try_for_each(&mut take),
-        Lattice::Jitter => slabs_jittered(frame, pixel, interval)
-            .map(|slab| slab.segment())
-            .filter(has_length)
-            .try_for_each(&mut take),
     };
     samples
 }
@@ -75,9 +69,10 @@ pub fn march_slabs<R: Real>(
     };
     // As above.
     let _ended = match lattice {
-        Lattice::Ray => slabs_along_ray(frame, interval).try_for_each(&mut take),
+        Lattice::Ray | Lattice::Jitter => {
+            slabs_along_ray(frame, pixel, interval).try_for_each(&mut take)
+        }
         Lattice::Planes => slabs_on_planes(frame, &world, interval).try_for_each(&mut take),
-        Lattice::Jitter => slabs_jittered(frame, pixel, interval).try_for_each(&mut take),
     };
     samples
 }

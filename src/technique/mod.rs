@@ -123,7 +123,7 @@ pub enum Lattice {
     /// Where the ray meets the planes that a view-aligned slicer draws.
     Planes,
     /// Equal steps, of which the first is cut short by a part that hangs on the pixel ([`Jitter`]): grain in place
-    /// of bands. Compositing by ray casting only.
+    /// of bands. Ray casting only, and not for surfaces.
     Jitter,
 }
 
@@ -190,8 +190,6 @@ pub struct Settings {
     pub clip_planes: Vec<ClipPlane>,
     /// Light on composited samples of one volume; `None`: their colour as it is.
     pub shading: Option<Shading>,
-    /// What keeps light from samples.
-    pub shadows: Shadows,
     /// Float targets, no early termination, filtering by texel fetch, control points searched exactly.
     pub conformance: bool,
     /// What single modes want to know.
@@ -234,8 +232,8 @@ pub enum Error {
         /// How the volume lies.
         found: crate::resident::TextureLayout,
     },
-    /// A mode that projects shows one volume at a time.
-    #[error("{mode:?} projects one number a ray: volumes are mixed in composite only")]
+    /// Several volumes in a mode that has no mixture of them.
+    #[error("{mode:?} shows one volume: several are mixed in Composite")]
     NotMixed {
         /// The mode.
         mode: Mode,
@@ -445,7 +443,6 @@ impl Default for Settings {
             crop: None,
             clip_planes: Vec::new(),
             shading: None,
-            shadows: Shadows::default(),
             conformance: false,
             per_mode: PerMode::default(),
         }

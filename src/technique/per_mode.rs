@@ -157,7 +157,7 @@ impl Settings {
         if technique != Technique::Raycast && mode.needs_rays() {
             return Err(Error::NeedsRays { technique, mode });
         }
-        if self.lattice != Lattice::Ray && mode.needs_rays() {
+        if self.lattice == Lattice::Planes && mode.needs_rays() {
             return Err(Error::NeedsRayLattice { mode });
         }
         let has_depth = technique == Technique::Raycast && mode.projects_one_place();

@@ -9,7 +9,7 @@
 use super::mixture::{Part, set_channels};
 use super::slices_2d::{set_slices, stack_axis};
 use super::slices_3d::set_planes;
-use super::{Error, Mode, Order, Shadows, Technique, View};
+use super::{Error, Mode, Order, Technique, View};
 use crate::gpu::{self, Gpu, ParameterRing};
 use crate::resident::{Cell, Coding, GpuTransfer, GpuVolume, TextureLayout, TransferLayout};
 use crate::shaders::{Frame, FrameFields};
@@ -81,9 +81,9 @@ impl View<'_> {
             let (mode, bricks) = (Mode::Iso, cells.len());
             return Err(Error::NeedsOneBrick { mode, bricks });
         }
-        if self.settings.shadows == Shadows::HalfAngle {
+        if self.settings.is_half_angle() {
             if parts.len() > 1 {
-                self.settings.check_shadows_mixed()?;
+                return Err(Error::NotShadedTogether);
             }
             return match cells.len() {
                 1 => Ok(self.half_angle_recordings(&fields)?.to_vec()),
@@ -126,10 +126,10 @@ impl View<'_> {
     /// As [`View::recordings`].
     pub fn on_cpu(&self) -> Result<Recording, Error> {
         let fields = self.fields(&Coding::PLAIN, &TransferLayout::default())?;
-        match self.settings.shadows {
-            Shadows::Off => Ok(self.recording(0, None, fields)),
-            Shadows::HalfAngle => Ok(self.half_angle_recordings(&fields)?[0]),
+        if self.settings.is_half_angle() {
+            return Ok(self.half_angle_recordings(&fields)?[0]);
         }
+        Ok(self.recording(0, None, fields))
     }
 
     /// The same for half-angle slices: what the eye sees and what the light sees.

@@ -9,7 +9,7 @@
 //! interpolation. Where the gradient over one voxel is under 1e-4 of the volume's range there is no surface and the
 //! colour stays. Blinn, "Models of Light Reflection for Computer Synthesized Pictures", SIGGRAPH 1977.
 
-use super::{Error, View};
+use super::{Error, Shadows, View};
 use crate::color::decode_srgb;
 use crate::picture::ColorSpace;
 use crate::real::{Real, add, dot, scale, sub};
@@ -29,8 +29,10 @@ pub struct Shading {
     pub shininess: f64,
     /// At most [`MAX_LIGHTS`]; none stands for a white headlight, which shines along the ray of each pixel.
     pub lights: Vec<Light>,
-    /// Whether light falls on the surfaces that stand across gradients. Else it falls on all matter alike, which
-    /// then is as bright as its colour says but for [`super::Shadows`]: ambient and lights alone count.
+    /// What keeps them from samples.
+    pub shadows: Shadows,
+    /// Whether light falls on the surfaces that stand across gradients. Else it falls on all matter alike, which then
+    /// is as bright as its colour says but for [`Shadows::HalfAngle`]: ambient and lights alone count.
     pub has_surfaces: bool,
 }
 
@@ -51,6 +53,7 @@ impl Default for Shading {
             specular: 0.2,
             shininess: 10.0,
             lights: Vec::new(),
+            shadows: Shadows::Off,
             has_surfaces: true,
         }
     }

@@ -1,12 +1,12 @@
 //! Ways to take samples of their own, and what does not go together with them.
 
-use super::{Error, Lattice, Mode, Settings, Shadows, Technique};
+use super::{Error, Lattice, Mode, Settings, Technique};
 
 impl Settings {
     /// Whether technique and mode have the ways to sample that are asked for.
     ///
     /// # Errors
-    /// [`Error::NotFor`].
+    /// [`Error::NotFor`] and [`Error::SeveralShadowLights`].
     pub fn check_ways(&self) -> Result<(), Error> {
         let (mode, technique) = (self.mode, self.technique);
         let of_mode = |is_on: bool, wanted| match is_on && mode != Mode::Composite {
@@ -30,19 +30,26 @@ impl Settings {
         of_technique(self.smooth, SMOOTH, Technique::Slices2d, "2D stacks")?;
         of_mode(self.smooth, SMOOTH)?;
         of_technique(is_jittered, JITTER, Technique::Raycast, "ray casting")?;
-        of_mode(is_jittered, JITTER)?;
-        let is_half = self.shadows == Shadows::HalfAngle;
+        if is_jittered && mode == Mode::Iso {
+            return Err(Error::NotFor {
+                wanted: JITTER,
+                of: "modes of samples",
+                found: "surfaces, whose places do not hang on where steps begin".to_owned(),
+            });
+        }
+        let is_half = self.is_half_angle();
+        let lights = self.shading.as_ref().map_or(0, |s| s.lights.len());
+        if is_half && lights > 1 {
+            return Err(Error::SeveralShadowLights { wanted: lights });
+        }
         of_technique(is_half, HALF_ANGLE, Technique::Slices3d, "3D slices")?;
         of_mode(is_half, HALF_ANGLE)?;
-        if is_half {
-            self.refuse_way("samples without shadows", HALF_ANGLE)?;
-            if self.filter.kernel().is_some() {
-                return Err(Error::NotFor {
-                    wanted: HALF_ANGLE,
-                    of: "nearest and linear filters",
-                    found: format!("{:?}", self.filter),
-                });
-            }
+        if is_half && self.filter.kernel().is_some() {
+            return Err(Error::NotFor {
+                wanted: HALF_ANGLE,
+                of: "nearest and linear filters",
+                found: format!("{:?}", self.filter),
+            });
         }
         if self.shading.is_some() {
             self.refuse_way("samples without light", "shaded ones")?;
@@ -56,11 +63,7 @@ impl Settings {
 
     /// A way to sample of its own that is asked for.
     fn way(&self) -> Option<&'static str> {
-        let ways = [
-            (self.preintegrated, PREINTEGRATED),
-            (self.smooth, SMOOTH),
-            (self.lattice == Lattice::Jitter, JITTER),
-        ];
+        let ways = [(self.preintegrated, PREINTEGRATED), (self.smooth, SMOOTH)];
         ways.into_iter()
             .find_map(|(is_on, name)| is_on.then_some(name))
     }
@@ -71,21 +74,6 @@ impl Settings {
     /// [`Error::NotFor`].
     pub(crate) fn check_mixed(&self) -> Result<(), Error> {
         self.refuse_way("one volume of numbers", "several that are mixed")
-    }
-
-    /// The same for several volumes where there are shadows.
-    ///
-    /// # Errors
-    /// [`Error::NotFor`].
-    pub(crate) fn check_shadows_mixed(&self) -> Result<(), Error> {
-        match self.shadows {
-            Shadows::Off => Ok(()),
-            Shadows::HalfAngle => Err(Error::NotFor {
-                wanted: HALF_ANGLE,
-                of: "one volume of numbers",
-                found: "several that are mixed".to_owned(),
-            }),
-        }
     }
 
     /// The same for functions of gradients.

@@ -356,3 +356,24 @@ fn progress_counts_frames_and_says_how_long_it_will_take() {
     assert!(frames[1]["seconds_left"].as_f64() > Some(0.0), "{ran:?}");
     assert_eq!(frames[3]["seconds_left"].as_f64(), Some(0.0), "{ran:?}");
 }
+
+#[test]
+fn grain_changes_from_frame_to_frame_and_nothing_else_does() {
+    let folder = Folder::new();
+    fs::write(
+        folder.path("still.json"),
+        r#"{"stratavox_keyframes":1,"frames":2,"keys":[{"at":0,"zoom":1}]}"#,
+    )
+    .expect("a file");
+    let film = "animate phantom:head,n=16 --keyframes still.json";
+    folder
+        .run(&format!("{film} --jitter=5 -o g%d.png {SMALL}"))
+        .assert_done();
+    folder
+        .run(&format!("{film} -o %d.png {SMALL}"))
+        .assert_done();
+    let read = |name: &str| fs::read(folder.path(name)).expect("a frame");
+    assert!(read("g0.png") != read("g1.png"), "the same grain twice");
+    assert!(read("0.png") == read("1.png"), "nothing moves");
+    assert_frame_is(&folder, "g0.png", "phantom:head,n=16 --jitter=5");
+}

@@ -169,6 +169,8 @@ impl Maker<'_> {
         classification.check()?;
         let section = &self.scene.section;
         let mut settings = self.scene.settings_of(&sampling, self.depth)?;
+        // Grain that stood still would be seen as a curtain before the moving picture.
+        settings.jitter.frame = k;
         let extent_pixels = self.scene.picture.extent_pixels()?;
         Ok(Shot {
             camera: section.camera(&camera, &self.subject, extent_pixels, &mut settings)?,

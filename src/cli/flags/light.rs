@@ -3,7 +3,7 @@
 use super::{Error, Numbers, shadows::ShadowsWord};
 use crate::{
     shaders::MAX_LIGHTS,
-    technique::{Light, Mode, Settings, Shading},
+    technique::{Light, Mode, Shading},
 };
 use clap::{Args, ValueEnum};
 use glam::DVec3;
@@ -107,12 +107,6 @@ impl LightFlags {
         self.shading.unwrap_or(of_mode)
     }
 
-    /// The settings with the shadows of these lights.
-    pub fn cast(&self, settings: Settings) -> Result<Settings, Error> {
-        let word = self.shadows.unwrap_or_default();
-        word.cast(settings, self.light.len())
-    }
-
     /// Whether slices lie half way to the light.
     pub fn is_half_angle(&self) -> bool {
         self.shadows == Some(ShadowsWord::HalfAngle)
@@ -126,7 +120,7 @@ impl LightFlags {
         }
         if mode.is_projection() {
             return Err(Error::usage(
-                "--shading phong needs --mode composite, mida or iso: no light falls on a projection",
+                "--shading phong and --shadows need --mode composite, mida or iso: no light falls on a projection",
                 "leave out --mode or --shading",
             ));
         }
@@ -139,6 +133,7 @@ impl LightFlags {
         }
         let mut shading = Shading {
             lights: self.light.iter().map(|word| word.0).collect(),
+            shadows: self.shadows.unwrap_or_default().shadows(),
             has_surfaces,
             ..Shading::default()
         };

@@ -96,12 +96,12 @@ impl SceneFlags {
     /// The same with other words of sampling.
     pub fn settings_of(&self, sampling: &SamplingFlags, depth: Depth) -> Result<Settings, Error> {
         let settings = self.section.settings(sampling, depth)?;
-        let settings = self.light.cast(settings)?;
-        let shading = self.light.shading(settings.mode)?;
-        Ok(Settings {
-            shading,
+        let settings = Settings {
+            shading: self.light.shading(settings.mode)?,
             ..settings
-        })
+        };
+        self.light.shadows.unwrap_or_default().check(&settings)?;
+        Ok(settings)
     }
 
     /// Flags that change nothing under the others, a sentence each.

@@ -90,7 +90,7 @@ const TERMINATION_LINEAR: f32 = 1.0 / 8192.0;
 const TERMINATION_DISPLAY: f32 = 1.0 / 512.0;
 /// Which ways to sample go with which technique.
 const WAYS: &str = "--preintegrated is for --mode composite, --smooth for that with --technique slices-2d, --jitter for \
-                    that with --technique raycast";
+                    --technique raycast";
 /// Rays along one side of a pixel.
 const MAX_RAYS_PER_SIDE: u32 = 64;
 
@@ -124,7 +124,6 @@ impl SamplingFlags {
             crop: self.crop.map(crop_box).transpose()?,
             clip_planes: clip_planes(&self.clip)?,
             shading: None,
-            shadows: Default::default(),
             conformance: self.conformance,
             // Of the values, which are not known yet.
             per_mode: Default::default(),

@@ -17,8 +17,8 @@ pub enum ShadowsWord {
 }
 
 /// What half-angle slicing goes together with.
-const HALF_ANGLE: &str = "--shadows half-angle is for --technique slices-3d --mode composite, one volume, and --filter \
-                          nearest or linear without --preintegrated";
+const HALF_ANGLE: &str = "--shadows half-angle is for --technique slices-3d --mode composite, one --light, one volume, and \
+                          --filter nearest or linear without --preintegrated";
 
 impl ShadowsWord {
     /// What it stands for.
@@ -29,25 +29,13 @@ impl ShadowsWord {
         }
     }
 
-    /// The settings with shadows of so many lights, where they go together.
-    pub fn cast(self, settings: Settings, lights: usize) -> Result<Settings, Error> {
-        if self == Self::HalfAngle && lights > 1 {
-            return Err(Error::usage(
-                format!(
-                    "--shadows half-angle: slices lie half way to one light, and {lights} are given"
-                ),
-                "give --light once",
-            ));
-        }
-        let settings = Settings {
-            shadows: self.shadows(),
-            ..settings
-        };
+    /// Whether the settings, of which it is a part, go together with it.
+    pub fn check(self, settings: &Settings) -> Result<(), Error> {
         match settings.check_ways() {
             Err(problem) if self == Self::HalfAngle => {
                 Err(Error::usage(problem.to_string(), HALF_ANGLE))
             }
-            _ => Ok(settings),
+            _ => Ok(()),
         }
     }
 }
@@ -55,22 +43,36 @@ impl ShadowsWord {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::technique::{Filter, Mode, Technique};
+    use crate::technique::{Filter, Light, Mode, Shading, Technique};
 
     #[test]
     fn half_angle_slices_are_refused_by_name_where_they_are_not() {
-        let slices = || Settings {
-            technique: Technique::Slices3d,
-            ..Settings::default()
+        let in_light = |lights| {
+            let light = Light {
+                towards: glam::DVec3::X,
+                srgb: [1.0; 3],
+            };
+            Settings {
+                technique: Technique::Slices3d,
+                shading: Some(Shading {
+                    lights: vec![light; lights],
+                    shadows: Shadows::HalfAngle,
+                    ..Shading::plain()
+                }),
+                ..Settings::default()
+            }
         };
+        let slices = || in_light(1);
         let word = ShadowsWord::HalfAngle;
-        let cast = word.cast(slices(), 1).expect("slices");
-        assert_eq!(cast.shadows, Shadows::HalfAngle);
+        word.check(&slices()).expect("slices");
         let others = [
-            Settings::default(),
+            Settings {
+                technique: Technique::Raycast,
+                ..slices()
+            },
             Settings {
                 technique: Technique::Slices2d,
-                ..Settings::default()
+                ..slices()
             },
             Settings {
                 mode: Mode::Mip,
@@ -86,12 +88,13 @@ mod tests {
             },
         ];
         for other in others {
-            let what = format!("{other:?}");
-            let error = word.cast(other, 1).expect_err(&what);
-            assert!(error.to_string().contains("half-angle"), "{error}");
+            let error = word.check(&other).expect_err("refused");
+            let text = error.to_string();
+            let names = ["half-angle", "pre-integrated"];
+            assert!(names.iter().any(|name| text.contains(name)), "{text}");
             assert_eq!(error.hint(), Some(HALF_ANGLE));
         }
-        let error = word.cast(slices(), 2).expect_err("two lights");
-        assert!(error.to_string().contains("2 are given"), "{error}");
+        let error = word.check(&in_light(2)).expect_err("two lights");
+        assert!(error.to_string().contains("2 were given"), "{error}");
     }
 }

@@ -11,7 +11,7 @@ impl<R: Real> Walk<'_, R> {
     /// Emission and absorption of slabs of one volume.
     pub(super) fn composite_slabs(&self, pixel: [R; 2]) -> Gathered<R> {
         let settings = self.scene.settings;
-        let (volume, frame, filter) = (self.scene.volume, &self.frame, settings.filter);
+        let (volume, frame, filter) = (self.volumes[0], &self.frame, settings.filter);
         let value_at = |p| filtered(volume, filter, p);
         let material = |fragment: Fragment<R, [R; 2]>| Fragment {
             value: self.classify_slab(fragment.value),
@@ -71,7 +71,7 @@ impl<R: Real> Walk<'_, R> {
 
     /// The volume's value between the slices of the stack.
     fn value_between(&self, level: Level<R>, p: [R; 3]) -> Option<R> {
-        let (volume, filter) = (self.scene.volume, self.scene.settings.filter);
+        let (volume, filter) = (self.volumes[0], self.scene.settings.filter);
         let axis = self.frame.slice_axis as usize;
         let slices = volume.dims[axis];
         let in_slice = |slice| filtered_in_slice(volume, filter, axis, slice, p);

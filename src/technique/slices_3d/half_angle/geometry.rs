@@ -55,18 +55,13 @@ impl View<'_> {
     /// The slices for this camera and the one light of the settings; without one, it shines the way the camera looks.
     ///
     /// # Errors
-    /// [`Error::SeveralShadowLights`], [`Error::NoWayToLight`] and [`Error::TooSteep`].
+    /// [`Error::NoWayToLight`] and [`Error::TooSteep`].
     pub fn half_angle(&self) -> Result<HalfAngle, Error> {
         let forward = self.rays().forward;
-        let lights = self.settings.shading.iter().flat_map(|s| &s.lights);
-        let lights: Vec<_> = lights.collect();
-        let light = match lights[..] {
-            [] => forward,
-            [light] => -light.towards.try_normalize().ok_or(Error::NoWayToLight)?,
-            _ => {
-                let wanted = lights.len();
-                return Err(Error::SeveralShadowLights { wanted });
-            }
+        let mut lights = self.settings.shading.iter().flat_map(|s| &s.lights);
+        let light = match lights.next() {
+            Some(light) => -light.towards.try_normalize().ok_or(Error::NoWayToLight)?,
+            None => forward,
         };
         let (half, order) = if forward.dot(light) >= 0.0 {
             (forward + light, Order::FrontToBack)

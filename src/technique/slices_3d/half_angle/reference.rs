@@ -71,13 +71,15 @@ pub fn fragment<R: Real, V>(
 
 /// The colour of matter of which the full light makes `lit`, where a part of it is left.
 pub fn dimmed<R: Real>(frame: &Frame, color: [R; 3], lit: [R; 3], light: R) -> [R; 3] {
-    let ambient = scale(color, R::from_f32(frame.ambient));
+    let ambient: [R; 3] =
+        std::array::from_fn(|c| (color[c] * R::from_f32(frame.ambient)).min(lit[c]));
     add(ambient, scale(sub(lit, ambient), light))
 }
 
 /// The colour of matter in the full light, without surfaces.
 pub fn plainly_lit<R: Real>(frame: &Frame, color: [R; 3]) -> [R; 3] {
-    let (ambient, one) = (R::from_f32(frame.ambient), R::from_f64(1.0));
+    let one = R::from_f64(1.0);
+    let ambient = R::from_f32(frame.ambient).min(one);
     let of_light = |c: usize| ambient + (one - ambient) * R::from_f32(frame.light_colors[0][c]);
     [0, 1, 2].map(|c| color[c] * of_light(c))
 }

@@ -1,0 +1,378 @@
+//! Every cell of the matrix: technique x mode x filter x feature, as a scene that says itself whether it can be.
+
+use glam::{DAffine3, DMat3, DVec3, dvec3};
+use stratavox::camera::{Camera, Projection};
+use stratavox::scene::{Beside, Channel, Scene};
+use stratavox::technique::{
+    ClipPlane, Filter, Lattice, Level, Light, Mode, Order, PerMode, Role, Settings, Shading,
+    Shadows, Technique,
+};
+use stratavox::transfer::{
+    ColorPoint, Graded, Interpolation, OpacityPoint, Shape, TransferFunction, Widget,
+};
+use stratavox::volume::{Rescale, Volume, Voxels};
+
+/// Where samples lie.
+pub const TECHNIQUES: [(Technique, &str); 3] = [
+    (Technique::Raycast, "raycast"),
+    (Technique::Slices3d, "slices-3d"),
+    (Technique::Slices2d, "slices-2d"),
+];
+
+/// What is done with them.
+pub const MODES: [(Mode, &str); 9] = [
+    (Mode::Composite, "composite"),
+    (Mode::Mip, "mip"),
+    (Mode::Minip, "minip"),
+    (Mode::Average, "average"),
+    (Mode::Xray, "xray"),
+    (Mode::Lmip, "lmip"),
+    (Mode::AttenuatedMip, "attenuated-mip"),
+    (Mode::Mida, "mida"),
+    (Mode::Iso, "iso"),
+];
+
+/// How values between voxels are made.
+pub const FILTERS: [(Filter, &str); 7] = [
+    (Filter::Nearest, "nearest"),
+    (Filter::Linear, "linear"),
+    (Filter::Quadratic, "quadratic"),
+    (Filter::Cubic, "cubic"),
+    (Filter::QuadraticSmooth, "quadratic-smooth"),
+    (Filter::CubicSmooth, "cubic-smooth"),
+    (Filter::CatmullRom, "catmull-rom"),
+];
+
+/// What is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Seen {
+    /// One volume of numbers.
+    Alone,
+    /// One whose function is over value and gradient.
+    Graded,
+    /// One with voxels that are no data.
+    Holed,
+    /// Two volumes, each with a function.
+    Channels,
+    /// One under a label map.
+    Labelled,
+    /// Three volumes that are one colour.
+    Colored,
+}
+
+/// Something that can be asked for beside technique, mode and filter.
+pub struct Feature {
+    /// What it is.
+    pub name: &'static str,
+    /// How the command line asks for it.
+    pub words: &'static str,
+    /// What is seen.
+    pub seen: Seen,
+    dress: fn(&mut Settings),
+}
+
+const fn feature(
+    name: &'static str,
+    words: &'static str,
+    seen: Seen,
+    dress: fn(&mut Settings),
+) -> Feature {
+    Feature {
+        name,
+        words,
+        seen,
+        dress,
+    }
+}
+
+/// Features by name, the first of them nothing at all.
+pub const FEATURES: &[Feature] = &[
+    feature("one volume", "", Seen::Alone, |_| {}),
+    feature(
+        "crop and clip planes",
+        "`--crop`, `--clip`",
+        Seen::Alone,
+        |s| {
+            s.crop = Some([dvec3(1.3, 0.6, 1.0), dvec3(9.7, 11.0, 8.2)]);
+            let normal = dvec3(0.6, -0.64, 0.48);
+            let offset = normal.dot(center()) - 3.0;
+            s.clip_planes = vec![ClipPlane { normal, offset }];
+        },
+    ),
+    feature(
+        "front to back",
+        "`--order front-to-back`",
+        Seen::Alone,
+        |s| {
+            s.order = Order::FrontToBack;
+        },
+    ),
+    feature(
+        "planes of a slicer",
+        "`--lattice planes`",
+        Seen::Alone,
+        |s| {
+            s.lattice = Lattice::Planes;
+        },
+    ),
+    feature("jitter", "`--jitter`", Seen::Alone, |s| {
+        s.lattice = Lattice::Jitter;
+    }),
+    feature("several rays a pixel", "`--aa 4`", Seen::Alone, |s| {
+        s.rays_per_side = 2;
+    }),
+    feature("interpolated slices", "`--smooth`", Seen::Alone, |s| {
+        s.smooth = true;
+    }),
+    feature("pre-integration", "`--preintegrated`", Seen::Alone, |s| {
+        s.preintegrated = true;
+    }),
+    feature("depth cue", "`--depth-cue`", Seen::Alone, |s| {
+        s.per_mode.depth_cue = 0.7;
+    }),
+    feature("exact extreme", "`--exact-maximum`", Seen::Alone, |s| {
+        s.per_mode.exact_maximum = true;
+    }),
+    feature("light", "`--shading phong`", Seen::Alone, |s| {
+        s.shading = Some(lights());
+    }),
+    feature(
+        "light and the shadows of half-angle slices",
+        "`--shading phong --shadows half-angle`",
+        Seen::Alone,
+        |s| {
+            let mut lit = lights();
+            lit.lights.truncate(1);
+            lit.shadows = Shadows::HalfAngle;
+            s.shading = Some(lit);
+        },
+    ),
+    feature(
+        "value and gradient",
+        "`widgets`, `gradient_opacity`, `--preset boundaries`",
+        Seen::Graded,
+        |_| {},
+    ),
+    feature("voxels without data", "", Seen::Holed, |_| {}),
+    feature(
+        "light, voxels without data",
+        "`--shading phong`",
+        Seen::Holed,
+        |s| {
+            s.shading = Some(lights());
+        },
+    ),
+    feature("several channels", "`--channel`", Seen::Channels, |_| {}),
+    feature("labels over it", "`--labels`", Seen::Labelled, |_| {}),
+    feature("colours", "a file of colours", Seen::Colored, |_| {}),
+];
+
+fn lights() -> Shading {
+    let light = |towards, srgb| Light { towards, srgb };
+    Shading {
+        ambient: 0.2,
+        diffuse: 0.5,
+        specular: 0.4,
+        shininess: 9.0,
+        lights: vec![
+            light(dvec3(1.0, -2.0, 0.7), [1.0, 0.9, 0.8]),
+            light(dvec3(-0.3, 0.2, 3.0), [0.2, 0.3, 0.6]),
+        ],
+        ..Shading::default()
+    }
+}
+
+/// The settings of a cell.
+pub fn settings(technique: Technique, mode: Mode, filter: Filter, feature: &Feature) -> Settings {
+    let level = |value, srgb, opacity| Level {
+        value,
+        srgb,
+        opacity,
+    };
+    let mut settings = Settings {
+        technique,
+        mode,
+        filter,
+        per_mode: PerMode {
+            lmip_threshold: 0.6,
+            levels: vec![
+                level(0.4, [0.9, 0.3, 0.2], 0.5),
+                level(0.65, [0.2, 0.5, 0.9], 1.0),
+            ],
+            ..PerMode::default()
+        },
+        ..Settings::default()
+    };
+    (feature.dress)(&mut settings);
+    settings
+}
+
+const DIMS: [u32; 3] = [11, 12, 9];
+
+/// A grid that is neither along the axes of the world nor rectangular.
+fn world_from_voxel() -> DAffine3 {
+    let m = DMat3::from_cols(
+        dvec3(1.1, 0.2, -0.1),
+        dvec3(-0.3, 0.9, 0.2),
+        dvec3(0.1, 0.3, 1.6),
+    );
+    DAffine3::from_mat3_translation(m, dvec3(25.0, -8.0, 100.0))
+}
+
+fn center() -> DVec3 {
+    world_from_voxel().transform_point3(0.5 * DVec3::from_array(DIMS.map(f64::from)))
+}
+
+/// The volumes and functions that cells show.
+pub struct Matter {
+    numbers: Volume,
+    holed: Volume,
+    others: [Volume; 2],
+    labels: Volume,
+    function: TransferFunction,
+    graded: TransferFunction,
+    label_function: TransferFunction,
+    camera: Camera,
+}
+
+impl Matter {
+    /// Small volumes that change along every axis.
+    pub fn new() -> Self {
+        let wave = |a: f64, b: f64| {
+            move |p: DVec3| {
+                0.5 + 0.25 * (a * p.x - 0.3 * p.z).sin() + 0.2 * (b * p.y + 0.4 * p.z).cos()
+            }
+        };
+        let numbers = volume(wave(0.8, 0.7));
+        let count = DIMS.iter().product::<u32>();
+        let mut holed = volume(wave(0.8, 0.7));
+        holed.validity = Some((0..count).map(|i| u8::from(i % 97 != 7)).collect());
+        let labels = |p: DVec3| ((p.x / 4.0).floor() + (p.y / 5.0).floor()) % 4.0;
+        let span = DVec3::from_array(DIMS.map(f64::from)).length();
+        Self {
+            numbers,
+            holed,
+            others: [volume(wave(0.5, 1.1)), volume(wave(1.2, 0.4))],
+            labels: volume(labels),
+            function: function(),
+            graded: TransferFunction {
+                graded: Some(Graded {
+                    steepest: Some(0.4),
+                    share: Vec::new(),
+                    widgets: vec![Widget {
+                        srgb: None,
+                        opacity: 0.5,
+                        shape: Shape::Contour {
+                            value: 0.55,
+                            half_width: 1.5,
+                        },
+                    }],
+                }),
+                ..function()
+            },
+            label_function: label_function(),
+            camera: Camera {
+                eye: center() + span * dvec3(0.9, -1.3, 0.6),
+                target: center(),
+                up: dvec3(0.1, 0.0, 1.0),
+                projection: Projection::Perspective { fov_degrees: 36.0 },
+                zoom: 1.0,
+            },
+        }
+    }
+
+    /// The channels that stand beside the first volume where `seen` has such.
+    pub fn channels(&self, seen: Seen) -> Vec<Channel<'_>> {
+        let channel = |volume, transfer, role| Channel {
+            volume,
+            transfer: Some(transfer),
+            role,
+        };
+        match seen {
+            Seen::Channels => vec![channel(&self.others[0], &self.function, Role::Numbers)],
+            Seen::Labelled => vec![channel(&self.labels, &self.label_function, Role::Labels)],
+            _ => Vec::new(),
+        }
+    }
+
+    /// The scene of a cell; `channels` and `colors` are those of [`Self::channels`] and [`Self::colors`].
+    pub fn scene<'a>(
+        &'a self,
+        seen: Seen,
+        settings: &'a Settings,
+        channels: &'a [Channel<'a>],
+        colors: &'a [&'a Volume],
+    ) -> Scene<'a> {
+        let beside = match seen {
+            Seen::Channels | Seen::Labelled => Beside::Channels(channels),
+            Seen::Colored => Beside::Colors(colors),
+            Seen::Alone | Seen::Graded | Seen::Holed => Beside::Nothing,
+        };
+        Scene {
+            volume: match seen {
+                Seen::Holed => &self.holed,
+                _ => &self.numbers,
+            },
+            transfer: Some(match seen {
+                Seen::Graded => &self.graded,
+                _ => &self.function,
+            }),
+            beside,
+            camera: &self.camera,
+            extent_pixels: [24, 20],
+            settings,
+        }
+    }
+
+    /// Green and blue of a colour.
+    pub fn colors(&self) -> [&Volume; 2] {
+        self.others.each_ref()
+    }
+}
+
+fn volume(field: impl Fn(DVec3) -> f64) -> Volume {
+    let [nx, ny, nz] = DIMS;
+    let all = (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));
+    let value = |p: [u32; 3]| field(DVec3::from_array(p.map(f64::from)) + 0.5) as f32;
+    let voxels = Voxels::F32(all.map(value).collect());
+    Volume::from_voxels(DIMS, world_from_voxel(), voxels, Rescale::default(), None)
+        .expect("a volume of the right length")
+}
+
+fn function() -> TransferFunction {
+    let color = |value, srgb| ColorPoint { value, srgb };
+    let opacity = |value, opacity| OpacityPoint { value, opacity };
+    TransferFunction {
+        color: vec![color(0.1, [0.1, 0.2, 0.9]), color(0.9, [1.0, 0.5, 0.1])],
+        opacity: vec![opacity(0.3, 0.02), opacity(0.8, 0.35)],
+        reference_length: None,
+        interpolation: Interpolation::Linear,
+        graded: None,
+    }
+}
+
+/// Label 0 hides nothing and shows nothing, label 1 is hidden by opacity 0.
+fn label_function() -> TransferFunction {
+    let value = |i: usize| i as f64 - 0.5;
+    let colors = [[0.0; 3], [1.0, 0.1, 0.1], [0.1, 1.0, 0.2], [0.2, 0.3, 1.0]];
+    let opacities = [0.0, 0.0, 0.1, 0.3];
+    TransferFunction {
+        color: (0..)
+            .zip(colors)
+            .map(|(i, srgb)| ColorPoint {
+                value: value(i),
+                srgb,
+            })
+            .collect(),
+        opacity: (0..)
+            .zip(opacities)
+            .map(|(i, opacity)| OpacityPoint {
+                value: value(i),
+                opacity,
+            })
+            .collect(),
+        reference_length: None,
+        interpolation: Interpolation::Step,
+        graded: None,
+    }
+}
