@@ -191,9 +191,9 @@ impl Bench {
                     ..base.clone()
                 };
                 // Half-angle slices are those of one technique and mode.
-                if technique != Technique::Slices3d || mode != Mode::Composite {
-                    let shading = settings.shading.as_mut();
-                    shading.map(|shading| shading.shadows = Shadows::Off);
+                let has_them = technique == Technique::Slices3d && mode == Mode::Composite;
+                if let Some(shading) = settings.shading.as_mut().filter(|_| !has_them) {
+                    shading.shadows = Shadows::Off;
                 }
                 let job = Job {
                     volume: &shown.volume,
