@@ -159,6 +159,8 @@ const ENTRIES: &[(&str, &[Slot])] = &[
             ("holes", &["none"]),
         ],
     ),
+    ("slices_3d_half", &[ONE, NARROW, HOLES, TABLE]),
+    ("slices_3d_half", &[ONE, NARROW_FETCHED, HOLES, POINTS]),
     (
         "resolve",
         &[("source", &["picture", "value", "mean", "cued"])],

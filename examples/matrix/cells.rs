@@ -159,6 +159,17 @@ pub const FEATURES: &[Feature] = &[
         });
     }),
     feature(
+        "light and the shadows of half-angle slices",
+        "`--shading phong --shadows half-angle`",
+        Seen::Alone,
+        |s| {
+            let mut lit = lights();
+            lit.lights.truncate(1);
+            lit.shadows = Shadows::HalfAngle;
+            s.shading = Some(lit);
+        },
+    ),
+    feature(
         "value and gradient",
         "`widgets`, `gradient_opacity`, `--preset boundaries`",
         Seen::Graded,

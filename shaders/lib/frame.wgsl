@@ -25,7 +25,7 @@ struct Frame {
     slope: f32,
     direction_dy: vec3<f32>,
     intercept: f32,
-    // The camera's forward direction: normal of the planes.
+    // The camera's forward direction, or half way between it and the light's: normal of the planes.
     forward: vec3<f32>,
     codes_are_integers: u32,
     // The same as a covector of voxel space: which way each grid axis runs away from the eye.
@@ -157,6 +157,8 @@ struct Frame {
     has_shadows: u32,
     // The bundle of the first light.
     shadow_bundle: u32,
+    // Where a point of the world lies in the light's picture, in its texels: across and down.
+    light_rows: array<vec4<f32>, 2>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -103,6 +103,13 @@ impl From<offscreen::Error> for Error {
                     "`stratavox render --help` says what each word takes",
                 )
             }
+            offscreen::Error::Technique(error @ technique::Error::TooSteep { .. }) => Self::usage(
+                error.to_string(),
+                "--projection orthographic has no such rays; a smaller --fov or a light from elsewhere has fewer",
+            ),
+            offscreen::Error::Technique(error @ technique::Error::ShadowsNeedOneBrick { .. }) => {
+                Self::Memory(error.to_string())
+            }
             offscreen::Error::Technique(error) => Self::Limit(error.to_string()),
             offscreen::Error::NoLayer { .. } => Self::NotBuilt(error.to_string()),
             offscreen::Error::NoLabels => {
@@ -124,7 +131,7 @@ impl Error {
     /// Light is for one volume.
     pub fn not_shaded_together() -> Self {
         Self::usage(
-            "--shading phong is for one number a voxel, and several are drawn",
+            "--shading phong is for one number a voxel, --shadows half-angle too, and several are drawn",
             "draw one of them: --component 0, without --labels, --channel and --iso-color-by",
         )
     }

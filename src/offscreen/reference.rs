@@ -1,5 +1,6 @@
 //! A scene to a picture on the CPU: every technique by its twin, in f32 or f64, no Vulkan anywhere.
 
+mod half_angle;
 mod light;
 mod slabs;
 
@@ -72,9 +73,14 @@ fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
         .map_or(scene.volume, Coefficients::volume);
     let gradients = source.map(|_| of_gradients);
     let light = light_of::<R>(scene, read, gradients, &grid)?;
-    let gathered = |in_pixel| {
+    let gathered = |in_pixel| -> Result<_, Error> {
         let walk = Walk::new(scene, read, light.as_ref(), &grid, in_pixel)?;
-        Ok::<_, Error>(Walk { gradients, ..walk }.gather_all())
+        let walk = Walk { gradients, ..walk };
+        if scene.settings.is_half_angle() {
+            let [_, light] = scene.view(&grid, in_pixel).half_angle_on_cpu()?;
+            return Ok(walk.gather_in_light(&light));
+        }
+        Ok(walk.gather_all())
     };
     let centers = gathered([0.0; 2])?;
     let transfer = match scene.transfer {

@@ -252,7 +252,14 @@ impl<'v> Renderer<'v> {
             self.targets = Some(Targets::new(&gpu, scene.extent_pixels)?);
         }
         let parts = parts_of(&self.resident, self.shown, scene);
-        let slots = parts[0].volume.bricks().len() as u32;
+        // Half-angle slices have parameters of the eye and of the light.
+        let is_half = scene.settings.is_half_angle();
+        let slots = (parts[0].volume.bricks().len() as u32).max(if is_half { 2 } else { 1 });
+        if is_half {
+            let extent = scene.view(&scene.volume.grid(), [0.0; 2]).light_extent();
+            let targets = self.targets.as_mut().expect("made above");
+            targets.prepare_light_buffer(&gpu, extent)?;
+        }
         let words = Words::mixed(scene.settings, scene.mix(), &parts);
         let functions = scene.transfers().into_iter().flatten();
         let points = functions.map(|f| f.color.len().max(f.opacity.len())).max();
@@ -389,6 +396,7 @@ impl<'v> Renderer<'v> {
                 inputs,
                 offset: recording.write(&self.ring, slot)?,
                 slices: recording.slices,
+                order: recording.order,
             })
         };
         let with_others = recordings.into_iter().zip(beside.iter().map(Vec::as_slice));

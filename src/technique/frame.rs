@@ -200,6 +200,7 @@ impl View<'_> {
             shadow_reach: 0.0,
             has_shadows: 0,
             shadow_bundle: 0,
+            light_rows: [[0.0; 4]; 2],
         };
         self.set_light(&mut fields);
         if let Some(shading) = &self.settings.shading {
@@ -355,7 +356,7 @@ fn affine_rows(affine: &DAffine3) -> [[f32; 4]; 3] {
 /// Clip space from the centred world, as rows, from the rays themselves: with w the depth and d the ray
 /// direction of depth 1, pixel x of a point p is where (p/w - d) . dx / |dx|^2 finds it. Depth is 1/2
 /// everywhere: w > 0 alone clips.
-fn clip_rows(rays: &Rays, [width, height]: [u32; 2]) -> [[f32; 4]; 4] {
+pub(super) fn clip_rows(rays: &Rays, [width, height]: [u32; 2]) -> [[f32; 4]; 4] {
     let is_perspective = rays.origin_dx == DVec3::ZERO;
     let row = |dx_origin: DVec3, dx_direction: DVec3, pixels: u32| {
         // A point's pixel coordinate times w is dot(slope, p - origin) + at_origin.

@@ -146,7 +146,8 @@ impl Words {
         let is_fetched =
             |part: &Part| part.role != Role::Labels && !part.volume.texel().is_filtered;
         let has_holes = parts.iter().any(|part| part.volume.has_holes());
-        let is_lit = settings.shading.is_some() || settings.occlusion().is_some();
+        let has_surfaces = settings.shading.as_ref().is_some_and(|s| s.has_surfaces);
+        let is_lit = has_surfaces || settings.wants_light_volume();
         let is_graded = mix == Mix::Alone && is_lit;
         Self {
             mix: if is_graded { Mix::Graded } else { mix },

@@ -445,6 +445,30 @@ pub enum Error {
     /// A direction has a length.
     #[error("the way to a light has the length 0")]
     NoWayToLight,
+    /// The light's picture is that of one light.
+    #[error("half-angle slices lie half way to one light, and {wanted} were given")]
+    SeveralShadowLights {
+        /// How many were asked for.
+        wanted: usize,
+    },
+    /// Slices of all bricks in turn would have to be drawn before the light of the next slice is known.
+    #[error(
+        "half-angle slices go through all of the volume one by one, from the light: it must lie in one texture of the device, and lies in {bricks} bricks"
+    )]
+    ShadowsNeedOneBrick {
+        /// How many bricks the volume lies in.
+        bricks: usize,
+    },
+    /// Rays that are nearly as flat as the slices, or meet them from the other side.
+    #[error(
+        "rays of this perspective are up to {degrees:.0} degrees off the normal of slices half way to the light, the limit is {limit_degrees:.0}"
+    )]
+    TooSteep {
+        /// The angle of the ray that is farthest off.
+        degrees: f64,
+        /// What may be.
+        limit_degrees: f64,
+    },
     /// The parameters hold a fixed number of planes.
     #[error("{wanted} clip planes, the limit is {limit}")]
     TooManyClipPlanes {

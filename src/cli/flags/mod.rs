@@ -23,6 +23,7 @@ mod opacity;
 mod picture;
 mod sampling;
 mod section;
+mod shadows;
 mod subject;
 mod values;
 mod words;
@@ -112,6 +113,7 @@ impl SceneFlags {
             dim: self.labels.dim()?,
             ..settings
         };
+        self.light.shadows.unwrap_or_default().check(&settings)?;
         sampling.check_ways(&settings)?;
         if !self.wants_slabs() {
             return Ok(settings);
@@ -152,6 +154,10 @@ impl SceneFlags {
             self.gradient.idle(self.may_have_gradients()),
             self.camera.idle(),
         ];
-        topics.concat()
+        let mut notes = topics.concat();
+        if self.light.is_half_angle() && self.sampling.order.is_some() {
+            notes.push("--order has no effect on half-angle slices, they come from the light");
+        }
+        notes
     }
 }
