@@ -5,6 +5,7 @@
 mod denoise;
 mod fade;
 mod gathered;
+mod gradients;
 mod passes;
 mod position;
 pub mod reference;

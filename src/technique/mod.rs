@@ -28,7 +28,7 @@ mod ways;
 
 pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 pub use frame::View;
-pub use gradient_filter::{GradientFilter, GradientSource, Operator};
+pub use gradient_filter::{GradientFilter, GradientSource, Keep, Operator};
 pub use inputs::{Inputs, Take, Words};
 pub use mixture::{Mix, Part, Role};
 pub use per_mode::{DEFAULT_ATTENUATION, Level, PerMode};
@@ -193,6 +193,8 @@ pub struct Settings {
     pub shading: Option<Shading>,
     /// How gradients are made, for light and for transfer functions of gradients.
     pub gradient_filter: GradientFilter,
+    /// Whether they are made for each sample, or kept at the voxels.
+    pub keep_gradients: Keep,
     /// Float targets, no early termination, filtering by texel fetch, control points searched exactly.
     pub conformance: bool,
     /// What single modes want to know.
@@ -384,6 +386,12 @@ pub enum Error {
         /// The filter.
         filter: Filter,
     },
+    /// Interpolating kept gradients would be another picture.
+    #[error("gradients cannot be kept: {reason}")]
+    NotKept {
+        /// Why.
+        reason: &'static str,
+    },
     /// Gradients are made of what lies on the device.
     #[error("gradients read {}, and the volume on the device holds {} for them", held(.wanted.spline()), held(*.found))]
     WrongGradientSource {
@@ -439,6 +447,7 @@ impl Default for Settings {
             clip_planes: Vec::new(),
             shading: None,
             gradient_filter: GradientFilter::default(),
+            keep_gradients: Keep::default(),
             conformance: false,
             per_mode: PerMode::default(),
         }

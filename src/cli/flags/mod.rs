@@ -101,6 +101,7 @@ impl SceneFlags {
         Ok(Settings {
             shading,
             gradient_filter: self.gradient.filter(),
+            keep_gradients: self.gradient.keep(),
             ..settings
         })
     }

@@ -125,6 +125,7 @@ impl SamplingFlags {
             clip_planes: clip_planes(&self.clip)?,
             shading: None,
             gradient_filter: Default::default(),
+            keep_gradients: Default::default(),
             conformance: self.conformance,
             // Of the values, which are not known yet.
             per_mode: Default::default(),
