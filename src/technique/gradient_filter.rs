@@ -33,7 +33,7 @@ pub enum Keep {
     Never,
     /// Kept; where they cannot be, the picture is refused.
     Always,
-    /// Kept where they can be and a device has the memory, else made.
+    /// Kept where they can be and a graphics card has the memory, else made: on software devices they are no faster.
     Auto,
 }
 

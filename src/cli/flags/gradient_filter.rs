@@ -29,7 +29,7 @@ pub enum KeepWord {
     Made,
     /// Kept: central differences and sobel of the trilinear field, where every voxel has data, without --conformance
     Kept,
-    /// Kept where they can be and the device has the memory
+    /// Kept where they can be and a graphics card has the memory; made on software devices, which are no faster so
     Auto,
 }
 
