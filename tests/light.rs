@@ -35,6 +35,7 @@ fn shadings() -> [Shading; 2] {
         specular: 0.4,
         shininess: 23.0,
         lights: lights(),
+        ..Shading::default()
     };
     [Shading::default(), lit]
 }

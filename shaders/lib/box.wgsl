@@ -14,7 +14,7 @@ fn shifted(place: Place, voxels: vec3<f32>) -> Place {
     return place + voxels;
 }
 
-// Its position in voxel space.
+// Where a place is in voxel space.
 fn voxel_of(place: Place) -> vec3<f32> {
     return place;
 }

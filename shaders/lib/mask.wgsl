@@ -29,6 +29,11 @@ fn row_is_valid(mask: Mask, low: i32, high: i32, y: i32, z: i32) -> bool {
     return min(ends, min(valid_at(mask, vec3(low + 1, y, z)), valid_at(mask, vec3(high - 1, y, z)))) != 0u;
 }
 
+// What the mask says of the first voxel of a footprint.
+fn mark_of(mask: Mask, footprint: Footprint) -> u32 {
+    return valid_at(mask, footprint.min - vec3<i32>(frame.brick_origin));
+}
+
 fn valid_at(mask: Mask, texel: vec3<i32>) -> u32 {
     return textureLoad(mask, texel, 0).x;
 }

@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     camera::Camera,
-    technique::{Mode, Settings, Technique},
+    technique::{Mode, Settings, Shadows, Technique},
     transfer::{Classified, Window},
 };
 use clap::Args;
@@ -174,6 +174,7 @@ impl Bench {
             let base = Settings {
                 mode,
                 shading,
+                ambient_occlusion: base.ambient_occlusion.filter(|_| !mode.is_projection()),
                 ..base.clone()
             };
             // What is shown depends on the mode: channels are read for each.
@@ -183,10 +184,15 @@ impl Bench {
             let parts = shown.parts();
             for (name, technique) in of_mode {
                 progress.stage("measure", rows.len(), 2 * of_mode.len());
-                let settings = Settings {
+                let mut settings = Settings {
                     technique,
                     ..base.clone()
                 };
+                // Half-angle slices are those of one technique and mode.
+                let has_them = technique == Technique::Slices3d && mode == Mode::Composite;
+                if let Some(shading) = settings.shading.as_mut().filter(|_| !has_them) {
+                    shading.shadows = Shadows::Off;
+                }
                 let job = Job {
                     volume: &shown.volume,
                     classification: &shown.classification,

@@ -60,6 +60,11 @@ impl RenderBytes {
                 let device = floats.times(count).device;
                 (count, Self { host, device })
             }
+            Held::Classified => {
+                let host = one.host.saturating_add(floats.times(4).host);
+                let device = floats.times(4).device;
+                (1, Self { host, device })
+            }
             Held::Blend => {
                 let host = one.times(2).host.saturating_add(floats.host);
                 (1, Self { host, ..floats })
@@ -109,6 +114,8 @@ pub enum Held {
     Volumes(u32),
     /// So many that become floats, one after the other, by a noise filter.
     Denoised(u32),
+    /// One of which each voxel becomes four floats, which alone are on the device.
+    Classified,
     /// Those of two times, and floats between them, which alone are on the device.
     Blend,
 }
@@ -116,7 +123,10 @@ pub enum Held {
 impl Held {
     /// So many volumes of a picture of these flags.
     pub fn of(scene: &SceneFlags, count: u32) -> Self {
+        let mode = scene.sampling.mode.unwrap_or_default().mode();
+        let count = count + u32::from(scene.modes.paint(mode).is_some());
         match scene.denoise {
+            _ if scene.sampling.preclassified => Self::Classified,
             Some(_) => Self::Denoised(count),
             None => Self::Volumes(count),
         }

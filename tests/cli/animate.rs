@@ -377,3 +377,34 @@ fn grain_changes_from_frame_to_frame_and_nothing_else_does() {
     assert!(read("0.png") == read("1.png"), "nothing moves");
     assert_frame_is(&folder, "g0.png", "phantom:head,n=16 --jitter=5");
 }
+
+#[test]
+fn a_light_moves_from_key_to_key() {
+    let folder = Folder::new();
+    fs::write(
+        folder.path("light.json"),
+        r#"{"stratavox_keyframes":1,"frames":3,"keys":[{"at":0,"light":[2,0,0]},{"at":1,"light":[0,-1,0]}]}"#,
+    )
+    .expect("a file");
+    let lit = "phantom:head,n=16 --shading phong";
+    folder
+        .run(&format!(
+            "animate {lit} --light 0,0,1,1,0.5,0 --keyframes light.json -o %d.png {SMALL}"
+        ))
+        .assert_done();
+    for (frame, light) in [("0.png", "1,0,0"), ("1.png", "1,-1,0"), ("2.png", "0,-1,0")] {
+        assert_frame_is(&folder, frame, &format!("{lit} --light {light},1,0.5,0"));
+    }
+    for (words, wanted) in [
+        ("phantom:head,n=16", "nothing is lit"),
+        (
+            "phantom:head,n=16 --shading phong --light 1,0,0 --light 0,1,0",
+            "there are 2",
+        ),
+    ] {
+        let run = folder.run(&format!(
+            "animate {words} --keyframes light.json -o f%d.png {SMALL}"
+        ));
+        run.assert_refused(2, &["frame 0 of the keyframes", wanted]);
+    }
+}

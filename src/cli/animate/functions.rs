@@ -1,10 +1,15 @@
-//! A transfer function between two others.
+//! Transfer functions of keys, and one between two others.
 //!
 //! Two of as many colour (opacity) points are mixed point by point, value and colour: a peak wanders. Else both
 //! are taken at the values of either, and the numbers there are mixed: one fades into the other. Colours are
 //! mixed as sRGB numbers, as they are between the points of one function.
 
-use crate::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
+use crate::transfer::{
+    ColorPoint, Interpolation, OpacityPoint, Scale, TransferFunction, import_transfer_function,
+    transfer_function_from_json,
+};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
 
 /// Between `a` (`s = 0`) and `b` (`s = 1`), which must agree on their interpolation.
 /// `spacing` is the reference length of a function that has none of its own.
@@ -119,6 +124,43 @@ fn at<const N: usize>(
             std::array::from_fn(|c| lerp(left.1[c], right.1[c], t))
         }
     }
+}
+
+/// The function of a key: what stands in it, or in the file that it names, which is put to `inputs`.
+pub fn of_key(
+    tf: &Value,
+    folder: &Path,
+    inputs: &mut Vec<PathBuf>,
+) -> Result<TransferFunction, String> {
+    match tf {
+        Value::String(name) => {
+            let path = folder.join(name);
+            let imported =
+                import_transfer_function(&path, None).map_err(|error| error.to_string())?;
+            if imported.scale == Scale::Fractions {
+                return Err(format!(
+                    "the points of {name} stand at fractions of a range, wanted values"
+                ));
+            }
+            inputs.push(path);
+            of_value(imported.function)
+        }
+        Value::Object(_) => transfer_function_from_json(tf.to_string().as_bytes())
+            .map_err(|error| error.to_string())
+            .and_then(of_value),
+        _ => Err("wanted the name of a file or a transfer function".to_owned()),
+    }
+}
+
+/// Between two functions of gradients there is none.
+fn of_value(function: TransferFunction) -> Result<TransferFunction, String> {
+    if function.is_graded() {
+        return Err(
+            "widgets and gradient opacity have no keys: --tf gives them to the whole film"
+                .to_owned(),
+        );
+    }
+    Ok(function)
 }
 
 #[cfg(test)]

@@ -13,27 +13,22 @@
 //! Each word has a course of its own over the keys that hold it; without a key it is that of the command line.
 //! `at` goes from 0, the first frame, to 1, the last one; `frame` counts frames from 0 in its place. `seconds`
 //! in place of `frames` takes `--fps` times as many. Words are those of the flags, lists are arrays, `tf` is
-//! a file (found from the folder of this one) or what stands in one.
+//! a file (found from the folder of this one) or what stands in one, `light` the way to the only light.
 
 use super::{
+    functions,
+    keys::{self, Key},
     rate::Rate,
     track::{Easing, Track},
     tracks::Tracks,
 };
 use crate::{
-    cli::Error,
-    transfer::{
-        Scale, TransferFunction, import_transfer_function, transfer_function_from_json,
-        transfer_function_to_json,
-    },
+    cli::{Error, small_file},
+    transfer::{TransferFunction, transfer_function_to_json},
 };
 use serde::Deserialize;
-use serde_json::{Value, json};
-use std::{
-    fs::File,
-    io::Read,
-    path::{Path, PathBuf},
-};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
 
 const VERSION: u32 = 1;
 /// The largest file that is read.
@@ -66,44 +61,12 @@ struct Words {
     keys: Vec<Key>,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Key {
-    at: Option<f64>,
-    frame: Option<u32>,
-    azimuth: Option<f64>,
-    elevation: Option<f64>,
-    roll: Option<f64>,
-    zoom: Option<f64>,
-    fov: Option<f64>,
-    view_height: Option<f64>,
-    eye: Option<[f64; 3]>,
-    target: Option<[f64; 3]>,
-    up: Option<[f64; 3]>,
-    window: Option<[f64; 2]>,
-    tf: Option<Value>,
-    crop: Option<[f64; 6]>,
-    clip: Option<Vec<[f64; 4]>>,
-    time: Option<f64>,
-}
-
 /// The film of the file at `path`.
 pub fn read(path: &Path, rate: Rate) -> Result<Keyframes, Error> {
-    let refused = |problem| Error::Input {
-        path: path.to_owned(),
-        problem,
-    };
-    let mut text = Vec::new();
-    File::open(path)
-        .and_then(|file| file.take(MAX_FILE_BYTES + 1).read_to_end(&mut text))
-        .map_err(|cause| refused(cause.to_string()))?;
-    if text.len() as u64 > MAX_FILE_BYTES {
-        return Err(refused(format!(
-            "keyframes have at most {MAX_FILE_BYTES} bytes"
-        )));
-    }
     let folder = path.parent().unwrap_or(Path::new("."));
-    let mut film = parse(&text, folder, rate).map_err(refused)?;
+    let mut film = small_file::parsed(path, "a film of keyframes", MAX_FILE_BYTES, |text| {
+        parse(text, folder, rate)
+    })?;
     film.inputs.push(path.to_owned());
     Ok(film)
 }
@@ -128,7 +91,7 @@ fn parse(text: &[u8], folder: &Path, rate: Rate) -> Result<Keyframes, String> {
     for (k, (key, &u)) in words.keys.iter().zip(&places).enumerate() {
         let Some(tf) = &key.tf else { continue };
         let function =
-            function(tf, folder, &mut inputs).map_err(|e| format!("keys[{k}].tf: {e}"))?;
+            functions::of_key(tf, folder, &mut inputs).map_err(|e| format!("keys[{k}].tf: {e}"))?;
         let inside = serde_json::from_str(&transfer_function_to_json(&function));
         value["keys"][k]["tf"] = inside.expect("what we have just written as JSON");
         functions.push((u, function));
@@ -151,42 +114,6 @@ fn place_of(value: &Value, error: &serde_json::Error) -> String {
             Some(format!("keys[{k}]: {error}"))
         })
         .unwrap_or_else(|| error.to_string())
-}
-
-fn function(
-    tf: &Value,
-    folder: &Path,
-    inputs: &mut Vec<PathBuf>,
-) -> Result<TransferFunction, String> {
-    match tf {
-        Value::String(name) => {
-            let path = folder.join(name);
-            let imported =
-                import_transfer_function(&path, None).map_err(|error| error.to_string())?;
-            if imported.scale == Scale::Fractions {
-                return Err(format!(
-                    "the points of {name} stand at fractions of a range, wanted values"
-                ));
-            }
-            inputs.push(path);
-            of_value(imported.function)
-        }
-        Value::Object(_) => transfer_function_from_json(tf.to_string().as_bytes())
-            .map_err(|error| error.to_string())
-            .and_then(of_value),
-        _ => Err("wanted the name of a file or a transfer function".to_owned()),
-    }
-}
-
-/// Between two functions of gradients there is none.
-fn of_value(function: TransferFunction) -> Result<TransferFunction, String> {
-    if function.is_graded() {
-        return Err(
-            "widgets and gradient opacity have no keys: --tf gives them to the whole film"
-                .to_owned(),
-        );
-    }
-    Ok(function)
 }
 
 impl Words {
@@ -243,7 +170,7 @@ impl Words {
         places: &[f64],
         functions: Vec<(f64, TransferFunction)>,
     ) -> Result<Tracks, String> {
-        self.check()?;
+        keys::check(&self.keys)?;
         let interpolations: Vec<_> = functions.iter().map(|(_, f)| f.interpolation).collect();
         if interpolations.windows(2).any(|pair| pair[0] != pair[1]) {
             return Err(
@@ -273,6 +200,7 @@ impl Words {
             up: self.track(places, |key| key.up),
             window: self.track(places, |key| key.window),
             crop: self.track(places, |key| key.crop),
+            light: self.track(places, |key| key.light.map(direction)),
             clip: clip.collect(),
             time: number(|key| key.time),
             functions,
@@ -288,71 +216,17 @@ impl Words {
         let keys = keys.filter_map(|(key, &u)| Some((u, of(key)?)));
         Track::new(keys.collect(), self.easing)
     }
-
-    /// What a curve could not go through.
-    fn check(&self) -> Result<(), String> {
-        let has_eye = self.keys.iter().any(|key| key.eye.is_some());
-        let planes = self
-            .keys
-            .iter()
-            .find_map(|key| key.clip.as_ref())
-            .map(Vec::len);
-        for (k, key) in self.keys.iter().enumerate() {
-            for (field, found) in [
-                ("zoom", key.zoom),
-                ("fov", key.fov),
-                ("view_height", key.view_height),
-            ] {
-                if let Some(found) = found.filter(|&x| x <= 0.0) {
-                    return Err(format!(
-                        "keys[{k}].{field}: wanted a number over 0, found {found}"
-                    ));
-                }
-            }
-            for (field, found) in [
-                ("azimuth", key.azimuth),
-                ("elevation", key.elevation),
-                ("roll", key.roll),
-            ] {
-                if has_eye && found.is_some() {
-                    return Err(format!(
-                        "keys[{k}].{field}: another key has an `eye`, which excludes it"
-                    ));
-                }
-            }
-            if let Some([low, high]) = key.window.filter(|[low, high]| low >= high) {
-                return Err(format!(
-                    "keys[{k}].window: wanted a low value and a higher one, found {}",
-                    json!([low, high])
-                ));
-            }
-            if key.time.is_some_and(|time| time < 0.0) {
-                return Err(format!(
-                    "keys[{k}].time: wanted a number from 0 on, found {}",
-                    json!(key.time)
-                ));
-            }
-            let Some(clip) = &key.clip else { continue };
-            if Some(clip.len()) != planes {
-                return Err(format!(
-                    "keys[{k}].clip: wanted {} planes as in the keys before, found {}",
-                    planes.unwrap_or(0),
-                    clip.len()
-                ));
-            }
-            if let Some(i) = clip.iter().position(|plane| plane[..3] == [0.0; 3]) {
-                return Err(format!(
-                    "keys[{k}].clip[{i}]: a plane needs a direction, found 0, 0, 0"
-                ));
-            }
-        }
-        Ok(())
-    }
 }
 
 /// Where frame `number` stands, 0 to 1.
 pub fn place_of_frame(number: u32, frame_count: u32) -> f64 {
     f64::from(number) / f64::from(frame_count.max(2) - 1)
+}
+
+/// The same direction with the length 1.
+fn direction(towards: [f64; 3]) -> [f64; 3] {
+    let length = towards.iter().map(|x| x * x).sum::<f64>().sqrt();
+    towards.map(|x| x / length)
 }
 
 /// The same plane with a normal of length 1.
@@ -375,7 +249,7 @@ mod tests {
             r#"{"stratavox_keyframes":1,"frames":5,"keys":[
                 {"at":0,"azimuth":10,"zoom":1},
                 {"frame":2,"elevation":5},
-                {"at":1,"azimuth":50,"zoom":4,"clip":[[0,0,2,6]]}]}"#,
+                {"at":1,"azimuth":50,"zoom":4,"clip":[[0,0,2,6]],"light":[0,3,4]}]}"#,
         )
         .expect("a film");
         assert_eq!(film.frame_count, 5);
@@ -391,6 +265,7 @@ mod tests {
         assert!((zoom - 2.0).abs() < 1e-15, "{zoom}");
         // A plane is that of a unit normal: z >= 3.
         assert_eq!(tracks.clip[0].at(0.0), Some([0.0, 0.0, 1.0, 3.0]));
+        assert_eq!(tracks.light.at(0.5), Some([0.0, 0.6, 0.8]));
     }
 
     #[test]
@@ -460,6 +335,10 @@ mod tests {
             (
                 format!(r#"{{{head},"keys":[{{"at":0,"time":-1}}]}}"#),
                 "keys[0].time",
+            ),
+            (
+                format!(r#"{{{head},"keys":[{{"at":0,"light":[0,0,0]}}]}}"#),
+                "keys[0].light: a way to a light needs a direction",
             ),
             (
                 format!(r#"{{{head},"keys":[{{"at":0,"clip":[[0,0,0,1]]}}]}}"#),

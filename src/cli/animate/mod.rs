@@ -11,6 +11,7 @@ mod functions;
 mod identity;
 mod journal;
 mod keyframes;
+mod keys;
 mod rate;
 mod ready;
 mod shots;
@@ -60,7 +61,7 @@ use target::{Frames, Target};
     Keyframes, each word of a key with a course of its own:\n  \
     { \"stratavox_keyframes\": 1, \"frames\": 120, \"easing\": \"smooth\", \"keys\": [\n    \
     { \"at\": 0, \"azimuth\": 0, \"zoom\": 1 }, { \"at\": 1, \"azimuth\": 360, \"zoom\": 2 } ] }\n  \
-    Words of a key: azimuth, elevation, roll, zoom, fov, view_height, eye, target, up, window, tf, crop, clip, time")]
+    Words of a key: azimuth, elevation, roll, zoom, fov, view_height, eye, target, up, window, tf, crop, clip, light, time")]
 pub struct Animate {
     /// frames/%04d.png (or .exr, .npy), a film that ends in .apng, .gif, .y4m or .mp4, or - for Y4M on the standard output
     #[arg(short, long, value_name = "FILE")]
@@ -250,7 +251,7 @@ impl Animate {
             None => self.scene.clone(),
         };
         let target = Target::new(&self.output)?;
-        let layers = scene.picture.layers()?;
+        let layers = scene.picture.layers();
         self.check_target(&target, &layers)?;
         let keyframes = self
             .keyframes

@@ -171,6 +171,9 @@ impl Maker<'_> {
         let mut settings = self.scene.settings_of(&sampling, self.depth)?;
         // Grain that stood still would be seen as a curtain before the moving picture.
         settings.jitter.frame = k;
+        if let Some(Keyframes { tracks, .. }) = &self.film.keyframes {
+            tracks.light(&mut settings.shading, u)?;
+        }
         let extent_pixels = self.scene.picture.extent_pixels()?;
         Ok(Shot {
             camera: section.camera(&camera, &self.subject, extent_pixels, &mut settings)?,

@@ -2,7 +2,11 @@
 
 use super::{functions::mixed, track::Track};
 use crate::{
-    cli::flags::{CameraFlags, ClassificationFlags, Numbers, SamplingFlags},
+    cli::{
+        Error,
+        flags::{CameraFlags, ClassificationFlags, Numbers, SamplingFlags},
+    },
+    technique::{Light, Shading},
     transfer::{TransferFunction, transfer_function_to_json},
 };
 
@@ -23,6 +27,8 @@ pub struct Tracks {
     pub crop: Track<6>,
     /// One a plane, with unit normals at the keys.
     pub clip: Vec<Track<4>>,
+    /// The way to the only light.
+    pub light: Track<3>,
     pub time: Track<1>,
     /// Mixed by straight lines, whatever the easing: opacities stay between 0 and 1.
     pub functions: Vec<(f64, TransferFunction)>,
@@ -73,6 +79,29 @@ impl Tracks {
             flags.clip = planes.map(|plane| Numbers(renormalized(plane))).collect();
         }
         flags
+    }
+
+    /// Moves the light of `shading` to where it is at `u`.
+    pub fn light(&self, shading: &mut Option<Shading>, u: f64) -> Result<(), Error> {
+        let Some(towards) = self.light.at(u) else {
+            return Ok(());
+        };
+        let hint = "--shading phong, and at most one --light, whose colour stays";
+        let Some(shading) = shading else {
+            return Err(Error::usage(
+                "a key has a `light`, and nothing is lit",
+                hint,
+            ));
+        };
+        let found = shading.lights.len();
+        if found > 1 {
+            let message = format!("a key moves the only `light`, and there are {found}");
+            return Err(Error::usage(message, hint));
+        }
+        let srgb = shading.lights.first().map_or([1.0; 3], |light| light.srgb);
+        let towards = towards.into();
+        shading.lights = vec![Light { towards, srgb }];
+        Ok(())
     }
 
     /// `flags` as they are at `u`; `spacing` is the smallest one of the grid.
@@ -143,6 +172,7 @@ mod tests {
             window: none(),
             crop: none(),
             clip: Vec::new(),
+            light: none(),
             time: none(),
             functions: Vec::new(),
         }

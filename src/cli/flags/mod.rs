@@ -7,6 +7,7 @@ mod camera;
 mod channels;
 mod classification;
 mod component;
+mod cuts;
 mod denoise;
 mod gradient_filter;
 mod gradients;
@@ -17,15 +18,19 @@ mod levels;
 mod light;
 mod modes;
 mod numbers;
+mod occlusion;
+mod opacity;
 mod picture;
 mod sampling;
 mod section;
+mod shadows;
 mod subject;
+mod values;
 mod words;
 
 pub use camera::CameraFlags;
 pub use channels::{ChannelFlags, ChannelWord, Plan};
-pub use classification::{Classification, ClassificationFlags, preset, summary, with_causes};
+pub use classification::{Classification, ClassificationFlags};
 pub use component::Component;
 pub use denoise::DenoiseWord;
 pub use gradient_filter::GradientFlags;
@@ -37,10 +42,12 @@ pub use levels::LevelFlags;
 pub use light::LightFlags;
 pub use modes::ModeFlags;
 pub use numbers::{Background, Numbers, Size, finite, positive};
+pub use opacity::OpacityFlags;
 pub use picture::PictureFlags;
 pub use sampling::{Depth, SamplingFlags};
 pub use section::SectionFlags;
 pub use subject::Subject;
+pub use values::{preset, summary, with_causes};
 
 use super::Error;
 use crate::technique::Settings;
@@ -63,6 +70,8 @@ pub struct SceneFlags {
     pub modes: ModeFlags,
     #[command(flatten)]
     pub classification: ClassificationFlags,
+    #[command(flatten)]
+    pub opacity: OpacityFlags,
     #[command(flatten)]
     pub channels: ChannelFlags,
     #[command(flatten)]
@@ -97,12 +106,27 @@ impl SceneFlags {
     /// The same with other words of sampling.
     pub fn settings_of(&self, sampling: &SamplingFlags, depth: Depth) -> Result<Settings, Error> {
         let settings = self.section.settings(sampling, depth)?;
-        let shading = self.light.shading(settings.mode)?;
-        Ok(Settings {
-            shading,
+        let settings = Settings {
+            shading: self.light.shading(settings.mode)?,
+            ambient_occlusion: self.light.occlusion(settings.mode)?,
             gradient_filter: self.gradient.filter(),
             keep_gradients: self.gradient.keep(),
+            dim: self.labels.dim()?,
             ..settings
+        };
+        self.light.shadows.unwrap_or_default().check(&settings)?;
+        sampling.check_ways(&settings)?;
+        if !self.wants_slabs() {
+            return Ok(settings);
+        }
+        let slabs = Settings {
+            preintegrated: true,
+            ..settings.clone()
+        };
+        // What a file asks for gives way to what a person does.
+        Ok(match slabs.check_ways() {
+            Ok(()) => slabs,
+            Err(_) => settings,
         })
     }
 
@@ -110,6 +134,15 @@ impl SceneFlags {
     fn may_have_gradients(&self) -> bool {
         let mode = self.sampling.mode.unwrap_or_default().mode();
         self.light.is_lit(mode) || !mode.is_projection() && self.classification.names_a_function()
+    }
+
+    /// True where the function asks for slabs and no word is against it.
+    fn wants_slabs(&self) -> bool {
+        let is_one = !self.channels.are_given()
+            && self.input.component != Some(Component::All)
+            && self.labels.labels.is_none()
+            && !self.opacity.are_given();
+        is_one && self.classification.wants_slabs() && !self.sampling.says_how()
     }
 
     /// Flags that change nothing under the others, a sentence each.
@@ -122,6 +155,10 @@ impl SceneFlags {
             self.gradient.idle(self.may_have_gradients()),
             self.camera.idle(),
         ];
-        topics.concat()
+        let mut notes = topics.concat();
+        if self.light.is_half_angle() && self.sampling.order.is_some() {
+            notes.push("--order has no effect on half-angle slices, they come from the light");
+        }
+        notes
     }
 }
