@@ -135,7 +135,7 @@ struct Frame {
     kernel: u32,
     // World length of the shortest side of a voxel.
     smallest_spacing: f32,
-    // How gradients are made, and code from the texels that they are made of: see gradient_taps.wgsl.
+    // How gradients are made, and code (or slope) from the texels that they are made of: see gradient_taps.wgsl.
     gradient_operator: u32,
     gradient_scale: f32,
     gradient_codes_are_integers: u32,

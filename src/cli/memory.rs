@@ -11,8 +11,8 @@
 
 use super::{Error, flags::SceneFlags};
 use crate::{
-    resident::TextureLayout,
-    technique::{GradientSource, Settings, Technique},
+    resident::{KeptGradients, TextureLayout},
+    technique::{GradientSource, Keep, Settings, Technique},
     volume::{Header, Reduced, Source, VoxelType},
 };
 use serde::Serialize;
@@ -73,6 +73,12 @@ impl RenderBytes {
         if filters.filter.spline().is_some() {
             all.host = all.host.saturating_add(floats.host);
             all.device = floats.times(count).device;
+        }
+        if filters.keep_gradients == Keep::Always {
+            let kept = header
+                .voxel_count()
+                .saturating_mul(KeptGradients::BYTES_PER_VOXEL);
+            all.device = all.device.saturating_add(kept);
         }
         // A texture beside the values, without a mask of its own.
         let layout = match filters.technique {
@@ -157,6 +163,7 @@ pub fn fitting(
         technique: scene.sampling.technique.unwrap_or_default().technique(),
         filter: scene.sampling.filter.unwrap_or_default().filter(),
         gradient_filter: scene.gradient.filter(),
+        keep_gradients: scene.gradient.keep(),
         ..Settings::default()
     };
     let host_bytes = input.max_memory.or_else(available_bytes);
