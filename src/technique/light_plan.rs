@@ -87,6 +87,16 @@ impl LightPlan {
         }
     }
 
+    /// Bytes of the light volume of a volume of these dims with so many bundles, and of the cells that it is made from.
+    pub fn bytes(dims: [u32; 3], bundle_count: u32) -> u64 {
+        let cells = dims.map(|n| n.min(MAX_LIGHT_CELLS));
+        let product = |more: u32| cells.iter().map(|&n| u64::from(n + more)).product::<u64>();
+        match bundle_count {
+            0 => 0,
+            count => 4 * (product(0) + u64::from(count) * product(1)),
+        }
+    }
+
     /// Numbers of the light volume.
     pub fn node_count(&self) -> u64 {
         let nodes: u64 = self.cells.iter().map(|&n| u64::from(n) + 1).product();
