@@ -138,7 +138,7 @@ fn passed(before: Surfaces, world: Ray, voxel: Ray, index: u32, t: f32) -> Surfa
         let place = voxel.origin + t * voxel.direction;
         color = shade(color, gradient_at(place), world.direction, place);
     } else {
-        color *= ambient_at(voxel.origin + t * voxel.direction);
+        color *= ambient_at(voxel.origin + t * voxel.direction, world.direction);
     }
     var next = before;
     next.color += before.transmittance * level.w * color;

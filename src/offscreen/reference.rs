@@ -246,12 +246,12 @@ impl<'a, R: Real> Walk<'a, R> {
         let (frame, filter) = (&self.frame, self.scene.settings.filter);
         let value_at = |p| filtered(self.volumes[0], filter, p);
         let lit = |color, p, ray_direction| {
-            let lamps = self.lamps(p);
+            let lamps = self.lamps(p, ray_direction);
             if frame.light_count == 0 {
                 return scale(color, lamps.ambient(frame));
             }
             let gradient = gradient_of(frame, |step| value_at(moved(p, step)));
-            shade(frame, color, gradient, ray_direction, &lamps)
+            shade(frame, color, gradient, &lamps)
         };
         let found = isosurface::surfaces(frame, pixel, value_at, lit);
         Gathered::of_surfaces(found)
@@ -299,10 +299,13 @@ impl<'a, R: Real> Walk<'a, R> {
         }
     }
 
-    /// What comes through to a position in voxel space.
-    fn lamps(&self, voxel: [R; 3]) -> Lamps<'_, R> {
-        let field = self.light;
-        Lamps { field, voxel }
+    /// What comes through to a position in voxel space, seen along a ray.
+    fn lamps(&self, voxel: [R; 3], ray_direction: [R; 3]) -> Lamps<'_, R> {
+        Lamps {
+            field: self.light,
+            voxel,
+            ray_direction,
+        }
     }
 
     /// What the volumes are made of at `p`, where `look_from` looks from, so many voxels away; `None` for no data.
@@ -328,7 +331,7 @@ impl<'a, R: Real> Walk<'a, R> {
         if let [volume] = self.volumes[..] {
             let value = look(volume, settings.filter)?;
             let mut material = self.classify(0, value);
-            let lamps = self.lamps(p);
+            let lamps = self.lamps(p, ray_direction);
             if self.frame.light_count == 0 && self.widgets.is_none() {
                 return Some(ambient_of(&self.frame, material, &lamps));
             }
@@ -343,7 +346,7 @@ impl<'a, R: Real> Walk<'a, R> {
             if self.frame.light_count == 0 {
                 return Some(ambient_of(&self.frame, material, &lamps));
             }
-            let [r, g, b] = shade(&self.frame, [r, g, b], gradient, ray_direction, &lamps);
+            let [r, g, b] = shade(&self.frame, [r, g, b], gradient, &lamps);
             return Some([r, g, b, extinction]);
         }
         let mut found = [None; crate::shaders::MAX_CHANNELS as usize];

@@ -194,8 +194,8 @@ impl View<'_> {
         let plan = LightPlan::grid_of(self);
         fields.light_cells = plan.cells.map(|n| n as f32);
         fields.light_cells_per_voxel = plan.cell_voxels.map(|n| (1.0 / n) as f32);
-        // As far as a cell reaches: a surface lies in one, and is lit.
-        fields.shadow_reach = plan.cell_length as f32;
+        // A surface fills the cell that it lies in.
+        fields.light_reach = plan.cell_length as f32;
         let occlusion = self.settings.occlusion();
         fields.occlusion_strength = occlusion.map_or(0.0, |o| o.strength as f32);
         fields.has_shadows = self.settings.shadow_size().is_some().into();
