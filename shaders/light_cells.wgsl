@@ -13,6 +13,7 @@
 #import sample_graded
 #import transfer_{transfer}
 #import widgets
+#import second
 #import extinction
 
 @group(0) @binding(27) var<storage, read_write> light_cells: LightNumbers;
@@ -48,13 +49,16 @@ fn opacity_of(voxel: vec3<f32>) -> f32 {
         return 0.0;
     }
     let value = volume_value(place);
-    var extinction = 0.0;
+    var material = classify(value);
     if are_widgets() {
-        extinction = classify_by_gradient(value, length(gradient_at(place))).extinction;
-    } else {
-        extinction = classify(value).extinction;
+        let gradient = gradient_at(place);
+        var second = 0.0;
+        if wants_second() {
+            second = second_derivative_at(place, gradient);
+        }
+        material = classify_by_gradient(material, value, length(gradient), second);
     }
-    return opacity_over(extinction, light_grid.cell_length);
+    return opacity_over(material.extinction, light_grid.cell_length);
 }
 
 // Exact for the crop, and for a plane that one axis of the cell stands across.

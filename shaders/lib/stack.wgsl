@@ -13,11 +13,6 @@ struct Place {
 
 @group(0) @binding(1) var stack: Values;
 
-// Where a place is in voxel space.
-fn voxel_of(place: Place) -> vec3<f32> {
-    return place.voxel;
-}
-
 fn volume_value(place: Place) -> f32 {
     return filtered(stack, volume_coding(), place);
 }
@@ -27,6 +22,24 @@ fn shifted(place: Place, voxels: vec3<f32>) -> Place {
     let axis = frame.slice_axis;
     let slice = clamp(place.slice + i32(voxels[axis]), 0, i32(frame.dims[axis]) - 1);
     return Place(place.voxel + voxels, slice);
+}
+
+// Its position in voxel space, on the slice exactly.
+fn voxel_of(place: Place) -> vec3<f32> {
+    var voxel = place.voxel;
+    voxel[frame.slice_axis] = f32(place.slice) + 0.5;
+    return voxel;
+}
+
+// The texel of a voxel, the nearest that the brick holds.
+fn texel_at(values: Values, voxel: vec3<i32>) -> vec4<f32> {
+    let texel = texel_in_brick(voxel);
+    return textureLoad(values, texel.xy, texel.z, 0);
+}
+
+fn texel_in_brick(voxel: vec3<i32>) -> vec3<i32> {
+    let first = vec3<i32>(frame.brick_origin);
+    return texel_of(clamp(voxel, first, first + vec3<i32>(frame.brick_dims) - 1));
 }
 
 // A vector of voxel space by the axes of the stack's images: across, down, layer.

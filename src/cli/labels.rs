@@ -8,8 +8,8 @@ use crate::{
     technique::Role,
     transfer::{LabelTable, TransferFunction},
     volume::{
-        Grid, Pick, Volume, Wanted,
-        labels::{hide, labels_of, on_grid},
+        Grid, Pick, Volume, Wanted, is_same_grid,
+        labels::{dim, hide, labels_of, on_grid},
     },
 };
 use glam::DVec3;
@@ -57,11 +57,15 @@ pub fn read(
         table.function(present.keys().copied(), diagonal(&map))
     };
     say_names(&present, table.as_ref(), &function, progress);
-    let hides = table.is_some_and(|table| table.hides);
-    if flags.cut() || hides {
+    let hides = table.as_ref().is_some_and(|table| table.hides);
+    if flags.shows_some() || hides {
         let is_shown =
             |label: i64| flags.shows(label) && !(hides && function.opacity(label as f64) == 0.0);
         hide(&mut map, is_shown);
+    }
+    let is_dimmed = |label: &i64| flags.dims(table.as_ref(), *label);
+    if present.keys().any(is_dimmed) {
+        dim(&mut map, |label| is_dimmed(&label));
     }
     Ok(Other {
         volume: map,
@@ -78,14 +82,7 @@ pub fn diagonal(volume: &Volume) -> f64 {
 
 /// The map on the grid; `None` where they do not meet.
 fn placed(map: Volume, grid: &Grid, progress: &Progress) -> Option<Volume> {
-    let tolerance = 1e-3 * grid.smallest_spacing();
-    let corners = [DVec3::ZERO, grid.far_corner(), DVec3::X, DVec3::Y];
-    let is_same = map.dims == grid.dims
-        && corners.into_iter().all(|corner| {
-            let here = grid.world_from_voxel.transform_point3(corner);
-            let there = map.world_from_voxel.transform_point3(corner);
-            here.distance(there) <= tolerance
-        });
+    let is_same = is_same_grid(grid, &map.grid());
     if is_same && map.validity.is_none() {
         return Some(Volume {
             world_from_voxel: grid.world_from_voxel,

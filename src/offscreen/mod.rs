@@ -39,4 +39,9 @@ pub enum Error {
         /// What was asked for.
         layer: crate::picture::LayerKind,
     },
+    /// The layer of labels, in a picture of none.
+    #[error(
+        "the layer `Label` is for a label map over the volume, or for one volume of labels with the filter Nearest"
+    )]
+    NoLabels,
 }

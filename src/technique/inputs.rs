@@ -2,7 +2,7 @@
 //! asks for.
 
 use super::{Filter, Lattice, LightVolume, Mix, Mode, Part, Role, Settings};
-use crate::gpu::{Bindings, Error, Gpu, Layout, ParameterRing, Resource};
+use crate::gpu::{Bindings, Error, Gpu, Image, Layout, ParameterRing, Resource};
 use crate::resident::{Brick, GpuTransfer, GpuVolume, TextureLayout};
 use crate::shaders::MAX_CHANNELS;
 use std::sync::Arc;
@@ -41,6 +41,7 @@ impl Inputs<'_> {
             TextureLayout::Stack(_) => "stack",
         };
         given.push((values, Resource::sampled(&self.brick.values)));
+        given.push(("gradient_source", Resource::sampled(self.gradient_source())));
         given.push(("volume_sampler", Resource::Sampler(self.volume.sampler())));
         given.extend(self.channels());
         if let Some(transfer) = self.transfer {
@@ -57,6 +58,16 @@ impl Inputs<'_> {
         given.extend_from_slice(outputs);
         given.retain(|(name, _)| layout.slots().iter().any(|slot| slot.name == *name));
         Bindings::new(gpu, layout, &given)
+    }
+}
+
+impl Inputs<'_> {
+    /// What gradients are made of: the values themselves, unless something lies beside them.
+    fn gradient_source(&self) -> &Image {
+        let beside = self.volume.gradient_source();
+        let bricks = beside.into_iter().flat_map(GpuVolume::bricks);
+        let mut same = bricks.filter(|brick| brick.cell == self.brick.cell);
+        &same.next().unwrap_or(self.brick).values
     }
 }
 
@@ -133,9 +144,10 @@ impl Words {
     /// The variant for a picture of several volumes.
     pub fn mixed(settings: &Settings, mix: Mix, parts: &[Part]) -> Self {
         let is_fetched =
-            |part: &Part| part.role == Role::Numbers && !part.volume.texel().is_filtered;
+            |part: &Part| part.role != Role::Labels && !part.volume.texel().is_filtered;
         let has_holes = parts.iter().any(|part| part.volume.has_holes());
-        let is_lit = settings.shading.is_some() || settings.occlusion().is_some();
+        let has_surfaces = settings.shading.as_ref().is_some_and(|s| s.has_surfaces);
+        let is_lit = has_surfaces || settings.wants_light_volume();
         let is_graded = mix == Mix::Alone && is_lit;
         Self {
             mix: if is_graded { Mix::Graded } else { mix },

@@ -37,6 +37,9 @@ pub enum Shadows {
         /// How wide a light looks from the surface: 0 for sharp shadows, the sun 0.5.
         light_size_degrees: f64,
     },
+    /// Composite by [`super::Technique::Slices3d`], of one volume in one texture: slices half way between eye and
+    /// light, drawn into the picture and into what the light sees ([`super::slices_3d::HalfAngleSlicer`]).
+    HalfAngle,
 }
 
 /// Cells of an axis, at most.
@@ -250,6 +253,17 @@ impl super::Settings {
     /// The occlusion of such pictures, where it takes light at all.
     pub fn occlusion(&self) -> Option<AmbientOcclusion> {
         self.ambient_occlusion.filter(|o| o.strength != 0.0)
+    }
+
+    /// Whether slices lie half way between eye and light.
+    pub fn is_half_angle(&self) -> bool {
+        let shading = self.shading.as_ref();
+        shading.is_some_and(|shading| shading.shadows == Shadows::HalfAngle)
+    }
+
+    /// True where light is followed through the volume.
+    pub fn wants_light_volume(&self) -> bool {
+        self.occlusion().is_some() || self.shadow_size().is_some()
     }
 
     /// How wide lights look whose shadows are followed through a volume. None where the light is a headlight, which

@@ -30,8 +30,11 @@ pub struct Shading {
     pub shininess: f64,
     /// At most [`MAX_LIGHTS`]; none stands for a white headlight, which shines along the ray of each pixel.
     pub lights: Vec<Light>,
-    /// What keeps them from a surface.
+    /// What keeps them from samples.
     pub shadows: Shadows,
+    /// Whether light falls on the surfaces that stand across gradients. Else it falls on all matter alike, which then
+    /// is as bright as its colour says but for [`Shadows::HalfAngle`]: ambient and lights alone count.
+    pub has_surfaces: bool,
 }
 
 /// A light that is infinitely far away.
@@ -52,6 +55,17 @@ impl Default for Shading {
             shininess: 10.0,
             lights: Vec::new(),
             shadows: Shadows::Off,
+            has_surfaces: true,
+        }
+    }
+}
+
+impl Shading {
+    /// White light on matter without surfaces.
+    pub fn plain() -> Self {
+        Self {
+            has_surfaces: false,
+            ..Self::default()
         }
     }
 }
@@ -84,9 +98,9 @@ pub(super) fn set_shading(
         fields.light_count = 1;
         fields.light_directions[0] = [0.0, 0.0, 0.0, 1.0];
         fields.light_colors[0] = [1.0; 4];
-        return Ok(());
+    } else {
+        fields.light_count = wanted as u32;
     }
-    fields.light_count = wanted as u32;
     for (i, light) in shading.lights.iter().enumerate() {
         let towards = light.towards.try_normalize().ok_or(Error::NoWayToLight)?;
         let shown = |c: f64| match space {
@@ -96,6 +110,10 @@ pub(super) fn set_shading(
         let [r, g, b] = light.srgb.map(|c| shown(c) as f32);
         fields.light_directions[i] = towards.extend(0.0).as_vec4().to_array();
         fields.light_colors[i] = [r, g, b, 1.0];
+    }
+    // To shaders, lights are those on surfaces.
+    if !shading.has_surfaces {
+        fields.light_count = 0;
     }
     Ok(())
 }

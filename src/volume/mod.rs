@@ -22,6 +22,7 @@ pub mod phantom;
 mod prefilter;
 mod read;
 mod reduce;
+mod regrid;
 pub mod sample;
 mod source;
 mod statistics;
@@ -35,6 +36,7 @@ pub use joint::{JointHistogram, steepest_gradient};
 pub use magnitude::Magnitude;
 pub use prefilter::{Coefficients, Spline};
 pub use reduce::Reduced;
+pub use regrid::{is_same_grid, regridded};
 pub use source::{
     Channel, Format, Header, Limits, Loss, Meaning, Pick, Piece, Problem, ReadError, Rescale,
     Series, Source, VoxelBox, Wanted,
@@ -56,7 +58,8 @@ pub struct Volume {
     pub voxels: Voxels,
     /// Stored number to value.
     pub rescale: Rescale,
-    /// One byte a voxel, 1 = valid, 0 = no data. `None` where all are valid.
+    /// One byte a voxel, 1 = valid, 0 = no data; in a label map also [`labels::DIMMED`], which is valid. `None` where
+    /// all are valid.
     pub validity: Option<Vec<u8>>,
     /// True where values are Hounsfield units.
     pub hounsfield: bool,

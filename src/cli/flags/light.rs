@@ -1,7 +1,6 @@
 //! Light on what is composited: flags to [`Shading`].
 
-use super::occlusion::{OcclusionWord, ShadowsWord};
-use super::{Error, Numbers};
+use super::{Error, Numbers, occlusion::OcclusionWord, shadows::ShadowsWord};
 use crate::{
     shaders::MAX_LIGHTS,
     technique::{AmbientOcclusion, Light, Mode, Shading, Shadows},
@@ -34,7 +33,7 @@ pub struct LightFlags {
     #[arg(long, value_name = "STRENGTH[,RADIUS]", allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ambient_occlusion: Option<OcclusionWord>,
-    /// Whether matter on the way to a --light keeps it away [default: off]
+    /// Whether matter on the way to a --light keeps it away; --material A is what stays in the shadow [default: off]
     #[arg(long, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shadows: Option<ShadowsWord>,
@@ -117,14 +116,25 @@ impl LightFlags {
         self.shading.unwrap_or(of_mode)
     }
 
+    /// True where a picture in `mode` is lit.
+    pub fn is_lit(&self, mode: Mode) -> bool {
+        self.word(mode) == ShadingWord::Phong
+    }
+
+    /// Whether slices lie half way to the light.
+    pub fn is_half_angle(&self) -> bool {
+        self.shadows == Some(ShadowsWord::HalfAngle)
+    }
+
     /// The light of a picture in `mode`.
     pub fn shading(&self, mode: Mode) -> Result<Option<Shading>, Error> {
-        if self.word(mode) == ShadingWord::None {
+        let has_surfaces = self.word(mode) == ShadingWord::Phong;
+        if !has_surfaces && !self.is_half_angle() {
             return Ok(None);
         }
         if mode.is_projection() {
             return Err(Error::usage(
-                "--shading phong needs --mode composite, mida or iso: no light falls on a projection",
+                "--shading phong and --shadows need --mode composite, mida or iso: no light falls on a projection",
                 "leave out --mode or --shading",
             ));
         }
@@ -138,6 +148,7 @@ impl LightFlags {
         let mut shading = Shading {
             lights: self.light.iter().map(|word| word.0).collect(),
             shadows: self.shadows()?,
+            has_surfaces,
             ..Shading::default()
         };
         if let Some(Numbers(material)) = self.material {
@@ -179,7 +190,7 @@ impl LightFlags {
         let of_occlusion = u32::from(self.ambient_occlusion.is_some());
         match self.shadows.unwrap_or_default() {
             ShadowsWord::Volume => of_occlusion + self.light.len() as u32,
-            ShadowsWord::Off => of_occlusion,
+            ShadowsWord::Off | ShadowsWord::HalfAngle => of_occlusion,
         }
     }
 
@@ -197,7 +208,7 @@ impl LightFlags {
 
     /// Flags that change nothing under the others, a sentence each.
     pub fn idle(&self, mode: Mode) -> Vec<&'static str> {
-        let is_dark = self.word(mode) == ShadingWord::None;
+        let is_dark = self.word(mode) == ShadingWord::None && !self.is_half_angle();
         let mut notes = Vec::new();
         if is_dark && self.material.is_some() {
             notes.push("--material has no effect without --shading phong");

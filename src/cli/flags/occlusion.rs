@@ -1,8 +1,7 @@
-//! Light that matter takes away: the words of `--ambient-occlusion` and `--shadows`.
+//! Light from all around that matter takes away: the word of `--ambient-occlusion`.
 
 use super::Numbers;
-use crate::technique::{AmbientOcclusion, Shadows};
-use clap::ValueEnum;
+use crate::technique::AmbientOcclusion;
 use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};
 
@@ -64,27 +63,6 @@ impl TryFrom<String> for OcclusionWord {
 impl From<OcclusionWord> for String {
     fn from(word: OcclusionWord) -> Self {
         word.to_string()
-    }
-}
-
-/// Every word of `--shadows`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ShadowsWord {
-    #[default]
-    #[value(help = "light goes through everything")]
-    Off,
-    #[value(help = "light is followed once through a coarse grid, for every technique")]
-    Volume,
-}
-
-impl ShadowsWord {
-    /// What it stands for, of lights that look so wide.
-    pub fn shadows(self, light_size_degrees: f64) -> Shadows {
-        match self {
-            Self::Off => Shadows::Off,
-            Self::Volume => Shadows::Volume { light_size_degrees },
-        }
     }
 }
 

@@ -1,6 +1,8 @@
 //! What a picture shows: a volume and how it is classified, and what it is seen together with.
 
 mod colors;
+mod opacity;
+mod preclassified;
 
 use super::{
     Error,
@@ -19,7 +21,7 @@ use crate::{
     shaders::MAX_CHANNELS,
     technique::{Filter, Mode, PerMode, Role, Settings},
     transfer::{CHANNEL_COLORS, Classified, LabelTable, TransferFunction, Window, of_channel},
-    volume::{Header, Meaning, Source, Volume, labels::labels_of, read_all},
+    volume::{Grid, Header, Meaning, Source, Volume, labels::labels_of, read_all},
 };
 use std::sync::Arc;
 
@@ -44,6 +46,7 @@ pub struct Shown {
 enum Others {
     Channels(Vec<Other>),
     Colors(Vec<Volume>),
+    Classified(Vec<Volume>),
 }
 
 /// A volume that is seen together with the first.
@@ -80,7 +83,23 @@ impl Shown {
     ) -> Result<Self, Error> {
         check(scene, settings)?;
         let (plan, note) = plan(scene, source.header())?;
-        let are_several = !matches!(plan, Plan::One) || scene.labels.labels.is_some();
+        if scene.opacity.are_given() && plan != Plan::One {
+            return Err(Error::usage(
+                format!(
+                    "{} makes one number a voxel opaque, and several are drawn",
+                    scene.opacity.word()
+                ),
+                "say which one is coloured: --component 0",
+            ));
+        }
+        if scene.sampling.preclassified && plan != Plan::One {
+            return Err(Error::usage(
+                "--preclassified is for one number a voxel, and several are drawn",
+                "take one of them: --component 0",
+            ));
+        }
+        let is_alone = plan == Plan::One && !has_beside(scene);
+        let are_several = !is_alone;
         if are_several && !settings.mode.is_projection() && settings.filter.kernel().is_some() {
             let filter = scene.sampling.filter.unwrap_or_default();
             return Err(Error::usage(
@@ -94,7 +113,6 @@ impl Shown {
         if let Some(note) = note {
             progress.note(&note);
         }
-        let is_alone = matches!(plan, Plan::One) && scene.labels.labels.is_none();
         if settings.shading.is_some() && !is_alone {
             return Err(Error::not_shaded_together());
         }
@@ -115,6 +133,27 @@ impl Shown {
             Plan::Channels(words) => reader.channels(source, &words)?,
             Plan::Colors => reader.colors(source)?,
         };
+        if scene.sampling.preclassified {
+            return preclassified::classified(shown, settings.color_space);
+        }
+        if scene.opacity.are_given() {
+            let by = reader.opacity(&shown.volume.grid(), shown.height_factor)?;
+            let Others::Channels(others) = &mut shown.others else {
+                unreachable!("one number a voxel is no colour");
+            };
+            if let Classification::Function(function) = &shown.classification
+                && function.is_graded()
+            {
+                return Err(Error::usage(
+                    format!(
+                        "{} makes a volume opaque by other numbers, and widgets and gradient opacity are for one volume alone",
+                        scene.opacity.word()
+                    ),
+                    "take a function of the value alone",
+                ));
+            }
+            others.push(by);
+        }
         if scene.labels.labels.is_some() {
             let Others::Channels(others) = &mut shown.others else {
                 return Err(Error::usage(
@@ -133,7 +172,8 @@ impl Shown {
             let grid = shown.volume.grid();
             let map = labels::read(scene, &grid, shown.height_factor, progress)?;
             let is_drawn = map.function.opacity.iter().any(|point| point.opacity > 0.0);
-            if is_drawn && says_nothing(&scene.classification)? {
+            let is_plain = says_nothing(&scene.classification)? && !scene.opacity.are_given();
+            if is_drawn && is_plain {
                 fade(&mut shown.classification);
                 progress.note(
                     "the volume is drawn faint, so that labels inside are seen; a --preset or --tf is drawn as it is",
@@ -163,6 +203,7 @@ impl Shown {
                     .collect(),
             ),
             Others::Colors(volumes) => Parts::Colors(volumes.iter().collect()),
+            Others::Classified(volumes) => Parts::Classified(volumes.iter().collect()),
         }
     }
 }
@@ -174,6 +215,8 @@ pub enum Parts<'a> {
     Channels(Vec<Channel<'a>>),
     /// Green, blue, and perhaps alpha.
     Colors(Vec<&'a Volume>),
+    /// Green, blue and depth of classified voxels.
+    Classified(Vec<&'a Volume>),
 }
 
 impl Parts<'_> {
@@ -181,7 +224,9 @@ impl Parts<'_> {
     pub fn only<'a>(&self, classification: &'a Classification) -> &'a Classification {
         match self.beside() {
             Beside::Nothing => classification,
-            Beside::Channels(_) | Beside::Colors(_) => &Classification::RangeOfPicture,
+            Beside::Channels(_) | Beside::Colors(_) | Beside::Classified(_) => {
+                &Classification::RangeOfPicture
+            }
         }
     }
 
@@ -191,6 +236,7 @@ impl Parts<'_> {
             Self::Channels(channels) if channels.is_empty() => Beside::Nothing,
             Self::Channels(channels) => Beside::Channels(channels),
             Self::Colors(volumes) => Beside::Colors(volumes),
+            Self::Classified(volumes) => Beside::Classified(volumes),
         }
     }
 }
@@ -204,7 +250,16 @@ fn plan(scene: &SceneFlags, header: &Header) -> Result<(Plan, Option<String>), E
 /// True where more than one number a voxel is seen.
 pub fn shows_several(scene: &SceneFlags, header: &Header) -> Result<bool, Error> {
     let (plan, _) = plan(scene, header)?;
-    Ok(plan != Plan::One || scene.labels.labels.is_some())
+    Ok(plan != Plan::One || has_beside(scene))
+}
+
+/// True where words name something that is seen together with the volume.
+fn has_beside(scene: &SceneFlags) -> bool {
+    let mode = scene.sampling.mode.unwrap_or_default().mode();
+    scene.labels.labels.is_some()
+        || scene.modes.paint(mode).is_some()
+        || scene.opacity.are_given()
+        || scene.sampling.preclassified
 }
 
 /// What can be said wrong before anything is opened.
@@ -215,6 +270,26 @@ pub fn check(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
         return Err(Error::usage(
             "--labels needs --mode composite: the others have no place for labels",
             "leave out --mode or --labels",
+        ));
+    }
+    scene.opacity.check()?;
+    preclassified::check(scene, settings)?;
+    if scene.opacity.are_given() && mode != Mode::Composite {
+        return Err(Error::usage(
+            format!(
+                "{} needs --mode composite: the others show one number a ray",
+                scene.opacity.word()
+            ),
+            "leave out --mode",
+        ));
+    }
+    if scene.opacity.are_given() && settings.preintegrated {
+        return Err(Error::usage(
+            format!(
+                "{} and --preintegrated: slabs are integrated over one number",
+                scene.opacity.word()
+            ),
+            "leave out one of them",
         ));
     }
     let ClassificationFlags {
@@ -257,8 +332,16 @@ impl Reader<'_> {
             ..
         } = *source.header();
         let (volume, height_factor) = load_from(source, self.scene, self.device, self.progress)?;
-        let flags = &self.scene.classification;
-        let has_table = self.scene.labels.label_tf.is_some() && self.scene.labels.labels.is_none();
+        let flags = &ClassificationFlags {
+            // That of other numbers says nothing of these.
+            opacity_function: match self.scene.opacity.are_given() {
+                true => None,
+                false => self.scene.classification.opacity_function.clone(),
+            },
+            ..self.scene.classification.clone()
+        };
+        let words = &self.scene.labels;
+        let has_table = (words.label_tf.is_some() || words.cut()) && words.labels.is_none();
         let may_name = says_nothing(flags)? && self.mode == Mode::Composite;
         if (has_table || is_labels)
             && may_name
@@ -274,8 +357,20 @@ impl Reader<'_> {
                 others: Others::Channels(Vec::new()),
             });
         }
-        let classification = flags.classification(&volume, self.mode)?;
+        if words.cut() && words.labels.is_none() {
+            return Err(Error::usage(
+                "--label-show, --label-hide and --label-dim are for labels in their own colours, in --mode composite",
+                "leave out --preset, --tf, --window and --mode, or lay a map over INPUT with --labels FILE",
+            ));
+        }
         let modes = &self.scene.modes;
+        let none = ClassificationFlags::default();
+        let (flags, others) = match modes.paint(self.mode) {
+            // The words are of what colours the surfaces.
+            Some(word) => (&none, vec![self.paint(word, &volume.grid())?]),
+            None => (flags, Vec::new()),
+        };
+        let classification = flags.classification(&volume, self.mode)?;
         let (per_mode, note) = modes.per_mode(
             self.mode,
             flags.window()?,
@@ -297,7 +392,50 @@ impl Reader<'_> {
             per_mode,
             filter: found_labels.then_some(Filter::Nearest),
             height_factor,
-            others: Others::Channels(Vec::new()),
+            others: Others::Channels(others),
+        })
+    }
+
+    /// Another variable, or another number of the voxels, on the grid of the surfaces that it colours.
+    fn paint(&self, word: &str, grid: &Grid) -> Result<Other, Error> {
+        let mut scene = self.scene.clone();
+        scene.modes.levels.iso_color_by = None;
+        match word.parse() {
+            Ok(number) => scene.input.component = Some(Component::Number(number)),
+            Err(_) => scene.input.variable = Some(word.to_owned()),
+        }
+        let source = open(&scene.input, &scene.input.limits())?;
+        let (volume, _) = load_from(source, &scene, self.device, self.progress)?;
+        if volume.grid() != *grid {
+            return Err(Error::usage(
+                format!("--iso-color-by {word}: it lies on another grid than the surfaces"),
+                "a variable with the same axes colours them",
+            ));
+        }
+        let function = match scene
+            .classification
+            .classification(&volume, Mode::Composite)?
+        {
+            Classification::Function(function) => function,
+            Classification::RangeOfPicture => {
+                Window::of_range(volume.value_range).grey(Classified::Samples)
+            }
+        };
+        if function.is_graded() {
+            return Err(Error::usage(
+                "--iso-color-by takes the colours of values, and this function is of their gradient too",
+                "take a function of the value alone",
+            ));
+        }
+        let ends = [function.color.first(), function.color.last()];
+        let [low, high] = ends.map(|point| point.map_or(0.0, |point| point.value));
+        self.progress.note(&format!(
+            "surfaces are coloured by {word}, from {low:.6} to {high:.6}; --window, --preset and --tf say otherwise"
+        ));
+        Ok(Other {
+            volume,
+            function,
+            role: Role::Numbers,
         })
     }
 
@@ -308,15 +446,22 @@ impl Reader<'_> {
         Ok(match (table, present) {
             (table, Some(present)) => {
                 let table = table.unwrap_or_else(LabelTable::default);
-                Some(table.function(present.into_keys(), labels::diagonal(volume)))
+                let function = table.function(present.into_keys(), labels::diagonal(volume));
+                let words = &self.scene.labels;
+                Some(LabelTable::cut(
+                    function,
+                    |label| words.shows(label),
+                    |label| words.dims(Some(&table), label),
+                    words.dim()?,
+                ))
             }
-            (Some(_), None) => {
+            (_, None) if self.scene.labels.label_tf.is_some() || self.scene.labels.cut() => {
                 return Err(Error::usage(
-                    "--label-tf names labels, and the values of INPUT are none",
+                    "--label-tf, --label-show, --label-hide and --label-dim are for labels, and the values of INPUT are none",
                     "--labels FILE lays a label map over INPUT",
                 ));
             }
-            (None, None) => None,
+            (_, None) => None,
         })
     }
 

@@ -1,10 +1,9 @@
 //! The light volume of a scene on the CPU: twin of `src/offscreen/light.rs`.
 
-use super::{filtered, filtered_in_slice, moved};
-use crate::real::{Real, dot};
+use super::{filtered, filtered_in_slice, gradient_at, moved, steepness};
+use crate::real::Real;
 use crate::resident::TextureLayout;
 use crate::scene::Scene;
-use crate::technique::gradient::gradient_of;
 use crate::technique::{Error, Filter, LightField};
 use crate::transfer::{
     Absorption, PackedWidgets, Points, classify_by_gradient, classify_by_points,
@@ -12,10 +11,11 @@ use crate::transfer::{
 use crate::volume::{Grid, Volume};
 
 /// What comes through to the nodes of the light grid; `None` where the picture does not ask. `read` is what is
-/// filtered in place of the scene's volume.
+/// filtered in place of the scene's volume, `gradients` what gradients are made of, where that is not its values.
 pub fn light_of<R: Real>(
     scene: &Scene,
     read: Option<&Volume>,
+    gradients: Option<&Volume>,
     grid: &Grid,
 ) -> Result<Option<LightField<R>>, Error> {
     let view = scene.view(grid, [0.0; 2]);
@@ -35,6 +35,8 @@ pub fn light_of<R: Real>(
         Filter::Linear => Filter::Nearest,
         filter => filter,
     };
+    let operator = scene.settings.gradient_operator();
+    let weighted = gradients.map(|source| (source, operator));
     let layout = view.texture_layout();
     let look = |p: [R; 3], step: [i32; 3]| match layout {
         TextureLayout::Texture3d => filtered(volume, filter, moved(p, step)),
@@ -49,10 +51,9 @@ pub fn light_of<R: Real>(
         let value = look(p, [0; 3])?;
         let mut material = classify_by_points(&points, value);
         if let Some(widgets) = &widgets {
-            let gradient = gradient_of(&frame, |step| look(p, step));
-            let magnitude = dot(gradient, gradient).sqrt();
-            let spacing = R::from_f32(frame.smallest_spacing);
-            material = classify_by_gradient(widgets, material, value, magnitude, spacing);
+            let gradient = gradient_at(&frame, weighted, p, |step| look(p, step));
+            let steep = steepness(&frame, widgets, gradient, |step| look(p, step));
+            material = classify_by_gradient(widgets, material, value, steep);
         }
         Some(material[3])
     };
