@@ -346,7 +346,7 @@ impl<'a, R: Real> Walk<'a, R> {
         let mut found = [None; crate::shaders::MAX_CHANNELS as usize];
         for (c, (volume, role)) in self.volumes.iter().zip(&self.roles).enumerate() {
             found[c] = match role {
-                Role::Numbers | Role::Opacity => look(volume, settings.filter),
+                Role::Numbers | Role::Opacity | Role::Material => look(volume, settings.filter),
                 Role::Labels => Some(look(volume, Filter::Nearest)?),
             };
         }
