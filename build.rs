@@ -57,7 +57,8 @@ const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     ("raycast", &[MIDA, ONE, RAY, FILTER, HOLES, TABLE]),
     ("raycast", &[MIDA, ONE, RAY, FETCHED, HOLES, POINTS]),
-    ("isosurface", &[FILTER, HOLES]),
+    ("isosurface", &[("paint", &["alone"]), FILTER, HOLES]),
+    ("isosurface", &[("paint", &["by"]), NARROW, HOLES]),
     ("projection_cells", &[("mode", &["mip", "minip"]), HOLES]),
     (
         "projection",
@@ -158,6 +159,8 @@ const ENTRIES: &[(&str, &[Slot])] = &[
             ("holes", &["none"]),
         ],
     ),
+    ("slices_3d_half", &[ONE, NARROW, HOLES, TABLE]),
+    ("slices_3d_half", &[ONE, NARROW_FETCHED, HOLES, POINTS]),
     (
         "resolve",
         &[("source", &["picture", "value", "mean", "cued"])],
@@ -168,6 +171,17 @@ const ENTRIES: &[(&str, &[Slot])] = &[
         "denoise",
         &[("kernel", &["gaussian", "median", "bilateral"])],
     ),
+    // Once for many pictures: classified by the points in all of them.
+    (
+        "light_cells",
+        &[
+            ("layout", &["box", "stack"]),
+            ("filter", &["nearest", "kernel"]),
+            HOLES,
+            POINTS,
+        ],
+    ),
+    ("light_volume", &[]),
 ];
 
 fn main() {

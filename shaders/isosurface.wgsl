@@ -4,17 +4,19 @@
 // opacity leaves. Twin: src/technique/isosurface.rs.
 
 #import ray
+#import brick
 #import filter_{filter}
 #import nearest
 #import mask
 #import holes_{holes}
+#import paint_{paint}
 #import gradient
 #import shade
 
 // Premultiplied colour and alpha.
-@group(0) @binding(6) var picture: texture_storage_2d<rgba32float, write>;
+@group(0) @binding(6) var picture: texture_storage_2d<rgba32float, read_write>;
 // Level of the first crossing, its depth (negative: none), transmittance, samples.
-@group(0) @binding(7) var layers: texture_storage_2d<rgba32float, write>;
+@group(0) @binding(7) var layers: texture_storage_2d<rgba32float, read_write>;
 
 // Halvings of a segment: 2^-10 of a step.
 const HALVINGS: u32 = 10u;
@@ -44,36 +46,61 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if any(id.xy >= frame.extent_pixels) {
         return;
     }
-    let found = surfaces(vec2<f32>(id.xy) + 0.5);
+    let found = surfaces(vec2<f32>(id.xy) + 0.5, met_before(id.xy));
     textureStore(picture, id.xy, vec4(found.color, 1.0 - found.transmittance));
     textureStore(layers, id.xy, vec4(found.level, found.depth, found.transmittance, found.samples));
 }
 
-fn surfaces(pixel: vec2<f32>) -> Surfaces {
+// What nearer bricks have left in the images.
+fn met_before(pixel: vec2<u32>) -> Surfaces {
+    if frame.is_first_brick != 0u {
+        return Surfaces(vec3(0.0), 1.0, 0.0, -1.0, 0.0);
+    }
+    let beside = textureLoad(layers, pixel);
+    return Surfaces(textureLoad(picture, pixel).xyz, beside.z, beside.x, beside.y, beside.w);
+}
+
+// A segment belongs to the brick that its far end lies in; its near end lies in the voxels around.
+fn surfaces(pixel: vec2<f32>, before: Surfaces) -> Surfaces {
     let world = pixel_ray(pixel);
     let voxel = voxel_ray(world);
     let interval = domain_interval(world, voxel);
-    var so_far = Surfaces(vec3(0.0), 1.0, 0.0, -1.0, 0.0);
-    if !(interval.x < interval.y) {
+    var so_far = before;
+    let inside = brick_interval(voxel, interval);
+    if !(interval.x < interval.y && inside.x < inside.y) || is_finished(before) {
         return so_far;
     }
     let full = i32(floor((interval.y - interval.x) / frame.step_world));
-    var near = end_at(voxel, interval.x);
-    so_far.samples = 1.0;
-    for (var k = 1; k <= full + 1; k++) {
-        let far = end_at(voxel, min(interval.x + f32(k) * frame.step_world, interval.y));
-        so_far.samples += 1.0;
-        // Between a value and no data there is no surface.
-        if near.has_data && far.has_data {
-            so_far = crossed(so_far, world, voxel, near, far);
-            // Nothing is seen behind what is opaque.
-            if so_far.transmittance < frame.termination || so_far.transmittance == 0.0 {
-                break;
+    let first = max(0, i32(floor((inside.x - interval.x) / frame.step_world)) - 1);
+    let last = min(full + 1, i32(ceil((inside.y - interval.x) / frame.step_world)) + 1);
+    var near = End(0.0, 0.0, false);
+    for (var k = first; k <= last; k++) {
+        let t = min(interval.x + f32(k) * frame.step_world, interval.y);
+        let next = min(interval.x + f32(k + 1) * frame.step_world, interval.y);
+        let is_own = is_in_brick(voxel.origin + t * voxel.direction);
+        // The segment behind may be the brick's own.
+        if !is_own && !is_in_brick(voxel.origin + next * voxel.direction) {
+            continue;
+        }
+        let far = end_at(voxel, t);
+        if is_own {
+            so_far.samples += 1.0;
+            // Between a value and no data there is no surface. Before the first end there is none.
+            if near.has_data && far.has_data {
+                so_far = crossed(so_far, world, voxel, near, far);
+                if is_finished(so_far) {
+                    break;
+                }
             }
         }
         near = far;
     }
     return so_far;
+}
+
+// Nothing is seen behind what is opaque.
+fn is_finished(so_far: Surfaces) -> bool {
+    return so_far.transmittance < frame.termination || so_far.transmittance == 0.0;
 }
 
 fn end_at(voxel: Ray, t: f32) -> End {
@@ -132,14 +159,17 @@ fn crossing(bracket: Bracket, level: f32) -> f32 {
 }
 
 fn passed(before: Surfaces, world: Ray, voxel: Ray, index: u32, t: f32) -> Surfaces {
-    let level = frame.level_colors[index];
-    var color = level.xyz;
+    let opacity = frame.level_colors[index].w;
+    let place = voxel.origin + t * voxel.direction;
+    var color = painted(index, place);
     if frame.light_count != 0u {
-        color = shade(color, gradient_at(voxel.origin + t * voxel.direction), world.direction);
+        color = shade(color, gradient_at(place), world.direction, place);
+    } else {
+        color *= ambient_at(place);
     }
     var next = before;
-    next.color += before.transmittance * level.w * color;
-    next.transmittance *= 1.0 - level.w;
+    next.color += before.transmittance * opacity * color;
+    next.transmittance *= 1.0 - opacity;
     if before.depth < 0.0 {
         next.depth = t;
         next.level = frame.level_values[index].x;

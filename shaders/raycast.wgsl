@@ -14,7 +14,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let found = march(vec2<f32>(id.xy) + 0.5, gathered_before(id.xy));
-    textureStore(picture, id.xy, vec4(found.color, 1.0 - found.transmittance));
+    textureStore(picture, id.xy, picture_of(found));
     textureStore(layers, id.xy, beside_of(found));
 }
 

@@ -25,7 +25,8 @@ pub enum Beside<'a> {
     #[default]
     Nothing,
     /// Other things in the same place, each with a transfer function of its own: in composite a physical mixture,
-    /// in modes that project the sum of the pictures of each.
+    /// in modes that project the sum of the pictures of each, and one alone, of numbers, in iso: what colours the
+    /// surfaces, by the colours of its function.
     Channels(&'a [Channel<'a>]),
     /// Green, blue, and perhaps alpha; the scene's volume is red. All hold sRGB numbers from 0 to 1, the first
     /// three multiplied with alpha where there is one ([`crate::volume::read_colors`] makes them so). The transfer
@@ -83,6 +84,11 @@ impl<'a> Scene<'a> {
         functions.into_iter().any(TransferFunction::is_graded)
     }
 
+    /// True where gradients make something of the picture.
+    pub fn has_gradients(&self) -> bool {
+        self.settings.shading.is_some() || self.is_graded()
+    }
+
     /// Its volumes, that of the scene first.
     pub fn volumes(&self) -> Vec<&'a Volume> {
         let beside = self.beside.volumes();
@@ -126,7 +132,8 @@ impl<'a> Scene<'a> {
     /// # Errors
     /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`], [`Error::NotMixed`],
     /// [`Error::NotShaded`], [`Error::NotShadedTogether`], [`Error::NotGraded`], [`Error::NotGradedTogether`],
-    /// [`Error::FilterAlone`], [`Error::OpacityOfNothing`], and those of [`Settings::check`].
+    /// [`Error::NotOccluded`], [`Error::NotOccludedTogether`], [`Error::FilterAlone`], [`Error::OpacityOfNothing`],
+    /// and those of [`Settings::check`].
     pub fn check(&self) -> Result<(), Error> {
         let volumes = self.volumes();
         let (wanted, limit) = (volumes.len(), MAX_CHANNELS as usize);
@@ -145,13 +152,22 @@ impl<'a> Scene<'a> {
         if self.settings.shading.is_some() && mode.is_projection() {
             return Err(Error::NotShaded { mode });
         }
+        if self.settings.ambient_occlusion.is_some() && mode.is_projection() {
+            return Err(Error::NotOccluded { mode });
+        }
         if self.is_graded() && mode.is_projection() {
+            return Err(Error::NotGraded { mode });
+        }
+        // The picture of the maximum has no gradient.
+        if self.is_graded() && mode == Mode::Mida && self.settings.per_mode.mida_gamma > 0.0 {
             return Err(Error::NotGraded { mode });
         }
         match self.mix() {
             Mix::Alone | Mix::Graded => Ok(()),
             _ if self.is_graded() => Err(Error::NotGradedTogether),
+            Mix::Channels if mode == Mode::Iso => self.check_painted(),
             _ if self.settings.shading.is_some() => Err(Error::NotShadedTogether),
+            _ if self.settings.ambient_occlusion.is_some() => Err(Error::NotOccludedTogether),
             // Modes that project draw them one by one.
             _ if filter.kernel().is_some() && !mode.is_projection() => {
                 Err(Error::FilterAlone { filter })
@@ -162,15 +178,37 @@ impl<'a> Scene<'a> {
             }
             Mix::Colors if !(3..=4).contains(&wanted) => Err(Error::NoColor { found: wanted }),
             Mix::Colors if mode != Mode::Composite => Err(Error::NotMixed { mode }),
-            Mix::Channels if matches!(mode, Mode::Mida | Mode::Iso) => {
-                Err(Error::NotMixed { mode })
-            }
+            Mix::Channels if mode == Mode::Mida => Err(Error::NotMixed { mode }),
             Mix::Channels if mode.is_projection() && roles.iter().any(only_composite) => {
                 Err(Error::NotMixed { mode })
             }
             Mix::Channels if !opacities_have_colors(&roles) => Err(Error::OpacityOfNothing),
             _ if wanted > limit => Err(Error::TooManyChannels { wanted, limit }),
             _ => Ok(()),
+        }
+    }
+
+    /// Surfaces of the first volume are coloured by one other, of numbers.
+    fn check_painted(&self) -> Result<(), Error> {
+        let Settings { mode, filter, .. } = *self.settings;
+        match self.beside {
+            Beside::Channels([one]) if one.role == Role::Numbers => {
+                if filter.kernel().is_some() {
+                    return Err(Error::FilterAlone { filter });
+                }
+                if self.settings.wants_light_volume() {
+                    return Err(Error::NotOccludedTogether);
+                }
+                if one.volume.grid() != self.volume.grid() {
+                    return Err(Error::OtherGrid);
+                }
+                match one.transfer {
+                    None => Err(Error::NoTransferFunction),
+                    Some(function) if function.is_graded() => Err(Error::NotGradedTogether),
+                    Some(_) => Ok(()),
+                }
+            }
+            _ => Err(Error::NotMixed { mode }),
         }
     }
 

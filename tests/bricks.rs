@@ -10,7 +10,10 @@ use stratavox::gpu::Caps;
 use stratavox::offscreen::Renderer;
 use stratavox::picture::LayerKind;
 use stratavox::scene::Scene;
-use stratavox::technique::{Filter, Lattice, Mode, Order, Settings, Shading, Technique};
+use stratavox::technique::{
+    ClipPlane, CutFaces, Filter, GradientFilter, Lattice, Level, Mode, Order, Settings, Shading,
+    Technique,
+};
 use stratavox::volume::Volume;
 
 /// Caps under which a volume of 17 x 21 x 14 voxels takes bricks along every axis.
@@ -73,20 +76,26 @@ fn settings() -> Vec<Settings> {
     techniques.into_iter().flat_map(of_technique).collect()
 }
 
-/// Gradients reach one voxel further than their filter.
+/// Gradients reach one voxel further than their filter, or as far as operators of their own.
 fn lit_settings() -> Vec<Settings> {
-    let lit = |(technique, filter)| Settings {
+    use GradientFilter::{Analytic, Central, Cubic, Sobel};
+    let lit = |(technique, filter, gradient_filter)| Settings {
         technique,
         filter,
+        gradient_filter,
         shading: Some(Shading::default()),
         conformance: true,
         ..Settings::default()
     };
     let turns = [
-        (Technique::Raycast, Filter::Cubic),
-        (Technique::Slices3d, Filter::Linear),
-        (Technique::Slices2d, Filter::Cubic),
-        (Technique::Slices2d, Filter::Nearest),
+        (Technique::Raycast, Filter::Cubic, Central),
+        (Technique::Slices3d, Filter::Linear, Central),
+        (Technique::Slices2d, Filter::Cubic, Central),
+        (Technique::Slices2d, Filter::Nearest, Central),
+        (Technique::Raycast, Filter::Linear, Cubic),
+        (Technique::Slices3d, Filter::CatmullRom, Analytic),
+        (Technique::Slices2d, Filter::Cubic, Cubic),
+        (Technique::Slices2d, Filter::Nearest, Sobel),
     ];
     turns.map(lit).into()
 }
@@ -172,4 +181,102 @@ fn bricks_leave_light_as_it_falls() {
     let volume = with_holes();
     let camera = oblique_camera(&volume.grid(), projections(&volume.grid())[0]);
     assert_same_picture(&volume, &camera, lit_settings());
+}
+
+fn by_rays(mode: Mode, filter: Filter) -> Settings {
+    let mut settings = Settings {
+        mode,
+        filter,
+        conformance: true,
+        ..Settings::default()
+    };
+    let level = |value, opacity| Level {
+        value,
+        srgb: [0.9, 0.4, 0.2],
+        opacity,
+    };
+    settings.per_mode.levels = vec![level(0.4, 0.5), level(0.55, 0.5), level(0.7, 1.0)];
+    settings.per_mode.lmip_threshold = 0.6;
+    settings.per_mode.unit_values = [0.1, 0.9];
+    settings.per_mode.mida_gamma = -0.25;
+    settings
+}
+
+/// A row for each way that brings something of its own along a ray.
+fn ways(center: glam::DVec3) -> Vec<Settings> {
+    let normal = glam::dvec3(-1.0, 0.5, 0.2);
+    let mut ways: Vec<_> = [
+        (Mode::Lmip, Filter::Linear),
+        (Mode::AttenuatedMip, Filter::Nearest),
+        (Mode::Mida, Filter::Linear),
+    ]
+    .map(|(mode, filter)| by_rays(mode, filter))
+    .into();
+    ways.extend(
+        [Technique::Raycast, Technique::Slices3d, Technique::Slices2d].map(|technique| Settings {
+            technique,
+            preintegrated: true,
+            samples_per_voxel: 2.0,
+            ..by_rays(Mode::Composite, Filter::Linear)
+        }),
+    );
+    let mut exact = by_rays(Mode::Mip, Filter::Linear);
+    exact.per_mode.exact_maximum = true;
+    ways.push(exact);
+    let mut mixed = by_rays(Mode::Mida, Filter::Linear);
+    mixed.per_mode.mida_gamma = 0.5;
+    ways.push(mixed);
+    let cut = |settings: Settings| Settings {
+        crop: Some([glam::dvec3(0.0, 4.3, 0.0), glam::dvec3(12.2, 21.0, 9.7)]),
+        cut_faces: Some(CutFaces::Own),
+        ..settings
+    };
+    ways.push(cut(by_rays(Mode::Composite, Filter::Linear)));
+    ways.push(cut(Settings {
+        preintegrated: true,
+        samples_per_voxel: 2.0,
+        clip_planes: vec![ClipPlane {
+            normal,
+            offset: normal.dot(center) - 2.0,
+        }],
+        ..by_rays(Mode::Composite, Filter::Linear)
+    }));
+    ways
+}
+
+/// Surfaces are refined between two ends, of which one may lie in the brick before.
+fn surfaces() -> Vec<Settings> {
+    let lit = |filter, samples_per_voxel| Settings {
+        shading: Some(Shading::default()),
+        samples_per_voxel,
+        ..by_rays(Mode::Iso, filter)
+    };
+    vec![
+        lit(Filter::Linear, 1.0),
+        lit(Filter::Nearest, 1.0),
+        lit(Filter::QuadraticSmooth, 1.5),
+        lit(Filter::Cubic, 3.0),
+        Settings {
+            crop: Some([glam::dvec3(1.5, 4.3, 0.0), glam::dvec3(12.2, 21.0, 9.7)]),
+            ..by_rays(Mode::Iso, Filter::Linear)
+        },
+    ]
+}
+
+#[test]
+fn bricks_leave_every_way_along_a_ray_as_it_is() {
+    let volume = with_holes();
+    let camera = oblique_camera(&volume.grid(), projections(&volume.grid())[1]);
+    assert_same_picture(&volume, &camera, ways(volume.grid().center()));
+}
+
+#[test]
+fn bricks_leave_no_seam_in_surfaces() {
+    let whole = volume_of([17, 21, 14], sheared_affine(), waves);
+    for volume in [whole, with_holes()] {
+        for projection in projections(&volume.grid()) {
+            let camera = oblique_camera(&volume.grid(), projection);
+            assert_same_picture(&volume, &camera, surfaces());
+        }
+    }
 }

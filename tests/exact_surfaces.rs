@@ -9,8 +9,10 @@ use shared::{
 use stratavox::gpu::Caps;
 use stratavox::offscreen::{Renderer, reference};
 use stratavox::picture::{ColorSpace, LayerKind, Picture};
+use stratavox::scene::{Beside, Channel, Scene};
 use stratavox::technique::isosurface::{Surfaces, surfaces};
-use stratavox::technique::{Filter, Lattice, Level, Mode, Settings, Shading, Technique};
+use stratavox::technique::{Filter, Lattice, Level, Mode, Role, Shading, Technique};
+use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
 use stratavox::volume::{Grid, Volume};
 
 const GRID: fn() -> Grid = || Grid {
@@ -372,9 +374,198 @@ fn surfaces_that_cannot_be_are_refused_by_name() {
     };
     let mut renderer = Renderer::new(shared::device_with(small), &volume).unwrap();
     let shot = shots(GRID(), &opaque(&[0.5])).remove(0);
-    let error = renderer
+    renderer
         .render(&shot.scene(&volume, None), &[])
+        .expect("segments of one voxel lie in a brick and what is around it");
+    let long = shot.with(|s| s.samples_per_voxel = 0.5);
+    let error = renderer
+        .render(&long.scene(&volume, None), &[])
         .expect_err("refused");
-    assert!(error.to_string().contains("bricks"), "{error}");
-    let _: Settings = shot.settings;
+    let said = error.to_string();
+    let is_named = said.contains("bricks") && said.contains("segments between samples");
+    assert!(is_named && said.contains("more samples"), "{said}");
+}
+
+/// The ball that is painted by x, and a function of that in sRGB numbers.
+fn painted_ball() -> (Volume, Volume, TransferFunction) {
+    let center = CUBE.far_corner() / 2.0;
+    let ball = volume_of(CUBE.dims, CUBE.world_from_voxel, |p| {
+        p.distance(center) - 20.0
+    });
+    let other = volume_of(CUBE.dims, CUBE.world_from_voxel, |p| p.x);
+    let color = [(0.0, [0.0, 1.0, 0.25]), (65.0, [1.0, 0.0, 0.25])];
+    let function = TransferFunction {
+        color: color.map(|(value, srgb)| ColorPoint { value, srgb }).into(),
+        // Opacity does not count: that of the surface does.
+        opacity: vec![OpacityPoint {
+            value: 0.0,
+            opacity: 0.0,
+        }],
+        reference_length: None,
+        interpolation: Interpolation::Linear,
+        graded: None,
+    };
+    (ball, other, function)
+}
+
+#[test]
+fn a_ball_is_coloured_by_another_variable_where_it_is_hit() {
+    let (ball, other, function) = painted_ball();
+    let center = CUBE.far_corner() / 2.0;
+    let beside = [Channel {
+        volume: &other,
+        transfer: Some(&function),
+        role: Role::Numbers,
+    }];
+    let mut renderer = Renderer::several(device(), vec![&ball, &other]).unwrap();
+    for shot in shots(CUBE, &[level(0.0, [1.0, 0.0, 1.0], 0.5)]) {
+        let shot = shot.with(|s| s.color_space = ColorSpace::Display);
+        let scene = Scene {
+            beside: Beside::Channels(&beside),
+            ..shot.scene(&ball, None)
+        };
+        let one_hit = shot.with(|s| s.per_mode.levels[0].opacity = 1.0);
+        let one_hit = Scene {
+            settings: &one_hit.settings,
+            ..scene
+        };
+        let picture = renderer.render(&one_hit, &[LayerKind::Position]).unwrap();
+        let positions = layer(&picture.picture, LayerKind::Position);
+        let rays = shot.camera.rays(shot.extent);
+        let mut worst = [Worst::new("of the hit"), Worst::new("of the formula")];
+        let mut seen = 0;
+        for (i, [x, y]) in shot.pixels().enumerate() {
+            let at = f64::from(positions[3 * i]);
+            let pixel = picture.picture.pixels[i].map(f64::from);
+            if at.is_nan() {
+                assert_eq!(pixel, [0.0; 4]);
+                continue;
+            }
+            seen += 1;
+            // The position is one of f32, and so is what the device reads there.
+            let wanted = [at / 65.0, 1.0 - at / 65.0, 0.25, 1.0];
+            for c in 0..4 {
+                worst[0].take([x, y], pixel[c] - wanted[c], 1e-5);
+            }
+            let (origin, direction) = rays.at(f64::from(x) + 0.5, f64::from(y) + 0.5);
+            let (to_center, radius) = (center - origin, 20.0_f64);
+            let middle = to_center.dot(direction);
+            let aside = (to_center - middle * direction).length();
+            // Where the ray meets the ball at 30 degrees or more, what interpolation bends (3 / (8 R)) moves the hit
+            // by no more than twice as much.
+            if aside > radius * (0.75_f64).sqrt() {
+                continue;
+            }
+            let t = middle - (radius * radius - aside * aside).sqrt();
+            let analytic = (origin + t * direction).x / 65.0;
+            let bend = 2.0 * 3.0 / (8.0 * radius) / 65.0;
+            worst[1].take([x, y], pixel[0] - analytic, bend + 1e-5);
+        }
+        worst.iter().for_each(Worst::assert_holds);
+        assert!(seen > 100, "{seen} pixels");
+        // Two surfaces through each other, light on them: as the twin has it.
+        let lit = shot.with(|s| s.shading = Some(Shading::default()));
+        let lit = Scene {
+            settings: &lit.settings,
+            ..scene
+        };
+        let found = renderer.render(&lit, &[]).unwrap().picture;
+        let all = [
+            &reference::render::<f64>(&lit).unwrap(),
+            &reference::render::<f32>(&lit).unwrap(),
+            &found,
+        ];
+        let lists = all.map(|p| p.pixels.as_flattened());
+        compare(&shot.what(), 4 * found.width, lists, 1.0);
+    }
+}
+
+#[test]
+fn where_the_other_variable_has_no_data_a_surface_keeps_its_own_colour() {
+    let (mut ball, mut other, function) = painted_ball();
+    let half: Vec<u8> = (0..65 * 65 * 65).map(|i| u8::from(i % 65 < 32)).collect();
+    for holes_in_the_other in [true, false] {
+        let with_holes = if holes_in_the_other {
+            &mut other
+        } else {
+            &mut ball
+        };
+        with_holes.validity = Some(half.clone());
+        let beside = [Channel {
+            volume: &other,
+            transfer: Some(&function),
+            role: Role::Numbers,
+        }];
+        let mut renderer = Renderer::several(device(), vec![&ball, &other]).unwrap();
+        let shot = shots(CUBE, &[level(0.0, [1.0, 0.0, 1.0], 1.0)]).remove(0);
+        let shot = shot.with(|s| {
+            s.color_space = ColorSpace::Display;
+            s.filter = Filter::Nearest;
+            s.shading = Some(Shading::default());
+        });
+        let scene = Scene {
+            beside: Beside::Channels(&beside),
+            ..shot.scene(&ball, None)
+        };
+        let found = renderer.render(&scene, &[]).unwrap().picture;
+        let twins = [
+            &reference::render::<f64>(&scene).unwrap(),
+            &reference::render::<f32>(&scene).unwrap(),
+        ];
+        let lists = [twins[0], twins[1], &found].map(|p| p.pixels.as_flattened());
+        compare("holes", 4 * found.width, lists, 1.0);
+        let plain = shot.with(|s| s.shading = None);
+        let plain = Scene {
+            settings: &plain.settings,
+            ..scene
+        };
+        let found = renderer.render(&plain, &[]).unwrap().picture;
+        let own = found
+            .pixels
+            .iter()
+            .filter(|p| **p == [1.0, 0.0, 1.0, 1.0])
+            .count();
+        let painted = found.pixels.iter().filter(|p| p[1] > 0.1).count();
+        assert!(
+            painted > 20,
+            "{painted} pixels have the colour of the other"
+        );
+        assert_eq!(own > 20, holes_in_the_other, "{own} pixels have their own");
+        ball.validity = None;
+        other.validity = None;
+    }
+}
+
+#[test]
+fn what_cannot_colour_a_surface_is_refused_by_name() {
+    let (ball, other, function) = painted_ball();
+    let of = |role, transfer| Channel {
+        volume: &other,
+        transfer,
+        role,
+    };
+    let numbers = of(Role::Numbers, Some(&function));
+    let shot = shots(CUBE, &opaque(&[0.0])).remove(0);
+    let wide = shot.with(|s| s.filter = Filter::Cubic);
+    for (shot, channels, wanted) in [
+        (&shot, vec![numbers; 2], "Iso projects one number"),
+        (
+            &shot,
+            vec![of(Role::Labels, Some(&function))],
+            "Iso projects one number",
+        ),
+        (
+            &shot,
+            vec![of(Role::Numbers, None)],
+            "needs a transfer function",
+        ),
+        (&wide, vec![numbers], "Cubic reads one volume"),
+    ] {
+        let scene = Scene {
+            beside: Beside::Channels(&channels),
+            ..shot.scene(&ball, None)
+        };
+        let said = reference::render::<f32>(&scene).unwrap_err().to_string();
+        assert!(said.contains(wanted), "{said}");
+    }
 }

@@ -249,6 +249,49 @@ fn two_samples_of_mida_are_what_the_formula_says() {
     assert!((found.largest - 0.8).abs() < 1e-6);
 }
 
+#[test]
+fn mida_of_gamma_one_is_the_mip_and_half_the_way_is_the_mean_of_both() {
+    let volume = volume_of(GRID().dims, sheared_affine(), waves);
+    let transfer = ramps();
+    let mut renderer = Renderer::new(device(), &volume).unwrap();
+    for (mida, mip) in shots(GRID(), Mode::Mida)
+        .iter()
+        .zip(shots(GRID(), Mode::Mip))
+    {
+        for (conformance, allowed) in [(true, 2e-6), (false, 1.0 / 4096.0 + 1e-5)] {
+            let of = |gamma: f64| {
+                mida.with(|s| {
+                    s.per_mode.mida_gamma = gamma;
+                    s.conformance = conformance;
+                })
+            };
+            let mip = mip.with(|s| s.conformance = conformance);
+            let mut picture = |shot: &Shot| {
+                let scene = shot.scene(&volume, Some(&transfer));
+                let found = renderer.render(&scene, &[]).unwrap().picture;
+                let twin = reference::render::<f32>(&scene).unwrap();
+                [found.pixels, twin.pixels]
+            };
+            let [start, half, end] = [0.0, 0.5, 1.0].map(|gamma| picture(&of(gamma)));
+            let wanted = picture(&mip);
+            let (mut worst, mut apart, mut drawn) = (0.0_f32, 0.0_f32, 0);
+            for way in 0..2 {
+                for i in 0..wanted[way].len() {
+                    let [a, b, c, d] = [&start, &half, &end, &wanted].map(|p| p[way][i]);
+                    drawn += usize::from(d[3] > 0.1);
+                    for k in 0..4 {
+                        worst = worst.max((c[k] - d[k]).abs());
+                        worst = worst.max((b[k] - 0.5 * (a[k] + c[k])).abs());
+                        apart = apart.max((a[k] - d[k]).abs());
+                    }
+                }
+            }
+            assert!(worst <= allowed, "{}: off by {worst}", mida.what());
+            assert!(apart > 0.05 && drawn > 200, "{apart}, {drawn} pixels");
+        }
+    }
+}
+
 /// An early end must not hide a maximum that would have cleared what hides it.
 #[test]
 fn a_maximum_behind_opaque_matter_is_seen_in_mida_though_rays_end_early() {
@@ -465,7 +508,7 @@ fn what_these_modes_lack_is_refused_by_name() {
     assert!(refused(&sliced).contains("no one depth"));
     for (change, wanted) in [
         (
-            (|s: &mut Settings| s.per_mode.mida_gamma = 0.5) as fn(&mut Settings),
+            (|s: &mut Settings| s.per_mode.mida_gamma = 1.5) as fn(&mut Settings),
             "gamma of MIDA is 0.5",
         ),
         (|s| s.per_mode.mida_gamma = f64::NAN, "gamma of MIDA is NaN"),

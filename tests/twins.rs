@@ -35,6 +35,8 @@ fn layers_of(shot: &Shot) -> Vec<LayerKind> {
         LayerKind::Depth => shot.settings.technique == Technique::Raycast,
         LayerKind::Transmittance => !mode.is_projection(),
         LayerKind::Position => shot.settings.technique == Technique::Raycast && mode.has_depth(),
+        // Waves are no labels.
+        LayerKind::Label => false,
         LayerKind::Samples => true,
     })
     .collect()

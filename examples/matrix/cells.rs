@@ -4,13 +4,13 @@ use glam::{DAffine3, DMat3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
 use stratavox::scene::{Beside, Channel, Scene};
 use stratavox::technique::{
-    ClipPlane, Filter, Lattice, Level, Light, Mode, Order, PerMode, Role, Settings, Shading,
-    Technique,
+    AmbientOcclusion, ClipPlane, CutFaces, Filter, Lattice, Level, Light, Mode, Order, PerMode,
+    Role, Settings, Shading, Shadows, Technique,
 };
 use stratavox::transfer::{
     ColorPoint, Graded, Interpolation, OpacityPoint, Shape, TransferFunction, Widget,
 };
-use stratavox::volume::{Rescale, Volume, Voxels};
+use stratavox::volume::{Rescale, Volume, Voxels, labels::dim};
 
 /// Where samples lie.
 pub const TECHNIQUES: [(Technique, &str); 3] = [
@@ -99,6 +99,10 @@ pub const FEATURES: &[Feature] = &[
             s.clip_planes = vec![ClipPlane { normal, offset }];
         },
     ),
+    feature("cut faces", "`--cut-faces`", Seen::Alone, |s| {
+        s.crop = Some([dvec3(0.0, 1.6, 0.0), dvec3(9.2, 12.0, 7.3)]);
+        s.cut_faces = Some(CutFaces::Own);
+    }),
     feature(
         "front to back",
         "`--order front-to-back`",
@@ -137,6 +141,35 @@ pub const FEATURES: &[Feature] = &[
         s.shading = Some(lights());
     }),
     feature(
+        "ambient occlusion",
+        "`--ambient-occlusion`",
+        Seen::Alone,
+        |s| {
+            s.ambient_occlusion = Some(AmbientOcclusion {
+                strength: 0.9,
+                radius_world: None,
+            });
+        },
+    ),
+    feature("shadows", "`--shadows volume`", Seen::Alone, |s| {
+        let light_size_degrees = 6.0;
+        s.shading = Some(Shading {
+            shadows: Shadows::Volume { light_size_degrees },
+            ..lights()
+        });
+    }),
+    feature(
+        "light and the shadows of half-angle slices",
+        "`--shading phong --shadows half-angle`",
+        Seen::Alone,
+        |s| {
+            let mut lit = lights();
+            lit.lights.truncate(1);
+            lit.shadows = Shadows::HalfAngle;
+            s.shading = Some(lit);
+        },
+    ),
+    feature(
         "value and gradient",
         "`widgets`, `gradient_opacity`, `--preset boundaries`",
         Seen::Graded,
@@ -152,7 +185,12 @@ pub const FEATURES: &[Feature] = &[
         },
     ),
     feature("several channels", "`--channel`", Seen::Channels, |_| {}),
-    feature("labels over it", "`--labels`", Seen::Labelled, |_| {}),
+    feature(
+        "labels over it, one of them dimmed",
+        "`--labels`, `--label-dim`",
+        Seen::Labelled,
+        |_| {},
+    ),
     feature("colours", "a file of colours", Seen::Colored, |_| {}),
 ];
 
@@ -167,6 +205,7 @@ fn lights() -> Shading {
             light(dvec3(1.0, -2.0, 0.7), [1.0, 0.9, 0.8]),
             light(dvec3(-0.3, 0.2, 3.0), [0.2, 0.3, 0.6]),
         ],
+        ..Shading::default()
     }
 }
 
@@ -236,12 +275,14 @@ impl Matter {
         let mut holed = volume(wave(0.8, 0.7));
         holed.validity = Some((0..count).map(|i| u8::from(i % 97 != 7)).collect());
         let labels = |p: DVec3| ((p.x / 4.0).floor() + (p.y / 5.0).floor()) % 4.0;
+        let mut map = volume(labels);
+        dim(&mut map, |label| label == 2);
         let span = DVec3::from_array(DIMS.map(f64::from)).length();
         Self {
             numbers,
             holed,
             others: [volume(wave(0.5, 1.1)), volume(wave(1.2, 0.4))],
-            labels: volume(labels),
+            labels: map,
             function: function(),
             graded: TransferFunction {
                 graded: Some(Graded {

@@ -2,6 +2,9 @@
 
 #import holes_mask
 
+// In the mask of a label map: there, and dimmed.
+const DIMMED: u32 = 2u;
+
 @group(0) @binding(11) var validity_1: Mask;
 @group(0) @binding(12) var validity_2: Mask;
 @group(0) @binding(13) var validity_3: Mask;
@@ -16,5 +19,19 @@ fn channel_has_data(channel: u32, place: Place) -> bool {
         case 1u: { return all_valid(validity_1, footprint); }
         case 2u: { return all_valid(validity_2, footprint); }
         default: { return all_valid(validity_3, footprint); }
+    }
+}
+
+// Labels lie in a channel after the first.
+fn channel_is_dimmed(channel: u32, place: Place) -> bool {
+    if frame.channel_has_holes[channel] == 0u {
+        return false;
+    }
+    let footprint = nearest_footprint(place);
+    switch channel {
+        case 0u: { return false; }
+        case 1u: { return mark_of(validity_1, footprint) == DIMMED; }
+        case 2u: { return mark_of(validity_2, footprint) == DIMMED; }
+        default: { return mark_of(validity_3, footprint) == DIMMED; }
     }
 }

@@ -25,7 +25,7 @@ struct Frame {
     slope: f32,
     direction_dy: vec3<f32>,
     intercept: f32,
-    // The camera's forward direction: normal of the planes.
+    // The camera's forward direction, or half way between it and the light's: normal of the planes.
     forward: vec3<f32>,
     codes_are_integers: u32,
     // The same as a covector of voxel space: which way each grid axis runs away from the eye.
@@ -108,6 +108,8 @@ struct Frame {
     lmip_threshold: f32,
     // How much of a new maximum's height is taken from what lies before it: 1 + gamma.
     mida_fade: f32,
+    // The share of the maximum's picture: gamma over 0.
+    mida_mip: f32,
     // Per world length of matter of value 1.
     attenuation: f32,
     // How dark it is at depth 1 of (depth - depth_near) * depth_scale.
@@ -133,6 +135,30 @@ struct Frame {
     kernel: u32,
     // World length of the shortest side of a voxel.
     smallest_spacing: f32,
+    // How gradients are made, and code from the texels that they are made of: see gradient_taps.wgsl.
+    gradient_operator: u32,
+    gradient_scale: f32,
+    gradient_codes_are_integers: u32,
+    // What is left of extinction and colour where a label is dimmed.
+    dim: f32,
+    // Cut faces: 0 none, 1 in the picture's own colours, 2 in greys, by (value - cut_low) * cut_scale.
+    cut_faces: u32,
+    cut_low: f32,
+    cut_scale: f32,
+    // Nothing lies behind this recording.
+    is_last_brick: u32,
+    // The light volume: cells of its grid along each axis, and how many of them a voxel is long.
+    light_cells: vec3<f32>,
+    // How much darker ambient light is where nothing comes in, 0 to 1; 0 without occlusion.
+    occlusion_strength: f32,
+    light_cells_per_voxel: vec3<f32>,
+    // World length by which a sample asks for shadow nearer to the light.
+    shadow_reach: f32,
+    has_shadows: u32,
+    // The bundle of the first light.
+    shadow_bundle: u32,
+    // Where a point of the world lies in the light's picture, in its texels: across and down.
+    light_rows: array<vec4<f32>, 2>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

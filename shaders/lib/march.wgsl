@@ -3,6 +3,7 @@
 
 #import ray
 #import brick
+#import faces
 #import lattice_{lattice}
 #import filter_{filter}
 #import nearest
@@ -23,8 +24,14 @@ fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
     let lattice = lattice_of(world, interval, pixel);
     let first = max(lattice.first, i32(floor(index_at(lattice, world, inside.x))) - 1);
     let end = min(lattice.first + lattice.count, i32(ceil(index_at(lattice, world, inside.y))) + 2);
-    for (var k = first; k < end; k++) {
-        let segment = segment_of(lattice, world, k);
+    // A cut face is seen before all samples.
+    let is_cut = enters_a_cut(voxel, interval);
+    for (var k = first - i32(is_cut); k < end; k++) {
+        let is_face = k < first;
+        var segment = segment_of(lattice, world, k);
+        if is_face {
+            segment = Segment(interval.x, FACE_LENGTH);
+        }
         let position = voxel.origin + segment.t * voxel.direction;
         if segment.length <= 0.0 || !is_in_brick(position) {
             continue;
@@ -33,7 +40,9 @@ fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
         if !has_data(position) {
             continue;
         }
-        so_far = add(so_far, sample_at(position, world.direction), segment);
+        // No light falls along no direction.
+        let direction = select(world.direction, vec3(0.0), is_face);
+        so_far = add(so_far, sample_at(position, direction), segment);
         if is_finished(so_far) {
             break;
         }

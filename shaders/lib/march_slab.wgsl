@@ -3,6 +3,7 @@
 
 #import ray
 #import brick
+#import faces
 #import slab_{lattice}
 #import filter_{filter}
 #import nearest
@@ -24,9 +25,14 @@ fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
     let first = max(lattice.first, i32(floor(index_at(lattice, world, inside.x))) - 1);
     let end = min(lattice.first + lattice.count, i32(ceil(index_at(lattice, world, inside.y))) + 2);
     var back = End(0.0, false);
-    var back_of = first - 2;
-    for (var k = first; k < end; k++) {
-        let slab = slab_of(lattice, world, k);
+    var back_of = first - 3;
+    // A cut face is seen before all slabs.
+    let is_cut = enters_a_cut(voxel, interval);
+    for (var k = first - i32(is_cut); k < end; k++) {
+        var slab = slab_of(lattice, world, k);
+        if k < first {
+            slab = Slab(interval.x, interval.x, FACE_LENGTH);
+        }
         let t = 0.5 * (slab.front + slab.back);
         if slab.length <= 0.0 || !is_in_brick(voxel.origin + t * voxel.direction) {
             continue;

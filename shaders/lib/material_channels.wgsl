@@ -2,7 +2,10 @@
 //
 //     sigma = sum of sigma_i        c = sum of sigma_i c_i / sigma
 //
-// A channel that is opaque by the next one has c_i of its own value, sigma_i of the next one's.
+// A channel that is opaque by the next one has c_i of its own value, sigma_i of the next one's. Where a label is dimmed
+//
+//     sigma = d sigma               c = y + d (c - y),  y the luminance of c
+//
 // Twin: src/technique/mixture.rs.
 
 #import channel_{transfer}
@@ -28,5 +31,10 @@ fn material_of(sample: Sample) -> Classified {
     if extinction == 0.0 {
         return Classified(vec3(0.0), 0.0);
     }
-    return Classified(light / extinction, extinction);
+    let color = light / extinction;
+    if sample.is_dimmed {
+        let grey = dot(color, vec3(0.2126, 0.7152, 0.0722));
+        return Classified(grey + frame.dim * (color - grey), frame.dim * extinction);
+    }
+    return Classified(color, extinction);
 }

@@ -6,6 +6,7 @@
 
 #import opacity
 #import material_{mix}
+#import face_grey
 
 struct Accumulator {
     color: vec3<f32>,
@@ -24,13 +25,21 @@ fn resumed(picture: vec4<f32>, beside: vec4<f32>) -> Accumulator {
     return Accumulator(picture.xyz, beside.z, beside.y, beside.w);
 }
 
+// What the picture gets.
+fn picture_of(found: Accumulator) -> vec4<f32> {
+    return vec4(found.color, 1.0 - found.transmittance);
+}
+
 // 0, depth, transmittance, samples.
 fn beside_of(found: Accumulator) -> vec4<f32> {
     return vec4(0.0, found.depth, found.transmittance, found.samples);
 }
 
 fn add(so_far: Accumulator, sample: Sample, segment: Segment) -> Accumulator {
-    let material = material_of(sample);
+    var material = material_of(sample);
+    if segment.length == FACE_LENGTH {
+        material = on_face(material, value_of(sample));
+    }
     let opacity = opacity_over(material.extinction, segment.length);
     var next = so_far;
     next.color += so_far.transmittance * opacity * material.color;
@@ -41,7 +50,7 @@ fn add(so_far: Accumulator, sample: Sample, segment: Segment) -> Accumulator {
     return next;
 }
 
-// The ray ends after the sample at which transmittance falls under the threshold.
+// The ray ends after the sample at which transmittance falls under the threshold, and at a cut face that is opaque.
 fn is_finished(so_far: Accumulator) -> bool {
-    return so_far.transmittance < frame.termination;
+    return so_far.transmittance < frame.termination || (frame.cut_faces != 0u && so_far.transmittance == 0.0);
 }

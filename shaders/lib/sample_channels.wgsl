@@ -5,6 +5,8 @@
 struct Sample {
     values: vec4<f32>,
     has_data: vec4<bool>,
+    // By its label.
+    is_dimmed: bool,
 }
 
 // True where the next channel says how opaque this one is.
@@ -31,12 +33,19 @@ fn has_data(place: Place) -> bool {
 }
 
 fn sample_at(place: Place, ray_direction: vec3<f32>) -> Sample {
-    var found = Sample(vec4(0.0), vec4(false));
+    var found = Sample(vec4(0.0), vec4(false), false);
     for (var c = 0u; c < frame.channel_count; c++) {
         if channel_has_data(c, place) {
             found.values[c] = channel_value(c, place);
             found.has_data[c] = true;
         }
+        if frame.channel_is_labels[c] != 0u && channel_is_dimmed(c, place) {
+            found.is_dimmed = true;
+        }
     }
     return found;
+}
+
+fn value_of(sample: Sample) -> f32 {
+    return sample.values.x;
 }

@@ -32,3 +32,7 @@ fn sample_at(place: Place, ray_direction: vec3<f32>) -> Sample {
 fn luma(srgb: vec3<f32>) -> f32 {
     return 0.2126 * srgb.x + 0.7152 * srgb.y + 0.0722 * srgb.z;
 }
+
+fn value_of(sample: Sample) -> f32 {
+    return sample.value;
+}

@@ -18,3 +18,7 @@ fn end_at(place: Place) -> End {
     }
     return End(volume_value(place), true);
 }
+
+fn value_of(sample: Sample) -> f32 {
+    return sample.front;
+}

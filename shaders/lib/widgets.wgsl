@@ -32,9 +32,9 @@ fn wants_second() -> bool {
     return widgets.d[0].w != 0.0;
 }
 
-// What a value is made of where it rises by `magnitude` per world length, and that by `second`.
-fn classify_by_gradient(value: f32, magnitude: f32, second: f32) -> Classified {
-    let material = classify(value);
+// What a value is made of where it rises by `magnitude` per world length, and that by `second`; `material` is what it
+// is made of anyway.
+fn classify_by_gradient(material: Classified, value: f32, magnitude: f32, second: f32) -> Classified {
     let head = widgets.d[0];
     let share_count = u32(head.y);
     let steepness = magnitude * head.x;

@@ -9,7 +9,7 @@ use crate::{
     transfer::{LabelTable, TransferFunction},
     volume::{
         Grid, Pick, Volume, Wanted, is_same_grid,
-        labels::{hide, labels_of, on_grid},
+        labels::{dim, hide, labels_of, on_grid},
     },
 };
 use glam::DVec3;
@@ -57,11 +57,15 @@ pub fn read(
         table.function(present.keys().copied(), diagonal(&map))
     };
     say_names(&present, table.as_ref(), &function, progress);
-    let hides = table.is_some_and(|table| table.hides);
-    if flags.cut() || hides {
+    let hides = table.as_ref().is_some_and(|table| table.hides);
+    if flags.shows_some() || hides {
         let is_shown =
             |label: i64| flags.shows(label) && !(hides && function.opacity(label as f64) == 0.0);
         hide(&mut map, is_shown);
+    }
+    let is_dimmed = |label: &i64| flags.dims(table.as_ref(), *label);
+    if present.keys().any(is_dimmed) {
+        dim(&mut map, |label| is_dimmed(&label));
     }
     Ok(Other {
         volume: map,

@@ -7,8 +7,8 @@ use crate::{
     offscreen::{self, reference},
     picture::{LayerKind, Picture},
     scene::{Beside, Scene},
-    technique::{Settings, Technique},
-    volume::{Denoise, Volume},
+    technique::{Filter, Role, Settings, Technique},
+    volume::{Denoise, Volume, labels::labels_of},
 };
 use std::time::Instant;
 
@@ -126,12 +126,18 @@ impl<'a> Renderer<'a> {
         let mut renderer = offscreen::Renderer::several(on, volumes)?;
         let prepare_ms = device.found_ms + ms_since(start);
         let start = Instant::now();
-        renderer.upload(&job.scene(camera))?;
+        let scene = job.scene(camera);
+        renderer.upload(&scene)?;
+        let upload_ms = ms_since(start);
+        let start = Instant::now();
+        if !scene.settings.mode.is_projection() {
+            renderer.prepare_light(&scene)?;
+        }
         Ok(Self {
             job,
             on_device: Some(Box::new(renderer)),
-            upload_ms: ms_since(start),
-            prepare_ms,
+            upload_ms,
+            prepare_ms: prepare_ms + ms_since(start),
         })
     }
 
@@ -240,6 +246,17 @@ impl<'a> Job<'a> {
     }
 }
 
+/// True where a map lies over the volume, or the values are labels and nothing mixes them.
+fn has_labels(job: &Job) -> bool {
+    match job.beside {
+        Beside::Nothing => {
+            job.settings.filter == Filter::Nearest && labels_of(job.volume).is_some()
+        }
+        Beside::Channels(channels) => channels.iter().any(|one| one.role == Role::Labels),
+        Beside::Colors(_) | Beside::Classified(_) => false,
+    }
+}
+
 /// Blending keeps no depth, a projection no transmittance, and a composite has no one value.
 fn check_layers(job: &Job) -> Result<(), Error> {
     let Settings {
@@ -248,15 +265,24 @@ fn check_layers(job: &Job) -> Result<(), Error> {
     let is_sum = !matches!(job.beside, Beside::Nothing) && mode.is_projection();
     for layer in job.layers {
         let missing = match layer {
-            LayerKind::Value | LayerKind::Depth | LayerKind::Position if is_sum => {
+            LayerKind::Value | LayerKind::Depth | LayerKind::Position | LayerKind::Label
+                if is_sum =>
+            {
                 "one number a voxel: --component 0"
             }
             LayerKind::Value if !mode.has_value() => "a mode with one value, such as --mode mip",
             LayerKind::Transmittance if mode.is_projection() => "--mode composite",
-            LayerKind::Depth | LayerKind::Position if technique != Technique::Raycast => {
+            LayerKind::Depth | LayerKind::Position | LayerKind::Label
+                if technique != Technique::Raycast =>
+            {
                 "--technique raycast"
             }
-            LayerKind::Position if !mode.has_depth() => "a mode with a depth, such as --mode mip",
+            LayerKind::Label if !has_labels(job) => {
+                "labels: --labels FILE, or a volume of labels with --filter nearest"
+            }
+            LayerKind::Position | LayerKind::Label if !mode.has_depth() => {
+                "a mode with a depth, such as --mode mip"
+            }
             _ => continue,
         };
         return Err(Error::Usage {

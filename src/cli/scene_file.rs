@@ -17,13 +17,10 @@
 use super::{
     Error,
     flags::{SceneFlags, relative},
+    small_file,
 };
 use serde_json::Value;
-use std::{
-    fs::File,
-    io::Read,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 const VERSION: u32 = 1;
 /// The largest file that is read; a transfer function inside has its own limit of the same size.
@@ -31,20 +28,7 @@ const MAX_FILE_BYTES: u64 = 4 << 20;
 
 /// The scene in the file at `path`, its input as seen from here.
 pub fn read(path: &Path) -> Result<SceneFlags, Error> {
-    let refused = |problem: String| Error::Input {
-        path: path.to_owned(),
-        problem,
-    };
-    let mut text = Vec::new();
-    File::open(path)
-        .and_then(|file| file.take(MAX_FILE_BYTES + 1).read_to_end(&mut text))
-        .map_err(|cause| refused(cause.to_string()))?;
-    if text.len() as u64 > MAX_FILE_BYTES {
-        return Err(refused(format!(
-            "a scene has at most {MAX_FILE_BYTES} bytes"
-        )));
-    }
-    let mut scene = parse(&text).map_err(refused)?;
+    let mut scene = small_file::parsed(path, "a scene", MAX_FILE_BYTES, parse)?;
     scene.input = scene.input.found_in(folder_of(path));
     scene.labels = scene.labels.with_paths(|file| folder_of(path).join(file));
     scene.opacity = scene.opacity.with_paths(|file| folder_of(path).join(file));

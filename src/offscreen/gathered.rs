@@ -1,6 +1,7 @@
 //! What the CPU twins leave for each pixel, and the layers that come of it.
 
-use super::position::positions;
+use super::position::{labels, positions};
+use super::tally::has_labels;
 use crate::picture::{Layer, LayerKind};
 use crate::real::Real;
 use crate::resolve::reference::projected_value;
@@ -87,6 +88,12 @@ pub(super) fn layers<R: Real>(scene: &Scene, gathered: &[Gathered<R>]) -> Vec<La
             layers.push(Layer {
                 kind: LayerKind::Position,
                 values: positions(scene, &depth.values),
+            });
+        }
+        if mode.has_depth() && has_labels(scene) {
+            layers.push(Layer {
+                kind: LayerKind::Label,
+                values: labels(scene, &depth.values),
             });
         }
         layers.push(depth);

@@ -5,6 +5,7 @@
 mod denoise;
 mod fade;
 mod gathered;
+mod light;
 mod passes;
 mod position;
 pub mod reference;
@@ -38,4 +39,9 @@ pub enum Error {
         /// What was asked for.
         layer: crate::picture::LayerKind,
     },
+    /// The layer of labels, in a picture of none.
+    #[error(
+        "the layer `Label` is for a label map over the volume, or for one volume of labels with the filter Nearest"
+    )]
+    NoLabels,
 }

@@ -1,9 +1,10 @@
 //! What a picture is added up of, and which layers it can have.
 
 use super::Error;
+use super::position::label_map;
 use crate::picture::LayerKind;
 use crate::scene::Scene;
-use crate::technique::{Mix, Settings, Technique};
+use crate::technique::{Filter, Mix, Settings, Technique};
 
 /// Blending keeps no depth, a projection no transmittance, and a composite has no one value.
 pub fn check_layers(scene: &Scene, wanted: &[LayerKind]) -> Result<(), Error> {
@@ -20,6 +21,7 @@ pub fn check_layers(scene: &Scene, wanted: &[LayerKind]) -> Result<(), Error> {
             LayerKind::Position => technique == Technique::Raycast && mode.has_depth(),
             LayerKind::Transmittance => !mode.is_projection(),
             LayerKind::Samples => true,
+            LayerKind::Label => technique == Technique::Raycast && mode.has_depth() && !is_sum,
         };
         if !is_there {
             return Err(Error::NoLayer {
@@ -28,8 +30,18 @@ pub fn check_layers(scene: &Scene, wanted: &[LayerKind]) -> Result<(), Error> {
                 layer,
             });
         }
+        if layer == LayerKind::Label && !has_labels(scene) {
+            return Err(Error::NoLabels);
+        }
     }
     Ok(())
+}
+
+/// True where a label can be told at the first hit: in a map over the volume, or in a volume of numbers that nothing
+/// mixes.
+pub fn has_labels(scene: &Scene) -> bool {
+    let is_alone = matches!(scene.mix(), Mix::Alone | Mix::Graded);
+    label_map(scene).is_some() && (!is_alone || scene.settings.filter == Filter::Nearest)
 }
 
 /// The mean of pictures, added up in f32 in the order of their rays: no device needs to blend for it.

@@ -65,16 +65,19 @@ pub enum LayerKind {
     Samples,
     /// World position of the first hit: x, y, z.
     Position,
+    /// The label at the first hit.
+    Label,
 }
 
 impl LayerKind {
     /// All of them, in the order of `--aov`'s help.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Value,
         Self::Depth,
         Self::Transmittance,
         Self::Samples,
         Self::Position,
+        Self::Label,
     ];
 
     /// The word of `--aov`, the name of the EXR channel, and the `NAME` of `OUT.NAME.npy`.
@@ -85,6 +88,7 @@ impl LayerKind {
             Self::Transmittance => "transmittance",
             Self::Samples => "samples",
             Self::Position => "position",
+            Self::Label => "label",
         }
     }
 

@@ -80,6 +80,7 @@ impl View<'_> {
         self.settings.check()?;
         self.check_sample_count()?;
         let of_mode = self.of_mode();
+        let of_faces = self.settings.of_faces();
         let reach = self.cover_reach();
         let margin = self.cover_margin(&rays, &world_from_voxel) + reach.voxels;
         let (clip_planes, clip_plane_count) = self.clip_planes()?;
@@ -168,6 +169,7 @@ impl View<'_> {
             value_scale: of_mode.value_scale,
             lmip_threshold: of_mode.lmip_threshold,
             mida_fade: of_mode.mida_fade,
+            mida_mip: of_mode.mida_mip,
             attenuation: of_mode.attenuation,
             depth_cue: of_mode.depth_cue,
             depth_near: of_mode.depth_near,
@@ -184,7 +186,23 @@ impl View<'_> {
             specular: 0.0,
             shininess: 0.0,
             smallest_spacing: self.grid.smallest_spacing() as f32,
+            gradient_operator: self.settings.gradient_operator().number(),
+            gradient_scale: coding.scale,
+            gradient_codes_are_integers: coding.is_integer.into(),
+            dim: self.settings.dim as f32,
+            cut_faces: of_faces.cut_faces,
+            cut_low: of_faces.cut_low,
+            cut_scale: of_faces.cut_scale,
+            is_last_brick: 1,
+            light_cells: [0.0; 3],
+            occlusion_strength: 0.0,
+            light_cells_per_voxel: [0.0; 3],
+            shadow_reach: 0.0,
+            has_shadows: 0,
+            shadow_bundle: 0,
+            light_rows: [[0.0; 4]; 2],
         };
+        self.set_light(&mut fields);
         if let Some(shading) = &self.settings.shading {
             set_shading(shading, self.settings.color_space, &mut fields)?;
         }
@@ -338,7 +356,7 @@ fn affine_rows(affine: &DAffine3) -> [[f32; 4]; 3] {
 /// Clip space from the centred world, as rows, from the rays themselves: with w the depth and d the ray
 /// direction of depth 1, pixel x of a point p is where (p/w - d) . dx / |dx|^2 finds it. Depth is 1/2
 /// everywhere: w > 0 alone clips.
-fn clip_rows(rays: &Rays, [width, height]: [u32; 2]) -> [[f32; 4]; 4] {
+pub(super) fn clip_rows(rays: &Rays, [width, height]: [u32; 2]) -> [[f32; 4]; 4] {
     let is_perspective = rays.origin_dx == DVec3::ZERO;
     let row = |dx_origin: DVec3, dx_direction: DVec3, pixels: u32| {
         // A point's pixel coordinate times w is dot(slope, p - origin) + at_origin.

@@ -5,6 +5,7 @@
 //! channels    sigma = sum of sigma_i        c = sum of sigma_i c_i / sigma
 //! opacity     c_i of the value of one       sigma_i of the value of the next
 //! colours     c as the volumes say it       sigma of alpha, or of luma
+//! dimmed      sigma = d sigma                c = y + d (c - y),  y the luminance of c
 //! ```
 //!
 //! The first is a physical mixture: emitters and absorbers in one place, none of which knows of the others, add
@@ -168,6 +169,14 @@ pub fn mixed<R: Real>(materials: impl IntoIterator<Item = [R; 4]>) -> [R; 4] {
     }
     let [r, g, b] = light.map(|c| c / sum);
     [r, g, b, sum]
+}
+
+/// The same where a label is dimmed: so much is left of extinction and colour.
+pub fn dimmed<R: Real>([r, g, b, extinction]: [R; 4], dim: R) -> [R; 4] {
+    let n = R::from_f32;
+    let grey = n(0.2126) * r + n(0.7152) * g + n(0.0722) * b;
+    let [r, g, b] = [r, g, b].map(|c| grey + dim * (c - grey));
+    [r, g, b, dim * extinction]
 }
 
 /// The sRGB colour of a sample and the value that its opacity is classified by: luma, or alpha, with which the

@@ -3,11 +3,18 @@
 mod accumulation;
 pub mod blend;
 pub mod composite;
+pub mod faces;
 mod frame;
 mod frame_of_mode;
 pub mod gradient;
+mod gradient_filter;
+pub mod gradient_taps;
 mod inputs;
 pub mod isosurface;
+mod light_field;
+mod light_paths;
+mod light_plan;
+mod light_volume;
 mod march;
 pub mod merge;
 pub mod mida;
@@ -28,7 +35,11 @@ mod ways;
 
 pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 pub use frame::View;
+pub use gradient_filter::{GradientFilter, GradientSource, Operator};
 pub use inputs::{Inputs, Take, Words};
+pub use light_field::LightField;
+pub use light_plan::{AmbientOcclusion, LightPlan, MAX_LIGHT_CELLS, MAX_RADIUS_CELLS, Shadows};
+pub use light_volume::LightVolume;
 pub use mixture::{Mix, Part, Role};
 pub use per_mode::{DEFAULT_ATTENUATION, Level, PerMode};
 pub use recording::{Recording, parameter_ring};
@@ -155,6 +166,16 @@ pub struct ClipPlane {
     pub offset: f64,
 }
 
+/// How a cut through the volume looks. It is not lit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CutFaces {
+    /// As the transfer functions say, opaque wherever they have any opacity.
+    Own,
+    /// The greys of a window, its lower end first: opaque wherever the value is over that, as a slice of a scanner
+    /// shows it. Of several volumes the first counts, of colours what their opacity is classified by.
+    Grey([f64; 2]),
+}
+
 /// What to compute. Words of the command line, once checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
@@ -189,13 +210,24 @@ pub struct Settings {
     pub crop: Option<[glam::DVec3; 2]>,
     /// At most [`crate::shaders::MAX_CLIP_PLANES`].
     pub clip_planes: Vec<ClipPlane>,
+    /// Composite by rays: what the crop box and the clip planes lay bare is an opaque cross-section.
+    pub cut_faces: Option<CutFaces>,
     /// Light on composited samples of one volume; `None`: their colour as it is.
     pub shading: Option<Shading>,
+    /// How gradients are made, for light and for transfer functions of gradients.
+    pub gradient_filter: GradientFilter,
+    /// Ambient light that matter nearby takes away, with lights or without, of one volume that is composited.
+    pub ambient_occlusion: Option<AmbientOcclusion>,
     /// Float targets, no early termination, filtering by texel fetch, control points searched exactly.
     pub conformance: bool,
     /// What single modes want to know.
     pub per_mode: PerMode,
+    /// What is left of the extinction and of the colour of a dimmed label ([`crate::volume::labels::dim`]), 0 to 1.
+    pub dim: f64,
 }
+
+/// Faint, and still seen.
+pub const DEFAULT_DIM: f64 = 0.2;
 
 /// Samples that one ray may take: no wish of a host makes a shader run without end.
 pub const MAX_SAMPLES_PER_RAY: u32 = 1 << 20;
@@ -249,11 +281,13 @@ pub enum Error {
         /// What has not.
         found: String,
     },
-    /// The ends of a slab lie in voxels that its brick does not hold.
+    /// The ends of a slab, or of a segment that crosses a surface, lie in voxels that its brick does not hold.
     #[error(
-        "the volume lies in bricks, and pre-integrated samples reach {reach:.1} voxels beyond theirs, the limit is {limit}: take more samples per voxel"
+        "the volume lies in bricks, and {what} reach {reach:.1} voxels beyond theirs, the limit is {limit}: take more samples per voxel"
     )]
     SlabsTooLong {
+        /// What is long.
+        what: &'static str,
         /// Voxels.
         reach: f64,
         /// What bricks hold.
@@ -319,14 +353,6 @@ pub enum Error {
         /// How many there may be.
         limit: usize,
     },
-    /// A segment of a ray that crosses a surface must lie in one texture.
-    #[error("a volume of {bricks} bricks: {mode:?} needs it in one texture of the device")]
-    NeedsOneBrick {
-        /// The mode.
-        mode: Mode,
-        /// How many bricks the volume lies in.
-        bricks: usize,
-    },
     /// What has an exact extreme is a trilinear field along rays.
     #[error(
         "{technique:?} in mode {mode:?}: an exact extreme is one of Mip or Minip along rays, filtered linearly"
@@ -366,6 +392,19 @@ pub enum Error {
     /// Several volumes have several gradients.
     #[error("shading is for one volume of numbers, not for several that are mixed")]
     NotShadedTogether,
+    /// Light falls on what is composited.
+    #[error(
+        "{mode:?} projects one number a ray, on which no light falls: ambient occlusion is for composite"
+    )]
+    NotOccluded {
+        /// The mode.
+        mode: Mode,
+    },
+    /// Light is followed through one volume.
+    #[error(
+        "ambient occlusion and shadows are for one volume of numbers, not for several that are seen together"
+    )]
+    NotOccludedTogether,
     /// A projected value has no gradient.
     #[error(
         "{mode:?} projects one number a ray, which has no gradient: widgets and gradient opacity are for composite"
@@ -379,6 +418,22 @@ pub enum Error {
         "widgets and gradient opacity are for one volume of numbers, not for several that are mixed"
     )]
     NotGradedTogether,
+    /// Nearest and linear filters have no derivative that is of use.
+    #[error(
+        "{filter:?} has no analytic gradient: its derivative is zero, or jumps from voxel to voxel"
+    )]
+    NoDerivative {
+        /// The filter.
+        filter: Filter,
+    },
+    /// Gradients are made of what lies on the device.
+    #[error("gradients read {}, and the volume on the device holds {} for them", held(.wanted.spline()), held(*.found))]
+    WrongGradientSource {
+        /// What [`Settings::gradient_source`] says.
+        wanted: GradientSource,
+        /// What the texture holds that they would read.
+        found: Option<Spline>,
+    },
     /// The parameters hold a fixed number of lights.
     #[error("{wanted} lights, the limit is {limit}")]
     TooManyLights {
@@ -390,6 +445,30 @@ pub enum Error {
     /// A direction has a length.
     #[error("the way to a light has the length 0")]
     NoWayToLight,
+    /// The light's picture is that of one light.
+    #[error("half-angle slices lie half way to one light, and {wanted} were given")]
+    SeveralShadowLights {
+        /// How many were asked for.
+        wanted: usize,
+    },
+    /// Slices of all bricks in turn would have to be drawn before the light of the next slice is known.
+    #[error(
+        "half-angle slices go through all of the volume one by one, from the light: it must lie in one texture of the device, and lies in {bricks} bricks"
+    )]
+    ShadowsNeedOneBrick {
+        /// How many bricks the volume lies in.
+        bricks: usize,
+    },
+    /// Rays that are nearly as flat as the slices, or meet them from the other side.
+    #[error(
+        "rays of this perspective are up to {degrees:.0} degrees off the normal of slices half way to the light, the limit is {limit_degrees:.0}"
+    )]
+    TooSteep {
+        /// The angle of the ray that is farthest off.
+        degrees: f64,
+        /// What may be.
+        limit_degrees: f64,
+    },
     /// The parameters hold a fixed number of planes.
     #[error("{wanted} clip planes, the limit is {limit}")]
     TooManyClipPlanes {
@@ -424,9 +503,13 @@ impl Default for Settings {
             color_space: crate::picture::ColorSpace::default(),
             crop: None,
             clip_planes: Vec::new(),
+            cut_faces: None,
             shading: None,
+            gradient_filter: GradientFilter::default(),
+            ambient_occlusion: None,
             conformance: false,
             per_mode: PerMode::default(),
+            dim: DEFAULT_DIM,
         }
     }
 }

@@ -12,7 +12,8 @@ pub struct PerMode {
     pub unit_values: [f64; 2],
     /// [`Mode::Lmip`]: the first local maximum over this is shown. Infinity makes it a MIP.
     pub lmip_threshold: f64,
-    /// [`Mode::Mida`]: from -1, compositing, to 0, where a new maximum clears what lies before it.
+    /// [`Mode::Mida`]: from -1, compositing, to 0, where a new maximum clears what lies before it, and on to 1, the
+    /// picture of the maximum alone.
     pub mida_gamma: f64,
     /// [`Mode::AttenuatedMip`]: a value has faded to 1/e behind matter of value 1 whose length is the diagonal of
     /// the grid box over this; not negative. 0 makes it a MIP of the values between those of `unit_values`.
@@ -82,8 +83,8 @@ impl PerMode {
                 within("the threshold of LMIP", "a number", found, !found.is_nan())
             }
             Mode::Mida => {
-                let is_right = (-1.0..=0.0).contains(&gamma);
-                within("the gamma of MIDA", "-1 to 0", gamma, is_right)
+                let is_right = (-1.0..=1.0).contains(&gamma);
+                within("the gamma of MIDA", "-1 to 1", gamma, is_right)
             }
             Mode::AttenuatedMip => {
                 let is_right = attenuation >= 0.0 && attenuation.is_finite();
@@ -150,9 +151,11 @@ impl Settings {
     ///
     /// # Errors
     /// [`Error::NeedsRays`], [`Error::NeedsRayLattice`], [`Error::NoDepth`], [`Error::NotExact`],
-    /// [`Error::LevelCount`] and [`Error::OutOfRange`].
+    /// [`Error::NoDerivative`], [`Error::LevelCount`] and [`Error::OutOfRange`].
     pub fn check(&self) -> Result<(), Error> {
         self.check_ways()?;
+        self.check_gradient_filter()?;
+        self.check_light()?;
         let (technique, mode) = (self.technique, self.mode);
         if technique != Technique::Raycast && mode.needs_rays() {
             return Err(Error::NeedsRays { technique, mode });
@@ -169,6 +172,13 @@ impl Settings {
         let is_along_rays = technique == Technique::Raycast && self.lattice == Lattice::Ray;
         if self.per_mode.exact_maximum && !(is_trilinear && has_extreme && is_along_rays) {
             return Err(Error::NotExact { technique, mode });
+        }
+        if !(0.0..=1.0).contains(&self.dim) {
+            return Err(Error::OutOfRange {
+                name: "what is left of dimmed labels",
+                wanted: "0 to 1",
+                found: self.dim,
+            });
         }
         self.per_mode.check(mode)
     }

@@ -8,9 +8,12 @@
 //!
 //! Slicers draw covers in the middle of slabs: they are larger than the domain by as much, and those around the eye
 //! are the whole picture. Bricks hold as many voxels more.
+//!
+//! A segment between two ends of an isosurface's ray belongs to the brick of its far end and reaches a whole step out of
+//! it; filter and gradient must find their voxels from there. Bricks hold three voxels around their own.
 
 use super::slices_2d::{planes_per_slice, stack_axis};
-use super::{Error, Technique, View};
+use super::{Error, Filter, Mode, Technique, View};
 use crate::camera::Projection;
 use crate::resident::Cell;
 use crate::shaders::FrameFields;
@@ -66,6 +69,17 @@ impl View<'_> {
         DVec3::from_array([0, 1, 2].map(|j| half * if j == axis { 1.0 } else { steepness(j) }))
     }
 
+    /// How many voxels away from its brick a value and its gradient find what they are made of: of the voxels around,
+    /// one is for the gradient, and what is left is half a voxel less than the filter's own half width.
+    fn longest_segment(&self) -> f64 {
+        match self.settings.filter {
+            Filter::Nearest => 2.0,
+            Filter::Linear => 1.5,
+            Filter::Quadratic | Filter::QuadraticSmooth => 1.0,
+            Filter::Cubic | Filter::CubicSmooth | Filter::CatmullRom => 0.5,
+        }
+    }
+
     /// How much larger than the domain covers are.
     pub(super) fn cover_reach(&self) -> CoverReach {
         let is_stack = self.settings.technique == Technique::Slices2d;
@@ -97,17 +111,23 @@ impl View<'_> {
     /// # Errors
     /// [`Error::SlabsTooLong`].
     pub(super) fn check_slabs(&self, cells: &[Cell]) -> Result<(), Error> {
-        if !self.settings.preintegrated || cells.len() < 2 {
+        if cells.len() < 2 {
             return Ok(());
         }
-        let reach = self.slab_reach().max_element();
-        if reach <= LONGEST_REACH {
+        let half = self.slab_reach().max_element();
+        let (what, reach, limit) = match self.settings.mode {
+            Mode::Iso => (
+                "segments between samples",
+                2.0 * half,
+                self.longest_segment(),
+            ),
+            _ if self.settings.preintegrated => ("pre-integrated samples", half, LONGEST_REACH),
+            _ => return Ok(()),
+        };
+        if reach <= limit {
             return Ok(());
         }
-        Err(Error::SlabsTooLong {
-            reach,
-            limit: LONGEST_REACH,
-        })
+        Err(Error::SlabsTooLong { what, reach, limit })
     }
 
     /// Fills in what planes between the slices of a stack need.

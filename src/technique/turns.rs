@@ -2,14 +2,14 @@
 //! word ([`crate::gpu::Caps::max_loop_turns`]), and what lies behind would be missing from the picture.
 //!
 //! ```text
-//! turns of a sample = 1 + n (looks (1 + mask + filter) + search)
+//! turns of a sample = 1 + n (looks (1 + mask + filter) + weights + search)
 //! ```
 //!
-//! for n volumes, with 7 looks where there is a gradient, 28 more (with the turn that ends them) where there is a
-//! second derivative, two where there are slabs, and else one. A mask goes round
+//! for n volumes, with 7 looks where a gradient is made of differences, 28 more (with the turn that ends them) where
+//! there is a second derivative, two where there are slabs, and else one. A mask goes round
 //! for the layers and rows of the footprint, a kernel for those of its taps, a search for the halvings of the points.
 
-use super::{Error, Filter, Mix, Settings, Take, Technique, View, Words};
+use super::{Error, Filter, Mix, Operator, Settings, Take, Technique, View, Words};
 
 /// Of what is rare: surfaces that are refined, the first turns of everything.
 const SPARE: f64 = 2048.0;
@@ -50,10 +50,20 @@ pub fn turns_per_sample(
     } else {
         0
     };
+    let is_weighted = settings.gradient_operator() != Operator::Central;
     let looks = match (words.mix, words.take) {
-        (Mix::Graded, _) => 7 + if functions.second { 28 } else { 0 },
+        (Mix::Graded, _) => {
+            let first = if is_weighted { 1 } else { 7 };
+            first + if functions.second { 28 } else { 0 }
+        }
         (_, Take::Slab) => 2,
         _ => 1,
+    };
+    // Four layers of four rows, with the turns that end them, and the choice of the weights.
+    let weights = if words.mix == Mix::Graded && is_weighted {
+        5 * 5 + 5
+    } else {
+        0
     };
     let search = if words.transfer == "points" {
         2 * u64::from((functions.points + 1).ilog2() + 2)
@@ -62,7 +72,7 @@ pub fn turns_per_sample(
     };
     // Channels are gone over when they are asked for data, looked at and classified.
     let of_each = if volumes > 1 { 3 } else { 0 };
-    1 + volumes as u64 * (of_each + looks * (1 + mask + filter) + search)
+    1 + volumes as u64 * (of_each + looks * (1 + mask + filter) + weights + search)
 }
 
 impl View<'_> {

@@ -1,12 +1,12 @@
 //! Ways to take samples of their own, and what does not go together with them.
 
-use super::{Error, Lattice, Mode, Settings, Technique};
+use super::{CutFaces, Error, Lattice, Mode, Settings, Technique};
 
 impl Settings {
     /// Whether technique and mode have the ways to sample that are asked for.
     ///
     /// # Errors
-    /// [`Error::NotFor`].
+    /// [`Error::NotFor`], [`Error::SeveralShadowLights`], and [`Error::OutOfRange`] for a window that is none.
     pub fn check_ways(&self) -> Result<(), Error> {
         let (mode, technique) = (self.mode, self.technique);
         let of_mode = |is_on: bool, wanted| match is_on && mode != Mode::Composite {
@@ -30,6 +30,18 @@ impl Settings {
         of_technique(self.smooth, SMOOTH, Technique::Slices2d, "2D stacks")?;
         of_mode(self.smooth, SMOOTH)?;
         of_technique(is_jittered, JITTER, Technique::Raycast, "ray casting")?;
+        let is_cut = self.cut_faces.is_some();
+        of_technique(is_cut, CUT_FACES, Technique::Raycast, "ray casting")?;
+        of_mode(is_cut, CUT_FACES)?;
+        if let Some(CutFaces::Grey([low, high])) = self.cut_faces
+            && !(low < high && (high - low).is_finite())
+        {
+            return Err(Error::OutOfRange {
+                name: "the upper end of the window of cut faces",
+                wanted: "a higher number than the lower, both finite",
+                found: high,
+            });
+        }
         if is_jittered && mode == Mode::Iso {
             return Err(Error::NotFor {
                 wanted: JITTER,
@@ -37,7 +49,28 @@ impl Settings {
                 found: "surfaces, whose places do not hang on where steps begin".to_owned(),
             });
         }
-        if self.shading.is_some() {
+        let is_half = self.is_half_angle();
+        let lights = self.shading.as_ref().map_or(0, |s| s.lights.len());
+        if is_half && lights > 1 {
+            return Err(Error::SeveralShadowLights { wanted: lights });
+        }
+        of_technique(is_half, HALF_ANGLE, Technique::Slices3d, "3D slices")?;
+        of_mode(is_half, HALF_ANGLE)?;
+        if is_half && self.filter.kernel().is_some() {
+            return Err(Error::NotFor {
+                wanted: HALF_ANGLE,
+                of: "nearest and linear filters",
+                found: format!("{:?}", self.filter),
+            });
+        }
+        if is_half && self.ambient_occlusion.is_some() {
+            return Err(Error::NotFor {
+                wanted: HALF_ANGLE,
+                of: "the light of one lamp",
+                found: "light from all around that is occluded".to_owned(),
+            });
+        }
+        if self.shading.is_some() || self.ambient_occlusion.is_some() {
             self.refuse_way("samples without light", "shaded ones")?;
         }
         if self.filter.kernel().is_some() {
@@ -87,4 +120,6 @@ impl Settings {
 
 const PREINTEGRATED: &str = "pre-integrated classification";
 const SMOOTH: &str = "interpolation between slices";
+const CUT_FACES: &str = "an opaque cut face";
 const JITTER: &str = "jitter";
+const HALF_ANGLE: &str = "half-angle slicing";

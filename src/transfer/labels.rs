@@ -7,13 +7,16 @@
 //! | Slicer colour table, FreeSurfer | `index name r g b a`, all to 255; a table in which every `a` is 0 counts them as opaque |
 //! | list of names | `index name`, and what follows is not looked at |
 //!
-//! In text files `#` begins a comment.
+//! In text files `#` begins a comment. A JSON file may also say `"mask": true`, by which labels of opacity 0 hide what
+//! lies there, and `"dim": [label, ...]` with `"dim_share": 0.2`, by which what lies there is faint and grey.
 
 use super::automatic::label_color;
+use super::law::MAX_OPACITY;
 use super::{
     ColorPoint, FileProblem, Interpolation, OpacityPoint, TransferFunction,
     transfer_function_from_json,
 };
+use crate::color::{decode_srgb, encode_srgb};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
@@ -27,6 +30,10 @@ pub struct LabelTable {
     pub labels: BTreeMap<i64, Label>,
     /// Labels of opacity 0 hide what lies there.
     pub hides: bool,
+    /// What lies where these labels are is faint and grey.
+    pub dimmed: Vec<i64>,
+    /// What is left of the opacity and of the colour of these, 0 to 1.
+    pub dim: Option<f64>,
     /// The function that was stated, in the place of labels.
     function: Option<TransferFunction>,
 }
@@ -88,6 +95,30 @@ impl LabelTable {
         })
     }
 
+    /// The same function of labels of which some are hidden and some dimmed, for a volume of labels shown alone: what is
+    /// dimmed has so much of its extinction, and of what its colour is more than grey.
+    pub fn cut(
+        mut function: TransferFunction,
+        is_shown: impl Fn(i64) -> bool,
+        is_dimmed: impl Fn(i64) -> bool,
+        dim: f64,
+    ) -> TransferFunction {
+        for (color, point) in function.color.iter_mut().zip(&mut function.opacity) {
+            // A label rules the values that round to it.
+            let label = (color.value + 0.5).round() as i64;
+            if !is_shown(label) {
+                point.opacity = 0.0;
+            } else if is_dimmed(label) {
+                let transmittance = 1.0 - point.opacity.min(MAX_OPACITY);
+                point.opacity = 1.0 - transmittance.powf(dim);
+                let [r, g, b] = color.srgb.map(decode_srgb);
+                let grey = 0.2126 * r + 0.7152 * g + 0.0722 * b;
+                color.srgb = [r, g, b].map(|c| encode_srgb(grey + dim * (c - grey)));
+            }
+        }
+        function
+    }
+
     /// What the labels that are `present` look like; `diagonal` is the world length of the grid's diagonal.
     pub fn function(&self, present: impl Iterator<Item = i64>, diagonal: f64) -> TransferFunction {
         let looks = |label: i64| match (&self.function, self.labels.get(&label)) {
@@ -126,10 +157,21 @@ fn from_json(text: &str) -> Result<LabelTable, FileProblem> {
         Some(Value::Bool(hides)) => hides,
         Some(found) => return Err(wrong("mask", "true or false", &found)),
     };
+    let dimmed = match keys.remove("dim") {
+        None => Vec::new(),
+        Some(found) => labels_in(&found).ok_or_else(|| wrong("dim", "a list of labels", &found))?,
+    };
+    let dim = keys.remove("dim_share").map(|found| {
+        let share = found.as_f64().and_then(fraction);
+        share.ok_or_else(|| wrong("dim_share", "a number from 0 to 1", &found))
+    });
+    let dim = dim.transpose()?;
     let Some(rows) = keys.remove("labels") else {
         let function = transfer_function_from_json(Value::Object(keys).to_string().as_bytes())?;
         return Ok(LabelTable {
             hides,
+            dimmed,
+            dim,
             function: Some(function),
             ..LabelTable::default()
         });
@@ -180,8 +222,14 @@ fn from_json(text: &str) -> Result<LabelTable, FileProblem> {
     Ok(LabelTable {
         labels,
         hides,
+        dimmed,
+        dim,
         function: None,
     })
+}
+
+fn labels_in(found: &Value) -> Option<Vec<i64>> {
+    found.as_array()?.iter().map(Value::as_i64).collect()
 }
 
 fn from_row(row: &Value) -> Option<(i64, Label)> {
@@ -381,6 +429,14 @@ mod tests {
                 "`mask`",
             ),
             (r#"{"stratavox_transfer_function":1,"lables":[]}"#, "lables"),
+            (
+                r#"{"stratavox_transfer_function":1,"dim":[1.5],"labels":[[1,"a",0,0,1,1]]}"#,
+                "`dim`",
+            ),
+            (
+                r#"{"stratavox_transfer_function":1,"dim_share":2,"labels":[[1,"a",0,0,1,1]]}"#,
+                "`dim_share`",
+            ),
         ] {
             let problem = LabelTable::parse(text.as_bytes())
                 .expect_err(text)

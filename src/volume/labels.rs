@@ -1,4 +1,4 @@
-//! Label maps: which labels there are, a map brought to the grid of another volume, and labels taken out.
+//! Label maps: which labels there are, a map brought to the grid of another volume, and labels taken out or dimmed.
 //!
 //! A label is never interpolated: each voxel of the grid takes that of the voxel of the map that its centre lies
 //! in; outside of the map it is 0.
@@ -95,6 +95,36 @@ pub fn hide(map: &mut Volume, is_shown: impl Fn(i64) -> bool) {
     let mask = (0..map.voxels.len()).map(|i| u8::from(is_shown(value_at(map, i) as i64)));
     let mask: Vec<u8> = mask.collect();
     map.validity = mask.contains(&0).then_some(mask);
+}
+
+/// The mark of a voxel that is there, and faint: in a mixture, all that lies where a label is dimmed.
+pub const DIMMED: u8 = 2;
+
+/// Dims every voxel that is there and whose label is to be dimmed, as much as [`crate::technique::Settings::dim`] says.
+pub fn dim(map: &mut Volume, is_dimmed: impl Fn(i64) -> bool) {
+    let count = map.voxels.len();
+    let mut mask = map.validity.take().unwrap_or_else(|| vec![1; count]);
+    for (i, mark) in mask.iter_mut().enumerate() {
+        if *mark != 0 && is_dimmed(value_at(map, i) as i64) {
+            *mark = DIMMED;
+        }
+    }
+    map.validity = mask.iter().any(|&mark| mark != 1).then_some(mask);
+}
+
+/// The marks of a map that has dimmed voxels, as numbers of a volume of their own.
+pub(crate) fn marks_of(map: &Volume) -> Option<Volume> {
+    let mask = map
+        .validity
+        .as_ref()
+        .filter(|mask| mask.contains(&DIMMED))?;
+    Some(Volume {
+        voxels: Voxels::U8(mask.clone()),
+        rescale: Rescale::default(),
+        validity: None,
+        unit: None,
+        ..*map
+    })
 }
 
 fn value_at(map: &Volume, index: usize) -> f64 {

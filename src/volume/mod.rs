@@ -58,7 +58,8 @@ pub struct Volume {
     pub voxels: Voxels,
     /// Stored number to value.
     pub rescale: Rescale,
-    /// One byte a voxel, 1 = valid, 0 = no data. `None` where all are valid.
+    /// One byte a voxel, 1 = valid, 0 = no data; in a label map also [`labels::DIMMED`], which is valid. `None` where
+    /// all are valid.
     pub validity: Option<Vec<u8>>,
     /// True where values are Hounsfield units.
     pub hounsfield: bool,

@@ -168,6 +168,42 @@ fn labels_lie_over_a_volume_and_cut_it() {
 }
 
 #[test]
+fn labels_are_dimmed_by_words_and_by_their_file() {
+    let folder = Folder::new();
+    folder.file("v.nrrd", nrrd("", 1, 1.0, |i| vec![100 + (i % 60) as u8]));
+    folder.file("l.nrrd", nrrd("", 1, 1.0, |i| vec![u8::from(i % 6 >= 3)]));
+    folder.file(
+        "dim.json",
+        r#"{"stratavox_transfer_function":1,"dim":[1],"dim_share":0.1,"labels":[[1,"right half",1,0,0,0.9]]}"#,
+    );
+    let opacity = |p: &Picture| p.pixels.iter().map(|p| p[3]).sum::<f32>();
+    let (plain, _) = picture(&folder, "v.nrrd --preset grey");
+    let of = |words: &str| {
+        let words = format!("v.nrrd --preset grey --labels l.nrrd {words}");
+        picture(&folder, &words).0
+    };
+    let dimmed = of("--label-dim 1:0.1");
+    let hidden = of("--label-hide 1");
+    assert!(opacity(&dimmed) < opacity(&plain) && opacity(&dimmed) > opacity(&hidden));
+    let by_default = [of("--label-dim 0-1"), of("--label-dim 0-1:0.2")];
+    assert_eq!(by_default[0].pixels, by_default[1].pixels);
+    assert_eq!(of("--label-dim 0-1:1").pixels, plain.pixels);
+    // The same words by the file of the labels, whose colours are then drawn too.
+    let [by_file, by_word] =
+        ["", "--label-dim 1:0.1"].map(|words| of(&format!("--label-tf dim.json {words}")));
+    assert!(drawn(&by_file) > 0);
+    assert_eq!(by_file.pixels, by_word.pixels);
+    // A volume of labels by itself.
+    let alone = |words: &str| picture(&folder, &format!("l.nrrd --label-tf dim.json {words}")).0;
+    let (faint, full) = (alone(""), alone("--label-dim 7"));
+    assert!(opacity(&faint) < opacity(&full) && opacity(&faint) > 0.0);
+    assert_eq!(drawn(&alone("--label-hide 1")), 0);
+    folder
+        .run("render v.nrrd --label-dim 7 --preset grey -o x.png --device reference")
+        .assert_refused(2, &["--label-dim", "--labels FILE"]);
+}
+
+#[test]
 fn a_label_map_on_another_grid_is_brought_over_and_one_elsewhere_is_refused() {
     let folder = Folder::new();
     folder.file("v.nrrd", nrrd("", 1, 1.0, |i| vec![100 + (i % 60) as u8]));

@@ -124,3 +124,70 @@ fn what_a_cut_cannot_be_is_refused() {
         folder.run(&words).assert_refused(2, &[wanted]);
     }
 }
+
+/// Numbers of a picture of 32 x 32 pixels by the twins.
+fn cut(folder: &Folder, words: &str) -> Vec<u8> {
+    let fixed = "-o b.npy --size 32x32 --force --device reference --preset grey";
+    folder
+        .run(&format!("render v.nrrd {fixed} {words}"))
+        .assert_done();
+    fs::read(folder.path("b.npy")).expect("a picture")
+}
+
+#[test]
+fn a_clip_box_is_six_clip_planes_and_its_faces_are_seen() {
+    let folder = Folder::new();
+    volume(&folder);
+    let by_box = cut(&folder, "--clip-box 2,2.5,3,2,3,4");
+    let planes = "--clip 1,0,0,1 --clip -1,0,0,-3 --clip 0,1,0,1 --clip 0,-1,0,-4 --clip 0,0,1,1 --clip 0,0,-1,-5";
+    assert!(by_box == cut(&folder, planes), "the same six planes");
+    let turned = cut(&folder, "--clip-box 2,2.5,3,2,3,4,0,0,30");
+    assert!(by_box != turned && turned != cut(&folder, "--clip-box 2,2.5,3,2,3,4,0,0,-30"));
+    // By a quarter the sides change places.
+    let quarter = cut(
+        &folder,
+        "--clip-box 2,2.5,3,3,2,4,0,0,90 --color-space display",
+    );
+    assert_eq!(quarter.len(), by_box.len());
+    let faced = cut(&folder, "--clip-box 2,2.5,3,2,3,4 --cut-faces");
+    assert!(
+        faced != by_box && faced != cut(&folder, "--clip-box 2,2.5,3,2,3,4 --cut-faces=50,300")
+    );
+    for (words, wanted) in [
+        (
+            "--clip-box 2,2,2,1,1,1 --clip 1,0,0,1 --clip 1,0,0,1 --clip 1,0,0,1",
+            "at most 8",
+        ),
+        ("--clip-box 2,2,2,1,0,1", "sizes over 0"),
+        (
+            "--clip-box 2,2,2,1,1,1 --clip-box 2,2,2,1,1,1",
+            "multiple times",
+        ),
+        (
+            "--clip-box 2,2,2,1,1,1 --clip 1,0,0,1 --section axial",
+            "--section cuts with two",
+        ),
+        (
+            "--cut-faces --crop 1,4,1,4,1,4 --technique slices-2d",
+            "opaque cut face",
+        ),
+        ("--cut-faces=9,9 --crop 1,4,1,4,1,4", "LO under HI"),
+        (
+            "--cut-faces --mode mip --crop 1,4,1,4,1,4",
+            "opaque cut face",
+        ),
+    ] {
+        folder
+            .run(&format!(
+                "render v.nrrd -o c.png --device reference {words}"
+            ))
+            .assert_refused(2, &[wanted]);
+    }
+    let idle = folder.run("render v.nrrd -o c.png --size 8x8 --device reference --cut-faces");
+    idle.assert_done();
+    assert!(
+        idle.err.contains("--cut-faces has no effect"),
+        "{}",
+        idle.err
+    );
+}

@@ -71,6 +71,14 @@ pub enum Classification {
 }
 
 impl ClassificationFlags {
+    /// True where a function is asked for by name or file, which may be one of gradients.
+    pub fn names_a_function(&self) -> bool {
+        self.preset.is_some()
+            || self.transfer_function.is_some()
+            || self.opacity_function.is_some()
+            || self.color_function.is_some()
+    }
+
     /// Reads the files of `--tf`, `--color-tf` and `--opacity-tf`; what a scene says in their place is gone.
     pub fn inline_file(&mut self) -> Result<(), Error> {
         if let Some(path) = &self.tf {

@@ -1,13 +1,15 @@
 //! A label map that lies over a volume, or cuts parts out of it: the words.
 
 use super::Error;
-use crate::transfer::{LabelTable, MAX_FILE_BYTES};
+use crate::{
+    cli::small_file,
+    technique::DEFAULT_DIM,
+    transfer::{LabelTable, MAX_FILE_BYTES},
+};
 use clap::Args;
 use serde::{Deserialize, Serialize};
 use std::{
     fmt,
-    fs::File,
-    io::Read,
     ops::RangeInclusive,
     path::{Path, PathBuf},
     str::FromStr,
@@ -28,13 +30,25 @@ pub struct LabelFlags {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub label_tf: Option<PathBuf>,
     /// Show only what has these labels; without --label-tf the volume keeps its own colours
-    #[arg(long, value_name = "N,A-B,...", requires = "labels", help_heading = HEADING)]
+    #[arg(long, value_name = "N,A-B,...", help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub label_show: Option<LabelList>,
     /// Hide what has these labels
-    #[arg(long, value_name = "N,A-B,...", requires = "labels", conflicts_with = "label_show", help_heading = HEADING)]
+    #[arg(long, value_name = "N,A-B,...", conflicts_with = "label_show", help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub label_hide: Option<LabelList>,
+    /// Make what has these labels faint and grey: so much is left of its opacity and its colour [default: 0.2]
+    #[arg(long, value_name = "N,A-B,...[:F]", help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub label_dim: Option<DimmedLabels>,
+}
+
+/// `1,2,5-9`, or `1,2,5-9:0.1`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct DimmedLabels {
+    labels: LabelList,
+    share: Option<f64>,
 }
 
 /// `1,2,5-9`.
@@ -48,21 +62,8 @@ impl LabelFlags {
         let Some(path) = &self.label_tf else {
             return Ok(None);
         };
-        let refused = |problem: String| Error::Input {
-            path: path.clone(),
-            problem,
-        };
-        let mut text = Vec::new();
-        File::open(path)
-            .and_then(|file| file.take(MAX_FILE_BYTES + 1).read_to_end(&mut text))
-            .map_err(|cause| refused(cause.to_string()))?;
-        if text.len() as u64 > MAX_FILE_BYTES {
-            return Err(refused(format!(
-                "a table of labels has at most {MAX_FILE_BYTES} bytes"
-            )));
-        }
-        let table = LabelTable::parse(&text).map_err(|problem| refused(problem.to_string()))?;
-        Ok(Some(table))
+        let parse = |text: &[u8]| LabelTable::parse(text).map_err(|problem| problem.to_string());
+        small_file::parsed(path, "a table of labels", MAX_FILE_BYTES, parse).map(Some)
     }
 
     /// True where labels cut and nothing says that they are drawn too.
@@ -70,8 +71,33 @@ impl LabelFlags {
         self.cut() && self.label_tf.is_none()
     }
 
-    /// True where words say which labels are seen.
+    /// True where words say how labels are seen: hidden or dimmed.
     pub fn cut(&self) -> bool {
+        self.label_show.is_some() || self.label_hide.is_some() || self.label_dim.is_some()
+    }
+
+    /// Whether what has this label is faint; the words count more than the table.
+    pub fn dims(&self, table: Option<&LabelTable>, label: i64) -> bool {
+        match &self.label_dim {
+            Some(all) => all.labels.has(label),
+            None => table.is_some_and(|table| table.dimmed.contains(&label)),
+        }
+    }
+
+    /// What is left of the opacity and of the colour of dimmed labels.
+    pub fn dim(&self) -> Result<f64, Error> {
+        let of_words = self.label_dim.as_ref().and_then(|all| all.share);
+        match of_words {
+            Some(share) => Ok(share),
+            None => Ok(self
+                .table()?
+                .and_then(|table| table.dim)
+                .unwrap_or(DEFAULT_DIM)),
+        }
+    }
+
+    /// True where words say which labels are left.
+    pub fn shows_some(&self) -> bool {
         self.label_show.is_some() || self.label_hide.is_some()
     }
 
@@ -125,6 +151,49 @@ impl FromStr for LabelList {
     }
 }
 
+impl FromStr for DimmedLabels {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (labels, share) = match text.split_once(':') {
+            None => (text, None),
+            Some((labels, share)) => {
+                let found = share
+                    .trim()
+                    .parse()
+                    .ok()
+                    .filter(|x| (0.0..=1.0).contains(x));
+                let wanted =
+                    || format!("wanted a number from 0 to 1 after the colon, found {share:?}");
+                (labels, Some(found.ok_or_else(wanted)?))
+            }
+        };
+        let labels = labels.parse()?;
+        Ok(Self { labels, share })
+    }
+}
+
+impl fmt::Display for DimmedLabels {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.labels.fmt(f)?;
+        self.share.map_or(Ok(()), |share| write!(f, ":{share}"))
+    }
+}
+
+impl TryFrom<String> for DimmedLabels {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+impl From<DimmedLabels> for String {
+    fn from(list: DimmedLabels) -> Self {
+        list.to_string()
+    }
+}
+
 impl fmt::Display for LabelList {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let words: Vec<_> = self
@@ -168,8 +237,28 @@ mod tests {
     #[test]
     fn what_is_no_list_of_labels_is_refused() {
         for text in ["", "a", "3-1", "1,,2", "1.5"] {
+            assert!(text.parse::<DimmedLabels>().is_err(), "{text}");
             let problem = text.parse::<LabelList>().expect_err(text);
             assert!(problem.contains("1,2,5-9"), "{text}: {problem}");
         }
+        for text in ["1:", "1:2", "1:-0.1", "1:x", "1:nan"] {
+            let problem = text.parse::<DimmedLabels>().expect_err(text);
+            assert!(problem.contains("from 0 to 1"), "{text}: {problem}");
+        }
+    }
+
+    #[test]
+    fn the_words_on_dimming_count_more_than_the_table() {
+        let text = r#"{"stratavox_transfer_function":1,"dim":[7],"labels":[[1,"a",0,0,1,1]]}"#;
+        let table = LabelTable::parse(text.as_bytes()).expect("a table");
+        let silent = LabelFlags::default();
+        assert!(silent.dims(Some(&table), 7) && !silent.dims(Some(&table), 3));
+        let flags = LabelFlags {
+            label_dim: Some("3,5-6:0.25".parse().expect("a list")),
+            ..LabelFlags::default()
+        };
+        assert!(flags.dims(Some(&table), 3) && !flags.dims(Some(&table), 7));
+        assert_eq!(flags.dim().expect("a share"), 0.25);
+        assert_eq!(String::from(flags.label_dim.expect("set")), "3,5-6:0.25");
     }
 }

@@ -31,6 +31,11 @@ pub struct LevelFlags {
     #[arg(long, value_name = "A,...", value_delimiter = ',', value_parser = super::finite, allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub iso_opacity: Vec<f64>,
+    /// iso: colour surfaces by another variable of INPUT, or by another number of its voxels, counted from 0; --tf,
+    /// --preset and --window are of its values then
+    #[arg(long, value_name = "VARIABLE|N", help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub iso_color_by: Option<String>,
 }
 
 const HEADING: &str = "Modes";
@@ -75,6 +80,12 @@ impl From<ColorWord> for String {
 impl LevelFlags {
     /// What can be said wrong before a voxel is read.
     pub fn check(&self) -> Result<(), Error> {
+        if self.iso_color_by.is_some() && !self.iso_color.is_empty() {
+            return Err(Error::usage(
+                "--iso-color and --iso-color-by both say which colours surfaces have",
+                "leave out one of them",
+            ));
+        }
         let (values, limit) = (self.iso.len(), MAX_LEVELS as usize);
         if values > limit {
             return Err(Error::usage(
@@ -174,6 +185,7 @@ mod tests {
             iso: iso.to_vec(),
             iso_color: color.iter().map(|c| c.parse().expect("a colour")).collect(),
             iso_opacity: opacity.to_vec(),
+            iso_color_by: None,
         }
     }
 

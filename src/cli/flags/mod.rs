@@ -7,7 +7,9 @@ mod camera;
 mod channels;
 mod classification;
 mod component;
+mod cuts;
 mod denoise;
+mod gradient_filter;
 mod gradients;
 mod inlined;
 mod input;
@@ -15,12 +17,13 @@ mod labels;
 mod levels;
 mod light;
 mod modes;
-mod not_built;
 mod numbers;
+mod occlusion;
 mod opacity;
 mod picture;
 mod sampling;
 mod section;
+mod shadows;
 mod subject;
 mod values;
 mod words;
@@ -30,6 +33,7 @@ pub use channels::{ChannelFlags, ChannelWord, Plan};
 pub use classification::{Classification, ClassificationFlags};
 pub use component::Component;
 pub use denoise::DenoiseWord;
+pub use gradient_filter::GradientFlags;
 pub use gradients::{boundaries_of, refuse_gradients_in};
 pub use inlined::{Inlined, function_in};
 pub use input::{InputFlags, relative};
@@ -37,7 +41,6 @@ pub use labels::LabelFlags;
 pub use levels::LevelFlags;
 pub use light::LightFlags;
 pub use modes::ModeFlags;
-pub use not_built::NotBuilt;
 pub use numbers::{Background, Numbers, Size, finite, positive};
 pub use opacity::OpacityFlags;
 pub use picture::PictureFlags;
@@ -76,6 +79,8 @@ pub struct SceneFlags {
     #[command(flatten)]
     pub light: LightFlags,
     #[command(flatten)]
+    pub gradient: GradientFlags,
+    #[command(flatten)]
     pub camera: CameraFlags,
     #[command(flatten)]
     pub section: SectionFlags,
@@ -101,11 +106,15 @@ impl SceneFlags {
     /// The same with other words of sampling.
     pub fn settings_of(&self, sampling: &SamplingFlags, depth: Depth) -> Result<Settings, Error> {
         let settings = self.section.settings(sampling, depth)?;
-        let shading = self.light.shading(settings.mode)?;
         let settings = Settings {
-            shading,
+            shading: self.light.shading(settings.mode)?,
+            ambient_occlusion: self.light.occlusion(settings.mode)?,
+            gradient_filter: self.gradient.filter(),
+            dim: self.labels.dim()?,
             ..settings
         };
+        self.light.shadows.unwrap_or_default().check(&settings)?;
+        sampling.check_ways(&settings)?;
         if !self.wants_slabs() {
             return Ok(settings);
         }
@@ -118,6 +127,12 @@ impl SceneFlags {
             Ok(()) => slabs,
             Err(_) => settings,
         })
+    }
+
+    /// False where nothing in the picture hangs on a gradient; a function that is read may make something of it.
+    fn may_have_gradients(&self) -> bool {
+        let mode = self.sampling.mode.unwrap_or_default().mode();
+        self.light.is_lit(mode) || !mode.is_projection() && self.classification.names_a_function()
     }
 
     /// True where the function asks for slabs and no word is against it.
@@ -136,8 +151,13 @@ impl SceneFlags {
             self.sampling.idle(),
             self.modes.idle(mode),
             self.light.idle(mode),
+            self.gradient.idle(self.may_have_gradients()),
             self.camera.idle(),
         ];
-        topics.concat()
+        let mut notes = topics.concat();
+        if self.light.is_half_angle() && self.sampling.order.is_some() {
+            notes.push("--order has no effect on half-angle slices, they come from the light");
+        }
+        notes
     }
 }

@@ -17,7 +17,7 @@ pub struct ModeFlags {
     #[arg(long, value_name = "VALUE", value_parser = finite, allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lmip_threshold: Option<f64>,
-    /// mida: from -1, composite, to 0, where new maxima clear what lies before them [default: 0]
+    /// mida: from -1, composite, to 0, where new maxima clear what lies before them, to 1, mip [default: 0]
     #[arg(long, value_name = "G", value_parser = finite, allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mida_gamma: Option<f64>,
@@ -100,6 +100,12 @@ impl ModeFlags {
                 "`stratavox render --help` says what these numbers mean",
             )
         })
+    }
+
+    /// The other variable that surfaces are coloured by.
+    pub fn paint(&self, mode: Mode) -> Option<&str> {
+        let word = self.levels.iso_color_by.as_deref();
+        word.filter(|_| mode == Mode::Iso)
     }
 
     /// Of several numbers a voxel.
@@ -291,11 +297,11 @@ mod tests {
             error.to_string()
         };
         let gamma = ModeFlags {
-            mida_gamma: Some(0.5),
+            mida_gamma: Some(1.5),
             ..ModeFlags::default()
         };
         let text = refused(&gamma, Technique::Raycast, Mode::Mida);
-        assert_eq!(text, "the gamma of MIDA is 0.5, wanted -1 to 0");
+        assert_eq!(text, "the gamma of MIDA is 1.5, wanted -1 to 1");
         assert_eq!(gamma.idle(Mode::Mip).len(), 1);
         assert!(gamma.idle(Mode::Mida).is_empty());
         let cue = ModeFlags {

@@ -1,6 +1,6 @@
 //! How large the picture is, what lies behind the volume, and which layers go with it.
 
-use super::{Background, Error, Size, words::not_built};
+use super::{Background, Error, Size};
 use crate::picture::LayerKind;
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
@@ -53,15 +53,15 @@ impl PictureFlags {
     }
 
     /// The layers asked for, each once, in the order of the words.
-    pub fn layers(&self) -> Result<Vec<LayerKind>, Error> {
+    pub fn layers(&self) -> Vec<LayerKind> {
         let mut layers = Vec::new();
         for word in &self.aov {
-            let layer = word.layer()?;
+            let layer = word.layer();
             if !layers.contains(&layer) {
                 layers.push(layer);
             }
         }
-        Ok(layers)
+        layers
     }
 }
 
@@ -74,22 +74,22 @@ pub enum LayerWord {
     Depth,
     Transmittance,
     Samples,
-    #[value(help = "not built yet")]
+    /// The label at the depth
     Label,
     /// World position at the depth, three numbers a pixel
     Position,
 }
 
 impl LayerWord {
-    fn layer(self) -> Result<LayerKind, Error> {
-        Ok(match self {
+    fn layer(self) -> LayerKind {
+        match self {
             Self::Value => LayerKind::Value,
             Self::Depth => LayerKind::Depth,
             Self::Transmittance => LayerKind::Transmittance,
             Self::Samples => LayerKind::Samples,
             Self::Position => LayerKind::Position,
-            Self::Label => return Err(not_built("--aov", self)),
-        })
+            Self::Label => LayerKind::Label,
+        }
     }
 }
 
@@ -103,20 +103,7 @@ mod tests {
             aov: vec![LayerWord::Depth, LayerWord::Value, LayerWord::Depth],
             ..PictureFlags::default()
         };
-        assert_eq!(
-            flags.layers().expect("layers"),
-            [LayerKind::Depth, LayerKind::Value]
-        );
-    }
-
-    #[test]
-    fn a_layer_that_is_not_built_is_named() {
-        let flags = PictureFlags {
-            aov: vec![LayerWord::Label],
-            ..PictureFlags::default()
-        };
-        let error = flags.layers().expect_err("refused");
-        assert_eq!(error.to_string(), "`--aov label` is not built yet");
+        assert_eq!(flags.layers(), [LayerKind::Depth, LayerKind::Value]);
     }
 
     #[test]

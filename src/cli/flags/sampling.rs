@@ -1,13 +1,15 @@
 //! Which samples are taken and what is done with them: flags to [`Settings`].
 
 use super::{
-    Error, Numbers, positive,
+    Error, Numbers,
+    cuts::{ClipBox, CutFacesWord},
+    positive,
     words::{ColorSpaceWord, FilterWord, LatticeWord, ModeWord, OrderWord, TechniqueWord},
 };
 use crate::{
     picture::ColorSpace,
     shaders::MAX_CLIP_PLANES,
-    technique::{ClipPlane, Jitter, Lattice, Settings},
+    technique::{ClipPlane, DEFAULT_DIM, Jitter, Lattice, Settings},
 };
 use clap::Args;
 use glam::DVec3;
@@ -77,6 +79,20 @@ pub struct SamplingFlags {
     #[arg(long, value_name = "NX,NY,NZ,D", allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub clip: Vec<Numbers<4>>,
+    /// Keep a box that may be turned: centre and size in world length, then degrees about the world's x, y and z, one
+    /// after the other; six of the 8 planes there are
+    #[arg(
+        long,
+        value_name = "CX,CY,CZ,SX,SY,SZ[,RX,RY,RZ]",
+        allow_hyphen_values = true
+    )]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub clip_box: Option<ClipBox>,
+    /// Show what --crop, --clip and --clip-box lay bare as an opaque face in the picture's own colours, or in the greys
+    /// of a window: what is over LO, as a scanner shows it
+    #[arg(long, value_name = "LO,HI", num_args = 0..=1, default_missing_value = "own", require_equals = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cut_faces: Option<CutFacesWord>,
     /// Float targets, no early termination, own filtering by texel fetch
     #[arg(long)]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
@@ -98,7 +114,7 @@ const TERMINATION_LINEAR: f32 = 1.0 / 8192.0;
 const TERMINATION_DISPLAY: f32 = 1.0 / 512.0;
 /// Which ways to sample go with which technique.
 const WAYS: &str = "--preintegrated is for --mode composite, --smooth for that with --technique slices-2d, --jitter for \
-                    --technique raycast";
+                    --technique raycast, and --cut-faces for that with --mode composite";
 /// Rays along one side of a pixel.
 const MAX_RAYS_PER_SIDE: u32 = 64;
 
@@ -130,16 +146,35 @@ impl SamplingFlags {
             termination,
             color_space,
             crop: self.crop.map(crop_box).transpose()?,
-            clip_planes: clip_planes(&self.clip)?,
+            clip_planes: self.clip_planes()?,
+            cut_faces: self.cut_faces.map(CutFacesWord::cut_faces),
             shading: None,
+            gradient_filter: Default::default(),
+            dim: DEFAULT_DIM,
+            ambient_occlusion: None,
             conformance: self.conformance,
             // Of the values, which are not known yet.
             per_mode: Default::default(),
         };
-        settings
-            .check_ways()
-            .map_err(|problem| Error::usage(problem.to_string(), WAYS))?;
+        self.check_ways(&settings)?;
         Ok(settings)
+    }
+
+    /// Those of `--clip`, then those of `--clip-box`.
+    fn clip_planes(&self) -> Result<Vec<ClipPlane>, Error> {
+        let of_box = self.clip_box.as_ref().map(ClipBox::planes);
+        let of_box = of_box.transpose()?.into_iter().flatten();
+        let planes: Vec<_> = clip_planes(&self.clip)?.into_iter().chain(of_box).collect();
+        if planes.len() > MAX_CLIP_PLANES as usize {
+            return Err(Error::usage(
+                format!(
+                    "--clip-box takes six clip planes and --clip {}: at most {MAX_CLIP_PLANES} are possible",
+                    self.clip.len()
+                ),
+                "use --crop for planes along the axes of the grid",
+            ));
+        }
+        Ok(planes)
     }
 
     /// True where a word says what is classified.
@@ -153,6 +188,12 @@ impl SamplingFlags {
             (self.preintegrated, self.preclassified) = (false, false);
             self.postclassified = false;
         }
+    }
+
+    /// Whether these settings go with the ways to sample that are asked for.
+    pub fn check_ways(&self, settings: &Settings) -> Result<(), Error> {
+        let checked = settings.check_ways();
+        checked.map_err(|problem| Error::usage(problem.to_string(), WAYS))
     }
 
     fn lattice(&self) -> Result<Lattice, Error> {
@@ -172,6 +213,10 @@ impl SamplingFlags {
         let technique = self.technique.unwrap_or_default();
         if self.order.is_some() && technique == TechniqueWord::Raycast {
             notes.push("--order has no effect on rays, they go front to back");
+        }
+        let is_cut = self.crop.is_some() || self.clip_box.is_some() || !self.clip.is_empty();
+        if self.cut_faces.is_some() && !is_cut {
+            notes.push("--cut-faces has no effect without --crop, --clip or --clip-box");
         }
         if self.lattice == Some(LatticeWord::Ray) && technique != TechniqueWord::Raycast {
             notes.push("--lattice ray has no effect on slices, they have a lattice of their own");

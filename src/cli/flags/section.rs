@@ -14,6 +14,7 @@ use super::{
 };
 use crate::{
     camera::{Camera, Frame, Projection, up_for},
+    shaders::MAX_CLIP_PLANES,
     technique::{ClipPlane, Lattice, Mode, Settings, Technique},
 };
 use clap::Args;
@@ -114,6 +115,16 @@ impl SectionFlags {
         let fitted = 2.0 * half(up).max(half(right) * height / width);
         let view_height = camera.view_height.unwrap_or(fitted);
 
+        if settings.clip_planes.len() + 2 > MAX_CLIP_PLANES as usize {
+            return Err(Error::usage(
+                format!(
+                    "--section cuts with two planes, beside the {} of --clip and --clip-box: at most {MAX_CLIP_PLANES} are \
+                     possible",
+                    settings.clip_planes.len()
+                ),
+                "use --crop for planes along the axes of the grid",
+            ));
+        }
         let half_thickness = 0.5
             * self
                 .thickness

@@ -1,6 +1,5 @@
 //! The words that flags of sampling take, built or not, and what they stand for.
 
-use super::Error;
 use crate::{
     picture::ColorSpace,
     technique::{Filter, Lattice, Mode, Order, Technique},
@@ -174,13 +173,4 @@ impl ColorSpaceWord {
             Self::Display => ColorSpace::Display,
         }
     }
-}
-
-/// `--flag word` is not built yet.
-pub fn not_built(flag: &str, word: impl ValueEnum) -> Error {
-    let name = word
-        .to_possible_value()
-        .map(|value| value.get_name().to_owned())
-        .unwrap_or_default();
-    Error::NotBuilt(format!("`{flag} {name}`"))
 }

@@ -21,7 +21,7 @@ use crate::{
     shaders::MAX_CHANNELS,
     technique::{Filter, Mode, PerMode, Role, Settings},
     transfer::{CHANNEL_COLORS, Classified, LabelTable, TransferFunction, Window, of_channel},
-    volume::{Header, Meaning, Source, Volume, labels::labels_of, read_all},
+    volume::{Grid, Header, Meaning, Source, Volume, labels::labels_of, read_all},
 };
 use std::sync::Arc;
 
@@ -115,6 +115,9 @@ impl Shown {
         }
         if settings.shading.is_some() && !is_alone {
             return Err(Error::not_shaded_together());
+        }
+        if settings.ambient_occlusion.is_some() && !is_alone {
+            return Err(Error::not_occluded_together());
         }
         let reader = Reader {
             scene,
@@ -252,7 +255,11 @@ pub fn shows_several(scene: &SceneFlags, header: &Header) -> Result<bool, Error>
 
 /// True where words name something that is seen together with the volume.
 fn has_beside(scene: &SceneFlags) -> bool {
-    scene.labels.labels.is_some() || scene.opacity.are_given() || scene.sampling.preclassified
+    let mode = scene.sampling.mode.unwrap_or_default().mode();
+    scene.labels.labels.is_some()
+        || scene.modes.paint(mode).is_some()
+        || scene.opacity.are_given()
+        || scene.sampling.preclassified
 }
 
 /// What can be said wrong before anything is opened.
@@ -333,7 +340,8 @@ impl Reader<'_> {
             },
             ..self.scene.classification.clone()
         };
-        let has_table = self.scene.labels.label_tf.is_some() && self.scene.labels.labels.is_none();
+        let words = &self.scene.labels;
+        let has_table = (words.label_tf.is_some() || words.cut()) && words.labels.is_none();
         let may_name = says_nothing(flags)? && self.mode == Mode::Composite;
         if (has_table || is_labels)
             && may_name
@@ -349,8 +357,20 @@ impl Reader<'_> {
                 others: Others::Channels(Vec::new()),
             });
         }
-        let classification = flags.classification(&volume, self.mode)?;
+        if words.cut() && words.labels.is_none() {
+            return Err(Error::usage(
+                "--label-show, --label-hide and --label-dim are for labels in their own colours, in --mode composite",
+                "leave out --preset, --tf, --window and --mode, or lay a map over INPUT with --labels FILE",
+            ));
+        }
         let modes = &self.scene.modes;
+        let none = ClassificationFlags::default();
+        let (flags, others) = match modes.paint(self.mode) {
+            // The words are of what colours the surfaces.
+            Some(word) => (&none, vec![self.paint(word, &volume.grid())?]),
+            None => (flags, Vec::new()),
+        };
+        let classification = flags.classification(&volume, self.mode)?;
         let (per_mode, note) = modes.per_mode(
             self.mode,
             flags.window()?,
@@ -372,7 +392,50 @@ impl Reader<'_> {
             per_mode,
             filter: found_labels.then_some(Filter::Nearest),
             height_factor,
-            others: Others::Channels(Vec::new()),
+            others: Others::Channels(others),
+        })
+    }
+
+    /// Another variable, or another number of the voxels, on the grid of the surfaces that it colours.
+    fn paint(&self, word: &str, grid: &Grid) -> Result<Other, Error> {
+        let mut scene = self.scene.clone();
+        scene.modes.levels.iso_color_by = None;
+        match word.parse() {
+            Ok(number) => scene.input.component = Some(Component::Number(number)),
+            Err(_) => scene.input.variable = Some(word.to_owned()),
+        }
+        let source = open(&scene.input, &scene.input.limits())?;
+        let (volume, _) = load_from(source, &scene, self.device, self.progress)?;
+        if volume.grid() != *grid {
+            return Err(Error::usage(
+                format!("--iso-color-by {word}: it lies on another grid than the surfaces"),
+                "a variable with the same axes colours them",
+            ));
+        }
+        let function = match scene
+            .classification
+            .classification(&volume, Mode::Composite)?
+        {
+            Classification::Function(function) => function,
+            Classification::RangeOfPicture => {
+                Window::of_range(volume.value_range).grey(Classified::Samples)
+            }
+        };
+        if function.is_graded() {
+            return Err(Error::usage(
+                "--iso-color-by takes the colours of values, and this function is of their gradient too",
+                "take a function of the value alone",
+            ));
+        }
+        let ends = [function.color.first(), function.color.last()];
+        let [low, high] = ends.map(|point| point.map_or(0.0, |point| point.value));
+        self.progress.note(&format!(
+            "surfaces are coloured by {word}, from {low:.6} to {high:.6}; --window, --preset and --tf say otherwise"
+        ));
+        Ok(Other {
+            volume,
+            function,
+            role: Role::Numbers,
         })
     }
 
@@ -383,15 +446,22 @@ impl Reader<'_> {
         Ok(match (table, present) {
             (table, Some(present)) => {
                 let table = table.unwrap_or_else(LabelTable::default);
-                Some(table.function(present.into_keys(), labels::diagonal(volume)))
+                let function = table.function(present.into_keys(), labels::diagonal(volume));
+                let words = &self.scene.labels;
+                Some(LabelTable::cut(
+                    function,
+                    |label| words.shows(label),
+                    |label| words.dims(Some(&table), label),
+                    words.dim()?,
+                ))
             }
-            (Some(_), None) => {
+            (_, None) if self.scene.labels.label_tf.is_some() || self.scene.labels.cut() => {
                 return Err(Error::usage(
-                    "--label-tf names labels, and the values of INPUT are none",
+                    "--label-tf, --label-show, --label-hide and --label-dim are for labels, and the values of INPUT are none",
                     "--labels FILE lays a label map over INPUT",
                 ));
             }
-            (None, None) => None,
+            (_, None) => None,
         })
     }
 

@@ -3,7 +3,7 @@
 pub mod reference;
 
 use super::inputs::mode_word;
-use super::{Inputs, Mode, Take, Words};
+use super::{Inputs, Mix, Mode, Take, Words};
 use crate::gpu::{Bindings, ComputePipeline, Error, Gpu, Image, Resource};
 use crate::shaders::shader;
 use ash::vk;
@@ -26,7 +26,7 @@ impl Raycast {
     }
 
     /// The same for a mode that composites: [`Mode::Composite`], or of one volume [`Mode::Mida`] and
-    /// [`Mode::Iso`].
+    /// [`Mode::Iso`]; surfaces of one volume are coloured by a second one where there are two ([`Mix::Channels`]).
     ///
     /// # Errors
     /// Where the device refuses.
@@ -39,11 +39,17 @@ impl Raycast {
             mix,
             take,
         } = words;
-        let (mode, mix) = (mode_word(of), mix.word());
+        let mode = mode_word(of);
         let name = match take {
+            _ if of == Mode::Iso && *mix == Mix::Channels => {
+                format!("isosurface.by.{filter}.{holes}")
+            }
             _ if of == Mode::Iso => format!("isosurface.{filter}.{holes}"),
             Take::Slab => format!("raycast_slab.composite.{lattice}.{filter}.{holes}"),
-            _ => format!("raycast.{mode}{mix}.{lattice}.{filter}.{holes}.{transfer}"),
+            _ => format!(
+                "raycast.{mode}{}.{lattice}.{filter}.{holes}.{transfer}",
+                mix.word()
+            ),
         };
         Ok(Self {
             gpu: Arc::clone(gpu),

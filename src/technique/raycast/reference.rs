@@ -54,12 +54,13 @@ fn gather<R: Real>(
 }
 
 /// The same in [`crate::technique::Mode::Mida`]; `sample_at` gives the value and what it is made of, (red, green,
-/// blue, extinction).
+/// blue, extinction), `classify` that of the largest value.
 pub fn accumulated<R: Real>(
     frame: &Frame,
     lattice: Lattice,
     pixel: [R; 2],
     sample_at: impl Fn([R; 3]) -> Option<(R, [R; 4])>,
+    classify: impl Fn(R) -> [R; 4],
 ) -> (Composite<R>, u32) {
     let mut so_far = Mida::default();
     let samples = march(frame, lattice, pixel, sample_at, |sample, segment| {
@@ -70,5 +71,5 @@ pub fn accumulated<R: Real>(
         }
         ControlFlow::Continue(())
     });
-    (so_far.gathered, samples)
+    (so_far.picture(frame, classify), samples)
 }
