@@ -354,6 +354,7 @@ impl Matter {
                             value: 0.55,
                             half_width: 1.5,
                         },
+                        second: None,
                     }],
                 }),
                 ..function()
