@@ -167,7 +167,7 @@ const ENTRIES: &[(&str, &[Slot])] = &[
     ("merge", &[("operator", &["over", "under", "add"])]),
     (
         "denoise",
-        &[("kernel", &["gaussian", "median", "bilateral"])],
+        &[("kernel", &["gaussian", "median", "bilateral", "nlm"])],
     ),
 ];
 
