@@ -22,6 +22,7 @@ pub mod phantom;
 mod prefilter;
 mod read;
 mod reduce;
+mod regrid;
 pub mod sample;
 mod source;
 mod statistics;
@@ -35,6 +36,7 @@ pub use joint::{JointHistogram, steepest_gradient};
 pub use magnitude::Magnitude;
 pub use prefilter::{Coefficients, Spline};
 pub use reduce::Reduced;
+pub use regrid::regridded;
 pub use source::{
     Channel, Format, Header, Limits, Loss, Meaning, Pick, Piece, Problem, ReadError, Rescale,
     Series, Source, VoxelBox, Wanted,
