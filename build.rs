@@ -159,6 +159,8 @@ const ENTRIES: &[(&str, &[Slot])] = &[
             ("holes", &["none"]),
         ],
     ),
+    ("slices_3d_half", &[ONE, NARROW, HOLES, TABLE]),
+    ("slices_3d_half", &[ONE, NARROW_FETCHED, HOLES, POINTS]),
     (
         "resolve",
         &[("source", &["picture", "value", "mean", "cued"])],
@@ -169,6 +171,17 @@ const ENTRIES: &[(&str, &[Slot])] = &[
         "denoise",
         &[("kernel", &["gaussian", "median", "bilateral", "nlm"])],
     ),
+    // Once for many pictures: classified by the points in all of them.
+    (
+        "light_cells",
+        &[
+            ("layout", &["box", "stack"]),
+            ("filter", &["nearest", "kernel"]),
+            HOLES,
+            POINTS,
+        ],
+    ),
+    ("light_volume", &[]),
 ];
 
 fn main() {

@@ -163,7 +163,9 @@ fn passed(before: Surfaces, world: Ray, voxel: Ray, index: u32, t: f32) -> Surfa
     let place = voxel.origin + t * voxel.direction;
     var color = painted(index, place);
     if frame.light_count != 0u {
-        color = shade(color, gradient_at(place), world.direction);
+        color = shade(color, gradient_at(place), world.direction, place);
+    } else {
+        color *= ambient_at(place);
     }
     var next = before;
     next.color += before.transmittance * opacity * color;

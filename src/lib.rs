@@ -50,6 +50,8 @@
 //! | | accumulation, layers | `ComputeWrite` | `ComputeWrite` |
 //! | [`technique::Slicer`]: inside the host's rendering | textures, table | `Sampled` | `Sampled` |
 //! | | the host's target | `ColorTarget` | `ColorTarget` |
+//! | [`technique::slices_3d::HalfAngleSlicer`]: outside rendering | textures, table | `Sampled` | `Sampled` |
+//! | | accumulation, light buffer | `ColorTarget` | `ColorTarget` |
 //! | [`resolve`]: inside the host's rendering | accumulation | `FragmentSampled` | `FragmentSampled` |
 //! | | the host's target | `ColorTarget` | `ColorTarget` |
 //!
@@ -113,7 +115,7 @@
 //!         let slicer = Slicer::new(gpu, technique, picture, order, &words, target_format)?;
 //!         let bind = |brick| {
 //!             let (ring, volume, transfer) = (&ring, &volume, Some(&transfer));
-//!             slicer.bind(&Inputs { ring, volume, brick, transfer, beside: &[] })
+//!             slicer.bind(&Inputs { ring, volume, brick, transfer, beside: &[], light: None })
 //!         };
 //!         let bound = volume.bricks().iter().map(bind).collect::<Result<_, _>>()?;
 //!         Ok(Self { volume, transfer, ring, slicer, bound })

@@ -2,6 +2,7 @@
 
 use crate::camera::Camera;
 use crate::shaders::MAX_CHANNELS;
+use crate::technique::mixture::opacities_have_colors;
 use crate::technique::{Error, Mix, Mode, Role, Settings, View};
 use crate::transfer::TransferFunction;
 use crate::volume::Volume;
@@ -13,7 +14,7 @@ pub struct Channel<'a> {
     pub volume: &'a Volume,
     /// As [`Scene::transfer`].
     pub transfer: Option<&'a TransferFunction>,
-    /// Numbers, or labels that lie over (or hide) what the others show.
+    /// Numbers, labels that lie over (or hide) what the others show, or how opaque the channel before it is.
     pub role: Role,
 }
 
@@ -31,6 +32,10 @@ pub enum Beside<'a> {
     /// three multiplied with alpha where there is one ([`crate::volume::read_colors`] makes them so). The transfer
     /// function is over alpha, or over luma (0 black to 1 white); its own colours are not used. Composite only.
     Colors(&'a [&'a Volume]),
+    /// Green, blue and depth of voxels that are classified already, the scene's volume is red
+    /// ([`crate::technique::preclassified::preclassified`] makes them). Of the transfer function only the reference
+    /// length is used, which must be that of the depths. Composite only.
+    Classified(&'a [&'a Volume]),
 }
 
 impl<'a> Beside<'a> {
@@ -39,7 +44,7 @@ impl<'a> Beside<'a> {
         match *self {
             Beside::Nothing => Vec::new(),
             Beside::Channels(channels) => channels.iter().map(|c| c.volume).collect(),
-            Beside::Colors(volumes) => volumes.to_vec(),
+            Beside::Colors(volumes) | Beside::Classified(volumes) => volumes.to_vec(),
         }
     }
 }
@@ -67,7 +72,7 @@ impl<'a> Scene<'a> {
     pub fn mix(&self) -> Mix {
         match self.beside {
             Beside::Channels(channels) if !channels.is_empty() => Mix::Channels,
-            Beside::Colors(_) => Mix::Colors,
+            Beside::Colors(_) | Beside::Classified(_) => Mix::Colors,
             _ if self.is_graded() => Mix::Graded,
             Beside::Nothing | Beside::Channels(_) => Mix::Alone,
         }
@@ -77,6 +82,11 @@ impl<'a> Scene<'a> {
     fn is_graded(&self) -> bool {
         let functions = self.transfers().into_iter().flatten();
         functions.into_iter().any(TransferFunction::is_graded)
+    }
+
+    /// True where gradients make something of the picture.
+    pub fn has_gradients(&self) -> bool {
+        self.settings.shading.is_some() || self.is_graded()
     }
 
     /// Its volumes, that of the scene first.
@@ -91,6 +101,7 @@ impl<'a> Scene<'a> {
             Beside::Channels(channels) => channels.iter().map(|c| c.role).collect(),
             Beside::Nothing => Vec::new(),
             Beside::Colors(volumes) => vec![Role::Numbers; volumes.len()],
+            Beside::Classified(volumes) => vec![Role::Material; volumes.len()],
         };
         [Role::Numbers].into_iter().chain(beside).collect()
     }
@@ -99,7 +110,7 @@ impl<'a> Scene<'a> {
     pub fn transfers(&self) -> Vec<Option<&'a TransferFunction>> {
         let beside = match self.beside {
             Beside::Channels(channels) => channels.iter().map(|c| c.transfer).collect(),
-            Beside::Nothing | Beside::Colors(_) => Vec::new(),
+            Beside::Nothing | Beside::Colors(_) | Beside::Classified(_) => Vec::new(),
         };
         [self.transfer].into_iter().chain(beside).collect()
     }
@@ -121,12 +132,15 @@ impl<'a> Scene<'a> {
     /// # Errors
     /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`], [`Error::NotMixed`],
     /// [`Error::NotShaded`], [`Error::NotShadedTogether`], [`Error::NotGraded`], [`Error::NotGradedTogether`],
-    /// [`Error::FilterAlone`], and those of [`Settings::check`].
+    /// [`Error::NotOccluded`], [`Error::NotOccludedTogether`], [`Error::FilterAlone`], [`Error::OpacityOfNothing`],
+    /// and those of [`Settings::check`].
     pub fn check(&self) -> Result<(), Error> {
         let volumes = self.volumes();
         let (wanted, limit) = (volumes.len(), MAX_CHANNELS as usize);
         let grid = self.volume.grid();
-        let has_labels = self.roles().contains(&Role::Labels);
+        let roles = self.roles();
+        // What a voxel is called, and what makes it opaque, are no numbers that can be projected.
+        let only_composite = |role: &Role| matches!(role, Role::Labels | Role::Opacity);
         let Settings { mode, filter, .. } = *self.settings;
         self.settings.check()?;
         if self.mix() != Mix::Alone {
@@ -137,6 +151,9 @@ impl<'a> Scene<'a> {
         }
         if self.settings.shading.is_some() && mode.is_projection() {
             return Err(Error::NotShaded { mode });
+        }
+        if self.settings.ambient_occlusion.is_some() && mode.is_projection() {
+            return Err(Error::NotOccluded { mode });
         }
         if self.is_graded() && mode.is_projection() {
             return Err(Error::NotGraded { mode });
@@ -150,15 +167,22 @@ impl<'a> Scene<'a> {
             _ if self.is_graded() => Err(Error::NotGradedTogether),
             Mix::Channels if mode == Mode::Iso => self.check_painted(),
             _ if self.settings.shading.is_some() => Err(Error::NotShadedTogether),
+            _ if self.settings.ambient_occlusion.is_some() => Err(Error::NotOccludedTogether),
             // Modes that project draw them one by one.
             _ if filter.kernel().is_some() && !mode.is_projection() => {
                 Err(Error::FilterAlone { filter })
             }
             _ if volumes.iter().any(|volume| volume.grid() != grid) => Err(Error::OtherGrid),
+            Mix::Colors if matches!(self.beside, Beside::Classified(_)) && wanted != 4 => {
+                Err(Error::NoColor { found: wanted })
+            }
             Mix::Colors if !(3..=4).contains(&wanted) => Err(Error::NoColor { found: wanted }),
             Mix::Colors if mode != Mode::Composite => Err(Error::NotMixed { mode }),
             Mix::Channels if mode == Mode::Mida => Err(Error::NotMixed { mode }),
-            Mix::Channels if mode.is_projection() && has_labels => Err(Error::NotMixed { mode }),
+            Mix::Channels if mode.is_projection() && roles.iter().any(only_composite) => {
+                Err(Error::NotMixed { mode })
+            }
+            Mix::Channels if !opacities_have_colors(&roles) => Err(Error::OpacityOfNothing),
             _ if wanted > limit => Err(Error::TooManyChannels { wanted, limit }),
             _ => Ok(()),
         }
@@ -171,6 +195,9 @@ impl<'a> Scene<'a> {
             Beside::Channels([one]) if one.role == Role::Numbers => {
                 if filter.kernel().is_some() {
                     return Err(Error::FilterAlone { filter });
+                }
+                if self.settings.wants_light_volume() {
+                    return Err(Error::NotOccludedTogether);
                 }
                 if one.volume.grid() != self.volume.grid() {
                     return Err(Error::OtherGrid);

@@ -11,7 +11,8 @@ use stratavox::offscreen::Renderer;
 use stratavox::picture::LayerKind;
 use stratavox::scene::Scene;
 use stratavox::technique::{
-    ClipPlane, CutFaces, Filter, Lattice, Level, Mode, Order, Settings, Shading, Technique,
+    ClipPlane, CutFaces, Filter, GradientFilter, Lattice, Level, Mode, Order, Settings, Shading,
+    Technique,
 };
 use stratavox::volume::Volume;
 
@@ -75,20 +76,26 @@ fn settings() -> Vec<Settings> {
     techniques.into_iter().flat_map(of_technique).collect()
 }
 
-/// Gradients reach one voxel further than their filter.
+/// Gradients reach one voxel further than their filter, or as far as operators of their own.
 fn lit_settings() -> Vec<Settings> {
-    let lit = |(technique, filter)| Settings {
+    use GradientFilter::{Analytic, Central, Cubic, Sobel};
+    let lit = |(technique, filter, gradient_filter)| Settings {
         technique,
         filter,
+        gradient_filter,
         shading: Some(Shading::default()),
         conformance: true,
         ..Settings::default()
     };
     let turns = [
-        (Technique::Raycast, Filter::Cubic),
-        (Technique::Slices3d, Filter::Linear),
-        (Technique::Slices2d, Filter::Cubic),
-        (Technique::Slices2d, Filter::Nearest),
+        (Technique::Raycast, Filter::Cubic, Central),
+        (Technique::Slices3d, Filter::Linear, Central),
+        (Technique::Slices2d, Filter::Cubic, Central),
+        (Technique::Slices2d, Filter::Nearest, Central),
+        (Technique::Raycast, Filter::Linear, Cubic),
+        (Technique::Slices3d, Filter::CatmullRom, Analytic),
+        (Technique::Slices2d, Filter::Cubic, Cubic),
+        (Technique::Slices2d, Filter::Nearest, Sobel),
     ];
     turns.map(lit).into()
 }

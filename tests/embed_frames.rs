@@ -108,6 +108,7 @@ impl<'h> Ready<'h> {
         let resolve = Resolve::new(gpu, Mode::Composite, Blend::Over, FORMAT).unwrap();
         let inputs = Inputs {
             beside: &[],
+            light: None,
             ring: &ring,
             volume: &there.volume,
             brick: &there.volume.bricks()[0],

@@ -52,6 +52,7 @@ fn drawn_and_left_in(layout: vk::ImageLayout) {
     let pass = Slicer::new(gpu, Technique::Slices3d, picture, order, &words, FORMAT).unwrap();
     let inputs = Inputs {
         beside: &[],
+        light: None,
         ring: &ring,
         volume: &there.volume,
         brick: &there.volume.bricks()[0],

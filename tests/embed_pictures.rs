@@ -36,6 +36,7 @@ fn targets() -> [(vk::Format, ColorSpace); 3] {
 fn inputs<'a>(ring: &'a ParameterRing, there: &'a OnDevice, brick: usize) -> Inputs<'a> {
     Inputs {
         beside: &[],
+        light: None,
         ring,
         volume: &there.volume,
         brick: &there.volume.bricks()[brick],

@@ -90,6 +90,7 @@ fn drawn(device: &mut Headless, format: vk::Format, order: Order, slices: u32) -
     let slicer = Slicer::new(&gpu, Technique::Slices3d, drawn, order, &words, format).unwrap();
     let inputs = Inputs {
         beside: &[],
+        light: None,
         ring: &ring,
         volume: &voxels,
         brick: &voxels.bricks()[0],

@@ -1,14 +1,21 @@
 //! World gradients against closed forms (`algorithms.md` T7, A19).
 
+#[path = "../examples/quality/marschner_lobb.rs"]
+mod marschner_lobb;
+#[path = "../examples/quality/normals.rs"]
+mod normals;
 mod shared;
 
 use glam::{DAffine3, DMat3, DVec3, dvec3};
-use shared::{oblique_shots, sheared_affine, volume_of};
+use shared::{device, oblique_shots, sheared_affine, volume_of, waves};
+use stratavox::offscreen::Renderer;
 use stratavox::shaders::Frame;
-use stratavox::technique::Mode;
 use stratavox::technique::gradient::gradient_of;
+use stratavox::technique::gradient_taps::weighted_gradient;
+use stratavox::technique::{GradientFilter, Mode, Operator, Settings};
+use stratavox::volume::kernel::{Kernel, convolved};
 use stratavox::volume::sample::{linear, nearest};
-use stratavox::volume::{Grid, Volume};
+use stratavox::volume::{Coefficients, Grid, Spline, Volume};
 
 const DIMS: [u32; 3] = [16, 14, 12];
 
@@ -21,6 +28,20 @@ fn frame_on(grid: Grid) -> Frame {
 fn gradient_at(volume: &Volume, frame: &Frame, p: DVec3) -> DVec3 {
     let moved = |step: [i32; 3]| (p + DVec3::from_array(step.map(f64::from))).to_array();
     gradient_of::<f64>(frame, |step| linear(volume, moved(step))).into()
+}
+
+const KERNELS: [Kernel; 3] = [Kernel::Quadratic, Kernel::Cubic, Kernel::CatmullRom];
+const OPERATORS: [Operator; 5] = [
+    Operator::Linear,
+    Operator::Sobel,
+    Operator::Kernel(KERNELS[0]),
+    Operator::Kernel(KERNELS[1]),
+    Operator::Kernel(KERNELS[2]),
+];
+
+/// The same by weights of voxels.
+fn weighted_at(volume: &Volume, frame: &Frame, operator: Operator, p: DVec3) -> DVec3 {
+    weighted_gradient::<f64>(frame, volume, operator, p.to_array()).into()
 }
 
 /// Voxel centres, this many voxels off the edge.
@@ -49,10 +70,15 @@ fn a_linear_field_has_its_slope_on_every_grid() {
         let volume = volume_of(DIMS, affine, value);
         let frame = frame_on(volume.grid());
         for p in centers(DIMS, 2).map(|p| p + dvec3(0.21, -0.37, 0.45)) {
-            let found = gradient_at(&volume, &frame, p);
-            // Values of at most 60 are stored in f32, off by 2e-6 each; the matrix is in f32 too.
-            let error = (found - slope).length();
-            assert!(error < 1e-5, "{affine}: {found} at {p}");
+            let weighted = OPERATORS.map(|operator| weighted_at(&volume, &frame, operator, p));
+            for found in [gradient_at(&volume, &frame, p)]
+                .into_iter()
+                .chain(weighted)
+            {
+                // Values of at most 60 are stored in f32, off by 2e-6 each; the matrix is in f32 too.
+                let error = (found - slope).length();
+                assert!(error < 1e-5, "{affine}: {found} at {p}");
+            }
             // What is wrong on such a grid: directions instead of covectors, or no matrix at all.
             if affine != DAffine3::IDENTITY {
                 let m = affine.matrix3;
@@ -99,6 +125,110 @@ fn the_central_difference_of_a_cube_is_off_by_the_square_of_the_spacing() {
             let error = (found - wanted).length() / wanted.length();
             assert!(error < 1e-5, "{found} at {p}, not {wanted}");
         }
+    }
+}
+
+#[test]
+fn the_derivative_of_the_cubic_spline_through_a_cube_is_exact() {
+    let h = 0.5;
+    let volume = volume_of([48, 5, 5], DAffine3::from_scale(DVec3::splat(h)), |p| {
+        (h * (p.x - 24.0)).powi(3)
+    });
+    let coefficients = Coefficients::new(&volume, Spline::Cubic, [true; 3]);
+    let frame = frame_on(volume.grid());
+    let cubic = Operator::Kernel(Kernel::Cubic);
+    for i in 0..160 {
+        let p = dvec3(16.0 + 0.1 * f64::from(i), 2.6, 2.2);
+        let x = h * (p.x - 24.0);
+        let wanted = DVec3::X * 3.0 * x * x;
+        let error = |found: DVec3| (found - wanted).length();
+        // Coefficients of at most 100 in f32 are off by 4e-6 each, their difference over two voxels by 8e-6; what the
+        // ends make is under 0.27^16 of the largest value, 1e-6.
+        let found = weighted_at(coefficients.volume(), &frame, cubic, p);
+        assert!(error(found) < 2e-5, "{found} at {p}, not {wanted}");
+        assert!(
+            error(gradient_at(&volume, &frame, p)) > 0.1,
+            "differences at {p}"
+        );
+    }
+}
+
+#[test]
+fn the_derivative_of_a_kernel_is_how_its_values_rise() {
+    let volume = volume_of(DIMS, DAffine3::IDENTITY, waves);
+    let frame = frame_on(volume.grid());
+    for kernel in KERNELS {
+        for p in centers(DIMS, 0).map(|p| p + dvec3(0.31, -0.24, 0.08)) {
+            const STEP: f64 = 1e-4;
+            let at = |p: DVec3| convolved::<f64>(&volume, kernel, p.to_array()).unwrap();
+            // Beyond the outermost centres values stay; there the slope is that at the edge.
+            let far = volume.grid().far_corner();
+            let p = p.clamp(DVec3::splat(0.6), far - 0.6);
+            let rise = |axis: DVec3| (at(p + STEP * axis) - at(p - STEP * axis)) / (2.0 * STEP);
+            let wanted = DVec3::from_array(DVec3::AXES.map(rise));
+            let found = weighted_at(&volume, &frame, Operator::Kernel(kernel), p);
+            // The third derivative of a piece is under 10, and STEP^2 / 6 of it is the error of a difference.
+            let error = (found - wanted).length();
+            assert!(error < 2e-8, "{kernel:?}: {found} at {p}, not {wanted}");
+        }
+    }
+}
+
+#[test]
+fn weights_of_voxels_make_the_central_difference_of_the_trilinear_field() {
+    let mut volume = volume_of(DIMS, DAffine3::IDENTITY, waves);
+    let count = volume.dims.iter().product::<u32>();
+    volume.validity = Some((0..count).map(|i| u8::from(i % 397 != 5)).collect());
+    let frame = frame_on(volume.grid());
+    let mut dark = 0;
+    for offset in [dvec3(0.31, -0.24, 0.08), dvec3(-0.5, 0.0, 0.2), DVec3::ZERO] {
+        for p in centers(DIMS, 0).map(|p| p + offset) {
+            let wanted = gradient_at(&volume, &frame, p);
+            let found = weighted_at(&volume, &frame, Operator::Linear, p);
+            assert!(
+                (found - wanted).length() < 1e-14,
+                "{found} at {p}, not {wanted}"
+            );
+            dark += u32::from(wanted == DVec3::ZERO);
+        }
+    }
+    assert!(dark > 100, "{dark} gradients beside holes");
+}
+
+#[test]
+fn sobels_operator_smooths_across_each_difference() {
+    let volume = volume_of(DIMS, DAffine3::IDENTITY, |p| p.x * p.y * p.y);
+    let frame = frame_on(volume.grid());
+    for p in centers(DIMS, 1) {
+        // A quarter, a half and a quarter of y^2 is y^2 + 1/2.
+        let wanted = dvec3(p.y * p.y + 0.5, 2.0 * p.x * p.y, 0.0);
+        let found = weighted_at(&volume, &frame, Operator::Sobel, p);
+        assert_eq!(found, wanted, "at {p}");
+    }
+}
+
+#[test]
+fn normals_on_the_device_are_as_good_as_known_of_each_operator() {
+    let signal = marschner_lobb::signal();
+    let mut renderer = Renderer::new(device(), &signal).unwrap();
+    let mut angle = |gradient_filter, conformance| {
+        let settings = Settings {
+            gradient_filter,
+            conformance,
+            ..Settings::default()
+        };
+        let points = [3, 24];
+        normals::mean_angle_degrees(&mut renderer, &signal, &settings, points).unwrap()
+    };
+    // 11.1 and 29.3 degrees by an independent program.
+    for conformance in [true, false] {
+        let cubic = angle(GradientFilter::Cubic, conformance);
+        assert!(cubic <= 12.0, "cubic: {cubic} degrees");
+        let central = angle(GradientFilter::Central, conformance);
+        assert!(
+            (25.0..33.0).contains(&central),
+            "central: {central} degrees"
+        );
     }
 }
 

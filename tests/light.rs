@@ -8,7 +8,7 @@ use shared::{
 };
 use stratavox::offscreen::{Renderer, reference};
 use stratavox::picture::{ColorSpace, Picture};
-use stratavox::technique::{Filter, Light, Mode, Shading};
+use stratavox::technique::{Filter, GradientFilter, Light, Mode, Settings, Shading};
 use stratavox::transfer::{ColorPoint, TransferFunction};
 use stratavox::volume::{Grid, Volume};
 
@@ -33,13 +33,13 @@ fn shadings() -> [Shading; 2] {
         specular: 0.4,
         shininess: 23.0,
         lights: lights(),
+        ..Shading::default()
     };
     [Shading::default(), lit]
 }
 
 /// In every placement and projection, each technique with each kind of filter, in turns.
 fn assert_drawn_as_computed(volume: &Volume, what: &str) {
-    let transfer = ramps();
     let mut renderer = Renderer::new(device(), volume).unwrap();
     let [headlight, lights] = shadings();
     let turns = [
@@ -51,19 +51,87 @@ fn assert_drawn_as_computed(volume: &Volume, what: &str) {
         let (filter, shading) = &turns[(i + i / 6) % turns.len()];
         let dark = shot.with(|settings| settings.filter = *filter);
         let lit = dark.with(|settings| settings.shading = Some(shading.clone()));
-        let scene = lit.scene(volume, Some(&transfer));
-        let found = renderer.render(&scene, &[]).unwrap().picture;
-        let double = reference::render::<f64>(&scene).unwrap();
-        let single = reference::render::<f32>(&scene).unwrap();
-        let all = [&double, &single, &found].map(|p| p.pixels.as_flattened());
-        let what = format!("{what}, {filter:?}, {}", shot.what());
-        compare(&what, 4 * found.width, all, 1.0);
-        let dark = reference::render::<f32>(&dark.scene(volume, Some(&transfer))).unwrap();
-        let pixels = || dark.pixels.iter().zip(&single.pixels);
-        let changed = pixels().filter(|(a, b)| (a[0] - b[0]).abs() > 0.01).count();
-        assert!(changed > 100, "{what}: light changes {changed} pixels");
-        assert!(pixels().all(|(a, b)| a[3] == b[3]), "{what}: opacity");
+        assert_changes(&mut renderer, volume, &dark, &lit, what);
     }
+}
+
+/// The lit picture is that of its twin, and another than `without`, by colour alone.
+fn assert_changes(
+    renderer: &mut Renderer,
+    volume: &Volume,
+    without: &Shot,
+    lit: &Shot,
+    what: &str,
+) {
+    let transfer = ramps();
+    let scene = lit.scene(volume, Some(&transfer));
+    let found = renderer.render(&scene, &[]).unwrap().picture;
+    let double = reference::render::<f64>(&scene).unwrap();
+    let single = reference::render::<f32>(&scene).unwrap();
+    let all = [&double, &single, &found].map(|p| p.pixels.as_flattened());
+    let Settings {
+        filter,
+        gradient_filter,
+        ..
+    } = lit.settings;
+    let what = format!("{what}, {filter:?}, {gradient_filter:?}, {}", lit.what());
+    compare(&what, 4 * found.width, all, 1.0);
+    let without = reference::render::<f32>(&without.scene(volume, Some(&transfer))).unwrap();
+    let pixels = || without.pixels.iter().zip(&single.pixels);
+    let changed = pixels()
+        .filter(|(a, b)| (a[0] - b[0]).abs() > 0.002)
+        .count();
+    assert!(
+        20 * changed > found.pixels.len(),
+        "{what}: {changed} pixels change"
+    );
+    assert!(pixels().all(|(a, b)| a[3] == b[3]), "{what}: opacity");
+}
+
+/// Each technique with each operator, beside a filter that reads something else or the same.
+fn assert_gradients_drawn_as_computed(volume: &Volume, what: &str) {
+    use GradientFilter::{Analytic, Central, Cubic, Linear, Sobel};
+    let shots = oblique_shots(GRID(), Mode::Composite);
+    let mut renderer = Renderer::new(device(), volume).unwrap();
+    let [headlight, lights] = shadings();
+    for (i, (filter, gradient_filter)) in [
+        (Filter::Cubic, Linear),
+        (Filter::Nearest, Sobel),
+        (Filter::Linear, Cubic),
+        (Filter::Cubic, Cubic),
+        (Filter::Quadratic, Analytic),
+        (Filter::CatmullRom, Analytic),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        // One of the two placements of each technique, in one of the two projections.
+        for technique in [0, 2, 4] {
+            let shot = &shots[(technique + i % 2 + 6 * (i / 2 % 2)) % shots.len()];
+            let small = Shot {
+                extent: [24, 20],
+                ..shot.clone()
+            };
+            let central = small.with(|settings| {
+                settings.filter = filter;
+                settings.shading = Some([&headlight, &lights][i % 2].clone());
+                settings.gradient_filter = Central;
+            });
+            let other = central.with(|settings| settings.gradient_filter = gradient_filter);
+            assert_changes(&mut renderer, volume, &central, &other, what);
+        }
+    }
+}
+
+#[test]
+fn every_gradient_filter_lights_what_its_twin_lights_whatever_the_filter() {
+    let volume = volume_of(GRID().dims, sheared_affine(), waves);
+    assert_gradients_drawn_as_computed(&volume, "whole");
+}
+
+#[test]
+fn every_gradient_filter_is_dark_where_a_voxel_with_a_weight_has_no_data() {
+    assert_gradients_drawn_as_computed(&with_holes(), "with holes");
 }
 
 #[test]
@@ -74,10 +142,14 @@ fn every_technique_and_filter_lights_what_its_twin_lights() {
 
 #[test]
 fn a_gradient_with_a_hole_in_it_is_dark_on_the_device_as_in_the_twin() {
+    assert_drawn_as_computed(&with_holes(), "with holes");
+}
+
+fn with_holes() -> Volume {
     let mut volume = volume_of(GRID().dims, sheared_affine(), waves);
     let count = volume.dims.iter().product::<u32>();
     volume.validity = Some((0..count).map(|i| u8::from(i % 499 != 7)).collect());
-    assert_drawn_as_computed(&volume, "with holes");
+    volume
 }
 
 /// The colour of a surface in f64, written a second time: `sampling.md` 7 word by word.

@@ -10,7 +10,7 @@ use stratavox::camera::{Camera, Projection};
 use stratavox::offscreen::{Error, Renderer, reference};
 use stratavox::picture::{LayerKind, Picture};
 use stratavox::scene::{Beside, Scene};
-use stratavox::technique::{self, Filter, Settings, Shading};
+use stratavox::technique::{self, Filter, GradientFilter, Settings, Shading};
 use stratavox::volume::Volume;
 
 const LENGTH: u32 = 400;
@@ -48,26 +48,33 @@ fn a_ray_is_as_long_as_its_twin_up_to_the_limit_of_the_driver() {
     let camera = along_z();
     let [plain, holes] = [false, true].map(long_volume);
     let mut refused = 0;
-    for (volume, filter, conformance, shading) in [
-        (&plain, Filter::Linear, false, None),
-        (&plain, Filter::Linear, true, None),
-        (&plain, Filter::CatmullRom, false, None),
-        (&plain, Filter::Cubic, true, Some(Shading::default())),
-        (&holes, Filter::Nearest, false, None),
-        (&holes, Filter::Linear, false, None),
-        (&holes, Filter::Linear, false, Some(Shading::default())),
-        (&holes, Filter::Cubic, false, None),
-        (&holes, Filter::Cubic, false, Some(Shading::default())),
-        (&holes, Filter::Quadratic, true, Some(Shading::default())),
+    let lit = |filter| (Some(Shading::default()), filter);
+    let dark = (None, GradientFilter::Central);
+    let plain_light = lit(GradientFilter::Central);
+    for (volume, filter, conformance, (shading, gradient_filter)) in [
+        (&plain, Filter::Linear, false, dark.clone()),
+        (&plain, Filter::Linear, true, dark.clone()),
+        (&plain, Filter::CatmullRom, false, dark.clone()),
+        (&plain, Filter::Linear, true, lit(GradientFilter::Cubic)),
+        (&holes, Filter::Linear, true, lit(GradientFilter::Sobel)),
+        (&holes, Filter::Cubic, true, lit(GradientFilter::Linear)),
+        (&plain, Filter::Cubic, true, plain_light.clone()),
+        (&holes, Filter::Nearest, false, dark.clone()),
+        (&holes, Filter::Linear, false, dark.clone()),
+        (&holes, Filter::Linear, false, plain_light.clone()),
+        (&holes, Filter::Cubic, false, dark.clone()),
+        (&holes, Filter::Cubic, false, plain_light.clone()),
+        (&holes, Filter::Quadratic, true, plain_light.clone()),
     ] {
         let what = format!(
-            "{filter:?}, conformance {conformance}, {}",
+            "{filter:?}, {gradient_filter:?}, conformance {conformance}, {}",
             shading.is_some()
         );
         let mut renderer = Renderer::new(device(), volume).unwrap();
         let mut draw = |samples_per_voxel: f64| {
             let settings = Settings {
                 filter,
+                gradient_filter,
                 conformance,
                 shading: shading.clone(),
                 samples_per_voxel,
@@ -99,5 +106,5 @@ fn a_ray_is_as_long_as_its_twin_up_to_the_limit_of_the_driver() {
         assert_eq!(samples(&found), samples(&twin), "{what}: {at_most} a voxel");
         assert!(samples(&found)[0] > 90.0, "{what}");
     }
-    println!("{refused} of 10 kinds of picture have a limit here");
+    println!("{refused} of 13 kinds of picture have a limit here");
 }

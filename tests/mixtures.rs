@@ -3,6 +3,11 @@
 
 mod shared;
 
+#[path = "mixtures/opacity.rs"]
+mod opacity;
+#[path = "mixtures/preclassified.rs"]
+mod preclassified;
+
 use glam::{DAffine3, DVec3};
 use shared::{
     Shot, Worst, compare, device, device_with, oblique_shots, ramps, sheared_affine, volume_of,
@@ -151,7 +156,7 @@ fn check_against_twins(
             let others = all.iter().map(|channel| channel.volume);
             [volume].into_iter().chain(others).collect()
         }
-        Beside::Colors(all) => [&[volume], all].concat(),
+        Beside::Colors(all) | Beside::Classified(all) => [&[volume], all].concat(),
     };
     let mut renderer = renderer(&volumes);
     for filter in [Filter::Nearest, Filter::Linear] {

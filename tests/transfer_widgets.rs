@@ -4,8 +4,8 @@
 
 use glam::{DAffine3, DVec3};
 use stratavox::transfer::{
-    ColorPoint, FileProblem, Interpolation, JointCounts, OpacityPoint, Shape, TransferFunction,
-    Window, boundaries, transfer_function_from_json, transfer_function_to_json,
+    Cells, ColorPoint, FileProblem, Interpolation, JointCounts, OpacityPoint, Second, Shape,
+    TransferFunction, Window, boundaries, transfer_function_from_json, transfer_function_to_json,
 };
 use stratavox::volume::{JointHistogram, Rescale, Volume, Voxels, steepest_gradient};
 
@@ -17,8 +17,12 @@ const ALL: &str = r#"{"stratavox_transfer_function": 1,
     {"shape": "region", "points": [[10, 0.1], [20, 0.3], [60, 0]]},
     {"shape": "triangle", "value": 30, "half_width": 12, "threshold": 0.1, "top": 0.9, "opacity": 0.4},
     {"shape": "rectangle", "values": [5, 15], "gradients": [0.2, 0.4], "opacity": 1},
-    {"shape": "gaussian", "value": 70, "gradient": 0.3, "sigma_value": 8, "sigma_gradient": 0.1, "opacity": 0.6},
-    {"shape": "image", "values": [0, 80], "gradients": [0, 1], "rows": [[0, 1], [0.5, 0.25], [1, 0]], "opacity": 0.7}
+    {"shape": "gaussian", "value": 70, "gradient": 0.3, "sigma_value": 8, "sigma_gradient": 0.1, "opacity": 0.6,
+     "second": 0.1, "sigma_second": 0.05},
+    {"shape": "image", "values": [0, 80], "gradients": [0, 1], "rows": [[0, 1], [0.5, 0.25], [1, 0]], "opacity": 0.7,
+     "second": [-0.5, -0.2, 0, 0.3]},
+    {"shape": "image", "values": [0, 60], "gradients": [0, 2], "rows": ["ff000080ffFFff00", "0102030405060708"],
+     "opacity": 0.9, "second": [-1, 1]}
     ]}"#;
 
 fn all() -> TransferFunction {
@@ -29,10 +33,10 @@ fn all() -> TransferFunction {
 fn every_shape_is_read_and_comes_back_as_it_was_written() {
     let function = all();
     let graded = function.graded.as_ref().expect("widgets");
-    assert_eq!(graded.widgets.len(), 6);
+    assert_eq!(graded.widgets.len(), 7);
     assert_eq!(graded.steepest, Some(40.0));
     assert_eq!(graded.widgets[0].srgb, Some([1.0, 0.5, 0.0]));
-    let cells = vec![0.0, 1.0, 0.5, 0.25, 1.0, 0.0];
+    let cells = Cells::Shares(vec![0.0, 1.0, 0.5, 0.25, 1.0, 0.0]);
     let image = Shape::Image {
         values: [0.0, 80.0],
         gradients: [0.0, 1.0],
@@ -40,6 +44,23 @@ fn every_shape_is_read_and_comes_back_as_it_was_written() {
         cells,
     };
     assert_eq!(graded.widgets[5].shape, image);
+    let (middle, sigma) = (0.1, 0.05);
+    let bell = Second::Bell { middle, sigma };
+    assert_eq!(graded.widgets[4].second, Some(bell));
+    let corners = Second::Trapezoid([-0.5, -0.2, 0.0, 0.3]);
+    assert_eq!(graded.widgets[5].second, Some(corners));
+    let box_shaped = Second::Trapezoid([-1.0, -1.0, 1.0, 1.0]);
+    assert_eq!(graded.widgets[6].second, Some(box_shaped));
+    let colors = [
+        [255, 0, 0, 128],
+        [255, 255, 255, 0],
+        [1, 2, 3, 4],
+        [5, 6, 7, 8],
+    ];
+    let Shape::Image { columns, cells, .. } = &graded.widgets[6].shape else {
+        panic!("no image");
+    };
+    assert_eq!((*columns, cells), (2, &Cells::Rgba(colors.into())));
     let text = transfer_function_to_json(&function);
     let back = transfer_function_from_json(text.as_bytes()).expect(&text);
     assert_eq!(back, function, "{text}");
@@ -139,6 +160,48 @@ fn wrong_fields_of_widgets_are_named_with_what_was_wanted_and_found() {
             "\"sigma_value\": 0",
             "`widgets[4].sigma_value`",
             "found 0",
+        ),
+        (
+            "\"sigma_second\": 0.05",
+            "\"sigma_second\": 0",
+            "`widgets[4].sigma_second`",
+            "found 0",
+        ),
+        (
+            "[-0.5, -0.2, 0, 0.3]",
+            "[-0.5, -0.7, 0, 0.3]",
+            "`widgets[5].second`",
+            "found [-0.5,-0.7,0,0.3]",
+        ),
+        (
+            "\"second\": [-1, 1]",
+            "\"second\": [-1]",
+            "`widgets[6].second`",
+            "found [-1]",
+        ),
+        (
+            "0102030405060708",
+            "01020304050607x8",
+            "`widgets[6].rows[1]`",
+            "found \"01020304050607x8\"",
+        ),
+        (
+            "0102030405060708",
+            "01020304",
+            "`widgets[6].rows[1]`",
+            "found \"01020304\"",
+        ),
+        (
+            "\"opacity\": 0.9,",
+            "\"opacity\": 0.9, \"color\": [1, 0, 0],",
+            "`widgets[6].color`",
+            "have colours",
+        ),
+        (
+            "\"rows\": [\"ff000080ffFFff00\", \"0102030405060708\"]",
+            "\"file\": \"a.png\"",
+            "`widgets[6].file`",
+            "found a.png",
         ),
         (
             "[0.5, 0.25]",
@@ -344,4 +407,88 @@ fn the_steepest_gradient_of_a_ramp_is_its_slope() {
     );
     let slope = steepest_gradient(&volume.expect("a right volume"));
     assert!((slope - 6.0).abs() < 1e-12, "{slope}");
+}
+
+/// Red over half of blue in a PNG: the lower row is that of the smaller gradients.
+#[cfg(feature = "png")]
+#[test]
+fn an_image_is_read_from_a_png_beside_the_file_and_stands_in_what_is_written() {
+    use stratavox::transfer::read_transfer_function;
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("tf.json");
+    let text = r#"{"stratavox_transfer_function": 1, "widgets": [{"shape": "image", "values": [0, 9],
+        "gradients": [0, 1], "file": "NAME", "opacity": 0.5}]}"#;
+    let png =
+        |name: &str, kind: png::ColorType, depth: png::BitDepth, size: [u32; 2], data: &[u8]| {
+            let mut bytes = Vec::new();
+            let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);
+            encoder.set_color(kind);
+            encoder.set_depth(depth);
+            let mut writer = encoder.write_header().expect("a header");
+            writer.write_image_data(data).expect("rows");
+            writer.finish().expect("an end");
+            std::fs::write(folder.path().join(name), bytes).expect("a file");
+            std::fs::write(&path, text.replace("NAME", name)).expect("a file");
+            read_transfer_function(&path)
+        };
+    let (rgba, eight) = (png::ColorType::Rgba, png::BitDepth::Eight);
+    let (red, blue) = ([255, 0, 0, 255], [0, 0, 255, 128]);
+    let function = png("two.png", rgba, eight, [1, 2], &[red, blue].concat()).expect("an image");
+    let widgets = &function.graded.as_ref().expect("widgets").widgets;
+    let wanted = Shape::Image {
+        values: [0.0, 9.0],
+        gradients: [0.0, 1.0],
+        columns: 1,
+        cells: Cells::Rgba(vec![blue, red]),
+    };
+    assert_eq!(widgets[0].shape, wanted);
+    let back = transfer_function_to_json(&function);
+    assert!(back.contains("0000ff80"), "{back}");
+    let again = transfer_function_from_json(back.as_bytes()).expect(&back);
+    assert_eq!(again, function);
+    let grey = png("grey.png", png::ColorType::Grayscale, eight, [1, 1], &[7]).expect("an image");
+    let Shape::Image { cells, .. } = &grey.graded.expect("widgets").widgets[0].shape else {
+        panic!("no image");
+    };
+    assert_eq!(
+        cells,
+        &Cells::Rgba(vec![[7, 7, 7, 255]]),
+        "without alpha all of it"
+    );
+
+    let refused = |result: Result<TransferFunction, _>, wanted: [&str; 2]| {
+        let error: stratavox::transfer::FileError = result.expect_err("refused");
+        let said = error.to_string();
+        for word in ["tf.json", "`widgets[0].file`", wanted[0], wanted[1]] {
+            assert!(said.contains(word), "no {word:?}: {said}");
+        }
+    };
+    let deep = png(
+        "deep.png",
+        png::ColorType::Grayscale,
+        png::BitDepth::Sixteen,
+        [1, 1],
+        &[1, 2],
+    );
+    refused(deep, ["8 bits a channel", "16 bits"]);
+    let wide = png(
+        "wide.png",
+        png::ColorType::Grayscale,
+        eight,
+        [70_000, 1],
+        &[0; 70_000],
+    );
+    refused(wide, ["65536 pixels", "70000 x 1"]);
+    let read = |name: &str| {
+        std::fs::write(&path, text.replace("NAME", name)).expect("a file");
+        read_transfer_function(&path)
+    };
+    std::fs::write(folder.path().join("no.png"), "no picture").expect("a file");
+    refused(read("no.png"), ["a PNG file", "found"]);
+    refused(read("none.png"), ["a PNG file", "none.png"]);
+    refused(
+        read("../two.png"),
+        ["in the folder of this one", "../two.png"],
+    );
+    refused(read("/two.png"), ["in the folder of this one", "/two.png"]);
 }

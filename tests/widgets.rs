@@ -2,6 +2,9 @@
 
 mod shared;
 
+#[path = "widgets/second.rs"]
+mod second;
+
 use glam::{DAffine3, DVec3, dvec3};
 use shared::{
     Shot, compare, device, oblique_shots, placements, ramps, sheared_affine, volume_of, waves,
@@ -12,7 +15,7 @@ use stratavox::picture::Picture;
 use stratavox::scene::{Beside, Channel, Scene};
 use stratavox::technique::{Filter, Mode, Role, Settings, Shading};
 use stratavox::transfer::{
-    ColorPoint, Graded, Interpolation, OpacityPoint, Shape, TransferFunction, Widget,
+    Cells, ColorPoint, Graded, Interpolation, OpacityPoint, Shape, TransferFunction, Widget,
 };
 use stratavox::volume::{Grid, Volume};
 
@@ -26,6 +29,7 @@ fn widget(opacity: f64, shape: Shape) -> Widget {
         srgb: None,
         opacity,
         shape,
+        second: None,
     }
 }
 
@@ -292,13 +296,16 @@ fn one_of_each() -> TransferFunction {
             values: [0.1, 0.9],
             gradients: [0.05, 0.8],
             columns: 4,
-            cells: vec![0.0, 0.2, 0.5, 0.1, 1.0, 0.3, 0.0, 0.9, 0.4, 0.1, 0.6, 0.2],
+            cells: Cells::Shares(vec![
+                0.0, 0.2, 0.5, 0.1, 1.0, 0.3, 0.0, 0.9, 0.4, 0.1, 0.6, 0.2,
+            ]),
         },
     ];
     let widgets = shapes.into_iter().enumerate().map(|(i, shape)| Widget {
         srgb: (i % 2 == 0).then_some([0.9, 0.2 * i as f64, 0.1]),
         opacity: 0.05 + 0.03 * i as f64,
         shape,
+        second: None,
     });
     TransferFunction {
         graded: Some(Graded {

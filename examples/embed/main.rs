@@ -86,6 +86,7 @@ unsafe fn draw(host: &Host) -> Result<(), Box<dyn Error>> {
     let bind = |brick| {
         let inputs = Inputs {
             beside: &[],
+            light: None,
             ring: &ring,
             volume: &voxels,
             brick,

@@ -4,8 +4,8 @@ use glam::{DAffine3, DMat3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
 use stratavox::scene::{Beside, Channel, Scene};
 use stratavox::technique::{
-    ClipPlane, CutFaces, Filter, Lattice, Level, Light, Mode, Order, PerMode, Role, Settings,
-    Shading, Technique,
+    AmbientOcclusion, ClipPlane, CutFaces, Filter, Lattice, Level, Light, Mode, Order, PerMode,
+    Role, Settings, Shading, Shadows, Technique,
 };
 use stratavox::transfer::{
     ColorPoint, Graded, Interpolation, OpacityPoint, Shape, TransferFunction, Widget,
@@ -141,6 +141,35 @@ pub const FEATURES: &[Feature] = &[
         s.shading = Some(lights());
     }),
     feature(
+        "ambient occlusion",
+        "`--ambient-occlusion`",
+        Seen::Alone,
+        |s| {
+            s.ambient_occlusion = Some(AmbientOcclusion {
+                strength: 0.9,
+                radius_world: None,
+            });
+        },
+    ),
+    feature("shadows", "`--shadows volume`", Seen::Alone, |s| {
+        let light_size_degrees = 6.0;
+        s.shading = Some(Shading {
+            shadows: Shadows::Volume { light_size_degrees },
+            ..lights()
+        });
+    }),
+    feature(
+        "light and the shadows of half-angle slices",
+        "`--shading phong --shadows half-angle`",
+        Seen::Alone,
+        |s| {
+            let mut lit = lights();
+            lit.lights.truncate(1);
+            lit.shadows = Shadows::HalfAngle;
+            s.shading = Some(lit);
+        },
+    ),
+    feature(
         "value and gradient",
         "`widgets`, `gradient_opacity`, `--preset boundaries`",
         Seen::Graded,
@@ -176,6 +205,7 @@ fn lights() -> Shading {
             light(dvec3(1.0, -2.0, 0.7), [1.0, 0.9, 0.8]),
             light(dvec3(-0.3, 0.2, 3.0), [0.2, 0.3, 0.6]),
         ],
+        ..Shading::default()
     }
 }
 

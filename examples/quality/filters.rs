@@ -1,11 +1,10 @@
 //! Filters: the error on the signal of Marschner and Lobb, and what a frame takes.
 //!
-//! RMS of (filtered - exact) at 40 voxels an axis over [-1, 1], at points of [-0.8, 0.8], sampled on the device: each
-//! ray takes one sample, in the middle of a slab of half a voxel.
+//! RMS of (filtered - exact), sampled on the device.
 
-use glam::{DAffine3, DQuat, DVec3};
+use super::marschner_lobb::{camera, heights, signal, slab};
 use std::error::Error;
-use stratavox::camera::{BoundingSphere, Camera, Lens, Projection, View};
+use stratavox::camera::{BoundingSphere, Camera, Lens, View};
 use stratavox::gpu::{DeviceChoice, Headless, Options};
 use stratavox::offscreen::Renderer;
 use stratavox::picture::LayerKind;
@@ -13,7 +12,7 @@ use stratavox::scene::Scene;
 use stratavox::technique::{Filter, Mode, Settings};
 use stratavox::transfer::{Classified, Window};
 use stratavox::volume::field::{Field, MarschnerLobb};
-use stratavox::volume::{Limits, Pick, Rescale, Volume, Voxels, phantom};
+use stratavox::volume::{Limits, Pick, Volume, phantom};
 
 /// Word, filter, and the RMS error that an independent program found.
 const FILTERS: [(&str, Filter, f64); 7] = [
@@ -26,8 +25,8 @@ const FILTERS: [(&str, Filter, f64); 7] = [
     ("catmull-rom", Filter::CatmullRom, 0.0233),
 ];
 
-const SIDE: u32 = 40;
 const SLABS: u32 = 50;
+const PIXELS: u32 = 100;
 const EXTENT: [u32; 2] = [256, 256];
 const FRAMES: usize = 5;
 
@@ -63,26 +62,6 @@ pub fn print() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The centres of the outermost voxels lie at -1 and 1.
-fn world_from_voxel() -> DAffine3 {
-    let spacing = 2.0 / f64::from(SIDE - 1);
-    let corner = DVec3::splat(-1.0 - 0.5 * spacing);
-    DAffine3::from_scale_rotation_translation(DVec3::splat(spacing), DQuat::IDENTITY, corner)
-}
-
-fn signal() -> Volume {
-    let field = MarschnerLobb::default();
-    let numbers = (0..SIDE.pow(3)).map(|i| {
-        let index = [i % SIDE, i / SIDE % SIDE, i / (SIDE * SIDE)];
-        let voxel = DVec3::from_array(index.map(f64::from)) + 0.5;
-        field.value(world_from_voxel().transform_point3(voxel)) as f32
-    });
-    let voxels = Voxels::F32(numbers.collect());
-    let rescale = Rescale::default();
-    Volume::from_voxels([SIDE; 3], world_from_voxel(), voxels, rescale, None)
-        .expect("as many voxels as dims say")
-}
-
 fn rms(
     renderer: &mut Renderer,
     signal: &Volume,
@@ -90,27 +69,10 @@ fn rms(
     conformance: bool,
 ) -> Result<f64, Box<dyn Error>> {
     let field = MarschnerLobb::default();
-    let camera = Camera {
-        eye: -3.0 * DVec3::Z,
-        target: DVec3::ZERO,
-        up: DVec3::Y,
-        projection: Projection::Orthographic { view_height: 1.6 },
-        zoom: 1.0,
-    };
     let transfer = Window::of_range(signal.value_range).grey(Classified::Projection);
-    let extent_pixels = [100, 100];
-    let rays = camera.rays(extent_pixels);
-    let side = f64::from(SIDE);
     let (mut squares, mut count) = (0.0, 0);
-    for slab in 0..SLABS {
-        let middle = -0.8 + 1.6 * (f64::from(slab) + 0.5) / f64::from(SLABS);
-        let voxel = world_from_voxel()
-            .inverse()
-            .transform_point3(middle * DVec3::Z);
-        let crop = [
-            DVec3::new(0.0, 0.0, voxel.z - 0.25),
-            DVec3::new(side, side, voxel.z + 0.25),
-        ];
+    for height in heights(SLABS) {
+        let (crop, points) = slab(height, PIXELS);
         let settings = Settings {
             mode: Mode::Mip,
             filter,
@@ -122,15 +84,12 @@ fn rms(
             beside: Default::default(),
             volume: signal,
             transfer: Some(&transfer),
-            camera: &camera,
-            extent_pixels,
+            camera: &camera(),
+            extent_pixels: [PIXELS; 2],
             settings: &settings,
         };
         let found = renderer.render(&scene, &[LayerKind::Value])?.picture;
-        for (i, value) in found.layers[0].values.iter().enumerate() {
-            let pixel = [i % 100, i / 100].map(|n| n as f64 + 0.5);
-            let (origin, _) = rays.at(pixel[0], pixel[1]);
-            let point = DVec3::new(origin.x, origin.y, middle);
+        for (value, point) in found.layers[0].values.iter().zip(points) {
             squares += (f64::from(*value) - field.value(point)).powi(2);
             count += 1;
         }

@@ -6,6 +6,8 @@
 //! ```
 
 mod filters;
+mod marschner_lobb;
+mod normals;
 mod popping;
 mod studio;
 mod wood_grain;
@@ -17,6 +19,7 @@ type Table = fn() -> Result<(), Box<dyn Error>>;
 
 const TABLES: &[(&str, Table)] = &[
     ("filters", filters::print),
+    ("normals", normals::print),
     ("popping", popping::print),
     ("wood-grain", wood_grain::print),
 ];

@@ -14,6 +14,20 @@ fn shifted(place: Place, voxels: vec3<f32>) -> Place {
     return place + voxels;
 }
 
+// Where a place is in voxel space.
+fn voxel_of(place: Place) -> vec3<f32> {
+    return place;
+}
+
+// The texel of a voxel, the nearest that the brick holds.
+fn texel_at(values: Values, voxel: vec3<i32>) -> vec4<f32> {
+    return textureLoad(values, texel_in_brick(voxel), 0);
+}
+
+fn texel_in_brick(voxel: vec3<i32>) -> vec3<i32> {
+    return clamp(voxel - vec3<i32>(frame.brick_origin), vec3(0), vec3<i32>(frame.brick_dims) - 1);
+}
+
 fn volume_value(place: Place) -> f32 {
     return filtered(volume, volume_coding(), place);
 }

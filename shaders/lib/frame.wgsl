@@ -25,7 +25,7 @@ struct Frame {
     slope: f32,
     direction_dy: vec3<f32>,
     intercept: f32,
-    // The camera's forward direction: normal of the planes.
+    // The camera's forward direction, or half way between it and the light's: normal of the planes.
     forward: vec3<f32>,
     codes_are_integers: u32,
     // The same as a covector of voxel space: which way each grid axis runs away from the eye.
@@ -76,6 +76,10 @@ struct Frame {
     channel_codes_are_integers: vec4<u32>,
     channel_is_labels: vec4<u32>,
     channel_has_holes: vec4<u32>,
+    // 1: says how opaque the channel before it is, and is not seen itself.
+    channel_is_opacity: vec4<u32>,
+    // Not 0: the four are light and optical depth per reference length of classified voxels, not a colour.
+    colors_are_classified: u32,
     channel_table_first: vec4<f32>,
     channel_table_scale: vec4<f32>,
     channel_table_count: vec4<u32>,
@@ -131,6 +135,10 @@ struct Frame {
     kernel: u32,
     // World length of the shortest side of a voxel.
     smallest_spacing: f32,
+    // How gradients are made, and code from the texels that they are made of: see gradient_taps.wgsl.
+    gradient_operator: u32,
+    gradient_scale: f32,
+    gradient_codes_are_integers: u32,
     // What is left of extinction and colour where a label is dimmed.
     dim: f32,
     // Cut faces: 0 none, 1 in the picture's own colours, 2 in greys, by (value - cut_low) * cut_scale.
@@ -139,6 +147,18 @@ struct Frame {
     cut_scale: f32,
     // Nothing lies behind this recording.
     is_last_brick: u32,
+    // The light volume: cells of its grid along each axis, and how many of them a voxel is long.
+    light_cells: vec3<f32>,
+    // How much darker ambient light is where nothing comes in, 0 to 1; 0 without occlusion.
+    occlusion_strength: f32,
+    light_cells_per_voxel: vec3<f32>,
+    // World length by which a sample asks for shadow nearer to the light.
+    shadow_reach: f32,
+    has_shadows: u32,
+    // The bundle of the first light.
+    shadow_bundle: u32,
+    // Where a point of the world lies in the light's picture, in its texels: across and down.
+    light_rows: array<vec4<f32>, 2>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -5,3 +5,7 @@
 fn volume_is_valid(footprint: Footprint) -> bool {
     return frame.channel_has_holes[0] == 0u || all_valid(validity, footprint);
 }
+
+fn voxel_is_valid(voxel: vec3<i32>) -> bool {
+    return is_valid_at(validity, voxel);
+}

@@ -2,7 +2,7 @@
 //
 //     sigma = sum of sigma_i        c = sum of sigma_i c_i / sigma
 //
-// where a label is dimmed
+// A channel that is opaque by the next one has c_i of its own value, sigma_i of the next one's. Where a label is dimmed
 //
 //     sigma = d sigma               c = y + d (c - y),  y the luminance of c
 //
@@ -13,12 +13,20 @@
 fn material_of(sample: Sample) -> Classified {
     var light = vec3(0.0);
     var extinction = 0.0;
+    var color_before = vec3(0.0);
+    var before_has = false;
     for (var c = 0u; c < frame.channel_count; c++) {
-        if sample.has_data[c] {
+        let has = sample.has_data[c];
+        if has {
             let one = classify_channel(c, sample.values[c]);
-            light += one.extinction * one.color;
-            extinction += one.extinction;
+            let is_opacity = frame.channel_is_opacity[c] != 0u;
+            if (before_has || !is_opacity) && !is_opaque_by_next(c) {
+                light += one.extinction * select(one.color, color_before, is_opacity);
+                extinction += one.extinction;
+            }
+            color_before = one.color;
         }
+        before_has = has;
     }
     if extinction == 0.0 {
         return Classified(vec3(0.0), 0.0);

@@ -1,10 +1,13 @@
-// Volumes of colour bring their own; the transfer function says how opaque it is.
+// Volumes of colour bring their own; the transfer function says how opaque it is. Classified voxels bring both.
 // Twin: src/technique/mixture.rs.
 
 #import color
 #import transfer_{transfer}
 
 fn material_of(sample: Sample) -> Classified {
+    if frame.colors_are_classified != 0u {
+        return Classified(sample.srgb, sample.value / frame.reference_length);
+    }
     let extinction = classify(sample.value).extinction;
     if frame.color_space_is_display != 0u {
         return Classified(sample.srgb, extinction);

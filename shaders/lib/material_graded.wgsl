@@ -1,29 +1,49 @@
-// What a sample is made of where gradients count: first classified, then lit.
+// What a sample is made of where gradients or light count: first classified, then lit.
 // Twin: src/technique/shading.rs, src/transfer/widgets.rs.
 
 #import transfer_{transfer}
 #import widgets
+#import second
 #import shade
 
-// Not on a cut face, which is seen along no direction.
-fn is_lit(sample: Sample) -> bool {
-    return frame.light_count != 0u && any(sample.ray_direction != vec3(0.0));
-}
-
 fn material_of(sample: Sample) -> Classified {
-    if are_widgets() {
-        let gradient = gradient_at(sample.place);
-        let material = classify_by_gradient(sample.value, length(gradient));
-        if material.extinction == 0.0 || !is_lit(sample) {
-            return material;
-        }
-        return Classified(shade(material.color, gradient, sample.ray_direction), material.extinction);
-    }
-    let material = classify(sample.value);
+    let has_widgets = are_widgets();
+    var material = classify(sample.value);
     // What is transparent shows no light: no gradient is made for it.
-    if material.extinction == 0.0 || !is_lit(sample) {
+    if !has_widgets && material.extinction == 0.0 {
         return material;
     }
-    let gradient = gradient_at(sample.place);
-    return Classified(shade(material.color, gradient, sample.ray_direction), material.extinction);
+    // In one place: look-ups of a wide filter take drivers long to compile.
+    var gradient = vec3(0.0);
+    if has_widgets || (frame.light_count != 0u && !is_on_face(sample)) {
+        gradient = gradient_at(sample.place);
+    }
+    if has_widgets {
+        var second = 0.0;
+        if wants_second() {
+            second = second_derivative_at(sample.place, gradient);
+        }
+        material = classify_by_gradient(material, sample.value, length(gradient), second);
+        if material.extinction == 0.0 {
+            return material;
+        }
+    }
+    return Classified(lit(material.color, gradient, sample), material.extinction);
+}
+
+// A cut face is seen along no direction, and in its own colour.
+fn is_on_face(sample: Sample) -> bool {
+    return all(sample.ray_direction == vec3(0.0));
+}
+
+// Without lights all light is ambient.
+fn lit(color: vec3<f32>, gradient: vec3<f32>, sample: Sample) -> vec3<f32> {
+    if is_on_face(sample) {
+        return color;
+    }
+    let voxel = voxel_of(sample.place);
+    if frame.light_count == 0u {
+        return ambient_at(voxel) * color;
+    }
+    return shade(color, gradient, sample.ray_direction, voxel);
 }

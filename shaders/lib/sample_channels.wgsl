@@ -9,15 +9,25 @@ struct Sample {
     is_dimmed: bool,
 }
 
-// Labels without data hide what lies there; else one channel with data is enough.
+// True where the next channel says how opaque this one is.
+fn is_opaque_by_next(channel: u32) -> bool {
+    let next = channel + 1u;
+    return next < frame.channel_count && frame.channel_is_opacity[next] != 0u;
+}
+
+// Labels without data hide what lies there; else one channel with data is enough. A channel that is opaque by
+// another one has data where both have.
 fn has_data(place: Place) -> bool {
     var any_has = false;
+    var before_has = false;
     for (var c = 0u; c < frame.channel_count; c++) {
         let has = channel_has_data(c, place);
         if !has && frame.channel_is_labels[c] != 0u {
             return false;
         }
-        any_has = any_has || has;
+        let has_all = has && (before_has || frame.channel_is_opacity[c] == 0u);
+        any_has = any_has || (has_all && !is_opaque_by_next(c));
+        before_has = has;
     }
     return any_has;
 }

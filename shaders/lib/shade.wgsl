@@ -1,20 +1,23 @@
 // Two-sided light of Blinn and Phong on the surface that stands across the gradient (`sampling.md` 7):
 //
-//     c (ambient + diffuse sum of L |n.l|) + specular sum of L |n.h|^shininess        h = (l + v) / |l + v|
+//     c (o ambient + diffuse sum of t L |n.l|) + specular sum of t L |n.h|^shininess        h = (l + v) / |l + v|
 //
-// with L the light's colour, l the way to it, v the way to the eye. Where the gradient is flat there is no surface
-// and the colour stays. Blinn, "Models of Light Reflection for Computer Synthesized Pictures", SIGGRAPH 1977.
+// with L the light's colour, l the way to it, v the way to the eye; o and t what comes through from all around and
+// from the light, 1 without occlusion and shadows (light.wgsl). Where the gradient is flat there is no surface and the
+// colour stays, as far as light comes there: c (o a + (1 - a) sum of t L / sum of L), a = min(ambient, 1). Blinn, "Models of Light Reflection for Computer Synthesized Pictures", SIGGRAPH 1977.
 // Twin: src/technique/shading.rs.
 
 #import frame
+#import light
 
-fn shade(color: vec3<f32>, gradient: vec3<f32>, ray_direction: vec3<f32>) -> vec3<f32> {
+// At a position in voxel space.
+fn shade(color: vec3<f32>, gradient: vec3<f32>, ray_direction: vec3<f32>, voxel: vec3<f32>) -> vec3<f32> {
     let steepness = length(gradient);
     if !(steepness >= frame.flat_gradient) || steepness == 0.0 {
-        return color;
+        return lit_inside(color, voxel);
     }
     let normal = gradient / steepness;
-    var lit = frame.ambient * color;
+    var lit = frame.ambient * ambient_at(voxel) * color;
     for (var i = 0u; i < frame.light_count; i++) {
         let light = frame.light_directions[i];
         // A headlight shines along the ray.
@@ -24,7 +27,24 @@ fn shade(color: vec3<f32>, gradient: vec3<f32>, ray_direction: vec3<f32>) -> vec
         let facing = abs(dot(normal, halfway)) / max(length(halfway), 1e-6);
         let diffuse = frame.diffuse * abs(dot(normal, towards_light));
         let specular = frame.specular * pow(min(facing, 1.0), frame.shininess);
-        lit += frame.light_colors[i].xyz * (diffuse * color + specular);
+        lit += lamp_at(i, voxel) * frame.light_colors[i].xyz * (diffuse * color + specular);
     }
     return lit;
+}
+
+// Where there is no surface.
+fn lit_inside(color: vec3<f32>, voxel: vec3<f32>) -> vec3<f32> {
+    if frame.has_shadows == 0u {
+        return ambient_at(voxel) * color;
+    }
+    var all = vec3(0.0);
+    var there = vec3(0.0);
+    for (var i = 0u; i < frame.light_count; i++) {
+        all += frame.light_colors[i].xyz;
+        there += lamp_at(i, voxel) * frame.light_colors[i].xyz;
+    }
+    // A colour that no light has is missing nothing.
+    let shares = select(vec3(1.0), there / max(all, vec3(1e-6)), all > vec3(1e-6));
+    let ambient = min(frame.ambient, 1.0);
+    return color * (ambient * ambient_at(voxel) + (1.0 - ambient) * shares);
 }

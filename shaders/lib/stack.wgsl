@@ -24,6 +24,24 @@ fn shifted(place: Place, voxels: vec3<f32>) -> Place {
     return Place(place.voxel + voxels, slice);
 }
 
+// Its position in voxel space, on the slice exactly.
+fn voxel_of(place: Place) -> vec3<f32> {
+    var voxel = place.voxel;
+    voxel[frame.slice_axis] = f32(place.slice) + 0.5;
+    return voxel;
+}
+
+// The texel of a voxel, the nearest that the brick holds.
+fn texel_at(values: Values, voxel: vec3<i32>) -> vec4<f32> {
+    let texel = texel_in_brick(voxel);
+    return textureLoad(values, texel.xy, texel.z, 0);
+}
+
+fn texel_in_brick(voxel: vec3<i32>) -> vec3<i32> {
+    let first = vec3<i32>(frame.brick_origin);
+    return texel_of(clamp(voxel, first, first + vec3<i32>(frame.brick_dims) - 1));
+}
+
 // A vector of voxel space by the axes of the stack's images: across, down, layer.
 fn in_stack(voxel: vec3<f32>) -> vec3<f32> {
     let axis = frame.slice_axis;

@@ -3,6 +3,11 @@
 #import stack
 #import footprint
 
+fn is_valid_at(mask: Mask, voxel: vec3<i32>) -> bool {
+    let texel = texel_in_brick(voxel);
+    return textureLoad(mask, texel.xy, texel.z, 0).x != 0u;
+}
+
 // What the mask says of the first voxel of a footprint.
 fn mark_of(mask: Mask, footprint: Footprint) -> u32 {
     let texel = texel_of(footprint.min);

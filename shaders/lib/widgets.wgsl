@@ -12,13 +12,14 @@
 #import transfer_{transfer}
 
 struct Widgets {
-    // (1 / steepest, count of shares, count of widgets, 0), shares, four entries a widget, cells of images.
+    // (1 / steepest, count of shares, count of widgets, 1 where second derivatives count), shares, five entries a
+    // widget, cells of images.
     d: array<vec4<f32>>,
 }
 
 @group(0) @binding(20) var<storage, read> widgets: Widgets;
 
-const WIDGET_ENTRIES: u32 = 4u;
+const WIDGET_ENTRIES: u32 = 5u;
 
 // False where the gradient makes nothing of the value.
 fn are_widgets() -> bool {
@@ -26,9 +27,14 @@ fn are_widgets() -> bool {
     return head.y + head.z > 0.0;
 }
 
-// What a value is made of where it rises by `magnitude` per world length.
-fn classify_by_gradient(value: f32, magnitude: f32) -> Classified {
-    let material = classify(value);
+// True where some widget is weighted by the second derivative.
+fn wants_second() -> bool {
+    return widgets.d[0].w != 0.0;
+}
+
+// What a value is made of where it rises by `magnitude` per world length, and that by `second`; `material` is what it
+// is made of anyway.
+fn classify_by_gradient(material: Classified, value: f32, magnitude: f32, second: f32) -> Classified {
     let head = widgets.d[0];
     let share_count = u32(head.y);
     let steepness = magnitude * head.x;
@@ -41,9 +47,18 @@ fn classify_by_gradient(value: f32, magnitude: f32) -> Classified {
     for (var i = 0u; i < u32(head.z); i++) {
         let first = 1u + share_count + WIDGET_ENTRIES * i;
         let widget = widgets.d[first];
-        let share = widget_share(first, value, magnitude, steepness);
+        var share = widget_share(first, value, magnitude, steepness);
+        let painted = widgets.d[first + 2u];
+        var color = select(material.color, painted.xyz, widget.z != 0.0);
+        if widget.z == 2.0 {
+            color = image_color(first, value, steepness);
+        }
+        if painted.w != 0.0 {
+            let bends = second * frame.smallest_spacing * head.x;
+            share *= second_share(painted.w, widgets.d[first + 4u], bends);
+        }
         let own = extinction_of(widget.y * share, frame.reference_length);
-        light += own * select(material.color, widgets.d[first + 2u].xyz, widget.z != 0.0);
+        light += own * color;
         sum += own;
     }
     if sum == 0.0 {
@@ -113,8 +128,7 @@ fn widget_share(first: u32, value: f32, magnitude: f32, steepness: f32) -> f32 {
             if !is_in_rectangle(n, value, steepness) {
                 return 0.0;
             }
-            let at = vec2((value - n.x) / (n.y - n.x), (steepness - n.z) / (n.w - n.z));
-            return image_share(widgets.d[first + 3u].xyz, at);
+            return image_at(first, value, steepness).x;
         }
         default: {
             return 0.0;
@@ -138,25 +152,55 @@ fn tent(distance: f32, reach: f32) -> f32 {
     return 0.0;
 }
 
-// Between the middles of cells, at fractions of an image (first entry, columns, rows).
-fn image_share(image: vec3<f32>, at: vec2<f32>) -> f32 {
+// What the second derivative leaves: of a bell its middle and one over its deviation, else the corners of a trapezoid.
+fn second_share(kind: f32, n: vec4<f32>, second: f32) -> f32 {
+    if kind == 2.0 {
+        let x = (second - n.x) * n.y;
+        return exp(-0.5 * x * x);
+    }
+    if second < n.x || second > n.w {
+        return 0.0;
+    }
+    if second < n.y {
+        return (second - n.x) / (n.y - n.x);
+    }
+    if second > n.z {
+        return (n.w - second) / (n.w - n.z);
+    }
+    return 1.0;
+}
+
+// The colour that the cells of an image have.
+fn image_color(first: u32, value: f32, steepness: f32) -> vec3<f32> {
+    let cell = image_at(first, value, steepness);
+    if cell.x > 0.0 {
+        return cell.yzw / cell.x;
+    }
+    return vec3(0.0);
+}
+
+// Between the middles of the cells of an image (first entry, columns, rows) in its rectangle.
+fn image_at(first: u32, value: f32, steepness: f32) -> vec4<f32> {
+    let n = widgets.d[first + 1u];
+    let image = widgets.d[first + 3u].xyz;
+    let at = vec2((value - n.x) / (n.y - n.x), (steepness - n.z) / (n.w - n.z));
     let last = vec2<i32>(image.yz) - 1;
     let cell = at * image.yz - 0.5;
     let below = floor(cell);
     let part = cell - below;
     let low = clamp(vec2<i32>(below), vec2(0), last);
     let high = clamp(vec2<i32>(below) + 1, vec2(0), last);
-    let first = i32(image.x);
+    let start = i32(image.x);
     let columns = last.x + 1;
-    let bottom = between(cell_at(first + low.y * columns + low.x), cell_at(first + low.y * columns + high.x), part.x);
-    let top = between(cell_at(first + high.y * columns + low.x), cell_at(first + high.y * columns + high.x), part.x);
+    let bottom = between(cell_at(start + low.y * columns + low.x), cell_at(start + low.y * columns + high.x), part.x);
+    let top = between(cell_at(start + high.y * columns + low.x), cell_at(start + high.y * columns + high.x), part.x);
     return between(bottom, top, part.y);
 }
 
-fn cell_at(entry: i32) -> f32 {
-    return widgets.d[entry].x;
+fn cell_at(entry: i32) -> vec4<f32> {
+    return widgets.d[entry];
 }
 
-fn between(a: f32, b: f32, part: f32) -> f32 {
+fn between(a: vec4<f32>, b: vec4<f32>, part: f32) -> vec4<f32> {
     return a + part * (b - a);
 }

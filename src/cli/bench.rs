@@ -5,7 +5,7 @@
 
 use super::{
     Error, cameras_file,
-    flags::{Classification, Depth, NotBuilt, SceneFlags},
+    flags::{Classification, Depth, SceneFlags},
     output::{self, say, say_aside, write_whole},
     progress::{Progress, ProgressWord},
     renderer::{Device, Job, Renderer},
@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     camera::Camera,
-    technique::{Mode, Settings, Technique},
+    technique::{Mode, Settings, Shadows, Technique},
     transfer::{Classified, Window},
 };
 use clap::Args;
@@ -52,8 +52,6 @@ pub struct Bench {
     /// No empty-space skipping: the picture is the same without
     #[arg(long)]
     no_skip: bool,
-    #[command(flatten)]
-    not_built: NotBuilt,
 }
 
 /// What is drawn where no INPUT is given.
@@ -62,7 +60,6 @@ const DEFAULT_INPUT: &str = "phantom:head";
 impl Bench {
     /// Measures, prints, writes.
     pub fn run(mut self, gate: &Gate) -> Result<(), Error> {
-        self.not_built.refuse()?;
         self.scene.classification.inline_file()?;
         let mut scene = match &self.scene_file {
             Some(path) => scene_file::overlay(scene_file::read(path)?, &self.scene),
@@ -177,6 +174,7 @@ impl Bench {
             let base = Settings {
                 mode,
                 shading,
+                ambient_occlusion: base.ambient_occlusion.filter(|_| !mode.is_projection()),
                 ..base.clone()
             };
             // What is shown depends on the mode: channels are read for each.
@@ -186,10 +184,15 @@ impl Bench {
             let parts = shown.parts();
             for (name, technique) in of_mode {
                 progress.stage("measure", rows.len(), 2 * of_mode.len());
-                let settings = Settings {
+                let mut settings = Settings {
                     technique,
                     ..base.clone()
                 };
+                // Half-angle slices are those of one technique and mode.
+                let has_them = technique == Technique::Slices3d && mode == Mode::Composite;
+                if let Some(shading) = settings.shading.as_mut().filter(|_| !has_them) {
+                    shading.shadows = Shadows::Off;
+                }
                 let job = Job {
                     volume: &shown.volume,
                     classification: &shown.classification,

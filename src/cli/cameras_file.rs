@@ -5,11 +5,11 @@
 //!   { "eye": [0, 500, 0], "target": [0, 0, 0], "up": [0, 0, 1], "view_height": 250 } ]
 //! ```
 
-use super::Error;
+use super::{Error, small_file};
 use crate::camera::{Camera, Projection};
 use glam::DVec3;
 use serde::Deserialize;
-use std::{fs::File, io::Read, path::Path};
+use std::path::Path;
 
 /// The largest file that is read.
 const MAX_FILE_BYTES: u64 = 16 << 20;
@@ -26,20 +26,7 @@ struct View {
 
 /// The cameras of the file at `path`; at least one.
 pub fn read(path: &Path) -> Result<Vec<Camera>, Error> {
-    let refused = |problem| Error::Input {
-        path: path.to_owned(),
-        problem,
-    };
-    let mut text = Vec::new();
-    File::open(path)
-        .and_then(|file| file.take(MAX_FILE_BYTES + 1).read_to_end(&mut text))
-        .map_err(|cause| refused(cause.to_string()))?;
-    if text.len() as u64 > MAX_FILE_BYTES {
-        return Err(refused(format!(
-            "a list of views has at most {MAX_FILE_BYTES} bytes"
-        )));
-    }
-    parse(&text).map_err(refused)
+    small_file::parsed(path, "a list of views", MAX_FILE_BYTES, parse)
 }
 
 fn parse(text: &[u8]) -> Result<Vec<Camera>, String> {

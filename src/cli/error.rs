@@ -88,6 +88,28 @@ impl From<offscreen::Error> for Error {
             offscreen::Error::Technique(error @ technique::Error::FilterAlone { .. }) => {
                 Self::usage(error.to_string(), "--filter linear draws them together")
             }
+            offscreen::Error::Technique(error @ technique::Error::NoDerivative { .. }) => {
+                Self::usage(
+                    error.to_string(),
+                    "--gradient-filter cubic is for every --filter",
+                )
+            }
+            offscreen::Error::Technique(technique::Error::NotOccludedTogether) => {
+                Self::not_occluded_together()
+            }
+            offscreen::Error::Technique(error @ technique::Error::OutOfRange { .. }) => {
+                Self::usage(
+                    error.to_string(),
+                    "`stratavox render --help` says what each word takes",
+                )
+            }
+            offscreen::Error::Technique(error @ technique::Error::TooSteep { .. }) => Self::usage(
+                error.to_string(),
+                "--projection orthographic has no such rays; a smaller --fov or a light from elsewhere has fewer",
+            ),
+            offscreen::Error::Technique(error @ technique::Error::ShadowsNeedOneBrick { .. }) => {
+                Self::Memory(error.to_string())
+            }
             offscreen::Error::Technique(error) => Self::Limit(error.to_string()),
             offscreen::Error::NoLayer { .. } => Self::NotBuilt(error.to_string()),
             offscreen::Error::NoLabels => {
@@ -109,8 +131,16 @@ impl Error {
     /// Light is for one volume.
     pub fn not_shaded_together() -> Self {
         Self::usage(
-            "--shading phong is for one number a voxel, and several are drawn",
-            "draw one of them: --component 0, without --labels and --channel",
+            "--shading phong is for one number a voxel, --shadows half-angle too, and several are drawn",
+            "draw one of them: --component 0, without --labels, --channel and --iso-color-by",
+        )
+    }
+
+    /// Light is followed through one volume.
+    pub fn not_occluded_together() -> Self {
+        Self::usage(
+            "--ambient-occlusion and --shadows volume are for one number a voxel, and several are drawn",
+            "draw one of them: --component 0, without --labels, --channel and --iso-color-by",
         )
     }
 

@@ -8,7 +8,7 @@ use crate::{
     technique::Role,
     transfer::{LabelTable, TransferFunction},
     volume::{
-        Grid, Pick, Volume, Wanted,
+        Grid, Pick, Volume, Wanted, is_same_grid,
         labels::{dim, hide, labels_of, on_grid},
     },
 };
@@ -82,14 +82,7 @@ pub fn diagonal(volume: &Volume) -> f64 {
 
 /// The map on the grid; `None` where they do not meet.
 fn placed(map: Volume, grid: &Grid, progress: &Progress) -> Option<Volume> {
-    let tolerance = 1e-3 * grid.smallest_spacing();
-    let corners = [DVec3::ZERO, grid.far_corner(), DVec3::X, DVec3::Y];
-    let is_same = map.dims == grid.dims
-        && corners.into_iter().all(|corner| {
-            let here = grid.world_from_voxel.transform_point3(corner);
-            let there = map.world_from_voxel.transform_point3(corner);
-            here.distance(there) <= tolerance
-        });
+    let is_same = is_same_grid(grid, &map.grid());
     if is_same && map.validity.is_none() {
         return Some(Volume {
             world_from_voxel: grid.world_from_voxel,

@@ -28,7 +28,12 @@ pub fn load_from(
 ) -> Result<(Volume, f64), Error> {
     // What may be wrong with the words is said before anything about memory.
     scene.input.pick(source.header())?;
-    let source = fitting(source, scene, device.memory(), Held::of(scene, 1))?;
+    let source = fitting(
+        source,
+        scene,
+        device.memory(),
+        Held::of(scene, 1 + u32::from(scene.opacity.are_given())),
+    )?;
     read_stretched(source.as_ref(), scene, progress)
 }
 

@@ -11,7 +11,8 @@
 
 use super::{Error, flags::SceneFlags};
 use crate::{
-    technique::Filter,
+    resident::TextureLayout,
+    technique::{GradientSource, Settings, Technique},
     volume::{Header, Reduced, Source, VoxelType},
 };
 use serde::Serialize;
@@ -43,8 +44,8 @@ impl RenderBytes {
         }
     }
 
-    /// Of volumes like this one that are there at once, and what `filter` makes of them.
-    fn held(header: &Header, has_holes: bool, held: Held, filter: Filter) -> Self {
+    /// Of volumes like this one that are there at once, and what filters make of them.
+    fn held(header: &Header, has_holes: bool, held: Held, filters: &Settings) -> Self {
         let one = Self::of(header, has_holes);
         let floats = Header {
             stored: VoxelType::F32,
@@ -59,16 +60,37 @@ impl RenderBytes {
                 let device = floats.times(count).device;
                 (count, Self { host, device })
             }
+            Held::Classified => {
+                let host = one.host.saturating_add(floats.times(4).host);
+                let device = floats.times(4).device;
+                (1, Self { host, device })
+            }
             Held::Blend => {
                 let host = one.times(2).host.saturating_add(floats.host);
                 (1, Self { host, ..floats })
             }
         };
-        if filter.spline().is_some() {
+        if filters.filter.spline().is_some() {
             all.host = all.host.saturating_add(floats.host);
             all.device = floats.times(count).device;
         }
-        all
+        // A texture beside the values, without a mask of its own.
+        let layout = match filters.technique {
+            Technique::Slices2d => TextureLayout::Stack(0),
+            _ => TextureLayout::Texture3d,
+        };
+        let beside = match filters.gradient_source_beside(layout) {
+            None => return all,
+            Some(GradientSource::Voxels) => Self {
+                host: 0,
+                ..Self::of(header, false)
+            },
+            Some(GradientSource::Coefficients(_)) => floats.times(1),
+        };
+        Self {
+            host: all.host.saturating_add(beside.host),
+            device: all.device.saturating_add(beside.device),
+        }
     }
 
     fn times(self, volumes: u32) -> Self {
@@ -86,6 +108,8 @@ pub enum Held {
     Volumes(u32),
     /// So many that become floats, one after the other, by a noise filter.
     Denoised(u32),
+    /// One of which each voxel becomes four floats, which alone are on the device.
+    Classified,
     /// Those of two times, and floats between them, which alone are on the device.
     Blend,
 }
@@ -96,6 +120,7 @@ impl Held {
         let mode = scene.sampling.mode.unwrap_or_default().mode();
         let count = count + u32::from(scene.modes.paint(mode).is_some());
         match scene.denoise {
+            _ if scene.sampling.preclassified => Self::Classified,
             Some(_) => Self::Denoised(count),
             None => Self::Volumes(count),
         }
@@ -128,9 +153,14 @@ pub fn fitting(
     held: Held,
 ) -> Result<Box<dyn Source>, Error> {
     let input = &scene.input;
-    let filter = scene.sampling.filter.unwrap_or_default().filter();
+    let filters = Settings {
+        technique: scene.sampling.technique.unwrap_or_default().technique(),
+        filter: scene.sampling.filter.unwrap_or_default().filter(),
+        gradient_filter: scene.gradient.filter(),
+        ..Settings::default()
+    };
     let host_bytes = input.max_memory.or_else(available_bytes);
-    let factor = least_factor(source.header(), held, filter, host_bytes, device);
+    let factor = least_factor(source.header(), held, &filters, host_bytes, device);
     if factor == 1 {
         return Ok(source);
     }
@@ -138,7 +168,7 @@ pub fn fitting(
         let slab_bytes = host_bytes.map_or(SLAB_BYTES, |there| (there / 16).min(SLAB_BYTES));
         return Ok(Box::new(Reduced::new(source, factor, slab_bytes)));
     }
-    let needed = RenderBytes::held(source.header(), false, held, filter);
+    let needed = RenderBytes::held(source.header(), false, held, &filters);
     let there = |bytes: Option<u64>| bytes.map_or("an unknown amount".to_owned(), in_units);
     Err(Error::Memory(format!(
         "{}: the volume needs {} of memory and {} of the device's; there are {} and {}",
@@ -154,11 +184,11 @@ pub fn fitting(
 fn least_factor(
     header: &Header,
     held: Held,
-    filter: Filter,
+    filters: &Settings,
     host_bytes: Option<u64>,
     device: Option<DeviceMemory>,
 ) -> u32 {
-    let whole = RenderBytes::held(header, header.fill.is_some(), held, filter);
+    let whole = RenderBytes::held(header, header.fill.is_some(), held, filters);
     let largest = header.dims.iter().copied().max().unwrap_or(1);
     let fits = |&factor: &u32| {
         let part = |bytes: u64| bytes as f64 / f64::from(factor).powi(3);
@@ -234,11 +264,27 @@ pub fn bytes_of_word(word: &str) -> Result<u64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::technique::{Filter, GradientFilter};
     use crate::volume::Format;
     use glam::DAffine3;
 
     const ONE: Held = Held::Volumes(1);
-    const LINEAR: Filter = Filter::Linear;
+    fn filters(filter: Filter, gradient_filter: GradientFilter) -> Settings {
+        Settings {
+            filter,
+            gradient_filter,
+            ..Settings::default()
+        }
+    }
+
+    fn least_factor(
+        header: &Header,
+        held: Held,
+        host_bytes: Option<u64>,
+        device: Option<DeviceMemory>,
+    ) -> u32 {
+        super::least_factor(header, held, &Settings::default(), host_bytes, device)
+    }
 
     fn header(side: u32, stored: VoxelType) -> Header {
         Header::new(Format::Raw, [side; 3], stored, DAffine3::IDENTITY)
@@ -260,35 +306,30 @@ mod tests {
                 is_of_host: true,
             })
         };
-        assert_eq!(least_factor(&header, ONE, LINEAR, None, None), 1);
-        assert_eq!(least_factor(&header, ONE, LINEAR, Some(2_300_000), None), 1);
-        assert_eq!(least_factor(&header, ONE, LINEAR, Some(2_200_000), None), 2);
+        assert_eq!(least_factor(&header, ONE, None, None), 1);
+        assert_eq!(least_factor(&header, ONE, Some(2_300_000), None), 1);
+        assert_eq!(least_factor(&header, ONE, Some(2_200_000), None), 2);
         assert_eq!(
-            least_factor(&header, ONE, LINEAR, Some(2_300_000), card(2_300_000)),
+            least_factor(&header, ONE, Some(2_300_000), card(2_300_000)),
             1
         );
         assert_eq!(
-            least_factor(&header, ONE, LINEAR, Some(2_300_000), cpu(2_300_000)),
+            least_factor(&header, ONE, Some(2_300_000), cpu(2_300_000)),
             2
         );
-        assert_eq!(
-            least_factor(&header, ONE, LINEAR, Some(1 << 40), card(80_000)),
-            4
-        );
-        assert_eq!(
-            least_factor(&header, ONE, LINEAR, Some(1 << 40), card(0)),
-            100
-        );
+        assert_eq!(least_factor(&header, ONE, Some(1 << 40), card(80_000)), 4);
+        assert_eq!(least_factor(&header, ONE, Some(1 << 40), card(0)), 100);
     }
 
     #[test]
     fn coefficients_are_floats_on_the_device_and_once_more_in_memory() {
         // 100^3 u16: 2 MB and 4 MB of floats a volume.
         let header = header(100, VoxelType::U16);
-        let held = |held, filter| {
-            let RenderBytes { host, device } = RenderBytes::held(&header, false, held, filter);
+        let bytes = |held, filters: &Settings| {
+            let RenderBytes { host, device } = RenderBytes::held(&header, false, held, filters);
             (host / 1_000_000, device / 1_000_000)
         };
+        let held = |held, filter| bytes(held, &filters(filter, GradientFilter::Central));
         assert_eq!(held(ONE, Filter::Linear), (2, 2));
         assert_eq!(held(ONE, Filter::CubicSmooth), (2, 2));
         assert_eq!(held(ONE, Filter::CatmullRom), (2, 2));
@@ -296,6 +337,11 @@ mod tests {
         assert_eq!(held(Held::Volumes(3), Filter::Quadratic), (10, 12));
         assert_eq!(held(Held::Blend, Filter::Linear), (8, 4));
         assert_eq!(held(Held::Blend, Filter::Cubic), (12, 4));
+        let graded = |filter, gradient| bytes(ONE, &filters(filter, gradient));
+        assert_eq!(graded(Filter::Linear, GradientFilter::Cubic), (6, 6));
+        assert_eq!(graded(Filter::Cubic, GradientFilter::Cubic), (6, 4));
+        assert_eq!(graded(Filter::Cubic, GradientFilter::Linear), (6, 6));
+        assert_eq!(graded(Filter::Nearest, GradientFilter::Sobel), (2, 2));
     }
 
     #[test]
@@ -307,7 +353,7 @@ mod tests {
                 heap_bytes,
                 is_of_host,
             };
-            least_factor(&header, Held::Blend, LINEAR, Some(host), Some(device)) == 1
+            least_factor(&header, Held::Blend, Some(host), Some(device)) == 1
         };
         assert!(fits(8_900_000, 4_500_000, false));
         assert!(!fits(8_800_000, 4_500_000, false));

@@ -36,6 +36,7 @@ mod scene_file;
 mod sheet;
 mod shown;
 mod signals;
+mod small_file;
 mod surface;
 mod timings;
 

@@ -282,7 +282,7 @@ fn gradients(graded: &Graded) -> String {
             }
             Shape::Gaussian { value, .. } => format!("gaussian at {}", short(*value)),
             Shape::Image { columns, cells, .. } => {
-                format!("image of {columns} x {}", cells.len() / (*columns).max(1))
+                format!("image of {columns} x {}", cells.count() / (*columns).max(1))
             }
         };
         format!("{shape}: opacity {}", short(widget.opacity))

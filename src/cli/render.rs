@@ -2,7 +2,7 @@
 
 use super::{
     Error,
-    flags::{Depth, NotBuilt, SceneFlags},
+    flags::{Depth, SceneFlags},
     output::{self, write_whole},
     progress::{Progress, ProgressWord},
     reasons::why_empty,
@@ -27,6 +27,7 @@ use std::{
     stratavox render phantom:head --mode mip --aov value,depth -o mip.exr\n  \
     stratavox render phantom:storm,n=64 --variable w --mode iso --iso 5 --iso-color-by temperature -o updraught.png\n  \
     stratavox render phantom:cells --channel 0,color=cyan --channel 1,color=1:0.3:0 -o cells.png\n  \
+    stratavox render phantom:storm --variable temperature --opacity-variable cloud -o storm.png\n  \
     stratavox convert phantom:sphere,n=64 -o ball.nrrd --type u8 --window 0,1\n  \
     stratavox render phantom:head,n=64 --labels ball.nrrd --label-show 128-255 -o ball.png\n  \
     stratavox render phantom:head,n=64 --labels ball.nrrd --label-dim 0-127:0.05 -o dimmed.png")]
@@ -60,8 +61,6 @@ pub struct Render {
     /// No empty-space skipping: the picture is the same without
     #[arg(long)]
     no_skip: bool,
-    #[command(flatten)]
-    not_built: NotBuilt,
 }
 
 /// Reads the word of `--bit-depth`.
@@ -76,7 +75,6 @@ pub fn bit_depth(word: &str) -> Result<BitDepth, String> {
 impl Render {
     /// Draws and writes.
     pub fn run(mut self, gate: &Gate) -> Result<(), Error> {
-        self.not_built.refuse()?;
         let scene = self.whole_scene()?;
         let format = picture_format(&self.output)?;
         let layers = scene.picture.layers();

@@ -126,12 +126,18 @@ impl<'a> Renderer<'a> {
         let mut renderer = offscreen::Renderer::several(on, volumes)?;
         let prepare_ms = device.found_ms + ms_since(start);
         let start = Instant::now();
-        renderer.upload(&job.scene(camera))?;
+        let scene = job.scene(camera);
+        renderer.upload(&scene)?;
+        let upload_ms = ms_since(start);
+        let start = Instant::now();
+        if !scene.settings.mode.is_projection() {
+            renderer.prepare_light(&scene)?;
+        }
         Ok(Self {
             job,
             on_device: Some(Box::new(renderer)),
-            upload_ms: ms_since(start),
-            prepare_ms,
+            upload_ms,
+            prepare_ms: prepare_ms + ms_since(start),
         })
     }
 
@@ -247,7 +253,7 @@ fn has_labels(job: &Job) -> bool {
             job.settings.filter == Filter::Nearest && labels_of(job.volume).is_some()
         }
         Beside::Channels(channels) => channels.iter().any(|one| one.role == Role::Labels),
-        Beside::Colors(_) => false,
+        Beside::Colors(_) | Beside::Classified(_) => false,
     }
 }
 

@@ -17,13 +17,10 @@
 use super::{
     Error,
     flags::{SceneFlags, relative},
+    small_file,
 };
 use serde_json::Value;
-use std::{
-    fs::File,
-    io::Read,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 const VERSION: u32 = 1;
 /// The largest file that is read; a transfer function inside has its own limit of the same size.
@@ -31,22 +28,10 @@ const MAX_FILE_BYTES: u64 = 4 << 20;
 
 /// The scene in the file at `path`, its input as seen from here.
 pub fn read(path: &Path) -> Result<SceneFlags, Error> {
-    let refused = |problem: String| Error::Input {
-        path: path.to_owned(),
-        problem,
-    };
-    let mut text = Vec::new();
-    File::open(path)
-        .and_then(|file| file.take(MAX_FILE_BYTES + 1).read_to_end(&mut text))
-        .map_err(|cause| refused(cause.to_string()))?;
-    if text.len() as u64 > MAX_FILE_BYTES {
-        return Err(refused(format!(
-            "a scene has at most {MAX_FILE_BYTES} bytes"
-        )));
-    }
-    let mut scene = parse(&text).map_err(refused)?;
+    let mut scene = small_file::parsed(path, "a scene", MAX_FILE_BYTES, parse)?;
     scene.input = scene.input.found_in(folder_of(path));
     scene.labels = scene.labels.with_paths(|file| folder_of(path).join(file));
+    scene.opacity = scene.opacity.with_paths(|file| folder_of(path).join(file));
     Ok(scene)
 }
 
@@ -57,6 +42,9 @@ pub fn text(scene: &SceneFlags, path: &Path) -> String {
         input: scene.input.relative_to(folder_of(path)),
         labels: scene
             .labels
+            .with_paths(|file| relative(file, folder_of(path))),
+        opacity: scene
+            .opacity
             .with_paths(|file| relative(file, folder_of(path))),
         ..scene.clone()
     };
@@ -72,6 +60,10 @@ pub fn overlay(mut scene: SceneFlags, flags: &SceneFlags) -> SceneFlags {
     // What picks a volume in one file means nothing in another one.
     if flags.input.path.is_some() {
         scene.input = Default::default();
+        scene.opacity = Default::default();
+    }
+    if flags.opacity.are_given() {
+        scene.opacity = Default::default();
     }
     if flags.channels.are_given() {
         scene.channels = Default::default();
@@ -82,6 +74,7 @@ pub fn overlay(mut scene: SceneFlags, flags: &SceneFlags) -> SceneFlags {
     } else if flags.camera.places_the_eye() {
         scene.section = Default::default();
     }
+    scene.sampling.give_way_to(&flags.sampling);
     scene.classification.give_way_to(&flags.classification);
     let below = serde_json::to_value(scene).expect("flags as JSON");
     let above = serde_json::to_value(flags).expect("flags as JSON");
@@ -137,6 +130,7 @@ pub fn inputs(scene: &SceneFlags, scene_file: Option<&Path>) -> Vec<PathBuf> {
         scene.classification.opacity_tf.as_deref(),
         labels,
         label_tf,
+        scene.opacity.file(),
         scene_file,
     ];
     files.into_iter().flatten().map(Path::to_owned).collect()
@@ -165,7 +159,7 @@ mod tests {
         --target 1,2,3 --up 0,0,1 --view-height 77 --exaggerate 3 --size 64x48 --background 0,0.1,1 --aov value,depth \
         --device cpu --component 1 --raw 2x2x2,u8 --variable T --channel 0,color=red,window=0:3 --channel 2 \
         --lmip-threshold 5 --mida-gamma -0.5 --attenuation 3 --depth-cue 0.4 --exact-maximum --iso -3,4.5 \
-        --iso-color red,0:0.5:1 --iso-opacity 0.3,1 --labels l.nrrd --label-tf l.txt --label-show 1,3-5";
+        --iso-color red,0:0.5:1 --iso-opacity 0.3,1 --labels l.nrrd --opacity-variable q --opacity-component 2 --opacity-from o.nrrd --opacity-window -1,2 --label-tf l.txt --label-show 1,3-5";
 
     #[test]
     fn a_saved_scene_comes_back_as_it_was() {

@@ -35,7 +35,8 @@ impl ParameterRing {
         let stride_bytes = u64::from(slot_bytes).next_multiple_of(alignment);
         let bytes = stride_bytes * u64::from(slots);
         within(doing, "a dynamic offset of 32 bits", bytes, u32::MAX.into())?;
-        let usage = vk::BufferUsageFlags::UNIFORM_BUFFER;
+        // The other usage: its buffer stands in for storage buffers that are not read.
+        let usage = vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::STORAGE_BUFFER;
         let buffer = Buffer::new(gpu, bytes, usage, Memory::Upload, name)?;
         Ok(Self {
             buffer,
@@ -48,6 +49,11 @@ impl ParameterRing {
     /// The Vulkan handle of the buffer of all slots.
     pub fn raw(&self) -> vk::Buffer {
         self.buffer.raw()
+    }
+
+    /// The buffer of all slots.
+    pub fn buffer(&self) -> &Buffer {
+        &self.buffer
     }
 
     /// The size that a slot was asked for.

@@ -12,11 +12,13 @@ use crate::resolve::Resolve;
 use crate::technique::blend::Drawn;
 use crate::technique::projection::Projection;
 use crate::technique::raycast::Raycast;
+use crate::technique::slices_3d::HalfAngleSlicer;
+use crate::technique::slices_3d::half_angle::HalfAngleSlices;
 use crate::technique::{ACCUMULATION_FORMAT, Mode, Order, Settings, Technique, Words};
 use std::sync::Arc;
 
 /// What pipelines depend on.
-pub type Key = (Technique, Mode, Order, [bool; 2], Words);
+pub type Key = (Technique, Mode, Order, [bool; 3], Words);
 
 /// The key of such pictures.
 pub fn key_of(settings: &Settings, words: &Words) -> Key {
@@ -27,7 +29,8 @@ pub fn key_of(settings: &Settings, words: &Words) -> Key {
         ..
     } = *settings;
     let per_mode = &settings.per_mode;
-    let marks = [per_mode.depth_cue != 0.0, per_mode.exact_maximum];
+    let is_cued = per_mode.depth_cue != 0.0;
+    let marks = [is_cued, per_mode.exact_maximum, settings.is_half_angle()];
     (technique, mode, order, marks, *words)
 }
 
@@ -47,6 +50,7 @@ enum Gather {
     Raycast(Raycast),
     Projection(Projection),
     Slices(Slicing),
+    HalfAngle(HalfAngleSlicer),
 }
 
 impl Passes {
@@ -65,6 +69,10 @@ impl Passes {
                 (Gather::Projection(Projection::new(gpu, mode, words)?), None)
             }
             Technique::Raycast => (Gather::Raycast(Raycast::of_mode(gpu, mode, words)?), None),
+            Technique::Slices3d if settings.is_half_angle() => (
+                Gather::HalfAngle(HalfAngleSlicer::new(gpu, words)?),
+                Some(slicing(Drawn::Count)?),
+            ),
             Technique::Slices3d | Technique::Slices2d => (
                 Gather::Slices(slicing(Drawn::Picture(mode))?),
                 Some(slicing(Drawn::Count)?),
@@ -112,14 +120,19 @@ impl Passes {
                 })
             }
             Gather::Slices(slicing) => slicing.run(submission, accumulation),
+            Gather::HalfAngle(slicer) => run_half_angle(slicer, submission),
         }
     }
 
     /// Counts a slicer's samples into `layers`; the ray caster has counted them already.
-    pub fn count(&self, submission: Submission) -> Result<Option<f64>, Error> {
+    pub fn count(&self, mut submission: Submission) -> Result<Option<f64>, Error> {
         let Some(count) = &self.count else {
             return Ok(None);
         };
+        if let Gather::HalfAngle(_) = self.gather {
+            // The light's samples are no pixel's.
+            submission.bricks = &submission.bricks[..1];
+        }
         let into = &submission.targets.layers;
         count.run(submission, into)
     }
@@ -146,4 +159,28 @@ impl Passes {
             Ok(())
         })
     }
+}
+
+/// Eye and light in turn; leaves the picture in [`Use::FragmentSampled`].
+fn run_half_angle(slicer: &HalfAngleSlicer, submission: Submission) -> Result<Option<f64>, Error> {
+    let [eye, light] = submission.bricks else {
+        unreachable!("the eye's recording and the light's");
+    };
+    let (targets, light_buffer) = (submission.targets, submission.targets.light_buffer());
+    let (picture, extent) = (&targets.accumulation, targets.extent);
+    let bound = slicer.bind(&eye.inputs, light_buffer)?;
+    let slices = HalfAngleSlices {
+        offsets: [eye.offset, light.offset],
+        count: eye.slices,
+        order: eye.order,
+    };
+    // SAFETY: recorded in order, with barriers between; `run` waits, and all that is bound lives meanwhile.
+    submission.run(|cmd, gpu| unsafe {
+        for image in [picture, light_buffer] {
+            image_barrier(gpu, cmd, image, Use::Nothing, Use::ColorTarget);
+        }
+        slicer.record(cmd, &bound, slices, (picture, extent), light_buffer);
+        image_barrier(gpu, cmd, picture, Use::ColorTarget, Use::FragmentSampled);
+        Ok(())
+    })
 }

@@ -1,5 +1,7 @@
 //! A scene to a picture on the CPU: every technique by its twin, in f32 or f64, no Vulkan anywhere.
 
+mod half_angle;
+mod light;
 mod slabs;
 
 use super::fade::{faded, stacks_of};
@@ -7,7 +9,7 @@ use super::gathered::{Gathered, grey_of_picture, layers};
 use super::sum::sum_of;
 use crate::picture::Picture;
 use crate::ray::pixel_ray;
-use crate::real::{Real, dot};
+use crate::real::{Real, dot, scale};
 use crate::resolve::reference::{light_at, premultiplied};
 use crate::scene::{Beside, Scene, positions_in_pixel};
 use crate::shaders::Frame;
@@ -15,20 +17,23 @@ use crate::technique::blend::{Fragment, blend, blend_material, clear_color};
 use crate::technique::composite::Composite;
 use crate::technique::faces::{FACE_LENGTH, cut_face, on_face};
 use crate::technique::gradient::gradient_of;
-use crate::technique::mixture::{color_of, colored, dimmed, mixed};
-use crate::technique::shading::shade;
+use crate::technique::gradient_taps::weighted_gradient;
+use crate::technique::mixture::{color_of, colored, dimmed, material_of};
+use crate::technique::second::second_derivative_of;
+use crate::technique::shading::{Lamps, shade};
 use crate::technique::{
-    Error, Filter, Mix, Mode, Recording, Role, Technique, isosurface, projection, raycast,
-    slices_2d, slices_3d,
+    Error, Filter, GradientSource, LightField, Mix, Mode, Operator, Recording, Role, Technique,
+    isosurface, projection, raycast, slices_2d, slices_3d,
 };
 use crate::transfer::{
-    Absorption, PackedWidgets, Points, SlabTable, Table, TransferFunction, classify_by_gradient,
-    classify_by_points, classify_by_table, classify_slab,
+    Absorption, PackedWidgets, Points, SlabTable, Steepness, Table, TransferFunction,
+    classify_by_gradient, classify_by_points, classify_by_table, classify_slab,
 };
 use crate::volume::kernel::{convolved, convolved_in_slice};
 use crate::volume::labels::{DIMMED, marks_of};
 use crate::volume::sample::{linear, linear_in_slice, nearest};
 use crate::volume::{Coefficients, Grid, Volume};
+use light::light_of;
 
 /// The picture of `scene` with all layers that its technique has.
 ///
@@ -58,8 +63,25 @@ fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     let spline = scene.settings.filter.spline();
     let coefficients = spline.map(|spline| Coefficients::new(scene.volume, spline, axes));
     let read = coefficients.as_ref().map(Coefficients::volume);
-    let gathered =
-        |in_pixel| Walk::<R>::new(scene, read, &grid, in_pixel).map(|walk| walk.gather_all());
+    let source = scene.settings.gradient_source();
+    let source = source.filter(|_| scene.has_gradients());
+    let of_gradients = source.and_then(GradientSource::spline);
+    let of_gradients =
+        of_gradients.map(|spline| Coefficients::new(scene.volume, spline, [true; 3]));
+    let of_gradients = of_gradients
+        .as_ref()
+        .map_or(scene.volume, Coefficients::volume);
+    let gradients = source.map(|_| of_gradients);
+    let light = light_of::<R>(scene, read, gradients, &grid)?;
+    let gathered = |in_pixel| -> Result<_, Error> {
+        let walk = Walk::new(scene, read, light.as_ref(), &grid, in_pixel)?;
+        let walk = Walk { gradients, ..walk };
+        if scene.settings.is_half_angle() {
+            let [_, light] = scene.view(&grid, in_pixel).half_angle_on_cpu()?;
+            return Ok(walk.gather_in_light(&light));
+        }
+        Ok(walk.gather_all())
+    };
     let centers = gathered([0.0; 2])?;
     let transfer = match scene.transfer {
         Some(transfer) => transfer.clone(),
@@ -102,6 +124,8 @@ struct Walk<'a, R> {
     scene: &'a Scene<'a>,
     volumes: Vec<&'a Volume>,
     roles: Vec<Role>,
+    /// What gradients are made of, where that is not values as the filter makes them.
+    gradients: Option<&'a Volume>,
     /// Which voxels of label maps are dimmed.
     marks: Vec<Volume>,
     /// One a transfer function; none in a projecting mode, which classifies when it resolves.
@@ -111,9 +135,10 @@ struct Walk<'a, R> {
     /// What the gradient makes of the only function, where it makes something.
     widgets: Option<PackedWidgets>,
     frame: Frame,
+    /// What comes through to samples, where occlusion or shadows are asked for.
+    light: Option<&'a LightField<R>>,
     /// Slices to draw; a ray caster has none.
     slices: u32,
-    real: std::marker::PhantomData<R>,
 }
 
 /// Conformance pictures search the points, the others look into the table: both as the shaders do.
@@ -129,6 +154,7 @@ impl<'a, R: Real> Walk<'a, R> {
     fn new(
         scene: &'a Scene<'a>,
         read: Option<&'a Volume>,
+        light: Option<&'a LightField<R>>,
         grid: &'a Grid,
         in_pixel: [f64; 2],
     ) -> Result<Self, Error> {
@@ -162,13 +188,14 @@ impl<'a, R: Real> Walk<'a, R> {
             scene,
             volumes: read.map_or_else(|| scene.volumes(), |read| vec![read]),
             roles: scene.roles(),
+            gradients: None,
             marks: marks_of_scene(scene),
             classifiers,
             paint: paint_of(scene),
             widgets,
             frame,
+            light,
             slices,
-            real: std::marker::PhantomData,
         })
     }
 
@@ -254,11 +281,12 @@ impl<'a, R: Real> Walk<'a, R> {
                 Some([r, g, b])
             });
             let color = color.unwrap_or(own);
+            let lamps = self.lamps(p);
             if frame.light_count == 0 {
-                return color;
+                return scale(color, lamps.ambient(frame));
             }
-            let gradient = gradient_of(frame, |step| value_at(moved(p, step)));
-            shade(frame, color, gradient, ray_direction)
+            let gradient = self.gradient(p, |step| value_at(moved(p, step)));
+            shade(frame, color, gradient, ray_direction, &lamps)
         };
         let found = isosurface::surfaces(frame, pixel, value_at, lit);
         Gathered::of_surfaces(found)
@@ -271,7 +299,7 @@ impl<'a, R: Real> Walk<'a, R> {
         };
         let look = |volume: &_, filter, step| filtered(volume, filter, moved(p, step));
         // No light falls along no direction.
-        let own = self.material(look, [R::from_f64(0.0); 3]);
+        let own = self.material(look, p, [R::from_f64(0.0); 3]);
         let mut face = Composite::default();
         if let Some(own) = own {
             let material = on_face(&self.frame, own, self.value_on_face(p));
@@ -309,7 +337,7 @@ impl<'a, R: Real> Walk<'a, R> {
         let ray_direction = pixel_ray(&self.frame, pixel).direction;
         let material_at = |p| {
             let look = |volume: &_, filter, step| filtered(volume, filter, moved(p, step));
-            self.material(look, ray_direction)
+            self.material(look, p, ray_direction)
         };
         let blend = |target, fragment: Fragment<R, [R; 4]>| {
             blend_material(settings.order, target, fragment.value, fragment.length)
@@ -330,28 +358,48 @@ impl<'a, R: Real> Walk<'a, R> {
             Technique::Slices3d => self.blend_all(|i| self.on_plane(pixel, i, material_at), blend),
             Technique::Slices2d if settings.smooth => self.composite_between(pixel),
             Technique::Slices2d => {
-                let material_at = |axis, slice: u32, p| {
+                let material_at = |axis: usize, slice: u32, p: [R; 3]| {
                     let look = |volume: &Volume, filter, step: [i32; 3]| {
                         let last = volume.dims[axis] - 1;
                         let slice = slice.saturating_add_signed(step[axis]).min(last);
                         filtered_in_slice(volume, filter, axis, slice, moved(p, step))
                     };
-                    self.material(look, ray_direction)
+                    let mut on_slice = p;
+                    on_slice[axis] = R::from_f64(f64::from(slice) + 0.5);
+                    self.material(look, on_slice, ray_direction)
                 };
                 self.blend_all(|i| self.on_slice(pixel, i, material_at), blend)
             }
         }
     }
 
-    /// What the volumes are made of where `look_from` looks from, so many voxels away; `None` for no data.
+    /// The gradient at `p`; `tap` filters values so many voxels away.
+    fn gradient(&self, p: [R; 3], tap: impl Fn([i32; 3]) -> Option<R>) -> [R; 3] {
+        let operator = self.scene.settings.gradient_operator();
+        gradient_at(
+            &self.frame,
+            self.gradients.map(|source| (source, operator)),
+            p,
+            tap,
+        )
+    }
+
+    /// What comes through to a position in voxel space.
+    fn lamps(&self, voxel: [R; 3]) -> Lamps<'_, R> {
+        let field = self.light;
+        Lamps { field, voxel }
+    }
+
+    /// What the volumes are made of at `p`, where `look_from` looks from, so many voxels away; `None` for no data.
     fn material(
         &self,
         look_from: impl Fn(&Volume, Filter, [i32; 3]) -> Option<R>,
+        p: [R; 3],
         ray_direction: [R; 3],
     ) -> Option<[R; 4]> {
         let settings = self.scene.settings;
         let look = |volume: &Volume, filter| look_from(volume, filter, [0; 3]);
-        if let Beside::Colors(_) = self.scene.beside {
+        if let Beside::Colors(_) | Beside::Classified(_) = self.scene.beside {
             let mut found = [R::from_f64(0.0); 4];
             for (number, volume) in found.iter_mut().zip(&self.volumes) {
                 *number = look(volume, settings.filter)?;
@@ -359,48 +407,54 @@ impl<'a, R: Real> Walk<'a, R> {
             let [r, g, b, alpha] = found;
             let alpha = (self.volumes.len() == 4).then_some(alpha);
             let (srgb, value) = color_of([r, g, b], alpha);
+            if let Beside::Classified(_) = self.scene.beside {
+                let [r, g, b] = srgb;
+                return Some([r, g, b, value / R::from_f64(self.scene.reference_length())]);
+            }
             let extinction = self.classify(0, value)[3];
             return Some(colored(srgb, extinction, settings.color_space));
         }
         if let [volume] = self.volumes[..] {
             let value = look(volume, settings.filter)?;
             let mut material = self.classify(0, value);
-            let is_lit = self.frame.light_count != 0 && ray_direction != [R::from_f64(0.0); 3];
+            let is_on_face = ray_direction == [R::from_f64(0.0); 3];
+            let is_lit = self.frame.light_count != 0 && !is_on_face;
+            let lamps = self.lamps(p);
+            let unlit = |material| match is_on_face {
+                true => material,
+                false => ambient_of(&self.frame, material, &lamps),
+            };
             if !is_lit && self.widgets.is_none() {
-                return Some(material);
+                return Some(unlit(material));
             }
             let tap = |step| look_from(volume, settings.filter, step);
-            let gradient = gradient_of(&self.frame, tap);
+            let gradient = self.gradient(p, tap);
             if let Some(widgets) = &self.widgets {
-                let magnitude = dot(gradient, gradient).sqrt();
-                let spacing = R::from_f32(self.frame.smallest_spacing);
-                material = classify_by_gradient(widgets, material, value, magnitude, spacing);
+                let steep = steepness(&self.frame, widgets, gradient, tap);
+                material = classify_by_gradient(widgets, material, value, steep);
             }
             let [r, g, b, extinction] = material;
             if !is_lit {
-                return Some(material);
+                return Some(unlit(material));
             }
-            let [r, g, b] = shade(&self.frame, [r, g, b], gradient, ray_direction);
+            let [r, g, b] = shade(&self.frame, [r, g, b], gradient, ray_direction, &lamps);
             return Some([r, g, b, extinction]);
         }
         let mut found = [None; crate::shaders::MAX_CHANNELS as usize];
         for (c, (volume, role)) in self.volumes.iter().zip(&self.roles).enumerate() {
             found[c] = match role {
-                Role::Numbers => look(volume, settings.filter),
+                Role::Numbers | Role::Opacity | Role::Material => look(volume, settings.filter),
                 Role::Labels => Some(look(volume, Filter::Nearest)?),
             };
         }
-        let has_data = found.iter().any(Option::is_some);
-        let there = found.into_iter().enumerate();
-        let materials = there.filter_map(|(c, value)| Some(self.classify(c, value?)));
-        let material = mixed(materials);
+        let found = &found[..self.roles.len()];
+        let material = material_of(&self.roles, found, |c, value| self.classify(c, value))?;
         let dimmed_mark = Some(R::from_f64(DIMMED.into()));
         let is_dimmed = |marks| look(marks, Filter::Nearest) == dimmed_mark;
-        let material = match self.marks.iter().any(is_dimmed) {
+        Some(match self.marks.iter().any(is_dimmed) {
             true => dimmed(material, R::from_f32(self.frame.dim)),
             false => material,
-        };
-        has_data.then_some(material)
+        })
     }
 
     /// The sample of a pixel's ray on the view-aligned plane of an instance.
@@ -462,6 +516,38 @@ impl<'a, R: Real> Walk<'a, R> {
     }
 }
 
+/// The gradient at `p`: by the weights of an operator over a volume, or else by differences of what `tap` finds so
+/// many voxels away.
+fn gradient_at<R: Real>(
+    frame: &Frame,
+    weighted: Option<(&Volume, Operator)>,
+    p: [R; 3],
+    tap: impl Fn([i32; 3]) -> Option<R>,
+) -> [R; 3] {
+    match weighted {
+        Some((source, operator)) => weighted_gradient(frame, source, operator, p),
+        None => gradient_of(frame, tap),
+    }
+}
+
+/// What widgets want to know where the field has this gradient.
+fn steepness<R: Real>(
+    frame: &Frame,
+    widgets: &PackedWidgets,
+    gradient: [R; 3],
+    tap: impl Fn([i32; 3]) -> Option<R>,
+) -> Steepness<R> {
+    let second = match widgets.needs_second() {
+        true => second_derivative_of(frame, gradient, tap),
+        false => R::from_f64(0.0),
+    };
+    Steepness {
+        magnitude: dot(gradient, gradient).sqrt(),
+        second,
+        smallest_spacing: R::from_f32(frame.smallest_spacing),
+    }
+}
+
 /// The function of the volume that colours surfaces.
 fn paint_of(scene: &Scene) -> Option<Points> {
     let function = scene.transfers().get(1).copied().flatten();
@@ -477,6 +563,12 @@ fn marks_of_scene(scene: &Scene) -> Vec<Volume> {
     let parts = scene.volumes().into_iter().zip(scene.roles());
     let maps = parts.filter(|(_, role)| *role == Role::Labels);
     maps.filter_map(|(map, _)| marks_of(map)).collect()
+}
+
+/// A material without lights: all light is ambient.
+fn ambient_of<R: Real>(frame: &Frame, [r, g, b, extinction]: [R; 4], lamps: &Lamps<R>) -> [R; 4] {
+    let [r, g, b] = scale([r, g, b], lamps.ambient(frame));
+    [r, g, b, extinction]
 }
 
 /// The position so many voxels away.

@@ -9,22 +9,24 @@
 
 use super::Error;
 use super::fade::{render_faded, stacks_of};
+use super::light::{Matter, made_light};
 use super::passes::{Passes, key_of};
 use super::position::{labels, positions};
 use super::submission::{self, Submission};
 use super::sum::sum_of;
 use super::tally::{Clock, Mean, check_layers};
 use super::targets::Targets;
-use super::upload::upload;
+use super::upload::{upload, upload_with_gradient_source};
 use crate::gpu::{Headless, ParameterRing, Timer, Use};
 use crate::picture::{ColorSpace, Layer, LayerKind, Picture};
 use crate::resident::{GpuTransfer, GpuVolume, TextureLayout};
 use crate::resolve::reference::projected_value;
 use crate::scene::{Scene, positions_in_pixel};
 use crate::technique::{
-    self, Inputs, Mix, Mode, Part, Recording, Settings, Technique, Words, parameter_ring,
+    self, Functions, GradientSource, Inputs, LightVolume, Mix, Mode, Part, Recording, Settings,
+    Technique, Words, parameter_ring,
 };
-use crate::transfer::{Classified, TransferFunction, Window};
+use crate::transfer::{Classified, Graded, TransferFunction, Window};
 use crate::volume::{Spline, Volume};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -47,6 +49,7 @@ pub struct Renderer<'v> {
     /// What has been needed so far.
     resident: HashMap<Copied, Vec<GpuVolume>>,
     transfer: Option<Uploaded>,
+    light: Option<Lit>,
     targets: Option<Targets>,
     passes: Option<Passes>,
     ring: ParameterRing,
@@ -60,13 +63,18 @@ struct Copied {
     layout: TextureLayout,
     /// Coefficients in place of voxels.
     spline: Option<Spline>,
+    /// What gradients are made of beside the values.
+    gradient_source: Option<GradientSource>,
 }
 
 impl Copied {
     fn of(scene: &Scene) -> Self {
+        let layout = scene.view(&scene.volume.grid(), [0.0; 2]).texture_layout();
+        let gradient_source = scene.settings.gradient_source_beside(layout);
         Self {
-            layout: scene.view(&scene.volume.grid(), [0.0; 2]).texture_layout(),
+            layout,
             spline: scene.settings.filter.spline(),
+            gradient_source: gradient_source.filter(|_| scene.has_gradients()),
         }
     }
 }
@@ -78,6 +86,13 @@ struct Uploaded {
     space: ColorSpace,
     made: GpuTransfer,
     is_preintegrated: bool,
+}
+
+/// A light volume on the device, and the matter that it was made of.
+#[derive(Debug)]
+struct Lit {
+    matter: Matter,
+    made: LightVolume,
 }
 
 impl<'v> Renderer<'v> {
@@ -100,6 +115,7 @@ impl<'v> Renderer<'v> {
             shown: 0,
             resident: HashMap::new(),
             transfer: None,
+            light: None,
             targets: None,
             passes: None,
             ring: parameter_ring(gpu, 1)?,
@@ -129,8 +145,22 @@ impl<'v> Renderer<'v> {
         }
         let copied = Copied::of(scene);
         if !self.resident.contains_key(&copied) {
-            let Copied { layout, spline } = copied;
-            let made = upload(&mut self.device, &self.volumes, layout, spline)?;
+            let Copied {
+                layout,
+                spline,
+                gradient_source,
+            } = copied;
+            let device = &mut self.device;
+            let made = match gradient_source {
+                None => upload(device, &self.volumes, layout, spline)?,
+                Some(source) => vec![upload_with_gradient_source(
+                    device,
+                    self.volumes[0],
+                    layout,
+                    spline,
+                    source,
+                )?],
+            };
             self.resident.insert(copied, made);
         }
         Ok(())
@@ -175,12 +205,12 @@ impl<'v> Renderer<'v> {
         self.prepare(scene)?;
         let functions = scene.transfers().into_iter();
         match functions.collect::<Option<Vec<_>>>() {
-            _ if scene.settings.mode == Mode::Iso => {
+            _ if scene.settings.mode == Mode::Iso => match scene.transfers().get(1) {
                 // What colours the surfaces.
-                if let Some(&Some(function)) = scene.transfers().get(1) {
-                    self.set_transfers(scene, &[function])?;
-                }
-            }
+                Some(&Some(function)) => self.set_transfers(scene, &[function])?,
+                _ => self.prepare_light(scene)?,
+            },
+            Some(_) if !scene.settings.mode.is_projection() => self.prepare_light(scene)?,
             Some(functions) => self.set_transfers(scene, &functions)?,
             None if scene.settings.mode.is_projection() => {
                 clock.add(self.gather(scene, [0.0; 2])?);
@@ -222,14 +252,26 @@ impl<'v> Renderer<'v> {
             self.targets = Some(Targets::new(&gpu, scene.extent_pixels)?);
         }
         let parts = parts_of(&self.resident, self.shown, scene);
-        let slots = parts[0].volume.bricks().len() as u32;
+        // Half-angle slices have parameters of the eye and of the light.
+        let is_half = scene.settings.is_half_angle();
+        let slots = (parts[0].volume.bricks().len() as u32).max(if is_half { 2 } else { 1 });
+        if is_half {
+            let extent = scene.view(&scene.volume.grid(), [0.0; 2]).light_extent();
+            let targets = self.targets.as_mut().expect("made above");
+            targets.prepare_light_buffer(&gpu, extent)?;
+        }
         let words = Words::mixed(scene.settings, scene.mix(), &parts);
         let functions = scene.transfers().into_iter().flatten();
         let points = functions.map(|f| f.color.len().max(f.opacity.len())).max();
+        let graded = scene.transfer.and_then(|function| function.graded.as_ref());
+        let functions = Functions {
+            points: points.unwrap_or(0),
+            second: graded.is_some_and(Graded::needs_second),
+        };
         scene.view(&scene.volume.grid(), [0.0; 2]).check_turns(
             &words,
             parts.len(),
-            points.unwrap_or(0),
+            functions,
             gpu.limits().max_loop_turns,
         )?;
         if self.ring.slots() < slots {
@@ -243,6 +285,38 @@ impl<'v> Renderer<'v> {
         {
             self.passes = Some(Passes::new(&gpu, scene.settings, &words)?);
         }
+        Ok(())
+    }
+
+    /// Puts on the device what classifies samples, and follows light through it where pictures of `scene` ask for
+    /// that. Nothing to do where both are there.
+    ///
+    /// # Errors
+    /// Where no function says what samples are made of, or the device gives no memory.
+    pub fn prepare_light(&mut self, scene: &Scene) -> Result<(), Error> {
+        let grid = scene.volume.grid();
+        let view = scene.view(&grid, [0.0; 2]);
+        let plan = view.light_plan()?;
+        let surfaces = view.matter_of_surfaces();
+        let functions: Option<Vec<_>> = match &surfaces {
+            Some(_) if plan.is_none() => return Ok(()),
+            Some(function) => Some(vec![function]),
+            None => scene.transfers().into_iter().collect(),
+        };
+        let functions = functions.ok_or(technique::Error::NoTransferFunction)?;
+        self.set_transfers(scene, &functions)?;
+        let Some(plan) = plan else { return Ok(()) };
+        let matter = Matter::of(scene, functions[0]);
+        let is_there = |lit: &Lit| *lit.made.plan() == plan && lit.matter == matter;
+        if self.light.as_ref().is_some_and(is_there) {
+            return Ok(());
+        }
+        // Its memory first.
+        self.light = None;
+        let parts = parts_of(&self.resident, self.shown, scene);
+        let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
+        let made = made_light(&mut self.device, scene, plan, &parts, transfer)?;
+        self.light = Some(Lit { matter, made });
         Ok(())
     }
 
@@ -316,11 +390,13 @@ impl<'v> Renderer<'v> {
                 brick: &volume.bricks()[recording.brick],
                 transfer,
                 beside,
+                light: self.light.as_ref().map(|lit| &lit.made),
             };
             Ok(submission::Part {
                 inputs,
                 offset: recording.write(&self.ring, slot)?,
                 slices: recording.slices,
+                order: recording.order,
             })
         };
         let with_others = recordings.into_iter().zip(beside.iter().map(Vec::as_slice));

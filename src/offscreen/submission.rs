@@ -2,7 +2,7 @@
 
 use super::targets::Targets;
 use crate::gpu::{Bindings, Error, Gpu, Headless, Image, Timer, Use, image_barrier};
-use crate::technique::Inputs;
+use crate::technique::{Inputs, Order};
 use ash::vk;
 use std::sync::Arc;
 
@@ -28,6 +28,8 @@ pub struct Part<'a> {
     pub offset: u32,
     /// Slices to draw.
     pub slices: u32,
+    /// How they are blended.
+    pub order: Order,
 }
 
 impl Submission<'_> {

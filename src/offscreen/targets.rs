@@ -4,6 +4,7 @@ use crate::gpu::{
     Buffer, Error, Gpu, Headless, Image, Memory, Region, Use, image_barrier, image_to_buffer,
 };
 use crate::technique::accumulation;
+use crate::technique::slices_3d::half_angle::light_buffer;
 use ash::vk;
 use std::sync::Arc;
 
@@ -18,6 +19,8 @@ pub struct Targets {
     pub layers: Image,
     /// Resolved colour.
     pub picture: Image,
+    /// What the light sees of half-angle slices, once they were wanted.
+    light_buffer: Option<Image>,
     readback: Buffer,
 }
 
@@ -31,8 +34,25 @@ impl Targets {
             accumulation: accumulation(gpu, extent, "accumulation")?,
             layers: accumulation(gpu, extent, "layers")?,
             picture: accumulation(gpu, extent, "picture")?,
+            light_buffer: None,
             readback: Buffer::new(gpu, bytes, usage, Memory::Readback, "readback")?,
         })
+    }
+
+    /// Makes the image that the light sees, where it is not there yet.
+    pub fn prepare_light_buffer(&mut self, gpu: &Arc<Gpu>, extent: [u32; 2]) -> Result<(), Error> {
+        let [width, height] = extent;
+        let found = self.light_buffer.as_ref().map(Image::extent);
+        if found != Some([width, height, 1]) {
+            self.light_buffer = Some(light_buffer(gpu, extent)?);
+        }
+        Ok(())
+    }
+
+    /// The image that the light sees.
+    pub fn light_buffer(&self) -> &Image {
+        let made = self.light_buffer.as_ref();
+        made.expect("`prepare_light_buffer` comes before a picture with half-angle slices")
     }
 
     /// The pixels of one of the images, rows from the top. `before` is what was last done with it.

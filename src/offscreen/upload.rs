@@ -1,7 +1,8 @@
 //! Volumes through a staging buffer to the device, a slab at a time.
 
 use crate::gpu::{Buffer, Error, Headless, Memory};
-use crate::resident::{GpuVolume, TextureLayout};
+use crate::resident::{GpuVolume, Texels, TextureLayout};
+use crate::technique::GradientSource;
 use crate::volume::{Coefficients, Spline, Volume};
 use ash::vk;
 
@@ -30,6 +31,28 @@ pub fn upload(
         Ok(made)
     };
     volumes.iter().map(of_spline).collect()
+}
+
+/// The same of one volume, and what its gradients are made of beside it.
+pub fn upload_with_gradient_source(
+    device: &mut Headless,
+    volume: &Volume,
+    layout: TextureLayout,
+    spline: Option<Spline>,
+    source: GradientSource,
+) -> Result<GpuVolume, Error> {
+    let of_spline = |spline, axes| Coefficients::new(volume, spline, axes);
+    let values = spline.map(|spline| of_spline(spline, layout.filtered_axes()));
+    let source = source.spline().map(|spline| of_spline(spline, [true; 3]));
+    let [values, source] = [&values, &source].map(|coefficients| {
+        let texels = coefficients.as_ref().map(Texels::Coefficients);
+        texels.unwrap_or(Texels::Voxels(volume))
+    });
+    let made = GpuVolume::with_gradient_source(device.gpu(), values, source, layout)?;
+    fill(device, &made, values.volume())?;
+    let beside = made.gradient_source().expect("made so");
+    fill(device, beside, source.volume())?;
+    Ok(made)
 }
 
 fn fill(device: &mut Headless, made: &GpuVolume, volume: &Volume) -> Result<(), Error> {

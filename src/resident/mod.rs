@@ -14,4 +14,4 @@ pub use bricks::{Cell, front_to_back};
 pub use texel::{Coding, TexelFormat};
 pub use transfer::{GpuTransfer, TransferLayout};
 pub use upload::Slab;
-pub use volume::{Brick, GpuVolume, TextureLayout};
+pub use volume::{Brick, GpuVolume, Texels, TextureLayout};

@@ -43,6 +43,7 @@ pub struct GpuTransfer {
     points: Buffer,
     slabs: Option<GpuSlabs>,
     widgets: Buffer,
+    is_graded: bool,
 }
 
 impl GpuTransfer {
@@ -118,6 +119,7 @@ impl GpuTransfer {
             points: filled(gpu, &points, read, "transfer points")?,
             slabs: None,
             widgets: filled(gpu, &widgets, read, "transfer widgets")?,
+            is_graded: functions.iter().any(|(function, _)| function.is_graded()),
         })
     }
 
@@ -169,6 +171,11 @@ impl GpuTransfer {
     /// What the gradient makes of the (first) function.
     pub fn widgets(&self) -> &Buffer {
         &self.widgets
+    }
+
+    /// Whether gradients count in a function.
+    pub fn is_graded(&self) -> bool {
+        self.is_graded
     }
 
     /// Records the copy that fills the table.

@@ -62,7 +62,7 @@ impl GpuVolume {
         let mut bytes = Vec::with_capacity(self.staging_bytes(region) as usize);
         self.texel()
             .encode(&volume.voxels, self.indices(region), &mut bytes);
-        if let Some(mask) = &volume.validity {
+        if let Some(mask) = volume.validity.as_ref().filter(|_| self.has_holes()) {
             bytes.resize(bytes.len().next_multiple_of(ALIGNMENT_BYTES as usize), 0);
             bytes.extend(self.indices(region).map(|i| mask[i]));
         }

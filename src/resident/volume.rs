@@ -71,6 +71,33 @@ pub struct GpuVolume {
     bricks: Vec<Brick>,
     sampler: Sampler,
     spline: Option<Spline>,
+    gradient_source: Option<Box<GpuVolume>>,
+}
+
+/// What a texture holds.
+#[derive(Clone, Copy, Debug)]
+pub enum Texels<'a> {
+    /// The voxels of a volume.
+    Voxels(&'a Volume),
+    /// The coefficients of a spline in their place.
+    Coefficients(&'a Coefficients),
+}
+
+impl<'a> Texels<'a> {
+    /// What uploads take.
+    pub fn volume(self) -> &'a Volume {
+        match self {
+            Self::Voxels(volume) => volume,
+            Self::Coefficients(coefficients) => coefficients.volume(),
+        }
+    }
+
+    fn spline(self) -> Option<Spline> {
+        match self {
+            Self::Voxels(_) => None,
+            Self::Coefficients(coefficients) => Some(coefficients.spline()),
+        }
+    }
 }
 
 /// How a volume will lie in textures, before it is cut.
@@ -116,6 +143,20 @@ impl Plan {
         Ok(())
     }
 
+    /// Bricks in which all of them fit.
+    fn cut(gpu: &Gpu, plans: &[&Self], dims: [u32; 3]) -> Result<Vec<Cell>, Error> {
+        let halo = plans.first().map_or([0; 3], |plan| plan.layout.halo());
+        let fits = |stored| plans.iter().all(|plan| plan.check(gpu, stored).is_ok());
+        let Some(cells) = cut(dims, halo, fits) else {
+            // The error that names the limit.
+            for plan in plans {
+                plan.check(gpu, dims)?;
+            }
+            unreachable!("what cannot be cut to fit is over a limit");
+        };
+        Ok(cells)
+    }
+
     fn make(self, gpu: &Arc<Gpu>, volume: &Volume, cells: &[Cell]) -> Result<GpuVolume, Error> {
         let brick = |&cell: &Cell| {
             let stored = cell.stored.dims();
@@ -135,6 +176,7 @@ impl Plan {
             bricks: cells.iter().map(brick).collect::<Result<_, Error>>()?,
             sampler: Sampler::linear_clamp(gpu)?,
             spline: None,
+            gradient_source: None,
         })
     }
 }
@@ -187,6 +229,44 @@ impl GpuVolume {
         })
     }
 
+    /// Objects for `values` and, beside them and cut into the same bricks, for what gradients are made of
+    /// ([`Settings::gradient_source_beside`](crate::technique::Settings::gradient_source_beside)). It has uploads of its
+    /// own: [`GpuVolume::gradient_source`].
+    ///
+    /// # Errors
+    /// As [`GpuVolume::new`].
+    ///
+    /// # Panics
+    /// Where coefficients are not those along [`TextureLayout::filtered_axes`], or for gradients those along all axes.
+    pub fn with_gradient_source(
+        gpu: &Arc<Gpu>,
+        values: Texels,
+        source: Texels,
+        layout: TextureLayout,
+    ) -> Result<Self, Error> {
+        for (texels, axes) in [(values, layout.filtered_axes()), (source, [true; 3])] {
+            if let Texels::Coefficients(coefficients) = texels {
+                assert_eq!(coefficients.axes(), axes, "axes in {layout:?}");
+            }
+        }
+        let plan = Plan::of(gpu, values.volume(), layout);
+        // The mask beside the values is that of both.
+        let beside = Plan {
+            has_holes: false,
+            ..Plan::of(gpu, source.volume(), layout)
+        };
+        let cells = Plan::cut(gpu, &[&plan, &beside], values.volume().dims)?;
+        let source = Self {
+            spline: source.spline(),
+            ..beside.make(gpu, source.volume(), &cells)?
+        };
+        Ok(Self {
+            spline: values.spline(),
+            gradient_source: Some(Box::new(source)),
+            ..plan.make(gpu, values.volume(), &cells)?
+        })
+    }
+
     /// Objects for volumes of the same dims, all cut into the same bricks, so that they can be put together
     /// sample by sample.
     ///
@@ -199,14 +279,7 @@ impl GpuVolume {
     ) -> Result<Vec<Self>, Error> {
         let plans: Vec<_> = volumes.iter().map(|v| Plan::of(gpu, v, layout)).collect();
         let dims = volumes.first().map_or([1; 3], |volume| volume.dims);
-        let fits = |stored| plans.iter().all(|plan| plan.check(gpu, stored).is_ok());
-        let Some(cells) = cut(dims, layout.halo(), fits) else {
-            // The error that names the limit.
-            for plan in &plans {
-                plan.check(gpu, dims)?;
-            }
-            unreachable!("what cannot be cut to fit is over a limit");
-        };
+        let cells = Plan::cut(gpu, &plans.iter().collect::<Vec<_>>(), dims)?;
         let made = volumes.iter().zip(plans);
         made.map(|(volume, plan)| plan.make(gpu, volume, &cells))
             .collect()
@@ -220,6 +293,11 @@ impl GpuVolume {
     /// The spline that it holds the coefficients of; `None` for voxels.
     pub fn spline(&self) -> Option<Spline> {
         self.spline
+    }
+
+    /// What gradients are made of, where that is something else than the values.
+    pub fn gradient_source(&self) -> Option<&Self> {
+        self.gradient_source.as_deref()
     }
 
     /// How they lie in the textures.

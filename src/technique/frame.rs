@@ -144,6 +144,8 @@ impl View<'_> {
             channel_codes_are_integers: [0; 4],
             channel_is_labels: [0; 4],
             channel_has_holes: [0; 4],
+            channel_is_opacity: [0; 4],
+            colors_are_classified: 0,
             channel_table_first: [0.0; 4],
             channel_table_scale: [0.0; 4],
             channel_table_count: [0; 4],
@@ -184,12 +186,23 @@ impl View<'_> {
             specular: 0.0,
             shininess: 0.0,
             smallest_spacing: self.grid.smallest_spacing() as f32,
+            gradient_operator: self.settings.gradient_operator().number(),
+            gradient_scale: coding.scale,
+            gradient_codes_are_integers: coding.is_integer.into(),
             dim: self.settings.dim as f32,
             cut_faces: of_faces.cut_faces,
             cut_low: of_faces.cut_low,
             cut_scale: of_faces.cut_scale,
             is_last_brick: 1,
+            light_cells: [0.0; 3],
+            occlusion_strength: 0.0,
+            light_cells_per_voxel: [0.0; 3],
+            shadow_reach: 0.0,
+            has_shadows: 0,
+            shadow_bundle: 0,
+            light_rows: [[0.0; 4]; 2],
         };
+        self.set_light(&mut fields);
         if let Some(shading) = &self.settings.shading {
             set_shading(shading, self.settings.color_space, &mut fields)?;
         }
@@ -343,7 +356,7 @@ fn affine_rows(affine: &DAffine3) -> [[f32; 4]; 3] {
 /// Clip space from the centred world, as rows, from the rays themselves: with w the depth and d the ray
 /// direction of depth 1, pixel x of a point p is where (p/w - d) . dx / |dx|^2 finds it. Depth is 1/2
 /// everywhere: w > 0 alone clips.
-fn clip_rows(rays: &Rays, [width, height]: [u32; 2]) -> [[f32; 4]; 4] {
+pub(super) fn clip_rows(rays: &Rays, [width, height]: [u32; 2]) -> [[f32; 4]; 4] {
     let is_perspective = rays.origin_dx == DVec3::ZERO;
     let row = |dx_origin: DVec3, dx_direction: DVec3, pixels: u32| {
         // A point's pixel coordinate times w is dot(slope, p - origin) + at_origin.

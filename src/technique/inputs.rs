@@ -1,8 +1,8 @@
 //! What every technique reads, by the names that the shaders give it, and which variant of a shader that
 //! asks for.
 
-use super::{Filter, Lattice, Mix, Mode, Part, Role, Settings};
-use crate::gpu::{Bindings, Error, Gpu, Layout, ParameterRing, Resource};
+use super::{Filter, Lattice, LightVolume, Mix, Mode, Part, Role, Settings};
+use crate::gpu::{Bindings, Error, Gpu, Image, Layout, ParameterRing, Resource};
 use crate::resident::{Brick, GpuTransfer, GpuVolume, TextureLayout};
 use crate::shaders::MAX_CHANNELS;
 use std::sync::Arc;
@@ -20,6 +20,8 @@ pub struct Inputs<'a> {
     pub transfer: Option<&'a GpuTransfer>,
     /// The same part of the volumes that are put together with it; none where it is alone.
     pub beside: &'a [&'a Brick],
+    /// What comes through to a sample, where the settings ask for occlusion or shadows.
+    pub light: Option<&'a LightVolume>,
 }
 
 impl Inputs<'_> {
@@ -39,6 +41,7 @@ impl Inputs<'_> {
             TextureLayout::Stack(_) => "stack",
         };
         given.push((values, Resource::sampled(&self.brick.values)));
+        given.push(("gradient_source", Resource::sampled(self.gradient_source())));
         given.push(("volume_sampler", Resource::Sampler(self.volume.sampler())));
         given.extend(self.channels());
         if let Some(transfer) = self.transfer {
@@ -48,9 +51,23 @@ impl Inputs<'_> {
             given.extend(slabs.map(|table| ("slab_table", table)));
             given.push(("widgets", Resource::Storage(transfer.widgets())));
         }
+        // Where there is none, something stands in that is not looked at.
+        let light = self.light.map(LightVolume::buffer);
+        let light = light.unwrap_or(self.ring.buffer());
+        given.push(("light_volume", Resource::Storage(light)));
         given.extend_from_slice(outputs);
         given.retain(|(name, _)| layout.slots().iter().any(|slot| slot.name == *name));
         Bindings::new(gpu, layout, &given)
+    }
+}
+
+impl Inputs<'_> {
+    /// What gradients are made of: the values themselves, unless something lies beside them.
+    fn gradient_source(&self) -> &Image {
+        let beside = self.volume.gradient_source();
+        let bricks = beside.into_iter().flat_map(GpuVolume::bricks);
+        let mut same = bricks.filter(|brick| brick.cell == self.brick.cell);
+        &same.next().unwrap_or(self.brick).values
     }
 }
 
@@ -127,9 +144,11 @@ impl Words {
     /// The variant for a picture of several volumes.
     pub fn mixed(settings: &Settings, mix: Mix, parts: &[Part]) -> Self {
         let is_fetched =
-            |part: &Part| part.role == Role::Numbers && !part.volume.texel().is_filtered;
+            |part: &Part| part.role != Role::Labels && !part.volume.texel().is_filtered;
         let has_holes = parts.iter().any(|part| part.volume.has_holes());
-        let is_graded = mix == Mix::Alone && settings.shading.is_some();
+        let has_surfaces = settings.shading.as_ref().is_some_and(|s| s.has_surfaces);
+        let is_lit = has_surfaces || settings.wants_light_volume();
+        let is_graded = mix == Mix::Alone && is_lit;
         Self {
             mix: if is_graded { Mix::Graded } else { mix },
             filter: match settings.filter {

@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! channels    sigma = sum of sigma_i        c = sum of sigma_i c_i / sigma
+//! opacity     c_i of the value of one       sigma_i of the value of the next
 //! colours     c as the volumes say it       sigma of alpha, or of luma
 //! dimmed      sigma = d sigma                c = y + d (c - y),  y the luminance of c
 //! ```
@@ -51,6 +52,11 @@ pub enum Role {
     Numbers,
     /// Names of things: always the nearest, and where they are no data the whole sample is hidden.
     Labels,
+    /// Of classified voxels: light, and the optical depth over the reference length ([`super::preclassified`]).
+    Material,
+    /// How opaque the numbers right before it are, which say the colour. What it is itself is not seen, and where
+    /// one of the two has no data neither is the other.
+    Opacity,
 }
 
 /// One of the volumes that are put together, on the device.
@@ -88,6 +94,8 @@ pub(super) fn set_channels(
         let bricks = part.volume.bricks().iter();
         bricks.map(|brick| brick.cell).collect::<Vec<_>>()
     };
+    let is_classified = parts.iter().any(|part| part.role == Role::Material);
+    fields.colors_are_classified = is_classified.into();
     for (c, part) in parts.iter().enumerate() {
         let (volume, first) = (part.volume, parts[0].volume);
         if volume.grid() != first.grid() || cells(part) != cells(&parts[0]) {
@@ -100,6 +108,7 @@ pub(super) fn set_channels(
         fields.channel_intercept[c] = coding.intercept;
         fields.channel_codes_are_integers[c] = coding.is_integer.into();
         fields.channel_is_labels[c] = (part.role == Role::Labels).into();
+        fields.channel_is_opacity[c] = (part.role == Role::Opacity).into();
         fields.channel_has_holes[c] = volume.has_holes().into();
     }
     let layouts = transfer.map_or(&[][..], GpuTransfer::layouts);
@@ -116,6 +125,33 @@ pub(super) fn set_channels(
         fields.channel_reference_length[c] = layout.reference_length;
     }
     Ok(())
+}
+
+/// Whether each volume that says how opaque another is stands right behind numbers.
+pub fn opacities_have_colors(roles: &[Role]) -> bool {
+    let is_right = |pair: &[Role]| pair[1] != Role::Opacity || pair[0] == Role::Numbers;
+    roles.first() != Some(&Role::Opacity) && roles.windows(2).all(is_right)
+}
+
+/// The material of a sample of these values, those of labels all there; `None` for no data. `classify` gives that
+/// of one value of a channel.
+pub fn material_of<R: Real>(
+    roles: &[Role],
+    values: &[Option<R>],
+    classify: impl Fn(usize, R) -> [R; 4],
+) -> Option<[R; 4]> {
+    let seen = (0..values.len()).filter(|&c| roles[c] != Role::Opacity);
+    let material = |c: usize| {
+        let own = classify(c, values[c]?);
+        if roles.get(c + 1) != Some(&Role::Opacity) {
+            return Some(own);
+        }
+        let [r, g, b, _] = own;
+        Some([r, g, b, classify(c + 1, values[c + 1]?)[3]])
+    };
+    let mut there = seen.filter_map(material).peekable();
+    there.peek()?;
+    Some(mixed(there))
 }
 
 /// The material (red, green, blue, extinction) of several in one place.

@@ -7,16 +7,24 @@ pub mod faces;
 mod frame;
 mod frame_of_mode;
 pub mod gradient;
+mod gradient_filter;
+pub mod gradient_taps;
 mod inputs;
 pub mod isosurface;
+mod light_field;
+mod light_paths;
+mod light_plan;
+mod light_volume;
 mod march;
 pub mod merge;
 pub mod mida;
 pub mod mixture;
 mod per_mode;
+pub mod preclassified;
 pub mod projection;
 pub mod raycast;
 mod recording;
+pub mod second;
 pub mod shading;
 mod slab;
 mod slicer;
@@ -27,12 +35,17 @@ mod ways;
 
 pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 pub use frame::View;
+pub use gradient_filter::{GradientFilter, GradientSource, Operator};
 pub use inputs::{Inputs, Take, Words};
+pub use light_field::LightField;
+pub use light_plan::{AmbientOcclusion, LightPlan, MAX_LIGHT_CELLS, MAX_RADIUS_CELLS, Shadows};
+pub use light_volume::LightVolume;
 pub use mixture::{Mix, Part, Role};
 pub use per_mode::{DEFAULT_ATTENUATION, Level, PerMode};
 pub use recording::{Recording, parameter_ring};
 pub use shading::{Light, Shading};
 pub use slicer::Slicer;
+pub use turns::Functions;
 
 use crate::volume::{Spline, kernel::Kernel};
 
@@ -201,6 +214,10 @@ pub struct Settings {
     pub cut_faces: Option<CutFaces>,
     /// Light on composited samples of one volume; `None`: their colour as it is.
     pub shading: Option<Shading>,
+    /// How gradients are made, for light and for transfer functions of gradients.
+    pub gradient_filter: GradientFilter,
+    /// Ambient light that matter nearby takes away, with lights or without, of one volume that is composited.
+    pub ambient_occlusion: Option<AmbientOcclusion>,
     /// Float targets, no early termination, filtering by texel fetch, control points searched exactly.
     pub conformance: bool,
     /// What single modes want to know.
@@ -301,6 +318,11 @@ pub enum Error {
         /// How many there may be.
         limit: usize,
     },
+    /// What makes something opaque needs something that it makes opaque.
+    #[error(
+        "a volume that says how opaque another is stands right behind the numbers that are coloured"
+    )]
+    OpacityOfNothing,
     /// Colours are red, green, blue, and perhaps alpha.
     #[error("a colour is made of 3 or 4 volumes, not of {found}")]
     NoColor {
@@ -370,6 +392,19 @@ pub enum Error {
     /// Several volumes have several gradients.
     #[error("shading is for one volume of numbers, not for several that are mixed")]
     NotShadedTogether,
+    /// Light falls on what is composited.
+    #[error(
+        "{mode:?} projects one number a ray, on which no light falls: ambient occlusion is for composite"
+    )]
+    NotOccluded {
+        /// The mode.
+        mode: Mode,
+    },
+    /// Light is followed through one volume.
+    #[error(
+        "ambient occlusion and shadows are for one volume of numbers, not for several that are seen together"
+    )]
+    NotOccludedTogether,
     /// A projected value has no gradient.
     #[error(
         "{mode:?} projects one number a ray, which has no gradient: widgets and gradient opacity are for composite"
@@ -383,6 +418,22 @@ pub enum Error {
         "widgets and gradient opacity are for one volume of numbers, not for several that are mixed"
     )]
     NotGradedTogether,
+    /// Nearest and linear filters have no derivative that is of use.
+    #[error(
+        "{filter:?} has no analytic gradient: its derivative is zero, or jumps from voxel to voxel"
+    )]
+    NoDerivative {
+        /// The filter.
+        filter: Filter,
+    },
+    /// Gradients are made of what lies on the device.
+    #[error("gradients read {}, and the volume on the device holds {} for them", held(.wanted.spline()), held(*.found))]
+    WrongGradientSource {
+        /// What [`Settings::gradient_source`] says.
+        wanted: GradientSource,
+        /// What the texture holds that they would read.
+        found: Option<Spline>,
+    },
     /// The parameters hold a fixed number of lights.
     #[error("{wanted} lights, the limit is {limit}")]
     TooManyLights {
@@ -394,6 +445,30 @@ pub enum Error {
     /// A direction has a length.
     #[error("the way to a light has the length 0")]
     NoWayToLight,
+    /// The light's picture is that of one light.
+    #[error("half-angle slices lie half way to one light, and {wanted} were given")]
+    SeveralShadowLights {
+        /// How many were asked for.
+        wanted: usize,
+    },
+    /// Slices of all bricks in turn would have to be drawn before the light of the next slice is known.
+    #[error(
+        "half-angle slices go through all of the volume one by one, from the light: it must lie in one texture of the device, and lies in {bricks} bricks"
+    )]
+    ShadowsNeedOneBrick {
+        /// How many bricks the volume lies in.
+        bricks: usize,
+    },
+    /// Rays that are nearly as flat as the slices, or meet them from the other side.
+    #[error(
+        "rays of this perspective are up to {degrees:.0} degrees off the normal of slices half way to the light, the limit is {limit_degrees:.0}"
+    )]
+    TooSteep {
+        /// The angle of the ray that is farthest off.
+        degrees: f64,
+        /// What may be.
+        limit_degrees: f64,
+    },
     /// The parameters hold a fixed number of planes.
     #[error("{wanted} clip planes, the limit is {limit}")]
     TooManyClipPlanes {
@@ -430,6 +505,8 @@ impl Default for Settings {
             clip_planes: Vec::new(),
             cut_faces: None,
             shading: None,
+            gradient_filter: GradientFilter::default(),
+            ambient_occlusion: None,
             conformance: false,
             per_mode: PerMode::default(),
             dim: DEFAULT_DIM,

@@ -151,9 +151,11 @@ impl Settings {
     ///
     /// # Errors
     /// [`Error::NeedsRays`], [`Error::NeedsRayLattice`], [`Error::NoDepth`], [`Error::NotExact`],
-    /// [`Error::LevelCount`] and [`Error::OutOfRange`].
+    /// [`Error::NoDerivative`], [`Error::LevelCount`] and [`Error::OutOfRange`].
     pub fn check(&self) -> Result<(), Error> {
         self.check_ways()?;
+        self.check_gradient_filter()?;
+        self.check_light()?;
         let (technique, mode) = (self.technique, self.mode);
         if technique != Technique::Raycast && mode.needs_rays() {
             return Err(Error::NeedsRays { technique, mode });

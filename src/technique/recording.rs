@@ -22,6 +22,8 @@ pub struct Recording {
     pub brick: usize,
     /// Slices to draw; 0 for compute passes.
     pub slices: u32,
+    /// How slices are blended: as the settings say, or for half-angle slices as the light asks for.
+    pub order: Order,
     /// The parameters.
     pub frame: Frame,
 }
@@ -36,11 +38,13 @@ impl View<'_> {
     }
 
     /// What is recorded for one picture of `volume`, in the order in which it is recorded: compute passes go
-    /// from front to back, slicers as they blend.
+    /// from front to back, slicers as they blend. Of half-angle slices there are two, what the eye sees and what
+    /// the light sees.
     ///
     /// # Errors
     /// [`Error::WrongLayout`], [`Error::WrongCoefficients`], [`Error::TooManySamples`],
-    /// [`Error::TooManyClipPlanes`], [`Error::NotFor`] and [`Error::SlabsTooLong`].
+    /// [`Error::TooManyClipPlanes`], [`Error::NotFor`], [`Error::SlabsTooLong`], [`Error::ShadowsNeedOneBrick`] and
+    /// those of [`View::half_angle`].
     pub fn recordings(
         &self,
         volume: &GpuVolume,
@@ -73,6 +77,16 @@ impl View<'_> {
         fields.flat_gradient = self.flat_gradient(volume.value_range());
         let cells: Vec<_> = volume.bricks().iter().map(|brick| brick.cell).collect();
         self.check_slabs(&cells)?;
+        self.set_gradients(volume, transfer, &mut fields)?;
+        if self.settings.is_half_angle() {
+            if parts.len() > 1 {
+                return Err(Error::NotShadedTogether);
+            }
+            return match cells.len() {
+                1 => Ok(self.half_angle_recordings(&fields)?.to_vec()),
+                bricks => Err(Error::ShadowsNeedOneBrick { bricks }),
+            };
+        }
         let mut order = self.front_to_back(&cells);
         let settings = self.settings;
         if settings.technique != Technique::Raycast && settings.order == Order::BackToFront {
@@ -110,7 +124,30 @@ impl View<'_> {
     /// As [`View::recordings`].
     pub fn on_cpu(&self) -> Result<Recording, Error> {
         let fields = self.fields(&Coding::PLAIN, &TransferLayout::default())?;
+        if self.settings.is_half_angle() {
+            return Ok(self.half_angle_recordings(&fields)?[0]);
+        }
         Ok(self.recording(0, None, fields))
+    }
+
+    /// The same for half-angle slices: what the eye sees and what the light sees.
+    ///
+    /// # Errors
+    /// As [`View::recordings`].
+    pub fn half_angle_on_cpu(&self) -> Result<[Recording; 2], Error> {
+        let fields = self.fields(&Coding::PLAIN, &TransferLayout::default())?;
+        self.half_angle_recordings(&fields)
+    }
+
+    fn half_angle_recordings(&self, fields: &FrameFields) -> Result<[Recording; 2], Error> {
+        let half = self.half_angle()?;
+        let (passes, slices) = half.fields(self, fields);
+        Ok(passes.map(|fields| Recording {
+            brick: 0,
+            slices,
+            order: half.order,
+            frame: fields.into(),
+        }))
     }
 
     fn recording(&self, brick: usize, cell: Option<&Cell>, mut fields: FrameFields) -> Recording {
@@ -126,6 +163,7 @@ impl View<'_> {
         Recording {
             brick,
             slices,
+            order: self.settings.order,
             frame: fields.into(),
         }
     }

@@ -2,14 +2,15 @@
 //! and the twin of `shaders/lib/shade.wgsl` (`sampling.md` 7).
 //!
 //! ```text
-//! c (ambient + diffuse sum of L |n.l|) + specular sum of L |n.h|^shininess        h = (l + v) / |l + v|
+//! c (o ambient + diffuse sum of t L |n.l|) + specular sum of t L |n.h|^shininess        h = (l + v) / |l + v|
 //! ```
 //!
 //! L is a light's colour, l the way to it, v the way to the eye, n the gradient made a unit vector after
-//! interpolation. Where the gradient over one voxel is under 1e-4 of the volume's range there is no surface and the
-//! colour stays. Blinn, "Models of Light Reflection for Computer Synthesized Pictures", SIGGRAPH 1977.
+//! interpolation; o and t what comes through from all around and from the light, 1 without occlusion and shadows
+//! ([`Lamps`]). Where the gradient over one voxel is under 1e-4 of the volume's range there is no surface and the
+//! colour stays, as far as light comes there: c (o a + (1 - a) sum of t L / sum of L), a = min(ambient, 1). Blinn, "Models of Light Reflection for Computer Synthesized Pictures", SIGGRAPH 1977.
 
-use super::{Error, View};
+use super::{Error, LightField, Shadows, View};
 use crate::color::decode_srgb;
 use crate::picture::ColorSpace;
 use crate::real::{Real, add, dot, scale, sub};
@@ -29,6 +30,11 @@ pub struct Shading {
     pub shininess: f64,
     /// At most [`MAX_LIGHTS`]; none stands for a white headlight, which shines along the ray of each pixel.
     pub lights: Vec<Light>,
+    /// What keeps them from samples.
+    pub shadows: Shadows,
+    /// Whether light falls on the surfaces that stand across gradients. Else it falls on all matter alike, which then
+    /// is as bright as its colour says but for [`Shadows::HalfAngle`]: ambient and lights alone count.
+    pub has_surfaces: bool,
 }
 
 /// A light that is infinitely far away.
@@ -48,6 +54,18 @@ impl Default for Shading {
             specular: 0.2,
             shininess: 10.0,
             lights: Vec::new(),
+            shadows: Shadows::Off,
+            has_surfaces: true,
+        }
+    }
+}
+
+impl Shading {
+    /// White light on matter without surfaces.
+    pub fn plain() -> Self {
+        Self {
+            has_surfaces: false,
+            ..Self::default()
         }
     }
 }
@@ -80,9 +98,9 @@ pub(super) fn set_shading(
         fields.light_count = 1;
         fields.light_directions[0] = [0.0, 0.0, 0.0, 1.0];
         fields.light_colors[0] = [1.0; 4];
-        return Ok(());
+    } else {
+        fields.light_count = wanted as u32;
     }
-    fields.light_count = wanted as u32;
     for (i, light) in shading.lights.iter().enumerate() {
         let towards = light.towards.try_normalize().ok_or(Error::NoWayToLight)?;
         let shown = |c: f64| match space {
@@ -93,7 +111,36 @@ pub(super) fn set_shading(
         fields.light_directions[i] = towards.extend(0.0).as_vec4().to_array();
         fields.light_colors[i] = [r, g, b, 1.0];
     }
+    // To shaders, lights are those on surfaces.
+    if !shading.has_surfaces {
+        fields.light_count = 0;
+    }
     Ok(())
+}
+
+/// What comes through to one position in voxel space.
+#[derive(Clone, Copy, Debug)]
+pub struct Lamps<'a, R> {
+    /// `None`: all of it.
+    pub field: Option<&'a LightField<R>>,
+    /// The position.
+    pub voxel: [R; 3],
+}
+
+impl<R: Real> Lamps<'_, R> {
+    /// Part of the light from all around.
+    pub fn ambient(&self, frame: &Frame) -> R {
+        let found = self.field.map(|field| field.ambient_at(frame, self.voxel));
+        found.unwrap_or(R::from_f64(1.0))
+    }
+
+    /// Part of the light of a lamp.
+    fn lamp(&self, frame: &Frame, lamp: usize) -> R {
+        let found = self
+            .field
+            .map(|field| field.lamp_at(frame, lamp, self.voxel));
+        found.unwrap_or(R::from_f64(1.0))
+    }
 }
 
 /// The colour of a surface across `gradient` (value per world length), seen along `ray_direction`.
@@ -102,17 +149,19 @@ pub fn shade<R: Real>(
     color: [R; 3],
     gradient: [R; 3],
     ray_direction: [R; 3],
+    lamps: &Lamps<R>,
 ) -> [R; 3] {
     let zero = R::from_f64(0.0);
     let length = |v: [R; 3]| dot(v, v).sqrt();
     let steepness = length(gradient);
     if steepness < R::from_f32(frame.flat_gradient) || steepness == zero {
-        return color;
+        return lit_inside(frame, color, lamps);
     }
     let normal = scale(gradient, R::from_f64(1.0) / steepness);
-    let mut lit = scale(color, R::from_f32(frame.ambient));
+    let mut lit = scale(color, R::from_f32(frame.ambient) * lamps.ambient(frame));
     let lights = frame.light_directions.iter().zip(&frame.light_colors);
-    for (&[x, y, z, w], light_color) in lights.take(frame.light_count as usize) {
+    let lights = lights.take(frame.light_count as usize).enumerate();
+    for (i, (&[x, y, z, w], light_color)) in lights {
         let towards_light = if w == 0.0 {
             [x, y, z].map(R::from_f32)
         } else {
@@ -124,8 +173,37 @@ pub fn shade<R: Real>(
         let facing = facing.min(R::from_f64(1.0));
         let diffuse = R::from_f32(frame.diffuse) * dot(normal, towards_light).abs();
         let specular = R::from_f32(frame.specular) * facing.powf(R::from_f32(frame.shininess));
-        let added = |c: usize| R::from_f32(light_color[c]) * (diffuse * color[c] + specular);
+        let through = lamps.lamp(frame, i);
+        let added =
+            |c: usize| through * R::from_f32(light_color[c]) * (diffuse * color[c] + specular);
         lit = add(lit, [added(0), added(1), added(2)]);
     }
     lit
+}
+
+/// Where there is no surface.
+fn lit_inside<R: Real>(frame: &Frame, color: [R; 3], lamps: &Lamps<R>) -> [R; 3] {
+    if frame.has_shadows == 0 {
+        return scale(color, lamps.ambient(frame));
+    }
+    let (zero, one, least) = (R::from_f64(0.0), R::from_f64(1.0), R::from_f32(1e-6));
+    let (mut all, mut there) = ([zero; 3], [zero; 3]);
+    for (i, light) in frame.light_colors.iter().enumerate() {
+        if i >= frame.light_count as usize {
+            break;
+        }
+        let [r, g, b, _] = light.map(R::from_f32);
+        all = add(all, [r, g, b]);
+        there = add(there, scale([r, g, b], lamps.lamp(frame, i)));
+    }
+    let ambient = R::from_f32(frame.ambient).min(one);
+    let part = |c: usize| {
+        // A colour that no light has is missing nothing.
+        let share = match all[c] > least {
+            true => there[c] / all[c],
+            false => one,
+        };
+        ambient * lamps.ambient(frame) + (one - ambient) * share
+    };
+    [0, 1, 2].map(|c| color[c] * part(c))
 }

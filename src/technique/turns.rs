@@ -2,19 +2,34 @@
 //! word ([`crate::gpu::Caps::max_loop_turns`]), and what lies behind would be missing from the picture.
 //!
 //! ```text
-//! turns of a sample = 1 + n (looks (1 + mask + filter) + search)
+//! turns of a sample = 1 + n (looks (1 + mask + filter) + weights + search)
 //! ```
 //!
-//! for n volumes, with 7 looks where there is a gradient, two where there are slabs, and else one. A mask goes round
+//! for n volumes, with 7 looks where a gradient is made of differences, 28 more (with the turn that ends them) where
+//! there is a second derivative, two where there are slabs, and else one. A mask goes round
 //! for the layers and rows of the footprint, a kernel for those of its taps, a search for the halvings of the points.
 
-use super::{Error, Filter, Mix, Settings, Take, Technique, View, Words};
+use super::{Error, Filter, Mix, Operator, Settings, Take, Technique, View, Words};
 
 /// Of what is rare: surfaces that are refined, the first turns of everything.
 const SPARE: f64 = 2048.0;
 
-/// How often the loops of one sample go round, at most. `points` are the control points of the longest function.
-pub fn turns_per_sample(settings: &Settings, words: &Words, volumes: usize, points: usize) -> u64 {
+/// What transfer functions have loops over.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Functions {
+    /// Control points of the longest one.
+    pub points: usize,
+    /// Whether one asks for second derivatives.
+    pub second: bool,
+}
+
+/// How often the loops of one sample go round, at most.
+pub fn turns_per_sample(
+    settings: &Settings,
+    words: &Words,
+    volumes: usize,
+    functions: Functions,
+) -> u64 {
     let width = match settings.filter {
         Filter::Nearest => 1,
         Filter::Linear => 2,
@@ -35,19 +50,29 @@ pub fn turns_per_sample(settings: &Settings, words: &Words, volumes: usize, poin
     } else {
         0
     };
+    let is_weighted = settings.gradient_operator() != Operator::Central;
     let looks = match (words.mix, words.take) {
-        (Mix::Graded, _) => 7,
+        (Mix::Graded, _) => {
+            let first = if is_weighted { 1 } else { 7 };
+            first + if functions.second { 28 } else { 0 }
+        }
         (_, Take::Slab) => 2,
         _ => 1,
     };
+    // Four layers of four rows, with the turns that end them, and the choice of the weights.
+    let weights = if words.mix == Mix::Graded && is_weighted {
+        5 * 5 + 5
+    } else {
+        0
+    };
     let search = if words.transfer == "points" {
-        2 * u64::from((points + 1).ilog2() + 2)
+        2 * u64::from((functions.points + 1).ilog2() + 2)
     } else {
         0
     };
     // Channels are gone over when they are asked for data, looked at and classified.
     let of_each = if volumes > 1 { 3 } else { 0 };
-    1 + volumes as u64 * (of_each + looks * (1 + mask + filter) + search)
+    1 + volumes as u64 * (of_each + looks * (1 + mask + filter) + weights + search)
 }
 
 impl View<'_> {
@@ -59,14 +84,14 @@ impl View<'_> {
         &self,
         words: &Words,
         volumes: usize,
-        points: usize,
+        functions: Functions,
         max_loop_turns: u32,
     ) -> Result<(), Error> {
         // Of a slicer every invocation takes one sample.
         if self.settings.technique != Technique::Raycast || max_loop_turns == u32::MAX {
             return Ok(());
         }
-        let turns = turns_per_sample(self.settings, words, volumes, points);
+        let turns = turns_per_sample(self.settings, words, volumes, functions);
         let limit = (f64::from(max_loop_turns) - SPARE).max(0.0) / turns as f64;
         let wanted = self.longest_sample_count();
         if wanted <= limit {

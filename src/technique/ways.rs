@@ -6,7 +6,7 @@ impl Settings {
     /// Whether technique and mode have the ways to sample that are asked for.
     ///
     /// # Errors
-    /// [`Error::NotFor`], and [`Error::OutOfRange`] for a window that is none.
+    /// [`Error::NotFor`], [`Error::SeveralShadowLights`], and [`Error::OutOfRange`] for a window that is none.
     pub fn check_ways(&self) -> Result<(), Error> {
         let (mode, technique) = (self.mode, self.technique);
         let of_mode = |is_on: bool, wanted| match is_on && mode != Mode::Composite {
@@ -49,7 +49,28 @@ impl Settings {
                 found: "surfaces, whose places do not hang on where steps begin".to_owned(),
             });
         }
-        if self.shading.is_some() {
+        let is_half = self.is_half_angle();
+        let lights = self.shading.as_ref().map_or(0, |s| s.lights.len());
+        if is_half && lights > 1 {
+            return Err(Error::SeveralShadowLights { wanted: lights });
+        }
+        of_technique(is_half, HALF_ANGLE, Technique::Slices3d, "3D slices")?;
+        of_mode(is_half, HALF_ANGLE)?;
+        if is_half && self.filter.kernel().is_some() {
+            return Err(Error::NotFor {
+                wanted: HALF_ANGLE,
+                of: "nearest and linear filters",
+                found: format!("{:?}", self.filter),
+            });
+        }
+        if is_half && self.ambient_occlusion.is_some() {
+            return Err(Error::NotFor {
+                wanted: HALF_ANGLE,
+                of: "the light of one lamp",
+                found: "light from all around that is occluded".to_owned(),
+            });
+        }
+        if self.shading.is_some() || self.ambient_occlusion.is_some() {
             self.refuse_way("samples without light", "shaded ones")?;
         }
         if self.filter.kernel().is_some() {
@@ -101,3 +122,4 @@ const PREINTEGRATED: &str = "pre-integrated classification";
 const SMOOTH: &str = "interpolation between slices";
 const CUT_FACES: &str = "an opaque cut face";
 const JITTER: &str = "jitter";
+const HALF_ANGLE: &str = "half-angle slicing";

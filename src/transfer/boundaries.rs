@@ -57,6 +57,7 @@ pub fn boundaries(joint: &JointCounts, reference_length: Option<f64>) -> Option<
                 value: at,
                 half_width: HALF_WIDTH,
             },
+            second: None,
         });
     }
     Some(TransferFunction {

@@ -73,7 +73,7 @@ pub fn read_transfer_function(path: &Path) -> Result<TransferFunction, FileError
         problem,
     };
     let text = read_limited(path).map_err(of_file)?;
-    transfer_function_from_json(&text).map_err(of_file)
+    transfer_function_in(&text, path.parent()).map_err(of_file)
 }
 
 /// The bytes of a file that is not too long.
@@ -88,8 +88,16 @@ pub(super) fn read_limited(path: &Path) -> Result<Vec<u8>, FileProblem> {
     Ok(bytes)
 }
 
-/// The transfer function that `text` states.
+/// The transfer function that `text` states. It names no other file, because it stands in no folder.
 pub fn transfer_function_from_json(text: &[u8]) -> Result<TransferFunction, FileProblem> {
+    transfer_function_in(text, None)
+}
+
+/// The transfer function that the text of a file in `folder` states.
+pub(super) fn transfer_function_in(
+    text: &[u8],
+    folder: Option<&Path>,
+) -> Result<TransferFunction, FileProblem> {
     let keys: Keys =
         serde_json::from_slice(text).map_err(|cause| FileProblem::Json(cause.to_string()))?;
     if keys.stratavox_transfer_function.as_u64() != Some(VERSION) {
@@ -107,6 +115,13 @@ pub fn transfer_function_from_json(text: &[u8]) -> Result<TransferFunction, File
             length => length,
         },
     };
+    if let Some(found) = keys
+        .preintegrated
+        .as_ref()
+        .filter(|found| !found.is_boolean())
+    {
+        return Err(wrong("preintegrated", "true or false", found));
+    }
     if let Some(found) = &keys.materials {
         return of_materials(&keys, found, reference_length);
     }
@@ -118,17 +133,18 @@ pub fn transfer_function_from_json(text: &[u8]) -> Result<TransferFunction, File
             _ => return Err(wrong("interpolation", "\"linear\" or \"step\"", found)),
         },
     };
-    let graded = graded(GradedKeys {
+    let graded_keys = GradedKeys {
         gradient_opacity: keys.gradient_opacity,
         steepest: keys.steepest,
         widgets: keys.widgets,
-    })?;
+    };
+    let graded = graded(graded_keys, folder)?;
     // Widgets may be all there is, each in a colour of its own.
     let widgets = graded.iter().flat_map(|graded| &graded.widgets);
     let (mut has_widgets, mut all_have_colors) = (false, true);
     for widget in widgets {
         has_widgets = true;
-        all_have_colors &= widget.srgb.is_some();
+        all_have_colors &= widget.has_color();
     }
     let color = match &keys.color {
         Some(found) => points("color", "[value, r, g, b]", found)?,
@@ -232,4 +248,6 @@ struct Keys {
     steepest: Option<Value>,
     #[serde(default)]
     widgets: Option<Value>,
+    #[serde(default)]
+    preintegrated: Option<Value>,
 }

@@ -1,12 +1,15 @@
 //! Materials and widgets in a transfer function file: `docs/transfer-functions.md` has every key.
 
 use super::field::{FRACTION, Fields, POSITIVE, VALUE, list, number, numbers, points, wrong};
-use super::{FileProblem, Graded, Material, OpacityPoint, Shape, TransferFunction, Widget};
+use super::file_images::{cells, rows_to_json};
+use super::{
+    Cells, FileProblem, Graded, Material, OpacityPoint, Second, Shape, TransferFunction, Widget,
+};
 use serde_json::{Map, Value, json};
+use std::path::Path;
 
 /// A shader asks each of them at every sample.
 const MAX_WIDGETS: (usize, &str) = (64, "at most 64 of them");
-const MAX_CELLS: usize = 65_536;
 const COLOR: &str = "[r, g, b]";
 
 /// The function of `"materials"`.
@@ -77,8 +80,11 @@ pub(super) struct GradedKeys {
     pub widgets: Option<Value>,
 }
 
-/// What they say; `None` where none is there.
-pub(super) fn graded(keys: GradedKeys) -> Result<Option<Graded>, FileProblem> {
+/// What they say; `None` where none is there. `folder` is where they look for images.
+pub(super) fn graded(
+    keys: GradedKeys,
+    folder: Option<&Path>,
+) -> Result<Option<Graded>, FileProblem> {
     let mut graded = Graded::default();
     if let Some(found) = keys.gradient_opacity {
         graded.share = opacity_points("gradient_opacity", "[gradient, share]", &found)?;
@@ -91,7 +97,8 @@ pub(super) fn graded(keys: GradedKeys) -> Result<Option<Graded>, FileProblem> {
             MAX_WIDGETS,
         )?;
         for (i, row) in rows.iter().enumerate() {
-            graded.widgets.push(widget(format!("widgets[{i}]"), row)?);
+            let widget = widget(format!("widgets[{i}]"), row, folder)?;
+            graded.widgets.push(widget);
         }
     }
     let says_nothing = graded.share.is_empty() && graded.widgets.is_empty();
@@ -122,7 +129,7 @@ fn opacity_points(
 const SHAPES: &str =
     "\"contour\", \"region\", \"triangle\", \"rectangle\", \"gaussian\" or \"image\"";
 
-fn widget(place: String, found: &Value) -> Result<Widget, FileProblem> {
+fn widget(place: String, found: &Value, folder: Option<&Path>) -> Result<Widget, FileProblem> {
     let mut fields = Fields::of(place, found, "a widget: an object with a shape")?;
     let kind = fields.take("shape", SHAPES)?;
     let shape = match kind.as_str() {
@@ -150,7 +157,7 @@ fn widget(place: String, found: &Value) -> Result<Widget, FileProblem> {
             sigma_value: fields.number("sigma_value", POSITIVE)?,
             sigma_gradient: fields.number("sigma_gradient", POSITIVE)?,
         },
-        Some("image") => image(&mut fields)?,
+        Some("image") => image(&mut fields, folder)?,
         _ => return Err(wrong(&fields.name("shape"), SHAPES, &kind)),
     };
     let opacity = match shape {
@@ -158,15 +165,28 @@ fn widget(place: String, found: &Value) -> Result<Widget, FileProblem> {
         Shape::Region { .. } => fields.number_or("opacity", FRACTION, 1.0)?,
         _ => fields.number("opacity", FRACTION)?,
     };
+    let is_painted = matches!(
+        &shape,
+        Shape::Image {
+            cells: Cells::Rgba(_),
+            ..
+        }
+    );
     let srgb = match fields.optional("color") {
+        Some(found) if is_painted => {
+            let wanted = "no such key: the cells of the image have colours";
+            return Err(wrong(&fields.name("color"), wanted, &found));
+        }
         Some(found) => Some(numbers(&fields.name("color"), &found, COLOR, |_| FRACTION)?),
         None => None,
     };
+    let second = second(&mut fields)?;
     fields.end()?;
     Ok(Widget {
         srgb,
         opacity,
         shape,
+        second,
     })
 }
 
@@ -192,40 +212,44 @@ fn range(fields: &mut Fields, key: &str) -> Result<[f64; 2], FileProblem> {
     Err(wrong(&fields.name(key), wanted, &found))
 }
 
-fn image(fields: &mut Fields) -> Result<Shape, FileProblem> {
+fn image(fields: &mut Fields, folder: Option<&Path>) -> Result<Shape, FileProblem> {
     let values = range(fields, "values")?;
     let gradients = range(fields, "gradients")?;
-    let wanted = "a list of rows of numbers, those of the smallest gradients first";
-    let found = fields.take("rows", wanted)?;
-    let field = fields.name("rows");
-    let rows = list(&field, &found, wanted, (4096, "at most 4096 rows"))?;
-    let columns = rows[0].as_array().map_or(0, Vec::len);
-    let mut cells = Vec::new();
-    for (y, row) in rows.iter().enumerate() {
-        let place = format!("{field}[{y}]");
-        let Some(row) = row
-            .as_array()
-            .filter(|row| !row.is_empty() && row.len() == columns)
-        else {
-            return Err(wrong(&place, "a row of as many numbers as the first", row));
-        };
-        for (x, cell) in row.iter().enumerate() {
-            cells.push(number(&format!("{place}[{x}]"), cell, FRACTION)?);
-        }
-    }
-    if cells.len() > MAX_CELLS {
-        return Err(FileProblem::Field {
-            field,
-            wanted: "at most 65536 numbers",
-            found: cells.len().to_string(),
-        });
-    }
+    let (columns, cells) = cells(fields, folder)?;
     Ok(Shape::Image {
         values,
         gradients,
         columns,
         cells,
     })
+}
+
+const SECOND: &str =
+    "[from, to], [begins, is full, is full no longer, ends], or a number with `sigma_second`";
+
+/// The weight by the second derivative.
+fn second(fields: &mut Fields) -> Result<Option<Second>, FileProblem> {
+    let Some(found) = fields.optional("second") else {
+        return Ok(None);
+    };
+    let field = fields.name("second");
+    if found.is_number() {
+        let middle = number(&field, &found, VALUE)?;
+        let sigma = fields.number("sigma_second", POSITIVE)?;
+        return Ok(Some(Second::Bell { middle, sigma }));
+    }
+    let corners = match found.as_array().map(Vec::len) {
+        Some(2) => {
+            let [from, to] = numbers(&field, &found, SECOND, |_| VALUE)?;
+            [from, from, to, to]
+        }
+        _ => numbers(&field, &found, SECOND, |_| VALUE)?,
+    };
+    if !corners.is_sorted() || corners[0] == corners[3] {
+        let wanted = "ascending numbers, the last above the first";
+        return Err(wrong(&field, wanted, &found));
+    }
+    Ok(Some(Second::Trapezoid(corners)))
 }
 
 /// The lines of a file that state `graded`, each with a comma behind it.
@@ -283,7 +307,7 @@ fn widget_to_json(widget: &Widget) -> Value {
             columns,
             cells,
         } => {
-            let rows: Vec<_> = cells.chunks((*columns).max(1)).collect();
+            let rows = rows_to_json(*columns, cells);
             json!({"shape": "image", "values": values, "gradients": gradients, "rows": rows})
         }
     };
@@ -294,6 +318,16 @@ fn widget_to_json(widget: &Widget) -> Value {
     keys.insert("opacity".to_owned(), widget.opacity.into());
     if let Some(srgb) = widget.srgb {
         keys.insert("color".to_owned(), json!(srgb));
+    }
+    match widget.second {
+        None => {}
+        Some(Second::Trapezoid(corners)) => {
+            keys.insert("second".to_owned(), json!(corners));
+        }
+        Some(Second::Bell { middle, sigma }) => {
+            keys.insert("second".to_owned(), middle.into());
+            keys.insert("sigma_second".to_owned(), sigma.into());
+        }
     }
     Value::Object(keys)
 }

@@ -19,6 +19,11 @@
 //! | gaussian | exp(-((f - v)^2 / sigma_v^2 + (s - s0)^2 / sigma_s^2) / 2) | Kniss et al. 2003 |
 //! | image | bilinear between the middles of its cells, 0 outside of it | Kindlmann & Durkin 1998 |
 //!
+//! Each may be weighted by the second derivative along the gradient as a third axis (Kindlmann & Durkin 1998), with
+//! f'' = g^T H g / |g|^2, which is 0 in the middle of a boundary: by a trapezoid, or by a bell, which makes a gaussian
+//! one of three axes. It counts in the steepest gradient per smallest voxel spacing, so that 1 is a gradient that grows
+//! from nothing to the steepest within a voxel.
+//!
 //! The half-width r of a contour is counted in smallest voxel spacings h: r h |grad f| is how far the value runs on
 //! that way, whatever the slope, so the contour is as thick everywhere.
 
@@ -45,6 +50,41 @@ pub struct Widget {
     pub opacity: f64,
     /// Where it is opaque.
     pub shape: Shape,
+    /// What the second derivative makes of that; `None`: nothing.
+    pub second: Option<Second>,
+}
+
+/// A share, 0 to 1, of the second derivative along the gradient, in steepest gradients per smallest voxel spacing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Second {
+    /// Begins, is full, is full no longer, ends; where two of them are one, that end is included.
+    Trapezoid([f64; 4]),
+    /// exp(-((second - middle) / sigma)^2 / 2).
+    Bell {
+        /// Its middle.
+        middle: f64,
+        /// Its standard deviation.
+        sigma: f64,
+    },
+}
+
+/// Cells of an image, row by row, those of the smallest gradients first.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cells {
+    /// Shares from 0 to 1.
+    Shares(Vec<f64>),
+    /// sRGB red, green, blue, not multiplied, and the share, from 0 to 255: the widget's own colour is not used.
+    Rgba(Vec<[u8; 4]>),
+}
+
+impl Cells {
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        match self {
+            Self::Shares(shares) => shares.len(),
+            Self::Rgba(colors) => colors.len(),
+        }
+    }
 }
 
 /// A share, 0 to 1, of value and gradient magnitude; gradients are fractions of the steepest.
@@ -99,16 +139,32 @@ pub enum Shape {
         gradients: [f64; 2],
         /// Cells across.
         columns: usize,
-        /// Row by row, those of the smallest gradients first.
-        cells: Vec<f64>,
+        /// What stands in them.
+        cells: Cells,
     },
+}
+
+impl Widget {
+    /// True where it does not take the colour of the value.
+    pub fn has_color(&self) -> bool {
+        let is_painted = |cells: &Cells| matches!(cells, Cells::Rgba(_));
+        self.srgb.is_some()
+            || matches!(&self.shape, Shape::Image { cells, .. } if is_painted(cells))
+    }
 }
 
 impl Graded {
     /// True where some gradient is a fraction of the steepest, so that one must be known.
     pub fn needs_steepest(&self) -> bool {
-        let is_fraction = |widget: &Widget| !matches!(widget.shape, Shape::Contour { .. });
+        let is_fraction = |widget: &Widget| {
+            widget.second.is_some() || !matches!(widget.shape, Shape::Contour { .. })
+        };
         !self.share.is_empty() || self.widgets.iter().any(is_fraction)
+    }
+
+    /// True where a second derivative counts.
+    pub fn needs_second(&self) -> bool {
+        self.widgets.iter().any(|widget| widget.second.is_some())
     }
 
     /// This with its values moved: `moved` is a straight line that rises by `slope`.

@@ -17,6 +17,8 @@ mod field;
 #[cfg(feature = "json")]
 mod file;
 #[cfg(feature = "json")]
+mod file_images;
+#[cfg(feature = "json")]
 mod file_widgets;
 mod graded;
 #[cfg(all(feature = "json", feature = "files"))]
@@ -44,7 +46,7 @@ pub use file::{
     FileError, FileProblem, MAX_FILE_BYTES, MAX_POINTS, read_transfer_function,
     transfer_function_from_json, transfer_function_to_json,
 };
-pub use graded::{Graded, Shape, Widget};
+pub use graded::{Cells, Graded, Second, Shape, Widget};
 #[cfg(all(feature = "json", feature = "files"))]
 pub use import::{Imported, Scale, import_transfer_function, transfer_function_from_bytes};
 #[cfg(feature = "json")]
@@ -58,7 +60,7 @@ pub use quantity::Quantity;
 pub use slabs::{SlabCell, SlabTable, classify_slab};
 pub use summary::ValueSummary;
 pub use table::{MAX_ENTRIES, MIN_ENTRIES, Table, classify_by_table};
-pub use widgets::{PackedWidgets, classify_by_gradient};
+pub use widgets::{PackedWidgets, Steepness, classify_by_gradient};
 pub use window::{Classified, Window};
 
 /// A one-dimensional transfer function: colour and opacity have control points of their own.

@@ -36,7 +36,7 @@ pub use joint::{JointHistogram, steepest_gradient};
 pub use magnitude::Magnitude;
 pub use prefilter::{Coefficients, Spline};
 pub use reduce::Reduced;
-pub use regrid::regridded;
+pub use regrid::{is_same_grid, regridded};
 pub use source::{
     Channel, Format, Header, Limits, Loss, Meaning, Pick, Piece, Problem, ReadError, Rescale,
     Series, Source, VoxelBox, Wanted,

@@ -101,3 +101,11 @@ pub(super) fn fetch(volume: &Volume, [x, y, z]: [u32; 3]) -> (f32, bool) {
     let valid = volume.validity.as_ref().is_none_or(|mask| mask[index] != 0);
     (volume.voxels.stored(index), valid)
 }
+
+/// The same of the voxel nearest to a place that may lie outside of the grid.
+pub(crate) fn voxel_at(volume: &Volume, at: [i32; 3]) -> (f32, bool) {
+    fetch(
+        volume,
+        std::array::from_fn(|k| clamped(at[k], volume.dims[k])),
+    )
+}

@@ -225,3 +225,34 @@ fn vectors_are_counted_by_their_length_as_they_are_drawn() {
     let read = |name: &str| fs::read_to_string(folder.path(name)).expect("a file");
     assert_eq!(read("a.json"), read("b.json"));
 }
+
+#[test]
+fn the_widgets_of_a_function_are_lines_over_the_joint_histogram() {
+    let folder = Folder::new();
+    let tf = r#"{"stratavox_transfer_function": 1, "steepest": 0.5, "widgets": [
+        {"shape": "rectangle", "values": [0.2, 0.4], "gradients": [0, 0.1], "opacity": 1, "color": [1, 0, 0]},
+        {"shape": "contour", "value": 0.5, "half_width": 2, "opacity": 1, "color": [0, 0, 1]}]}"#;
+    folder.file("tf.json", tf);
+    let words = "histogram phantom:gauss,n=12 --joint";
+    for name in ["a.json", "a.svg", "a.png"] {
+        let ran = folder.run(&format!("{words} --tf tf.json -o {name}"));
+        ran.assert_done();
+    }
+    let found = json(&folder, "a.json");
+    let outlines = found["outlines"].as_array().expect("outlines");
+    assert_eq!(outlines.len(), 2, "{found}");
+    assert_eq!(outlines[0]["shape"], "rectangle");
+    // Gradients are fractions of the steepest.
+    let lines = serde_json::json!([[[0.2, 0.0], [0.4, 0.0], [0.4, 0.05], [0.2, 0.05], [0.2, 0.0]]]);
+    assert_eq!(outlines[0]["lines"], lines);
+    assert_eq!(outlines[1]["lines"][0][1], serde_json::json!([0.5, 0.0]));
+    assert_eq!(found["transfer_function"]["steepest"], 0.5);
+    let svg = fs::read_to_string(folder.path("a.svg")).expect("text");
+    assert!(
+        svg.contains("#ff0000") && svg.contains("#0000ff"),
+        "no lines in their colours"
+    );
+    folder.run(&format!("{words} -o b.svg")).assert_done();
+    let plain = fs::read_to_string(folder.path("b.svg")).expect("text");
+    assert!(!plain.contains("#ff0000"));
+}

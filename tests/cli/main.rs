@@ -8,6 +8,7 @@ mod animate_films;
 mod animate_mixed;
 #[cfg(unix)]
 mod animate_stops;
+mod classified;
 mod convert;
 mod convert_refused;
 mod device;
@@ -20,6 +21,7 @@ mod interrupt;
 mod manuals;
 mod memory;
 mod mixed;
+mod opacity;
 mod person;
 mod pictures;
 mod presets;

@@ -28,6 +28,7 @@ pub fn of_film(plan: &Plan, frames: &Frames, depth: BitDepth) -> Result<Value, E
         "input": input,
         "labels": labels?,
         "label_names": label_names?,
+        "opacity_from": stamp_of(plan.scene.opacity.file())?,
         "header": hash_of(|hasher| std::hash::Hasher::write(hasher, header.as_bytes())),
         "bits": match depth { BitDepth::Eight => 8, BitDepth::Sixteen => 16 },
         "black_behind": !keeps_transparency(&plan.target),

@@ -23,16 +23,12 @@ use super::{
     tracks::Tracks,
 };
 use crate::{
-    cli::Error,
+    cli::{Error, small_file},
     transfer::{TransferFunction, transfer_function_to_json},
 };
 use serde::Deserialize;
 use serde_json::Value;
-use std::{
-    fs::File,
-    io::Read,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 const VERSION: u32 = 1;
 /// The largest file that is read.
@@ -67,21 +63,10 @@ struct Words {
 
 /// The film of the file at `path`.
 pub fn read(path: &Path, rate: Rate) -> Result<Keyframes, Error> {
-    let refused = |problem| Error::Input {
-        path: path.to_owned(),
-        problem,
-    };
-    let mut text = Vec::new();
-    File::open(path)
-        .and_then(|file| file.take(MAX_FILE_BYTES + 1).read_to_end(&mut text))
-        .map_err(|cause| refused(cause.to_string()))?;
-    if text.len() as u64 > MAX_FILE_BYTES {
-        return Err(refused(format!(
-            "keyframes have at most {MAX_FILE_BYTES} bytes"
-        )));
-    }
     let folder = path.parent().unwrap_or(Path::new("."));
-    let mut film = parse(&text, folder, rate).map_err(refused)?;
+    let mut film = small_file::parsed(path, "a film of keyframes", MAX_FILE_BYTES, |text| {
+        parse(text, folder, rate)
+    })?;
     film.inputs.push(path.to_owned());
     Ok(film)
 }

@@ -23,7 +23,7 @@ mod volumes;
 
 use super::{
     Error,
-    flags::{Depth, NotBuilt, SceneFlags},
+    flags::{Depth, SceneFlags},
     load,
     memory::{Held, fitting},
     output::{self, write_whole},
@@ -107,8 +107,6 @@ pub struct Animate {
     /// No empty-space skipping: the picture is the same without
     #[arg(long)]
     no_skip: bool,
-    #[command(flatten)]
-    not_built: NotBuilt,
 }
 
 /// Everything that was checked before the first voxel is read.
@@ -127,7 +125,6 @@ struct Plan {
 impl Animate {
     /// Draws and writes.
     pub fn run(mut self, gate: &Gate) -> Result<(), Error> {
-        self.not_built.refuse()?;
         let (plan, source) = self.plan()?;
         let mut outputs: Vec<PathBuf> = self
             .save_scene

@@ -1,16 +1,16 @@
 //! Value to colour and opacity: flags to a transfer function, once the volume is known.
 
-use super::{Error, Inlined, Numbers, boundaries_of, function_in, refuse_gradients_in};
+use super::{
+    Error, Inlined, Numbers, boundaries_of, function_in, preset, refuse_gradients_in, summary,
+};
 use crate::{
     technique::Mode,
     transfer::{
-        Classified, Interpolation, Preset, Quantity, TransferFunction, ValueSummary, Window,
-        automatic,
+        Classified, Interpolation, Preset, TransferFunction, ValueSummary, Window, automatic,
     },
     volume::{Volume, steepest_gradient},
 };
 use clap::Args;
-use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -71,6 +71,14 @@ pub enum Classification {
 }
 
 impl ClassificationFlags {
+    /// True where a function is asked for by name or file, which may be one of gradients.
+    pub fn names_a_function(&self) -> bool {
+        self.preset.is_some()
+            || self.transfer_function.is_some()
+            || self.opacity_function.is_some()
+            || self.color_function.is_some()
+    }
+
     /// Reads the files of `--tf`, `--color-tf` and `--opacity-tf`; what a scene says in their place is gone.
     pub fn inline_file(&mut self) -> Result<(), Error> {
         if let Some(path) = &self.tf {
@@ -114,6 +122,16 @@ impl ClassificationFlags {
             preset(name).map_err(|problem| Error::usage(problem, "--preset ct-bone"))?;
         }
         Ok(())
+    }
+
+    /// True where the function of `--tf` asks for pre-integrated classification.
+    pub fn wants_slabs(&self) -> bool {
+        let function = self.transfer_function.as_ref();
+        let key = |key: &str| function.and_then(|function| function.get(key));
+        let is_graded = ["widgets", "gradient_opacity"]
+            .iter()
+            .any(|name| key(name).is_some());
+        key("preintegrated") == Some(&serde_json::Value::Bool(true)) && !is_graded
     }
 
     /// True where this program alone has found that the volume holds labels: no value lies between two of them.
@@ -274,49 +292,6 @@ impl ClassificationFlags {
             .map(|part| function_in(&part.transfer_function));
         part.transpose()
     }
-}
-
-/// A sentence with all its causes.
-pub fn with_causes(error: &dyn std::error::Error) -> String {
-    let mut text = error.to_string();
-    let mut cause = error.source();
-    while let Some(error) = cause {
-        text = format!("{text}: {error}");
-        cause = error.source();
-    }
-    text
-}
-
-pub fn preset(name: &str) -> Result<String, String> {
-    let names = Preset::ALL.map(Preset::name);
-    if names.contains(&name) {
-        Ok(name.to_owned())
-    } else {
-        Err(format!(
-            "no preset {name:?}; there are {}",
-            names.join(", ")
-        ))
-    }
-}
-
-/// What the values of a volume look like as a whole.
-pub fn summary(volume: &Volume) -> ValueSummary {
-    let [x, y, z] = volume.dims.map(f64::from);
-    let diagonal = volume
-        .world_from_voxel
-        .transform_vector3(DVec3::new(x, y, z));
-    let is_valid = |i: usize| volume.validity.as_ref().is_none_or(|valid| valid[i] != 0);
-    let value = |i: usize| {
-        f64::from(volume.voxels.stored(i)) * volume.rescale.slope + volume.rescale.intercept
-    };
-    ValueSummary::of(
-        volume.voxels.len(),
-        volume.value_range,
-        diagonal.length(),
-        volume.hounsfield,
-        |i| is_valid(i).then(|| value(i)),
-    )
-    .measuring(Quantity::of_unit(volume.unit.as_deref()))
 }
 
 #[cfg(test)]

@@ -33,9 +33,13 @@ impl Inlined {
             say_aside(&format!("{}: not taken over: {piece}", path.display()));
         }
         let text = transfer_function_to_json(&imported.function);
+        let mut transfer_function: serde_json::Value =
+            serde_json::from_str(&text).expect("what we have just written as JSON");
+        if imported.preintegrated {
+            transfer_function["preintegrated"] = true.into();
+        }
         Ok(Self {
-            transfer_function: serde_json::from_str(&text)
-                .expect("what we have just written as JSON"),
+            transfer_function,
             of_fractions: imported.scale == Scale::Fractions,
         })
     }

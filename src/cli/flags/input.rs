@@ -63,7 +63,7 @@ fn is_false(flag: &bool) -> bool {
 }
 
 /// How a built-in volume begins.
-const PHANTOM: &str = "phantom:";
+pub(super) const PHANTOM: &str = "phantom:";
 
 impl InputFlags {
     /// The file, where the input is one.

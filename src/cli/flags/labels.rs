@@ -2,6 +2,7 @@
 
 use super::Error;
 use crate::{
+    cli::small_file,
     technique::DEFAULT_DIM,
     transfer::{LabelTable, MAX_FILE_BYTES},
 };
@@ -9,8 +10,6 @@ use clap::Args;
 use serde::{Deserialize, Serialize};
 use std::{
     fmt,
-    fs::File,
-    io::Read,
     ops::RangeInclusive,
     path::{Path, PathBuf},
     str::FromStr,
@@ -63,21 +62,8 @@ impl LabelFlags {
         let Some(path) = &self.label_tf else {
             return Ok(None);
         };
-        let refused = |problem: String| Error::Input {
-            path: path.clone(),
-            problem,
-        };
-        let mut text = Vec::new();
-        File::open(path)
-            .and_then(|file| file.take(MAX_FILE_BYTES + 1).read_to_end(&mut text))
-            .map_err(|cause| refused(cause.to_string()))?;
-        if text.len() as u64 > MAX_FILE_BYTES {
-            return Err(refused(format!(
-                "a table of labels has at most {MAX_FILE_BYTES} bytes"
-            )));
-        }
-        let table = LabelTable::parse(&text).map_err(|problem| refused(problem.to_string()))?;
-        Ok(Some(table))
+        let parse = |text: &[u8]| LabelTable::parse(text).map_err(|problem| problem.to_string());
+        small_file::parsed(path, "a table of labels", MAX_FILE_BYTES, parse).map(Some)
     }
 
     /// True where labels cut and nothing says that they are drawn too.

@@ -1,9 +1,9 @@
 //! Light on what is composited: flags to [`Shading`].
 
-use super::{Error, Numbers};
+use super::{Error, Numbers, occlusion::OcclusionWord, shadows::ShadowsWord};
 use crate::{
     shaders::MAX_LIGHTS,
-    technique::{Light, Mode, Shading},
+    technique::{AmbientOcclusion, Light, Mode, Shading, Shadows},
 };
 use clap::{Args, ValueEnum};
 use glam::DVec3;
@@ -28,6 +28,19 @@ pub struct LightFlags {
     #[arg(long, value_name = "X,Y,Z[,R,G,B]", allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub light: Vec<LightWord>,
+    /// Darkness where matter within RADIUS (world length) keeps light from all around away; of the ambient part with
+    /// --shading phong, of the whole colour without [default radius: a twentieth of the diagonal of the volume]
+    #[arg(long, value_name = "STRENGTH[,RADIUS]", allow_hyphen_values = true, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ambient_occlusion: Option<OcclusionWord>,
+    /// Whether matter on the way to a --light keeps it away; --material A is what stays in the shadow [default: off]
+    #[arg(long, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shadows: Option<ShadowsWord>,
+    /// How wide lights look, in degrees: 0 for sharp shadows [default: 5]
+    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light_size: Option<f64>,
 }
 
 /// Every word of `--shading`.
@@ -103,14 +116,25 @@ impl LightFlags {
         self.shading.unwrap_or(of_mode)
     }
 
+    /// True where a picture in `mode` is lit.
+    pub fn is_lit(&self, mode: Mode) -> bool {
+        self.word(mode) == ShadingWord::Phong
+    }
+
+    /// Whether slices lie half way to the light.
+    pub fn is_half_angle(&self) -> bool {
+        self.shadows == Some(ShadowsWord::HalfAngle)
+    }
+
     /// The light of a picture in `mode`.
     pub fn shading(&self, mode: Mode) -> Result<Option<Shading>, Error> {
-        if self.word(mode) == ShadingWord::None {
+        let has_surfaces = self.word(mode) == ShadingWord::Phong;
+        if !has_surfaces && !self.is_half_angle() {
             return Ok(None);
         }
         if mode.is_projection() {
             return Err(Error::usage(
-                "--shading phong needs --mode composite, mida or iso: no light falls on a projection",
+                "--shading phong and --shadows need --mode composite, mida or iso: no light falls on a projection",
                 "leave out --mode or --shading",
             ));
         }
@@ -123,6 +147,8 @@ impl LightFlags {
         }
         let mut shading = Shading {
             lights: self.light.iter().map(|word| word.0).collect(),
+            shadows: self.shadows()?,
+            has_surfaces,
             ..Shading::default()
         };
         if let Some(Numbers(material)) = self.material {
@@ -148,9 +174,32 @@ impl LightFlags {
         Ok(Some(shading))
     }
 
+    fn shadows(&self) -> Result<Shadows, Error> {
+        let size = self.light_size.unwrap_or(DEFAULT_LIGHT_SIZE);
+        if !(0.0..=MAX_LIGHT_SIZE).contains(&size) {
+            return Err(Error::usage(
+                format!("--light-size {size}: wanted degrees from 0 to {MAX_LIGHT_SIZE}"),
+                "--light-size 0 makes shadows sharp, the sun is half a degree wide",
+            ));
+        }
+        Ok(self.shadows.unwrap_or_default().shadows(size))
+    }
+
+    /// The ambient occlusion of a picture in `mode`.
+    pub fn occlusion(&self, mode: Mode) -> Result<Option<AmbientOcclusion>, Error> {
+        let occlusion = self.ambient_occlusion.map(OcclusionWord::occlusion);
+        if occlusion.is_some() && mode.is_projection() {
+            return Err(Error::usage(
+                "--ambient-occlusion needs --mode composite, mida or iso: no light falls on a projection",
+                "leave out --mode or --ambient-occlusion",
+            ));
+        }
+        Ok(occlusion)
+    }
+
     /// Flags that change nothing under the others, a sentence each.
     pub fn idle(&self, mode: Mode) -> Vec<&'static str> {
-        let is_dark = self.word(mode) == ShadingWord::None;
+        let is_dark = self.word(mode) == ShadingWord::None && !self.is_half_angle();
         let mut notes = Vec::new();
         if is_dark && self.material.is_some() {
             notes.push("--material has no effect without --shading phong");
@@ -158,9 +207,27 @@ impl LightFlags {
         if is_dark && !self.light.is_empty() {
             notes.push("--light has no effect without --shading phong");
         }
+        let has_shadows = self.shadows.unwrap_or_default() != ShadowsWord::Off;
+        if has_shadows && (is_dark || self.light.is_empty()) {
+            notes.push(
+                "--shadows has no effect without --shading phong and --light: nothing seen is in the shadow of the eye's own light",
+            );
+        }
+        if self.light_size.is_some() && !has_shadows {
+            notes.push("--light-size has no effect without --shadows volume");
+        }
+        if self.ambient_occlusion.is_some() && !is_dark && self.material.is_none() {
+            notes.push(
+                "--ambient-occlusion takes ambient light, a tenth of it all unless --material says so: --material 0.5,0.5,0.2,10 shows more",
+            );
+        }
         notes
     }
 }
+
+/// Soft where matter is far, and no blur where it is near.
+const DEFAULT_LIGHT_SIZE: f64 = 5.0;
+const MAX_LIGHT_SIZE: f64 = 90.0;
 
 /// A power of 0 would mirror everywhere, and over a thousand no pixel would.
 const MIN_SHININESS: f64 = 0.1;
@@ -175,6 +242,7 @@ mod tests {
             shading: Some(shading),
             material: (!material.is_empty()).then(|| material.parse().expect("numbers")),
             light: light.iter().map(|l| l.parse().expect("a light")).collect(),
+            ..LightFlags::default()
         }
     }
 

@@ -9,6 +9,7 @@ mod classification;
 mod component;
 mod cuts;
 mod denoise;
+mod gradient_filter;
 mod gradients;
 mod inlined;
 mod input;
@@ -16,19 +17,23 @@ mod labels;
 mod levels;
 mod light;
 mod modes;
-mod not_built;
 mod numbers;
+mod occlusion;
+mod opacity;
 mod picture;
 mod sampling;
 mod section;
+mod shadows;
 mod subject;
+mod values;
 mod words;
 
 pub use camera::CameraFlags;
 pub use channels::{ChannelFlags, ChannelWord, Plan};
-pub use classification::{Classification, ClassificationFlags, preset, summary, with_causes};
+pub use classification::{Classification, ClassificationFlags};
 pub use component::Component;
 pub use denoise::DenoiseWord;
+pub use gradient_filter::GradientFlags;
 pub use gradients::{boundaries_of, refuse_gradients_in};
 pub use inlined::{Inlined, function_in};
 pub use input::{InputFlags, relative};
@@ -36,12 +41,13 @@ pub use labels::LabelFlags;
 pub use levels::LevelFlags;
 pub use light::LightFlags;
 pub use modes::ModeFlags;
-pub use not_built::NotBuilt;
 pub use numbers::{Background, Numbers, Size, finite, positive};
+pub use opacity::OpacityFlags;
 pub use picture::PictureFlags;
 pub use sampling::{Depth, SamplingFlags};
 pub use section::SectionFlags;
 pub use subject::Subject;
+pub use values::{preset, summary, with_causes};
 
 use super::Error;
 use crate::technique::Settings;
@@ -65,11 +71,15 @@ pub struct SceneFlags {
     #[command(flatten)]
     pub classification: ClassificationFlags,
     #[command(flatten)]
+    pub opacity: OpacityFlags,
+    #[command(flatten)]
     pub channels: ChannelFlags,
     #[command(flatten)]
     pub labels: LabelFlags,
     #[command(flatten)]
     pub light: LightFlags,
+    #[command(flatten)]
+    pub gradient: GradientFlags,
     #[command(flatten)]
     pub camera: CameraFlags,
     #[command(flatten)]
@@ -97,12 +107,42 @@ impl SceneFlags {
     /// The same with other words of sampling.
     pub fn settings_of(&self, sampling: &SamplingFlags, depth: Depth) -> Result<Settings, Error> {
         let settings = self.section.settings(sampling, depth)?;
-        let shading = self.light.shading(settings.mode)?;
-        Ok(Settings {
-            shading,
+        let settings = Settings {
+            shading: self.light.shading(settings.mode)?,
+            ambient_occlusion: self.light.occlusion(settings.mode)?,
+            gradient_filter: self.gradient.filter(),
             dim: self.labels.dim()?,
             ..settings
+        };
+        self.light.shadows.unwrap_or_default().check(&settings)?;
+        sampling.check_ways(&settings)?;
+        if !self.wants_slabs() {
+            return Ok(settings);
+        }
+        let slabs = Settings {
+            preintegrated: true,
+            ..settings.clone()
+        };
+        // What a file asks for gives way to what a person does.
+        Ok(match slabs.check_ways() {
+            Ok(()) => slabs,
+            Err(_) => settings,
         })
+    }
+
+    /// False where nothing in the picture hangs on a gradient; a function that is read may make something of it.
+    fn may_have_gradients(&self) -> bool {
+        let mode = self.sampling.mode.unwrap_or_default().mode();
+        self.light.is_lit(mode) || !mode.is_projection() && self.classification.names_a_function()
+    }
+
+    /// True where the function asks for slabs and no word is against it.
+    fn wants_slabs(&self) -> bool {
+        let is_one = !self.channels.are_given()
+            && self.input.component != Some(Component::All)
+            && self.labels.labels.is_none()
+            && !self.opacity.are_given();
+        is_one && self.classification.wants_slabs() && !self.sampling.says_how()
     }
 
     /// Flags that change nothing under the others, a sentence each.
@@ -112,8 +152,13 @@ impl SceneFlags {
             self.sampling.idle(),
             self.modes.idle(mode),
             self.light.idle(mode),
+            self.gradient.idle(self.may_have_gradients()),
             self.camera.idle(),
         ];
-        topics.concat()
+        let mut notes = topics.concat();
+        if self.light.is_half_angle() && self.sampling.order.is_some() {
+            notes.push("--order has no effect on half-angle slices, they come from the light");
+        }
+        notes
     }
 }

@@ -39,6 +39,14 @@ pub struct SamplingFlags {
     #[arg(long)]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub preintegrated: bool,
+    /// Classify voxels and interpolate what they are made of, not their values; blurs, and loses what lies between
+    #[arg(long, conflicts_with = "preintegrated")]
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub preclassified: bool,
+    /// Classify interpolated values [default, unless the --tf file asks for --preintegrated]
+    #[arg(long, conflicts_with_all = ["preintegrated", "preclassified"])]
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub postclassified: bool,
     /// 2D stacks: slices interpolated between those of the volume, and a cross-fade from stack to stack
     #[arg(long)]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
@@ -141,14 +149,14 @@ impl SamplingFlags {
             clip_planes: self.clip_planes()?,
             cut_faces: self.cut_faces.map(CutFacesWord::cut_faces),
             shading: None,
+            gradient_filter: Default::default(),
             dim: DEFAULT_DIM,
+            ambient_occlusion: None,
             conformance: self.conformance,
             // Of the values, which are not known yet.
             per_mode: Default::default(),
         };
-        settings
-            .check_ways()
-            .map_err(|problem| Error::usage(problem.to_string(), WAYS))?;
+        self.check_ways(&settings)?;
         Ok(settings)
     }
 
@@ -167,6 +175,25 @@ impl SamplingFlags {
             ));
         }
         Ok(planes)
+    }
+
+    /// True where a word says what is classified.
+    pub fn says_how(&self) -> bool {
+        self.preintegrated || self.preclassified || self.postclassified
+    }
+
+    /// Takes out what `stronger` excludes.
+    pub fn give_way_to(&mut self, stronger: &Self) {
+        if stronger.says_how() {
+            (self.preintegrated, self.preclassified) = (false, false);
+            self.postclassified = false;
+        }
+    }
+
+    /// Whether these settings go with the ways to sample that are asked for.
+    pub fn check_ways(&self, settings: &Settings) -> Result<(), Error> {
+        let checked = settings.check_ways();
+        checked.map_err(|problem| Error::usage(problem.to_string(), WAYS))
     }
 
     fn lattice(&self) -> Result<Lattice, Error> {

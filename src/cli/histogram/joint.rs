@@ -1,8 +1,10 @@
 //! The joint histogram: gradient magnitude above value, counts as colours on a logarithmic scale.
 
-use super::{Counted, NAME_SIZE, Plot, TICK_SIZE, color};
+use super::outlines::{self, Axes, Outline};
+use super::{Counted, NAME_SIZE, Plot, TICK_SIZE, color, function_json};
 use crate::{
     cli::figure::{Anchor, FAINT, Figure, INK, Mark, Ticks, log_ticks},
+    transfer::TransferFunction,
     volume::JointHistogram,
 };
 use serde_json::{Value, json};
@@ -21,7 +23,7 @@ const COLORS: [[f64; 3]; 5] = [
 ];
 
 /// The figure, and its numbers.
-pub fn of(counted: &Counted, max_bins: usize) -> (Figure, Value) {
+pub fn of(counted: &Counted, function: &TransferFunction, max_bins: usize) -> (Figure, Value) {
     let joint = JointHistogram::of(&counted.volume, max_bins, ROWS);
     let mut json = counted.json("stratavox_joint_histogram");
     let rows: Vec<&[u64]> = match joint.columns {
@@ -32,7 +34,18 @@ pub fn of(counted: &Counted, max_bins: usize) -> (Figure, Value) {
     json["gradient_edges"] = json!(joint.gradient_edges());
     json["gradient_unit"] = json!(gradient_unit(counted));
     json["counts"] = json!(rows);
-    (figure(counted, &joint), json)
+    let axes = Axes {
+        // Without data there is no gradient, and any axis will do.
+        top: match joint.gradient_range[1] {
+            top if top > 0.0 => top,
+            _ => 1.0,
+        },
+        smallest_spacing: counted.volume.grid().smallest_spacing(),
+    };
+    let outlines = outlines::of(function, axes);
+    json["transfer_function"] = function_json(function);
+    json["outlines"] = outlines::json(&outlines);
+    (figure(counted, &joint, axes, &outlines), json)
 }
 
 fn gradient_unit(counted: &Counted) -> String {
@@ -41,7 +54,7 @@ fn gradient_unit(counted: &Counted) -> String {
     format!("{value} per {length}")
 }
 
-fn figure(counted: &Counted, joint: &JointHistogram) -> Figure {
+fn figure(counted: &Counted, joint: &JointHistogram, axes: Axes, outlines: &[Outline]) -> Figure {
     let sentences = [counted.sentence()];
     let mut figure = Plot::figure(counted, "Values and gradients", &sentences);
     let [low, high] = joint.value_range;
@@ -64,14 +77,11 @@ fn figure(counted: &Counted, joint: &JointHistogram) -> Figure {
             colors: rows.map(|&count| shade(count as f64, most)).collect(),
         });
     }
+    outlines::draw(&mut figure, &plot, axes, outlines);
     plot.frame(&mut figure);
     plot.value_axis(&mut figure, counted, plot.bottom);
 
-    // Without data there is no gradient, and any axis will do.
-    let top = match joint.gradient_range[1] {
-        top if top > 0.0 => top,
-        _ => 1.0,
-    };
+    let top = axes.top;
     let ticks = Ticks::linear([0.0, top], 6);
     for (gradient, text) in &ticks.at {
         let y = plot.y(gradient / top);

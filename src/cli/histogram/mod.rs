@@ -1,6 +1,7 @@
 //! `stratavox histogram`: how often each value occurs, as a figure or as numbers.
 
 mod joint;
+mod outlines;
 mod single;
 
 use super::{
@@ -26,6 +27,7 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "Examples:\n  \
     stratavox histogram phantom:head,n=64 -o head.svg\n  \
     stratavox histogram phantom:head,n=64 --joint -o joint.png\n  \
+    stratavox histogram phantom:head,n=48 --joint --preset boundaries -o widgets.svg\n  \
     stratavox histogram phantom:storm,n=32 --variable temperature -o counts.json")]
 pub struct HistogramVerb {
     #[command(flatten)]
@@ -33,7 +35,7 @@ pub struct HistogramVerb {
     /// The figure: its ending says whether .png, .svg or .json
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// Values against gradient magnitudes: boundaries between materials are arches
+    /// Values against gradient magnitudes: boundaries between materials are arches; the widgets of the function lie over them as lines
     #[arg(long)]
     joint: bool,
     /// As many bins of values at most
@@ -72,7 +74,7 @@ impl HistogramVerb {
         };
         let bins = self.bins as usize;
         let (figure, json) = if self.joint {
-            joint::of(&counted, bins)
+            joint::of(&counted, &function, bins)
         } else {
             single::of(&counted, &function, bins)
         };

@@ -1,6 +1,8 @@
 //! What a picture shows: a volume and how it is classified, and what it is seen together with.
 
 mod colors;
+mod opacity;
+mod preclassified;
 
 use super::{
     Error,
@@ -19,7 +21,9 @@ use crate::{
     shaders::MAX_CHANNELS,
     technique::{Filter, Mode, PerMode, Role, Settings},
     transfer::{CHANNEL_COLORS, Classified, LabelTable, TransferFunction, Window, of_channel},
-    volume::{Grid, Header, Meaning, Source, Volume, labels::labels_of, read_all, regridded},
+    volume::{
+        Grid, Header, Meaning, Source, Volume, is_same_grid, labels::labels_of, read_all, regridded,
+    },
 };
 use std::sync::Arc;
 
@@ -44,6 +48,7 @@ pub struct Shown {
 enum Others {
     Channels(Vec<Other>),
     Colors(Vec<Volume>),
+    Classified(Vec<Volume>),
 }
 
 /// A volume that is seen together with the first.
@@ -80,9 +85,23 @@ impl Shown {
     ) -> Result<Self, Error> {
         check(scene, settings)?;
         let (plan, note) = plan(scene, source.header())?;
-        let are_several = !matches!(plan, Plan::One)
-            || scene.labels.labels.is_some()
-            || scene.modes.paint(settings.mode).is_some();
+        if scene.opacity.are_given() && plan != Plan::One {
+            return Err(Error::usage(
+                format!(
+                    "{} makes one number a voxel opaque, and several are drawn",
+                    scene.opacity.word()
+                ),
+                "say which one is coloured: --component 0",
+            ));
+        }
+        if scene.sampling.preclassified && plan != Plan::One {
+            return Err(Error::usage(
+                "--preclassified is for one number a voxel, and several are drawn",
+                "take one of them: --component 0",
+            ));
+        }
+        let is_alone = plan == Plan::One && !has_beside(scene);
+        let are_several = !is_alone;
         if are_several && !settings.mode.is_projection() && settings.filter.kernel().is_some() {
             let filter = scene.sampling.filter.unwrap_or_default();
             return Err(Error::usage(
@@ -96,9 +115,11 @@ impl Shown {
         if let Some(note) = note {
             progress.note(&note);
         }
-        let is_alone = matches!(plan, Plan::One) && scene.labels.labels.is_none();
         if settings.shading.is_some() && !is_alone {
             return Err(Error::not_shaded_together());
+        }
+        if settings.ambient_occlusion.is_some() && !is_alone {
+            return Err(Error::not_occluded_together());
         }
         let reader = Reader {
             scene,
@@ -114,6 +135,27 @@ impl Shown {
             Plan::Channels(words) => reader.channels(source, &words)?,
             Plan::Colors => reader.colors(source)?,
         };
+        if scene.sampling.preclassified {
+            return preclassified::classified(shown, settings.color_space);
+        }
+        if scene.opacity.are_given() {
+            let by = reader.opacity(&shown.volume.grid(), shown.height_factor)?;
+            let Others::Channels(others) = &mut shown.others else {
+                unreachable!("one number a voxel is no colour");
+            };
+            if let Classification::Function(function) = &shown.classification
+                && function.is_graded()
+            {
+                return Err(Error::usage(
+                    format!(
+                        "{} makes a volume opaque by other numbers, and widgets and gradient opacity are for one volume alone",
+                        scene.opacity.word()
+                    ),
+                    "take a function of the value alone",
+                ));
+            }
+            others.push(by);
+        }
         if scene.labels.labels.is_some() {
             let Others::Channels(others) = &mut shown.others else {
                 return Err(Error::usage(
@@ -132,7 +174,8 @@ impl Shown {
             let grid = shown.volume.grid();
             let map = labels::read(scene, &grid, shown.height_factor, progress)?;
             let is_drawn = map.function.opacity.iter().any(|point| point.opacity > 0.0);
-            if is_drawn && says_nothing(&scene.classification)? {
+            let is_plain = says_nothing(&scene.classification)? && !scene.opacity.are_given();
+            if is_drawn && is_plain {
                 fade(&mut shown.classification);
                 progress.note(
                     "the volume is drawn faint, so that labels inside are seen; a --preset or --tf is drawn as it is",
@@ -162,6 +205,7 @@ impl Shown {
                     .collect(),
             ),
             Others::Colors(volumes) => Parts::Colors(volumes.iter().collect()),
+            Others::Classified(volumes) => Parts::Classified(volumes.iter().collect()),
         }
     }
 }
@@ -173,6 +217,8 @@ pub enum Parts<'a> {
     Channels(Vec<Channel<'a>>),
     /// Green, blue, and perhaps alpha.
     Colors(Vec<&'a Volume>),
+    /// Green, blue and depth of classified voxels.
+    Classified(Vec<&'a Volume>),
 }
 
 impl Parts<'_> {
@@ -180,7 +226,9 @@ impl Parts<'_> {
     pub fn only<'a>(&self, classification: &'a Classification) -> &'a Classification {
         match self.beside() {
             Beside::Nothing => classification,
-            Beside::Channels(_) | Beside::Colors(_) => &Classification::RangeOfPicture,
+            Beside::Channels(_) | Beside::Colors(_) | Beside::Classified(_) => {
+                &Classification::RangeOfPicture
+            }
         }
     }
 
@@ -190,6 +238,7 @@ impl Parts<'_> {
             Self::Channels(channels) if channels.is_empty() => Beside::Nothing,
             Self::Channels(channels) => Beside::Channels(channels),
             Self::Colors(volumes) => Beside::Colors(volumes),
+            Self::Classified(volumes) => Beside::Classified(volumes),
         }
     }
 }
@@ -203,9 +252,16 @@ fn plan(scene: &SceneFlags, header: &Header) -> Result<(Plan, Option<String>), E
 /// True where more than one number a voxel is seen.
 pub fn shows_several(scene: &SceneFlags, header: &Header) -> Result<bool, Error> {
     let (plan, _) = plan(scene, header)?;
+    Ok(plan != Plan::One || has_beside(scene))
+}
+
+/// True where words name something that is seen together with the volume.
+fn has_beside(scene: &SceneFlags) -> bool {
     let mode = scene.sampling.mode.unwrap_or_default().mode();
-    let is_painted = scene.modes.paint(mode).is_some();
-    Ok(plan != Plan::One || scene.labels.labels.is_some() || is_painted)
+    scene.labels.labels.is_some()
+        || scene.modes.paint(mode).is_some()
+        || scene.opacity.are_given()
+        || scene.sampling.preclassified
 }
 
 /// What can be said wrong before anything is opened.
@@ -216,6 +272,26 @@ pub fn check(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
         return Err(Error::usage(
             "--labels needs --mode composite: the others have no place for labels",
             "leave out --mode or --labels",
+        ));
+    }
+    scene.opacity.check()?;
+    preclassified::check(scene, settings)?;
+    if scene.opacity.are_given() && mode != Mode::Composite {
+        return Err(Error::usage(
+            format!(
+                "{} needs --mode composite: the others show one number a ray",
+                scene.opacity.word()
+            ),
+            "leave out --mode",
+        ));
+    }
+    if scene.opacity.are_given() && settings.preintegrated {
+        return Err(Error::usage(
+            format!(
+                "{} and --preintegrated: slabs are integrated over one number",
+                scene.opacity.word()
+            ),
+            "leave out one of them",
         ));
     }
     let ClassificationFlags {
@@ -258,7 +334,14 @@ impl Reader<'_> {
             ..
         } = *source.header();
         let (volume, height_factor) = load_from(source, self.scene, self.device, self.progress)?;
-        let flags = &self.scene.classification;
+        let flags = &ClassificationFlags {
+            // That of other numbers says nothing of these.
+            opacity_function: match self.scene.opacity.are_given() {
+                true => None,
+                false => self.scene.classification.opacity_function.clone(),
+            },
+            ..self.scene.classification.clone()
+        };
         let words = &self.scene.labels;
         let has_table = (words.label_tf.is_some() || words.cut()) && words.labels.is_none();
         let may_name = says_nothing(flags)? && self.mode == Mode::Composite;
@@ -325,16 +408,22 @@ impl Reader<'_> {
         }
         let source = open(&scene.input, &scene.input.limits())?;
         let (volume, _) = load_from(source, &scene, self.device, self.progress)?;
-        let volume = if volume.grid() == *grid {
-            volume
+        let volume = if is_same_grid(&volume.grid(), grid) {
+            Volume {
+                world_from_voxel: grid.world_from_voxel,
+                ..volume
+            }
         } else {
-            let (moved, share) = regridded(&volume, grid);
-            if share == 0.0 {
-                return Err(Error::usage(
+            let nowhere = || {
+                Error::usage(
                     format!("--iso-color-by {word}: it has no data where the surfaces may be"),
                     "`stratavox info INPUT --variable NAME` says where a variable lies",
-                ));
-            }
+                )
+            };
+            let moved = regridded(&volume, grid)
+                .ok()
+                .filter(|(_, share)| *share > 0.0);
+            let (moved, share) = moved.ok_or_else(nowhere)?;
             self.progress.note(&format!(
                 "{word} lies on another grid: taken at the voxels of the surfaces, linear between its own; it covers \
                  {:.0} % of them",

@@ -176,6 +176,7 @@ impl Draft {
             name: self.name,
             scale: self.scale,
             left_out: self.left_out,
+            preintegrated: false,
         })
     }
 

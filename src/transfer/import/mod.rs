@@ -24,8 +24,8 @@ mod vapor;
 mod voreen;
 mod xml;
 
-use super::file::{MAX_FILE_BYTES, read_limited};
-use super::{FileError, FileProblem, TransferFunction, transfer_function_from_json};
+use super::file::{MAX_FILE_BYTES, read_limited, transfer_function_in};
+use super::{FileError, FileProblem, TransferFunction};
 use serde_json::Value;
 use std::path::Path;
 
@@ -42,6 +42,8 @@ pub struct Imported {
     pub scale: Scale,
     /// What the file says that is not in the function, one piece each.
     pub left_out: Vec<String>,
+    /// True where the file asks for pre-integrated classification.
+    pub preintegrated: bool,
 }
 
 /// What the points of a function stand at.
@@ -60,7 +62,7 @@ pub fn import_transfer_function(path: &Path, wanted: Option<&str>) -> Result<Imp
         problem,
     };
     let bytes = read_limited(path).map_err(of_file)?;
-    transfer_function_from_bytes(&bytes, wanted).map_err(of_file)
+    from_bytes(&bytes, wanted, path.parent()).map_err(of_file)
 }
 
 /// The function that these bytes of a file state.
@@ -68,20 +70,33 @@ pub fn transfer_function_from_bytes(
     bytes: &[u8],
     wanted: Option<&str>,
 ) -> Result<Imported, FileProblem> {
+    from_bytes(bytes, wanted, None)
+}
+
+/// The same of a file in `folder`.
+fn from_bytes(
+    bytes: &[u8],
+    wanted: Option<&str>,
+    folder: Option<&Path>,
+) -> Result<Imported, FileProblem> {
     if bytes.len() as u64 > MAX_FILE_BYTES {
         return Err(FileProblem::TooLong);
     }
     let text = String::from_utf8_lossy(bytes);
     let text = text.trim_start_matches('\u{feff}').trim_start();
     match text.chars().next() {
-        Some('{' | '[') => from_json(text, wanted),
+        Some('{' | '[') => from_json(text, wanted, folder),
         Some('<') => from_xml(text, wanted),
         _ if slicer::is_vp(text) => slicer::vp(text),
         _ => rows::read(text),
     }
 }
 
-fn from_json(text: &str, wanted: Option<&str>) -> Result<Imported, FileProblem> {
+fn from_json(
+    text: &str,
+    wanted: Option<&str>,
+    folder: Option<&Path>,
+) -> Result<Imported, FileProblem> {
     let value: Value =
         serde_json::from_str(text).map_err(|cause| FileProblem::Json(cause.to_string()))?;
     if value.get("volumeProperties").is_some() {
@@ -95,13 +110,14 @@ fn from_json(text: &str, wanted: Option<&str>) -> Result<Imported, FileProblem> 
         return paraview::json(&value, wanted);
     }
     // Doubled keys are seen in the text alone; and what is neither is told what ours has.
-    let function = transfer_function_from_json(text.as_bytes())?;
+    let function = transfer_function_in(text.as_bytes(), folder)?;
     Ok(Imported {
         function,
         origin: "a stratavox transfer function",
         name: None,
         scale: Scale::Values,
         left_out: Vec::new(),
+        preintegrated: value.get("preintegrated") == Some(&Value::Bool(true)),
     })
 }
 

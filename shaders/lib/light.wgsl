@@ -1,0 +1,59 @@
+// Light that matter elsewhere takes away, from the light volume (shaders/light_volume.wgsl): with o what comes in from
+// all around and s the strength,
+//
+//     ambient light at p = 1 - s (1 - o(p))
+//
+// and of light i what comes through on the way to it. Between nodes trilinear, eight loads of a buffer and no texture:
+// the same on every device. Twin: src/technique/light_field.rs.
+
+#import frame
+
+struct LightVolume {
+    // Of each node, x fastest; bundle after bundle.
+    d: array<f32>,
+}
+
+@group(0) @binding(29) var<storage, read> light_volume: LightVolume;
+
+// Part of the light from all around.
+fn ambient_at(voxel: vec3<f32>) -> f32 {
+    if frame.occlusion_strength == 0.0 {
+        return 1.0;
+    }
+    return 1.0 - frame.occlusion_strength * (1.0 - light_through(0u, voxel));
+}
+
+// Part of the light of a lamp. Asked a little nearer to it, so that no surface shadows itself.
+fn lamp_at(lamp: u32, voxel: vec3<f32>) -> f32 {
+    let towards = frame.light_directions[lamp];
+    // Nothing that the eye sees is in the shadow of a light at the eye.
+    if frame.has_shadows == 0u || towards.w != 0.0 {
+        return 1.0;
+    }
+    let step = vec4(frame.shadow_reach * towards.xyz, 0.0) * frame.voxel_from_world;
+    return light_through(frame.shadow_bundle + lamp, voxel + step);
+}
+
+fn light_through(bundle: u32, voxel: vec3<f32>) -> f32 {
+    let at = clamp(voxel * frame.light_cells_per_voxel, vec3(0.0), frame.light_cells);
+    let low = min(floor(at), frame.light_cells - 1.0);
+    let part = at - low;
+    let nodes = vec3<u32>(frame.light_cells) + 1u;
+    let low_index = vec3<u32>(low);
+    let first = low_index.x + nodes.x * (low_index.y + nodes.y * (low_index.z + nodes.z * bundle));
+    let near = light_in_plane(first, nodes.x, part.xy);
+    let far = light_in_plane(first + nodes.x * nodes.y, nodes.x, part.xy);
+    return near + part.z * (far - near);
+}
+
+fn light_in_plane(first: u32, row: u32, part: vec2<f32>) -> f32 {
+    let near = light_in_row(first, part.x);
+    return near + part.y * (light_in_row(first + row, part.x) - near);
+}
+
+fn light_in_row(first: u32, part: f32) -> f32 {
+    // What stands in where there is no light volume is shorter.
+    let last = arrayLength(&light_volume.d) - 1u;
+    let near = light_volume.d[min(first, last)];
+    return near + part * (light_volume.d[min(first + 1u, last)] - near);
+}

@@ -1,0 +1,50 @@
+//! What flags of colour ask of names and of volumes.
+
+use crate::{
+    transfer::{Preset, Quantity, ValueSummary},
+    volume::Volume,
+};
+use glam::DVec3;
+
+/// A sentence with all its causes.
+pub fn with_causes(error: &dyn std::error::Error) -> String {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        text = format!("{text}: {error}");
+        cause = error.source();
+    }
+    text
+}
+
+pub fn preset(name: &str) -> Result<String, String> {
+    let names = Preset::ALL.map(Preset::name);
+    if names.contains(&name) {
+        Ok(name.to_owned())
+    } else {
+        Err(format!(
+            "no preset {name:?}; there are {}",
+            names.join(", ")
+        ))
+    }
+}
+
+/// What the values of a volume look like as a whole.
+pub fn summary(volume: &Volume) -> ValueSummary {
+    let [x, y, z] = volume.dims.map(f64::from);
+    let diagonal = volume
+        .world_from_voxel
+        .transform_vector3(DVec3::new(x, y, z));
+    let is_valid = |i: usize| volume.validity.as_ref().is_none_or(|valid| valid[i] != 0);
+    let value = |i: usize| {
+        f64::from(volume.voxels.stored(i)) * volume.rescale.slope + volume.rescale.intercept
+    };
+    ValueSummary::of(
+        volume.voxels.len(),
+        volume.value_range,
+        diagonal.length(),
+        volume.hounsfield,
+        |i| is_valid(i).then(|| value(i)),
+    )
+    .measuring(Quantity::of_unit(volume.unit.as_deref()))
+}

@@ -1,0 +1,65 @@
+//! The light volume of a scene, made on the device.
+
+use super::Error;
+use crate::gpu::Headless;
+use crate::resident::GpuTransfer;
+use crate::scene::Scene;
+use crate::technique::{ClipPlane, Filter, Inputs, LightPlan, LightVolume, Part, parameter_ring};
+use crate::transfer::TransferFunction;
+use glam::DVec3;
+use std::sync::Arc;
+
+/// What light is followed through, of one volume.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Matter {
+    function: TransferFunction,
+    filter: Filter,
+    crop: Option<[DVec3; 2]>,
+    clip_planes: Vec<ClipPlane>,
+}
+
+impl Matter {
+    /// That of a scene, by the function that classifies it.
+    pub fn of(scene: &Scene, function: &TransferFunction) -> Self {
+        let settings = scene.settings;
+        Self {
+            function: function.clone(),
+            filter: settings.filter,
+            crop: settings.crop,
+            clip_planes: settings.clip_planes.clone(),
+        }
+    }
+}
+
+/// Makes it and waits for it.
+pub fn made_light(
+    device: &mut Headless,
+    scene: &Scene,
+    plan: LightPlan,
+    parts: &[Part],
+    transfer: Option<&GpuTransfer>,
+) -> Result<LightVolume, Error> {
+    let gpu = Arc::clone(device.gpu());
+    let grid = scene.volume.grid();
+    let recordings = scene.view(&grid, [0.0; 2]).recordings_of(parts, transfer)?;
+    let volume = parts[0].volume;
+    let light = LightVolume::new(&gpu, plan, scene.settings, volume)?;
+    let ring = parameter_ring(&gpu, recordings.len() as u32)?;
+    let one = |(slot, recording): (u32, &crate::technique::Recording)| {
+        let inputs = Inputs {
+            ring: &ring,
+            volume,
+            brick: &volume.bricks()[recording.brick],
+            transfer,
+            beside: &[],
+            light: None,
+        };
+        Ok((light.bind(&inputs)?, recording.write(&ring, slot)?))
+    };
+    let bound = (0..).zip(&recordings).map(one);
+    let bound = bound.collect::<Result<Vec<_>, Error>>()?;
+    let bricks = || bound.iter().map(|(bindings, offset)| (bindings, *offset));
+    // SAFETY: recorded outside rendering; `run` waits, and all that is bound lives meanwhile.
+    device.run(|cmd| unsafe { light.record(cmd, bricks()) })?;
+    Ok(light)
+}

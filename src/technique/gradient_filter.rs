@@ -1,0 +1,145 @@
+//! Which operator makes gradients, of which field: chosen apart from the filter that makes values.
+
+use super::{Error, Filter, Settings, View};
+use crate::resident::{GpuTransfer, GpuVolume, TextureLayout};
+use crate::shaders::{
+    FrameFields, GRADIENT_CATMULL_ROM, GRADIENT_CENTRAL, GRADIENT_CUBIC, GRADIENT_LINEAR,
+    GRADIENT_QUADRATIC, GRADIENT_SOBEL,
+};
+use crate::volume::{Spline, kernel::Kernel};
+
+/// How gradients are made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum GradientFilter {
+    /// Central differences, one voxel before and after, of the values as [`Settings::filter`] makes them.
+    #[default]
+    Central,
+    /// The same of the trilinear field, whatever the filter.
+    Linear,
+    /// Sobel's 3 x 3 x 3 operator on the trilinear field, whatever the filter: smoother where voxels are noisy.
+    Sobel,
+    /// The derivative of the cubic B-spline through the voxels, whatever the filter.
+    Cubic,
+    /// The derivative of the filter's own kernel. Nearest and linear filters have none that is of use: it is zero, or
+    /// jumps from voxel to voxel.
+    Analytic,
+}
+
+/// What makes a gradient of neighbours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Operator {
+    /// Differences of filtered values.
+    Central,
+    /// Central differences of voxels.
+    Linear,
+    /// Sobel's.
+    Sobel,
+    /// The derivative of a kernel.
+    Kernel(Kernel),
+}
+
+impl Operator {
+    /// Its number in the parameters.
+    pub(super) fn number(self) -> u32 {
+        match self {
+            Self::Central => GRADIENT_CENTRAL,
+            Self::Linear => GRADIENT_LINEAR,
+            Self::Sobel => GRADIENT_SOBEL,
+            Self::Kernel(Kernel::Quadratic) => GRADIENT_QUADRATIC,
+            Self::Kernel(Kernel::Cubic) => GRADIENT_CUBIC,
+            Self::Kernel(Kernel::CatmullRom) => GRADIENT_CATMULL_ROM,
+        }
+    }
+}
+
+/// What an operator reads that does not take values from the filter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum GradientSource {
+    /// The voxels.
+    Voxels,
+    /// Coefficients along all three axes, in stacks too.
+    Coefficients(Spline),
+}
+
+impl GradientSource {
+    /// The spline of the coefficients.
+    pub fn spline(self) -> Option<Spline> {
+        match self {
+            Self::Voxels => None,
+            Self::Coefficients(spline) => Some(spline),
+        }
+    }
+}
+
+impl Settings {
+    /// What makes the gradients. Central differences of linear values need no other way than those of all values.
+    pub fn gradient_operator(&self) -> Operator {
+        match self.gradient_filter {
+            GradientFilter::Linear if self.filter == Filter::Linear => Operator::Central,
+            GradientFilter::Central => Operator::Central,
+            GradientFilter::Linear => Operator::Linear,
+            GradientFilter::Sobel => Operator::Sobel,
+            GradientFilter::Cubic => Operator::Kernel(Kernel::Cubic),
+            GradientFilter::Analytic => self
+                .filter
+                .kernel()
+                .map_or(Operator::Central, Operator::Kernel),
+        }
+    }
+
+    /// What it reads; `None`: values as the filter makes them.
+    pub fn gradient_source(&self) -> Option<GradientSource> {
+        let spline = match (self.gradient_operator(), self.gradient_filter) {
+            (Operator::Central, _) => return None,
+            (Operator::Linear | Operator::Sobel, _) => None,
+            (Operator::Kernel(_), GradientFilter::Cubic) => Some(Spline::Cubic),
+            (Operator::Kernel(_), _) => self.filter.spline(),
+        };
+        Some(spline.map_or(GradientSource::Voxels, GradientSource::Coefficients))
+    }
+
+    /// The same where a volume that lies like this for its values does not hold it: a texture beside. Stacks hold
+    /// coefficients along two axes, gradients want three.
+    pub fn gradient_source_beside(&self, layout: TextureLayout) -> Option<GradientSource> {
+        let source = self.gradient_source()?;
+        let is_held = source.spline() == self.filter.spline()
+            && (source == GradientSource::Voxels || layout == TextureLayout::Texture3d);
+        (!is_held).then_some(source)
+    }
+
+    /// Whether the filter has a derivative, where one is asked for.
+    pub(super) fn check_gradient_filter(&self) -> Result<(), Error> {
+        let filter = self.filter;
+        if self.gradient_filter == GradientFilter::Analytic && filter.kernel().is_none() {
+            return Err(Error::NoDerivative { filter });
+        }
+        Ok(())
+    }
+}
+
+impl View<'_> {
+    /// Where gradients count: how texels of what they are made of become codes.
+    pub(super) fn set_gradients(
+        &self,
+        volume: &GpuVolume,
+        transfer: Option<&GpuTransfer>,
+        fields: &mut FrameFields,
+    ) -> Result<(), Error> {
+        let counts =
+            self.settings.shading.is_some() || transfer.is_some_and(GpuTransfer::is_graded);
+        let Some(wanted) = self.settings.gradient_source().filter(|_| counts) else {
+            return Ok(());
+        };
+        let is_beside = volume.gradient_source().is_some();
+        let read = volume.gradient_source().unwrap_or(volume);
+        let found = read.spline();
+        let wanted_beside = self.settings.gradient_source_beside(volume.layout());
+        if found != wanted.spline() || wanted_beside.is_some() && !is_beside {
+            return Err(Error::WrongGradientSource { wanted, found });
+        }
+        let coding = read.texel().coding;
+        fields.gradient_scale = coding.scale;
+        fields.gradient_codes_are_integers = coding.is_integer.into();
+        Ok(())
+    }
+}

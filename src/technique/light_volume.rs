@@ -1,0 +1,154 @@
+//! The light volume on the device: what comes through to each node of a coarse grid from all around and from each
+//! light, made by two kinds of compute passes whenever volume, transfer function, lights or cuts change.
+//!
+//! ```text
+//! view.light_plan()                            pure: the grid and its paths, None where a picture needs none
+//!     LightVolume::new                         objects
+//!     light.bind(inputs)                       once for each brick
+//!     light.record(cmd, bricks)                cells of each brick, then nodes
+//!     Inputs { light: Some(&light), .. }       techniques read it
+//! ```
+
+use super::{Filter, Inputs, LightPlan, Settings};
+use crate::gpu::{
+    Bindings, Buffer, ComputePipeline, Error, Gpu, Memory, ParameterRing, Resource, Use,
+    buffer_barrier,
+};
+use crate::resident::{GpuVolume, TextureLayout};
+use crate::shaders::{LightGrid, shader};
+use ash::vk;
+use std::sync::Arc;
+
+/// The passes, their buffers, and what they leave.
+#[derive(Debug)]
+pub struct LightVolume {
+    gpu: Arc<Gpu>,
+    plan: LightPlan,
+    of_cells: ComputePipeline,
+    of_nodes: ComputePipeline,
+    parameters: ParameterRing,
+    cells: Buffer,
+    volume: Buffer,
+    nodes_bound: Bindings,
+    // Bound above.
+    _paths: Buffer,
+}
+
+impl LightVolume {
+    /// Compiles the passes for pictures of `volume` with these settings and makes the buffers.
+    ///
+    /// # Errors
+    /// Where the device gives no memory, or has no buffers of that size.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        plan: LightPlan,
+        settings: &Settings,
+        volume: &GpuVolume,
+    ) -> Result<Self, Error> {
+        let layout = match volume.layout() {
+            TextureLayout::Texture3d => "box",
+            TextureLayout::Stack(_) => "stack",
+        };
+        // Cells average voxels anyway: no need to look between them, unless they are coefficients.
+        let filter = match settings.filter {
+            Filter::Nearest | Filter::Linear => "nearest",
+            _ => "kernel",
+        };
+        let holes = if volume.has_holes() { "mask" } else { "none" };
+        let name = format!("light_cells.{layout}.{filter}.{holes}.points");
+        let of_nodes = ComputePipeline::new(gpu, shader("light_volume"))?;
+        let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
+        let buffer =
+            |numbers: u64, name| Buffer::new(gpu, 4 * numbers, storage, Memory::Device, name);
+        let cells = buffer(plan.cell_count(), "light cells")?;
+        let made = buffer(plan.node_count(), "light volume")?;
+        let path_bytes: &[u8] = bytemuck::cast_slice(&plan.paths);
+        let (bytes, name_of_paths) = (path_bytes.len() as u64, "light paths");
+        let paths = Buffer::new(gpu, bytes, storage, Memory::Upload, name_of_paths)?;
+        paths.write(0, path_bytes)?;
+        let parameters = ParameterRing::new(gpu, size_of::<LightGrid>() as u32, 1, "light grid")?;
+        parameters.write(0, bytemuck::bytes_of(&plan.parameters()))?;
+        let given = [
+            ("light_grid", Resource::Uniform(&parameters)),
+            ("light_cells", Resource::Storage(&cells)),
+            ("light_paths", Resource::Storage(&paths)),
+            ("light_volume", Resource::Storage(&made)),
+        ];
+        let nodes_bound = Bindings::new(gpu, of_nodes.layout(), &given)?;
+        Ok(Self {
+            gpu: Arc::clone(gpu),
+            plan,
+            of_cells: ComputePipeline::new(gpu, shader(&name))?,
+            of_nodes,
+            parameters,
+            cells,
+            volume: made,
+            nodes_bound,
+            _paths: paths,
+        })
+    }
+
+    /// What it is made of and for.
+    pub fn plan(&self) -> &LightPlan {
+        &self.plan
+    }
+
+    /// What techniques read: one number a node, x fastest, bundle after bundle.
+    pub fn buffer(&self) -> &Buffer {
+        &self.volume
+    }
+
+    /// Binds the matter of one brick: a volume and its transfer function.
+    ///
+    /// # Errors
+    /// Where an input is missing.
+    pub fn bind(&self, inputs: &Inputs) -> Result<Bindings, Error> {
+        let own = [
+            ("light_grid", Resource::Uniform(&self.parameters)),
+            ("light_cells", Resource::Storage(&self.cells)),
+        ];
+        inputs.bind(&self.gpu, self.of_cells.layout(), &own)
+    }
+
+    /// Records the making of the volume from bricks, each with its bindings and the offset of its parameters in the
+    /// ring, in the order of [`super::View::recordings`] of a ray caster: the first begins. Ends with barriers to all
+    /// reads by techniques recorded after it, and begins after those recorded before it.
+    ///
+    /// # Errors
+    /// A grid larger than the device can dispatch.
+    ///
+    /// # Safety
+    /// - `cmd` is recording, outside rendering; what was bound and `self` live until it has run;
+    /// - the inputs are in [`Use::Sampled`].
+    pub unsafe fn record<'a>(
+        &self,
+        cmd: vk::CommandBuffer,
+        bricks: impl IntoIterator<Item = (&'a Bindings, u32)>,
+    ) -> Result<(), Error> {
+        let own = self.parameters.offset(0)?;
+        let [nx, ny, nz] = self.plan.cells.map(|n| n + 1);
+        let cell_groups = self.of_cells.groups(self.plan.cells)?;
+        let node_groups = self
+            .of_nodes
+            .groups([nx, ny, nz * self.plan.bundle_count])?;
+        // SAFETY: the caller's promises; each write is put between the reads before and after it.
+        unsafe {
+            let barrier =
+                |buffer, before, after| buffer_barrier(&self.gpu, cmd, buffer, before, after);
+            barrier(&self.cells, Use::ComputeRead, Use::ComputeWrite);
+            for (bound, offset) in bricks {
+                self.of_cells
+                    .dispatch(cmd, bound, &[offset, own], cell_groups);
+                barrier(&self.cells, Use::ComputeWrite, Use::ComputeWrite);
+            }
+            barrier(&self.cells, Use::ComputeWrite, Use::ComputeRead);
+            barrier(&self.volume, Use::ComputeRead, Use::ComputeWrite);
+            barrier(&self.volume, Use::DrawRead, Use::ComputeWrite);
+            self.of_nodes
+                .dispatch(cmd, &self.nodes_bound, &[own], node_groups);
+            barrier(&self.volume, Use::ComputeWrite, Use::ComputeRead);
+            barrier(&self.volume, Use::ComputeWrite, Use::DrawRead);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,210 @@
+//! Half-angle slicing: shadows in one pass over the slices, which eye and light draw in turn.
+//!
+//! ```text
+//! light's picture: A = 0
+//! for each slice, from the light:
+//!     eye:    C, alpha blended by under or over      source alpha (lit(1 - A), 1)
+//!     light:  A += (1 - A) alpha                     the same slice, alpha along the light's rays
+//! ```
+//!
+//! A sample gets the light that the slices before its own have left: the picture converges with the first power of
+//! the step. Kniss, Premoze, Hansen, Shirley and McPherson, "A Model for Volume Lighting and Modeling", IEEE
+//! TVCG 9(2), 2003, section 4.
+
+mod geometry;
+pub mod reference;
+
+pub use geometry::HalfAngle;
+
+use crate::gpu::{
+    Bindings, Blend, Error, Gpu, Image, ImageDesc, ImageKind, Load, RasterDesc, RasterPipeline,
+    Resource, Use, begin_rendering, end_rendering, image_barrier, set_area,
+};
+use crate::shaders::shader;
+use crate::technique::blend::Drawn;
+use crate::technique::{ACCUMULATION_FORMAT, Inputs, Mode, Order, Slicer, Technique, Words};
+use ash::vk;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Vertices of the cover of one slice.
+const VERTICES: u32 = 12;
+
+/// The pipelines of eye and light. Both blend R32G32B32A32_SFLOAT.
+#[derive(Debug)]
+pub struct HalfAngleSlicer {
+    gpu: Arc<Gpu>,
+    over: RasterPipeline,
+    under: RasterPipeline,
+    light: Slicer,
+}
+
+/// What eye and light read.
+#[derive(Debug)]
+pub struct HalfAngleBindings {
+    eye: Bindings,
+    light: Bindings,
+}
+
+/// What is recorded at once: the two recordings of [`crate::technique::View::recordings`], written into a ring.
+#[derive(Clone, Copy, Debug)]
+pub struct HalfAngleSlices {
+    /// Offsets of the eye's parameters and of the light's.
+    pub offsets: [u32; 2],
+    /// How many slices there are.
+    pub count: u32,
+    /// How the eye blends them.
+    pub order: Order,
+}
+
+/// The image that the light sees: a color target that the eye's pass reads.
+///
+/// # Errors
+/// An extent over a limit of the device, no memory.
+pub fn light_buffer(gpu: &Arc<Gpu>, [width, height]: [u32; 2]) -> Result<Image, Error> {
+    let desc = ImageDesc {
+        kind: ImageKind::D2,
+        extent: [width, height, 1],
+        format: ACCUMULATION_FORMAT,
+        usage: vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::SAMPLED,
+        name: "light buffer",
+    };
+    Image::new(gpu, &desc)
+}
+
+impl HalfAngleSlicer {
+    /// Compiles the variants of these words, for both orders of blending: the order changes with camera and light.
+    ///
+    /// # Errors
+    /// Where the device does not blend R32G32B32A32_SFLOAT, by its name: halves would lose light slice by slice.
+    pub fn new(gpu: &Arc<Gpu>, words: &Words) -> Result<Self, Error> {
+        let Words {
+            filter,
+            holes,
+            transfer,
+            mix,
+            ..
+        } = words;
+        let fragment = format!("slices_3d_half{}.{filter}.{holes}.{transfer}", mix.word());
+        let pipeline = |blend| {
+            let desc = RasterDesc {
+                vertex: shader("slices_3d_cover"),
+                fragment: shader(&fragment),
+                color_formats: &[ACCUMULATION_FORMAT],
+                blend,
+            };
+            RasterPipeline::new(gpu, &desc)
+        };
+        let drawn = Drawn::Picture(Mode::Composite);
+        Ok(Self {
+            gpu: Arc::clone(gpu),
+            over: pipeline(Blend::Over)?,
+            under: pipeline(Blend::Under)?,
+            light: Slicer::new(
+                gpu,
+                Technique::Slices3d,
+                drawn,
+                Order::FrontToBack,
+                words,
+                ACCUMULATION_FORMAT,
+            )?,
+        })
+    }
+
+    /// Binds the inputs and the [`light_buffer`].
+    ///
+    /// # Errors
+    /// Where an input is missing.
+    pub fn bind(&self, inputs: &Inputs, light_buffer: &Image) -> Result<HalfAngleBindings, Error> {
+        let read = [("light_buffer", Resource::sampled(light_buffer))];
+        Ok(HalfAngleBindings {
+            eye: inputs.bind(&self.gpu, self.over.layout(), &read)?,
+            light: self.light.bind(inputs)?,
+        })
+    }
+
+    /// Records all slices into `picture`, premultiplied colour and alpha, and into `light_buffer`. What both held is
+    /// given up.
+    ///
+    /// | barrier | image | from | to | keeps |
+    /// |---|---|---|---|---|
+    /// | before the eye's draw of a slice | light buffer | `ColorTarget` | `FragmentSampled` | the eye reads what the light's draws before it have blended |
+    /// | after it | light buffer | `FragmentSampled` | `ColorTarget` | the light blends only after that was read |
+    /// | between two slices | picture | `ColorTarget` | `ColorTarget` | the next rendering loads what this one has stored |
+    ///
+    /// # Safety
+    /// - `cmd` is recording, outside rendering; what was bound lives until it has run;
+    /// - the inputs are in `Use::Sampled`, `picture` and `light_buffer` in `Use::ColorTarget`, in which they are left;
+    /// - `picture` is R32G32B32A32_SFLOAT of at least the extent of the view, `light_buffer` the one that was bound,
+    ///   of [`crate::technique::View::light_extent`].
+    pub unsafe fn record(
+        &self,
+        cmd: vk::CommandBuffer,
+        bindings: &HalfAngleBindings,
+        slices: HalfAngleSlices,
+        (picture, extent): (&Image, [u32; 2]),
+        light_buffer: &Image,
+    ) {
+        let gpu = &self.gpu;
+        let [light_width, light_height, _] = light_buffer.extent();
+        let light_extent = [light_width, light_height];
+        // SAFETY: the caller's promises; every image is in the use that its next access needs.
+        unsafe {
+            let cleared = |image: &Image, extent| {
+                let target = [(image.view(), Load::Clear([0.0; 4]))];
+                begin_rendering(gpu, cmd, &target, extent);
+                end_rendering(gpu, cmd);
+            };
+            cleared(picture, extent);
+            cleared(light_buffer, light_extent);
+            for slice in 0..slices.count {
+                let slice = slice..slice + 1;
+                image_barrier(
+                    gpu,
+                    cmd,
+                    light_buffer,
+                    Use::ColorTarget,
+                    Use::FragmentSampled,
+                );
+                image_barrier(gpu, cmd, picture, Use::ColorTarget, Use::ColorTarget);
+                begin_rendering(gpu, cmd, &[(picture.view(), Load::Keep)], extent);
+                self.record_eye(cmd, bindings, slices, extent, slice.clone());
+                end_rendering(gpu, cmd);
+                image_barrier(
+                    gpu,
+                    cmd,
+                    light_buffer,
+                    Use::FragmentSampled,
+                    Use::ColorTarget,
+                );
+                begin_rendering(gpu, cmd, &[(light_buffer.view(), Load::Keep)], light_extent);
+                let offset = slices.offsets[1];
+                self.light
+                    .record(cmd, &bindings.light, offset, light_extent, slice);
+                end_rendering(gpu, cmd);
+            }
+        }
+    }
+
+    /// # Safety
+    /// As [`Self::record`], inside rendering to the picture.
+    unsafe fn record_eye(
+        &self,
+        cmd: vk::CommandBuffer,
+        bindings: &HalfAngleBindings,
+        slices: HalfAngleSlices,
+        extent: [u32; 2],
+        slice: Range<u32>,
+    ) {
+        let pipeline = match slices.order {
+            Order::BackToFront => &self.over,
+            Order::FrontToBack => &self.under,
+        };
+        let offsets = [slices.offsets[0]];
+        // SAFETY: the caller's promises; the layouts of both pipelines are equal.
+        unsafe {
+            set_area(&self.gpu, cmd, extent);
+            pipeline.draw(cmd, &bindings.eye, &offsets, VERTICES, slice);
+        }
+    }
+}
