@@ -385,6 +385,7 @@ fn functions_of_the_gradient_cast_what_they_draw() {
     let widget = Widget {
         srgb: Some([0.9, 0.6, 0.3]),
         opacity: 0.7,
+        second: None,
         shape: Shape::Contour {
             value: 0.6,
             half_width: 1.5,

@@ -291,6 +291,7 @@ impl Matter {
                     widgets: vec![Widget {
                         srgb: None,
                         opacity: 0.5,
+                        second: None,
                         shape: Shape::Contour {
                             value: 0.55,
                             half_width: 1.5,

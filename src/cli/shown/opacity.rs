@@ -114,7 +114,7 @@ impl Reader<'_> {
         let flags = ClassificationFlags {
             transfer_function: file.map(|file| file.transfer_function.clone()),
             transfer_function_of_fractions: file.map(|file| file.of_fractions),
-            window: self.scene.opacity.opacity_window.clone(),
+            window: self.scene.opacity.opacity_window,
             ..ClassificationFlags::default()
         };
         let Classification::Function(function) = flags.classification(volume, Mode::Composite)?
