@@ -548,11 +548,11 @@ fn what_cannot_colour_a_surface_is_refused_by_name() {
     let shot = shots(CUBE, &opaque(&[0.0])).remove(0);
     let wide = shot.with(|s| s.filter = Filter::Cubic);
     for (shot, channels, wanted) in [
-        (&shot, vec![numbers; 2], "Iso projects one number"),
+        (&shot, vec![numbers; 2], "Iso shows one volume"),
         (
             &shot,
             vec![of(Role::Labels, Some(&function))],
-            "Iso projects one number",
+            "Iso shows one volume",
         ),
         (
             &shot,

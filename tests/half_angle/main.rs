@@ -12,7 +12,7 @@ mod embed_shared;
 #[path = "../shared/mod.rs"]
 mod shared;
 
-use glam::{DVec3, dvec3};
+use glam::DVec3;
 use shared::{Shot, device, oblique_camera, projections, sheared_affine, waves};
 use stratavox::camera::Camera;
 use stratavox::offscreen::{Renderer, reference};
@@ -21,7 +21,7 @@ use stratavox::technique::{Light, Settings, Shading, Shadows, Technique};
 use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
 use stratavox::volume::{Grid, Volume};
 
-pub const GRID: fn() -> Grid = || Grid {
+const GRID: fn() -> Grid = || Grid {
     dims: [17, 21, 13],
     world_from_voxel: sheared_affine(),
 };
@@ -29,7 +29,7 @@ pub const GRID: fn() -> Grid = || Grid {
 /// The part of the colour that needs no light.
 pub const AMBIENT: f64 = 0.1;
 
-pub fn half_angle() -> Settings {
+fn half_angle() -> Settings {
     Settings {
         technique: Technique::Slices3d,
         shading: Some(Shading {
@@ -107,7 +107,7 @@ pub fn pictures(volume: &Volume, shot: &Shot, transfer: &TransferFunction) -> [P
     ]
 }
 
-pub fn on_device(volume: &Volume, shot: &Shot, transfer: &TransferFunction) -> Picture {
+fn on_device(volume: &Volume, shot: &Shot, transfer: &TransferFunction) -> Picture {
     let mut renderer = Renderer::new(device(), volume).unwrap();
     let scene = shot.scene(volume, Some(transfer));
     renderer.render(&scene, &[]).unwrap().picture

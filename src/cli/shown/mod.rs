@@ -21,7 +21,9 @@ use crate::{
     shaders::MAX_CHANNELS,
     technique::{Filter, Mode, PerMode, Role, Settings},
     transfer::{CHANNEL_COLORS, Classified, LabelTable, TransferFunction, Window, of_channel},
-    volume::{Grid, Header, Meaning, Source, Volume, labels::labels_of, read_all},
+    volume::{
+        Grid, Header, Meaning, Source, Volume, is_same_grid, labels::labels_of, read_all, regridded,
+    },
 };
 use std::sync::Arc;
 
@@ -406,12 +408,29 @@ impl Reader<'_> {
         }
         let source = open(&scene.input, &scene.input.limits())?;
         let (volume, _) = load_from(source, &scene, self.device, self.progress)?;
-        if volume.grid() != *grid {
-            return Err(Error::usage(
-                format!("--iso-color-by {word}: it lies on another grid than the surfaces"),
-                "a variable with the same axes colours them",
+        let volume = if is_same_grid(&volume.grid(), grid) {
+            Volume {
+                world_from_voxel: grid.world_from_voxel,
+                ..volume
+            }
+        } else {
+            let nowhere = || {
+                Error::usage(
+                    format!("--iso-color-by {word}: it has no data where the surfaces may be"),
+                    "`stratavox info INPUT --variable NAME` says where a variable lies",
+                )
+            };
+            let moved = regridded(&volume, grid)
+                .ok()
+                .filter(|(_, share)| *share > 0.0);
+            let (moved, share) = moved.ok_or_else(nowhere)?;
+            self.progress.note(&format!(
+                "{word} lies on another grid: taken at the voxels of the surfaces, linear between its own; it covers \
+                 {:.0} % of them",
+                100.0 * share
             ));
-        }
+            moved
+        };
         let function = match scene
             .classification
             .classification(&volume, Mode::Composite)?
