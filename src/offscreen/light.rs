@@ -4,7 +4,9 @@ use super::Error;
 use crate::gpu::Headless;
 use crate::resident::GpuTransfer;
 use crate::scene::Scene;
-use crate::technique::{ClipPlane, Filter, GradientFilter, Inputs, LightPlan, LightVolume, Part, parameter_ring};
+use crate::technique::{
+    ClipPlane, Filter, GradientFilter, Inputs, LightPlan, LightVolume, Part, parameter_ring,
+};
 use crate::transfer::TransferFunction;
 use glam::DVec3;
 use std::sync::Arc;
