@@ -12,7 +12,7 @@ mod embed_shared;
 #[path = "../shared/mod.rs"]
 mod shared;
 
-use glam::{DVec3, dvec3};
+use glam::DVec3;
 use shared::{Shot, device, oblique_camera, projections, sheared_affine, waves};
 use stratavox::camera::Camera;
 use stratavox::offscreen::{Renderer, reference};
