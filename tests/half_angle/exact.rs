@@ -97,7 +97,7 @@ fn light_along_the_view_is_the_sum_of_a_power_series_and_converges_with_the_step
 /// eye within w of the front and of the back of the box may see light that passes it by.
 #[test]
 fn light_across_the_view_falls_off_with_the_depth() {
-    const PIXELS: u32 = 32;
+    const PIXELS: u32 = 24;
     for samples in [1.0, 2.0, 4.0] {
         let (volume, mut shot) = medium(samples, DVec3::NEG_X);
         shot.extent = [PIXELS; 2];

@@ -66,7 +66,7 @@ pub fn shots() -> [Shot; 2] {
     projections(&GRID()).map(|projection| Shot {
         grid: GRID(),
         camera: oblique_camera(&GRID(), projection),
-        extent: [40, 36],
+        extent: [28, 24],
         settings: half_angle(),
     })
 }

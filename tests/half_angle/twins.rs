@@ -43,7 +43,7 @@ fn check(renderer: &mut Renderer, scene: &Scene, what: &str) -> Picture {
     let darker = darker
         .filter(|(found, lit)| found[1] < 0.8 * lit[1])
         .count();
-    assert!(darker > 100, "{what}: only {darker} pixels are in shadow");
+    assert!(darker > 60, "{what}: only {darker} pixels are in shadow");
     found
 }
 
@@ -84,6 +84,7 @@ fn holes_cuts_and_widgets_throw_the_shadows_of_their_twins() {
     let volume = Volume::from_voxels(GRID().dims, sheared_affine(), voxels, rescale, Some(120.0));
     let volume = volume.unwrap();
     let widget = Widget {
+        second: None,
         srgb: Some([0.2, 0.9, 0.3]),
         opacity: 0.5,
         second: None,
