@@ -3,7 +3,7 @@
 use crate::camera::Camera;
 use crate::shaders::MAX_CHANNELS;
 use crate::technique::mixture::opacities_have_colors;
-use crate::technique::{CutFaces, Error, Mix, Mode, Role, Settings, View};
+use crate::technique::{CutFaces, Error, Keep, Mix, Mode, Role, Settings, View};
 use crate::transfer::TransferFunction;
 use crate::volume::Volume;
 
@@ -148,6 +148,10 @@ impl<'a> Scene<'a> {
         }
         if self.is_graded() {
             self.settings.check_graded()?;
+        }
+        if self.settings.keep_gradients == Keep::Always && self.volume.validity.is_some() {
+            let reason = "where voxels have no data, neighbours of what is zero would be too";
+            return Err(Error::NotKept { reason });
         }
         if self.settings.shading.is_some() && mode.is_projection() {
             return Err(Error::NotShaded { mode });
