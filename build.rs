@@ -166,6 +166,7 @@ const ENTRIES: &[(&str, &[Slot])] = &[
         &[("source", &["picture", "value", "mean", "cued"])],
     ),
     ("resolve_cover", &[]),
+    ("keep_gradients", &[("layout", &["box", "stack"])]),
     ("merge", &[("operator", &["over", "under", "add"])]),
     (
         "denoise",

@@ -165,7 +165,7 @@ fn passed(before: Surfaces, world: Ray, voxel: Ray, index: u32, t: f32) -> Surfa
     if frame.light_count != 0u {
         color = shade(color, gradient_at(place), world.direction, place);
     } else {
-        color *= ambient_at(place);
+        color *= ambient_at(place, world.direction);
     }
     var next = before;
     next.color += before.transmittance * opacity * color;

@@ -2,13 +2,15 @@
 
 mod shared;
 
-use glam::{DVec3, dvec3};
+use glam::{DAffine3, DVec3, dvec3};
 use shared::{
-    Shot, Worst, compare, device, oblique_shots, ramps, sheared_affine, volume_of, waves,
+    Shot, Worst, compare, device, device_with, oblique_shots, ramps, sheared_affine, volume_of,
+    waves,
 };
+use stratavox::gpu::Caps;
 use stratavox::offscreen::{Renderer, reference};
 use stratavox::picture::{ColorSpace, Picture};
-use stratavox::technique::{Filter, GradientFilter, Light, Mode, Settings, Shading};
+use stratavox::technique::{Filter, GradientFilter, Keep, Light, Mode, Settings, Shading};
 use stratavox::transfer::{ColorPoint, TransferFunction};
 use stratavox::volume::{Grid, Volume};
 
@@ -120,6 +122,110 @@ fn assert_gradients_drawn_as_computed(volume: &Volume, what: &str) {
             let other = central.with(|settings| settings.gradient_filter = gradient_filter);
             assert_changes(&mut renderer, volume, &central, &other, what);
         }
+    }
+}
+
+/// The gradient of |p - c|^2 is nowhere zero where c lies outside, and bends everywhere.
+fn bowl(p: DVec3) -> f64 {
+    1e-3 * (p - dvec3(-12.0, -9.0, -14.0)).length_squared()
+}
+
+/// What is kept and what is made are the same up to half floats and the sampler's weights.
+#[test]
+fn kept_gradients_light_what_made_ones_light_in_bricks_too() {
+    let volume = volume_of([17, 21, 14], DAffine3::IDENTITY, bowl);
+    let transfer = one_color();
+    let small = Caps {
+        max_image_dimension_3d: 13,
+        max_image_array_layers: 8,
+        ..Caps::UNLIMITED
+    };
+    let diffuse = Shading {
+        ambient: 0.0,
+        diffuse: 1.0,
+        specular: 0.0,
+        ..Shading::default()
+    };
+    let shots = oblique_shots(volume.grid(), Mode::Composite);
+    for device in [device(), device_with(small)] {
+        let mut renderer = Renderer::new(device, &volume).unwrap();
+        for (i, (filter, gradient_filter)) in [
+            (Filter::Linear, GradientFilter::Central),
+            (Filter::Cubic, GradientFilter::Linear),
+            (Filter::Nearest, GradientFilter::Sobel),
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            for technique in [0, 2, 4] {
+                let small = Shot {
+                    extent: [24, 20],
+                    ..shots[technique + 6 * (i % 2)].clone()
+                };
+                let shot = small.with(|settings| {
+                    settings.filter = filter;
+                    settings.gradient_filter = gradient_filter;
+                    settings.keep_gradients = Keep::Always;
+                    settings.shading = Some(diffuse.clone());
+                    settings.color_space = ColorSpace::Display;
+                    settings.conformance = false;
+                });
+                let scene = shot.scene(&volume, Some(&transfer));
+                let kept = renderer.render(&scene, &[]).unwrap().picture;
+                let twin = reference::render::<f64>(&scene).unwrap();
+                let mut worst = Worst::new(format!("{filter:?}, {}", shot.what()));
+                for (pixel, (a, b)) in shot.pixels().zip(kept.pixels.iter().zip(&twin.pixels)) {
+                    if b[3] < 0.01 {
+                        continue;
+                    }
+                    if (a[3] - b[3]).abs() > 1e-3 {
+                        worst.leave_out();
+                        continue;
+                    }
+                    // A half is off by 2^-11 of a component, which neighbours have up to 1.4 times of; a weight by
+                    // 2^-9 of what lies between neighbours, half of the gradient at the edge, along three axes:
+                    // together 7e-4 + 17e-4 of the normal, and as much of its cosine.
+                    worst.take(pixel, f64::from(a[0] / a[3] - b[0] / b[3]), 2.5e-3);
+                }
+                worst.assert_holds();
+            }
+        }
+    }
+}
+
+#[test]
+fn gradients_are_kept_where_they_can_be_and_made_or_refused_elsewhere() {
+    let whole = volume_of(GRID().dims, sheared_affine(), waves);
+    let transfer = ramps();
+    let shot = &oblique_shots(GRID(), Mode::Composite)[0];
+    for (volume, gradient_filter, conformance, reason) in [
+        (&whole, GradientFilter::Central, true, "conformance"),
+        (&whole, GradientFilter::Cubic, false, "trilinear"),
+        (&with_holes(), GradientFilter::Central, false, "no data"),
+    ] {
+        let mut renderer = Renderer::new(device(), volume).unwrap();
+        let mut drawn = |keep| {
+            let shot = shot.with(|settings| {
+                settings.shading = Some(Shading::default());
+                settings.keep_gradients = keep;
+                settings.gradient_filter = gradient_filter;
+                settings.conformance = conformance;
+            });
+            let scene = shot.scene(volume, Some(&transfer));
+            let twin = reference::render::<f32>(&scene).err();
+            let drawn = renderer.render(&scene, &[]);
+            let drawn = drawn.map(|drawn| drawn.picture.pixels);
+            (
+                drawn.map_err(|e| e.to_string()),
+                twin.map(|e| e.to_string()),
+            )
+        };
+        let (refused, by_twin) = drawn(Keep::Always);
+        let refused = refused.expect_err("refused");
+        assert!(refused.contains(reason), "{refused}");
+        assert_eq!(by_twin, Some(refused));
+        let [auto, made] = [Keep::Auto, Keep::Never].map(|keep| drawn(keep).0.expect("drawn"));
+        assert_eq!(auto, made, "{reason}");
     }
 }
 

@@ -24,6 +24,10 @@ fn texel_at(values: Values, voxel: vec3<i32>) -> vec4<f32> {
     return textureLoad(values, texel_in_brick(voxel), 0);
 }
 
+fn linear_texel_at(values: Values, linear: sampler, place: Place) -> vec4<f32> {
+    return textureSampleLevel(values, linear, (place - frame.brick_origin) / frame.brick_dims, 0.0);
+}
+
 fn texel_in_brick(voxel: vec3<i32>) -> vec3<i32> {
     return clamp(voxel - vec3<i32>(frame.brick_origin), vec3(0), vec3<i32>(frame.brick_dims) - 1);
 }

@@ -8,16 +8,19 @@
 //
 //     g_k = (f(p + e_k) - f(p - e_k)) / 2
 //
-// or weights of the voxels around, `gradient_taps.wgsl`. Taps outside the grid are those of its edge, a tap without
+// or weights of the voxels around, `gradient_taps.wgsl`, or what was kept of either at the voxels. Taps outside the grid are those of its edge, a tap without
 // data makes it zero (`sampling.md` 2). Across the slices of a stack the taps lie in the slices beside.
 // Twin: src/technique/gradient.rs.
 
 #import gradient_taps
+#import gradient_kept
 
 fn gradient_at(place: Place) -> vec3<f32> {
     var voxel = vec3(0.0);
     var have_data = true;
-    if frame.gradient_operator != GRADIENT_CENTRAL {
+    if frame.gradient_operator >= GRADIENT_KEPT {
+        voxel = kept_gradient(place);
+    } else if frame.gradient_operator != GRADIENT_CENTRAL {
         voxel = weighted_gradient(voxel_of(place));
     } else {
         // One look-up in a loop, not six: LLVM takes exponential time over six wide kernels, which are loops themselves.

@@ -12,8 +12,8 @@
 //     cubic         s  -g^2/2, f(3f-4)/2, g(4-3g)/2, f^2/2
 //     Catmull-Rom   s  g(3f-1)/2, f(9f-10)/2, g(10-9g)/2, f(3f-2)/2
 //
-// f is the fraction of p - 1/2 (quadratic: of p), g = 1 - f. Kernels hold p at the outermost centres, as for values:
-// beyond them the slope is that at the edge. Twin: src/technique/gradient_taps.rs.
+// f is the fraction of p - 1/2 (quadratic: of p), g = 1 - f. All but linear hold p at the outermost centres: beyond
+// them the slope is that at the edge. Twin: src/technique/gradient_taps.rs.
 
 #import frame
 #import value
@@ -25,7 +25,7 @@ const GRADIENT_QUADRATIC: u32 = 3u;
 const GRADIENT_CUBIC: u32 = 4u;
 const GRADIENT_CATMULL_ROM: u32 = 5u;
 
-// Voxels or coefficients, in the bricks of the volume; the volume itself where it holds them.
+// Voxels, coefficients or kept gradients, in the bricks of the volume; the volume itself where that is what is read.
 @group(0) @binding(30) var gradient_source: Values;
 
 // A lane an axis.
@@ -36,8 +36,8 @@ struct GradientTaps {
 }
 
 fn gradient_taps(voxel: vec3<f32>) -> GradientTaps {
-    let is_kernel = frame.gradient_operator >= GRADIENT_QUADRATIC;
-    let inside = select(voxel, clamp(voxel, vec3(0.5), frame.dims - 0.5), is_kernel);
+    let is_held = frame.gradient_operator >= GRADIENT_SOBEL;
+    let inside = select(voxel, clamp(voxel, vec3(0.5), frame.dims - 0.5), is_held);
     let base = inside - select(0.5, 0.0, frame.gradient_operator == GRADIENT_QUADRATIC);
     let below = floor(base);
     let f = base - below;

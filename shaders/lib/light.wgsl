@@ -1,9 +1,10 @@
 // Light that matter elsewhere takes away, from the light volume (shaders/light_volume.wgsl): with o what comes in from
 // all around and s the strength,
 //
-//     ambient light at p = 1 - s (1 - o(p))
+//     ambient light at p = 1 - s (1 - o(p + d v))        light i at p: t_i(p + d l_i)
 //
-// and of light i what comes through on the way to it. Between nodes trilinear, eight loads of a buffer and no texture:
+// v is the way to the eye and l that to the light, d the length of a cell: a surface is a cell thick there, and would
+// keep light from itself. Between nodes trilinear, eight loads of a buffer and no texture:
 // the same on every device. Twin: src/technique/light_field.rs.
 
 #import frame
@@ -15,27 +16,27 @@ struct LightVolume {
 
 @group(0) @binding(29) var<storage, read> light_volume: LightVolume;
 
-// Part of the light from all around.
-fn ambient_at(voxel: vec3<f32>) -> f32 {
+// Part of the light from all around, seen along a ray.
+fn ambient_at(voxel: vec3<f32>, ray_direction: vec3<f32>) -> f32 {
     if frame.occlusion_strength == 0.0 {
         return 1.0;
     }
-    return 1.0 - frame.occlusion_strength * (1.0 - light_through(0u, voxel));
+    return 1.0 - frame.occlusion_strength * (1.0 - light_through(0u, voxel, -ray_direction));
 }
 
-// Part of the light of a lamp. Asked a little nearer to it, so that no surface shadows itself.
+// Part of the light of a lamp.
 fn lamp_at(lamp: u32, voxel: vec3<f32>) -> f32 {
     let towards = frame.light_directions[lamp];
     // Nothing that the eye sees is in the shadow of a light at the eye.
     if frame.has_shadows == 0u || towards.w != 0.0 {
         return 1.0;
     }
-    let step = vec4(frame.shadow_reach * towards.xyz, 0.0) * frame.voxel_from_world;
-    return light_through(frame.shadow_bundle + lamp, voxel + step);
+    return light_through(frame.shadow_bundle + lamp, voxel, towards.xyz);
 }
 
-fn light_through(bundle: u32, voxel: vec3<f32>) -> f32 {
-    let at = clamp(voxel * frame.light_cells_per_voxel, vec3(0.0), frame.light_cells);
+fn light_through(bundle: u32, voxel: vec3<f32>, towards: vec3<f32>) -> f32 {
+    let nearer = voxel + vec4(frame.light_reach * towards, 0.0) * frame.voxel_from_world;
+    let at = clamp(nearer * frame.light_cells_per_voxel, vec3(0.0), frame.light_cells);
     let low = min(floor(at), frame.light_cells - 1.0);
     let part = at - low;
     let nodes = vec3<u32>(frame.light_cells) + 1u;

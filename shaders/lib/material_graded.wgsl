@@ -43,7 +43,7 @@ fn lit(color: vec3<f32>, gradient: vec3<f32>, sample: Sample) -> vec3<f32> {
     }
     let voxel = voxel_of(sample.place);
     if frame.light_count == 0u {
-        return ambient_at(voxel) * color;
+        return ambient_at(voxel, sample.ray_direction) * color;
     }
     return shade(color, gradient, sample.ray_direction, voxel);
 }

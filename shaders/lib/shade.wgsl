@@ -14,10 +14,10 @@
 fn shade(color: vec3<f32>, gradient: vec3<f32>, ray_direction: vec3<f32>, voxel: vec3<f32>) -> vec3<f32> {
     let steepness = length(gradient);
     if !(steepness >= frame.flat_gradient) || steepness == 0.0 {
-        return lit_inside(color, voxel);
+        return lit_inside(color, ray_direction, voxel);
     }
     let normal = gradient / steepness;
-    var lit = frame.ambient * ambient_at(voxel) * color;
+    var lit = frame.ambient * ambient_at(voxel, ray_direction) * color;
     for (var i = 0u; i < frame.light_count; i++) {
         let light = frame.light_directions[i];
         // A headlight shines along the ray.
@@ -33,9 +33,9 @@ fn shade(color: vec3<f32>, gradient: vec3<f32>, ray_direction: vec3<f32>, voxel:
 }
 
 // Where there is no surface.
-fn lit_inside(color: vec3<f32>, voxel: vec3<f32>) -> vec3<f32> {
+fn lit_inside(color: vec3<f32>, ray_direction: vec3<f32>, voxel: vec3<f32>) -> vec3<f32> {
     if frame.has_shadows == 0u {
-        return ambient_at(voxel) * color;
+        return ambient_at(voxel, ray_direction) * color;
     }
     var all = vec3(0.0);
     var there = vec3(0.0);
@@ -46,5 +46,5 @@ fn lit_inside(color: vec3<f32>, voxel: vec3<f32>) -> vec3<f32> {
     // A colour that no light has is missing nothing.
     let shares = select(vec3(1.0), there / max(all, vec3(1e-6)), all > vec3(1e-6));
     let ambient = min(frame.ambient, 1.0);
-    return color * (ambient * ambient_at(voxel) + (1.0 - ambient) * shares);
+    return color * (ambient * ambient_at(voxel, ray_direction) + (1.0 - ambient) * shares);
 }

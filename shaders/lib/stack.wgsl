@@ -37,6 +37,11 @@ fn texel_at(values: Values, voxel: vec3<i32>) -> vec4<f32> {
     return textureLoad(values, texel.xy, texel.z, 0);
 }
 
+fn linear_texel_at(values: Values, linear: sampler, place: Place) -> vec4<f32> {
+    let texture = in_stack(place.voxel - frame.brick_origin).xy / in_stack(frame.brick_dims).xy;
+    return textureSampleLevel(values, linear, texture, place.slice - i32(frame.brick_origin[frame.slice_axis]), 0.0);
+}
+
 fn texel_in_brick(voxel: vec3<i32>) -> vec3<i32> {
     let first = vec3<i32>(frame.brick_origin);
     return texel_of(clamp(voxel, first, first + vec3<i32>(frame.brick_dims) - 1));

@@ -94,6 +94,10 @@ impl From<offscreen::Error> for Error {
                     "--gradient-filter cubic is for every --filter",
                 )
             }
+            offscreen::Error::Technique(error @ technique::Error::NotKept { .. }) => Self::usage(
+                error.to_string(),
+                "--gradients auto keeps them where it can",
+            ),
             offscreen::Error::Technique(technique::Error::NotOccludedTogether) => {
                 Self::not_occluded_together()
             }

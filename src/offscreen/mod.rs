@@ -5,6 +5,7 @@
 mod denoise;
 mod fade;
 mod gathered;
+mod gradients;
 mod light;
 mod passes;
 mod position;

@@ -9,6 +9,7 @@
 
 use super::Error;
 use super::fade::{render_faded, stacks_of};
+use super::gradients::decided;
 use super::light::{Matter, made_light};
 use super::passes::{Passes, key_of};
 use super::position::{labels, positions};
@@ -16,15 +17,15 @@ use super::submission::{self, Submission};
 use super::sum::sum_of;
 use super::tally::{Clock, Mean, check_layers};
 use super::targets::Targets;
-use super::upload::{upload, upload_with_gradient_source};
+use super::upload::{keep, upload, upload_with_gradient_source};
 use crate::gpu::{Headless, ParameterRing, Timer, Use};
 use crate::picture::{ColorSpace, Layer, LayerKind, Picture};
-use crate::resident::{GpuTransfer, GpuVolume, TextureLayout};
+use crate::resident::{GpuTransfer, GpuVolume, KeptOperator, TextureLayout};
 use crate::resolve::reference::projected_value;
 use crate::scene::{Scene, positions_in_pixel};
 use crate::technique::{
-    self, Functions, GradientSource, Inputs, LightVolume, Mix, Mode, Part, Recording, Settings,
-    Technique, Words, parameter_ring,
+    self, Functions, GradientSource, Inputs, Keep, LightVolume, Mix, Mode, Part, Recording,
+    Settings, Technique, Words, parameter_ring,
 };
 use crate::transfer::{Classified, Graded, TransferFunction, Window};
 use crate::volume::{Spline, Volume};
@@ -65,13 +66,20 @@ struct Copied {
     spline: Option<Spline>,
     /// What gradients are made of beside the values.
     gradient_source: Option<GradientSource>,
+    /// Gradients that are kept.
+    kept: Option<KeptOperator>,
 }
 
 impl Copied {
     fn of(scene: &Scene) -> Self {
         let layout = scene.view(&scene.volume.grid(), [0.0; 2]).texture_layout();
         let gradient_source = scene.settings.gradient_source_beside(layout);
+        let kept = match scene.settings.keep_gradients {
+            Keep::Always => scene.settings.kept_operator(),
+            Keep::Never | Keep::Auto => None,
+        };
         Self {
+            kept: kept.filter(|_| scene.has_gradients()),
             layout,
             spline: scene.settings.filter.spline(),
             gradient_source: gradient_source.filter(|_| scene.has_gradients()),
@@ -140,6 +148,8 @@ impl<'v> Renderer<'v> {
     /// Where something is over a limit of the device.
     pub fn upload(&mut self, scene: &Scene) -> Result<(), Error> {
         scene.check()?;
+        let settings = &decided(self.device.gpu(), scene);
+        let scene = &Scene { settings, ..*scene };
         for (settings, _) in &stacks_of(scene) {
             self.upload(&Scene { settings, ..*scene })?;
         }
@@ -149,9 +159,10 @@ impl<'v> Renderer<'v> {
                 layout,
                 spline,
                 gradient_source,
+                kept,
             } = copied;
             let device = &mut self.device;
-            let made = match gradient_source {
+            let mut made = match gradient_source {
                 None => upload(device, &self.volumes, layout, spline)?,
                 Some(source) => vec![upload_with_gradient_source(
                     device,
@@ -161,6 +172,9 @@ impl<'v> Renderer<'v> {
                     source,
                 )?],
             };
+            if let Some(operator) = kept {
+                keep(device, &mut made[0], operator)?;
+            }
             self.resident.insert(copied, made);
         }
         Ok(())
@@ -172,6 +186,8 @@ impl<'v> Renderer<'v> {
     /// Parameters out of range, a limit of the device, a layer that the technique does not have.
     pub fn render(&mut self, scene: &Scene, layers: &[LayerKind]) -> Result<Rendered, Error> {
         check_layers(scene, layers)?;
+        let settings = &decided(self.device.gpu(), scene);
+        let scene = &Scene { settings, ..*scene };
         let stacks = stacks_of(scene);
         if !stacks.is_empty() {
             return render_faded(self, scene, layers, &stacks);

@@ -1,7 +1,7 @@
 //! Volumes through a staging buffer to the device, a slab at a time.
 
 use crate::gpu::{Buffer, Error, Headless, Memory};
-use crate::resident::{GpuVolume, Texels, TextureLayout};
+use crate::resident::{GpuVolume, KeptGradients, KeptOperator, Texels, TextureLayout};
 use crate::technique::GradientSource;
 use crate::volume::{Coefficients, Spline, Volume};
 use ash::vk;
@@ -53,6 +53,19 @@ pub fn upload_with_gradient_source(
     let beside = made.gradient_source().expect("made so");
     fill(device, beside, source.volume())?;
     Ok(made)
+}
+
+/// Makes the gradients of a volume and keeps them in the place of what they were made of beside it.
+pub fn keep(
+    device: &mut Headless,
+    volume: &mut GpuVolume,
+    operator: KeptOperator,
+) -> Result<(), Error> {
+    let kept = KeptGradients::new(device.gpu(), volume, operator)?;
+    // SAFETY: recorded outside rendering; the volume has been uploaded; `run` waits.
+    device.run(|cmd| unsafe { kept.record(cmd) })?;
+    volume.keep_gradients(kept);
+    Ok(())
 }
 
 fn fill(device: &mut Headless, made: &GpuVolume, volume: &Volume) -> Result<(), Error> {

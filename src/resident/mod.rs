@@ -4,6 +4,7 @@
 //! reaches the memory, written at once); nothing here submits or waits.
 
 mod bricks;
+mod gradients;
 mod slabs;
 mod texel;
 mod transfer;
@@ -11,6 +12,7 @@ mod upload;
 mod volume;
 
 pub use bricks::{Cell, front_to_back};
+pub use gradients::{KeptGradients, KeptOperator};
 pub use texel::{Coding, TexelFormat};
 pub use transfer::{GpuTransfer, TransferLayout};
 pub use upload::Slab;

@@ -5,6 +5,7 @@
 
 use super::TexelFormat;
 use super::bricks::{Cell, cut};
+use super::gradients::KeptGradients;
 use crate::gpu::{Error, Gpu, Image, ImageDesc, ImageKind, Sampler};
 use crate::volume::{Coefficients, Grid, Spline, Volume};
 use ash::vk;
@@ -28,7 +29,7 @@ impl TextureLayout {
         }
     }
 
-    fn kind(self) -> ImageKind {
+    pub(super) fn kind(self) -> ImageKind {
         match self {
             Self::Texture3d => ImageKind::D3,
             Self::Stack(_) => ImageKind::D2Array,
@@ -72,6 +73,7 @@ pub struct GpuVolume {
     sampler: Sampler,
     spline: Option<Spline>,
     gradient_source: Option<Box<GpuVolume>>,
+    kept_gradients: Option<KeptGradients>,
 }
 
 /// What a texture holds.
@@ -177,6 +179,7 @@ impl Plan {
             sampler: Sampler::linear_clamp(gpu)?,
             spline: None,
             gradient_source: None,
+            kept_gradients: None,
         })
     }
 }
@@ -293,6 +296,17 @@ impl GpuVolume {
     /// The spline that it holds the coefficients of; `None` for voxels.
     pub fn spline(&self) -> Option<Spline> {
         self.spline
+    }
+
+    /// Puts gradients that were made of it, and recorded, in the place of what they were made of beside it.
+    pub fn keep_gradients(&mut self, kept: KeptGradients) {
+        self.gradient_source = None;
+        self.kept_gradients = Some(kept);
+    }
+
+    /// Gradients that are read in place of being made.
+    pub fn kept_gradients(&self) -> Option<&KeptGradients> {
+        self.kept_gradients.as_ref()
     }
 
     /// What gradients are made of, where that is something else than the values.

@@ -1,10 +1,10 @@
 //! Which operator makes gradients, of which field: chosen apart from the filter that makes values.
 
 use super::{Error, Filter, Settings, View};
-use crate::resident::{GpuTransfer, GpuVolume, TextureLayout};
+use crate::resident::{GpuTransfer, GpuVolume, KeptOperator, TextureLayout};
 use crate::shaders::{
-    FrameFields, GRADIENT_CATMULL_ROM, GRADIENT_CENTRAL, GRADIENT_CUBIC, GRADIENT_LINEAR,
-    GRADIENT_QUADRATIC, GRADIENT_SOBEL,
+    FrameFields, GRADIENT_CATMULL_ROM, GRADIENT_CENTRAL, GRADIENT_CUBIC, GRADIENT_KEPT,
+    GRADIENT_KEPT_SOBEL, GRADIENT_LINEAR, GRADIENT_QUADRATIC, GRADIENT_SOBEL,
 };
 use crate::volume::{Spline, kernel::Kernel};
 
@@ -23,6 +23,18 @@ pub enum GradientFilter {
     /// The derivative of the filter's own kernel. Nearest and linear filters have none that is of use: it is zero, or
     /// jumps from voxel to voxel.
     Analytic,
+}
+
+/// Whether gradients are made where a sample is taken, or once at the voxels and kept beside them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Keep {
+    /// Made for each sample.
+    #[default]
+    Never,
+    /// Kept; where they cannot be, the picture is refused.
+    Always,
+    /// Kept where they can be and a graphics card has the memory, else made: on software devices they are no faster.
+    Auto,
 }
 
 /// What makes a gradient of neighbours.
@@ -107,13 +119,32 @@ impl Settings {
         (!is_held).then_some(source)
     }
 
-    /// Whether the filter has a derivative, where one is asked for.
+    /// What can be kept at the voxels: operators on the trilinear field, which are linear in them; not in conformance
+    /// pictures, which leave no filtering to the device.
+    pub fn kept_operator(&self) -> Option<KeptOperator> {
+        match (self.gradient_operator(), self.filter) {
+            _ if self.conformance => None,
+            (Operator::Linear, _) | (Operator::Central, Filter::Linear) => {
+                Some(KeptOperator::Differences)
+            }
+            (Operator::Sobel, _) => Some(KeptOperator::Sobel),
+            (Operator::Central | Operator::Kernel(_), _) => None,
+        }
+    }
+
+    /// Whether the filter has a derivative, and what is to be kept can be.
     pub(super) fn check_gradient_filter(&self) -> Result<(), Error> {
         let filter = self.filter;
         if self.gradient_filter == GradientFilter::Analytic && filter.kernel().is_none() {
             return Err(Error::NoDerivative { filter });
         }
-        Ok(())
+        let reason = match self.kept_operator() {
+            Some(_) => return Ok(()),
+            None if self.keep_gradients != Keep::Always => return Ok(()),
+            None if self.conformance => "a conformance picture leaves no filtering to the device",
+            None => "only operators on the trilinear field are the same between kept ones",
+        };
+        Err(Error::NotKept { reason })
     }
 }
 
@@ -127,14 +158,36 @@ impl View<'_> {
     ) -> Result<(), Error> {
         let counts =
             self.settings.shading.is_some() || transfer.is_some_and(GpuTransfer::is_graded);
-        let Some(wanted) = self.settings.gradient_source().filter(|_| counts) else {
+        if !counts {
+            return Ok(());
+        }
+        let operator = self.settings.kept_operator();
+        let kept = volume.kept_gradients();
+        let kept = kept.filter(|kept| operator == Some(kept.operator()));
+        match (self.settings.keep_gradients, kept) {
+            (Keep::Always | Keep::Auto, Some(kept)) => {
+                fields.gradient_operator = match kept.operator() {
+                    KeptOperator::Differences => GRADIENT_KEPT,
+                    KeptOperator::Sobel => GRADIENT_KEPT_SOBEL,
+                };
+                fields.gradient_scale = kept.scale();
+                return Ok(());
+            }
+            (Keep::Always, None) => {
+                let reason = "the volume on the device has none";
+                return Err(Error::NotKept { reason });
+            }
+            _ => {}
+        }
+        let Some(wanted) = self.settings.gradient_source() else {
             return Ok(());
         };
         let is_beside = volume.gradient_source().is_some();
         let read = volume.gradient_source().unwrap_or(volume);
         let found = read.spline();
         let wanted_beside = self.settings.gradient_source_beside(volume.layout());
-        if found != wanted.spline() || wanted_beside.is_some() && !is_beside {
+        let is_hidden = volume.kept_gradients().is_some();
+        if is_hidden || found != wanted.spline() || wanted_beside.is_some() && !is_beside {
             return Err(Error::WrongGradientSource { wanted, found });
         }
         let coding = read.texel().coding;

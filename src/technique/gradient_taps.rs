@@ -30,7 +30,7 @@ impl<R: Real> Taps<R> {
         let half = n(0.5);
         let is_quadratic = operator == Operator::Kernel(Kernel::Quadratic);
         let inside = match operator {
-            Operator::Kernel(_) => p.max(half).min(n(f64::from(dim)) - half),
+            Operator::Kernel(_) | Operator::Sobel => p.max(half).min(n(f64::from(dim)) - half),
             _ => p,
         };
         let base = if is_quadratic { inside } else { inside - half };

@@ -42,6 +42,7 @@ impl Inputs<'_> {
         };
         given.push((values, Resource::sampled(&self.brick.values)));
         given.push(("gradient_source", Resource::sampled(self.gradient_source())));
+        given.push(("gradient_sampler", Resource::Sampler(self.volume.sampler())));
         given.push(("volume_sampler", Resource::Sampler(self.volume.sampler())));
         given.extend(self.channels());
         if let Some(transfer) = self.transfer {
@@ -62,12 +63,17 @@ impl Inputs<'_> {
 }
 
 impl Inputs<'_> {
-    /// What gradients are made of: the values themselves, unless something lies beside them.
+    /// What gradients are read from or made of: the values themselves, unless something lies beside them.
     fn gradient_source(&self) -> &Image {
+        let mut bricks = self.volume.bricks().iter();
+        let Some(index) = bricks.position(|brick| brick.cell == self.brick.cell) else {
+            return &self.brick.values;
+        };
+        let kept = self.volume.kept_gradients();
+        let kept = kept.map(|kept| &kept.images()[index]);
         let beside = self.volume.gradient_source();
-        let bricks = beside.into_iter().flat_map(GpuVolume::bricks);
-        let mut same = bricks.filter(|brick| brick.cell == self.brick.cell);
-        &same.next().unwrap_or(self.brick).values
+        let beside = beside.map(|source| &source.bricks()[index].values);
+        kept.or(beside).unwrap_or(&self.brick.values)
     }
 }
 

@@ -3,12 +3,12 @@
 //! ```text
 //! A = k mean of (1 - exp(-sigma_i L))     sigma = -ln(1 - min(A, 1 - 2^-12)) / L        of a cell
 //! open = sum over r of w_r exp(-sum of sigma d)                                          at a node, of a bundle
-//! ambient light at p = 1 - s (1 - open(p))                                               trilinear between nodes
+//! ambient light at p = 1 - s (1 - open(p + d v))     light i: open(p + d l_i)            trilinear between nodes
 //! ```
 
 use super::LightPlan;
 use crate::ray::vector;
-use crate::real::{Real, add, dot, lerp};
+use crate::real::{Real, add, dot, lerp, scale};
 use crate::shaders::Frame;
 use crate::transfer::{extinction, opacity_over};
 
@@ -60,13 +60,14 @@ impl<R: Real> LightField<R> {
         &self.open
     }
 
-    /// Part of the light from all around at a position in voxel space.
-    pub fn ambient_at(&self, frame: &Frame, voxel: [R; 3]) -> R {
+    /// Part of the light from all around at a position in voxel space, seen along a ray.
+    pub fn ambient_at(&self, frame: &Frame, voxel: [R; 3], ray_direction: [R; 3]) -> R {
         let one = R::from_f64(1.0);
         if frame.occlusion_strength == 0.0 {
             return one;
         }
-        one - R::from_f32(frame.occlusion_strength) * (one - self.through_at(frame, 0, voxel))
+        one - R::from_f32(frame.occlusion_strength)
+            * (one - self.through_at(frame, 0, voxel, ray_direction.map(|d| -d)))
     }
 
     /// Part of the light of a lamp there.
@@ -75,14 +76,17 @@ impl<R: Real> LightField<R> {
         if frame.has_shadows == 0 || w != 0.0 {
             return R::from_f64(1.0);
         }
-        let way = vector([x, y, z].map(|c| frame.shadow_reach * c));
+        let bundle = frame.shadow_bundle + lamp as u32;
+        self.through_at(frame, bundle, voxel, vector([x, y, z]))
+    }
+
+    /// A cell nearer to where light comes from.
+    fn through_at(&self, frame: &Frame, bundle: u32, voxel: [R; 3], towards: [R; 3]) -> R {
+        let way = scale(towards, R::from_f32(frame.light_reach));
         let step = frame
             .voxel_from_world
             .map(|[x, y, z, _]| dot(vector([x, y, z]), way));
-        self.through_at(frame, frame.shadow_bundle + lamp as u32, add(voxel, step))
-    }
-
-    fn through_at(&self, frame: &Frame, bundle: u32, voxel: [R; 3]) -> R {
+        let voxel = add(voxel, step);
         let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
         let cells = vector::<R>(frame.light_cells);
         let per_voxel = vector::<R>(frame.light_cells_per_voxel);

@@ -35,7 +35,7 @@ mod ways;
 
 pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 pub use frame::View;
-pub use gradient_filter::{GradientFilter, GradientSource, Operator};
+pub use gradient_filter::{GradientFilter, GradientSource, Keep, Operator};
 pub use inputs::{Inputs, Take, Words};
 pub use light_field::LightField;
 pub use light_plan::{AmbientOcclusion, LightPlan, MAX_LIGHT_CELLS, MAX_RADIUS_CELLS, Shadows};
@@ -216,6 +216,8 @@ pub struct Settings {
     pub shading: Option<Shading>,
     /// How gradients are made, for light and for transfer functions of gradients.
     pub gradient_filter: GradientFilter,
+    /// Whether they are made for each sample, or kept at the voxels.
+    pub keep_gradients: Keep,
     /// Ambient light that matter nearby takes away, with lights or without, of one volume that is composited.
     pub ambient_occlusion: Option<AmbientOcclusion>,
     /// Float targets, no early termination, filtering by texel fetch, control points searched exactly.
@@ -426,6 +428,12 @@ pub enum Error {
         /// The filter.
         filter: Filter,
     },
+    /// Interpolating kept gradients would be another picture.
+    #[error("gradients cannot be kept: {reason}")]
+    NotKept {
+        /// Why.
+        reason: &'static str,
+    },
     /// Gradients are made of what lies on the device.
     #[error("gradients read {}, and the volume on the device holds {} for them", held(.wanted.spline()), held(*.found))]
     WrongGradientSource {
@@ -506,6 +514,7 @@ impl Default for Settings {
             cut_faces: None,
             shading: None,
             gradient_filter: GradientFilter::default(),
+            keep_gradients: Keep::default(),
             ambient_occlusion: None,
             conformance: false,
             per_mode: PerMode::default(),

@@ -9,7 +9,7 @@
 //! there is a second derivative, two where there are slabs, and else one. A mask goes round
 //! for the layers and rows of the footprint, a kernel for those of its taps, a search for the halvings of the points.
 
-use super::{Error, Filter, Mix, Operator, Settings, Take, Technique, View, Words};
+use super::{Error, Filter, Keep, Mix, Operator, Settings, Take, Technique, View, Words};
 
 /// Of what is rare: surfaces that are refined, the first turns of everything.
 const SPARE: f64 = 2048.0;
@@ -50,17 +50,18 @@ pub fn turns_per_sample(
     } else {
         0
     };
+    let are_kept = settings.keep_gradients == Keep::Always;
     let is_weighted = settings.gradient_operator() != Operator::Central;
     let looks = match (words.mix, words.take) {
         (Mix::Graded, _) => {
-            let first = if is_weighted { 1 } else { 7 };
+            let first = if is_weighted || are_kept { 1 } else { 7 };
             first + if functions.second { 28 } else { 0 }
         }
         (_, Take::Slab) => 2,
         _ => 1,
     };
     // Four layers of four rows, with the turns that end them, and the choice of the weights.
-    let weights = if words.mix == Mix::Graded && is_weighted {
+    let weights = if words.mix == Mix::Graded && is_weighted && !are_kept {
         5 * 5 + 5
     } else {
         0

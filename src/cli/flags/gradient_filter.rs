@@ -1,6 +1,6 @@
 //! How gradients are made: flags to [`GradientFilter`].
 
-use crate::technique::GradientFilter;
+use crate::technique::{GradientFilter, Keep};
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
 
@@ -14,6 +14,23 @@ pub struct GradientFlags {
     #[arg(long, value_name = "FILTER", help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gradient_filter: Option<GradientWord>,
+    /// Whether gradients are made for each sample or kept at the voxels, 8 bytes each on the device [default: made]
+    #[arg(long, value_name = "WHERE", help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gradients: Option<KeepWord>,
+}
+
+/// Every word of `--gradients`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum KeepWord {
+    /// Made for each sample
+    #[default]
+    Made,
+    /// Kept: central differences and sobel of the trilinear field, where every voxel has data, without --conformance
+    Kept,
+    /// Kept where they can be and a graphics card has the memory; made on software devices, which are no faster so
+    Auto,
 }
 
 /// Every word of `--gradient-filter`.
@@ -45,14 +62,27 @@ impl GradientFlags {
         }
     }
 
+    /// Whether they are kept.
+    pub fn keep(&self) -> Keep {
+        match self.gradients.unwrap_or_default() {
+            KeepWord::Made => Keep::Never,
+            KeepWord::Kept => Keep::Always,
+            KeepWord::Auto => Keep::Auto,
+        }
+    }
+
     /// Flags that change nothing where gradients make nothing of the picture, a sentence each.
     pub fn idle(&self, has_gradients: bool) -> Vec<&'static str> {
-        match self.gradient_filter {
-            Some(_) if !has_gradients => vec![
-                "--gradient-filter has no effect without --shading phong or a function of gradients",
-            ],
-            _ => Vec::new(),
+        if has_gradients {
+            return Vec::new();
         }
+        let filter = self.gradient_filter.map(|_| {
+            "--gradient-filter has no effect without --shading phong or a function of gradients"
+        });
+        let keep = self.gradients.map(
+            |_| "--gradients has no effect without --shading phong or a function of gradients",
+        );
+        filter.into_iter().chain(keep).collect()
     }
 }
 
@@ -65,8 +95,11 @@ mod tests {
         assert_eq!(GradientFlags::default().filter(), GradientFilter::Central);
         let said = GradientFlags {
             gradient_filter: Some(GradientWord::Cubic),
+            gradients: Some(KeepWord::Auto),
         };
         assert_eq!(said.filter(), GradientFilter::Cubic);
-        assert_eq!((said.idle(false).len(), said.idle(true).len()), (1, 0));
+        assert_eq!((said.idle(false).len(), said.idle(true).len()), (2, 0));
+        let kept = (GradientFlags::default().keep(), said.keep());
+        assert_eq!(kept, (Keep::Never, Keep::Auto));
     }
 }

@@ -111,6 +111,7 @@ impl SceneFlags {
             shading: self.light.shading(settings.mode)?,
             ambient_occlusion: self.light.occlusion(settings.mode)?,
             gradient_filter: self.gradient.filter(),
+            keep_gradients: self.gradient.keep(),
             dim: self.labels.dim()?,
             ..settings
         };

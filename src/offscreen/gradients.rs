@@ -1,0 +1,47 @@
+//! Whether gradients are kept, where that is left to the device.
+
+use crate::gpu::Gpu;
+use crate::resident::KeptGradients;
+use crate::scene::Scene;
+use crate::technique::{Keep, Settings};
+use std::borrow::Cow;
+
+/// Part of the device's memory that kept gradients may take: voxels and pictures want theirs.
+const SHARE: f64 = 0.5;
+
+/// The settings of a scene with [`Keep::Auto`] decided.
+pub fn decided<'a>(gpu: &Gpu, scene: &Scene<'a>) -> Cow<'a, Settings> {
+    let settings = scene.settings;
+    if settings.keep_gradients != Keep::Auto {
+        return Cow::Borrowed(settings);
+    }
+    let can_be = settings.kept_operator().is_some() && scene.volume.validity.is_none();
+    let voxels = scene.volume.dims.iter().map(|&n| u64::from(n)).product();
+    let heap_bytes = gpu.limits().max_heap_bytes;
+    let keep_gradients = match can_be && is_worth_it(gpu.is_cpu(), heap_bytes, voxels) {
+        true => Keep::Always,
+        false => Keep::Never,
+    };
+    Cow::Owned(Settings {
+        keep_gradients,
+        ..settings.clone()
+    })
+}
+
+/// Software devices look up four halves no faster than six values (`docs/quality.md`).
+fn is_worth_it(is_cpu: bool, heap_bytes: u64, voxels: u64) -> bool {
+    let wanted = voxels.saturating_mul(KeptGradients::BYTES_PER_VOXEL);
+    !is_cpu && wanted as f64 <= SHARE * heap_bytes as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gradients_are_kept_where_half_of_a_graphics_card_has_room_for_them() {
+        assert!(is_worth_it(false, 1 << 30, 1 << 26));
+        assert!(!is_worth_it(false, 1 << 30, (1 << 26) + 1));
+        assert!(!is_worth_it(true, 1 << 40, 1));
+    }
+}
