@@ -184,6 +184,7 @@ impl<'a, R: Real> Walk<'a, R> {
             mut frame, slices, ..
         } = view.on_cpu()?;
         frame.flat_gradient = view.flat_gradient(scene.volume.value_range);
+        frame.reference_length = scene.reference_length() as f32;
         Ok(Self {
             scene,
             volumes: read.map_or_else(|| scene.volumes(), |read| vec![read]),

@@ -343,9 +343,15 @@ impl Reader<'_> {
             ..self.scene.classification.clone()
         };
         let words = &self.scene.labels;
-        let has_table = (words.label_tf.is_some() || words.cut()) && words.labels.is_none();
+        let has_table = words.label_tf.is_some() && words.labels.is_none();
         let may_name = says_nothing(flags)? && self.mode == Mode::Composite;
-        if (has_table || is_labels)
+        let is_cut = words.cut() && words.labels.is_none();
+        // Words on labels take only what looks like labels for them.
+        let looks_so = is_cut && may_name && {
+            let found = flags.classification(&volume, self.mode)?;
+            flags.found_labels(&found)
+        };
+        if (has_table || is_labels || looks_so)
             && may_name
             && let Some(function) = self.names(&volume)?
         {
@@ -359,10 +365,10 @@ impl Reader<'_> {
                 others: Others::Channels(Vec::new()),
             });
         }
-        if words.cut() && words.labels.is_none() {
+        if is_cut {
             return Err(Error::usage(
-                "--label-show, --label-hide and --label-dim are for labels in their own colours, in --mode composite",
-                "leave out --preset, --tf, --window and --mode, or lay a map over INPUT with --labels FILE",
+                "--label-show, --label-hide and --label-dim are for labels: of a map over INPUT (--labels), or of INPUT in their own colours",
+                "--labels FILE lays a map over INPUT",
             ));
         }
         let modes = &self.scene.modes;
