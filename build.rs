@@ -170,7 +170,7 @@ const ENTRIES: &[(&str, &[Slot])] = &[
     ("merge", &[("operator", &["over", "under", "add"])]),
     (
         "denoise",
-        &[("kernel", &["gaussian", "median", "bilateral"])],
+        &[("kernel", &["gaussian", "median", "bilateral", "nlm"])],
     ),
     // Once for many pictures: classified by the points in all of them.
     (

@@ -3,7 +3,7 @@
 use crate::camera::Camera;
 use crate::shaders::MAX_CHANNELS;
 use crate::technique::mixture::opacities_have_colors;
-use crate::technique::{Error, Keep, Mix, Mode, Role, Settings, View};
+use crate::technique::{CutFaces, Error, Keep, Mix, Mode, Role, Settings, View};
 use crate::transfer::TransferFunction;
 use crate::volume::Volume;
 
@@ -133,7 +133,7 @@ impl<'a> Scene<'a> {
     /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`], [`Error::NotMixed`],
     /// [`Error::NotShaded`], [`Error::NotShadedTogether`], [`Error::NotGraded`], [`Error::NotGradedTogether`],
     /// [`Error::NotOccluded`], [`Error::NotOccludedTogether`], [`Error::FilterAlone`], [`Error::OpacityOfNothing`],
-    /// and those of [`Settings::check`].
+    /// [`Error::NotFor`] and those of [`Settings::check`].
     pub fn check(&self) -> Result<(), Error> {
         let volumes = self.volumes();
         let (wanted, limit) = (volumes.len(), MAX_CHANNELS as usize);
@@ -165,6 +165,15 @@ impl<'a> Scene<'a> {
         // The picture of the maximum has no gradient.
         if self.is_graded() && mode == Mode::Mida && self.settings.per_mode.mida_gamma > 0.0 {
             return Err(Error::NotGraded { mode });
+        }
+        if let (Beside::Classified(_), Some(CutFaces::Grey(_))) =
+            (self.beside, self.settings.cut_faces)
+        {
+            return Err(Error::NotFor {
+                wanted: "a window of greys on cut faces",
+                of: "values",
+                found: "classified voxels".to_owned(),
+            });
         }
         match self.mix() {
             Mix::Alone | Mix::Graded => Ok(()),

@@ -45,17 +45,17 @@ fn assert_cells(technique: Technique) {
     let matter = Matter::new();
     let mut drawn = 0;
     for feature in FEATURES {
-        let (channels, colors) = (matter.channels(feature.seen), matter.colors());
+        let (channels, parts) = (matter.channels(feature.seen), matter.parts(feature.seen));
         let any = settings(technique, MODES[0].0, FILTERS[0].0, feature);
         let volumes = matter
-            .scene(feature.seen, &any, &channels, &colors)
+            .scene(feature.seen, &any, &channels, &parts)
             .volumes();
         let mut renderer = Renderer::several(device(), volumes).expect("a renderer");
         for (mode, _) in MODES {
             for (filter, _) in FILTERS {
                 let mut settings = settings(technique, mode, filter, feature);
                 settings.conformance = true;
-                let scene = matter.scene(feature.seen, &settings, &channels, &colors);
+                let scene = matter.scene(feature.seen, &settings, &channels, &parts);
                 drawn += usize::from(is_drawn(&mut renderer, &scene, feature));
             }
         }

@@ -2,7 +2,9 @@
 
 use glam::{DAffine3, DMat3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
+use stratavox::picture::ColorSpace;
 use stratavox::scene::{Beside, Channel, Scene};
+use stratavox::technique::preclassified::preclassified;
 use stratavox::technique::{
     AmbientOcclusion, ClipPlane, CutFaces, Filter, GradientFilter, Lattice, Level, Light, Mode,
     Order, PerMode, Role, Settings, Shading, Shadows, Technique,
@@ -58,6 +60,10 @@ pub enum Seen {
     Labelled,
     /// Three volumes that are one colour.
     Colored,
+    /// One that another makes opaque.
+    Veiled,
+    /// One whose voxels are classified already.
+    Classified,
 }
 
 /// Something that can be asked for beside technique, mode and filter.
@@ -184,6 +190,33 @@ pub const FEATURES: &[Feature] = &[
         Seen::Graded,
         |_| {},
     ),
+    feature(
+        "gradients by Sobel",
+        "`--gradient-filter sobel`",
+        Seen::Alone,
+        |s| {
+            s.shading = Some(lights());
+            s.gradient_filter = GradientFilter::Sobel;
+        },
+    ),
+    feature(
+        "gradients of a spline",
+        "`--gradient-filter cubic`",
+        Seen::Alone,
+        |s| {
+            s.shading = Some(lights());
+            s.gradient_filter = GradientFilter::Cubic;
+        },
+    ),
+    feature(
+        "gradients of the filter",
+        "`--gradient-filter analytic`",
+        Seen::Alone,
+        |s| {
+            s.shading = Some(lights());
+            s.gradient_filter = GradientFilter::Analytic;
+        },
+    ),
     feature("voxels without data", "", Seen::Holed, |_| {}),
     feature(
         "light, voxels without data",
@@ -201,6 +234,18 @@ pub const FEATURES: &[Feature] = &[
         |_| {},
     ),
     feature("colours", "a file of colours", Seen::Colored, |_| {}),
+    feature(
+        "opacity by another",
+        "`--opacity-variable`, `--opacity-from`",
+        Seen::Veiled,
+        |_| {},
+    ),
+    feature(
+        "pre-classification",
+        "`--preclassified`",
+        Seen::Classified,
+        |_| {},
+    ),
 ];
 
 fn lights() -> Shading {
@@ -264,6 +309,7 @@ pub struct Matter {
     numbers: Volume,
     holed: Volume,
     others: [Volume; 2],
+    classified: [Volume; 4],
     labels: Volume,
     function: TransferFunction,
     graded: TransferFunction,
@@ -286,10 +332,13 @@ impl Matter {
         let labels = |p: DVec3| ((p.x / 4.0).floor() + (p.y / 5.0).floor()) % 4.0;
         let mut map = volume(labels);
         dim(&mut map, |label| label == 2);
+        let length = numbers.grid().smallest_spacing();
+        let classified = preclassified(&numbers, &function(), length, ColorSpace::default());
         let span = DVec3::from_array(DIMS.map(f64::from)).length();
         Self {
             numbers,
             holed,
+            classified: classified.expect("volumes of the right length"),
             others: [volume(wave(0.5, 1.1)), volume(wave(1.2, 0.4))],
             labels: map,
             function: function(),
@@ -329,27 +378,30 @@ impl Matter {
         };
         match seen {
             Seen::Channels => vec![channel(&self.others[0], &self.function, Role::Numbers)],
+            Seen::Veiled => vec![channel(&self.others[0], &self.function, Role::Opacity)],
             Seen::Labelled => vec![channel(&self.labels, &self.label_function, Role::Labels)],
             _ => Vec::new(),
         }
     }
 
-    /// The scene of a cell; `channels` and `colors` are those of [`Self::channels`] and [`Self::colors`].
+    /// The scene of a cell; `channels` and `parts` are those of [`Self::channels`] and [`Self::parts`].
     pub fn scene<'a>(
         &'a self,
         seen: Seen,
         settings: &'a Settings,
         channels: &'a [Channel<'a>],
-        colors: &'a [&'a Volume],
+        parts: &'a [&'a Volume],
     ) -> Scene<'a> {
         let beside = match seen {
-            Seen::Channels | Seen::Labelled => Beside::Channels(channels),
-            Seen::Colored => Beside::Colors(colors),
+            Seen::Channels | Seen::Labelled | Seen::Veiled => Beside::Channels(channels),
+            Seen::Colored => Beside::Colors(parts),
+            Seen::Classified => Beside::Classified(parts),
             Seen::Alone | Seen::Graded | Seen::Holed => Beside::Nothing,
         };
         Scene {
             volume: match seen {
                 Seen::Holed => &self.holed,
+                Seen::Classified => &self.classified[0],
                 _ => &self.numbers,
             },
             transfer: Some(match seen {
@@ -363,9 +415,13 @@ impl Matter {
         }
     }
 
-    /// Green and blue of a colour.
-    pub fn colors(&self) -> [&Volume; 2] {
-        self.others.each_ref()
+    /// The volumes that are one colour with the first.
+    pub fn parts(&self, seen: Seen) -> Vec<&Volume> {
+        match seen {
+            Seen::Colored => self.others.iter().collect(),
+            Seen::Classified => self.classified[1..].iter().collect(),
+            _ => Vec::new(),
+        }
     }
 }
 

@@ -46,8 +46,8 @@ pub fn refusal(
     feature: &Feature,
 ) -> Option<String> {
     let settings = settings(technique, mode, filter, feature);
-    let (channels, colors) = (matter.channels(feature.seen), matter.colors());
-    let scene = matter.scene(feature.seen, &settings, &channels, &colors);
+    let (channels, parts) = (matter.channels(feature.seen), matter.parts(feature.seen));
+    let scene = matter.scene(feature.seen, &settings, &channels, &parts);
     scene.check().err().map(|error| error.to_string())
 }
 
@@ -59,6 +59,7 @@ fn general(reason: &str, technique: Technique, mode: Mode, filter: Filter) -> St
         (format!("{filter:?}"), "this filter"),
     ];
     names.iter().fold(reason.to_owned(), |text, (name, word)| {
+        let text = text.replace(&format!("no mode {name}"), "no such mode");
         let text = text.replace(&format!("mode {name}"), "this mode");
         let at_start = text.strip_prefix(&format!("{name} "));
         let text = at_start.map_or(text.clone(), |rest| format!("{word} {rest}"));

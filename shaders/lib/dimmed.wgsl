@@ -3,7 +3,8 @@
 //     lit(T) = s + T (lit(1) - s)        s = a c, at most lit(1)
 //     lit(1) = c (a + (1 - a) L), or what the law of Blinn and Phong says
 //
-// so the ambient part stays in the deepest shadow, and no shadow is brighter than the light. Twin: src/technique/slices_3d/half_angle/reference.rs.
+// so the ambient part stays in the deepest shadow, and no shadow is brighter than the light.
+// Twin: src/technique/slices_3d/half_angle/reference.rs.
 
 #import frame
 

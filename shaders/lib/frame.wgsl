@@ -152,8 +152,8 @@ struct Frame {
     // How much darker ambient light is where nothing comes in, 0 to 1; 0 without occlusion.
     occlusion_strength: f32,
     light_cells_per_voxel: vec3<f32>,
-    // World length by which a sample asks for shadow nearer to the light.
-    shadow_reach: f32,
+    // World length by which a sample asks nearer to the light, or to the eye for what comes from all around.
+    light_reach: f32,
     has_shadows: u32,
     // The bundle of the first light.
     shadow_bundle: u32,

@@ -5,6 +5,8 @@
 //! device = voxels as texels        + the same
 //! ```
 //!
+//! The light volume of occlusion and shadows comes on top, on the device.
+//!
 //! Filters that read coefficients have floats as texels, made of one volume after the other in memory of the host.
 //!
 //! The textures of a CPU driver lie in the memory of the host: there the sum has to fit.
@@ -12,7 +14,7 @@
 use super::{Error, flags::SceneFlags};
 use crate::{
     resident::{KeptGradients, TextureLayout},
-    technique::{GradientSource, Keep, Settings, Technique},
+    technique::{GradientSource, Keep, LightPlan, Settings, Technique},
     volume::{Header, Reduced, Source, VoxelType},
 };
 use serde::Serialize;
@@ -167,7 +169,9 @@ pub fn fitting(
         ..Settings::default()
     };
     let host_bytes = input.max_memory.or_else(available_bytes);
-    let factor = least_factor(source.header(), held, &filters, host_bytes, device);
+    let light = LightPlan::bytes(source.header().dims, scene.light.bundle_count());
+    let (host_left, device_left) = beside_light(light, host_bytes, device);
+    let factor = least_factor(source.header(), held, &filters, host_left, device_left);
     if factor == 1 {
         return Ok(source);
     }
@@ -181,10 +185,28 @@ pub fn fitting(
         "{}: the volume needs {} of memory and {} of the device's; there are {} and {}",
         source.path().display(),
         in_units(needed.host),
-        in_units(needed.device),
+        in_units(needed.device.saturating_add(light)),
         there(host_bytes),
         there(device.map(|device| device.heap_bytes)),
     )))
+}
+
+/// What there is when the light volume is there too.
+fn beside_light(
+    light: u64,
+    host_bytes: Option<u64>,
+    device: Option<DeviceMemory>,
+) -> (Option<u64>, Option<DeviceMemory>) {
+    let is_of_host = device.is_none_or(|device| device.is_of_host);
+    let on_host = if is_of_host { light } else { 0 };
+    let device = device.map(|device| DeviceMemory {
+        heap_bytes: device.heap_bytes.saturating_sub(light),
+        ..device
+    });
+    (
+        host_bytes.map(|there| there.saturating_sub(on_host)),
+        device,
+    )
 }
 
 /// By how much each axis has to shrink.
@@ -367,6 +389,25 @@ mod tests {
         assert!(!fits(8_900_000, 4_400_000, false));
         assert!(fits(13_400_000, 13_400_000, true));
         assert!(!fits(13_300_000, 13_300_000, true));
+    }
+
+    #[test]
+    fn light_takes_its_part_of_the_device_and_of_the_host_where_that_is_the_device() {
+        // Cells, and the corners of them for two bundles.
+        let light = LightPlan::bytes([512, 60, 100], 2);
+        assert_eq!(light, 4 * (128 * 60 * 100 + 2 * 129 * 61 * 101));
+        assert_eq!(LightPlan::bytes([512; 3], 0), 0);
+        let card = |is_of_host| DeviceMemory {
+            heap_bytes: 100,
+            is_of_host,
+        };
+        let left = |light, device| {
+            let (host, device) = beside_light(light, Some(50), device);
+            (host, device.map(|device| device.heap_bytes))
+        };
+        assert_eq!(left(30, Some(card(false))), (Some(50), Some(70)));
+        assert_eq!(left(30, Some(card(true))), (Some(20), Some(70)));
+        assert_eq!(left(60, None), (Some(0), None));
     }
 
     #[test]

@@ -4,7 +4,9 @@ use super::Error;
 use crate::gpu::Headless;
 use crate::resident::GpuTransfer;
 use crate::scene::Scene;
-use crate::technique::{ClipPlane, Filter, Inputs, LightPlan, LightVolume, Part, parameter_ring};
+use crate::technique::{
+    ClipPlane, Filter, GradientFilter, Inputs, LightPlan, LightVolume, Part, parameter_ring,
+};
 use crate::transfer::TransferFunction;
 use glam::DVec3;
 use std::sync::Arc;
@@ -14,6 +16,7 @@ use std::sync::Arc;
 pub struct Matter {
     function: TransferFunction,
     filter: Filter,
+    gradient_filter: GradientFilter,
     crop: Option<[DVec3; 2]>,
     clip_planes: Vec<ClipPlane>,
 }
@@ -25,6 +28,7 @@ impl Matter {
         Self {
             function: function.clone(),
             filter: settings.filter,
+            gradient_filter: settings.gradient_filter,
             crop: settings.crop,
             clip_planes: settings.clip_planes.clone(),
         }

@@ -184,6 +184,7 @@ impl<'a, R: Real> Walk<'a, R> {
             mut frame, slices, ..
         } = view.on_cpu()?;
         frame.flat_gradient = view.flat_gradient(scene.volume.value_range);
+        frame.reference_length = scene.reference_length() as f32;
         Ok(Self {
             scene,
             volumes: read.map_or_else(|| scene.volumes(), |read| vec![read]),
@@ -281,12 +282,12 @@ impl<'a, R: Real> Walk<'a, R> {
                 Some([r, g, b])
             });
             let color = color.unwrap_or(own);
-            let lamps = self.lamps(p);
+            let lamps = self.lamps(p, ray_direction);
             if frame.light_count == 0 {
                 return scale(color, lamps.ambient(frame));
             }
             let gradient = self.gradient(p, |step| value_at(moved(p, step)));
-            shade(frame, color, gradient, ray_direction, &lamps)
+            shade(frame, color, gradient, &lamps)
         };
         let found = isosurface::surfaces(frame, pixel, value_at, lit);
         Gathered::of_surfaces(found)
@@ -384,10 +385,13 @@ impl<'a, R: Real> Walk<'a, R> {
         )
     }
 
-    /// What comes through to a position in voxel space.
-    fn lamps(&self, voxel: [R; 3]) -> Lamps<'_, R> {
-        let field = self.light;
-        Lamps { field, voxel }
+    /// What comes through to a position in voxel space, seen along a ray.
+    fn lamps(&self, voxel: [R; 3], ray_direction: [R; 3]) -> Lamps<'_, R> {
+        Lamps {
+            field: self.light,
+            voxel,
+            ray_direction,
+        }
     }
 
     /// What the volumes are made of at `p`, where `look_from` looks from, so many voxels away; `None` for no data.
@@ -419,7 +423,7 @@ impl<'a, R: Real> Walk<'a, R> {
             let mut material = self.classify(0, value);
             let is_on_face = ray_direction == [R::from_f64(0.0); 3];
             let is_lit = self.frame.light_count != 0 && !is_on_face;
-            let lamps = self.lamps(p);
+            let lamps = self.lamps(p, ray_direction);
             let unlit = |material| match is_on_face {
                 true => material,
                 false => ambient_of(&self.frame, material, &lamps),
@@ -437,7 +441,7 @@ impl<'a, R: Real> Walk<'a, R> {
             if !is_lit {
                 return Some(unlit(material));
             }
-            let [r, g, b] = shade(&self.frame, [r, g, b], gradient, ray_direction, &lamps);
+            let [r, g, b] = shade(&self.frame, [r, g, b], gradient, &lamps);
             return Some([r, g, b, extinction]);
         }
         let mut found = [None; crate::shaders::MAX_CHANNELS as usize];

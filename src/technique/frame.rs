@@ -197,7 +197,7 @@ impl View<'_> {
             light_cells: [0.0; 3],
             occlusion_strength: 0.0,
             light_cells_per_voxel: [0.0; 3],
-            shadow_reach: 0.0,
+            light_reach: 0.0,
             has_shadows: 0,
             shadow_bundle: 0,
             light_rows: [[0.0; 4]; 2],

@@ -3,12 +3,12 @@
 //! ```text
 //! A = k mean of (1 - exp(-sigma_i L))     sigma = -ln(1 - min(A, 1 - 2^-12)) / L        of a cell
 //! open = sum over r of w_r exp(-sum of sigma d)                                          at a node, of a bundle
-//! ambient light at p = 1 - s (1 - open(p))                                               trilinear between nodes
+//! ambient light at p = 1 - s (1 - open(p + d v))     light i: open(p + d l_i)            trilinear between nodes
 //! ```
 
 use super::LightPlan;
 use crate::ray::vector;
-use crate::real::{Real, add, dot, lerp};
+use crate::real::{Real, add, dot, scale};
 use crate::shaders::Frame;
 use crate::transfer::{extinction, opacity_over};
 
@@ -60,13 +60,14 @@ impl<R: Real> LightField<R> {
         &self.open
     }
 
-    /// Part of the light from all around at a position in voxel space.
-    pub fn ambient_at(&self, frame: &Frame, voxel: [R; 3]) -> R {
+    /// Part of the light from all around at a position in voxel space, seen along a ray.
+    pub fn ambient_at(&self, frame: &Frame, voxel: [R; 3], ray_direction: [R; 3]) -> R {
         let one = R::from_f64(1.0);
         if frame.occlusion_strength == 0.0 {
             return one;
         }
-        one - R::from_f32(frame.occlusion_strength) * (one - self.through_at(frame, 0, voxel))
+        one - R::from_f32(frame.occlusion_strength)
+            * (one - self.through_at(frame, 0, voxel, ray_direction.map(|d| -d)))
     }
 
     /// Part of the light of a lamp there.
@@ -75,14 +76,17 @@ impl<R: Real> LightField<R> {
         if frame.has_shadows == 0 || w != 0.0 {
             return R::from_f64(1.0);
         }
-        let way = vector([x, y, z].map(|c| frame.shadow_reach * c));
+        let bundle = frame.shadow_bundle + lamp as u32;
+        self.through_at(frame, bundle, voxel, vector([x, y, z]))
+    }
+
+    /// A cell nearer to where light comes from.
+    fn through_at(&self, frame: &Frame, bundle: u32, voxel: [R; 3], towards: [R; 3]) -> R {
+        let way = scale(towards, R::from_f32(frame.light_reach));
         let step = frame
             .voxel_from_world
             .map(|[x, y, z, _]| dot(vector([x, y, z]), way));
-        self.through_at(frame, frame.shadow_bundle + lamp as u32, add(voxel, step))
-    }
-
-    fn through_at(&self, frame: &Frame, bundle: u32, voxel: [R; 3]) -> R {
+        let voxel = add(voxel, step);
         let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
         let cells = vector::<R>(frame.light_cells);
         let per_voxel = vector::<R>(frame.light_cells_per_voxel);
@@ -91,10 +95,15 @@ impl<R: Real> LightField<R> {
         let nodes = frame.light_cells.map(|n| n as usize + 1);
         let part: [R; 3] = std::array::from_fn(|k| at[k] - low[k]);
         let low = low.map(|n| n.to_i32() as usize);
-        let first = low[0] + nodes[0] * (low[1] + nodes[1] * (low[2] + nodes[2] * bundle as usize));
-        let row = |first: usize| lerp(self.open[first], self.open[first + 1], part[0]);
-        let plane = |first: usize| lerp(row(first), row(first + nodes[0]), part[1]);
-        lerp(plane(first), plane(first + nodes[0] * nodes[1]), part[2])
+        let mut open = zero;
+        for corner in 0..8 {
+            let bit = |k: usize| corner >> k & 1;
+            let weight = |k: usize| if bit(k) == 1 { part[k] } else { one - part[k] };
+            let [x, y, z] = std::array::from_fn(|k| low[k] + bit(k));
+            let index = x + nodes[0] * (y + nodes[1] * (z + nodes[2] * bundle as usize));
+            open = open + weight(0) * weight(1) * weight(2) * self.open[index];
+        }
+        open
     }
 }
 

@@ -90,6 +90,16 @@ impl LightPlan {
         }
     }
 
+    /// Bytes of the light volume of a volume of these dims with so many bundles, and of the cells that it is made from.
+    pub fn bytes(dims: [u32; 3], bundle_count: u32) -> u64 {
+        let cells = dims.map(|n| n.min(MAX_LIGHT_CELLS));
+        let product = |more: u32| cells.iter().map(|&n| u64::from(n + more)).product::<u64>();
+        match bundle_count {
+            0 => 0,
+            count => 4 * (product(0) + u64::from(count) * product(1)),
+        }
+    }
+
     /// Numbers of the light volume.
     pub fn node_count(&self) -> u64 {
         let nodes: u64 = self.cells.iter().map(|&n| u64::from(n) + 1).product();
@@ -187,8 +197,8 @@ impl View<'_> {
         let plan = LightPlan::grid_of(self);
         fields.light_cells = plan.cells.map(|n| n as f32);
         fields.light_cells_per_voxel = plan.cell_voxels.map(|n| (1.0 / n) as f32);
-        // As far as a cell reaches: a surface lies in one, and is lit.
-        fields.shadow_reach = plan.cell_length as f32;
+        // A surface fills the cell that it lies in.
+        fields.light_reach = plan.cell_length as f32;
         let occlusion = self.settings.occlusion();
         fields.occlusion_strength = occlusion.map_or(0.0, |o| o.strength as f32);
         fields.has_shadows = self.settings.shadow_size().is_some().into();
@@ -219,8 +229,11 @@ impl View<'_> {
     }
 }
 
+/// A path in pieces, and how much it counts.
+type WeightedPath = (f64, Vec<[f32; 4]>);
+
 /// Bundles, then paths, then pieces, each with where its parts lie.
-fn packed(bundles: &[Vec<(f64, Vec<[f32; 4]>)>]) -> Vec<[f32; 4]> {
+fn packed(bundles: &[Vec<WeightedPath>]) -> Vec<[f32; 4]> {
     let path_count: usize = bundles.iter().map(Vec::len).sum();
     let (mut heads, mut paths, mut pieces) = (Vec::new(), Vec::new(), Vec::new());
     let first_path = bundles.len();

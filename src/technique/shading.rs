@@ -125,12 +125,16 @@ pub struct Lamps<'a, R> {
     pub field: Option<&'a LightField<R>>,
     /// The position.
     pub voxel: [R; 3],
+    /// Along which it is seen, in world space, a unit vector.
+    pub ray_direction: [R; 3],
 }
 
 impl<R: Real> Lamps<'_, R> {
     /// Part of the light from all around.
     pub fn ambient(&self, frame: &Frame) -> R {
-        let found = self.field.map(|field| field.ambient_at(frame, self.voxel));
+        let found = self
+            .field
+            .map(|field| field.ambient_at(frame, self.voxel, self.ray_direction));
         found.unwrap_or(R::from_f64(1.0))
     }
 
@@ -143,15 +147,9 @@ impl<R: Real> Lamps<'_, R> {
     }
 }
 
-/// The colour of a surface across `gradient` (value per world length), seen along `ray_direction`.
-pub fn shade<R: Real>(
-    frame: &Frame,
-    color: [R; 3],
-    gradient: [R; 3],
-    ray_direction: [R; 3],
-    lamps: &Lamps<R>,
-) -> [R; 3] {
-    let zero = R::from_f64(0.0);
+/// The colour of a surface across `gradient` (value per world length), where `lamps` shine.
+pub fn shade<R: Real>(frame: &Frame, color: [R; 3], gradient: [R; 3], lamps: &Lamps<R>) -> [R; 3] {
+    let (zero, ray_direction) = (R::from_f64(0.0), lamps.ray_direction);
     let length = |v: [R; 3]| dot(v, v).sqrt();
     let steepness = length(gradient);
     if steepness < R::from_f32(frame.flat_gradient) || steepness == zero {

@@ -3,7 +3,7 @@
 use crate::person::Folder;
 use std::fs;
 
-const HEAD: &str = "phantom:head,n=16 --size 16x16 --device reference --force";
+const HEAD: &str = "phantom:head,n=16 --size 16x16 --device reference";
 /// A thin shell that samples miss.
 const SHELL: &str = r#"{"stratavox_transfer_function": 1, "color": [[0, 1, 0.5, 0]],
     "opacity": [[90, 0], [100, 0.9], [110, 0]]}"#;

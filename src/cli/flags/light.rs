@@ -185,6 +185,15 @@ impl LightFlags {
         Ok(self.shadows.unwrap_or_default().shadows(size))
     }
 
+    /// How many bundles of paths of light are followed for a picture.
+    pub fn bundle_count(&self) -> u32 {
+        let of_occlusion = u32::from(self.ambient_occlusion.is_some());
+        match self.shadows.unwrap_or_default() {
+            ShadowsWord::Volume => of_occlusion + self.light.len() as u32,
+            ShadowsWord::Off | ShadowsWord::HalfAngle => of_occlusion,
+        }
+    }
+
     /// The ambient occlusion of a picture in `mode`.
     pub fn occlusion(&self, mode: Mode) -> Result<Option<AmbientOcclusion>, Error> {
         let occlusion = self.ambient_occlusion.map(OcclusionWord::occlusion);

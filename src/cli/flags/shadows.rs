@@ -19,8 +19,8 @@ pub enum ShadowsWord {
 }
 
 /// What half-angle slicing goes together with.
-const HALF_ANGLE: &str = "--shadows half-angle is for --technique slices-3d --mode composite, one --light, one volume, and \
-                          --filter nearest or linear without --preintegrated";
+const HALF_ANGLE: &str = "--shadows half-angle is for --technique slices-3d --mode composite, one --light, one volume, --filter nearest \
+                          or linear, without --preintegrated and --ambient-occlusion; --shadows volume is for all techniques";
 
 impl ShadowsWord {
     /// What it stands for, of lights that look so wide.

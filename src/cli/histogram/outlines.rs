@@ -10,13 +10,12 @@
 
 use super::{Plot, color};
 use crate::{
-    cli::figure::{Color, Figure, Mark, Point},
+    cli::figure::{Figure, INK, Mark, Point},
     transfer::{Graded, Shape, TransferFunction, Widget},
 };
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
 
-const WHITE: Color = [255, 255, 255, 255];
 /// Corners of an ellipse.
 const CORNERS: usize = 64;
 
@@ -129,7 +128,7 @@ pub fn json(outlines: &[Outline]) -> Value {
     outlines.iter().map(one).collect()
 }
 
-/// Draws what lies inside of the axes, each line on white so that it is seen on any count.
+/// Draws what lies inside of the axes, each line on ink so that it is seen on any count.
 pub fn draw(figure: &mut Figure, plot: &Plot, axes: Axes, outlines: &[Outline]) {
     let place = |[value, gradient]: [f64; 2]| [plot.x(value), plot.y(gradient / axes.top)];
     let low = [plot.left, plot.top];
@@ -140,7 +139,7 @@ pub fn draw(figure: &mut Figure, plot: &Plot, axes: Axes, outlines: &[Outline]) 
             let inside =
                 pairs.filter_map(|pair| clipped(place(pair[0]), place(pair[1]), low, high));
             let inside: Vec<_> = inside.collect();
-            for (color, width) in [(WHITE, 4.0), (color(outline.srgb), 2.0)] {
+            for (color, width) in [(INK, 4.0), (color(outline.srgb), 2.0)] {
                 for &[from, to] in &inside {
                     figure.marks.push(Mark::Line {
                         points: vec![from, to],

@@ -21,7 +21,9 @@ use crate::{
     shaders::MAX_CHANNELS,
     technique::{Filter, Mode, PerMode, Role, Settings},
     transfer::{CHANNEL_COLORS, Classified, LabelTable, TransferFunction, Window, of_channel},
-    volume::{Grid, Header, Meaning, Source, Volume, labels::labels_of, read_all},
+    volume::{
+        Grid, Header, Meaning, Source, Volume, is_same_grid, labels::labels_of, read_all, regridded,
+    },
 };
 use std::sync::Arc;
 
@@ -341,9 +343,15 @@ impl Reader<'_> {
             ..self.scene.classification.clone()
         };
         let words = &self.scene.labels;
-        let has_table = (words.label_tf.is_some() || words.cut()) && words.labels.is_none();
+        let has_table = words.label_tf.is_some() && words.labels.is_none();
         let may_name = says_nothing(flags)? && self.mode == Mode::Composite;
-        if (has_table || is_labels)
+        let is_cut = words.cut() && words.labels.is_none();
+        // Words on labels take only what looks like labels for them.
+        let looks_so = is_cut && may_name && {
+            let found = flags.classification(&volume, self.mode)?;
+            flags.found_labels(&found)
+        };
+        if (has_table || is_labels || looks_so)
             && may_name
             && let Some(function) = self.names(&volume)?
         {
@@ -357,10 +365,10 @@ impl Reader<'_> {
                 others: Others::Channels(Vec::new()),
             });
         }
-        if words.cut() && words.labels.is_none() {
+        if is_cut {
             return Err(Error::usage(
-                "--label-show, --label-hide and --label-dim are for labels in their own colours, in --mode composite",
-                "leave out --preset, --tf, --window and --mode, or lay a map over INPUT with --labels FILE",
+                "--label-show, --label-hide and --label-dim are for labels: of a map over INPUT (--labels), or of INPUT in their own colours",
+                "--labels FILE lays a map over INPUT",
             ));
         }
         let modes = &self.scene.modes;
@@ -406,12 +414,29 @@ impl Reader<'_> {
         }
         let source = open(&scene.input, &scene.input.limits())?;
         let (volume, _) = load_from(source, &scene, self.device, self.progress)?;
-        if volume.grid() != *grid {
-            return Err(Error::usage(
-                format!("--iso-color-by {word}: it lies on another grid than the surfaces"),
-                "a variable with the same axes colours them",
+        let volume = if is_same_grid(&volume.grid(), grid) {
+            Volume {
+                world_from_voxel: grid.world_from_voxel,
+                ..volume
+            }
+        } else {
+            let nowhere = || {
+                Error::usage(
+                    format!("--iso-color-by {word}: it has no data where the surfaces may be"),
+                    "`stratavox info INPUT --variable NAME` says where a variable lies",
+                )
+            };
+            let moved = regridded(&volume, grid)
+                .ok()
+                .filter(|(_, share)| *share > 0.0);
+            let (moved, share) = moved.ok_or_else(nowhere)?;
+            self.progress.note(&format!(
+                "{word} lies on another grid: taken at the voxels of the surfaces, linear between its own; it covers \
+                 {:.0} % of them",
+                100.0 * share
             ));
-        }
+            moved
+        };
         let function = match scene
             .classification
             .classification(&volume, Mode::Composite)?

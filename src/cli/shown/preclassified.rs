@@ -7,7 +7,7 @@ use super::super::{
 use super::{Others, Shown};
 use crate::{
     picture::ColorSpace,
-    technique::{Lattice, Mode, Settings, preclassified::preclassified},
+    technique::{CutFaces, Lattice, Mode, Settings, preclassified::preclassified},
 };
 use std::sync::Arc;
 
@@ -29,6 +29,13 @@ pub fn check(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
         refused(
             "light falls on values",
             "leave out --shading: materials have no gradient",
+        )
+    } else if settings.ambient_occlusion.is_some() {
+        refused("occlusion is of values", "leave out --ambient-occlusion")
+    } else if matches!(settings.cut_faces, Some(CutFaces::Grey(_))) {
+        refused(
+            "the greys of --cut-faces=LO,HI are of values",
+            "--cut-faces shows the colours of the picture",
         )
     } else if scene.labels.labels.is_some() {
         refused("--labels lies over it", "leave out --labels")

@@ -97,7 +97,7 @@ impl<R: Real> Walk<'_, R> {
             let (volume, filter) = (self.volumes[0], self.scene.settings.filter);
             let gradient =
                 self.gradient(place, |step| filtered(volume, filter, moved(place, step)));
-            shade(frame, color, gradient, ray_direction, &self.lamps(place))
+            shade(frame, color, gradient, &self.lamps(place, ray_direction))
         };
         let [r, g, b] = dimmed(frame, color, lit, light);
         Some([r, g, b, extinction])
