@@ -87,7 +87,6 @@ fn holes_cuts_and_widgets_throw_the_shadows_of_their_twins() {
         second: None,
         srgb: Some([0.2, 0.9, 0.3]),
         opacity: 0.5,
-        second: None,
         shape: Shape::Contour {
             value: 0.55,
             half_width: 2.0,
