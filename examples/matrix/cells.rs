@@ -176,15 +176,6 @@ pub const FEATURES: &[Feature] = &[
         },
     ),
     feature(
-        "light by cubic gradients",
-        "`--gradient-filter cubic`",
-        Seen::Alone,
-        |s| {
-            s.shading = Some(lights());
-            s.gradient_filter = GradientFilter::Cubic;
-        },
-    ),
-    feature(
         "value and gradient",
         "`widgets`, `gradient_opacity`, `--preset boundaries`",
         Seen::Graded,
