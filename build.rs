@@ -2,188 +2,21 @@
 //!
 //! Every file directly under `shaders/` is one entry point called `main`. A line `#import name` stands
 //! for `shaders/lib/name.wgsl`, each file once. In a name, `{slot}` is replaced by each word that
-//! [`ENTRIES`] gives for that slot: every combination of words becomes a variant of its own, because
+//! [`variants::ENTRIES`] gives for that slot: every combination of words becomes a variant of its own, because
 //! naga writes no specialization constants.
 //!
 //! Written to `OUT_DIR`: `shaders.spv` (all words, one module after the other) and `shaders.rs` (the
 //! table of modules with their bindings, a `#[repr(C)]` struct for each uniform, and the constants).
+
+#[path = "shaders/variants.rs"]
+mod variants;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
-
-/// A slot of `#import` names and the words that fill it.
-type Slot = (&'static str, &'static [&'static str]);
-
-/// A kernel is wider than linear, by fetches; a spline is a B-spline by the sampler.
-const FILTER: Slot = (
-    "filter",
-    &["nearest", "linear", "linear_fetch", "kernel", "spline"],
-);
-/// Conformance pictures search the points, and never leave filtering to the device.
-const FETCHED: Slot = ("filter", &["nearest", "linear_fetch", "kernel"]);
-/// Several volumes are mixed by narrow filters.
-const NARROW: Slot = ("filter", &["nearest", "linear", "linear_fetch"]);
-const NARROW_FETCHED: Slot = ("filter", &["nearest", "linear_fetch"]);
-const TABLE: Slot = ("transfer", &["table"]);
-const POINTS: Slot = ("transfer", &["points"]);
-/// One number at both ends of a segment. The word is left out of names.
-const SLAB: Slot = ("mix", &["slab"]);
-/// Words that stand in no name.
-const SILENT: &[&str] = &["alone", "slab"];
-const TRANSFER: Slot = ("transfer", &["table", "points"]);
-const HOLES: Slot = ("holes", &["none", "mask"]);
-const LATTICE: Slot = ("lattice", &["ray", "planes"]);
-/// One number a voxel, alone or with its gradient. The word `alone` is left out of names.
-const ONE: Slot = ("mix", &["alone", "graded"]);
-const ALONE: Slot = ("mix", &["alone"]);
-const MIXED: Slot = ("mix", &["channels", "colors"]);
-const MODE: Slot = ("mode", &["composite"]);
-/// Modes that slicers do not have leave the lattice of slicers to them.
-const RAY: Slot = ("lattice", &["ray"]);
-const MIDA: Slot = ("mode", &["mida"]);
-const BLEND: Slot = ("blend", &["composite"]);
-
-/// The wanted combinations. Order of the slots is the order of words in a variant's name.
-const ENTRIES: &[(&str, &[Slot])] = &[
-    ("raycast", &[MODE, ONE, LATTICE, FILTER, HOLES, TABLE]),
-    ("raycast", &[MODE, ONE, LATTICE, FETCHED, HOLES, POINTS]),
-    ("raycast", &[MODE, MIXED, LATTICE, NARROW, HOLES, TABLE]),
-    (
-        "raycast",
-        &[MODE, MIXED, LATTICE, NARROW_FETCHED, HOLES, POINTS],
-    ),
-    ("raycast", &[MIDA, ONE, RAY, FILTER, HOLES, TABLE]),
-    ("raycast", &[MIDA, ONE, RAY, FETCHED, HOLES, POINTS]),
-    ("isosurface", &[("paint", &["alone"]), FILTER, HOLES]),
-    ("isosurface", &[("paint", &["by"]), NARROW, HOLES]),
-    ("projection_cells", &[("mode", &["mip", "minip"]), HOLES]),
-    (
-        "projection",
-        &[
-            ("mode", &["mip", "minip", "sum"]),
-            ALONE,
-            LATTICE,
-            FILTER,
-            HOLES,
-        ],
-    ),
-    (
-        "projection",
-        &[
-            ("mode", &["lmip", "attenuated_mip"]),
-            ALONE,
-            RAY,
-            FILTER,
-            HOLES,
-        ],
-    ),
-    ("slices_3d", &[BLEND, ONE, FILTER, HOLES, TABLE]),
-    ("slices_3d", &[BLEND, ONE, FETCHED, HOLES, POINTS]),
-    ("slices_3d", &[BLEND, MIXED, NARROW, HOLES, TABLE]),
-    ("slices_3d", &[BLEND, MIXED, NARROW_FETCHED, HOLES, POINTS]),
-    (
-        "slices_3d",
-        &[("blend", &["extreme", "sum"]), ALONE, FILTER, HOLES],
-    ),
-    (
-        "slices_3d",
-        &[
-            ("blend", &["count"]),
-            ALONE,
-            ("filter", &["nearest"]),
-            ("holes", &["none"]),
-        ],
-    ),
-    ("slices_3d_cover", &[]),
-    ("slices_2d", &[BLEND, ONE, FILTER, HOLES, TABLE]),
-    ("slices_2d", &[BLEND, ONE, FETCHED, HOLES, POINTS]),
-    ("slices_2d", &[BLEND, MIXED, NARROW, HOLES, TABLE]),
-    ("slices_2d", &[BLEND, MIXED, NARROW_FETCHED, HOLES, POINTS]),
-    (
-        "slices_2d",
-        &[("blend", &["extreme", "sum"]), ALONE, FILTER, HOLES],
-    ),
-    (
-        "slices_2d",
-        &[
-            ("blend", &["count"]),
-            ALONE,
-            ("filter", &["nearest"]),
-            ("holes", &["none"]),
-        ],
-    ),
-    ("slices_2d_cover", &[]),
-    (
-        "raycast_slab",
-        &[("mode", &["composite"]), SLAB, LATTICE, NARROW, HOLES],
-    ),
-    (
-        "slices_3d_slab",
-        &[("blend", &["composite"]), SLAB, NARROW, HOLES],
-    ),
-    (
-        "slices_3d_slab",
-        &[
-            ("blend", &["count"]),
-            SLAB,
-            ("filter", &["nearest"]),
-            ("holes", &["none"]),
-        ],
-    ),
-    (
-        "slices_2d_slab",
-        &[("blend", &["composite"]), SLAB, NARROW, HOLES],
-    ),
-    (
-        "slices_2d_slab",
-        &[
-            ("blend", &["count"]),
-            SLAB,
-            ("filter", &["nearest"]),
-            ("holes", &["none"]),
-        ],
-    ),
-    (
-        "slices_2d_smooth",
-        &[("blend", &["composite"]), ALONE, NARROW, HOLES, TRANSFER],
-    ),
-    (
-        "slices_2d_smooth",
-        &[
-            ("blend", &["count"]),
-            ALONE,
-            ("filter", &["nearest"]),
-            ("holes", &["none"]),
-        ],
-    ),
-    ("slices_3d_half", &[ONE, NARROW, HOLES, TABLE]),
-    ("slices_3d_half", &[ONE, NARROW_FETCHED, HOLES, POINTS]),
-    (
-        "resolve",
-        &[("source", &["picture", "value", "mean", "cued"])],
-    ),
-    ("resolve_cover", &[]),
-    ("keep_gradients", &[("layout", &["box", "stack"])]),
-    ("merge", &[("operator", &["over", "under", "add"])]),
-    (
-        "denoise",
-        &[("kernel", &["gaussian", "median", "bilateral"])],
-    ),
-    // Once for many pictures: classified by the points in all of them.
-    (
-        "light_cells",
-        &[
-            ("layout", &["box", "stack"]),
-            ("filter", &["nearest", "kernel"]),
-            HOLES,
-            POINTS,
-        ],
-    ),
-    ("light_volume", &[]),
-];
+use variants::{ENTRIES, SILENT, Slot};
 
 fn main() {
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));

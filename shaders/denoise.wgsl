@@ -1,12 +1,13 @@
-// One pass of a noise filter over slices of numbers in a buffer: one thread a voxel.
+// One pass of a noise filter over slices of numbers in a buffer, or over a part of them: one thread a voxel.
 // Twin: src/volume/denoise.rs, which says what the kernels are.
 
 #import denoise_{kernel}
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    if any(id >= denoise.dims) {
+    if any(id >= denoise.part) {
         return;
     }
-    after.d[place(vec3<i32>(id))] = filtered(vec3<i32>(id));
+    let index = vec3<i32>(denoise.origin + id);
+    after.d[place(index)] = filtered(index);
 }

@@ -162,11 +162,11 @@ fn passed(before: Surfaces, world: Ray, voxel: Ray, index: u32, t: f32) -> Surfa
     let opacity = frame.level_colors[index].w;
     let place = voxel.origin + t * voxel.direction;
     var color = painted(index, place);
+    var gradient = vec3(0.0);
     if frame.light_count != 0u {
-        color = shade(color, gradient_at(place), world.direction, place);
-    } else {
-        color *= ambient_at(place, world.direction);
+        gradient = gradient_at(place);
     }
+    color = shade(color, gradient, world.direction, place);
     var next = before;
     next.color += before.transmittance * opacity * color;
     next.transmittance *= 1.0 - opacity;

@@ -217,7 +217,7 @@ fn normals_on_the_device_are_as_good_as_known_of_each_operator() {
             conformance,
             ..Settings::default()
         };
-        let points = [3, 24];
+        let points = [2, normals::POINTS[1]];
         normals::mean_angle_degrees(&mut renderer, &signal, &settings, points).unwrap()
     };
     // 11.1 and 29.3 degrees by an independent program.

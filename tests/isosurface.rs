@@ -2,8 +2,13 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 use std::collections::HashMap;
+use stratavox::camera::{Camera, Projection};
 use stratavox::isosurface::{Border, isosurface};
 use stratavox::mesh::{Mesh, MeshFormat};
+use stratavox::offscreen::reference;
+use stratavox::picture::{Layer, LayerKind};
+use stratavox::scene::{Beside, Scene};
+use stratavox::technique::{Level, Mode, Settings};
 use stratavox::volume::{Rescale, Volume, Voxels, sample};
 
 fn volume(dims: [u32; 3], affine: DAffine3, value: impl Fn(DVec3) -> f32) -> Volume {
@@ -178,6 +183,96 @@ fn voxels_without_data_have_no_surface() {
     assert_eq!(lowest, 2.5);
     // From x = 2.5 to the grid box at 6, all of z: a plane.
     assert!((mesh.area() - 3.5 * 4.0).abs() < 1e-6, "{}", mesh.area());
+}
+
+/// Where a ray meets a triangle, as its t (Moeller and Trumbore 1997).
+fn met([a, b, c]: [DVec3; 3], origin: DVec3, direction: DVec3) -> Option<f64> {
+    let (ab, ac) = (b - a, c - a);
+    let normal = direction.cross(ac);
+    let det = ab.dot(normal);
+    if det == 0.0 {
+        return None;
+    }
+    let from_a = origin - a;
+    let u = from_a.dot(normal) / det;
+    let across = from_a.cross(ab);
+    let v = direction.dot(across) / det;
+    let is_inside = u >= 0.0 && v >= 0.0 && u + v <= 1.0;
+    is_inside.then(|| ac.dot(across) / det)
+}
+
+#[test]
+fn rays_meet_the_mesh_where_they_meet_the_surface_on_an_oblique_grid() {
+    let matrix = DMat3::from_cols(
+        DVec3::new(1.1, 0.2, -0.1),
+        DVec3::new(-0.3, 0.9, 0.2),
+        DVec3::new(0.1, 0.3, 1.6),
+    );
+    let affine = DAffine3::from_mat3_translation(matrix, DVec3::new(25.0, -8.0, 100.0));
+    let (middle, radius) = (DVec3::splat(11.0), 8.0);
+    let ball = volume([22; 3], affine, |p| (p.distance(middle) - radius) as f32);
+    let mesh = surface(&ball, 0.0, Border::Open);
+    let center = affine.transform_point3(middle);
+    let camera = Camera {
+        eye: center + 60.0 * DVec3::new(0.5, -0.7, 0.4),
+        target: center,
+        up: DVec3::Z,
+        projection: Projection::Perspective { fov_degrees: 25.0 },
+        zoom: 1.0,
+    };
+    let mut settings = Settings {
+        mode: Mode::Iso,
+        conformance: true,
+        ..Settings::default()
+    };
+    settings.per_mode.levels = vec![Level {
+        value: 0.0,
+        srgb: [1.0; 3],
+        opacity: 1.0,
+    }];
+    let scene = Scene {
+        volume: &ball,
+        transfer: None,
+        beside: Beside::Nothing,
+        camera: &camera,
+        extent_pixels: [24, 20],
+        settings: &settings,
+    };
+    let picture = reference::render::<f64>(&scene).expect("a picture");
+    let is_depth = |layer: &&Layer| layer.kind == LayerKind::Depth;
+    let depths = &picture.layers.iter().find(is_depth).expect("depths").values;
+    let rays = camera.rays(scene.extent_pixels);
+    let corner = |i: u32| mesh.positions[i as usize];
+    let voxel_from_world = affine.inverse();
+    let mut seen = 0;
+    for (i, &depth) in depths.iter().enumerate() {
+        let [x, y] = [i % 24, i / 24].map(|n| n as f64 + 0.5);
+        let (origin, direction) = rays.at(x, y);
+        let of_triangle = |of: &[u32; 3]| met(of.map(corner), origin, direction);
+        let first = mesh.triangles.iter().filter_map(of_triangle);
+        let first = first.fold(f64::INFINITY, f64::min);
+        // How steeply the ray meets the ball, where it meets it.
+        let [o, d] = [
+            voxel_from_world.transform_point3(origin),
+            voxel_from_world.transform_vector3(direction),
+        ];
+        let way = (middle - o).dot(d) / d.length_squared();
+        let aside = (o + way * d).distance(middle);
+        if aside > 0.85 * radius {
+            continue;
+        }
+        seen += 1;
+        // Triangles and trilinear interpolation each lie up to 3 / (8 R) voxels from the ball (the sagitta of a cell's
+        // diagonal), and the ray goes through that at an angle. A step in t is so many voxels.
+        let cosine = (1.0 - (aside / radius).powi(2)).sqrt();
+        let allowed = 2.0 * 3.0 / (8.0 * radius) / cosine / d.length();
+        let off = (f64::from(depth) - first).abs();
+        assert!(
+            off <= allowed,
+            "pixel {i}: {depth} and {first}, allowed {allowed}"
+        );
+    }
+    assert!(seen > 60, "{seen} rays");
 }
 
 #[test]

@@ -509,7 +509,7 @@ fn what_these_modes_lack_is_refused_by_name() {
     for (change, wanted) in [
         (
             (|s: &mut Settings| s.per_mode.mida_gamma = 1.5) as fn(&mut Settings),
-            "gamma of MIDA is 0.5",
+            "gamma of MIDA is 1.5",
         ),
         (|s| s.per_mode.mida_gamma = f64::NAN, "gamma of MIDA is NaN"),
         (|s| s.per_mode.unit_values = [1.0, 1.0], "unit values is 1"),

@@ -5,6 +5,9 @@ const MAX_DENOISE_WEIGHTS: u32 = 32u;
 struct Denoise {
     // Voxels across and down, and slices.
     dims: vec3<u32>,
+    // Where the voxels of this dispatch begin, and how many they are.
+    origin: vec3<u32>,
+    part: vec3<u32>,
     // Voxels that the kernel reaches to each side.
     radius: i32,
     // Along which axis a pass in one direction goes.

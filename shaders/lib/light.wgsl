@@ -18,43 +18,35 @@ struct LightVolume {
 
 // Part of the light from all around, seen along a ray.
 fn ambient_at(voxel: vec3<f32>, ray_direction: vec3<f32>) -> f32 {
-    if frame.occlusion_strength == 0.0 {
-        return 1.0;
-    }
-    return 1.0 - frame.occlusion_strength * (1.0 - light_through(0u, voxel, -ray_direction));
+    let is_on = frame.occlusion_strength != 0.0;
+    return 1.0 - frame.occlusion_strength * (1.0 - light_through(0u, voxel, -ray_direction, is_on));
 }
 
 // Part of the light of a lamp.
 fn lamp_at(lamp: u32, voxel: vec3<f32>) -> f32 {
     let towards = frame.light_directions[lamp];
     // Nothing that the eye sees is in the shadow of a light at the eye.
-    if frame.has_shadows == 0u || towards.w != 0.0 {
-        return 1.0;
-    }
-    return light_through(frame.shadow_bundle + lamp, voxel, towards.xyz);
+    let is_on = frame.has_shadows != 0u && towards.w == 0.0;
+    return light_through(frame.shadow_bundle + lamp, voxel, towards.xyz, is_on);
 }
 
-fn light_through(bundle: u32, voxel: vec3<f32>, towards: vec3<f32>) -> f32 {
+// Where it is not on, a loop of no turns: drivers that go through both sides of a branch look at one corner, not eight.
+fn light_through(bundle: u32, voxel: vec3<f32>, towards: vec3<f32>, is_on: bool) -> f32 {
     let nearer = voxel + vec4(frame.light_reach * towards, 0.0) * frame.voxel_from_world;
     let at = clamp(nearer * frame.light_cells_per_voxel, vec3(0.0), frame.light_cells);
     let low = min(floor(at), frame.light_cells - 1.0);
     let part = at - low;
     let nodes = vec3<u32>(frame.light_cells) + 1u;
-    let low_index = vec3<u32>(low);
-    let first = low_index.x + nodes.x * (low_index.y + nodes.y * (low_index.z + nodes.z * bundle));
-    let near = light_in_plane(first, nodes.x, part.xy);
-    let far = light_in_plane(first + nodes.x * nodes.y, nodes.x, part.xy);
-    return near + part.z * (far - near);
-}
-
-fn light_in_plane(first: u32, row: u32, part: vec2<f32>) -> f32 {
-    let near = light_in_row(first, part.x);
-    return near + part.y * (light_in_row(first + row, part.x) - near);
-}
-
-fn light_in_row(first: u32, part: f32) -> f32 {
     // What stands in where there is no light volume is shorter.
     let last = arrayLength(&light_volume.d) - 1u;
-    let near = light_volume.d[min(first, last)];
-    return near + part * (light_volume.d[min(first + 1u, last)] - near);
+    let corners = select(0u, 8u, is_on);
+    var open = 0.0;
+    for (var i = 0u; i < corners; i++) {
+        let corner = vec3(i & 1u, (i >> 1u) & 1u, i >> 2u);
+        let weights = select(1.0 - part, part, corner != vec3(0u));
+        let node = vec3<u32>(low) + corner;
+        let index = node.x + nodes.x * (node.y + nodes.y * (node.z + nodes.z * bundle));
+        open += weights.x * weights.y * weights.z * light_volume.d[min(index, last)];
+    }
+    return select(1.0, open, is_on);
 }

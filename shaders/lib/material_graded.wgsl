@@ -41,9 +41,6 @@ fn lit(color: vec3<f32>, gradient: vec3<f32>, sample: Sample) -> vec3<f32> {
     if is_on_face(sample) {
         return color;
     }
-    let voxel = voxel_of(sample.place);
-    if frame.light_count == 0u {
-        return ambient_at(voxel, sample.ray_direction) * color;
-    }
-    return shade(color, gradient, sample.ray_direction, voxel);
+    let of_surface = select(vec3(0.0), gradient, frame.light_count != 0u);
+    return shade(color, of_surface, sample.ray_direction, voxel_of(sample.place));
 }

@@ -4,7 +4,8 @@
 //
 // with L the light's colour, l the way to it, v the way to the eye; o and t what comes through from all around and
 // from the light, 1 without occlusion and shadows (light.wgsl). Where the gradient is flat there is no surface and the
-// colour stays, as far as light comes there: c (o a + (1 - a) sum of t L / sum of L), a = min(ambient, 1). Blinn, "Models of Light Reflection for Computer Synthesized Pictures", SIGGRAPH 1977.
+// colour stays, as far as light comes there: c (o a + (1 - a) sum of t L / sum of L), a = min(ambient, 1).
+// Blinn, "Models of Light Reflection for Computer Synthesized Pictures", SIGGRAPH 1977.
 // Twin: src/technique/shading.rs.
 
 #import frame
@@ -12,12 +13,16 @@
 
 // At a position in voxel space.
 fn shade(color: vec3<f32>, gradient: vec3<f32>, ray_direction: vec3<f32>, voxel: vec3<f32>) -> vec3<f32> {
+    let ambient_light = ambient_at(voxel, ray_direction);
     let steepness = length(gradient);
-    if !(steepness >= frame.flat_gradient) || steepness == 0.0 {
-        return lit_inside(color, ray_direction, voxel);
+    let is_flat = !(steepness >= frame.flat_gradient) || steepness == 0.0;
+    if is_flat && frame.has_shadows == 0u {
+        return ambient_light * color;
     }
-    let normal = gradient / steepness;
-    var lit = frame.ambient * ambient_at(voxel, ray_direction) * color;
+    let normal = gradient / select(steepness, 1.0, is_flat);
+    var lit = frame.ambient * ambient_light * color;
+    var all = vec3(0.0);
+    var there = vec3(0.0);
     for (var i = 0u; i < frame.light_count; i++) {
         let light = frame.light_directions[i];
         // A headlight shines along the ray.
@@ -27,24 +32,16 @@ fn shade(color: vec3<f32>, gradient: vec3<f32>, ray_direction: vec3<f32>, voxel:
         let facing = abs(dot(normal, halfway)) / max(length(halfway), 1e-6);
         let diffuse = frame.diffuse * abs(dot(normal, towards_light));
         let specular = frame.specular * pow(min(facing, 1.0), frame.shininess);
-        lit += lamp_at(i, voxel) * frame.light_colors[i].xyz * (diffuse * color + specular);
+        let arriving = lamp_at(i, voxel) * frame.light_colors[i].xyz;
+        lit += arriving * (diffuse * color + specular);
+        all += frame.light_colors[i].xyz;
+        there += arriving;
+    }
+    if is_flat {
+        // A colour that no light has is missing nothing.
+        let shares = select(vec3(1.0), there / max(all, vec3(1e-6)), all > vec3(1e-6));
+        let ambient = min(frame.ambient, 1.0);
+        return color * (ambient * ambient_light + (1.0 - ambient) * shares);
     }
     return lit;
-}
-
-// Where there is no surface.
-fn lit_inside(color: vec3<f32>, ray_direction: vec3<f32>, voxel: vec3<f32>) -> vec3<f32> {
-    if frame.has_shadows == 0u {
-        return ambient_at(voxel, ray_direction) * color;
-    }
-    var all = vec3(0.0);
-    var there = vec3(0.0);
-    for (var i = 0u; i < frame.light_count; i++) {
-        all += frame.light_colors[i].xyz;
-        there += lamp_at(i, voxel) * frame.light_colors[i].xyz;
-    }
-    // A colour that no light has is missing nothing.
-    let shares = select(vec3(1.0), there / max(all, vec3(1e-6)), all > vec3(1e-6));
-    let ambient = min(frame.ambient, 1.0);
-    return color * (ambient * ambient_at(voxel, ray_direction) + (1.0 - ambient) * shares);
 }

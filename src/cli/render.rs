@@ -25,7 +25,7 @@ use std::{
     stratavox render phantom:head -o head.png\n  \
     stratavox render phantom:head --technique slices-3d --view left --background 0,0,0 -o left.png\n  \
     stratavox render phantom:head --mode mip --aov value,depth -o mip.exr\n  \
-    stratavox render phantom:storm,n=64,variable=w --mode iso --iso 2 --iso-color-by temperature -o updraught.png\n  \
+    stratavox render phantom:storm,n=64 --variable w --mode iso --iso-color-by vapor -o w.png\n  \
     stratavox render phantom:cells --channel 0,color=cyan --channel 1,color=1:0.3:0 -o cells.png\n  \
     stratavox render phantom:storm --variable temperature --opacity-variable cloud -o storm.png\n  \
     stratavox convert phantom:sphere,n=64 -o ball.nrrd --type u8 --window 0,1\n  \

@@ -1,4 +1,5 @@
-//! Noise filters on the device, a slab of slices at a time with as many more on both sides as the kernel reaches.
+//! Noise filters on the device, a slab of slices at a time with as many more on both sides as the kernel reaches, and of a
+//! slab so many rows that no dispatch takes long: a driver on the CPU does some 10^8 looks in a tenth of a second.
 
 use crate::gpu::{
     Bindings, Buffer, ComputePipeline, Error, Headless, Memory, ParameterRing, Resource, Use,
@@ -11,6 +12,9 @@ use std::sync::Arc;
 
 /// A buffer holds as many slices as fit into this.
 const SLAB_BYTES: u64 = 32 << 20;
+
+/// Numbers that a dispatch may look at.
+const MAX_LOOKS: u64 = 1 << 25;
 
 /// `volume` without noise, as [`Denoise::denoised`] makes it on the CPU.
 ///
@@ -62,15 +66,21 @@ fn run(
         let slices = slice * low as usize..slice * high as usize;
         before.write(0, bytemuck::cast_slice(&numbers[slices]))?;
         let slab = [dims[0], dims[1], high - low];
-        ring.write(0, bytemuck::bytes_of(&parameters(pass, slab)))?;
-        let (offset, groups) = (ring.offset(0)?, pipeline.groups(slab)?);
-        // SAFETY: recorded outside rendering; `run` waits, and all that is bound lives meanwhile.
-        device.run(|cmd| unsafe {
-            buffer_barrier(&gpu, cmd, &after, Use::Nothing, Use::ComputeWrite);
-            pipeline.dispatch(cmd, &bindings, &[offset], groups);
-            buffer_barrier(&gpu, cmd, &after, Use::ComputeWrite, Use::HostRead);
-            Ok(())
-        })?;
+        let own = [dims[0], dims[1], count];
+        for (origin, part) in parts(own, pass.looks()) {
+            let origin = [origin[0], origin[1], origin[2] + first - low];
+            let parameters = parameters(pass, slab, origin, part);
+            ring.write(0, bytemuck::bytes_of(&parameters))?;
+            let (offset, groups) = (ring.offset(0)?, pipeline.groups(part)?);
+            // SAFETY: recorded outside rendering; `run` waits, and all that is bound lives meanwhile.
+            device.run(|cmd| unsafe {
+                // Other dispatches have written other parts.
+                buffer_barrier(&gpu, cmd, &after, Use::ComputeWrite, Use::ComputeWrite);
+                pipeline.dispatch(cmd, &bindings, &[offset], groups);
+                buffer_barrier(&gpu, cmd, &after, Use::ComputeWrite, Use::HostRead);
+                Ok(())
+            })?;
+        }
         let start = filtered.len();
         filtered.resize(start + slice * count as usize, 0.0);
         let skipped = slice_bytes * u64::from(first - low);
@@ -79,10 +89,31 @@ fn run(
     Ok(filtered)
 }
 
-fn parameters(pass: &Pass, dims: [u32; 3]) -> Parameters {
+/// Slices of these dims in parts that are small enough: whole slices where those are, else rows of one.
+fn parts(dims: [u32; 3], looks: u64) -> Vec<([u32; 3], [u32; 3])> {
+    let [width, height, depth] = dims;
+    let row = u64::from(width) * looks;
+    let rows = (MAX_LOOKS / row).clamp(1, height.into()) as u32;
+    let slices = match rows == height {
+        true => (MAX_LOOKS / (row * u64::from(height))).clamp(1, depth.into()) as u32,
+        false => 1,
+    };
+    let at = |z: u32| (0..height).step_by(rows as usize).map(move |y| [0, y, z]);
+    let origins = (0..depth).step_by(slices as usize).flat_map(at);
+    origins
+        .map(|origin| {
+            let [_, y, z] = origin;
+            (origin, [width, rows.min(height - y), slices.min(depth - z)])
+        })
+        .collect()
+}
+
+fn parameters(pass: &Pass, dims: [u32; 3], origin: [u32; 3], part: [u32; 3]) -> Parameters {
     let weights = pass.weights.as_chunks::<4>().0;
     DenoiseFields {
         dims,
+        origin,
+        part,
         radius: pass.radius as i32,
         axis: pass.axis,
         difference_factor: pass.difference_factor,

@@ -2,6 +2,7 @@
 
 mod half_angle;
 mod light;
+mod material;
 mod slabs;
 
 use super::fade::{faded, stacks_of};
@@ -9,31 +10,28 @@ use super::gathered::{Gathered, grey_of_picture, layers};
 use super::sum::sum_of;
 use crate::picture::Picture;
 use crate::ray::pixel_ray;
-use crate::real::{Real, dot, scale};
+use crate::real::{Real, scale};
 use crate::resolve::reference::{light_at, premultiplied};
 use crate::scene::{Beside, Scene, positions_in_pixel};
 use crate::shaders::Frame;
 use crate::technique::blend::{Fragment, blend, blend_material, clear_color};
 use crate::technique::composite::Composite;
 use crate::technique::faces::{FACE_LENGTH, cut_face, on_face};
-use crate::technique::gradient::gradient_of;
-use crate::technique::gradient_taps::weighted_gradient;
-use crate::technique::mixture::{color_of, colored, dimmed, material_of};
-use crate::technique::second::second_derivative_of;
-use crate::technique::shading::{Lamps, shade};
+use crate::technique::mixture::color_of;
+use crate::technique::shading::shade;
 use crate::technique::{
-    Error, Filter, GradientSource, LightField, Mix, Mode, Operator, Recording, Role, Technique,
-    isosurface, projection, raycast, slices_2d, slices_3d,
+    Error, Filter, GradientSource, LightField, Mix, Mode, Recording, Role, Technique, isosurface,
+    projection, raycast, slices_2d, slices_3d,
 };
 use crate::transfer::{
-    Absorption, PackedWidgets, Points, SlabTable, Steepness, Table, TransferFunction,
-    classify_by_gradient, classify_by_points, classify_by_table, classify_slab,
+    Absorption, PackedWidgets, Points, SlabTable, Table, TransferFunction, classify_by_points,
+    classify_by_table, classify_slab,
 };
 use crate::volume::kernel::{convolved, convolved_in_slice};
-use crate::volume::labels::{DIMMED, marks_of};
 use crate::volume::sample::{linear, linear_in_slice, nearest};
 use crate::volume::{Coefficients, Grid, Volume};
 use light::light_of;
+use material::{gradient_at, marks_of_scene, steepness};
 
 /// The picture of `scene` with all layers that its technique has.
 ///
@@ -184,6 +182,7 @@ impl<'a, R: Real> Walk<'a, R> {
             mut frame, slices, ..
         } = view.on_cpu()?;
         frame.flat_gradient = view.flat_gradient(scene.volume.value_range);
+        frame.reference_length = scene.reference_length() as f32;
         Ok(Self {
             scene,
             volumes: read.map_or_else(|| scene.volumes(), |read| vec![read]),
@@ -373,93 +372,6 @@ impl<'a, R: Real> Walk<'a, R> {
         }
     }
 
-    /// The gradient at `p`; `tap` filters values so many voxels away.
-    fn gradient(&self, p: [R; 3], tap: impl Fn([i32; 3]) -> Option<R>) -> [R; 3] {
-        let operator = self.scene.settings.gradient_operator();
-        gradient_at(
-            &self.frame,
-            self.gradients.map(|source| (source, operator)),
-            p,
-            tap,
-        )
-    }
-
-    /// What comes through to a position in voxel space, seen along a ray.
-    fn lamps(&self, voxel: [R; 3], ray_direction: [R; 3]) -> Lamps<'_, R> {
-        Lamps {
-            field: self.light,
-            voxel,
-            ray_direction,
-        }
-    }
-
-    /// What the volumes are made of at `p`, where `look_from` looks from, so many voxels away; `None` for no data.
-    fn material(
-        &self,
-        look_from: impl Fn(&Volume, Filter, [i32; 3]) -> Option<R>,
-        p: [R; 3],
-        ray_direction: [R; 3],
-    ) -> Option<[R; 4]> {
-        let settings = self.scene.settings;
-        let look = |volume: &Volume, filter| look_from(volume, filter, [0; 3]);
-        if let Beside::Colors(_) | Beside::Classified(_) = self.scene.beside {
-            let mut found = [R::from_f64(0.0); 4];
-            for (number, volume) in found.iter_mut().zip(&self.volumes) {
-                *number = look(volume, settings.filter)?;
-            }
-            let [r, g, b, alpha] = found;
-            let alpha = (self.volumes.len() == 4).then_some(alpha);
-            let (srgb, value) = color_of([r, g, b], alpha);
-            if let Beside::Classified(_) = self.scene.beside {
-                let [r, g, b] = srgb;
-                return Some([r, g, b, value / R::from_f64(self.scene.reference_length())]);
-            }
-            let extinction = self.classify(0, value)[3];
-            return Some(colored(srgb, extinction, settings.color_space));
-        }
-        if let [volume] = self.volumes[..] {
-            let value = look(volume, settings.filter)?;
-            let mut material = self.classify(0, value);
-            let is_on_face = ray_direction == [R::from_f64(0.0); 3];
-            let is_lit = self.frame.light_count != 0 && !is_on_face;
-            let lamps = self.lamps(p, ray_direction);
-            let unlit = |material| match is_on_face {
-                true => material,
-                false => ambient_of(&self.frame, material, &lamps),
-            };
-            if !is_lit && self.widgets.is_none() {
-                return Some(unlit(material));
-            }
-            let tap = |step| look_from(volume, settings.filter, step);
-            let gradient = self.gradient(p, tap);
-            if let Some(widgets) = &self.widgets {
-                let steep = steepness(&self.frame, widgets, gradient, tap);
-                material = classify_by_gradient(widgets, material, value, steep);
-            }
-            let [r, g, b, extinction] = material;
-            if !is_lit {
-                return Some(unlit(material));
-            }
-            let [r, g, b] = shade(&self.frame, [r, g, b], gradient, &lamps);
-            return Some([r, g, b, extinction]);
-        }
-        let mut found = [None; crate::shaders::MAX_CHANNELS as usize];
-        for (c, (volume, role)) in self.volumes.iter().zip(&self.roles).enumerate() {
-            found[c] = match role {
-                Role::Numbers | Role::Opacity | Role::Material => look(volume, settings.filter),
-                Role::Labels => Some(look(volume, Filter::Nearest)?),
-            };
-        }
-        let found = &found[..self.roles.len()];
-        let material = material_of(&self.roles, found, |c, value| self.classify(c, value))?;
-        let dimmed_mark = Some(R::from_f64(DIMMED.into()));
-        let is_dimmed = |marks| look(marks, Filter::Nearest) == dimmed_mark;
-        Some(match self.marks.iter().any(is_dimmed) {
-            true => dimmed(material, R::from_f32(self.frame.dim)),
-            false => material,
-        })
-    }
-
     /// The sample of a pixel's ray on the view-aligned plane of an instance.
     fn on_plane<V>(
         &self,
@@ -519,38 +431,6 @@ impl<'a, R: Real> Walk<'a, R> {
     }
 }
 
-/// The gradient at `p`: by the weights of an operator over a volume, or else by differences of what `tap` finds so
-/// many voxels away.
-fn gradient_at<R: Real>(
-    frame: &Frame,
-    weighted: Option<(&Volume, Operator)>,
-    p: [R; 3],
-    tap: impl Fn([i32; 3]) -> Option<R>,
-) -> [R; 3] {
-    match weighted {
-        Some((source, operator)) => weighted_gradient(frame, source, operator, p),
-        None => gradient_of(frame, tap),
-    }
-}
-
-/// What widgets want to know where the field has this gradient.
-fn steepness<R: Real>(
-    frame: &Frame,
-    widgets: &PackedWidgets,
-    gradient: [R; 3],
-    tap: impl Fn([i32; 3]) -> Option<R>,
-) -> Steepness<R> {
-    let second = match widgets.needs_second() {
-        true => second_derivative_of(frame, gradient, tap),
-        false => R::from_f64(0.0),
-    };
-    Steepness {
-        magnitude: dot(gradient, gradient).sqrt(),
-        second,
-        smallest_spacing: R::from_f32(frame.smallest_spacing),
-    }
-}
-
 /// The function of the volume that colours surfaces.
 fn paint_of(scene: &Scene) -> Option<Points> {
     let function = scene.transfers().get(1).copied().flatten();
@@ -560,18 +440,6 @@ fn paint_of(scene: &Scene) -> Option<Points> {
     };
     let space = scene.settings.color_space;
     Some(Points::new(function, absorption, space))
-}
-
-fn marks_of_scene(scene: &Scene) -> Vec<Volume> {
-    let parts = scene.volumes().into_iter().zip(scene.roles());
-    let maps = parts.filter(|(_, role)| *role == Role::Labels);
-    maps.filter_map(|(map, _)| marks_of(map)).collect()
-}
-
-/// A material without lights: all light is ambient.
-fn ambient_of<R: Real>(frame: &Frame, [r, g, b, extinction]: [R; 4], lamps: &Lamps<R>) -> [R; 4] {
-    let [r, g, b] = scale([r, g, b], lamps.ambient(frame));
-    [r, g, b, extinction]
 }
 
 /// The position so many voxels away.

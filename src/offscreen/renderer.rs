@@ -7,10 +7,12 @@
 //! picture = mean over the positions
 //! ```
 
+mod classified;
+
 use super::Error;
 use super::fade::{render_faded, stacks_of};
 use super::gradients::decided;
-use super::light::{Matter, made_light};
+use super::light::Matter;
 use super::passes::{Passes, key_of};
 use super::position::{labels, positions};
 use super::submission::{self, Submission};
@@ -301,76 +303,6 @@ impl<'v> Renderer<'v> {
         {
             self.passes = Some(Passes::new(&gpu, scene.settings, &words)?);
         }
-        Ok(())
-    }
-
-    /// Puts on the device what classifies samples, and follows light through it where pictures of `scene` ask for
-    /// that. Nothing to do where both are there.
-    ///
-    /// # Errors
-    /// Where no function says what samples are made of, or the device gives no memory.
-    pub fn prepare_light(&mut self, scene: &Scene) -> Result<(), Error> {
-        let grid = scene.volume.grid();
-        let view = scene.view(&grid, [0.0; 2]);
-        let plan = view.light_plan()?;
-        let surfaces = view.matter_of_surfaces();
-        let functions: Option<Vec<_>> = match &surfaces {
-            Some(_) if plan.is_none() => return Ok(()),
-            Some(function) => Some(vec![function]),
-            None => scene.transfers().into_iter().collect(),
-        };
-        let functions = functions.ok_or(technique::Error::NoTransferFunction)?;
-        self.set_transfers(scene, &functions)?;
-        let Some(plan) = plan else { return Ok(()) };
-        let matter = Matter::of(scene, functions[0]);
-        let is_there = |lit: &Lit| *lit.made.plan() == plan && lit.matter == matter;
-        if self.light.as_ref().is_some_and(is_there) {
-            return Ok(());
-        }
-        // Its memory first.
-        self.light = None;
-        let parts = parts_of(&self.resident, self.shown, scene);
-        let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
-        let made = made_light(&mut self.device, scene, plan, &parts, transfer)?;
-        self.light = Some(Lit { matter, made });
-        Ok(())
-    }
-
-    fn set_transfers(
-        &mut self,
-        scene: &Scene,
-        functions: &[&TransferFunction],
-    ) -> Result<(), Error> {
-        let Settings {
-            color_space: space,
-            preintegrated: is_preintegrated,
-            ..
-        } = *scene.settings;
-        let is_there = |there: &Uploaded| {
-            there.functions.iter().eq(functions.iter().copied())
-                && there.space == space
-                && there.is_preintegrated == is_preintegrated
-        };
-        if self.transfer.as_ref().is_some_and(is_there) {
-            return Ok(());
-        }
-        let with_length = functions.iter().map(|&f| (f, scene.length_of(f)));
-        let with_length: Vec<_> = with_length.collect();
-        let gpu = self.device.gpu();
-        let made = match with_length[..] {
-            [(function, length)] if is_preintegrated => {
-                GpuTransfer::preintegrated(gpu, function, length, space)?
-            }
-            _ => GpuTransfer::several(gpu, &with_length, space)?,
-        };
-        // SAFETY: recorded outside rendering; `run` waits, and `made` lives meanwhile.
-        self.device.run(|cmd| unsafe { made.record_upload(cmd) })?;
-        self.transfer = Some(Uploaded {
-            functions: functions.iter().copied().cloned().collect(),
-            space,
-            made,
-            is_preintegrated,
-        });
         Ok(())
     }
 

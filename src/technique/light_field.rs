@@ -8,7 +8,7 @@
 
 use super::LightPlan;
 use crate::ray::vector;
-use crate::real::{Real, add, dot, lerp, scale};
+use crate::real::{Real, add, dot, scale};
 use crate::shaders::Frame;
 use crate::transfer::{extinction, opacity_over};
 
@@ -95,10 +95,15 @@ impl<R: Real> LightField<R> {
         let nodes = frame.light_cells.map(|n| n as usize + 1);
         let part: [R; 3] = std::array::from_fn(|k| at[k] - low[k]);
         let low = low.map(|n| n.to_i32() as usize);
-        let first = low[0] + nodes[0] * (low[1] + nodes[1] * (low[2] + nodes[2] * bundle as usize));
-        let row = |first: usize| lerp(self.open[first], self.open[first + 1], part[0]);
-        let plane = |first: usize| lerp(row(first), row(first + nodes[0]), part[1]);
-        lerp(plane(first), plane(first + nodes[0] * nodes[1]), part[2])
+        let mut open = zero;
+        for corner in 0..8 {
+            let bit = |k: usize| corner >> k & 1;
+            let weight = |k: usize| if bit(k) == 1 { part[k] } else { one - part[k] };
+            let [x, y, z] = std::array::from_fn(|k| low[k] + bit(k));
+            let index = x + nodes[0] * (y + nodes[1] * (z + nodes[2] * bundle as usize));
+            open = open + weight(0) * weight(1) * weight(2) * self.open[index];
+        }
+        open
     }
 }
 

@@ -229,8 +229,11 @@ impl View<'_> {
     }
 }
 
+/// A path in pieces, and how much it counts.
+type WeightedPath = (f64, Vec<[f32; 4]>);
+
 /// Bundles, then paths, then pieces, each with where its parts lie.
-fn packed(bundles: &[Vec<(f64, Vec<[f32; 4]>)>]) -> Vec<[f32; 4]> {
+fn packed(bundles: &[Vec<WeightedPath>]) -> Vec<[f32; 4]> {
     let path_count: usize = bundles.iter().map(Vec::len).sum();
     let (mut heads, mut paths, mut pieces) = (Vec::new(), Vec::new(), Vec::new());
     let first_path = bundles.len();

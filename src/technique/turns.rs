@@ -2,12 +2,13 @@
 //! word ([`crate::gpu::Caps::max_loop_turns`]), and what lies behind would be missing from the picture.
 //!
 //! ```text
-//! turns of a sample = 1 + n (looks (1 + mask + filter) + weights + search)
+//! turns of a sample = 1 + n (looks (1 + mask + filter) + weights + search + light)
 //! ```
 //!
 //! for n volumes, with 7 looks where a gradient is made of differences, 28 more (with the turn that ends them) where
 //! there is a second derivative, two where there are slabs, and else one. A mask goes round
-//! for the layers and rows of the footprint, a kernel for those of its taps, a search for the halvings of the points.
+//! for the layers and rows of the footprint, a kernel for those of its taps, a search for the halvings of the points,
+//! light for lamps and for the corners of a cell of the light volume.
 
 use super::{Error, Filter, Keep, Mix, Operator, Settings, Take, Technique, View, Words};
 
@@ -66,6 +67,15 @@ pub fn turns_per_sample(
     } else {
         0
     };
+    // Over lights, and over the corners of a cell of the light volume for each of them and for ambient light.
+    let light = if words.mix == Mix::Graded {
+        let corners = if settings.wants_light_volume() { 9 } else { 1 };
+        let shading = settings.shading.as_ref();
+        let lights = shading.map_or(0, |shading| shading.lights.len().max(1)) as u64;
+        corners + lights * (1 + corners) + 1
+    } else {
+        0
+    };
     let search = if words.transfer == "points" {
         2 * u64::from((functions.points + 1).ilog2() + 2)
     } else {
@@ -73,7 +83,7 @@ pub fn turns_per_sample(
     };
     // Channels are gone over when they are asked for data, looked at and classified.
     let of_each = if volumes > 1 { 3 } else { 0 };
-    1 + volumes as u64 * (of_each + looks * (1 + mask + filter) + weights + search)
+    1 + volumes as u64 * (of_each + looks * (1 + mask + filter) + weights + search + light)
 }
 
 impl View<'_> {

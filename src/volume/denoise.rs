@@ -5,9 +5,13 @@
 //! gaussian    sum of w(|k|) f(x + k),  w ~ exp(-k^2 / 2 s^2), along x, then y, then z
 //! median      the fourteenth of the 27 numbers around a voxel
 //! bilateral   f(x) + sum of g d / sum of g,   d = f(y) - f(x),   g = w(y - x) exp(-d^2 / 2 r^2)
+//! nlm         the same with g = exp(-D / 2 s^2),  D the mean of (f(y + k) - f(x + k))^2 over the 27 k around
 //! ```
 //!
-//! Tomasi and Manduchi, "Bilateral Filtering for Gray and Color Images", ICCV 1998. White noise of deviation 1 is left
+//! Tomasi and Manduchi, "Bilateral Filtering for Gray and Color Images", ICCV 1998. Buades, Coll and Morel, "A Non-local
+//! Algorithm for Image Denoising", CVPR 2005: y goes over the 7^3 voxels around, s is the deviation of the noise (as
+//! Coupe et al., IEEE TMI 27(4), 2008, choose the strength), and x itself weighs what the most alike of the others does.
+//! White noise of deviation 1 is left
 //! with (2 s sqrt pi)^(-3/2) by the Gaussian, 0.114 at s = 1.2 voxels. All of them work on stored numbers, the
 //! Gaussian as far as four deviations and the bilateral filter as far as two, and take the nearest voxel for those
 //! outside. No data stays no data; what is stored there, the nearest valid number, is seen by its neighbours. Thin
@@ -33,6 +37,11 @@ pub enum Denoise {
         /// Deviation in values; `None`: twice that of the noise, as [`noise_of`] estimates it.
         sigma_value: Option<f64>,
     },
+    /// Non-local means: averages places that look alike, each with the voxels around it.
+    NonLocalMeans {
+        /// Deviation of the noise in values; `None`: as [`noise_of`] estimates it.
+        sigma_value: Option<f64>,
+    },
 }
 
 /// The largest deviation whose kernel has room.
@@ -42,6 +51,11 @@ pub const MAX_SIGMA_VOXELS: f64 = (MAX_DENOISE_WEIGHTS as f64 - 1.0) / DEVIATION
 const DEVIATIONS: f64 = 4.0;
 /// How far the other one does: its cost grows with the cube.
 const BILATERAL_DEVIATIONS: f64 = 2.0;
+
+/// How far alike places are looked for, and a patch of 3^3 voxels beyond.
+const NLM_RADIUS: u32 = 4;
+/// Voxels of a patch.
+const PATCH: f64 = 27.0;
 
 /// What a pass needs to know.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,6 +103,16 @@ impl Denoise {
                 }
                 let (radius, weights) = gaussian(sigma_voxels, BILATERAL_DEVIATIONS);
                 vec![pass("bilateral", 0, radius, weights, factor)]
+            }
+            Self::NonLocalMeans { sigma_value } => {
+                let sigma_value = sigma_value.unwrap_or_else(|| noise_of(volume));
+                let sigma_stored = sigma_value / volume.rescale.slope.abs();
+                // Of the sum over a patch.
+                let factor = (0.5 / (PATCH * sigma_stored * sigma_stored)) as f32;
+                if !factor.is_finite() {
+                    return Vec::new();
+                }
+                vec![pass("nlm", 0, NLM_RADIUS, [0.0; 32], factor)]
             }
         }
     }
@@ -199,6 +223,7 @@ impl Pass {
         match self.kernel {
             "gaussian" => self.along(grid, index),
             "median" => median(grid, index),
+            "nlm" => self.non_local(grid, index),
             _ => self.bilateral(grid, index),
         }
     }
@@ -231,6 +256,54 @@ impl Pass {
             }
         }
         here + sum / weights
+    }
+}
+
+impl Pass {
+    /// How many numbers a voxel is made of: what a dispatch costs.
+    pub fn looks(&self) -> u64 {
+        let across = |reach: u32| 2 * u64::from(reach) + 1;
+        match self.kernel {
+            "gaussian" => across(self.radius),
+            "nlm" => across(self.radius - 1).pow(3) * PATCH as u64,
+            // Twenty-seven, each put into its place.
+            "median" => 27 * 14,
+            _ => across(self.radius).pow(3),
+        }
+    }
+
+    fn non_local(&self, grid: &Slices, [x, y, z]: [i64; 3]) -> f32 {
+        let patch = |[x, y, z]: [i64; 3]| -> [f32; 27] {
+            std::array::from_fn(|i| {
+                let i = i as i64;
+                grid.number_at([x + i % 3 - 1, y + i / 3 % 3 - 1, z + i / 9 - 1])
+            })
+        };
+        let own = patch([x, y, z]);
+        let here = grid.number_at([x, y, z]);
+        let reach = i64::from(self.radius) - 1;
+        let (mut sum, mut weights, mut largest) = (0.0, 0.0, 0.0_f32);
+        for k in -reach..=reach {
+            for j in -reach..=reach {
+                for i in -reach..=reach {
+                    if [i, j, k] == [0; 3] {
+                        continue;
+                    }
+                    let there = [x + i, y + j, z + k];
+                    let pairs = patch(there).into_iter().zip(own);
+                    let apart = pairs.fold(0.0, |sum, (a, b)| sum + (a - b) * (a - b));
+                    let weight = (-apart * self.difference_factor).exp();
+                    sum += weight * (grid.number_at(there) - here);
+                    weights += weight;
+                    largest = largest.max(weight);
+                }
+            }
+        }
+        // Where nothing is alike the number stays.
+        if largest == 0.0 {
+            return here;
+        }
+        here + sum / (weights + largest)
     }
 }
 

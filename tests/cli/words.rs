@@ -43,7 +43,7 @@ fn modes_that_walk_along_rays_are_drawn_and_what_they_lack_is_refused_by_name() 
         ("--mode xray --depth-cue 0.5", "--mode xray"),
         ("--mode average --exact-maximum", "--exact-maximum"),
         ("--mode iso --iso 1,2 --iso-color red", "--iso-color"),
-        ("--mode mida --mida-gamma 1", "the gamma of MIDA is 1"),
+        ("--mode mida --mida-gamma 1.5", "the gamma of MIDA is 1.5"),
     ] {
         let ran = folder.run(&format!("{of_head} a.png {words}"));
         ran.assert_refused(2, &[named, "hint"]);

@@ -1,4 +1,4 @@
-//! The words of `--denoise`: `gaussian[:SIGMA]`, `median`, `bilateral[:SIGMA[:VALUE]]`.
+//! The words of `--denoise`: `gaussian[:SIGMA]`, `median`, `bilateral[:SIGMA[:VALUE]]`, `nlm[:VALUE]`.
 
 use super::positive;
 use crate::volume::{Denoise, MAX_SIGMA_VOXELS};
@@ -17,12 +17,14 @@ impl FromStr for DenoiseWord {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wanted = || "wanted gaussian[:SIGMA], median or bilateral[:SIGMA[:VALUE]]".to_owned();
+        let wanted = || {
+            "wanted gaussian[:SIGMA], median, bilateral[:SIGMA[:VALUE]] or nlm[:VALUE]".to_owned()
+        };
         let mut words = text.split(':');
         let kind = words.next();
         let numbers: Vec<f64> = words.map(positive).collect::<Result<_, _>>()?;
         let sigma_voxels = numbers.first().copied().unwrap_or(SIGMA_VOXELS);
-        if sigma_voxels > MAX_SIGMA_VOXELS {
+        if kind != Some("nlm") && sigma_voxels > MAX_SIGMA_VOXELS {
             return Err(format!(
                 "wanted a SIGMA of at most {MAX_SIGMA_VOXELS} voxels, found {sigma_voxels}"
             ));
@@ -33,6 +35,9 @@ impl FromStr for DenoiseWord {
             (Some("bilateral"), 0..=2) => Denoise::Bilateral {
                 sigma_voxels,
                 sigma_value: numbers.get(1).copied(),
+            },
+            (Some("nlm"), 0..=1) => Denoise::NonLocalMeans {
+                sigma_value: numbers.first().copied(),
             },
             _ => return Err(wanted()),
         };
@@ -53,6 +58,10 @@ impl fmt::Display for DenoiseWord {
                 sigma_voxels,
                 sigma_value: Some(value),
             } => write!(f, "bilateral:{sigma_voxels}:{value}"),
+            Denoise::NonLocalMeans { sigma_value: None } => f.write_str("nlm"),
+            Denoise::NonLocalMeans {
+                sigma_value: Some(value),
+            } => write!(f, "nlm:{value}"),
         }
     }
 }
@@ -77,7 +86,14 @@ mod tests {
 
     #[test]
     fn words_are_read_as_they_are_written() {
-        for text in ["gaussian:1.2", "median", "bilateral:1", "bilateral:1.5:20"] {
+        for text in [
+            "gaussian:1.2",
+            "median",
+            "bilateral:1",
+            "bilateral:1.5:20",
+            "nlm",
+            "nlm:35.5",
+        ] {
             let word: DenoiseWord = text.parse().expect("a filter");
             assert_eq!(word.to_string(), text);
         }
@@ -88,6 +104,8 @@ mod tests {
             "gaussian:0",
             "gaussian:9",
             "bilateral:1:2:3",
+            "nlm:0",
+            "nlm:1:2",
         ] {
             assert!(text.parse::<DenoiseWord>().is_err(), "{text}");
         }

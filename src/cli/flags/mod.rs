@@ -86,8 +86,9 @@ pub struct SceneFlags {
     pub section: SectionFlags,
     #[command(flatten)]
     pub picture: PictureFlags,
-    /// Take noise out of the numbers first: gaussian[:SIGMA], median, bilateral[:SIGMA[:VALUE]]; SIGMA in voxels
-    /// [default: 1], VALUE what is no noise any more [default: twice the noise found]
+    /// Take noise out of the numbers first: gaussian[:SIGMA], median, bilateral[:SIGMA[:VALUE]], nlm[:VALUE]; SIGMA in
+    /// voxels [default: 1], VALUE what is no noise any more [default: twice the noise found], and of nlm, the slowest and
+    /// best of them, the deviation of the noise [default: that found]
     #[arg(long, value_name = "FILTER")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub denoise: Option<DenoiseWord>,

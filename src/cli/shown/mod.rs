@@ -1,28 +1,30 @@
 //! What a picture shows: a volume and how it is classified, and what it is seen together with.
 
+mod channels;
+mod check;
 mod colors;
 mod opacity;
+mod paint;
 mod preclassified;
+
+pub use check::{check, shows_several};
 
 use super::{
     Error,
-    flags::{
-        ChannelWord, Classification, ClassificationFlags, Component, Plan, SceneFlags, Subject,
-        summary,
-    },
+    flags::{Classification, ClassificationFlags, Plan, SceneFlags, Subject, summary},
     labels,
-    load::{denoise, load_from, open, say_what_was_lost, stretch},
+    load::{load_from, open},
     memory::{Held, fitting},
     progress::Progress,
     renderer::Device,
 };
 use crate::{
     scene::{Beside, Channel},
-    shaders::MAX_CHANNELS,
     technique::{Filter, Mode, PerMode, Role, Settings},
-    transfer::{CHANNEL_COLORS, Classified, LabelTable, TransferFunction, Window, of_channel},
-    volume::{Grid, Header, Meaning, Source, Volume, labels::labels_of, read_all},
+    transfer::{Classified, LabelTable, TransferFunction},
+    volume::{Header, Source, Volume, labels::labels_of},
 };
+use check::{has_beside, plan};
 use std::sync::Arc;
 
 /// Everything that is drawn.
@@ -241,81 +243,6 @@ impl Parts<'_> {
     }
 }
 
-/// Which of the numbers of a voxel are drawn, and what a person should know of it.
-fn plan(scene: &SceneFlags, header: &Header) -> Result<(Plan, Option<String>), Error> {
-    let room = MAX_CHANNELS as usize - usize::from(scene.labels.labels.is_some());
-    scene.channels.plan(&scene.input, header, room)
-}
-
-/// True where more than one number a voxel is seen.
-pub fn shows_several(scene: &SceneFlags, header: &Header) -> Result<bool, Error> {
-    let (plan, _) = plan(scene, header)?;
-    Ok(plan != Plan::One || has_beside(scene))
-}
-
-/// True where words name something that is seen together with the volume.
-fn has_beside(scene: &SceneFlags) -> bool {
-    let mode = scene.sampling.mode.unwrap_or_default().mode();
-    scene.labels.labels.is_some()
-        || scene.modes.paint(mode).is_some()
-        || scene.opacity.are_given()
-        || scene.sampling.preclassified
-}
-
-/// What can be said wrong before anything is opened.
-pub fn check(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
-    let mode = settings.mode;
-    scene.modes.check(settings)?;
-    if scene.labels.labels.is_some() && mode != Mode::Composite {
-        return Err(Error::usage(
-            "--labels needs --mode composite: the others have no place for labels",
-            "leave out --mode or --labels",
-        ));
-    }
-    scene.opacity.check()?;
-    preclassified::check(scene, settings)?;
-    if scene.opacity.are_given() && mode != Mode::Composite {
-        return Err(Error::usage(
-            format!(
-                "{} needs --mode composite: the others show one number a ray",
-                scene.opacity.word()
-            ),
-            "leave out --mode",
-        ));
-    }
-    if scene.opacity.are_given() && settings.preintegrated {
-        return Err(Error::usage(
-            format!(
-                "{} and --preintegrated: slabs are integrated over one number",
-                scene.opacity.word()
-            ),
-            "leave out one of them",
-        ));
-    }
-    let ClassificationFlags {
-        preset,
-        window,
-        color_function,
-        opacity_function,
-        ..
-    } = &scene.classification;
-    let several = scene.channels.are_given() || scene.input.component == Some(Component::All);
-    let one_function = [
-        ("--preset", preset.is_some()),
-        ("--tf", scene.classification.function_of_file()?.is_some()),
-        ("--color-tf", color_function.is_some()),
-        ("--opacity-tf", opacity_function.is_some()),
-        ("--window", window.is_some()),
-    ];
-    match one_function.into_iter().find(|(_, is_given)| *is_given) {
-        Some((flag, _)) if several => Err(Error::usage(
-            format!("{flag} is for one number a voxel, and several are drawn"),
-            "say it of each: --channel 0,color=cyan,window=0:100",
-        )),
-        _ => Ok(()),
-    }
-}
-
 /// What reading needs beside the source.
 struct Reader<'a> {
     scene: &'a SceneFlags,
@@ -341,9 +268,15 @@ impl Reader<'_> {
             ..self.scene.classification.clone()
         };
         let words = &self.scene.labels;
-        let has_table = (words.label_tf.is_some() || words.cut()) && words.labels.is_none();
+        let has_table = words.label_tf.is_some() && words.labels.is_none();
         let may_name = says_nothing(flags)? && self.mode == Mode::Composite;
-        if (has_table || is_labels)
+        let is_cut = words.cut() && words.labels.is_none();
+        // Words on labels take only what looks like labels for them.
+        let looks_so = is_cut && may_name && {
+            let found = flags.classification(&volume, self.mode)?;
+            flags.found_labels(&found)
+        };
+        if (has_table || is_labels || looks_so)
             && may_name
             && let Some(function) = self.names(&volume)?
         {
@@ -357,10 +290,10 @@ impl Reader<'_> {
                 others: Others::Channels(Vec::new()),
             });
         }
-        if words.cut() && words.labels.is_none() {
+        if is_cut {
             return Err(Error::usage(
-                "--label-show, --label-hide and --label-dim are for labels in their own colours, in --mode composite",
-                "leave out --preset, --tf, --window and --mode, or lay a map over INPUT with --labels FILE",
+                "--label-show, --label-hide and --label-dim are for labels: of a map over INPUT (--labels), or of INPUT in their own colours",
+                "--labels FILE lays a map over INPUT",
             ));
         }
         let modes = &self.scene.modes;
@@ -396,49 +329,6 @@ impl Reader<'_> {
         })
     }
 
-    /// Another variable, or another number of the voxels, on the grid of the surfaces that it colours.
-    fn paint(&self, word: &str, grid: &Grid) -> Result<Other, Error> {
-        let mut scene = self.scene.clone();
-        scene.modes.levels.iso_color_by = None;
-        match word.parse() {
-            Ok(number) => scene.input.component = Some(Component::Number(number)),
-            Err(_) => scene.input.variable = Some(word.to_owned()),
-        }
-        let source = open(&scene.input, &scene.input.limits())?;
-        let (volume, _) = load_from(source, &scene, self.device, self.progress)?;
-        if volume.grid() != *grid {
-            return Err(Error::usage(
-                format!("--iso-color-by {word}: it lies on another grid than the surfaces"),
-                "a variable with the same axes colours them",
-            ));
-        }
-        let function = match scene
-            .classification
-            .classification(&volume, Mode::Composite)?
-        {
-            Classification::Function(function) => function,
-            Classification::RangeOfPicture => {
-                Window::of_range(volume.value_range).grey(Classified::Samples)
-            }
-        };
-        if function.is_graded() {
-            return Err(Error::usage(
-                "--iso-color-by takes the colours of values, and this function is of their gradient too",
-                "take a function of the value alone",
-            ));
-        }
-        let ends = [function.color.first(), function.color.last()];
-        let [low, high] = ends.map(|point| point.map_or(0.0, |point| point.value));
-        self.progress.note(&format!(
-            "surfaces are coloured by {word}, from {low:.6} to {high:.6}; --window, --preset and --tf say otherwise"
-        ));
-        Ok(Other {
-            volume,
-            function,
-            role: Role::Numbers,
-        })
-    }
-
     /// A volume of labels by itself: each in its colour. `None` where the values are none.
     fn names(&self, volume: &Volume) -> Result<Option<TransferFunction>, Error> {
         let table = self.scene.labels.table()?;
@@ -462,71 +352,6 @@ impl Reader<'_> {
                 ));
             }
             (_, None) => None,
-        })
-    }
-
-    fn channels(&self, source: Box<dyn Source>, words: &[ChannelWord]) -> Result<Shown, Error> {
-        if self.mode == Mode::Xray && words.iter().any(|word| word.window.is_none()) {
-            return Err(Error::usage(
-                "--mode xray of several channels needs a window of each, of its integrals",
-                "--channel 0,window=0:9000",
-            ));
-        }
-        let source = self.fitted(source, words.len())?;
-        let header = source.header();
-        let (time, _) = self.scene.input.time(header)?;
-        let indices: Vec<u32> = words.iter().map(|word| word.index).collect();
-        let limits = self.scene.input.limits();
-        let mut volumes = read_all(source.as_ref(), indices, time, &limits)?;
-        denoise(&mut volumes, self.scene)?;
-        let height_factor = stretch(&mut volumes, self.scene, header, self.progress)?;
-        let known = match &header.meaning {
-            Meaning::Channels(known) => known.as_slice(),
-            _ => &[],
-        };
-        let primaries = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        let is_color = matches!(header.meaning, Meaning::Rgb | Meaning::Rgba);
-        let mut made = Vec::new();
-        let mut said = Vec::new();
-        for (nth, (word, volume)) in words.iter().zip(volumes).enumerate() {
-            let of_file = known.get(word.index as usize);
-            let own = primaries.get(word.index as usize).filter(|_| is_color);
-            let srgb = word.srgb.or_else(|| {
-                let color = of_file.and_then(|channel| channel.srgb);
-                color.map(|c| c.map(f64::from)).or(own.copied())
-            });
-            let srgb = srgb.unwrap_or(CHANNEL_COLORS[nth % CHANNEL_COLORS.len()]);
-            let window = word.window.or(of_file.and_then(|channel| channel.window));
-            let window = window.and_then(|[low, high]| Window::new(low, high));
-            let function = of_channel(&summary(&volume), srgb, classified(self.mode), window);
-            let name = of_file.map_or("", |channel| channel.name.as_str());
-            let name = match name {
-                "" => format!("channel {}", word.index),
-                name => format!("channel {} ({name})", word.index),
-            };
-            say_what_was_lost(&volume, &format!("voxels of {name}"), self.progress);
-            let [r, g, b] = srgb;
-            let ends = [function.opacity.first(), function.opacity.last()];
-            let [low, high] = ends.map(|point| point.map_or(0.0, |point| point.value));
-            said.push(format!(
-                "{name} in {r:.2}:{g:.2}:{b:.2} over {low:.6}:{high:.6}"
-            ));
-            made.push(Other {
-                volume,
-                function,
-                role: Role::Numbers,
-            });
-        }
-        self.progress.note(&said.join("; "));
-        let first = made.remove(0);
-        Ok(Shown {
-            volume: Arc::new(first.volume),
-            is_earth: header.is_earth,
-            classification: Classification::Function(first.function),
-            per_mode: self.scene.modes.alone(),
-            filter: None,
-            height_factor,
-            others: Others::Channels(made),
         })
     }
 

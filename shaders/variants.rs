@@ -1,0 +1,173 @@
+//! Which shaders are compiled, and with what: every slot of an `#import` name and the words that fill it. Part of
+//! `build.rs`.
+
+/// A slot of `#import` names and the words that fill it.
+pub type Slot = (&'static str, &'static [&'static str]);
+
+/// A kernel is wider than linear, by fetches; a spline is a B-spline by the sampler.
+const FILTER: Slot = (
+    "filter",
+    &["nearest", "linear", "linear_fetch", "kernel", "spline"],
+);
+/// Conformance pictures search the points, and never leave filtering to the device.
+const FETCHED: Slot = ("filter", &["nearest", "linear_fetch", "kernel"]);
+/// Several volumes are mixed by narrow filters.
+const NARROW: Slot = ("filter", &["nearest", "linear", "linear_fetch"]);
+const NARROW_FETCHED: Slot = ("filter", &["nearest", "linear_fetch"]);
+const TABLE: Slot = ("transfer", &["table"]);
+const POINTS: Slot = ("transfer", &["points"]);
+/// One number at both ends of a segment. The word is left out of names.
+const SLAB: Slot = ("mix", &["slab"]);
+/// Words that stand in no name.
+pub const SILENT: &[&str] = &["alone", "slab"];
+const TRANSFER: Slot = ("transfer", &["table", "points"]);
+const HOLES: Slot = ("holes", &["none", "mask"]);
+const LATTICE: Slot = ("lattice", &["ray", "planes"]);
+/// One number a voxel, alone or with its gradient. The word `alone` is left out of names.
+const ONE: Slot = ("mix", &["alone", "graded"]);
+const ALONE: Slot = ("mix", &["alone"]);
+const MIXED: Slot = ("mix", &["channels", "colors"]);
+const MODE: Slot = ("mode", &["composite"]);
+/// Modes that slicers do not have leave the lattice of slicers to them.
+const RAY: Slot = ("lattice", &["ray"]);
+const MIDA: Slot = ("mode", &["mida"]);
+const BLEND: Slot = ("blend", &["composite"]);
+
+/// The wanted combinations. Order of the slots is the order of words in a variant's name.
+pub const ENTRIES: &[(&str, &[Slot])] = &[
+    ("raycast", &[MODE, ONE, LATTICE, FILTER, HOLES, TABLE]),
+    ("raycast", &[MODE, ONE, LATTICE, FETCHED, HOLES, POINTS]),
+    ("raycast", &[MODE, MIXED, LATTICE, NARROW, HOLES, TABLE]),
+    (
+        "raycast",
+        &[MODE, MIXED, LATTICE, NARROW_FETCHED, HOLES, POINTS],
+    ),
+    ("raycast", &[MIDA, ONE, RAY, FILTER, HOLES, TABLE]),
+    ("raycast", &[MIDA, ONE, RAY, FETCHED, HOLES, POINTS]),
+    ("isosurface", &[("paint", &["alone"]), FILTER, HOLES]),
+    ("isosurface", &[("paint", &["by"]), NARROW, HOLES]),
+    ("projection_cells", &[("mode", &["mip", "minip"]), HOLES]),
+    (
+        "projection",
+        &[
+            ("mode", &["mip", "minip", "sum"]),
+            ALONE,
+            LATTICE,
+            FILTER,
+            HOLES,
+        ],
+    ),
+    (
+        "projection",
+        &[
+            ("mode", &["lmip", "attenuated_mip"]),
+            ALONE,
+            RAY,
+            FILTER,
+            HOLES,
+        ],
+    ),
+    ("slices_3d", &[BLEND, ONE, FILTER, HOLES, TABLE]),
+    ("slices_3d", &[BLEND, ONE, FETCHED, HOLES, POINTS]),
+    ("slices_3d", &[BLEND, MIXED, NARROW, HOLES, TABLE]),
+    ("slices_3d", &[BLEND, MIXED, NARROW_FETCHED, HOLES, POINTS]),
+    (
+        "slices_3d",
+        &[("blend", &["extreme", "sum"]), ALONE, FILTER, HOLES],
+    ),
+    (
+        "slices_3d",
+        &[
+            ("blend", &["count"]),
+            ALONE,
+            ("filter", &["nearest"]),
+            ("holes", &["none"]),
+        ],
+    ),
+    ("slices_3d_cover", &[]),
+    ("slices_2d", &[BLEND, ONE, FILTER, HOLES, TABLE]),
+    ("slices_2d", &[BLEND, ONE, FETCHED, HOLES, POINTS]),
+    ("slices_2d", &[BLEND, MIXED, NARROW, HOLES, TABLE]),
+    ("slices_2d", &[BLEND, MIXED, NARROW_FETCHED, HOLES, POINTS]),
+    (
+        "slices_2d",
+        &[("blend", &["extreme", "sum"]), ALONE, FILTER, HOLES],
+    ),
+    (
+        "slices_2d",
+        &[
+            ("blend", &["count"]),
+            ALONE,
+            ("filter", &["nearest"]),
+            ("holes", &["none"]),
+        ],
+    ),
+    ("slices_2d_cover", &[]),
+    (
+        "raycast_slab",
+        &[("mode", &["composite"]), SLAB, LATTICE, NARROW, HOLES],
+    ),
+    (
+        "slices_3d_slab",
+        &[("blend", &["composite"]), SLAB, NARROW, HOLES],
+    ),
+    (
+        "slices_3d_slab",
+        &[
+            ("blend", &["count"]),
+            SLAB,
+            ("filter", &["nearest"]),
+            ("holes", &["none"]),
+        ],
+    ),
+    (
+        "slices_2d_slab",
+        &[("blend", &["composite"]), SLAB, NARROW, HOLES],
+    ),
+    (
+        "slices_2d_slab",
+        &[
+            ("blend", &["count"]),
+            SLAB,
+            ("filter", &["nearest"]),
+            ("holes", &["none"]),
+        ],
+    ),
+    (
+        "slices_2d_smooth",
+        &[("blend", &["composite"]), ALONE, NARROW, HOLES, TRANSFER],
+    ),
+    (
+        "slices_2d_smooth",
+        &[
+            ("blend", &["count"]),
+            ALONE,
+            ("filter", &["nearest"]),
+            ("holes", &["none"]),
+        ],
+    ),
+    ("slices_3d_half", &[ONE, NARROW, HOLES, TABLE]),
+    ("slices_3d_half", &[ONE, NARROW_FETCHED, HOLES, POINTS]),
+    (
+        "resolve",
+        &[("source", &["picture", "value", "mean", "cued"])],
+    ),
+    ("resolve_cover", &[]),
+    ("keep_gradients", &[("layout", &["box", "stack"])]),
+    ("merge", &[("operator", &["over", "under", "add"])]),
+    (
+        "denoise",
+        &[("kernel", &["gaussian", "median", "bilateral", "nlm"])],
+    ),
+    // Once for many pictures: classified by the points in all of them.
+    (
+        "light_cells",
+        &[
+            ("layout", &["box", "stack"]),
+            ("filter", &["nearest", "kernel"]),
+            HOLES,
+            POINTS,
+        ],
+    ),
+    ("light_volume", &[]),
+];

@@ -1,0 +1,82 @@
+//! What can be said of words before anything is read.
+
+use super::preclassified;
+use crate::cli::Error;
+use crate::cli::flags::{ClassificationFlags, Component, Plan, SceneFlags};
+use crate::shaders::MAX_CHANNELS;
+use crate::technique::{Mode, Settings};
+use crate::volume::Header;
+/// Which of the numbers of a voxel are drawn, and what a person should know of it.
+pub(super) fn plan(scene: &SceneFlags, header: &Header) -> Result<(Plan, Option<String>), Error> {
+    let room = MAX_CHANNELS as usize - usize::from(scene.labels.labels.is_some());
+    scene.channels.plan(&scene.input, header, room)
+}
+
+/// True where more than one number a voxel is seen.
+pub fn shows_several(scene: &SceneFlags, header: &Header) -> Result<bool, Error> {
+    let (plan, _) = plan(scene, header)?;
+    Ok(plan != Plan::One || has_beside(scene))
+}
+
+/// True where words name something that is seen together with the volume.
+pub(super) fn has_beside(scene: &SceneFlags) -> bool {
+    let mode = scene.sampling.mode.unwrap_or_default().mode();
+    scene.labels.labels.is_some()
+        || scene.modes.paint(mode).is_some()
+        || scene.opacity.are_given()
+        || scene.sampling.preclassified
+}
+
+/// What can be said wrong before anything is opened.
+pub fn check(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
+    let mode = settings.mode;
+    scene.modes.check(settings)?;
+    if scene.labels.labels.is_some() && mode != Mode::Composite {
+        return Err(Error::usage(
+            "--labels needs --mode composite: the others have no place for labels",
+            "leave out --mode or --labels",
+        ));
+    }
+    scene.opacity.check()?;
+    preclassified::check(scene, settings)?;
+    if scene.opacity.are_given() && mode != Mode::Composite {
+        return Err(Error::usage(
+            format!(
+                "{} needs --mode composite: the others show one number a ray",
+                scene.opacity.word()
+            ),
+            "leave out --mode",
+        ));
+    }
+    if scene.opacity.are_given() && settings.preintegrated {
+        return Err(Error::usage(
+            format!(
+                "{} and --preintegrated: slabs are integrated over one number",
+                scene.opacity.word()
+            ),
+            "leave out one of them",
+        ));
+    }
+    let ClassificationFlags {
+        preset,
+        window,
+        color_function,
+        opacity_function,
+        ..
+    } = &scene.classification;
+    let several = scene.channels.are_given() || scene.input.component == Some(Component::All);
+    let one_function = [
+        ("--preset", preset.is_some()),
+        ("--tf", scene.classification.function_of_file()?.is_some()),
+        ("--color-tf", color_function.is_some()),
+        ("--opacity-tf", opacity_function.is_some()),
+        ("--window", window.is_some()),
+    ];
+    match one_function.into_iter().find(|(_, is_given)| *is_given) {
+        Some((flag, _)) if several => Err(Error::usage(
+            format!("{flag} is for one number a voxel, and several are drawn"),
+            "say it of each: --channel 0,color=cyan,window=0:100",
+        )),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,263 @@
+//! Why a picture cannot be made as asked.
+
+use super::{Filter, GradientSource, Mode, Technique};
+use crate::volume::Spline;
+
+/// Why a picture cannot be made as asked.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// The step is too small for the volume.
+    #[error("a ray through the volume would take {wanted:.0} samples, the limit is {limit}")]
+    TooManySamples {
+        /// What the longest ray would take.
+        wanted: f64,
+        /// What a ray may take.
+        limit: u32,
+    },
+    /// The driver would cut the ray short.
+    #[error(
+        "a ray through the volume would take {wanted:.0} samples, and this driver ends its loops after {limit:.0} such \
+         samples"
+    )]
+    LoopsEnd {
+        /// What the longest ray would take.
+        wanted: f64,
+        /// How many there are turns for.
+        limit: f64,
+    },
+    /// Compositing classifies every sample.
+    #[error("compositing needs a transfer function")]
+    NoTransferFunction,
+    /// A volume is on the device in another way than the view's technique reads it.
+    #[error("the volume lies on the device as {found:?}, this view reads it as {wanted:?}")]
+    WrongLayout {
+        /// What [`View::texture_layout`] says.
+        wanted: crate::resident::TextureLayout,
+        /// How the volume lies.
+        found: crate::resident::TextureLayout,
+    },
+    /// Several volumes in a mode that has no mixture of them.
+    #[error("{mode:?} shows one volume: several are mixed in Composite")]
+    NotMixed {
+        /// The mode.
+        mode: Mode,
+    },
+    /// A way to sample that not all techniques and modes have.
+    #[error("{wanted} is for {of}, not for {found}")]
+    NotFor {
+        /// What was asked for.
+        wanted: &'static str,
+        /// What has it.
+        of: &'static str,
+        /// What has not.
+        found: String,
+    },
+    /// The ends of a slab, or of a segment that crosses a surface, lie in voxels that its brick does not hold.
+    #[error(
+        "the volume lies in bricks, and {what} reach {reach:.1} voxels beyond theirs, the limit is {limit}: take more samples per voxel"
+    )]
+    SlabsTooLong {
+        /// What is long.
+        what: &'static str,
+        /// Voxels.
+        reach: f64,
+        /// What bricks hold.
+        limit: f64,
+    },
+    /// Volumes that are mixed lie on one grid.
+    #[error("the volumes to be mixed lie on different grids, or in different bricks")]
+    OtherGrid,
+    /// Interpolating splines read coefficients, all others the voxels.
+    #[error("{filter:?} reads {}, and the volume on the device holds {}", held(.filter.spline()), held(*.found))]
+    WrongCoefficients {
+        /// What was asked for.
+        filter: Filter,
+        /// What the volume on the device was made of.
+        found: Option<Spline>,
+    },
+    /// Filters over more than two voxels of an axis are made for one volume.
+    #[error("{filter:?} reads one volume: several are mixed with Linear or Nearest")]
+    FilterAlone {
+        /// What was asked for.
+        filter: Filter,
+    },
+    /// The parameters hold a fixed number of channels.
+    #[error("{wanted} volumes are to be mixed, the limit is {limit}")]
+    TooManyChannels {
+        /// How many were asked for.
+        wanted: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+    /// What makes something opaque needs something that it makes opaque.
+    #[error(
+        "a volume that says how opaque another is stands right behind the numbers that are coloured"
+    )]
+    OpacityOfNothing,
+    /// Colours are red, green, blue, and perhaps alpha.
+    #[error("a colour is made of 3 or 4 volumes, not of {found}")]
+    NoColor {
+        /// How many there are.
+        found: usize,
+    },
+    /// A mode whose samples must come from front to back, in a technique that blends them.
+    #[error("{technique:?} has no mode {mode:?}, in which a sample depends on those before it")]
+    NeedsRays {
+        /// Where samples lie.
+        technique: Technique,
+        /// The mode.
+        mode: Mode,
+    },
+    /// The planes of slicers, in a mode that slicers do not have.
+    #[error(
+        "{mode:?} takes samples along rays, not on the planes of a slicer, which has no such mode"
+    )]
+    NeedsRayLattice {
+        /// The mode.
+        mode: Mode,
+    },
+    /// Surfaces of no value, or of more than the parameters hold.
+    #[error("surfaces of {found} values, wanted 1 to {limit}")]
+    LevelCount {
+        /// How many were asked for.
+        found: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+    /// What has an exact extreme is a trilinear field along rays.
+    #[error(
+        "{technique:?} in mode {mode:?}: an exact extreme is one of Mip or Minip along rays, filtered linearly"
+    )]
+    NotExact {
+        /// Where samples lie.
+        technique: Technique,
+        /// The mode.
+        mode: Mode,
+    },
+    /// Darkness by depth needs a depth.
+    #[error("{technique:?} in mode {mode:?} has no one depth a ray: no depth cue")]
+    NoDepth {
+        /// Where samples lie.
+        technique: Technique,
+        /// The mode.
+        mode: Mode,
+    },
+    /// A number of a mode that means nothing.
+    #[error("{name} is {found}, wanted {wanted}")]
+    OutOfRange {
+        /// Which number.
+        name: &'static str,
+        /// What would do.
+        wanted: &'static str,
+        /// What was given.
+        found: f64,
+    },
+    /// Light falls on what is composited.
+    #[error(
+        "{mode:?} projects one number a ray, on which no light falls: shading is for composite"
+    )]
+    NotShaded {
+        /// The mode.
+        mode: Mode,
+    },
+    /// Several volumes have several gradients.
+    #[error("shading is for one volume of numbers, not for several that are mixed")]
+    NotShadedTogether,
+    /// Light falls on what is composited.
+    #[error(
+        "{mode:?} projects one number a ray, on which no light falls: ambient occlusion is for composite"
+    )]
+    NotOccluded {
+        /// The mode.
+        mode: Mode,
+    },
+    /// Light is followed through one volume.
+    #[error(
+        "ambient occlusion and shadows are for one volume of numbers, not for several that are seen together"
+    )]
+    NotOccludedTogether,
+    /// A projected value has no gradient.
+    #[error(
+        "{mode:?} projects one number a ray, which has no gradient: widgets and gradient opacity are for composite"
+    )]
+    NotGraded {
+        /// The mode.
+        mode: Mode,
+    },
+    /// Several volumes have several gradients.
+    #[error(
+        "widgets and gradient opacity are for one volume of numbers, not for several that are mixed"
+    )]
+    NotGradedTogether,
+    /// Nearest and linear filters have no derivative that is of use.
+    #[error(
+        "{filter:?} has no analytic gradient: its derivative is zero, or jumps from voxel to voxel"
+    )]
+    NoDerivative {
+        /// The filter.
+        filter: Filter,
+    },
+    /// Interpolating kept gradients would be another picture.
+    #[error("gradients cannot be kept: {reason}")]
+    NotKept {
+        /// Why.
+        reason: &'static str,
+    },
+    /// Gradients are made of what lies on the device.
+    #[error("gradients read {}, and the volume on the device holds {} for them", held(.wanted.spline()), held(*.found))]
+    WrongGradientSource {
+        /// What [`Settings::gradient_source`] says.
+        wanted: GradientSource,
+        /// What the texture holds that they would read.
+        found: Option<Spline>,
+    },
+    /// The parameters hold a fixed number of lights.
+    #[error("{wanted} lights, the limit is {limit}")]
+    TooManyLights {
+        /// How many were asked for.
+        wanted: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+    /// A direction has a length.
+    #[error("the way to a light has the length 0")]
+    NoWayToLight,
+    /// The light's picture is that of one light.
+    #[error("half-angle slices lie half way to one light, and {wanted} were given")]
+    SeveralShadowLights {
+        /// How many were asked for.
+        wanted: usize,
+    },
+    /// Slices of all bricks in turn would have to be drawn before the light of the next slice is known.
+    #[error(
+        "half-angle slices go through all of the volume one by one, from the light: it must lie in one texture of the device, and lies in {bricks} bricks"
+    )]
+    ShadowsNeedOneBrick {
+        /// How many bricks the volume lies in.
+        bricks: usize,
+    },
+    /// Rays that are nearly as flat as the slices, or meet them from the other side.
+    #[error(
+        "rays of this perspective are up to {degrees:.0} degrees off the normal of slices half way to the light, the limit is {limit_degrees:.0}"
+    )]
+    TooSteep {
+        /// The angle of the ray that is farthest off.
+        degrees: f64,
+        /// What may be.
+        limit_degrees: f64,
+    },
+    /// The parameters hold a fixed number of planes.
+    #[error("{wanted} clip planes, the limit is {limit}")]
+    TooManyClipPlanes {
+        /// How many were asked for.
+        wanted: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+}
+
+fn held(spline: Option<Spline>) -> String {
+    spline.map_or("voxels".to_owned(), |spline| {
+        format!("coefficients of the {spline:?} spline")
+    })
+}
