@@ -27,7 +27,7 @@ const GRID: fn() -> Grid = || Grid {
 };
 
 /// The part of the colour that needs no light.
-pub const AMBIENT: f64 = 0.1;
+const AMBIENT: f64 = 0.1;
 
 fn half_angle() -> Settings {
     Settings {
@@ -42,7 +42,7 @@ fn half_angle() -> Settings {
 }
 
 /// One light, on matter as it is.
-pub fn plain(towards: DVec3) -> Option<Shading> {
+fn plain(towards: DVec3) -> Option<Shading> {
     let light = Light {
         towards,
         srgb: [1.0; 3],
@@ -55,14 +55,14 @@ pub fn plain(towards: DVec3) -> Option<Shading> {
 }
 
 /// Light from behind the eye, from the side, and from behind the volume.
-pub fn ways_to_light(camera: &Camera) -> [DVec3; 3] {
+fn ways_to_light(camera: &Camera) -> [DVec3; 3] {
     let axes = camera.frame();
     let at = |x: f64, y: f64, z: f64| x * axes.right + y * axes.up - z * axes.forward;
     [at(0.8, 0.5, 1.0), at(-1.0, 0.4, 0.2), at(0.3, 0.9, -0.8)]
 }
 
 /// In both projections, where half-angle slices can be.
-pub fn shots() -> [Shot; 2] {
+fn shots() -> [Shot; 2] {
     projections(&GRID()).map(|projection| Shot {
         grid: GRID(),
         camera: oblique_camera(&GRID(), projection),
@@ -73,14 +73,14 @@ pub fn shots() -> [Shot; 2] {
 
 /// Values fade to 0, which is transparent, towards the box: whether rounding takes a sample at its faces in or leaves
 /// it out changes no picture and no shadow.
-pub fn fading(p: DVec3) -> f64 {
+fn fading(p: DVec3) -> f64 {
     let far = GRID().far_corner();
     let inside = (p - 0.5).min(far - 0.5 - p).min_element();
     (inside / 2.0).min(1.0) * waves(p)
 }
 
 /// White, of one extinction per world length for values from `value` on, none below.
-pub fn white(steps: &[(f64, f64)]) -> TransferFunction {
+fn white(steps: &[(f64, f64)]) -> TransferFunction {
     let point = |&(value, extinction): &(f64, f64)| OpacityPoint {
         value,
         opacity: -f64::exp_m1(-extinction),
@@ -98,7 +98,7 @@ pub fn white(steps: &[(f64, f64)]) -> TransferFunction {
 }
 
 /// What twins in both precisions and the device make of a shot.
-pub fn pictures(volume: &Volume, shot: &Shot, transfer: &TransferFunction) -> [Picture; 3] {
+fn pictures(volume: &Volume, shot: &Shot, transfer: &TransferFunction) -> [Picture; 3] {
     let scene = shot.scene(volume, Some(transfer));
     [
         reference::render::<f64>(&scene).unwrap(),
