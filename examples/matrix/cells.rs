@@ -354,7 +354,6 @@ impl Matter {
                             value: 0.55,
                             half_width: 1.5,
                         },
-                        second: None,
                     }],
                 }),
                 ..function()
