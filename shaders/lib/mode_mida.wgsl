@@ -5,7 +5,7 @@
 //     C = beta C + (1 - beta A) alpha c        A = beta A + (1 - beta A) alpha
 //
 // For gamma over 0 beta is that of 0, and at the end of the ray what was gathered and the picture of the maximum M
-// (colour c_M, opacity a0_M) are mixed, as the paper's transition to MIP is one between pictures:
+// (colour c_M, opacity a0_M) are mixed, which for gamma = 1 is all that is left:
 //
 //     C = C + gamma (a0_M c_M - C)        A = A + gamma (a0_M - A)
 //

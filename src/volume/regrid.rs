@@ -88,7 +88,7 @@ mod tests {
         let turn = DMat3::from_rotation_z(0.3) * 0.7;
         let grid = Grid {
             dims: [8, 7, 9],
-            world_from_voxel: DAffine3::from_mat3_translation(turn, dvec3(2.0, 1.5, 2.0)),
+            world_from_voxel: DAffine3::from_mat3_translation(turn, dvec3(-0.5, 1.5, 2.0)),
         };
         let wanted = ramp(grid.dims, grid.world_from_voxel);
         let (found, share) = regridded(&coarse, &grid).expect("a volume");
