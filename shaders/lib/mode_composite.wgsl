@@ -14,23 +14,20 @@ struct Accumulator {
     // Where opacity reached one half; negative before that.
     depth: f32,
     samples: f32,
-    // The colour is that of a grey face, not decoded yet.
-    is_grey: bool,
 }
 
 fn begin() -> Accumulator {
-    return Accumulator(vec3(0.0), 1.0, -1.0, 0.0, false);
+    return Accumulator(vec3(0.0), 1.0, -1.0, 0.0);
 }
 
 // As it was left in the images of the picture and beside it.
 fn resumed(picture: vec4<f32>, beside: vec4<f32>) -> Accumulator {
-    return Accumulator(picture.xyz, beside.z, beside.y, beside.w, false);
+    return Accumulator(picture.xyz, beside.z, beside.y, beside.w);
 }
 
 // What the picture gets.
 fn picture_of(found: Accumulator) -> vec4<f32> {
-    let color = select(found.color, blended_grey(found.color), found.is_grey);
-    return vec4(color, 1.0 - found.transmittance);
+    return vec4(found.color, 1.0 - found.transmittance);
 }
 
 // 0, depth, transmittance, samples.
@@ -40,13 +37,11 @@ fn beside_of(found: Accumulator) -> vec4<f32> {
 
 fn add(so_far: Accumulator, sample: Sample, segment: Segment) -> Accumulator {
     var material = material_of(sample);
-    let is_face = segment.length == FACE_LENGTH;
-    if is_face {
+    if segment.length == FACE_LENGTH {
         material = on_face(material, value_of(sample));
     }
     let opacity = opacity_over(material.extinction, segment.length);
     var next = so_far;
-    next.is_grey = so_far.is_grey || (is_face && is_grey_face(material));
     next.color += so_far.transmittance * opacity * material.color;
     next.transmittance *= 1.0 - opacity;
     if so_far.depth < 0.0 && next.transmittance <= 0.5 {
