@@ -3,9 +3,10 @@
 use crate::camera::Camera;
 use crate::shaders::MAX_CHANNELS;
 use crate::technique::mixture::opacities_have_colors;
-use crate::technique::{CutFaces, Error, Keep, Mix, Mode, Role, Settings, View};
+use crate::technique::{CutFaces, Error, Jitter, Keep, Mix, Mode, Role, Settings, View};
 use crate::transfer::TransferFunction;
 use crate::volume::Volume;
+use std::f64::consts::SQRT_2;
 
 /// One of several things seen in the same place.
 #[derive(Clone, Copy, Debug)]
@@ -243,11 +244,33 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// Where in the pixel its rays go through: a regular grid of `per_side` squared, the centre for one.
-pub fn positions_in_pixel(per_side: u32) -> impl Iterator<Item = [f64; 2]> {
-    let at = move |i: u32| (f64::from(i) + 0.5) / f64::from(per_side) - 0.5;
-    (0..per_side).flat_map(move |y| (0..per_side).map(move |x| [at(x), at(y)]))
+/// Where in the pixel its rays go through: in the middles of a regular grid, or one at an uneven place of each of
+/// its cells (stratified sampling, Cook 1986), the same places in every pixel and others in each picture of a film.
+pub fn positions_in_pixel(settings: &Settings) -> impl Iterator<Item = [f64; 2]> + use<> {
+    let per_side = settings.rays_per_side;
+    let is_uneven = settings.uneven_rays && per_side > 1;
+    let Jitter { seed, frame } = settings.jitter;
+    let shift = f64::from(seed) * SQRT_2 + f64::from(frame) * GOLDEN;
+    let place = move |x: u32, y: u32| {
+        if !is_uneven {
+            return [0.5; 2];
+        }
+        let ray = f64::from(y * per_side + x);
+        R2.map(|step| (shift + 0.5 + (ray + 1.0) * step).fract())
+    };
+    (0..per_side).flat_map(move |y| {
+        (0..per_side).map(move |x| {
+            let [u, v] = place(x, y);
+            let at = |i: u32, part: f64| (f64::from(i) + part) / f64::from(per_side) - 0.5;
+            [at(x, u), at(y, v)]
+        })
+    })
 }
+
+/// Steps of the sequence R2 of M. Roberts (2018): 1/g and 1/g^2 with g^3 = g + 1.
+const R2: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
+/// Of the sequence with one number: 1/g with g^2 = g + 1.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 impl<'a> Scene<'a> {
     /// The view through one position in each pixel.
@@ -259,5 +282,36 @@ impl<'a> Scene<'a> {
             in_pixel,
             settings: self.settings,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn uneven_rays_go_through_each_cell_of_the_pixel_once_and_elsewhere_in_the_next_frame() {
+        let at = |uneven_rays, seed, frame| {
+            let settings = Settings {
+                rays_per_side: 8,
+                uneven_rays,
+                jitter: Jitter { seed, frame },
+                ..Settings::default()
+            };
+            positions_in_pixel(&settings).collect::<Vec<_>>()
+        };
+        let cell = |[x, y]: [f64; 2]| [x, y].map(|p| ((p + 0.5) * 8.0).floor() as u32);
+        let even = at(false, 3, 1);
+        let uneven = at(true, 3, 1);
+        for (even, uneven) in even.iter().zip(&uneven) {
+            assert_eq!(cell(*even), cell(*uneven), "{even:?} {uneven:?}");
+        }
+        for axis in 0..2 {
+            let mean = uneven.iter().map(|p| p[axis]).sum::<f64>() / 64.0;
+            assert!(mean.abs() < 0.01, "the mean of axis {axis} is {mean}");
+        }
+        assert_eq!(uneven, at(true, 3, 1));
+        assert_ne!(uneven, at(true, 4, 1));
+        assert_ne!(uneven, at(true, 3, 2));
     }
 }

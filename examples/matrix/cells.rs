@@ -128,9 +128,15 @@ pub const FEATURES: &[Feature] = &[
     feature("jitter", "`--jitter`", Seen::Alone, |s| {
         s.lattice = Lattice::Jitter;
     }),
-    feature("several rays a pixel", "`--aa 4`", Seen::Alone, |s| {
-        s.rays_per_side = 2;
-    }),
+    feature(
+        "several rays a pixel",
+        "`--aa 4`, `--aa-uneven`",
+        Seen::Alone,
+        |s| {
+            s.rays_per_side = 2;
+            s.uneven_rays = true;
+        },
+    ),
     feature("interpolated slices", "`--smooth`", Seen::Alone, |s| {
         s.smooth = true;
     }),

@@ -96,7 +96,7 @@ fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     let per_side = scene.settings.rays_per_side;
     let weight = R::from_f64(1.0 / f64::from(per_side * per_side));
     let mut pixels = vec![[R::from_f64(0.0); 4]; centers.len()];
-    for in_pixel in positions_in_pixel(per_side) {
+    for in_pixel in positions_in_pixel(scene.settings) {
         let found = if in_pixel == [0.0; 2] {
             centers.clone()
         } else {

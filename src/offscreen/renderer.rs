@@ -239,7 +239,7 @@ impl<'v> Renderer<'v> {
         }
         let per_side = scene.settings.rays_per_side;
         let mut mean = Mean::new(scene.extent_pixels, per_side);
-        for in_pixel in positions_in_pixel(per_side) {
+        for in_pixel in positions_in_pixel(scene.settings) {
             clock.add(self.gather(scene, in_pixel)?);
             mean.add(&self.resolve()?);
         }

@@ -204,6 +204,8 @@ pub struct Settings {
     pub samples_per_voxel: f64,
     /// Rays per pixel is the square of this; at least 1.
     pub rays_per_side: u32,
+    /// Several rays go through uneven places of the pixel, which [`Self::jitter`] moves.
+    pub uneven_rays: bool,
     /// The ray ends after the sample at which transmittance falls under this; 0: never.
     pub termination: f32,
     /// In which numbers colours are blended.
@@ -250,6 +252,7 @@ impl Default for Settings {
             preintegrated: false,
             samples_per_voxel: 1.0,
             rays_per_side: 1,
+            uneven_rays: false,
             termination: 0.0,
             color_space: crate::picture::ColorSpace::default(),
             crop: None,

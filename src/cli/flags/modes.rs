@@ -60,7 +60,7 @@ impl ModeFlags {
                 "leave out --technique, or take --mode mip",
             ));
         }
-        if lattice != Lattice::Ray && mode.needs_rays() {
+        if lattice == Lattice::Planes && mode.needs_rays() {
             return Err(Error::usage(
                 format!(
                     "--mode {word} takes samples along rays: --lattice planes is for modes that slicers have"

@@ -67,6 +67,11 @@ pub struct SamplingFlags {
     #[arg(long, value_name = "N")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub aa: Option<u32>,
+    /// Send the rays of --aa through uneven places of the pixel, other ones in each frame of a film: less regular
+    /// patterns where detail is finer than pixels
+    #[arg(long)]
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub aa_uneven: bool,
     /// Blend in linear light, or in sRGB numbers as VTK and Slicer do [default: linear]
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -143,6 +148,7 @@ impl SamplingFlags {
             order: self.order.unwrap_or_default().order(),
             samples_per_voxel: samples_per_voxel(self.samples_per_voxel.unwrap_or(1.0))?,
             rays_per_side: rays_per_side(self.aa.unwrap_or(1))?,
+            uneven_rays: self.aa_uneven,
             termination,
             color_space,
             crop: self.crop.map(crop_box).transpose()?,
@@ -211,6 +217,9 @@ impl SamplingFlags {
     /// Flags that change nothing under the others, a sentence each.
     pub fn idle(&self) -> Vec<&'static str> {
         let mut notes = Vec::new();
+        if self.aa_uneven && self.aa.unwrap_or(1) == 1 {
+            notes.push("--aa-uneven has no effect on one ray a pixel: --aa 4");
+        }
         let technique = self.technique.unwrap_or_default();
         if self.order.is_some() && technique == TechniqueWord::Raycast {
             notes.push("--order has no effect on rays, they go front to back");
