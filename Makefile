@@ -2,11 +2,12 @@
 #              by apt where there is none)
 # make plain   what draws once more, without validation of synchronization
 # make demo    the built-in head with each technique, and with DATA=path a file of yours, into target/demo
+# make gallery six real volumes by the classic techniques, into docs/gallery
 # make bench   frame times of each technique on this device
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := test
-.PHONY: test plain demo sheet bench driver layers
+.PHONY: test plain demo sheet gallery bench driver layers
 
 CARGO ?= cargo
 ROOT := $(if $(filter 0,$(shell id -u)),,sudo )
@@ -101,6 +102,11 @@ sheet: driver
 	@[ -d "$(VOLUMES)" ] || { echo "VOLUMES=folder names the volumes" >&2; exit 1; }
 	$(CARGO) build --locked --release
 	cd "$(VOLUMES)" && $(CURDIR)/target/release/stratavox sheet --force --columns 6 -o $(CURDIR)/docs/sheet.png $(SHEET)
+
+gallery: driver
+	@[ -d "$(VOLUMES)" ] || { echo "VOLUMES=folder names the volumes" >&2; exit 1; }
+	$(CARGO) build --locked --release
+	docs/gallery/draw.sh target/release/stratavox "$(VOLUMES)"
 
 bench: driver
 	$(CARGO) build --locked --release

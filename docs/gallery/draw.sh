@@ -1,0 +1,22 @@
+#!/bin/sh
+# Draws docs/gallery/*.png: stratavox and the folder of the volumes are its words. `make gallery` calls it.
+set -eu
+program=$1
+volumes=$2
+here=$(dirname "$0")
+draw() {
+    name=$1
+    input=$2
+    shift 2
+    "$program" render "$volumes/$input" --size 400x400 --force --progress none -o "$here/$name.png" "$@"
+}
+draw skull ct-cranium/cranium.nrrd --preset boundaries --shading phong --filter cubic --samples-per-voxel 2 \
+    --azimuth -60 --zoom 1.5
+draw torso ct-torso/torso-2x.mha --tf "$here/torso.json" --shading phong --crop 45,211,20,180,0,137 \
+    --azimuth -75 --elevation 10 --zoom 1.3
+draw brain mri-brainsmall/brainsmall.nhdr --tf "$here/brain.json" --shading phong --material 0.6,0.4,0.1,10 \
+    --ambient-occlusion 1 --samples-per-voxel 2 --azimuth 240 --elevation 20 --zoom 2
+draw walnut ct-walnut/walnut.mhd --shading phong --material 0.3,0.6,0.1,10 --light 1,-0.5,0.7 --shadows volume \
+    --azimuth 200 --elevation 40 --zoom 1.2
+draw nuclei tiff-nuclei/img3d.tif --mode mida --samples-per-voxel 2 --zoom 1.1
+draw pet dicom-pet --mode mip --denoise nlm --view anterior --zoom 1.3
