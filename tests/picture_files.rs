@@ -65,6 +65,7 @@ fn npy_files_are_what_numpy_writes() {
         names(folder.path()),
         [
             "out.depth.npy",
+            "out.label.npy",
             "out.npy",
             "out.position.npy",
             "out.samples.npy",
@@ -128,6 +129,7 @@ fn exr_files_hold_the_same_floats_and_a_channel_for_each_layer() {
             "G",
             "R",
             "depth",
+            "label",
             "position.X",
             "position.Y",
             "position.Z",
