@@ -144,7 +144,7 @@ impl<'a> Scene<'a> {
         let only_composite = |role: &Role| matches!(role, Role::Labels | Role::Opacity);
         let Settings { mode, filter, .. } = *self.settings;
         self.settings.check()?;
-        if self.mix() != Mix::Alone {
+        if !matches!(self.mix(), Mix::Alone | Mix::Graded) {
             self.settings.check_mixed()?;
         }
         if self.is_graded() {

@@ -114,7 +114,15 @@ impl From<offscreen::Error> for Error {
             offscreen::Error::Technique(error @ technique::Error::ShadowsNeedOneBrick { .. }) => {
                 Self::Memory(error.to_string())
             }
-            offscreen::Error::Technique(error) => Self::Limit(error.to_string()),
+            offscreen::Error::Technique(
+                error @ (technique::Error::TooManySamples { .. }
+                | technique::Error::LoopsEnd { .. }
+                | technique::Error::SlabsTooLong { .. }),
+            ) => Self::Limit(error.to_string()),
+            offscreen::Error::Technique(error) => Self::usage(
+                error.to_string(),
+                "docs/matrix.md shows which technique, mode, filter and feature go together",
+            ),
             offscreen::Error::NoLayer { .. } => Self::NotBuilt(error.to_string()),
             offscreen::Error::NoLabels => {
                 Self::usage(error.to_string(), "--labels FILE lays a map over INPUT")
@@ -136,7 +144,7 @@ impl Error {
     pub fn not_shaded_together() -> Self {
         Self::usage(
             "--shading phong is for one number a voxel, --shadows half-angle too, and several are drawn",
-            "draw one of them: --component 0, without --labels, --channel and --iso-color-by",
+            "draw one of them: --component 0, without --labels, --channel and --opacity-variable",
         )
     }
 

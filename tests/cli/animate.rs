@@ -407,4 +407,14 @@ fn a_light_moves_from_key_to_key() {
         ));
         run.assert_refused(2, &["frame 0 of the keyframes", wanted]);
     }
+    fs::write(
+        folder.path("light.json"),
+        r#"{"stratavox_keyframes":1,"frames":3,"keys":[{"at":0,"light":[2,0,0]},{"at":1,"light":[-1,0,0]}]}"#,
+    )
+    .expect("a file");
+    let run = folder.run(&format!(
+        "animate {lit} --keyframes light.json -o g%d.png {SMALL}"
+    ));
+    run.assert_refused(2, &["frame 1 of the keyframes", "opposite sides"]);
+    assert!(!folder.path("g0.png").exists(), "a frame of no film");
 }

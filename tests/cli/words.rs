@@ -221,3 +221,30 @@ fn ways_to_sample_are_refused_where_there_are_none() {
             .assert_refused(2, &[named, "hint"]);
     }
 }
+
+#[test]
+fn features_that_do_not_go_together_are_wrong_words_and_no_limit() {
+    let folder = Folder::new();
+    let head = "render phantom:head,n=12 --device reference --size 8x8 -o a.png";
+    for (words, wanted) in [
+        ("--preset boundaries --preintegrated", "its gradient"),
+        (
+            "--technique slices-2d --smooth --preset boundaries",
+            "its gradient",
+        ),
+        (
+            "--shading phong --light 1,0,0 --shadows volume --light-size nan",
+            "a number",
+        ),
+    ] {
+        folder
+            .run(&format!("{head} {words}"))
+            .assert_refused(2, &[wanted]);
+    }
+    let function = r#"{"stratavox_transfer_function":1,"widgets":[
+        {"shape":"contour","value":300,"opacity":0.5,"color":[1,1,1]}]}"#;
+    std::fs::write(folder.path("widgets.json"), function).expect("a file");
+    folder
+        .run(&format!("{head} --color-tf widgets.json"))
+        .assert_refused(2, &["--color-tf", "`color`"]);
+}

@@ -98,6 +98,12 @@ impl Tracks {
             let message = format!("a key moves the only `light`, and there are {found}");
             return Err(Error::usage(message, hint));
         }
+        if towards.iter().map(|x| x * x).sum::<f64>().sqrt() < SHORTEST_NORMAL {
+            return Err(Error::usage(
+                "the `light` of two keys comes from opposite sides: no way lies between them",
+                "a key between them says where it goes along",
+            ));
+        }
         let srgb = shading.lights.first().map_or([1.0; 3], |light| light.srgb);
         let towards = towards.into();
         shading.lights = vec![Light { towards, srgb }];

@@ -116,7 +116,15 @@ impl ClassificationFlags {
     pub fn check(&self) -> Result<(), Error> {
         self.window()?;
         self.function_of_file()?;
-        self.part(&self.color_function)?;
+        if self
+            .part(&self.color_function)?
+            .is_some_and(|function| has_no_color(&function))
+        {
+            return Err(Error::usage(
+                "--color-tf: wanted a function with the key `color`, found one of widgets alone",
+                "--tf takes the whole of such a file",
+            ));
+        }
         self.part(&self.opacity_function)?;
         if let Some(name) = &self.preset {
             preset(name).map_err(|problem| Error::usage(problem, "--preset ct-bone"))?;
@@ -292,6 +300,13 @@ impl ClassificationFlags {
             .map(|part| function_in(&part.transfer_function));
         part.transpose()
     }
+}
+
+/// What is read of a file whose widgets alone have colours: black everywhere.
+fn has_no_color(function: &TransferFunction) -> bool {
+    let widgets = function.graded.iter().flat_map(|graded| &graded.widgets);
+    let is_black = function.color.len() == 1 && function.color[0].srgb == [0.0; 3];
+    is_black && widgets.count() > 0
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Light on what is composited: flags to [`Shading`].
 
-use super::{Error, Numbers, occlusion::OcclusionWord, shadows::ShadowsWord};
+use super::{Error, Numbers, finite, occlusion::OcclusionWord, shadows::ShadowsWord};
 use crate::{
     shaders::MAX_LIGHTS,
     technique::{AmbientOcclusion, Light, Mode, Shading, Shadows},
@@ -38,7 +38,7 @@ pub struct LightFlags {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shadows: Option<ShadowsWord>,
     /// How wide lights look, in degrees: 0 for sharp shadows [default: 5]
-    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true, help_heading = HEADING)]
+    #[arg(long, value_name = "DEGREES", value_parser = finite, allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub light_size: Option<f64>,
 }
@@ -216,13 +216,12 @@ impl LightFlags {
         if is_dark && !self.light.is_empty() {
             notes.push("--light has no effect without --shading phong");
         }
-        let has_shadows = self.shadows.unwrap_or_default() != ShadowsWord::Off;
-        if has_shadows && (is_dark || self.light.is_empty()) {
+        if self.shadows == Some(ShadowsWord::Volume) && (is_dark || self.light.is_empty()) {
             notes.push(
-                "--shadows has no effect without --shading phong and --light: nothing seen is in the shadow of the eye's own light",
+                "--shadows volume has no effect without --shading phong and --light: nothing seen is in the shadow of the eye's own light",
             );
         }
-        if self.light_size.is_some() && !has_shadows {
+        if self.light_size.is_some() && self.shadows != Some(ShadowsWord::Volume) {
             notes.push("--light-size has no effect without --shadows volume");
         }
         if self.ambient_occlusion.is_some() && !is_dark && self.material.is_none() {

@@ -115,7 +115,9 @@ impl Shown {
         if let Some(note) = note {
             progress.note(&note);
         }
-        if settings.shading.is_some() && !is_alone {
+        // Surfaces that another variable colours are lit as they are.
+        let is_painted = plan == Plan::One && scene.modes.paint(settings.mode).is_some();
+        if settings.shading.is_some() && !is_alone && !is_painted {
             return Err(Error::not_shaded_together());
         }
         if settings.ambient_occlusion.is_some() && !is_alone {
