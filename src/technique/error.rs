@@ -31,7 +31,7 @@ pub enum Error {
     /// A volume is on the device in another way than the view's technique reads it.
     #[error("the volume lies on the device as {found:?}, this view reads it as {wanted:?}")]
     WrongLayout {
-        /// What [`View::texture_layout`] says.
+        /// What [`super::View::texture_layout`] says.
         wanted: crate::resident::TextureLayout,
         /// How the volume lies.
         found: crate::resident::TextureLayout,
@@ -206,7 +206,7 @@ pub enum Error {
     /// Gradients are made of what lies on the device.
     #[error("gradients read {}, and the volume on the device holds {} for them", held(.wanted.spline()), held(*.found))]
     WrongGradientSource {
-        /// What [`Settings::gradient_source`] says.
+        /// What [`super::Settings::gradient_source`] says.
         wanted: GradientSource,
         /// What the texture holds that they would read.
         found: Option<Spline>,
