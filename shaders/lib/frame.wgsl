@@ -4,7 +4,8 @@
 // f32 then keeps the same precision wherever the patient lay. Matrices hold their rows one after
 // another and are applied as `vec4(position, 1) * rows`.
 
-const MAX_CLIP_PLANES: u32 = 8u;
+// The parameters of a recording may take 16 KiB on every device: these are half of that.
+const MAX_CLIP_PLANES: u32 = 512u;
 // One lane of a vector each.
 const MAX_CHANNELS: u32 = 4u;
 const MAX_LIGHTS: u32 = 4u;

@@ -212,7 +212,7 @@ pub struct Settings {
     pub color_space: crate::picture::ColorSpace,
     /// Voxel space box to keep, min and max; fractions allowed. `None`: all of it.
     pub crop: Option<[glam::DVec3; 2]>,
-    /// At most [`crate::shaders::MAX_CLIP_PLANES`].
+    /// What is behind any of them is cut away. At most [`crate::shaders::MAX_CLIP_PLANES`], hundreds.
     pub clip_planes: Vec<ClipPlane>,
     /// Composite by rays: what the crop box and the clip planes lay bare is an opaque cross-section.
     pub cut_faces: Option<CutFaces>,

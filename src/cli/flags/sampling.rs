@@ -80,12 +80,12 @@ pub struct SamplingFlags {
     #[arg(long, value_name = "X0,X1,Y0,Y1,Z0,Z1", allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crop: Option<Numbers<6>>,
-    /// Keep the world points with n.x >= D (repeatable)
+    /// Keep the world points with n.x >= D (repeatable, up to 512 planes)
     #[arg(long, value_name = "NX,NY,NZ,D", allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub clip: Vec<Numbers<4>>,
     /// Keep a box that may be turned: centre and size in world length, then degrees about the world's x, y and z, one
-    /// after the other; six of the 8 planes there are
+    /// after the other; it counts as six of --clip
     #[arg(
         long,
         value_name = "CX,CY,CZ,SX,SY,SZ[,RX,RY,RZ]",
@@ -178,7 +178,7 @@ impl SamplingFlags {
                     "--clip-box takes six clip planes and --clip {}: at most {MAX_CLIP_PLANES} are possible",
                     self.clip.len()
                 ),
-                "use --crop for planes along the axes of the grid",
+                "leave planes out; --crop cuts along the axes of the grid",
             ));
         }
         Ok(planes)
@@ -283,7 +283,7 @@ fn clip_planes(clips: &[Numbers<4>]) -> Result<Vec<ClipPlane>, Error> {
                 "{} clip planes, at most {MAX_CLIP_PLANES} are possible",
                 clips.len()
             ),
-            "use --crop for planes along the axes of the grid",
+            "leave planes out; --crop cuts along the axes of the grid",
         ));
     }
     let plane = |Numbers([x, y, z, offset]): &Numbers<4>| {
@@ -368,7 +368,7 @@ mod tests {
         assert!(text.contains("--clip 0,0,0,3"), "{text}");
         let many = vec![Numbers([1.0, 0.0, 0.0, 3.0]); MAX_CLIP_PLANES as usize + 1];
         let text = refusal(&flags(|f| f.clip = many));
-        assert!(text.contains("at most 8"), "{text}");
+        assert!(text.contains("at most 512"), "{text}");
     }
 
     #[test]
