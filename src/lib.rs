@@ -169,6 +169,7 @@
 //! `shaders/lib/mode_*.wgsl` says what a sample adds, `shaders/resolve.wgsl` makes it a colour, and
 //! [`offscreen::Renderer::render`] (or a host) puts the passes in order.
 
+pub mod blue_noise;
 pub mod camera;
 #[cfg(feature = "cli")]
 pub mod cli;

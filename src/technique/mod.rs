@@ -10,6 +10,7 @@ mod frame_of_mode;
 pub mod gradient;
 mod gradient_filter;
 pub mod gradient_taps;
+mod in_pixel;
 mod inputs;
 pub mod isosurface;
 mod light_field;
@@ -38,6 +39,7 @@ pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 pub use error::Error;
 pub use frame::View;
 pub use gradient_filter::{GradientFilter, GradientSource, Keep, Operator};
+pub use in_pixel::InPixel;
 pub use inputs::{Inputs, Take, Words};
 pub use light_field::LightField;
 pub use light_plan::{AmbientOcclusion, LightPlan, MAX_LIGHT_CELLS, MAX_RADIUS_CELLS, Shadows};
@@ -141,7 +143,7 @@ pub enum Lattice {
     Jitter,
 }
 
-/// What moves the pattern of [`Lattice::Jitter`]: same numbers, same picture.
+/// What moves the patterns of [`Lattice::Jitter`] and of [`Settings::uneven_rays`]: same numbers, same picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Jitter {
     /// Another pattern.
@@ -189,7 +191,7 @@ pub struct Settings {
     pub filter: Filter,
     /// Which samples the ray caster takes.
     pub lattice: Lattice,
-    /// What moves the pattern of [`Lattice::Jitter`].
+    /// What moves the patterns of [`Lattice::Jitter`] and of uneven rays.
     pub jitter: Jitter,
     /// How slicers blend.
     pub order: Order,
@@ -204,7 +206,7 @@ pub struct Settings {
     pub samples_per_voxel: f64,
     /// Rays per pixel is the square of this; at least 1.
     pub rays_per_side: u32,
-    /// Several rays go through uneven places of the pixel, which [`Self::jitter`] moves.
+    /// Several rays go through uneven places of the pixel, others in each pixel, which [`Self::jitter`] moves.
     pub uneven_rays: bool,
     /// The ray ends after the sample at which transmittance falls under this; 0: never.
     pub termination: f32,

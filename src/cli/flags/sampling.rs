@@ -51,7 +51,8 @@ pub struct SamplingFlags {
     #[arg(long)]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub smooth: bool,
-    /// Rays: steps begin elsewhere in each pixel, which turns bands into grain; another number, another pattern
+    /// Rays: steps begin elsewhere in each pixel, which turns bands into fine grain (blue noise); another number, another
+    /// pattern
     #[arg(long, value_name = "SEED", num_args = 0..=1, default_missing_value = "0", require_equals = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub jitter: Option<u32>,
@@ -67,8 +68,8 @@ pub struct SamplingFlags {
     #[arg(long, value_name = "N")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub aa: Option<u32>,
-    /// Send the rays of --aa through uneven places of the pixel, other ones in each frame of a film: less regular
-    /// patterns where detail is finer than pixels
+    /// Send the rays of --aa through uneven places of the pixel, other ones in each pixel and each frame of a film: grain
+    /// in place of regular patterns where detail is finer than pixels
     #[arg(long)]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub aa_uneven: bool,
