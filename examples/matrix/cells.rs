@@ -366,8 +366,8 @@ impl Matter {
         let classified = preclassified(&numbers, &function(), length, ColorSpace::default());
         let span = DVec3::from_array(DIMS.map(f64::from)).length();
         let bowl = |p: DVec3| {
-            let square = (p - dvec3(-12.0, -9.0, -14.0)).length_squared();
-            0.1 + 0.8 * (square - 421.0) / 1078.0
+            let square = (p - dvec3(9.0, -16.0, 12.0)).length_squared();
+            0.1 + 0.8 * (square - 280.0) / 700.0
         };
         let camera = Camera {
             eye: center() + span * dvec3(0.9, -1.3, 0.6),
