@@ -170,4 +170,6 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         ],
     ),
     ("light_volume", &[]),
+    ("macro_cells", &[]),
+    ("distance_map", &[]),
 ];

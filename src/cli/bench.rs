@@ -103,7 +103,10 @@ impl Bench {
     /// One scene from each of the views.
     fn views(&self, scene: &SceneFlags, cameras: &[Camera]) -> Result<String, Error> {
         let progress = Progress::new(self.progress);
-        let settings = scene.settings(Depth::Eight)?;
+        let settings = Settings {
+            skip: !self.no_skip,
+            ..scene.settings(Depth::Eight)?
+        };
         progress.stage("prepare", 0, 1);
         let word = scene.device.as_deref();
         let device = Device::find(word)?;
@@ -159,7 +162,10 @@ impl Bench {
     fn techniques(&self, scene: &SceneFlags) -> Result<String, Error> {
         let progress = Progress::new(self.progress);
         progress.stage("read", 0, 1);
-        let base = scene.settings(Depth::Eight)?;
+        let base = Settings {
+            skip: !self.no_skip,
+            ..scene.settings(Depth::Eight)?
+        };
         let word = scene.device.as_deref();
         let extent_pixels = scene.picture.extent_pixels()?;
         let mut rows = Vec::new();
