@@ -239,7 +239,12 @@ pub const FEATURES: &[Feature] = &[
         words: "",
         seen: Seen::Alone,
         is_in_bricks: true,
-        dress: |_| {},
+        // Surfaces in bricks want short segments: half a voxel for wide filters.
+        dress: |s| {
+            if s.mode == Mode::Iso {
+                s.samples_per_voxel = 2.5;
+            }
+        },
     },
     feature("noise filters", "`--denoise`", Seen::Denoised, |_| {}),
     feature("voxels without data", "", Seen::Holed, |_| {}),
@@ -459,7 +464,7 @@ impl Matter {
             }),
             beside,
             camera: &self.cameras[nth % 2],
-            extent_pixels: [24, 20],
+            extent_pixels: [22, 19],
             settings,
         }
     }
