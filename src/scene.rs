@@ -332,7 +332,7 @@ mod tests {
         let mean =
             |number: &dyn Fn(usize) -> f64| (0..uneven.len()).map(number).sum::<f64>() / count;
         // Five standard errors of even numbers on [-1/2, 1/2] and of products of two of them.
-        for axis in 0..2 {
+        for axis in [0, 1] {
             let x = |i: usize| uneven[i % uneven.len()][axis];
             assert!(mean(&x).abs() < 5.0 * (1.0 / 12.0 / count).sqrt());
             let square = mean(&|i| x(i) * x(i));

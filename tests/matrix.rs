@@ -8,7 +8,7 @@ mod cells;
 #[path = "../examples/matrix/page.rs"]
 mod page;
 
-use cells::{DENOISE, FEATURES, FILTERS, Feature, MODES, Matter, settings};
+use cells::{DENOISE, FEATURES, FILTERS, Feature, MODES, Matter, Seen, settings};
 use shared::{Worst, compare, device, device_with};
 use std::error::Error;
 use stratavox::gpu::Caps;
@@ -63,9 +63,9 @@ fn assert_cells(technique: Technique) {
         let (channels, parts) = (matter.channels(feature.seen), matter.parts(feature.seen));
         let any = settings(technique, MODES[0].0, FILTERS[0].0, feature);
         let scene = of_device.scene(0, feature.seen, &any, &channels, &parts);
-        let device = match feature.is_in_bricks {
-            true => device_with(small()),
-            false => device(),
+        let device = match feature.seen {
+            Seen::Bricked => device_with(small()),
+            _ => device(),
         };
         let mut renderer = Renderer::several(device, scene.volumes()).expect("a renderer");
         for (mode, _) in MODES {
@@ -109,7 +109,7 @@ fn is_drawn(renderer: &mut Renderer, [scene, of_twin]: [Scene; 2], feature: &Fea
     let [double, single] = twins.map(|twin| twin.unwrap_or_else(|e| panic!("{what}: {e}")));
     let found = found.unwrap_or_else(|e| panic!("{what}: {e}")).picture;
     let covered = single.pixels.iter().filter(|p| p[3] > 0.01).count();
-    assert!(covered > 100, "{what}: only {covered} pixels are drawn");
+    assert!(covered > 80, "{what}: only {covered} pixels are drawn");
     if settings.conformance {
         let mut found = found;
         if settings.uneven_rays && settings.filter == Filter::Nearest {
@@ -155,7 +155,7 @@ fn assert_lit_alike(what: &str, wanted: &Picture, found: &Picture) {
             worst.take(pixel, off, 2e-3 + f64::from(denser));
         }
     }
-    assert!(counted > 100, "{what}: only {counted} pixels are as dense");
+    assert!(counted > 80, "{what}: only {counted} pixels are as dense");
     worst.assert_holds();
 }
 

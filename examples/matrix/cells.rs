@@ -56,6 +56,8 @@ pub enum Seen {
     Holed,
     /// One that rises everywhere, so that its gradient has a direction everywhere.
     Bowl,
+    /// One that is to lie in several textures.
+    Bricked,
     /// One out of which a noise filter has taken what it could.
     Denoised,
     /// Two volumes, each with a function.
@@ -78,8 +80,6 @@ pub struct Feature {
     pub words: &'static str,
     /// What is seen.
     pub seen: Seen,
-    /// Whether it is to lie in several textures.
-    pub is_in_bricks: bool,
     dress: fn(&mut Settings),
 }
 
@@ -93,7 +93,6 @@ const fn feature(
         name,
         words,
         seen,
-        is_in_bricks: false,
         dress,
     }
 }
@@ -234,18 +233,12 @@ pub const FEATURES: &[Feature] = &[
             s.keep_gradients = Keep::Always;
         },
     ),
-    Feature {
-        name: "a volume in several bricks",
-        words: "",
-        seen: Seen::Alone,
-        is_in_bricks: true,
+    feature("a volume in several bricks", "", Seen::Bricked, |s| {
         // Surfaces in bricks want short segments: half a voxel for wide filters.
-        dress: |s| {
-            if s.mode == Mode::Iso {
-                s.samples_per_voxel = 2.5;
-            }
-        },
-    },
+        if s.mode == Mode::Iso {
+            s.samples_per_voxel = 2.5;
+        }
+    }),
     feature("noise filters", "`--denoise`", Seen::Denoised, |_| {}),
     feature("voxels without data", "", Seen::Holed, |_| {}),
     feature(
@@ -446,9 +439,12 @@ impl Matter {
             Seen::Channels | Seen::Labelled | Seen::Veiled => Beside::Channels(channels),
             Seen::Colored => Beside::Colors(parts),
             Seen::Classified => Beside::Classified(parts),
-            Seen::Alone | Seen::Graded | Seen::Holed | Seen::Bowl | Seen::Denoised => {
-                Beside::Nothing
-            }
+            Seen::Alone
+            | Seen::Bricked
+            | Seen::Graded
+            | Seen::Holed
+            | Seen::Bowl
+            | Seen::Denoised => Beside::Nothing,
         };
         Scene {
             volume: match seen {
