@@ -460,7 +460,7 @@ impl Matter {
             }),
             beside,
             camera: &self.cameras[nth % 2],
-            extent_pixels: [22, 19],
+            extent_pixels: [20, 18],
             settings,
         }
     }
