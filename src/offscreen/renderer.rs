@@ -183,7 +183,7 @@ impl<'v> Renderer<'v> {
             }
             self.resident.insert(copied, made);
         }
-        Ok(())
+        self.keep_corners(scene, copied)
     }
 
     /// The picture of `scene`, whose volume is the renderer's, with `layers`.
