@@ -16,7 +16,7 @@ struct BlueNoise {
     ranks: array<u32>,
 }
 
-@group(0) @binding(37) var<storage, read> blue_noise: BlueNoise;
+@group(0) @binding(38) var<storage, read> blue_noise: BlueNoise;
 
 // Over 0, at most 1.
 fn jitter_of(pixel: vec2<f32>) -> f32 {
