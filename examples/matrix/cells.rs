@@ -460,7 +460,7 @@ impl Matter {
             }),
             beside,
             camera: &self.cameras[nth % 2],
-            extent_pixels: [20, 18],
+            extent_pixels: [22, 19],
             settings,
         }
     }
