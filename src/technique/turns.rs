@@ -8,7 +8,8 @@
 //! for n volumes: the sample itself, the search for it, what is left out on the way; with 7 looks where a gradient is made of differences, 28 more (with the turn that ends them) where
 //! there is a second derivative, two where there are slabs, and else one. A mask goes round
 //! for the layers and rows of the footprint, a kernel for those of its taps, a search for the halvings of the points,
-//! light for lamps and for the corners of a cell of the light volume.
+//! light for lamps and for the corners of a cell of the light volume. Clip planes are gone over once a ray, and once
+//! more for cut faces.
 
 use super::{Error, Filter, Keep, Mix, Operator, Settings, Take, Technique, View, Words};
 
@@ -103,7 +104,8 @@ impl View<'_> {
             return Ok(());
         }
         let turns = turns_per_sample(self.settings, words, volumes, functions);
-        let limit = (f64::from(max_loop_turns) - SPARE).max(0.0) / turns as f64;
+        let clip = 2.0 * self.settings.clip_planes.len() as f64;
+        let limit = (f64::from(max_loop_turns) - SPARE - clip).max(0.0) / turns as f64;
         let wanted = self.longest_sample_count();
         if wanted <= limit {
             return Ok(());
