@@ -319,3 +319,26 @@ fn a_clamp_can_only_make_limits_stricter() {
     );
     assert_eq!(clamped.timestamp_period_ns, own.timestamp_period_ns);
 }
+
+#[test]
+fn a_shader_with_more_storage_buffers_than_a_stage_may_have_is_refused() {
+    let three = Caps {
+        max_storage_buffers_per_stage: 3,
+        ..Caps::UNLIMITED
+    };
+    let headless = clamped(three);
+    let gpu = headless.gpu();
+    let of_four = |shader: &&stratavox::shaders::Shader| {
+        let kinds = shader.bindings.iter().map(|slot| slot.kind);
+        kinds
+            .filter(|&kind| kind == stratavox::shaders::BindingKind::Storage)
+            .count()
+            == 4
+    };
+    let mut shaders = stratavox::shaders::SHADERS.iter();
+    let shader = shaders.find(of_four).expect("a shader of four");
+    assert_eq!(
+        refused_by(gpu, ComputePipeline::new(gpu, shader)),
+        ("maxPerStageDescriptorStorageBuffers", 4, 3)
+    );
+}

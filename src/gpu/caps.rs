@@ -19,6 +19,8 @@ pub struct Caps {
     pub max_resource_bytes: u64,
     pub max_storage_buffer_range: u32,
     pub max_uniform_buffer_range: u32,
+    /// `maxPerStageDescriptorStorageBuffers`.
+    pub max_storage_buffers_per_stage: u32,
     pub max_buffer_bytes: u64,
     pub max_allocation_bytes: u64,
     pub max_allocations: u64,
@@ -52,6 +54,7 @@ impl Caps {
         max_resource_bytes: u64::MAX,
         max_storage_buffer_range: u32::MAX,
         max_uniform_buffer_range: u32::MAX,
+        max_storage_buffers_per_stage: u32::MAX,
         max_buffer_bytes: u64::MAX,
         max_allocation_bytes: u64::MAX,
         max_allocations: u64::MAX,
@@ -77,6 +80,7 @@ impl Caps {
         max_resource_bytes: 1 << 31,
         max_storage_buffer_range: 1 << 27,
         max_uniform_buffer_range: 16_384,
+        max_storage_buffers_per_stage: 4,
         max_buffer_bytes: 1 << 30,
         max_allocation_bytes: 1 << 30,
         max_allocations: 4096,
@@ -120,6 +124,7 @@ impl Caps {
             max_resource_bytes: u64::MAX,
             max_storage_buffer_range: limits.max_storage_buffer_range,
             max_uniform_buffer_range: limits.max_uniform_buffer_range,
+            max_storage_buffers_per_stage: limits.max_per_stage_descriptor_storage_buffers,
             max_buffer_bytes: properties13.max_buffer_size,
             max_allocation_bytes: properties11.max_memory_allocation_size,
             max_allocations: limits.max_memory_allocation_count.into(),
@@ -163,6 +168,9 @@ impl Caps {
             max_uniform_buffer_range: self
                 .max_uniform_buffer_range
                 .min(other.max_uniform_buffer_range),
+            max_storage_buffers_per_stage: self
+                .max_storage_buffers_per_stage
+                .min(other.max_storage_buffers_per_stage),
             max_buffer_bytes: self.max_buffer_bytes.min(other.max_buffer_bytes),
             max_allocation_bytes: self.max_allocation_bytes.min(other.max_allocation_bytes),
             max_allocations: self.max_allocations.min(other.max_allocations),

@@ -1,6 +1,6 @@
 //! The bindings that the shaders of one pipeline declare, as Vulkan wants them.
 
-use super::{Error, Gpu, error::Doing, owned::Own};
+use super::{Error, Gpu, error::Doing, error::within, owned::Own};
 use crate::shaders::{BindingKind, BindingSlot, Shader, Stage};
 use ash::vk;
 use std::{collections::BTreeMap, sync::Arc};
@@ -22,6 +22,9 @@ impl Layout {
     pub(super) fn new(gpu: &Arc<Gpu>, shaders: &[&Shader], name: &str) -> Result<Self, Error> {
         let doing = || format!("make the layout of `{name}`");
         let declared = union(shaders, name)?;
+        for shader in shaders {
+            check_buffers(gpu, shader)?;
+        }
         let bindings: Vec<_> = declared
             .values()
             .map(|&(slot, stages)| {
@@ -71,6 +74,17 @@ impl Layout {
     pub fn name(&self) -> &str {
         &self.name
     }
+}
+
+/// A stage sees no more storage buffers than the device allows.
+fn check_buffers(gpu: &Gpu, shader: &Shader) -> Result<(), Error> {
+    let is_storage = |slot: &&BindingSlot| slot.kind == BindingKind::Storage;
+    within(
+        || format!("make a pipeline of `{}`", shader.name),
+        "maxPerStageDescriptorStorageBuffers",
+        shader.bindings.iter().filter(is_storage).count() as u64,
+        gpu.limits().max_storage_buffers_per_stage.into(),
+    )
 }
 
 /// Vulkan's word for a kind of binding.
