@@ -6,8 +6,8 @@ use crate::technique::GradientSource;
 use crate::volume::{Coefficients, Spline, Volume};
 use ash::vk;
 
-/// A slab is as many slices as fit into this.
-const STAGING_BYTES: u64 = 32 << 20;
+/// A slab is as many slices as fit into this: small enough to stay in the caches of a CPU while it is copied.
+const STAGING_BYTES: u64 = 4 << 20;
 
 /// Makes and fills the textures of volumes on one grid: their voxels, or the coefficients of their splines.
 pub fn upload(
@@ -75,7 +75,9 @@ fn fill(device: &mut Headless, made: &GpuVolume, volume: &Volume) -> Result<(), 
     let usage = vk::BufferUsageFlags::TRANSFER_SRC;
     let staging = Buffer::new(device.gpu(), bytes, usage, Memory::Upload, "staging")?;
     for slab in &slabs {
-        staging.write(0, &made.staged(volume, slab.region))?;
+        staging.write_with(0, made.staging_bytes(slab.region), |out| {
+            made.write_staged(volume, slab.region, out);
+        })?;
         // SAFETY: recorded outside rendering; the staging buffer holds this slab; `run` waits.
         device.run(|cmd| unsafe { made.record_upload(cmd, &staging, 0, slab) })?;
     }
