@@ -134,6 +134,7 @@ impl Bench {
             progress.stage("draw", done, cameras.len());
             frames.push(timed(&mut renderer, camera)?);
         }
+        let stages = renderer.stages(&progress, None);
         let timings = Timings {
             device: renderer.device(),
             driver: renderer.driver(),
@@ -145,6 +146,7 @@ impl Bench {
             samples: renderer.samples(&cameras[cameras.len() - 1])?,
             peak_rss_bytes: peak_rss_bytes(),
             device_bytes: renderer.device_bytes(),
+            stages,
         };
         say(&format!(
             "{}: median of {} views {:.3} ms\n",

@@ -6,6 +6,7 @@ use super::{
     memory::{Held, fitting},
     progress::Progress,
     renderer::Device,
+    timings::Loaded,
 };
 use crate::volume::{Header, Limits, Loss, Magnitude, Meaning, Source, Volume};
 
@@ -52,8 +53,8 @@ fn read_stretched(
     for note in source.header().notes.iter().chain(&note) {
         progress.note(note);
     }
-    let whole = source.header().whole();
-    let mut volume = Volume::read(source, pick, whole, &scene.input.limits())?;
+    let (mut volume, loaded) = Loaded::volume(source, pick, &scene.input.limits())?;
+    progress.loaded(loaded);
     say_what_was_lost(&volume, "voxels", progress);
     denoise(std::slice::from_mut(&mut volume), scene)?;
     let factor = stretch(

@@ -78,6 +78,7 @@ enum Verb {
 ///
 /// Installs a panic hook and signal handlers: it is for a process of its own.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
+    timings::begin();
     let words: Vec<OsString> = words.into_iter().collect();
     guarded(move || {
         let gate = Gate::default();

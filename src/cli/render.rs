@@ -142,6 +142,7 @@ impl Render {
             last = Some(frame.picture);
         }
         let mut picture = last.expect("at least one picture is drawn");
+        let start = Instant::now();
         let reasoned = parts.only(classification);
         if let Some(reason) = why_empty(&picture, volume, reasoned, &camera, &settings) {
             progress.note(&format!("the picture is empty: {reason}"));
@@ -156,6 +157,7 @@ impl Render {
             force: self.force,
         };
         gate.whole(|| write_picture(&picture, &self.output, options))?;
+        let stages = renderer.stages(&progress, Some(ms_since(start)));
         if let Some(path) = &self.save_scene {
             let text = scene_file::text(&scene, path);
             write_whole(path, text.as_bytes(), self.force, gate)?;
@@ -172,6 +174,7 @@ impl Render {
                 samples: renderer.samples(&camera)?,
                 peak_rss_bytes: peak_rss_bytes(),
                 device_bytes: renderer.device_bytes(),
+                stages,
             };
             write_whole(path, timings.json().as_bytes(), self.force, gate)?;
         }

@@ -1,6 +1,12 @@
 //! A renderer for a volume, on a Vulkan device or on the CPU alone: the one place of the program that makes one.
 
-use super::{Error, flags::Classification, memory::DeviceMemory, timings::ms_since};
+use super::{
+    Error,
+    flags::Classification,
+    memory::DeviceMemory,
+    progress::Progress,
+    timings::{Stages, in_ms, ms_since, total_ms},
+};
 use crate::{
     camera::Camera,
     gpu::{DeviceChoice, Headless, Options},
@@ -45,8 +51,12 @@ pub struct Renderer<'a> {
     on_device: Option<Box<offscreen::Renderer<'a>>>,
     /// What bringing the volume to the device took.
     pub upload_ms: f64,
-    /// What making the device took.
+    /// What making the device, pipelines and the light took.
     pub prepare_ms: f64,
+    /// Of that, the device.
+    pub device_ms: f64,
+    /// Of that, pipelines.
+    pub pipelines_ms: f64,
 }
 
 /// One picture and what it took.
@@ -118,6 +128,8 @@ impl<'a> Renderer<'a> {
                 on_device: None,
                 upload_ms: 0.0,
                 prepare_ms: 0.0,
+                device_ms: 0.0,
+                pipelines_ms: 0.0,
             });
         };
         let start = Instant::now();
@@ -130,6 +142,8 @@ impl<'a> Renderer<'a> {
         renderer.upload(&scene)?;
         let upload_ms = ms_since(start);
         let start = Instant::now();
+        renderer.prepare_pipelines(&scene)?;
+        let pipelines_ms = ms_since(start);
         if !scene.settings.mode.is_projection() {
             renderer.prepare_light(&scene)?;
         }
@@ -138,6 +152,8 @@ impl<'a> Renderer<'a> {
             on_device: Some(Box::new(renderer)),
             upload_ms,
             prepare_ms: prepare_ms + ms_since(start),
+            device_ms: device.found_ms,
+            pipelines_ms,
         })
     }
 
@@ -192,6 +208,19 @@ impl<'a> Renderer<'a> {
             picture,
             gpu_ms: None,
         })
+    }
+
+    /// What the work took until now.
+    pub fn stages(&self, progress: &Progress, encode_ms: Option<f64>) -> Stages {
+        let loaded = progress.all_loaded();
+        Stages {
+            read_ms: in_ms(loaded.read),
+            statistics_ms: in_ms(loaded.statistics),
+            device_ms: self.device_ms,
+            pipelines_ms: self.pipelines_ms,
+            encode_ms,
+            total_ms: total_ms(),
+        }
     }
 
     /// The device, free for another volume.

@@ -182,6 +182,22 @@ impl<'v> Renderer<'v> {
         Ok(())
     }
 
+    /// Makes the pipelines that pictures of `scene` take and the images that they are drawn in, as far as they are
+    /// not there yet: no picture waits for them then. Pictures that are made of several keep theirs for later.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub fn prepare_pipelines(&mut self, scene: &Scene) -> Result<(), Error> {
+        let settings = &decided(self.device.gpu(), scene);
+        let scene = &Scene { settings, ..*scene };
+        let is_sum = scene.mix() == Mix::Channels && scene.settings.mode.is_projection();
+        self.upload(scene)?;
+        match is_sum || !stacks_of(scene).is_empty() {
+            true => Ok(()),
+            false => self.prepare(scene),
+        }
+    }
+
     /// The picture of `scene`, whose volume is the renderer's, with `layers`.
     ///
     /// # Errors
