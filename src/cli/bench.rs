@@ -107,7 +107,7 @@ impl Bench {
         progress.stage("prepare", 0, 1);
         let word = scene.device.as_deref();
         let device = Device::find(word)?;
-        progress.device(&device.name());
+        progress.device(&device.name()?);
         progress.stage("read", 0, 1);
         let start = Instant::now();
         let shown = Shown::read(scene, &settings, &device, &progress)?;

@@ -99,11 +99,13 @@ impl Render {
             progress.note(note);
         }
         progress.stage("prepare", 0, 1);
-        let device = Device::find(scene.device.as_deref())?;
-        progress.device(&device.name());
+        let device = Device::begin(scene.device.as_deref());
         progress.stage("read", 0, 1);
         let start = Instant::now();
-        let shown = Shown::read(&scene, &settings, &device, &progress)?;
+        let shown = Shown::read(&scene, &settings, &device, &progress);
+        // Without a device nothing else that is wrong matters.
+        progress.device(&device.name()?);
+        let shown = shown?;
         let Shown {
             volume,
             classification,

@@ -16,6 +16,9 @@ use crate::{
     technique::{Filter, Role, Settings, Technique},
     volume::{Denoise, Volume, labels::labels_of},
 };
+use std::panic::resume_unwind;
+use std::sync::{Mutex, OnceLock, PoisonError};
+use std::thread::JoinHandle;
 use std::time::Instant;
 
 /// What stays the same from picture to picture.
@@ -35,9 +38,17 @@ pub struct Job<'a> {
     pub layers: &'a [LayerKind],
 }
 
-/// What draws.
+/// What draws, from when it is being made on.
 #[derive(Debug)]
 pub struct Device {
+    making: Mutex<Option<Making>>,
+    made: OnceLock<Made>,
+}
+
+type Making = JoinHandle<Result<Made, Error>>;
+
+#[derive(Debug)]
+struct Made {
     /// `None`: the CPU twins.
     on: Option<Headless>,
     found_ms: f64,
@@ -74,6 +85,62 @@ const REFERENCE: &str = "reference";
 impl Device {
     /// The one that the word of `--device` names.
     pub fn find(word: Option<&str>) -> Result<Self, Error> {
+        Made::find(word).map(Self::from)
+    }
+
+    /// The same, made beside what the caller goes on with: bringing in all drivers of a machine takes some 50 ms. What
+    /// fails is said by the first call that needs the device.
+    pub fn begin(word: Option<&str>) -> Self {
+        let word = word.map(str::to_owned);
+        let making = std::thread::spawn(move || Made::find(word.as_deref()));
+        Self {
+            making: Mutex::new(Some(making)),
+            made: OnceLock::new(),
+        }
+    }
+
+    fn made(&self) -> Result<&Made, Error> {
+        let mut making = self.making.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(making) = making.take() {
+            let made = making.join().unwrap_or_else(|fault| resume_unwind(fault))?;
+            let _ = self.made.set(made);
+        }
+        drop(making);
+        Ok(self.made.get().expect("who was told of a fault stops"))
+    }
+
+    fn into_made(self) -> Result<Made, Error> {
+        self.made()?;
+        Ok(self.made.into_inner().expect("made above"))
+    }
+
+    /// The volume without noise.
+    pub fn denoised(self, volume: &Volume, filter: &Denoise) -> Result<(Volume, Self), Error> {
+        let mut made = self.into_made()?;
+        let volume = match &mut made.on {
+            Some(device) => offscreen::denoised(device, volume, filter)?,
+            None => filter.denoised(volume),
+        };
+        Ok((volume, made.into()))
+    }
+
+    /// Its name.
+    pub fn name(&self) -> Result<String, Error> {
+        Ok(name_of(self.made()?.on.as_ref()))
+    }
+
+    /// What it has for textures; the CPU twins need none.
+    pub fn memory(&self) -> Result<Option<DeviceMemory>, Error> {
+        let memory = |device: &Headless| DeviceMemory {
+            heap_bytes: device.gpu().limits().max_heap_bytes,
+            is_of_host: device.gpu().is_cpu(),
+        };
+        Ok(self.made()?.on.as_ref().map(memory))
+    }
+}
+
+impl Made {
+    fn find(word: Option<&str>) -> Result<Self, Error> {
         let start = Instant::now();
         let on = match word {
             Some(REFERENCE) => None,
@@ -87,27 +154,14 @@ impl Device {
             found_ms: ms_since(start),
         })
     }
+}
 
-    /// The volume without noise.
-    pub fn denoised(&mut self, volume: &Volume, filter: &Denoise) -> Result<Volume, Error> {
-        Ok(match &mut self.on {
-            Some(device) => offscreen::denoised(device, volume, filter)?,
-            None => filter.denoised(volume),
-        })
-    }
-
-    /// Its name.
-    pub fn name(&self) -> String {
-        name_of(self.on.as_ref())
-    }
-
-    /// What it has for textures; the CPU twins need none.
-    pub fn memory(&self) -> Option<DeviceMemory> {
-        let gpu = self.on.as_ref()?.gpu();
-        Some(DeviceMemory {
-            heap_bytes: gpu.limits().max_heap_bytes,
-            is_of_host: gpu.is_cpu(),
-        })
+impl From<Made> for Device {
+    fn from(made: Made) -> Self {
+        Self {
+            making: Mutex::default(),
+            made: made.into(),
+        }
     }
 }
 
@@ -122,6 +176,7 @@ impl<'a> Renderer<'a> {
     /// Brings to the device what `camera` sees first.
     pub fn new(job: Job<'a>, camera: &Camera, device: Device) -> Result<Self, Error> {
         check_layers(&job)?;
+        let device = device.into_made()?;
         let Some(on) = device.on else {
             return Ok(Self {
                 job,
@@ -225,10 +280,10 @@ impl<'a> Renderer<'a> {
 
     /// The device, free for another volume.
     pub fn into_device(self) -> Device {
-        Device {
+        Device::from(Made {
             on: self.on_device.map(|renderer| renderer.into_device()),
             found_ms: 0.0,
-        }
+        })
     }
 
     /// The device's name.

@@ -141,8 +141,8 @@ fn progress_as_json_is_one_object_a_line() {
         stages,
         [
             "\"prepare\"",
-            "a device",
             "\"read\"",
+            "a device",
             "\"prepare\"",
             "\"draw\"",
             "\"draw\"",

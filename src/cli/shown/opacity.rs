@@ -32,7 +32,7 @@ impl Reader<'_> {
             self.progress.note(&format!("{}: {note}", flags.word()));
         }
         let held = Held::of(self.scene, 2);
-        let source = fitting(source, self.scene, self.device.memory(), held)?;
+        let source = fitting(source, self.scene, self.device.memory()?, held)?;
         let header = source.header();
         let name = name(&input, header, pick.component);
         let (mut volume, loaded) = Loaded::volume(source.as_ref(), pick, &limits)?;
