@@ -84,7 +84,7 @@ impl Bench {
             .map(cameras_file::read)
             .transpose()?;
         let text = match cameras {
-            Some(cameras) => self.views(&scene, &cameras)?,
+            Some(cameras) => self.views(&scene, &cameras, gate)?,
             None => {
                 if scene.sampling.technique.is_some() || scene.sampling.mode.is_some() {
                     say_aside(
@@ -101,7 +101,7 @@ impl Bench {
     }
 
     /// One scene from each of the views.
-    fn views(&self, scene: &SceneFlags, cameras: &[Camera]) -> Result<String, Error> {
+    fn views(&self, scene: &SceneFlags, cameras: &[Camera], gate: &Gate) -> Result<String, Error> {
         let progress = Progress::new(self.progress);
         let settings = scene.settings(Depth::Eight)?;
         progress.stage("prepare", 0, 1);
@@ -134,7 +134,7 @@ impl Bench {
             progress.stage("draw", done, cameras.len());
             frames.push(timed(&mut renderer, camera)?);
         }
-        let stages = renderer.stages(&progress, None);
+        let stages = renderer.stages(&progress, gate, None);
         let timings = Timings {
             device: renderer.device(),
             driver: renderer.driver(),

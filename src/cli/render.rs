@@ -159,7 +159,7 @@ impl Render {
             force: self.force,
         };
         gate.whole(|| write_picture(&picture, &self.output, options))?;
-        let stages = renderer.stages(&progress, Some(ms_since(start)));
+        let stages = renderer.stages(&progress, gate, Some(ms_since(start)));
         if let Some(path) = &self.save_scene {
             let text = scene_file::text(&scene, path);
             write_whole(path, text.as_bytes(), self.force, gate)?;

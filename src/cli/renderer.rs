@@ -5,7 +5,8 @@ use super::{
     flags::Classification,
     memory::DeviceMemory,
     progress::Progress,
-    timings::{Stages, in_ms, ms_since, total_ms},
+    signals::Gate,
+    timings::{Stages, in_ms, ms_since},
 };
 use crate::{
     camera::Camera,
@@ -266,7 +267,7 @@ impl<'a> Renderer<'a> {
     }
 
     /// What the work took until now.
-    pub fn stages(&self, progress: &Progress, encode_ms: Option<f64>) -> Stages {
+    pub fn stages(&self, progress: &Progress, gate: &Gate, encode_ms: Option<f64>) -> Stages {
         let loaded = progress.all_loaded();
         Stages {
             read_ms: in_ms(loaded.read),
@@ -274,7 +275,7 @@ impl<'a> Renderer<'a> {
             device_ms: self.device_ms,
             pipelines_ms: self.pipelines_ms,
             encode_ms,
-            total_ms: total_ms(),
+            total_ms: ms_since(gate.begun()),
         }
     }
 

@@ -3,7 +3,7 @@
 use crate::volume::{Header, Limits, Pick, Piece, ReadError, Source, Volume, VoxelBox};
 use serde::Serialize;
 use std::path::Path;
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Times in milliseconds, sizes in bytes.
@@ -108,18 +108,6 @@ impl Source for Clocked<'_> {
         *self.read.lock().unwrap_or_else(PoisonError::into_inner) += start.elapsed();
         piece
     }
-}
-
-static BEGIN: OnceLock<Instant> = OnceLock::new();
-
-/// The program begins, unless it has begun.
-pub fn begin() {
-    BEGIN.get_or_init(Instant::now);
-}
-
-/// Milliseconds since [`begin`].
-pub fn total_ms() -> f64 {
-    BEGIN.get().copied().map_or(0.0, ms_since)
 }
 
 /// Milliseconds of a duration.

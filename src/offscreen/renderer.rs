@@ -254,10 +254,10 @@ impl<'v> Renderer<'v> {
             None => return Err(technique::Error::NoTransferFunction.into()),
         }
         let per_side = scene.settings.rays_per_side;
-        let mut mean = Mean::new(scene.extent_pixels, per_side);
+        let mut mean = Mean::new(per_side);
         for in_pixel in positions_in_pixel(scene.settings) {
             clock.add(self.gather(scene, in_pixel)?);
-            mean.add(&self.resolve()?);
+            mean.add(self.resolve()?);
         }
         let pixels = mean.pixels;
         if per_side > 1 && !layers.is_empty() {
