@@ -64,7 +64,8 @@ impl Gate {
 
     fn held(&self) -> MutexGuard<'_, Option<PathBuf>> {
         self.unfinished
-            .lock().unwrap_or_else(PoisonError::into_inner)
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
     }
 }
 
