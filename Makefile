@@ -68,7 +68,7 @@ test: driver layers
 	$(TEST) $(addprefix --test ,$(WITHOUT_DEVICE))
 	RUST_TEST_THREADS=1 $(TEST) --test cli
 	STRATAVOX_VALIDATION=sync $(ON_DEVICE)
-	STRATAVOX_VALIDATION=sync RUST_TEST_THREADS=1 $(TEST) --test cli -- device:: mixed:: pictures::
+	STRATAVOX_VALIDATION=sync RUST_TEST_THREADS=1 $(TEST) --test cli -- bench:: device:: mixed:: pictures::
 
 plain: driver layers
 	$(ON_DEVICE)

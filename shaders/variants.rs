@@ -170,4 +170,6 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         ],
     ),
     ("light_volume", &[]),
+    // No picture: the ceiling of the device.
+    ("probe", &[]),
 ];

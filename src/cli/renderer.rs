@@ -11,7 +11,7 @@ use super::{
 use crate::{
     camera::Camera,
     gpu::{DeviceChoice, Headless, Options},
-    offscreen::{self, reference},
+    offscreen::{self, Ceilings, reference},
     picture::{LayerKind, Picture},
     scene::{Beside, Scene},
     technique::{Filter, Role, Settings, Technique},
@@ -113,6 +113,14 @@ impl Device {
     fn into_made(self) -> Result<Made, Error> {
         self.made()?;
         Ok(self.made.into_inner().expect("made above"))
+    }
+
+    /// What it does at most, with the texture of this volume; `None` of the CPU twins. Ends the device.
+    pub fn ceilings(self, volume: &Volume) -> Result<Option<Ceilings>, Error> {
+        let mut made = self.into_made()?;
+        let device = made.on.as_mut();
+        let ceilings = device.map(|device| offscreen::ceilings(device, volume));
+        Ok(ceilings.transpose()?)
     }
 
     /// The volume without noise.

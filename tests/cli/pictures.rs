@@ -243,20 +243,6 @@ fn bench_over_cameras_gives_a_frame_for_each_view() {
 }
 
 #[test]
-fn bench_without_views_measures_every_technique() {
-    let folder = Folder::new();
-    let ran = folder.run(&format!(
-        "bench phantom:gauss,n=8 --repeat 1 --json t.json {SMALL}"
-    ));
-    ran.assert_done();
-    for name in ["raycast composite", "slices-3d mip", "slices-2d composite"] {
-        assert!(ran.out.contains(name), "no {name}: {ran:#?}");
-    }
-    let table = json(&fs::read_to_string(folder.path("t.json")).expect("a file"));
-    assert_eq!(table["rows"].as_array().map(Vec::len), Some(6), "{table}");
-}
-
-#[test]
 fn info_has_the_promised_keys_and_exact_numbers() {
     let folder = Folder::new();
     let nrrd = "NRRD0004\ntype: short\ndimension: 3\nsizes: 2 2 1\nencoding: raw\nendian: little\n\
