@@ -172,4 +172,6 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ("light_volume", &[]),
     // No picture: the ceiling of the device.
     ("probe", &[]),
+    ("macro_cells", &[]),
+    ("distance_map", &[]),
 ];

@@ -115,7 +115,7 @@
 //!         let slicer = Slicer::new(gpu, technique, picture, order, &words, target_format)?;
 //!         let bind = |brick| {
 //!             let (ring, volume, transfer) = (&ring, &volume, Some(&transfer));
-//!             slicer.bind(&Inputs { ring, volume, brick, transfer, beside: &[], light: None })
+//!             slicer.bind(&Inputs { ring, volume, brick, transfer, beside: &[], light: None, skip: Skip::Nothing })
 //!         };
 //!         let bound = volume.bricks().iter().map(bind).collect::<Result<_, _>>()?;
 //!         Ok(Self { volume, transfer, ring, slicer, bound })

@@ -109,6 +109,7 @@ impl<'h> Ready<'h> {
         let inputs = Inputs {
             beside: &[],
             light: None,
+            skip: stratavox::technique::Skip::Nothing,
             ring: &ring,
             volume: &there.volume,
             brick: &there.volume.bricks()[0],

@@ -53,6 +53,7 @@ fn drawn_and_left_in(layout: vk::ImageLayout) {
     let inputs = Inputs {
         beside: &[],
         light: None,
+        skip: stratavox::technique::Skip::Nothing,
         ring: &ring,
         volume: &there.volume,
         brick: &there.volume.bricks()[0],

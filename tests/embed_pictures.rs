@@ -37,6 +37,7 @@ fn inputs<'a>(ring: &'a ParameterRing, there: &'a OnDevice, brick: usize) -> Inp
     Inputs {
         beside: &[],
         light: None,
+        skip: stratavox::technique::Skip::Nothing,
         ring,
         volume: &there.volume,
         brick: &there.volume.bricks()[brick],

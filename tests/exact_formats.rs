@@ -91,6 +91,7 @@ fn drawn(device: &mut Headless, format: vk::Format, order: Order, slices: u32) -
     let inputs = Inputs {
         beside: &[],
         light: None,
+        skip: stratavox::technique::Skip::Nothing,
         ring: &ring,
         volume: &voxels,
         brick: &voxels.bricks()[0],

@@ -87,6 +87,7 @@ unsafe fn draw(host: &Host) -> Result<(), Box<dyn Error>> {
         let inputs = Inputs {
             beside: &[],
             light: None,
+            skip: stratavox::technique::Skip::Nothing,
             ring: &ring,
             volume: &voxels,
             brick,

@@ -159,6 +159,11 @@ struct Frame {
     shadow_bundle: u32,
     // Where a point of the world lies in the light's picture, in its texels: across and down.
     light_rows: array<vec4<f32>, 2>,
+    // Macro cells of this recording's brick: how many along each axis (0: nothing is known of them), which one is its
+    // first, and where that begins in voxel space.
+    cells: vec3<u32>,
+    cells_first: u32,
+    cells_origin: vec3<f32>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

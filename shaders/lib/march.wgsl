@@ -1,9 +1,10 @@
 // The walk along one ray that every compute pass shares. The lattice says where, the filter what, the
-// mode what for. Twin: src/technique/march.rs.
+// mode what for, and which part of the way cannot matter. Twin: src/technique/march.rs.
 
 #import ray
 #import brick
 #import faces
+#import empty_space
 #import lattice_{lattice}
 #import filter_{filter}
 #import nearest
@@ -26,13 +27,33 @@ fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
     let end = min(lattice.first + lattice.count, i32(ceil(index_at(lattice, world, inside.y))) + 2);
     // A cut face is seen before all samples.
     let is_cut = enters_a_cut(voxel, interval);
-    for (var k = first - i32(is_cut); k < end; k++) {
-        let is_face = k < first;
-        var segment = segment_of(lattice, world, k);
-        if is_face {
-            segment = Segment(interval.x, FACE_LENGTH);
+    var k = first - i32(is_cut);
+    loop {
+        var is_face = false;
+        var segment = Segment(0.0, 0.0);
+        var position = vec3(0.0);
+        // On to the next sample that may count. A loop of its own: where rays are drawn side by side, none waits for
+        // another's sample.
+        loop {
+            if k >= end {
+                break;
+            }
+            is_face = k < first;
+            segment = segment_of(lattice, world, k);
+            if is_face {
+                segment = Segment(interval.x, FACE_LENGTH);
+            }
+            position = voxel.origin + segment.t * voxel.direction;
+            let room = empty_room(so_far, position);
+            if room == 0u || is_face {
+                break;
+            }
+            k = max(k + 1, i32(ceil(index_at(lattice, world, end_of_room(voxel, position, room)))));
         }
-        let position = voxel.origin + segment.t * voxel.direction;
+        if k >= end {
+            break;
+        }
+        k++;
         if segment.length <= 0.0 || !is_in_brick(position) {
             continue;
         }

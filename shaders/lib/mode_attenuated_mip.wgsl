@@ -7,6 +7,7 @@
 // src/technique/projection/reference.rs.
 
 #import unit
+#import no_rooms
 
 struct Accumulator {
     value: f32,

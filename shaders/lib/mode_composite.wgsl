@@ -7,6 +7,7 @@
 #import opacity
 #import material_{mix}
 #import face_grey
+#import rooms
 
 struct Accumulator {
     color: vec3<f32>,

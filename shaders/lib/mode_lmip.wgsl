@@ -2,6 +2,8 @@
 // fall from over the threshold. Up to there the largest value is the local maximum itself; a ray that never
 // gets there ends as a MIP. Samples without data are passed over. Twin: src/technique/projection/reference.rs.
 
+#import no_rooms
+
 struct Accumulator {
     value: f32,
     // 0 before the first value, 1 on the way, 2 past the local maximum.

@@ -15,6 +15,7 @@
 #import opacity
 #import material_{mix}
 #import unit
+#import no_rooms
 
 struct Accumulator {
     color: vec3<f32>,

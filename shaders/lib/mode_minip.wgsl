@@ -1,5 +1,7 @@
 // Minimum of the values along the ray; of equal ones the first. Twin: src/technique/projection/reference.rs.
 
+#import cell_ranges
+
 struct Accumulator {
     value: f32,
     // Not 0 once a value is there.
@@ -21,4 +23,12 @@ fn add(so_far: Accumulator, value: f32, segment: Segment) -> Accumulator {
 
 fn is_finished(so_far: Accumulator) -> bool {
     return false;
+}
+
+// A cell whose smallest value is no news is as good as empty.
+fn empty_room(so_far: Accumulator, position: vec3<f32>) -> u32 {
+    if frame.cells.x == 0u || so_far.weight == 0.0 {
+        return 0u;
+    }
+    return u32(range_at(position).x >= so_far.value);
 }

@@ -1,6 +1,8 @@
 // The line integral, sum of v d, and the length it was taken over, sum of d: X-ray shows the first,
 // average their quotient. Twin: src/technique/projection/reference.rs.
 
+#import no_rooms
+
 struct Accumulator {
     value: f32,
     weight: f32,

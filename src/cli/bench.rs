@@ -151,7 +151,10 @@ impl Bench {
     /// One scene from each of the views.
     fn views(&self, scene: &SceneFlags, cameras: &[Camera], gate: &Gate) -> Result<String, Error> {
         let progress = Progress::new(self.progress);
-        let settings = scene.settings(Depth::Eight)?;
+        let settings = Settings {
+            skip: !self.no_skip,
+            ..scene.settings(Depth::Eight)?
+        };
         progress.stage("prepare", 0, 1);
         let word = scene.device.as_deref();
         let device = Device::find(word)?;

@@ -89,6 +89,7 @@ impl Render {
             _ => Depth::More,
         };
         let mut settings = scene.settings(depth)?;
+        settings.skip = !self.no_skip;
         let extent_pixels = scene.picture.extent_pixels()?;
         scene.classification.check()?;
         let inputs = scene_file::inputs(&scene, self.scene_file.as_deref());

@@ -63,12 +63,14 @@ pub struct Renderer<'a> {
     on_device: Option<Box<offscreen::Renderer<'a>>>,
     /// What bringing the volume to the device took.
     pub upload_ms: f64,
-    /// What making the device, pipelines and the light took.
+    /// What making the device, pipelines, what rays need not look at, and the light took.
     pub prepare_ms: f64,
     /// Of that, the device.
     pub device_ms: f64,
     /// Of that, pipelines.
     pub pipelines_ms: f64,
+    /// Of that, what rays need not look at.
+    pub empty_space_ms: f64,
 }
 
 /// One picture and what it took.
@@ -194,6 +196,7 @@ impl<'a> Renderer<'a> {
                 prepare_ms: 0.0,
                 device_ms: 0.0,
                 pipelines_ms: 0.0,
+                empty_space_ms: 0.0,
             });
         };
         let start = Instant::now();
@@ -208,6 +211,9 @@ impl<'a> Renderer<'a> {
         let start = Instant::now();
         renderer.prepare_pipelines(&scene)?;
         let pipelines_ms = ms_since(start);
+        let start_of_space = Instant::now();
+        renderer.prepare_empty_space(&scene)?;
+        let empty_space_ms = ms_since(start_of_space);
         if !scene.settings.mode.is_projection() {
             renderer.prepare_light(&scene)?;
         }
@@ -218,6 +224,7 @@ impl<'a> Renderer<'a> {
             prepare_ms: prepare_ms + ms_since(start),
             device_ms: device.found_ms,
             pipelines_ms,
+            empty_space_ms,
         })
     }
 
@@ -282,6 +289,7 @@ impl<'a> Renderer<'a> {
             statistics_ms: in_ms(loaded.statistics),
             device_ms: self.device_ms,
             pipelines_ms: self.pipelines_ms,
+            empty_space_ms: self.empty_space_ms,
             encode_ms,
             total_ms: ms_since(gate.begun()),
         }

@@ -45,6 +45,8 @@ pub struct Stages {
     pub device_ms: f64,
     /// Of `prepare_ms`: making pipelines.
     pub pipelines_ms: f64,
+    /// Of `prepare_ms`: finding out what rays need not look at.
+    pub empty_space_ms: f64,
     /// The picture to a file; `null` where none is written.
     pub encode_ms: Option<f64>,
     /// Since the program began.
@@ -183,6 +185,7 @@ mod tests {
             "statistics_ms",
             "device_ms",
             "pipelines_ms",
+            "empty_space_ms",
             "encode_ms",
             "total_ms",
         ] {

@@ -5,7 +5,7 @@ use crate::gpu::Headless;
 use crate::resident::GpuTransfer;
 use crate::scene::Scene;
 use crate::technique::{
-    ClipPlane, Filter, GradientFilter, Inputs, LightPlan, LightVolume, Part, parameter_ring,
+    ClipPlane, Filter, GradientFilter, Inputs, LightPlan, LightVolume, Part, Skip, parameter_ring,
 };
 use crate::transfer::TransferFunction;
 use glam::DVec3;
@@ -57,6 +57,7 @@ pub fn made_light(
             transfer,
             beside: &[],
             light: None,
+            skip: Skip::Nothing,
         };
         Ok((light.bind(&inputs)?, recording.write(&ring, slot)?))
     };

@@ -8,6 +8,7 @@
 //! ```
 
 mod classified;
+mod skipping;
 
 use super::Error;
 use super::fade::{render_faded, stacks_of};
@@ -31,6 +32,7 @@ use crate::technique::{
 };
 use crate::transfer::{Classified, Graded, TransferFunction, Window};
 use crate::volume::{Spline, Volume};
+use skipping::Skipped;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -53,6 +55,7 @@ pub struct Renderer<'v> {
     resident: HashMap<Copied, Vec<GpuVolume>>,
     transfer: Option<Uploaded>,
     light: Option<Lit>,
+    skipped: Skipped,
     targets: Option<Targets>,
     passes: Option<Passes>,
     ring: ParameterRing,
@@ -126,6 +129,7 @@ impl<'v> Renderer<'v> {
             resident: HashMap::new(),
             transfer: None,
             light: None,
+            skipped: Skipped::default(),
             targets: None,
             passes: None,
             ring: parameter_ring(gpu, 1)?,
@@ -188,13 +192,29 @@ impl<'v> Renderer<'v> {
     /// # Errors
     /// As [`Renderer::render`].
     pub fn prepare_pipelines(&mut self, scene: &Scene) -> Result<(), Error> {
+        self.prepare_with(scene, Self::prepare)
+    }
+
+    /// Finds out what pictures of `scene` need not look at, as [`Renderer::prepare_pipelines`] makes pipelines.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub fn prepare_empty_space(&mut self, scene: &Scene) -> Result<(), Error> {
+        self.prepare_with(scene, Self::prepare_skip)
+    }
+
+    fn prepare_with(
+        &mut self,
+        scene: &Scene,
+        prepare: impl FnOnce(&mut Self, &Scene) -> Result<(), Error>,
+    ) -> Result<(), Error> {
         let settings = &decided(self.device.gpu(), scene);
         let scene = &Scene { settings, ..*scene };
         let is_sum = scene.mix() == Mix::Channels && scene.settings.mode.is_projection();
         self.upload(scene)?;
         match is_sum || !stacks_of(scene).is_empty() {
             true => Ok(()),
-            false => self.prepare(scene),
+            false => prepare(self, scene),
         }
     }
 
@@ -237,6 +257,7 @@ impl<'v> Renderer<'v> {
         clock: &mut Clock,
     ) -> Result<Picture, Error> {
         self.prepare(scene)?;
+        self.prepare_skip(scene)?;
         let functions = scene.transfers().into_iter();
         match functions.collect::<Option<Vec<_>>>() {
             _ if scene.settings.mode == Mode::Iso => match scene.transfers().get(1) {
@@ -338,7 +359,11 @@ impl<'v> Renderer<'v> {
         let view = scene.view(&grid, in_pixel);
         let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
         let parts = parts_of(&self.resident, self.shown, scene);
-        let recordings = view.recordings_of(&parts, transfer)?;
+        let mut recordings = view.recordings_of(&parts, transfer)?;
+        let skip = self.skipped.skip();
+        for recording in &mut recordings {
+            recording.skip(skip);
+        }
         let beside = |recording: &Recording| -> Vec<_> {
             let others = parts[1..].iter();
             others
@@ -355,6 +380,7 @@ impl<'v> Renderer<'v> {
                 transfer,
                 beside,
                 light: self.light.as_ref().map(|lit| &lit.made),
+                skip,
             };
             Ok(submission::Part {
                 inputs,

@@ -4,7 +4,9 @@
 //! reaches the memory, written at once); nothing here submits or waits.
 
 mod bricks;
+mod empty_space;
 mod gradients;
+mod macro_cells;
 mod slabs;
 mod texel;
 mod transfer;
@@ -12,7 +14,9 @@ mod upload;
 mod volume;
 
 pub use bricks::{Cell, front_to_back};
+pub use empty_space::EmptySpace;
 pub use gradients::{KeptGradients, KeptOperator};
+pub use macro_cells::{Apron, MacroCells};
 pub use texel::{Coding, TexelFormat};
 pub use transfer::{GpuTransfer, TransferLayout};
 pub use upload::Slab;

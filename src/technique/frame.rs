@@ -201,6 +201,9 @@ impl View<'_> {
             has_shadows: 0,
             shadow_bundle: 0,
             light_rows: [[0.0; 4]; 2],
+            cells: [0; 3],
+            cells_first: 0,
+            cells_origin: [0.0; 3],
         };
         self.set_light(&mut fields);
         if let Some(shading) = &self.settings.shading {

@@ -1,7 +1,7 @@
 //! What every technique reads, by the names that the shaders give it, and which variant of a shader that
 //! asks for.
 
-use super::{Filter, Lattice, LightVolume, Mix, Mode, Part, Role, Settings};
+use super::{Filter, Lattice, LightVolume, Mix, Mode, Part, Role, Settings, Skip};
 use crate::gpu::{Bindings, Error, Gpu, Image, Layout, ParameterRing, Resource};
 use crate::resident::{Brick, GpuTransfer, GpuVolume, TextureLayout};
 use crate::shaders::MAX_CHANNELS;
@@ -22,6 +22,8 @@ pub struct Inputs<'a> {
     pub beside: &'a [&'a Brick],
     /// What comes through to a sample, where the settings ask for occlusion or shadows.
     pub light: Option<&'a LightVolume>,
+    /// Where not to look. Its [`Recording`](super::Recording::skip) must be told the same.
+    pub skip: Skip<'a>,
 }
 
 impl Inputs<'_> {
@@ -56,6 +58,13 @@ impl Inputs<'_> {
         let light = self.light.map(LightVolume::buffer);
         let light = light.unwrap_or(self.ring.buffer());
         given.push(("light_volume", Resource::Storage(light)));
+        let [rooms, ranges] = match self.skip {
+            Skip::Nothing => [self.ring.buffer(); 2],
+            Skip::Unseen(cells, empty) => [empty.rooms(), cells.ranges()],
+            Skip::Exceeded(cells) => [self.ring.buffer(), cells.ranges()],
+        };
+        given.push(("rooms", Resource::Storage(rooms)));
+        given.push(("cell_ranges", Resource::Storage(ranges)));
         given.extend_from_slice(outputs);
         given.retain(|(name, _)| layout.slots().iter().any(|slot| slot.name == *name));
         Bindings::new(gpu, layout, &given)

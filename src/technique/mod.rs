@@ -27,6 +27,7 @@ pub mod raycast;
 mod recording;
 pub mod second;
 pub mod shading;
+mod skip;
 mod slab;
 mod slicer;
 pub mod slices_2d;
@@ -46,6 +47,7 @@ pub use mixture::{Mix, Part, Role};
 pub use per_mode::{DEFAULT_ATTENUATION, Level, PerMode};
 pub use recording::{Recording, parameter_ring};
 pub use shading::{Light, Shading};
+pub use skip::{Skip, Skippable};
 pub use slicer::Slicer;
 pub use turns::Functions;
 
@@ -208,6 +210,8 @@ pub struct Settings {
     pub uneven_rays: bool,
     /// The ray ends after the sample at which transmittance falls under this; 0: never.
     pub termination: f32,
+    /// Whether a ray caster may leave out samples that cannot matter. The picture is the same without.
+    pub skip: bool,
     /// In which numbers colours are blended.
     pub color_space: crate::picture::ColorSpace,
     /// Voxel space box to keep, min and max; fractions allowed. `None`: all of it.
@@ -254,6 +258,7 @@ impl Default for Settings {
             rays_per_side: 1,
             uneven_rays: false,
             termination: 0.0,
+            skip: true,
             color_space: crate::picture::ColorSpace::default(),
             crop: None,
             clip_planes: Vec::new(),

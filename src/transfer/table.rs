@@ -56,7 +56,7 @@ const SLAB_CELLS: usize = 65_536;
 
 impl Cut {
     /// The cut of a table of single values.
-    fn new(function: &TransferFunction) -> Self {
+    pub(super) fn new(function: &TransferFunction) -> Self {
         Self::with(function, |_| false)
     }
 

@@ -24,6 +24,7 @@ fn a_host_records_eye_and_light_into_its_own_commands() {
     let inputs = Inputs {
         beside: &[],
         light: None,
+        skip: stratavox::technique::Skip::Nothing,
         ring: &ring,
         volume: &there.volume,
         brick: &there.volume.bricks()[0],

@@ -273,7 +273,10 @@ impl Animate {
         };
         let source = load::open(&scene.input, &scene.input.limits())?;
         let header = source.header();
-        let shots = film.shots(&scene, depth, header, &shots::grid(&scene, header)?)?;
+        let mut shots = film.shots(&scene, depth, header, &shots::grid(&scene, header)?)?;
+        for shot in &mut shots {
+            shot.settings.skip = !self.no_skip;
+        }
         shown::check(&scene, &shots[0].settings)?;
         check_several(&scene, header, &shots)?;
         let plan = Plan {

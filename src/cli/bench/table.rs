@@ -61,7 +61,10 @@ struct Probed {
 pub fn measured(bench: &Bench, scene: &SceneFlags) -> Result<String, Error> {
     let progress = Progress::new(bench.progress);
     let extent_pixels = scene.picture.extent_pixels()?;
-    let base = scene.settings(Depth::Eight)?;
+    let base = Settings {
+        skip: !bench.no_skip,
+        ..scene.settings(Depth::Eight)?
+    };
     let inputs: Vec<_> = scene.input.path.iter().chain(&bench.more).collect();
     let modes = words_of(
         &bench.modes,

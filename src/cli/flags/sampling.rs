@@ -150,6 +150,7 @@ impl SamplingFlags {
             rays_per_side: rays_per_side(self.aa.unwrap_or(1))?,
             uneven_rays: self.aa_uneven,
             termination,
+            skip: true,
             color_space,
             crop: self.crop.map(crop_box).transpose()?,
             clip_planes: self.clip_planes()?,

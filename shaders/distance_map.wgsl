@@ -1,0 +1,79 @@
+// How far away the nearest cell with matter is, in cells (Chebyshev distance; Deakin and Knackstedt 2020), by four
+// passes:
+//
+//     D0 = 0 where the transfer function shows any value of the cell, else FAR
+//     D(x) = min over k of max(|k|, D before(x + k))        along x, then y, then z
+//
+// Outside the grid is nothing. One thread a cell. Twin: `distances` in src/resident/empty_space.rs.
+
+#import cell_grid
+
+const FAR: u32 = 0x10000u;
+
+struct CellRanges {
+    d: array<vec2<f32>>,
+}
+
+struct Seen {
+    // (first value, entries per value, -, -) of the table, as f32; then for each entry the next that is seen.
+    first: f32,
+    scale: f32,
+    count: u32,
+    next: array<u32>,
+}
+
+struct Rooms {
+    d: array<u32>,
+}
+
+struct Pass {
+    // 0: what is seen. 1, 2, 3: along x, y, z.
+    number: u32,
+}
+
+@group(0) @binding(31) var<storage, read> cell_ranges: CellRanges;
+@group(0) @binding(32) var<storage, read> seen: Seen;
+@group(0) @binding(33) var<storage, read> rooms_before: Rooms;
+@group(0) @binding(34) var<storage, read_write> rooms_after: Rooms;
+@group(0) @binding(35) var<uniform> which: Pass;
+
+@compute @workgroup_size(8, 4, 2)
+fn main(@builtin(global_invocation_id) cell: vec3<u32>) {
+    if any(cell >= cell_grid.cells) {
+        return;
+    }
+    let own = cell_index(cell);
+    if which.number == 0u {
+        rooms_after.d[own] = select(FAR, 0u, is_seen(cell_ranges.d[own]));
+        return;
+    }
+    let axis = which.number - 1u;
+    var step = 1u;
+    if axis > 0u {
+        step *= cell_grid.cells.x;
+    }
+    if axis > 1u {
+        step *= cell_grid.cells.y;
+    }
+    let before = cell[axis];
+    let behind = cell_grid.cells[axis] - 1u - before;
+    let reach = max(before, behind);
+    var nearest = rooms_before.d[own];
+    for (var k = 1u; k <= reach && k < nearest; k++) {
+        if k <= before {
+            nearest = min(nearest, max(k, rooms_before.d[own - k * step]));
+        }
+        if k <= behind {
+            nearest = min(nearest, max(k, rooms_before.d[own + k * step]));
+        }
+    }
+    rooms_after.d[own] = nearest;
+}
+
+// Whether a table shows any of these values. One entry more on both sides: f32 rounds on the way to an entry.
+fn is_seen(range: vec2<f32>) -> bool {
+    let last = f32(seen.count - 1u);
+    let from_entry = u32(clamp(floor((range.x - seen.first) * seen.scale) - 1.0, 0.0, last));
+    let to_entry = u32(clamp(floor((range.y - seen.first) * seen.scale) + 1.0, 0.0, last));
+    return seen.next[from_entry] <= to_entry;
+}

@@ -1,0 +1,14 @@
+// What values a macro cell may have (shaders/macro_cells.wgsl).
+
+#import empty_space
+
+struct CellRanges {
+    d: array<vec2<f32>>,
+}
+
+@group(0) @binding(36) var<storage, read> cell_ranges: CellRanges;
+
+// Smallest and largest.
+fn range_at(position: vec3<f32>) -> vec2<f32> {
+    return cell_ranges.d[macro_cell_index_at(position)];
+}

@@ -1,0 +1,187 @@
+//! Macro cells: which values filters can make in each cube of 8^3 voxels, made on the device once a volume is there.
+//!
+//! ```text
+//! volume -> MacroCells::record          ranges: least and most of a cell's voxels and an apron around them
+//!        -> EmptySpace::record          rooms: how far away matter is, whenever the transfer function changes
+//! ```
+//!
+//! Techniques leave out what lies in cells that cannot matter; the picture stays the same to the bit.
+
+use super::{GpuVolume, TextureLayout};
+use crate::gpu::{
+    Bindings, Buffer, ComputePipeline, Error, Gpu, Memory, ParameterRing, Resource, Use,
+    buffer_barrier,
+};
+use crate::shaders::{CELL_VOXELS, CellGrid, CellGridFields, Frame, shader};
+use ash::vk;
+use std::sync::Arc;
+
+/// How far around a macro cell the voxels lie that samples in it touch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Apron {
+    /// On each side. Half a voxel more than a filter needs, so that rounding of positions does not count: one for
+    /// nearest and linear filters, two for wider ones.
+    pub voxels: u32,
+    /// How far filtered values may lie beyond those of the voxels, as a multiple of half their range: 0 for filters
+    /// without negative weights.
+    pub overshoot: f32,
+}
+
+/// The ranges of a volume's macro cells. Made empty; [`MacroCells::record`] fills them.
+#[derive(Debug)]
+pub struct MacroCells {
+    gpu: Arc<Gpu>,
+    grids: Vec<CellGrid>,
+    cell_count: u64,
+    ranges: Buffer,
+    pipeline: ComputePipeline,
+    ring: ParameterRing,
+    bindings: Vec<Bindings>,
+}
+
+impl MacroCells {
+    /// Bytes of a cell on the device, with those of [`super::EmptySpace`].
+    pub const BYTES_PER_CELL: u64 = 16;
+
+    /// Objects for a volume in 3D textures.
+    ///
+    /// # Errors
+    /// Where the device gives no memory, or has no buffers of that size.
+    ///
+    /// # Panics
+    /// Where the volume lies in stacks.
+    pub fn new(gpu: &Arc<Gpu>, volume: &GpuVolume, apron: Apron) -> Result<Self, Error> {
+        assert_eq!(volume.layout(), TextureLayout::Texture3d, "macro cells");
+        let mut first = 0;
+        let mut grids = Vec::new();
+        for brick in volume.bricks() {
+            let grid = grid_of(volume, brick.cell.own, brick.cell.stored, apron, first);
+            first += grid.cells.iter().product::<u32>();
+            grids.push(grid);
+        }
+        let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
+        let ranges = Buffer::new(
+            gpu,
+            8 * u64::from(first),
+            storage,
+            Memory::Device,
+            "cell ranges",
+        )?;
+        let pipeline = ComputePipeline::new(gpu, shader("macro_cells"))?;
+        let ring = ring_of(gpu, &grids)?;
+        let bound = volume.bricks().iter().map(|brick| {
+            let given = [
+                ("volume", Resource::sampled(&brick.values)),
+                ("cell_grid", Resource::Uniform(&ring)),
+                ("cell_ranges", Resource::Storage(&ranges)),
+            ];
+            Bindings::new(gpu, pipeline.layout(), &given)
+        });
+        let bindings = bound.collect::<Result<_, _>>()?;
+        Ok(Self {
+            gpu: Arc::clone(gpu),
+            grids,
+            cell_count: first.into(),
+            ranges,
+            pipeline,
+            ring,
+            bindings,
+        })
+    }
+
+    /// Smallest and largest value of each cell, as pairs of f32: bricks one after the other, x fastest.
+    pub fn ranges(&self) -> &Buffer {
+        &self.ranges
+    }
+
+    /// How many there are in all bricks.
+    pub fn cell_count(&self) -> u64 {
+        self.cell_count
+    }
+
+    pub(super) fn grids(&self) -> &[CellGrid] {
+        &self.grids
+    }
+
+    /// Tells the parameters of a recording of brick number `brick` where its cells are.
+    pub fn tell(&self, brick: usize, frame: &mut Frame) {
+        let grid = &self.grids[brick];
+        frame.cells = grid.cells;
+        frame.cells_first = grid.first;
+        frame.cells_origin = grid.origin.map(|n| n as f32);
+    }
+
+    /// Records what fills them, once.
+    ///
+    /// # Errors
+    /// A brick larger than the device can dispatch.
+    ///
+    /// # Safety
+    /// - `cmd` is recording, outside rendering; `self` and the volume live until it has run;
+    /// - the volume's textures are in [`Use::Sampled`].
+    pub unsafe fn record(&self, cmd: vk::CommandBuffer) -> Result<(), Error> {
+        for (slot, (grid, bindings)) in (0..).zip(self.grids.iter().zip(&self.bindings)) {
+            let groups = self.pipeline.groups(grid.cells)?;
+            let offset = self.ring.offset(slot)?;
+            // SAFETY: the caller's promises; bricks write cells of their own.
+            unsafe { self.pipeline.dispatch(cmd, bindings, &[offset], groups) };
+        }
+        // SAFETY: outside rendering; the buffer lives until `cmd` has run.
+        unsafe {
+            buffer_barrier(
+                &self.gpu,
+                cmd,
+                &self.ranges,
+                Use::ComputeWrite,
+                Use::ComputeRead,
+            )
+        };
+        Ok(())
+    }
+}
+
+/// The parameters of the bricks, one slot each.
+pub(super) fn ring_of(gpu: &Arc<Gpu>, grids: &[CellGrid]) -> Result<ParameterRing, Error> {
+    let bytes = size_of::<CellGrid>() as u32;
+    let ring = ParameterRing::new(gpu, bytes, grids.len() as u32, "cell grids")?;
+    for (slot, grid) in (0..).zip(grids) {
+        ring.write(slot, bytemuck::bytes_of(grid))?;
+    }
+    Ok(ring)
+}
+
+fn grid_of(
+    volume: &GpuVolume,
+    own: crate::volume::VoxelBox,
+    stored: crate::volume::VoxelBox,
+    apron: Apron,
+    first: u32,
+) -> CellGrid {
+    let coding = volume.texel().coding;
+    let signed = |voxel: [u32; 3]| voxel.map(|n| n as i32);
+    let fields = CellGridFields {
+        cells: own.dims().map(|n| n.div_ceil(CELL_VOXELS)),
+        first,
+        origin: signed(own.min),
+        apron: apron.voxels as i32,
+        stored_min: signed(stored.min),
+        stored_last: signed(stored.max.map(|n| n - 1)),
+        code_scale: coding.scale,
+        code_offset: coding.offset,
+        slope: coding.slope,
+        intercept: coding.intercept,
+        codes_are_integers: coding.is_integer.into(),
+        overshoot: apron.overshoot,
+        // A sampler mixes integers with the precision of their format.
+        slack: if coding.is_integer {
+            coding.slope.abs()
+        } else {
+            0.0
+        },
+        rounding: match volume.texel().format {
+            vk::Format::R16_SFLOAT => 2f32.powi(-9),
+            _ => 2f32.powi(-18),
+        },
+    };
+    fields.into()
+}

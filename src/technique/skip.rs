@@ -1,0 +1,85 @@
+//! What a ray caster need not look at: which pictures have something of that kind, and how a host hands it over.
+//!
+//! ```text
+//! settings.skippable(mix, function)              what can be left out of such a picture
+//!     MacroCells::new(gpu, volume, settings.apron())     once a volume
+//!     EmptySpace::new(gpu, &cells, &seen)                once a transfer function
+//! recording.skip(&skip), Inputs { skip, .. }     for each recording
+//! ```
+
+use super::{Filter, Mix, Mode, Recording, Settings, Technique};
+use crate::resident::{Apron, EmptySpace, MacroCells};
+use crate::transfer::{Seen, TransferFunction};
+
+/// What is known of where a recording need not look. The picture is the same to the bit.
+#[derive(Clone, Copy, Debug, Default)]
+pub enum Skip<'a> {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// What the transfer function does not show.
+    Unseen(&'a MacroCells, &'a EmptySpace),
+    /// What is no larger, or no smaller, than a value that a ray has met.
+    Exceeded(&'a MacroCells),
+}
+
+/// What can be left out of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Skippable {
+    /// Every sample matters, or it is not known which do.
+    Nothing,
+    /// Samples outside of the seen values: [`Skip::Unseen`].
+    Unseen(Seen),
+    /// Samples that are no new extreme: [`Skip::Exceeded`].
+    Exceeded,
+}
+
+impl Settings {
+    /// How far around a macro cell the filter looks.
+    pub fn apron(&self) -> Apron {
+        let voxels = match self.filter {
+            Filter::Nearest | Filter::Linear => 1,
+            _ => 2,
+        };
+        let overshoot = match self.filter {
+            // The absolute weights of an axis add up to 5/4 at most (half way between two voxels).
+            Filter::CatmullRom => 1.25f32.powi(3) - 1.0,
+            _ => 0.0,
+        };
+        Apron { voxels, overshoot }
+    }
+
+    /// What can be left out of pictures of one volume under `function`.
+    pub fn skippable(&self, mix: Mix, function: Option<&TransferFunction>) -> Skippable {
+        let is_one = matches!(mix, Mix::Alone | Mix::Graded);
+        if !self.skip || !is_one || self.technique != Technique::Raycast || self.preintegrated {
+            return Skippable::Nothing;
+        }
+        match (self.mode, function) {
+            (Mode::Mip | Mode::Minip, _) if !self.per_mode.exact_maximum => Skippable::Exceeded,
+            (Mode::Composite, Some(function)) if !function.is_graded() => {
+                Skippable::Unseen(Seen::new(function))
+            }
+            _ => Skippable::Nothing,
+        }
+    }
+}
+
+impl<'a> Skip<'a> {
+    /// The cells that it knows of.
+    pub fn cells(self) -> Option<&'a MacroCells> {
+        match self {
+            Self::Nothing => None,
+            Self::Unseen(cells, _) | Self::Exceeded(cells) => Some(cells),
+        }
+    }
+}
+
+impl Recording {
+    /// Tells the parameters what the inputs of this recording know of where not to look. Without, nothing is left out.
+    pub fn skip(&mut self, skip: Skip) {
+        if let Some(cells) = skip.cells() {
+            cells.tell(self.brick, &mut self.frame);
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! Which values a transfer function shows at all: for skipping what is not seen.
+//!
+//! ```text
+//! next(i) = the smallest j >= i with some opacity anywhere in cell j        values from cell a to b are not seen
+//!                                                                           where next(a) > b
+//! ```
+//!
+//! Cells are those of the function's [`super::Table`]; one counts as seen where the law has any opacity in it, ends
+//! included, so that neither the table nor the law itself shows what is called unseen.
+
+use super::TransferFunction;
+use super::table::Cut;
+
+/// Where a transfer function has opacity. That of its gradients is not counted in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Seen {
+    /// Value where cell 0 begins; values before it are in cell 0.
+    pub first: f32,
+    /// Cells per unit of value; values behind the last cell are in the last one.
+    pub scale: f32,
+    /// Of each cell, the next that is seen; the number of cells where there is none.
+    pub next: Vec<u32>,
+}
+
+impl Seen {
+    /// Of the function's own opacities.
+    pub fn new(function: &TransferFunction) -> Self {
+        let Cut {
+            first,
+            width,
+            count,
+            ..
+        } = Cut::new(function);
+        let cell = |value: f64| {
+            ((value - first) / width)
+                .floor()
+                .clamp(0.0, count as f64 - 1.0)
+        };
+        let mut is_seen = vec![false; count];
+        let mut show = |from: f64, to: f64| {
+            // What begins at the border of two cells is at the end of the one before.
+            let from = (cell(from) as usize).saturating_sub(1);
+            is_seen[from..=cell(to) as usize].fill(true);
+        };
+        let points = &function.opacity;
+        let ends = points.first().into_iter().chain(points.last());
+        for (end, beyond) in ends.zip([f64::NEG_INFINITY, f64::INFINITY]) {
+            if end.opacity > 0.0 {
+                show(end.value.min(beyond), end.value.max(beyond));
+            }
+        }
+        for pair in points.windows(2) {
+            if pair.iter().any(|point| point.opacity > 0.0) {
+                show(pair[0].value, pair[1].value);
+            }
+        }
+        let mut next = vec![count as u32; count];
+        let mut nearest = count as u32;
+        for i in (0..count).rev() {
+            if is_seen[i] {
+                nearest = i as u32;
+            }
+            next[i] = nearest;
+        }
+        Self {
+            first: first as f32,
+            scale: (1.0 / width) as f32,
+            next,
+        }
+    }
+
+    /// Whether any value of the range may be seen.
+    pub fn shows(&self, [low, high]: [f32; 2]) -> bool {
+        let last = self.next.len() as f32 - 1.0;
+        let cell = |value: f32, more: f32| ((value - self.first) * self.scale).floor() + more;
+        let from = cell(low, -1.0).clamp(0.0, last);
+        let to = cell(high, 1.0).clamp(0.0, last);
+        self.next[from as usize] <= to as u32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::ColorSpace;
+    use crate::transfer::{Absorption, Interpolation, OpacityPoint, Table};
+
+    fn function(points: &[(f64, f64)], interpolation: Interpolation) -> TransferFunction {
+        let point = |&(value, opacity): &(f64, f64)| OpacityPoint { value, opacity };
+        TransferFunction {
+            color: Vec::new(),
+            opacity: points.iter().map(point).collect(),
+            reference_length: None,
+            interpolation,
+            graded: None,
+        }
+    }
+
+    #[test]
+    fn what_lies_between_two_hills_is_not_seen_and_what_is_beyond_is_what_stands_at_the_end() {
+        let hills = [
+            (0., 0.),
+            (10., 0.),
+            (11., 0.4),
+            (12., 0.),
+            (20., 0.),
+            (21., 0.3),
+        ];
+        let seen = Seen::new(&function(&hills, Interpolation::Linear));
+        for (range, is_shown) in [
+            ([0.0, 9.9], false),
+            ([-1e30, 9.9], false),
+            ([9.9, 10.5], true),
+            ([12.5, 19.5], false),
+            ([12.5, 20.5], true),
+            ([25.0, 1e30], true),
+        ] {
+            assert_eq!(seen.shows(range), is_shown, "{range:?}");
+        }
+    }
+
+    #[test]
+    fn a_function_without_opacity_shows_nothing_and_a_point_alone_everything() {
+        for interpolation in [Interpolation::Linear, Interpolation::Step] {
+            assert!(!Seen::new(&function(&[], interpolation)).shows([-1e9, 1e9]));
+            assert!(!Seen::new(&function(&[(3., 0.)], interpolation)).shows([-1e9, 1e9]));
+            assert!(Seen::new(&function(&[(3., 0.1)], interpolation)).shows([7.0, 7.0]));
+        }
+    }
+
+    #[test]
+    fn what_a_table_or_the_law_shows_is_seen() {
+        let mut state = 7u64;
+        let mut random = || {
+            state = state
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            (state >> 40) as f64 / (1u64 << 24) as f64
+        };
+        for nth in 0..200 {
+            let mut at = -50.0;
+            let points: Vec<_> = (0..1 + nth % 9)
+                .map(|_| {
+                    at += if random() < 0.2 { 0.0 } else { 30.0 * random() };
+                    (at, if random() < 0.5 { 0.0 } else { random() })
+                })
+                .collect();
+            let kind = [Interpolation::Linear, Interpolation::Step][nth % 2];
+            let function = function(&points, kind);
+            let seen = Seen::new(&function);
+            let absorption = Absorption::Extinction {
+                reference_length: 1.0,
+            };
+            let table = Table::new(&function, absorption, ColorSpace::Linear);
+            assert_eq!(seen.next.len(), table.entries.len());
+            for _ in 0..200 {
+                let value = (400.0 * random() - 100.0) as f32;
+                let entry = ((value - table.first) * table.scale)
+                    .clamp(0.0, table.entries.len() as f32 - 1.0);
+                let shown =
+                    table.entries[entry as usize][3] > 0.0 || function.opacity(value.into()) > 0.0;
+                assert!(!shown || seen.shows([value; 2]), "{points:?} at {value}");
+            }
+        }
+    }
+}
