@@ -3,7 +3,7 @@
 # make plain   what draws once more, without validation of synchronization
 # make demo    the built-in head with each technique, and with DATA=path a file of yours, into target/demo
 # make gallery six real volumes by the classic techniques, into docs/gallery
-# make bench   frame times of each technique on this device
+# make bench   frame times of each technique, mode and projection on this device
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := test

@@ -105,8 +105,9 @@ impl Render {
         let start = Instant::now();
         let shown = Shown::read(&scene, &settings, &device, &progress);
         // Without a device nothing else that is wrong matters.
-        progress.device(&device.name()?);
+        device.wait()?;
         let shown = shown?;
+        progress.device(&device.name()?);
         let Shown {
             volume,
             classification,

@@ -102,14 +102,19 @@ impl Device {
         }
     }
 
-    fn made(&self) -> Result<&Made, Error> {
+    /// Until it is made. An error is told once: whoever was told goes no further.
+    pub fn wait(&self) -> Result<(), Error> {
         let mut making = self.making.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(making) = making.take() {
             let made = making.join().unwrap_or_else(|fault| resume_unwind(fault))?;
             let _ = self.made.set(made);
         }
-        drop(making);
-        Ok(self.made.get().expect("who was told of a fault stops"))
+        Ok(())
+    }
+
+    fn made(&self) -> Result<&Made, Error> {
+        self.wait()?;
+        Ok(self.made.get().expect("who was told of an error stops"))
     }
 
     fn into_made(self) -> Result<Made, Error> {
