@@ -9,6 +9,8 @@ const FILTER: Slot = (
     "filter",
     &["nearest", "linear", "linear_fetch", "kernel", "spline"],
 );
+/// By corners too: what rays on their own lattice have on software devices.
+const CORNERS: Slot = ("filter", &["corners"]);
 /// Conformance pictures search the points, and never leave filtering to the device.
 const FETCHED: Slot = ("filter", &["nearest", "linear_fetch", "kernel"]);
 /// Several volumes are mixed by narrow filters.
@@ -36,6 +38,7 @@ const BLEND: Slot = ("blend", &["composite"]);
 /// The wanted combinations. Order of the slots is the order of words in a variant's name.
 pub const ENTRIES: &[(&str, &[Slot])] = &[
     ("raycast", &[MODE, ONE, LATTICE, FILTER, HOLES, TABLE]),
+    ("raycast", &[MODE, ONE, RAY, CORNERS, HOLES, TABLE]),
     ("raycast", &[MODE, ONE, LATTICE, FETCHED, HOLES, POINTS]),
     ("raycast", &[MODE, MIXED, LATTICE, NARROW, HOLES, TABLE]),
     (
@@ -43,8 +46,10 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         &[MODE, MIXED, LATTICE, NARROW_FETCHED, HOLES, POINTS],
     ),
     ("raycast", &[MIDA, ONE, RAY, FILTER, HOLES, TABLE]),
+    ("raycast", &[MIDA, ONE, RAY, CORNERS, HOLES, TABLE]),
     ("raycast", &[MIDA, ONE, RAY, FETCHED, HOLES, POINTS]),
     ("isosurface", &[("paint", &["alone"]), FILTER, HOLES]),
+    ("isosurface", &[("paint", &["alone"]), CORNERS, HOLES]),
     ("isosurface", &[("paint", &["by"]), NARROW, HOLES]),
     ("projection_cells", &[("mode", &["mip", "minip"]), HOLES]),
     (
@@ -54,6 +59,16 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
             ALONE,
             LATTICE,
             FILTER,
+            HOLES,
+        ],
+    ),
+    (
+        "projection",
+        &[
+            ("mode", &["mip", "minip", "sum", "lmip", "attenuated_mip"]),
+            ALONE,
+            RAY,
+            CORNERS,
             HOLES,
         ],
     ),

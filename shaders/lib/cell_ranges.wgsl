@@ -9,6 +9,6 @@ struct CellRanges {
 @group(0) @binding(36) var<storage, read> cell_ranges: CellRanges;
 
 // Smallest and largest.
-fn range_at(position: vec3<f32>) -> vec2<f32> {
-    return cell_ranges.d[macro_cell_index_at(position)];
+fn range_of(cell: vec3<i32>) -> vec2<f32> {
+    return cell_ranges.d[cell_index(cell)];
 }

@@ -1,29 +1,54 @@
-// Ways through empty space: from a position in a cell whose nearest cell with matter is `room` cells away, nothing is seen
-// until the ray leaves the cube of cells nearer than that. What is left out would have added nothing at all, and the
-// samples behind are those of the lattice: the picture is the same to the bit (`sampling.md` 5).
-// Twin: src/resident/empty_space.rs.
+// Ways through empty space. Samples lie on a line, in cells from the corner of the grid of macro cells:
+//
+//     x(k) = at + k step
+//
+// Where the nearest cell with matter is `room` cells away, nothing is seen until the ray leaves the cube of cells that
+// are nearer. What is left out would have added nothing at all, and what comes next is a sample of the lattice: the
+// picture is the same to the bit (`sampling.md` 5). The apron of the cells has half a voxel to spare, more than f32 loses
+// on the way.
 
 #import ray
 
 const CELL_VOXELS: u32 = 8u;
 
-fn macro_cell_index_at(position: vec3<f32>) -> u32 {
-    let cell = macro_cell_at(position);
-    return frame.cells_first + cell.x + frame.cells.x * (cell.y + frame.cells.y * cell.z);
+struct Walk {
+    at: vec3<f32>,
+    step: vec3<f32>,
+    steps_per_cell: vec3<f32>,
+    last_cell: vec3<f32>,
+    // Only these may be left out: the others do not lie on the line, or nothing is known of the cells.
+    first: i32,
+    end: i32,
 }
 
-// Rounding may take a sample a little out of the brick.
-fn macro_cell_at(position: vec3<f32>) -> vec3<u32> {
-    let cell = (position - frame.cells_origin) / f32(CELL_VOXELS);
-    return vec3<u32>(clamp(cell, vec3(0.0), vec3<f32>(frame.cells - 1u)));
-}
-
-// Where the ray leaves the room.
-fn end_of_room(voxel: Ray, position: vec3<f32>, room: u32) -> f32 {
-    let cell = vec3<i32>(macro_cell_at(position));
-    let ahead = select(1 - vec3(i32(room)), vec3(i32(room)), voxel.direction > vec3(0.0));
-    let face = frame.cells_origin + vec3<f32>(cell + ahead) * f32(CELL_VOXELS);
+// With the samples at t = line.x + k line.y; from samples.x to samples.y they lie there.
+fn walk_of(voxel: Ray, line: vec2<f32>, samples: vec2<i32>) -> Walk {
+    let cell = f32(CELL_VOXELS);
+    let step = line.y * voxel.direction / cell;
     let tiny = vec3(1e-20);
-    let t = (face - voxel.origin) / select(voxel.direction, tiny, abs(voxel.direction) < tiny);
-    return min(t.x, min(t.y, t.z));
+    return Walk(
+        (voxel.origin + line.x * voxel.direction - frame.cells_origin) / cell,
+        step,
+        1.0 / select(step, tiny, abs(step) < tiny),
+        vec3<f32>(frame.cells) - 1.0,
+        samples.x,
+        select(samples.y, samples.x, frame.cells.x == 0u),
+    );
+}
+
+// The cell that sample k lies in.
+fn cell_of(walk: Walk, k: i32) -> vec3<i32> {
+    return vec3<i32>(clamp(walk.at + f32(k) * walk.step, vec3(0.0), walk.last_cell));
+}
+
+fn cell_index(cell: vec3<i32>) -> u32 {
+    let cells = vec3<i32>(frame.cells);
+    return frame.cells_first + u32(cell.x + cells.x * (cell.y + cells.y * cell.z));
+}
+
+// The first sample that lies outside of the room around the cell of sample k.
+fn after_room(walk: Walk, k: i32, cell: vec3<i32>, room: i32) -> i32 {
+    let ahead = select(vec3(1 - room), vec3(room), walk.step > vec3(0.0));
+    let leaves = (vec3<f32>(cell + ahead) - walk.at) * walk.steps_per_cell;
+    return max(k + 1, i32(ceil(min(leaves.x, min(leaves.y, leaves.z)))));
 }

@@ -30,6 +30,16 @@ fn segment_of(lattice: Lattice, world: Ray, k: i32) -> Segment {
     return Segment(t, select(0.0, plane_length(world), inside));
 }
 
+// Samples lie at t = x + k y.
+fn line_of(lattice: Lattice, world: Ray) -> vec2<f32> {
+    return vec2(plane_t(world, 0), plane_length(world));
+}
+
+// From x (included) to y (excluded) none is cut short.
+fn whole_samples(lattice: Lattice) -> vec2<i32> {
+    return vec2(lattice.first, lattice.first + lattice.count);
+}
+
 // Which sample lies at t, as a fraction.
 fn index_at(lattice: Lattice, world: Ray, t: f32) -> f32 {
     let height = dot(frame.forward, world.origin) + t * dot(frame.forward, world.direction);

@@ -42,6 +42,16 @@ fn segment_of(lattice: Lattice, world: Ray, k: i32) -> Segment {
     return Segment(front + 0.5 * length, length);
 }
 
+// Samples lie at t = x + k y, but for those of the segments that are cut short.
+fn line_of(lattice: Lattice, world: Ray) -> vec2<f32> {
+    return vec2(lattice.start + 0.5 * frame.step_world, frame.step_world);
+}
+
+// From x (included) to y (excluded) none is: the first may be, the last is.
+fn whole_samples(lattice: Lattice) -> vec2<i32> {
+    return vec2(1, lattice.count - 1);
+}
+
 // Which sample lies at t, as a fraction.
 fn index_at(lattice: Lattice, world: Ray, t: f32) -> f32 {
     return (t - lattice.start) / frame.step_world - 0.5;

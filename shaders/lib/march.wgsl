@@ -4,7 +4,6 @@
 #import ray
 #import brick
 #import faces
-#import empty_space
 #import lattice_{lattice}
 #import filter_{filter}
 #import nearest
@@ -23,40 +22,43 @@ fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
         return so_far;
     }
     let lattice = lattice_of(world, interval, pixel);
-    let first = max(lattice.first, i32(floor(index_at(lattice, world, inside.x))) - 1);
-    let end = min(lattice.first + lattice.count, i32(ceil(index_at(lattice, world, inside.y))) + 2);
+    // Samples in the brick follow one another: the ends are found by looking, the rest needs no look.
+    var first = max(lattice.first, i32(floor(index_at(lattice, world, inside.x))) - 1);
+    var end = min(lattice.first + lattice.count, i32(ceil(index_at(lattice, world, inside.y))) + 2);
+    while first < end && !is_ours(segment_of(lattice, world, first), voxel) {
+        first++;
+    }
+    while first < end && !is_ours(segment_of(lattice, world, end - 1), voxel) {
+        end--;
+    }
     // A cut face is seen before all samples.
-    let is_cut = enters_a_cut(voxel, interval);
+    let is_cut = enters_a_cut(voxel, interval) && is_in_brick(voxel.origin + interval.x * voxel.direction);
+    let walk = walk_of(voxel, line_of(lattice, world), whole_samples(lattice));
     var k = first - i32(is_cut);
     loop {
-        var is_face = false;
-        var segment = Segment(0.0, 0.0);
-        var position = vec3(0.0);
-        // On to the next sample that may count. A loop of its own: where rays are drawn side by side, none waits for
-        // another's sample.
+        // On to the next sample that may count: a loop of its own, so that rays that are walked side by side skip and
+        // sample together.
         loop {
-            if k >= end {
+            if k < walk.first || k >= min(end, walk.end) {
                 break;
             }
-            is_face = k < first;
-            segment = segment_of(lattice, world, k);
-            if is_face {
-                segment = Segment(interval.x, FACE_LENGTH);
-            }
-            position = voxel.origin + segment.t * voxel.direction;
-            let room = empty_room(so_far, position);
-            if room == 0u || is_face {
+            let cell = cell_of(walk, k);
+            let room = empty_room(so_far, cell);
+            if room == 0 {
                 break;
             }
-            k = max(k + 1, i32(ceil(index_at(lattice, world, end_of_room(voxel, position, room)))));
+            k = after_room(walk, k, cell, room);
         }
         if k >= end {
             break;
         }
-        k++;
-        if segment.length <= 0.0 || !is_in_brick(position) {
-            continue;
+        let is_face = k < first;
+        var segment = segment_of(lattice, world, k);
+        if is_face {
+            segment = Segment(interval.x, FACE_LENGTH);
         }
+        let position = voxel.origin + segment.t * voxel.direction;
+        k++;
         so_far.samples += 1.0;
         if !has_data(position) {
             continue;
@@ -69,4 +71,8 @@ fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
         }
     }
     return so_far;
+}
+
+fn is_ours(segment: Segment, voxel: Ray) -> bool {
+    return segment.length > 0.0 && is_in_brick(voxel.origin + segment.t * voxel.direction);
 }

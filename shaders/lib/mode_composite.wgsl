@@ -28,7 +28,7 @@ fn resumed(picture: vec4<f32>, beside: vec4<f32>) -> Accumulator {
 
 // What the picture gets.
 fn picture_of(found: Accumulator) -> vec4<f32> {
-    return vec4(found.color, 1.0 - found.transmittance);
+    return vec4(face_color(found.color), 1.0 - found.transmittance);
 }
 
 // 0, depth, transmittance, samples.

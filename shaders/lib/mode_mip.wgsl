@@ -26,9 +26,6 @@ fn is_finished(so_far: Accumulator) -> bool {
 }
 
 // A cell whose largest value is no news is as good as empty.
-fn empty_room(so_far: Accumulator, position: vec3<f32>) -> u32 {
-    if frame.cells.x == 0u || so_far.weight == 0.0 {
-        return 0u;
-    }
-    return u32(range_at(position).y <= so_far.value);
+fn empty_room(so_far: Accumulator, cell: vec3<i32>) -> i32 {
+    return i32(so_far.weight != 0.0 && range_of(cell).y <= so_far.value);
 }

@@ -9,10 +9,7 @@ struct Rooms {
 
 @group(0) @binding(36) var<storage, read> rooms: Rooms;
 
-// 0: there may be matter, or nothing is known.
-fn empty_room(so_far: Accumulator, position: vec3<f32>) -> u32 {
-    if frame.cells.x == 0u {
-        return 0u;
-    }
-    return rooms.d[macro_cell_index_at(position)];
+// 0: there may be matter.
+fn empty_room(so_far: Accumulator, cell: vec3<i32>) -> i32 {
+    return i32(rooms.d[cell_index(cell)]);
 }

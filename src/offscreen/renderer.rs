@@ -183,7 +183,7 @@ impl<'v> Renderer<'v> {
             }
             self.resident.insert(copied, made);
         }
-        Ok(())
+        self.keep_corners(scene, copied)
     }
 
     /// Makes the pipelines that pictures of `scene` take and the images that they are drawn in, as far as they are

@@ -4,6 +4,7 @@
 //! reaches the memory, written at once); nothing here submits or waits.
 
 mod bricks;
+mod corners;
 mod empty_space;
 mod gradients;
 mod macro_cells;
@@ -14,6 +15,7 @@ mod upload;
 mod volume;
 
 pub use bricks::{Cell, front_to_back};
+pub use corners::Corners;
 pub use empty_space::EmptySpace;
 pub use gradients::{KeptGradients, KeptOperator};
 pub use macro_cells::{Apron, MacroCells};

@@ -5,6 +5,7 @@
 
 use super::TexelFormat;
 use super::bricks::{Cell, cut};
+use super::corners::Corners;
 use super::gradients::KeptGradients;
 use crate::gpu::{Error, Gpu, Image, ImageDesc, ImageKind, Sampler};
 use crate::volume::{Coefficients, Grid, Spline, Volume};
@@ -74,6 +75,7 @@ pub struct GpuVolume {
     spline: Option<Spline>,
     gradient_source: Option<Box<GpuVolume>>,
     kept_gradients: Option<KeptGradients>,
+    pub(super) corners: Option<Corners>,
 }
 
 /// What a texture holds.
@@ -180,6 +182,7 @@ impl Plan {
             spline: None,
             gradient_source: None,
             kept_gradients: None,
+            corners: None,
         })
     }
 }

@@ -1,9 +1,9 @@
 //! What every technique reads, by the names that the shaders give it, and which variant of a shader that
 //! asks for.
 
-use super::{Filter, Lattice, LightVolume, Mix, Mode, Part, Role, Settings, Skip};
+use super::{Filter, Lattice, LightVolume, Mix, Mode, Part, Role, Settings, Skip, Technique};
 use crate::gpu::{Bindings, Error, Gpu, Image, Layout, ParameterRing, Resource};
-use crate::resident::{Brick, GpuTransfer, GpuVolume, TextureLayout};
+use crate::resident::{Brick, Corners, GpuTransfer, GpuVolume, TextureLayout};
 use crate::shaders::MAX_CHANNELS;
 use std::sync::Arc;
 
@@ -63,6 +63,9 @@ impl Inputs<'_> {
             Skip::Unseen(cells, empty) => [empty.rooms(), cells.ranges()],
             Skip::Exceeded(cells) => [self.ring.buffer(), cells.ranges()],
         };
+        let corners = self.volume.corners().map(Corners::buffer);
+        let corners = corners.unwrap_or(self.ring.buffer());
+        given.push(("corners", Resource::Storage(corners)));
         given.push(("rooms", Resource::Storage(rooms)));
         given.push(("cell_ranges", Resource::Storage(ranges)));
         given.extend_from_slice(outputs);
@@ -168,6 +171,7 @@ impl Words {
             mix: if is_graded { Mix::Graded } else { mix },
             filter: match settings.filter {
                 Filter::Nearest => "nearest",
+                Filter::Linear if settings.reads_corners(mix) && has_corners(parts) => "corners",
                 Filter::Linear if settings.conformance || parts.iter().any(is_fetched) => {
                     "linear_fetch"
                 }
@@ -192,6 +196,20 @@ impl Words {
                 "table"
             },
         }
+    }
+}
+
+fn has_corners(parts: &[Part]) -> bool {
+    parts.iter().all(|part| part.volume.corners().is_some())
+}
+
+impl Settings {
+    /// Whether pictures of one volume read its [`Corners`], where it has them: rays on their own lattice, linear.
+    pub fn reads_corners(&self, mix: Mix) -> bool {
+        let is_point = !self.preintegrated && !self.conformance;
+        let is_ray = self.technique == Technique::Raycast && self.lattice != Lattice::Planes;
+        let is_one = matches!(mix, Mix::Alone | Mix::Graded);
+        is_one && is_ray && is_point && self.filter == Filter::Linear
     }
 }
 

@@ -3,9 +3,9 @@
 use super::{Copied, Renderer, parts_of};
 use crate::gpu;
 use crate::offscreen::Error;
-use crate::resident::{Apron, EmptySpace, MacroCells};
+use crate::resident::{Apron, Corners, EmptySpace, MacroCells};
 use crate::scene::Scene;
-use crate::technique::{Skip, Skippable};
+use crate::technique::{Mix, Skip, Skippable};
 use crate::transfer::Seen;
 
 /// What is known of the volumes that have been drawn.
@@ -38,6 +38,31 @@ impl Skipped {
 }
 
 impl Renderer<'_> {
+    /// Puts corners beside the volumes where pictures of `scene` read them.
+    ///
+    /// # Errors
+    /// Where the device is lost.
+    pub(super) fn keep_corners(&mut self, scene: &Scene, copied: Copied) -> Result<(), Error> {
+        // Modes that project draw channels one by one.
+        let mix = match scene.settings.mode.is_projection() {
+            true => Mix::Alone,
+            false => scene.mix(),
+        };
+        if !scene.settings.reads_corners(mix) {
+            return Ok(());
+        }
+        let gpu = self.device.gpu();
+        let there = self.resident.get_mut(&copied).into_iter().flatten();
+        for (made, volume) in there.zip(&self.volumes) {
+            let is_one = made.bricks().len() == 1 && made.spline().is_none();
+            if made.corners().is_none() && is_one && Corners::are_for(gpu, volume) {
+                let corners = if_it_fits(Corners::new(gpu, volume))?;
+                corners.into_iter().for_each(|c| made.keep_corners(c));
+            }
+        }
+        Ok(())
+    }
+
     /// Finds out what pictures of `scene` need not look at. Nothing to do where that is known.
     ///
     /// # Errors
