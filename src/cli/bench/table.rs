@@ -7,6 +7,7 @@
 //!
 //! A picture with empty-space skipping or early termination takes fewer samples, each at the price of finding that
 //! out: its share of the ceiling says how good the loop is, its time how good the picture is to wait for.
+//! Where samples are read by another way than the sampler, as on software devices, the share may be above one.
 
 use super::{Bench, filtered, median_gpu, median_wall, timed};
 use crate::cli::{
