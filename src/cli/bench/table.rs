@@ -118,7 +118,11 @@ pub fn measured(bench: &Bench, scene: &SceneFlags) -> Result<String, Error> {
     }
     drop(progress);
     let repeat = bench.repeat.unwrap_or(REPEAT);
-    say(&table(&device, extent_pixels, repeat, &probes, &rows))?;
+    let often = match bench.repeat {
+        Some(repeat) => repeat.to_string(),
+        None => format!("{REPEAT}, of fewer where they take seconds"),
+    };
+    say(&table(&device, extent_pixels, &often, &probes, &rows))?;
     let value = json!({
         "device": device,
         "size": extent_pixels,
@@ -300,11 +304,11 @@ impl Row {
 fn table(
     device: &str,
     [width, height]: [u32; 2],
-    repeat: u32,
+    often: &str,
     probes: &[Probed],
     rows: &[Row],
 ) -> String {
-    let mut text = format!("{device}\n{width}x{height}, median of {repeat} or fewer\n");
+    let mut text = format!("{device}\n{width}x{height}, median of {often}\n");
     let number = |number: Option<f64>, digits: usize| {
         number.map_or("-".to_owned(), |number| format!("{number:.digits$}"))
     };
