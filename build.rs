@@ -5,9 +5,12 @@
 //! [`variants::ENTRIES`] gives for that slot: every combination of words becomes a variant of its own, because
 //! naga writes no specialization constants.
 //!
-//! Written to `OUT_DIR`: `shaders.spv` (all words, one module after the other) and `shaders.rs` (the
-//! table of modules with their bindings, a `#[repr(C)]` struct for each uniform, and the constants).
+//! Written to `OUT_DIR`: `shaders.spv` (all words, one module after the other), `shaders.rs` (the
+//! table of modules with their bindings, a `#[repr(C)]` struct for each uniform, and the constants) and
+//! `blue_noise.bin` (the pattern of jittered rays).
 
+#[path = "shaders/blue_noise.rs"]
+mod blue_noise;
 #[path = "shaders/variants.rs"]
 mod variants;
 
@@ -30,6 +33,9 @@ fn main() {
     }
     fs::write(out.join("shaders.spv"), &book.spirv).expect("OUT_DIR can be written");
     fs::write(out.join("shaders.rs"), book.rust()).expect("OUT_DIR can be written");
+    let ranks = blue_noise::ranks().into_iter().flat_map(u32::to_le_bytes);
+    let ranks: Vec<u8> = ranks.collect();
+    fs::write(out.join("blue_noise.bin"), ranks).expect("OUT_DIR can be written");
 }
 
 /// Every way to take one word from each slot.

@@ -5,6 +5,7 @@
 
 #import ray
 #import brick
+#import empty_space
 #import filter_{filter}
 #import nearest
 #import mask
@@ -17,6 +18,13 @@
 @group(0) @binding(6) var picture: texture_storage_2d<rgba32float, read_write>;
 // Level of the first crossing, its depth (negative: none), transmittance, samples.
 @group(0) @binding(7) var layers: texture_storage_2d<rgba32float, read_write>;
+
+struct Rooms {
+    d: array<u32>,
+}
+
+// How far away the nearest cell is that a surface may go through (distance_map.wgsl).
+@group(0) @binding(36) var<storage, read> rooms: Rooms;
 
 // Halvings of a segment: 2^-10 of a step.
 const HALVINGS: u32 = 10u;
@@ -73,29 +81,77 @@ fn surfaces(pixel: vec2<f32>, before: Surfaces) -> Surfaces {
     let full = i32(floor((interval.y - interval.x) / frame.step_world));
     let first = max(0, i32(floor((inside.x - interval.x) / frame.step_world)) - 1);
     let last = min(full + 1, i32(ceil((inside.y - interval.x) / frame.step_world)) + 1);
+    // A segment that comes from another brick begins in cells that are not known here.
+    let known = select(0, full + 1, frame.is_only_brick != 0u);
+    let walk = walk_of(voxel, vec2(interval.x, frame.step_world), vec2(0, known));
     var near = End(0.0, 0.0, false);
-    for (var k = first; k <= last; k++) {
-        let t = min(interval.x + f32(k) * frame.step_world, interval.y);
-        let next = min(interval.x + f32(k + 1) * frame.step_world, interval.y);
-        let is_own = is_in_brick(voxel.origin + t * voxel.direction);
-        // The segment behind may be the brick's own.
-        if !is_own && !is_in_brick(voxel.origin + next * voxel.direction) {
-            continue;
-        }
-        let far = end_at(voxel, t);
-        if is_own {
-            so_far.samples += 1.0;
-            // Between a value and no data there is no surface. Before the first end there is none.
-            if near.has_data && far.has_data {
-                so_far = crossed(so_far, world, voxel, near, far);
-                if is_finished(so_far) {
+    var far = near;
+    // Whether the near end lies in a cell that no surface goes through, or there is none.
+    var is_near_empty = true;
+    var k = first;
+    loop {
+        var is_crossed = false;
+        // On to the next segment that a surface crosses: a loop of its own, so that rays that are walked side by side
+        // search together and shade together.
+        loop {
+            // Neighbouring cells without surface are on the same side of all levels, for they share voxels. The last
+            // sample of a room is the near end of the segment that leaves it.
+            var room = 0;
+            loop {
+                room = 0;
+                if k < walk.first || k >= walk.end {
                     break;
                 }
+                let cell = cell_of(walk, k);
+                room = i32(rooms.d[cell_index(cell)]);
+                let landing = after_room(walk, k, cell, max(room, 1)) - 1;
+                if room == 0 || !is_near_empty || landing <= k {
+                    break;
+                }
+                k = landing;
+                near.has_data = false;
             }
+            if k > last {
+                break;
+            }
+            let t = min(interval.x + f32(k) * frame.step_world, interval.y);
+            let next = min(interval.x + f32(k + 1) * frame.step_world, interval.y);
+            let is_own = is_in_brick(voxel.origin + t * voxel.direction);
+            k++;
+            // The segment behind may be the brick's own.
+            if !is_own && !is_in_brick(voxel.origin + next * voxel.direction) {
+                continue;
+            }
+            far = end_at(voxel, t);
+            is_near_empty = room > 0;
+            so_far.samples += f32(is_own);
+            // Between a value and no data there is no surface. Before the first end there is none.
+            is_crossed = is_own && near.has_data && far.has_data && are_apart(near, far);
+            if is_crossed {
+                break;
+            }
+            near = far;
+        }
+        if !is_crossed {
+            break;
+        }
+        so_far = crossed(so_far, world, voxel, near, far);
+        if is_finished(so_far) {
+            break;
         }
         near = far;
     }
     return so_far;
+}
+
+// Whether a level lies between two ends.
+fn are_apart(near: End, far: End) -> bool {
+    var are = false;
+    for (var i = 0u; i < frame.level_count; i++) {
+        let level = frame.level_values[i].x;
+        are = are || is_under(near, level) != is_under(far, level);
+    }
+    return are;
 }
 
 // Nothing is seen behind what is opaque.

@@ -6,6 +6,7 @@
 //! planes:  n . (o + t r) = (k + 1/2) h, a sample stands for h / (n . r)
 //! ```
 
+use crate::blue_noise::jitter_of;
 use crate::ray::{Ray, plane_length, plane_t, vector};
 use crate::real::{Real, dot};
 use crate::shaders::Frame;
@@ -175,14 +176,4 @@ pub fn slabs_on_planes<R: Real>(
     let plane_at = |t: R| (origin + t * slope) / R::from_f32(frame.step_world) - R::from_f64(0.5);
     let planes = plane_at(t0).floor().to_i32()..=plane_at(t1).ceil().to_i32();
     planes.map(move |k| plane_slab(frame, world, [t0, t1], k))
-}
-
-/// Where the steps of a pixel's ray begin, over 0 and at most 1. Twin of `jitter.wgsl`.
-pub fn jitter_of(frame: &Frame, pixel: [u32; 2]) -> f32 {
-    let [x, y] = pixel;
-    let pattern = x
-        .wrapping_mul(3_242_174_889)
-        .wrapping_add(y.wrapping_mul(2_447_445_414))
-        .wrapping_add(frame.jitter);
-    ((pattern >> 8) as f32 + 0.5) / 16_777_216.0
 }

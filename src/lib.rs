@@ -7,7 +7,7 @@
 //!
 //! | floor | modules | what they know |
 //! |---|---|---|
-//! | 0 | [`shaders`], [`real`], [`ray`], [`lattice`], [`color`], `fence` | arithmetic shared with the shaders, free of Vulkan |
+//! | 0 | [`shaders`], [`real`], [`ray`], [`blue_noise`], [`lattice`], [`color`], `fence` | arithmetic shared with the shaders, free of Vulkan |
 //! | 1 | [`gpu`], [`volume`], [`transfer`], [`camera`], [`picture`], [`mesh`] | Vulkan objects, or data; never both |
 //! | 2 | [`resident`], [`isosurface`], `format` | data put on a device; a surface in a volume; bytes of files turned into a [`volume::Source`] |
 //! | 3 | [`technique`], [`resolve`] | `new`, `bind`, `record`, and the CPU twins |
@@ -169,6 +169,7 @@
 //! `shaders/lib/mode_*.wgsl` says what a sample adds, `shaders/resolve.wgsl` makes it a colour, and
 //! [`offscreen::Renderer::render`] (or a host) puts the passes in order.
 
+pub mod blue_noise;
 pub mod camera;
 #[cfg(feature = "cli")]
 pub mod cli;

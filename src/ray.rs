@@ -20,8 +20,31 @@ impl<R: Real> Ray<R> {
     }
 }
 
-/// The world ray through a pixel position; the centre of pixel (0, 0) is (0.5, 0.5).
+/// Where in a pixel its ray goes through: the centre that is given, or a place in a square around it that hangs on
+/// the pixel. Twin of `in_pixel.wgsl`.
+pub fn place_in_pixel<R: Real>(frame: &Frame, pixel: [R; 2]) -> [R; 2] {
+    if frame.is_uneven == 0 {
+        return pixel;
+    }
+    let moved = in_cell(frame, pixel.map(|x| x.to_i32() as u32));
+    std::array::from_fn(|k| pixel[k] + R::from_f32(moved[k]))
+}
+
+fn in_cell(frame: &Frame, [x, y]: [u32; 2]) -> [f32; 2] {
+    let step = |v: u32| v.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+    let [mut x, mut y, mut z] = [x, y, frame.cell_seed].map(step);
+    x = x.wrapping_add(y.wrapping_mul(z));
+    y = y.wrapping_add(z.wrapping_mul(x));
+    z = z.wrapping_add(x.wrapping_mul(y));
+    [x, y, z] = [x, y, z].map(|v| v ^ v >> 16);
+    x = x.wrapping_add(y.wrapping_mul(z));
+    y = y.wrapping_add(z.wrapping_mul(x));
+    [x, y].map(|v| ((v >> 8) as f32 / 16_777_216.0 - 0.5) * frame.cell_pixels)
+}
+
+/// The world ray of a pixel; the centre of pixel (0, 0) is (0.5, 0.5).
 pub fn pixel_ray<R: Real>(frame: &Frame, pixel: [R; 2]) -> Ray<R> {
+    let pixel = place_in_pixel(frame, pixel);
     let along = |start: [f32; 3], dx: [f32; 3], dy: [f32; 3]| {
         let moved = add(vector(start), scale(vector(dx), pixel[0]));
         add(moved, scale(vector(dy), pixel[1]))

@@ -3,10 +3,9 @@
 use crate::camera::Camera;
 use crate::shaders::MAX_CHANNELS;
 use crate::technique::mixture::opacities_have_colors;
-use crate::technique::{CutFaces, Error, Jitter, Keep, Mix, Mode, Role, Settings, View};
+use crate::technique::{CutFaces, Error, InPixel, Keep, Mix, Mode, Role, Settings, View};
 use crate::transfer::TransferFunction;
 use crate::volume::Volume;
-use std::f64::consts::SQRT_2;
 
 /// One of several things seen in the same place.
 #[derive(Clone, Copy, Debug)]
@@ -244,42 +243,32 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// Where in the pixel its rays go through: in the middles of a regular grid, or one at an uneven place of each of
-/// its cells (stratified sampling, Cook 1986), the same places in every pixel and others in each picture of a film.
-pub fn positions_in_pixel(settings: &Settings) -> impl Iterator<Item = [f64; 2]> + use<> {
+/// Where in the pixel its rays go through: in the middles of a regular grid, or at a place of each of its cells that
+/// hangs on the pixel, and others in each picture of a film.
+pub fn positions_in_pixel(settings: &Settings) -> impl Iterator<Item = InPixel> + use<> {
     let per_side = settings.rays_per_side;
     let is_uneven = settings.uneven_rays && per_side > 1;
-    let Jitter { seed, frame } = settings.jitter;
-    let shift = f64::from(seed) * SQRT_2 + f64::from(frame) * GOLDEN;
-    let place = move |x: u32, y: u32| {
-        if !is_uneven {
-            return [0.5; 2];
-        }
-        let ray = f64::from(y * per_side + x);
-        R2.map(|step| (shift + 0.5 + (ray + 1.0) * step).fract())
+    let cell_pixels = if is_uneven {
+        1.0 / f64::from(per_side)
+    } else {
+        0.0
     };
-    (0..per_side).flat_map(move |y| {
-        (0..per_side).map(move |x| {
-            let [u, v] = place(x, y);
-            let at = |i: u32, part: f64| (f64::from(i) + part) / f64::from(per_side) - 0.5;
-            [at(x, u), at(y, v)]
-        })
-    })
+    let at = move |i: u32| (f64::from(i) + 0.5) / f64::from(per_side) - 0.5;
+    let cell = move |x: u32, y: u32| InPixel {
+        at: [at(x), at(y)],
+        cell_pixels,
+    };
+    (0..per_side).flat_map(move |y| (0..per_side).map(move |x| cell(x, y)))
 }
-
-/// Steps of the sequence R2 of M. Roberts (2018): 1/g and 1/g^2 with g^3 = g + 1.
-const R2: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
-/// Of the sequence with one number: 1/g with g^2 = g + 1.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 impl<'a> Scene<'a> {
     /// The view through one position in each pixel.
-    pub fn view(&self, grid: &'a crate::volume::Grid, in_pixel: [f64; 2]) -> View<'a> {
+    pub fn view(&self, grid: &'a crate::volume::Grid, in_pixel: impl Into<InPixel>) -> View<'a> {
         View {
             grid,
             camera: self.camera,
             extent_pixels: self.extent_pixels,
-            in_pixel,
+            in_pixel: in_pixel.into(),
             settings: self.settings,
         }
     }
@@ -288,30 +277,76 @@ impl<'a> Scene<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::technique::Jitter;
 
     #[test]
-    fn uneven_rays_go_through_each_cell_of_the_pixel_once_and_elsewhere_in_the_next_frame() {
-        let at = |uneven_rays, seed, frame| {
+    fn uneven_rays_go_through_each_cell_of_each_pixel_once_and_elsewhere_in_the_next_frame() {
+        let volume = Volume::from_voxels(
+            [4; 3],
+            glam::DAffine3::IDENTITY,
+            crate::volume::Voxels::U8(vec![0; 64]),
+            crate::volume::Rescale::default(),
+            None,
+        );
+        let volume = volume.expect("64 voxels");
+        let camera = Camera {
+            eye: glam::dvec3(2.0, 2.0, -9.0),
+            target: glam::dvec3(2.0, 2.0, 0.0),
+            up: glam::DVec3::Y,
+            projection: crate::camera::Projection::Orthographic { view_height: 4.0 },
+            zoom: 1.0,
+        };
+        // From the middles of their cells, in sides of a cell, for each ray of each of 32 x 32 pixels.
+        let places = |uneven_rays, seed, frame| {
             let settings = Settings {
-                rays_per_side: 8,
+                rays_per_side: 3,
                 uneven_rays,
                 jitter: Jitter { seed, frame },
                 ..Settings::default()
             };
-            positions_in_pixel(&settings).collect::<Vec<_>>()
+            let scene = Scene {
+                volume: &volume,
+                transfer: None,
+                beside: Beside::Nothing,
+                camera: &camera,
+                extent_pixels: [32; 2],
+                settings: &settings,
+            };
+            let grid = volume.grid();
+            let rays = positions_in_pixel(&settings).flat_map(|in_pixel| {
+                let frame = scene.view(&grid, in_pixel).on_cpu();
+                let frame = frame.expect("parameters").frame;
+                let pixels = (0..32 * 32).map(|i| [i % 32, i / 32].map(|n| f64::from(n) + 0.5));
+                let place = move |pixel: [f64; 2]| {
+                    let found = crate::ray::place_in_pixel(&frame, pixel);
+                    [0, 1].map(|k| 3.0 * (found[k] - pixel[k]))
+                };
+                pixels.map(place).collect::<Vec<_>>()
+            });
+            rays.collect::<Vec<_>>()
         };
-        let cell = |[x, y]: [f64; 2]| [x, y].map(|p| ((p + 0.5) * 8.0).floor() as u32);
-        let even = at(false, 3, 1);
-        let uneven = at(true, 3, 1);
-        for (even, uneven) in even.iter().zip(&uneven) {
-            assert_eq!(cell(*even), cell(*uneven), "{even:?} {uneven:?}");
+        assert!(places(false, 3, 1).iter().all(|place| *place == [0.0; 2]));
+        let uneven = places(true, 3, 1);
+        let count = uneven.len() as f64;
+        assert!(uneven.iter().flatten().all(|x| (-0.5..=0.5).contains(x)));
+        let mean =
+            |number: &dyn Fn(usize) -> f64| (0..uneven.len()).map(number).sum::<f64>() / count;
+        // Five standard errors of even numbers on [-1/2, 1/2] and of products of two of them.
+        for axis in [0, 1] {
+            let x = |i: usize| uneven[i % uneven.len()][axis];
+            assert!(mean(&x).abs() < 5.0 * (1.0 / 12.0 / count).sqrt());
+            let square = mean(&|i| x(i) * x(i));
+            assert!((square - 1.0 / 12.0).abs() < 5.0 * (1.0 / 180.0 / count).sqrt());
+            // The neighbour to the right, the one below, the next ray.
+            for step in [1, 32, 1024] {
+                let together = mean(&|i| x(i) * x(i + step));
+                assert!(together.abs() < 5.0 / 12.0 / count.sqrt(), "{step}");
+            }
         }
-        for axis in 0..2 {
-            let mean = uneven.iter().map(|p| p[axis]).sum::<f64>() / 64.0;
-            assert!(mean.abs() < 0.01, "the mean of axis {axis} is {mean}");
-        }
-        assert_eq!(uneven, at(true, 3, 1));
-        assert_ne!(uneven, at(true, 4, 1));
-        assert_ne!(uneven, at(true, 3, 2));
+        let both = mean(&|i| uneven[i][0] * uneven[i][1]);
+        assert!(both.abs() < 5.0 / 12.0 / count.sqrt());
+        assert_eq!(uneven, places(true, 3, 1));
+        assert_ne!(uneven, places(true, 4, 1));
+        assert_ne!(uneven, places(true, 3, 2));
     }
 }

@@ -78,7 +78,7 @@ fn drawn(device: &mut Headless, format: vk::Format, order: Order, slices: u32) -
         grid: &grid,
         camera: &camera,
         extent_pixels: EXTENT,
-        in_pixel: [0.0; 2],
+        in_pixel: [0.0; 2].into(),
         settings: &settings,
     };
     let recording = view.recordings(&voxels, Some(&table)).unwrap()[0];

@@ -9,7 +9,7 @@ use std::{fs, path::Path};
 /// Modules by floor, as `src/lib.rs` tells them; floors 0, 3 and 4 have steps inside.
 const FLOORS: &[&[&str]] = &[
     &["shaders", "real", "fence"],
-    &["ray", "color"],
+    &["ray", "color", "blue_noise"],
     &["lattice"],
     &["gpu", "volume", "transfer", "camera", "picture", "mesh"],
     &["resident", "isosurface", "format"],
@@ -28,6 +28,7 @@ const FREE_OF_VULKAN: &[&str] = &[
     "ray",
     "lattice",
     "color",
+    "blue_noise",
     "volume",
     "transfer",
     "camera",

@@ -13,6 +13,7 @@ use shared::{
 use stratavox::camera::{Camera, Projection};
 use stratavox::offscreen::{Renderer, reference};
 use stratavox::picture::LayerKind;
+use stratavox::shaders::MAX_CLIP_PLANES;
 use stratavox::technique::slices_2d::stack_axis;
 use stratavox::technique::{ClipPlane, Filter, Mode, Technique};
 use stratavox::volume::{Grid, Rescale, Volume, Voxels};
@@ -98,6 +99,54 @@ fn exact_answers_hold_between_clip_planes() {
     let shots = oblique_shots(grid, Mode::Composite).into_iter();
     let shots = shots.map(|shot| shot.with(|settings| settings.clip_planes = planes.clone()));
     exact_answers_hold(&shots.collect::<Vec<_>>());
+}
+
+/// Planes around the centre of a grid, all as far from it: their normals are the Fibonacci points of a sphere.
+fn planes_around(grid: &Grid, count: usize, radius: f64) -> Vec<ClipPlane> {
+    let normal = |i: usize| {
+        let z: f64 = 1.0 - (2.0 * i as f64 + 1.0) / count as f64;
+        let turn = i as f64 * std::f64::consts::PI * (3.0 - 5f64.sqrt());
+        let [x, y] = [turn.cos(), turn.sin()].map(|part| (1.0 - z * z).sqrt() * part);
+        dvec3(x, y, z)
+    };
+    let plane = |normal: DVec3| ClipPlane {
+        normal,
+        offset: normal.dot(grid.center()) - radius,
+    };
+    (0..count).map(|i| plane(normal(i))).collect()
+}
+
+#[test]
+fn a_polytope_of_as_many_planes_as_there_may_be_is_cut_out_exactly() {
+    let grid = SHEARED();
+    let limit = MAX_CLIP_PLANES as usize;
+    for count in [200, limit] {
+        let planes = planes_around(&grid, count, 5.2);
+        let shots = oblique_shots(grid, Mode::Composite).into_iter();
+        let shots = shots.map(|shot| shot.with(|settings| settings.clip_planes = planes.clone()));
+        for shot in shots {
+            let extent = [16, 14];
+            let shot = Shot { extent, ..shot };
+            let lengths = shot
+                .pixels()
+                .filter_map(|pixel| Some(shot.chord(pixel)?.length()));
+            let longest = lengths.fold(0.0, f64::max);
+            assert!(
+                (9.0..11.5).contains(&longest),
+                "{longest} of a ball of 10.4"
+            );
+            for way in ways() {
+                homogeneous(&*way, &shot).assert_holds();
+            }
+        }
+    }
+    let mut shot = oblique_shots(grid, Mode::Composite).remove(0);
+    shot.settings.clip_planes = planes_around(&grid, limit + 1, 5.2);
+    let refused = shot.view().on_cpu().unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        format!("{} clip planes, the limit is {limit}", limit + 1)
+    );
 }
 
 #[test]

@@ -113,7 +113,9 @@ fn a_threshold_over_all_values_makes_lmip_a_mip() {
         .zip(shots(GRID(), Mode::Mip))
     {
         let lmip = lmip.with(|s| s.per_mode.lmip_threshold = 2.0);
-        let [found, wanted] = [&lmip, &mip].map(|shot| drawn(&volume, shot, &layers));
+        // All samples are counted.
+        let both = [&lmip, &mip].map(|shot| shot.with(|s| s.skip = false));
+        let [found, wanted] = both.map(|shot| drawn(&volume, &shot, &layers));
         let same = |kind| {
             layer(&found, kind)
                 .iter()
@@ -199,6 +201,7 @@ fn mida_of_gamma_minus_one_is_compositing_to_the_last_bit() {
                     s.per_mode.mida_gamma = -1.0;
                     s.termination = termination;
                     s.conformance = false;
+                    s.skip = false;
                 })
             });
             let [found, wanted] = both.map(|shot| drawn(&volume, &shot, &layers));

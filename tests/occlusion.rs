@@ -73,7 +73,7 @@ impl Found {
             grid,
             camera: &camera,
             extent_pixels: [4, 4],
-            in_pixel: [0.0; 2],
+            in_pixel: [0.0; 2].into(),
             settings,
         };
         let plan = view.light_plan().unwrap().expect("light is asked for");

@@ -6,9 +6,11 @@ use glam::{DAffine3, DVec3, dvec3};
 use shared::{
     Shot, Worst, device, oblique_camera, projections, ramps, straight_shots, volume_of, waves,
 };
+use std::f64::consts::TAU;
+use stratavox::blue_noise::jitter_of;
 use stratavox::camera::{Camera, Projection};
 use stratavox::offscreen::{Renderer, reference};
-use stratavox::picture::{ColorSpace, Picture};
+use stratavox::picture::{ColorSpace, LayerKind, Picture};
 use stratavox::technique::slices_2d::{planes_per_slice, stack_shares};
 use stratavox::technique::{Jitter, Lattice, Mode, Settings, Technique};
 use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
@@ -249,7 +251,7 @@ fn jittered(
     };
     let transfer = ramps();
     renderer
-        .render(&shot.scene(volume, Some(&transfer)), &[])
+        .render(&shot.scene(volume, Some(&transfer)), &[LayerKind::Samples])
         .unwrap()
         .picture
 }
@@ -266,12 +268,16 @@ fn jitter_is_a_function_of_pixel_frame_and_seed() {
         assert_eq!(first.pixels, again.pixels, "the same bytes");
         for changed in [jitter(2, 0), jitter(1, 1)] {
             let found = jittered(&volume, &mut renderer, changed, preintegrated);
-            let drawn = first
-                .pixels
-                .iter()
-                .zip(&found.pixels)
-                .filter(|(a, _)| a[3] > 0.01);
-            let (same, differ): (Vec<_>, Vec<_>) = drawn.partition(|(a, b)| a == b);
+            // The only sample of a short ray lies in its middle.
+            let are_long = |i: &usize| {
+                [&first, &found]
+                    .iter()
+                    .all(|p| p.layers[0].values[*i] > 1.0)
+            };
+            let long = (0..first.pixels.len()).filter(are_long);
+            let (same, differ): (Vec<_>, Vec<_>) =
+                long.partition(|&i| first.pixels[i] == found.pixels[i]);
+            assert!(differ.len() > 100, "{} long rays", differ.len());
             assert!(
                 differ.len() > 20 * same.len(),
                 "{changed:?}: {} are the same",
@@ -281,38 +287,87 @@ fn jitter_is_a_function_of_pixel_frame_and_seed() {
     }
 }
 
-/// The parts of a run of pictures lie evenly, and so do those of neighbours.
+/// The parts of a step that the parameters of a picture give to the pixels of 64 x 64, row after row.
+fn parts(seed: u32, frame: u32) -> Vec<f32> {
+    let grid = volume_of([4; 3], DAffine3::IDENTITY, waves).grid();
+    let settings = Settings {
+        lattice: Lattice::Jitter,
+        jitter: Jitter { seed, frame },
+        ..Settings::default()
+    };
+    let shot = Shot {
+        grid,
+        camera: oblique_camera(&grid, projections(&grid)[0]),
+        extent: [64, 64],
+        settings,
+    };
+    let frame = shot.parameters().0;
+    shot.pixels()
+        .map(|pixel| jitter_of(&frame, pixel))
+        .collect()
+}
+
+/// By how much sorted parts are off even ones.
+fn spread(mut parts: Vec<f32>) -> f32 {
+    parts.sort_by(f32::total_cmp);
+    let count = parts.len() as f32;
+    let even = |i: usize| (i as f32 + 0.5) / count;
+    let off = parts
+        .iter()
+        .enumerate()
+        .map(|(i, part)| (part - even(i)).abs());
+    off.fold(0.0, f32::max)
+}
+
 #[test]
 fn the_pattern_of_jitter_is_even_in_space_and_time() {
-    let spread = |mut parts: Vec<f32>| {
-        parts.sort_by(f32::total_cmp);
-        let count = parts.len() as f32;
-        let ideal = parts
-            .iter()
-            .enumerate()
-            .map(|(i, part)| (part - (i as f32 + 0.5) / count).abs());
-        ideal.fold(0.0, f32::max)
-    };
-    let volume = volume_of([4; 3], DAffine3::IDENTITY, waves);
-    let grid = volume.grid();
-    let part = |x, y, frame| {
-        let settings = Settings {
-            lattice: Lattice::Jitter,
-            jitter: Jitter { seed: 7, frame },
-            ..Settings::default()
-        };
-        let camera = oblique_camera(&grid, projections(&grid)[0]);
-        let shot = Shot {
-            grid,
-            camera,
-            extent: [8, 8],
-            settings,
-        };
-        stratavox::lattice::jitter_of(&shot.parameters().0, [x, y])
-    };
-    let block = (0..8).flat_map(|y| (0..8).map(move |x| (x, y)));
-    let in_space = spread(block.map(|(x, y)| part(x, y, 0)).collect());
-    let in_time = spread((0..64).map(|frame| part(3, 5, frame)).collect());
+    let of_pixel: Vec<_> = (0..64).map(|frame| parts(7, frame)[64 * 5 + 3]).collect();
+    // Two ranks share each of 2048 levels, so a part is at most one level off.
+    let in_space = [parts(7, 0), parts(8, 5)].map(spread);
+    assert!(
+        in_space.iter().all(|&off| off < 1.0 / 2048.0),
+        "{in_space:?}"
+    );
     // 64 random numbers would be off by a tenth.
-    assert!(in_space < 0.05 && in_time < 0.05, "{in_space} {in_time}");
+    let in_time = spread(of_pixel);
+    assert!(in_time < 0.05, "{in_time}");
+}
+
+/// Which share of the power of 64 x 64 numbers lies at less than an eighth of a turn a pixel, in every direction:
+/// under a quarter of the Nyquist frequency.
+fn slow_share(parts: &[f32]) -> f64 {
+    let mean = parts.iter().map(|&part| f64::from(part)).sum::<f64>() / 4096.0;
+    let off = |i: usize| f64::from(parts[i]) - mean;
+    let all: f64 = (0..4096).map(|i| off(i).powi(2)).sum::<f64>() * 4096.0;
+    let slow = (-7i32..8).flat_map(|v| (-7i32..8).map(move |u| [u, v]));
+    let slow = slow.filter(|[u, v]| (1..64).contains(&(u * u + v * v)));
+    let power = |[u, v]: [i32; 2]| {
+        let mut sums = [0.0; 2];
+        for i in 0..4096 {
+            let turns = (u * (i % 64) + v * (i / 64)).rem_euclid(64);
+            let (sine, cosine) = (f64::from(turns) / 64.0 * TAU).sin_cos();
+            sums[0] += off(i as usize) * cosine;
+            sums[1] += off(i as usize) * sine;
+        }
+        sums[0].powi(2) + sums[1].powi(2)
+    };
+    slow.map(power).sum::<f64>() / all
+}
+
+#[test]
+fn the_pattern_of_jitter_is_blue_in_every_picture_of_a_film() {
+    let mut state = 1u32;
+    let white: Vec<_> = (0..4096)
+        .map(|_| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as f32 / 16_777_216.0
+        })
+        .collect();
+    let of_white = slow_share(&white);
+    assert!((0.03..0.07).contains(&of_white), "{of_white}");
+    for (seed, frame) in [(0, 0), (0, 1), (0, 2), (9, 0), (9, 33)] {
+        let found = slow_share(&parts(seed, frame));
+        println!("{seed} {frame}: {:.4} %", 100.0 * found);
+        assert!(found < 1e-4, "{seed} {frame}: {found}");
+    }
 }

@@ -68,7 +68,7 @@ unsafe fn draw(host: &Host) -> Result<(), Box<dyn Error>> {
         grid: &grid,
         camera: &camera,
         extent_pixels: EXTENT,
-        in_pixel: [0.0; 2],
+        in_pixel: [0.0; 2].into(),
         settings: &settings,
     };
 

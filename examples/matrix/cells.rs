@@ -6,13 +6,13 @@ use stratavox::picture::ColorSpace;
 use stratavox::scene::{Beside, Channel, Scene};
 use stratavox::technique::preclassified::preclassified;
 use stratavox::technique::{
-    AmbientOcclusion, ClipPlane, CutFaces, Filter, GradientFilter, Lattice, Level, Light, Mode,
-    Order, PerMode, Role, Settings, Shading, Shadows, Technique,
+    AmbientOcclusion, ClipPlane, CutFaces, Filter, GradientFilter, Keep, Lattice, Level, Light,
+    Mode, Order, PerMode, Role, Settings, Shading, Shadows, Technique,
 };
 use stratavox::transfer::{
     ColorPoint, Graded, Interpolation, OpacityPoint, Shape, TransferFunction, Widget,
 };
-use stratavox::volume::{Rescale, Volume, Voxels, labels::dim};
+use stratavox::volume::{Denoise, Rescale, Volume, Voxels, labels::dim};
 
 /// Where samples lie.
 pub const TECHNIQUES: [(Technique, &str); 3] = [
@@ -54,6 +54,12 @@ pub enum Seen {
     Graded,
     /// One with voxels that are no data.
     Holed,
+    /// One that rises everywhere, so that its gradient has a direction everywhere.
+    Bowl,
+    /// One that is to lie in several textures.
+    Bricked,
+    /// One out of which a noise filter has taken what it could.
+    Denoised,
     /// Two volumes, each with a function.
     Channels,
     /// One under a label map.
@@ -214,6 +220,26 @@ pub const FEATURES: &[Feature] = &[
             s.gradient_filter = GradientFilter::Analytic;
         },
     ),
+    feature(
+        "kept gradients",
+        "`--gradients kept --gradient-filter sobel`",
+        Seen::Bowl,
+        |s| {
+            s.shading = Some(Shading {
+                specular: 0.0,
+                ..lights()
+            });
+            s.gradient_filter = GradientFilter::Sobel;
+            s.keep_gradients = Keep::Always;
+        },
+    ),
+    feature("a volume in several bricks", "", Seen::Bricked, |s| {
+        // Surfaces in bricks want short segments: half a voxel for wide filters.
+        if s.mode == Mode::Iso {
+            s.samples_per_voxel = 2.5;
+        }
+    }),
+    feature("noise filters", "`--denoise`", Seen::Denoised, |_| {}),
     feature("voxels without data", "", Seen::Holed, |_| {}),
     feature(
         "light, voxels without data",
@@ -305,18 +331,23 @@ fn center() -> DVec3 {
 pub struct Matter {
     numbers: Volume,
     holed: Volume,
+    bowl: Volume,
+    denoised: Volume,
     others: [Volume; 2],
     classified: [Volume; 4],
     labels: Volume,
     function: TransferFunction,
     graded: TransferFunction,
     label_function: TransferFunction,
-    camera: Camera,
+    cameras: [Camera; 2],
 }
 
+/// Picks one of the values around a voxel: twin and device agree to the bit.
+pub const DENOISE: Denoise = Denoise::Median;
+
 impl Matter {
-    /// Small volumes that change along every axis.
-    pub fn new() -> Self {
+    /// Small volumes that change along every axis; `denoised` applies [`DENOISE`].
+    pub fn new(denoised: impl FnOnce(&Volume) -> Volume) -> Self {
         let wave = |a: f64, b: f64| {
             move |p: DVec3| {
                 0.5 + 0.25 * (a * p.x - 0.3 * p.z).sin() + 0.2 * (b * p.y + 0.4 * p.z).cos()
@@ -332,7 +363,26 @@ impl Matter {
         let length = numbers.grid().smallest_spacing();
         let classified = preclassified(&numbers, &function(), length, ColorSpace::default());
         let span = DVec3::from_array(DIMS.map(f64::from)).length();
+        let bowl = |p: DVec3| {
+            let square = (p - dvec3(9.0, -16.0, 12.0)).length_squared();
+            0.1 + 0.8 * (square - 280.0) / 700.0
+        };
+        let camera = Camera {
+            eye: center() + span * dvec3(0.9, -1.3, 0.6),
+            target: center(),
+            up: dvec3(0.1, 0.0, 1.0),
+            projection: Projection::Perspective { fov_degrees: 36.0 },
+            zoom: 1.0,
+        };
+        let parallel = Camera {
+            projection: Projection::Orthographic {
+                view_height: 1.1 * span,
+            },
+            ..camera
+        };
         Self {
+            bowl: volume(bowl),
+            denoised: denoised(&numbers),
             numbers,
             holed,
             classified: classified.expect("volumes of the right length"),
@@ -356,13 +406,7 @@ impl Matter {
                 ..function()
             },
             label_function: label_function(),
-            camera: Camera {
-                eye: center() + span * dvec3(0.9, -1.3, 0.6),
-                target: center(),
-                up: dvec3(0.1, 0.0, 1.0),
-                projection: Projection::Perspective { fov_degrees: 36.0 },
-                zoom: 1.0,
-            },
+            cameras: [camera, parallel],
         }
     }
 
@@ -381,9 +425,11 @@ impl Matter {
         }
     }
 
-    /// The scene of a cell; `channels` and `parts` are those of [`Self::channels`] and [`Self::parts`].
+    /// The scene of the `nth` cell, in perspective or orthographic; `channels` and `parts` are those of
+    /// [`Self::channels`] and [`Self::parts`].
     pub fn scene<'a>(
         &'a self,
+        nth: usize,
         seen: Seen,
         settings: &'a Settings,
         channels: &'a [Channel<'a>],
@@ -393,11 +439,18 @@ impl Matter {
             Seen::Channels | Seen::Labelled | Seen::Veiled => Beside::Channels(channels),
             Seen::Colored => Beside::Colors(parts),
             Seen::Classified => Beside::Classified(parts),
-            Seen::Alone | Seen::Graded | Seen::Holed => Beside::Nothing,
+            Seen::Alone
+            | Seen::Bricked
+            | Seen::Graded
+            | Seen::Holed
+            | Seen::Bowl
+            | Seen::Denoised => Beside::Nothing,
         };
         Scene {
             volume: match seen {
                 Seen::Holed => &self.holed,
+                Seen::Bowl => &self.bowl,
+                Seen::Denoised => &self.denoised,
                 Seen::Classified => &self.classified[0],
                 _ => &self.numbers,
             },
@@ -406,8 +459,8 @@ impl Matter {
                 _ => &self.function,
             }),
             beside,
-            camera: &self.camera,
-            extent_pixels: [24, 20],
+            camera: &self.cameras[nth % 2],
+            extent_pixels: [22, 19],
             settings,
         }
     }

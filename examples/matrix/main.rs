@@ -8,5 +8,8 @@ mod cells;
 mod page;
 
 fn main() {
-    print!("{}", page::page(&cells::Matter::new()));
+    print!(
+        "{}",
+        page::page(&cells::Matter::new(|volume| cells::DENOISE.denoised(volume)))
+    );
 }

@@ -8,7 +8,7 @@ const HEAD: &str = "# What goes with what
 
 Every technique, mode, filter and feature, and why some do not go together. Printed by `cargo run --example matrix` from
 the checks that the renderer itself makes; `tests/matrix.rs` holds this page against them, draws every cell that is not
-refused on the device, and compares it with the CPU reference.
+refused on the device, in perspective or orthographic by turns, and compares it with the CPU reference.
 
 *all* is every filter, *narrow* is `nearest` and `linear`, a number is the reason for what is refused.
 ";
@@ -47,7 +47,7 @@ pub fn refusal(
 ) -> Option<String> {
     let settings = settings(technique, mode, filter, feature);
     let (channels, parts) = (matter.channels(feature.seen), matter.parts(feature.seen));
-    let scene = matter.scene(feature.seen, &settings, &channels, &parts);
+    let scene = matter.scene(0, feature.seen, &settings, &channels, &parts);
     scene.check().err().map(|error| error.to_string())
 }
 

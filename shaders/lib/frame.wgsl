@@ -4,7 +4,8 @@
 // f32 then keeps the same precision wherever the patient lay. Matrices hold their rows one after
 // another and are applied as `vec4(position, 1) * rows`.
 
-const MAX_CLIP_PLANES: u32 = 8u;
+// The parameters of a recording may take 16 KiB on every device: these are half of that.
+const MAX_CLIP_PLANES: u32 = 512u;
 // One lane of a vector each.
 const MAX_CHANNELS: u32 = 4u;
 const MAX_LIGHTS: u32 = 4u;
@@ -98,9 +99,14 @@ struct Frame {
     cover_offset: f32,
     // Covers that lie so near the eye are the whole picture: voxels along a stack, world length for planes.
     cover_eye_reach: f32,
-    // Whether rays are jittered, and by how much the pattern is moved, in parts of 2^32.
+    // Whether rays are jittered, by how much the pattern is turned, in parts of 2^32, and moved.
     is_jittered: u32,
     jitter: u32,
+    jitter_shift: vec2<u32>,
+    // 1: each pixel has a place of its own for its ray, in a square of this side around where the ray would be.
+    is_uneven: u32,
+    cell_seed: u32,
+    cell_pixels: f32,
     // Values without a unit: (value - value_low) * value_scale, 0 to 1.
     value_low: f32,
     value_scale: f32,

@@ -33,13 +33,14 @@ fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
     }
     // A cut face is seen before all samples.
     let is_cut = enters_a_cut(voxel, interval) && is_in_brick(voxel.origin + interval.x * voxel.direction);
-    let walk = walk_of(voxel, line_of(lattice, world), whole_samples(lattice));
+    let whole = whole_samples(lattice);
+    let walk = walk_of(voxel, line_of(lattice, world), vec2(max(whole.x, first), min(whole.y, end)));
     var k = first - i32(is_cut);
     loop {
         // On to the next sample that may count: a loop of its own, so that rays that are walked side by side skip and
         // sample together.
         loop {
-            if k < walk.first || k >= min(end, walk.end) {
+            if k < walk.first || k >= walk.end {
                 break;
             }
             let cell = cell_of(walk, k);

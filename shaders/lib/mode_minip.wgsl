@@ -1,6 +1,6 @@
 // Minimum of the values along the ray; of equal ones the first. Twin: src/technique/projection/reference.rs.
 
-#import cell_ranges
+#import exceeded
 
 struct Accumulator {
     value: f32,
@@ -23,9 +23,4 @@ fn add(so_far: Accumulator, value: f32, segment: Segment) -> Accumulator {
 
 fn is_finished(so_far: Accumulator) -> bool {
     return false;
-}
-
-// A cell whose smallest value is no news is as good as empty.
-fn empty_room(so_far: Accumulator, cell: vec3<i32>) -> i32 {
-    return i32(so_far.weight != 0.0 && range_of(cell).x >= so_far.value);
 }

@@ -4,17 +4,19 @@
 // Twin: src/ray.rs.
 
 #import frame
+#import in_pixel
 
 struct Ray {
     origin: vec3<f32>,
     direction: vec3<f32>,
 }
 
-// The world ray through a pixel position; the centre of pixel (0, 0) is (0.5, 0.5).
+// The world ray of a pixel; the centre of pixel (0, 0) is (0.5, 0.5).
 fn pixel_ray(pixel: vec2<f32>) -> Ray {
+    let place = place_in_pixel(pixel);
     return Ray(
-        frame.origin + pixel.x * frame.origin_dx + pixel.y * frame.origin_dy,
-        normalize(frame.direction + pixel.x * frame.direction_dx + pixel.y * frame.direction_dy),
+        frame.origin + place.x * frame.origin_dx + place.y * frame.origin_dy,
+        normalize(frame.direction + place.x * frame.direction_dx + place.y * frame.direction_dy),
     );
 }
 

@@ -20,8 +20,8 @@ use crate::technique::faces::{FACE_LENGTH, cut_face, on_face};
 use crate::technique::mixture::color_of;
 use crate::technique::shading::shade;
 use crate::technique::{
-    Error, Filter, GradientSource, LightField, Mix, Mode, Recording, Role, Technique, isosurface,
-    projection, raycast, slices_2d, slices_3d,
+    Error, Filter, GradientSource, InPixel, LightField, Mix, Mode, Recording, Role, Technique,
+    isosurface, projection, raycast, slices_2d, slices_3d,
 };
 use crate::transfer::{
     Absorption, PackedWidgets, Points, SlabTable, Table, TransferFunction, classify_by_points,
@@ -71,7 +71,7 @@ fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
         .map_or(scene.volume, Coefficients::volume);
     let gradients = source.map(|_| of_gradients);
     let light = light_of::<R>(scene, read, gradients, &grid)?;
-    let gathered = |in_pixel| -> Result<_, Error> {
+    let gathered = |in_pixel: InPixel| -> Result<_, Error> {
         let walk = Walk::new(scene, read, light.as_ref(), &grid, in_pixel)?;
         let walk = Walk { gradients, ..walk };
         if scene.settings.is_half_angle() {
@@ -80,7 +80,7 @@ fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
         }
         Ok(walk.gather_all())
     };
-    let centers = gathered([0.0; 2])?;
+    let centers = gathered(InPixel::CENTER)?;
     let transfer = match scene.transfer {
         Some(transfer) => transfer.clone(),
         None => grey_of_picture(mode, &centers),
@@ -97,7 +97,7 @@ fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     let weight = R::from_f64(1.0 / f64::from(per_side * per_side));
     let mut pixels = vec![[R::from_f64(0.0); 4]; centers.len()];
     for in_pixel in positions_in_pixel(scene.settings) {
-        let found = if in_pixel == [0.0; 2] {
+        let found = if in_pixel == InPixel::CENTER {
             centers.clone()
         } else {
             gathered(in_pixel)?
@@ -154,7 +154,7 @@ impl<'a, R: Real> Walk<'a, R> {
         read: Option<&'a Volume>,
         light: Option<&'a LightField<R>>,
         grid: &'a Grid,
-        in_pixel: [f64; 2],
+        in_pixel: InPixel,
     ) -> Result<Self, Error> {
         let view = scene.view(grid, in_pixel);
         let space = scene.settings.color_space;

@@ -27,8 +27,8 @@ use crate::resident::{GpuTransfer, GpuVolume, KeptOperator, TextureLayout};
 use crate::resolve::reference::projected_value;
 use crate::scene::{Scene, positions_in_pixel};
 use crate::technique::{
-    self, Functions, GradientSource, Inputs, Keep, LightVolume, Mix, Mode, Part, Recording,
-    Settings, Technique, Words, parameter_ring,
+    self, Functions, GradientSource, InPixel, Inputs, Keep, LightVolume, Mix, Mode, Part,
+    Recording, Settings, Technique, Words, parameter_ring,
 };
 use crate::transfer::{Classified, Graded, TransferFunction, Window};
 use crate::volume::{Spline, Volume};
@@ -268,7 +268,7 @@ impl<'v> Renderer<'v> {
             Some(_) if !scene.settings.mode.is_projection() => self.prepare_light(scene)?,
             Some(functions) => self.set_transfers(scene, &functions)?,
             None if scene.settings.mode.is_projection() => {
-                clock.add(self.gather(scene, [0.0; 2])?);
+                clock.add(self.gather(scene, InPixel::CENTER)?);
                 let function = self.grey_of_picture(scene)?;
                 self.set_transfers(scene, &[&function])?;
             }
@@ -282,7 +282,7 @@ impl<'v> Renderer<'v> {
         }
         let pixels = mean.pixels;
         if per_side > 1 && !layers.is_empty() {
-            clock.add(self.gather(scene, [0.0; 2])?);
+            clock.add(self.gather(scene, InPixel::CENTER)?);
         }
         let layers = self.read_layers(scene, layers)?;
         let [width, height] = scene.extent_pixels;
@@ -344,7 +344,7 @@ impl<'v> Renderer<'v> {
     }
 
     /// One pass of the technique, rays at one position in each pixel.
-    fn gather(&mut self, scene: &Scene, in_pixel: [f64; 2]) -> Result<Option<f64>, Error> {
+    fn gather(&mut self, scene: &Scene, in_pixel: InPixel) -> Result<Option<f64>, Error> {
         self.submit(scene, in_pixel, Passes::gather)
     }
 
@@ -352,7 +352,7 @@ impl<'v> Renderer<'v> {
     fn submit(
         &mut self,
         scene: &Scene,
-        in_pixel: [f64; 2],
+        in_pixel: InPixel,
         pass: impl FnOnce(&Passes, Submission) -> Result<Option<f64>, crate::gpu::Error>,
     ) -> Result<Option<f64>, Error> {
         let grid = scene.volume.grid();
@@ -445,7 +445,7 @@ impl<'v> Renderer<'v> {
         )?;
         // (value, depth, transmittance, samples) of each pixel, as far as the technique has them.
         let beside = if is_slicer {
-            self.submit(scene, [0.0; 2], Passes::count)?;
+            self.submit(scene, InPixel::CENTER, Passes::count)?;
             let targets = self.targets.as_ref().expect("prepared");
             let counts = targets.read(&mut self.device, &targets.layers, Use::FragmentSampled)?;
             counts

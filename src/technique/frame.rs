@@ -6,7 +6,7 @@
 
 use super::blend::extreme_sign;
 use super::shading::set_shading;
-use super::{Filter, Lattice, MAX_SAMPLES_PER_RAY, Settings, Technique};
+use super::{Filter, InPixel, MAX_SAMPLES_PER_RAY, Settings, Technique};
 use crate::camera::{Camera, Projection, Rays};
 use crate::picture::ColorSpace;
 use crate::resident::{Cell, Coding, TransferLayout, front_to_back};
@@ -27,8 +27,8 @@ pub struct View<'a> {
     pub camera: &'a Camera,
     /// Pixels across and down.
     pub extent_pixels: [u32; 2],
-    /// Where in a pixel its ray goes through; (0, 0) is the centre, the corners lie at +-1/2.
-    pub in_pixel: [f64; 2],
+    /// Where in a pixel its ray goes through.
+    pub in_pixel: InPixel,
     /// The words of the picture.
     pub settings: &'a Settings,
 }
@@ -63,7 +63,7 @@ impl View<'_> {
     /// The rays of the picture in the centred world.
     pub fn rays(&self) -> Rays {
         let mut rays = self.camera.rays(self.extent_pixels);
-        let [x, y] = self.in_pixel;
+        let [x, y] = self.in_pixel.at;
         rays.origin += x * rays.origin_dx + y * rays.origin_dy - self.grid.center();
         rays.direction += x * rays.direction_dx + y * rays.direction_dy;
         rays
@@ -81,6 +81,7 @@ impl View<'_> {
         self.check_sample_count()?;
         let of_mode = self.of_mode();
         let of_faces = self.settings.of_faces();
+        let patterns = self.of_patterns();
         let reach = self.cover_reach();
         let margin = self.cover_margin(&rays, &world_from_voxel) + reach.voxels;
         let (clip_planes, clip_plane_count) = self.clip_planes()?;
@@ -161,8 +162,12 @@ impl View<'_> {
             planes_per_slice: 1.0,
             cover_offset: 0.0,
             cover_eye_reach: reach.eye,
-            is_jittered: (self.settings.lattice == Lattice::Jitter).into(),
-            jitter: self.jitter(),
+            is_jittered: patterns.is_jittered,
+            jitter: patterns.jitter,
+            jitter_shift: patterns.jitter_shift,
+            is_uneven: patterns.is_uneven,
+            cell_seed: patterns.cell_seed,
+            cell_pixels: patterns.cell_pixels,
             kernel: kernel_number(self.settings.filter),
             extreme_sign: extreme_sign(self.settings.mode),
             value_low: of_mode.value_low,
@@ -210,19 +215,6 @@ impl View<'_> {
             set_shading(shading, self.settings.color_space, &mut fields)?;
         }
         Ok(fields)
-    }
-
-    /// What the pattern of jittered rays is moved by: another number for each ray of a pixel.
-    fn jitter(&self) -> u32 {
-        let super::Jitter { seed, frame } = self.settings.jitter;
-        // Steps of the golden ratio are far apart for any run of pictures.
-        const GOLDEN: u32 = 2_654_435_769;
-        let scattered = |x: u64| x.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32;
-        let seed = scattered(seed.into()) as u32;
-        let in_pixel = self.in_pixel.map(|x| (x * 4096.0).round() as i64 as u64);
-        let ray = scattered(scattered(in_pixel[0]) ^ in_pixel[1]) as u32;
-        seed.wrapping_add(frame.wrapping_mul(GOLDEN))
-            .wrapping_add(ray)
     }
 
     /// Narrows the parameters to one of several bricks. `is_first`: no nearer one has been recorded.
@@ -397,7 +389,7 @@ mod tests {
             grid,
             camera,
             extent_pixels: [40, 30],
-            in_pixel: [0.0; 2],
+            in_pixel: InPixel::CENTER,
             settings,
         }
     }

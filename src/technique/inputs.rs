@@ -57,6 +57,8 @@ impl Inputs<'_> {
         // Where there is none, something stands in that is not looked at.
         let light = self.light.map(LightVolume::buffer);
         let light = light.unwrap_or(self.ring.buffer());
+        let shared = self.ring.shared().map(Resource::Storage);
+        given.extend(shared.map(|noise| ("blue_noise", noise)));
         given.push(("light_volume", Resource::Storage(light)));
         let [rooms, ranges] = match self.skip {
             Skip::Nothing => [self.ring.buffer(); 2],

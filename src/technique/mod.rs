@@ -10,6 +10,7 @@ mod frame_of_mode;
 pub mod gradient;
 mod gradient_filter;
 pub mod gradient_taps;
+mod in_pixel;
 mod inputs;
 pub mod isosurface;
 mod light_field;
@@ -39,6 +40,7 @@ pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 pub use error::Error;
 pub use frame::View;
 pub use gradient_filter::{GradientFilter, GradientSource, Keep, Operator};
+pub use in_pixel::InPixel;
 pub use inputs::{Inputs, Take, Words};
 pub use light_field::LightField;
 pub use light_plan::{AmbientOcclusion, LightPlan, MAX_LIGHT_CELLS, MAX_RADIUS_CELLS, Shadows};
@@ -143,7 +145,7 @@ pub enum Lattice {
     Jitter,
 }
 
-/// What moves the pattern of [`Lattice::Jitter`]: same numbers, same picture.
+/// What moves the patterns of [`Lattice::Jitter`] and of [`Settings::uneven_rays`]: same numbers, same picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Jitter {
     /// Another pattern.
@@ -191,7 +193,7 @@ pub struct Settings {
     pub filter: Filter,
     /// Which samples the ray caster takes.
     pub lattice: Lattice,
-    /// What moves the pattern of [`Lattice::Jitter`].
+    /// What moves the patterns of [`Lattice::Jitter`] and of uneven rays.
     pub jitter: Jitter,
     /// How slicers blend.
     pub order: Order,
@@ -206,7 +208,7 @@ pub struct Settings {
     pub samples_per_voxel: f64,
     /// Rays per pixel is the square of this; at least 1.
     pub rays_per_side: u32,
-    /// Several rays go through uneven places of the pixel, which [`Self::jitter`] moves.
+    /// Several rays go through uneven places of the pixel, others in each pixel, which [`Self::jitter`] moves.
     pub uneven_rays: bool,
     /// The ray ends after the sample at which transmittance falls under this; 0: never.
     pub termination: f32,
@@ -216,7 +218,7 @@ pub struct Settings {
     pub color_space: crate::picture::ColorSpace,
     /// Voxel space box to keep, min and max; fractions allowed. `None`: all of it.
     pub crop: Option<[glam::DVec3; 2]>,
-    /// At most [`crate::shaders::MAX_CLIP_PLANES`].
+    /// What is behind any of them is cut away. At most [`crate::shaders::MAX_CLIP_PLANES`], hundreds.
     pub clip_planes: Vec<ClipPlane>,
     /// Composite by rays: what the crop box and the clip planes lay bare is an opaque cross-section.
     pub cut_faces: Option<CutFaces>,

@@ -10,6 +10,7 @@ use super::mixture::{Part, set_channels};
 use super::slices_2d::{set_slices, stack_axis};
 use super::slices_3d::set_planes;
 use super::{Error, Order, Technique, View};
+use crate::blue_noise::BLUE_NOISE;
 use crate::gpu::{self, Gpu, ParameterRing};
 use crate::resident::{Cell, Coding, GpuTransfer, GpuVolume, TextureLayout, TransferLayout};
 use crate::shaders::{Frame, FrameFields};
@@ -180,10 +181,12 @@ impl Recording {
     }
 }
 
-/// A ring for the parameters of `slots` recordings: bricks times views times frames in flight.
+/// A ring for the parameters of `slots` recordings: bricks times views times frames in flight. They share the pattern
+/// of jittered rays.
 ///
 /// # Errors
 /// Where the device gives no memory.
 pub fn parameter_ring(gpu: &Arc<Gpu>, slots: u32) -> Result<ParameterRing, gpu::Error> {
-    ParameterRing::new(gpu, size_of::<Frame>() as u32, slots, "frame parameters")
+    let ring = ParameterRing::new(gpu, size_of::<Frame>() as u32, slots, "frame parameters")?;
+    ring.sharing(gpu, BLUE_NOISE)
 }

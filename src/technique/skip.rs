@@ -49,13 +49,23 @@ impl Settings {
         Apron { voxels, overshoot }
     }
 
-    /// What can be left out of pictures of one volume under `function`.
-    pub fn skippable(&self, mix: Mix, function: Option<&TransferFunction>) -> Skippable {
-        let is_one = matches!(mix, Mix::Alone | Mix::Graded);
+    /// What can be left out of pictures of one volume under `function`, whose values are in `value_range`. What colours
+    /// surfaces has no say.
+    pub fn skippable(
+        &self,
+        mix: Mix,
+        function: Option<&TransferFunction>,
+        value_range: [f64; 2],
+    ) -> Skippable {
+        let is_one = matches!(mix, Mix::Alone | Mix::Graded) || self.mode == Mode::Iso;
         if !self.skip || !is_one || self.technique != Technique::Raycast || self.preintegrated {
             return Skippable::Nothing;
         }
         match (self.mode, function) {
+            (Mode::Iso, _) => {
+                let levels = self.per_mode.levels.iter().map(|level| level.value as f32);
+                Skippable::Unseen(Seen::of_values(&levels.collect::<Vec<_>>(), value_range))
+            }
             (Mode::Mip | Mode::Minip, _) if !self.per_mode.exact_maximum => Skippable::Exceeded,
             (Mode::Composite, Some(function)) if !function.is_graded() => {
                 Skippable::Unseen(Seen::new(function))

@@ -2,13 +2,14 @@
 //! word ([`crate::gpu::Caps::max_loop_turns`]), and what lies behind would be missing from the picture.
 //!
 //! ```text
-//! turns of a sample = 1 + n (looks (1 + mask + filter) + weights + search + light)
+//! turns of a sample = 3 + n (looks (1 + mask + filter) + weights + search + light)
 //! ```
 //!
-//! for n volumes, with 7 looks where a gradient is made of differences, 28 more (with the turn that ends them) where
+//! for n volumes: the sample itself, the search for it, what is left out on the way; with 7 looks where a gradient is made of differences, 28 more (with the turn that ends them) where
 //! there is a second derivative, two where there are slabs, and else one. A mask goes round
 //! for the layers and rows of the footprint, a kernel for those of its taps, a search for the halvings of the points,
-//! light for lamps and for the corners of a cell of the light volume.
+//! light for lamps and for the corners of a cell of the light volume. Clip planes are gone over once a ray, and once
+//! more for cut faces.
 
 use super::{Error, Filter, Keep, Mix, Operator, Settings, Take, Technique, View, Words};
 
@@ -83,7 +84,7 @@ pub fn turns_per_sample(
     };
     // Channels are gone over when they are asked for data, looked at and classified.
     let of_each = if volumes > 1 { 3 } else { 0 };
-    1 + volumes as u64 * (of_each + looks * (1 + mask + filter) + weights + search + light)
+    3 + volumes as u64 * (of_each + looks * (1 + mask + filter) + weights + search + light)
 }
 
 impl View<'_> {
@@ -103,7 +104,8 @@ impl View<'_> {
             return Ok(());
         }
         let turns = turns_per_sample(self.settings, words, volumes, functions);
-        let limit = (f64::from(max_loop_turns) - SPARE).max(0.0) / turns as f64;
+        let clip = 2.0 * self.settings.clip_planes.len() as f64;
+        let limit = (f64::from(max_loop_turns) - SPARE - clip).max(0.0) / turns as f64;
         let wanted = self.longest_sample_count();
         if wanted <= limit {
             return Ok(());

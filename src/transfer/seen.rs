@@ -54,19 +54,32 @@ impl Seen {
                 show(pair[0].value, pair[1].value);
             }
         }
-        let mut next = vec![count as u32; count];
-        let mut nearest = count as u32;
-        for i in (0..count).rev() {
-            if is_seen[i] {
+        Self::of_cells(first as f32, (1.0 / width) as f32, &is_seen)
+    }
+
+    /// Single values, those of surfaces: a range shows one where it holds it, within 1/4096 of `value_range`.
+    pub fn of_values(values: &[f32], [low, high]: [f64; 2]) -> Self {
+        const CELLS: usize = 4096;
+        let width = ((high - low) / CELLS as f64).max(f64::from(f32::MIN_POSITIVE));
+        let scale = (1.0 / width).min(f32::MAX.into());
+        let mut is_seen = vec![false; CELLS];
+        for &value in values {
+            let cell = ((f64::from(value) - low) * scale).floor();
+            is_seen[cell.clamp(0.0, CELLS as f64 - 1.0) as usize] = true;
+        }
+        Self::of_cells(low as f32, scale as f32, &is_seen)
+    }
+
+    fn of_cells(first: f32, scale: f32, is_seen: &[bool]) -> Self {
+        let mut next = vec![is_seen.len() as u32; is_seen.len()];
+        let mut nearest = is_seen.len() as u32;
+        for (i, &is_seen) in is_seen.iter().enumerate().rev() {
+            if is_seen {
                 nearest = i as u32;
             }
             next[i] = nearest;
         }
-        Self {
-            first: first as f32,
-            scale: (1.0 / width) as f32,
-            next,
-        }
+        Self { first, scale, next }
     }
 
     /// Whether any value of the range may be seen.
@@ -117,6 +130,22 @@ mod tests {
         ] {
             assert_eq!(seen.shows(range), is_shown, "{range:?}");
         }
+    }
+
+    #[test]
+    fn a_range_that_holds_a_level_shows_it() {
+        let seen = Seen::of_values(&[0.5, 300.0, -2000.0], [-1000.0, 3000.0]);
+        for (range, is_shown) in [
+            ([0.4, 0.6], true),
+            ([-900.0, -10.0], false),
+            ([10.0, 290.0], false),
+            ([290.0, 310.0], true),
+            ([400.0, 9000.0], false),
+        ] {
+            assert_eq!(seen.shows(range), is_shown, "{range:?}");
+        }
+        // All values are the same.
+        assert!(Seen::of_values(&[1.0], [1.0, 1.0]).shows([1.0, 1.0]));
     }
 
     #[test]

@@ -61,7 +61,7 @@ impl Stage {
             grid: &self.grid,
             camera: &self.camera,
             extent_pixels: self.extent,
-            in_pixel: [0.0; 2],
+            in_pixel: [0.0; 2].into(),
             settings: &self.settings,
         }
     }

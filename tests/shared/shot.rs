@@ -43,7 +43,7 @@ impl Shot {
             grid: &self.grid,
             camera: &self.camera,
             extent_pixels: self.extent,
-            in_pixel: [0.0; 2],
+            in_pixel: [0.0; 2].into(),
             settings: &self.settings,
         }
     }

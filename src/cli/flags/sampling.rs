@@ -51,7 +51,8 @@ pub struct SamplingFlags {
     #[arg(long)]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub smooth: bool,
-    /// Rays: steps begin elsewhere in each pixel, which turns bands into grain; another number, another pattern
+    /// Rays: steps begin elsewhere in each pixel, which turns bands into fine grain (blue noise); another number, another
+    /// pattern
     #[arg(long, value_name = "SEED", num_args = 0..=1, default_missing_value = "0", require_equals = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub jitter: Option<u32>,
@@ -67,8 +68,8 @@ pub struct SamplingFlags {
     #[arg(long, value_name = "N")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub aa: Option<u32>,
-    /// Send the rays of --aa through uneven places of the pixel, other ones in each frame of a film: less regular
-    /// patterns where detail is finer than pixels
+    /// Send the rays of --aa through uneven places of the pixel, other ones in each pixel and each frame of a film: grain
+    /// in place of regular patterns where detail is finer than pixels
     #[arg(long)]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub aa_uneven: bool,
@@ -80,12 +81,12 @@ pub struct SamplingFlags {
     #[arg(long, value_name = "X0,X1,Y0,Y1,Z0,Z1", allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crop: Option<Numbers<6>>,
-    /// Keep the world points with n.x >= D (repeatable)
+    /// Keep the world points with n.x >= D (repeatable, up to 512 planes)
     #[arg(long, value_name = "NX,NY,NZ,D", allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub clip: Vec<Numbers<4>>,
     /// Keep a box that may be turned: centre and size in world length, then degrees about the world's x, y and z, one
-    /// after the other; six of the 8 planes there are
+    /// after the other; it counts as six of --clip
     #[arg(
         long,
         value_name = "CX,CY,CZ,SX,SY,SZ[,RX,RY,RZ]",
@@ -179,7 +180,7 @@ impl SamplingFlags {
                     "--clip-box takes six clip planes and --clip {}: at most {MAX_CLIP_PLANES} are possible",
                     self.clip.len()
                 ),
-                "use --crop for planes along the axes of the grid",
+                "leave planes out; --crop cuts along the axes of the grid",
             ));
         }
         Ok(planes)
@@ -284,7 +285,7 @@ fn clip_planes(clips: &[Numbers<4>]) -> Result<Vec<ClipPlane>, Error> {
                 "{} clip planes, at most {MAX_CLIP_PLANES} are possible",
                 clips.len()
             ),
-            "use --crop for planes along the axes of the grid",
+            "leave planes out; --crop cuts along the axes of the grid",
         ));
     }
     let plane = |Numbers([x, y, z, offset]): &Numbers<4>| {
@@ -369,7 +370,7 @@ mod tests {
         assert!(text.contains("--clip 0,0,0,3"), "{text}");
         let many = vec![Numbers([1.0, 0.0, 0.0, 3.0]); MAX_CLIP_PLANES as usize + 1];
         let text = refusal(&flags(|f| f.clip = many));
-        assert!(text.contains("at most 8"), "{text}");
+        assert!(text.contains("at most 512"), "{text}");
     }
 
     #[test]

@@ -68,7 +68,8 @@ impl Renderer<'_> {
     /// # Errors
     /// Where the device is lost.
     pub(super) fn prepare_skip(&mut self, scene: &Scene) -> Result<(), Error> {
-        let wanted = scene.settings.skippable(scene.mix(), scene.transfer);
+        let range = scene.volume.value_range;
+        let wanted = scene.settings.skippable(scene.mix(), scene.transfer, range);
         self.skipped.wanted = None;
         if wanted == Skippable::Nothing {
             return Ok(());

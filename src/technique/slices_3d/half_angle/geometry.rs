@@ -191,6 +191,8 @@ impl HalfAngle {
             cover_max: v(high + margin),
             // What is opaque takes light whatever its colour: no surface is lit.
             light_count: 0,
+            // Its texels are places, not rays of a picture.
+            is_uneven: 0,
             ..eye
         };
         ([eye, light], eye.slice_turn)

@@ -1,0 +1,301 @@
+//! What rays leave out changes no bit of a picture.
+
+mod shared;
+
+use glam::{DAffine3, DVec3, dvec3};
+use shared::{device, device_with, oblique_camera, projections, sheared_affine, volume_of};
+use stratavox::camera::{Camera, Projection};
+use stratavox::gpu::Caps;
+use stratavox::offscreen::Renderer;
+use stratavox::picture::{LayerKind, Picture};
+use stratavox::scene::Scene;
+use stratavox::technique::{
+    ClipPlane, CutFaces, Filter, Jitter, Lattice, Mode, Settings, Shading, Technique,
+};
+use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
+use stratavox::volume::{Grid, Rescale, Volume, Voxels};
+
+/// Numbers that look random and are the same each time (Knuth's linear congruence).
+struct Numbers(u64);
+
+impl Numbers {
+    /// From 0 to 1.
+    fn next(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (self.0 >> 40) as f64 / (1u64 << 24) as f64
+    }
+
+    fn below(&mut self, count: usize) -> usize {
+        (self.next() * count as f64) as usize
+    }
+
+    fn point(&mut self) -> DVec3 {
+        dvec3(self.next(), self.next(), self.next())
+    }
+}
+
+const DIMS: [u32; 3] = [41, 30, 27];
+
+/// A few hard and soft balls in noise, by a type of voxel.
+fn balls(numbers: &mut Numbers, as_bytes: bool) -> Volume {
+    let far = dvec3(41.0, 30.0, 27.0);
+    let balls: Vec<_> = (0..4)
+        .map(|_| {
+            (
+                numbers.point() * far,
+                1.0 + 5.0 * numbers.next(),
+                40.0 + 200.0 * numbers.next(),
+            )
+        })
+        .collect();
+    let noise: Vec<f64> = (0..1024).map(|_| 6.0 * numbers.next()).collect();
+    let field = |p: DVec3| {
+        let of_ball = |&(center, radius, height): &(DVec3, f64, f64)| {
+            height * (1.0 + radius - (p - center).length()).clamp(0.0, 1.0)
+        };
+        let place = p.dot(dvec3(1.0, 41.0, 1231.0)) as usize % 1024;
+        balls.iter().map(of_ball).fold(noise[place], f64::max)
+    };
+    let floats = volume_of(DIMS, sheared_affine(), field);
+    if !as_bytes {
+        return floats;
+    }
+    let Voxels::F32(values) = &floats.voxels else {
+        unreachable!("made so")
+    };
+    let codes = values.iter().map(|&v| v as u8).collect();
+    let rescale = Rescale {
+        slope: -1.5,
+        intercept: 400.0,
+    };
+    let affine = sheared_affine();
+    Volume::from_voxels(DIMS, affine, Voxels::U8(codes), rescale, None).expect("a right volume")
+}
+
+/// Hills of opacity with nothing between them.
+fn hills(numbers: &mut Numbers, range: [f64; 2]) -> TransferFunction {
+    let mut at = range[0] - 5.0;
+    let mut opacity = Vec::new();
+    while at < range[1] + 5.0 {
+        let is_hill = numbers.next() < 0.4;
+        opacity.push(OpacityPoint {
+            value: at,
+            opacity: if is_hill { numbers.next() } else { 0.0 },
+        });
+        at += (range[1] - range[0]) * 0.25 * numbers.next();
+    }
+    let color = |(value, srgb)| ColorPoint { value, srgb };
+    TransferFunction {
+        color: [(range[0], [1.0, 0.2, 0.1]), (range[1], [0.2, 0.9, 1.0])]
+            .map(color)
+            .into(),
+        opacity,
+        reference_length: None,
+        interpolation: match numbers.below(2) {
+            0 => Interpolation::Linear,
+            _ => Interpolation::Step,
+        },
+        graded: None,
+    }
+}
+
+/// Every word that has a say in which samples there are.
+fn settings(numbers: &mut Numbers, grid: &Grid) -> Settings {
+    let modes = [Mode::Composite, Mode::Composite, Mode::Mip, Mode::Minip];
+    let filters = [
+        Filter::Linear,
+        Filter::Linear,
+        Filter::Nearest,
+        Filter::Cubic,
+        Filter::QuadraticSmooth,
+        Filter::CatmullRom,
+    ];
+    let lattices = [Lattice::Ray, Lattice::Planes, Lattice::Jitter];
+    let mode = modes[numbers.below(modes.len())];
+    let mut settings = Settings {
+        mode,
+        filter: filters[numbers.below(filters.len())],
+        lattice: lattices[numbers.below(3)],
+        jitter: Jitter { seed: 3, frame: 1 },
+        samples_per_voxel: [0.3, 1.0, 2.3][numbers.below(3)],
+        termination: [0.0, 0.02][numbers.below(2)],
+        conformance: numbers.below(3) == 0,
+        ..Settings::default()
+    };
+    let is_composite = mode == Mode::Composite;
+    if is_composite && numbers.below(3) == 0 {
+        settings.shading = Some(Shading::default());
+    }
+    if numbers.below(2) == 0 {
+        settings.crop = Some([dvec3(3.5, 2.0, 6.25), dvec3(37.0, 28.5, 22.0)]);
+        settings.clip_planes = vec![ClipPlane {
+            normal: dvec3(0.3, -0.2, 0.9),
+            offset: dvec3(0.3, -0.2, 0.9).dot(grid.center()) - 4.0,
+        }];
+        if is_composite && settings.shading.is_none() {
+            settings.cut_faces = [None, Some(CutFaces::Own)][numbers.below(2)];
+        }
+    }
+    settings
+}
+
+fn cameras(grid: &Grid) -> Vec<Camera> {
+    let mut cameras: Vec<_> = projections(grid)
+        .into_iter()
+        .map(|p| oblique_camera(grid, p))
+        .collect();
+    let inside = Camera {
+        eye: grid.center(),
+        target: grid.center() + dvec3(1.0, 0.4, -0.7),
+        ..cameras[0].clone()
+    };
+    cameras.push(Camera {
+        projection: Projection::Perspective { fov_degrees: 70.0 },
+        ..inside
+    });
+    cameras
+}
+
+fn picture(renderer: &mut Renderer, scene: &Scene, skip: bool) -> Picture {
+    let settings = Settings {
+        skip,
+        ..scene.settings.clone()
+    };
+    let scene = Scene {
+        settings: &settings,
+        ..*scene
+    };
+    let layers: &[LayerKind] = match settings.mode {
+        Mode::Composite => &[
+            LayerKind::Depth,
+            LayerKind::Transmittance,
+            LayerKind::Samples,
+        ],
+        _ => &[LayerKind::Depth, LayerKind::Value, LayerKind::Samples],
+    };
+    renderer.render(&scene, layers).expect("a picture").picture
+}
+
+fn bits(values: &[f32]) -> Vec<u32> {
+    values.iter().map(|v| v.to_bits()).collect()
+}
+
+/// How many samples were taken with and without leaving some out.
+fn samples_of_same_pictures(renderer: &mut Renderer, scene: &Scene) -> [f64; 2] {
+    let [skipped, whole] = [true, false].map(|skip| picture(renderer, scene, skip));
+    let about = format!("{:?}\n{:?}", scene.settings, scene.transfer);
+    let pixels = |p: &Picture| bits(p.pixels.as_flattened());
+    assert!(pixels(&skipped) == pixels(&whole), "other pixels: {about}");
+    for (a, b) in skipped.layers.iter().zip(&whole.layers) {
+        if a.kind != LayerKind::Samples {
+            assert!(
+                bits(&a.values) == bits(&b.values),
+                "other {:?}: {about}",
+                a.kind
+            );
+        }
+    }
+    let count = |p: &Picture| {
+        let layer = p
+            .layers
+            .iter()
+            .find(|layer| layer.kind == LayerKind::Samples);
+        layer
+            .expect("asked for")
+            .values
+            .iter()
+            .map(|&n| f64::from(n))
+            .sum::<f64>()
+    };
+    [count(&skipped), count(&whole)]
+}
+
+fn compare_many(caps: impl Fn() -> Caps, seed: u64, pictures: usize) {
+    let mut numbers = Numbers(seed);
+    let mut sums = [0.0; 2];
+    for as_bytes in [true, false] {
+        let volume = balls(&mut numbers, as_bytes);
+        let cameras = cameras(&volume.grid());
+        let mut renderer = Renderer::new(device_with(caps()), &volume).expect("a renderer");
+        for _ in 0..pictures {
+            let function = hills(&mut numbers, volume.value_range);
+            let settings = settings(&mut numbers, &volume.grid());
+            let scene = Scene {
+                volume: &volume,
+                transfer: Some(&function),
+                beside: Default::default(),
+                camera: &cameras[numbers.below(cameras.len())],
+                extent_pixels: [36, 28],
+                settings: &settings,
+            };
+            let found = samples_of_same_pictures(&mut renderer, &scene);
+            assert!(found[0] <= found[1], "{found:?} samples");
+            sums = [sums[0] + found[0], sums[1] + found[1]];
+        }
+    }
+    assert!(
+        sums[0] < 0.8 * sums[1],
+        "hardly anything was left out: {sums:?}"
+    );
+}
+
+#[test]
+fn pictures_are_the_same_to_the_bit_whatever_rays_leave_out() {
+    compare_many(|| Caps::UNLIMITED, 11, 30);
+}
+
+#[test]
+fn and_so_they_are_in_bricks() {
+    let small = || Caps {
+        max_image_dimension_3d: 19,
+        ..Caps::UNLIMITED
+    };
+    compare_many(small, 5, 8);
+}
+
+#[test]
+fn of_a_ball_in_empty_space_few_samples_are_taken() {
+    let ball = |p: DVec3| 100.0 * f64::from((p - 32.0).length() < 6.0);
+    let volume = volume_of([64; 3], DAffine3::IDENTITY, ball);
+    let point = |(value, opacity)| OpacityPoint { value, opacity };
+    let function = TransferFunction {
+        color: vec![ColorPoint {
+            value: 0.0,
+            srgb: [1.0; 3],
+        }],
+        opacity: [(0.0, 0.0), (20.0, 0.0), (100.0, 0.5)].map(point).into(),
+        reference_length: None,
+        interpolation: Interpolation::Linear,
+        graded: None,
+    };
+    let camera = oblique_camera(&volume.grid(), projections(&volume.grid())[0]);
+    let settings = Settings::default();
+    let scene = Scene {
+        volume: &volume,
+        transfer: Some(&function),
+        beside: Default::default(),
+        camera: &camera,
+        extent_pixels: [48; 2],
+        settings: &settings,
+    };
+    let mut renderer = Renderer::new(device(), &volume).expect("a renderer");
+    let [skipped, whole] = samples_of_same_pictures(&mut renderer, &scene);
+    // The ball, cells of eight voxels and what they touch: 24 of 64 voxels along each axis at most.
+    assert!(skipped < whole * 27.0 / 512.0 * 1.5, "{skipped} of {whole}");
+    assert!(skipped > 0.0);
+    // No function at all shows nothing: no sample is taken, and the picture is empty.
+    let nothing = TransferFunction {
+        opacity: Vec::new(),
+        ..function
+    };
+    let scene = Scene {
+        transfer: Some(&nothing),
+        ..scene
+    };
+    let [skipped, whole] = samples_of_same_pictures(&mut renderer, &scene);
+    assert!(skipped < whole / 20.0, "{skipped} of {whole}");
+    assert_eq!(settings.technique, Technique::Raycast);
+}
