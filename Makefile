@@ -3,7 +3,7 @@
 # make plain   what draws once more, without validation of synchronization
 # make demo    the built-in head with each technique, and with DATA=path a file of yours, into target/demo
 # make gallery six real volumes by the classic techniques, into docs/gallery
-# make bench   frame times of each technique on this device
+# make bench   frame times of each technique, mode and projection on this device
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := test
@@ -68,7 +68,7 @@ test: driver layers
 	$(TEST) $(addprefix --test ,$(WITHOUT_DEVICE))
 	RUST_TEST_THREADS=1 $(TEST) --test cli
 	STRATAVOX_VALIDATION=sync $(ON_DEVICE)
-	STRATAVOX_VALIDATION=sync RUST_TEST_THREADS=1 $(TEST) --test cli -- device:: mixed:: pictures::
+	STRATAVOX_VALIDATION=sync RUST_TEST_THREADS=1 $(TEST) --test cli -- bench:: device:: mixed:: pictures::
 
 plain: driver layers
 	$(ON_DEVICE)

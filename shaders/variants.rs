@@ -185,6 +185,8 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         ],
     ),
     ("light_volume", &[]),
+    // No picture: the ceiling of the device.
+    ("probe", &[]),
     ("macro_cells", &[]),
     ("distance_map", &[]),
 ];

@@ -37,6 +37,17 @@ fn png_codes_are_those_of_the_sampling_law() {
 }
 
 #[test]
+fn codes_of_a_large_picture_are_those_of_its_rows() {
+    const SIDE: u32 = 300;
+    let pixel = |i: u32| [0.001 * (i % 997) as f32, 0.5, 0.002 * (i % 401) as f32, 1.0];
+    let pixels: Vec<_> = (0..SIDE * SIDE).map(pixel).collect();
+    let rows = pixels.chunks(SIDE as usize);
+    let wanted = rows.flat_map(|row| picture(SIDE, row.to_vec()).codes(255));
+    let wanted: Vec<_> = wanted.collect();
+    assert!(picture(SIDE, pixels).codes(255) == wanted);
+}
+
+#[test]
 fn png_files_hold_the_codes() {
     let folder = tempfile::tempdir().unwrap();
     for (name, options, max) in [("8.png", EIGHT, 255), ("16.PNG", SIXTEEN, 65_535)] {

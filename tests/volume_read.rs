@@ -303,3 +303,38 @@ fn a_source_that_breaks_its_promise_is_an_error() {
         "{error}"
     );
 }
+
+#[test]
+fn ends_are_found_wherever_they_stand() {
+    for length in [1, 63, 64, 65, 200] {
+        for at in 0..length {
+            let mut numbers = vec![5_i16; length];
+            numbers[at] = -300;
+            numbers[(at + length / 2) % length] += 400;
+            let wanted = [numbers.iter().min(), numbers.iter().max()];
+            let wanted = wanted.map(|end| f64::from(*end.expect("some")));
+            let dims = [length as u32, 1, 1];
+            let rescale = Rescale::default();
+            let of = |voxels| Volume::from_voxels(dims, DAffine3::IDENTITY, voxels, rescale, None);
+            let floats = numbers.iter().map(|&x| f32::from(x)).collect();
+            for voxels in [Voxels::I16(numbers.clone()), Voxels::F32(floats)] {
+                let volume = of(voxels).expect("a volume");
+                assert_eq!(volume.value_range, wanted, "{length} {at}");
+            }
+        }
+    }
+}
+
+#[test]
+fn one_hole_is_found_wherever_it_stands() {
+    const LENGTH: usize = 10_000;
+    for at in [0, 1, 4095, 4096, LENGTH - 1] {
+        let mut numbers = vec![1.0_f32; LENGTH];
+        numbers[at] = f32::NAN;
+        let dims = [LENGTH as u32, 1, 1];
+        let voxels = Voxels::F32(numbers);
+        let volume =
+            Volume::from_voxels(dims, DAffine3::IDENTITY, voxels, Rescale::default(), None);
+        assert_eq!(volume.expect("a volume").no_data_count(), 1, "{at}");
+    }
+}

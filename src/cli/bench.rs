@@ -1,12 +1,14 @@
 //! `stratavox bench`: what a picture costs on this device.
 //!
-//! Without `--cameras`: the median of some pictures for each technique, composite and MIP. With it: one
+//! Without `--cameras`: the medians of some pictures for each volume, technique, mode and projection. With it: one
 //! scene from a list of views, each picture finished before the next.
+
+mod table;
 
 use super::{
     Error, cameras_file,
-    flags::{Classification, Depth, SceneFlags},
-    output::{self, say, say_aside, write_whole},
+    flags::{Classification, Depth, ModeWord, ProjectionWord, SceneFlags, TechniqueWord},
+    output::{self, say, write_whole},
     progress::{Progress, ProgressWord},
     renderer::{Device, Job, Renderer},
     scene_file,
@@ -16,21 +18,51 @@ use super::{
 };
 use crate::{
     camera::Camera,
-    technique::{Mode, Settings, Shadows, Technique},
+    technique::Settings,
     transfer::{Classified, Window},
 };
 use clap::Args;
-use serde_json::json;
-use std::{fmt::Write, path::PathBuf, time::Instant};
+use std::{path::PathBuf, time::Instant};
 
 /// Measure what pictures cost on this device
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:\n  \
     stratavox bench\n  \
-    stratavox bench phantom:shells,n=128 --size 512x512 --json times.json")]
+    stratavox bench phantom:shells,n=128 --size 512x512 --json times.json\n  \
+    stratavox bench phantom:shells,n=64 phantom:fog,n=64 --techniques raycast,slices-3d --modes composite,xray --projections orthographic")]
 pub struct Bench {
     #[command(flatten)]
     scene: SceneFlags,
+    /// Further volumes of the table
+    #[arg(value_name = "INPUT")]
+    more: Vec<String>,
+    /// Techniques of the table [default: that of --technique, else all]
+    #[arg(
+        long,
+        value_name = "NAME,...",
+        value_enum,
+        value_delimiter = ',',
+        help_heading = "Run"
+    )]
+    techniques: Vec<TechniqueWord>,
+    /// Modes of the table [default: that of --mode, else composite,mip]
+    #[arg(
+        long,
+        value_name = "NAME,...",
+        value_enum,
+        value_delimiter = ',',
+        help_heading = "Run"
+    )]
+    modes: Vec<ModeWord>,
+    /// Projections of the table [default: that of --projection, else both]
+    #[arg(
+        long,
+        value_name = "NAME,...",
+        value_enum,
+        value_delimiter = ',',
+        help_heading = "Run"
+    )]
+    projections: Vec<ProjectionWord>,
     /// Flags from a file; those of the command line win
     #[arg(long = "scene", value_name = "FILE.json", help_heading = "Run")]
     scene_file: Option<PathBuf>,
@@ -40,9 +72,9 @@ pub struct Bench {
     /// Write the times into a file
     #[arg(long, value_name = "FILE", help_heading = "Run")]
     json: Option<PathBuf>,
-    /// Pictures to take the median of, for each technique
-    #[arg(long, value_name = "N", default_value_t = 9, value_parser = clap::value_parser!(u32).range(1..), help_heading = "Run")]
-    repeat: u32,
+    /// Pictures to take the median of, for each row of the table [default: 9, fewer where they take seconds]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Run")]
+    repeat: Option<u32>,
     /// Say on stderr how far the work is
     #[arg(long, value_enum, default_value_t, help_heading = "Run")]
     progress: ProgressWord,
@@ -70,6 +102,11 @@ impl Bench {
         }
         let mut inputs = scene_file::inputs(&scene, self.scene_file.as_deref());
         inputs.extend(self.cameras.clone());
+        let files = self
+            .more
+            .iter()
+            .filter(|input| !input.starts_with("phantom:"));
+        inputs.extend(files.map(PathBuf::from));
         output::check(self.json.as_slice(), &inputs, self.force)?;
         scene.classification.check()?;
         if scene.section.section.is_some() {
@@ -84,15 +121,11 @@ impl Bench {
             .map(cameras_file::read)
             .transpose()?;
         let text = match cameras {
-            Some(cameras) => self.views(&scene, &cameras)?,
-            None => {
-                if scene.sampling.technique.is_some() || scene.sampling.mode.is_some() {
-                    say_aside(
-                        "--technique and --mode have no effect without --cameras, the table has its own",
-                    );
-                }
-                self.techniques(&scene)?
+            Some(cameras) => {
+                self.check_no_table()?;
+                self.views(&scene, &cameras, gate)?
             }
+            None => table::measured(&self, &scene)?,
         };
         match &self.json {
             Some(path) => write_whole(path, text.as_bytes(), self.force, gate),
@@ -100,8 +133,23 @@ impl Bench {
         }
     }
 
+    /// Views are of one picture.
+    fn check_no_table(&self) -> Result<(), Error> {
+        let is_table = !(self.more.is_empty()
+            && self.techniques.is_empty()
+            && self.modes.is_empty()
+            && self.projections.is_empty());
+        match is_table {
+            true => Err(Error::usage(
+                "further INPUTs, --techniques, --modes and --projections are rows of the table, and --cameras draws none",
+                "leave out --cameras, or say --technique, --mode and one INPUT",
+            )),
+            false => Ok(()),
+        }
+    }
+
     /// One scene from each of the views.
-    fn views(&self, scene: &SceneFlags, cameras: &[Camera]) -> Result<String, Error> {
+    fn views(&self, scene: &SceneFlags, cameras: &[Camera], gate: &Gate) -> Result<String, Error> {
         let progress = Progress::new(self.progress);
         let settings = Settings {
             skip: !self.no_skip,
@@ -110,7 +158,7 @@ impl Bench {
         progress.stage("prepare", 0, 1);
         let word = scene.device.as_deref();
         let device = Device::find(word)?;
-        progress.device(&device.name());
+        progress.device(&device.name()?);
         progress.stage("read", 0, 1);
         let start = Instant::now();
         let shown = Shown::read(scene, &settings, &device, &progress)?;
@@ -137,6 +185,7 @@ impl Bench {
             progress.stage("draw", done, cameras.len());
             frames.push(timed(&mut renderer, camera)?);
         }
+        let stages = renderer.stages(&progress, gate, None);
         let timings = Timings {
             device: renderer.device(),
             driver: renderer.driver(),
@@ -148,6 +197,7 @@ impl Bench {
             samples: renderer.samples(&cameras[cameras.len() - 1])?,
             peak_rss_bytes: peak_rss_bytes(),
             device_bytes: renderer.device_bytes(),
+            stages,
         };
         say(&format!(
             "{}: median of {} views {:.3} ms\n",
@@ -156,83 +206,6 @@ impl Bench {
             median_wall(&timings.frames),
         ))?;
         Ok(timings.json())
-    }
-
-    /// Each technique, as a table.
-    fn techniques(&self, scene: &SceneFlags) -> Result<String, Error> {
-        let progress = Progress::new(self.progress);
-        progress.stage("read", 0, 1);
-        let base = Settings {
-            skip: !self.no_skip,
-            ..scene.settings(Depth::Eight)?
-        };
-        let word = scene.device.as_deref();
-        let extent_pixels = scene.picture.extent_pixels()?;
-        let mut rows = Vec::new();
-        let mut device = String::new();
-        for (mode, of_mode) in MEASURED {
-            // Labels are not projected.
-            if mode.is_projection() && scene.labels.labels.is_some() {
-                continue;
-            }
-            // No light falls on projections.
-            let shading = base.shading.clone().filter(|_| !mode.is_projection());
-            let base = Settings {
-                mode,
-                shading,
-                ambient_occlusion: base.ambient_occlusion.filter(|_| !mode.is_projection()),
-                ..base.clone()
-            };
-            // What is shown depends on the mode: channels are read for each.
-            let shown = Shown::read(scene, &base, &Device::find(word)?, &progress)?;
-            let camera = scene.camera.camera(&shown.subject(), extent_pixels)?;
-            let base = filtered(base, scene, &shown);
-            let parts = shown.parts();
-            for (name, technique) in of_mode {
-                progress.stage("measure", rows.len(), 2 * of_mode.len());
-                let mut settings = Settings {
-                    technique,
-                    ..base.clone()
-                };
-                // Half-angle slices are those of one technique and mode.
-                let has_them = technique == Technique::Slices3d && mode == Mode::Composite;
-                if let Some(shading) = settings.shading.as_mut().filter(|_| !has_them) {
-                    shading.shadows = Shadows::Off;
-                }
-                let job = Job {
-                    volume: &shown.volume,
-                    classification: &shown.classification,
-                    beside: parts.beside(),
-                    settings: &settings,
-                    extent_pixels,
-                    layers: &[],
-                };
-                let mut renderer = Renderer::new(job, &camera, Device::find(word)?)?;
-                renderer.draw(&camera)?;
-                let frames = (0..self.repeat).map(|_| timed(&mut renderer, &camera));
-                let frames = frames.collect::<Result<Vec<_>, _>>()?;
-                rows.push((name, median_gpu(&frames), median_wall(&frames)));
-                device = format!("{}, {}", renderer.device(), renderer.driver());
-            }
-        }
-        drop(progress);
-        let [width, height] = extent_pixels;
-        let mut table = format!(
-            "{device}\n{width}x{height}, median of {}\n{:<20} {:>10} {:>10}\n",
-            self.repeat, "", "gpu ms", "wall ms"
-        );
-        for (name, gpu_ms, wall_ms) in &rows {
-            let gpu_ms = gpu_ms.map_or("-".to_owned(), |ms| format!("{ms:.3}"));
-            let _ = writeln!(table, "{name:<20} {gpu_ms:>10} {wall_ms:>10.3}");
-        }
-        say(&table)?;
-        let rows: Vec<_> = rows
-            .iter()
-            .map(|(name, gpu_ms, wall_ms)| json!({ "name": name, "gpu_ms": gpu_ms, "wall_ms": wall_ms }))
-            .collect();
-        let value =
-            json!({ "device": device, "size": extent_pixels, "repeat": self.repeat, "rows": rows });
-        Ok(format!("{value:#}\n"))
     }
 }
 
@@ -250,26 +223,6 @@ fn window_of(
     let function = Window::of_range(range).grey(Classified::Projection);
     Ok(Some(Classification::Function(function)))
 }
-
-/// The rows of the table.
-const MEASURED: [(Mode, [(&str, Technique); 3]); 2] = [
-    (
-        Mode::Composite,
-        [
-            ("raycast composite", Technique::Raycast),
-            ("slices-3d composite", Technique::Slices3d),
-            ("slices-2d composite", Technique::Slices2d),
-        ],
-    ),
-    (
-        Mode::Mip,
-        [
-            ("raycast mip", Technique::Raycast),
-            ("slices-3d mip", Technique::Slices3d),
-            ("slices-2d mip", Technique::Slices2d),
-        ],
-    ),
-];
 
 /// The settings, with what depends on the values.
 fn filtered(settings: Settings, scene: &SceneFlags, shown: &Shown) -> Settings {

@@ -1,7 +1,8 @@
 //! A label map over a volume: read, brought to the volume's grid, given colours, and cut.
 
 use super::{
-    Error, exaggerate, flags::SceneFlags, load::say_what_was_lost, progress::Progress, shown::Other,
+    Error, exaggerate, flags::SceneFlags, load::say_what_was_lost, progress::Progress,
+    shown::Other, timings::Loaded,
 };
 use crate::{
     format,
@@ -42,7 +43,8 @@ pub fn read(
             "a label map holds one number a voxel, of one time; this file holds several",
         ));
     }
-    let mut map = Volume::read(source.as_ref(), Pick::default(), header.whole(), &limits)?;
+    let (mut map, loaded) = Loaded::volume(source.as_ref(), Pick::default(), &limits)?;
+    progress.loaded(loaded);
     map.world_from_voxel = exaggerate::stretched(map.world_from_voxel, height_factor);
     say_what_was_lost(&map, "labels", progress);
     let mut map = placed(map, grid, progress).ok_or_else(|| {

@@ -3,9 +3,10 @@
 use super::{
     Error, exaggerate,
     flags::{DenoiseWord, InputFlags, SceneFlags},
-    memory::{Held, fitting},
+    memory::{Held, fitting, is_little},
     progress::Progress,
     renderer::Device,
+    timings::Loaded,
 };
 use crate::volume::{Header, Limits, Loss, Magnitude, Meaning, Source, Volume};
 
@@ -28,12 +29,15 @@ pub fn load_from(
 ) -> Result<(Volume, f64), Error> {
     // What may be wrong with the words is said before anything about memory.
     scene.input.pick(source.header())?;
-    let source = fitting(
-        source,
-        scene,
-        device.memory(),
-        Held::of(scene, 1 + u32::from(scene.opacity.are_given())),
-    )?;
+    let held = Held::of(scene, 1 + u32::from(scene.opacity.are_given()));
+    // A little volume is read while the device is still being made, and then compared with what that has.
+    let is_ahead = scene.denoise.is_none() && is_little(source.header(), scene, held);
+    let ahead = is_ahead.then(|| read_stretched(source.as_ref(), scene, progress));
+    let dims = source.header().dims;
+    let source = fitting(source, scene, device.memory()?, held)?;
+    if let Some(read) = ahead.filter(|_| source.header().dims == dims) {
+        return read;
+    }
     read_stretched(source.as_ref(), scene, progress)
 }
 
@@ -52,8 +56,8 @@ fn read_stretched(
     for note in source.header().notes.iter().chain(&note) {
         progress.note(note);
     }
-    let whole = source.header().whole();
-    let mut volume = Volume::read(source, pick, whole, &scene.input.limits())?;
+    let (mut volume, loaded) = Loaded::volume(source, pick, &scene.input.limits())?;
+    progress.loaded(loaded);
     say_what_was_lost(&volume, "voxels", progress);
     denoise(std::slice::from_mut(&mut volume), scene)?;
     let factor = stretch(
@@ -72,7 +76,7 @@ pub fn denoise(volumes: &mut [Volume], scene: &SceneFlags) -> Result<(), Error> 
     };
     let mut device = Device::find(scene.device.as_deref())?;
     for volume in volumes {
-        *volume = device.denoised(volume, &filter)?;
+        (*volume, device) = device.denoised(volume, &filter)?;
     }
     Ok(())
 }

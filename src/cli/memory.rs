@@ -161,13 +161,7 @@ pub fn fitting(
     held: Held,
 ) -> Result<Box<dyn Source>, Error> {
     let input = &scene.input;
-    let filters = Settings {
-        technique: scene.sampling.technique.unwrap_or_default().technique(),
-        filter: scene.sampling.filter.unwrap_or_default().filter(),
-        gradient_filter: scene.gradient.filter(),
-        keep_gradients: scene.gradient.keep(),
-        ..Settings::default()
-    };
+    let filters = filters_of(scene);
     let host_bytes = input.max_memory.or_else(available_bytes);
     let light = LightPlan::bytes(source.header().dims, scene.light.bundle_count());
     let (host_left, device_left) = beside_light(light, host_bytes, device);
@@ -189,6 +183,27 @@ pub fn fitting(
         there(host_bytes),
         there(device.map(|device| device.heap_bytes)),
     )))
+}
+
+/// True where what is held of a volume is so little beside the memory of the host that it may be read before anything
+/// is known of the device.
+pub fn is_little(header: &Header, scene: &SceneFlags, held: Held) -> bool {
+    const SHARE: u64 = 8;
+    let needed = RenderBytes::held(header, true, held, &filters_of(scene));
+    let there = scene.input.max_memory.or_else(available_bytes);
+    let needed = needed.host.saturating_add(needed.device);
+    there.is_some_and(|there| needed <= there / SHARE)
+}
+
+/// Of the settings, those that memory depends on.
+fn filters_of(scene: &SceneFlags) -> Settings {
+    Settings {
+        technique: scene.sampling.technique.unwrap_or_default().technique(),
+        filter: scene.sampling.filter.unwrap_or_default().filter(),
+        gradient_filter: scene.gradient.filter(),
+        keep_gradients: scene.gradient.keep(),
+        ..Settings::default()
+    }
 }
 
 /// What there is when the light volume is there too.

@@ -78,9 +78,9 @@ enum Verb {
 ///
 /// Installs a panic hook and signal handlers: it is for a process of its own.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
+    let gate = Gate::default();
     let words: Vec<OsString> = words.into_iter().collect();
     guarded(move || {
-        let gate = Gate::default();
         signals::install(&gate);
         match obey(words, &gate) {
             Ok(()) => 0,

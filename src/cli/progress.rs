@@ -1,9 +1,13 @@
 //! What is being done at the moment, on stderr: a line for a person, or JSON for a program.
 
-use super::output::say_aside;
+use super::{output::say_aside, timings::Loaded};
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressStyle};
-use std::{io::IsTerminal, time::Duration};
+use std::{
+    io::IsTerminal,
+    sync::{Mutex, MutexGuard, PoisonError},
+    time::Duration,
+};
 
 /// Every word of `--progress`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -17,9 +21,15 @@ pub enum ProgressWord {
     None,
 }
 
-/// Tells how far the work is.
+/// Tells how far the work is, and keeps what reading took.
 #[derive(Debug)]
-pub enum Progress {
+pub struct Progress {
+    told: Told,
+    loaded: Mutex<Loaded>,
+}
+
+#[derive(Debug)]
+enum Told {
     /// To nobody.
     Silent,
     /// To a person.
@@ -31,38 +41,57 @@ pub enum Progress {
 impl Progress {
     /// As `--progress` says.
     pub fn new(word: ProgressWord) -> Self {
-        match word {
-            ProgressWord::Json => Self::Json,
+        let told = match word {
+            ProgressWord::Json => Told::Json,
             ProgressWord::Auto if std::io::stderr().is_terminal() => {
                 let style = ProgressStyle::with_template("{spinner} {msg} [{elapsed}]");
                 let line =
                     ProgressBar::new_spinner().with_style(style.expect("a template that is right"));
                 line.enable_steady_tick(Duration::from_millis(200));
-                Self::Line(line)
+                Told::Line(line)
             }
-            ProgressWord::Auto | ProgressWord::None => Self::Silent,
+            ProgressWord::Auto | ProgressWord::None => Told::Silent,
+        };
+        Self {
+            told,
+            loaded: Mutex::default(),
         }
+    }
+
+    /// A volume more was read.
+    pub fn loaded(&self, more: Loaded) {
+        let mut all = self.kept();
+        *all = all.and(more);
+    }
+
+    /// What all volumes took together.
+    pub fn all_loaded(&self) -> Loaded {
+        *self.kept()
+    }
+
+    fn kept(&self) -> MutexGuard<'_, Loaded> {
+        self.loaded.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// `done` of `of` parts of a stage are done.
     pub fn stage(&self, stage: &'static str, done: usize, of: usize) {
-        match self {
-            Self::Silent => {}
-            Self::Line(line) if of > 1 => line.set_message(format!("{stage} {done}/{of}")),
-            Self::Line(line) => line.set_message(stage),
-            Self::Json => say_json(&serde_json::json!({ "stage": stage, "done": done, "of": of })),
+        match &self.told {
+            Told::Silent => {}
+            Told::Line(line) if of > 1 => line.set_message(format!("{stage} {done}/{of}")),
+            Told::Line(line) => line.set_message(stage),
+            Told::Json => say_json(&serde_json::json!({ "stage": stage, "done": done, "of": of })),
         }
     }
 
     /// `done` of `of` frames are written; `left` is the time that the others will take, once that is known.
     pub fn frames(&self, done: usize, of: usize, left: Option<Duration>) {
-        match self {
-            Self::Silent => {}
-            Self::Line(line) => {
+        match &self.told {
+            Told::Silent => {}
+            Told::Line(line) => {
                 let left = left.map_or(String::new(), |left| format!(", {} left", shown(left)));
                 line.set_message(format!("frame {done}/{of}{left}"));
             }
-            Self::Json => {
+            Told::Json => {
                 let left = left.map(|left| left.as_secs_f64());
                 say_json(
                     &serde_json::json!({ "stage": "frames", "done": done, "of": of, "seconds_left": left }),
@@ -73,18 +102,18 @@ impl Progress {
 
     /// Which device was chosen.
     pub fn device(&self, name: &str) {
-        match self {
-            Self::Silent => {}
-            Self::Line(_) => self.note(&format!("on {name}")),
-            Self::Json => say_json(&serde_json::json!({ "device": name })),
+        match &self.told {
+            Told::Silent => {}
+            Told::Line(_) => self.note(&format!("on {name}")),
+            Told::Json => say_json(&serde_json::json!({ "device": name })),
         }
     }
 
     /// Says something that stays.
     pub fn note(&self, text: &str) {
-        match self {
-            Self::Line(line) => line.suspend(|| say_aside(text)),
-            Self::Silent | Self::Json => say_aside(text),
+        match &self.told {
+            Told::Line(line) => line.suspend(|| say_aside(text)),
+            Told::Silent | Told::Json => say_aside(text),
         }
     }
 }
@@ -106,7 +135,7 @@ fn say_json(line: &serde_json::Value) {
 
 impl Drop for Progress {
     fn drop(&mut self) {
-        if let Self::Line(line) = self {
+        if let Told::Line(line) = &self.told {
             line.finish_and_clear();
         }
     }

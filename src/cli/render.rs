@@ -100,11 +100,14 @@ impl Render {
             progress.note(note);
         }
         progress.stage("prepare", 0, 1);
-        let device = Device::find(scene.device.as_deref())?;
-        progress.device(&device.name());
+        let device = Device::begin(scene.device.as_deref());
         progress.stage("read", 0, 1);
         let start = Instant::now();
-        let shown = Shown::read(&scene, &settings, &device, &progress)?;
+        let shown = Shown::read(&scene, &settings, &device, &progress);
+        // Without a device nothing else that is wrong matters.
+        device.wait()?;
+        let shown = shown?;
+        progress.device(&device.name()?);
         let Shown {
             volume,
             classification,
@@ -143,6 +146,7 @@ impl Render {
             last = Some(frame.picture);
         }
         let mut picture = last.expect("at least one picture is drawn");
+        let start = Instant::now();
         let reasoned = parts.only(classification);
         if let Some(reason) = why_empty(&picture, volume, reasoned, &camera, &settings) {
             progress.note(&format!("the picture is empty: {reason}"));
@@ -157,6 +161,7 @@ impl Render {
             force: self.force,
         };
         gate.whole(|| write_picture(&picture, &self.output, options))?;
+        let stages = renderer.stages(&progress, gate, Some(ms_since(start)));
         if let Some(path) = &self.save_scene {
             let text = scene_file::text(&scene, path);
             write_whole(path, text.as_bytes(), self.force, gate)?;
@@ -173,6 +178,7 @@ impl Render {
                 samples: renderer.samples(&camera)?,
                 peak_rss_bytes: peak_rss_bytes(),
                 device_bytes: renderer.device_bytes(),
+                stages,
             };
             write_whole(path, timings.json().as_bytes(), self.force, gate)?;
         }

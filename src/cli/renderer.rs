@@ -1,15 +1,25 @@
 //! A renderer for a volume, on a Vulkan device or on the CPU alone: the one place of the program that makes one.
 
-use super::{Error, flags::Classification, memory::DeviceMemory, timings::ms_since};
+use super::{
+    Error,
+    flags::Classification,
+    memory::DeviceMemory,
+    progress::Progress,
+    signals::Gate,
+    timings::{Stages, in_ms, ms_since},
+};
 use crate::{
     camera::Camera,
     gpu::{DeviceChoice, Headless, Options},
-    offscreen::{self, reference},
+    offscreen::{self, Ceilings, reference},
     picture::{LayerKind, Picture},
     scene::{Beside, Scene},
     technique::{Filter, Role, Settings, Technique},
     volume::{Denoise, Volume, labels::labels_of},
 };
+use std::panic::resume_unwind;
+use std::sync::{Mutex, OnceLock, PoisonError};
+use std::thread::JoinHandle;
 use std::time::Instant;
 
 /// What stays the same from picture to picture.
@@ -29,9 +39,17 @@ pub struct Job<'a> {
     pub layers: &'a [LayerKind],
 }
 
-/// What draws.
+/// What draws, from when it is being made on.
 #[derive(Debug)]
 pub struct Device {
+    making: Mutex<Option<Making>>,
+    made: OnceLock<Made>,
+}
+
+type Making = JoinHandle<Result<Made, Error>>;
+
+#[derive(Debug)]
+struct Made {
     /// `None`: the CPU twins.
     on: Option<Headless>,
     found_ms: f64,
@@ -45,8 +63,14 @@ pub struct Renderer<'a> {
     on_device: Option<Box<offscreen::Renderer<'a>>>,
     /// What bringing the volume to the device took.
     pub upload_ms: f64,
-    /// What making the device took.
+    /// What making the device, pipelines, what rays need not look at, and the light took.
     pub prepare_ms: f64,
+    /// Of that, the device.
+    pub device_ms: f64,
+    /// Of that, pipelines.
+    pub pipelines_ms: f64,
+    /// Of that, what rays need not look at.
+    pub empty_space_ms: f64,
 }
 
 /// One picture and what it took.
@@ -64,6 +88,75 @@ const REFERENCE: &str = "reference";
 impl Device {
     /// The one that the word of `--device` names.
     pub fn find(word: Option<&str>) -> Result<Self, Error> {
+        Made::find(word).map(Self::from)
+    }
+
+    /// The same, made beside what the caller goes on with: bringing in all drivers of a machine takes some 50 ms. What
+    /// fails is said by the first call that needs the device.
+    pub fn begin(word: Option<&str>) -> Self {
+        let word = word.map(str::to_owned);
+        let making = std::thread::spawn(move || Made::find(word.as_deref()));
+        Self {
+            making: Mutex::new(Some(making)),
+            made: OnceLock::new(),
+        }
+    }
+
+    /// Until it is made. An error is told once: whoever was told goes no further.
+    pub fn wait(&self) -> Result<(), Error> {
+        let mut making = self.making.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(making) = making.take() {
+            let made = making.join().unwrap_or_else(|fault| resume_unwind(fault))?;
+            let _ = self.made.set(made);
+        }
+        Ok(())
+    }
+
+    fn made(&self) -> Result<&Made, Error> {
+        self.wait()?;
+        Ok(self.made.get().expect("who was told of an error stops"))
+    }
+
+    fn into_made(self) -> Result<Made, Error> {
+        self.made()?;
+        Ok(self.made.into_inner().expect("made above"))
+    }
+
+    /// What it does at most, with the texture of this volume; `None` of the CPU twins. Ends the device.
+    pub fn ceilings(self, volume: &Volume) -> Result<Option<Ceilings>, Error> {
+        let mut made = self.into_made()?;
+        let device = made.on.as_mut();
+        let ceilings = device.map(|device| offscreen::ceilings(device, volume));
+        Ok(ceilings.transpose()?)
+    }
+
+    /// The volume without noise.
+    pub fn denoised(self, volume: &Volume, filter: &Denoise) -> Result<(Volume, Self), Error> {
+        let mut made = self.into_made()?;
+        let volume = match &mut made.on {
+            Some(device) => offscreen::denoised(device, volume, filter)?,
+            None => filter.denoised(volume),
+        };
+        Ok((volume, made.into()))
+    }
+
+    /// Its name.
+    pub fn name(&self) -> Result<String, Error> {
+        Ok(name_of(self.made()?.on.as_ref()))
+    }
+
+    /// What it has for textures; the CPU twins need none.
+    pub fn memory(&self) -> Result<Option<DeviceMemory>, Error> {
+        let memory = |device: &Headless| DeviceMemory {
+            heap_bytes: device.gpu().limits().max_heap_bytes,
+            is_of_host: device.gpu().is_cpu(),
+        };
+        Ok(self.made()?.on.as_ref().map(memory))
+    }
+}
+
+impl Made {
+    fn find(word: Option<&str>) -> Result<Self, Error> {
         let start = Instant::now();
         let on = match word {
             Some(REFERENCE) => None,
@@ -77,27 +170,14 @@ impl Device {
             found_ms: ms_since(start),
         })
     }
+}
 
-    /// The volume without noise.
-    pub fn denoised(&mut self, volume: &Volume, filter: &Denoise) -> Result<Volume, Error> {
-        Ok(match &mut self.on {
-            Some(device) => offscreen::denoised(device, volume, filter)?,
-            None => filter.denoised(volume),
-        })
-    }
-
-    /// Its name.
-    pub fn name(&self) -> String {
-        name_of(self.on.as_ref())
-    }
-
-    /// What it has for textures; the CPU twins need none.
-    pub fn memory(&self) -> Option<DeviceMemory> {
-        let gpu = self.on.as_ref()?.gpu();
-        Some(DeviceMemory {
-            heap_bytes: gpu.limits().max_heap_bytes,
-            is_of_host: gpu.is_cpu(),
-        })
+impl From<Made> for Device {
+    fn from(made: Made) -> Self {
+        Self {
+            making: Mutex::default(),
+            made: made.into(),
+        }
     }
 }
 
@@ -112,12 +192,16 @@ impl<'a> Renderer<'a> {
     /// Brings to the device what `camera` sees first.
     pub fn new(job: Job<'a>, camera: &Camera, device: Device) -> Result<Self, Error> {
         check_layers(&job)?;
+        let device = device.into_made()?;
         let Some(on) = device.on else {
             return Ok(Self {
                 job,
                 on_device: None,
                 upload_ms: 0.0,
                 prepare_ms: 0.0,
+                device_ms: 0.0,
+                pipelines_ms: 0.0,
+                empty_space_ms: 0.0,
             });
         };
         let start = Instant::now();
@@ -130,6 +214,11 @@ impl<'a> Renderer<'a> {
         renderer.upload(&scene)?;
         let upload_ms = ms_since(start);
         let start = Instant::now();
+        renderer.prepare_pipelines(&scene)?;
+        let pipelines_ms = ms_since(start);
+        let start_of_space = Instant::now();
+        renderer.prepare_empty_space(&scene)?;
+        let empty_space_ms = ms_since(start_of_space);
         if !scene.settings.mode.is_projection() {
             renderer.prepare_light(&scene)?;
         }
@@ -138,6 +227,9 @@ impl<'a> Renderer<'a> {
             on_device: Some(Box::new(renderer)),
             upload_ms,
             prepare_ms: prepare_ms + ms_since(start),
+            device_ms: device.found_ms,
+            pipelines_ms,
+            empty_space_ms,
         })
     }
 
@@ -194,12 +286,26 @@ impl<'a> Renderer<'a> {
         })
     }
 
+    /// What the work took until now.
+    pub fn stages(&self, progress: &Progress, gate: &Gate, encode_ms: Option<f64>) -> Stages {
+        let loaded = progress.all_loaded();
+        Stages {
+            read_ms: in_ms(loaded.read),
+            statistics_ms: in_ms(loaded.statistics),
+            device_ms: self.device_ms,
+            pipelines_ms: self.pipelines_ms,
+            empty_space_ms: self.empty_space_ms,
+            encode_ms,
+            total_ms: ms_since(gate.begun()),
+        }
+    }
+
     /// The device, free for another volume.
     pub fn into_device(self) -> Device {
-        Device {
+        Device::from(Made {
             on: self.on_device.map(|renderer| renderer.into_device()),
             found_ms: 0.0,
-        }
+        })
     }
 
     /// The device's name.

@@ -58,7 +58,7 @@ impl Sheet {
         let mut sheet = Tiles::new(scenes.len() as u32, self.columns, self.tile.0)?;
         let progress = Progress::new(self.progress);
         let mut device = Device::find(self.device.as_deref())?;
-        progress.device(&device.name());
+        progress.device(&device.name()?);
         let mut places = String::new();
         let mut first_error = None;
         for (at, scene) in scenes.iter().enumerate() {

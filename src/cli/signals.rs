@@ -7,16 +7,35 @@
 use std::{
     path::PathBuf,
     sync::{Arc, Mutex, MutexGuard, PoisonError},
+    time::Instant,
 };
 
 /// The exit code of a process that was asked to stop.
 pub const INTERRUPTED: u8 = 130;
 
-/// Held while a file is written: an interrupt waits for it. Holds the unfinished file that it removes.
-#[derive(Clone, Debug, Default)]
-pub struct Gate(Arc<Mutex<Option<PathBuf>>>);
+/// Held while a file is written: an interrupt waits for it. Holds the unfinished file that it removes. Made as the
+/// program begins, it knows when that was.
+#[derive(Clone, Debug)]
+pub struct Gate {
+    unfinished: Arc<Mutex<Option<PathBuf>>>,
+    begun: Instant,
+}
+
+impl Default for Gate {
+    fn default() -> Self {
+        Self {
+            unfinished: Arc::default(),
+            begun: Instant::now(),
+        }
+    }
+}
 
 impl Gate {
+    /// When the program began.
+    pub fn begun(&self) -> Instant {
+        self.begun
+    }
+
     /// Runs `write` so that no interrupt comes between its beginning and its end.
     pub fn whole<T>(&self, write: impl FnOnce() -> T) -> T {
         let _held = self.held();
@@ -44,7 +63,9 @@ impl Gate {
     }
 
     fn held(&self) -> MutexGuard<'_, Option<PathBuf>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        self.unfinished
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
     }
 }
 

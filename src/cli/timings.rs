@@ -1,7 +1,10 @@
 //! What the work took: the file of `--timings`.
 
+use crate::volume::{Header, Limits, Pick, Piece, ReadError, Source, Volume, VoxelBox};
 use serde::Serialize;
-use std::time::Instant;
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 /// Times in milliseconds, sizes in bytes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -26,6 +29,92 @@ pub struct Timings {
     pub peak_rss_bytes: Option<u64>,
     /// Device memory.
     pub device_bytes: u64,
+    /// The same work in finer parts.
+    #[serde(flatten)]
+    pub stages: Stages,
+}
+
+/// Parts of the work, in milliseconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Stages {
+    /// Of `load_ms`: bytes from files, decoded.
+    pub read_ms: f64,
+    /// Of `load_ms`: voxels without data, and the range of the others.
+    pub statistics_ms: f64,
+    /// Of `prepare_ms`: finding drivers and making the device.
+    pub device_ms: f64,
+    /// Of `prepare_ms`: making pipelines.
+    pub pipelines_ms: f64,
+    /// Of `prepare_ms`: finding out what rays need not look at.
+    pub empty_space_ms: f64,
+    /// The picture to a file; `null` where none is written.
+    pub encode_ms: Option<f64>,
+    /// Since the program began.
+    pub total_ms: f64,
+}
+
+/// What reading a volume took.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Loaded {
+    /// Bytes from files, decoded.
+    pub read: Duration,
+    /// All else that makes a volume of them.
+    pub statistics: Duration,
+}
+
+impl Loaded {
+    /// Both together.
+    pub fn and(self, more: Self) -> Self {
+        Self {
+            read: self.read + more.read,
+            statistics: self.statistics + more.statistics,
+        }
+    }
+
+    /// One time and component of a source, and what reading it took.
+    pub fn volume(
+        source: &dyn Source,
+        pick: Pick,
+        limits: &Limits,
+    ) -> Result<(Volume, Self), ReadError> {
+        let start = Instant::now();
+        let clocked = Clocked {
+            source,
+            read: Mutex::default(),
+        };
+        let volume = Volume::read(&clocked, pick, source.header().whole(), limits)?;
+        let read = *clocked.read.lock().unwrap_or_else(PoisonError::into_inner);
+        let statistics = start.elapsed().saturating_sub(read);
+        Ok((volume, Self { read, statistics }))
+    }
+}
+
+/// A source under a clock.
+struct Clocked<'a> {
+    source: &'a dyn Source,
+    read: Mutex<Duration>,
+}
+
+impl Source for Clocked<'_> {
+    fn path(&self) -> &Path {
+        self.source.path()
+    }
+
+    fn header(&self) -> &Header {
+        self.source.header()
+    }
+
+    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+        let start = Instant::now();
+        let piece = self.source.read(pick, region);
+        *self.read.lock().unwrap_or_else(PoisonError::into_inner) += start.elapsed();
+        piece
+    }
+}
+
+/// Milliseconds of a duration.
+pub fn in_ms(duration: Duration) -> f64 {
+    1e3 * duration.as_secs_f64()
 }
 
 /// One picture.
@@ -48,7 +137,7 @@ impl Timings {
 
 /// Milliseconds since `start`.
 pub fn ms_since(start: Instant) -> f64 {
-    1e3 * start.elapsed().as_secs_f64()
+    in_ms(start.elapsed())
 }
 
 /// The middle of some times; the upper one of two. Zero of none.
@@ -92,6 +181,13 @@ mod tests {
             "samples",
             "peak_rss_bytes",
             "device_bytes",
+            "read_ms",
+            "statistics_ms",
+            "device_ms",
+            "pipelines_ms",
+            "empty_space_ms",
+            "encode_ms",
+            "total_ms",
         ] {
             assert!(value.get(key).is_some(), "no {key} in {value}");
         }

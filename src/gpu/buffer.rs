@@ -107,13 +107,27 @@ impl Buffer {
     /// Copies `data` to `offset`. The device sees it in what is submitted later; what it is using now is not to
     /// be written.
     pub fn write(&self, offset: u64, data: &[u8]) -> Result<(), Error> {
-        let mapped = self.mapped("write", offset, data.len())?;
+        self.write_with(offset, data.len() as u64, |bytes| {
+            bytes.copy_from_slice(data)
+        })
+    }
+
+    /// Lets `write` fill `count` bytes at `offset` in place. What stands there before is undefined, and reading it
+    /// may be slow.
+    pub fn write_with(
+        &self,
+        offset: u64,
+        count: u64,
+        write: impl FnOnce(&mut [u8]),
+    ) -> Result<(), Error> {
+        let count = usize::try_from(count).unwrap_or(usize::MAX);
+        let mapped = self.mapped("write", offset, count)?;
         let _one_at_a_time = self
             .host_access
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
-        // SAFETY: `mapped` starts `data.len()` mapped bytes; the lock keeps other host accesses away.
-        unsafe { std::ptr::copy_nonoverlapping(data.as_ptr(), mapped, data.len()) };
+        // SAFETY: `mapped` starts `count` mapped bytes; the lock keeps other host accesses away.
+        write(unsafe { std::slice::from_raw_parts_mut(mapped, count) });
         Ok(())
     }
 
@@ -124,7 +138,7 @@ impl Buffer {
             .host_access
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
-        // SAFETY: as in `write`.
+        // SAFETY: as in `write_with`.
         unsafe { std::ptr::copy_nonoverlapping(mapped, data.as_mut_ptr(), data.len()) };
         Ok(())
     }

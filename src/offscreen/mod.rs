@@ -9,6 +9,7 @@ mod gradients;
 mod light;
 mod passes;
 mod position;
+mod probe;
 pub mod reference;
 mod renderer;
 mod slicing;
@@ -19,6 +20,7 @@ mod targets;
 mod upload;
 
 pub use denoise::denoised;
+pub use probe::{Ceilings, ceilings};
 pub use renderer::{Rendered, Renderer};
 
 /// Why there is no picture.

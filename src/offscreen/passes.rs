@@ -15,6 +15,7 @@ use crate::technique::raycast::Raycast;
 use crate::technique::slices_3d::HalfAngleSlicer;
 use crate::technique::slices_3d::half_angle::HalfAngleSlices;
 use crate::technique::{ACCUMULATION_FORMAT, Mode, Order, Settings, Technique, Words};
+use std::cell::OnceCell;
 use std::sync::Arc;
 
 /// What pipelines depend on.
@@ -39,8 +40,9 @@ pub fn key_of(settings: &Settings, words: &Words) -> Key {
 pub struct Passes {
     key: Key,
     gather: Gather,
-    /// Counts the samples of a slicer; the ray caster counts its own.
-    count: Option<Slicing>,
+    /// Counts the samples of a slicer, once that is wanted; the ray caster counts its own.
+    count: OnceCell<Slicing>,
+    settings: Settings,
     resolve: Resolve,
 }
 
@@ -59,29 +61,27 @@ impl Passes {
         let Settings {
             technique, mode, ..
         } = *settings;
-        let slicing = |drawn| Slicing::new(gpu, settings, drawn, words);
-        let (gather, count) = match technique {
-            Technique::Raycast if settings.per_mode.exact_maximum => (
-                Gather::Projection(Projection::exact(gpu, mode, words)?),
-                None,
-            ),
-            Technique::Raycast if mode.is_projection() => {
-                (Gather::Projection(Projection::new(gpu, mode, words)?), None)
+        let gather = match technique {
+            Technique::Raycast if settings.per_mode.exact_maximum => {
+                Gather::Projection(Projection::exact(gpu, mode, words)?)
             }
-            Technique::Raycast => (Gather::Raycast(Raycast::of_mode(gpu, mode, words)?), None),
-            Technique::Slices3d if settings.is_half_angle() => (
-                Gather::HalfAngle(HalfAngleSlicer::new(gpu, words)?),
-                Some(slicing(Drawn::Count)?),
-            ),
-            Technique::Slices3d | Technique::Slices2d => (
-                Gather::Slices(slicing(Drawn::Picture(mode))?),
-                Some(slicing(Drawn::Count)?),
-            ),
+            Technique::Raycast if mode.is_projection() => {
+                Gather::Projection(Projection::new(gpu, mode, words)?)
+            }
+            Technique::Raycast => Gather::Raycast(Raycast::of_mode(gpu, mode, words)?),
+            Technique::Slices3d if settings.is_half_angle() => {
+                Gather::HalfAngle(HalfAngleSlicer::new(gpu, words)?)
+            }
+            Technique::Slices3d | Technique::Slices2d => {
+                let drawn = Drawn::Picture(mode);
+                Gather::Slices(Slicing::new(gpu, settings, drawn, words)?)
+            }
         };
         Ok(Self {
             key: key_of(settings, words),
             gather,
-            count,
+            count: OnceCell::new(),
+            settings: settings.clone(),
             resolve: if settings.per_mode.depth_cue == 0.0 {
                 Resolve::new(gpu, mode, Blend::Replace, ACCUMULATION_FORMAT)?
             } else {
@@ -126,13 +126,21 @@ impl Passes {
 
     /// Counts a slicer's samples into `layers`; the ray caster has counted them already.
     pub fn count(&self, mut submission: Submission) -> Result<Option<f64>, Error> {
-        let Some(count) = &self.count else {
-            return Ok(None);
-        };
-        if let Gather::HalfAngle(_) = self.gather {
+        match self.gather {
+            Gather::Raycast(_) | Gather::Projection(_) => return Ok(None),
             // The light's samples are no pixel's.
-            submission.bricks = &submission.bricks[..1];
+            Gather::HalfAngle(_) => submission.bricks = &submission.bricks[..1],
+            Gather::Slices(_) => {}
         }
+        let gpu = submission.device.gpu();
+        let made = || Slicing::new(gpu, &self.settings, Drawn::Count, &self.key.4);
+        let count = match self.count.get() {
+            Some(count) => count,
+            None => {
+                let made = made()?;
+                self.count.get_or_init(|| made)
+            }
+        };
         let into = &submission.targets.layers;
         count.run(submission, into)
     }

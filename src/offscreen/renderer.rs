@@ -186,6 +186,38 @@ impl<'v> Renderer<'v> {
         self.keep_corners(scene, copied)
     }
 
+    /// Makes the pipelines that pictures of `scene` take and the images that they are drawn in, as far as they are
+    /// not there yet: no picture waits for them then. Pictures that are made of several keep theirs for later.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub fn prepare_pipelines(&mut self, scene: &Scene) -> Result<(), Error> {
+        self.prepare_with(scene, Self::prepare)
+    }
+
+    /// Finds out what pictures of `scene` need not look at, as [`Renderer::prepare_pipelines`] makes pipelines.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub fn prepare_empty_space(&mut self, scene: &Scene) -> Result<(), Error> {
+        self.prepare_with(scene, Self::prepare_skip)
+    }
+
+    fn prepare_with(
+        &mut self,
+        scene: &Scene,
+        prepare: impl FnOnce(&mut Self, &Scene) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        let settings = &decided(self.device.gpu(), scene);
+        let scene = &Scene { settings, ..*scene };
+        let is_sum = scene.mix() == Mix::Channels && scene.settings.mode.is_projection();
+        self.upload(scene)?;
+        match is_sum || !stacks_of(scene).is_empty() {
+            true => Ok(()),
+            false => prepare(self, scene),
+        }
+    }
+
     /// The picture of `scene`, whose volume is the renderer's, with `layers`.
     ///
     /// # Errors
@@ -243,10 +275,10 @@ impl<'v> Renderer<'v> {
             None => return Err(technique::Error::NoTransferFunction.into()),
         }
         let per_side = scene.settings.rays_per_side;
-        let mut mean = Mean::new(scene.extent_pixels, per_side);
+        let mut mean = Mean::new(per_side);
         for in_pixel in positions_in_pixel(scene.settings) {
             clock.add(self.gather(scene, in_pixel)?);
-            mean.add(&self.resolve()?);
+            mean.add(self.resolve()?);
         }
         let pixels = mean.pixels;
         if per_side > 1 && !layers.is_empty() {

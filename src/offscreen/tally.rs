@@ -51,16 +51,27 @@ pub struct Mean {
 }
 
 impl Mean {
-    pub fn new([width, height]: [u32; 2], per_side: u32) -> Self {
+    pub fn new(per_side: u32) -> Self {
         Self {
             weight: 1.0 / (per_side * per_side) as f32,
-            pixels: vec![[0.0; 4]; width as usize * height as usize],
+            pixels: Vec::new(),
         }
     }
 
-    pub fn add(&mut self, picture: &[[f32; 4]]) {
-        for (sum, color) in self.pixels.iter_mut().zip(picture) {
-            *sum = std::array::from_fn(|c| sum[c] + self.weight * color[c]);
+    /// The first picture's memory becomes that of the sum.
+    pub fn add(&mut self, mut picture: Vec<[f32; 4]>) {
+        let Self { weight, pixels } = self;
+        let plus =
+            |sum: [f32; 4], color: [f32; 4]| std::array::from_fn(|c| sum[c] + *weight * color[c]);
+        if pixels.is_empty() {
+            for pixel in &mut picture {
+                *pixel = plus([0.0; 4], *pixel);
+            }
+            *pixels = picture;
+            return;
+        }
+        for (sum, color) in pixels.iter_mut().zip(picture) {
+            *sum = plus(*sum, color);
         }
     }
 }

@@ -1,13 +1,15 @@
 //! Volumes through a staging buffer to the device, a slab at a time.
 
 use crate::gpu::{Buffer, Error, Headless, Memory};
-use crate::resident::{GpuVolume, KeptGradients, KeptOperator, Texels, TextureLayout};
+use crate::resident::{GpuVolume, KeptGradients, KeptOperator, Slab, Texels, TextureLayout};
 use crate::technique::GradientSource;
 use crate::volume::{Coefficients, Spline, Volume};
 use ash::vk;
+use std::panic::resume_unwind;
+use std::thread;
 
-/// A slab is as many slices as fit into this.
-const STAGING_BYTES: u64 = 32 << 20;
+/// A slab is as many slices as fit into this: small enough to stay in the caches of a CPU while it is copied.
+const STAGING_BYTES: u64 = 4 << 20;
 
 /// Makes and fills the textures of volumes on one grid: their voxels, or the coefficients of their splines.
 pub fn upload(
@@ -68,16 +70,34 @@ pub fn keep(
     Ok(())
 }
 
+/// While the device copies one slab, the next is staged.
 fn fill(device: &mut Headless, made: &GpuVolume, volume: &Volume) -> Result<(), Error> {
     let slabs = made.slabs(STAGING_BYTES);
     let bytes = slabs.iter().map(|slab| made.staging_bytes(slab.region));
     let bytes = bytes.max().unwrap_or(0);
     let usage = vk::BufferUsageFlags::TRANSFER_SRC;
-    let staging = Buffer::new(device.gpu(), bytes, usage, Memory::Upload, "staging")?;
-    for slab in &slabs {
-        staging.write(0, &made.staged(volume, slab.region))?;
-        // SAFETY: recorded outside rendering; the staging buffer holds this slab; `run` waits.
-        device.run(|cmd| unsafe { made.record_upload(cmd, &staging, 0, slab) })?;
+    let buffers = (0..slabs.len().min(2))
+        .map(|_| Buffer::new(device.gpu(), bytes, usage, Memory::Upload, "staging"))
+        .collect::<Result<Vec<_>, _>>()?;
+    let staging = |index: usize| &buffers[index % 2];
+    let stage = |index: usize, slab: &Slab| {
+        let bytes = made.staging_bytes(slab.region);
+        staging(index).write_with(0, bytes, |out| made.write_staged(volume, slab.region, out))
+    };
+    if let Some(first) = slabs.first() {
+        stage(0, first)?;
+    }
+    for (index, slab) in slabs.iter().enumerate() {
+        thread::scope(|scope| {
+            let next = slabs.get(index + 1);
+            let next = next.map(|next| scope.spawn(move || stage(index + 1, next)));
+            // SAFETY: recorded outside rendering; the staging buffer holds this slab, and the thread writes into the
+            // other one; `run` waits.
+            device.run(|cmd| unsafe { made.record_upload(cmd, staging(index), 0, slab) })?;
+            next.map_or(Ok(()), |next| {
+                next.join().unwrap_or_else(|fault| resume_unwind(fault))
+            })
+        })?;
     }
     Ok(())
 }

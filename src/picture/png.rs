@@ -12,9 +12,8 @@ use std::io::Cursor;
 pub(super) fn encode(picture: &Picture, depth: BitDepth) -> Result<Vec<u8>, OutputProblem> {
     let (data, color): (Vec<u8>, _) = match depth {
         BitDepth::Eight => {
-            let codes = picture.codes(u8::MAX.into());
-            let codes = codes.as_flattened().iter().map(|&code| code as u8);
-            (codes.collect(), ExtendedColorType::Rgba8)
+            let codes = picture.codes_as(u8::MAX.into(), |code| code as u8);
+            (codes.into_flattened(), ExtendedColorType::Rgba8)
         }
         BitDepth::Sixteen => {
             let codes = picture.codes(u16::MAX);

@@ -8,6 +8,7 @@
 
 use super::{ColorSpace, Picture};
 use crate::color::{decode_srgb, encode_srgb};
+use std::num::NonZero;
 
 impl Picture {
     /// Pixels as `.npy` and EXR hold them: linear light, premultiplied.
@@ -20,13 +21,41 @@ impl Picture {
 
     /// Pixels as PNG holds them: straight sRGB numbers and alpha, `max` times, rounded.
     pub fn codes(&self, max: u16) -> Vec<[u16; 4]> {
-        let code = |x: f64| (x * f64::from(max) + 0.5).floor() as u16;
-        let pixels = self.pixels.iter();
-        pixels
-            .map(|&pixel| straight_srgb(pixel, self.color_space).map(code))
-            .collect()
+        self.codes_as(max, |code| code)
+    }
+
+    /// The same, each kept as `kept` makes it. Rows are shared out to threads: sRGB is a power a number.
+    pub(super) fn codes_as<T: Clone + Default + Send>(
+        &self,
+        max: u16,
+        kept: impl Fn(u16) -> T + Sync,
+    ) -> Vec<[T; 4]> {
+        let code = |x: f64| kept((x * f64::from(max) + 0.5).floor() as u16);
+        let straight = |pixel| straight_srgb(pixel, self.color_space).map(code);
+        let mut codes = vec![<[T; 4]>::default(); self.pixels.len()];
+        let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
+        let share = self.pixels.len().div_ceil(threads).max(LEAST_PIXELS);
+        let work = |codes: &mut [[T; 4]], pixels: &[[f32; 4]]| {
+            for (code, pixel) in codes.iter_mut().zip(pixels) {
+                *code = straight(*pixel);
+            }
+        };
+        let mut shares = codes.chunks_mut(share).zip(self.pixels.chunks(share));
+        std::thread::scope(|scope| {
+            let own = shares.next();
+            for (codes, pixels) in shares {
+                scope.spawn(move || work(codes, pixels));
+            }
+            if let Some((codes, pixels)) = own {
+                work(codes, pixels);
+            }
+        });
+        codes
     }
 }
+
+/// Fewer are not worth a thread.
+const LEAST_PIXELS: usize = 1 << 14;
 
 /// sRGB numbers divided by alpha, and alpha, all from 0 to 1; what is not a number counts as 0.
 pub(super) fn straight_srgb(pixel: [f32; 4], space: ColorSpace) -> [f64; 4] {

@@ -11,7 +11,9 @@ use super::{GpuVolume, TextureLayout};
 use crate::gpu::{Buffer, Error, Gpu, Memory};
 use crate::volume::{Volume, Voxels};
 use ash::vk;
-use std::sync::Arc;
+use std::num::NonZero;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
 
 /// The words of a volume of 8-bit integers, complete as soon as they are made.
 #[derive(Debug)]
@@ -53,12 +55,25 @@ impl Corners {
         let bytes = (nx * ny * nz) as u64 * Self::BYTES_PER_VOXEL;
         let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
         let buffer = Buffer::new(gpu, bytes, usage, Memory::Upload, "corners")?;
-        let plane_bytes = (nx * ny) as u64 * Self::BYTES_PER_VOXEL;
-        for z in 0..nz {
-            let plane = codes(z * nx * ny..(z + 1) * nx * ny);
-            let words = words_of(&plane, nx);
-            buffer.write(z as u64 * plane_bytes, bytemuck::cast_slice(&words))?;
-        }
+        // Most of the time goes into the first touch of so much memory, which threads share.
+        let plane_bytes = nx * ny * Self::BYTES_PER_VOXEL as usize;
+        buffer.write_with(0, bytes, |words| {
+            let planes = Mutex::new(words.chunks_exact_mut(plane_bytes).enumerate());
+            let next = || planes.lock().unwrap_or_else(PoisonError::into_inner).next();
+            let work = || {
+                while let Some((z, out)) = next() {
+                    let plane = codes(z * nx * ny..(z + 1) * nx * ny);
+                    out.copy_from_slice(bytemuck::cast_slice(&words_of(&plane, nx)));
+                }
+            };
+            let threads = thread::available_parallelism().map_or(1, NonZero::get);
+            thread::scope(|scope| {
+                for _ in 1..threads.min(nz) {
+                    scope.spawn(work);
+                }
+                work();
+            });
+        })?;
         Ok(Self { buffer })
     }
 

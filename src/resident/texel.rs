@@ -18,6 +18,7 @@
 use crate::gpu::Gpu;
 use crate::volume::{Rescale, VoxelType, Voxels};
 use ash::vk;
+use half::f16;
 
 /// How texels become values: `(texel * scale + offset) * slope + intercept`, `texel * scale` rounded where
 /// codes are integers and nothing has mixed them.
@@ -103,37 +104,56 @@ impl TexelFormat {
         }
     }
 
-    /// Writes the texels of the voxels at `indices`, in that order, to the end of `texels`.
-    pub fn encode(
-        &self,
-        voxels: &Voxels,
-        indices: impl Iterator<Item = usize>,
-        texels: &mut Vec<u8>,
-    ) {
-        fn put<const N: usize>(
-            texels: &mut Vec<u8>,
-            indices: impl Iterator<Item = usize>,
-            texel: impl Fn(usize) -> [u8; N],
-        ) {
-            indices.for_each(|i| texels.extend_from_slice(&texel(i)));
-        }
+    /// Fills `texels` with those of the voxels at `first`, `first + stride`, `first + 2 stride` and so on.
+    pub fn encode(&self, voxels: &Voxels, first: usize, stride: usize, texels: &mut [u8]) {
+        let run = Run { first, stride };
         let unsigned = |code: i8| code.wrapping_sub(i8::MIN) as u8;
+        let moved = |code: i16| code.wrapping_sub(i16::MIN) as u16;
         match (self.format, voxels) {
-            (vk::Format::R8_UNORM, Voxels::U8(v)) => put(texels, indices, |i| [v[i]]),
-            (vk::Format::R8_UNORM, Voxels::I8(v)) => put(texels, indices, |i| [unsigned(v[i])]),
+            (vk::Format::R8_UNORM, Voxels::U8(v)) => run.put(v, texels, |code| [code]),
+            (vk::Format::R8_UNORM, Voxels::I8(v)) => run.put(v, texels, |code| [unsigned(code)]),
             // code * 257 is the code in both bytes.
-            (vk::Format::R16_UNORM, Voxels::U8(v)) => put(texels, indices, |i| [v[i]; 2]),
-            (vk::Format::R16_UNORM, Voxels::I8(v)) => put(texels, indices, |i| [unsigned(v[i]); 2]),
-            (vk::Format::R16_UNORM, Voxels::U16(v)) => put(texels, indices, |i| v[i].to_le_bytes()),
+            (vk::Format::R16_UNORM, Voxels::U8(v)) => run.put(v, texels, |code| [code; 2]),
+            (vk::Format::R16_UNORM, Voxels::I8(v)) => {
+                run.put(v, texels, |code| [unsigned(code); 2]);
+            }
+            (vk::Format::R16_UNORM, Voxels::U16(v)) => run.put(v, texels, u16::to_le_bytes),
             (vk::Format::R16_UNORM, Voxels::I16(v)) => {
-                put(texels, indices, |i| {
-                    (v[i].wrapping_sub(i16::MIN) as u16).to_le_bytes()
-                });
+                run.put(v, texels, |code| moved(code).to_le_bytes());
             }
-            (vk::Format::R16_SFLOAT, Voxels::F16(v)) => {
-                put(texels, indices, |i| v[i].to_le_bytes())
-            }
-            (_, voxels) => put(texels, indices, |i| voxels.stored(i).to_le_bytes()),
+            (vk::Format::R16_SFLOAT, Voxels::F16(v)) => run.put(v, texels, f16::to_le_bytes),
+            // 32-bit floats hold every stored number.
+            (_, Voxels::U8(v)) => run.put(v, texels, |x| f32::from(x).to_le_bytes()),
+            (_, Voxels::I8(v)) => run.put(v, texels, |x| f32::from(x).to_le_bytes()),
+            (_, Voxels::U16(v)) => run.put(v, texels, |x| f32::from(x).to_le_bytes()),
+            (_, Voxels::I16(v)) => run.put(v, texels, |x| f32::from(x).to_le_bytes()),
+            (_, Voxels::F16(v)) => run.put(v, texels, |x| x.to_f32().to_le_bytes()),
+            (_, Voxels::F32(v)) => run.put(v, texels, f32::to_le_bytes),
+        }
+    }
+}
+
+/// Numbers that lie equally far apart.
+struct Run {
+    first: usize,
+    stride: usize,
+}
+
+impl Run {
+    /// A loop of its own where numbers are neighbours: the compiler makes vectors of it.
+    fn put<T: Copy, const N: usize>(
+        &self,
+        numbers: &[T],
+        texels: &mut [u8],
+        texel: impl Fn(T) -> [u8; N],
+    ) {
+        let texels = texels.as_chunks_mut::<N>().0.iter_mut();
+        let numbers = numbers[self.first..].iter();
+        if self.stride == 1 {
+            texels.zip(numbers).for_each(|(out, &x)| *out = texel(x));
+        } else {
+            let numbers = numbers.step_by(self.stride);
+            texels.zip(numbers).for_each(|(out, &x)| *out = texel(x));
         }
     }
 }
@@ -159,12 +179,9 @@ mod tests {
 
     #[test]
     fn signed_codes_are_moved_so_that_the_lowest_becomes_zero() {
-        let mut texels = Vec::new();
-        format(vk::Format::R16_UNORM).encode(
-            &Voxels::I16(vec![i16::MIN, -1, 0, i16::MAX]),
-            0..4,
-            &mut texels,
-        );
+        let mut texels = [0; 8];
+        let voxels = Voxels::I16(vec![i16::MIN, -1, 0, i16::MAX]);
+        format(vk::Format::R16_UNORM).encode(&voxels, 0, 1, &mut texels);
         let codes: Vec<_> = texels
             .chunks(2)
             .map(|b| u16::from_le_bytes([b[0], b[1]]))
@@ -174,12 +191,23 @@ mod tests {
 
     #[test]
     fn eight_bit_codes_fill_sixteen_bits_with_the_same_fraction() {
-        let mut texels = Vec::new();
-        format(vk::Format::R16_UNORM).encode(&Voxels::U8(vec![0, 1, 200, 255]), 0..4, &mut texels);
+        let mut texels = [0; 8];
+        let voxels = Voxels::U8(vec![0, 1, 200, 255]);
+        format(vk::Format::R16_UNORM).encode(&voxels, 0, 1, &mut texels);
         let fractions: Vec<_> = texels
             .chunks(2)
             .map(|b| f64::from(u16::from_le_bytes([b[0], b[1]])) / 65535.0)
             .collect();
         assert_eq!(fractions, [0.0, 1.0 / 255.0, 200.0 / 255.0, 1.0]);
+    }
+
+    #[test]
+    fn a_run_takes_every_nth_voxel_from_its_first_on() {
+        let mut texels = [0; 12];
+        let voxels = Voxels::U16((0..20).collect());
+        format(vk::Format::R32_SFLOAT).encode(&voxels, 3, 5, &mut texels);
+        let numbers = texels.as_chunks::<4>().0;
+        let numbers: Vec<_> = numbers.iter().map(|&b| f32::from_le_bytes(b)).collect();
+        assert_eq!(numbers, [3.0, 8.0, 13.0]);
     }
 }

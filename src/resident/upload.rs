@@ -9,9 +9,11 @@ use super::{Brick, GpuVolume};
 use crate::gpu::{Buffer, Error, Memory, Region, Use, buffer_to_image, image_barrier};
 use crate::volume::{Volume, VoxelBox};
 use ash::vk;
+use std::ops::Range;
 
-/// Copies from a buffer begin at multiples of this.
-const ALIGNMENT_BYTES: u64 = 4;
+/// Copies from a buffer begin at multiples of so many bytes.
+const ALIGNMENT: usize = 4;
+const ALIGNMENT_BYTES: u64 = ALIGNMENT as u64;
 
 /// A part of a brick that is staged and copied at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,14 +61,35 @@ impl GpuVolume {
     /// The texels of `region` as [`GpuVolume::record_upload`] wants them in a staging buffer: values, then,
     /// from the next multiple of 4 on, validity.
     pub fn staged(&self, volume: &Volume, region: VoxelBox) -> Vec<u8> {
-        let mut bytes = Vec::with_capacity(self.staging_bytes(region) as usize);
-        self.texel()
-            .encode(&volume.voxels, self.indices(region), &mut bytes);
-        if let Some(mask) = volume.validity.as_ref().filter(|_| self.has_holes()) {
-            bytes.resize(bytes.len().next_multiple_of(ALIGNMENT_BYTES as usize), 0);
-            bytes.extend(self.indices(region).map(|i| mask[i]));
-        }
+        let mut bytes = vec![0; self.staging_bytes(region) as usize];
+        self.write_staged(volume, region, &mut bytes);
         bytes
+    }
+
+    /// Writes what [`GpuVolume::staged`] gives into `bytes`, of which there are [`GpuVolume::staging_bytes`].
+    ///
+    /// # Panics
+    /// Where there are fewer bytes, or the region is not one of the volume.
+    pub fn write_staged(&self, volume: &Volume, region: VoxelBox, bytes: &mut [u8]) {
+        let voxels = region.dims().map(|n| n as usize).iter().product::<usize>();
+        let values_bytes = (voxels * self.texel().bytes()).next_multiple_of(ALIGNMENT);
+        let (values, validity) = bytes.split_at_mut(values_bytes);
+        self.write_runs(
+            region,
+            self.texel().bytes(),
+            values,
+            |first, stride, out| {
+                self.texel().encode(&volume.voxels, first, stride, out);
+            },
+        );
+        if let Some(mask) = volume.validity.as_ref().filter(|_| self.has_holes()) {
+            self.write_runs(region, 1, validity, |first, stride, out| {
+                let mask = mask[first..].iter().step_by(stride);
+                out.iter_mut()
+                    .zip(mask)
+                    .for_each(|(out, &valid)| *out = valid);
+            });
+        }
     }
 
     /// Room for [`GpuVolume::staged`]; the next slab may begin behind it.
@@ -132,8 +155,11 @@ impl GpuVolume {
         let staging = Buffer::new(self.gpu(), bytes, usage, Memory::Upload, "staging")?;
         let mut offset = 0;
         for slab in slabs {
-            staging.write(offset, &self.staged(volume, slab.region))?;
-            offset += self.staging_bytes(slab.region);
+            let bytes = self.staging_bytes(slab.region);
+            staging.write_with(offset, bytes, |out| {
+                self.write_staged(volume, slab.region, out);
+            })?;
+            offset += bytes;
         }
         Ok(staging)
     }
@@ -159,18 +185,44 @@ impl GpuVolume {
         Ok(())
     }
 
-    /// Indices of the voxels of a region in the order of the texels.
-    fn indices(&self, region: VoxelBox) -> impl Iterator<Item = usize> {
+    /// Calls `write` with the first voxel, the stride between voxels and the place of each run of texels of a region,
+    /// of `texel_bytes` each. Goes through blocks: where texels lie along other axes than voxels, what one run brings
+    /// into the cache serves its neighbours.
+    fn write_runs(
+        &self,
+        region: VoxelBox,
+        texel_bytes: usize,
+        texels: &mut [u8],
+        write: impl Fn(usize, usize, &mut [u8]),
+    ) {
         let [nx, ny, _] = self.grid().dims.map(|n| n as usize);
-        let strides = [1, nx, nx * ny];
-        let [across, down, deep] = self.layout().axes().map(|axis| {
-            let stride = strides[axis];
-            (region.min[axis] as usize..region.max[axis] as usize).map(move |i| i * stride)
-        });
-        deep.flat_map(move |w| {
-            let across = across.clone();
-            down.clone()
-                .flat_map(move |v| across.clone().map(move |u| u + v + w))
-        })
+        let axes = self.layout().axes();
+        let strides = axes.map(|axis| [1, nx, nx * ny][axis]);
+        let origin = axes.map(|axis| region.min[axis] as usize);
+        let dims = axes.map(|axis| (region.max[axis] - region.min[axis]) as usize);
+        let run_length = if strides[0] == 1 { dims[0] } else { BLOCK };
+        for deep in blocks(dims[2], BLOCK) {
+            for down in blocks(dims[1], BLOCK) {
+                for across in blocks(dims[0], run_length) {
+                    let rows = deep.clone().flat_map(|w| down.clone().map(move |v| (v, w)));
+                    for (v, w) in rows {
+                        let at = [across.start, v, w];
+                        let first = (0..3).map(|k| (origin[k] + at[k]) * strides[k]).sum();
+                        let begin = ((w * dims[1] + v) * dims[0] + across.start) * texel_bytes;
+                        let end = begin + across.len() * texel_bytes;
+                        write(first, strides[0], &mut texels[begin..end]);
+                    }
+                }
+            }
+        }
     }
+}
+
+/// Voxels along each side of a block.
+const BLOCK: usize = 64;
+
+/// `0..count` in parts of `length`.
+fn blocks(count: usize, length: usize) -> impl Iterator<Item = Range<usize>> {
+    let starts = (0..count).step_by(length.max(1));
+    starts.map(move |start| start..(start + length).min(count))
 }

@@ -28,8 +28,10 @@ pub(super) fn fill(voxels: &mut Voxels, validity: &[u8], dims: [u32; 3]) {
 
 fn validity_of<T: Stored>(numbers: &[T], fill: Option<f64>) -> Option<Vec<u8>> {
     let fill = fill.and_then(T::from_fill);
-    let is_valid = |x: &T| x.to_f32().is_finite() && Some(*x) != fill;
-    if numbers.iter().all(is_valid) {
+    let is_valid = |x: &T| x.is_finite() && Some(*x) != fill;
+    // Without a way out inside of a block the compiler makes vectors of it.
+    let all_valid = |block: &[T]| block.iter().fold(true, |all, x| all & is_valid(x));
+    if numbers.chunks(4096).all(all_valid) {
         return None;
     }
     Some(numbers.iter().map(|x| u8::from(is_valid(x))).collect())

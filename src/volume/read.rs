@@ -143,12 +143,22 @@ fn value_range(voxels: &Voxels, rescale: Rescale) -> [f64; 2] {
     [low.min(high), low.max(high)]
 }
 
+/// Of finite numbers, at least one. Lanes side by side: the compiler makes vectors of them.
 fn stored_range<T: Stored>(numbers: &[T]) -> [f32; 2] {
-    numbers
-        .iter()
-        .fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], x| {
-            [low.min(x.to_f32()), high.max(x.to_f32())]
-        })
+    const LANES: usize = 64;
+    let (blocks, rest) = numbers.as_chunks::<LANES>();
+    let (mut low, mut high) = ([numbers[0]; LANES], [numbers[0]; LANES]);
+    for block in blocks {
+        for lane in 0..LANES {
+            let x = block[lane];
+            low[lane] = if x < low[lane] { x } else { low[lane] };
+            high[lane] = if x > high[lane] { x } else { high[lane] };
+        }
+    }
+    let ends = low.iter().chain(&high).chain(rest);
+    ends.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], x| {
+        [low.min(x.to_f32()), high.max(x.to_f32())]
+    })
 }
 
 /// An error where the voxels of `region` take more memory than allowed.

@@ -117,8 +117,9 @@ impl Voxels {
 }
 
 /// A type of number that [`Voxels`] keeps.
-pub(super) trait Stored: Copy + Default + PartialEq {
+pub(super) trait Stored: Copy + Default + PartialOrd {
     fn to_f32(self) -> f32;
+    fn is_finite(self) -> bool;
     /// `fill` as this type; `None` where no voxel of this type can be equal to it.
     fn from_fill(fill: f64) -> Option<Self>;
 }
@@ -128,6 +129,9 @@ macro_rules! stored_integer {
         impl Stored for $integer {
             fn to_f32(self) -> f32 {
                 self.into()
+            }
+            fn is_finite(self) -> bool {
+                true
             }
             fn from_fill(fill: f64) -> Option<Self> {
                 let nearest = fill as $integer;
@@ -143,6 +147,9 @@ impl Stored for f16 {
     fn to_f32(self) -> f32 {
         self.to_f32()
     }
+    fn is_finite(self) -> bool {
+        self.is_finite()
+    }
     fn from_fill(fill: f64) -> Option<Self> {
         Some(Self::from_f64(fill)).filter(|fill| fill.is_finite())
     }
@@ -152,6 +159,9 @@ impl Stored for f16 {
 impl Stored for f32 {
     fn to_f32(self) -> f32 {
         self
+    }
+    fn is_finite(self) -> bool {
+        self.is_finite()
     }
     fn from_fill(fill: f64) -> Option<Self> {
         Some(fill as f32).filter(|fill| fill.is_finite())

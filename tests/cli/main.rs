@@ -8,6 +8,7 @@ mod animate_films;
 mod animate_mixed;
 #[cfg(unix)]
 mod animate_stops;
+mod bench;
 mod classified;
 mod convert;
 mod convert_refused;

@@ -141,8 +141,8 @@ fn progress_as_json_is_one_object_a_line() {
         stages,
         [
             "\"prepare\"",
-            "a device",
             "\"read\"",
+            "a device",
             "\"prepare\"",
             "\"draw\"",
             "\"draw\"",
@@ -240,20 +240,6 @@ fn bench_over_cameras_gives_a_frame_for_each_view() {
             "{timings}"
         );
     }
-}
-
-#[test]
-fn bench_without_views_measures_every_technique() {
-    let folder = Folder::new();
-    let ran = folder.run(&format!(
-        "bench phantom:gauss,n=8 --repeat 1 --json t.json {SMALL}"
-    ));
-    ran.assert_done();
-    for name in ["raycast composite", "slices-3d mip", "slices-2d composite"] {
-        assert!(ran.out.contains(name), "no {name}: {ran:#?}");
-    }
-    let table = json(&fs::read_to_string(folder.path("t.json")).expect("a file"));
-    assert_eq!(table["rows"].as_array().map(Vec::len), Some(6), "{table}");
 }
 
 #[test]

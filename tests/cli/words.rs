@@ -180,13 +180,6 @@ fn a_flag_without_effect_is_mentioned_and_no_skip_is_always_taken() {
     );
     ran.assert_done();
     assert!(ran.err.contains("--order has no effect"), "{ran:#?}");
-    let bench = "bench phantom:fog,n=8 --size 8x8 --repeat 1 --device reference";
-    let ran = folder.run(&format!("{bench} --technique slices-2d"));
-    ran.assert_done();
-    assert!(
-        ran.err.contains("--technique and --mode have no effect"),
-        "{ran:#?}"
-    );
     let ran = folder.run("info phantom:fog,n=8 --time 0");
     ran.assert_done();
     assert!(ran.err.contains("--time has no effect"), "{ran:#?}");

@@ -193,7 +193,7 @@ impl Animate {
     ) -> Result<Timings, Error> {
         progress.stage("prepare", 0, 1);
         let device = Device::find(plan.scene.device.as_deref())?;
-        progress.device(&device.name());
+        progress.device(&device.name()?);
         let Plan {
             scene,
             depth,
@@ -220,7 +220,7 @@ impl Animate {
                 } else {
                     Held::Blend
                 };
-                let source = fitting(source, scene, device.memory(), held)?;
+                let source = fitting(source, scene, device.memory()?, held)?;
                 Content::Times(source)
             }
         };

@@ -28,7 +28,7 @@ mod subject;
 mod values;
 mod words;
 
-pub use camera::CameraFlags;
+pub use camera::{CameraFlags, ProjectionWord};
 pub use channels::{ChannelFlags, ChannelWord, Plan};
 pub use classification::{Classification, ClassificationFlags};
 pub use component::Component;
@@ -48,6 +48,7 @@ pub use sampling::{Depth, SamplingFlags};
 pub use section::SectionFlags;
 pub use subject::Subject;
 pub use values::{preset, summary, with_causes};
+pub use words::{ModeWord, TechniqueWord};
 
 use super::Error;
 use crate::technique::Settings;

@@ -2,7 +2,7 @@
 
 use crate::{
     transfer::{Preset, Quantity, ValueSummary},
-    volume::Volume,
+    volume::{Volume, Voxels},
 };
 use glam::DVec3;
 
@@ -29,16 +29,26 @@ pub fn preset(name: &str) -> Result<String, String> {
     }
 }
 
-/// What the values of a volume look like as a whole.
+/// What the values of a volume look like as a whole. Looks at millions of voxels, so each type has a loop of its own.
 pub fn summary(volume: &Volume) -> ValueSummary {
+    match &volume.voxels {
+        Voxels::U8(v) => summary_of(volume, |i| v[i].into()),
+        Voxels::I8(v) => summary_of(volume, |i| v[i].into()),
+        Voxels::U16(v) => summary_of(volume, |i| v[i].into()),
+        Voxels::I16(v) => summary_of(volume, |i| v[i].into()),
+        Voxels::F16(v) => summary_of(volume, |i| v[i].to_f64()),
+        Voxels::F32(v) => summary_of(volume, |i| v[i].into()),
+    }
+}
+
+fn summary_of(volume: &Volume, stored: impl Fn(usize) -> f64) -> ValueSummary {
     let [x, y, z] = volume.dims.map(f64::from);
     let diagonal = volume
         .world_from_voxel
         .transform_vector3(DVec3::new(x, y, z));
-    let is_valid = |i: usize| volume.validity.as_ref().is_none_or(|valid| valid[i] != 0);
-    let value = |i: usize| {
-        f64::from(volume.voxels.stored(i)) * volume.rescale.slope + volume.rescale.intercept
-    };
+    let validity = volume.validity.as_deref();
+    let is_valid = |i: usize| validity.is_none_or(|valid| valid[i] != 0);
+    let value = |i: usize| stored(i) * volume.rescale.slope + volume.rescale.intercept;
     ValueSummary::of(
         volume.voxels.len(),
         volume.value_range,

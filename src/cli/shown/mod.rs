@@ -362,7 +362,7 @@ impl Reader<'_> {
         let input = &self.scene.input;
         let count = u32::try_from(count).unwrap_or(u32::MAX);
         let held = Held::of(self.scene, count);
-        let source = fitting(source, self.scene, self.device.memory(), held)?;
+        let source = fitting(source, self.scene, self.device.memory()?, held)?;
         let (_, note) = input.time(source.header())?;
         input.check_one(source.header())?;
         for note in source.header().notes.iter().chain(&note) {

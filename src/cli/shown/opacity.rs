@@ -5,6 +5,7 @@ use super::super::{
     flags::{Classification, ClassificationFlags, Component, InputFlags},
     load::{denoise, open, say_what_was_lost},
     memory::{Held, fitting},
+    timings::Loaded,
 };
 use super::{Other, Reader};
 use crate::{
@@ -31,10 +32,11 @@ impl Reader<'_> {
             self.progress.note(&format!("{}: {note}", flags.word()));
         }
         let held = Held::of(self.scene, 2);
-        let source = fitting(source, self.scene, self.device.memory(), held)?;
+        let source = fitting(source, self.scene, self.device.memory()?, held)?;
         let header = source.header();
         let name = name(&input, header, pick.component);
-        let mut volume = Volume::read(source.as_ref(), pick, header.whole(), &limits)?;
+        let (mut volume, loaded) = Loaded::volume(source.as_ref(), pick, &limits)?;
+        self.progress.loaded(loaded);
         say_what_was_lost(&volume, &format!("voxels of {name}"), self.progress);
         denoise(std::slice::from_mut(&mut volume), self.scene)?;
         volume.world_from_voxel = exaggerate::stretched(volume.world_from_voxel, height_factor);
