@@ -289,7 +289,7 @@ fn of_a_ball_in_empty_space_few_samples_are_taken() {
     // No function at all shows nothing: no sample is taken, and the picture is empty.
     let nothing = TransferFunction {
         opacity: Vec::new(),
-        ..function
+        ..function.clone()
     };
     let scene = Scene {
         transfer: Some(&nothing),
