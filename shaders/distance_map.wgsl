@@ -4,7 +4,7 @@
 //     D0 = 0 where the transfer function shows any value of the cell, else FAR
 //     D(x) = min over k of max(|k|, D before(x + k))        along x, then y, then z
 //
-// Outside the grid is nothing. One thread a cell. Twin: `distances` in src/resident/empty_space.rs.
+// Outside the grid is nothing. One thread a cell. Twin: none, but pictures with it and without are the same.
 
 #import cell_grid
 

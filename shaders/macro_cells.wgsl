@@ -1,7 +1,7 @@
 // Which values filters can make in a macro cell: smallest and largest of all voxels that a sample in it may touch, its
 // own and an apron around them (`algorithms.md` 3: without, border samples would be called empty). One thread a cell.
 // Where voxels have no value, what stands there counts, though no sample does.
-// Twin: `ranges` in src/resident/macro_cells.rs.
+// Twin: src/resident/cell_ranges.rs.
 
 #import cell_grid
 

@@ -1,4 +1,4 @@
-//! Macro cells: which values filters can make in each cube of 8^3 voxels, made on the device once a volume is there.
+//! Macro cells: which values filters can make in each cube of 8^3 voxels, made once a volume is there.
 //!
 //! ```text
 //! volume -> MacroCells::record          ranges: least and most of a cell's voxels and an apron around them
@@ -7,12 +7,14 @@
 //!
 //! Techniques leave out what lies in cells that cannot matter; the picture stays the same to the bit.
 
+use super::cell_ranges::ranges;
 use super::{GpuVolume, TextureLayout};
 use crate::gpu::{
     Bindings, Buffer, ComputePipeline, Error, Gpu, Memory, ParameterRing, Resource, Use,
     buffer_barrier,
 };
 use crate::shaders::{CELL_VOXELS, CellGrid, CellGridFields, Frame, shader};
+use crate::volume::{Volume, VoxelBox};
 use ash::vk;
 use std::sync::Arc;
 
@@ -34,6 +36,13 @@ pub struct MacroCells {
     grids: Vec<CellGrid>,
     cell_count: u64,
     ranges: Buffer,
+    /// `None`: the ranges are there.
+    pass: Option<Ranging>,
+}
+
+/// What finds the ranges on the device.
+#[derive(Debug)]
+struct Ranging {
     pipeline: ComputePipeline,
     ring: ParameterRing,
     bindings: Vec<Bindings>,
@@ -51,6 +60,58 @@ impl MacroCells {
     /// # Panics
     /// Where the volume lies in stacks.
     pub fn new(gpu: &Arc<Gpu>, volume: &GpuVolume, apron: Apron) -> Result<Self, Error> {
+        let mut made = Self::empty(gpu, volume, apron, Memory::Device)?;
+        let pipeline = ComputePipeline::new(gpu, shader("macro_cells"))?;
+        let ring = ring_of(gpu, &made.grids)?;
+        let bound = volume.bricks().iter().map(|brick| {
+            let given = [
+                ("volume", Resource::sampled(&brick.values)),
+                ("cell_grid", Resource::Uniform(&ring)),
+                ("cell_ranges", Resource::Storage(&made.ranges)),
+            ];
+            Bindings::new(gpu, pipeline.layout(), &given)
+        });
+        let bindings = bound.collect::<Result<_, _>>()?;
+        made.pass = Some(Ranging {
+            pipeline,
+            ring,
+            bindings,
+        });
+        Ok(made)
+    }
+
+    /// The same from the voxels that `volume` was made of, complete at once: on a device that computes on the CPU that
+    /// is much faster.
+    ///
+    /// # Errors
+    /// As [`MacroCells::new`].
+    ///
+    /// # Panics
+    /// Where the volume lies in stacks, holds coefficients, or has other dims.
+    pub fn of_voxels(
+        gpu: &Arc<Gpu>,
+        volume: &GpuVolume,
+        apron: Apron,
+        voxels: &Volume,
+    ) -> Result<Self, Error> {
+        assert!(volume.spline().is_none(), "ranges of voxels");
+        assert_eq!(volume.grid().dims, voxels.dims, "the same voxels");
+        let made = Self::empty(gpu, volume, apron, Memory::Upload)?;
+        for grid in &made.grids {
+            let ranges = ranges(voxels, grid);
+            let offset = 8 * u64::from(grid.first);
+            made.ranges.write(offset, bytemuck::cast_slice(&ranges))?;
+        }
+        Ok(made)
+    }
+
+    /// The grids of the bricks, and room for their ranges.
+    fn empty(
+        gpu: &Arc<Gpu>,
+        volume: &GpuVolume,
+        apron: Apron,
+        memory: Memory,
+    ) -> Result<Self, Error> {
         assert_eq!(volume.layout(), TextureLayout::Texture3d, "macro cells");
         let mut first = 0;
         let mut grids = Vec::new();
@@ -59,33 +120,14 @@ impl MacroCells {
             first += grid.cells.iter().product::<u32>();
             grids.push(grid);
         }
-        let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
-        let ranges = Buffer::new(
-            gpu,
-            8 * u64::from(first),
-            storage,
-            Memory::Device,
-            "cell ranges",
-        )?;
-        let pipeline = ComputePipeline::new(gpu, shader("macro_cells"))?;
-        let ring = ring_of(gpu, &grids)?;
-        let bound = volume.bricks().iter().map(|brick| {
-            let given = [
-                ("volume", Resource::sampled(&brick.values)),
-                ("cell_grid", Resource::Uniform(&ring)),
-                ("cell_ranges", Resource::Storage(&ranges)),
-            ];
-            Bindings::new(gpu, pipeline.layout(), &given)
-        });
-        let bindings = bound.collect::<Result<_, _>>()?;
+        let storage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_SRC;
+        let bytes = 8 * u64::from(first);
         Ok(Self {
             gpu: Arc::clone(gpu),
             grids,
             cell_count: first.into(),
-            ranges,
-            pipeline,
-            ring,
-            bindings,
+            ranges: Buffer::new(gpu, bytes, storage, memory, "cell ranges")?,
+            pass: None,
         })
     }
 
@@ -111,7 +153,7 @@ impl MacroCells {
         frame.cells_origin = grid.origin.map(|n| n as f32);
     }
 
-    /// Records what fills them, once.
+    /// Records what fills them, once; nothing where they are complete.
     ///
     /// # Errors
     /// A brick larger than the device can dispatch.
@@ -120,11 +162,14 @@ impl MacroCells {
     /// - `cmd` is recording, outside rendering; `self` and the volume live until it has run;
     /// - the volume's textures are in [`Use::Sampled`].
     pub unsafe fn record(&self, cmd: vk::CommandBuffer) -> Result<(), Error> {
-        for (slot, (grid, bindings)) in (0..).zip(self.grids.iter().zip(&self.bindings)) {
-            let groups = self.pipeline.groups(grid.cells)?;
-            let offset = self.ring.offset(slot)?;
+        let Some(pass) = &self.pass else {
+            return Ok(());
+        };
+        for (slot, (grid, bindings)) in (0..).zip(self.grids.iter().zip(&pass.bindings)) {
+            let groups = pass.pipeline.groups(grid.cells)?;
+            let offset = pass.ring.offset(slot)?;
             // SAFETY: the caller's promises; bricks write cells of their own.
-            unsafe { self.pipeline.dispatch(cmd, bindings, &[offset], groups) };
+            unsafe { pass.pipeline.dispatch(cmd, bindings, &[offset], groups) };
         }
         // SAFETY: outside rendering; the buffer lives until `cmd` has run.
         unsafe {
@@ -152,8 +197,8 @@ pub(super) fn ring_of(gpu: &Arc<Gpu>, grids: &[CellGrid]) -> Result<ParameterRin
 
 fn grid_of(
     volume: &GpuVolume,
-    own: crate::volume::VoxelBox,
-    stored: crate::volume::VoxelBox,
+    own: VoxelBox,
+    stored: VoxelBox,
     apron: Apron,
     first: u32,
 ) -> CellGrid {

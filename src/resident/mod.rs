@@ -4,6 +4,7 @@
 //! reaches the memory, written at once); nothing here submits or waits.
 
 mod bricks;
+mod cell_ranges;
 mod corners;
 mod empty_space;
 mod gradients;

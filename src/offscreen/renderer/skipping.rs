@@ -87,7 +87,11 @@ impl Renderer<'_> {
         {
             self.skipped = Skipped::default();
             let parts = parts_of(&self.resident, self.shown, scene);
-            let made = MacroCells::new(self.device.gpu(), parts[0].volume, of.apron);
+            let (gpu, volume) = (self.device.gpu(), parts[0].volume);
+            let made = match gpu.is_cpu() && volume.spline().is_none() {
+                true => MacroCells::of_voxels(gpu, volume, of.apron, self.volumes[self.shown]),
+                false => MacroCells::new(gpu, volume, of.apron),
+            };
             let Some(made) = if_it_fits(made)? else {
                 return Ok(());
             };
