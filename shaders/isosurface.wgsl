@@ -13,6 +13,7 @@
 #import paint_{paint}
 #import gradient
 #import shade
+#import light
 
 // Premultiplied colour and alpha.
 @group(0) @binding(6) var picture: texture_storage_2d<rgba32float, read_write>;

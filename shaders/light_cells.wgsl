@@ -7,6 +7,7 @@
 // So a cell half full of something opaque is half transparent, and uniform matter keeps its extinction. What has no
 // data absorbs nothing. Bricks add their looks one after the other. Twin: src/technique/light_field.rs.
 
+#import gradient
 #import light_grid
 #import brick
 #import cells_{layout}

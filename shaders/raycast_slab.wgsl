@@ -14,8 +14,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let found = march(vec2<f32>(id.xy) + 0.5, gathered_before(id.xy));
-    textureStore(picture, id.xy, vec4(found.color, 1.0 - found.transmittance));
-    textureStore(layers, id.xy, vec4(0.0, found.depth, found.transmittance, found.samples));
+    textureStore(picture, id.xy, picture_of(found));
+    textureStore(layers, id.xy, beside_of(found));
 }
 
 // What nearer bricks have left in the images.
@@ -23,6 +23,5 @@ fn gathered_before(pixel: vec2<u32>) -> Accumulator {
     if frame.is_first_brick != 0u {
         return begin();
     }
-    let beside = textureLoad(layers, pixel);
-    return Accumulator(textureLoad(picture, pixel).xyz, beside.z, beside.y, beside.w);
+    return resumed(textureLoad(picture, pixel), textureLoad(layers, pixel));
 }

@@ -27,6 +27,8 @@ const HOLES: Slot = ("holes", &["none", "mask"]);
 const LATTICE: Slot = ("lattice", &["ray", "planes"]);
 /// One number a voxel, alone or with its gradient. The word `alone` is left out of names.
 const ONE: Slot = ("mix", &["alone", "graded"]);
+/// Graded for nothing but unhindered light on central differences.
+const LIT: Slot = ("mix", &["lit"]);
 const ALONE: Slot = ("mix", &["alone"]);
 const MIXED: Slot = ("mix", &["channels", "colors"]);
 const MODE: Slot = ("mode", &["composite"]);
@@ -39,6 +41,8 @@ const BLEND: Slot = ("blend", &["composite"]);
 pub const ENTRIES: &[(&str, &[Slot])] = &[
     ("raycast", &[MODE, ONE, LATTICE, FILTER, HOLES, TABLE]),
     ("raycast", &[MODE, ONE, RAY, CORNERS, HOLES, TABLE]),
+    ("raycast", &[MODE, LIT, RAY, NARROW, HOLES, TABLE]),
+    ("raycast", &[MODE, LIT, RAY, CORNERS, HOLES, TABLE]),
     ("raycast", &[MODE, ONE, LATTICE, FETCHED, HOLES, POINTS]),
     ("raycast", &[MODE, MIXED, LATTICE, NARROW, HOLES, TABLE]),
     (

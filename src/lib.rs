@@ -74,7 +74,7 @@
 //! use stratavox::gpu::{Gpu, ParameterRing};
 //! use stratavox::resident::{GpuTransfer, GpuVolume};
 //! use stratavox::technique::blend::Drawn;
-//! use stratavox::technique::{Inputs, Mode, Slicer, Technique, View, Words, parameter_ring};
+//! use stratavox::technique::{Inputs, Mode, Skip, Slicer, Technique, View, Words, parameter_ring};
 //! use stratavox::transfer::TransferFunction;
 //! use stratavox::volume::Volume;
 //!

@@ -55,6 +55,8 @@ fn slicer_and_caster_on_one_lattice_are_one_picture() {
                         lattice: Lattice::Planes,
                         samples_per_voxel,
                         conformance: true,
+                        // All samples are counted.
+                        skip: false,
                         ..Settings::default()
                     },
                 };

@@ -401,3 +401,68 @@ fn ranges_of_cells_are_the_same_from_voxels_and_from_textures() {
         }
     }
 }
+
+#[test]
+fn a_voxel_at_the_border_of_a_cell_is_seen_from_the_cells_beside() {
+    let bright = [
+        [7, 12, 12],
+        [12, 8, 12],
+        [12, 12, 15],
+        [16, 4, 4],
+        [6, 17, 19],
+        [17, 20, 9],
+        [5, 6, 4],
+    ];
+    let at = |p: DVec3| [p.x as u32, p.y as u32, p.z as u32];
+    let field = |p: DVec3| 100.0 * f64::from(bright.contains(&at(p)));
+    let volume = volume_of([24; 3], DAffine3::IDENTITY, field);
+    let point = |(value, opacity)| OpacityPoint { value, opacity };
+    let function = TransferFunction {
+        color: vec![ColorPoint {
+            value: 0.0,
+            srgb: [1.0; 3],
+        }],
+        opacity: [(0.1, 0.0), (0.2, 0.5), (100.0, 0.9)].map(point).into(),
+        reference_length: None,
+        interpolation: Interpolation::Linear,
+        graded: None,
+    };
+    let camera = oblique_camera(&volume.grid(), projections(&volume.grid())[0]);
+    let mut renderer = Renderer::new(device(), &volume).expect("a renderer");
+    let mut settings: Vec<_> = [
+        Filter::Linear,
+        Filter::QuadraticSmooth,
+        Filter::CubicSmooth,
+        Filter::CatmullRom,
+    ]
+    .map(|filter| Settings {
+        filter,
+        samples_per_voxel: 3.0,
+        ..Settings::default()
+    })
+    .into();
+    // The near end of a segment lies in another cell than its far end.
+    let mut surfaces = Settings {
+        mode: Mode::Iso,
+        ..Settings::default()
+    };
+    surfaces.per_mode.levels = vec![Level {
+        value: 30.0,
+        srgb: [1.0; 3],
+        opacity: 0.5,
+    }];
+    settings.push(surfaces);
+    for settings in settings {
+        let is_iso = settings.mode == Mode::Iso;
+        let scene = Scene {
+            volume: &volume,
+            transfer: Some(&function).filter(|_| !is_iso),
+            beside: Default::default(),
+            camera: &camera,
+            extent_pixels: [96; 2],
+            settings: &settings,
+        };
+        let [skipped, whole] = samples_of_same_pictures(&mut renderer, &scene);
+        assert!(skipped < whole, "{settings:?}: {skipped} of {whole}");
+    }
+}

@@ -2,9 +2,11 @@
 // lights on surfaces, for these. Twin: src/offscreen/reference/half_angle.rs.
 
 #import transfer_{transfer}
+#import gradient
 #import widgets
 #import second
 #import shade
+#import light
 #import dimmed
 
 fn lit_material_of(sample: Sample, light: f32) -> Classified {

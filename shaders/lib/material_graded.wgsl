@@ -2,9 +2,11 @@
 // Twin: src/technique/shading.rs, src/transfer/widgets.rs.
 
 #import transfer_{transfer}
+#import gradient
 #import widgets
 #import second
 #import shade
+#import light
 
 fn material_of(sample: Sample) -> Classified {
     let has_widgets = are_widgets();

@@ -1,7 +1,6 @@
 // One number a sample, and where it was taken: its gradient is made where it is wanted, six more taps.
 
 #import holes_{holes}
-#import gradient
 
 struct Sample {
     value: f32,

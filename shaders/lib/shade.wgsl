@@ -6,10 +6,9 @@
 // from the light, 1 without occlusion and shadows (light.wgsl). Where the gradient is flat there is no surface and the
 // colour stays, as far as light comes there: c (o a + (1 - a) sum of t L / sum of L), a = min(ambient, 1).
 // Blinn, "Models of Light Reflection for Computer Synthesized Pictures", SIGGRAPH 1977.
-// Twin: src/technique/shading.rs.
+// Who imports this also imports where that light is known: light or light_unhindered. Twin: src/technique/shading.rs.
 
 #import frame
-#import light
 
 // At a position in voxel space.
 fn shade(color: vec3<f32>, gradient: vec3<f32>, ray_direction: vec3<f32>, voxel: vec3<f32>) -> vec3<f32> {

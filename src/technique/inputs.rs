@@ -1,7 +1,9 @@
 //! What every technique reads, by the names that the shaders give it, and which variant of a shader that
 //! asks for.
 
-use super::{Filter, Lattice, LightVolume, Mix, Mode, Part, Role, Settings, Skip, Technique};
+use super::{
+    Filter, Keep, Lattice, LightVolume, Mix, Mode, Operator, Part, Role, Settings, Skip, Technique,
+};
 use crate::gpu::{Bindings, Error, Gpu, Image, Layout, ParameterRing, Resource};
 use crate::resident::{Brick, Corners, GpuTransfer, GpuVolume, TextureLayout};
 use crate::shaders::MAX_CHANNELS;
@@ -131,6 +133,8 @@ pub struct Words {
     pub mix: Mix,
     /// What a sample is.
     pub take: Take,
+    /// Gradients count for nothing but unhindered light, on central differences.
+    pub is_plainly_lit: bool,
 }
 
 /// What a sample is: a point of a ray, or a piece of it.
@@ -168,7 +172,10 @@ impl Words {
         let has_holes = parts.iter().any(|part| part.volume.has_holes());
         let has_surfaces = settings.shading.as_ref().is_some_and(|s| s.has_surfaces);
         let is_lit = has_surfaces || settings.wants_light_volume();
+        // A function of gradients is no longer alone.
         let is_graded = mix == Mix::Alone && is_lit;
+        let is_central = settings.gradient_operator() == Operator::Central
+            && settings.keep_gradients != Keep::Always;
         Self {
             mix: if is_graded { Mix::Graded } else { mix },
             filter: match settings.filter {
@@ -197,6 +204,7 @@ impl Words {
             } else {
                 "table"
             },
+            is_plainly_lit: is_graded && is_central && !settings.wants_light_volume(),
         }
     }
 }

@@ -38,7 +38,13 @@ impl Raycast {
             transfer,
             mix,
             take,
+            is_plainly_lit,
         } = words;
+        // Kernels, planes and exact control points have the general variant alone.
+        let has_lit = of == Mode::Composite
+            && *lattice == "ray"
+            && *transfer == "table"
+            && !matches!(*filter, "kernel" | "spline");
         let mode = mode_word(of);
         let name = match take {
             _ if of == Mode::Iso && *mix == Mix::Channels => {
@@ -46,6 +52,9 @@ impl Raycast {
             }
             _ if of == Mode::Iso => format!("isosurface.{filter}.{holes}"),
             Take::Slab => format!("raycast_slab.composite.{lattice}.{filter}.{holes}"),
+            Take::Point if *is_plainly_lit && has_lit => {
+                format!("raycast.composite.lit.ray.{filter}.{holes}.table")
+            }
             _ => format!(
                 "raycast.{mode}{}.{lattice}.{filter}.{holes}.{transfer}",
                 mix.word()

@@ -1,0 +1,3 @@
+// As where gradients count for more than light.
+
+#import sample_graded
