@@ -411,7 +411,11 @@ fn a_voxel_at_the_border_of_a_cell_is_seen_from_the_cells_beside() {
         [16, 4, 4],
         [6, 17, 19],
         [17, 20, 9],
-        [5, 6, 4],
+        [20, 20, 6],
+        [3, 3, 17],
+        [20, 6, 20],
+        [4, 14, 4],
+        [12, 20, 14],
     ];
     let at = |p: DVec3| [p.x as u32, p.y as u32, p.z as u32];
     let field = |p: DVec3| 100.0 * f64::from(bright.contains(&at(p)));
@@ -444,6 +448,7 @@ fn a_voxel_at_the_border_of_a_cell_is_seen_from_the_cells_beside() {
     // The near end of a segment lies in another cell than its far end.
     let mut surfaces = Settings {
         mode: Mode::Iso,
+        samples_per_voxel: 0.5,
         ..Settings::default()
     };
     surfaces.per_mode.levels = vec![Level {
