@@ -37,11 +37,8 @@ impl Seen {
                 .clamp(0.0, count as f64 - 1.0)
         };
         let mut is_seen = vec![false; count];
-        let mut show = |from: f64, to: f64| {
-            // What begins at the border of two cells is at the end of the one before.
-            let from = (cell(from) as usize).saturating_sub(1);
-            is_seen[from..=cell(to) as usize].fill(true);
-        };
+        let mut show =
+            |from: f64, to: f64| is_seen[cell(from) as usize..=cell(to) as usize].fill(true);
         let points = &function.opacity;
         let ends = points.first().into_iter().chain(points.last());
         for (end, beyond) in ends.zip([f64::NEG_INFINITY, f64::INFINITY]) {
@@ -129,6 +126,16 @@ mod tests {
             ([25.0, 1e30], true),
         ] {
             assert_eq!(seen.shows(range), is_shown, "{range:?}");
+        }
+    }
+
+    #[test]
+    fn what_lies_before_a_function_that_begins_transparent_is_not_seen() {
+        let ramp = [(120., 0.), (200., 0.05), (1800., 0.9)];
+        for interpolation in [Interpolation::Linear, Interpolation::Step] {
+            let seen = Seen::new(&function(&ramp, interpolation));
+            assert!(!seen.shows([-1024.0, 100.0]));
+            assert!(seen.shows([-1024.0, 210.0]));
         }
     }
 
