@@ -530,3 +530,28 @@ fn faces_are_refused_by_name_where_there_are_none() {
     let problem = reference::render::<f32>(&scene).unwrap_err().to_string();
     assert!(problem.contains("window of cut faces"), "{problem}");
 }
+
+#[test]
+fn the_length_of_a_planes_normal_does_not_count() {
+    let volume = volume_of(GRID().dims, sheared_affine(), waves);
+    let mut renderer = Renderer::new(device(), &volume).unwrap();
+    let transfer = ramps();
+    let normal = dvec3(0.75, -0.5, 0.25);
+    let offset = normal.dot(GRID().center()) - 1.0;
+    let mut picture = |scale: Option<f64>| {
+        let shot = oblique_shots(GRID(), Mode::Composite)[0].with(|settings| {
+            let plane = |scale: f64| ClipPlane {
+                normal: scale * normal,
+                offset: scale * offset,
+            };
+            settings.clip_planes = scale.map(plane).into_iter().collect();
+        });
+        let scene = shot.scene(&volume, Some(&transfer));
+        renderer.render(&scene, &[]).unwrap().picture.pixels
+    };
+    let [whole, cut] = [None, Some(1.0)].map(&mut picture);
+    assert!(whole != cut, "the plane cuts");
+    for power in [-600, -66, 66, 126] {
+        assert!(picture(Some(2f64.powi(power))) == cut, "2^{power}");
+    }
+}

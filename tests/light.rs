@@ -366,3 +366,35 @@ fn assert_has_normal(shot: &Shot, shading: &Shading, found: &Picture, slope: DVe
 fn tolerance(conformance: bool) -> f64 {
     if conformance { 1e-5 } else { 6e-5 }
 }
+
+#[test]
+fn a_field_of_one_value_has_no_surface_whatever_makes_gradients() {
+    let volume = volume_of(GRID().dims, sheared_affine(), |_| 0.7);
+    let mut renderer = Renderer::new(device(), &volume).unwrap();
+    let transfer = ramps();
+    let shot = &oblique_shots(GRID(), Mode::Composite)[0];
+    let by = |filter, gradient_filter| {
+        shot.with(|settings| {
+            settings.filter = filter;
+            settings.gradient_filter = gradient_filter;
+        })
+    };
+    let shots = [
+        by(Filter::Cubic, GradientFilter::Central),
+        by(Filter::CatmullRom, GradientFilter::Central),
+        by(Filter::Linear, GradientFilter::Sobel),
+        by(Filter::Linear, GradientFilter::Cubic),
+        by(Filter::CubicSmooth, GradientFilter::Analytic),
+    ];
+    for shot in shots {
+        for conformance in [false, true] {
+            let dark = shot.with(|s| s.conformance = conformance);
+            let lit = dark.with(|s| s.shading = Some(Shading::default()));
+            let [dark, lit] = [&dark, &lit].map(|shot| {
+                let scene = shot.scene(&volume, Some(&transfer));
+                renderer.render(&scene, &[]).unwrap().picture
+            });
+            Worst::between(shot.what(), dark.width, &dark.pixels, &lit.pixels, 1e-6).assert_holds();
+        }
+    }
+}

@@ -175,7 +175,7 @@ fn cameras(grid: &Grid) -> Vec<Camera> {
     let inside = Camera {
         eye: grid.center(),
         target: grid.center() + dvec3(1.0, 0.4, -0.7),
-        ..cameras[0].clone()
+        ..cameras[0]
     };
     cameras.push(Camera {
         projection: Projection::Perspective { fov_degrees: 70.0 },

@@ -337,7 +337,16 @@ impl View<'_> {
         }
         for (plane, found) in planes.iter_mut().zip(wanted) {
             let offset = found.offset - found.normal.dot(self.grid.center());
-            *plane = found.normal.extend(offset).as_vec4().to_array();
+            // Normals of any length: a power of two changes no digit.
+            let largest = found.normal.abs().max_element();
+            let scale = if largest > 0.0 {
+                (-largest.log2().floor()).exp2()
+            } else {
+                1.0
+            };
+            let limit = f64::from(f32::MAX);
+            let scaled = (scale * found.normal).extend((scale * offset).clamp(-limit, limit));
+            *plane = scaled.as_vec4().to_array();
         }
         Ok((planes, wanted.len() as u32))
     }

@@ -72,11 +72,15 @@ impl Shading {
 
 /// Under this part of the volume's range over one voxel a gradient is flat.
 const FLAT_PART: f64 = 1e-4;
+/// What f32 may make of the sums of wide filters over voxels that are all the same, in parts of the largest.
+const ROUNDING_PART: f64 = 1.0 / (1u64 << 19) as f64;
 
 impl View<'_> {
     /// Value per world length under which a gradient is no surface, in a volume of this range.
     pub fn flat_gradient(&self, [low, high]: [f64; 2]) -> f32 {
-        (FLAT_PART * (high - low) / self.grid.smallest_spacing()) as f32
+        let of_rounding = ROUNDING_PART * low.abs().max(high.abs());
+        let flat = (FLAT_PART * (high - low)).max(of_rounding);
+        (flat / self.grid.smallest_spacing()) as f32
     }
 }
 
