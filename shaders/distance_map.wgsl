@@ -15,7 +15,7 @@ struct CellRanges {
 }
 
 struct Seen {
-    // (first value, entries per value, -, -) of the table, as f32; then for each entry the next that is seen.
+    // Value where entry 0 begins, and entries per value; of each entry the next that is seen.
     first: f32,
     scale: f32,
     count: u32,

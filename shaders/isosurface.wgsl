@@ -5,7 +5,7 @@
 
 #import ray
 #import brick
-#import empty_space
+#import room_map
 #import filter_{filter}
 #import nearest
 #import mask
@@ -19,13 +19,6 @@
 @group(0) @binding(6) var picture: texture_storage_2d<rgba32float, read_write>;
 // Level of the first crossing, its depth (negative: none), transmittance, samples.
 @group(0) @binding(7) var layers: texture_storage_2d<rgba32float, read_write>;
-
-struct Rooms {
-    d: array<u32>,
-}
-
-// How far away the nearest cell is that a surface may go through (distance_map.wgsl).
-@group(0) @binding(36) var<storage, read> rooms: Rooms;
 
 // Halvings of a segment: 2^-10 of a step.
 const HALVINGS: u32 = 10u;
@@ -104,7 +97,7 @@ fn surfaces(pixel: vec2<f32>, before: Surfaces) -> Surfaces {
                     break;
                 }
                 let cell = cell_of(walk, k);
-                room = i32(rooms.d[cell_index(cell)]);
+                room = room_of(cell);
                 let landing = after_room(walk, k, cell, max(room, 1)) - 1;
                 if room == 0 || !is_near_empty || landing <= k {
                     break;

@@ -13,7 +13,7 @@ use stratavox::picture::{LayerKind, Picture};
 use stratavox::resident::{GpuVolume, MacroCells, TextureLayout};
 use stratavox::scene::Scene;
 use stratavox::technique::{
-    ClipPlane, CutFaces, Filter, Jitter, Lattice, Level, Mode, Settings, Shading, Technique,
+    ClipPlane, CutFaces, Filter, Jitter, Lattice, Level, Mode, Settings, Shading,
 };
 use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
 use stratavox::volume::{Grid, Rescale, Volume, Voxels};
@@ -323,7 +323,6 @@ fn of_a_ball_in_empty_space_few_samples_are_taken() {
     };
     let [skipped, whole] = samples_of_same_pictures(&mut renderer, &scene);
     assert!(skipped < whole / 20.0, "{skipped} of {whole}");
-    assert_eq!(settings.technique, Technique::Raycast);
 }
 
 /// All numbers of a buffer of f32, once what is recorded by `record` has run.

@@ -6,7 +6,7 @@
 
 fn place_in_pixel(pixel: vec2<f32>) -> vec2<f32> {
     var place = pixel;
-    // Once or not at all, as a loop: drivers for CPUs work out both sides of a branch, and end a loop.
+    // Once, or not at all.
     for (var i = 0u; i < frame.is_uneven; i++) {
         place += in_cell(vec2<u32>(pixel));
     }
