@@ -13,6 +13,7 @@ mod place;
 mod png;
 #[cfg(feature = "files")]
 mod read;
+mod srgb_codes;
 mod straight;
 #[cfg(feature = "files")]
 mod write;
