@@ -100,7 +100,7 @@ impl Render {
             progress.note(note);
         }
         progress.stage("prepare", 0, 1);
-        let device = Device::begin(scene.device.as_deref());
+        let device = Device::begin(scene.one_device()?);
         progress.stage("read", 0, 1);
         let start = Instant::now();
         let shown = Shown::read(&scene, &settings, &device, &progress);
@@ -113,13 +113,7 @@ impl Render {
             classification,
             ..
         } = &shown;
-        let subject = shown.subject();
-        let section = &scene.section;
-        let camera = section.camera(&scene.camera, &subject, extent_pixels, &mut settings)?;
-        if let (None, Some(filter)) = (scene.sampling.filter, shown.filter) {
-            settings.filter = filter;
-        }
-        settings.per_mode = shown.per_mode.clone();
+        let camera = shown.camera(&scene, extent_pixels, &mut settings)?;
         let load_ms = ms_since(start);
 
         progress.stage("prepare", 0, 1);

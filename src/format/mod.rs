@@ -36,6 +36,7 @@ mod dicom;
 #[cfg(any(feature = "grib", feature = "netcdf"))]
 mod fence;
 mod file_source;
+mod find;
 mod geometry;
 mod grib;
 #[cfg(feature = "netcdf")]
@@ -73,6 +74,8 @@ use absent::{hdf5, netcdf};
 #[cfg(feature = "cli")]
 pub(crate) use sequence::expand as numbered_name;
 
+pub use find::{Found, Search, find, stem};
+
 use crate::volume::{Limits, Problem, ReadError, Source, Wanted};
 use problem::at;
 use std::path::Path;
@@ -99,17 +102,7 @@ pub fn open(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Sou
     let first = first_bytes(path).map_err(at(path))?;
     // The content decides. Where it is no format's, the name does, and that reader says what is wrong.
     let by_content = READERS.iter().find(|reader| (reader.recognizes)(&first));
-    let by_name = || {
-        let name = path.file_name()?.to_str()?.to_ascii_lowercase();
-        let ends = |ending: &&str| {
-            name.strip_suffix(*ending)
-                .is_some_and(|stem| stem.ends_with('.'))
-        };
-        READERS
-            .iter()
-            .find(|reader| reader.endings.iter().any(ends))
-    };
-    if let Some(reader) = by_content.or_else(by_name) {
+    if let Some(reader) = by_content.or_else(|| Reader::of_name(path)) {
         (reader.open)(path, wanted, limits)
     } else if let Some(sidecar) = raw::sidecar_of(path) {
         raw::open_sidecar(&sidecar, limits)
@@ -127,6 +120,20 @@ struct Reader {
     /// What follows the last dot (or the last two) of names, in small letters.
     endings: &'static [&'static str],
     open: Open,
+}
+
+impl Reader {
+    /// The one of files that are called so.
+    fn of_name(path: &Path) -> Option<&'static Self> {
+        let name = path.file_name()?.to_str()?.to_ascii_lowercase();
+        let ends = |ending: &&str| {
+            name.strip_suffix(*ending)
+                .is_some_and(|stem| stem.ends_with('.'))
+        };
+        READERS
+            .iter()
+            .find(|reader| reader.endings.iter().any(ends))
+    }
 }
 
 /// A reader of folders.

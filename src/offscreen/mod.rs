@@ -21,7 +21,7 @@ mod upload;
 
 pub use denoise::denoised;
 pub use probe::{Ceilings, ceilings};
-pub use renderer::{Rendered, Renderer};
+pub use renderer::{Kept, Rendered, Renderer};
 
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]

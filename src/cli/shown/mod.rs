@@ -14,11 +14,11 @@ use super::{
     flags::{Classification, ClassificationFlags, Plan, SceneFlags, Subject, summary},
     labels,
     load::{load_from, open},
-    memory::{Held, fitting},
+    memory::{DeviceRoom, Held, fitting},
     progress::Progress,
-    renderer::Device,
 };
 use crate::{
+    camera::Camera,
     scene::{Beside, Channel},
     technique::{Filter, Mode, PerMode, Role, Settings},
     transfer::{Classified, LabelTable, TransferFunction},
@@ -67,7 +67,7 @@ impl Shown {
     pub fn read(
         scene: &SceneFlags,
         settings: &Settings,
-        device: &Device,
+        device: &dyn DeviceRoom,
         progress: &Progress,
     ) -> Result<Self, Error> {
         check(scene, settings)?;
@@ -80,7 +80,7 @@ impl Shown {
         source: Box<dyn Source>,
         scene: &SceneFlags,
         settings: &Settings,
-        device: &Device,
+        device: &dyn DeviceRoom,
         progress: &Progress,
     ) -> Result<Self, Error> {
         check(scene, settings)?;
@@ -193,6 +193,22 @@ impl Shown {
         Subject::new(&self.volume.grid(), self.is_earth)
     }
 
+    /// Who looks, and in `settings` what is known now that there are voxels.
+    pub fn camera(
+        &self,
+        scene: &SceneFlags,
+        extent_pixels: [u32; 2],
+        settings: &mut Settings,
+    ) -> Result<Camera, Error> {
+        let (section, subject) = (&scene.section, self.subject());
+        let camera = section.camera(&scene.camera, &subject, extent_pixels, settings)?;
+        if let (None, Some(filter)) = (scene.sampling.filter, self.filter) {
+            settings.filter = filter;
+        }
+        settings.per_mode = self.per_mode.clone();
+        Ok(camera)
+    }
+
     /// What [`Parts::beside`] hands out.
     pub fn parts(&self) -> Parts<'_> {
         match &self.others {
@@ -249,7 +265,7 @@ impl Parts<'_> {
 struct Reader<'a> {
     scene: &'a SceneFlags,
     mode: Mode,
-    device: &'a Device,
+    device: &'a dyn DeviceRoom,
     progress: &'a Progress,
 }
 
