@@ -29,6 +29,7 @@ mod presets;
 mod real;
 mod section;
 mod sheet;
+mod thumbnails;
 mod weather;
 mod widgets;
 mod words;

@@ -10,7 +10,7 @@ use crate::{
         flags::SceneFlags,
         line::{Line, encoders},
         load,
-        memory::{DeviceMemory, DeviceRoom, Held, available_bytes, needed_bytes},
+        memory::{DeviceMemory, DeviceRoom, Held, needed_bytes},
         progress::Progress,
         reasons::why_empty,
         renderer::{Device, Job, Renderer},
@@ -21,6 +21,7 @@ use crate::{
     technique::Settings,
 };
 use std::{
+    panic::resume_unwind,
     path::{Path, PathBuf},
     sync::{
         Mutex, PoisonError,
@@ -105,7 +106,8 @@ impl Batch<'_> {
         let reading = Reading {
             batch: self,
             memory: devices[0].memory()?,
-            room: &Room::new(self.host_bytes().unwrap_or(u64::MAX)),
+            // What all volumes may take together.
+            room: &Room::new(self.scene.input.max_memory.unwrap_or(u64::MAX)),
         };
         let encoders = encoders(self.extent_pixels);
         let line = &Line::new(devices.len() + encoders + 1);
@@ -148,21 +150,15 @@ impl Batch<'_> {
                 }
                 Ok(())
             });
-            for drawer in drawers {
-                drawer
-                    .join()
-                    .unwrap_or_else(|fault| std::panic::resume_unwind(fault));
-            }
+            let ended: Vec<_> = drawers.into_iter().map(|drawer| drawer.join()).collect();
             // Who reads ahead stops, if nobody draws any more.
             *volumes.lock().unwrap_or_else(PoisonError::into_inner) = None;
+            for ended in ended {
+                ended.unwrap_or_else(|fault| resume_unwind(fault));
+            }
             written
         })?;
         Ok((rows, first_error))
-    }
-
-    /// What all volumes may take together.
-    fn host_bytes(&self) -> Option<u64> {
-        self.scene.input.max_memory.or_else(available_bytes)
     }
 
     fn draw_on<'r>(
@@ -260,8 +256,8 @@ impl Batch<'_> {
                 Some(error)
             }
         };
-        for line in row.lines() {
-            self.progress.note(&line);
+        if let Some(error) = &row.error {
+            self.progress.note(&format!("{}: {error}", row.input));
         }
         self.progress
             .volume(&row.input, row.picture.as_deref(), row.error.as_deref());

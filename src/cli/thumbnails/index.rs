@@ -1,6 +1,5 @@
 //! What became of each volume: a line each for `--index`, and for a person at the end.
 
-use super::super::error::visible;
 use serde::Serialize;
 
 /// The file of `--index`.
@@ -79,11 +78,50 @@ impl Index {
     }
 }
 
-impl Row {
-    /// Lines for a person.
-    pub fn lines(&self) -> Vec<String> {
-        let said = self.notes.iter().chain(&self.error);
-        said.map(|text| format!("{}: {}", visible(&self.input), visible(text)))
-            .collect()
+/// Notes in the order in which they came, each once, with the volumes that it is about.
+pub fn notes_of(rows: &[Row]) -> Vec<String> {
+    const MOST: usize = 20;
+    let mut all: Vec<(&str, Vec<&Row>)> = Vec::new();
+    for row in rows {
+        for note in &row.notes {
+            match all.iter_mut().find(|(known, _)| known == note) {
+                Some((_, about)) => about.push(row),
+                None => all.push((note, vec![row])),
+            }
+        }
+    }
+    let left_out = all.len().saturating_sub(MOST);
+    let shown = all.iter().take(MOST).map(|(note, about)| match about[..] {
+        [one] => format!("{}: {note}", one.input),
+        _ => format!("{} volumes: {note}", about.len()),
+    });
+    let rest = (left_out > 0).then(|| format!("{left_out} notes more: --index has them all"));
+    shown.chain(rest).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_note_about_many_volumes_is_said_once_and_no_more_than_a_page_in_all() {
+        let row = |input: usize, notes: &[&str]| Row {
+            input: input.to_string(),
+            notes: notes.iter().map(|&note| note.to_owned()).collect(),
+            ..Row::default()
+        };
+        let rows = [
+            row(1, &["a"]),
+            row(2, &["b", "a"]),
+            row(3, &[]),
+            row(4, &["c"]),
+        ];
+        assert_eq!(notes_of(&rows), ["2 volumes: a", "2: b", "4: c"]);
+        let rows: Vec<Row> = (0..50).map(|k| row(k, &[&format!("note {k}")])).collect();
+        let notes = notes_of(&rows);
+        assert!(
+            notes.len() == 21 && notes[20].starts_with("30 notes more"),
+            "{notes:?}"
+        );
     }
 }

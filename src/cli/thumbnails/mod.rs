@@ -13,6 +13,7 @@ mod room;
 use super::{
     Error,
     flags::{Depth, SceneFlags, Size},
+    memory::available_bytes,
     output::{self, say_aside, write_whole},
     progress::{Progress, ProgressWord},
     render::bit_depth,
@@ -33,8 +34,8 @@ use std::{
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:\n  \
     stratavox thumbnails phantom:head,n=64 phantom:shells,n=64 -o pictures\n  \
-    stratavox thumbnails scans -o pictures --recursive --index index.json\n  \
-    stratavox thumbnails scans --mode mip --view anterior --size 128x128 -o pictures --resume\n\n\
+    stratavox thumbnails FOLDER -o pictures --recursive --index index.json\n  \
+    stratavox thumbnails FOLDER --mode mip --view anterior --size 128x128 -o pictures --resume\n\n\
     A folder that is one volume (DICOM, slices of TIFF, Zarr) is one; of another the volumes inside are drawn.\n\
     A volume that cannot be drawn is named, and the others are drawn: the exit code is that of the first failure.\n\
     A volume too large for the memory is drawn with fewer voxels, as by --fit of `render`.")]
@@ -133,6 +134,10 @@ impl Thumbnails {
             progress: &progress,
         };
         let (rows, first_error) = batch.draw()?;
+        for note in index::notes_of(&rows) {
+            progress.note(&note);
+        }
+        // What comes last stays last.
         drop(progress);
         let mut index = Index::new();
         rows.into_iter().for_each(|row| index.add(row));
@@ -166,6 +171,8 @@ impl Thumbnails {
         }
         scene.picture.size.get_or_insert(SIZE);
         scene.input.fit = true;
+        // Asked for once: what is free while other volumes are there says nothing of how far one must shrink.
+        scene.input.max_memory = scene.input.max_memory.or_else(available_bytes);
         Ok(scene)
     }
 
@@ -183,7 +190,9 @@ impl Thumbnails {
                 .map(PathBuf::from)
                 .filter(|path| path.is_file()),
         );
-        if let Some(index) = &self.index {
+        let is_made_later =
+            |file: &Path| !self.output.is_dir() && file.parent() == Some(&self.output);
+        if let Some(index) = self.index.as_ref().filter(|index| !is_made_later(index)) {
             output::check(
                 std::slice::from_ref(index),
                 &files,
