@@ -258,6 +258,7 @@ fn words_that_cannot_be_followed_are_refused_before_anything_is_drawn() {
             2,
             "nonsense",
         ),
+        ("a.nrrd -o out --stream", 2, "--stream is for one volume"),
         ("a.nrrd -o out --device nobodys-card", 5, "nobodys-card"),
         ("a.nrrd -o out --path a.nrrd", 2, "--path"),
         ("-o out", 2, "INPUT"),
@@ -332,8 +333,8 @@ fn times_are_read_one_by_one_where_there_is_memory_for_one() {
             "animate phantom:storm,n=16,variable=u,times=4 --mode mip --times {more} {SMALL} -o"
         );
         folder.run(&format!("{film} {name}-a/%d.png")).assert_done();
-        // A time is 16 KiB; between two of them lies a third.
-        let bytes = if more.is_empty() { "25K" } else { "60K" };
+        // A time is 6 KiB; between two of them lies a third.
+        let bytes = if more.is_empty() { "10K" } else { "30K" };
         let ran = folder.run(&format!("{film} {name}-b/%d.png --max-memory {bytes}"));
         ran.assert_done();
         assert!(ran.err.contains("memory for one time alone"), "{ran:#?}");

@@ -162,6 +162,7 @@ impl Drawing<'_> {
         let volume = first(ready)?;
         let job = Job {
             volume: &volume,
+            stream: None,
             beside: parts.beside(),
             classification: &ready[0].classification,
             settings: &ready[0].settings,

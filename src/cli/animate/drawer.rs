@@ -84,6 +84,7 @@ impl Work<'_> {
         let ready = &self.ready[number as usize];
         Job {
             volume,
+            stream: None,
             beside: self.parts.beside(),
             classification: &ready.classification,
             settings: &ready.settings,

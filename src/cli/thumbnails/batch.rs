@@ -206,6 +206,7 @@ impl Batch<'_> {
         let parts = shown.parts();
         let job = Job {
             volume: &shown.volume,
+            stream: shown.stream(),
             classification: &shown.classification,
             beside: parts.beside(),
             settings: &settings,

@@ -169,6 +169,12 @@ impl Thumbnails {
                 "`render` writes a .exr or a .npy",
             ));
         }
+        if scene.input.stream {
+            return Err(Error::usage(
+                "--stream is for one volume: many are drawn from memory, large ones with fewer voxels",
+                "`render --stream` draws every voxel of one",
+            ));
+        }
         scene.picture.size.get_or_insert(SIZE);
         scene.input.fit = true;
         // Asked for once: what is free while other volumes are there says nothing of how far one must shrink.

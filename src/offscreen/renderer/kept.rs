@@ -60,6 +60,7 @@ impl<'v> Renderer<'v> {
         Ok(Self {
             volumes,
             shown: 0,
+            streaming: None,
             resident: HashMap::new(),
             transfer: None,
             light: None,
@@ -84,9 +85,10 @@ impl<'v> Renderer<'v> {
             transfer,
             light,
             skipped,
+            streaming,
             ..
         } = self;
-        drop((resident, transfer, light, skipped));
+        drop((resident, transfer, light, skipped, streaming));
         // The next volume finds the memory of this one free.
         device.tidy();
         let tools = Tools {
