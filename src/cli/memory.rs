@@ -11,6 +11,10 @@
 //!
 //! The textures of a CPU driver lie in the memory of the host: there the sum has to fit.
 
+mod at_once;
+
+pub use at_once::{DeviceRoom, leaves_room, needed_bytes};
+
 use super::{Error, flags::SceneFlags};
 use crate::{
     resident::{KeptGradients, TextureLayout},
@@ -144,18 +148,6 @@ pub struct DeviceMemory {
     pub is_of_host: bool,
 }
 
-/// What knows, perhaps after a while, what a device has for textures; `None` of the CPU twins, which need none.
-pub trait DeviceRoom {
-    /// It.
-    fn memory(&self) -> Result<Option<DeviceMemory>, Error>;
-}
-
-impl DeviceRoom for Option<DeviceMemory> {
-    fn memory(&self) -> Result<Self, Error> {
-        Ok(*self)
-    }
-}
-
 /// Voxels of a source that are read at once to be reduced.
 const SLAB_BYTES: u64 = 256 << 20;
 
@@ -233,47 +225,6 @@ pub fn is_little(header: &Header, scene: &SceneFlags, held: Held) -> bool {
     let there = scene.input.max_memory.or_else(available_bytes);
     let needed = needed.host.saturating_add(needed.device);
     there.is_some_and(|there| needed <= there / SHARE)
-}
-
-/// True where what is held of a volume fits so often, and once more in memory while the next is read. The header is that
-/// of a source that fits.
-pub fn leaves_room(
-    header: &Header,
-    scene: &SceneFlags,
-    device: Option<DeviceMemory>,
-    held: Held,
-    devices: u32,
-) -> bool {
-    let filters = filters_of(scene);
-    let one = RenderBytes::held(header, header.fill.is_some(), held, &filters);
-    let light = LightPlan::bytes(header.dims, scene.light.bundle_count());
-    let on_host = one.host.saturating_mul(u64::from(devices) + 1);
-    let on_device = one.device.saturating_add(light);
-    let on_device = on_device.saturating_mul(devices.into());
-    let share = |bytes: u64| (SHARE * bytes as f64) as u64;
-    let is_of_host = device.is_some_and(|device| device.is_of_host);
-    let in_all = on_host.saturating_add(if is_of_host { on_device } else { 0 });
-    let host_bytes = scene.input.max_memory.or_else(available_bytes);
-    host_bytes.is_none_or(|there| in_all <= share(there))
-        && device.is_none_or(|device| on_device <= share(device.heap_bytes))
-}
-
-/// Bytes of the host that what is held of a volume takes; on a CPU driver those of its textures are among them.
-pub fn needed_bytes(
-    header: &Header,
-    scene: &SceneFlags,
-    device: Option<DeviceMemory>,
-    held: Held,
-) -> u64 {
-    let needed = RenderBytes::held(header, true, held, &filters_of(scene));
-    let light = LightPlan::bytes(header.dims, scene.light.bundle_count());
-    match device.is_some_and(|device| device.is_of_host) {
-        true => needed
-            .host
-            .saturating_add(needed.device)
-            .saturating_add(light),
-        false => needed.host,
-    }
 }
 
 /// Of the settings, those that memory depends on.

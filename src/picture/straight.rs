@@ -60,7 +60,12 @@ const LEAST_PIXELS: usize = 1 << 14;
 
 /// [`straight_srgb`] in codes.
 fn codes_of(pixel: [f32; 4], space: ColorSpace, max: u16, table: &SrgbCodes) -> [u16; 4] {
-    let rounded = |x: f64| (x * f64::from(max) + 0.5).floor() as u16;
+    // Most of many pictures.
+    if pixel == [0.0; 4] {
+        return [0; 4];
+    }
+    // What is cut off is what `floor` takes: nothing here is below zero.
+    let rounded = |x: f64| (x * f64::from(max) + 0.5) as u16;
     let [r, g, b, alpha] = straight(pixel);
     let [r, g, b] = [r, g, b].map(|c| match space {
         ColorSpace::Linear => table.code(c, max),

@@ -30,6 +30,7 @@ mod real;
 mod section;
 mod sheet;
 mod thumbnails;
+mod thumbnails_at_once;
 mod weather;
 mod widgets;
 mod words;
