@@ -86,23 +86,26 @@ impl Shown {
             ..limits
         };
         let source = open(&scene.input, &limits)?;
+        let shown = Self::of_source(source, scene, settings, device, progress)?;
+        Ok(shown.at_level(scene))
+    }
+
+    /// The same with opacities of the finest resolution, where a word takes a coarser one.
+    pub fn at_level(mut self, scene: &SceneFlags) -> Self {
         let level = scene.input.level.filter(|&level| level > 0);
-        let mut shown = Self::of_source(source, scene, settings, device, progress)?;
-        if let (Some(level), Classification::Function(function)) =
-            (level, &mut shown.classification)
+        if let (Some(level), Classification::Function(function)) = (level, &mut self.classification)
         {
-            // Opacities are those of the finest level.
-            let spacing = shown.volume.grid().smallest_spacing() / f64::from(level).exp2();
+            let spacing = self.volume.grid().smallest_spacing() / f64::from(level).exp2();
             function.reference_length.get_or_insert(spacing);
         }
-        Ok(shown)
+        self
     }
 
     fn of_source(
         source: Box<dyn Source>,
         scene: &SceneFlags,
         settings: &Settings,
-        device: &Device,
+        device: &dyn DeviceRoom,
         progress: &Progress,
     ) -> Result<Self, Error> {
         if streamed::is_wanted(source.as_ref(), scene, settings, device)? {

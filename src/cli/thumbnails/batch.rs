@@ -310,7 +310,7 @@ impl<'a> Reading<'a> {
         let share = self.room.share(needed);
         let shown = Shown::of(source, &scene, self.batch.settings, &self.memory, progress)?;
         Ok(Read {
-            shown,
+            shown: shown.at_level(&scene),
             scene,
             _share: share,
         })
