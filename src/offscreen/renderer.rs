@@ -8,9 +8,11 @@
 //! ```
 
 mod classified;
+mod pacing;
 mod skipping;
 
 use super::Error;
+use super::cost::ms_of_looks;
 use super::fade::{render_faded, stacks_of};
 use super::gradients::decided;
 use super::light::Matter;
@@ -20,6 +22,7 @@ use super::submission::{self, Submission};
 use super::sum::sum_of;
 use super::tally::{Clock, Mean, check_layers};
 use super::targets::Targets;
+use super::time_slices::{Spent, TimeSlices};
 use super::upload::{keep, upload, upload_with_gradient_source};
 use crate::gpu::{Headless, ParameterRing, Timer, Use};
 use crate::picture::{ColorSpace, Layer, LayerKind, Picture};
@@ -32,9 +35,13 @@ use crate::technique::{
 };
 use crate::transfer::{Classified, Graded, TransferFunction, Window};
 use crate::volume::{Spline, Volume};
+use pacing::{Expected, Known, passes_of};
 use skipping::Skipped;
 use std::collections::HashMap;
 use std::sync::Arc;
+
+/// A resolve reads one texel and classifies at most once, beside which a sample of a volume is dear.
+const LOOKS_OF_A_RESOLVE: f64 = 0.5;
 
 /// A picture and what it took.
 #[derive(Debug)]
@@ -60,6 +67,13 @@ pub struct Renderer<'v> {
     passes: Option<Passes>,
     ring: ParameterRing,
     timer: Option<Timer>,
+    pub(super) slices: TimeSlices<'v>,
+    /// What a picture took.
+    known: Option<Known>,
+    /// How often transfer functions were changed.
+    changes: u64,
+    /// Passes over all samples of the picture that is being drawn: how many are done, and how many there are.
+    passes_done: [usize; 2],
     device: Headless,
 }
 
@@ -134,6 +148,10 @@ impl<'v> Renderer<'v> {
             passes: None,
             ring: parameter_ring(gpu, 1)?,
             timer: Timer::new(gpu)?,
+            slices: TimeSlices::default(),
+            known: None,
+            changes: 0,
+            passes_done: [0, 1],
             device,
         })
     }
@@ -179,7 +197,7 @@ impl<'v> Renderer<'v> {
                 )?],
             };
             if let Some(operator) = kept {
-                keep(device, &mut made[0], operator)?;
+                keep(device, &mut self.slices, &mut made[0], operator)?;
             }
             self.resident.insert(copied, made);
         }
@@ -233,10 +251,15 @@ impl<'v> Renderer<'v> {
         self.upload(scene)?;
         let mut clock = Clock(self.timer.is_some().then_some(0.0));
         if scene.mix() == Mix::Channels && scene.settings.mode.is_projection() {
-            let one_by_one = scene.projected().into_iter().enumerate();
+            let all = scene.projected();
+            let of = all.len();
+            let one_by_one = all.into_iter().enumerate();
             let picture = sum_of(one_by_one.map(|(shown, one)| {
                 self.shown = shown;
-                self.picture(&one, layers, &mut clock)
+                let span = self.slices.enter(shown, of);
+                let picture = self.picture(&one, layers, &mut clock);
+                self.slices.leave(span);
+                picture
             }));
             self.shown = 0;
             let (picture, gpu_ms) = (picture?, clock.0);
@@ -256,6 +279,7 @@ impl<'v> Renderer<'v> {
         layers: &[LayerKind],
         clock: &mut Clock,
     ) -> Result<Picture, Error> {
+        self.passes_done = [0, passes_of(scene, !layers.is_empty())];
         self.prepare(scene)?;
         self.prepare_skip(scene)?;
         let functions = scene.transfers().into_iter();
@@ -345,21 +369,29 @@ impl<'v> Renderer<'v> {
 
     /// One pass of the technique, rays at one position in each pixel.
     fn gather(&mut self, scene: &Scene, in_pixel: InPixel) -> Result<Option<f64>, Error> {
-        self.submit(scene, in_pixel, Passes::gather)
+        let [done, of] = self.passes_done;
+        let span = self.slices.enter(done, of);
+        let submitted = self.submit(scene, in_pixel, Passes::gather);
+        self.slices.leave(span);
+        self.passes_done[0] += 1;
+        let (spent, expected) = submitted?;
+        self.learn(expected, &spent);
+        Ok(spent.gpu_ms)
     }
 
-    /// Parameters into the ring, then one submission.
+    /// Parameters into the ring, then submissions.
     fn submit(
         &mut self,
         scene: &Scene,
         in_pixel: InPixel,
-        pass: impl FnOnce(&Passes, Submission) -> Result<Option<f64>, crate::gpu::Error>,
-    ) -> Result<Option<f64>, Error> {
+        pass: impl FnOnce(&Passes, Submission) -> Result<Spent, crate::gpu::Error>,
+    ) -> Result<(Spent, Expected), Error> {
         let grid = scene.volume.grid();
         let view = scene.view(&grid, in_pixel);
         let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
         let parts = parts_of(&self.resident, self.shown, scene);
         let mut recordings = view.recordings_of(&parts, transfer)?;
+        let expected = self.expected(scene, &view, &recordings, parts.len());
         let skip = self.skipped.skip();
         for recording in &mut recordings {
             recording.skip(skip);
@@ -397,8 +429,11 @@ impl<'v> Renderer<'v> {
             targets: self.targets.as_ref().expect("prepared"),
             bricks: &bricks,
             timer: self.timer.as_ref(),
+            slices: &mut self.slices,
+            expected_ms: expected.ms,
         };
-        Ok(pass(self.passes.as_ref().expect("prepared"), submission)?)
+        let spent = pass(self.passes.as_ref().expect("prepared"), submission)?;
+        Ok((spent, expected))
     }
 
     /// The colours of what was gathered; the parameters are still in the ring.
@@ -407,7 +442,16 @@ impl<'v> Renderer<'v> {
         let targets = self.targets.as_ref().expect("prepared");
         let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
         let offset = self.ring.offset(0)?;
-        passes.resolve(&mut self.device, &self.ring, offset, targets, transfer)?;
+        let pixels = targets.extent.map(f64::from).iter().product::<f64>();
+        let submission = Submission {
+            expected_ms: ms_of_looks(self.device.gpu(), LOOKS_OF_A_RESOLVE * pixels),
+            device: &mut self.device,
+            targets,
+            bricks: &[],
+            timer: None,
+            slices: &mut self.slices,
+        };
+        passes.resolve(submission, &self.ring, offset, transfer)?;
         Ok(targets.read(&mut self.device, &targets.picture, Use::ColorTarget)?)
     }
 

@@ -1,14 +1,16 @@
-//! One timed submission of a picture's bricks.
+//! A picture's bricks in timed submissions, each a part of the picture.
 
+use super::blocks::Blocks;
 use super::targets::Targets;
-use crate::gpu::{Bindings, Error, Gpu, Headless, Image, Timer, Use, image_barrier};
+use super::time_slices::{Spent, TimeSlices, Work};
+use crate::gpu::{Bindings, Error, Gpu, Headless, Image, Tile, Timer, Use, image_barrier};
 use crate::technique::{Inputs, Order};
 use ash::vk;
-use std::sync::Arc;
+use std::ops::Range;
 
-/// The device, where it writes, what is drawn, and its clock.
+/// The device, where it writes, what is drawn, its clock, and how it is cut.
 #[derive(Debug)]
-pub struct Submission<'a> {
+pub struct Submission<'a, 'v> {
     /// Submits and waits.
     pub device: &'a mut Headless,
     /// The images.
@@ -17,6 +19,10 @@ pub struct Submission<'a> {
     pub bricks: &'a [Part<'a>],
     /// The device's clock, if it has one.
     pub timer: Option<&'a Timer>,
+    /// How work is cut.
+    pub slices: &'a mut TimeSlices<'v>,
+    /// What all of it will take.
+    pub expected_ms: f64,
 }
 
 /// What one brick adds to a picture.
@@ -32,7 +38,20 @@ pub struct Part<'a> {
     pub order: Order,
 }
 
-impl Submission<'_> {
+/// What one submission draws: these pixels with all that they show.
+#[derive(Debug)]
+pub struct Tiles {
+    /// The pixels.
+    pub tiles: Vec<Tile>,
+    /// Whether it is the first submission, and whether the last.
+    pub is_first: bool,
+    pub is_last: bool,
+}
+
+/// A row of blocks is drawn in pieces where it takes more than this part of a submission.
+const MOST_OF_A_ROW: f64 = 0.25;
+
+impl Submission<'_, '_> {
     /// One descriptor set for each brick.
     pub fn bind(
         &self,
@@ -44,24 +63,51 @@ impl Submission<'_> {
             .collect()
     }
 
-    /// Records with `record` between two timestamps, submits and waits. Milliseconds on the device.
+    /// Into how many pieces something is cut that is so much of the whole.
+    pub fn pieces(&self, part: f64) -> u32 {
+        let allowed_ms = MOST_OF_A_ROW * self.slices.target_ms;
+        // Not a number is one piece.
+        (part * self.expected_ms / allowed_ms).ceil().max(1.0) as u32
+    }
+
+    /// Runs units of the picture in submissions that take part of them each.
     pub fn run(
         self,
-        record: impl FnOnce(vk::CommandBuffer, &Gpu) -> Result<(), Error>,
-    ) -> Result<Option<f64>, Error> {
-        let Self { device, timer, .. } = self;
-        let gpu = Arc::clone(device.gpu());
-        device.run(|cmd| {
-            // SAFETY: recorded outside rendering, in this order, into one command buffer that `run` waits for.
-            let start = || unsafe { timer.inspect(|timer| timer.start(cmd)) };
-            // SAFETY: as above.
-            let stop = || unsafe { timer.inspect(|timer| timer.stop(cmd)) };
-            start();
-            record(cmd, &gpu)?;
-            stop();
-            Ok(())
-        })?;
-        timer.map_or(Ok(None), Timer::elapsed_ms)
+        units: u64,
+        record: impl FnMut(vk::CommandBuffer, &Gpu, Range<u64>) -> Result<(), Error>,
+    ) -> Result<Spent, Error> {
+        let Self {
+            device,
+            timer,
+            slices,
+            expected_ms,
+            ..
+        } = self;
+        let work = Work {
+            units: 0..units,
+            expected_ms,
+            is_drawing: true,
+        };
+        slices.run(device, timer, work, record)
+    }
+
+    /// Runs what `record` records for the pixels of each submission.
+    pub fn in_tiles(
+        self,
+        record: impl Fn(vk::CommandBuffer, &Gpu, &Tiles) -> Result<(), Error>,
+    ) -> Result<Spent, Error> {
+        let extent = self.targets.extent;
+        let rows = extent[1].div_ceil(Tile::STEP).max(1);
+        let blocks = Blocks::new(extent, self.pieces(1.0 / f64::from(rows)));
+        let count = blocks.count();
+        self.run(count, |cmd, gpu, part| {
+            let drawn = Tiles {
+                is_first: part.start == 0,
+                is_last: part.end == count,
+                tiles: blocks.tiles(part),
+            };
+            record(cmd, gpu, &drawn)
+        })
     }
 
     /// Runs a compute pass over each brick, one after the other, that writes `images`; leaves them in
@@ -70,23 +116,28 @@ impl Submission<'_> {
         self,
         images: &[&Image],
         bound: &[Bindings],
-        record: impl Fn(vk::CommandBuffer, &Bindings, u32) -> Result<(), Error>,
-    ) -> Result<Option<f64>, Error> {
+        record: impl Fn(vk::CommandBuffer, &Bindings, u32, &[Tile]) -> Result<(), Error>,
+    ) -> Result<Spent, Error> {
         let bricks = self.bricks;
-        self.run(|cmd, gpu| {
+        self.in_tiles(|cmd, gpu, drawn| {
             let barriers = |before, after| {
                 for image in images {
                     // SAFETY: outside rendering; the images live until `run` has waited.
                     unsafe { image_barrier(gpu, cmd, image, before, after) };
                 }
             };
-            let mut before = Use::Nothing;
+            let mut before = match drawn.is_first {
+                true => Use::Nothing,
+                false => Use::ComputeWrite,
+            };
             for (brick, bindings) in bricks.iter().zip(bound) {
                 barriers(before, Use::ComputeWrite);
-                record(cmd, bindings, brick.offset)?;
+                record(cmd, bindings, brick.offset, &drawn.tiles)?;
                 before = Use::ComputeWrite;
             }
-            barriers(before, Use::FragmentSampled);
+            if drawn.is_last {
+                barriers(before, Use::FragmentSampled);
+            }
             Ok(())
         })
     }
