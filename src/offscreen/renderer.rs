@@ -369,14 +369,24 @@ impl<'v> Renderer<'v> {
 
     /// One pass of the technique, rays at one position in each pixel.
     fn gather(&mut self, scene: &Scene, in_pixel: InPixel) -> Result<Option<f64>, Error> {
-        let [done, of] = self.passes_done;
-        let span = self.slices.enter(done, of);
-        let submitted = self.submit(scene, in_pixel, Passes::gather);
-        self.slices.leave(span);
-        self.passes_done[0] += 1;
-        let (spent, expected) = submitted?;
+        let (spent, expected) = self.pass(scene, in_pixel, Passes::gather)?;
         self.learn(expected, &spent);
         Ok(spent.gpu_ms)
+    }
+
+    /// The next of the passes over all samples that the picture takes.
+    fn pass(
+        &mut self,
+        scene: &Scene,
+        in_pixel: InPixel,
+        pass: impl FnOnce(&Passes, Submission) -> Result<Spent, crate::gpu::Error>,
+    ) -> Result<(Spent, Expected), Error> {
+        let [done, of] = self.passes_done;
+        let span = self.slices.enter(done, of);
+        let submitted = self.submit(scene, in_pixel, pass);
+        self.slices.leave(span);
+        self.passes_done[0] += 1;
+        submitted
     }
 
     /// Parameters into the ring, then submissions.
@@ -431,6 +441,7 @@ impl<'v> Renderer<'v> {
             timer: self.timer.as_ref(),
             slices: &mut self.slices,
             expected_ms: expected.ms,
+            is_drawing: true,
         };
         let spent = pass(self.passes.as_ref().expect("prepared"), submission)?;
         Ok((spent, expected))
@@ -450,6 +461,7 @@ impl<'v> Renderer<'v> {
             bricks: &[],
             timer: None,
             slices: &mut self.slices,
+            is_drawing: false,
         };
         passes.resolve(submission, &self.ring, offset, transfer)?;
         Ok(targets.read(&mut self.device, &targets.picture, Use::ColorTarget)?)
@@ -489,7 +501,7 @@ impl<'v> Renderer<'v> {
         )?;
         // (value, depth, transmittance, samples) of each pixel, as far as the technique has them.
         let beside = if is_slicer {
-            self.submit(scene, InPixel::CENTER, Passes::count)?;
+            self.pass(scene, InPixel::CENTER, Passes::count)?;
             let targets = self.targets.as_ref().expect("prepared");
             let counts = targets.read(&mut self.device, &targets.layers, Use::FragmentSampled)?;
             counts

@@ -23,6 +23,8 @@ pub struct Submission<'a, 'v> {
     pub slices: &'a mut TimeSlices<'v>,
     /// What all of it will take.
     pub expected_ms: f64,
+    /// Whether it is one of the passes that a picture takes: the watch is told how far it is.
+    pub is_drawing: bool,
 }
 
 /// What one brick adds to a picture.
@@ -81,12 +83,13 @@ impl Submission<'_, '_> {
             timer,
             slices,
             expected_ms,
+            is_drawing,
             ..
         } = self;
         let work = Work {
             units: 0..units,
             expected_ms,
-            is_drawing: true,
+            is_drawing,
         };
         slices.run(device, timer, work, record)
     }
