@@ -207,7 +207,7 @@ fn so_are_pictures_of_several_bricks() {
         max_image_array_layers: 8,
         ..Caps::UNLIMITED
     };
-    let volume = small();
+    let volume = volume_of([17, 9, 7], sheared_affine(), waves);
     let cases = [
         (Technique::Raycast, Mode::Composite),
         (Technique::Raycast, Mode::Mip),
@@ -283,7 +283,7 @@ fn so_are_pictures_that_need_light_volumes_kept_gradients_and_macro_cells_of_coe
         mode: Mode::Mip,
         ..Settings::default()
     };
-    let volume = small();
+    let volume = volume_of([15, 9, 6], sheared_affine(), waves);
     for (caps, settings, what) in [
         (bricks, &lit, "light volume"),
         (bricks, &kept, "kept gradients"),

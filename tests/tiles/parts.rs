@@ -1,7 +1,9 @@
 //! What a host can do with single parts: tiles in any order over any submissions, and runs of slices.
 
-use super::{EXTENT, small};
-use crate::shared::{device_with, oblique_camera, projections, ramps};
+use super::EXTENT;
+use crate::shared::{
+    device_with, oblique_camera, projections, ramps, sheared_affine, volume_of, waves,
+};
 use ash::vk;
 use std::sync::Arc;
 use stratavox::gpu::{
@@ -82,7 +84,7 @@ impl Ready {
         };
         let mut device = device_with(caps);
         let gpu = Arc::clone(device.gpu());
-        let there = small();
+        let there = volume_of([17, 9, 13], sheared_affine(), waves);
         let grid = there.grid();
         let camera = oblique_camera(&grid, projections(&grid)[1]);
         let view = View {
