@@ -10,6 +10,7 @@
 mod classified;
 mod pacing;
 mod skipping;
+mod streaming;
 
 use super::Error;
 use super::cost::ms_of_looks;
@@ -18,6 +19,7 @@ use super::gradients::decided;
 use super::light::Matter;
 use super::passes::{Passes, key_of};
 use super::position::{labels, positions};
+use super::stream::{Cache, Stream};
 use super::submission::{self, Submission};
 use super::sum::sum_of;
 use super::tally::{Clock, Mean, check_layers};
@@ -39,6 +41,7 @@ use pacing::{Expected, Known, passes_of};
 use skipping::Skipped;
 use std::collections::HashMap;
 use std::sync::Arc;
+use streaming::{BRICKS_AT_ONCE, Streaming};
 
 /// A resolve reads one texel and classifies at most once, beside which a sample of a volume is dear.
 const LOOKS_OF_A_RESOLVE: f64 = 0.5;
@@ -58,6 +61,8 @@ pub struct Renderer<'v> {
     volumes: Vec<&'v Volume>,
     /// Which of them is drawn, where they are drawn one by one; else the first.
     shown: usize,
+    /// What comes brick by brick; the volumes are its outline then.
+    streaming: Option<Streaming<'v>>,
     /// What has been needed so far.
     resident: HashMap<Copied, Vec<GpuVolume>>,
     transfer: Option<Uploaded>,
@@ -140,6 +145,7 @@ impl<'v> Renderer<'v> {
         Ok(Self {
             volumes,
             shown: 0,
+            streaming: None,
             resident: HashMap::new(),
             transfer: None,
             light: None,
@@ -154,6 +160,19 @@ impl<'v> Renderer<'v> {
             passes_done: [0, 1],
             device,
         })
+    }
+
+    /// A renderer of scenes of [`Stream::outline`].
+    ///
+    /// # Errors
+    /// Where the device gives no memory.
+    pub fn streamed(device: Headless, stream: &'v Stream) -> Result<Self, Error> {
+        let mut made = Self::several(device, vec![stream.outline()])?;
+        made.streaming = Some(Streaming {
+            stream,
+            cache: Cache::default(),
+        });
+        Ok(made)
     }
 
     /// The device.
@@ -174,6 +193,10 @@ impl<'v> Renderer<'v> {
         scene.check()?;
         let settings = &decided(self.device.gpu(), scene);
         let scene = &Scene { settings, ..*scene };
+        self.check_stream(scene)?;
+        if self.streaming.is_some() {
+            return self.prepare_stream(scene);
+        }
         for (settings, _) in &stacks_of(scene) {
             self.upload(&Scene { settings, ..*scene })?;
         }
@@ -330,10 +353,14 @@ impl<'v> Renderer<'v> {
         {
             self.targets = Some(Targets::new(&gpu, scene.extent_pixels)?);
         }
-        let parts = parts_of(&self.resident, self.shown, scene);
+        let parts = match &self.streaming {
+            Some(streaming) => vec![streaming.part()],
+            None => parts_of(&self.resident, self.shown, scene),
+        };
         // Half-angle slices have parameters of the eye and of the light.
         let is_half = scene.settings.is_half_angle();
-        let slots = (parts[0].volume.bricks().len() as u32).max(if is_half { 2 } else { 1 });
+        let at_once = if is_half { 2 } else { BRICKS_AT_ONCE };
+        let slots = parts[0].volume.bricks().len().max(at_once) as u32;
         if is_half {
             let extent = scene.view(&scene.volume.grid(), [0.0; 2]).light_extent();
             let targets = self.targets.as_mut().expect("made above");
@@ -369,6 +396,9 @@ impl<'v> Renderer<'v> {
 
     /// One pass of the technique, rays at one position in each pixel.
     fn gather(&mut self, scene: &Scene, in_pixel: InPixel) -> Result<Option<f64>, Error> {
+        if self.streaming.is_some() {
+            return self.gather_stream(scene, in_pixel);
+        }
         let (spent, expected) = self.pass(scene, in_pixel, Passes::gather)?;
         self.learn(expected, &spent);
         Ok(spent.gpu_ms)
@@ -442,6 +472,7 @@ impl<'v> Renderer<'v> {
             slices: &mut self.slices,
             expected_ms: expected.ms,
             is_drawing: true,
+            resumes: false,
         };
         let spent = pass(self.passes.as_ref().expect("prepared"), submission)?;
         Ok((spent, expected))
@@ -462,6 +493,7 @@ impl<'v> Renderer<'v> {
             timer: None,
             slices: &mut self.slices,
             is_drawing: false,
+            resumes: false,
         };
         passes.resolve(submission, &self.ring, offset, transfer)?;
         Ok(targets.read(&mut self.device, &targets.picture, Use::ColorTarget)?)

@@ -25,6 +25,8 @@ pub struct Submission<'a, 'v> {
     pub expected_ms: f64,
     /// Whether it is one of the passes that a picture takes: the watch is told how far it is.
     pub is_drawing: bool,
+    /// The images hold what bricks before these have left, in [`Use::FragmentSampled`].
+    pub resumes: bool,
 }
 
 /// What one brick adds to a picture.
@@ -121,7 +123,7 @@ impl Submission<'_, '_> {
         bound: &[Bindings],
         record: impl Fn(vk::CommandBuffer, &Bindings, u32, &[Tile]) -> Result<(), Error>,
     ) -> Result<Spent, Error> {
-        let bricks = self.bricks;
+        let (bricks, resumes) = (self.bricks, self.resumes);
         self.in_tiles(|cmd, gpu, drawn| {
             let barriers = |before, after| {
                 for image in images {
@@ -129,9 +131,10 @@ impl Submission<'_, '_> {
                     unsafe { image_barrier(gpu, cmd, image, before, after) };
                 }
             };
-            let mut before = match drawn.is_first {
-                true => Use::Nothing,
-                false => Use::ComputeWrite,
+            let mut before = match (drawn.is_first, resumes) {
+                (true, true) => Use::FragmentSampled,
+                (true, false) => Use::Nothing,
+                (false, _) => Use::ComputeWrite,
             };
             for (brick, bindings) in bricks.iter().zip(bound) {
                 barriers(before, Use::ComputeWrite);

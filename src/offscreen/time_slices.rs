@@ -83,12 +83,21 @@ impl<'v> TimeSlices<'v> {
         self.watch = Some(watch);
     }
 
-    /// What comes is the part of this number of so many equal ones of what was being drawn, which is given back and
-    /// goes to [`TimeSlices::leave`].
+    /// What comes is part number `number` of `of` equal ones of what was being drawn, which is given back and goes to
+    /// [`TimeSlices::leave`].
     pub fn enter(&mut self, number: usize, of: usize) -> [f64; 2] {
+        self.enter_some(number..number + 1, of)
+    }
+
+    /// The same for several of them.
+    pub fn enter_some(&mut self, numbers: Range<usize>, of: usize) -> [f64; 2] {
         let [from, size] = self.span;
-        let part = size / of.max(1) as f64;
-        std::mem::replace(&mut self.span, [from + part * number as f64, part])
+        let one = size / of.max(1) as f64;
+        let part = [
+            from + one * numbers.start as f64,
+            one * numbers.len() as f64,
+        ];
+        std::mem::replace(&mut self.span, part)
     }
 
     /// Back to what was being drawn.

@@ -1,9 +1,9 @@
 //! Where rays need not look, made on the device and made anew only where it changes.
 
 use super::{Copied, Renderer, parts_of};
-use crate::gpu;
 use crate::offscreen::Error;
 use crate::offscreen::cost::ms_of_looks;
+use crate::offscreen::stream::if_it_fits;
 use crate::offscreen::time_slices::Work;
 use crate::resident::{Apron, Corners, EmptySpace, MacroCells};
 use crate::scene::Scene;
@@ -73,7 +73,8 @@ impl Renderer<'_> {
         let range = scene.volume.value_range;
         let wanted = scene.settings.skippable(scene.mix(), scene.transfer, range);
         self.skipped.wanted = None;
-        if wanted == Skippable::Nothing {
+        // Bricks of a stream know their own.
+        if wanted == Skippable::Nothing || self.streaming.is_some() {
             return Ok(());
         }
         let of = Of {
@@ -132,14 +133,5 @@ impl Renderer<'_> {
         }
         self.skipped.wanted = Some(wanted);
         Ok(())
-    }
-}
-
-/// Without memory for it the picture is the same, only slower.
-fn if_it_fits<T>(made: Result<T, gpu::Error>) -> Result<Option<T>, Error> {
-    match made {
-        Ok(made) => Ok(Some(made)),
-        Err(gpu::Error::Limit { .. } | gpu::Error::OutOfMemory { .. }) => Ok(None),
-        Err(other) => Err(other.into()),
     }
 }
