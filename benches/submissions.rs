@@ -3,9 +3,6 @@
 //! `longest` is the longest submission of all that a renderer did; `parts` are submissions of the first picture and of
 //! a later one.
 
-mod median;
-
-use median::median;
 use std::error::Error;
 use std::time::Instant;
 use stratavox::camera::{BoundingSphere, Camera, Lens, View};
@@ -151,7 +148,11 @@ fn measure(case: &Case) -> Result<(), Box<dyn Error>> {
     }
     assert!(pictures[0] == pictures[1], "{}: another picture", case.name);
     let firsts = [0, 1].map(|way| times[way][0]);
-    let later = times.map(|times| median(times[1..].to_vec()));
+    let later = times.map(|mut times| {
+        let later = &mut times[1..];
+        later.sort_by(f64::total_cmp);
+        later[later.len() / 2]
+    });
     let pair = |[a, b]: [f64; 2]| format!("{a:.0}, {b:.0} ms");
     println!(
         "{:<22} {:>24} {:>24} {:>12} {:>20}",

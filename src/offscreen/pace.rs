@@ -1,16 +1,21 @@
 //! How much of some work the next submission takes, so that it lasts some 100 ms.
 //!
 //! ```text
-//! n_next = min(target / rate, 2 n)        rate = max(ms / n of the last submission, ms / n of all so far)
+//! n_next = min(target / rate, 2 n)        rate = ms / n of all so far and of the last submission, the mean of both,
+//!                                                or the larger one after a submission that took too long
 //! ```
 //!
 //! A watchdog ends what holds a device for seconds (2 s on Windows), and a desktop stands still meanwhile. What
-//! follows may be dearer than what was measured: so work only doubles, and what was dear keeps later parts small.
+//! follows may be dearer than what was measured: so work only doubles. Other programs make single times long: one of
+//! them alone does not make all that follows small.
 
 use std::ops::Range;
 
 /// How long a submission shall take.
 pub const TARGET_MS: f64 = 100.0;
+
+/// A submission that takes so many times what it should tells that the work has become dearer.
+const TOO_LONG: f64 = 1.5;
 
 /// Some work, counted in units that may lie in different submissions.
 #[derive(Clone, Debug)]
@@ -54,7 +59,11 @@ impl Pace {
         let count = units.end - units.start;
         self.done = units.end;
         self.spent_ms += ms;
-        let rate = (ms / count as f64).max(self.spent_ms / self.done as f64);
+        let (last, all) = (ms / count as f64, self.spent_ms / self.done as f64);
+        let rate = match ms > TOO_LONG * self.target_ms {
+            true => last.max(all),
+            false => 0.5 * (last + all),
+        };
         self.size = (self.target_ms / rate).min(2.0 * count as f64).max(1.0) as u64;
     }
 
