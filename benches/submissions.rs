@@ -72,7 +72,7 @@ const CASES: &[Case] = &[
         name: "worst",
         volume: "phantom:fog,n=512",
         side: 2048,
-        rounds: 2,
+        rounds: 1,
         settings: || Settings {
             skip: false,
             ..Settings::default()
