@@ -26,6 +26,7 @@
 mod absent;
 mod base64;
 mod blocks;
+mod bricked;
 #[cfg(any(feature = "grib", feature = "netcdf"))]
 mod cf;
 mod convert;
@@ -138,6 +139,11 @@ struct FolderReader {
 /// The first that recognizes a file reads it.
 const READERS: &[Reader] = &[
     Reader {
+        recognizes: bricked::recognizes,
+        endings: &["svb"],
+        open: |path, wanted, limits| Ok(Box::new(bricked::open(path, wanted, limits)?)),
+    },
+    Reader {
         recognizes: nrrd::recognizes,
         endings: &["nrrd", "nhdr"],
         open: |path, _, limits| Ok(Box::new(nrrd::open(path, limits)?)),
@@ -238,7 +244,7 @@ fn unknown(first: &[u8]) -> Problem {
         .map(|byte| format!("{byte:02x}"))
         .collect();
     Problem::UnknownFormat(format!(
-        ": the file begins with the bytes {}; we read nifti, nrrd, metaimage, dicom, tiff, vti, vtk, npy, hdf5, netcdf, zarr, and raw voxels that a spec or a sidecar describes",
+        ": the file begins with the bytes {}; we read nifti, nrrd, metaimage, dicom, tiff, vti, vtk, npy, hdf5, netcdf, zarr, bricks, and raw voxels that a spec or a sidecar describes",
         shown.join(" ")
     ))
 }

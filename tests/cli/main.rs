@@ -19,6 +19,7 @@ mod figures;
 mod info;
 #[cfg(unix)]
 mod interrupt;
+mod large;
 mod manuals;
 mod memory;
 mod mixed;

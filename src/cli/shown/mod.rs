@@ -24,7 +24,7 @@ use crate::{
     scene::{Beside, Channel},
     technique::{Filter, Mode, PerMode, Role, Settings},
     transfer::{Classified, LabelTable, TransferFunction},
-    volume::{Header, Source, Volume, labels::labels_of},
+    volume::{Header, Limits, Source, Volume, labels::labels_of},
 };
 use check::{has_beside, plan};
 use std::sync::Arc;
@@ -75,7 +75,36 @@ impl Shown {
         progress: &Progress,
     ) -> Result<Self, Error> {
         check(scene, settings)?;
-        let source = open(&scene.input, &scene.input.limits())?;
+        let limits = scene.input.limits();
+        let limits = Limits {
+            // Of several resolutions the finest, not the finest that fits.
+            max_bytes: if scene.input.stream {
+                u64::MAX
+            } else {
+                limits.max_bytes
+            },
+            ..limits
+        };
+        let source = open(&scene.input, &limits)?;
+        let level = scene.input.level.filter(|&level| level > 0);
+        let mut shown = Self::of_source(source, scene, settings, device, progress)?;
+        if let (Some(level), Classification::Function(function)) =
+            (level, &mut shown.classification)
+        {
+            // Opacities are those of the finest level.
+            let spacing = shown.volume.grid().smallest_spacing() / f64::from(level).exp2();
+            function.reference_length.get_or_insert(spacing);
+        }
+        Ok(shown)
+    }
+
+    fn of_source(
+        source: Box<dyn Source>,
+        scene: &SceneFlags,
+        settings: &Settings,
+        device: &Device,
+        progress: &Progress,
+    ) -> Result<Self, Error> {
         if streamed::is_wanted(source.as_ref(), scene, settings, device)? {
             return Self::streamed(source, scene, settings, device, progress);
         }
