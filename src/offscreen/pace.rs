@@ -1,8 +1,8 @@
 //! How much of some work the next submission takes, so that it lasts some 100 ms.
 //!
 //! ```text
-//! n_next = min(target / rate, 2 n)        rate = ms / n of all so far and of the last submission, the mean of both,
-//!                                                or the larger one after a submission that took too long
+//! n_next = min(target / rate, 2 n)        rate = ms / n of all so far, or where that of the last submission is larger
+//!                                                the mean of both, or after one that took too long the larger one
 //! ```
 //!
 //! A watchdog ends what holds a device for seconds (2 s on Windows), and a desktop stands still meanwhile. What
@@ -62,7 +62,7 @@ impl Pace {
         let (last, all) = (ms / count as f64, self.spent_ms / self.done as f64);
         let rate = match ms > TOO_LONG * self.target_ms {
             true => last.max(all),
-            false => 0.5 * (last + all),
+            false => all.max(0.5 * (last + all)),
         };
         self.size = (self.target_ms / rate).min(2.0 * count as f64).max(1.0) as u64;
     }
@@ -181,6 +181,6 @@ mod tests {
     fn no_time_at_all_and_no_number_do_no_harm() {
         assert!(submissions(1000, 1e6, |_| 0.0).len() < 20);
         assert_eq!(submissions(1000, f64::NAN, |_| 1.0).len(), 1);
-        assert_eq!(submissions(1000, f64::INFINITY, |_| 0.1).len(), 9);
+        assert_eq!(submissions(1000, f64::INFINITY, |_| 0.1).len(), 10);
     }
 }
