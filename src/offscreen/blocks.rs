@@ -8,26 +8,29 @@
 use crate::gpu::Tile;
 use std::ops::Range;
 
-/// A picture in blocks of [`Tile::STEP`] rows.
+/// A picture in blocks.
 #[derive(Clone, Debug)]
 pub struct Blocks {
     extent: [u32; 2],
-    width: u32,
+    /// Pixels of a block across and down, multiples of [`Tile::STEP`].
+    size: [u32; 2],
     /// Numbers of rows and of columns of blocks, in the order in which their turn comes.
     rows: Vec<u32>,
     columns: Vec<u32>,
 }
 
 impl Blocks {
-    /// Each row of blocks in so many of one width, as far as pixels go.
-    pub fn new(extent: [u32; 2], per_row: u32) -> Self {
-        let width = extent[0].div_ceil(per_row.max(1)).max(1);
-        let width = width.next_multiple_of(Tile::STEP);
+    /// So many across and down, of one size, as far as workgroups go.
+    pub fn new(extent: [u32; 2], count: [u32; 2]) -> Self {
+        let size = [0, 1].map(|k: usize| {
+            let side = extent[k].div_ceil(count[k].max(1)).max(1);
+            side.next_multiple_of(Tile::STEP)
+        });
         Self {
             extent,
-            width,
-            rows: spread(extent[1].div_ceil(Tile::STEP)),
-            columns: spread(extent[0].div_ceil(width)),
+            size,
+            rows: spread(extent[1].div_ceil(size[1])),
+            columns: spread(extent[0].div_ceil(size[0])),
         }
     }
 
@@ -52,9 +55,9 @@ impl Blocks {
         let mut tiles = Vec::<Tile>::new();
         for (row, blocks) in (0_u32..).zip(is_in.chunks(across.max(1))) {
             for (start, end) in runs(blocks) {
-                let (x, y) = (start as u32 * self.width, row * Tile::STEP);
-                let width = (end as u32 * self.width).min(self.extent[0]) - x;
-                let height = Tile::STEP.min(self.extent[1] - y);
+                let (x, y) = (start as u32 * self.size[0], row * self.size[1]);
+                let width = (end as u32 * self.size[0]).min(self.extent[0]) - x;
+                let height = self.size[1].min(self.extent[1] - y);
                 let is_above = |tile: &&mut Tile| {
                     let bottom = tile.origin[1] + tile.extent[1];
                     bottom == y && tile.origin[0] == x && tile.extent[0] == width
@@ -103,9 +106,9 @@ mod tests {
     #[test]
     fn the_tiles_of_parts_hold_each_pixel_once_with_corners_where_workgroups_begin() {
         for extent in [[64, 64], [33, 17], [8, 8], [1, 1], [100, 7], [7, 100]] {
-            for per_row in [1, 2, 3, 100] {
+            for count in [[1, 100], [2, 100], [3, 2], [100, 3], [1, 1]] {
                 for size in [1, 2, 3, 5, 1000] {
-                    let blocks = Blocks::new(extent, per_row);
+                    let blocks = Blocks::new(extent, count);
                     let mut seen = vec![0; (extent[0] * extent[1]) as usize];
                     for start in (0..blocks.count()).step_by(size) {
                         let end = (start + size as u64).min(blocks.count());
@@ -118,7 +121,7 @@ mod tests {
                             }
                         }
                     }
-                    assert!(seen.iter().all(|&n| n == 1), "{extent:?} {per_row} {size}");
+                    assert!(seen.iter().all(|&n| n == 1), "{extent:?} {count:?} {size}");
                 }
             }
         }
@@ -138,6 +141,6 @@ mod tests {
 
     #[test]
     fn a_picture_without_pixels_has_no_blocks() {
-        assert_eq!(Blocks::new([0, 0], 1).count(), 0);
+        assert_eq!(Blocks::new([0, 0], [1, 1]).count(), 0);
     }
 }

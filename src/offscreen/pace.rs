@@ -146,7 +146,7 @@ mod tests {
         use crate::offscreen::blocks::Blocks;
         // Rows of a picture of 1024 x 1024 pixels, cheap but for a band of any height anywhere; first guesses are for
         // the dear ones, as those of pictures are for rays that skip nothing.
-        let blocks = Blocks::new([1024, 1024], 1);
+        let blocks = Blocks::new([1024, 1024], [1, 128]);
         let rows = blocks.count();
         for height in [1, 2, 3, 5, 8, 16, 40, 128] {
             for first in 0..rows - height {

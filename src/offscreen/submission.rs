@@ -52,8 +52,8 @@ pub struct Tiles {
     pub is_last: bool,
 }
 
-/// A row of blocks is drawn in pieces where it takes more than this part of a submission.
-const MOST_OF_A_ROW: f64 = 0.25;
+/// A block takes no more than this part of a submission.
+const MOST_OF_A_BLOCK: f64 = 0.25;
 
 impl Submission<'_, '_> {
     /// One descriptor set for each brick.
@@ -69,7 +69,7 @@ impl Submission<'_, '_> {
 
     /// Into how many pieces something is cut that is so much of the whole.
     pub fn pieces(&self, part: f64) -> u32 {
-        let allowed_ms = MOST_OF_A_ROW * self.slices.target_ms;
+        let allowed_ms = MOST_OF_A_BLOCK * self.slices.target_ms;
         // Not a number is one piece.
         (part * self.expected_ms / allowed_ms).ceil().max(1.0) as u32
     }
@@ -102,8 +102,11 @@ impl Submission<'_, '_> {
         record: impl Fn(vk::CommandBuffer, &Gpu, &Tiles) -> Result<(), Error>,
     ) -> Result<Spent, Error> {
         let extent = self.targets.extent;
+        // As few as will do: each is a dispatch, or a rendering, that has an end to wait for.
         let rows = extent[1].div_ceil(Tile::STEP).max(1);
-        let blocks = Blocks::new(extent, self.pieces(1.0 / f64::from(rows)));
+        let down = self.pieces(1.0).min(rows);
+        let across = self.pieces(1.0 / f64::from(down));
+        let blocks = Blocks::new(extent, [across, down]);
         let count = blocks.count();
         self.run(count, |cmd, gpu, part| {
             let drawn = Tiles {
