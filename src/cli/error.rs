@@ -12,6 +12,7 @@
 //! | 101 | a bug of ours (see [`super::bug`]) |
 //! | 130 | interrupted |
 
+use super::signals::INTERRUPTED;
 use crate::{
     gpu, offscreen,
     picture::{OutputError, PictureError},
@@ -182,6 +183,7 @@ impl Error {
             Self::Read(_) | Self::ReadPicture(_) | Self::Input { .. } => 3,
             Self::WritePicture(_) | Self::Output { .. } => 4,
             Self::Device(gpu::Error::Limit { .. } | gpu::Error::OutOfMemory { .. }) => 6,
+            Self::Device(gpu::Error::Stopped) => INTERRUPTED,
             Self::Device(_) => 5,
             Self::Limit(_) | Self::Memory(_) => 6,
         }

@@ -6,7 +6,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::{
     io::IsTerminal,
     sync::{Mutex, MutexGuard, PoisonError},
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 /// Every word of `--progress`.
@@ -26,7 +26,20 @@ pub enum ProgressWord {
 pub struct Progress {
     told: Told,
     loaded: Mutex<Loaded>,
+    last: Mutex<Last>,
 }
+
+/// The stage that was told last, and when it or a part of it was.
+#[derive(Debug)]
+struct Last {
+    stage: &'static str,
+    done: usize,
+    of: usize,
+    told: Instant,
+}
+
+/// Parts of a picture are told no more often.
+const PART_EVERY: Duration = Duration::from_millis(200);
 
 #[derive(Debug)]
 enum Told {
@@ -34,7 +47,8 @@ enum Told {
     Silent,
     /// To a person.
     Line(ProgressBar),
-    /// To a program: `{"device":"..."}`, `{"stage":"draw","done":1,"of":3}`.
+    /// To a program: `{"device":"..."}`, `{"stage":"draw","done":1,"of":3}`, and while one of them takes long
+    /// `{"stage":"draw","done":1,"of":3,"part":0.25}`.
     Json,
     /// To nobody yet: notes are kept.
     Kept(Mutex<Vec<String>>),
@@ -54,18 +68,25 @@ impl Progress {
             }
             ProgressWord::Auto | ProgressWord::None => Told::Silent,
         };
+        Self::telling(told)
+    }
+
+    fn telling(told: Told) -> Self {
         Self {
             told,
             loaded: Mutex::default(),
+            last: Mutex::new(Last {
+                stage: "",
+                done: 0,
+                of: 0,
+                told: Instant::now(),
+            }),
         }
     }
 
     /// For a part of the work whose notes are said later, or elsewhere.
     pub fn of_part() -> Self {
-        Self {
-            told: Told::Kept(Mutex::default()),
-            loaded: Mutex::default(),
-        }
+        Self::telling(Told::Kept(Mutex::default()))
     }
 
     /// What [`Progress::of_part`] has kept.
@@ -95,12 +116,45 @@ impl Progress {
 
     /// `done` of `of` parts of a stage are done.
     pub fn stage(&self, stage: &'static str, done: usize, of: usize) {
+        *self.last() = Last {
+            stage,
+            done,
+            of,
+            told: Instant::now(),
+        };
         match &self.told {
             Told::Silent | Told::Kept(_) => {}
             Told::Line(line) if of > 1 => line.set_message(format!("{stage} {done}/{of}")),
             Told::Line(line) => line.set_message(stage),
             Told::Json => say_json(&serde_json::json!({ "stage": stage, "done": done, "of": of })),
         }
+    }
+
+    /// Of what is being done such a part, 0 to 1, is done too. Not told of what takes no time.
+    pub fn part(&self, part: f64) {
+        let mut last = self.last();
+        if last.told.elapsed() < PART_EVERY {
+            return;
+        }
+        last.told = Instant::now();
+        let Last {
+            stage, done, of, ..
+        } = *last;
+        let percent = (100.0 * part) as u32;
+        match &self.told {
+            Told::Silent | Told::Kept(_) => {}
+            Told::Line(line) if of > 1 => {
+                line.set_message(format!("{stage} {done}/{of}, {percent} %"));
+            }
+            Told::Line(line) => line.set_message(format!("{stage} {percent} %")),
+            Told::Json => say_json(
+                &serde_json::json!({ "stage": stage, "done": done, "of": of, "part": part }),
+            ),
+        }
+    }
+
+    fn last(&self) -> MutexGuard<'_, Last> {
+        self.last.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// `done` of `of` frames are written; `left` is the time that the others will take, once that is known.

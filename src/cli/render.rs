@@ -165,6 +165,7 @@ impl Render {
             layers: &layers,
         };
         let mut renderer = Renderer::new(job, &camera, device)?;
+        renderer.watch(|part| progress.part(part));
         let mut frames = Vec::new();
         let mut last = None;
         for done in 0..self.repeat {

@@ -258,6 +258,13 @@ impl<'a> Renderer<'a> {
         })
     }
 
+    /// From here on `watch` is told how much of a picture is done, 0 to 1; the CPU twins tell nothing.
+    pub fn watch(&mut self, watch: impl FnMut(f64) + Send + 'a) {
+        if let Some(renderer) = &mut self.on_device {
+            renderer.watch(watch);
+        }
+    }
+
     /// From here on values are seen so, and so is computed.
     pub fn change(&mut self, classification: &'a Classification, settings: &'a Settings) {
         self.job.classification = classification;
@@ -314,6 +321,9 @@ impl<'a> Renderer<'a> {
     /// What the work took until now.
     pub fn stages(&self, progress: &Progress, gate: &Gate, encode_ms: Option<f64>) -> Stages {
         let loaded = progress.all_loaded();
+        let on_device = self.on_device.as_ref();
+        let submitted = on_device.map(|renderer| renderer.device().submissions());
+        let submitted = submitted.unwrap_or_default();
         Stages {
             read_ms: in_ms(loaded.read),
             statistics_ms: in_ms(loaded.statistics),
@@ -322,6 +332,8 @@ impl<'a> Renderer<'a> {
             empty_space_ms: self.empty_space_ms,
             encode_ms,
             total_ms: ms_since(gate.begun()),
+            submissions: submitted.count,
+            longest_submission_ms: submitted.longest_ms,
         }
     }
 

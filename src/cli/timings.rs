@@ -34,7 +34,7 @@ pub struct Timings {
     pub stages: Stages,
 }
 
-/// Parts of the work, in milliseconds.
+/// Parts of the work, in milliseconds, and of the device's work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Stages {
     /// Of `load_ms`: bytes from files, decoded.
@@ -51,6 +51,10 @@ pub struct Stages {
     pub encode_ms: Option<f64>,
     /// Since the program began.
     pub total_ms: f64,
+    /// In how many parts the device was given its work.
+    pub submissions: u64,
+    /// What the longest of them took.
+    pub longest_submission_ms: f64,
 }
 
 /// What reading a volume took.
@@ -188,6 +192,8 @@ mod tests {
             "empty_space_ms",
             "encode_ms",
             "total_ms",
+            "submissions",
+            "longest_submission_ms",
         ] {
             assert!(value.get(key).is_some(), "no {key} in {value}");
         }

@@ -83,6 +83,9 @@ pub enum Error {
         /// The use that it does not support.
         lacks: &'static str,
     },
+    /// Whoever waits wants no more of it ([`Headless::stop_when`](super::Headless::stop_when)).
+    #[error("stopped between two submissions")]
+    Stopped,
     /// An argument that no device would take.
     #[error("cannot {doing}: wanted {wanted}, found {found}")]
     Argument {

@@ -6,7 +6,15 @@ use super::{
     instance::OwnInstance, owned::Own, validation::Messages,
 };
 use ash::vk;
-use std::{fmt, path::PathBuf, sync::Arc};
+use std::{
+    fmt,
+    path::PathBuf,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::Instant,
+};
 
 /// How to set up a [`Headless`].
 #[derive(Clone, Debug)]
@@ -30,6 +38,17 @@ impl Default for Options {
     }
 }
 
+/// What was submitted so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Submissions {
+    /// How many there were.
+    pub count: u64,
+    /// How long the longest took, from its submission until the device was heard to have done it.
+    pub longest_ms: f64,
+    /// The same of the last one.
+    pub last_ms: f64,
+}
+
 /// A device, one queue, and a fence that says when what was submitted to it has ended.
 #[derive(Debug)]
 pub struct Headless {
@@ -40,6 +59,8 @@ pub struct Headless {
     /// The newest value that was submitted.
     submitted: u64,
     is_lost: bool,
+    submissions: Submissions,
+    stop: Option<Arc<AtomicBool>>,
     cache_file: Option<PathBuf>,
     gpu: Arc<Gpu>,
     /// Last: what the destruction of all the others has to say is heard.
@@ -123,6 +144,8 @@ impl Headless {
             queue,
             submitted: 0,
             is_lost: false,
+            submissions: Submissions::default(),
+            stop: None,
             cache_file,
             gpu,
             messages,
@@ -134,12 +157,22 @@ impl Headless {
         &self.gpu
     }
 
+    /// What was submitted so far.
+    pub fn submissions(&self) -> Submissions {
+        self.submissions
+    }
+
+    /// From here on nothing is submitted while `stop` is true: [`Error::Stopped`] instead.
+    pub fn stop_when(&mut self, stop: Arc<AtomicBool>) {
+        self.stop = Some(stop);
+    }
+
     /// Records with `record`, submits, and waits until the device has done it. What it wrote to mapped memory can then
     /// be read, and what was dropped meanwhile is destroyed.
     ///
     /// # Errors
     ///
-    /// Those of `record`: nothing is submitted then. After [`Error::DeviceLost`] every further run says the same.
+    /// Those of `record`, and [`Error::Stopped`]: nothing is submitted then. After [`Error::DeviceLost`] every further run says the same.
     pub fn run<R>(
         &mut self,
         record: impl FnOnce(vk::CommandBuffer) -> Result<R, Error>,
@@ -148,6 +181,13 @@ impl Headless {
             return Err(Error::DeviceLost {
                 doing: "record on a device that was lost before".into(),
             });
+        }
+        if self
+            .stop
+            .as_ref()
+            .is_some_and(|stop| stop.load(Ordering::Relaxed))
+        {
+            return Err(Error::Stopped);
         }
         let value = self.submitted + 1;
         self.gpu.announce(value);
@@ -231,6 +271,7 @@ impl Headless {
         // once in some ten thousand submissions (KhronosGroup/Vulkan-ValidationLayers#4968 is of that kind).
         let (commands, fences) = ([self.cmd], [self.done.get()]);
         let submit = vk::SubmitInfo::default().command_buffers(&commands);
+        let start = Instant::now();
         // SAFETY: the recording has ended; the queue is ours, and `&mut self` makes us its only user. The last
         // submission was waited for, so nothing uses the fence.
         unsafe {
@@ -242,6 +283,12 @@ impl Headless {
         self.submitted = value;
         // SAFETY: the fence is ours. A driver that hangs is found by its watchdog, which makes this call fail.
         let waited = unsafe { device.wait_for_fences(&fences, true, u64::MAX) };
+        let last_ms = 1e3 * start.elapsed().as_secs_f64();
+        self.submissions = Submissions {
+            count: self.submissions.count + 1,
+            longest_ms: self.submissions.longest_ms.max(last_ms),
+            last_ms,
+        };
         if waited.is_err() {
             // Whatever the reason, what was submitted may still run: nothing may be recorded over it.
             self.is_lost = true;

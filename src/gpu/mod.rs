@@ -37,6 +37,7 @@ mod pipeline;
 mod raster;
 mod rendering;
 mod sampler;
+mod tile;
 mod timer;
 mod validation;
 
@@ -50,7 +51,7 @@ pub use copy::{Region, buffer_to_image, clear_image, image_to_buffer};
 pub use devices::{Ability, DeviceReport, list_devices};
 pub use error::Error;
 pub use format::{FormatFeatures, texel_bytes};
-pub use headless::{Headless, Options};
+pub use headless::{Headless, Options, Submissions};
 pub use host::{Features, HostDevice};
 pub use identity::{DeviceKind, Identity};
 pub use image::{Image, ImageDesc, ImageKind};
@@ -58,8 +59,12 @@ pub use layout::Layout;
 pub use parameters::ParameterRing;
 pub use pipeline::ComputePipeline;
 pub use raster::{Blend, RasterDesc, RasterPipeline};
-pub use rendering::{Load, begin_rendering, end_rendering, set_area};
+pub use rendering::{
+    Load, begin_rendering, begin_rendering_of, end_rendering, set_area, set_area_of,
+};
 pub use sampler::Sampler;
+pub use tile::Tile;
+pub(crate) use tile::{Groups, boxes, group_count, within};
 pub use timer::Timer;
 pub use validation::{Message, VARIABLE as VALIDATION_VARIABLE, Validation, ValidationMode};
 

@@ -1,10 +1,12 @@
 //! A compute pipeline, and what every pipeline shares.
 
 use super::{
-    Bindings, Error, Gpu, Layout, error::Doing, error::within, layout::stage_flag, owned::Own,
+    Bindings, Error, Gpu, Groups, Layout, Tile, boxes, error::Doing, error::within,
+    layout::stage_flag, owned::Own,
 };
 use crate::shaders::{Shader, Stage};
 use ash::vk;
+use std::ops::Range;
 use std::sync::{Arc, atomic::Ordering};
 
 /// One compute shader, ready to be dispatched.
@@ -49,6 +51,8 @@ impl ComputePipeline {
         let layout = Layout::new(gpu, &[shader], shader.name)?;
         let module = module(gpu, shader)?;
         let info = vk::ComputePipelineCreateInfo::default()
+            // Parts of a dispatch begin at workgroups of their own.
+            .flags(vk::PipelineCreateFlags::DISPATCH_BASE)
             .stage(stage(shader, &module))
             .layout(layout.raw());
         // SAFETY: module and layout were made of the same shader, whose SPIR-V `build.rs` has validated.
@@ -91,6 +95,32 @@ impl ComputePipeline {
         Ok(groups)
     }
 
+    /// Workgroups of a part of a picture of `extent`, one thread a pixel.
+    pub(crate) fn groups_of(&self, extent: [u32; 2], tile: Tile) -> Result<Groups, Error> {
+        self.groups([extent[0], extent[1], 1])?;
+        let mut groups = Groups {
+            base: [0; 3],
+            count: [1; 3],
+        };
+        for k in 0..2 {
+            let side = self.workgroup[k];
+            let end = tile.origin[k].saturating_add(tile.extent[k]);
+            let fits = |at: u32| at.is_multiple_of(side);
+            if end > extent[k] || !fits(tile.origin[k]) || !(fits(end) || end == extent[k]) {
+                return Err(Error::Argument {
+                    doing: format!("dispatch `{}` over a part of a picture", self.layout.name()),
+                    wanted: format!(
+                        "corners at multiples of {side} pixels, the last at the edge of {extent:?} pixels"
+                    ),
+                    found: format!("{:?} pixels from {:?}", tile.extent, tile.origin),
+                });
+            }
+            groups.base[k] = tile.origin[k] / side;
+            groups.count[k] = end.div_ceil(side) - groups.base[k];
+        }
+        Ok(groups)
+    }
+
     /// Binds pipeline and bindings and dispatches `groups` ([`ComputePipeline::groups`]).
     ///
     /// `offsets` are the dynamic offsets ([`super::ParameterRing::offset`]) of the uniform bindings, in order of
@@ -108,14 +138,55 @@ impl ComputePipeline {
         offsets: &[u32],
         groups: [u32; 3],
     ) {
+        let whole = Groups {
+            base: [0; 3],
+            count: groups,
+        };
+        // SAFETY: the caller's promises.
+        unsafe { self.dispatch_boxes(cmd, bindings, offsets, [whole]) };
+    }
+
+    /// The same for a run of the workgroups of `groups`, counted x fastest, then y, then z: what shaders see of their
+    /// place is as in the whole dispatch (`GlobalInvocationId` counts the base).
+    ///
+    /// # Safety
+    ///
+    /// As [`ComputePipeline::dispatch`].
+    pub(crate) unsafe fn dispatch_run(
+        &self,
+        cmd: vk::CommandBuffer,
+        bindings: &Bindings,
+        offsets: &[u32],
+        groups: [u32; 3],
+        run: Range<u64>,
+    ) {
+        // SAFETY: the caller's promises; the boxes lie in `groups`.
+        unsafe { self.dispatch_boxes(cmd, bindings, offsets, boxes(groups, run)) };
+    }
+
+    /// The same for the workgroups of [`ComputePipeline::groups_of`].
+    ///
+    /// # Safety
+    ///
+    /// As [`ComputePipeline::dispatch`].
+    pub(crate) unsafe fn dispatch_boxes(
+        &self,
+        cmd: vk::CommandBuffer,
+        bindings: &Bindings,
+        offsets: &[u32],
+        boxes: impl IntoIterator<Item = Groups>,
+    ) {
         let device = self.raw.gpu().device();
         let point = vk::PipelineBindPoint::COMPUTE;
         let sets = [bindings.raw()];
-        // SAFETY: the caller's promises are all that these calls ask.
+        // SAFETY: the caller's promises are all that these calls ask; every pipeline is made with `DISPATCH_BASE`.
         unsafe {
             device.cmd_bind_pipeline(cmd, point, self.raw());
             device.cmd_bind_descriptor_sets(cmd, point, self.layout.raw(), 0, &sets, offsets);
-            device.cmd_dispatch(cmd, groups[0], groups[1], groups[2]);
+            for Groups { base, count } in boxes {
+                let ([x, y, z], [nx, ny, nz]) = (base, count);
+                device.cmd_dispatch_base(cmd, x, y, z, nx, ny, nz);
+            }
         }
     }
 }

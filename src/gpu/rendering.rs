@@ -1,6 +1,6 @@
 //! Beginning and ending dynamic rendering to color targets.
 
-use super::Gpu;
+use super::{Gpu, Tile};
 use ash::vk;
 
 /// What a color target holds when rendering begins.
@@ -25,12 +25,27 @@ pub unsafe fn begin_rendering(
     targets: &[(vk::ImageView, Load)],
     extent: [u32; 2],
 ) {
+    // SAFETY: the caller's promises.
+    unsafe { begin_rendering_of(gpu, cmd, targets, Tile::whole(extent)) };
+}
+
+/// The same to a part of the targets: what lies outside stays as it is, cleared or not.
+///
+/// # Safety
+///
+/// As [`begin_rendering`]; the images are as large as the tile reaches.
+pub unsafe fn begin_rendering_of(
+    gpu: &Gpu,
+    cmd: vk::CommandBuffer,
+    targets: &[(vk::ImageView, Load)],
+    tile: Tile,
+) {
     let attachments: Vec<_> = targets
         .iter()
         .map(|&(view, load)| attachment(view, load))
         .collect();
     let info = vk::RenderingInfo::default()
-        .render_area(area(extent))
+        .render_area(area(tile))
         .layer_count(1)
         .color_attachments(&attachments);
     // SAFETY: the caller's promises; dynamicRendering was required of the device.
@@ -43,6 +58,16 @@ pub unsafe fn begin_rendering(
 ///
 /// `cmd` is recording on `gpu`'s device.
 pub unsafe fn set_area(gpu: &Gpu, cmd: vk::CommandBuffer, extent: [u32; 2]) {
+    // SAFETY: the caller's promise.
+    unsafe { set_area_of(gpu, cmd, extent, Tile::whole(extent)) };
+}
+
+/// Sets the viewport to all of `extent` and the scissor to a part of it.
+///
+/// # Safety
+///
+/// As [`set_area`].
+pub unsafe fn set_area_of(gpu: &Gpu, cmd: vk::CommandBuffer, extent: [u32; 2], tile: Tile) {
     let viewport = vk::Viewport {
         x: 0.0,
         y: 0.0,
@@ -54,13 +79,15 @@ pub unsafe fn set_area(gpu: &Gpu, cmd: vk::CommandBuffer, extent: [u32; 2]) {
     // SAFETY: the caller's promise.
     unsafe {
         gpu.device().cmd_set_viewport(cmd, 0, &[viewport]);
-        gpu.device().cmd_set_scissor(cmd, 0, &[area(extent)]);
+        gpu.device().cmd_set_scissor(cmd, 0, &[area(tile)]);
     }
 }
 
-fn area([width, height]: [u32; 2]) -> vk::Rect2D {
+/// The coordinates of a picture are far under 2^31.
+fn area(tile: Tile) -> vk::Rect2D {
+    let ([x, y], [width, height]) = (tile.origin.map(|n| n as i32), tile.extent);
     vk::Rect2D {
-        offset: vk::Offset2D::default(),
+        offset: vk::Offset2D { x, y },
         extent: vk::Extent2D { width, height },
     }
 }

@@ -34,12 +34,16 @@ pub fn render_faded(
     stacks: &[(Settings, f64)],
 ) -> Result<Rendered, Error> {
     let mut gpu_ms = Some(0.0);
-    let of_stack = |(settings, share): &(Settings, f64)| {
-        let rendered = renderer.render(&Scene { settings, ..*scene }, layers)?;
+    let of = stacks.len();
+    let of_stack = |(number, (settings, share)): (usize, &(Settings, f64))| {
+        let span = renderer.slices.enter(number, of);
+        let rendered = renderer.render(&Scene { settings, ..*scene }, layers);
+        renderer.slices.leave(span);
+        let rendered = rendered?;
         gpu_ms = gpu_ms.zip(rendered.gpu_ms).map(|(sum, ms)| sum + ms);
         Ok::<_, Error>((rendered.picture, *share))
     };
-    let picture = faded(stacks.iter().map(of_stack))?;
+    let picture = faded(stacks.iter().enumerate().map(of_stack))?;
     Ok(Rendered { picture, gpu_ms })
 }
 

@@ -1,6 +1,8 @@
 //! The light volume of a scene, made on the device.
 
 use super::Error;
+use super::cost::ms_of_looks;
+use super::time_slices::{TimeSlices, Work};
 use crate::gpu::Headless;
 use crate::resident::GpuTransfer;
 use crate::scene::Scene;
@@ -10,6 +12,9 @@ use crate::technique::{
 use crate::transfer::TransferFunction;
 use glam::DVec3;
 use std::sync::Arc;
+
+/// A number from a buffer and a multiplication.
+const LOOKS_OF_A_PIECE: f64 = 0.1;
 
 /// What light is followed through, of one volume.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +43,7 @@ impl Matter {
 /// Makes it and waits for it.
 pub fn made_light(
     device: &mut Headless,
+    slices: &mut TimeSlices,
     scene: &Scene,
     plan: LightPlan,
     parts: &[Part],
@@ -64,7 +70,19 @@ pub fn made_light(
     let bound = (0..).zip(&recordings).map(one);
     let bound = bound.collect::<Result<Vec<_>, Error>>()?;
     let bricks = || bound.iter().map(|(bindings, offset)| (bindings, *offset));
-    // SAFETY: recorded outside rendering; `run` waits, and all that is bound lives meanwhile.
-    device.run(|cmd| unsafe { light.record(cmd, bricks()) })?;
+    let plan = light.plan();
+    let of_cell: u32 = plan.looks.iter().product();
+    let of_cells = plan.cell_count() as f64 * f64::from(of_cell) * bound.len() as f64;
+    // Pieces of paths, of which most end where nothing comes through or outside.
+    let of_node = LOOKS_OF_A_PIECE * plan.paths.len() as f64 / f64::from(plan.bundle_count.max(1));
+    let of_nodes = plan.node_count() as f64 * of_node;
+    let runs = light.group_runs(bound.len())?;
+    for (run, looks) in runs.into_iter().zip([of_cells, of_nodes]) {
+        let work = Work::beside(run, ms_of_looks(&gpu, looks));
+        slices.run(device, None, work, |cmd, _, part| {
+            // SAFETY: recorded outside rendering, parts in order; `run` waits, and all that is bound lives meanwhile.
+            unsafe { light.record_part(cmd, bricks(), part) }
+        })?;
+    }
     Ok(light)
 }

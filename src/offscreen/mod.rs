@@ -2,11 +2,14 @@
 //!
 //! The only place that submits and waits.
 
+mod blocks;
+mod cost;
 mod denoise;
 mod fade;
 mod gathered;
 mod gradients;
 mod light;
+mod pace;
 mod passes;
 mod position;
 mod probe;
@@ -18,6 +21,7 @@ mod submission;
 mod sum;
 mod tally;
 mod targets;
+mod time_slices;
 mod upload;
 
 pub use denoise::denoised;

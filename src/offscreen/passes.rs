@@ -3,8 +3,9 @@
 use super::slicing::Slicing;
 use super::submission::Submission;
 use super::targets::Targets;
+use super::time_slices::Spent;
 use crate::gpu::{
-    Blend, Error, Gpu, Headless, Load, ParameterRing, Use, begin_rendering, end_rendering,
+    Blend, Error, Gpu, Load, ParameterRing, Tile, Use, begin_rendering_of, end_rendering,
     image_barrier,
 };
 use crate::resident::GpuTransfer;
@@ -97,7 +98,7 @@ impl Passes {
 
     /// Runs the technique into `accumulation` (and `layers`) and leaves them in [`Use::FragmentSampled`].
     /// Milliseconds on the device.
-    pub fn gather(&self, submission: Submission) -> Result<Option<f64>, Error> {
+    pub fn gather(&self, submission: Submission) -> Result<Spent, Error> {
         let Targets {
             accumulation,
             layers,
@@ -107,16 +108,19 @@ impl Passes {
         match &self.gather {
             Gather::Raycast(pass) => {
                 let bound = submission.bind(|inputs| pass.bind(inputs, accumulation, layers))?;
-                submission.compute(&[accumulation, layers], &bound, |cmd, bindings, offset| {
+                let images = [accumulation, layers];
+                submission.compute(&images, &bound, |cmd, bindings, offset, tiles| {
+                    let tiles = tiles.iter().copied();
                     // SAFETY: outside rendering, images as `compute` brings them; all lives until it has run.
-                    unsafe { pass.record(cmd, bindings, offset, *extent) }
+                    unsafe { pass.record_tiles(cmd, bindings, offset, *extent, tiles) }
                 })
             }
             Gather::Projection(pass) => {
                 let bound = submission.bind(|inputs| pass.bind(inputs, accumulation))?;
-                submission.compute(&[accumulation], &bound, |cmd, bindings, offset| {
+                submission.compute(&[accumulation], &bound, |cmd, bindings, offset, tiles| {
+                    let tiles = tiles.iter().copied();
                     // SAFETY: as above.
-                    unsafe { pass.record(cmd, bindings, offset, *extent) }
+                    unsafe { pass.record_tiles(cmd, bindings, offset, *extent, tiles) }
                 })
             }
             Gather::Slices(slicing) => slicing.run(submission, accumulation),
@@ -125,9 +129,9 @@ impl Passes {
     }
 
     /// Counts a slicer's samples into `layers`; the ray caster has counted them already.
-    pub fn count(&self, mut submission: Submission) -> Result<Option<f64>, Error> {
+    pub fn count(&self, mut submission: Submission) -> Result<Spent, Error> {
         match self.gather {
-            Gather::Raycast(_) | Gather::Projection(_) => return Ok(None),
+            Gather::Raycast(_) | Gather::Projection(_) => return Ok(Spent::NOTHING),
             // The light's samples are no pixel's.
             Gather::HalfAngle(_) => submission.bricks = &submission.bricks[..1],
             Gather::Slices(_) => {}
@@ -148,47 +152,91 @@ impl Passes {
     /// The colour of what `gather` left to `picture`; leaves it in [`Use::ColorTarget`].
     pub fn resolve(
         &self,
-        device: &mut Headless,
+        submission: Submission,
         ring: &ParameterRing,
         offset: u32,
-        targets: &Targets,
         transfer: Option<&GpuTransfer>,
-    ) -> Result<(), Error> {
-        let gpu = Arc::clone(device.gpu());
+    ) -> Result<Spent, Error> {
+        let targets = submission.targets;
         let bindings = self.resolve.bind(ring, &targets.accumulation, transfer)?;
         let picture = &targets.picture;
         let target = [(picture.view(), Load::Clear([0.0; 4]))];
         // SAFETY: recorded in order, with barriers between; `run` waits, and all that is bound lives meanwhile.
-        device.run(|cmd| unsafe {
-            image_barrier(&gpu, cmd, picture, Use::Nothing, Use::ColorTarget);
-            begin_rendering(&gpu, cmd, &target, targets.extent);
-            self.resolve.record(cmd, &bindings, offset, targets.extent);
-            end_rendering(&gpu, cmd);
+        submission.in_tiles(|cmd, gpu, drawn| unsafe {
+            if drawn.is_first {
+                image_barrier(gpu, cmd, picture, Use::Nothing, Use::ColorTarget);
+            }
+            for &tile in &drawn.tiles {
+                begin_rendering_of(gpu, cmd, &target, tile);
+                self.resolve
+                    .record_tile(cmd, &bindings, offset, targets.extent, tile);
+                end_rendering(gpu, cmd);
+            }
             Ok(())
         })
     }
 }
 
 /// Eye and light in turn; leaves the picture in [`Use::FragmentSampled`].
-fn run_half_angle(slicer: &HalfAngleSlicer, submission: Submission) -> Result<Option<f64>, Error> {
+fn run_half_angle(slicer: &HalfAngleSlicer, submission: Submission) -> Result<Spent, Error> {
     let [eye, light] = submission.bricks else {
         unreachable!("the eye's recording and the light's");
     };
     let (targets, light_buffer) = (submission.targets, submission.targets.light_buffer());
-    let (picture, extent) = (&targets.accumulation, targets.extent);
+    let picture = (&targets.accumulation, targets.extent);
     let bound = slicer.bind(&eye.inputs, light_buffer)?;
     let slices = HalfAngleSlices {
         offsets: [eye.offset, light.offset],
         count: eye.slices,
         order: eye.order,
     };
+    // Of a slice first what the eye sees, then what the light sees, each in bands.
+    let bands = submission.pieces(0.5 / f64::from(slices.count.max(1)));
+    let [light_width, light_height, _] = light_buffer.extent();
+    let seen = [targets.extent, [light_width, light_height]];
+    let [eye_bands, light_bands] = seen.map(|extent| bands_of(extent, bands));
+    let per_slice = (eye_bands.len() + light_bands.len()) as u64;
+    // At least one, which clears.
+    let units = (per_slice * u64::from(slices.count)).max(1);
     // SAFETY: recorded in order, with barriers between; `run` waits, and all that is bound lives meanwhile.
-    submission.run(|cmd, gpu| unsafe {
-        for image in [picture, light_buffer] {
-            image_barrier(gpu, cmd, image, Use::Nothing, Use::ColorTarget);
+    submission.run(units, |cmd, gpu, part| unsafe {
+        if part.start == 0 {
+            for image in [picture.0, light_buffer] {
+                image_barrier(gpu, cmd, image, Use::Nothing, Use::ColorTarget);
+            }
+            slicer.record_clear(cmd, picture, light_buffer);
         }
-        slicer.record(cmd, &bound, slices, (picture, extent), light_buffer);
-        image_barrier(gpu, cmd, picture, Use::ColorTarget, Use::FragmentSampled);
+        for unit in part.clone() {
+            let (slice, step) = ((unit / per_slice) as u32, (unit % per_slice) as usize);
+            if slice >= slices.count {
+                break;
+            }
+            match step.checked_sub(eye_bands.len()) {
+                None => {
+                    let tile = eye_bands[step];
+                    slicer.record_eye(cmd, &bound, slices, picture, light_buffer, (slice, tile));
+                }
+                Some(step) => {
+                    let tile = light_bands[step];
+                    slicer.record_light(cmd, &bound, slices, light_buffer, (slice, tile));
+                }
+            }
+        }
+        if part.end == units {
+            image_barrier(gpu, cmd, picture.0, Use::ColorTarget, Use::FragmentSampled);
+        }
         Ok(())
     })
+}
+
+/// A picture from top to bottom in so many bands, as far as its rows go.
+fn bands_of([width, height]: [u32; 2], count: u32) -> Vec<Tile> {
+    let rows = height.div_ceil(count).max(1);
+    let firsts = (0..height).step_by(rows as usize);
+    firsts
+        .map(|first| Tile {
+            origin: [0, first],
+            extent: [width, rows.min(height - first)],
+        })
+        .collect()
 }

@@ -9,10 +9,12 @@
 
 mod classified;
 mod kept;
+mod pacing;
 mod skipping;
 mod streaming;
 
 use super::Error;
+use super::cost::ms_of_looks;
 use super::fade::{render_faded, stacks_of};
 use super::gradients::decided;
 use super::light::Matter;
@@ -23,6 +25,7 @@ use super::submission::{self, Submission};
 use super::sum::sum_of;
 use super::tally::{Clock, Mean, check_layers};
 use super::targets::Targets;
+use super::time_slices::{Spent, TimeSlices};
 use super::upload::{keep, upload, upload_with_gradient_source};
 use crate::gpu::{Headless, ParameterRing, Timer, Use};
 use crate::picture::{ColorSpace, Layer, LayerKind, Picture};
@@ -36,10 +39,14 @@ use crate::technique::{
 use crate::transfer::{Classified, Graded, TransferFunction, Window};
 use crate::volume::{Spline, Volume};
 pub use kept::Kept;
+use pacing::{Expected, Known, passes_of};
 use skipping::Skipped;
 use std::collections::HashMap;
 use std::sync::Arc;
 use streaming::{BRICKS_AT_ONCE, Streaming};
+
+/// A resolve reads one texel and classifies at most once, beside which a sample of a volume is dear.
+const LOOKS_OF_A_RESOLVE: f64 = 0.5;
 
 /// A picture and what it took.
 #[derive(Debug)]
@@ -67,6 +74,13 @@ pub struct Renderer<'v> {
     passes: Option<Passes>,
     ring: ParameterRing,
     timer: Option<Timer>,
+    pub(super) slices: TimeSlices<'v>,
+    /// What a picture took.
+    known: Option<Known>,
+    /// How often transfer functions were changed.
+    changes: u64,
+    /// Passes over all samples of the picture that is being drawn: how many are done, and how many there are.
+    passes_done: [usize; 2],
     device: Headless,
 }
 
@@ -190,7 +204,7 @@ impl<'v> Renderer<'v> {
                 )?],
             };
             if let Some(operator) = kept {
-                keep(device, &mut made[0], operator)?;
+                keep(device, &mut self.slices, &mut made[0], operator)?;
             }
             self.resident.insert(copied, made);
         }
@@ -244,10 +258,15 @@ impl<'v> Renderer<'v> {
         self.upload(scene)?;
         let mut clock = Clock(self.timer.is_some().then_some(0.0));
         if scene.mix() == Mix::Channels && scene.settings.mode.is_projection() {
-            let one_by_one = scene.projected().into_iter().enumerate();
+            let all = scene.projected();
+            let of = all.len();
+            let one_by_one = all.into_iter().enumerate();
             let picture = sum_of(one_by_one.map(|(shown, one)| {
                 self.shown = shown;
-                self.picture(&one, layers, &mut clock)
+                let span = self.slices.enter(shown, of);
+                let picture = self.picture(&one, layers, &mut clock);
+                self.slices.leave(span);
+                picture
             }));
             self.shown = 0;
             let (picture, gpu_ms) = (picture?, clock.0);
@@ -267,6 +286,7 @@ impl<'v> Renderer<'v> {
         layers: &[LayerKind],
         clock: &mut Clock,
     ) -> Result<Picture, Error> {
+        self.passes_done = [0, passes_of(scene, !layers.is_empty())];
         self.prepare(scene)?;
         self.prepare_skip(scene)?;
         let functions = scene.transfers().into_iter();
@@ -360,24 +380,42 @@ impl<'v> Renderer<'v> {
 
     /// One pass of the technique, rays at one position in each pixel.
     fn gather(&mut self, scene: &Scene, in_pixel: InPixel) -> Result<Option<f64>, Error> {
-        match self.streaming {
-            Some(_) => self.gather_stream(scene, in_pixel),
-            None => self.submit(scene, in_pixel, Passes::gather),
+        if self.streaming.is_some() {
+            return self.gather_stream(scene, in_pixel);
         }
+        let (spent, expected) = self.pass(scene, in_pixel, Passes::gather)?;
+        self.learn(expected, &spent);
+        Ok(spent.gpu_ms)
     }
 
-    /// Parameters into the ring, then one submission.
+    /// The next of the passes over all samples that the picture takes.
+    fn pass(
+        &mut self,
+        scene: &Scene,
+        in_pixel: InPixel,
+        pass: impl FnOnce(&Passes, Submission) -> Result<Spent, crate::gpu::Error>,
+    ) -> Result<(Spent, Expected), Error> {
+        let [done, of] = self.passes_done;
+        let span = self.slices.enter(done, of);
+        let submitted = self.submit(scene, in_pixel, pass);
+        self.slices.leave(span);
+        self.passes_done[0] += 1;
+        submitted
+    }
+
+    /// Parameters into the ring, then submissions.
     fn submit(
         &mut self,
         scene: &Scene,
         in_pixel: InPixel,
-        pass: impl FnOnce(&Passes, Submission) -> Result<Option<f64>, crate::gpu::Error>,
-    ) -> Result<Option<f64>, Error> {
+        pass: impl FnOnce(&Passes, Submission) -> Result<Spent, crate::gpu::Error>,
+    ) -> Result<(Spent, Expected), Error> {
         let grid = scene.volume.grid();
         let view = scene.view(&grid, in_pixel);
         let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
         let parts = parts_of(&self.resident, self.shown, scene);
         let mut recordings = view.recordings_of(&parts, transfer)?;
+        let expected = self.expected(scene, &view, &recordings, parts.len());
         let skip = self.skipped.skip();
         for recording in &mut recordings {
             recording.skip(skip);
@@ -405,6 +443,7 @@ impl<'v> Renderer<'v> {
                 offset: recording.write(&self.ring, slot)?,
                 slices: recording.slices,
                 order: recording.order,
+                seen: None,
             })
         };
         let with_others = recordings.into_iter().zip(beside.iter().map(Vec::as_slice));
@@ -415,9 +454,13 @@ impl<'v> Renderer<'v> {
             targets: self.targets.as_ref().expect("prepared"),
             bricks: &bricks,
             timer: self.timer.as_ref(),
+            slices: &mut self.slices,
+            expected_ms: expected.ms,
+            is_drawing: true,
             resumes: false,
         };
-        Ok(pass(self.passes.as_ref().expect("prepared"), submission)?)
+        let spent = pass(self.passes.as_ref().expect("prepared"), submission)?;
+        Ok((spent, expected))
     }
 
     /// The colours of what was gathered; the parameters are still in the ring.
@@ -426,7 +469,18 @@ impl<'v> Renderer<'v> {
         let targets = self.targets.as_ref().expect("prepared");
         let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
         let offset = self.ring.offset(0)?;
-        passes.resolve(&mut self.device, &self.ring, offset, targets, transfer)?;
+        let pixels = targets.extent.map(f64::from).iter().product::<f64>();
+        let submission = Submission {
+            expected_ms: ms_of_looks(self.device.gpu(), LOOKS_OF_A_RESOLVE * pixels),
+            device: &mut self.device,
+            targets,
+            bricks: &[],
+            timer: None,
+            slices: &mut self.slices,
+            is_drawing: false,
+            resumes: false,
+        };
+        passes.resolve(submission, &self.ring, offset, transfer)?;
         Ok(targets.read(&mut self.device, &targets.picture, Use::ColorTarget)?)
     }
 
@@ -464,7 +518,7 @@ impl<'v> Renderer<'v> {
         )?;
         // (value, depth, transmittance, samples) of each pixel, as far as the technique has them.
         let beside = if is_slicer {
-            self.submit(scene, InPixel::CENTER, Passes::count)?;
+            self.pass(scene, InPixel::CENTER, Passes::count)?;
             let targets = self.targets.as_ref().expect("prepared");
             let counts = targets.read(&mut self.device, &targets.layers, Use::FragmentSampled)?;
             counts

@@ -1,8 +1,9 @@
 //! A slicer's picture: drawn into the accumulation where the device blends f32, else in merged batches.
 
 use super::submission::Submission;
+use super::time_slices::Spent;
 use crate::gpu::{
-    Bindings, Error, Gpu, Image, ImageDesc, ImageKind, Load, Use, begin_rendering, clear_image,
+    Bindings, Error, Gpu, Image, ImageDesc, ImageKind, Load, Use, begin_rendering_of, clear_image,
     end_rendering, image_barrier,
 };
 use crate::technique::blend::{Drawn, clear_color};
@@ -50,7 +51,7 @@ impl Slicing {
     }
 
     /// Draws all slices into `into` and leaves it in [`Use::FragmentSampled`]. Milliseconds on the device.
-    pub fn run(&self, submission: Submission, into: &Image) -> Result<Option<f64>, Error> {
+    pub fn run(&self, submission: Submission, into: &Image) -> Result<Spent, Error> {
         let bound = submission.bind(|inputs| self.slicer.bind(inputs))?;
         match &self.merge {
             Some(merge) => self.run_in_batches(submission, &bound, into, merge),
@@ -63,22 +64,29 @@ impl Slicing {
         submission: Submission,
         bound: &[Bindings],
         into: &Image,
-    ) -> Result<Option<f64>, Error> {
+    ) -> Result<Spent, Error> {
         let (bricks, extent) = (submission.bricks, submission.targets.extent);
         let clear = match self.drawn {
             Drawn::Picture(mode) => clear_color(mode),
             Drawn::Count => [0.0; 4],
         };
         // SAFETY: recorded in order, with barriers between; `run` waits, and all that is bound lives meanwhile.
-        submission.run(|cmd, gpu| unsafe {
-            image_barrier(gpu, cmd, into, Use::Nothing, Use::ColorTarget);
-            begin_rendering(gpu, cmd, &[(into.view(), Load::Clear(clear))], extent);
-            for (brick, bindings) in bricks.iter().zip(bound) {
-                self.slicer
-                    .record(cmd, bindings, brick.offset, extent, 0..brick.slices);
+        submission.in_tiles(|cmd, gpu, drawn| unsafe {
+            if drawn.is_first {
+                image_barrier(gpu, cmd, into, Use::Nothing, Use::ColorTarget);
             }
-            end_rendering(gpu, cmd);
-            image_barrier(gpu, cmd, into, Use::ColorTarget, Use::FragmentSampled);
+            for &tile in &drawn.tiles {
+                begin_rendering_of(gpu, cmd, &[(into.view(), Load::Clear(clear))], tile);
+                for (brick, bindings) in bricks.iter().zip(bound) {
+                    let (offset, slices) = (brick.offset, 0..brick.slices);
+                    self.slicer
+                        .record_tile(cmd, bindings, offset, extent, slices, tile);
+                }
+                end_rendering(gpu, cmd);
+            }
+            if drawn.is_last {
+                image_barrier(gpu, cmd, into, Use::ColorTarget, Use::FragmentSampled);
+            }
             Ok(())
         })
     }
@@ -89,7 +97,7 @@ impl Slicing {
         bound: &[Bindings],
         into: &Image,
         merge: &Merge,
-    ) -> Result<Option<f64>, Error> {
+    ) -> Result<Spent, Error> {
         let (bricks, extent) = (submission.bricks, submission.targets.extent);
         let batch = batch_image(&self.gpu, extent)?;
         let merged = merge.bind(&batch, into)?;
@@ -99,28 +107,36 @@ impl Slicing {
             firsts.map(move |first| (brick, bindings, range(first)))
         });
         // SAFETY: recorded in order, with barriers between; `run` waits, and all that is bound lives meanwhile.
-        submission.run(|cmd, gpu| unsafe {
-            image_barrier(gpu, cmd, into, Use::Nothing, Use::TransferWrite);
-            clear_image(gpu, cmd, into, [0.0; 4]);
-            let mut before = Use::TransferWrite;
-            for (brick, bindings, slices) in batches {
+        submission.in_tiles(|cmd, gpu, drawn| unsafe {
+            let mut before = Use::ComputeWrite;
+            if drawn.is_first {
+                image_barrier(gpu, cmd, into, Use::Nothing, Use::TransferWrite);
+                clear_image(gpu, cmd, into, [0.0; 4]);
+                before = Use::TransferWrite;
+            }
+            let mut last = Use::Nothing;
+            for (brick, bindings, slices) in batches.clone() {
                 // What the merge before has read is overwritten only after it.
-                let last = if before == Use::TransferWrite {
-                    Use::Nothing
-                } else {
-                    Use::ComputeSampled
-                };
                 image_barrier(gpu, cmd, &batch, last, Use::ColorTarget);
-                begin_rendering(gpu, cmd, &[(batch.view(), Load::Clear([0.0; 4]))], extent);
-                self.slicer
-                    .record(cmd, bindings, brick.offset, extent, slices);
-                end_rendering(gpu, cmd);
+                last = Use::ComputeSampled;
+                for &tile in &drawn.tiles {
+                    let target = [(batch.view(), Load::Clear([0.0; 4]))];
+                    begin_rendering_of(gpu, cmd, &target, tile);
+                    let (offset, slices) = (brick.offset, slices.clone());
+                    self.slicer
+                        .record_tile(cmd, bindings, offset, extent, slices, tile);
+                    end_rendering(gpu, cmd);
+                }
                 image_barrier(gpu, cmd, &batch, Use::ColorTarget, Use::ComputeSampled);
                 image_barrier(gpu, cmd, into, before, Use::ComputeWrite);
-                merge.record(cmd, &merged, extent)?;
+                for &tile in &drawn.tiles {
+                    merge.record_tile(cmd, &merged, extent, tile)?;
+                }
                 before = Use::ComputeWrite;
             }
-            image_barrier(gpu, cmd, into, before, Use::FragmentSampled);
+            if drawn.is_last {
+                image_barrier(gpu, cmd, into, before, Use::FragmentSampled);
+            }
             Ok(())
         })
     }

@@ -1,14 +1,16 @@
-//! One timed submission of a picture's bricks.
+//! A picture's bricks in timed submissions, each a part of the picture.
 
+use super::blocks::Blocks;
 use super::targets::Targets;
-use crate::gpu::{Bindings, Error, Gpu, Headless, Image, Timer, Use, image_barrier};
+use super::time_slices::{Spent, TimeSlices, Work};
+use crate::gpu::{Bindings, Error, Gpu, Headless, Image, Tile, Timer, Use, image_barrier};
 use crate::technique::{Inputs, Order};
 use ash::vk;
-use std::sync::Arc;
+use std::ops::Range;
 
-/// The device, where it writes, what is drawn, and its clock.
+/// The device, where it writes, what is drawn, its clock, and how it is cut.
 #[derive(Debug)]
-pub struct Submission<'a> {
+pub struct Submission<'a, 'v> {
     /// Submits and waits.
     pub device: &'a mut Headless,
     /// The images.
@@ -17,6 +19,12 @@ pub struct Submission<'a> {
     pub bricks: &'a [Part<'a>],
     /// The device's clock, if it has one.
     pub timer: Option<&'a Timer>,
+    /// How work is cut.
+    pub slices: &'a mut TimeSlices<'v>,
+    /// What all of it will take.
+    pub expected_ms: f64,
+    /// Whether it is one of the passes that a picture takes: the watch is told how far it is.
+    pub is_drawing: bool,
     /// The images hold what bricks before these have left, in [`Use::FragmentSampled`].
     pub resumes: bool,
 }
@@ -32,9 +40,24 @@ pub struct Part<'a> {
     pub slices: u32,
     /// How they are blended.
     pub order: Order,
+    /// The pixels that it may change, where those are known; the first of several has to write all.
+    pub seen: Option<Tile>,
 }
 
-impl Submission<'_> {
+/// What one submission draws: these pixels with all that they show.
+#[derive(Debug)]
+pub struct Tiles {
+    /// The pixels.
+    pub tiles: Vec<Tile>,
+    /// Whether it is the first submission, and whether the last.
+    pub is_first: bool,
+    pub is_last: bool,
+}
+
+/// A block takes no more than this part of a submission.
+const MOST_OF_A_BLOCK: f64 = 0.25;
+
+impl Submission<'_, '_> {
     /// One descriptor set for each brick.
     pub fn bind(
         &self,
@@ -46,24 +69,55 @@ impl Submission<'_> {
             .collect()
     }
 
-    /// Records with `record` between two timestamps, submits and waits. Milliseconds on the device.
+    /// Into how many pieces something is cut that is so much of the whole.
+    pub fn pieces(&self, part: f64) -> u32 {
+        let allowed_ms = MOST_OF_A_BLOCK * self.slices.target_ms;
+        // Not a number is one piece.
+        (part * self.expected_ms / allowed_ms).ceil().max(1.0) as u32
+    }
+
+    /// Runs units of the picture in submissions that take part of them each.
     pub fn run(
         self,
-        record: impl FnOnce(vk::CommandBuffer, &Gpu) -> Result<(), Error>,
-    ) -> Result<Option<f64>, Error> {
-        let Self { device, timer, .. } = self;
-        let gpu = Arc::clone(device.gpu());
-        device.run(|cmd| {
-            // SAFETY: recorded outside rendering, in this order, into one command buffer that `run` waits for.
-            let start = || unsafe { timer.inspect(|timer| timer.start(cmd)) };
-            // SAFETY: as above.
-            let stop = || unsafe { timer.inspect(|timer| timer.stop(cmd)) };
-            start();
-            record(cmd, &gpu)?;
-            stop();
-            Ok(())
-        })?;
-        timer.map_or(Ok(None), Timer::elapsed_ms)
+        units: u64,
+        record: impl FnMut(vk::CommandBuffer, &Gpu, Range<u64>) -> Result<(), Error>,
+    ) -> Result<Spent, Error> {
+        let Self {
+            device,
+            timer,
+            slices,
+            expected_ms,
+            is_drawing,
+            ..
+        } = self;
+        let work = Work {
+            units: 0..units,
+            expected_ms,
+            is_drawing,
+        };
+        slices.run(device, timer, work, record)
+    }
+
+    /// Runs what `record` records for the pixels of each submission.
+    pub fn in_tiles(
+        self,
+        record: impl Fn(vk::CommandBuffer, &Gpu, &Tiles) -> Result<(), Error>,
+    ) -> Result<Spent, Error> {
+        let extent = self.targets.extent;
+        // As few as will do: each is a dispatch, or a rendering, that has an end to wait for.
+        let rows = extent[1].div_ceil(Tile::STEP).max(1);
+        let down = self.pieces(1.0).min(rows);
+        let across = self.pieces(1.0 / f64::from(down));
+        let blocks = Blocks::new(extent, [across, down]);
+        let count = blocks.count();
+        self.run(count, |cmd, gpu, part| {
+            let drawn = Tiles {
+                is_first: part.start == 0,
+                is_last: part.end == count,
+                tiles: blocks.tiles(part),
+            };
+            record(cmd, gpu, &drawn)
+        })
     }
 
     /// Runs a compute pass over each brick, one after the other, that writes `images`; leaves them in
@@ -72,26 +126,34 @@ impl Submission<'_> {
         self,
         images: &[&Image],
         bound: &[Bindings],
-        record: impl Fn(vk::CommandBuffer, &Bindings, u32) -> Result<(), Error>,
-    ) -> Result<Option<f64>, Error> {
+        record: impl Fn(vk::CommandBuffer, &Bindings, u32, &[Tile]) -> Result<(), Error>,
+    ) -> Result<Spent, Error> {
         let (bricks, resumes) = (self.bricks, self.resumes);
-        self.run(|cmd, gpu| {
+        self.in_tiles(|cmd, gpu, drawn| {
             let barriers = |before, after| {
                 for image in images {
                     // SAFETY: outside rendering; the images live until `run` has waited.
                     unsafe { image_barrier(gpu, cmd, image, before, after) };
                 }
             };
-            let mut before = match resumes {
-                true => Use::FragmentSampled,
-                false => Use::Nothing,
+            let mut before = match (drawn.is_first, resumes) {
+                (true, true) => Use::FragmentSampled,
+                (true, false) => Use::Nothing,
+                (false, _) => Use::ComputeWrite,
             };
             for (brick, bindings) in bricks.iter().zip(bound) {
                 barriers(before, Use::ComputeWrite);
-                record(cmd, bindings, brick.offset)?;
+                let seen = |tile: &Tile| match brick.seen {
+                    Some(seen) => tile.and(seen),
+                    None => Some(*tile),
+                };
+                let tiles: Vec<_> = drawn.tiles.iter().filter_map(seen).collect();
+                record(cmd, bindings, brick.offset, &tiles)?;
                 before = Use::ComputeWrite;
             }
-            barriers(before, Use::FragmentSampled);
+            if drawn.is_last {
+                barriers(before, Use::FragmentSampled);
+            }
             Ok(())
         })
     }

@@ -8,6 +8,9 @@ use crate::technique::slices_3d::half_angle::light_buffer;
 use ash::vk;
 use std::sync::Arc;
 
+/// A submission copies no more.
+const COPIED_BYTES: u64 = 64 << 20;
+
 /// Images of one extent.
 #[derive(Debug)]
 pub struct Targets {
@@ -80,11 +83,22 @@ impl Targets {
         before: Use,
     ) -> Result<Vec<[f32; 4]>, Error> {
         let gpu = Arc::clone(device.gpu());
-        // SAFETY: recorded outside rendering; `run` waits, and `self` lives meanwhile.
-        device.run(|cmd| unsafe {
-            image_barrier(&gpu, cmd, image, before, Use::TransferRead);
-            image_to_buffer(&gpu, cmd, image, Region::whole(image), &self.readback, 0)
-        })?;
+        let [width, height] = self.extent;
+        let rows = (COPIED_BYTES / (16 * u64::from(width))).clamp(1, height.into()) as u32;
+        let mut before = before;
+        for first in (0..height).step_by(rows as usize) {
+            let region = Region {
+                origin: [0, first, 0],
+                extent: [width, rows.min(height - first), 1],
+            };
+            let offset = 16 * u64::from(width) * u64::from(first);
+            // SAFETY: recorded outside rendering; `run` waits, and `self` lives meanwhile.
+            device.run(|cmd| unsafe {
+                image_barrier(&gpu, cmd, image, before, Use::TransferRead);
+                image_to_buffer(&gpu, cmd, image, region, &self.readback, offset)
+            })?;
+            before = Use::TransferRead;
+        }
         let count = self.extent.map(|n| n as usize).iter().product();
         let mut pixels = vec![[0.0; 4]; count];
         self.readback

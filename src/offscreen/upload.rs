@@ -1,5 +1,7 @@
 //! Volumes through a staging buffer to the device, a slab at a time.
 
+use super::cost::{looks_of_cells, ms_of_looks};
+use super::time_slices::{TimeSlices, Work};
 use crate::gpu::{Buffer, Error, Headless, Memory};
 use crate::resident::{GpuVolume, KeptGradients, KeptOperator, Slab, Texels, TextureLayout};
 use crate::technique::GradientSource;
@@ -10,6 +12,9 @@ use std::thread;
 
 /// A slab is as many slices as fit into this: small enough to stay in the caches of a CPU while it is copied.
 const STAGING_BYTES: u64 = 4 << 20;
+
+/// A value that is neither filtered nor classified is the less part of a look.
+const LOOKS_OF_A_VALUE: f64 = 0.1;
 
 /// Makes and fills the textures of volumes on one grid: their voxels, or the coefficients of their splines.
 pub fn upload(
@@ -60,12 +65,22 @@ pub fn upload_with_gradient_source(
 /// Makes the gradients of a volume and keeps them in the place of what they were made of beside it.
 pub fn keep(
     device: &mut Headless,
+    slices: &mut TimeSlices,
     volume: &mut GpuVolume,
     operator: KeptOperator,
 ) -> Result<(), Error> {
     let kept = KeptGradients::new(device.gpu(), volume, operator)?;
-    // SAFETY: recorded outside rendering; the volume has been uploaded; `run` waits.
-    device.run(|cmd| unsafe { kept.record(cmd) })?;
+    let values = match operator {
+        KeptOperator::Differences => 15.0,
+        KeptOperator::Sobel => 27.0,
+    };
+    let cells = volume.bricks().iter().map(|brick| &brick.cell);
+    let looks = LOOKS_OF_A_VALUE * looks_of_cells(cells, values);
+    let work = Work::beside(0..kept.group_count()?, ms_of_looks(device.gpu(), looks));
+    slices.run(device, None, work, |cmd, _, part| {
+        // SAFETY: recorded outside rendering, parts in order; the volume has been uploaded; `run` waits.
+        unsafe { kept.record_part(cmd, part) }
+    })?;
     volume.keep_gradients(kept);
     Ok(())
 }

@@ -7,11 +7,12 @@
 use super::macro_cells::{MacroCells, ring_of};
 use crate::gpu::{
     Bindings, Buffer, ComputePipeline, Error, Gpu, Memory, ParameterRing, Resource, Use,
-    buffer_barrier,
+    buffer_barrier, group_count, within,
 };
 use crate::shaders::{CellGrid, Pass, shader};
 use crate::transfer::Seen;
 use ash::vk;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// What is seen, and along the three axes.
@@ -127,18 +128,57 @@ impl EmptySpace {
     /// # Safety
     /// `cmd` is recording, outside rendering; `self` and the cells live until it has run.
     pub unsafe fn record(&self, cmd: vk::CommandBuffer) -> Result<(), Error> {
+        // SAFETY: the caller's promises.
+        unsafe { self.record_part(cmd, 0..u64::MAX) }
+    }
+
+    /// The workgroups of each pass over all bricks, numbered one after the other: [`EmptySpace::record_part`] records
+    /// some of them.
+    ///
+    /// # Errors
+    /// A grid larger than the device can dispatch.
+    pub fn group_runs(&self) -> Result<[Range<u64>; PASSES as usize], Error> {
+        let groups = |grid: &CellGrid| Ok(group_count(self.mapping.pipeline.groups(grid.cells)?));
+        let count = self.grids.iter().map(groups).sum::<Result<u64, Error>>()?;
+        Ok(std::array::from_fn(|pass| {
+            count * pass as u64..count * (pass as u64 + 1)
+        }))
+    }
+
+    /// The same as [`EmptySpace::record`] for a part of the work, so that no submission takes long: parts follow each
+    /// other, each begins where the one before ended. No barriers are needed between them.
+    ///
+    /// # Errors
+    /// As [`EmptySpace::record`].
+    ///
+    /// # Safety
+    /// As [`EmptySpace::record`], in the order of the parts.
+    pub unsafe fn record_part(
+        &self,
+        cmd: vk::CommandBuffer,
+        part: Range<u64>,
+    ) -> Result<(), Error> {
         let Mapping {
             pipeline,
             pass_ring,
             ..
         } = &*self.mapping;
+        let mut first = 0;
         for pass in 0..PASSES {
             let parity = pass as usize % 2;
             for (slot, grid) in (0..).zip(&self.grids) {
                 let offsets = [self.grid_ring.offset(slot)?, pass_ring.offset(pass)?];
                 let groups = pipeline.groups(grid.cells)?;
+                let run = within(&part, first, group_count(groups));
+                first += group_count(groups);
                 // SAFETY: the caller's promises; a pass reads what the one before wrote, the barrier between.
-                unsafe { pipeline.dispatch(cmd, &self.bindings[parity], &offsets, groups) };
+                unsafe {
+                    pipeline.dispatch_run(cmd, &self.bindings[parity], &offsets, groups, run)
+                };
+            }
+            // What ends a pass is recorded with its last workgroup.
+            if part.start >= first || part.end < first {
+                continue;
             }
             // SAFETY: outside rendering; the buffers live until `cmd` has run.
             unsafe {

@@ -8,12 +8,13 @@
 use super::GpuVolume;
 use crate::gpu::{
     Bindings, ComputePipeline, Error, Gpu, Image, ImageDesc, ParameterRing, Resource, Use,
-    image_barrier,
+    group_count, image_barrier, within,
 };
 use crate::resident::TextureLayout;
 use crate::shaders::{Frame, GRADIENT_LINEAR, GRADIENT_SOBEL, shader};
 use ash::vk;
 use bytemuck::Zeroable;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// What is kept at the voxels.
@@ -142,15 +143,53 @@ impl KeptGradients {
     /// - `cmd` is recording, outside rendering; `self` and the volume live until it has run;
     /// - the volume's textures (or those of its gradient source) are in [`Use::Sampled`].
     pub unsafe fn record(&self, cmd: vk::CommandBuffer) -> Result<(), Error> {
+        // SAFETY: the caller's promises.
+        unsafe { self.record_part(cmd, 0..u64::MAX) }
+    }
+
+    /// Workgroups of all bricks: [`KeptGradients::record_part`] records some of them.
+    ///
+    /// # Errors
+    /// A brick larger than the device can dispatch.
+    pub fn group_count(&self) -> Result<u64, Error> {
+        let groups = |&extent: &[u32; 3]| Ok(group_count(self.pipeline.groups(extent)?));
+        self.extents.iter().map(groups).sum()
+    }
+
+    /// The same as [`KeptGradients::record`] for a part of the work, so that no submission takes long: parts follow
+    /// each other, each begins where the one before ended. No barriers are needed between them.
+    ///
+    /// # Errors
+    /// As [`KeptGradients::record`].
+    ///
+    /// # Safety
+    /// As [`KeptGradients::record`], in the order of the parts.
+    pub unsafe fn record_part(
+        &self,
+        cmd: vk::CommandBuffer,
+        part: Range<u64>,
+    ) -> Result<(), Error> {
         let bricks = self.images.iter().zip(&self.extents).zip(&self.bindings);
+        let mut first = 0;
         for (slot, ((image, &extent), bindings)) in (0..).zip(bricks) {
             let groups = self.pipeline.groups(extent)?;
             let offset = self.ring.offset(slot)?;
+            let run = within(&part, first, group_count(groups));
+            first += group_count(groups);
+            if run.is_empty() {
+                continue;
+            }
+            let (begins, ends) = (run.start == 0, run.end == group_count(groups));
             // SAFETY: the caller's promises; the image is new and written between the barriers.
             unsafe {
-                image_barrier(&self.gpu, cmd, image, Use::Nothing, Use::ComputeWrite);
-                self.pipeline.dispatch(cmd, bindings, &[offset], groups);
-                image_barrier(&self.gpu, cmd, image, Use::ComputeWrite, Use::Sampled);
+                if begins {
+                    image_barrier(&self.gpu, cmd, image, Use::Nothing, Use::ComputeWrite);
+                }
+                self.pipeline
+                    .dispatch_run(cmd, bindings, &[offset], groups, run);
+                if ends {
+                    image_barrier(&self.gpu, cmd, image, Use::ComputeWrite, Use::Sampled);
+                }
             }
         }
         Ok(())

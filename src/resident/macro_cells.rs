@@ -11,11 +11,12 @@ use super::cell_ranges::ranges;
 use super::{GpuVolume, TextureLayout};
 use crate::gpu::{
     Bindings, Buffer, ComputePipeline, Error, Gpu, Memory, ParameterRing, Resource, Use,
-    buffer_barrier,
+    buffer_barrier, group_count, within,
 };
 use crate::shaders::{CELL_VOXELS, CellGrid, CellGridFields, Frame, shader};
 use crate::volume::{Volume, VoxelBox};
 use ash::vk;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// How far around a macro cell the voxels lie that samples in it touch.
@@ -162,14 +163,47 @@ impl MacroCells {
     /// - `cmd` is recording, outside rendering; `self` and the volume live until it has run;
     /// - the volume's textures are in [`Use::Sampled`].
     pub unsafe fn record(&self, cmd: vk::CommandBuffer) -> Result<(), Error> {
+        // SAFETY: the caller's promises.
+        unsafe { self.record_part(cmd, 0..u64::MAX) }
+    }
+
+    /// Workgroups of all bricks, 0 where the cells are complete: [`MacroCells::record_part`] records some of them.
+    ///
+    /// # Errors
+    /// A brick larger than the device can dispatch.
+    pub fn group_count(&self) -> Result<u64, Error> {
+        let Some(pass) = &self.pass else { return Ok(0) };
+        let groups = |grid: &CellGrid| Ok(group_count(pass.pipeline.groups(grid.cells)?));
+        self.grids.iter().map(groups).sum()
+    }
+
+    /// The same as [`MacroCells::record`] for a part of the work, so that no submission takes long: parts together make
+    /// the whole, and need no barriers between them.
+    ///
+    /// # Errors
+    /// As [`MacroCells::record`].
+    ///
+    /// # Safety
+    /// As [`MacroCells::record`].
+    pub unsafe fn record_part(
+        &self,
+        cmd: vk::CommandBuffer,
+        part: Range<u64>,
+    ) -> Result<(), Error> {
         let Some(pass) = &self.pass else {
             return Ok(());
         };
+        let mut first = 0;
         for (slot, (grid, bindings)) in (0..).zip(self.grids.iter().zip(&pass.bindings)) {
             let groups = pass.pipeline.groups(grid.cells)?;
             let offset = pass.ring.offset(slot)?;
+            let run = within(&part, first, group_count(groups));
+            first += group_count(groups);
             // SAFETY: the caller's promises; bricks write cells of their own.
-            unsafe { pass.pipeline.dispatch(cmd, bindings, &[offset], groups) };
+            unsafe {
+                pass.pipeline
+                    .dispatch_run(cmd, bindings, &[offset], groups, run)
+            };
         }
         // SAFETY: outside rendering; the buffer lives until `cmd` has run.
         unsafe {

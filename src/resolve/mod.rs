@@ -3,8 +3,8 @@
 pub mod reference;
 
 use crate::gpu::{
-    Bindings, Blend, Error, Gpu, Image, ParameterRing, RasterDesc, RasterPipeline, Resource,
-    set_area,
+    Bindings, Blend, Error, Gpu, Image, ParameterRing, RasterDesc, RasterPipeline, Resource, Tile,
+    set_area_of,
 };
 use crate::resident::GpuTransfer;
 use crate::shaders::shader;
@@ -108,9 +108,25 @@ impl Resolve {
         offset: u32,
         extent: [u32; 2],
     ) {
+        // SAFETY: the caller's promises.
+        unsafe { self.record_tile(cmd, bindings, offset, extent, Tile::whole(extent)) };
+    }
+
+    /// The same for a part of a picture of `extent`: parts may be drawn in any order and in any submissions.
+    ///
+    /// # Safety
+    /// As [`Self::record`]; the rendering covers the tile.
+    pub unsafe fn record_tile(
+        &self,
+        cmd: vk::CommandBuffer,
+        bindings: &Bindings,
+        offset: u32,
+        extent: [u32; 2],
+        tile: Tile,
+    ) {
         // SAFETY: the caller's promises; the bindings come from `bind`.
         unsafe {
-            set_area(&self.gpu, cmd, extent);
+            set_area_of(&self.gpu, cmd, extent, tile);
             self.pipeline.draw(cmd, bindings, &[offset], 3, 0..1);
         }
     }

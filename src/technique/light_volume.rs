@@ -12,11 +12,12 @@
 use super::{Filter, Inputs, LightPlan, Settings};
 use crate::gpu::{
     Bindings, Buffer, ComputePipeline, Error, Gpu, Memory, ParameterRing, Resource, Use,
-    buffer_barrier,
+    buffer_barrier, group_count, within,
 };
 use crate::resident::{GpuVolume, TextureLayout};
 use crate::shaders::{LightGrid, shader};
 use ash::vk;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The passes, their buffers, and what they leave.
@@ -125,29 +126,83 @@ impl LightVolume {
         cmd: vk::CommandBuffer,
         bricks: impl IntoIterator<Item = (&'a Bindings, u32)>,
     ) -> Result<(), Error> {
-        let own = self.parameters.offset(0)?;
+        // SAFETY: the caller's promises.
+        unsafe { self.record_part(cmd, bricks, 0..u64::MAX) }
+    }
+
+    /// The workgroups of both kinds of passes over so many bricks, numbered one after the other:
+    /// [`LightVolume::record_part`] records some of them.
+    ///
+    /// # Errors
+    /// A grid larger than the device can dispatch.
+    pub fn group_runs(&self, bricks: usize) -> Result<[Range<u64>; 2], Error> {
+        let [cells, nodes] = self.groups()?.map(group_count);
+        let cells = cells * bricks as u64;
+        Ok([0..cells, cells..cells + nodes])
+    }
+
+    /// Of cells and of nodes.
+    fn groups(&self) -> Result<[[u32; 3]; 2], Error> {
         let [nx, ny, nz] = self.plan.cells.map(|n| n + 1);
-        let cell_groups = self.of_cells.groups(self.plan.cells)?;
-        let node_groups = self
-            .of_nodes
-            .groups([nx, ny, nz * self.plan.bundle_count])?;
+        let nodes = [nx, ny, nz * self.plan.bundle_count];
+        Ok([
+            self.of_cells.groups(self.plan.cells)?,
+            self.of_nodes.groups(nodes)?,
+        ])
+    }
+
+    /// The same as [`LightVolume::record`] for a part of the work, so that no submission takes long: parts follow each
+    /// other, each begins where the one before ended, and all are given the same bricks. No barriers are needed between
+    /// them.
+    ///
+    /// # Errors
+    /// As [`LightVolume::record`].
+    ///
+    /// # Safety
+    /// As [`LightVolume::record`], in the order of the parts.
+    pub unsafe fn record_part<'a>(
+        &self,
+        cmd: vk::CommandBuffer,
+        bricks: impl IntoIterator<Item = (&'a Bindings, u32)>,
+        part: Range<u64>,
+    ) -> Result<(), Error> {
+        let own = self.parameters.offset(0)?;
+        let [cell_groups, node_groups] = self.groups()?;
+        let [cell_count, node_count] = [cell_groups, node_groups].map(group_count);
+        let mut first = 0;
         // SAFETY: the caller's promises; each write is put between the reads before and after it.
         unsafe {
             let barrier =
                 |buffer, before, after| buffer_barrier(&self.gpu, cmd, buffer, before, after);
-            barrier(&self.cells, Use::ComputeRead, Use::ComputeWrite);
-            for (bound, offset) in bricks {
-                self.of_cells
-                    .dispatch(cmd, bound, &[offset, own], cell_groups);
-                barrier(&self.cells, Use::ComputeWrite, Use::ComputeWrite);
+            if part.start == 0 {
+                barrier(&self.cells, Use::ComputeRead, Use::ComputeWrite);
             }
-            barrier(&self.cells, Use::ComputeWrite, Use::ComputeRead);
-            barrier(&self.volume, Use::ComputeRead, Use::ComputeWrite);
-            barrier(&self.volume, Use::DrawRead, Use::ComputeWrite);
+            for (bound, offset) in bricks {
+                let run = within(&part, first, cell_count);
+                first += cell_count;
+                let ends = run.end == cell_count && !run.is_empty();
+                self.of_cells
+                    .dispatch_run(cmd, bound, &[offset, own], cell_groups, run);
+                if ends {
+                    barrier(&self.cells, Use::ComputeWrite, Use::ComputeWrite);
+                }
+            }
+            let run = within(&part, first, node_count);
+            if run.is_empty() {
+                return Ok(());
+            }
+            if run.start == 0 {
+                barrier(&self.cells, Use::ComputeWrite, Use::ComputeRead);
+                barrier(&self.volume, Use::ComputeRead, Use::ComputeWrite);
+                barrier(&self.volume, Use::DrawRead, Use::ComputeWrite);
+            }
+            let ends = run.end == node_count;
             self.of_nodes
-                .dispatch(cmd, &self.nodes_bound, &[own], node_groups);
-            barrier(&self.volume, Use::ComputeWrite, Use::ComputeRead);
-            barrier(&self.volume, Use::ComputeWrite, Use::DrawRead);
+                .dispatch_run(cmd, &self.nodes_bound, &[own], node_groups, run);
+            if ends {
+                barrier(&self.volume, Use::ComputeWrite, Use::ComputeRead);
+                barrier(&self.volume, Use::ComputeWrite, Use::DrawRead);
+            }
         }
         Ok(())
     }

@@ -3,7 +3,7 @@
 
 use super::Order;
 use super::blend::Drawn;
-use crate::gpu::{Bindings, Blend, ComputePipeline, Error, Gpu, Image, Resource};
+use crate::gpu::{Bindings, Blend, ComputePipeline, Error, Gpu, Image, Resource, Tile};
 use crate::shaders::shader;
 use ash::vk;
 use std::sync::Arc;
@@ -65,11 +65,30 @@ impl Merge {
         &self,
         cmd: vk::CommandBuffer,
         bindings: &Bindings,
-        [width, height]: [u32; 2],
+        extent: [u32; 2],
     ) -> Result<(), Error> {
-        let groups = self.pipeline.groups([width, height, 1])?;
+        let whole = Tile::whole(extent);
+        // SAFETY: the caller's promises.
+        unsafe { self.record_tile(cmd, bindings, extent, whole) }
+    }
+
+    /// The same for a part of a picture of `extent`, as [`super::Slicer::record_tile`] draws it.
+    ///
+    /// # Errors
+    /// As [`Self::record`], and corners that are not at multiples of [`Tile::STEP`].
+    ///
+    /// # Safety
+    /// As [`Self::record`].
+    pub unsafe fn record_tile(
+        &self,
+        cmd: vk::CommandBuffer,
+        bindings: &Bindings,
+        extent: [u32; 2],
+        tile: Tile,
+    ) -> Result<(), Error> {
+        let boxes = [self.pipeline.groups_of(extent, tile)?];
         // SAFETY: the caller's promises; the bindings come from `bind`.
-        unsafe { self.pipeline.dispatch(cmd, bindings, &[], groups) };
+        unsafe { self.pipeline.dispatch_boxes(cmd, bindings, &[], boxes) };
         Ok(())
     }
 }

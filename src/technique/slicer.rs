@@ -3,7 +3,7 @@
 
 use super::blend::{Drawn, operator};
 use super::{Inputs, Order, Technique, Words};
-use crate::gpu::{Bindings, Error, Gpu, RasterDesc, RasterPipeline, set_area};
+use crate::gpu::{Bindings, Error, Gpu, RasterDesc, RasterPipeline, Tile, set_area_of};
 use crate::shaders::shader;
 use ash::vk;
 use std::ops::Range;
@@ -74,9 +74,34 @@ impl Slicer {
         extent: [u32; 2],
         slices: Range<u32>,
     ) {
+        // SAFETY: the caller's promises.
+        unsafe {
+            self.record_tile(cmd, bindings, offset, extent, slices, Tile::whole(extent));
+        }
+    }
+
+    /// The same for a part of a picture of `extent`, so that no submission takes long. Two ways to cut, alone or both:
+    ///
+    /// - tiles in any order and in any submissions, each pixel in one of them, with all its bricks and slices in
+    ///   their order. Rendering may be begun for the tile alone, which clears no more than that
+    ///   ([`crate::gpu::begin_rendering_of`]);
+    /// - runs of `slices`, one after the other. A rendering of its own for each loads what the one before has stored,
+    ///   after a barrier from `Use::ColorTarget` to the same.
+    ///
+    /// # Safety
+    /// As [`Self::record`]; the rendering covers the tile.
+    pub unsafe fn record_tile(
+        &self,
+        cmd: vk::CommandBuffer,
+        bindings: &Bindings,
+        offset: u32,
+        extent: [u32; 2],
+        slices: Range<u32>,
+        tile: Tile,
+    ) {
         // SAFETY: the caller's promises; the bindings come from `bind`.
         unsafe {
-            set_area(&self.gpu, cmd, extent);
+            set_area_of(&self.gpu, cmd, extent, tile);
             let vertices = self.vertices_per_slice;
             self.pipeline
                 .draw(cmd, bindings, &[offset], vertices, slices);

@@ -41,6 +41,37 @@ fn an_interrupt_while_drawing_exits_130_and_leaves_no_file() {
 }
 
 #[test]
+fn an_interrupt_in_the_middle_of_one_long_picture_does_not_wait_for_it() {
+    let folder = Folder::new();
+    let mut child = folder
+        .command("render phantom:fog,n=32 -o a.png --size 2048x2048 --samples-per-voxel 64 --no-skip --progress json")
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program runs");
+    let stderr = BufReader::new(child.stderr.take().expect("a pipe"));
+    // Of the one picture that there is a part is done, and not yet half of it.
+    let parts = stderr.lines().map_while(Result::ok);
+    let part = parts
+        .filter_map(|line| serde_json::from_str::<serde_json::Value>(&line).ok())
+        .find_map(|line| {
+            Some((
+                line["part"].as_f64()?,
+                line["done"].clone(),
+                line["of"].clone(),
+            ))
+        });
+    let (part, done, of) = part.expect("a part of the picture");
+    assert!(part > 0.0 && part < 0.5, "{part}");
+    assert_eq!((done, of), (0.into(), 1.into()));
+    let kill = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(kill.expect("kill runs").success());
+    assert_eq!(child.wait().expect("an end").code(), Some(130));
+    assert!(folder.names().is_empty(), "{:?}", folder.names());
+}
+
+#[test]
 #[ignore = "run by the test below in a process of its own: it panics"]
 fn a_program_with_a_bug() {
     let code = stratavox::cli::guarded(|| panic!("the roof\u{1b} is on fire"));

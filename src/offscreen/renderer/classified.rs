@@ -37,7 +37,8 @@ impl Renderer<'_> {
         self.light = None;
         let parts = parts_of(&self.resident, self.shown, scene);
         let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
-        let made = made_light(&mut self.device, scene, plan, &parts, transfer)?;
+        let (device, slices) = (&mut self.device, &mut self.slices);
+        let made = made_light(device, slices, scene, plan, &parts, transfer)?;
         self.light = Some(Lit { matter, made });
         Ok(())
     }
@@ -71,6 +72,7 @@ impl Renderer<'_> {
         };
         // SAFETY: recorded outside rendering; `run` waits, and `made` lives meanwhile.
         self.device.run(|cmd| unsafe { made.record_upload(cmd) })?;
+        self.changes += 1;
         self.transfer = Some(Uploaded {
             functions: functions.iter().copied().cloned().collect(),
             space,

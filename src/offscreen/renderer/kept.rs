@@ -4,6 +4,7 @@ use super::Renderer;
 use crate::gpu::{Headless, ParameterRing, Timer};
 use crate::offscreen::passes::Passes;
 use crate::offscreen::targets::Targets;
+use crate::offscreen::time_slices::TimeSlices;
 use crate::offscreen::{Error, renderer::Skipped};
 use crate::technique::parameter_ring;
 use crate::volume::Volume;
@@ -69,6 +70,10 @@ impl<'v> Renderer<'v> {
             passes,
             ring,
             timer,
+            slices: TimeSlices::default(),
+            known: None,
+            changes: 0,
+            passes_done: [0, 1],
             device,
         })
     }

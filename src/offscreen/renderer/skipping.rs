@@ -2,7 +2,9 @@
 
 use super::{Copied, Renderer, parts_of};
 use crate::offscreen::Error;
+use crate::offscreen::cost::ms_of_looks;
 use crate::offscreen::stream::if_it_fits;
+use crate::offscreen::time_slices::Work;
 use crate::resident::{Apron, Corners, EmptySpace, MacroCells};
 use crate::scene::Scene;
 use crate::technique::{Mix, Skip, Skippable};
@@ -96,8 +98,14 @@ impl Renderer<'_> {
             let Some(made) = if_it_fits(made)? else {
                 return Ok(());
             };
-            // SAFETY: recorded outside rendering; the volume has been uploaded; `run` waits.
-            self.device.run(|cmd| unsafe { made.record(cmd) })?;
+            // A cell of 8^3 voxels with an apron around them, which are not filtered.
+            let expected_ms = ms_of_looks(gpu, 100.0 * made.cell_count() as f64);
+            let work = Work::beside(0..made.group_count()?, expected_ms);
+            self.slices
+                .run(&mut self.device, None, work, |cmd, _, part| {
+                    // SAFETY: recorded outside rendering; the volume has been uploaded; `run` waits.
+                    unsafe { made.record_part(cmd, part) }
+                })?;
             self.skipped.cells = Some((of, made));
         }
         if let Skippable::Unseen(seen) = &wanted
@@ -111,8 +119,16 @@ impl Renderer<'_> {
             let Some(made) = if_it_fits(EmptySpace::new(self.device.gpu(), cells, seen))? else {
                 return Ok(());
             };
-            // SAFETY: as above; the cells have been made.
-            self.device.run(|cmd| unsafe { made.record(cmd) })?;
+            // Most cells look at some ten others.
+            let expected_ms = ms_of_looks(self.device.gpu(), cells.cell_count() as f64);
+            for pass in made.group_runs()? {
+                let work = Work::beside(pass, expected_ms);
+                self.slices
+                    .run(&mut self.device, None, work, |cmd, _, part| {
+                        // SAFETY: as above, parts in order; the cells have been made.
+                        unsafe { made.record_part(cmd, part) }
+                    })?;
+            }
             self.skipped.empty = Some((seen.clone(), made));
         }
         self.skipped.wanted = Some(wanted);

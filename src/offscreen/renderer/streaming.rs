@@ -8,10 +8,12 @@
 //! What is left out adds nothing: the picture is the same to the bit (`sampling.md` 5).
 
 use super::Renderer;
-use crate::gpu::Use;
+use crate::gpu::{Gpu, Tile, Use};
 use crate::offscreen::Error;
+use crate::offscreen::cost::{looks_of_picture, ms_of_looks};
 use crate::offscreen::stream::{Cache, Eye, Place, Stream};
 use crate::offscreen::submission::{self, Submission};
+use crate::offscreen::time_slices::Spent;
 use crate::scene::Scene;
 use crate::technique::{InPixel, Inputs, Mode, Part, Skippable, Technique, View};
 use crate::volume::Volume;
@@ -105,7 +107,11 @@ impl<'v> Renderer<'v> {
     ) -> Result<Option<f64>, Error> {
         let skippable = self.skippable(scene);
         let mut streaming = self.streaming.take().expect("a stream is drawn");
+        let [done, of] = self.passes_done;
+        let span = self.slices.enter(done, of);
         let outcome = self.gather_bricks(scene, in_pixel, &skippable, &mut streaming);
+        self.slices.leave(span);
+        self.passes_done[0] += 1;
         self.streaming = Some(streaming);
         outcome
     }
@@ -120,6 +126,9 @@ impl<'v> Renderer<'v> {
         let Streaming { stream, cache } = streaming;
         let stream: &Stream = stream;
         let shown = shown(stream, scene, skippable);
+        let grid = scene.volume.grid();
+        let looks = looks_of_picture(&scene.view(&grid, in_pixel), 0, 1);
+        let mut guess = Guess::new(self.device.gpu(), looks / shown.len().max(1) as f64);
         let numbers: Vec<_> = shown.iter().map(|shown| shown.brick).collect();
         cache.begin(&numbers);
         let missing: Vec<_> = numbers
@@ -150,6 +159,8 @@ impl<'v> Renderer<'v> {
             let mut is_first = true;
             loop {
                 let mut chunk = Vec::new();
+                let mut tiles = Vec::new();
+                let before = next;
                 while next < shown.len() && chunk.len() < BRICKS_AT_ONCE {
                     let brick = shown[next].brick;
                     next += 1;
@@ -158,6 +169,8 @@ impl<'v> Renderer<'v> {
                         continue;
                     }
                     chunk.push(brick);
+                    let pixels = shown[next - 1].place.pixels;
+                    tiles.push(Some(Tile::around(pixels, scene.extent_pixels)));
                     if cache.get(brick).is_none() {
                         let voxels = ahead.take(stream, brick)?;
                         let way = (skippable, scene.settings.apron());
@@ -171,8 +184,15 @@ impl<'v> Renderer<'v> {
                 }
                 let is_last = next == shown.len();
                 let ends = [is_first, is_last];
-                let more = self.draw(scene, in_pixel, (cache, skippable), &chunk, ends)?;
-                clock = clock.zip(more).map(|(sum, more)| sum + more);
+                let span = self.slices.enter_some(before..next, shown.len());
+                let expected_ms = guess.ms(chunk.len());
+                let what = (&mut *cache, skippable, expected_ms);
+                tiles.resize(chunk.len(), None);
+                let drawn = self.draw(scene, in_pixel, what, (&chunk, &tiles), ends);
+                self.slices.leave(span);
+                let Spent { gpu_ms, wall_ms } = drawn?;
+                guess.took(chunk.len(), wall_ms);
+                clock = clock.zip(gpu_ms).map(|(sum, more)| sum + more);
                 chunk.iter().for_each(|&brick| cache.drawn(brick));
                 is_first = false;
                 if !is_last {
@@ -188,17 +208,17 @@ impl<'v> Renderer<'v> {
         &mut self,
         scene: &Scene,
         in_pixel: InPixel,
-        (cache, skippable): (&mut Cache, &Skippable),
-        chunk: &[usize],
+        (cache, skippable, expected_ms): (&mut Cache, &Skippable, f64),
+        (chunk, tiles): (&[usize], &[Option<Tile>]),
         [is_first, is_last]: [bool; 2],
-    ) -> Result<Option<f64>, Error> {
+    ) -> Result<Spent, Error> {
         let apron = scene.settings.apron();
         cache.find_empty_space(&mut self.device, skippable, apron, chunk)?;
         let grid = scene.volume.grid();
         let view = scene.view(&grid, in_pixel);
         let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
         let mut bricks = Vec::new();
-        for (nth, &brick) in chunk.iter().enumerate() {
+        for (nth, (&brick, &seen)) in chunk.iter().zip(tiles).enumerate() {
             let there = cache.get(brick).expect("bricks of a chunk stay");
             let ends = [is_first && nth == 0, is_last && nth + 1 == chunk.len()];
             let mut recording = view.recording_of_brick(&there.volume, transfer, ends)?;
@@ -218,6 +238,7 @@ impl<'v> Renderer<'v> {
                 offset: recording.write(&self.ring, nth as u32)?,
                 slices: recording.slices,
                 order: recording.order,
+                seen: seen.filter(|_| !ends[0]),
             });
         }
         let submission = Submission {
@@ -225,6 +246,9 @@ impl<'v> Renderer<'v> {
             targets: self.targets.as_ref().expect("prepared"),
             bricks: &bricks,
             timer: self.timer.as_ref(),
+            slices: &mut self.slices,
+            expected_ms,
+            is_drawing: true,
             resumes: !is_first,
         };
         Ok(self.passes.as_ref().expect("prepared").gather(submission)?)
@@ -279,6 +303,33 @@ impl Streaming<'_> {
     pub fn part(&self) -> Part<'_> {
         let any = self.cache.any().expect("`upload` brings one in");
         Part::numbers(&any.volume)
+    }
+}
+
+/// What bricks take: of those before, and at first rather too much.
+struct Guess {
+    ms_of_brick: f64,
+}
+
+impl Guess {
+    /// The next may take so many times what was measured.
+    const DEARER: f64 = 2.0;
+    /// And nothing is taken for so much cheaper at once.
+    const CHEAPER: f64 = 0.25;
+
+    fn new(gpu: &Gpu, looks_of_brick: f64) -> Self {
+        Self {
+            ms_of_brick: ms_of_looks(gpu, looks_of_brick),
+        }
+    }
+
+    fn ms(&self, bricks: usize) -> f64 {
+        self.ms_of_brick * bricks as f64
+    }
+
+    fn took(&mut self, bricks: usize, ms: f64) {
+        let measured = Self::DEARER * ms / bricks as f64;
+        self.ms_of_brick = measured.max(Self::CHEAPER * self.ms_of_brick);
     }
 }
 

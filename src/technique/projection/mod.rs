@@ -5,7 +5,7 @@ pub mod reference;
 
 use super::inputs::mode_word;
 use super::{Inputs, Mode, Words};
-use crate::gpu::{Bindings, ComputePipeline, Error, Gpu, Image, Resource};
+use crate::gpu::{Bindings, ComputePipeline, Error, Gpu, Image, Resource, Tile};
 use crate::shaders::shader;
 use ash::vk;
 use std::sync::Arc;
@@ -59,7 +59,7 @@ impl Projection {
         inputs.bind(&self.gpu, self.pipeline.layout(), &outputs)
     }
 
-    /// Records one picture of the parameters at `offset` of the ring.
+    /// Records one picture, all of it at once, of the parameters at `offset` of the ring.
     ///
     /// # Errors
     /// A picture larger than the device can dispatch.
@@ -72,11 +72,39 @@ impl Projection {
         cmd: vk::CommandBuffer,
         bindings: &Bindings,
         offset: u32,
-        [width, height]: [u32; 2],
+        extent: [u32; 2],
     ) -> Result<(), Error> {
-        let groups = self.pipeline.groups([width, height, 1])?;
-        // SAFETY: the caller's promises; the bindings come from `bind`.
-        unsafe { self.pipeline.dispatch(cmd, bindings, &[offset], groups) };
+        let whole = [Tile::whole(extent)];
+        // SAFETY: the caller's promises.
+        unsafe { self.record_tiles(cmd, bindings, offset, extent, whole) }
+    }
+
+    /// The same for parts of a picture of `extent`, so that no submission takes long: the parts of a picture may be
+    /// spread over several recordings and submissions, in any order, each pixel in one of them. Of several bricks all
+    /// are recorded for a pixel in their order; only between those a barrier from `Use::ComputeWrite` to the same is
+    /// needed, between parts none.
+    ///
+    /// # Errors
+    /// As [`Self::record`], and corners that are not at multiples of [`Tile::STEP`].
+    ///
+    /// # Safety
+    /// As [`Self::record`].
+    pub unsafe fn record_tiles(
+        &self,
+        cmd: vk::CommandBuffer,
+        bindings: &Bindings,
+        offset: u32,
+        extent: [u32; 2],
+        tiles: impl IntoIterator<Item = Tile>,
+    ) -> Result<(), Error> {
+        for tile in tiles {
+            let boxes = [self.pipeline.groups_of(extent, tile)?];
+            // SAFETY: the caller's promises; the bindings come from `bind`.
+            unsafe {
+                self.pipeline
+                    .dispatch_boxes(cmd, bindings, &[offset], boxes)
+            };
+        }
         Ok(())
     }
 }

@@ -18,13 +18,13 @@ pub use geometry::HalfAngle;
 
 use crate::gpu::{
     Bindings, Blend, Error, Gpu, Image, ImageDesc, ImageKind, Load, RasterDesc, RasterPipeline,
-    Resource, Use, begin_rendering, end_rendering, image_barrier, set_area,
+    Resource, Tile, Use, begin_rendering, begin_rendering_of, end_rendering, image_barrier,
+    set_area_of,
 };
 use crate::shaders::shader;
 use crate::technique::blend::Drawn;
 use crate::technique::{ACCUMULATION_FORMAT, Inputs, Mode, Order, Slicer, Technique, Words};
 use ash::vk;
-use std::ops::Range;
 use std::sync::Arc;
 
 /// Vertices of the cover of one slice.
@@ -145,66 +145,99 @@ impl HalfAngleSlicer {
         (picture, extent): (&Image, [u32; 2]),
         light_buffer: &Image,
     ) {
-        let gpu = &self.gpu;
         let [light_width, light_height, _] = light_buffer.extent();
-        let light_extent = [light_width, light_height];
-        // SAFETY: the caller's promises; every image is in the use that its next access needs.
+        let (of_eye, of_light) = (
+            Tile::whole(extent),
+            Tile::whole([light_width, light_height]),
+        );
+        // SAFETY: the caller's promises.
         unsafe {
-            let cleared = |image: &Image, extent| {
-                let target = [(image.view(), Load::Clear([0.0; 4]))];
-                begin_rendering(gpu, cmd, &target, extent);
-                end_rendering(gpu, cmd);
-            };
-            cleared(picture, extent);
-            cleared(light_buffer, light_extent);
+            self.record_clear(cmd, (picture, extent), light_buffer);
             for slice in 0..slices.count {
-                let slice = slice..slice + 1;
-                image_barrier(
-                    gpu,
-                    cmd,
-                    light_buffer,
-                    Use::ColorTarget,
-                    Use::FragmentSampled,
-                );
-                image_barrier(gpu, cmd, picture, Use::ColorTarget, Use::ColorTarget);
-                begin_rendering(gpu, cmd, &[(picture.view(), Load::Keep)], extent);
-                self.record_eye(cmd, bindings, slices, extent, slice.clone());
-                end_rendering(gpu, cmd);
-                image_barrier(
-                    gpu,
-                    cmd,
-                    light_buffer,
-                    Use::FragmentSampled,
-                    Use::ColorTarget,
-                );
-                begin_rendering(gpu, cmd, &[(light_buffer.view(), Load::Keep)], light_extent);
-                let offset = slices.offsets[1];
-                self.light
-                    .record(cmd, &bindings.light, offset, light_extent, slice);
-                end_rendering(gpu, cmd);
+                let target = (picture, extent);
+                self.record_eye(cmd, bindings, slices, target, light_buffer, (slice, of_eye));
+                self.record_light(cmd, bindings, slices, light_buffer, (slice, of_light));
             }
         }
     }
 
+    /// The same as [`Self::record`] in steps, so that no submission takes long: this first, then for each slice in its
+    /// order the eye's and after it the light's. The tiles of a slice may be recorded in any order. Steps may lie in
+    /// different submissions; they bring their own barriers.
+    ///
     /// # Safety
-    /// As [`Self::record`], inside rendering to the picture.
-    unsafe fn record_eye(
+    /// As [`Self::record`].
+    pub unsafe fn record_clear(
+        &self,
+        cmd: vk::CommandBuffer,
+        (picture, extent): (&Image, [u32; 2]),
+        light_buffer: &Image,
+    ) {
+        let [width, height, _] = light_buffer.extent();
+        for (image, extent) in [(picture, extent), (light_buffer, [width, height])] {
+            let target = [(image.view(), Load::Clear([0.0; 4]))];
+            // SAFETY: the caller's promises.
+            unsafe {
+                begin_rendering(&self.gpu, cmd, &target, extent);
+                end_rendering(&self.gpu, cmd);
+            }
+        }
+    }
+
+    /// A tile of what the eye sees of a slice: see [`Self::record_clear`].
+    ///
+    /// # Safety
+    /// As [`Self::record`].
+    pub unsafe fn record_eye(
         &self,
         cmd: vk::CommandBuffer,
         bindings: &HalfAngleBindings,
         slices: HalfAngleSlices,
-        extent: [u32; 2],
-        slice: Range<u32>,
+        (picture, extent): (&Image, [u32; 2]),
+        light_buffer: &Image,
+        (slice, tile): (u32, Tile),
     ) {
+        let gpu = &self.gpu;
         let pipeline = match slices.order {
             Order::BackToFront => &self.over,
             Order::FrontToBack => &self.under,
         };
         let offsets = [slices.offsets[0]];
-        // SAFETY: the caller's promises; the layouts of both pipelines are equal.
+        let (drawn, read) = (Use::ColorTarget, Use::FragmentSampled);
+        // SAFETY: the caller's promises; every image is in the use that its next access needs, and the layouts of both
+        // pipelines are equal.
         unsafe {
-            set_area(&self.gpu, cmd, extent);
-            pipeline.draw(cmd, &bindings.eye, &offsets, VERTICES, slice);
+            image_barrier(gpu, cmd, light_buffer, drawn, read);
+            image_barrier(gpu, cmd, picture, drawn, drawn);
+            begin_rendering_of(gpu, cmd, &[(picture.view(), Load::Keep)], tile);
+            set_area_of(gpu, cmd, extent, tile);
+            pipeline.draw(cmd, &bindings.eye, &offsets, VERTICES, slice..slice + 1);
+            end_rendering(gpu, cmd);
+            image_barrier(gpu, cmd, light_buffer, read, drawn);
+        }
+    }
+
+    /// A tile of what the light sees of a slice: see [`Self::record_clear`].
+    ///
+    /// # Safety
+    /// As [`Self::record`].
+    pub unsafe fn record_light(
+        &self,
+        cmd: vk::CommandBuffer,
+        bindings: &HalfAngleBindings,
+        slices: HalfAngleSlices,
+        light_buffer: &Image,
+        (slice, tile): (u32, Tile),
+    ) {
+        let [width, height, _] = light_buffer.extent();
+        let (bound, offset) = (&bindings.light, slices.offsets[1]);
+        let (slices, extent) = (slice..slice + 1, [width, height]);
+        // SAFETY: the caller's promises; what was drawn before is ordered by the barriers of the eye.
+        unsafe {
+            begin_rendering_of(&self.gpu, cmd, &[(light_buffer.view(), Load::Keep)], tile);
+            self.light
+                .record_tile(cmd, bound, offset, extent, slices, tile);
+            end_rendering(&self.gpu, cmd);
         }
     }
 }

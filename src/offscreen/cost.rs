@@ -1,0 +1,103 @@
+//! What work will take, guessed before anything like it was measured: rather too much than too little.
+
+use crate::gpu::Gpu;
+use crate::resident::Cell;
+use crate::technique::{MAX_SAMPLES_PER_RAY, Mode, Settings, Technique, View};
+use glam::DVec3;
+
+/// A look-up of a voxel takes so long with all that is done with it. A driver on two cores took 14 to 80 ns for a
+/// sample (`docs/performance.md`); graphics cards that are twenty times slower than the fast ones keep inside a
+/// nanosecond.
+fn ms_per_look(gpu: &Gpu) -> f64 {
+    match gpu.is_cpu() {
+        true => 50e-6,
+        false => 1e-6,
+    }
+}
+
+/// What so many looks take.
+pub fn ms_of_looks(gpu: &Gpu, looks: f64) -> f64 {
+    looks * ms_per_look(gpu)
+}
+
+/// Rays across and down that are looked at for a whole picture.
+const RAYS: u32 = 16;
+
+/// Looks that one picture takes where nothing is skipped. `slices`: of a slicer, those of all bricks.
+pub fn looks_of_picture(view: &View, slices: u32, volumes: usize) -> f64 {
+    let settings = view.settings;
+    let [width, height] = view.extent_pixels.map(f64::from);
+    let rays = view.rays();
+    let voxel_from_world = view.world_from_voxel().inverse();
+    let mut samples = 0.0;
+    for at in 0..RAYS * RAYS {
+        let x = (f64::from(at % RAYS) + 0.5) * width / f64::from(RAYS);
+        let y = (f64::from(at / RAYS) + 0.5) * height / f64::from(RAYS);
+        let origin = rays.origin + x * rays.origin_dx + y * rays.origin_dy;
+        let direction = rays.direction + x * rays.direction_dx + y * rays.direction_dy;
+        let length = length_inside(
+            view.domain(),
+            voxel_from_world.transform_point3(origin),
+            voxel_from_world.transform_vector3(direction),
+        ) * direction.length();
+        samples += match settings.technique {
+            Technique::Raycast => (length / view.step_world()).min(MAX_SAMPLES_PER_RAY.into()),
+            _ if length > 0.0 => slices.into(),
+            _ => 0.0,
+        };
+    }
+    let pixels = width * height / f64::from(RAYS * RAYS);
+    samples * pixels * looks_of_sample(settings) * volumes as f64
+}
+
+/// In units of t: how much of a ray lies in a box.
+fn length_inside([low, high]: [DVec3; 2], origin: DVec3, direction: DVec3) -> f64 {
+    let [mut near, mut far] = [0.0_f64, f64::INFINITY];
+    for k in 0..3 {
+        let ends = [low[k], high[k]].map(|side| (side - origin[k]) / direction[k]);
+        // A ray along the side of a box makes 0 / 0, which neither max nor min takes.
+        near = near.max(ends[0].min(ends[1]));
+        far = far.min(ends[0].max(ends[1]));
+    }
+    match far.is_finite() {
+        true => (far - near).max(0.0),
+        false => 0.0,
+    }
+}
+
+fn looks_of_sample(settings: &Settings) -> f64 {
+    let of_value = match settings.filter.kernel() {
+        Some(_) => 8.0,
+        None => 1.0,
+    };
+    // Light asks for a gradient, and so do functions of gradients; cells of trilinear fields solve for extremes.
+    let is_lit = settings.shading.is_some() || settings.mode == Mode::Iso;
+    match is_lit || settings.per_mode.exact_maximum {
+        true => of_value * 7.0,
+        false => of_value,
+    }
+}
+
+/// Voxels of some cells, each looked at so often.
+pub fn looks_of_cells<'a>(cells: impl IntoIterator<Item = &'a Cell>, each: f64) -> f64 {
+    let voxels = |cell: &Cell| cell.stored.dims().map(f64::from).iter().product::<f64>();
+    each * cells.into_iter().map(voxels).sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dvec3;
+
+    #[test]
+    fn a_ray_is_as_long_in_a_box_as_it_lies_in_it() {
+        let unit = [DVec3::ZERO, DVec3::ONE];
+        let half = dvec3(0.5, 0.5, -1.0);
+        assert_eq!(length_inside(unit, half, DVec3::Z), 1.0);
+        assert_eq!(length_inside(unit, half, 0.5 * DVec3::Z), 2.0);
+        assert_eq!(length_inside(unit, half, -DVec3::Z), 0.0);
+        assert_eq!(length_inside(unit, dvec3(2.0, 0.5, -1.0), DVec3::Z), 0.0);
+        assert_eq!(length_inside(unit, DVec3::splat(0.5), DVec3::Z), 0.5);
+        assert!(length_inside(unit, DVec3::ZERO, DVec3::Z) >= 0.0);
+    }
+}
