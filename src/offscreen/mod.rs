@@ -8,6 +8,7 @@ mod gathered;
 mod gradients;
 mod light;
 mod passes;
+mod patched;
 mod position;
 mod probe;
 pub mod reference;

@@ -1,5 +1,6 @@
 //! A slicer's picture: drawn into the accumulation where the device blends f32, else in merged batches.
 
+use super::patched;
 use super::submission::Submission;
 use crate::gpu::{
     Bindings, Error, Gpu, Image, ImageDesc, ImageKind, Load, Use, begin_rendering, clear_image,
@@ -7,7 +8,7 @@ use crate::gpu::{
 };
 use crate::technique::blend::{Drawn, clear_color};
 use crate::technique::merge::{BATCH_FORMAT, MAX_BATCH_SLICES, Merge};
-use crate::technique::{ACCUMULATION_FORMAT, Mode, Settings, Slicer, Words};
+use crate::technique::{ACCUMULATION_FORMAT, Mode, PatchSlicer, Settings, Slicer, Words};
 use ash::vk;
 use std::sync::Arc;
 
@@ -16,13 +17,20 @@ use std::sync::Arc;
 pub struct Slicing {
     gpu: Arc<Gpu>,
     drawn: Drawn,
-    slicer: Slicer,
+    slicer: Slices,
     /// Where f32 targets cannot be blended.
     merge: Option<Merge>,
 }
 
+/// Which parts of slices are drawn.
+#[derive(Debug)]
+enum Slices {
+    Whole(Slicer),
+    Patches(PatchSlicer),
+}
+
 impl Slicing {
-    /// Compiles.
+    /// Compiles; `is_patched`: for targets with patches.
     ///
     /// # Errors
     /// Where the mode needs f32 blending and the device has none.
@@ -31,6 +39,7 @@ impl Slicing {
         settings: &Settings,
         drawn: Drawn,
         words: &Words,
+        is_patched: bool,
     ) -> Result<Self, Error> {
         let order = settings.order;
         let can_merge = matches!(drawn, Drawn::Picture(Mode::Composite) | Drawn::Count);
@@ -41,41 +50,69 @@ impl Slicing {
             ACCUMULATION_FORMAT
         };
         let merge = || Merge::new(gpu, drawn, order);
+        let technique = settings.technique;
+        let slicer = match is_patched {
+            true => Slices::Patches(PatchSlicer::new(
+                gpu, technique, drawn, order, words, format,
+            )?),
+            false => Slices::Whole(Slicer::new(gpu, technique, drawn, order, words, format)?),
+        };
         Ok(Self {
             gpu: Arc::clone(gpu),
             drawn,
-            slicer: Slicer::new(gpu, settings.technique, drawn, order, words, format)?,
+            slicer,
             merge: is_merged.then(merge).transpose()?,
         })
     }
 
     /// Draws all slices into `into` and leaves it in [`Use::FragmentSampled`]. Milliseconds on the device.
     pub fn run(&self, submission: Submission, into: &Image) -> Result<Option<f64>, Error> {
-        let bound = submission.bind(|inputs| self.slicer.bind(inputs))?;
+        let slicer = match &self.slicer {
+            Slices::Whole(slicer) => slicer,
+            Slices::Patches(slicer) => return patched::run(self, slicer, submission, into),
+        };
+        let bound = submission.bind(|inputs| slicer.bind(inputs))?;
         match &self.merge {
-            Some(merge) => self.run_in_batches(submission, &bound, into, merge),
-            None => self.run_at_once(submission, &bound, into),
+            Some(merge) => self.run_in_batches(slicer, submission, &bound, into, merge),
+            None => self.run_at_once(slicer, submission, &bound, into),
+        }
+    }
+
+    pub(super) fn gpu(&self) -> &Arc<Gpu> {
+        &self.gpu
+    }
+
+    pub(super) fn drawn(&self) -> Drawn {
+        self.drawn
+    }
+
+    pub(super) fn merge(&self) -> Option<&Merge> {
+        self.merge.as_ref()
+    }
+
+    /// What the target holds before the first slice.
+    pub(super) fn clear(&self) -> [f32; 4] {
+        match self.drawn {
+            Drawn::Picture(mode) => clear_color(mode),
+            Drawn::Count => [0.0; 4],
         }
     }
 
     fn run_at_once(
         &self,
+        slicer: &Slicer,
         submission: Submission,
         bound: &[Bindings],
         into: &Image,
     ) -> Result<Option<f64>, Error> {
         let (bricks, extent) = (submission.bricks, submission.targets.extent);
-        let clear = match self.drawn {
-            Drawn::Picture(mode) => clear_color(mode),
-            Drawn::Count => [0.0; 4],
-        };
+        let clear = self.clear();
         // SAFETY: recorded in order, with barriers between; `run` waits, and all that is bound lives meanwhile.
         submission.run(|cmd, gpu| unsafe {
             image_barrier(gpu, cmd, into, Use::Nothing, Use::ColorTarget);
             begin_rendering(gpu, cmd, &[(into.view(), Load::Clear(clear))], extent);
             for (brick, bindings) in bricks.iter().zip(bound) {
-                self.slicer
-                    .record(cmd, bindings, brick.offset, extent, 0..brick.slices);
+                slicer.record(cmd, bindings, brick.offset, extent, 0..brick.slices);
             }
             end_rendering(gpu, cmd);
             image_barrier(gpu, cmd, into, Use::ColorTarget, Use::FragmentSampled);
@@ -85,6 +122,7 @@ impl Slicing {
 
     fn run_in_batches(
         &self,
+        slicer: &Slicer,
         submission: Submission,
         bound: &[Bindings],
         into: &Image,
@@ -112,8 +150,7 @@ impl Slicing {
                 };
                 image_barrier(gpu, cmd, &batch, last, Use::ColorTarget);
                 begin_rendering(gpu, cmd, &[(batch.view(), Load::Clear([0.0; 4]))], extent);
-                self.slicer
-                    .record(cmd, bindings, brick.offset, extent, slices);
+                slicer.record(cmd, bindings, brick.offset, extent, slices);
                 end_rendering(gpu, cmd);
                 image_barrier(gpu, cmd, &batch, Use::ColorTarget, Use::ComputeSampled);
                 image_barrier(gpu, cmd, into, before, Use::ComputeWrite);
@@ -126,7 +163,7 @@ impl Slicing {
     }
 }
 
-fn batch_image(gpu: &Arc<Gpu>, [width, height]: [u32; 2]) -> Result<Image, Error> {
+pub(super) fn batch_image(gpu: &Arc<Gpu>, [width, height]: [u32; 2]) -> Result<Image, Error> {
     let desc = ImageDesc {
         kind: ImageKind::D2,
         extent: [width, height, 1],

@@ -63,21 +63,33 @@ impl Renderer<'_> {
         Ok(())
     }
 
+    /// Lists of the patches of slices for pictures of `scene`: whether there are any.
+    ///
+    /// # Errors
+    /// Where the device is lost.
+    pub(super) fn prepare_patches(&mut self, scene: &Scene) -> Result<bool, Error> {
+        let room = scene.view(&scene.volume.grid(), [0.0; 2]).patch_room();
+        let Some((room, _)) = room.zip(wanted(scene)) else {
+            return Ok(false);
+        };
+        let targets = self.targets.as_mut().expect("made before");
+        let made = targets.prepare_patches(self.device.gpu(), room);
+        Ok(if_it_fits(made)?.is_some())
+    }
+
     /// Finds out what pictures of `scene` need not look at. Nothing to do where that is known.
     ///
     /// # Errors
     /// Where the device is lost.
     pub(super) fn prepare_skip(&mut self, scene: &Scene) -> Result<(), Error> {
-        let range = scene.volume.value_range;
-        let wanted = scene.settings.skippable(scene.mix(), scene.transfer, range);
         self.skipped.wanted = None;
-        if wanted == Skippable::Nothing {
+        let Some((wanted, apron)) = wanted(scene) else {
             return Ok(());
-        }
+        };
         let of = Of {
             copied: Copied::of(scene),
             shown: self.shown,
-            apron: scene.settings.apron(),
+            apron,
         };
         if self
             .skipped
@@ -117,6 +129,14 @@ impl Renderer<'_> {
         self.skipped.wanted = Some(wanted);
         Ok(())
     }
+}
+
+/// What pictures of `scene` need not look at, and what cells must know for it.
+fn wanted(scene: &Scene) -> Option<(Skippable, Apron)> {
+    let range = scene.volume.value_range;
+    let wanted = scene.settings.skippable(scene.mix(), scene.transfer, range);
+    let apron = scene.view(&scene.volume.grid(), [0.0; 2]).apron()?;
+    (wanted != Skippable::Nothing).then_some((wanted, apron))
 }
 
 /// Without memory for it the picture is the same, only slower.
