@@ -7,10 +7,10 @@
 // are the corners of all rays of the square: on a view-aligned plane every sample lies in the quadrangle of the four,
 // because x is affine in the pixel; on a slice of a stack too, because x is projective in the pixel and its
 // denominator, the slope, has one sign. Between two planes each ray is a line. So all samples of a patch lie in the hull
-// of eight points, and in the box around them. A patch is left out where no macro cell that meets this box may have
-// matter; the box is widened by a pixel, for places in it that rays go through, and by what f32 loses. Samples that
-// are left out would have added nothing at all, and which patch a pixel belongs to is a matter of whole numbers: the
-// picture is the same to the bit (`sampling.md` 5).
+// of eight points, and in the box around them. A patch is left out where no macro cell may have matter that meets this
+// box and comes near the planes. The box is widened by a pixel, for places in it that rays go through, and by what f32
+// loses. Samples that are left out would have added nothing at all, and which patch a pixel belongs to is a matter of
+// whole numbers: the picture is the same to the bit (`sampling.md` 5).
 //
 // Twin: none, but pictures with it and without are the same.
 
@@ -81,7 +81,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
                 farthest = max(farthest, s);
             }
             // Nothing behind the eye is seen.
-            is_drawn = farthest > -0.5 * frame.smallest_spacing && may_have_matter(low, high);
+            is_drawn = farthest > -0.5 * frame.smallest_spacing && may_have_matter(low, high, planes);
         }
         layers |= select(0u, 1u << layer, is_drawn);
     }
@@ -123,8 +123,8 @@ fn planes_of(first: u32, end: u32) -> vec2<f32> {
     return vec2<f32>(planes) + vec2(-1.0, 1.0) * frame.patch_reach_planes;
 }
 
-// Whether any cell that the box of voxel space meets does.
-fn may_have_matter(box_low: vec3<f32>, box_high: vec3<f32>) -> bool {
+// Whether any cell does that meets the box of voxel space and what lies between two planes.
+fn may_have_matter(box_low: vec3<f32>, box_high: vec3<f32>, planes: vec2<f32>) -> bool {
     let cell = f32(CELL_VOXELS);
     let reach = vec3(frame.patch_reach_voxels);
     let low = max(box_low, frame.domain_min) - reach;
@@ -147,10 +147,11 @@ fn may_have_matter(box_low: vec3<f32>, box_high: vec3<f32>) -> bool {
             // No cell that is nearer than the room has any.
             for (var x = first.x; x <= last.x;) {
                 let room = room_of(vec3(x, y, z));
-                if room == 0 {
+                let center = frame.cells_origin + (vec3(f32(x), f32(y), f32(z)) + 0.5) * cell;
+                if room == 0 && is_at_planes(center, 0.5 * cell + frame.patch_reach_voxels, planes) {
                     return true;
                 }
-                x += room;
+                x += max(room, 1);
             }
         }
     }

@@ -7,6 +7,11 @@ fn least_slope() -> f32 {
     return 0.01 / frame.smallest_spacing;
 }
 
+// Whether a cube of voxel space meets what lies between two planes: the box around the samples is as thick as that.
+fn is_at_planes(center: vec3<f32>, half: f32, planes: vec2<f32>) -> bool {
+    return true;
+}
+
 fn plane_slope(world: Ray, voxel: Ray) -> f32 {
     return voxel.direction[frame.slice_axis];
 }

@@ -43,7 +43,7 @@ pub fn run(
         extent,
         target: batch.as_ref().unwrap_or(into),
     };
-    let bind = |brick: &Part| slicer.bind(&brick.inputs, patches, patched.target);
+    let bind = |brick: &Part| slicer.bind(&brick.inputs, patches, Some(patched.target));
     let bound = bricks.iter().map(bind).collect::<Result<Vec<_>, Error>>()?;
     let bricks: Vec<Bound> = bricks.iter().zip(bound).collect();
     // SAFETY: recorded in order, with barriers between; `run` waits, and all that is bound lives meanwhile.

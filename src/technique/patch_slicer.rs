@@ -34,7 +34,7 @@ pub struct PatchSlicer {
 #[derive(Debug)]
 pub struct PatchBindings {
     list: Bindings,
-    opaque: Bindings,
+    opaque: Option<Bindings>,
     draw: Bindings,
 }
 
@@ -70,7 +70,7 @@ impl PatchSlicer {
     }
 
     /// Binds the inputs, whose [`super::Skip`] says where matter may be, the lists, and the target that slices are
-    /// blended in.
+    /// blended in where it is asked what is opaque in it.
     ///
     /// # Errors
     /// Where an input is missing.
@@ -78,18 +78,19 @@ impl PatchSlicer {
         &self,
         inputs: &Inputs,
         patches: &Patches,
-        target: &Image,
+        target: Option<&Image>,
     ) -> Result<PatchBindings, Error> {
-        let others = [
+        let mut others = vec![
             ("draws", Resource::Storage(&patches.draws)),
             ("patches_listed", Resource::Storage(&patches.listed)),
             ("opaque_since", Resource::Storage(&patches.opaque_since)),
-            ("blended", Resource::sampled(target)),
         ];
+        others.extend(target.map(|target| ("blended", Resource::sampled(target))));
         let bind = |layout| inputs.bind(&self.gpu, layout, &others);
+        let opaque = target.map(|_| bind(self.opaque.layout()));
         Ok(PatchBindings {
             list: bind(self.list.layout())?,
-            opaque: bind(self.opaque.layout())?,
+            opaque: opaque.transpose()?,
             draw: bind(self.draw.layout())?,
         })
     }
@@ -125,7 +126,7 @@ impl PatchSlicer {
     }
 
     /// Records what finds the squares of the picture that are opaque, before the `batch`-th batch of slices of the
-    /// picture, counted from 1 over all bricks: they are left out from here on.
+    /// picture, counted from 1 over all bricks: they are left out from here on. Nothing where no target was bound.
     ///
     /// # Errors
     /// More squares than the device can dispatch.
@@ -141,14 +142,16 @@ impl PatchSlicer {
         squares: [u32; 2],
         batch: u32,
     ) -> Result<(), Error> {
+        let Some(opaque) = &bindings.opaque else {
+            return Ok(());
+        };
         let [across, down] = squares;
         let groups = self.opaque.groups([across, down, 1])?;
         let since = &patches.opaque_since;
         // SAFETY: the caller's promises; barriers before and after.
         unsafe {
             patches.record_batch_for(cmd, batch, Use::ComputeWrite);
-            self.opaque
-                .dispatch(cmd, &bindings.opaque, &[offset], groups);
+            self.opaque.dispatch(cmd, opaque, &[offset], groups);
             buffer_barrier(&self.gpu, cmd, since, Use::ComputeWrite, Use::DrawRead);
         }
         Ok(())
