@@ -18,8 +18,9 @@
 #import patch_{planes}
 #import patch_grid
 
-// More cells than these are not looked at: a patch so large is drawn.
-const MAX_CELLS: i32 = 2048;
+// More cells than these are not looked at: a patch so large is drawn. With BATCH_LAYERS times as many, and their rows, loops
+// take fewer turns than llvmpipe grants.
+const MAX_CELLS: i32 = 1024;
 
 // One draw without indices, as Vulkan reads it.
 struct Draw {

@@ -45,7 +45,9 @@ fn patches_inside_the_hosts_rendering_are_the_picture_of_whole_slices() {
         let cells = MacroCells::new(gpu, &there.volume, view.apron().unwrap()).unwrap();
         let empty = EmptySpace::new(gpu, &cells, &seen).unwrap();
         let skip = Skip::Unseen(&cells, &empty);
-        let mut recording = view.recordings(&there.volume, Some(&there.transfer)).unwrap()[0];
+        let mut recording = view
+            .recordings(&there.volume, Some(&there.transfer))
+            .unwrap()[0];
         recording.skip(skip);
         let offset = recording.write(&ring, 0).unwrap();
         let inputs = Inputs {

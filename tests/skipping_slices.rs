@@ -224,6 +224,45 @@ fn behind_what_is_opaque_no_slice_is_drawn_from_front_to_back() {
 }
 
 #[test]
+fn what_is_nearly_opaque_goes_on() {
+    let volume = volume_of([24, 24, 200], DAffine3::IDENTITY, |p| p.z);
+    // After 64 slices 0.99 is opaque, and what comes is of another colour.
+    let color = |(value, srgb)| ColorPoint { value, srgb };
+    let function = TransferFunction {
+        color: [(0.0, [0.1, 0.0, 0.2]), (200.0, [1.0, 0.9, 0.1])]
+            .map(color)
+            .into(),
+        ..white(&[(0.0, 0.08)])
+    };
+    let grid = volume.grid();
+    let camera = Camera {
+        eye: grid.center() - dvec3(0.0, 0.0, 300.0),
+        target: grid.center(),
+        up: dvec3(0.0, 1.0, 0.0),
+        projection: Projection::Orthographic { view_height: 22.0 },
+        zoom: 1.0,
+    };
+    let mut renderer = Renderer::new(device(), &volume).expect("a renderer");
+    for technique in TECHNIQUES {
+        let settings = Settings {
+            technique,
+            order: Order::FrontToBack,
+            ..Settings::default()
+        };
+        let scene = Scene {
+            volume: &volume,
+            transfer: Some(&function),
+            beside: Default::default(),
+            camera: &camera,
+            extent_pixels: [32; 2],
+            settings: &settings,
+        };
+        let [drawn, whole] = samples_of_same_pictures(&mut renderer, &scene);
+        assert_eq!(drawn, whole, "{technique:?}");
+    }
+}
+
+#[test]
 fn a_voxel_at_the_border_of_a_cell_is_drawn_from_the_cells_beside() {
     let bright = [
         [7, 12, 12],

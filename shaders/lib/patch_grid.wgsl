@@ -7,8 +7,8 @@
 
 #import slice_order
 
-const LAYER_SLICES: u32 = 8u;
-const BATCH_LAYERS: u32 = 8u;
+const LAYER_SLICES: u32 = 4u;
+const BATCH_LAYERS: u32 = 16u;
 
 // Squares across and down.
 fn patch_grid() -> vec2<u32> {

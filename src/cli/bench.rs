@@ -169,6 +169,7 @@ impl Bench {
         let mut job = Job {
             volume: &shown.volume,
             classification: &shown.classification,
+            stream: shown.stream(),
             beside: parts.beside(),
             settings: &settings,
             extent_pixels: scene.picture.extent_pixels()?,

@@ -127,6 +127,11 @@ impl From<offscreen::Error> for Error {
             offscreen::Error::NoLabels => {
                 Self::usage(error.to_string(), "--labels FILE lays a map over INPUT")
             }
+            offscreen::Error::Read(error) => Self::Read(error),
+            offscreen::Error::NotStreamed { .. } | offscreen::Error::Outline => Self::usage(
+                error.to_string(),
+                "--fit draws a reduced volume that fits into memory",
+            ),
         }
     }
 }

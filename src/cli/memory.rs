@@ -185,6 +185,34 @@ pub fn fitting(
     )))
 }
 
+/// True where a picture of the volume needs more memory than there is.
+pub fn is_too_large(
+    header: &Header,
+    scene: &SceneFlags,
+    device: Option<DeviceMemory>,
+    held: Held,
+) -> bool {
+    let host_bytes = scene.input.max_memory.or_else(available_bytes);
+    let light = LightPlan::bytes(header.dims, scene.light.bundle_count());
+    let (host_left, device_left) = beside_light(light, host_bytes, device);
+    least_factor(header, held, &filters_of(scene), host_left, device_left) > 1
+}
+
+/// Bytes of the device that bricks may take, and of the host that reading them may.
+pub fn for_bricks(scene: &SceneFlags, device: DeviceMemory) -> [u64; 2] {
+    let host_bytes = scene.input.max_memory.or_else(available_bytes);
+    let host_bytes = host_bytes.unwrap_or(device.heap_bytes);
+    let there = match device.is_of_host {
+        true => device.heap_bytes.min(host_bytes) / 2,
+        false => device.heap_bytes / 10 * 8,
+    };
+    let wanted = scene.input.device_memory;
+    [
+        wanted.map_or(there, |wanted| wanted.min(device.heap_bytes)),
+        (host_bytes / 16).min(SLAB_BYTES / 2),
+    ]
+}
+
 /// True where what is held of a volume is so little beside the memory of the host that it may be read before anything
 /// is known of the device.
 pub fn is_little(header: &Header, scene: &SceneFlags, held: Held) -> bool {

@@ -22,7 +22,7 @@ pub fn why_empty(
         return None;
     }
     let validity = volume.validity.as_deref().unwrap_or(&[1]);
-    if validity.iter().all(|&valid| valid == 0) {
+    if !validity.is_empty() && validity.iter().all(|&valid| valid == 0) {
         return Some("all voxels of the volume hold no data");
     }
     let seen = seen(volume, camera, settings, [picture.width, picture.height]);

@@ -127,6 +127,7 @@ impl Render {
         let job = Job {
             volume,
             classification,
+            stream: shown.stream(),
             beside: parts.beside(),
             settings: &settings,
             extent_pixels,

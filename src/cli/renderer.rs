@@ -11,7 +11,7 @@ use super::{
 use crate::{
     camera::Camera,
     gpu::{DeviceChoice, Headless, Options},
-    offscreen::{self, Ceilings, reference},
+    offscreen::{self, Ceilings, Stream, reference},
     picture::{LayerKind, Picture},
     scene::{Beside, Scene},
     technique::{Filter, Role, Settings, Technique},
@@ -29,6 +29,8 @@ pub struct Job<'a> {
     pub volume: &'a Volume,
     /// How its values are seen.
     pub classification: &'a Classification,
+    /// Where its voxels come from, where it is an outline.
+    pub stream: Option<&'a Stream>,
     /// What it is seen together with.
     pub beside: Beside<'a>,
     /// What is computed.
@@ -207,7 +209,10 @@ impl<'a> Renderer<'a> {
         let start = Instant::now();
         let beside = job.beside.volumes();
         let volumes = [job.volume].into_iter().chain(beside).collect();
-        let mut renderer = offscreen::Renderer::several(on, volumes)?;
+        let mut renderer = match job.stream {
+            Some(stream) => offscreen::Renderer::streamed(on, stream)?,
+            None => offscreen::Renderer::several(on, volumes)?,
+        };
         let prepare_ms = device.found_ms + ms_since(start);
         let start = Instant::now();
         let scene = job.scene(camera);
@@ -356,7 +361,9 @@ impl<'a> Job<'a> {
 fn has_labels(job: &Job) -> bool {
     match job.beside {
         Beside::Nothing => {
-            job.settings.filter == Filter::Nearest && labels_of(job.volume).is_some()
+            job.settings.filter == Filter::Nearest
+                && job.stream.is_none()
+                && labels_of(job.volume).is_some()
         }
         Beside::Channels(channels) => channels.iter().any(|one| one.role == Role::Labels),
         Beside::Colors(_) | Beside::Classified(_) => false,

@@ -130,6 +130,7 @@ fn draw(
     let job = Job {
         volume: &shown.volume,
         classification: &shown.classification,
+        stream: shown.stream(),
         beside: parts.beside(),
         settings: &settings,
         extent_pixels,

@@ -114,6 +114,10 @@ impl Source for FileSource {
         &self.header
     }
 
+    fn reads_parts(&self) -> bool {
+        self.data.encoding == Encoding::Raw
+    }
+
     fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
         let wanted = wanted_count(self.data.format, &self.header, pick, region, self.max_bytes)
             .map_err(at(&self.path))?;

@@ -14,6 +14,7 @@ mod probe;
 pub mod reference;
 mod renderer;
 mod slicing;
+mod stream;
 mod submission;
 mod sum;
 mod tally;
@@ -23,6 +24,7 @@ mod upload;
 pub use denoise::denoised;
 pub use probe::{Ceilings, ceilings};
 pub use renderer::{Rendered, Renderer};
+pub use stream::{Stream, StreamOptions};
 
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]
@@ -48,4 +50,16 @@ pub enum Error {
         "the layer `Label` is for a label map over the volume, or for one volume of labels with the filter Nearest"
     )]
     NoLabels,
+    /// A brick of a [`Stream`] cannot be read.
+    #[error(transparent)]
+    Read(#[from] crate::volume::ReadError),
+    /// What is for volumes in memory alone.
+    #[error("a volume that is drawn brick by brick has no {what}")]
+    NotStreamed {
+        /// What was asked for.
+        what: &'static str,
+    },
+    /// A scene and a renderer of different streams.
+    #[error("the scene shows a stream, and the renderer is not one of that stream")]
+    Outline,
 }

@@ -28,7 +28,7 @@ pub fn labels(scene: &Scene, depths: &[f32]) -> Vec<f32> {
 /// The volume whose numbers are labels; one that is shown alone is taken for that where nothing mixes its numbers.
 pub fn label_map<'a>(scene: &Scene<'a>) -> Option<&'a Volume> {
     match scene.beside {
-        Beside::Nothing => Some(scene.volume),
+        Beside::Nothing => Some(scene.volume).filter(|volume| !volume.is_outline()),
         Beside::Colors(_) | Beside::Classified(_) => None,
         Beside::Channels(channels) => {
             let map = channels.iter().find(|one| one.role == Role::Labels);

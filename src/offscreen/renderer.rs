@@ -9,6 +9,7 @@
 
 mod classified;
 mod skipping;
+mod streaming;
 
 use super::Error;
 use super::fade::{render_faded, stacks_of};
@@ -16,6 +17,7 @@ use super::gradients::decided;
 use super::light::Matter;
 use super::passes::{Passes, key_of};
 use super::position::{labels, positions};
+use super::stream::{Cache, Stream};
 use super::submission::{self, Submission};
 use super::sum::sum_of;
 use super::tally::{Clock, Mean, check_layers};
@@ -35,6 +37,7 @@ use crate::volume::{Spline, Volume};
 use skipping::Skipped;
 use std::collections::HashMap;
 use std::sync::Arc;
+use streaming::{BRICKS_AT_ONCE, Streaming};
 
 /// A picture and what it took.
 #[derive(Debug)]
@@ -51,6 +54,8 @@ pub struct Renderer<'v> {
     volumes: Vec<&'v Volume>,
     /// Which of them is drawn, where they are drawn one by one; else the first.
     shown: usize,
+    /// What comes brick by brick; the volumes are its outline then.
+    streaming: Option<Streaming<'v>>,
     /// What has been needed so far.
     resident: HashMap<Copied, Vec<GpuVolume>>,
     transfer: Option<Uploaded>,
@@ -126,6 +131,7 @@ impl<'v> Renderer<'v> {
         Ok(Self {
             volumes,
             shown: 0,
+            streaming: None,
             resident: HashMap::new(),
             transfer: None,
             light: None,
@@ -136,6 +142,19 @@ impl<'v> Renderer<'v> {
             timer: Timer::new(gpu)?,
             device,
         })
+    }
+
+    /// A renderer of scenes of [`Stream::outline`].
+    ///
+    /// # Errors
+    /// Where the device gives no memory.
+    pub fn streamed(device: Headless, stream: &'v Stream) -> Result<Self, Error> {
+        let mut made = Self::several(device, vec![stream.outline()])?;
+        made.streaming = Some(Streaming {
+            stream,
+            cache: Cache::default(),
+        });
+        Ok(made)
     }
 
     /// The device.
@@ -156,6 +175,10 @@ impl<'v> Renderer<'v> {
         scene.check()?;
         let settings = &decided(self.device.gpu(), scene);
         let scene = &Scene { settings, ..*scene };
+        self.check_stream(scene)?;
+        if self.streaming.is_some() {
+            return self.prepare_stream(scene);
+        }
         for (settings, _) in &stacks_of(scene) {
             self.upload(&Scene { settings, ..*scene })?;
         }
@@ -306,10 +329,14 @@ impl<'v> Renderer<'v> {
         {
             self.targets = Some(Targets::new(&gpu, scene.extent_pixels)?);
         }
-        let parts = parts_of(&self.resident, self.shown, scene);
+        let parts = match &self.streaming {
+            Some(streaming) => vec![streaming.part()],
+            None => parts_of(&self.resident, self.shown, scene),
+        };
         // Half-angle slices have parameters of the eye and of the light.
         let is_half = scene.settings.is_half_angle();
-        let slots = (parts[0].volume.bricks().len() as u32).max(if is_half { 2 } else { 1 });
+        let at_once = if is_half { 2 } else { BRICKS_AT_ONCE };
+        let slots = parts[0].volume.bricks().len().max(at_once) as u32;
         if is_half {
             let extent = scene.view(&scene.volume.grid(), [0.0; 2]).light_extent();
             let targets = self.targets.as_mut().expect("made above");
@@ -346,7 +373,10 @@ impl<'v> Renderer<'v> {
 
     /// One pass of the technique, rays at one position in each pixel.
     fn gather(&mut self, scene: &Scene, in_pixel: InPixel) -> Result<Option<f64>, Error> {
-        self.submit(scene, in_pixel, Passes::gather)
+        match self.streaming {
+            Some(_) => self.gather_stream(scene, in_pixel),
+            None => self.submit(scene, in_pixel, Passes::gather),
+        }
     }
 
     /// Parameters into the ring, then one submission.
@@ -398,6 +428,7 @@ impl<'v> Renderer<'v> {
             targets: self.targets.as_ref().expect("prepared"),
             bricks: &bricks,
             timer: self.timer.as_ref(),
+            resumes: false,
         };
         Ok(pass(self.passes.as_ref().expect("prepared"), submission)?)
     }

@@ -17,6 +17,8 @@ pub struct Submission<'a> {
     pub bricks: &'a [Part<'a>],
     /// The device's clock, if it has one.
     pub timer: Option<&'a Timer>,
+    /// The images hold what bricks before these have left, in [`Use::FragmentSampled`].
+    pub resumes: bool,
 }
 
 /// What one brick adds to a picture.
@@ -72,7 +74,7 @@ impl Submission<'_> {
         bound: &[Bindings],
         record: impl Fn(vk::CommandBuffer, &Bindings, u32) -> Result<(), Error>,
     ) -> Result<Option<f64>, Error> {
-        let bricks = self.bricks;
+        let (bricks, resumes) = (self.bricks, self.resumes);
         self.run(|cmd, gpu| {
             let barriers = |before, after| {
                 for image in images {
@@ -80,7 +82,10 @@ impl Submission<'_> {
                     unsafe { image_barrier(gpu, cmd, image, before, after) };
                 }
             };
-            let mut before = Use::Nothing;
+            let mut before = match resumes {
+                true => Use::FragmentSampled,
+                false => Use::Nothing,
+            };
             for (brick, bindings) in bricks.iter().zip(bound) {
                 barriers(before, Use::ComputeWrite);
                 record(cmd, bindings, brick.offset)?;

@@ -77,6 +77,23 @@ impl Targets {
         (made, *room)
     }
 
+    /// The same where more is done with the image as before.
+    pub fn look(
+        &self,
+        device: &mut Headless,
+        image: &Image,
+        before: Use,
+    ) -> Result<Vec<[f32; 4]>, Error> {
+        let pixels = self.read(device, image, before)?;
+        let gpu = Arc::clone(device.gpu());
+        // SAFETY: as in `read`.
+        device.run(|cmd| unsafe {
+            image_barrier(&gpu, cmd, image, Use::TransferRead, before);
+            Ok(())
+        })?;
+        Ok(pixels)
+    }
+
     /// The pixels of one of the images, rows from the top. `before` is what was last done with it.
     pub fn read(
         &self,

@@ -71,7 +71,7 @@ pub fn keep(
 }
 
 /// While the device copies one slab, the next is staged.
-fn fill(device: &mut Headless, made: &GpuVolume, volume: &Volume) -> Result<(), Error> {
+pub fn fill(device: &mut Headless, made: &GpuVolume, volume: &Volume) -> Result<(), Error> {
     let slabs = made.slabs(STAGING_BYTES);
     let bytes = slabs.iter().map(|slab| made.staging_bytes(slab.region));
     let bytes = bytes.max().unwrap_or(0);

@@ -3,6 +3,7 @@
 //! The cut is regular: n bricks along an axis, each of ceil(dim / n) voxels, the last one smaller. A brick
 //! also stores a halo of voxels around its own, so that filters and gradients find their neighbours.
 
+use super::TextureLayout;
 use crate::volume::VoxelBox;
 
 /// One brick of a cut.
@@ -35,6 +36,15 @@ pub fn cut(dims: [u32; 3], halo: [u32; 3], fits: impl Fn([u32; 3]) -> bool) -> O
             .div_ceil(size[longest] - 1)
             .max(counts[longest] + 1);
     }
+}
+
+/// Bricks of `side` voxels along each axis, the last ones smaller, with the halo of 3D textures.
+pub fn cells_of_side(dims: [u32; 3], side: u32) -> Vec<Cell> {
+    cells(
+        dims,
+        dims.map(|n| n.min(side)),
+        TextureLayout::Texture3d.halo(),
+    )
 }
 
 fn cells(dims: [u32; 3], size: [u32; 3], halo: [u32; 3]) -> Vec<Cell> {

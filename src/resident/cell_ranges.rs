@@ -7,15 +7,19 @@ use crate::volume::{Volume, Voxels};
 use half::f16;
 use std::ops::RangeInclusive;
 
-/// Smallest and largest value of each cell of a grid, x fastest.
-pub(super) fn ranges(volume: &Volume, grid: &CellGrid) -> Vec<[f32; 2]> {
+/// Smallest and largest value of each cell of a grid, x fastest. `corner` is the first voxel of `volume` in the grid.
+pub(super) fn ranges(volume: &Volume, corner: [u32; 3], grid: &CellGrid) -> Vec<[f32; 2]> {
+    let held = Held {
+        dims: volume.dims.map(|n| n as usize),
+        corner: corner.map(|n| n as usize),
+    };
     let codes = match &volume.voxels {
-        Voxels::U8(v) => code_ranges(v, volume.dims, grid, |c| c.into()),
-        Voxels::I8(v) => code_ranges(v, volume.dims, grid, |c| c.into()),
-        Voxels::U16(v) => code_ranges(v, volume.dims, grid, |c| c.into()),
-        Voxels::I16(v) => code_ranges(v, volume.dims, grid, |c| c.into()),
-        Voxels::F16(v) => code_ranges(v, volume.dims, grid, f16::to_f32),
-        Voxels::F32(v) => code_ranges(v, volume.dims, grid, |c| c),
+        Voxels::U8(v) => code_ranges(v, &held, grid, |c| c.into()),
+        Voxels::I8(v) => code_ranges(v, &held, grid, |c| c.into()),
+        Voxels::U16(v) => code_ranges(v, &held, grid, |c| c.into()),
+        Voxels::I16(v) => code_ranges(v, &held, grid, |c| c.into()),
+        Voxels::F16(v) => code_ranges(v, &held, grid, f16::to_f32),
+        Voxels::F32(v) => code_ranges(v, &held, grid, |c| c),
     };
     codes.into_iter().map(|ends| range_of(ends, grid)).collect()
 }
@@ -30,20 +34,27 @@ fn range_of(ends: [f32; 2], grid: &CellGrid) -> [f32; 2] {
     [low - beyond, high + beyond]
 }
 
+/// Which voxels of the grid are in memory.
+struct Held {
+    dims: [usize; 3],
+    corner: [usize; 3],
+}
+
 /// Smallest and largest code of each cell and its apron.
 fn code_ranges<T: Copy + PartialOrd>(
     voxels: &[T],
-    dims: [u32; 3],
+    held: &Held,
     grid: &CellGrid,
     to_f32: impl Fn(T) -> f32,
 ) -> Vec<[f32; 2]> {
-    let [nx, ny, _] = dims.map(|n| n as usize);
+    let [nx, ny, _] = held.dims;
     // Voxels of the cells and the apron along an axis, as far as the brick stores them.
     let around = |axis: usize, cell: u32| -> RangeInclusive<usize> {
         let own = grid.origin[axis] + (cell * CELL_VOXELS) as i32;
         let last = own + CELL_VOXELS as i32 - 1 + grid.apron;
         let from = (own - grid.apron).max(grid.stored_min[axis]);
-        from as usize..=last.min(grid.stored_last[axis]) as usize
+        let place = |voxel: i32| voxel as usize - held.corner[axis];
+        place(from)..=place(last.min(grid.stored_last[axis]))
     };
     let mut found = Vec::with_capacity(grid.cells.iter().product::<u32>() as usize);
     for cz in 0..grid.cells[2] {

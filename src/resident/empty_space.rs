@@ -23,21 +23,22 @@ pub struct EmptySpace {
     gpu: Arc<Gpu>,
     grids: Vec<CellGrid>,
     rooms: [Buffer; 2],
-    pipeline: ComputePipeline,
     grid_ring: ParameterRing,
-    pass_ring: ParameterRing,
     /// Of even and of odd passes.
     bindings: [Bindings; 2],
-    // Bound above.
-    _seen: Buffer,
+    mapping: Arc<Mapping>,
 }
 
-impl EmptySpace {
-    /// Objects for these cells under a transfer function.
-    ///
-    /// # Errors
-    /// Where the device gives no memory, or has no buffers of that size.
-    pub fn new(gpu: &Arc<Gpu>, cells: &MacroCells, seen: &Seen) -> Result<Self, Error> {
+/// What maps of all volumes under one transfer function have in common.
+#[derive(Debug)]
+struct Mapping {
+    pipeline: ComputePipeline,
+    pass_ring: ParameterRing,
+    seen: Buffer,
+}
+
+impl Mapping {
+    fn new(gpu: &Arc<Gpu>, seen: &Seen) -> Result<Self, Error> {
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
         let mut words = vec![
             seen.first.to_bits(),
@@ -46,14 +47,40 @@ impl EmptySpace {
         ];
         words.extend_from_slice(&seen.next);
         let bytes: &[u8] = bytemuck::cast_slice(&words);
-        let table = Buffer::new(
-            gpu,
-            bytes.len() as u64,
-            storage,
-            Memory::Upload,
-            "seen values",
-        )?;
+        let length = bytes.len() as u64;
+        let table = Buffer::new(gpu, length, storage, Memory::Upload, "seen values")?;
         table.write(0, bytes)?;
+        let pass_ring = ParameterRing::new(gpu, size_of::<Pass>() as u32, PASSES, "passes")?;
+        for number in 0..PASSES {
+            pass_ring.write(number, bytemuck::bytes_of(&Pass { number }))?;
+        }
+        Ok(Self {
+            pipeline: ComputePipeline::new(gpu, shader("distance_map"))?,
+            pass_ring,
+            seen: table,
+        })
+    }
+}
+
+impl EmptySpace {
+    /// Objects for these cells under a transfer function.
+    ///
+    /// # Errors
+    /// Where the device gives no memory, or has no buffers of that size.
+    pub fn new(gpu: &Arc<Gpu>, cells: &MacroCells, seen: &Seen) -> Result<Self, Error> {
+        Self::with(gpu, cells, Arc::new(Mapping::new(gpu, seen)?))
+    }
+
+    /// The same for other cells under the same transfer function.
+    ///
+    /// # Errors
+    /// As [`EmptySpace::new`].
+    pub fn of_others(&self, cells: &MacroCells) -> Result<Self, Error> {
+        Self::with(&self.gpu, cells, Arc::clone(&self.mapping))
+    }
+
+    fn with(gpu: &Arc<Gpu>, cells: &MacroCells, mapping: Arc<Mapping>) -> Result<Self, Error> {
+        let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
         let rooms = || {
             Buffer::new(
                 gpu,
@@ -64,33 +91,26 @@ impl EmptySpace {
             )
         };
         let rooms = [rooms()?, rooms()?];
-        let pipeline = ComputePipeline::new(gpu, shader("distance_map"))?;
         let grid_ring = ring_of(gpu, cells.grids())?;
-        let pass_ring = ParameterRing::new(gpu, size_of::<Pass>() as u32, PASSES, "passes")?;
-        for number in 0..PASSES {
-            pass_ring.write(number, bytemuck::bytes_of(&Pass { number }))?;
-        }
         let bound = |before: &Buffer, after: &Buffer| {
             let given = [
                 ("cell_grid", Resource::Uniform(&grid_ring)),
                 ("cell_ranges", Resource::Storage(cells.ranges())),
-                ("seen", Resource::Storage(&table)),
+                ("seen", Resource::Storage(&mapping.seen)),
                 ("rooms_before", Resource::Storage(before)),
                 ("rooms_after", Resource::Storage(after)),
-                ("which", Resource::Uniform(&pass_ring)),
+                ("which", Resource::Uniform(&mapping.pass_ring)),
             ];
-            Bindings::new(gpu, pipeline.layout(), &given)
+            Bindings::new(gpu, mapping.pipeline.layout(), &given)
         };
         let bindings = [bound(&rooms[1], &rooms[0])?, bound(&rooms[0], &rooms[1])?];
         Ok(Self {
             gpu: Arc::clone(gpu),
             grids: cells.grids().to_vec(),
             rooms,
-            pipeline,
             grid_ring,
-            pass_ring,
             bindings,
-            _seen: table,
+            mapping,
         })
     }
 
@@ -107,16 +127,18 @@ impl EmptySpace {
     /// # Safety
     /// `cmd` is recording, outside rendering; `self` and the cells live until it has run.
     pub unsafe fn record(&self, cmd: vk::CommandBuffer) -> Result<(), Error> {
+        let Mapping {
+            pipeline,
+            pass_ring,
+            ..
+        } = &*self.mapping;
         for pass in 0..PASSES {
             let parity = pass as usize % 2;
             for (slot, grid) in (0..).zip(&self.grids) {
-                let offsets = [self.grid_ring.offset(slot)?, self.pass_ring.offset(pass)?];
-                let groups = self.pipeline.groups(grid.cells)?;
+                let offsets = [self.grid_ring.offset(slot)?, pass_ring.offset(pass)?];
+                let groups = pipeline.groups(grid.cells)?;
                 // SAFETY: the caller's promises; a pass reads what the one before wrote, the barrier between.
-                unsafe {
-                    self.pipeline
-                        .dispatch(cmd, &self.bindings[parity], &offsets, groups)
-                };
+                unsafe { pipeline.dispatch(cmd, &self.bindings[parity], &offsets, groups) };
             }
             // SAFETY: outside rendering; the buffers live until `cmd` has run.
             unsafe {

@@ -88,7 +88,7 @@ impl MacroCells {
     /// As [`MacroCells::new`].
     ///
     /// # Panics
-    /// Where the volume holds coefficients, or has other dims.
+    /// Where the volume holds coefficients, or other voxels.
     pub fn of_voxels(
         gpu: &Arc<Gpu>,
         volume: &GpuVolume,
@@ -96,10 +96,10 @@ impl MacroCells {
         voxels: &Volume,
     ) -> Result<Self, Error> {
         assert!(volume.spline().is_none(), "ranges of voxels");
-        assert_eq!(volume.grid().dims, voxels.dims, "the same voxels");
+        assert_eq!(volume.held.dims(), voxels.dims, "the same voxels");
         let made = Self::empty(gpu, volume, apron, Memory::Upload)?;
         for grid in &made.grids {
-            let ranges = ranges(voxels, grid);
+            let ranges = ranges(voxels, volume.held.min, grid);
             let offset = 8 * u64::from(grid.first);
             made.ranges.write(offset, bytemuck::cast_slice(&ranges))?;
         }

@@ -15,7 +15,7 @@ mod transfer;
 mod upload;
 mod volume;
 
-pub use bricks::{Cell, front_to_back};
+pub use bricks::{Cell, cells_of_side, front_to_back};
 pub use corners::Corners;
 pub use empty_space::EmptySpace;
 pub use gradients::{KeptGradients, KeptOperator};
@@ -23,4 +23,4 @@ pub use macro_cells::{Apron, MacroCells};
 pub use texel::{Coding, TexelFormat};
 pub use transfer::{GpuTransfer, TransferLayout};
 pub use upload::Slab;
-pub use volume::{Brick, GpuVolume, Texels, TextureLayout};
+pub use volume::{Brick, GpuVolume, Texels, TextureLayout, Whole};

@@ -82,13 +82,17 @@ impl GpuVolume {
                 self.texel().encode(&volume.voxels, first, stride, out);
             },
         );
-        if let Some(mask) = volume.validity.as_ref().filter(|_| self.has_holes()) {
-            self.write_runs(region, 1, validity, |first, stride, out| {
-                let mask = mask[first..].iter().step_by(stride);
-                out.iter_mut()
-                    .zip(mask)
-                    .for_each(|(out, &valid)| *out = valid);
-            });
+        match &volume.validity {
+            Some(mask) if self.has_holes() => {
+                self.write_runs(region, 1, validity, |first, stride, out| {
+                    let mask = mask[first..].iter().step_by(stride);
+                    out.iter_mut()
+                        .zip(mask)
+                        .for_each(|(out, &valid)| *out = valid);
+                });
+            }
+            // Holes elsewhere in the volume.
+            _ => validity.fill(1),
         }
     }
 
@@ -195,10 +199,10 @@ impl GpuVolume {
         texels: &mut [u8],
         write: impl Fn(usize, usize, &mut [u8]),
     ) {
-        let [nx, ny, _] = self.grid().dims.map(|n| n as usize);
+        let [nx, ny, _] = self.held.dims().map(|n| n as usize);
         let axes = self.layout().axes();
         let strides = axes.map(|axis| [1, nx, nx * ny][axis]);
-        let origin = axes.map(|axis| region.min[axis] as usize);
+        let origin = axes.map(|axis| (region.min[axis] - self.held.min[axis]) as usize);
         let dims = axes.map(|axis| (region.max[axis] - region.min[axis]) as usize);
         let run_length = if strides[0] == 1 { dims[0] } else { BLOCK };
         for deep in blocks(dims[2], BLOCK) {

@@ -8,7 +8,7 @@ use super::bricks::{Cell, cut};
 use super::corners::Corners;
 use super::gradients::KeptGradients;
 use crate::gpu::{Error, Gpu, Image, ImageDesc, ImageKind, Sampler};
-use crate::volume::{Coefficients, Grid, Spline, Volume};
+use crate::volume::{Coefficients, Grid, Spline, Volume, VoxelBox};
 use ash::vk;
 use std::sync::Arc;
 
@@ -45,7 +45,7 @@ impl TextureLayout {
     /// Voxels on either side that a sample of a brick may need: two for the widest filter, the cubic, one more for
     /// the differences that make its gradient. Across the slices of a stack one does for both: nothing there looks
     /// farther than the next slice.
-    fn halo(self) -> [u32; 3] {
+    pub(super) fn halo(self) -> [u32; 3] {
         self.filtered_axes()
             .map(|is_filtered| if is_filtered { 3 } else { 1 })
     }
@@ -70,6 +70,8 @@ pub struct GpuVolume {
     layout: TextureLayout,
     texel: TexelFormat,
     value_range: [f64; 2],
+    /// The voxels that uploads bring: those of the whole grid, or of a part of it.
+    pub(super) held: VoxelBox,
     bricks: Vec<Brick>,
     sampler: Sampler,
     spline: Option<Spline>,
@@ -102,6 +104,17 @@ impl<'a> Texels<'a> {
             Self::Coefficients(coefficients) => Some(coefficients.spline()),
         }
     }
+}
+
+/// What a volume is of which one brick is there at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Whole {
+    /// Where all of its voxels lie.
+    pub grid: Grid,
+    /// Smallest and largest valid value of all.
+    pub value_range: [f64; 2],
+    /// True where some voxel of some brick has no value.
+    pub has_holes: bool,
 }
 
 /// How a volume will lie in textures, before it is cut.
@@ -171,12 +184,17 @@ impl Plan {
                 validity: self.has_holes.then(mask).transpose()?,
             })
         };
+        let grid = volume.grid();
         Ok(GpuVolume {
             gpu: Arc::clone(gpu),
-            grid: volume.grid(),
             layout: self.layout,
             texel: self.texel,
             value_range: volume.value_range,
+            held: VoxelBox {
+                min: [0; 3],
+                max: grid.dims,
+            },
+            grid,
             bricks: cells.iter().map(brick).collect::<Result<_, Error>>()?,
             sampler: Sampler::linear_clamp(gpu)?,
             spline: None,
@@ -289,6 +307,33 @@ impl GpuVolume {
         let made = volumes.iter().zip(plans);
         made.map(|(volume, plan)| plan.make(gpu, volume, &cells))
             .collect()
+    }
+
+    /// Objects for one brick of a volume that is not all there: `voxels` are those of `cell.stored`. Uploads take them too.
+    ///
+    /// # Errors
+    /// Where the device gives no memory, or the brick is over a limit.
+    ///
+    /// # Panics
+    /// Where there are not as many voxels as the brick stores.
+    pub fn brick_of(
+        gpu: &Arc<Gpu>,
+        whole: &Whole,
+        cell: Cell,
+        voxels: &Volume,
+    ) -> Result<Self, Error> {
+        assert_eq!(voxels.dims, cell.stored.dims(), "voxels of a brick");
+        let plan = Plan {
+            has_holes: whole.has_holes,
+            ..Plan::of(gpu, voxels, TextureLayout::Texture3d)
+        };
+        plan.check(gpu, cell.stored.dims())?;
+        Ok(Self {
+            grid: whole.grid,
+            value_range: whole.value_range,
+            held: cell.stored,
+            ..plan.make(gpu, voxels, &[cell])?
+        })
     }
 
     /// Where the voxels lie.

@@ -64,21 +64,9 @@ impl View<'_> {
         transfer: Option<&GpuTransfer>,
     ) -> Result<Vec<Recording>, Error> {
         let volume = parts.first().ok_or(Error::NoColor { found: 0 })?.volume;
-        let (wanted, found) = (self.texture_layout(), volume.layout());
-        if wanted != found {
-            return Err(Error::WrongLayout { wanted, found });
-        }
-        self.check_coefficients(parts)?;
-        let layout = transfer.map_or_else(TransferLayout::default, |t| *t.layout());
-        let mut fields = self.fields(&volume.texel().coding, &layout)?;
-        set_channels(parts, transfer, &mut fields)?;
-        if parts.len() > 1 {
-            self.settings.check_mixed()?;
-        }
-        fields.flat_gradient = self.flat_gradient(volume.value_range());
+        let fields = self.fields_of(volume, parts, transfer)?;
         let cells: Vec<_> = volume.bricks().iter().map(|brick| brick.cell).collect();
-        self.check_slabs(&cells)?;
-        self.set_gradients(volume, transfer, &mut fields)?;
+        self.check_slabs(cells.len())?;
         if self.settings.is_half_angle() {
             if parts.len() > 1 {
                 return Err(Error::NotShadedTogether);
@@ -103,6 +91,49 @@ impl View<'_> {
             self.recording(brick, Some(cell), fields)
         };
         Ok(order.iter().enumerate().map(recording).collect())
+    }
+
+    /// What is recorded for the one brick of `volume`, which is a part of what the picture shows
+    /// ([`GpuVolume::brick_of`]): bricks come one after the other, from front to back, and slices as they blend.
+    /// `is_first` and `is_last` of those that are drawn.
+    ///
+    /// # Errors
+    /// As [`View::recordings`].
+    pub fn recording_of_brick(
+        &self,
+        volume: &GpuVolume,
+        transfer: Option<&GpuTransfer>,
+        [is_first, is_last]: [bool; 2],
+    ) -> Result<Recording, Error> {
+        self.check_slabs(2)?;
+        let mut fields = self.fields_of(volume, &[Part::numbers(volume)], transfer)?;
+        let cell = &volume.bricks()[0].cell;
+        self.set_brick(cell, is_first, &mut fields);
+        fields.is_last_brick = is_last.into();
+        Ok(self.recording(0, Some(cell), fields))
+    }
+
+    /// What all bricks have in common.
+    fn fields_of(
+        &self,
+        volume: &GpuVolume,
+        parts: &[Part],
+        transfer: Option<&GpuTransfer>,
+    ) -> Result<FrameFields, Error> {
+        let (wanted, found) = (self.texture_layout(), volume.layout());
+        if wanted != found {
+            return Err(Error::WrongLayout { wanted, found });
+        }
+        self.check_coefficients(parts)?;
+        let layout = transfer.map_or_else(TransferLayout::default, |t| *t.layout());
+        let mut fields = self.fields(&volume.texel().coding, &layout)?;
+        set_channels(parts, transfer, &mut fields)?;
+        if parts.len() > 1 {
+            self.settings.check_mixed()?;
+        }
+        fields.flat_gradient = self.flat_gradient(volume.value_range());
+        self.set_gradients(volume, transfer, &mut fields)?;
+        Ok(fields)
     }
 
     /// The filter reads what the volumes hold.

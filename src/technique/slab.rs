@@ -15,7 +15,6 @@
 use super::slices_2d::{planes_per_slice, stack_axis};
 use super::{Error, Filter, Mode, Technique, View};
 use crate::camera::Projection;
-use crate::resident::Cell;
 use crate::shaders::FrameFields;
 use glam::DVec3;
 
@@ -110,8 +109,8 @@ impl View<'_> {
     ///
     /// # Errors
     /// [`Error::SlabsTooLong`].
-    pub(super) fn check_slabs(&self, cells: &[Cell]) -> Result<(), Error> {
-        if cells.len() < 2 {
+    pub(super) fn check_slabs(&self, brick_count: usize) -> Result<(), Error> {
+        if brick_count < 2 {
             return Ok(());
         }
         let half = self.slab_reach().max_element();

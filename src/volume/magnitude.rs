@@ -56,6 +56,10 @@ impl Source for Magnitude {
         &self.header
     }
 
+    fn reads_parts(&self) -> bool {
+        self.of.reads_parts()
+    }
+
     fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
         let [nx, ny, _] = region.dims().map(u64::from);
         let slices = (SLAB_VOXELS / (nx * ny).max(1)).clamp(1, u32::MAX.into()) as u32;

@@ -26,6 +26,7 @@ mod regrid;
 pub mod sample;
 mod source;
 mod statistics;
+mod survey;
 mod voxels;
 
 pub use colors::{luma, read_all, read_colors};
@@ -42,12 +43,14 @@ pub use source::{
     Series, Source, VoxelBox, Wanted,
 };
 pub use statistics::Statistics;
+pub use survey::{Overview, Survey};
 pub use voxels::{VoxelType, Voxels};
 
 use glam::DAffine3;
 
 /// One box of one time of one component in memory. A `Volume` cannot be wrong: there are as many voxels
-/// as `dims` say, the affine can be inverted, and every stored number is finite.
+/// as `dims` say, the affine can be inverted, and every stored number is finite. Only of the outline of a
+/// [`Stream`](crate::offscreen::Stream) the voxels are elsewhere: there are none.
 #[derive(Clone, Debug)]
 pub struct Volume {
     /// Voxels along x, y, z.
@@ -72,6 +75,11 @@ pub struct Volume {
 }
 
 impl Volume {
+    /// True of the outline of a volume that is drawn brick by brick: its voxels stay where they are.
+    pub fn is_outline(&self) -> bool {
+        self.voxels.is_empty()
+    }
+
     /// How many voxels hold no data.
     pub fn no_data_count(&self) -> u64 {
         let count = |mask: &Vec<u8>| mask.iter().filter(|&&valid| valid == 0).count() as u64;

@@ -70,6 +70,10 @@ impl Source for Reduced {
         &self.header
     }
 
+    fn reads_parts(&self) -> bool {
+        self.source.reads_parts()
+    }
+
     fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
         let slice = self.region_of_source(VoxelBox {
             max: [region.max[0], region.max[1], region.min[2] + 1],

@@ -18,6 +18,11 @@ pub trait Source: Send + Sync {
     /// and [`Piece::loss`] says what that cost.
     fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError>;
 
+    /// False where a part is found only by reading all that stands before it, as in a file that is compressed as a whole.
+    fn reads_parts(&self) -> bool {
+        true
+    }
+
     /// The same numbers as little-endian bytes of the type in the file, none of them rounded. `None` from a source
     /// that has them in the types of [`Voxels`] only.
     fn read_bytes(&self, pick: Pick, region: VoxelBox) -> Result<Option<Vec<u8>>, ReadError> {

@@ -259,6 +259,7 @@ impl Drawing<'_> {
     ) -> Job<'j> {
         Job {
             volume,
+            stream: None,
             beside: parts.beside(),
             classification: &ready.classification,
             settings: &ready.settings,

@@ -188,6 +188,7 @@ impl Bench {
         let job = Job {
             volume: &shown.volume,
             classification: &shown.classification,
+            stream: shown.stream(),
             beside: parts.beside(),
             settings: &settings,
             extent_pixels,

@@ -48,6 +48,15 @@ pub struct InputFlags {
     #[arg(long, value_name = "SIZE", value_parser = memory::bytes_of_word, help_heading = "Input")]
     #[serde(skip)]
     pub max_memory: Option<u64>,
+    /// Draw brick by brick from the file, as volumes are drawn that are too large for the memory
+    #[arg(long, conflicts_with = "fit", help_heading = "Input")]
+    #[serde(skip_serializing_if = "is_false")]
+    pub stream: bool,
+    /// Device memory that the bricks of such a volume may take, such as 2G [default: half of what there is where that is
+    /// the memory of the processor, else 80 %]
+    #[arg(long, value_name = "SIZE", value_parser = memory::bytes_of_word, help_heading = "Input")]
+    #[serde(skip)]
+    pub device_memory: Option<u64>,
     /// Tight limits for files of strangers: 1 GiB, small headers, no second file that a header names
     #[arg(long, help_heading = "Input")]
     #[serde(skip)]

@@ -77,6 +77,7 @@ impl Reader<'_> {
             filter: None,
             height_factor,
             others: Others::Channels(made),
+            stream: None,
         })
     }
 }

@@ -58,6 +58,7 @@ impl Reader<'_> {
             filter: None,
             height_factor,
             others: Others::Colors(volumes),
+            stream: None,
         })
     }
 
@@ -97,6 +98,7 @@ impl Reader<'_> {
             filter: None,
             height_factor,
             others: Others::Channels(made),
+            stream: None,
         })
     }
 }

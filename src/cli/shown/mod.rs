@@ -6,6 +6,7 @@ mod colors;
 mod opacity;
 mod paint;
 mod preclassified;
+mod streamed;
 
 pub use check::{check, shows_several};
 
@@ -19,6 +20,7 @@ use super::{
     renderer::Device,
 };
 use crate::{
+    offscreen::Stream,
     scene::{Beside, Channel},
     technique::{Filter, Mode, PerMode, Role, Settings},
     transfer::{Classified, LabelTable, TransferFunction},
@@ -42,6 +44,8 @@ pub struct Shown {
     /// How much higher than it is the volume is drawn.
     height_factor: f64,
     others: Others,
+    /// Where the voxels come from, brick by brick; the volume is its outline then.
+    stream: Option<Stream>,
 }
 
 #[derive(Debug)]
@@ -72,7 +76,15 @@ impl Shown {
     ) -> Result<Self, Error> {
         check(scene, settings)?;
         let source = open(&scene.input, &scene.input.limits())?;
+        if streamed::is_wanted(source.as_ref(), scene, settings, device)? {
+            return Self::streamed(source, scene, settings, device, progress);
+        }
         Self::of(source, scene, settings, device, progress)
+    }
+
+    /// Where the voxels come from, where they are not in memory.
+    pub fn stream(&self) -> Option<&Stream> {
+        self.stream.as_ref()
     }
 
     /// The same of a source that is open already.
@@ -290,6 +302,7 @@ impl Reader<'_> {
                 filter: Some(Filter::Nearest),
                 height_factor,
                 others: Others::Channels(Vec::new()),
+                stream: None,
             });
         }
         if is_cut {
@@ -328,6 +341,7 @@ impl Reader<'_> {
             filter: found_labels.then_some(Filter::Nearest),
             height_factor,
             others: Others::Channels(others),
+            stream: None,
         })
     }
 

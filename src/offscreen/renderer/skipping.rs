@@ -1,8 +1,8 @@
 //! Where rays need not look, made on the device and made anew only where it changes.
 
 use super::{Copied, Renderer, parts_of};
-use crate::gpu;
 use crate::offscreen::Error;
+use crate::offscreen::stream::if_it_fits;
 use crate::resident::{Apron, Corners, EmptySpace, MacroCells};
 use crate::scene::Scene;
 use crate::technique::{Mix, Skip, Skippable};
@@ -83,7 +83,9 @@ impl Renderer<'_> {
     /// Where the device is lost.
     pub(super) fn prepare_skip(&mut self, scene: &Scene) -> Result<(), Error> {
         self.skipped.wanted = None;
-        let Some((wanted, apron)) = wanted(scene) else {
+        // Bricks of a stream know their own.
+        let is_streamed = self.streaming.is_some();
+        let Some((wanted, apron)) = wanted(scene).filter(|_| !is_streamed) else {
             return Ok(());
         };
         let of = Of {
@@ -137,13 +139,4 @@ fn wanted(scene: &Scene) -> Option<(Skippable, Apron)> {
     let wanted = scene.settings.skippable(scene.mix(), scene.transfer, range);
     let apron = scene.view(&scene.volume.grid(), [0.0; 2]).apron()?;
     (wanted != Skippable::Nothing).then_some((wanted, apron))
-}
-
-/// Without memory for it the picture is the same, only slower.
-fn if_it_fits<T>(made: Result<T, gpu::Error>) -> Result<Option<T>, Error> {
-    match made {
-        Ok(made) => Ok(Some(made)),
-        Err(gpu::Error::Limit { .. } | gpu::Error::OutOfMemory { .. }) => Ok(None),
-        Err(other) => Err(other.into()),
-    }
 }

@@ -1,0 +1,115 @@
+//! A volume that is too large for the memory: drawn brick by brick from its file.
+
+use super::{Others, Plan, Shown, check::plan, has_beside};
+use crate::cli::Error;
+use crate::cli::exaggerate;
+use crate::cli::flags::{InputFlags, SceneFlags};
+use crate::cli::memory::{Held, for_bricks, is_too_large};
+use crate::cli::progress::Progress;
+use crate::cli::renderer::Device;
+use crate::offscreen::{Stream, StreamOptions};
+use crate::technique::{Settings, Technique};
+use crate::volume::Source;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+/// Whether the volume is drawn brick by brick: because a word says so, or because it is too large and can be.
+pub(super) fn is_wanted(
+    source: &dyn Source,
+    scene: &SceneFlags,
+    settings: &Settings,
+    device: &Device,
+) -> Result<bool, Error> {
+    let header = source.header();
+    let what = match () {
+        () if plan(scene, header)?.0 != Plan::One => Some("several numbers a voxel"),
+        () if has_beside(scene) => Some("--labels and what else is seen together with a volume"),
+        () if scene.denoise.is_some() => Some("--denoise"),
+        () if settings.technique != Technique::Raycast => {
+            Some("--technique slices-3d and slices-2d")
+        }
+        () if settings.filter.spline().is_some() => Some("--filter quadratic and cubic"),
+        () if settings.wants_light_volume() => Some("--ambient-occlusion and --shadows"),
+        () if header.is_labels => Some("labels in their own colours"),
+        () if !source.reads_parts() => Some("a file that is compressed as a whole"),
+        () => None,
+    };
+    if !scene.input.stream {
+        if what.is_some() || scene.input.fit {
+            return Ok(false);
+        }
+        // A little volume does not wait for the device.
+        let held = Held::of(scene, 1);
+        return Ok(is_too_large(header, scene, None, held)
+            || !crate::cli::memory::is_little(header, scene, held)
+                && is_too_large(header, scene, device.memory()?, held));
+    }
+    let what = match device.memory()? {
+        None => Some("--device reference"),
+        Some(_) => what,
+    };
+    match what {
+        None => Ok(true),
+        Some(what) => Err(Error::usage(
+            format!("--stream is not for {what}"),
+            "--fit draws a reduced volume that fits into memory",
+        )),
+    }
+}
+
+impl Shown {
+    /// Looks at all of the source once, and takes from an overview how values are seen.
+    pub(super) fn streamed(
+        source: Box<dyn Source>,
+        scene: &SceneFlags,
+        settings: &Settings,
+        device: &Device,
+        progress: &Progress,
+    ) -> Result<Self, Error> {
+        let (pick, note) = scene.input.pick(source.header())?;
+        for note in source.header().notes.iter().chain(&note) {
+            progress.note(note);
+        }
+        let Some(memory) = device.memory()? else {
+            return Self::of(source, scene, settings, device, progress);
+        };
+        let [device_bytes, piece_bytes] = for_bricks(scene, memory);
+        let options = StreamOptions {
+            piece_bytes,
+            device_bytes,
+            ..StreamOptions::default()
+        };
+        let is_earth = source.header().is_earth;
+        let stream = Stream::open(Arc::from(source), pick, options, &mut |done, of| {
+            progress.stage("look", done, of);
+            ControlFlow::Continue(())
+        })?;
+        let mut stream = stream.expect("nobody ends it");
+        progress.note(&format!(
+            "drawn from the file in {} bricks; what nobody words is chosen by every {}. voxel along each axis",
+            stream.brick_count(),
+            stream.overview().every()
+        ));
+        let grid = stream.outline().grid();
+        let (height_factor, _) = exaggerate::factor(scene, &grid, is_earth)?;
+        stream = stream.placed(exaggerate::stretched(grid.world_from_voxel, height_factor));
+        // An overview holds what was picked.
+        let of_overview = SceneFlags {
+            input: InputFlags {
+                path: scene.input.path.clone(),
+                ..InputFlags::default()
+            },
+            ..scene.clone()
+        };
+        let overview = Box::new(stream.overview().clone());
+        let shown = Self::of(overview, &of_overview, settings, device, progress)?;
+        let Others::Channels(_) = shown.others else {
+            unreachable!("one number a voxel is no colour");
+        };
+        Ok(Self {
+            volume: Arc::new(stream.outline().clone()),
+            stream: Some(stream),
+            ..shown
+        })
+    }
+}

@@ -1,0 +1,333 @@
+//! A picture of a volume that comes brick by brick.
+//!
+//! ```text
+//! bricks in the picture whose values are seen, from front to back
+//!     one thread reads ahead                     the others: upload, draw so many at once, see what is hidden now
+//! ```
+//!
+//! What is left out adds nothing: the picture is the same to the bit (`sampling.md` 5).
+
+use super::Renderer;
+use crate::gpu::Use;
+use crate::offscreen::Error;
+use crate::offscreen::stream::{Cache, Eye, Place, Stream};
+use crate::offscreen::submission::{self, Submission};
+use crate::scene::Scene;
+use crate::technique::{InPixel, Inputs, Mode, Part, Skippable, Technique, View};
+use crate::volume::Volume;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, sync_channel};
+use std::thread;
+
+/// Bricks that are drawn by one submission.
+pub(super) const BRICKS_AT_ONCE: usize = 4;
+
+/// Bricks that are read ahead.
+const AHEAD: usize = 2;
+
+/// A stream and what of it is on the device.
+#[derive(Debug)]
+pub struct Streaming<'v> {
+    /// Where bricks come from.
+    pub stream: &'v Stream,
+    /// Those that are there.
+    pub cache: Cache,
+}
+
+/// A brick that a picture shows.
+struct Shown {
+    brick: usize,
+    place: Place,
+    /// The values that filters may make in it.
+    range: [f32; 2],
+}
+
+/// A brick that was read.
+type Read = (usize, Result<Volume, crate::volume::ReadError>);
+
+impl<'v> Renderer<'v> {
+    /// What a stream cannot be drawn with.
+    pub(super) fn check_stream(&self, scene: &Scene) -> Result<(), Error> {
+        let outline = scene.volume.is_outline();
+        let Some(streaming) = &self.streaming else {
+            return match outline {
+                true => Err(Error::Outline),
+                false => Ok(()),
+            };
+        };
+        let settings = scene.settings;
+        if !outline || scene.volume.grid() != streaming.stream.outline().grid() {
+            return Err(Error::Outline);
+        }
+        let refused = match () {
+            () if settings.technique != Technique::Raycast => "another technique than ray casting",
+            () if scene.volumes().len() > 1 => "several volumes",
+            () if settings.filter.spline().is_some() => "a filter that reads coefficients",
+            () if settings.wants_light_volume() => "occlusion or shadows",
+            () if settings
+                .gradient_source_beside(crate::resident::TextureLayout::Texture3d)
+                .is_some()
+                && scene.has_gradients() =>
+            {
+                "gradients that are made of coefficients"
+            }
+            () => return Ok(()),
+        };
+        Err(Error::NotStreamed { what: refused })
+    }
+
+    /// Brings in the brick that comes first, so that it is known how bricks lie on the device.
+    pub(super) fn prepare_stream(&mut self, scene: &Scene) -> Result<(), Error> {
+        let skippable = self.skippable(scene);
+        let Some(Streaming { stream, cache }) = &mut self.streaming else {
+            return Ok(());
+        };
+        if cache.any().is_some() {
+            return Ok(());
+        }
+        let shown = shown(stream, scene, &skippable);
+        let first = shown.first().map_or(0, |shown| shown.brick);
+        let voxels = stream.read(first)?;
+        let way = (&skippable, scene.settings.apron());
+        cache.put(&mut self.device, stream, first, &voxels, way, &[])
+    }
+
+    fn skippable(&self, scene: &Scene) -> Skippable {
+        let range = scene.volume.value_range;
+        scene.settings.skippable(scene.mix(), scene.transfer, range)
+    }
+
+    /// All that the picture shows of the stream, into the accumulation. Milliseconds on the device.
+    pub(super) fn gather_stream(
+        &mut self,
+        scene: &Scene,
+        in_pixel: InPixel,
+    ) -> Result<Option<f64>, Error> {
+        let skippable = self.skippable(scene);
+        let mut streaming = self.streaming.take().expect("a stream is drawn");
+        let outcome = self.gather_bricks(scene, in_pixel, &skippable, &mut streaming);
+        self.streaming = Some(streaming);
+        outcome
+    }
+
+    fn gather_bricks(
+        &mut self,
+        scene: &Scene,
+        in_pixel: InPixel,
+        skippable: &Skippable,
+        streaming: &mut Streaming,
+    ) -> Result<Option<f64>, Error> {
+        let Streaming { stream, cache } = streaming;
+        let stream: &Stream = stream;
+        let shown = shown(stream, scene, skippable);
+        let numbers: Vec<_> = shown.iter().map(|shown| shown.brick).collect();
+        cache.begin(&numbers);
+        let missing: Vec<_> = numbers
+            .iter()
+            .copied()
+            .filter(|&brick| cache.get(brick).is_none())
+            .collect();
+        let is_hidden: Vec<AtomicBool> = shown.iter().map(|_| AtomicBool::new(false)).collect();
+        thread::scope(|scope| {
+            let (send, ready) = sync_channel::<Read>(AHEAD);
+            let (shown, is_hidden, to_read) = (&shown, &is_hidden, missing.clone());
+            scope.spawn(move || {
+                let mut places = shown.iter().zip(is_hidden);
+                for brick in to_read {
+                    let hidden = places.find(|(place, _)| place.brick == brick);
+                    if hidden.is_some_and(|(_, hidden)| hidden.load(Ordering::Relaxed)) {
+                        continue;
+                    }
+                    // Nobody waits any more where the picture has failed.
+                    if send.send((brick, stream.read(brick))).is_err() {
+                        break;
+                    }
+                }
+            });
+            let ahead = Ahead { ready, missing };
+            let mut clock = Some(0.0);
+            let mut next = 0;
+            let mut is_first = true;
+            loop {
+                let mut chunk = Vec::new();
+                while next < shown.len() && chunk.len() < BRICKS_AT_ONCE {
+                    let brick = shown[next].brick;
+                    next += 1;
+                    if is_hidden[next - 1].load(Ordering::Relaxed) {
+                        cache.drawn(brick);
+                        continue;
+                    }
+                    chunk.push(brick);
+                    if cache.get(brick).is_none() {
+                        let voxels = ahead.take(stream, brick)?;
+                        let way = (skippable, scene.settings.apron());
+                        cache.put(&mut self.device, stream, brick, &voxels, way, &chunk)?;
+                    }
+                }
+                // Where nothing is seen, any brick makes the empty picture.
+                chunk.extend(cache.any_number().filter(|_| chunk.is_empty() && is_first));
+                if chunk.is_empty() {
+                    break;
+                }
+                let is_last = next == shown.len();
+                let ends = [is_first, is_last];
+                let more = self.draw(scene, in_pixel, (cache, skippable), &chunk, ends)?;
+                clock = clock.zip(more).map(|(sum, more)| sum + more);
+                chunk.iter().for_each(|&brick| cache.drawn(brick));
+                is_first = false;
+                if !is_last {
+                    self.hide(scene, &shown[next..], &is_hidden[next..])?;
+                }
+            }
+            Ok(clock)
+        })
+    }
+
+    /// Draws bricks that are there, one after the other.
+    fn draw(
+        &mut self,
+        scene: &Scene,
+        in_pixel: InPixel,
+        (cache, skippable): (&mut Cache, &Skippable),
+        chunk: &[usize],
+        [is_first, is_last]: [bool; 2],
+    ) -> Result<Option<f64>, Error> {
+        let apron = scene.settings.apron();
+        cache.find_empty_space(&mut self.device, skippable, apron, chunk)?;
+        let grid = scene.volume.grid();
+        let view = scene.view(&grid, in_pixel);
+        let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
+        let mut bricks = Vec::new();
+        for (nth, &brick) in chunk.iter().enumerate() {
+            let there = cache.get(brick).expect("bricks of a chunk stay");
+            let ends = [is_first && nth == 0, is_last && nth + 1 == chunk.len()];
+            let mut recording = view.recording_of_brick(&there.volume, transfer, ends)?;
+            let skip = there.skip(skippable);
+            recording.skip(skip);
+            let inputs = Inputs {
+                ring: &self.ring,
+                volume: &there.volume,
+                brick: &there.volume.bricks()[0],
+                transfer,
+                beside: &[],
+                light: None,
+                skip,
+            };
+            bricks.push(submission::Part {
+                inputs,
+                offset: recording.write(&self.ring, nth as u32)?,
+                slices: recording.slices,
+                order: recording.order,
+            });
+        }
+        let submission = Submission {
+            device: &mut self.device,
+            targets: self.targets.as_ref().expect("prepared"),
+            bricks: &bricks,
+            timer: self.timer.as_ref(),
+            resumes: !is_first,
+        };
+        Ok(self.passes.as_ref().expect("prepared").gather(submission)?)
+    }
+
+    /// Marks the bricks that can add nothing any more: all of their rays have ended, or have met larger values.
+    fn hide(
+        &mut self,
+        scene: &Scene,
+        rest: &[Shown],
+        is_hidden: &[AtomicBool],
+    ) -> Result<(), Error> {
+        let settings = scene.settings;
+        let targets = self.targets.as_ref().expect("prepared");
+        let image = match settings.mode {
+            Mode::Composite | Mode::Iso => &targets.layers,
+            Mode::Mip | Mode::Minip if !settings.per_mode.exact_maximum => &targets.accumulation,
+            _ => return Ok(()),
+        };
+        if !settings.skip {
+            return Ok(());
+        }
+        let pixels = targets.look(&mut self.device, image, Use::FragmentSampled)?;
+        let width = scene.extent_pixels[0] as usize;
+        let has_ended = |[value, weight, transmittance, _]: [f32; 4], [low, high]: [f32; 2]| {
+            match settings.mode {
+                Mode::Mip => weight != 0.0 && high <= value,
+                Mode::Minip => weight != 0.0 && low >= value,
+                Mode::Composite => {
+                    transmittance == 0.0 || transmittance < settings.termination as f32
+                }
+                _ => transmittance == 0.0,
+            }
+        };
+        let eye = Eye::new(&scene.volume.grid(), scene.camera, scene.extent_pixels);
+        for (shown, is_hidden) in rest.iter().zip(is_hidden) {
+            let [first, end] = shown.place.pixels;
+            let mut places =
+                (first[1]..end[1]).flat_map(|y| (first[0]..end[0]).map(move |x| [x, y]));
+            let all = places.all(|[x, y]| {
+                has_ended(pixels[y as usize * width + x as usize], shown.range)
+                    || !eye.meets(&shown.place, [x, y])
+            });
+            is_hidden.store(all, Ordering::Relaxed);
+        }
+        Ok(())
+    }
+}
+
+impl Streaming<'_> {
+    /// A part that is there, to choose pipelines by.
+    pub fn part(&self) -> Part<'_> {
+        let any = self.cache.any().expect("`upload` brings one in");
+        Part::numbers(&any.volume)
+    }
+}
+
+/// Bricks that are being read.
+struct Ahead {
+    ready: Receiver<Read>,
+    /// Those that were not there when the picture began.
+    missing: Vec<usize>,
+}
+
+impl Ahead {
+    /// What the thread has read. A brick that was there and had to leave is read now.
+    fn take(&self, stream: &Stream, brick: usize) -> Result<Volume, Error> {
+        if self.missing.contains(&brick) {
+            while let Ok((number, voxels)) = self.ready.recv() {
+                // Others were read before it was known that they are hidden.
+                if number == brick {
+                    return Ok(voxels?);
+                }
+            }
+        }
+        Ok(stream.read(brick)?)
+    }
+}
+
+/// What a picture shows, from front to back.
+fn shown(stream: &Stream, scene: &Scene, skippable: &Skippable) -> Vec<Shown> {
+    let grid = scene.volume.grid();
+    let view: View = scene.view(&grid, InPixel::CENTER);
+    let cells = stream.cells();
+    let apron = scene.settings.apron();
+    let eye = Eye::new(&grid, scene.camera, scene.extent_pixels);
+    let shown = |&brick: &usize| {
+        let cell = &cells[brick];
+        let [low, high] = view.part(Some(cell));
+        if !(low.cmplt(high).all()) {
+            return None;
+        }
+        let range = stream.range(brick, apron)?;
+        if let Skippable::Unseen(seen) = skippable
+            && !seen.shows(range)
+        {
+            return None;
+        }
+        Some(Shown {
+            brick,
+            place: eye.place_of(cell.own)?,
+            range,
+        })
+    };
+    view.front_to_back(cells).iter().filter_map(shown).collect()
+}

@@ -1,0 +1,214 @@
+//! Bricks that are on the device, as many as there is room for.
+//!
+//! What has to leave is first what the picture does not show, longest unused first; then what it has shown, the newest
+//! first, for the next picture begins with the others again; what it still waits for comes last.
+
+use super::Stream;
+use crate::gpu::{self, Headless};
+use crate::offscreen::Error;
+use crate::offscreen::upload::fill;
+use crate::resident::{Apron, EmptySpace, GpuVolume, MacroCells};
+use crate::technique::{Skip, Skippable};
+use crate::transfer::Seen;
+use crate::volume::Volume;
+use std::collections::{HashMap, HashSet};
+
+/// A brick on the device.
+#[derive(Debug)]
+pub struct Resident {
+    /// Its one brick.
+    pub volume: GpuVolume,
+    cells: Option<(Apron, MacroCells)>,
+    empty: Option<EmptySpace>,
+    bytes: u64,
+    /// Number of the picture that it was last drawn in, and of the brick in it.
+    used: (u64, u64),
+}
+
+impl Resident {
+    /// What recordings are told of where not to look.
+    pub fn skip(&self, wanted: &Skippable) -> Skip<'_> {
+        match (wanted, &self.cells, &self.empty) {
+            (Skippable::Unseen(_), Some((_, cells)), Some(empty)) => Skip::Unseen(cells, empty),
+            (Skippable::Exceeded, Some((_, cells)), _) => Skip::Exceeded(cells),
+            _ => Skip::Nothing,
+        }
+    }
+}
+
+/// Bricks by their number.
+#[derive(Debug, Default)]
+pub struct Cache {
+    bricks: HashMap<usize, Resident>,
+    bytes: u64,
+    /// What the bricks' empty spaces are of.
+    seen: Option<Seen>,
+    /// Bricks that the picture has not drawn yet.
+    waiting: HashSet<usize>,
+    picture: u64,
+    drawn: u64,
+    /// Bytes that were brought to the device in all.
+    pub uploaded_bytes: u64,
+}
+
+impl Cache {
+    /// A new picture of these bricks begins.
+    pub fn begin(&mut self, shown: &[usize]) {
+        self.picture += 1;
+        self.drawn = 0;
+        self.waiting = shown.iter().copied().collect();
+    }
+
+    /// A brick that is there.
+    pub fn get(&self, brick: usize) -> Option<&Resident> {
+        self.bricks.get(&brick)
+    }
+
+    /// Any brick.
+    pub fn any(&self) -> Option<&Resident> {
+        self.bricks.values().next()
+    }
+
+    /// The number of any brick.
+    pub fn any_number(&self) -> Option<usize> {
+        self.bricks.keys().next().copied()
+    }
+
+    /// The brick has been drawn, or is not needed.
+    pub fn drawn(&mut self, brick: usize) {
+        self.drawn += 1;
+        self.waiting.remove(&brick);
+        let used = (self.picture, self.drawn);
+        if let Some(resident) = self.bricks.get_mut(&brick) {
+            resident.used = used;
+        }
+    }
+
+    /// Brings a brick to the device, with what pictures that leave out `wanted` need of it. Bricks of `kept` stay, all
+    /// others may have to leave.
+    ///
+    /// # Errors
+    /// Where the device gives no memory though nothing else is there.
+    pub fn put(
+        &mut self,
+        device: &mut Headless,
+        stream: &Stream,
+        brick: usize,
+        voxels: &Volume,
+        (wanted, apron): (&Skippable, Apron),
+        kept: &[usize],
+    ) -> Result<(), Error> {
+        let cell = stream.cells()[brick];
+        let made = loop {
+            let made = GpuVolume::brick_of(device.gpu(), stream.whole(), cell, voxels);
+            match made {
+                Err(gpu::Error::OutOfMemory { .. }) if self.drop_one(kept) => {}
+                made => break made?,
+            }
+        };
+        let bytes = made.staging_bytes(cell.stored);
+        while self.bytes + bytes > stream.device_bytes() && self.drop_one(kept) {}
+        fill(device, &made, voxels)?;
+        let cells = match wanted {
+            Skippable::Nothing => None,
+            _ => if_it_fits(MacroCells::of_voxels(device.gpu(), &made, apron, voxels))?,
+        };
+        self.bytes += bytes;
+        self.uploaded_bytes += bytes;
+        let resident = Resident {
+            volume: made,
+            cells: cells.map(|cells| (apron, cells)),
+            empty: None,
+            bytes,
+            used: (0, 0),
+        };
+        self.bricks.insert(brick, resident);
+        Ok(())
+    }
+
+    /// Finds out where these bricks are empty, as far as that is not known.
+    ///
+    /// # Errors
+    /// Where the device is lost.
+    pub fn find_empty_space(
+        &mut self,
+        device: &mut Headless,
+        wanted: &Skippable,
+        apron: Apron,
+        bricks: &[usize],
+    ) -> Result<(), Error> {
+        let Skippable::Unseen(seen) = wanted else {
+            return Ok(());
+        };
+        if self.seen.as_ref() != Some(seen) {
+            self.seen = Some(seen.clone());
+            self.bricks
+                .values_mut()
+                .for_each(|there| there.empty = None);
+        }
+        let mut made: Vec<(usize, EmptySpace)> = Vec::new();
+        for brick in bricks {
+            let Some(Resident {
+                cells: Some((of, cells)),
+                empty: None,
+                ..
+            }) = self.bricks.get(brick)
+            else {
+                continue;
+            };
+            if *of != apron {
+                continue;
+            }
+            let newest = made.last().map(|(_, empty)| empty);
+            let other = self.bricks.values().find_map(|there| there.empty.as_ref());
+            let empty = match newest.or(other) {
+                Some(other) => other.of_others(cells),
+                None => EmptySpace::new(device.gpu(), cells, seen),
+            };
+            made.extend(if_it_fits(empty)?.map(|empty| (*brick, empty)));
+        }
+        if made.is_empty() {
+            return Ok(());
+        }
+        device.run(|cmd| {
+            for (_, empty) in &made {
+                // SAFETY: recorded outside rendering; the cells are complete; `run` waits, and all lives meanwhile.
+                unsafe { empty.record(cmd)? };
+            }
+            Ok(())
+        })?;
+        for (brick, empty) in made {
+            self.bricks.get_mut(&brick).expect("found above").empty = Some(empty);
+        }
+        Ok(())
+    }
+
+    /// False where nothing is left that may go.
+    fn drop_one(&mut self, kept: &[usize]) -> bool {
+        let rank = |brick: usize, used: (u64, u64)| match () {
+            () if self.waiting.contains(&brick) => (2, 0),
+            () if used.0 == self.picture => (1, u64::MAX - used.1),
+            () => (0, used.0),
+        };
+        let others = self
+            .bricks
+            .iter()
+            .filter(|(brick, _)| !kept.contains(brick));
+        let next = others.min_by_key(|&(&brick, there)| (rank(brick, there.used), brick));
+        let Some((&brick, _)) = next else {
+            return false;
+        };
+        let gone = self.bricks.remove(&brick).expect("found above");
+        self.bytes -= gone.bytes;
+        true
+    }
+}
+
+/// Without memory for it the picture is the same, only slower.
+pub fn if_it_fits<T>(made: Result<T, gpu::Error>) -> Result<Option<T>, Error> {
+    match made {
+        Ok(made) => Ok(Some(made)),
+        Err(gpu::Error::Limit { .. } | gpu::Error::OutOfMemory { .. }) => Ok(None),
+        Err(other) => Err(other.into()),
+    }
+}
