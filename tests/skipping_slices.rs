@@ -127,7 +127,7 @@ fn and_so_they_are_where_halves_are_blended() {
         float32_blend: false,
         ..Caps::UNLIMITED
     };
-    compare_many(halves, 3, 2, 0.95);
+    compare_many(halves, 3, 4, 1.0);
 }
 
 fn white(points: &[(f64, f64)]) -> TransferFunction {
