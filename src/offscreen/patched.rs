@@ -46,26 +46,25 @@ pub fn run(
     let bind = |brick: &Part| slicer.bind(&brick.inputs, patches, Some(patched.target));
     let bound = bricks.iter().map(bind).collect::<Result<Vec<_>, Error>>()?;
     let bricks: Vec<Bound> = bricks.iter().zip(bound).collect();
-    // SAFETY: recorded in order, with barriers between; `run` waits, and all that is bound lives meanwhile.
-    match slicing.merge() {
-        None => submission.run(|cmd, gpu| unsafe {
+    let Some(merge) = slicing.merge() else {
+        // SAFETY: recorded in order, with barriers between; `run` waits, and all that is bound lives meanwhile.
+        return submission.run(|cmd, gpu| unsafe {
             image_barrier(gpu, cmd, into, Use::Nothing, Use::ColorTarget);
             patched.record(cmd, gpu, &bricks, slicing)?;
             image_barrier(gpu, cmd, into, Use::ColorTarget, Use::FragmentSampled);
             Ok(())
-        }),
-        Some(merge) => {
-            let merged = merge.bind(patched.target, into)?;
-            submission.run(|cmd, gpu| unsafe {
-                image_barrier(gpu, cmd, into, Use::Nothing, Use::TransferWrite);
-                clear_image(gpu, cmd, into, [0.0; 4]);
-                image_barrier(gpu, cmd, into, Use::TransferWrite, Use::ComputeWrite);
-                patched.record_merged(cmd, gpu, &bricks, merge, (&merged, into))?;
-                image_barrier(gpu, cmd, into, Use::ComputeWrite, Use::FragmentSampled);
-                Ok(())
-            })
-        }
-    }
+        });
+    };
+    let merged = merge.bind(patched.target, into)?;
+    // SAFETY: as above.
+    submission.run(|cmd, gpu| unsafe {
+        image_barrier(gpu, cmd, into, Use::Nothing, Use::TransferWrite);
+        clear_image(gpu, cmd, into, [0.0; 4]);
+        image_barrier(gpu, cmd, into, Use::TransferWrite, Use::ComputeWrite);
+        patched.record_merged(cmd, gpu, &bricks, merge, (&merged, into))?;
+        image_barrier(gpu, cmd, into, Use::ComputeWrite, Use::FragmentSampled);
+        Ok(())
+    })
 }
 
 impl Patched<'_> {

@@ -26,7 +26,7 @@ pub struct Slicing {
 #[derive(Debug)]
 enum Slices {
     Whole(Slicer),
-    Patches(PatchSlicer),
+    Patches(Box<PatchSlicer>),
 }
 
 impl Slicing {
@@ -52,9 +52,10 @@ impl Slicing {
         let merge = || Merge::new(gpu, drawn, order);
         let technique = settings.technique;
         let slicer = match is_patched {
-            true => Slices::Patches(PatchSlicer::new(
-                gpu, technique, drawn, order, words, format,
-            )?),
+            true => {
+                let made = PatchSlicer::new(gpu, technique, drawn, order, words, format)?;
+                Slices::Patches(Box::new(made))
+            }
             false => Slices::Whole(Slicer::new(gpu, technique, drawn, order, words, format)?),
         };
         Ok(Self {

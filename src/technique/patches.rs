@@ -105,7 +105,7 @@ impl View<'_> {
         if self.settings.preintegrated {
             // Both ends of a slab, from its middle.
             let reach = self.slab_reach().max_element();
-            if !(reach <= LONGEST_SLAB_REACH) {
+            if reach.is_nan() || reach > LONGEST_SLAB_REACH {
                 return None;
             }
             apron.voxels += reach.ceil() as u32;
