@@ -68,6 +68,28 @@ fn nrrd_survives_mutations() {
 }
 
 #[test]
+fn bricks_survive_mutations() {
+    use stratavox::format::write::{
+        NumberType, Selection, VolumeFormat, WriteVolumeOptions, write_volume,
+    };
+    let folder = Folder::new();
+    let short = bytes_of(&values(), VoxelType::I16, false);
+    let header = nrrd_header("short", "raw");
+    let path = folder.write("a.nrrd", [header.as_bytes(), b"\n", &short[..]].concat());
+    let source = stratavox::format::open(&path, &Default::default(), &Default::default());
+    let source = source.expect("readable");
+    let mut file = std::io::Cursor::new(Vec::new());
+    let options = WriteVolumeOptions {
+        format: VolumeFormat::Bricks,
+        numbers: NumberType::Stored,
+        compress: true,
+    };
+    let all = Selection::all(source.header());
+    write_volume(source.as_ref(), &all, &options, &mut file, &mut |_, _| {}).expect("written");
+    survive("bricks", &[vec![("a.svb", file.into_inner())]]);
+}
+
+#[test]
 fn nhdr_survives_mutations() {
     let short = bytes_of(&values(), VoxelType::I16, false);
     let slices: Vec<&[u8]> = short.chunks(short.len() / 3).collect();

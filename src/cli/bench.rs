@@ -156,7 +156,7 @@ impl Bench {
             ..scene.settings(Depth::Eight)?
         };
         progress.stage("prepare", 0, 1);
-        let word = scene.device.as_deref();
+        let word = scene.one_device()?;
         let device = Device::find(word)?;
         progress.device(&device.name()?);
         progress.stage("read", 0, 1);

@@ -32,12 +32,14 @@ use std::{
     stratavox convert phantom:head -o head.nrrd\n  \
     stratavox convert phantom:head -o bone.nii.gz --type u8 --window=-200,800\n  \
     stratavox convert phantom:shells,n=64 -o shells.npy --type f32\n  \
+    stratavox convert phantom:head -o head.svb\n  \
     stratavox convert phantom:head,n=64 -o skull.ply --iso 300"
 )]
 pub struct Convert {
     #[command(flatten)]
     input: InputFlags,
-    /// The file: .nrrd, .mha, .nii, .nii.gz or .npy; for a surface .ply, .stl or .glb
+    /// The file: .nrrd, .mha, .nii, .nii.gz, .npy, or .svb of bricks and coarser levels, for volumes larger than the memory;
+    /// for a surface .ply, .stl or .glb
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Keep this box of whole voxels
@@ -150,7 +152,7 @@ impl Convert {
                     "-o {}: no format of volumes has that ending",
                     self.output.display()
                 ),
-                "name a file that ends in .nrrd, .mha, .nii, .nii.gz or .npy",
+                "name a file that ends in .nrrd, .mha, .nii, .nii.gz, .npy or .svb",
             )
         })?;
         let window = self.window.map(|Numbers(ends)| ends);

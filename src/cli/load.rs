@@ -3,7 +3,7 @@
 use super::{
     Error, exaggerate,
     flags::{DenoiseWord, InputFlags, SceneFlags},
-    memory::{Held, fitting, is_little},
+    memory::{DeviceRoom, Held, fitting, is_little},
     progress::Progress,
     renderer::Device,
     timings::Loaded,
@@ -24,7 +24,7 @@ pub fn open(input: &InputFlags, limits: &Limits) -> Result<Box<dyn Source>, Erro
 pub fn load_from(
     source: Box<dyn Source>,
     scene: &SceneFlags,
-    device: &Device,
+    device: &dyn DeviceRoom,
     progress: &Progress,
 ) -> Result<(Volume, f64), Error> {
     // What may be wrong with the words is said before anything about memory.
@@ -74,7 +74,7 @@ pub fn denoise(volumes: &mut [Volume], scene: &SceneFlags) -> Result<(), Error> 
     let Some(DenoiseWord(filter)) = scene.denoise else {
         return Ok(());
     };
-    let mut device = Device::find(scene.device.as_deref())?;
+    let mut device = Device::find(scene.device.first().map(String::as_str))?;
     for volume in volumes {
         (*volume, device) = device.denoised(volume, &filter)?;
     }

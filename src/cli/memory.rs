@@ -11,6 +11,10 @@
 //!
 //! The textures of a CPU driver lie in the memory of the host: there the sum has to fit.
 
+mod at_once;
+
+pub use at_once::{DeviceRoom, leaves_room, needed_bytes};
+
 use super::{Error, flags::SceneFlags};
 use crate::{
     resident::{KeptGradients, TextureLayout},

@@ -22,6 +22,7 @@ mod histogram;
 mod info;
 mod labels;
 mod later;
+mod line;
 mod load;
 mod manuals;
 mod memory;
@@ -38,6 +39,7 @@ mod shown;
 mod signals;
 mod small_file;
 mod surface;
+mod thumbnails;
 mod timings;
 
 pub use bug::guarded;
@@ -60,6 +62,7 @@ struct Words {
 enum Verb {
     Render(Box<render::Render>),
     Animate(Box<animate::Animate>),
+    Thumbnails(Box<thumbnails::Thumbnails>),
     Info(info::Info),
     Convert(convert::Convert),
     Devices(devices::Devices),
@@ -103,6 +106,7 @@ fn obey(words: Vec<OsString>, gate: &Gate) -> Result<(), Error> {
     match words.verb {
         Verb::Render(render) => render.run(gate),
         Verb::Animate(animate) => animate.run(gate),
+        Verb::Thumbnails(thumbnails) => thumbnails.run(gate),
         Verb::Info(info) => info.run(),
         Verb::Convert(convert) => convert.run(gate),
         Verb::Devices(devices) => devices.run(),

@@ -78,8 +78,13 @@ fn folder_of(path: &Path) -> &Path {
 
 /// Writes `text` to the standard output; a closed one is an error of its own exit code, not a panic.
 pub fn say(text: &str) -> Result<(), Error> {
+    write_out(text.as_bytes())
+}
+
+/// Writes bytes to the standard output, as [`say`] does.
+pub fn write_out(bytes: &[u8]) -> Result<(), Error> {
     let mut out = io::stdout().lock();
-    out.write_all(text.as_bytes())
+    out.write_all(bytes)
         .and_then(|()| out.flush())
         .map_err(|cause| Error::output("the standard output", &cause))
 }

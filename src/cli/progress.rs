@@ -36,6 +36,8 @@ enum Told {
     Line(ProgressBar),
     /// To a program: `{"device":"..."}`, `{"stage":"draw","done":1,"of":3}`.
     Json,
+    /// To nobody yet: notes are kept.
+    Kept(Mutex<Vec<String>>),
 }
 
 impl Progress {
@@ -58,6 +60,24 @@ impl Progress {
         }
     }
 
+    /// For a part of the work whose notes are said later, or elsewhere.
+    pub fn of_part() -> Self {
+        Self {
+            told: Told::Kept(Mutex::default()),
+            loaded: Mutex::default(),
+        }
+    }
+
+    /// What [`Progress::of_part`] has kept.
+    pub fn into_notes(self) -> Vec<String> {
+        match &self.told {
+            Told::Kept(notes) => {
+                std::mem::take(&mut *notes.lock().unwrap_or_else(PoisonError::into_inner))
+            }
+            _ => Vec::new(),
+        }
+    }
+
     /// A volume more was read.
     pub fn loaded(&self, more: Loaded) {
         let mut all = self.kept();
@@ -76,7 +96,7 @@ impl Progress {
     /// `done` of `of` parts of a stage are done.
     pub fn stage(&self, stage: &'static str, done: usize, of: usize) {
         match &self.told {
-            Told::Silent => {}
+            Told::Silent | Told::Kept(_) => {}
             Told::Line(line) if of > 1 => line.set_message(format!("{stage} {done}/{of}")),
             Told::Line(line) => line.set_message(stage),
             Told::Json => say_json(&serde_json::json!({ "stage": stage, "done": done, "of": of })),
@@ -85,25 +105,41 @@ impl Progress {
 
     /// `done` of `of` frames are written; `left` is the time that the others will take, once that is known.
     pub fn frames(&self, done: usize, of: usize, left: Option<Duration>) {
+        self.counted(["frame", "frames"], done, of, left);
+    }
+
+    /// The same of volumes that are drawn.
+    pub fn volumes(&self, done: usize, of: usize, left: Option<Duration>) {
+        self.counted(["volume", "volumes"], done, of, left);
+    }
+
+    fn counted(&self, [one, all]: [&str; 2], done: usize, of: usize, left: Option<Duration>) {
         match &self.told {
-            Told::Silent => {}
+            Told::Silent | Told::Kept(_) => {}
             Told::Line(line) => {
                 let left = left.map_or(String::new(), |left| format!(", {} left", shown(left)));
-                line.set_message(format!("frame {done}/{of}{left}"));
+                line.set_message(format!("{one} {done}/{of}{left}"));
             }
             Told::Json => {
                 let left = left.map(|left| left.as_secs_f64());
                 say_json(
-                    &serde_json::json!({ "stage": "frames", "done": done, "of": of, "seconds_left": left }),
+                    &serde_json::json!({ "stage": all, "done": done, "of": of, "seconds_left": left }),
                 );
             }
+        }
+    }
+
+    /// What became of a volume: its picture, or why there is none.
+    pub fn volume(&self, input: &str, picture: Option<&str>, error: Option<&str>) {
+        if let Told::Json = &self.told {
+            say_json(&serde_json::json!({ "volume": input, "picture": picture, "error": error }));
         }
     }
 
     /// Which device was chosen.
     pub fn device(&self, name: &str) {
         match &self.told {
-            Told::Silent => {}
+            Told::Silent | Told::Kept(_) => {}
             Told::Line(_) => self.note(&format!("on {name}")),
             Told::Json => say_json(&serde_json::json!({ "device": name })),
         }
@@ -114,6 +150,10 @@ impl Progress {
         match &self.told {
             Told::Line(line) => line.suspend(|| say_aside(text)),
             Told::Silent | Told::Json => say_aside(text),
+            Told::Kept(notes) => {
+                let mut notes = notes.lock().unwrap_or_else(PoisonError::into_inner);
+                notes.push(text.to_owned());
+            }
         }
     }
 }

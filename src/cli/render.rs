@@ -3,6 +3,7 @@
 use super::{
     Error,
     flags::{Depth, SceneFlags},
+    load::open,
     output::{self, write_whole},
     progress::{Progress, ProgressWord},
     reasons::why_empty,
@@ -20,7 +21,7 @@ use std::{
 };
 
 /// Draw a volume into a picture
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 #[command(after_help = "Examples:\n  \
     stratavox render phantom:head -o head.png\n  \
     stratavox render phantom:head --technique slices-3d --view left --background 0,0,0 -o left.png\n  \
@@ -58,6 +59,9 @@ pub struct Render {
     /// Bits of a channel of a PNG
     #[arg(long, value_name = "8|16", default_value = "8", value_parser = bit_depth, help_heading = "Picture")]
     bit_depth: BitDepth,
+    /// Draw from the coarsest resolution of the file to the finest, each written as soon as it is drawn
+    #[arg(long, conflicts_with_all = ["level", "fit"], help_heading = "Run")]
+    refine: bool,
     /// No empty-space skipping: the picture is the same without
     #[arg(long)]
     no_skip: bool,
@@ -74,7 +78,40 @@ pub fn bit_depth(word: &str) -> Result<BitDepth, String> {
 
 impl Render {
     /// Draws and writes.
-    pub fn run(mut self, gate: &Gate) -> Result<(), Error> {
+    pub fn run(self, gate: &Gate) -> Result<(), Error> {
+        for coarse in self.coarse()? {
+            coarse.draw(gate)?;
+        }
+        let force = self.force || self.refine;
+        Self { force, ..self }.draw(gate)
+    }
+
+    /// The pictures before the one that is wanted, the coarsest first.
+    fn coarse(&self) -> Result<Vec<Self>, Error> {
+        if !self.refine {
+            return Ok(Vec::new());
+        }
+        let scene = self.clone().whole_scene()?;
+        let source = open(&scene.input, &scene.input.limits())?;
+        let last = source.header().levels - 1;
+        if last == 0 {
+            return Err(Error::usage(
+                "--refine is for files of several resolutions, and this one has one",
+                "`stratavox convert INPUT -o FILE.svb` makes them",
+            ));
+        }
+        let coarse = |level: u32| {
+            let mut coarse = self.clone();
+            coarse.scene.input.level = Some(level);
+            coarse.force = self.force || level < last;
+            (coarse.timings, coarse.save_scene) = (None, None);
+            coarse
+        };
+        Ok((1..=last).rev().map(coarse).collect())
+    }
+
+    /// One picture.
+    fn draw(mut self, gate: &Gate) -> Result<(), Error> {
         let scene = self.whole_scene()?;
         let format = picture_format(&self.output)?;
         let layers = scene.picture.layers();
@@ -100,7 +137,7 @@ impl Render {
             progress.note(note);
         }
         progress.stage("prepare", 0, 1);
-        let device = Device::begin(scene.device.as_deref());
+        let device = Device::begin(scene.one_device()?);
         progress.stage("read", 0, 1);
         let start = Instant::now();
         let shown = Shown::read(&scene, &settings, &device, &progress);
@@ -113,13 +150,7 @@ impl Render {
             classification,
             ..
         } = &shown;
-        let subject = shown.subject();
-        let section = &scene.section;
-        let camera = section.camera(&scene.camera, &subject, extent_pixels, &mut settings)?;
-        if let (None, Some(filter)) = (scene.sampling.filter, shown.filter) {
-            settings.filter = filter;
-        }
-        settings.per_mode = shown.per_mode.clone();
+        let camera = shown.camera(&scene, extent_pixels, &mut settings)?;
         let load_ms = ms_since(start);
 
         progress.stage("prepare", 0, 1);

@@ -3,7 +3,7 @@
 use super::{
     Error,
     flags::Classification,
-    memory::DeviceMemory,
+    memory::{DeviceMemory, DeviceRoom},
     progress::Progress,
     signals::Gate,
     timings::{Stages, in_ms, ms_since},
@@ -11,7 +11,7 @@ use super::{
 use crate::{
     camera::Camera,
     gpu::{DeviceChoice, Headless, Options},
-    offscreen::{self, Ceilings, Stream, reference},
+    offscreen::{self, Ceilings, Kept, Stream, reference},
     picture::{LayerKind, Picture},
     scene::{Beside, Scene},
     technique::{Filter, Role, Settings, Technique},
@@ -53,7 +53,7 @@ type Making = JoinHandle<Result<Made, Error>>;
 #[derive(Debug)]
 struct Made {
     /// `None`: the CPU twins.
-    on: Option<Headless>,
+    on: Option<Kept>,
     found_ms: f64,
 }
 
@@ -128,7 +128,7 @@ impl Device {
     pub fn ceilings(self, volume: &Volume) -> Result<Option<Ceilings>, Error> {
         let mut made = self.into_made()?;
         let device = made.on.as_mut();
-        let ceilings = device.map(|device| offscreen::ceilings(device, volume));
+        let ceilings = device.map(|on| offscreen::ceilings(&mut on.device, volume));
         Ok(ceilings.transpose()?)
     }
 
@@ -136,7 +136,7 @@ impl Device {
     pub fn denoised(self, volume: &Volume, filter: &Denoise) -> Result<(Volume, Self), Error> {
         let mut made = self.into_made()?;
         let volume = match &mut made.on {
-            Some(device) => offscreen::denoised(device, volume, filter)?,
+            Some(on) => offscreen::denoised(&mut on.device, volume, filter)?,
             None => filter.denoised(volume),
         };
         Ok((volume, made.into()))
@@ -144,14 +144,20 @@ impl Device {
 
     /// Its name.
     pub fn name(&self) -> Result<String, Error> {
-        Ok(name_of(self.made()?.on.as_ref()))
+        Ok(name_of(self.made()?.headless()))
     }
 
-    /// What it has for textures; the CPU twins need none.
-    pub fn memory(&self) -> Result<Option<DeviceMemory>, Error> {
-        let memory = |device: &Headless| DeviceMemory {
-            heap_bytes: device.gpu().limits().max_heap_bytes,
-            is_of_host: device.gpu().is_cpu(),
+    /// Its driver and the driver's version.
+    pub fn driver(&self) -> Result<String, Error> {
+        Ok(driver_of(self.made()?.headless()))
+    }
+}
+
+impl DeviceRoom for Device {
+    fn memory(&self) -> Result<Option<DeviceMemory>, Error> {
+        let memory = |on: &Kept| DeviceMemory {
+            heap_bytes: on.device.gpu().limits().max_heap_bytes,
+            is_of_host: on.device.gpu().is_cpu(),
         };
         Ok(self.made()?.on.as_ref().map(memory))
     }
@@ -164,13 +170,17 @@ impl Made {
             Some(REFERENCE) => None,
             _ => {
                 let choice = word.map(DeviceChoice::from).unwrap_or_default();
-                Some(Headless::new(&choice, &Options::default())?)
+                Some(Headless::new(&choice, &Options::default())?.into())
             }
         };
         Ok(Self {
             on,
             found_ms: ms_since(start),
         })
+    }
+
+    fn headless(&self) -> Option<&Headless> {
+        self.on.as_ref().map(|on| &on.device)
     }
 }
 
@@ -187,6 +197,16 @@ fn name_of(device: Option<&Headless>) -> String {
     match device {
         Some(device) => device.gpu().device_name().to_owned(),
         None => "reference (the CPU, without Vulkan)".to_owned(),
+    }
+}
+
+fn driver_of(device: Option<&Headless>) -> String {
+    match device {
+        Some(device) => {
+            let identity = device.gpu().identity();
+            format!("{} {}", identity.driver_name, identity.driver_info)
+        }
+        None => format!("stratavox {}", env!("CARGO_PKG_VERSION")),
     }
 }
 
@@ -210,8 +230,8 @@ impl<'a> Renderer<'a> {
         let beside = job.beside.volumes();
         let volumes = [job.volume].into_iter().chain(beside).collect();
         let mut renderer = match job.stream {
-            Some(stream) => offscreen::Renderer::streamed(on, stream)?,
-            None => offscreen::Renderer::several(on, volumes)?,
+            Some(stream) => offscreen::Renderer::streamed(on.device, stream)?,
+            None => offscreen::Renderer::with_kept(on, volumes)?,
         };
         let prepare_ms = device.found_ms + ms_since(start);
         let start = Instant::now();
@@ -305,10 +325,10 @@ impl<'a> Renderer<'a> {
         }
     }
 
-    /// The device, free for another volume.
+    /// The device, free for another volume, with its pipelines and images.
     pub fn into_device(self) -> Device {
         Device::from(Made {
-            on: self.on_device.map(|renderer| renderer.into_device()),
+            on: self.on_device.map(|renderer| renderer.into_kept()),
             found_ms: 0.0,
         })
     }
@@ -320,13 +340,7 @@ impl<'a> Renderer<'a> {
 
     /// The driver and its version.
     pub fn driver(&self) -> String {
-        match &self.on_device {
-            Some(renderer) => {
-                let identity = renderer.device().gpu().identity();
-                format!("{} {}", identity.driver_name, identity.driver_info)
-            }
-            None => format!("stratavox {}", env!("CARGO_PKG_VERSION")),
-        }
+        driver_of(self.on_device.as_ref().map(|renderer| renderer.device()))
     }
 
     /// Device memory in use or kept for later.

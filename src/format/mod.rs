@@ -26,6 +26,7 @@
 mod absent;
 mod base64;
 mod blocks;
+mod bricked;
 #[cfg(any(feature = "grib", feature = "netcdf"))]
 mod cf;
 mod convert;
@@ -36,6 +37,7 @@ mod dicom;
 #[cfg(any(feature = "grib", feature = "netcdf"))]
 mod fence;
 mod file_source;
+mod find;
 mod geometry;
 mod grib;
 #[cfg(feature = "netcdf")]
@@ -73,6 +75,8 @@ use absent::{hdf5, netcdf};
 #[cfg(feature = "cli")]
 pub(crate) use sequence::expand as numbered_name;
 
+pub use find::{Found, Search, find, stem};
+
 use crate::volume::{Limits, Problem, ReadError, Source, Wanted};
 use problem::at;
 use std::path::Path;
@@ -99,17 +103,7 @@ pub fn open(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Sou
     let first = first_bytes(path).map_err(at(path))?;
     // The content decides. Where it is no format's, the name does, and that reader says what is wrong.
     let by_content = READERS.iter().find(|reader| (reader.recognizes)(&first));
-    let by_name = || {
-        let name = path.file_name()?.to_str()?.to_ascii_lowercase();
-        let ends = |ending: &&str| {
-            name.strip_suffix(*ending)
-                .is_some_and(|stem| stem.ends_with('.'))
-        };
-        READERS
-            .iter()
-            .find(|reader| reader.endings.iter().any(ends))
-    };
-    if let Some(reader) = by_content.or_else(by_name) {
+    if let Some(reader) = by_content.or_else(|| Reader::of_name(path)) {
         (reader.open)(path, wanted, limits)
     } else if let Some(sidecar) = raw::sidecar_of(path) {
         raw::open_sidecar(&sidecar, limits)
@@ -129,6 +123,20 @@ struct Reader {
     open: Open,
 }
 
+impl Reader {
+    /// The one of files that are called so.
+    fn of_name(path: &Path) -> Option<&'static Self> {
+        let name = path.file_name()?.to_str()?.to_ascii_lowercase();
+        let ends = |ending: &&str| {
+            name.strip_suffix(*ending)
+                .is_some_and(|stem| stem.ends_with('.'))
+        };
+        READERS
+            .iter()
+            .find(|reader| reader.endings.iter().any(ends))
+    }
+}
+
 /// A reader of folders.
 struct FolderReader {
     recognizes: fn(&Path, &Limits) -> bool,
@@ -137,6 +145,11 @@ struct FolderReader {
 
 /// The first that recognizes a file reads it.
 const READERS: &[Reader] = &[
+    Reader {
+        recognizes: bricked::recognizes,
+        endings: &["svb"],
+        open: |path, wanted, limits| Ok(Box::new(bricked::open(path, wanted, limits)?)),
+    },
     Reader {
         recognizes: nrrd::recognizes,
         endings: &["nrrd", "nhdr"],
@@ -238,7 +251,7 @@ fn unknown(first: &[u8]) -> Problem {
         .map(|byte| format!("{byte:02x}"))
         .collect();
     Problem::UnknownFormat(format!(
-        ": the file begins with the bytes {}; we read nifti, nrrd, metaimage, dicom, tiff, vti, vtk, npy, hdf5, netcdf, zarr, and raw voxels that a spec or a sidecar describes",
+        ": the file begins with the bytes {}; we read nifti, nrrd, metaimage, dicom, tiff, vti, vtk, npy, hdf5, netcdf, zarr, bricks, and raw voxels that a spec or a sidecar describes",
         shown.join(" ")
     ))
 }

@@ -162,6 +162,15 @@ impl Headless {
         Ok(result)
     }
 
+    /// Destroys what was dropped since the last run, and not only with the next one.
+    pub fn tidy(&mut self) {
+        // What was submitted to a lost device may still run.
+        if !self.is_lost {
+            // SAFETY: every run has waited for its submission, and nothing was recorded since.
+            unsafe { self.gpu.retire(self.submitted) };
+        }
+    }
+
     /// Removes and returns what the validation layer has said so far. Nothing where validation is off.
     pub fn take_validation_messages(&self) -> Vec<Message> {
         self.messages

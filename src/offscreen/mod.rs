@@ -23,7 +23,7 @@ mod upload;
 
 pub use denoise::denoised;
 pub use probe::{Ceilings, ceilings};
-pub use renderer::{Rendered, Renderer};
+pub use renderer::{Kept, Rendered, Renderer};
 pub use stream::{Stream, StreamOptions};
 
 /// Why there is no picture.

@@ -8,6 +8,7 @@
 //! ```
 
 mod classified;
+mod kept;
 mod skipping;
 mod streaming;
 
@@ -34,6 +35,7 @@ use crate::technique::{
 };
 use crate::transfer::{Classified, Graded, TransferFunction, Window};
 use crate::volume::{Spline, Volume};
+pub use kept::Kept;
 use skipping::Skipped;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -127,21 +129,7 @@ impl<'v> Renderer<'v> {
     /// # Errors
     /// Where the device gives no memory.
     pub fn several(device: Headless, volumes: Vec<&'v Volume>) -> Result<Self, Error> {
-        let gpu = device.gpu();
-        Ok(Self {
-            volumes,
-            shown: 0,
-            streaming: None,
-            resident: HashMap::new(),
-            transfer: None,
-            light: None,
-            skipped: Skipped::default(),
-            targets: None,
-            passes: None,
-            ring: parameter_ring(gpu, 1)?,
-            timer: Timer::new(gpu)?,
-            device,
-        })
+        Self::with_kept(device.into(), volumes)
     }
 
     /// A renderer of scenes of [`Stream::outline`].

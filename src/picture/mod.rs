@@ -13,6 +13,7 @@ mod place;
 mod png;
 #[cfg(feature = "files")]
 mod read;
+mod srgb_codes;
 mod straight;
 #[cfg(feature = "files")]
 mod write;
@@ -24,7 +25,8 @@ pub use place::OutputFile;
 pub use read::{MAX_PICTURE_BYTES, PictureError, PictureProblem, read_image};
 #[cfg(feature = "files")]
 pub use write::{
-    BitDepth, OutputError, OutputProblem, PictureFormat, WriteOptions, write_file, write_picture,
+    BitDepth, EncodedPicture, OutputError, OutputProblem, PictureFormat, WriteOptions, write_file,
+    write_picture,
 };
 
 /// A picture, rows from the top.

@@ -6,6 +6,7 @@
 //! floats    linear premultiplied; sRGB numbers are divided by A, decoded, and multiplied again
 //! ```
 
+use super::srgb_codes::SrgbCodes;
 use super::{ColorSpace, Picture};
 use crate::color::{decode_srgb, encode_srgb};
 use std::num::NonZero;
@@ -24,14 +25,14 @@ impl Picture {
         self.codes_as(max, |code| code)
     }
 
-    /// The same, each kept as `kept` makes it. Rows are shared out to threads: sRGB is a power a number.
+    /// The same, each kept as `kept` makes it. Rows are shared out to threads.
     pub(super) fn codes_as<T: Clone + Default + Send>(
         &self,
         max: u16,
         kept: impl Fn(u16) -> T + Sync,
     ) -> Vec<[T; 4]> {
-        let code = |x: f64| kept((x * f64::from(max) + 0.5).floor() as u16);
-        let straight = |pixel| straight_srgb(pixel, self.color_space).map(code);
+        let (table, space) = (SrgbCodes::shared(), self.color_space);
+        let straight = |pixel| codes_of(pixel, space, max, table).map(&kept);
         let mut codes = vec![<[T; 4]>::default(); self.pixels.len()];
         let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
         let share = self.pixels.len().div_ceil(threads).max(LEAST_PIXELS);
@@ -57,16 +58,36 @@ impl Picture {
 /// Fewer are not worth a thread.
 const LEAST_PIXELS: usize = 1 << 14;
 
+/// [`straight_srgb`] in codes.
+fn codes_of(pixel: [f32; 4], space: ColorSpace, max: u16, table: &SrgbCodes) -> [u16; 4] {
+    // Most of many pictures.
+    if pixel == [0.0; 4] {
+        return [0; 4];
+    }
+    // What is cut off is what `floor` takes: nothing here is below zero.
+    let rounded = |x: f64| (x * f64::from(max) + 0.5) as u16;
+    let [r, g, b, alpha] = straight(pixel);
+    let [r, g, b] = [r, g, b].map(|c| match space {
+        ColorSpace::Linear => table.code(c, max),
+        ColorSpace::Display => rounded(c),
+    });
+    [r, g, b, rounded(alpha)]
+}
+
 /// sRGB numbers divided by alpha, and alpha, all from 0 to 1; what is not a number counts as 0.
 pub(super) fn straight_srgb(pixel: [f32; 4], space: ColorSpace) -> [f64; 4] {
-    let [r, g, b, alpha] = pixel.map(f64::from);
-    let [r, g, b] = [r, g, b].map(|c| {
-        let straight = fraction(if alpha == 0.0 { 0.0 } else { c / alpha });
-        match space {
-            ColorSpace::Linear => encode_srgb(straight),
-            ColorSpace::Display => straight,
-        }
+    let [r, g, b, alpha] = straight(pixel);
+    let [r, g, b] = [r, g, b].map(|c| match space {
+        ColorSpace::Linear => encode_srgb(c),
+        ColorSpace::Display => c,
     });
+    [r, g, b, alpha]
+}
+
+/// Divided by alpha, and alpha, all from 0 to 1.
+fn straight(pixel: [f32; 4]) -> [f64; 4] {
+    let [r, g, b, alpha] = pixel.map(f64::from);
+    let [r, g, b] = [r, g, b].map(|c| fraction(if alpha == 0.0 { 0.0 } else { c / alpha }));
     [r, g, b, fraction(alpha)]
 }
 

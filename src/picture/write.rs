@@ -110,31 +110,63 @@ pub enum OutputProblem {
     Encode(String),
 }
 
-/// Writes `picture` to `path` in the format of its extension, whole or not at all.
+/// A picture as its files will hold it. Making one takes the CPU alone and writing one the disk alone, so that pictures
+/// of a batch can be encoded side by side and written in order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EncodedPicture {
+    files: Vec<(PathBuf, Vec<u8>)>,
+}
+
+impl EncodedPicture {
+    /// `picture` in the format of the extension of `path`.
+    ///
+    /// PNG has no room for layers and leaves them out. For `.npy`, the layer `depth` of `OUT.npy` goes to
+    /// `OUT.depth.npy`.
+    ///
+    /// # Errors
+    /// An extension that is no format's, or a picture without pixels.
+    pub fn new(picture: &Picture, path: &Path, options: WriteOptions) -> Result<Self, OutputError> {
+        match encode(picture, path, options) {
+            Ok(files) => Ok(Self { files }),
+            Err(problem) => Err(OutputError {
+                path: path.to_owned(),
+                problem,
+            }),
+        }
+    }
+
+    /// Writes all files, each whole or not at all; none gets its name before all are written. Only `force` replaces one.
+    ///
+    /// # Errors
+    /// Where the system would not, or a file exists.
+    pub fn write(&self, force: bool) -> Result<(), OutputError> {
+        let mut staged = Vec::new();
+        for (path, bytes) in &self.files {
+            match place::stage(path, bytes, force) {
+                Ok(file) => staged.push(file),
+                Err(problem) => {
+                    let path = path.clone();
+                    return Err(OutputError { path, problem });
+                }
+            }
+        }
+        for file in staged {
+            file.publish()?;
+        }
+        Ok(())
+    }
+}
+
+/// Writes `picture` to `path` in the format of its extension, as [`EncodedPicture`] does.
 ///
-/// PNG has no room for layers and leaves them out. For `.npy`, the layer `depth` of `OUT.npy` goes to
-/// `OUT.depth.npy`; no file gets its name before all are written.
+/// # Errors
+/// Those of [`EncodedPicture`].
 pub fn write_picture(
     picture: &Picture,
     path: &Path,
     options: WriteOptions,
 ) -> Result<(), OutputError> {
-    let of_file = |path: &Path, problem| OutputError {
-        path: path.to_owned(),
-        problem,
-    };
-    let files = encode(picture, path, options).map_err(|problem| of_file(path, problem))?;
-    let mut staged = Vec::new();
-    for (path, bytes) in files {
-        match place::stage(&path, &bytes, options.force) {
-            Ok(file) => staged.push(file),
-            Err(problem) => return Err(of_file(&path, problem)),
-        }
-    }
-    for file in staged {
-        file.publish()?;
-    }
-    Ok(())
+    EncodedPicture::new(picture, path, options)?.write(options.force)
 }
 
 /// Puts a file with these bytes at `path`, whole or not at all. Only `force` replaces one.

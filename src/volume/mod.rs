@@ -20,6 +20,7 @@ pub mod labels;
 mod magnitude;
 pub mod phantom;
 mod prefilter;
+mod pyramid;
 mod read;
 mod reduce;
 mod regrid;
@@ -36,6 +37,8 @@ pub use histogram::Histogram;
 pub use joint::{JointHistogram, steepest_gradient};
 pub use magnitude::Magnitude;
 pub use prefilter::{Coefficients, Spline};
+#[cfg(feature = "files")]
+pub(crate) use pyramid::{Difference, difference, halved, held, part_of};
 pub use reduce::Reduced;
 pub use regrid::{is_same_grid, regridded};
 pub use source::{
@@ -43,7 +46,7 @@ pub use source::{
     Series, Source, VoxelBox, Wanted,
 };
 pub use statistics::Statistics;
-pub use survey::{Overview, Survey};
+pub use survey::{Overview, Survey, Surveyed};
 pub use voxels::{VoxelType, Voxels};
 
 use glam::DAffine3;

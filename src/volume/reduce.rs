@@ -32,6 +32,7 @@ impl Reduced {
         let mut header = Header {
             dims: [x, y, z],
             world_from_voxel: whole.world_from_voxel * scale,
+            levels: 1,
             ..whole.clone()
         };
         let [from_x, from_y, from_z] = whole.dims;
@@ -115,16 +116,16 @@ impl Source for Reduced {
 }
 
 /// The blocks of one slab; the first begins at its corner.
-struct Blocks {
-    from: [usize; 3],
-    to: [usize; 3],
-    factor: usize,
-    fill: Option<f64>,
-    is_labels: bool,
+pub(super) struct Blocks {
+    pub from: [usize; 3],
+    pub to: [usize; 3],
+    pub factor: usize,
+    pub fill: Option<f64>,
+    pub is_labels: bool,
 }
 
 impl Blocks {
-    fn reduce(&self, voxels: &Voxels) -> Voxels {
+    pub fn reduce(&self, voxels: &Voxels) -> Voxels {
         match voxels {
             Voxels::U8(v) => Voxels::U8(self.of(v, |mean| mean.round() as u8)),
             Voxels::I8(v) => Voxels::I8(self.of(v, |mean| mean.round() as i8)),

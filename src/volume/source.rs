@@ -1,6 +1,8 @@
 //! Where voxels come from: a header that promises, and a `read` that keeps the promise.
 
-use super::{VoxelType, Voxels};
+#[cfg(doc)]
+use super::Survey;
+use super::{Surveyed, VoxelType, Voxels};
 use glam::DAffine3;
 use std::path::{Path, PathBuf};
 
@@ -21,6 +23,16 @@ pub trait Source: Send + Sync {
     /// False where a part is found only by reading all that stands before it, as in a file that is compressed as a whole.
     fn reads_parts(&self) -> bool {
         true
+    }
+
+    /// What the source knows of its bricks, with an overview of about `most_seen` voxels; `None` where somebody has to look
+    /// ([`Survey::of`]).
+    ///
+    /// # Errors
+    /// What reading meets.
+    fn surveyed(&self, pick: Pick, most_seen: u64) -> Result<Option<Surveyed>, ReadError> {
+        let _ = (pick, most_seen);
+        Ok(None)
     }
 
     /// The same numbers as little-endian bytes of the type in the file, none of them rounded. `None` from a source
@@ -112,6 +124,8 @@ pub struct Header {
     pub is_labels: bool,
     /// True where the world is a piece of the Earth in kilometres: x east, y north, z up.
     pub is_earth: bool,
+    /// How many resolutions the source has; 1 where there is only this one.
+    pub levels: u32,
     /// The moment of each time step, an ISO 8601 date or a number with its unit. Empty where the file does not say.
     pub time_names: Vec<String>,
     /// The DICOM series of a folder; the one this source reads comes first. Empty in other formats.
@@ -144,6 +158,7 @@ impl Header {
             meaning: Meaning::Numbers,
             is_labels: false,
             is_earth: false,
+            levels: 1,
             time_names: Vec::new(),
             series: Vec::new(),
             variables: Vec::new(),
@@ -209,6 +224,8 @@ pub struct Wanted {
     pub variable: Option<String>,
     /// The UID of a DICOM series.
     pub series: Option<String>,
+    /// One of several resolutions, 0 the finest.
+    pub level: Option<u32>,
     /// True for the voxels as they stand in the file where those of a picture are others: a grid of uneven levels
     /// is drawn from even ones between them.
     pub as_stored: bool,
@@ -265,6 +282,7 @@ pub enum Format {
     NetCdf,
     Zarr,
     Grib2,
+    Bricks,
     Phantom,
 }
 
@@ -286,6 +304,7 @@ impl Format {
             Self::NetCdf => "netcdf",
             Self::Zarr => "zarr",
             Self::Grib2 => "grib2",
+            Self::Bricks => "bricks",
             Self::Phantom => "phantom",
         }
     }

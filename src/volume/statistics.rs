@@ -1,11 +1,11 @@
-//! What the values of a whole source are like, one time in memory after another.
+//! What the values of a whole source are like, one time, or a slab of a large one, in memory after another.
 //!
 //! Over voxels that are finite and not the fill, after rescale; sums in f64.
 
 use super::histogram::{Bins, Histogram};
 use super::read::check_memory;
 use super::voxels::{Stored, with_numbers};
-use super::{Limits, Loss, Pick, Piece, ReadError, Source, Voxels};
+use super::{Limits, Loss, Pick, Piece, ReadError, Source, VoxelBox, Voxels};
 use std::ops::Range;
 
 /// Smallest, largest and mean value, and how many voxels count.
@@ -33,28 +33,30 @@ impl Statistics {
     /// Of all times and some components of `source`. Reads it twice, unless one read gives all of it.
     ///
     /// # Errors
-    /// Where one time needs more memory than `limits` allow, and whatever the source meets.
+    /// Where what has to be read at once needs more memory than `limits` allow, and whatever the source meets.
     pub fn of(
         source: &dyn Source,
         components: Range<u32>,
         limits: &Limits,
     ) -> Result<Self, ReadError> {
         let header = source.header();
-        check_memory(header, header.whole(), limits).map_err(|problem| ReadError {
+        let regions = regions(source, limits.max_bytes);
+        check_memory(header, regions[0], limits).map_err(|problem| ReadError {
             path: source.path().to_owned(),
             problem,
         })?;
-        let picks: Vec<Pick> = (0..header.times)
+        let picks: Vec<(Pick, VoxelBox)> = (0..header.times)
             .flat_map(|time| {
                 components
                     .clone()
                     .map(move |component| Pick { time, component })
             })
+            .flat_map(|pick| regions.iter().map(move |&region| (pick, region)))
             .collect();
         let mut tally = Tally::default();
         let mut kept = None;
-        for &pick in &picks {
-            let Piece { voxels, loss } = source.read(pick, header.whole())?;
+        for &(pick, region) in &picks {
+            let Piece { voxels, loss } = source.read(pick, region)?;
             tally.add(&voxels, header.fill);
             tally.loss = tally.loss.and(loss);
             kept = (picks.len() == 1).then_some(voxels);
@@ -64,10 +66,10 @@ impl Statistics {
         }
         let is_float = header.stored.is_float();
         let mut bins = Bins::over([tally.min, tally.max], is_float, Histogram::MAX_BINS);
-        for &pick in &picks {
+        for &(pick, region) in &picks {
             match kept.take() {
                 Some(voxels) => bins.add(&voxels, header.fill),
-                None => bins.add(&source.read(pick, header.whole())?.voxels, header.fill),
+                None => bins.add(&source.read(pick, region)?.voxels, header.fill),
             }
         }
         let rescale = header.rescale;
@@ -84,6 +86,23 @@ impl Statistics {
             histogram: bins.histogram(rescale),
         })
     }
+}
+
+/// What is read at once: a large volume in slabs, where its source has parts.
+fn regions(source: &dyn Source, max_bytes: u64) -> Vec<VoxelBox> {
+    const SLAB_BYTES: u64 = 256 << 20;
+    let whole = source.header().whole();
+    let [x, y, z] = whole.max;
+    let slice_bytes = u64::from(x) * u64::from(y) * source.header().stored.bytes() as u64;
+    let slices = (SLAB_BYTES.min(max_bytes) / slice_bytes.max(1)).clamp(1, z.into()) as u32;
+    if !source.reads_parts() || slices == z {
+        return vec![whole];
+    }
+    let slab = |first: u32| VoxelBox {
+        min: [0, 0, first],
+        max: [x, y, first.saturating_add(slices).min(z)],
+    };
+    (0..z).step_by(slices as usize).map(slab).collect()
 }
 
 /// The first pass: stored numbers.

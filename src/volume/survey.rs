@@ -10,7 +10,7 @@
 use super::voxels::{Stored, with_numbers};
 use super::{
     Format, Header, Loss, Meaning, Pick, Piece, Problem, ReadError, Rescale, Source, VoxelBox,
-    VoxelType, Voxels,
+    Voxels,
 };
 use glam::{DAffine3, DVec3};
 use std::ops::ControlFlow;
@@ -42,7 +42,35 @@ pub struct Overview {
     every: u32,
 }
 
+/// What a source knows of itself.
+#[derive(Clone, Debug)]
+pub struct Surveyed {
+    /// Voxels of its own along each side of the boxes, which store the neighbours that filters need beside them.
+    pub side: u32,
+    /// Of these boxes, x fastest.
+    pub survey: Survey,
+}
+
 impl Overview {
+    /// Voxels, all of them, that stand for every n-th of a source along each axis.
+    pub fn new(path: &Path, header: Header, voxels: Voxels, every: u32) -> Self {
+        let header = Header {
+            components: 1,
+            times: 1,
+            levels: 1,
+            stored: voxels.voxel_type(),
+            meaning: Meaning::Numbers,
+            time_names: Vec::new(),
+            ..header
+        };
+        Self {
+            path: path.to_owned(),
+            header,
+            voxels,
+            every,
+        }
+    }
+
     /// The n of every n-th.
     pub fn every(&self) -> u32 {
         self.every
@@ -123,6 +151,19 @@ impl Survey {
             loss,
             overview: seen.overview(source),
         }))
+    }
+}
+
+impl Survey {
+    /// What was found out before.
+    pub fn known(ranges: Vec<Option<[f64; 2]>>, has_holes: bool, overview: Overview) -> Self {
+        Self {
+            value_range: ranges.iter().flatten().copied().reduce(both),
+            ranges,
+            has_holes,
+            loss: Loss::default(),
+            overview,
+        }
     }
 }
 
@@ -305,22 +346,13 @@ impl Seen {
         let shift = self.first.map(|first| f64::from(first) + 0.5 - 0.5 * every);
         let shift = DVec3::from_array(shift);
         let place = DAffine3::from_translation(shift) * DAffine3::from_scale(DVec3::splat(every));
-        Overview {
-            path: source.path().to_owned(),
-            header: Header {
-                dims: self.dims,
-                components: 1,
-                times: 1,
-                stored: VoxelType::F32,
-                world_from_voxel: from.world_from_voxel * place,
-                meaning: Meaning::Numbers,
-                notes: Vec::new(),
-                time_names: Vec::new(),
-                ..from.clone()
-            },
-            voxels: Voxels::F32(self.stored),
-            every: self.every,
-        }
+        let header = Header {
+            dims: self.dims,
+            world_from_voxel: from.world_from_voxel * place,
+            notes: Vec::new(),
+            ..from.clone()
+        };
+        Overview::new(source.path(), header, Voxels::F32(self.stored), self.every)
     }
 }
 

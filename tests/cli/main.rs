@@ -19,6 +19,7 @@ mod figures;
 mod info;
 #[cfg(unix)]
 mod interrupt;
+mod large;
 mod manuals;
 mod memory;
 mod mixed;
@@ -29,6 +30,8 @@ mod presets;
 mod real;
 mod section;
 mod sheet;
+mod thumbnails;
+mod thumbnails_at_once;
 mod weather;
 mod widgets;
 mod words;

@@ -1,7 +1,9 @@
-//! Shots to pictures: one device for the whole film, a volume uploaded once for all frames that show it, and a
-//! frame written while the next one is drawn.
+//! Shots to pictures: one device for the whole film, or several that share its frames; a volume uploaded once for all
+//! frames that show it. While a frame is drawn the next time is read, those before it are encoded, and one is written.
 
 use super::{
+    drawer::{Seen, Work},
+    feed::{Ahead, Feed, times_of},
     film::y4m,
     rate::Rate,
     ready::{self, Ready},
@@ -13,27 +15,31 @@ use crate::{
     cli::{
         Error,
         flags::{Classification, SceneFlags},
+        line::{Line, encoders},
+        memory::{DeviceRoom, Held, leaves_room},
+        output,
         progress::Progress,
-        reasons::why_empty,
         renderer::{Device, Job, Renderer},
         shown::{Parts, Shown},
-        timings::{FrameTime, Timings, ms_since, peak_rss_bytes},
+        timings::{Timings, ms_since},
     },
-    picture::{LayerKind, Picture},
+    picture::{EncodedPicture, LayerKind, Picture},
     transfer::{Classified, Window},
     volume::{Source, Volume},
 };
 use std::{
-    io::{self, Write},
+    collections::BTreeSet,
+    panic::resume_unwind,
     sync::{
         Arc,
-        mpsc::{Receiver, sync_channel},
+        mpsc::{channel, sync_channel},
     },
+    thread,
     time::Instant,
 };
 
-/// Pictures that wait to be written.
-const QUEUE: usize = 2;
+/// A picture, or why there is none.
+pub type Drawn = Result<Picture, Error>;
 
 /// What is drawn.
 pub struct Drawing<'a> {
@@ -71,9 +77,15 @@ pub enum Sink<'a> {
     Stream(Rate),
 }
 
+/// A frame on its way to where it goes.
+enum Encoded {
+    Files(EncodedPicture),
+    Bytes(Vec<u8>),
+}
+
 impl Drawing<'_> {
     /// Draws what `sink` does not have yet.
-    pub fn draw(&self, sink: &Sink, device: Device) -> Result<Timings, Error> {
+    pub fn draw(&self, sink: &Sink, mut devices: Vec<Device>) -> Result<Timings, Error> {
         let all: Vec<u32> = (0..self.shots.len() as u32).collect();
         let wanted = match sink {
             Sink::Store(store) => store.missing(),
@@ -88,265 +100,247 @@ impl Drawing<'_> {
                 let parts = shown.parts();
                 let volumes = [vec![&*shown.volume], parts.beside().volumes()].concat();
                 saw(self.shots[0].time as u32, &volumes)?;
-                let ready = ready::of_still(self.shots, self.scene, shown)?;
-                let at = |_| Ok(Arc::clone(&shown.volume));
-                self.draw_ready(wanted, ready, at, &parts, sink, device)
+                let mut ready = ready::of_still(self.shots, self.scene, shown)?;
+                let load_ms = ms_since(self.start);
+                let first = |_: &[Ready]| Ok(Arc::clone(&shown.volume));
+                self.choose_window(&mut ready, first, &parts, &mut devices)?;
+                let feed = Feed::still(&shown.volume, wanted.len());
+                let line = self.line(devices.len())?;
+                let work = self.work(wanted, &ready, &parts, &feed, &line)?;
+                self.run(&work, sink, devices, load_ms, None)
             }
             Content::Times(source) => {
                 self.progress.stage("read", 0, 1);
                 let saw = |time, volume: &Volume| saw(time, &[volume]);
                 let mut volumes = Volumes::new(source.as_ref(), self.scene, self.progress, &saw);
                 let is_labels = source.header().is_labels;
-                let ready = ready::of_times(
+                let mut ready = ready::of_times(
                     self.shots,
                     self.scene,
                     is_labels,
                     &mut volumes,
                     self.progress,
                 )?;
-                let alone = Parts::Channels(Vec::new());
-                let at = |time| volumes.at(time);
-                self.draw_ready(wanted, ready, at, &alone, sink, device)
+                let load_ms = ms_since(self.start);
+                let parts = Parts::Channels(Vec::new());
+                let first = |ready: &[Ready]| volumes.at(ready[0].time);
+                self.choose_window(&mut ready, first, &parts, &mut devices)?;
+                let times = times_of(&ready, wanted);
+                let has_room = self.has_room_ahead(source.as_ref(), &devices)?;
+                let (sender, frames) = sync_channel(0);
+                let (feed, ahead) = if has_room {
+                    let ahead = Ahead {
+                        volumes,
+                        times: &times,
+                        sender,
+                    };
+                    (Feed::ahead(frames), Some(ahead))
+                } else {
+                    devices.truncate(1);
+                    (Feed::behind(volumes, &times), None)
+                };
+                let line = self.line(devices.len())?;
+                let work = self.work(wanted, &ready, &parts, &feed, &line)?;
+                self.run(&work, sink, devices, load_ms, ahead)
             }
         }
     }
 
-    /// Draws these frames; `at` has the volume of a time.
-    fn draw_ready(
+    /// Where colours are those of the picture, the first frame chooses them for all.
+    fn choose_window(
         &self,
-        wanted: &[u32],
-        mut ready: Vec<Ready>,
-        mut at: impl FnMut(f64) -> Result<Arc<Volume>, Error>,
+        ready: &mut [Ready],
+        first: impl FnOnce(&[Ready]) -> Result<Arc<Volume>, Error>,
         parts: &Parts,
-        sink: &Sink,
-        device: Device,
-    ) -> Result<Timings, Error> {
-        let load_ms = ms_since(self.start);
-        let (sender, receiver) = sync_channel(QUEUE);
-        std::thread::scope(|scope| {
-            let writer = scope.spawn(|| self.write(sink, wanted.len(), receiver));
-            let mut seen = Seen {
-                load_ms,
-                ..Seen::default()
-            };
-            // A picture that nobody takes: the writer has stopped and says why.
-            let give = |picture| sender.send(picture).is_ok();
-            let drawn = self.draw_all(
-                wanted, &mut at, &mut ready, parts, sink, &mut seen, device, give,
+        devices: &mut Vec<Device>,
+    ) -> Result<(), Error> {
+        self.progress.stage("prepare", 0, 1);
+        let is_open = |ready: &Ready| ready.classification == Classification::RangeOfPicture;
+        if !ready.iter().any(is_open) {
+            return Ok(());
+        }
+        let volume = first(ready)?;
+        let job = Job {
+            volume: &volume,
+            stream: None,
+            beside: parts.beside(),
+            classification: &ready[0].classification,
+            settings: &ready[0].settings,
+            extent_pixels: self.scene.picture.extent_pixels()?,
+            layers: &[LayerKind::Value],
+        };
+        let camera = &self.shots[0].camera;
+        let mut renderer = Renderer::new(job, camera, devices.remove(0))?;
+        let range = renderer.projected_range(camera)?;
+        devices.insert(0, renderer.into_device());
+        let function = Window::of_range(range).grey(Classified::Projection);
+        for ready in ready.iter_mut() {
+            ready.classification = Classification::Function(function.clone());
+        }
+        let window = format!("{},{}", range[0], range[1]);
+        self.progress.note(&format!(
+            "all frames have the window of the first: {window}"
+        ));
+        Ok(())
+    }
+
+    /// True where each device may hold a time, and one more be read meanwhile.
+    fn has_room_ahead(&self, source: &dyn Source, devices: &[Device]) -> Result<bool, Error> {
+        let is_whole = self.shots.iter().all(|shot| shot.time.fract() == 0.0);
+        let held = if is_whole {
+            Held::of(self.scene, 1)
+        } else {
+            Held::Blend
+        };
+        let has_room = leaves_room(
+            source.header(),
+            self.scene,
+            devices[0].memory()?,
+            held,
+            devices.len() as u32,
+        );
+        if !has_room {
+            self.progress.note(
+                "there is memory for one time alone: each is read when the one before has gone",
             );
-            drop(sender);
-            match writer.join() {
-                Ok(written) => written?,
-                Err(panic) => std::panic::resume_unwind(panic),
-            }
-            drawn?;
-            seen.say(self.progress, wanted.len());
-            Ok(seen.timings)
+        }
+        Ok(has_room)
+    }
+
+    fn work<'w>(
+        &'w self,
+        wanted: &'w [u32],
+        ready: &'w [Ready],
+        parts: &'w Parts<'w>,
+        feed: &'w Feed<'w>,
+        line: &'w Line,
+    ) -> Result<Work<'w>, Error> {
+        let extent_pixels = self.scene.picture.extent_pixels()?;
+        Ok(Work {
+            drawing: self,
+            wanted,
+            ready,
+            parts,
+            feed,
+            line,
+            extent_pixels,
         })
     }
 
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "each is borrowed for another time"
-    )]
-    fn draw_all(
-        &self,
-        wanted: &[u32],
-        at: &mut impl FnMut(f64) -> Result<Arc<Volume>, Error>,
-        ready: &mut [Ready],
-        parts: &Parts,
-        sink: &Sink,
-        seen: &mut Seen,
-        mut device: Device,
-        give: impl Fn((u32, Picture)) -> bool,
-    ) -> Result<(), Error> {
+    fn line(&self, devices: usize) -> Result<Line, Error> {
         let extent_pixels = self.scene.picture.extent_pixels()?;
-        self.progress.stage("prepare", 0, 1);
-        if ready
-            .iter()
-            .any(|ready| ready.classification == Classification::RangeOfPicture)
-        {
-            let volume = at(ready[0].time)?;
-            let job = self.job(
-                &volume,
-                parts,
-                &ready[0],
-                extent_pixels,
-                &[LayerKind::Value],
-            );
-            let camera = &self.shots[0].camera;
-            let mut renderer = Renderer::new(job, camera, device)?;
-            let range = renderer.projected_range(camera)?;
-            device = renderer.into_device();
-            let function = Window::of_range(range).grey(Classified::Projection);
-            for ready in ready.iter_mut() {
-                ready.classification = Classification::Function(function.clone());
-            }
-            let window = format!("{},{}", range[0], range[1]);
-            self.progress.note(&format!(
-                "all frames have the window of the first: {window}"
-            ));
-        }
-        let ready = &*ready;
-        let mut rest = wanted;
-        while let Some(&first) = rest.first() {
-            let time = ready[first as usize].time;
-            let volume = at(time)?;
-            let job = self.job(
-                &volume,
-                parts,
-                &ready[first as usize],
-                extent_pixels,
-                self.layers,
-            );
-            let camera = &self.shots[first as usize].camera;
-            let mut renderer = Renderer::new(job, camera, device)?;
-            seen.prepared(&renderer);
-            if let Sink::Store(store) = sink {
-                store
-                    .journal()
-                    .saw_device(&format!("{}, {}", seen.timings.device, seen.timings.driver))?;
-            }
-            let same = rest
-                .iter()
-                .take_while(|&&number| ready[number as usize].time == time)
-                .count();
-            let (now, later) = rest.split_at(same);
-            for &number in now {
-                let Ready {
-                    classification,
-                    settings,
-                    ..
-                } = &ready[number as usize];
-                let camera = &self.shots[number as usize].camera;
-                renderer.change(classification, settings);
-                let start = Instant::now();
-                let frame = renderer.draw(camera)?;
-                seen.timings.frames.push(FrameTime {
-                    gpu_ms: frame.gpu_ms,
-                    wall_ms: ms_since(start),
-                });
-                let mut picture = frame.picture;
-                let reasoned = parts.only(classification);
-                if let Some(why) = why_empty(&picture, &volume, reasoned, camera, settings) {
-                    seen.empty(number, why);
-                }
-                for &color in &self.background {
-                    picture.over_background(color);
-                }
-                if !give((number, picture)) {
-                    return Ok(());
-                }
-            }
-            rest = later;
-            if let (true, [.., last]) = (self.wants_timings && rest.is_empty(), now) {
-                seen.timings.samples = renderer.samples(&self.shots[*last as usize].camera)?;
-                seen.timings.device_bytes = renderer.device_bytes();
-                seen.timings.peak_rss_bytes = peak_rss_bytes();
-            }
-            device = renderer.into_device();
-        }
-        Ok(())
+        Ok(Line::new(devices + encoders(extent_pixels) + 1))
     }
 
-    fn job<'j>(
-        &'j self,
-        volume: &'j Volume,
-        parts: &'j Parts,
-        ready: &'j Ready,
-        extent_pixels: [u32; 2],
-        layers: &'j [LayerKind],
-    ) -> Job<'j> {
-        Job {
-            volume,
-            stream: None,
-            beside: parts.beside(),
-            classification: &ready.classification,
-            settings: &ready.settings,
-            extent_pixels,
-            layers,
-        }
-    }
-
-    /// Writes pictures as they come, and says how long it will take.
-    fn write(
+    /// All stages at once; the thread that calls writes pictures as they come, and says how long it will take.
+    fn run(
         &self,
+        work: &Work,
         sink: &Sink,
-        wanted: usize,
-        pictures: Receiver<(u32, Picture)>,
-    ) -> Result<(), Error> {
+        devices: Vec<Device>,
+        load_ms: f64,
+        ahead: Option<Ahead>,
+    ) -> Result<Timings, Error> {
+        let (name, driver) = names_of(&devices)?;
+        if let Sink::Store(store) = sink {
+            let mut journal = store.journal();
+            journal.saw_device(&format!("{name}, {driver}"))?;
+        }
+        let timings = Timings {
+            device: name,
+            driver,
+            load_ms,
+            ..Timings::default()
+        };
+        let (sender, pictures) = channel();
+        thread::scope(|scope| {
+            if let Some(ahead) = ahead {
+                scope.spawn(|| ahead.read(work.line));
+            }
+            let draw = |device| {
+                let sender = sender.clone();
+                scope.spawn(move || work.draw_on(device, &sender))
+            };
+            let drawers: Vec<_> = devices.into_iter().map(draw).collect();
+            drop(sender);
+            let encode = |at, drawn: Drawn| self.encoded(sink, work.wanted[at], drawn?);
+            let mut put = self.put(sink, work.wanted);
+            let threads = encoders(work.extent_pixels);
+            let written = work
+                .line
+                .run(pictures, threads, encode, |at, frame| put(at, frame?));
+            let seen: Vec<_> = drawers.into_iter().map(|drawer| drawer.join()).collect();
+            work.feed.close();
+            let seen = seen.into_iter();
+            let seen = seen.map(|seen| seen.unwrap_or_else(|fault| resume_unwind(fault)));
+            let seen: Vec<Seen> = seen.collect();
+            written?;
+            self.say_empty(&seen, work.wanted.len());
+            Ok(Seen::together(seen, timings))
+        })
+    }
+
+    fn encoded(&self, sink: &Sink, number: u32, mut picture: Picture) -> Result<Encoded, Error> {
+        for &color in &self.background {
+            picture.over_background(color);
+        }
+        match sink {
+            Sink::Store(store) => store.encode(number, &picture).map(Encoded::Files),
+            Sink::Stream(rate) => Ok(Encoded::Bytes(streamed(number, &picture, *rate))),
+        }
+    }
+
+    /// Puts frames where they go, in order.
+    fn put(&self, sink: &Sink, wanted: &[u32]) -> impl FnMut(usize, Encoded) -> Result<(), Error> {
         let total = self.shots.len();
-        let before = total - wanted;
+        let before = total - wanted.len();
         let start = Instant::now();
         self.progress.frames(before, total, None);
-        for (done, (number, picture)) in (1..).zip(pictures) {
-            match sink {
-                Sink::Store(store) => store.write(number, &picture)?,
-                Sink::Stream(rate) => stream(number, &picture, *rate)?,
+        move |at, frame| {
+            match (sink, frame) {
+                (Sink::Store(store), Encoded::Files(files)) => store.write(wanted[at], &files)?,
+                (_, Encoded::Bytes(bytes)) => output::write_out(&bytes)?,
+                (Sink::Stream(_), Encoded::Files(_)) => unreachable!("a stream has no files"),
             }
-            let each = start.elapsed() / done;
-            let left = each.saturating_mul((wanted as u32).saturating_sub(done));
-            self.progress
-                .frames(before + done as usize, total, Some(left));
+            let done = at as u32 + 1;
+            let left = (start.elapsed() / done).saturating_mul(wanted.len() as u32 - done);
+            self.progress.frames(before + at + 1, total, Some(left));
+            Ok(())
         }
-        Ok(())
-    }
-}
-
-fn stream(number: u32, picture: &Picture, rate: Rate) -> Result<(), Error> {
-    let codes = picture.codes(u8::MAX.into());
-    let codes: Vec<u8> = codes
-        .as_flattened()
-        .iter()
-        .map(|&code| code as u8)
-        .collect();
-    let mut out = io::stdout().lock();
-    let mut write = |bytes: &[u8]| {
-        out.write_all(bytes)
-            .map_err(|cause| Error::output("the standard output", &cause))
-    };
-    if number == 0 {
-        write(y4m::head([picture.width, picture.height], rate).as_bytes())?;
-    }
-    write(&y4m::frame(&codes))
-}
-
-/// What was met on the way.
-#[derive(Default)]
-struct Seen {
-    load_ms: f64,
-    timings: Timings,
-    /// Frames that show nothing: the first, why, and how many.
-    empty: Option<(u32, &'static str, usize)>,
-}
-
-impl Seen {
-    fn prepared(&mut self, renderer: &Renderer) {
-        let timings = &mut self.timings;
-        if timings.device.is_empty() {
-            timings.device = renderer.device();
-            timings.driver = renderer.driver();
-            timings.load_ms = self.load_ms;
-        }
-        timings.upload_ms += renderer.upload_ms;
-        timings.prepare_ms += renderer.prepare_ms;
     }
 
-    fn empty(&mut self, number: u32, why: &'static str) {
-        let (.., count) = self.empty.get_or_insert((number, why, 0));
-        *count += 1;
-    }
-
-    fn say(&mut self, progress: &Progress, drawn: usize) {
-        self.timings.first_frame_ms = self
-            .timings
-            .frames
-            .first()
-            .map_or(0.0, |frame| frame.wall_ms);
-        if let Some((number, why, count)) = self.empty {
-            progress.note(&format!(
+    fn say_empty(&self, seen: &[Seen], drawn: usize) {
+        let empty = seen.iter().flat_map(|seen| &seen.empty);
+        if let Some((number, why)) = empty.clone().min() {
+            let count = empty.count();
+            self.progress.note(&format!(
                 "{count} of {drawn} frames are empty, frame {number} because: {why}"
             ));
         }
+    }
+}
+
+/// Each name and driver once, in an order that does not hang on the words.
+fn names_of(devices: &[Device]) -> Result<(String, String), Error> {
+    let names = devices
+        .iter()
+        .map(|device| Ok((device.name()?, device.driver()?)));
+    let names = names.collect::<Result<BTreeSet<_>, Error>>()?;
+    let (names, drivers): (Vec<_>, BTreeSet<_>) = names.into_iter().unzip();
+    let drivers: Vec<_> = drivers.into_iter().collect();
+    Ok((names.join(" + "), drivers.join(" + ")))
+}
+
+fn streamed(number: u32, picture: &Picture, rate: Rate) -> Vec<u8> {
+    let codes = picture.codes(u8::MAX.into());
+    let codes = codes.as_flattened().iter().map(|&code| code as u8);
+    let frame = y4m::frame(&codes.collect::<Vec<u8>>());
+    match number {
+        0 => [
+            y4m::head([picture.width, picture.height], rate).into_bytes(),
+            frame,
+        ]
+        .concat(),
+        _ => frame,
     }
 }

@@ -6,6 +6,8 @@
 //! ```
 
 mod draw;
+mod drawer;
+mod feed;
 mod film;
 mod functions;
 mod identity;
@@ -25,7 +27,7 @@ use super::{
     Error,
     flags::{Depth, SceneFlags},
     load,
-    memory::{Held, fitting},
+    memory::{DeviceRoom, Held, fitting},
     output::{self, write_whole},
     progress::{Progress, ProgressWord},
     render::bit_depth,
@@ -192,8 +194,12 @@ impl Animate {
         progress: &Progress,
     ) -> Result<Timings, Error> {
         progress.stage("prepare", 0, 1);
-        let device = Device::find(plan.scene.device.as_deref())?;
-        progress.device(&device.name()?);
+        let words = plan.scene.devices().into_iter();
+        let devices = words.map(Device::find).collect::<Result<Vec<_>, _>>()?;
+        for device in &devices {
+            progress.device(&device.name()?);
+        }
+        let device = &devices[0];
         let Plan {
             scene,
             depth,
@@ -210,7 +216,7 @@ impl Animate {
                     scene.input.time = Some(time.to_string());
                 }
                 let settings = &shots[0].settings;
-                let shown = Shown::of(source, &scene, settings, &device, progress)?;
+                let shown = Shown::of(source, &scene, settings, device, progress)?;
                 Content::Still(Box::new(shown))
             }
             None => {
@@ -240,7 +246,7 @@ impl Animate {
             progress,
             wants_timings: self.timings.is_some(),
         };
-        drawing.draw(sink, device)
+        drawing.draw(sink, devices)
     }
 
     /// All that the words say, checked as far as it can be without a voxel.

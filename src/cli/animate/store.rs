@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     cli::{Error, output, progress::Progress, signals::Gate},
-    picture::{LayerKind, Picture, PictureFormat, WriteOptions, write_picture},
+    picture::{EncodedPicture, LayerKind, Picture, PictureFormat, WriteOptions},
 };
 use serde_json::Value;
 use std::{
@@ -113,16 +113,20 @@ impl Store {
         self.journal.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// What the files of a frame will hold.
+    pub fn encode(&self, number: u32, picture: &Picture) -> Result<EncodedPicture, Error> {
+        let path = self.frames.path(number);
+        Ok(EncodedPicture::new(picture, &path, self.options)?)
+    }
+
     /// Writes a frame, whole or not at all.
-    pub fn write(&self, number: u32, picture: &Picture) -> Result<(), Error> {
+    pub fn write(&self, number: u32, frame: &EncodedPicture) -> Result<(), Error> {
         if !self.frames.folder.is_dir() {
             fs::create_dir(&self.frames.folder)
                 .map_err(|cause| Error::output(&self.frames.folder, &cause))?;
         }
         self.gate.whole(|| self.journal().begin())?;
-        let path = self.frames.path(number);
-        self.gate
-            .whole(|| write_picture(picture, &path, self.options))?;
+        self.gate.whole(|| frame.write(self.options.force))?;
         self.journal().add_frame(number, &self.files(number))
     }
 
@@ -278,14 +282,19 @@ mod tests {
         Store::new(frames, 3, film, wishes, options, &Gate::default())
     }
 
+    fn write(store: &Store, number: u32, picture: &Picture) {
+        let frame = store.encode(number, picture).expect("encoded");
+        store.write(number, &frame).expect("written");
+    }
+
     #[test]
     fn a_stopped_film_is_gone_on_with_by_resume_alone() {
         let folder = tempfile::tempdir().expect("a folder");
         let film = json!({"scene": 1});
         let first = store(folder.path(), film.clone(), false, false).expect("a store");
         assert!(!folder.path().join("frames").exists(), "made too early");
-        first.write(0, &picture(0.1)).expect("written");
-        first.write(2, &picture(0.2)).expect("written");
+        write(&first, 0, &picture(0.1));
+        write(&first, 2, &picture(0.2));
         // As a kill leaves it: a part of a frame, and a frame that no line of the journal speaks of.
         let frames = folder.path().join("frames");
         fs::write(frames.join(".1.pngabc123.part"), "half").expect("a file");
@@ -305,9 +314,8 @@ mod tests {
 
         let again = store(folder.path(), film.clone(), true, false).expect("a store");
         assert_eq!(again.missing(), [1]);
-        again
-            .write(1, &picture(0.3))
-            .expect("written over what is there");
+        // Over what is there.
+        write(&again, 1, &picture(0.3));
         assert!(!frames.join(".1.pngabc123.part").exists());
         assert!(frames.join(".1.pngmine.part").exists());
         let done = store(folder.path(), film.clone(), true, false).expect("a store");

@@ -23,7 +23,7 @@ pub struct Volumes<'a> {
     first: Option<(Pick, DAffine3)>,
     kept: Vec<(u32, Arc<Volume>)>,
     /// Told of every volume that is read.
-    saw: &'a dyn Fn(u32, &Volume) -> Result<(), Error>,
+    saw: &'a (dyn Fn(u32, &Volume) -> Result<(), Error> + Sync),
 }
 
 impl<'a> Volumes<'a> {
@@ -32,7 +32,7 @@ impl<'a> Volumes<'a> {
         source: &'a dyn Source,
         scene: &SceneFlags,
         progress: &'a Progress,
-        saw: &'a dyn Fn(u32, &Volume) -> Result<(), Error>,
+        saw: &'a (dyn Fn(u32, &Volume) -> Result<(), Error> + Sync),
     ) -> Self {
         Self {
             source,

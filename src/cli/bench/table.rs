@@ -90,7 +90,7 @@ pub fn measured(bench: &Bench, scene: &SceneFlags) -> Result<String, Error> {
         scene.input.path = Some((*input).clone());
         let base = of_mode(&base, mode.mode());
         // What is shown depends on the mode: channels are read for each.
-        let here = Device::find(scene.device.as_deref())?;
+        let here = Device::find(scene.one_device()?)?;
         let shown = Shown::read(&scene, &base, &here, &progress)?;
         if probes
             .last()
@@ -194,7 +194,7 @@ impl Bench {
             extent_pixels,
             layers: &[],
         };
-        let device = Device::find(scene.device.as_deref())?;
+        let device = Device::find(scene.one_device()?)?;
         // The first picture makes what is made on first use.
         let ready = Renderer::new(job, &camera, device).and_then(|mut renderer| {
             renderer.draw(&camera)?;

@@ -40,6 +40,10 @@ pub struct InputFlags {
     #[arg(long, value_name = "UID", help_heading = "Input")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub series: Option<String>,
+    /// One of several resolutions of a file that has them: 0 the finest, each next with half as many voxels along each axis
+    #[arg(long, value_name = "N", help_heading = "Input")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub level: Option<u32>,
     /// Draw a volume that is too large for the memory with fewer voxels, and say so
     #[arg(long, help_heading = "Input")]
     #[serde(skip_serializing_if = "is_false")]
@@ -151,6 +155,7 @@ impl InputFlags {
                 let wanted = Wanted {
                     variable: self.variable.clone(),
                     series: self.series.clone(),
+                    level: self.level,
                     as_stored,
                 };
                 format::open(path, &wanted, limits)?

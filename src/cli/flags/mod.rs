@@ -9,6 +9,7 @@ mod classification;
 mod component;
 mod cuts;
 mod denoise;
+mod devices;
 mod gradient_filter;
 mod gradients;
 mod inlined;
@@ -93,10 +94,11 @@ pub struct SceneFlags {
     #[arg(long, value_name = "FILTER")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub denoise: Option<DenoiseWord>,
-    /// A Vulkan device by name, index or UUID, `cpu` for a software one, or `reference` for no Vulkan at all
+    /// A Vulkan device by name, index or UUID, `cpu` for a software one, or `reference` for no Vulkan at all; where many
+    /// pictures are drawn it may be said again, and they are shared out
     #[arg(long, value_name = "DEVICE")]
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub device: Option<String>,
+    #[serde(with = "devices", skip_serializing_if = "Vec::is_empty")]
+    pub device: Vec<String>,
 }
 
 impl SceneFlags {

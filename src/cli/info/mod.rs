@@ -48,6 +48,8 @@ struct Report {
     non_finite: u64,
     fill_count: u64,
     variables: Vec<String>,
+    /// Resolutions that `--level` chooses from.
+    levels: u32,
     render_bytes: RenderBytes,
     /// Of values; `null` where the file is silent.
     unit: Option<String>,
@@ -207,6 +209,7 @@ fn report(header: &Header, statistics: &Statistics) -> Report {
         non_finite: statistics.non_finite_count,
         fill_count: statistics.fill_count,
         variables: header.variables.clone(),
+        levels: header.levels,
         render_bytes: RenderBytes::of(header, has_holes(statistics)),
         unit: unit(header),
         meaning,

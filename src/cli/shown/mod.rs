@@ -15,16 +15,16 @@ use super::{
     flags::{Classification, ClassificationFlags, Plan, SceneFlags, Subject, summary},
     labels,
     load::{load_from, open},
-    memory::{Held, fitting},
+    memory::{DeviceRoom, Held, fitting},
     progress::Progress,
-    renderer::Device,
 };
 use crate::{
+    camera::Camera,
     offscreen::Stream,
     scene::{Beside, Channel},
     technique::{Filter, Mode, PerMode, Role, Settings},
     transfer::{Classified, LabelTable, TransferFunction},
-    volume::{Header, Source, Volume, labels::labels_of},
+    volume::{Header, Limits, Source, Volume, labels::labels_of},
 };
 use check::{has_beside, plan};
 use std::sync::Arc;
@@ -71,11 +71,43 @@ impl Shown {
     pub fn read(
         scene: &SceneFlags,
         settings: &Settings,
-        device: &Device,
+        device: &dyn DeviceRoom,
         progress: &Progress,
     ) -> Result<Self, Error> {
         check(scene, settings)?;
-        let source = open(&scene.input, &scene.input.limits())?;
+        let limits = scene.input.limits();
+        let limits = Limits {
+            // Of several resolutions the finest, not the finest that fits.
+            max_bytes: if scene.input.stream {
+                u64::MAX
+            } else {
+                limits.max_bytes
+            },
+            ..limits
+        };
+        let source = open(&scene.input, &limits)?;
+        let shown = Self::of_source(source, scene, settings, device, progress)?;
+        Ok(shown.at_level(scene))
+    }
+
+    /// The same with opacities of the finest resolution, where a word takes a coarser one.
+    pub fn at_level(mut self, scene: &SceneFlags) -> Self {
+        let level = scene.input.level.filter(|&level| level > 0);
+        if let (Some(level), Classification::Function(function)) = (level, &mut self.classification)
+        {
+            let spacing = self.volume.grid().smallest_spacing() / f64::from(level).exp2();
+            function.reference_length.get_or_insert(spacing);
+        }
+        self
+    }
+
+    fn of_source(
+        source: Box<dyn Source>,
+        scene: &SceneFlags,
+        settings: &Settings,
+        device: &dyn DeviceRoom,
+        progress: &Progress,
+    ) -> Result<Self, Error> {
         if streamed::is_wanted(source.as_ref(), scene, settings, device)? {
             return Self::streamed(source, scene, settings, device, progress);
         }
@@ -92,7 +124,7 @@ impl Shown {
         source: Box<dyn Source>,
         scene: &SceneFlags,
         settings: &Settings,
-        device: &Device,
+        device: &dyn DeviceRoom,
         progress: &Progress,
     ) -> Result<Self, Error> {
         check(scene, settings)?;
@@ -205,6 +237,22 @@ impl Shown {
         Subject::new(&self.volume.grid(), self.is_earth)
     }
 
+    /// Who looks, and in `settings` what is known now that there are voxels.
+    pub fn camera(
+        &self,
+        scene: &SceneFlags,
+        extent_pixels: [u32; 2],
+        settings: &mut Settings,
+    ) -> Result<Camera, Error> {
+        let (section, subject) = (&scene.section, self.subject());
+        let camera = section.camera(&scene.camera, &subject, extent_pixels, settings)?;
+        if let (None, Some(filter)) = (scene.sampling.filter, self.filter) {
+            settings.filter = filter;
+        }
+        settings.per_mode = self.per_mode.clone();
+        Ok(camera)
+    }
+
     /// What [`Parts::beside`] hands out.
     pub fn parts(&self) -> Parts<'_> {
         match &self.others {
@@ -261,7 +309,7 @@ impl Parts<'_> {
 struct Reader<'a> {
     scene: &'a SceneFlags,
     mode: Mode,
-    device: &'a Device,
+    device: &'a dyn DeviceRoom,
     progress: &'a Progress,
 }
 

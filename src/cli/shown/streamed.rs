@@ -4,9 +4,8 @@ use super::{Others, Plan, Shown, check::plan, has_beside};
 use crate::cli::Error;
 use crate::cli::exaggerate;
 use crate::cli::flags::{InputFlags, SceneFlags};
-use crate::cli::memory::{Held, for_bricks, is_too_large};
+use crate::cli::memory::{DeviceRoom, Held, for_bricks, is_too_large};
 use crate::cli::progress::Progress;
-use crate::cli::renderer::Device;
 use crate::offscreen::{Stream, StreamOptions};
 use crate::technique::{Settings, Technique};
 use crate::volume::Source;
@@ -18,7 +17,7 @@ pub(super) fn is_wanted(
     source: &dyn Source,
     scene: &SceneFlags,
     settings: &Settings,
-    device: &Device,
+    device: &dyn DeviceRoom,
 ) -> Result<bool, Error> {
     let header = source.header();
     let what = match () {
@@ -63,7 +62,7 @@ impl Shown {
         source: Box<dyn Source>,
         scene: &SceneFlags,
         settings: &Settings,
-        device: &Device,
+        device: &dyn DeviceRoom,
         progress: &Progress,
     ) -> Result<Self, Error> {
         let (pick, note) = scene.input.pick(source.header())?;

@@ -94,11 +94,12 @@ impl Layout {
 
     fn note_losses(&mut self, header: &Header, options: &WriteVolumeOptions) {
         let is_nifti = matches!(options.format, VolumeFormat::Nifti { .. });
+        let is_bricks = options.format == VolumeFormat::Bricks;
         let mut lost = Vec::new();
         if options.format == VolumeFormat::Npy {
             lost.push("where the voxels lie");
         }
-        if header.is_labels && !is_nifti {
+        if header.is_labels && !is_nifti && !is_bricks {
             lost.push("that the values are labels");
         }
         if !header.time_names.is_empty() {
@@ -107,7 +108,7 @@ impl Layout {
         if matches!(header.meaning, Meaning::Channels(_)) {
             lost.push("names and colors of the channels");
         }
-        if header.unit.is_some() && options.format != VolumeFormat::Nrrd {
+        if header.unit.is_some() && options.format != VolumeFormat::Nrrd && !is_bricks {
             lost.push("the unit of the values");
         }
         if !lost.is_empty() {
@@ -117,6 +118,7 @@ impl Layout {
         if let Some(fill) = header.fill {
             self.notes.push(match self.number.is_float() {
                 true => "voxels without data are written as NaN".to_owned(),
+                false if is_bricks => return,
                 false => format!("{fill} means no data in the input: the file cannot say so"),
             });
         }
@@ -137,7 +139,9 @@ fn numbers(
         fill: header.fill,
     };
     let in_format = |number: VoxelType, notes: &mut Vec<String>| {
-        if number == VoxelType::F16 && options.format != VolumeFormat::Npy {
+        if number == VoxelType::F16
+            && !matches!(options.format, VolumeFormat::Npy | VolumeFormat::Bricks)
+        {
             notes.push("the format has no f16: f32 is written".to_owned());
             return VoxelType::F32;
         }
@@ -155,7 +159,7 @@ fn numbers(
         NumberType::Stored => {
             let keeps_rescale = matches!(
                 options.format,
-                VolumeFormat::MetaImage | VolumeFormat::Nifti { .. }
+                VolumeFormat::MetaImage | VolumeFormat::Nifti { .. } | VolumeFormat::Bricks
             );
             if header.rescale == plain || keeps_rescale {
                 let number = in_format(header.stored, notes);

@@ -1,4 +1,4 @@
-//! Volumes to files: NRRD, MetaImage, NIfTI-1, NumPy.
+//! Volumes to files: NRRD, MetaImage, NIfTI-1, NumPy, bricks.
 //!
 //! ```text
 //! Source -> what is written (Selection, NumberType) -> Layout -> header of the format -> numbers, slab by slab
@@ -7,6 +7,7 @@
 //! Stored numbers are kept as they are where the format can say what they mean. Memory holds one slab of one time
 //! at a time, [`SLAB_BYTES`] or one slice, whichever is more.
 
+mod bricks;
 mod layout;
 mod metaimage;
 mod nifti;
@@ -17,7 +18,7 @@ mod slabs;
 
 use crate::volume::{Header, ReadError, Source, VoxelBox, VoxelType};
 use layout::Layout;
-use std::io::{self, Seek, Write};
+use std::io::{self, Read, Seek, Write};
 use std::ops::Range;
 use std::path::Path;
 
@@ -39,6 +40,8 @@ pub enum VolumeFormat {
     },
     /// `[time,] z, y, x [, component]`: no place in space.
     Npy,
+    /// Our own: bricks and coarser levels, for volumes that are drawn without being in memory.
+    Bricks,
 }
 
 impl VolumeFormat {
@@ -52,6 +55,7 @@ impl VolumeFormat {
             () if ends(".nii") => Self::Nifti { gzip: false },
             () if ends(".nii.gz") => Self::Nifti { gzip: true },
             () if ends(".npy") => Self::Npy,
+            () if ends(".svb") => Self::Bricks,
             () => return None,
         })
     }
@@ -133,10 +137,29 @@ pub fn write_volume(
     source: &dyn Source,
     selection: &Selection,
     options: &WriteVolumeOptions,
-    out: &mut (impl Write + Seek),
+    out: &mut (impl Read + Write + Seek),
     progress: &mut dyn FnMut(usize, usize),
 ) -> Result<Written, WriteVolumeError> {
+    let options = &match (options.format, options.numbers) {
+        // Bricks are kept as they are in memory.
+        (VolumeFormat::Bricks, NumberType::Stored) if !source.header().stored.is_kept_exactly() => {
+            WriteVolumeOptions {
+                numbers: NumberType::Values(VoxelType::F32),
+                ..*options
+            }
+        }
+        _ => *options,
+    };
     let mut layout = Layout::of(source.header(), selection, options)?;
+    if options.format == VolumeFormat::Bricks {
+        if !layout.number.is_kept_exactly() {
+            let name = layout.number.name();
+            return Err(WriteVolumeError::NoRoom(format!(
+                "a file of bricks holds u8, i8, u16, i16, f16 or f32, not {name}"
+            )));
+        }
+        return bricks::write(source, selection, &layout, out, progress);
+    }
     let mut slabs = slabs::Slabs {
         source,
         selection,
@@ -149,6 +172,7 @@ pub fn write_volume(
         VolumeFormat::MetaImage => metaimage::write(&layout, options.compress, out, &mut slabs)?,
         VolumeFormat::Nifti { gzip } => nifti::write(&mut layout, gzip, out, &mut slabs)?,
         VolumeFormat::Npy => npy::write(&layout, out, &mut slabs)?,
+        VolumeFormat::Bricks => unreachable!("written above"),
     }
     let mut notes = layout.notes.clone();
     notes.extend(slabs.tally.notes(layout.number));

@@ -83,6 +83,13 @@ pub(super) fn choose(
     let Some((image, multiscale, level)) = found else {
         return Ok(None);
     };
+    let last = multiscale.levels.len().saturating_sub(1);
+    let of_word = wanted.level.map(|level| level as usize);
+    if let Some(number) = of_word.filter(|&number| number > last) {
+        let wanted = format!("0 to {last}");
+        return Err(invalid(ZARR, "level", wanted, &number.to_string()));
+    }
+    let level = level.or(of_word);
     let (number, array) = match level {
         Some(number) => {
             let path = multiscale
@@ -95,6 +102,7 @@ pub(super) fn choose(
     };
     let roles = multiscale.roles(array.rank())?;
     let mut header = header(image, &multiscale, number, &array, &roles)?;
+    header.levels = u32::try_from(multiscale.levels.len()).unwrap_or(u32::MAX);
     if level.is_none() {
         header
             .notes

@@ -16,7 +16,9 @@ pub(super) use cache::{Cache, if_it_fits};
 pub(super) use places::{Eye, Place};
 
 use crate::resident::{Apron, Cell, Whole, cells_of_side};
-use crate::volume::{Limits, Overview, Pick, ReadError, Source, Survey, Volume, VoxelType, Voxels};
+use crate::volume::{
+    Limits, Overview, Pick, ReadError, Source, Survey, Surveyed, Volume, VoxelType, Voxels,
+};
 use glam::DAffine3;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -83,6 +85,13 @@ impl Stream {
     ) -> Result<Option<Self>, ReadError> {
         const MOST_SEEN: u64 = 1 << 22;
         let dims = source.header().dims;
+        if let Some(Surveyed { side, survey }) = source.surveyed(pick, MOST_SEEN)? {
+            let cells = cells_of_side(dims, side);
+            if cells.len() == survey.ranges.len() {
+                let device_bytes = options.device_bytes;
+                return Ok(Some(Self::new(source, pick, cells, survey, device_bytes)));
+            }
+        }
         let cells = cells_of_side(dims, options.side);
         let boxes: Vec<_> = cells.iter().map(|cell| cell.stored).collect();
         let most = [options.piece_bytes, MOST_SEEN];

@@ -17,6 +17,9 @@ pub fn write(reel: &Reel, out: &mut impl Write) -> Result<(), Error> {
     } else {
         png::BitDepth::Eight
     });
+    // As of frames in files of their own.
+    encoder.set_compression(png::Compression::Fast);
+    encoder.set_filter(png::Filter::Adaptive);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     encoder.set_animated(reel.count, 0).map_err(refused)?;
     encoder
@@ -27,15 +30,10 @@ pub fn write(reel: &Reel, out: &mut impl Write) -> Result<(), Error> {
         .set_blend_op(png::BlendOp::Source)
         .map_err(refused)?;
     let mut writer = encoder.write_header().map_err(refused)?;
-    for number in 0..reel.count {
-        reel.progress
-            .stage("encode", number as usize, reel.count as usize);
-        let codes = if number == 0 {
-            first.clone()
-        } else {
-            reel.codes(number)?
-        };
-        writer.write_image_data(&codes).map_err(refused)?;
-    }
+    drop(first);
+    reel.in_order(
+        |number| reel.codes(number),
+        |codes| writer.write_image_data(&codes).map_err(refused),
+    )?;
     writer.finish().map_err(refused)
 }

@@ -28,11 +28,9 @@ pub fn write(reel: &Reel, out: &mut impl Write) -> Result<(), Error> {
     let mut encoder =
         Encoder::new(out, width, height, palette.colors.as_flattened()).map_err(refused)?;
     encoder.set_repeat(Repeat::Infinite).map_err(refused)?;
-    for number in 0..reel.count {
-        reel.progress
-            .stage("encode", number as usize, reel.count as usize);
+    let packed = |number| {
         let codes = reel.codes(number)?;
-        let frame = Frame {
+        let mut frame = Frame {
             width,
             height,
             delay: delay(reel, number),
@@ -40,9 +38,12 @@ pub fn write(reel: &Reel, out: &mut impl Write) -> Result<(), Error> {
             buffer: Cow::Owned(palette.indices(&codes, width.into())),
             ..Frame::default()
         };
-        encoder.write_frame(&frame).map_err(refused)?;
-    }
-    Ok(())
+        frame.make_lzw_pre_encoded();
+        Ok(frame)
+    };
+    reel.in_order(packed, |frame| {
+        encoder.write_lzw_pre_encoded_frame(&frame).map_err(refused)
+    })
 }
 
 /// Hundredths of a second until the next frame; what rounding takes from one it gives to another.

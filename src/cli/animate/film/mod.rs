@@ -14,11 +14,18 @@ mod palette;
 pub mod y4m;
 
 use super::{rate::Rate, target::Frames};
-use crate::cli::{Error, progress::Progress, signals::Gate};
+use crate::cli::{
+    Error,
+    line::{Line, encoders},
+    progress::Progress,
+    signals::Gate,
+};
 use std::{
     fs::File,
     io::{BufReader, BufWriter, Write},
     path::{Path, PathBuf},
+    sync::mpsc::channel,
+    thread,
 };
 
 pub use mp4::find_ffmpeg;
@@ -92,6 +99,37 @@ impl Reel<'_> {
             .next_frame(&mut bytes)
             .map_err(|cause| refused(cause.to_string()))?;
         Ok(bytes)
+    }
+
+    /// What `make` makes of each frame, by all cores and a few frames ahead, to `put` in order.
+    fn in_order<T: Send>(
+        &self,
+        make: impl Fn(u32) -> Result<T, Error> + Sync,
+        mut put: impl FnMut(T) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        let threads = encoders(self.extent_pixels);
+        let line = &Line::new(threads + 1);
+        let (sender, numbers) = channel();
+        thread::scope(|scope| {
+            scope.spawn(move || {
+                for number in 0..self.count {
+                    if !line.enter(number as usize)
+                        || sender.send((number as usize, number)).is_err()
+                    {
+                        return;
+                    }
+                }
+            });
+            line.run(
+                numbers,
+                threads,
+                |_, number| make(number),
+                |at, made| {
+                    self.progress.stage("encode", at, self.count as usize);
+                    put(made?)
+                },
+            )
+        })
     }
 
     fn wrote(&self, cause: std::io::Error) -> Error {

@@ -19,12 +19,10 @@ pub fn write(reel: &Reel, out: &mut impl Write) -> Result<(), Error> {
     let wrote = |cause| reel.wrote(cause);
     out.write_all(head(reel.extent_pixels, reel.rate).as_bytes())
         .map_err(wrote)?;
-    for number in 0..reel.count {
-        reel.progress
-            .stage("encode", number as usize, reel.count as usize);
-        out.write_all(&frame(&reel.codes(number)?)).map_err(wrote)?;
-    }
-    Ok(())
+    reel.in_order(
+        |number| Ok(frame(&reel.codes(number)?)),
+        |frame| out.write_all(&frame).map_err(wrote),
+    )
 }
 
 /// The line that a stream begins with.

@@ -1,0 +1,74 @@
+//! The words of the command line to the volumes that they mean.
+
+use crate::{
+    cli::{Error, flags::InputFlags},
+    format::{self, Search},
+};
+use std::{
+    collections::HashSet,
+    path::{Path, PathBuf},
+};
+
+/// Volumes, each once, and how much was passed over.
+#[derive(Debug, Default)]
+pub struct Inputs {
+    /// Words as `render` takes them.
+    pub volumes: Vec<String>,
+    /// Files in folders that are none.
+    pub left_alone: usize,
+}
+
+impl Inputs {
+    /// What these words mean: folders that are no volumes are looked into.
+    pub fn find(words: &[String], flags: &InputFlags, recursive: bool) -> Result<Self, Error> {
+        let limits = flags.limits();
+        let search = Search {
+            recursive,
+            with_raw: flags.raw.is_some(),
+        };
+        let mut inputs = Self::default();
+        let mut known = HashSet::new();
+        for word in words {
+            let path = Path::new(word);
+            let is_file = InputFlags {
+                path: Some(word.clone()),
+                ..InputFlags::default()
+            }
+            .file()
+            .is_some();
+            if !is_file || !path.is_dir() {
+                inputs.add(word.clone(), &mut known);
+                continue;
+            }
+            let found = format::find(path, search, &limits)?;
+            inputs.left_alone += found.left_alone;
+            if found.volumes.is_empty() {
+                return Err(Error::Input {
+                    path: path.to_owned(),
+                    problem: format!(
+                        "the folder holds no volume, and {} files and folders that are none",
+                        found.left_alone
+                    ),
+                });
+            }
+            for volume in found.volumes {
+                let Some(text) = volume.to_str() else {
+                    return Err(Error::Input {
+                        path: volume,
+                        problem: "its name is no text".to_owned(),
+                    });
+                };
+                inputs.add(text.to_owned(), &mut known);
+            }
+        }
+        Ok(inputs)
+    }
+
+    /// The same file under two names is one volume.
+    fn add(&mut self, word: String, known: &mut HashSet<PathBuf>) {
+        let place = Path::new(&word).canonicalize();
+        if known.insert(place.unwrap_or_else(|_| PathBuf::from(&word))) {
+            self.volumes.push(word);
+        }
+    }
+}

@@ -1,0 +1,233 @@
+//! `stratavox thumbnails`: many volumes, a small picture each.
+//!
+//! ```text
+//! words -> volumes -> names of pictures -> read | draw | encode | write, all at once -> index, summary
+//! ```
+
+mod batch;
+mod index;
+mod inputs;
+mod names;
+mod room;
+
+use super::{
+    Error,
+    flags::{Depth, SceneFlags, Size},
+    memory::available_bytes,
+    output::{self, say_aside, write_whole},
+    progress::{Progress, ProgressWord},
+    render::bit_depth,
+    scene_file, shown,
+    signals::Gate,
+};
+use crate::picture::{BitDepth, WriteOptions};
+use batch::{Batch, Item};
+use clap::Args;
+use index::{Became, Index, Row};
+use inputs::Inputs;
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+/// Draw many volumes, a small picture of each into a folder
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:\n  \
+    stratavox thumbnails phantom:head,n=64 phantom:shells,n=64 -o pictures\n  \
+    stratavox thumbnails FOLDER -o pictures --recursive --index index.json\n  \
+    stratavox thumbnails FOLDER --mode mip --view anterior --size 128x128 -o pictures --resume\n\n\
+    A folder that is one volume (DICOM, slices of TIFF, Zarr) is one; of another the volumes inside are drawn.\n\
+    A volume that cannot be drawn is named, and the others are drawn: the exit code is that of the first failure.\n\
+    A volume too large for the memory is drawn with fewer voxels, as by --fit of `render`.")]
+// The volumes are INPUT... here; the one INPUT of other verbs makes room for them.
+#[command(mut_arg("path", |path| path.long("path").hide(true)))]
+pub struct Thumbnails {
+    /// Volumes, as `render` takes them, and folders of volumes
+    #[arg(value_name = "INPUT", required = true)]
+    inputs: Vec<String>,
+    /// The folder of the pictures; it is made where there is none
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// Look into folders inside folders too
+    #[arg(long, help_heading = "Batch")]
+    recursive: bool,
+    /// Keep the pictures that are there and draw the others
+    #[arg(long, conflicts_with = "force", help_heading = "Batch")]
+    resume: bool,
+    /// Write what became of each volume into a file
+    #[arg(long, value_name = "FILE.json", help_heading = "Batch")]
+    index: Option<PathBuf>,
+    #[command(flatten)]
+    scene: SceneFlags,
+    /// Flags from a file; those of the command line win
+    #[arg(long = "scene", value_name = "FILE.json", help_heading = "Run")]
+    scene_file: Option<PathBuf>,
+    /// Say on stderr how far the work is
+    #[arg(long, value_enum, default_value_t, help_heading = "Run")]
+    progress: ProgressWord,
+    /// Replace files that exist
+    #[arg(long, help_heading = "Run")]
+    force: bool,
+    /// Bits of a channel of a picture
+    #[arg(long, value_name = "8|16", default_value = "8", value_parser = bit_depth, help_heading = "Picture")]
+    bit_depth: BitDepth,
+    /// No empty-space skipping: the pictures are the same without
+    #[arg(long)]
+    no_skip: bool,
+}
+
+/// Pixels where no word says how many.
+const SIZE: Size = Size([256, 256]);
+
+impl Thumbnails {
+    /// Draws and writes.
+    pub fn run(mut self, gate: &Gate) -> Result<(), Error> {
+        let scene = self.whole_scene()?;
+        let depth = match self.bit_depth {
+            BitDepth::Eight => Depth::Eight,
+            BitDepth::Sixteen => Depth::More,
+        };
+        let mut settings = scene.settings(depth)?;
+        settings.skip = !self.no_skip;
+        scene.classification.check()?;
+        shown::check(&scene, &settings)?;
+        let inputs = Inputs::find(&self.inputs, &scene.input, self.recursive)?;
+        let pictures = names::pictures_of(&inputs.volumes)?;
+        let paths = pictures.iter().map(|name| self.output.join(name)).collect();
+        let kept = self.check(paths, &inputs.volumes, &scene)?;
+
+        let progress = Progress::new(self.progress);
+        for note in scene.idle() {
+            progress.note(note);
+        }
+        if inputs.left_alone > 0 {
+            let count = inputs.left_alone;
+            progress.note(&format!(
+                "{count} files and folders that are no volume are left alone"
+            ));
+        }
+        let items: Vec<Item> = inputs
+            .volumes
+            .into_iter()
+            .zip(pictures)
+            .zip(kept)
+            .map(|((input, picture), is_kept)| Item {
+                input,
+                picture,
+                is_kept,
+            })
+            .collect();
+        if !self.output.is_dir() {
+            fs::create_dir(&self.output).map_err(|cause| Error::output(&self.output, &cause))?;
+        }
+        let batch = Batch {
+            scene: &scene,
+            settings: &settings,
+            extent_pixels: scene.picture.extent_pixels()?,
+            items: &items,
+            folder: &self.output,
+            options: WriteOptions {
+                bit_depth: self.bit_depth,
+                force: self.force,
+            },
+            gate,
+            progress: &progress,
+        };
+        let (rows, first_error) = batch.draw()?;
+        for note in index::notes_of(&rows) {
+            progress.note(&note);
+        }
+        // What comes last stays last.
+        drop(progress);
+        let mut index = Index::new();
+        rows.into_iter().for_each(|row| index.add(row));
+        if let Some(path) = &self.index {
+            write_whole(path, index.json().as_bytes(), self.force, gate)?;
+        }
+        if self.progress != ProgressWord::None {
+            say_aside(&index.summary());
+        }
+        first_error.map_or(Ok(()), Err)
+    }
+
+    /// The flags laid over those of `--scene`, with what thumbnails are without a word.
+    fn whole_scene(&mut self) -> Result<SceneFlags, Error> {
+        if self.scene.input.path.is_some() {
+            return Err(Error::usage(
+                "--path is not for thumbnails",
+                "name volumes and folders: thumbnails scans -o pictures",
+            ));
+        }
+        self.scene.classification.inline_file()?;
+        let mut scene = match &self.scene_file {
+            Some(path) => scene_file::overlay(scene_file::read(path)?, &self.scene),
+            None => self.scene.clone(),
+        };
+        if !scene.picture.layers().is_empty() {
+            return Err(Error::usage(
+                "a .png has no room for the layers of --aov",
+                "`render` writes a .exr or a .npy",
+            ));
+        }
+        if scene.input.stream {
+            return Err(Error::usage(
+                "--stream is for one volume: many are drawn from memory, large ones with fewer voxels",
+                "`render --stream` draws every voxel of one",
+            ));
+        }
+        scene.picture.size.get_or_insert(SIZE);
+        scene.input.fit = true;
+        // Asked for once: what is free while other volumes are there says nothing of how far one must shrink.
+        scene.input.max_memory = scene.input.max_memory.or_else(available_bytes);
+        Ok(scene)
+    }
+
+    /// Which pictures are there and stay. Refuses what cannot be written before any volume is read.
+    fn check(
+        &self,
+        pictures: Vec<PathBuf>,
+        inputs: &[String],
+        scene: &SceneFlags,
+    ) -> Result<Vec<bool>, Error> {
+        let mut files = scene_file::inputs(scene, self.scene_file.as_deref());
+        files.extend(
+            inputs
+                .iter()
+                .map(PathBuf::from)
+                .filter(|path| path.is_file()),
+        );
+        let is_made_later =
+            |file: &Path| !self.output.is_dir() && file.parent() == Some(&self.output);
+        if let Some(index) = self.index.as_ref().filter(|index| !is_made_later(index)) {
+            output::check(
+                std::slice::from_ref(index),
+                &files,
+                self.force || self.resume,
+            )?;
+        }
+        if !self.output.is_dir() {
+            output::check(std::slice::from_ref(&self.output), &[], false)?;
+            return Ok(vec![false; pictures.len()]);
+        }
+        let is_there = |path: &Path| path.symlink_metadata().is_ok();
+        let there = pictures.iter().filter(|path| is_there(path)).count();
+        if there > 0 && !self.force && !self.resume {
+            return Err(Error::Output {
+                path: self.output.clone(),
+                problem: format!("{there} of {} pictures are there", pictures.len()),
+                hint: Some("--resume keeps them and draws the others, --force draws all anew"),
+            });
+        }
+        let kept = pictures.iter().map(|path| self.resume && path.is_file());
+        let kept: Vec<bool> = kept.collect();
+        let drawn = pictures.into_iter().zip(&kept);
+        let drawn = drawn.filter(|(_, kept)| !**kept).map(|(path, _)| path);
+        // Hundreds of pictures: the first sees the folder, and only what is there needs a closer look.
+        for (at, path) in drawn.enumerate() {
+            if at == 0 || is_there(&path) {
+                output::check(std::slice::from_ref(&path), &files, self.force)?;
+            }
+        }
+        Ok(kept)
+    }
+}

@@ -1,0 +1,126 @@
+//! What the picture of each volume is called.
+//!
+//! A volume's name without its ending; where two would be called the same, both keep their ending, and where that is
+//! not enough, the folder they lie in goes before it.
+
+use crate::{cli::Error, format};
+use std::{
+    collections::HashMap,
+    path::{Path, PathBuf},
+};
+
+/// A name for each input, no two alike, also where small and capital letters are one.
+pub fn pictures_of(inputs: &[String]) -> Result<Vec<PathBuf>, Error> {
+    let mut lengths = vec![0; inputs.len()];
+    loop {
+        let names: Vec<String> = inputs
+            .iter()
+            .zip(&lengths)
+            .map(|(input, &length)| name_of(input, length))
+            .collect();
+        let mut alike: HashMap<String, Vec<usize>> = HashMap::new();
+        for (at, name) in names.iter().enumerate() {
+            alike.entry(name.to_lowercase()).or_default().push(at);
+        }
+        let mut is_done = true;
+        for at in alike.into_values().filter(|at| at.len() > 1).flatten() {
+            is_done = false;
+            lengths[at] += 1;
+            if lengths[at] > LONGEST {
+                let other = names.iter().enumerate().position(|(other, name)| {
+                    other != at && name.to_lowercase() == names[at].to_lowercase()
+                });
+                let other = other.map_or("", |other| &inputs[other]);
+                return Err(Error::usage(
+                    format!(
+                        "{} and {other} would both be drawn into {}.png",
+                        inputs[at], names[at]
+                    ),
+                    "draw them into folders of their own",
+                ));
+            }
+        }
+        if is_done {
+            let picture = |name: String| PathBuf::from(name + ".png");
+            return Ok(names.into_iter().map(picture).collect());
+        }
+    }
+}
+
+/// Name alone, with its ending, with the folder before it.
+const LONGEST: usize = 2;
+
+fn name_of(input: &str, length: usize) -> String {
+    let path = Path::new(input.trim_end_matches('/'));
+    let whole = |path: &Path| {
+        let name = path.file_name().unwrap_or_default();
+        name.to_string_lossy().into_owned()
+    };
+    let name = match length {
+        0 => format::stem(path).to_owned(),
+        1 => whole(path),
+        _ => {
+            let folder = path.parent().map(whole).unwrap_or_default();
+            format!("{folder}-{}", whole(path))
+        }
+    };
+    let name = match name.as_str() {
+        // The folder that we are in, or one that ends in `..`.
+        "" => "volume",
+        name => name,
+    };
+    // The words of a phantom, and what a file's name may hold and no other system likes.
+    name.replace([':', ',', '=', '/', '\\'], "-")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pictures(inputs: &[&str]) -> Vec<String> {
+        let inputs: Vec<String> = inputs.iter().map(|&input| input.to_owned()).collect();
+        let names = pictures_of(&inputs).expect("names");
+        names
+            .iter()
+            .map(|name| name.display().to_string())
+            .collect()
+    }
+
+    #[test]
+    fn a_picture_is_called_as_its_volume_is_and_endings_keep_two_apart() {
+        assert_eq!(
+            pictures(&[
+                "a/brain.nii.gz",
+                "a/b.c.raw",
+                "x.zarr/",
+                "phantom:head,n=8",
+                "one"
+            ]),
+            [
+                "brain.png",
+                "b.c.png",
+                "x.png",
+                "phantom-head-n-8.png",
+                "one.png"
+            ]
+        );
+        assert_eq!(
+            pictures(&["a/ct.nrrd", "a/CT.nii", "a/pet.nii"]),
+            ["ct.nrrd.png", "CT.nii.png", "pet.png"]
+        );
+        assert_eq!(
+            pictures(&["a/ct.nii", "b/ct.nii", "b/ct.mha"]),
+            ["a-ct.nii.png", "b-ct.nii.png", "ct.mha.png"]
+        );
+    }
+
+    #[test]
+    fn names_that_cannot_be_kept_apart_are_refused() {
+        let inputs = ["x/a/ct.nii", "y/a/ct.nii"].map(str::to_owned);
+        let error = pictures_of(&inputs).expect_err("refused");
+        assert!(
+            error.exit_code() == 2 && error.to_string().contains("y/a/ct.nii"),
+            "{error}"
+        );
+    }
+}

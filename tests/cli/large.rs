@@ -1,0 +1,145 @@
+//! Volumes that are larger than the memory they may take.
+
+use super::person::Folder;
+use serde_json::Value;
+use std::fs::{self, File};
+use std::io::{Seek, SeekFrom, Write};
+
+const SIDE: u64 = 400;
+
+/// 122 MiB of zeros that take no room on the disk, with a ball of 40 voxels in the middle.
+fn ball(folder: &Folder) {
+    let mut file = File::create(folder.path("ball.raw")).expect("a file");
+    file.set_len(SIDE * SIDE * SIDE * 2).expect("a length");
+    let (middle, radius) = (SIDE / 2, 20);
+    for z in middle - radius..middle + radius {
+        for y in middle - radius..middle + radius {
+            let row = (z * SIDE + y) * SIDE;
+            for x in middle - radius..middle + radius {
+                let square = |n: u64| (2 * n + 1).abs_diff(2 * middle).pow(2);
+                if square(x) + square(y) + square(z) < 4 * radius * radius {
+                    file.seek(SeekFrom::Start(2 * (row + x))).expect("a seek");
+                    file.write_all(&(2000 + 10 * x as u16).to_le_bytes())
+                        .expect("a voxel");
+                }
+            }
+        }
+    }
+}
+
+fn words(more: &str) -> String {
+    format!(
+        "render ball.raw --raw {SIDE}x{SIDE}x{SIDE},u16 --preset grey --window 1000,9000 --zoom 6 --size 64x64 --force {more}"
+    )
+}
+
+fn peak(folder: &Folder) -> u64 {
+    let text = fs::read_to_string(folder.path("t.json")).expect("timings");
+    let timings: Value = serde_json::from_str(&text).expect("JSON");
+    timings["peak_rss_bytes"].as_u64().expect("a peak")
+}
+
+/// The largest difference of two `.npy` pictures, and the largest number in the first.
+fn apart(folder: &Folder, a: &str, b: &str) -> [f32; 2] {
+    let numbers = |name: &str| {
+        let bytes = fs::read(folder.path(name)).expect(name);
+        let data = bytes[bytes.len() - 64 * 64 * 16..].as_chunks::<4>().0;
+        data.iter()
+            .map(|n| f32::from_le_bytes(*n))
+            .collect::<Vec<_>>()
+    };
+    let (a, b) = (numbers(a), numbers(b));
+    let pairs = a.iter().zip(&b);
+    [
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max),
+        a.iter().copied().fold(0.0, f32::max),
+    ]
+}
+
+#[test]
+fn a_volume_larger_than_its_memory_is_the_same_picture() {
+    let folder = Folder::new();
+    ball(&folder);
+    folder
+        .run(&words("-o whole.npy --timings t.json"))
+        .assert_done();
+    let whole = peak(&folder);
+    let ran = folder.run(&words(
+        "-o bricks.npy --max-memory 96M --device-memory 24M --timings t.json",
+    ));
+    ran.assert_done();
+    assert!(ran.err.contains("in 64 bricks"), "{}", ran.err);
+    let bricks = peak(&folder);
+    let [apart, largest] = apart(&folder, "whole.npy", "bricks.npy");
+    // Filters of the device see other coordinates in a brick: 2^-8 of a step of value at most, here far less.
+    assert!(largest > 0.2 && apart < 0.01, "{apart} of {largest}");
+    // A texture and voxels of 122 MiB each, and what every picture takes.
+    assert!(whole > 250 << 20, "{whole}");
+    assert!(bricks < 200 << 20, "{bricks}");
+}
+
+#[test]
+fn bricks_on_the_disk_have_levels_and_are_refined() {
+    let folder = Folder::new();
+    ball(&folder);
+    let raw = format!("ball.raw --raw {SIDE}x{SIDE}x{SIDE},u16");
+    folder
+        .run(&format!("convert {raw} -o ball.svb"))
+        .assert_done();
+    // Zeros take no room.
+    let length = fs::metadata(folder.path("ball.svb")).expect("a file").len();
+    assert!(length < 2 << 20, "{length}");
+    let look = "--preset grey --window 1000,9000 --zoom 6 --size 64x64 --force";
+    folder.run(&words("--stream -o raw.npy")).assert_done();
+    folder
+        .run(&format!("render ball.svb --stream {look} -o svb.npy"))
+        .assert_done();
+    assert_eq!(apart(&folder, "raw.npy", "svb.npy")[0], 0.0);
+    let ran = folder.run(&format!("render ball.svb --level 2 {look} -o coarse.npy"));
+    ran.assert_done();
+    assert!(ran.err.contains("level 2 of 2"), "{}", ran.err);
+    // Opacities are for the same length.
+    let [apart_2, largest] = apart(&folder, "raw.npy", "coarse.npy");
+    assert!(
+        apart_2 > 0.0 && apart_2 < 0.5 * largest,
+        "{apart_2} of {largest}"
+    );
+    let ran = folder.run(&format!(
+        "render ball.svb --refine --stream {look} -o fine.npy"
+    ));
+    ran.assert_done();
+    let told: Vec<_> = ["level 2 of 2", "level 1 of 2"]
+        .iter()
+        .map(|note| ran.err.find(note))
+        .collect();
+    assert!(told[0].is_some() && told[0] < told[1], "{}", ran.err);
+    assert_eq!(apart(&folder, "svb.npy", "fine.npy")[0], 0.0);
+    folder
+        .run(&format!("render ball.svb --level 3 {look} -o no.npy"))
+        .assert_refused(3, &["level", "0 to 2"]);
+    folder
+        .run(&words("--refine -o no.npy"))
+        .assert_refused(2, &["--refine", "svb"]);
+}
+
+#[test]
+fn what_is_not_drawn_in_bricks_is_refused_by_name() {
+    let folder = Folder::new();
+    ball(&folder);
+    for (more, word) in [
+        ("--technique slices-3d", "--technique"),
+        ("--filter cubic", "--filter"),
+        ("--denoise median", "--denoise"),
+        ("--device reference", "--device reference"),
+        ("--ambient-occlusion", "--ambient-occlusion"),
+    ] {
+        let ran = folder.run(&words(&format!("--stream {more} -o a.png")));
+        ran.assert_refused(2, &["--stream", word]);
+    }
+    folder
+        .run("convert phantom:sphere,n=16 -o a.nii.gz")
+        .assert_done();
+    folder
+        .run("render a.nii.gz --stream -o a.png")
+        .assert_refused(2, &["compressed as a whole"]);
+}
