@@ -4,12 +4,12 @@
 // Twin: src/resident/cell_ranges.rs.
 
 #import cell_grid
+#import code_{layout}
 
 struct CellRanges {
     d: array<vec2<f32>>,
 }
 
-@group(0) @binding(1) var volume: texture_3d<f32>;
 @group(0) @binding(31) var<storage, read_write> cell_ranges: CellRanges;
 
 @compute @workgroup_size(8, 4, 2)
@@ -26,7 +26,7 @@ fn main(@builtin(global_invocation_id) cell: vec3<u32>) {
     for (var z = low.z; z <= high.z; z++) {
         for (var y = low.y; y <= high.y; y++) {
             for (var x = low.x; x <= high.x; x++) {
-                let texel = textureLoad(volume, vec3(x, y, z), 0).x;
+                let texel = code_at(vec3(x, y, z));
                 least = min(least, texel);
                 most = max(most, texel);
             }

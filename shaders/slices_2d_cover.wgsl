@@ -1,10 +1,7 @@
 // 2D texture slicing, the cover: one rectangle a slice (or a plane, or a slab between planes), as large as the
 // enlarged domain.
-//
-// Seen from inside, both halves of the stack run towards the eye: the instances from `slice_turn` on
-// start again at the other end, so every pixel meets its slices in order.
 
-#import frame
+#import slice_order
 
 const CORNERS = array<vec2<f32>, 6>(
     vec2(0.0, 0.0),
@@ -39,11 +36,4 @@ fn main(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u3
     voxel[axis] = height;
     let world = vec4(voxel, 1.0) * frame.world_from_voxel;
     return Vertex(vec4(world, 1.0) * frame.clip_from_world, slice);
-}
-
-fn slice_of(instance: u32) -> i32 {
-    if instance < frame.slice_turn {
-        return frame.slice_first + i32(instance) * frame.slice_direction;
-    }
-    return frame.slice_first_after_turn - i32(instance - frame.slice_turn) * frame.slice_direction;
 }

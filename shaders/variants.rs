@@ -191,6 +191,9 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ("light_volume", &[]),
     // No picture: the ceiling of the device.
     ("probe", &[]),
-    ("macro_cells", &[]),
+    ("macro_cells", &[("layout", &["box", "stack"])]),
     ("distance_map", &[]),
+    ("slice_patches", &[("planes", &["view", "stack"])]),
+    ("slice_patches_cover", &[]),
+    ("opaque_patches", &[]),
 ];

@@ -50,6 +50,8 @@
 //! | | accumulation, layers | `ComputeWrite` | `ComputeWrite` |
 //! | [`technique::Slicer`]: inside the host's rendering | textures, table | `Sampled` | `Sampled` |
 //! | | the host's target | `ColorTarget` | `ColorTarget` |
+//! | [`technique::PatchSlicer`]: lists outside the host's rendering, draws inside | textures, table | `Sampled` | `Sampled` |
+//! | | the host's target | `ColorTarget` | `ColorTarget` |
 //! | [`technique::slices_3d::HalfAngleSlicer`]: outside rendering | textures, table | `Sampled` | `Sampled` |
 //! | | accumulation, light buffer | `ColorTarget` | `ColorTarget` |
 //! | [`resolve`]: inside the host's rendering | accumulation | `FragmentSampled` | `FragmentSampled` |

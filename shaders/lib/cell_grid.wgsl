@@ -22,6 +22,8 @@ struct CellGrid {
     overshoot: f32,
     slack: f32,
     rounding: f32,
+    // The axis of a stack.
+    axis: u32,
 }
 
 @group(0) @binding(30) var<uniform> cell_grid: CellGrid;

@@ -170,6 +170,12 @@ struct Frame {
     cells: vec3<u32>,
     cells_first: u32,
     cells_origin: vec3<f32>,
+    // Slices of this recording, and the side in pixels of the squares in which empty parts of them are left out.
+    slice_count: u32,
+    patch_pixels: u32,
+    // How far samples may lie from where a patch says: voxels, and planes where they are slabs.
+    patch_reach_voxels: f32,
+    patch_reach_planes: f32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -22,6 +22,8 @@ pub enum Use {
     Sampled,
     /// A vertex or fragment shader reads a storage buffer.
     DrawRead,
+    /// The parameters of a draw.
+    DrawIndirect,
     /// A color target, blended or not.
     ColorTarget,
     /// The source of a copy.
@@ -59,6 +61,11 @@ impl Use {
                 Layout::SHADER_READ_ONLY_OPTIMAL,
             ),
             Self::DrawRead => (DRAW, Access::SHADER_STORAGE_READ, Layout::GENERAL),
+            Self::DrawIndirect => (
+                Stage::DRAW_INDIRECT,
+                Access::INDIRECT_COMMAND_READ,
+                Layout::GENERAL,
+            ),
             Self::ColorTarget => (
                 Stage::COLOR_ATTACHMENT_OUTPUT,
                 COLOR,

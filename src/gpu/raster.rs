@@ -1,8 +1,8 @@
 //! A raster pipeline for dynamic rendering: triangles, no vertex buffers, no depth, no culling.
 
 use super::{
-    Bindings, Error, Gpu, Layout, error::within, owned::Own, pipeline::first, pipeline::module,
-    pipeline::stage, pipeline::wrong_stage,
+    Bindings, Buffer, Error, Gpu, Layout, error::within, owned::Own, pipeline::first,
+    pipeline::module, pipeline::stage, pipeline::wrong_stage,
 };
 use crate::shaders::{Shader, Stage};
 use ash::vk;
@@ -137,6 +137,34 @@ impl RasterPipeline {
             device.cmd_bind_descriptor_sets(cmd, point, self.layout.raw(), 0, &sets, offsets);
             let count = instances.end.saturating_sub(instances.start);
             device.cmd_draw(cmd, vertices, count, 0, instances.start);
+        }
+    }
+
+    /// Binds pipeline and bindings and draws what `draws` say: `VkDrawIndirectCommand`s, one after the other.
+    ///
+    /// # Safety
+    ///
+    /// As [`Self::draw`]; `draws` has `INDIRECT_BUFFER` usage, holds `numbers` and is in `Use::DrawIndirect`, and what
+    /// it holds draws triangles from instance 0.
+    pub unsafe fn draw_indirect(
+        &self,
+        cmd: vk::CommandBuffer,
+        bindings: &Bindings,
+        offsets: &[u32],
+        draws: &Buffer,
+        numbers: Range<u32>,
+    ) {
+        let device = self.raw.gpu().device();
+        let point = vk::PipelineBindPoint::GRAPHICS;
+        let sets = [bindings.raw()];
+        let bytes = size_of::<vk::DrawIndirectCommand>() as u64;
+        // SAFETY: the caller's promises. One draw a call: more are a feature.
+        unsafe {
+            device.cmd_bind_pipeline(cmd, point, self.raw());
+            device.cmd_bind_descriptor_sets(cmd, point, self.layout.raw(), 0, &sets, offsets);
+            for number in numbers {
+                device.cmd_draw_indirect(cmd, draws.raw(), u64::from(number) * bytes, 1, 0);
+            }
         }
     }
 }

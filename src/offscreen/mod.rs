@@ -11,6 +11,7 @@ mod gradients;
 mod light;
 mod pace;
 mod passes;
+mod patched;
 mod position;
 mod probe;
 pub mod reference;

@@ -20,10 +20,10 @@ use std::cell::OnceCell;
 use std::sync::Arc;
 
 /// What pipelines depend on.
-pub type Key = (Technique, Mode, Order, [bool; 3], Words);
+pub type Key = (Technique, Mode, Order, [bool; 4], Words);
 
 /// The key of such pictures.
-pub fn key_of(settings: &Settings, words: &Words) -> Key {
+pub fn key_of(settings: &Settings, words: &Words, is_patched: bool) -> Key {
     let Settings {
         technique,
         mode,
@@ -32,7 +32,8 @@ pub fn key_of(settings: &Settings, words: &Words) -> Key {
     } = *settings;
     let per_mode = &settings.per_mode;
     let is_cued = per_mode.depth_cue != 0.0;
-    let marks = [is_cued, per_mode.exact_maximum, settings.is_half_angle()];
+    let is_half = settings.is_half_angle();
+    let marks = [is_cued, per_mode.exact_maximum, is_half, is_patched];
     (technique, mode, order, marks, *words)
 }
 
@@ -57,8 +58,13 @@ enum Gather {
 }
 
 impl Passes {
-    /// Compiles for such pictures.
-    pub fn new(gpu: &Arc<Gpu>, settings: &Settings, words: &Words) -> Result<Self, Error> {
+    /// Compiles for such pictures; `is_patched`: slicers draw patches of their slices.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        settings: &Settings,
+        words: &Words,
+        is_patched: bool,
+    ) -> Result<Self, Error> {
         let Settings {
             technique, mode, ..
         } = *settings;
@@ -75,11 +81,11 @@ impl Passes {
             }
             Technique::Slices3d | Technique::Slices2d => {
                 let drawn = Drawn::Picture(mode);
-                Gather::Slices(Slicing::new(gpu, settings, drawn, words)?)
+                Gather::Slices(Slicing::new(gpu, settings, drawn, words, is_patched)?)
             }
         };
         Ok(Self {
-            key: key_of(settings, words),
+            key: key_of(settings, words, is_patched),
             gather,
             count: OnceCell::new(),
             settings: settings.clone(),
@@ -137,7 +143,8 @@ impl Passes {
             Gather::Slices(_) => {}
         }
         let gpu = submission.device.gpu();
-        let made = || Slicing::new(gpu, &self.settings, Drawn::Count, &self.key.4);
+        let is_patched = self.key.3[3];
+        let made = || Slicing::new(gpu, &self.settings, Drawn::Count, &self.key.4, is_patched);
         let count = match self.count.get() {
             Some(count) => count,
             None => {

@@ -367,13 +367,14 @@ impl<'v> Renderer<'v> {
         if self.ring.slots() < slots {
             self.ring = parameter_ring(&gpu, slots)?;
         }
-        let key = key_of(scene.settings, &words);
+        let is_patched = self.prepare_patches(scene)?;
+        let key = key_of(scene.settings, &words, is_patched);
         if self
             .passes
             .as_ref()
             .is_none_or(|passes| *passes.key() != key)
         {
-            self.passes = Some(Passes::new(&gpu, scene.settings, &words)?);
+            self.passes = Some(Passes::new(&gpu, scene.settings, &words, is_patched)?);
         }
         Ok(())
     }

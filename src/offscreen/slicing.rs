@@ -1,5 +1,6 @@
 //! A slicer's picture: drawn into the accumulation where the device blends f32, else in merged batches.
 
+use super::patched;
 use super::submission::Submission;
 use super::time_slices::Spent;
 use crate::gpu::{
@@ -8,7 +9,7 @@ use crate::gpu::{
 };
 use crate::technique::blend::{Drawn, clear_color};
 use crate::technique::merge::{BATCH_FORMAT, MAX_BATCH_SLICES, Merge};
-use crate::technique::{ACCUMULATION_FORMAT, Mode, Settings, Slicer, Words};
+use crate::technique::{ACCUMULATION_FORMAT, Mode, PatchSlicer, Settings, Slicer, Words};
 use ash::vk;
 use std::sync::Arc;
 
@@ -17,13 +18,20 @@ use std::sync::Arc;
 pub struct Slicing {
     gpu: Arc<Gpu>,
     drawn: Drawn,
-    slicer: Slicer,
+    slicer: Slices,
     /// Where f32 targets cannot be blended.
     merge: Option<Merge>,
 }
 
+/// Which parts of slices are drawn.
+#[derive(Debug)]
+enum Slices {
+    Whole(Slicer),
+    Patches(Box<PatchSlicer>),
+}
+
 impl Slicing {
-    /// Compiles.
+    /// Compiles; `is_patched`: for targets with patches.
     ///
     /// # Errors
     /// Where the mode needs f32 blending and the device has none.
@@ -32,6 +40,7 @@ impl Slicing {
         settings: &Settings,
         drawn: Drawn,
         words: &Words,
+        is_patched: bool,
     ) -> Result<Self, Error> {
         let order = settings.order;
         let can_merge = matches!(drawn, Drawn::Picture(Mode::Composite) | Drawn::Count);
@@ -42,34 +51,64 @@ impl Slicing {
             ACCUMULATION_FORMAT
         };
         let merge = || Merge::new(gpu, drawn, order);
+        let technique = settings.technique;
+        let slicer = match is_patched {
+            true => {
+                let made = PatchSlicer::new(gpu, technique, drawn, order, words, format)?;
+                Slices::Patches(Box::new(made))
+            }
+            false => Slices::Whole(Slicer::new(gpu, technique, drawn, order, words, format)?),
+        };
         Ok(Self {
             gpu: Arc::clone(gpu),
             drawn,
-            slicer: Slicer::new(gpu, settings.technique, drawn, order, words, format)?,
+            slicer,
             merge: is_merged.then(merge).transpose()?,
         })
     }
 
     /// Draws all slices into `into` and leaves it in [`Use::FragmentSampled`]. Milliseconds on the device.
     pub fn run(&self, submission: Submission, into: &Image) -> Result<Spent, Error> {
-        let bound = submission.bind(|inputs| self.slicer.bind(inputs))?;
+        let slicer = match &self.slicer {
+            Slices::Whole(slicer) => slicer,
+            Slices::Patches(slicer) => return patched::run(self, slicer, submission, into),
+        };
+        let bound = submission.bind(|inputs| slicer.bind(inputs))?;
         match &self.merge {
-            Some(merge) => self.run_in_batches(submission, &bound, into, merge),
-            None => self.run_at_once(submission, &bound, into),
+            Some(merge) => self.run_in_batches(slicer, submission, &bound, into, merge),
+            None => self.run_at_once(slicer, submission, &bound, into),
+        }
+    }
+
+    pub(super) fn gpu(&self) -> &Arc<Gpu> {
+        &self.gpu
+    }
+
+    pub(super) fn drawn(&self) -> Drawn {
+        self.drawn
+    }
+
+    pub(super) fn merge(&self) -> Option<&Merge> {
+        self.merge.as_ref()
+    }
+
+    /// What the target holds before the first slice.
+    pub(super) fn clear(&self) -> [f32; 4] {
+        match self.drawn {
+            Drawn::Picture(mode) => clear_color(mode),
+            Drawn::Count => [0.0; 4],
         }
     }
 
     fn run_at_once(
         &self,
+        slicer: &Slicer,
         submission: Submission,
         bound: &[Bindings],
         into: &Image,
     ) -> Result<Spent, Error> {
         let (bricks, extent) = (submission.bricks, submission.targets.extent);
-        let clear = match self.drawn {
-            Drawn::Picture(mode) => clear_color(mode),
-            Drawn::Count => [0.0; 4],
-        };
+        let clear = self.clear();
         // SAFETY: recorded in order, with barriers between; `run` waits, and all that is bound lives meanwhile.
         submission.in_tiles(|cmd, gpu, drawn| unsafe {
             if drawn.is_first {
@@ -79,8 +118,7 @@ impl Slicing {
                 begin_rendering_of(gpu, cmd, &[(into.view(), Load::Clear(clear))], tile);
                 for (brick, bindings) in bricks.iter().zip(bound) {
                     let (offset, slices) = (brick.offset, 0..brick.slices);
-                    self.slicer
-                        .record_tile(cmd, bindings, offset, extent, slices, tile);
+                    slicer.record_tile(cmd, bindings, offset, extent, slices, tile);
                 }
                 end_rendering(gpu, cmd);
             }
@@ -93,6 +131,7 @@ impl Slicing {
 
     fn run_in_batches(
         &self,
+        slicer: &Slicer,
         submission: Submission,
         bound: &[Bindings],
         into: &Image,
@@ -123,8 +162,7 @@ impl Slicing {
                     let target = [(batch.view(), Load::Clear([0.0; 4]))];
                     begin_rendering_of(gpu, cmd, &target, tile);
                     let (offset, slices) = (brick.offset, slices.clone());
-                    self.slicer
-                        .record_tile(cmd, bindings, offset, extent, slices, tile);
+                    slicer.record_tile(cmd, bindings, offset, extent, slices, tile);
                     end_rendering(gpu, cmd);
                 }
                 image_barrier(gpu, cmd, &batch, Use::ColorTarget, Use::ComputeSampled);
@@ -142,7 +180,7 @@ impl Slicing {
     }
 }
 
-fn batch_image(gpu: &Arc<Gpu>, [width, height]: [u32; 2]) -> Result<Image, Error> {
+pub(super) fn batch_image(gpu: &Arc<Gpu>, [width, height]: [u32; 2]) -> Result<Image, Error> {
     let desc = ImageDesc {
         kind: ImageKind::D2,
         extent: [width, height, 1],

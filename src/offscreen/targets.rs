@@ -3,8 +3,8 @@
 use crate::gpu::{
     Buffer, Error, Gpu, Headless, Image, Memory, Region, Use, image_barrier, image_to_buffer,
 };
-use crate::technique::accumulation;
 use crate::technique::slices_3d::half_angle::light_buffer;
+use crate::technique::{PatchRoom, Patches, accumulation};
 use ash::vk;
 use std::sync::Arc;
 
@@ -24,6 +24,8 @@ pub struct Targets {
     pub picture: Image,
     /// What the light sees of half-angle slices, once they were wanted.
     light_buffer: Option<Image>,
+    /// Which parts of slices are drawn, once that was wanted.
+    patches: Option<(Patches, PatchRoom)>,
     readback: Buffer,
 }
 
@@ -38,6 +40,7 @@ impl Targets {
             layers: accumulation(gpu, extent, "layers")?,
             picture: accumulation(gpu, extent, "picture")?,
             light_buffer: None,
+            patches: None,
             readback: Buffer::new(gpu, bytes, usage, Memory::Readback, "readback")?,
         })
     }
@@ -56,6 +59,25 @@ impl Targets {
     pub fn light_buffer(&self) -> &Image {
         let made = self.light_buffer.as_ref();
         made.expect("`prepare_light_buffer` comes before a picture with half-angle slices")
+    }
+
+    /// Makes the lists of patches, where there are none that are long enough.
+    pub fn prepare_patches(&mut self, gpu: &Arc<Gpu>, room: PatchRoom) -> Result<(), Error> {
+        let made = match self.patches.take() {
+            Some((made, _)) if made.holds(room) => made,
+            _ => Patches::new(gpu, room)?,
+        };
+        self.patches = Some((made, room));
+        Ok(())
+    }
+
+    /// The lists of patches, and how large those of this picture get.
+    pub fn patches(&self) -> (&Patches, PatchRoom) {
+        let (made, room) = self
+            .patches
+            .as_ref()
+            .expect("`prepare_patches` comes before a picture of patches");
+        (made, *room)
     }
 
     /// The same where more is done with the image as before.

@@ -53,20 +53,21 @@ impl MacroCells {
     /// Bytes of a cell on the device, with those of [`super::EmptySpace`].
     pub const BYTES_PER_CELL: u64 = 16;
 
-    /// Objects for a volume in 3D textures.
+    /// Objects for a volume.
     ///
     /// # Errors
     /// Where the device gives no memory, or has no buffers of that size.
-    ///
-    /// # Panics
-    /// Where the volume lies in stacks.
     pub fn new(gpu: &Arc<Gpu>, volume: &GpuVolume, apron: Apron) -> Result<Self, Error> {
+        let (name, values) = match volume.layout() {
+            TextureLayout::Texture3d => ("macro_cells.box", "volume"),
+            TextureLayout::Stack(_) => ("macro_cells.stack", "stack"),
+        };
         let mut made = Self::empty(gpu, volume, apron, Memory::Device)?;
-        let pipeline = ComputePipeline::new(gpu, shader("macro_cells"))?;
+        let pipeline = ComputePipeline::new(gpu, shader(name))?;
         let ring = ring_of(gpu, &made.grids)?;
         let bound = volume.bricks().iter().map(|brick| {
             let given = [
-                ("volume", Resource::sampled(&brick.values)),
+                (values, Resource::sampled(&brick.values)),
                 ("cell_grid", Resource::Uniform(&ring)),
                 ("cell_ranges", Resource::Storage(&made.ranges)),
             ];
@@ -88,7 +89,7 @@ impl MacroCells {
     /// As [`MacroCells::new`].
     ///
     /// # Panics
-    /// Where the volume lies in stacks, holds coefficients, or other voxels.
+    /// Where the volume holds coefficients, or other voxels.
     pub fn of_voxels(
         gpu: &Arc<Gpu>,
         volume: &GpuVolume,
@@ -113,7 +114,6 @@ impl MacroCells {
         apron: Apron,
         memory: Memory,
     ) -> Result<Self, Error> {
-        assert_eq!(volume.layout(), TextureLayout::Texture3d, "macro cells");
         let mut first = 0;
         let mut grids = Vec::new();
         for brick in volume.bricks() {
@@ -260,6 +260,10 @@ fn grid_of(
         rounding: match volume.texel().format {
             vk::Format::R16_SFLOAT => 2f32.powi(-9),
             _ => 2f32.powi(-18),
+        },
+        axis: match volume.layout() {
+            TextureLayout::Texture3d => 0,
+            TextureLayout::Stack(axis) => axis as u32,
         },
     };
     fields.into()

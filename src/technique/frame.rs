@@ -209,6 +209,14 @@ impl View<'_> {
             cells: [0; 3],
             cells_first: 0,
             cells_origin: [0.0; 3],
+            slice_count: 0,
+            patch_pixels: self.patch_pixels(),
+            patch_reach_voxels: self.patch_reach_voxels() as f32,
+            patch_reach_planes: if self.settings.preintegrated {
+                0.5
+            } else {
+                0.0
+            },
         };
         self.set_light(&mut fields);
         if let Some(shading) = &self.settings.shading {

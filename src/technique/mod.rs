@@ -21,6 +21,8 @@ mod march;
 pub mod merge;
 pub mod mida;
 pub mod mixture;
+mod patch_slicer;
+mod patches;
 mod per_mode;
 pub mod preclassified;
 pub mod projection;
@@ -46,6 +48,8 @@ pub use light_field::LightField;
 pub use light_plan::{AmbientOcclusion, LightPlan, MAX_LIGHT_CELLS, MAX_RADIUS_CELLS, Shadows};
 pub use light_volume::LightVolume;
 pub use mixture::{Mix, Part, Role};
+pub use patch_slicer::{PatchBindings, PatchSlicer};
+pub use patches::{BATCH_SLICES, PatchRoom, Patches};
 pub use per_mode::{DEFAULT_ATTENUATION, Level, PerMode};
 pub use recording::{Recording, parameter_ring};
 pub use shading::{Light, Shading};
@@ -212,7 +216,7 @@ pub struct Settings {
     pub uneven_rays: bool,
     /// The ray ends after the sample at which transmittance falls under this; 0: never.
     pub termination: f32,
-    /// Whether a ray caster may leave out samples that cannot matter. The picture is the same without.
+    /// Whether samples that cannot matter may be left out. The picture is the same without.
     pub skip: bool,
     /// In which numbers colours are blended.
     pub color_space: crate::picture::ColorSpace,

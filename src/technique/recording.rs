@@ -192,6 +192,7 @@ impl View<'_> {
                 set_slices(self, stack_axis(self), part, &mut fields)
             }
         };
+        fields.slice_count = slices;
         Recording {
             brick,
             slices,

@@ -1,4 +1,4 @@
-//! What a ray caster need not look at: which pictures have something of that kind, and how a host hands it over.
+//! What need not be looked at: which pictures have something of that kind, and how a host hands it over.
 //!
 //! ```text
 //! settings.skippable(mix, function)              what can be left out of such a picture
@@ -58,7 +58,13 @@ impl Settings {
         value_range: [f64; 2],
     ) -> Skippable {
         let is_one = matches!(mix, Mix::Alone | Mix::Graded) || self.mode == Mode::Iso;
-        if !self.skip || !is_one || self.technique != Technique::Raycast || self.preintegrated {
+        if !self.skip || !is_one {
+            return Skippable::Nothing;
+        }
+        if self.technique != Technique::Raycast {
+            return self.skippable_by_slices(function);
+        }
+        if self.preintegrated {
             return Skippable::Nothing;
         }
         match (self.mode, function) {
@@ -70,6 +76,22 @@ impl Settings {
             (Mode::Composite, Some(function)) if !function.is_graded() => {
                 Skippable::Unseen(Seen::new(function))
             }
+            _ => Skippable::Nothing,
+        }
+    }
+}
+
+impl Settings {
+    /// A blending unit goes on blending: only fragments that leave every colour as it is can be left out, and they are
+    /// those of no opacity, 0 + (1 - 0) C and C + (1 - A) 0. Maxima have no such value: any may be the largest.
+    fn skippable_by_slices(&self, function: Option<&TransferFunction>) -> Skippable {
+        match (self.mode, function) {
+            _ if self.is_half_angle() => Skippable::Nothing,
+            (Mode::Composite, Some(function)) if function.is_graded() => Skippable::Nothing,
+            (Mode::Composite, Some(function)) if self.preintegrated => {
+                Skippable::Unseen(Seen::between(function))
+            }
+            (Mode::Composite, Some(function)) => Skippable::Unseen(Seen::new(function)),
             _ => Skippable::Nothing,
         }
     }

@@ -35,7 +35,7 @@ pub(super) struct CoverReach {
 
 impl View<'_> {
     /// Half the longest slab, in voxels along each axis.
-    fn slab_reach(&self) -> DVec3 {
+    pub(super) fn slab_reach(&self) -> DVec3 {
         let rays = self.rays();
         let [width, height] = self.extent_pixels.map(f64::from);
         let corners = [[0.0, 0.0], [width, 0.0], [0.0, height], [width, height]];

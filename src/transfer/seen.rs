@@ -25,12 +25,22 @@ pub struct Seen {
 impl Seen {
     /// Of the function's own opacities.
     pub fn new(function: &TransferFunction) -> Self {
+        Self::by(Cut::new(function), function)
+    }
+
+    /// Of the means between two values: a range shows nothing where no value in it has opacity, whichever two ends
+    /// there are.
+    pub fn between(function: &TransferFunction) -> Self {
+        Self::by(Cut::for_slabs(function), function)
+    }
+
+    fn by(cut: Cut, function: &TransferFunction) -> Self {
         let Cut {
             first,
             width,
             count,
             ..
-        } = Cut::new(function);
+        } = cut;
         let cell = |value: f64| {
             ((value - first) / width)
                 .floor()

@@ -65,22 +65,35 @@ impl Renderer<'_> {
         Ok(())
     }
 
+    /// Lists of the patches of slices for pictures of `scene`: whether there are any.
+    ///
+    /// # Errors
+    /// Where the device is lost.
+    pub(super) fn prepare_patches(&mut self, scene: &Scene) -> Result<bool, Error> {
+        let room = scene.view(&scene.volume.grid(), [0.0; 2]).patch_room();
+        let Some((room, _)) = room.zip(wanted(scene)) else {
+            return Ok(false);
+        };
+        let targets = self.targets.as_mut().expect("made before");
+        let made = targets.prepare_patches(self.device.gpu(), room);
+        Ok(if_it_fits(made)?.is_some())
+    }
+
     /// Finds out what pictures of `scene` need not look at. Nothing to do where that is known.
     ///
     /// # Errors
     /// Where the device is lost.
     pub(super) fn prepare_skip(&mut self, scene: &Scene) -> Result<(), Error> {
-        let range = scene.volume.value_range;
-        let wanted = scene.settings.skippable(scene.mix(), scene.transfer, range);
         self.skipped.wanted = None;
         // Bricks of a stream know their own.
-        if wanted == Skippable::Nothing || self.streaming.is_some() {
+        let is_streamed = self.streaming.is_some();
+        let Some((wanted, apron)) = wanted(scene).filter(|_| !is_streamed) else {
             return Ok(());
-        }
+        };
         let of = Of {
             copied: Copied::of(scene),
             shown: self.shown,
-            apron: scene.settings.apron(),
+            apron,
         };
         if self
             .skipped
@@ -134,4 +147,12 @@ impl Renderer<'_> {
         self.skipped.wanted = Some(wanted);
         Ok(())
     }
+}
+
+/// What pictures of `scene` need not look at, and what cells must know for it.
+fn wanted(scene: &Scene) -> Option<(Skippable, Apron)> {
+    let range = scene.volume.value_range;
+    let wanted = scene.settings.skippable(scene.mix(), scene.transfer, range);
+    let apron = scene.view(&scene.volume.grid(), [0.0; 2]).apron()?;
+    (wanted != Skippable::Nothing).then_some((wanted, apron))
 }

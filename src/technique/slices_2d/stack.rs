@@ -13,6 +13,15 @@ use glam::DVec3;
 /// Two axes that face the eye alike by this much are a tie: the lower one wins.
 const TIE: f64 = 1e-12;
 
+impl View<'_> {
+    /// How many slices (or planes between them) the longest stack has that is drawn.
+    pub(in crate::technique) fn longest_stack(&self) -> f64 {
+        let planes =
+            |axis: usize| f64::from(self.grid.dims[axis]) * f64::from(planes_per_slice(self, axis));
+        planes(stack_axis(self))
+    }
+}
+
 /// The axis whose slices face the eye most, or the one that the settings name.
 pub fn stack_axis(view: &View) -> usize {
     if let Some(axis) = view.settings.stack {

@@ -1,0 +1,49 @@
+// The cover of slices where only some patches of them are drawn (slice_patches.wgsl): squares of the picture. Instance
+// i shows slice i mod LAYER_SLICES of the layer that entry i / LAYER_SLICES of its batch names; the first vertex says
+// which batch that is. Edges lie between pixels, half a pixel from the nearest centre: each fragment belongs to one
+// square, and it alone decides whether it has a sample.
+
+#import patch_grid
+
+const CORNERS = array<vec2<u32>, 6>(
+    vec2(0u, 0u),
+    vec2(1u, 0u),
+    vec2(1u, 1u),
+    vec2(0u, 0u),
+    vec2(1u, 1u),
+    vec2(0u, 1u),
+);
+
+struct Patches {
+    d: array<u32>,
+}
+
+// Squares in which no further slice can change anything, since which batch.
+struct OpaqueSince {
+    batch: u32,
+    d: array<u32>,
+}
+
+@group(0) @binding(40) var<storage, read> patches_listed: Patches;
+@group(0) @binding(41) var<storage, read> opaque_since: OpaqueSince;
+
+struct Vertex {
+    @builtin(position) position: vec4<f32>,
+    @location(0) @interpolate(flat) slice: i32,
+}
+
+@vertex
+fn main(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u32) -> Vertex {
+    let batch = vertex / 6u;
+    let entry = patches_listed.d[batch * batch_capacity() + instance / LAYER_SLICES];
+    let square = entry / BATCH_LAYERS;
+    let layer = batch * BATCH_LAYERS + entry % BATCH_LAYERS;
+    let nth = layer * LAYER_SLICES + instance % LAYER_SLICES;
+    let is_drawn = nth < frame.slice_count && opaque_since.d[square] >= opaque_since.batch;
+    var corners = CORNERS;
+    let across = patch_grid().x;
+    let corner = vec2(square % across, square / across) + corners[vertex % 6u];
+    let ndc = 2.0 * vec2<f32>(corner * frame.patch_pixels) / vec2<f32>(frame.extent_pixels) - 1.0;
+    // All six in one point: no fragment.
+    return Vertex(vec4(select(vec2(-1.0), ndc, is_drawn), 0.5, 1.0), slice_of(nth));
+}
