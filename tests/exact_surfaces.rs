@@ -533,6 +533,7 @@ fn where_the_other_variable_has_no_data_a_surface_keeps_its_own_colour() {
             "{painted} pixels have the colour of the other"
         );
         assert_eq!(own > 20, holes_in_the_other, "{own} pixels have their own");
+        drop(renderer);
         ball.validity = None;
         other.validity = None;
     }

@@ -5,12 +5,12 @@ use crate::resident::Cell;
 use crate::technique::{MAX_SAMPLES_PER_RAY, Mode, Settings, Technique, View};
 use glam::DVec3;
 
-/// A look-up of a voxel takes so long with all that is done with it. A driver on two cores took 14 to 80 ns for a
-/// sample (`docs/performance.md`); graphics cards that are twenty times slower than the fast ones keep inside a
+/// A look-up of a voxel takes so long with all that is done with it. A driver on two cores took 10 to 20 ns
+/// (`docs/performance.md`); graphics cards that are twenty times slower than the fast ones keep inside a
 /// nanosecond.
 fn ms_per_look(gpu: &Gpu) -> f64 {
     match gpu.is_cpu() {
-        true => 50e-6,
+        true => 25e-6,
         false => 1e-6,
     }
 }

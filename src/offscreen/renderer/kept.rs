@@ -44,6 +44,7 @@ impl<'v> Renderer<'v> {
     pub fn with_kept(kept: Kept, volumes: Vec<&'v Volume>) -> Result<Self, Error> {
         let Kept { tools, device } = kept;
         let gpu = device.gpu();
+        let slices = TimeSlices::of(gpu);
         let Tools {
             targets,
             passes,
@@ -70,7 +71,7 @@ impl<'v> Renderer<'v> {
             passes,
             ring,
             timer,
-            slices: TimeSlices::default(),
+            slices,
             known: None,
             changes: 0,
             passes_done: [0, 1],
