@@ -8,7 +8,9 @@
 //! ```
 
 mod classified;
+mod gather;
 mod kept;
+mod left;
 mod pacing;
 mod skipping;
 mod streaming;
@@ -19,27 +21,25 @@ use super::fade::{render_faded, stacks_of};
 use super::gradients::decided;
 use super::light::Matter;
 use super::passes::{Passes, key_of};
-use super::position::{labels, positions};
 use super::stream::{Cache, Stream};
-use super::submission::{self, Submission};
+use super::submission::Submission;
 use super::sum::sum_of;
 use super::tally::{Clock, Mean, check_layers};
 use super::targets::Targets;
-use super::time_slices::{Spent, TimeSlices};
+use super::time_slices::TimeSlices;
 use super::upload::{keep, upload, upload_with_gradient_source};
 use crate::gpu::{Headless, ParameterRing, Timer, Use};
-use crate::picture::{ColorSpace, Layer, LayerKind, Picture};
+use crate::picture::{ColorSpace, LayerKind, Picture};
 use crate::resident::{GpuTransfer, GpuVolume, KeptOperator, TextureLayout};
-use crate::resolve::reference::projected_value;
 use crate::scene::{Scene, positions_in_pixel};
 use crate::technique::{
-    self, Functions, GradientSource, InPixel, Inputs, Keep, LightVolume, Mix, Mode, Part,
-    Recording, Settings, Technique, Words, parameter_ring,
+    self, Functions, GradientSource, InPixel, Keep, LightVolume, Mix, Mode, Part, Words,
+    parameter_ring,
 };
-use crate::transfer::{Classified, Graded, TransferFunction, Window};
+use crate::transfer::{Graded, TransferFunction};
 use crate::volume::{Spline, Volume};
 pub use kept::Kept;
-use pacing::{Expected, Known, passes_of};
+use pacing::{Known, passes_of};
 use skipping::Skipped;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -379,91 +379,6 @@ impl<'v> Renderer<'v> {
         Ok(())
     }
 
-    /// One pass of the technique, rays at one position in each pixel.
-    fn gather(&mut self, scene: &Scene, in_pixel: InPixel) -> Result<Option<f64>, Error> {
-        if self.streaming.is_some() {
-            return self.gather_stream(scene, in_pixel);
-        }
-        let (spent, expected) = self.pass(scene, in_pixel, Passes::gather)?;
-        self.learn(expected, &spent);
-        Ok(spent.gpu_ms)
-    }
-
-    /// The next of the passes over all samples that the picture takes.
-    fn pass(
-        &mut self,
-        scene: &Scene,
-        in_pixel: InPixel,
-        pass: impl FnOnce(&Passes, Submission) -> Result<Spent, crate::gpu::Error>,
-    ) -> Result<(Spent, Expected), Error> {
-        let [done, of] = self.passes_done;
-        let span = self.slices.enter(done, of);
-        let submitted = self.submit(scene, in_pixel, pass);
-        self.slices.leave(span);
-        self.passes_done[0] += 1;
-        submitted
-    }
-
-    /// Parameters into the ring, then submissions.
-    fn submit(
-        &mut self,
-        scene: &Scene,
-        in_pixel: InPixel,
-        pass: impl FnOnce(&Passes, Submission) -> Result<Spent, crate::gpu::Error>,
-    ) -> Result<(Spent, Expected), Error> {
-        let grid = scene.volume.grid();
-        let view = scene.view(&grid, in_pixel);
-        let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
-        let parts = parts_of(&self.resident, self.shown, scene);
-        let mut recordings = view.recordings_of(&parts, transfer)?;
-        let expected = self.expected(scene, &view, &recordings, parts.len());
-        let skip = self.skipped.skip();
-        for recording in &mut recordings {
-            recording.skip(skip);
-        }
-        let beside = |recording: &Recording| -> Vec<_> {
-            let others = parts[1..].iter();
-            others
-                .map(|part| &part.volume.bricks()[recording.brick])
-                .collect()
-        };
-        let beside: Vec<_> = recordings.iter().map(beside).collect();
-        let part = |(slot, (recording, beside)): (u32, (Recording, _))| {
-            let volume = parts[0].volume;
-            let inputs = Inputs {
-                ring: &self.ring,
-                volume,
-                brick: &volume.bricks()[recording.brick],
-                transfer,
-                beside,
-                light: self.light.as_ref().map(|lit| &lit.made),
-                skip,
-            };
-            Ok(submission::Part {
-                inputs,
-                offset: recording.write(&self.ring, slot)?,
-                slices: recording.slices,
-                order: recording.order,
-                seen: None,
-            })
-        };
-        let with_others = recordings.into_iter().zip(beside.iter().map(Vec::as_slice));
-        let drawn = (0..).zip(with_others).map(part);
-        let bricks = drawn.collect::<Result<Vec<_>, Error>>()?;
-        let submission = Submission {
-            device: &mut self.device,
-            targets: self.targets.as_ref().expect("prepared"),
-            bricks: &bricks,
-            timer: self.timer.as_ref(),
-            slices: &mut self.slices,
-            expected_ms: expected.ms,
-            is_drawing: true,
-            resumes: false,
-        };
-        let spent = pass(self.passes.as_ref().expect("prepared"), submission)?;
-        Ok((spent, expected))
-    }
-
     /// The colours of what was gathered; the parameters are still in the ring.
     fn resolve(&mut self) -> Result<Vec<[f32; 4]>, Error> {
         let passes = self.passes.as_ref().expect("prepared");
@@ -483,77 +398,6 @@ impl<'v> Renderer<'v> {
         };
         passes.resolve(submission, &self.ring, offset, transfer)?;
         Ok(targets.read(&mut self.device, &targets.picture, Use::ColorTarget)?)
-    }
-
-    /// The default window of a projecting mode without a transfer function: the range of this picture.
-    fn grey_of_picture(&mut self, scene: &Scene) -> Result<TransferFunction, Error> {
-        let targets = self.targets.as_ref().expect("prepared");
-        let found = targets.read(
-            &mut self.device,
-            &targets.accumulation,
-            Use::FragmentSampled,
-        )?;
-        let values = found
-            .iter()
-            .filter_map(|&left| projected_value(scene.settings.mode, left));
-        let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
-            [low.min(v.into()), high.max(v.into())]
-        });
-        Ok(Window::of_range([low, high]).grey(Classified::Projection))
-    }
-
-    /// The layers of the rays through pixel centres, which were gathered last.
-    fn read_layers(&mut self, scene: &Scene, wanted: &[LayerKind]) -> Result<Vec<Layer>, Error> {
-        let Settings {
-            technique, mode, ..
-        } = *scene.settings;
-        if wanted.is_empty() {
-            return Ok(Vec::new());
-        }
-        let is_slicer = technique != Technique::Raycast;
-        let targets = self.targets.as_ref().expect("prepared");
-        let left = targets.read(
-            &mut self.device,
-            &targets.accumulation,
-            Use::FragmentSampled,
-        )?;
-        // (value, depth, transmittance, samples) of each pixel, as far as the technique has them.
-        let beside = if is_slicer {
-            self.pass(scene, InPixel::CENTER, Passes::count)?;
-            let targets = self.targets.as_ref().expect("prepared");
-            let counts = targets.read(&mut self.device, &targets.layers, Use::FragmentSampled)?;
-            counts
-                .into_iter()
-                .map(|[n, ..]| [0.0, -1.0, 0.0, n])
-                .collect()
-        } else if mode.is_projection() {
-            left.iter()
-                .map(|&[_, _, depth, samples]| [0.0, depth, 0.0, samples])
-                .collect()
-        } else {
-            targets.read(&mut self.device, &targets.layers, Use::FragmentSampled)?
-        };
-        let layer = |kind| {
-            let number = |(left, beside): (&[f32; 4], &[f32; 4])| match kind {
-                LayerKind::Value if mode == Mode::Iso && beside[1] < 0.0 => f32::NAN,
-                LayerKind::Value if mode == Mode::Iso => beside[0],
-                LayerKind::Value => projected_value(mode, *left).unwrap_or(f32::NAN),
-                LayerKind::Depth | LayerKind::Position | LayerKind::Label => match beside[1] {
-                    depth if depth < 0.0 => f32::NAN,
-                    depth => depth,
-                },
-                LayerKind::Transmittance => 1.0 - left[3],
-                LayerKind::Samples => beside[3],
-            };
-            let values: Vec<f32> = left.iter().zip(&beside).map(number).collect();
-            let values = match kind {
-                LayerKind::Position => positions(scene, &values),
-                LayerKind::Label => labels(scene, &values),
-                _ => values,
-            };
-            Layer { kind, values }
-        };
-        Ok(wanted.iter().map(|&kind| layer(kind)).collect())
     }
 }
 

@@ -20,6 +20,7 @@ pub mod labels;
 mod magnitude;
 pub mod phantom;
 mod prefilter;
+#[cfg(feature = "files")]
 mod pyramid;
 mod read;
 mod reduce;

@@ -11,6 +11,7 @@
 //! high are its smallest and largest stored number, NaN where none is valid (`docs/formats.md`).
 
 mod index;
+mod lines;
 mod region;
 
 pub(crate) use index::{Coding, Entry, Index, Level, MAGIC, checksum};

@@ -277,9 +277,7 @@ impl<'v> Renderer<'v> {
             match settings.mode {
                 Mode::Mip => weight != 0.0 && high <= value,
                 Mode::Minip => weight != 0.0 && low >= value,
-                Mode::Composite => {
-                    transmittance == 0.0 || transmittance < settings.termination as f32
-                }
+                Mode::Composite => transmittance == 0.0 || transmittance < settings.termination,
                 _ => transmittance == 0.0,
             }
         };
