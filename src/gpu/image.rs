@@ -59,6 +59,9 @@ pub struct ImageDesc<'a> {
     pub name: &'a str,
 }
 
+/// Images of so many bytes have memory of their own.
+const OWN_MEMORY_BYTES: u64 = 1 << 20;
+
 /// An image with memory and a view of all of it.
 #[derive(Debug)]
 pub struct Image {
@@ -108,7 +111,11 @@ impl Image {
             requirements,
             location: MemoryLocation::GpuOnly,
             linear: false,
-            allocation_scheme: AllocationScheme::GpuAllocatorManaged,
+            // Gone with the image: in blocks with small things, places that large ones leave come to pieces.
+            allocation_scheme: match requirements.size >= OWN_MEMORY_BYTES {
+                true => AllocationScheme::DedicatedImage(raw.get()),
+                false => AllocationScheme::GpuAllocatorManaged,
+            },
         };
         let memory = OwnMemory::new(gpu, &memory, doing)?;
         let allocation = memory.get();

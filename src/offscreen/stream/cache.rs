@@ -13,6 +13,9 @@ use crate::transfer::Seen;
 use crate::volume::Volume;
 use std::collections::{HashMap, HashSet};
 
+/// Each brick has memory of its own, of which Vulkan lets a device have 4096 pieces.
+const MOST_BRICKS: usize = 2048;
+
 /// A brick on the device.
 #[derive(Debug)]
 pub struct Resident {
@@ -107,7 +110,9 @@ impl Cache {
             }
         };
         let bytes = made.staging_bytes(cell.stored);
-        while self.bytes + bytes > stream.device_bytes() && self.drop_one(kept) {}
+        while (self.bytes + bytes > stream.device_bytes() || self.bricks.len() >= MOST_BRICKS)
+            && self.drop_one(kept)
+        {}
         fill(device, &made, voxels)?;
         let cells = match wanted {
             Skippable::Nothing => None,
