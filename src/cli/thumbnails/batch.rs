@@ -305,6 +305,18 @@ impl<'a> Reading<'a> {
             scene.input.raw = None;
         }
         let source = load::open(&scene.input, &scene.input.limits())?;
+        // The source is of the first of several, where nobody chose.
+        let header = source.header();
+        if let (None, [first, _, ..]) = (&scene.input.variable, &header.variables[..]) {
+            let count = header.variables.len();
+            progress.note(&format!("drawn is the first of {count} variables, {first}"));
+            scene.input.variable = Some(first.clone());
+        }
+        if let (None, [first, _, ..]) = (&scene.input.series, &header.series[..]) {
+            let count = header.series.len();
+            progress.note(&format!("drawn is the first of {count} series, {}", first.uid));
+            scene.input.series = Some(first.uid.clone());
+        }
         let held = Held::of(&scene, source.header().components);
         let needed = needed_bytes(source.header(), &scene, self.memory, held);
         let share = self.room.share(needed);
