@@ -113,6 +113,27 @@ fn with_mode(mode: Mode) -> Settings {
 }
 
 #[test]
+fn patches_are_drawn_in_runs_of_slices() {
+    let volume = small();
+    for order in [Order::FrontToBack, Order::BackToFront] {
+        let settings = Settings {
+            technique: Technique::Slices3d,
+            order,
+            samples_per_voxel: 30.0,
+            ..Settings::default()
+        };
+        let made = [AT_ONCE, IN_SMALLEST_PARTS];
+        let pictures = drawn(Caps::UNLIMITED, &volume, &settings, (true, &[]), &made);
+        let [(whole, few), (parts, many)] = &pictures[..] else {
+            unreachable!("two pictures")
+        };
+        assert!(*many >= few + 2, "{order:?}: {few}, {many}");
+        assert!(whole.pixels.iter().any(|pixel| pixel[3] > 0.0));
+        assert!(bits(whole) == bits(parts), "{order:?}: other bits");
+    }
+}
+
+#[test]
 fn every_mode_of_the_ray_caster_is_the_same_in_parts() {
     use LayerKind::*;
     let volume = small();
@@ -185,6 +206,7 @@ fn so_are_slices_in_both_orders_and_their_counts_of_samples() {
                 technique,
                 order,
                 preintegrated,
+                skip: false,
                 ..with_mode(mode)
             };
             let what = format!("{technique:?} {mode:?} {order:?} {preintegrated}");
@@ -195,6 +217,7 @@ fn so_are_slices_in_both_orders_and_their_counts_of_samples() {
     let smooth = Settings {
         technique: Technique::Slices2d,
         smooth: true,
+        skip: false,
         ..Settings::default()
     };
     assert_same(Caps::UNLIMITED, &volume, &smooth, (true, &[]), "smooth");

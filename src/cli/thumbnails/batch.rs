@@ -314,7 +314,10 @@ impl<'a> Reading<'a> {
         }
         if let (None, [first, _, ..]) = (&scene.input.series, &header.series[..]) {
             let count = header.series.len();
-            progress.note(&format!("drawn is the first of {count} series, {}", first.uid));
+            progress.note(&format!(
+                "drawn is the first of {count} series, {}",
+                first.uid
+            ));
             scene.input.series = Some(first.uid.clone());
         }
         let held = Held::of(&scene, source.header().components);
