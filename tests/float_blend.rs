@@ -58,6 +58,8 @@ fn batches_of_16_bit_floats_make_the_picture_of_32_bit_ones() {
                 technique,
                 order,
                 filter: Filter::Nearest,
+                // All slices, so that there are three batches.
+                skip: false,
                 ..Settings::default()
             };
             let scene = Scene {

@@ -338,7 +338,7 @@ fn the_examples_of_the_help_run() {
         .lines()
         .filter_map(|line| line.trim().strip_prefix("stratavox convert "))
         .collect();
-    assert_eq!(examples.len(), 4, "{}", help.out);
+    assert_eq!(examples.len(), 5, "{}", help.out);
     for words in examples {
         folder.run(&format!("convert {words}")).assert_done();
     }

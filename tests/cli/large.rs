@@ -131,7 +131,7 @@ fn what_is_not_drawn_in_bricks_is_refused_by_name() {
         ("--filter cubic", "--filter"),
         ("--denoise median", "--denoise"),
         ("--device reference", "--device reference"),
-        ("--shadows volume", "--shadows"),
+        ("--ambient-occlusion 0.5", "--ambient-occlusion"),
     ] {
         let ran = folder.run(&words(&format!("--stream {more} -o a.png")));
         ran.assert_refused(2, &["--stream", word]);
