@@ -185,7 +185,11 @@ impl ComputePipeline {
             device.cmd_bind_descriptor_sets(cmd, point, self.layout.raw(), 0, &sets, offsets);
             for Groups { base, count } in boxes {
                 let ([x, y, z], [nx, ny, nz]) = (base, count);
-                device.cmd_dispatch_base(cmd, x, y, z, nx, ny, nz);
+                // Validation layers of 2023 look for hazards at `vkCmdDispatch` alone.
+                match base {
+                    [0, 0, 0] => device.cmd_dispatch(cmd, nx, ny, nz),
+                    _ => device.cmd_dispatch_base(cmd, x, y, z, nx, ny, nz),
+                }
             }
         }
     }
