@@ -159,7 +159,8 @@ fn every_mode_of_the_ray_caster_is_the_same_in_parts() {
 #[test]
 fn so_are_jittered_rays_several_rays_a_pixel_slabs_planes_and_exact_maxima() {
     let volume = small();
-    let changes: [(&str, &dyn Fn(&mut Settings)); 6] = [
+    type Change<'a> = (&'a str, &'a dyn Fn(&mut Settings));
+    let changes: [Change; 6] = [
         ("jitter", &|s| {
             s.lattice = Lattice::Jitter;
             s.jitter = Jitter { seed: 3, frame: 5 };
