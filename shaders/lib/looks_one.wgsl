@@ -1,7 +1,5 @@
-// One sample at once: there is enough to do at each.
+// Each sample is taken by itself: there is so much to do at one that no way to memory is waited for.
 
-const LOOKS_AT_ONCE: i32 = 1;
-
-fn with_looks(before: Accumulator, voxel: Ray, world: Ray, lattice: Lattice, walk: Walk, k: i32) -> Accumulator {
-    return with_look(before, look(voxel, world, lattice, k), true);
+fn walked(before: Reached, voxel: Ray, world: Ray, lattice: Lattice, walk: Walk) -> Reached {
+    return Reached(before.so_far, skipped(before.so_far, walk, before.k));
 }

@@ -38,27 +38,10 @@ fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
     let walk = walk_of(voxel, line_of(lattice, world), vec2(max(whole.x, first), min(whole.y, end)));
     var k = first - i32(is_cut);
     loop {
-        // Whole segments: those that are cut short, and the cut face, come one by one below.
-        loop {
-            // On to the next sample that may count: a loop of its own, so that rays that are walked side by side skip
-            // and sample together.
-            loop {
-                if !may_skip(walk, k) {
-                    break;
-                }
-                let cell = cell_of(walk, k);
-                let room = empty_room(so_far, cell);
-                if room == 0 {
-                    break;
-                }
-                k = after_room(walk, k, cell, room);
-            }
-            if k < walk.first || k >= walk.end || is_finished(so_far) {
-                break;
-            }
-            so_far = with_looks(so_far, voxel, world, lattice, walk, k);
-            k = min(k + LOOKS_AT_ONCE, walk.end);
-        }
+        // On to the next sample that is taken by itself: all, or those that are cut short and the cut face.
+        let reached = walked(Reached(so_far, k), voxel, world, lattice, walk);
+        so_far = reached.so_far;
+        k = reached.k;
         if k >= end || is_finished(so_far) {
             break;
         }
@@ -80,29 +63,28 @@ fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
     return so_far;
 }
 
-// What the ray meets at a sample; it does not hang on what the ray has gathered.
-struct Look {
-    sample: Sample,
-    segment: Segment,
-    is_there: bool,
+// What a ray has gathered, and the sample that comes next.
+struct Reached {
+    so_far: Accumulator,
+    k: i32,
 }
 
-fn look(voxel: Ray, world: Ray, lattice: Lattice, k: i32) -> Look {
-    let segment = whole_segment(lattice, world, k);
-    let position = voxel.origin + segment.t * voxel.direction;
-    return Look(sample_at(position, world.direction), segment, has_data(position));
-}
-
-fn with_look(before: Accumulator, seen: Look, is_ours: bool) -> Accumulator {
-    var so_far = before;
-    let next = add(before, seen.sample, seen.segment);
-    if is_ours && !is_finished(before) {
-        if seen.is_there {
-            so_far = next;
+// On to the next sample that may count: a loop of its own, so that rays that are walked side by side skip and sample
+// together.
+fn skipped(so_far: Accumulator, walk: Walk, start: i32) -> i32 {
+    var k = start;
+    loop {
+        if !may_skip(walk, k) {
+            break;
         }
-        so_far.samples += 1.0;
+        let cell = cell_of(walk, k);
+        let room = empty_room(so_far, cell);
+        if room == 0 {
+            break;
+        }
+        k = after_room(walk, k, cell, room);
     }
-    return so_far;
+    return k;
 }
 
 fn is_ours(segment: Segment, voxel: Ray) -> bool {
