@@ -23,6 +23,7 @@ struct Numbers {
     header: Header,
     numbers: Vec<f32>,
     reads: AtomicUsize,
+    has_rows: bool,
 }
 
 impl Numbers {
@@ -39,6 +40,15 @@ impl Numbers {
             header,
             numbers,
             reads: AtomicUsize::new(0),
+            has_rows: false,
+        }
+    }
+
+    /// The same, read row by row.
+    fn by_rows(self) -> Self {
+        Self {
+            has_rows: true,
+            ..self
         }
     }
 
@@ -55,6 +65,10 @@ impl Source for Numbers {
 
     fn header(&self) -> &Header {
         &self.header
+    }
+
+    fn reads_whole_rows(&self) -> bool {
+        self.has_rows
     }
 
     fn read(&self, _: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
@@ -232,6 +246,45 @@ fn holes_stay_holes_in_every_brick() {
 /// A ball in the middle of nothing.
 fn ball(p: glam::DVec3) -> f64 {
     f64::from(p.distance(glam::dvec3(12.0, 12.0, 44.0)) < 4.0)
+}
+
+#[test]
+fn neighbours_along_x_are_read_together_and_the_picture_is_the_same() {
+    let some = [0, 1, 13, 15].map(|nth| settings()[nth].clone());
+    assert_same(Numbers::of([25, 21, 18], None, waves).by_rows(), &some);
+    let reads_of = |source: Numbers, piece_bytes| {
+        let source = Arc::new(source);
+        let options = StreamOptions {
+            piece_bytes,
+            device_bytes: 1 << 30,
+            ..SMALL
+        };
+        let stream = open(&source, options);
+        let grid = stream.outline().grid();
+        let camera = oblique_camera(&grid, projections(&grid)[0]);
+        let transfer = ramps();
+        let settings = Settings {
+            skip: false,
+            ..Settings::default()
+        };
+        let scene = scene(stream.outline(), &transfer, &camera, &settings);
+        let mut renderer = Renderer::streamed(device(), &stream).expect("a renderer");
+        let before = source.reads.load(Ordering::Relaxed);
+        renderer.render(&scene, &[]).expect("a picture");
+        source.reads.load(Ordering::Relaxed) - before
+    };
+    // 4 x 2 x 2 bricks of 16 voxels; a row of them has 60 x 19 x 19 floats with halos.
+    let numbers = || Numbers::of([60, 20, 20], None, waves);
+    assert_eq!(reads_of(numbers(), 1 << 20), 16, "one brick each");
+    // The first brick is read alone before the picture begins.
+    assert_eq!(reads_of(numbers().by_rows(), 1 << 20), 1 + 4, "rows");
+    // Two bricks of 19 x 19 fit and three do not; rows of 19 x 7 fit as a whole.
+    let half = 4 * (16 + 16 + 3) * 19 * 19;
+    assert_eq!(
+        reads_of(numbers().by_rows(), half),
+        1 + 2 + 3,
+        "parts of rows"
+    );
 }
 
 #[test]

@@ -5,9 +5,9 @@ use super::data::Data;
 use super::decode::Encoding;
 use super::problem::at;
 use super::request::wanted_count;
-use super::select::rows;
+use super::select::{Row, rows};
 use super::stream::Stream;
-use crate::volume::{Header, Limits, Pick, Piece, Problem, ReadError, Source, VoxelBox};
+use crate::volume::{Header, Limits, Pick, Piece, Problem, ReadError, Source, VoxelBox, VoxelType};
 use std::path::{Path, PathBuf};
 
 /// A [`Source`] over [`Data`]: every reader of files ends in one.
@@ -52,6 +52,9 @@ impl FileSource {
     }
 
     /// Hands every wanted number to `take`: bytes of which each `stride`th number is wanted, the first one first.
+    ///
+    /// A call of the system takes as long as copying some kilobytes: rows that lie close are fetched together, with what
+    /// stands between them.
     fn read_rows(
         &self,
         pick: Pick,
@@ -59,30 +62,16 @@ impl FileSource {
         mut take: impl FnMut(&[u8], usize) -> Result<(), Problem>,
     ) -> Result<(), ReadError> {
         let data = &self.data;
-        let number_bytes = to_u64(data.stored.bytes());
         let mut stream = Stream::new(data);
-        for row in rows(&data.axes, pick, region) {
-            let stride_bytes = row.stride.saturating_mul(number_bytes);
-            let mut at_byte = row.start.saturating_mul(number_bytes);
-            let mut left = row.count;
-            // Where numbers lie far apart, each is fetched alone.
-            let batch = CHUNK_BYTES.checked_div(stride_bytes).unwrap_or(0).max(1);
-            while left > 0 {
-                let count = left.min(batch);
-                let span = count
-                    .saturating_sub(1)
-                    .saturating_mul(stride_bytes)
-                    .saturating_add(number_bytes);
-                let bytes = stream.read_at(at_byte, span)?;
-                let stride = match count {
-                    1 => 1,
-                    _ => usize::try_from(row.stride).unwrap_or(usize::MAX),
-                };
-                take(bytes, stride).map_err(at(&self.path))?;
-                at_byte = at_byte.saturating_add(count.saturating_mul(stride_bytes));
-                left = left.saturating_sub(count);
+        let mut near = Span::default();
+        let pieces = rows(&data.axes, pick, region).flat_map(|row| pieces(row, data.stored));
+        for piece in pieces {
+            if !near.takes(&piece) {
+                near.hand_on(&mut stream, &self.path, &mut take)?;
             }
+            near.pieces.push(piece);
         }
+        near.hand_on(&mut stream, &self.path, &mut take)?;
         stream.finish()
     }
 
@@ -105,6 +94,90 @@ const BELIEVED_NUMBERS: usize = 1 << 24;
 /// Bytes that are fetched and converted at once.
 const CHUNK_BYTES: u64 = 1 << 18;
 
+/// Bytes between two rows that are fetched with them.
+const GAP_BYTES: u64 = 1 << 13;
+
+/// Wanted numbers that are fetched at once.
+#[derive(Clone, Copy, Debug)]
+struct RowPiece {
+    start_byte: u64,
+    bytes: u64,
+    /// From one wanted number to the next.
+    stride: usize,
+}
+
+/// A row in pieces of [`CHUNK_BYTES`]. Where numbers lie far apart, each is fetched alone.
+fn pieces(row: Row, stored: VoxelType) -> impl Iterator<Item = RowPiece> {
+    let number_bytes = to_u64(stored.bytes());
+    let stride_bytes = row.stride.saturating_mul(number_bytes);
+    let most = CHUNK_BYTES.checked_div(stride_bytes).unwrap_or(0).max(1);
+    let mut done = 0_u64;
+    std::iter::from_fn(move || {
+        let count = row.count.saturating_sub(done).min(most);
+        let piece = RowPiece {
+            start_byte: row
+                .start
+                .saturating_mul(number_bytes)
+                .saturating_add(done.saturating_mul(stride_bytes)),
+            bytes: count
+                .saturating_sub(1)
+                .saturating_mul(stride_bytes)
+                .saturating_add(number_bytes),
+            stride: match count {
+                1 => 1,
+                _ => usize::try_from(row.stride).unwrap_or(usize::MAX),
+            },
+        };
+        done = done.saturating_add(count);
+        (count > 0).then_some(piece)
+    })
+}
+
+/// Pieces that lie close to each other.
+#[derive(Debug, Default)]
+struct Span {
+    pieces: Vec<RowPiece>,
+}
+
+impl Span {
+    /// The first byte, and the one behind the last.
+    fn ends(&self) -> Option<[u64; 2]> {
+        let (first, last) = self.pieces.first().zip(self.pieces.last())?;
+        Some([first.start_byte, last.start_byte.saturating_add(last.bytes)])
+    }
+
+    /// Whether the next piece is fetched with these.
+    fn takes(&self, next: &RowPiece) -> bool {
+        self.ends().is_none_or(|[begin, end]| {
+            let new_end = next.start_byte.saturating_add(next.bytes);
+            next.start_byte.saturating_sub(end) <= GAP_BYTES
+                && new_end.saturating_sub(begin) <= CHUNK_BYTES
+        })
+    }
+
+    /// Fetches the pieces and is empty again.
+    fn hand_on(
+        &mut self,
+        stream: &mut Stream,
+        path: &Path,
+        take: &mut impl FnMut(&[u8], usize) -> Result<(), Problem>,
+    ) -> Result<(), ReadError> {
+        let Some([begin, end]) = self.ends() else {
+            return Ok(());
+        };
+        let bytes = stream.read_at(begin, end.saturating_sub(begin))?;
+        for piece in self.pieces.drain(..) {
+            let from = usize::try_from(piece.start_byte.saturating_sub(begin));
+            let count = usize::try_from(piece.bytes);
+            let place = from.unwrap_or(usize::MAX)..;
+            let wanted = bytes.get(place).unwrap_or_default();
+            let wanted = wanted.get(..count.unwrap_or(usize::MAX));
+            take(wanted.unwrap_or_default(), piece.stride).map_err(at(path))?;
+        }
+        Ok(())
+    }
+}
+
 impl Source for FileSource {
     fn path(&self) -> &Path {
         &self.path
@@ -116,6 +189,10 @@ impl Source for FileSource {
 
     fn reads_parts(&self) -> bool {
         self.data.encoding == Encoding::Raw
+    }
+
+    fn reads_whole_rows(&self) -> bool {
+        true
     }
 
     fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {

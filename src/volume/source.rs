@@ -25,6 +25,12 @@ pub trait Source: Send + Sync {
         true
     }
 
+    /// True where a part of a row of voxels costs about what the whole row does, as in files of plain rows or of slices:
+    /// neighbours along x are read together then.
+    fn reads_whole_rows(&self) -> bool {
+        false
+    }
+
     /// What the source knows of its bricks, with an overview of about `most_seen` voxels; `None` where somebody has to look
     /// ([`Survey::of`]).
     ///

@@ -108,6 +108,7 @@ impl Shown {
         Ok(Self {
             volume: Arc::new(stream.outline().clone()),
             stream: Some(stream),
+            overview: Some(shown.volume),
             ..shown
         })
     }
