@@ -116,13 +116,15 @@ const SMALL: StreamOptions = StreamOptions {
     side: 16,
     piece_bytes: 30_000,
     device_bytes: 200_000,
+    all_device_bytes: u64::MAX,
 };
 
 /// The same in many small bricks.
 const TINY: StreamOptions = StreamOptions {
     side: 8,
     piece_bytes: 30_000,
-    device_bytes: 200_000,
+    device_bytes: 600_000,
+    all_device_bytes: u64::MAX,
 };
 
 /// Pictures of everything that a stream can be drawn with; texels are fetched, so that bricks change no bit.
@@ -356,6 +358,38 @@ fn bricks_behind_opaque_ones_are_not_read() {
             "{mode:?}: {reads} of {all} bricks were read"
         );
     }
+}
+
+#[test]
+fn all_that_lies_on_the_device_stays_under_what_it_may_take() {
+    const MOST: u64 = 12 << 20;
+    let source = Arc::new(Numbers::of([128; 3], None, |p| p.x));
+    let peak_of = |all_device_bytes| {
+        let options = StreamOptions {
+            side: 64,
+            piece_bytes: 1 << 20,
+            device_bytes: u64::MAX,
+            all_device_bytes,
+        };
+        let stream = open(&source, options);
+        let grid = stream.outline().grid();
+        let camera = oblique_camera(&grid, projections(&grid)[0]);
+        let transfer = ramps();
+        let settings = Settings {
+            mode: Mode::Average,
+            ..Settings::default()
+        };
+        let scene = scene(stream.outline(), &transfer, &camera, &settings);
+        let mut renderer = Renderer::streamed(device(), &stream).expect("a renderer");
+        renderer.render(&scene, &[]).expect("a picture");
+        let picture = renderer.render(&scene, &[]).expect("a picture").picture;
+        (renderer.device().gpu().peak_device_bytes(), picture)
+    };
+    // 8 bricks of 67 floats a side are 9.6 MB, and pictures and copies take blocks of 4 MiB.
+    let (all, whole) = peak_of(u64::MAX);
+    let (some, bricks) = peak_of(MOST);
+    assert!(all > MOST && some <= MOST, "{all} and {some} of {MOST}");
+    assert!(whole == bricks, "the pictures differ");
 }
 
 #[test]

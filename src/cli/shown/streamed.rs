@@ -76,6 +76,7 @@ impl Shown {
         let options = StreamOptions {
             piece_bytes,
             device_bytes,
+            all_device_bytes: device_bytes,
             ..StreamOptions::default()
         };
         let is_earth = source.header().is_earth;

@@ -165,16 +165,24 @@ impl<'v> Renderer<'v> {
                 let mut tiles = Vec::new();
                 let before = next;
                 while next < shown.len() && chunk.len() < BRICKS_AT_ONCE {
-                    let brick = shown[next].brick;
-                    next += 1;
-                    if is_hidden[next - 1].load(Ordering::Relaxed) {
+                    let Shown { brick, place, .. } = shown[next];
+                    if is_hidden[next].load(Ordering::Relaxed) {
                         cache.drawn(brick);
+                        next += 1;
                         continue;
                     }
+                    let is_there = cache.get(brick).is_some();
+                    // What is there is drawn before more comes that has no room beside it.
+                    let has_room = is_there
+                        || chunk.is_empty()
+                        || cache.make_room(&mut self.device, stream, &chunk);
+                    if !has_room {
+                        break;
+                    }
+                    next += 1;
                     chunk.push(brick);
-                    let pixels = shown[next - 1].place.pixels;
-                    tiles.push(Some(Tile::around(pixels, scene.extent_pixels)));
-                    if cache.get(brick).is_none() {
+                    tiles.push(Some(Tile::around(place.pixels, scene.extent_pixels)));
+                    if !is_there {
                         let voxels = ahead.take(stream, brick)?;
                         let way = (skippable, scene.settings.apron());
                         cache.put(&mut self.device, stream, brick, &voxels, way, &chunk)?;

@@ -36,6 +36,7 @@ pub struct Stream {
     overview: Overview,
     piece_bytes: u64,
     device_bytes: u64,
+    all_device_bytes: u64,
 }
 
 impl std::fmt::Debug for Stream {
@@ -56,17 +57,20 @@ pub struct StreamOptions {
     /// Bytes of voxels that the first look at a source holds at once, twice, and that neighbours take that are read
     /// together.
     pub piece_bytes: u64,
-    /// Bytes of the device that bricks may take. Some of them are there at once in any case.
+    /// Bytes of the device that bricks may take. One of them is there in any case.
     pub device_bytes: u64,
+    /// Bytes that all on the device may take, pictures too: bricks leave where they would be more.
+    pub all_device_bytes: u64,
 }
 
 impl Default for StreamOptions {
-    /// Bricks of 120 voxels a side, a whole number of macro cells; 128 MiB; 1 GiB.
+    /// Bricks of 120 voxels a side, a whole number of macro cells; 128 MiB; 1 GiB, and whatever pictures take.
     fn default() -> Self {
         Self {
             side: 120,
             piece_bytes: 128 << 20,
             device_bytes: 1 << 30,
+            all_device_bytes: u64::MAX,
         }
     }
 }
@@ -134,6 +138,7 @@ impl Stream {
             overview: survey.overview,
             piece_bytes: options.piece_bytes,
             device_bytes: options.device_bytes,
+            all_device_bytes: options.all_device_bytes,
             source,
         }
     }
@@ -166,10 +171,6 @@ impl Stream {
 
     pub(super) fn cells(&self) -> &[Cell] {
         &self.cells
-    }
-
-    pub(super) fn device_bytes(&self) -> u64 {
-        self.device_bytes
     }
 
     /// Whether bricks are best drawn row by row.
