@@ -8,6 +8,7 @@ use super::request::wanted_count;
 use super::select::{Row, rows};
 use super::stream::Stream;
 use crate::volume::{Header, Limits, Pick, Piece, Problem, ReadError, Source, VoxelBox, VoxelType};
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 /// A [`Source`] over [`Data`]: every reader of files ends in one.
@@ -37,8 +38,15 @@ impl FileSource {
         }
     }
 
-    fn read_piece(&self, pick: Pick, region: VoxelBox, wanted: usize) -> Result<Piece, ReadError> {
+    fn read_piece(
+        &self,
+        stream: &mut Stream,
+        pick: Pick,
+        region: VoxelBox,
+    ) -> Result<Piece, ReadError> {
         let data = &self.data;
+        let wanted = wanted_count(data.format, &self.header, pick, region, self.max_bytes)
+            .map_err(at(&self.path))?;
         let mut builder = Builder::new(data.stored, data.endian, wanted);
         // Raw bytes were seen to be there; of others only the plausible part is believed beforehand.
         let believed = match data.encoding {
@@ -46,7 +54,9 @@ impl FileSource {
             _ => wanted.min(BELIEVED_NUMBERS),
         };
         builder.reserve(believed).map_err(at(&self.path))?;
-        self.read_rows(pick, region, |bytes, stride| builder.push(bytes, stride))?;
+        self.read_rows(stream, pick, region, |bytes, stride| {
+            builder.push(bytes, stride)
+        })?;
         self.check_count(builder.len(), wanted)?;
         Ok(builder.finish())
     }
@@ -57,22 +67,21 @@ impl FileSource {
     /// stands between them.
     fn read_rows(
         &self,
+        stream: &mut Stream,
         pick: Pick,
         region: VoxelBox,
         mut take: impl FnMut(&[u8], usize) -> Result<(), Problem>,
     ) -> Result<(), ReadError> {
         let data = &self.data;
-        let mut stream = Stream::new(data);
         let mut near = Span::default();
         let pieces = rows(&data.axes, pick, region).flat_map(|row| pieces(row, data.stored));
         for piece in pieces {
             if !near.takes(&piece) {
-                near.hand_on(&mut stream, &self.path, &mut take)?;
+                near.hand_on(stream, &self.path, &mut take)?;
             }
             near.pieces.push(piece);
         }
-        near.hand_on(&mut stream, &self.path, &mut take)?;
-        stream.finish()
+        near.hand_on(stream, &self.path, &mut take)
     }
 
     fn check_count(&self, found: usize, wanted: usize) -> Result<(), ReadError> {
@@ -196,9 +205,26 @@ impl Source for FileSource {
     }
 
     fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
-        let wanted = wanted_count(self.data.format, &self.header, pick, region, self.max_bytes)
-            .map_err(at(&self.path))?;
-        self.read_piece(pick, region, wanted)
+        let mut stream = Stream::new(&self.data);
+        let piece = self.read_piece(&mut stream, pick, region)?;
+        stream.finish()?;
+        Ok(piece)
+    }
+
+    fn read_slabs(
+        &self,
+        pick: Pick,
+        region: VoxelBox,
+        slices: u32,
+        take: &mut dyn FnMut(VoxelBox, Piece) -> ControlFlow<()>,
+    ) -> Result<(), ReadError> {
+        let mut stream = Stream::new(&self.data);
+        for slab in region.slabs(slices) {
+            if take(slab, self.read_piece(&mut stream, pick, slab)?).is_break() {
+                return Ok(());
+            }
+        }
+        stream.finish()
     }
 
     fn read_bytes(&self, pick: Pick, region: VoxelBox) -> Result<Option<Vec<u8>>, ReadError> {
@@ -208,7 +234,8 @@ impl Source for FileSource {
         let wanted = wanted_count(self.data.format, &self.header, pick, region, max_bytes)
             .map_err(at(&self.path))?;
         let mut all = Vec::new();
-        self.read_rows(pick, region, |bytes, stride| {
+        let mut stream = Stream::new(&self.data);
+        self.read_rows(&mut stream, pick, region, |bytes, stride| {
             for number in bytes.chunks_exact(bytes_each).step_by(stride.max(1)) {
                 match self.data.endian {
                     Endian::Little => all.extend_from_slice(number),
@@ -217,6 +244,7 @@ impl Source for FileSource {
             }
             Ok(())
         })?;
+        stream.finish()?;
         self.check_count(all.len().checked_div(bytes_each).unwrap_or(0), wanted)?;
         Ok(Some(all))
     }

@@ -141,7 +141,39 @@ fn what_is_not_drawn_in_bricks_is_refused_by_name() {
         .assert_done();
     folder
         .run("render a.nii.gz --stream -o a.png")
-        .assert_refused(2, &["compressed as a whole"]);
+        .assert_refused(2, &["compressed as a whole", "convert a.nii.gz -o a.svb"]);
+    // 16^3 floats are 16 KiB, and as much again on the device.
+    folder
+        .run("render a.nii.gz --max-memory 20K -o a.png")
+        .assert_refused(6, &["no memory", "convert a.nii.gz -o a.svb", "--fit"]);
+}
+
+#[test]
+fn what_is_compressed_as_a_whole_is_decoded_once_and_becomes_bricks() {
+    let folder = Folder::new();
+    let make = |words: &str| folder.run(&format!("convert {words}")).assert_done();
+    make("phantom:head,n=130 -o head.npy --type i16");
+    let crop = "--force --crop 10,130,0,128,5,129";
+    make(&format!("head.npy -o wanted.svb {crop}"));
+    let look = "--stream --size 64x64 --force";
+    folder
+        .run(&format!("render wanted.svb {look} -o wanted.npy"))
+        .assert_done();
+    for packed in ["head.nii.gz", "head.nrrd"] {
+        make(&format!("head.npy -o {packed}"));
+        make(&format!("{packed} -o head.svb {crop}"));
+        folder
+            .run(&format!("render head.svb {look} -o found.npy"))
+            .assert_done();
+        let [apart, largest] = apart(&folder, "wanted.npy", "found.npy");
+        assert!(
+            apart == 0.0 && largest > 0.2,
+            "{packed}: {apart} of {largest}"
+        );
+    }
+    // Nothing is left of what was decoded.
+    let left = fs::read_dir(folder.path(".")).expect("a folder").count();
+    assert_eq!(left, 7, "files in the folder");
 }
 
 #[test]
