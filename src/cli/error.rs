@@ -74,6 +74,14 @@ pub enum Error {
     /// More than there is, or than is allowed.
     #[error("{0}")]
     Limit(String),
+    /// More of something than there may be.
+    #[error("{message}")]
+    TooMany {
+        /// Of what.
+        message: String,
+        /// How to do with less.
+        hint: &'static str,
+    },
     /// More memory than there is.
     #[error("{0}")]
     Memory(String),
@@ -198,7 +206,7 @@ impl Error {
             Self::Device(gpu::Error::Limit { .. } | gpu::Error::OutOfMemory { .. }) => 6,
             Self::Device(gpu::Error::Stopped) => INTERRUPTED,
             Self::Device(_) => 5,
-            Self::Limit(_) | Self::Memory(_) | Self::NotInParts { .. } => 6,
+            Self::Limit(_) | Self::TooMany { .. } | Self::Memory(_) | Self::NotInParts { .. } => 6,
         }
     }
 
@@ -206,7 +214,7 @@ impl Error {
     pub fn hint(&self) -> Option<&str> {
         match self {
             Self::NotInParts { hint, .. } => Some(hint),
-            Self::Usage { hint, .. } => Some(hint),
+            Self::Usage { hint, .. } | Self::TooMany { hint, .. } => Some(hint),
             Self::NotBuilt(_) => Some("`stratavox help` lists what is there"),
             Self::Output { hint, .. } => *hint,
             Self::Read(ReadError { problem, .. }) => match problem {

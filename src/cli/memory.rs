@@ -17,7 +17,7 @@ pub use at_once::{DeviceRoom, leaves_room, needed_bytes};
 
 use super::{Error, flags::SceneFlags};
 use crate::{
-    resident::{KeptGradients, TextureLayout},
+    resident::{Corners, KeptGradients, TextureLayout},
     technique::{GradientSource, Keep, LightPlan, Settings, Technique},
     volume::{Header, Reduced, Source, VoxelType},
 };
@@ -111,6 +111,18 @@ impl RenderBytes {
             device: self.device.saturating_mul(volumes.into()),
         }
     }
+}
+
+/// Bytes that devices which compute on the CPU take beside the texture of 8-bit numbers, as far as every one has a
+/// buffer for them.
+pub fn corners_bytes(header: &Header) -> u64 {
+    /// What each device has at least (Vulkan, `maxStorageBufferRange`).
+    const MOST: u64 = 1 << 27;
+    let is_byte = matches!(header.stored, VoxelType::U8 | VoxelType::I8);
+    let bytes = header
+        .voxel_count()
+        .saturating_mul(Corners::BYTES_PER_VOXEL);
+    if is_byte && bytes <= MOST { bytes } else { 0 }
 }
 
 /// Volumes of one source that are there at once.
