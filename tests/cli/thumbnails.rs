@@ -174,10 +174,17 @@ fn a_folder_of_many_formats_is_drawn_as_render_draws_each_and_bad_files_are_name
 fn each_series_of_a_folder_and_each_variable_of_a_file_has_its_picture() {
     let folder = Folder::new();
     fs::create_dir(folder.path("study")).expect("a folder");
-    for name in ["enhanced_ct.dcm", "enhanced_times.dcm"] {
-        let from = fixture(&format!("dicom/{name}"));
-        fs::copy(from, folder.path("study").join(name)).expect("a copy");
-    }
+    let mut file = fs::read(fixture("dicom/enhanced_ct.dcm")).expect("a file");
+    folder.file("study/one.dcm", &file);
+    // Another UID of the series (0020,000E): its last digit.
+    let tag = [0x20, 0, 0x0e, 0, b'U', b'I'];
+    let at = file.windows(6).position(|bytes| bytes == tag);
+    let at = at.expect("a series") + 8;
+    let length = usize::from(file[at - 2]);
+    let last = file[at..at + length].iter().rposition(|byte| *byte != 0);
+    let last = at + last.expect("a digit");
+    file[last] = if file[last] == b'9' { b'8' } else { b'9' };
+    folder.file("study/two.dcm", &file);
     fs::copy(fixture("hdf5/latest.h5"), folder.path("one.h5")).expect("a copy");
     let ran = folder.run("info one.h5 --json");
     ran.assert_done();
