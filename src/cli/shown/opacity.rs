@@ -153,8 +153,7 @@ impl Error {
         let Self::Usage { message, hint } = self else {
             return self;
         };
-        let hints = HINTS.into_iter();
-        let found = hints.filter(|(of_input, _)| *of_input == hint).last();
+        let found = HINTS.into_iter().find(|(of_input, _)| *of_input == hint);
         let message = ["variable", "component", "window"]
             .into_iter()
             .fold(message, |message, word| {

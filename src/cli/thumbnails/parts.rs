@@ -43,7 +43,7 @@ pub fn of_input(input: &str, flags: &InputFlags) -> Vec<Part> {
 fn of_header(header: &Header) -> Vec<Part> {
     let mut parts: Vec<Part> = match (&header.series[..], &header.variables[..]) {
         (series @ [_, _, ..], _) => series.iter().map(of_series).collect(),
-        (_, variables @ [_, _, ..]) => variables.iter().map(of_variable).collect(),
+        (_, variables @ [_, _, ..]) => variables.iter().map(|name| of_variable(name)).collect(),
         _ => return vec![Part::default()],
     };
     // Descriptions may be the same, or none.
@@ -66,10 +66,10 @@ fn of_series(series: &Series) -> Part {
     }
 }
 
-fn of_variable(variable: &String) -> Part {
+fn of_variable(variable: &str) -> Part {
     Part {
         series: None,
-        variable: Some(variable.clone()),
+        variable: Some(variable.to_owned()),
         name: short(variable.trim_matches('/')),
     }
 }
