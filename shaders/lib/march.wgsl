@@ -10,6 +10,7 @@
 #import mask
 #import sample_{mix}
 #import mode_{mode}
+#import looks_{mix}
 
 // `before` is what bricks nearer to the eye have gathered.
 fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
@@ -37,20 +38,28 @@ fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
     let walk = walk_of(voxel, line_of(lattice, world), vec2(max(whole.x, first), min(whole.y, end)));
     var k = first - i32(is_cut);
     loop {
-        // On to the next sample that may count: a loop of its own, so that rays that are walked side by side skip and
-        // sample together.
+        // Whole segments: those that are cut short, and the cut face, come one by one below.
         loop {
-            if k < walk.first || k >= walk.end {
+            // On to the next sample that may count: a loop of its own, so that rays that are walked side by side skip
+            // and sample together.
+            loop {
+                if !may_skip(walk, k) {
+                    break;
+                }
+                let cell = cell_of(walk, k);
+                let room = empty_room(so_far, cell);
+                if room == 0 {
+                    break;
+                }
+                k = after_room(walk, k, cell, room);
+            }
+            if k < walk.first || k >= walk.end || is_finished(so_far) {
                 break;
             }
-            let cell = cell_of(walk, k);
-            let room = empty_room(so_far, cell);
-            if room == 0 {
-                break;
-            }
-            k = after_room(walk, k, cell, room);
+            so_far = with_looks(so_far, voxel, world, lattice, walk, k);
+            k = min(k + LOOKS_AT_ONCE, walk.end);
         }
-        if k >= end {
+        if k >= end || is_finished(so_far) {
             break;
         }
         let is_face = k < first;
@@ -67,9 +76,31 @@ fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
         // No light falls along no direction.
         let direction = select(world.direction, vec3(0.0), is_face);
         so_far = add(so_far, sample_at(position, direction), segment);
-        if is_finished(so_far) {
-            break;
+    }
+    return so_far;
+}
+
+// What the ray meets at a sample; it does not hang on what the ray has gathered.
+struct Look {
+    sample: Sample,
+    segment: Segment,
+    is_there: bool,
+}
+
+fn look(voxel: Ray, world: Ray, lattice: Lattice, k: i32) -> Look {
+    let segment = whole_segment(lattice, world, k);
+    let position = voxel.origin + segment.t * voxel.direction;
+    return Look(sample_at(position, world.direction), segment, has_data(position));
+}
+
+fn with_look(before: Accumulator, seen: Look, is_ours: bool) -> Accumulator {
+    var so_far = before;
+    let next = add(before, seen.sample, seen.segment);
+    if is_ours && !is_finished(before) {
+        if seen.is_there {
+            so_far = next;
         }
+        so_far.samples += 1.0;
     }
     return so_far;
 }
