@@ -113,16 +113,12 @@ impl RenderBytes {
     }
 }
 
-/// Bytes that devices which compute on the CPU take beside the texture of 8-bit numbers, as far as every one has a
-/// buffer for them.
+/// Bytes that devices which compute on the CPU take beside the texture of 8-bit numbers.
 pub fn corners_bytes(header: &Header) -> u64 {
-    /// What each device has at least (Vulkan, `maxStorageBufferRange`).
-    const MOST: u64 = 1 << 27;
-    let is_byte = matches!(header.stored, VoxelType::U8 | VoxelType::I8);
-    let bytes = header
-        .voxel_count()
-        .saturating_mul(Corners::BYTES_PER_VOXEL);
-    if is_byte && bytes <= MOST { bytes } else { 0 }
+    match header.stored {
+        VoxelType::U8 | VoxelType::I8 => Corners::bytes_of(header.dims),
+        _ => 0,
+    }
 }
 
 /// Volumes of one source that are there at once.

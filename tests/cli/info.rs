@@ -48,8 +48,8 @@ fn levels_and_what_software_devices_keep_beside_the_texture_are_told() {
     let ran = folder.run("info a.svb");
     for line in [
         "levels       2, each next with half as many voxels along each axis: --level N\n",
-        // 121^3 voxels of one byte, of two on the device, of four more where it is the CPU.
-        "to draw      1.7 MiB of memory, 3.4 MiB of the device's, 10.1 MiB where that computes on the CPU\n",
+        // 121^3 voxels of one byte, of two on the device, and 124^3 words where it is the CPU.
+        "to draw      1.7 MiB of memory, 3.4 MiB of the device's, 10.7 MiB where that computes on the CPU\n",
     ] {
         assert!(ran.out.contains(line), "no {line:?} in {}", ran.out);
     }
