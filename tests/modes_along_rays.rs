@@ -491,7 +491,7 @@ fn what_these_modes_lack_is_refused_by_name() {
         let slices = shot.with(|s| s.technique = Technique::Slices3d);
         let text = refused(&slices);
         assert!(
-            text.contains("Slices3d") && text.contains(&format!("{mode:?}")),
+            text.contains("slices-3d") && text.contains(&mode.to_string()),
             "{text}"
         );
         let planes = shot.with(|s| s.lattice = Lattice::Planes);

@@ -259,17 +259,21 @@ fn what_has_no_such_way_to_sample_is_refused_by_name() {
         ..settings(technique, mode, Lattice::Ray)
     };
     for (settings, wanted, found) in [
-        (slabs, "pre-integrated", "Mip"),
+        (slabs, "pre-integrated", "mode mip"),
         (
             smooth(Raycast, Mode::Composite),
             "between slices",
-            "Raycast",
+            "raycast",
         ),
-        (smooth(Slices2d, Mode::Average), "between slices", "Average"),
+        (
+            smooth(Slices2d, Mode::Average),
+            "between slices",
+            "mode average",
+        ),
         (
             settings(Slices3d, Mode::Composite, Lattice::Jitter),
             "jitter",
-            "Slices3d",
+            "slices-3d",
         ),
         (
             settings(Raycast, Mode::Iso, Lattice::Jitter),

@@ -23,6 +23,7 @@ struct Numbers {
     header: Header,
     numbers: Vec<f32>,
     reads: AtomicUsize,
+    has_rows: bool,
 }
 
 impl Numbers {
@@ -39,6 +40,15 @@ impl Numbers {
             header,
             numbers,
             reads: AtomicUsize::new(0),
+            has_rows: false,
+        }
+    }
+
+    /// The same, read row by row.
+    fn by_rows(self) -> Self {
+        Self {
+            has_rows: true,
+            ..self
         }
     }
 
@@ -55,6 +65,10 @@ impl Source for Numbers {
 
     fn header(&self) -> &Header {
         &self.header
+    }
+
+    fn reads_whole_rows(&self) -> bool {
+        self.has_rows
     }
 
     fn read(&self, _: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
@@ -102,13 +116,15 @@ const SMALL: StreamOptions = StreamOptions {
     side: 16,
     piece_bytes: 30_000,
     device_bytes: 200_000,
+    all_device_bytes: u64::MAX,
 };
 
 /// The same in many small bricks.
 const TINY: StreamOptions = StreamOptions {
     side: 8,
     piece_bytes: 30_000,
-    device_bytes: 200_000,
+    device_bytes: 600_000,
+    all_device_bytes: u64::MAX,
 };
 
 /// Pictures of everything that a stream can be drawn with; texels are fetched, so that bricks change no bit.
@@ -235,6 +251,45 @@ fn ball(p: glam::DVec3) -> f64 {
 }
 
 #[test]
+fn neighbours_along_x_are_read_together_and_the_picture_is_the_same() {
+    let some = [0, 1, 13, 15].map(|nth| settings()[nth].clone());
+    assert_same(Numbers::of([25, 21, 18], None, waves).by_rows(), &some);
+    let reads_of = |source: Numbers, piece_bytes| {
+        let source = Arc::new(source);
+        let options = StreamOptions {
+            piece_bytes,
+            device_bytes: 1 << 30,
+            ..SMALL
+        };
+        let stream = open(&source, options);
+        let grid = stream.outline().grid();
+        let camera = oblique_camera(&grid, projections(&grid)[0]);
+        let transfer = ramps();
+        let settings = Settings {
+            skip: false,
+            ..Settings::default()
+        };
+        let scene = scene(stream.outline(), &transfer, &camera, &settings);
+        let mut renderer = Renderer::streamed(device(), &stream).expect("a renderer");
+        let before = source.reads.load(Ordering::Relaxed);
+        renderer.render(&scene, &[]).expect("a picture");
+        source.reads.load(Ordering::Relaxed) - before
+    };
+    // 4 x 2 x 2 bricks of 16 voxels; a row of them has 60 x 19 x 19 floats with halos.
+    let numbers = || Numbers::of([60, 20, 20], None, waves);
+    assert_eq!(reads_of(numbers(), 1 << 20), 16, "one brick each");
+    // The first brick is read alone before the picture begins.
+    assert_eq!(reads_of(numbers().by_rows(), 1 << 20), 1 + 4, "rows");
+    // Two bricks of 19 x 19 fit and three do not; rows of 19 x 7 fit as a whole.
+    let half = 4 * (16 + 16 + 3) * 19 * 19;
+    assert_eq!(
+        reads_of(numbers().by_rows(), half),
+        1 + 2 + 3,
+        "parts of rows"
+    );
+}
+
+#[test]
 fn bricks_that_nobody_sees_are_not_read() {
     let source = Arc::new(Numbers::of([24, 24, 48], None, ball));
     let stream = open(&source, TINY);
@@ -303,6 +358,38 @@ fn bricks_behind_opaque_ones_are_not_read() {
             "{mode:?}: {reads} of {all} bricks were read"
         );
     }
+}
+
+#[test]
+fn all_that_lies_on_the_device_stays_under_what_it_may_take() {
+    const MOST: u64 = 12 << 20;
+    let source = Arc::new(Numbers::of([128; 3], None, |p| p.x));
+    let peak_of = |all_device_bytes| {
+        let options = StreamOptions {
+            side: 64,
+            piece_bytes: 1 << 20,
+            device_bytes: u64::MAX,
+            all_device_bytes,
+        };
+        let stream = open(&source, options);
+        let grid = stream.outline().grid();
+        let camera = oblique_camera(&grid, projections(&grid)[0]);
+        let transfer = ramps();
+        let settings = Settings {
+            mode: Mode::Average,
+            ..Settings::default()
+        };
+        let scene = scene(stream.outline(), &transfer, &camera, &settings);
+        let mut renderer = Renderer::streamed(device(), &stream).expect("a renderer");
+        renderer.render(&scene, &[]).expect("a picture");
+        let picture = renderer.render(&scene, &[]).expect("a picture").picture;
+        (renderer.device().gpu().peak_device_bytes(), picture)
+    };
+    // 8 bricks of 67 floats a side are 9.6 MB, and pictures and copies take blocks of 4 MiB.
+    let (all, whole) = peak_of(u64::MAX);
+    let (some, bricks) = peak_of(MOST);
+    assert!(all > MOST && some <= MOST, "{all} and {some} of {MOST}");
+    assert!(whole == bricks, "the pictures differ");
 }
 
 #[test]

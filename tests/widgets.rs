@@ -390,7 +390,10 @@ fn what_projects_or_mixes_refuses_gradients_by_name() {
     let shot = oblique_shots(GRID(), Mode::Mip).remove(0);
     let scene = shot.scene(&volume, Some(&function));
     let said = renderer.render(&scene, &[]).unwrap_err().to_string();
-    assert!(said.contains("Mip") && said.contains("widgets"), "{said}");
+    assert!(
+        said.contains("mode mip") && said.contains("widgets"),
+        "{said}"
+    );
     assert!(reference::render::<f64>(&scene).is_err());
     let settings = Settings {
         mode: Mode::Composite,

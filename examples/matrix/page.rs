@@ -54,9 +54,9 @@ pub fn refusal(
 /// The same words for every technique, mode and filter that a reason is said of.
 fn general(reason: &str, technique: Technique, mode: Mode, filter: Filter) -> String {
     let names = [
-        (format!("{technique:?}"), "this technique"),
-        (format!("{mode:?}"), "this mode"),
-        (format!("{filter:?}"), "this filter"),
+        (technique.to_string(), "this technique"),
+        (mode.to_string(), "this mode"),
+        (format!("the filter {filter}"), "this filter"),
     ];
     names.iter().fold(reason.to_owned(), |text, (name, word)| {
         let text = text.replace(&format!("no mode {name}"), "no such mode");

@@ -10,8 +10,8 @@ use super::{
 };
 use crate::{
     format::write::{
-        NumberType, Selection, VolumeFormat, WriteVolumeError, WriteVolumeOptions, Written,
-        write_volume,
+        NumberType, Selection, Unpacked, VolumeFormat, WriteVolumeError, WriteVolumeOptions,
+        Written, write_volume,
     },
     isosurface::Border,
     mesh::MeshFormat,
@@ -109,11 +109,33 @@ impl Convert {
                 progress.note(note);
             }
         }
+        let source = self.in_parts(source, &selection, options.format, &progress)?;
         let written = self.write(source.as_ref(), &selection, &options, &progress, gate)?;
         for note in &written.notes {
             progress.note(note);
         }
         Ok(())
+    }
+
+    /// Bricks are parts: what is compressed as a whole is decoded once, into a file without a name beside the output.
+    fn in_parts(
+        &self,
+        source: Box<dyn Source>,
+        selection: &Selection,
+        format: VolumeFormat,
+        progress: &Progress,
+    ) -> Result<Box<dyn Source>, Error> {
+        if format != VolumeFormat::Bricks || source.reads_parts() {
+            return Ok(source);
+        }
+        let folder = self
+            .output
+            .parent()
+            .filter(|folder| *folder != Path::new(""));
+        let folder = folder.unwrap_or(Path::new("."));
+        let mut say = |done, of| progress.stage("decode", done, of);
+        let unpacked = Unpacked::new(source, selection, folder, &mut say);
+        Ok(Box::new(unpacked.map_err(|error| self.error(error))?))
     }
 
     /// What the words say of a surface; `None` where a volume is wanted.

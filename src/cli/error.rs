@@ -74,9 +74,27 @@ pub enum Error {
     /// More than there is, or than is allowed.
     #[error("{0}")]
     Limit(String),
+    /// More of something than there may be.
+    #[error("{message}")]
+    TooMany {
+        /// Of what.
+        message: String,
+        /// How to do with less.
+        hint: &'static str,
+    },
     /// More memory than there is.
     #[error("{0}")]
     Memory(String),
+    /// The same, of a file that has to become bricks first.
+    #[error("{message}")]
+    NotInParts {
+        /// What is wrong.
+        message: String,
+        /// The command that makes them.
+        hint: String,
+        /// True where a word asked for what this file has not.
+        is_usage: bool,
+    },
 }
 
 impl From<offscreen::Error> for Error {
@@ -175,7 +193,10 @@ impl Error {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Differs(_) => 1,
-            Self::Words(_) | Self::Usage { .. } | Self::NotBuilt(_) => 2,
+            Self::Words(_)
+            | Self::Usage { .. }
+            | Self::NotBuilt(_)
+            | Self::NotInParts { is_usage: true, .. } => 2,
             Self::Read(ReadError {
                 problem: Problem::Limit { .. },
                 ..
@@ -185,14 +206,15 @@ impl Error {
             Self::Device(gpu::Error::Limit { .. } | gpu::Error::OutOfMemory { .. }) => 6,
             Self::Device(gpu::Error::Stopped) => INTERRUPTED,
             Self::Device(_) => 5,
-            Self::Limit(_) | Self::Memory(_) => 6,
+            Self::Limit(_) | Self::TooMany { .. } | Self::Memory(_) | Self::NotInParts { .. } => 6,
         }
     }
 
     /// One line that says what to do, where something can be done.
-    pub fn hint(&self) -> Option<&'static str> {
+    pub fn hint(&self) -> Option<&str> {
         match self {
-            Self::Usage { hint, .. } => Some(hint),
+            Self::NotInParts { hint, .. } => Some(hint),
+            Self::Usage { hint, .. } | Self::TooMany { hint, .. } => Some(hint),
             Self::NotBuilt(_) => Some("`stratavox help` lists what is there"),
             Self::Output { hint, .. } => *hint,
             Self::Read(ReadError { problem, .. }) => match problem {

@@ -17,7 +17,7 @@ pub use at_once::{DeviceRoom, leaves_room, needed_bytes};
 
 use super::{Error, flags::SceneFlags};
 use crate::{
-    resident::{KeptGradients, TextureLayout},
+    resident::{Corners, KeptGradients, TextureLayout},
     technique::{GradientSource, Keep, LightPlan, Settings, Technique},
     volume::{Header, Reduced, Source, VoxelType},
 };
@@ -110,6 +110,14 @@ impl RenderBytes {
             host: self.host.saturating_mul(volumes.into()),
             device: self.device.saturating_mul(volumes.into()),
         }
+    }
+}
+
+/// Bytes that devices which compute on the CPU take beside the texture of 8-bit numbers.
+pub fn corners_bytes(header: &Header) -> u64 {
+    match header.stored {
+        VoxelType::U8 | VoxelType::I8 => Corners::bytes_of(header.dims),
+        _ => 0,
     }
 }
 

@@ -144,10 +144,14 @@ pub fn ms_since(start: Instant) -> f64 {
     in_ms(start.elapsed())
 }
 
-/// The middle of some times; the upper one of two. Zero of none.
+/// The middle of some times, half way between the two in the middle. Zero of none.
 pub fn median(mut times: Vec<f64>) -> f64 {
     times.sort_by(f64::total_cmp);
-    times.get(times.len() / 2).copied().unwrap_or(0.0)
+    let upper = times.get(times.len() / 2).copied().unwrap_or(0.0);
+    match times.len() {
+        0 => 0.0,
+        count => 0.5 * (times[(count - 1) / 2] + upper),
+    }
 }
 
 /// The most memory that this process had, where the system tells (Linux: `VmHWM`).
@@ -163,6 +167,14 @@ pub fn peak_rss_bytes() -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_median_of_two_lies_between_them() {
+        assert_eq!(median(vec![]), 0.0);
+        assert_eq!(median(vec![3.0]), 3.0);
+        assert_eq!(median(vec![4.0, 1.0]), 2.5);
+        assert_eq!(median(vec![9.0, 1.0, 2.0]), 2.0);
+    }
 
     #[test]
     fn the_file_has_the_keys_that_were_promised() {

@@ -24,7 +24,7 @@ struct OpenPart<'a> {
 }
 
 enum Reader {
-    Raw(BufReader<std::fs::File>),
+    Raw(std::fs::File),
     Encoded(Box<dyn Read>),
 }
 
@@ -113,7 +113,7 @@ impl<'a> OpenPart<'a> {
         if let Reader::Raw(file) = &mut self.reader {
             if count > 0 {
                 let relative = i64::try_from(count).unwrap_or(i64::MAX);
-                file.seek_relative(relative)
+                file.seek(SeekFrom::Current(relative))
                     .map_err(problem::io("skipping bytes of the data file"))?;
                 self.position = self.position.saturating_add(count);
             }
@@ -201,7 +201,7 @@ fn open(data: &Data, part: &FoundPart) -> Result<Reader, Problem> {
     file.seek(SeekFrom::Start(part.offset))
         .map_err(problem::io("skipping bytes of the data file"))?;
     Ok(match data.encoding {
-        Encoding::Raw => Reader::Raw(BufReader::with_capacity(1 << 16, file)),
+        Encoding::Raw => Reader::Raw(file),
         _ => {
             let input = BufReader::with_capacity(1 << 16, file.take(part.encoded_bytes));
             Reader::Encoded(data.encoding.decode(input, data.stored))

@@ -243,6 +243,16 @@ impl Gpu {
         self.store().reserved_bytes()
     }
 
+    /// The most bytes of memory that were taken from the driver at once.
+    pub fn peak_device_bytes(&self) -> u64 {
+        self.store().peak_bytes()
+    }
+
+    /// Bytes of memory in use, padded as the driver wants them.
+    pub fn owned_device_bytes(&self) -> u64 {
+        self.store().owned_bytes()
+    }
+
     /// The functions of the device.
     pub fn device(&self) -> &ash::Device {
         &self.device

@@ -171,6 +171,10 @@ pub(super) struct Store {
     /// In the order of their values, and of one owner's parts: an image before its memory.
     waiting: VecDeque<(u64, Raw)>,
     live: BTreeMap<&'static str, usize>,
+    /// Bytes of memory that have an owner.
+    owned_bytes: u64,
+    /// The most that was taken from the driver at once.
+    peak_bytes: u64,
 }
 
 impl Store {
@@ -180,6 +184,8 @@ impl Store {
             announced: 0,
             waiting: VecDeque::new(),
             live: BTreeMap::new(),
+            owned_bytes: 0,
+            peak_bytes: 0,
         }
     }
 
@@ -193,6 +199,9 @@ impl Store {
     }
 
     fn discard(&mut self, raw: Raw) {
+        if let Raw::Memory(allocation) = &raw {
+            self.owned_bytes = self.owned_bytes.saturating_sub(allocation.size());
+        }
         self.waiting.push_back((self.announced, raw));
     }
 
@@ -233,6 +242,16 @@ impl Store {
         self.allocator.as_ref().map_or(0, Allocator::capacity)
     }
 
+    /// Bytes of memory that have an owner, as the driver counts them.
+    pub fn owned_bytes(&self) -> u64 {
+        self.owned_bytes
+    }
+
+    /// The largest of all [`Store::reserved_bytes`].
+    pub fn peak_bytes(&self) -> u64 {
+        self.peak_bytes
+    }
+
     fn allocate(
         &mut self,
         desc: &AllocationCreateDesc<'_>,
@@ -267,6 +286,8 @@ impl Store {
             },
         })?;
         self.adopt("memory");
+        self.owned_bytes = self.owned_bytes.saturating_add(allocation.size());
+        self.peak_bytes = self.peak_bytes.max(self.reserved_bytes());
         Ok(allocation)
     }
 }

@@ -40,7 +40,7 @@ pub enum Error {
     #[error(transparent)]
     Gpu(#[from] crate::gpu::Error),
     /// A layer that this technique and mode do not have.
-    #[error("{technique:?} has no layer `{layer:?}` in mode {mode:?}")]
+    #[error("{technique} has no layer `{}` in mode {mode}", layer.name())]
     NoLayer {
         /// Where samples lie.
         technique: crate::technique::Technique,
@@ -51,7 +51,7 @@ pub enum Error {
     },
     /// The layer of labels, in a picture of none.
     #[error(
-        "the layer `Label` is for a label map over the volume, or for one volume of labels with the filter Nearest"
+        "the layer `label` is for a label map over the volume, or for one volume of labels with the filter nearest"
     )]
     NoLabels,
     /// A brick of a [`Stream`] cannot be read.

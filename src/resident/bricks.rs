@@ -84,6 +84,14 @@ pub fn front_to_back(cells: &[Cell], eye_cell: [f64; 3]) -> Vec<usize> {
     order
 }
 
+/// The same, neighbours along x one after the other: along a ray none of the three numbers of steps falls.
+pub fn front_to_back_by_rows(cells: &[Cell], eye_cell: [f64; 3]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..cells.len()).collect();
+    let steps = |k: usize, cell: &Cell| steps_along(cell.index[k], eye_cell[k]);
+    order.sort_by_key(|&i| [2, 1, 0].map(|k| steps(k, &cells[i])));
+    order
+}
+
 fn steps_along(index: u32, eye: f64) -> u64 {
     // Farther away than any grid is long, the exact place does not matter.
     const FAR: f64 = u32::MAX as f64;
@@ -129,8 +137,10 @@ mod tests {
         })
         .unwrap();
         let size = f64::from(cells[0].own.dims()[0]);
-        for eye in [[-3.0, 55.0, 7.0], [12.0, 13.0, 14.0], [21.0, -100.0, 90.0]] {
-            let order = front_to_back(&cells, eye.map(|e: f64| e / size));
+        let eyes = [[-3.0, 55.0, 7.0], [12.0, 13.0, 14.0], [21.0, -100.0, 90.0]];
+        let orders = [front_to_back, front_to_back_by_rows];
+        for (eye, order) in eyes.iter().flat_map(|eye| orders.map(|order| (eye, order))) {
+            let order = order(&cells, eye.map(|e: f64| e / size));
             let rank = |p: [f64; 3]| {
                 let index = p.map(|x| (x / size).floor() as u32);
                 order.iter().position(|&i| cells[i].index == index)

@@ -49,6 +49,14 @@ pub struct Corners {
 }
 
 impl Corners {
+    /// Bytes that those of so many voxels take; 0 where these are too many.
+    pub fn bytes_of(dims: [u32; 3]) -> u64 {
+        match words_in_cubes(dims) {
+            words if words <= MOST_WORDS => 4 * words,
+            _ => 0,
+        }
+    }
+
     /// Whether they pay and can be had: on a software device, of 8-bit integers in one brick, where that has such an
     /// image.
     pub fn are_for(gpu: &Gpu, volume: &Volume) -> bool {

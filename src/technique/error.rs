@@ -37,7 +37,7 @@ pub enum Error {
         found: crate::resident::TextureLayout,
     },
     /// Several volumes in a mode that has no mixture of them.
-    #[error("{mode:?} shows one volume: several are mixed in Composite")]
+    #[error("mode {mode} shows one volume: several are mixed in composite")]
     NotMixed {
         /// The mode.
         mode: Mode,
@@ -68,7 +68,7 @@ pub enum Error {
     #[error("the volumes to be mixed lie on different grids, or in different bricks")]
     OtherGrid,
     /// Interpolating splines read coefficients, all others the voxels.
-    #[error("{filter:?} reads {}, and the volume on the device holds {}", held(.filter.spline()), held(*.found))]
+    #[error("the filter {filter} reads {}, and the volume on the device holds {}", held(.filter.spline()), held(*.found))]
     WrongCoefficients {
         /// What was asked for.
         filter: Filter,
@@ -76,7 +76,7 @@ pub enum Error {
         found: Option<Spline>,
     },
     /// Filters over more than two voxels of an axis are made for one volume.
-    #[error("{filter:?} reads one volume: several are mixed with Linear or Nearest")]
+    #[error("the filter {filter} reads one volume: several are mixed with linear or nearest")]
     FilterAlone {
         /// What was asked for.
         filter: Filter,
@@ -101,7 +101,7 @@ pub enum Error {
         found: usize,
     },
     /// A mode whose samples must come from front to back, in a technique that blends them.
-    #[error("{technique:?} has no mode {mode:?}, in which a sample depends on those before it")]
+    #[error("{technique} has no mode {mode}, in which a sample depends on those before it")]
     NeedsRays {
         /// Where samples lie.
         technique: Technique,
@@ -110,7 +110,7 @@ pub enum Error {
     },
     /// The planes of slicers, in a mode that slicers do not have.
     #[error(
-        "{mode:?} takes samples along rays, not on the planes of a slicer, which has no such mode"
+        "mode {mode} takes samples along rays, not on the planes of a slicer, which has no such mode"
     )]
     NeedsRayLattice {
         /// The mode.
@@ -126,7 +126,7 @@ pub enum Error {
     },
     /// What has an exact extreme is a trilinear field along rays.
     #[error(
-        "{technique:?} in mode {mode:?}: an exact extreme is one of Mip or Minip along rays, filtered linearly"
+        "{technique} in mode {mode}: an exact extreme is one of mip or minip along rays, filtered linearly"
     )]
     NotExact {
         /// Where samples lie.
@@ -135,7 +135,7 @@ pub enum Error {
         mode: Mode,
     },
     /// Darkness by depth needs a depth.
-    #[error("{technique:?} in mode {mode:?} has no one depth a ray: no depth cue")]
+    #[error("{technique} in mode {mode} has no one depth a ray: no depth cue")]
     NoDepth {
         /// Where samples lie.
         technique: Technique,
@@ -154,7 +154,7 @@ pub enum Error {
     },
     /// Light falls on what is composited.
     #[error(
-        "{mode:?} projects one number a ray, on which no light falls: shading is for composite"
+        "mode {mode} projects one number a ray, on which no light falls: shading is for composite"
     )]
     NotShaded {
         /// The mode.
@@ -165,7 +165,7 @@ pub enum Error {
     NotShadedTogether,
     /// Light falls on what is composited.
     #[error(
-        "{mode:?} projects one number a ray, on which no light falls: ambient occlusion is for composite"
+        "mode {mode} projects one number a ray, on which no light falls: ambient occlusion is for composite"
     )]
     NotOccluded {
         /// The mode.
@@ -178,7 +178,7 @@ pub enum Error {
     NotOccludedTogether,
     /// A projected value has no gradient.
     #[error(
-        "{mode:?} projects one number a ray, which has no gradient: widgets and gradient opacity are for composite"
+        "mode {mode} projects one number a ray, which has no gradient: widgets and gradient opacity are for composite"
     )]
     NotGraded {
         /// The mode.
@@ -191,7 +191,7 @@ pub enum Error {
     NotGradedTogether,
     /// Nearest and linear filters have no derivative that is of use.
     #[error(
-        "{filter:?} has no analytic gradient: its derivative is zero, or jumps from voxel to voxel"
+        "the filter {filter} has no analytic gradient: its derivative is zero, or jumps from voxel to voxel"
     )]
     NoDerivative {
         /// The filter.
@@ -258,6 +258,10 @@ pub enum Error {
 
 fn held(spline: Option<Spline>) -> String {
     spline.map_or("voxels".to_owned(), |spline| {
-        format!("coefficients of the {spline:?} spline")
+        let name = match spline {
+            Spline::Quadratic => "quadratic",
+            Spline::Cubic => "cubic",
+        };
+        format!("coefficients of the {name} spline")
     })
 }

@@ -9,7 +9,7 @@ use super::shading::set_shading;
 use super::{Filter, InPixel, MAX_SAMPLES_PER_RAY, Settings, Technique};
 use crate::camera::{Camera, Projection, Rays};
 use crate::picture::ColorSpace;
-use crate::resident::{Cell, Coding, TransferLayout, front_to_back};
+use crate::resident::{Cell, Coding, TransferLayout, front_to_back, front_to_back_by_rows};
 use crate::shaders::{
     FrameFields, KERNEL_CATMULL_ROM, KERNEL_CUBIC, KERNEL_QUADRATIC, MAX_CLIP_PLANES, MAX_LIGHTS,
 };
@@ -267,8 +267,17 @@ impl View<'_> {
 
     /// The order in which every ray meets the bricks.
     pub fn front_to_back(&self, cells: &[Cell]) -> Vec<usize> {
-        let size = cells[0].own.dims();
-        let eye_cell = match self.camera.projection {
+        front_to_back(cells, self.eye_cell(cells[0].own.dims()))
+    }
+
+    /// Such an order in which neighbours along x stand together.
+    pub fn front_to_back_by_rows(&self, cells: &[Cell]) -> Vec<usize> {
+        front_to_back_by_rows(cells, self.eye_cell(cells[0].own.dims()))
+    }
+
+    /// Where the eye lies, in cells of so many voxels; infinite for parallel rays.
+    fn eye_cell(&self, size: [u32; 3]) -> [f64; 3] {
+        match self.camera.projection {
             Projection::Perspective { .. } => {
                 let eye = self
                     .grid
@@ -283,8 +292,7 @@ impl View<'_> {
                     .voxel_rows()
                     .map(|row| -f64::INFINITY.copysign(row.dot(forward)))
             }
-        };
-        front_to_back(cells, eye_cell)
+        }
     }
 
     /// A 2D stack takes one sample a slice, whatever the step.

@@ -21,6 +21,7 @@ mod march;
 pub mod merge;
 pub mod mida;
 pub mod mixture;
+mod names;
 mod patch_slicer;
 mod patches;
 mod per_mode;

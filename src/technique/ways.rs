@@ -13,7 +13,7 @@ impl Settings {
             true => Err(Error::NotFor {
                 wanted,
                 of: "composite",
-                found: format!("{mode:?}"),
+                found: format!("mode {mode}"),
             }),
             false => Ok(()),
         };
@@ -21,7 +21,7 @@ impl Settings {
             true => Err(Error::NotFor {
                 wanted,
                 of,
-                found: format!("{technique:?}"),
+                found: technique.to_string(),
             }),
             false => Ok(()),
         };
@@ -60,7 +60,7 @@ impl Settings {
             return Err(Error::NotFor {
                 wanted: HALF_ANGLE,
                 of: "nearest and linear filters",
-                found: format!("{:?}", self.filter),
+                found: format!("the filter {}", self.filter),
             });
         }
         if is_half && self.ambient_occlusion.is_some() {
@@ -74,7 +74,7 @@ impl Settings {
             self.refuse_way("samples without light", "shaded ones")?;
         }
         if self.filter.kernel().is_some() {
-            let found = format!("{:?}", self.filter);
+            let found = format!("the filter {}", self.filter);
             self.refuse_way("nearest and linear filters", &found)?;
         }
         Ok(())

@@ -60,6 +60,10 @@ impl Source for Magnitude {
         self.of.reads_parts()
     }
 
+    fn reads_whole_rows(&self) -> bool {
+        self.of.reads_whole_rows()
+    }
+
     fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
         let [nx, ny, _] = region.dims().map(u64::from);
         let slices = (SLAB_VOXELS / (nx * ny).max(1)).clamp(1, u32::MAX.into()) as u32;

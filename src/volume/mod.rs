@@ -18,6 +18,7 @@ mod joint;
 pub mod kernel;
 pub mod labels;
 mod magnitude;
+mod part;
 pub mod phantom;
 mod prefilter;
 #[cfg(feature = "files")]
@@ -37,9 +38,10 @@ pub use grid::Grid;
 pub use histogram::Histogram;
 pub use joint::{JointHistogram, steepest_gradient};
 pub use magnitude::Magnitude;
+pub(crate) use part::part_of;
 pub use prefilter::{Coefficients, Spline};
 #[cfg(feature = "files")]
-pub(crate) use pyramid::{Difference, difference, halved, held, part_of};
+pub(crate) use pyramid::{Difference, difference, halved, held};
 pub use reduce::Reduced;
 pub use regrid::{is_same_grid, regridded};
 pub use source::{

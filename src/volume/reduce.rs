@@ -75,6 +75,10 @@ impl Source for Reduced {
         self.source.reads_parts()
     }
 
+    fn reads_whole_rows(&self) -> bool {
+        self.source.reads_whole_rows()
+    }
+
     fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
         let slice = self.region_of_source(VoxelBox {
             max: [region.max[0], region.max[1], region.min[2] + 1],

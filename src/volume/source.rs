@@ -4,6 +4,7 @@
 use super::Survey;
 use super::{Surveyed, VoxelType, Voxels};
 use glam::DAffine3;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 /// A volume that can be read in parts: a file, a folder, or a formula.
@@ -25,6 +26,12 @@ pub trait Source: Send + Sync {
         true
     }
 
+    /// True where a part of a row of voxels costs about what the whole row does, as in files of plain rows or of slices:
+    /// neighbours along x are read together then.
+    fn reads_whole_rows(&self) -> bool {
+        false
+    }
+
     /// What the source knows of its bricks, with an overview of about `most_seen` voxels; `None` where somebody has to look
     /// ([`Survey::of`]).
     ///
@@ -33,6 +40,26 @@ pub trait Source: Send + Sync {
     fn surveyed(&self, pick: Pick, most_seen: u64) -> Result<Option<Surveyed>, ReadError> {
         let _ = (pick, most_seen);
         Ok(None)
+    }
+
+    /// Hands `region` to `take` in slabs of so many slices along z, the first one first, until it breaks off. A file
+    /// that is compressed as a whole is decoded once.
+    ///
+    /// # Errors
+    /// What reading meets.
+    fn read_slabs(
+        &self,
+        pick: Pick,
+        region: VoxelBox,
+        slices: u32,
+        take: &mut dyn FnMut(VoxelBox, Piece) -> ControlFlow<()>,
+    ) -> Result<(), ReadError> {
+        for slab in region.slabs(slices) {
+            if take(slab, self.read(pick, slab)?).is_break() {
+                break;
+            }
+        }
+        Ok(())
     }
 
     /// The same numbers as little-endian bytes of the type in the file, none of them rounded. `None` from a source
@@ -261,6 +288,17 @@ impl VoxelBox {
     /// Voxels along x, y, z.
     pub fn dims(&self) -> [u32; 3] {
         std::array::from_fn(|k| self.max[k] - self.min[k])
+    }
+
+    /// Boxes of so many slices along z, the last one thinner, that make up this one.
+    pub fn slabs(self, slices: u32) -> impl Iterator<Item = Self> {
+        let [first, end] = [self.min[2], self.max[2]];
+        let slices = slices.max(1);
+        (first..end).step_by(slices as usize).map(move |z| {
+            let mut slab = self;
+            (slab.min[2], slab.max[2]) = (z, z.saturating_add(slices).min(end));
+            slab
+        })
     }
 }
 

@@ -46,6 +46,16 @@ fn a_table_has_every_technique_mode_and_projection() {
 }
 
 #[test]
+fn a_table_without_a_row_is_refused_by_name() {
+    let folder = Folder::new();
+    folder
+        .run(&format!(
+            "bench phantom:gauss,n=8 --modes iso --techniques slices-3d {SMALL}"
+        ))
+        .assert_refused(2, &["slices-3d iso", "no picture of the table"]);
+}
+
+#[test]
 fn rates_are_numbers_and_a_share_of_what_was_probed() {
     let folder = Folder::new();
     let words = "phantom:gauss,n=8 --techniques raycast --modes mip --projections orthographic";

@@ -40,6 +40,32 @@ to draw      16 bytes of memory, 16 bytes of the device's
 }
 
 #[test]
+fn levels_and_what_software_devices_keep_beside_the_texture_are_told() {
+    let folder = Folder::new();
+    folder
+        .run("convert phantom:sphere,n=121 -o a.svb --type u8")
+        .assert_done();
+    let ran = folder.run("info a.svb");
+    for line in [
+        "levels       2, each next with half as many voxels along each axis: --level N\n",
+        // 121^3 voxels of one byte, of two on the device, and 124^3 words where it is the CPU.
+        "to draw      1.7 MiB of memory, 3.4 MiB of the device's, 10.7 MiB where that computes on the CPU\n",
+    ] {
+        assert!(ran.out.contains(line), "no {line:?} in {}", ran.out);
+    }
+    let ran = folder.run("info a.svb --level 1");
+    let note = ran
+        .out
+        .lines()
+        .find(|line| line.contains("root mean square"));
+    let note = note.expect("a note");
+    assert!(
+        !note.contains('e') || !note.contains("e-") && !note.contains("e1"),
+        "{note}"
+    );
+}
+
+#[test]
 fn of_several_variables_it_is_said_whose_numbers_these_are() {
     let folder = Folder::new();
     let ran = folder.run("info phantom:storm,n=16");

@@ -141,5 +141,76 @@ fn what_is_not_drawn_in_bricks_is_refused_by_name() {
         .assert_done();
     folder
         .run("render a.nii.gz --stream -o a.png")
-        .assert_refused(2, &["compressed as a whole"]);
+        .assert_refused(2, &["compressed as a whole", "convert a.nii.gz -o a.svb"]);
+    // 16^3 floats are 16 KiB, and as much again on the device.
+    folder
+        .run("render a.nii.gz --max-memory 20K -o a.png")
+        .assert_refused(6, &["no memory", "convert a.nii.gz -o a.svb", "--fit"]);
+}
+
+#[test]
+fn what_is_compressed_as_a_whole_is_decoded_once_and_becomes_bricks() {
+    let folder = Folder::new();
+    let make = |words: &str| folder.run(&format!("convert {words}")).assert_done();
+    make("phantom:head,n=130 -o head.npy --type i16");
+    let crop = "--force --crop 10,130,0,128,5,129";
+    make(&format!("head.npy -o wanted.svb {crop}"));
+    let look = "--stream --size 64x64 --force";
+    folder
+        .run(&format!("render wanted.svb {look} -o wanted.npy"))
+        .assert_done();
+    for packed in ["head.nii.gz", "head.nrrd"] {
+        make(&format!("head.npy -o {packed}"));
+        make(&format!("{packed} -o head.svb {crop}"));
+        folder
+            .run(&format!("render head.svb {look} -o found.npy"))
+            .assert_done();
+        let [apart, largest] = apart(&folder, "wanted.npy", "found.npy");
+        assert!(
+            apart == 0.0 && largest > 0.2,
+            "{packed}: {apart} of {largest}"
+        );
+    }
+    // Nothing is left of what was decoded.
+    let left = fs::read_dir(folder.path(".")).expect("a folder").count();
+    assert_eq!(left, 7, "files in the folder");
+}
+
+#[test]
+fn frames_of_a_film_are_the_pictures_that_are_drawn_from_the_file() {
+    let folder = Folder::new();
+    folder
+        .run("convert phantom:head,n=130 -o head.svb --type i16")
+        .assert_done();
+    let look = "head.svb --size 32x24 --force";
+    let ran = folder.run(&format!("animate {look} --stream --turntable 3 -o %d.npy"));
+    ran.assert_done();
+    // One look for all frames: bricks that are there stay.
+    assert_eq!(ran.err.matches("in 8 bricks").count(), 1, "{}", ran.err);
+    let keys = r#"{ "stratavox_keyframes": 1, "frames": 2, "keys": [
+        { "at": 0, "window": [0, 900], "azimuth": 10 }, { "at": 1, "window": [-400, 500], "azimuth": 200 } ] }"#;
+    fs::write(folder.path("keys.json"), keys).expect("a file");
+    // Where the memory is short nobody has to say it.
+    let ran = folder.run(&format!(
+        "animate {look} --mode mip --keyframes keys.json --max-memory 8M -o k%d.npy"
+    ));
+    ran.assert_done();
+    assert!(ran.err.contains("in 8 bricks"), "{}", ran.err);
+    for (frame, words) in [
+        ("1.npy", "--azimuth 180 --elevation 15"),
+        ("k0.npy", "--mode mip --window 0,900 --azimuth 10"),
+        ("k1.npy", "--mode mip --window=-400,500 --azimuth 200"),
+    ] {
+        folder
+            .run(&format!("render {look} --stream {words} -o r.npy"))
+            .assert_done();
+        let read = |name: &str| fs::read(folder.path(name)).expect(name);
+        assert!(
+            read(frame) == read("r.npy"),
+            "{frame} is not that of {words}"
+        );
+    }
+    folder
+        .run("animate phantom:storm,n=16,variable=u,times=2 --stream --times -o %d.png")
+        .assert_refused(2, &["--stream", "several"]);
 }

@@ -119,6 +119,17 @@ fn what_cannot_be_opaque_by_other_numbers_says_so() {
             "needs no word",
         ),
         (format!("{storm} --opacity-variable hail"), 3, "hail"),
+        // What is wrong with these words is not said of those for INPUT.
+        (
+            "phantom:head,n=8 --opacity-from phantom:storm,n=8".to_owned(),
+            2,
+            "choose one with --opacity-variable NAME",
+        ),
+        (
+            format!("{storm} {by} --opacity-window 5,5"),
+            2,
+            "--opacity-window 5,5",
+        ),
         (
             format!("{storm} --opacity-window 0,1"),
             2,

@@ -256,10 +256,11 @@ fn info_has_the_promised_keys_and_exact_numbers() {
     let render_bytes = info["render_bytes"].take();
     assert!(render_bytes["host"].as_u64() >= Some(8), "{render_bytes}");
     assert!(render_bytes["device"].as_u64() >= Some(8), "{render_bytes}");
+    assert_eq!(info["software_device_bytes"].take(), render_bytes["device"]);
     let wanted = json(
         r#"{"format":"nrrd","dims":[2,2,1],"components":1,"times":1,"type":"i16","spacing":[2.0,3.0,4.0],
             "world_from_voxel":[[2.0,0.0,0.0,10.0],[0.0,3.0,0.0,20.0],[0.0,0.0,4.0,30.0],[0.0,0.0,0.0,1.0]],
-            "min":-2.0,"max":8.0,"mean":2.5,"non_finite":0,"fill_count":0,"variables":[],"levels":1,"render_bytes":null,"unit":null,"meaning":"numbers",
+            "min":-2.0,"max":8.0,"mean":2.5,"non_finite":0,"fill_count":0,"variables":[],"levels":1,"render_bytes":null,"software_device_bytes":null,"unit":null,"meaning":"numbers",
             "channels":[],"time_names":[],"series":[],"notes":[]}"#,
     );
     assert_eq!(info, wanted);

@@ -171,6 +171,60 @@ fn a_folder_of_many_formats_is_drawn_as_render_draws_each_and_bad_files_are_name
 }
 
 #[test]
+fn each_series_of_a_folder_and_each_variable_of_a_file_has_its_picture() {
+    let folder = Folder::new();
+    fs::create_dir(folder.path("study")).expect("a folder");
+    let mut file = fs::read(fixture("dicom/enhanced_ct.dcm")).expect("a file");
+    folder.file("study/one.dcm", &file);
+    // Another UID of the series (0020,000E): its last digit.
+    let tag = [0x20, 0, 0x0e, 0, b'U', b'I'];
+    let at = file.windows(6).position(|bytes| bytes == tag);
+    let at = at.expect("a series") + 8;
+    let length = usize::from(file[at - 2]);
+    let last = file[at..at + length].iter().rposition(|byte| *byte != 0);
+    let last = at + last.expect("a digit");
+    file[last] = if file[last] == b'9' { b'8' } else { b'9' };
+    folder.file("study/two.dcm", &file);
+    fs::copy(fixture("hdf5/latest.h5"), folder.path("one.h5")).expect("a copy");
+    let ran = folder.run("info one.h5 --json");
+    ran.assert_done();
+    let info: Value = serde_json::from_str(&ran.out).expect("JSON");
+    let variables = info["variables"].as_array().expect("a list").len();
+    assert!(variables > 1, "{info}");
+    let ran = folder.run(&format!(
+        "thumbnails study one.h5 -o out --index index.json {SMALL}"
+    ));
+    let index = fs::read(folder.path("index.json")).expect("an index");
+    let index: Value = serde_json::from_slice(&index).expect("JSON");
+    let rows = index["volumes"].as_array().expect("rows");
+    assert_eq!(rows.len(), 2 + variables, "{index} {ran:#?}");
+    for row in rows.iter().filter(|row| row["became"] == "drawn") {
+        let part = match (&row["series"], &row["variable"]) {
+            (Value::String(uid), _) => format!("--series {uid}"),
+            (_, Value::String(name)) => format!("--variable {name}"),
+            _ => panic!("{row} is no part"),
+        };
+        let input = row["input"].as_str().expect("a name");
+        folder
+            .run(&format!("render {input} {part} -o one.png --force {SMALL}"))
+            .assert_done();
+        let picture = row["picture"].as_str().expect("a name");
+        let same = fs::read(folder.path("out").join(picture)).ok()
+            == fs::read(folder.path("one.png")).ok();
+        assert!(same, "{picture} is not that of {input} {part}");
+    }
+    let drawn = rows.iter().filter(|row| row["became"] == "drawn").count();
+    assert!(drawn > 3, "{index}");
+    // A word takes one.
+    let name = info["variables"][0].as_str().expect("a name");
+    let ran = folder.run(&format!(
+        "thumbnails one.h5 --variable {name} -o few {SMALL}"
+    ));
+    ran.assert_done();
+    assert_eq!(pictures(&folder.path("few")).len(), 1);
+}
+
+#[test]
 fn flags_are_those_of_render_and_hold_for_every_volume() {
     let folder = Folder::new();
     let flags = "--mode mip --view left --window 10,200 --background 0,0.2,0.4 --bit-depth 16 --size 20x16 --device reference";

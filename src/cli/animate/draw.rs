@@ -23,6 +23,7 @@ use crate::{
         shown::{Parts, Shown},
         timings::{Timings, ms_since},
     },
+    offscreen::Stream,
     picture::{EncodedPicture, LayerKind, Picture},
     transfer::{Classified, Window},
     volume::{Source, Volume},
@@ -69,6 +70,16 @@ pub enum Content {
     Times(Box<dyn Source>),
 }
 
+impl Content {
+    /// Where voxels come from, where they are not in memory.
+    pub fn stream(&self) -> Option<&Stream> {
+        match self {
+            Self::Still(shown) => shown.stream(),
+            Self::Times(_) => None,
+        }
+    }
+}
+
 /// Where pictures go.
 pub enum Sink<'a> {
     /// Into files.
@@ -98,7 +109,7 @@ impl Drawing<'_> {
         match self.content {
             Content::Still(shown) => {
                 let parts = shown.parts();
-                let volumes = [vec![&*shown.volume], parts.beside().volumes()].concat();
+                let volumes = [vec![shown.looked_at()], parts.beside().volumes()].concat();
                 saw(self.shots[0].time as u32, &volumes)?;
                 let mut ready = ready::of_still(self.shots, self.scene, shown)?;
                 let load_ms = ms_since(self.start);
@@ -162,7 +173,7 @@ impl Drawing<'_> {
         let volume = first(ready)?;
         let job = Job {
             volume: &volume,
-            stream: None,
+            stream: self.content.stream(),
             beside: parts.beside(),
             classification: &ready[0].classification,
             settings: &ready[0].settings,

@@ -84,7 +84,7 @@ impl Work<'_> {
         let ready = &self.ready[number as usize];
         Job {
             volume,
-            stream: None,
+            stream: self.drawing.content.stream(),
             beside: self.parts.beside(),
             classification: &ready.classification,
             settings: &ready.settings,

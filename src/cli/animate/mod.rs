@@ -216,8 +216,8 @@ impl Animate {
                     scene.input.time = Some(time.to_string());
                 }
                 let settings = &shots[0].settings;
-                let shown = Shown::of(source, &scene, settings, device, progress)?;
-                Content::Still(Box::new(shown))
+                let shown = Shown::of_source(source, &scene, settings, device, progress)?;
+                Content::Still(Box::new(shown.at_level(&scene)))
             }
             None => {
                 let is_whole = shots.iter().all(|shot| shot.time.fract() == 0.0);
@@ -277,7 +277,7 @@ impl Animate {
             _ if self.bit_depth == BitDepth::Sixteen => Depth::More,
             _ => Depth::Eight,
         };
-        let source = load::open(&scene.input, &scene.input.limits())?;
+        let source = load::open(&scene.input, &shown::limits(&scene))?;
         let header = source.header();
         let mut shots = film.shots(&scene, depth, header, &shots::grid(&scene, header)?)?;
         for shot in &mut shots {
@@ -367,6 +367,12 @@ impl Animate {
 /// Refuses what changes one number a voxel where several are seen.
 fn check_several(scene: &SceneFlags, header: &Header, shots: &[Shot]) -> Result<(), Error> {
     let is_still = shots::still_time(shots).is_some();
+    if !is_still && scene.input.stream {
+        return Err(Error::usage(
+            "--stream is for one time, and several are shown",
+            "--time N takes one time; --fit draws reduced volumes that fit into memory",
+        ));
+    }
     let several = shown::shows_several(scene, header)?;
     if !is_still && (several || scene.labels.label_tf.is_some()) {
         return Err(Error::usage(

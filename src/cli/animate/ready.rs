@@ -32,7 +32,7 @@ pub fn of_still(shots: &[Shot], scene: &SceneFlags, shown: &Shown) -> Result<Vec
         } else {
             let found = shot
                 .classification
-                .classification(&shown.volume, settings.mode)?;
+                .classification(shown.looked_at(), settings.mode)?;
             let are_labels = shot.classification.found_labels(&found);
             (found, are_labels.then_some(Filter::Nearest))
         };

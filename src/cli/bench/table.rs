@@ -58,6 +58,14 @@ struct Probed {
     ceilings: Option<Ceilings>,
 }
 
+/// What became of a row.
+enum Measured {
+    /// Its frames, the samples of one of them, and the device.
+    Frames(Vec<FrameTime>, u64, String),
+    /// There is no such picture.
+    Cannot(String),
+}
+
 /// Measures all rows, prints them, and gives the JSON.
 pub fn measured(bench: &Bench, scene: &SceneFlags) -> Result<String, Error> {
     let progress = Progress::new(bench.progress);
@@ -80,6 +88,7 @@ pub fn measured(bench: &Bench, scene: &SceneFlags) -> Result<String, Error> {
         .collect();
     let total = inputs.len() * modes.len();
     let (mut rows, mut probes, mut device) = (Vec::new(), Vec::new(), String::new());
+    let mut left_out = Vec::new();
     for (at, (input, mode)) in inputs
         .iter()
         .flat_map(|i| modes.iter().map(move |m| (i, m)))
@@ -103,8 +112,12 @@ pub fn measured(bench: &Bench, scene: &SceneFlags) -> Result<String, Error> {
         let ceilings = probes.last().and_then(|probed| probed.ceilings);
         for way in bench.ways(&scene, *mode) {
             let measured = bench.row(&scene, &base, &shown, way, extent_pixels)?;
-            let Some((frames, samples, name)) = measured else {
-                continue;
+            let (frames, samples, name) = match measured {
+                Measured::Frames(frames, samples, name) => (frames, samples, name),
+                Measured::Cannot(why) => {
+                    left_out.push(format!("{} is left out: {why}", way.name()));
+                    continue;
+                }
             };
             device = name;
             rows.push(Row {
@@ -117,6 +130,17 @@ pub fn measured(bench: &Bench, scene: &SceneFlags) -> Result<String, Error> {
         }
     }
     drop(progress);
+    if rows.is_empty() {
+        let why = left_out
+            .first()
+            .cloned()
+            .unwrap_or_else(|| "labels are drawn in no mode that projects".to_owned());
+        return Err(Error::usage(
+            format!("no picture of the table can be drawn: {why}"),
+            "docs/matrix.md shows which technique, mode, filter and feature go together",
+        ));
+    }
+    left_out.iter().for_each(|why| say_aside(why));
     let repeat = bench.repeat.unwrap_or(REPEAT);
     let often = match bench.repeat {
         Some(repeat) => repeat.to_string(),
@@ -157,8 +181,7 @@ impl Bench {
         techniques.iter().copied().flat_map(of_technique).collect()
     }
 
-    /// Frames of one row, the samples of one of them, and the device. `None`, and a word aside, for a picture that
-    /// cannot be.
+    /// One row.
     fn row(
         &self,
         scene: &SceneFlags,
@@ -166,7 +189,7 @@ impl Bench {
         shown: &Shown,
         way: Way,
         extent_pixels: [u32; 2],
-    ) -> Result<Option<(Vec<FrameTime>, u64, String)>, Error> {
+    ) -> Result<Measured, Error> {
         let mut camera = scene.camera.clone();
         camera.projection = Some(way.projection);
         let camera = camera.camera(&shown.subject(), extent_pixels)?;
@@ -201,10 +224,7 @@ impl Bench {
             Ok(renderer)
         });
         let mut renderer = match ready {
-            Err(Error::Usage { message, .. }) => {
-                say_aside(&format!("{} is left out: {message}", way.name()));
-                return Ok(None);
-            }
+            Err(Error::Usage { message, .. }) => return Ok(Measured::Cannot(message)),
             ready => ready?,
         };
         let start = Instant::now();
@@ -219,7 +239,7 @@ impl Bench {
         }
         let samples = renderer.samples(&camera)?;
         let name = format!("{}, {}", renderer.device(), renderer.driver());
-        Ok(Some((frames, samples, name)))
+        Ok(Measured::Frames(frames, samples, name))
     }
 }
 

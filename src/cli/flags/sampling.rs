@@ -175,13 +175,13 @@ impl SamplingFlags {
         let of_box = of_box.transpose()?.into_iter().flatten();
         let planes: Vec<_> = clip_planes(&self.clip)?.into_iter().chain(of_box).collect();
         if planes.len() > MAX_CLIP_PLANES as usize {
-            return Err(Error::usage(
-                format!(
+            return Err(Error::TooMany {
+                message: format!(
                     "--clip-box takes six clip planes and --clip {}: at most {MAX_CLIP_PLANES} are possible",
                     self.clip.len()
                 ),
-                "leave planes out; --crop cuts along the axes of the grid",
-            ));
+                hint: "leave planes out; --crop cuts along the axes of the grid",
+            });
         }
         Ok(planes)
     }
@@ -280,13 +280,13 @@ fn crop_box(Numbers([x0, x1, y0, y1, z0, z1]): Numbers<6>) -> Result<[DVec3; 2],
 
 fn clip_planes(clips: &[Numbers<4>]) -> Result<Vec<ClipPlane>, Error> {
     if clips.len() > MAX_CLIP_PLANES as usize {
-        return Err(Error::usage(
-            format!(
+        return Err(Error::TooMany {
+            message: format!(
                 "{} clip planes, at most {MAX_CLIP_PLANES} are possible",
                 clips.len()
             ),
-            "leave planes out; --crop cuts along the axes of the grid",
-        ));
+            hint: "leave planes out; --crop cuts along the axes of the grid",
+        });
     }
     let plane = |Numbers([x, y, z, offset]): &Numbers<4>| {
         let normal = DVec3::new(*x, *y, *z);
@@ -369,8 +369,10 @@ mod tests {
         let text = refusal(&flags(|f| f.clip = vec![Numbers([0.0, 0.0, 0.0, 3.0])]));
         assert!(text.contains("--clip 0,0,0,3"), "{text}");
         let many = vec![Numbers([1.0, 0.0, 0.0, 3.0]); MAX_CLIP_PLANES as usize + 1];
-        let text = refusal(&flags(|f| f.clip = many));
-        assert!(text.contains("at most 512"), "{text}");
+        let error = flags(|f| f.clip = many).settings(Depth::Eight);
+        let error = error.expect_err("refused");
+        assert!(error.to_string().contains("at most 512"), "{error}");
+        assert_eq!(error.exit_code(), 6, "a limit");
     }
 
     #[test]

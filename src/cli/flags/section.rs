@@ -116,14 +116,14 @@ impl SectionFlags {
         let view_height = camera.view_height.unwrap_or(fitted);
 
         if settings.clip_planes.len() + 2 > MAX_CLIP_PLANES as usize {
-            return Err(Error::usage(
-                format!(
+            return Err(Error::TooMany {
+                message: format!(
                     "--section cuts with two planes, beside the {} of --clip and --clip-box: at most {MAX_CLIP_PLANES} are \
                      possible",
                     settings.clip_planes.len()
                 ),
-                "use --crop for planes along the axes of the grid",
-            ));
+                hint: "use --crop for planes along the axes of the grid",
+            });
         }
         let half_thickness = 0.5
             * self

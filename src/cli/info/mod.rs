@@ -7,7 +7,7 @@ use super::{
     Error,
     flags::InputFlags,
     histogram::unit,
-    memory::RenderBytes,
+    memory::{RenderBytes, corners_bytes},
     output::{say, say_aside},
 };
 use crate::{
@@ -51,6 +51,8 @@ struct Report {
     /// Resolutions that `--level` chooses from.
     levels: u32,
     render_bytes: RenderBytes,
+    /// Of a device that computes on the CPU, which keeps 8-bit numbers in another way too.
+    software_device_bytes: u64,
     /// Of values; `null` where the file is silent.
     unit: Option<String>,
     /// What the numbers of a voxel are to each other: numbers, rgb, rgba, vector or channels.
@@ -98,6 +100,8 @@ impl Info {
             let is_other = drawn.header().dims != header.dims;
             report.render_bytes =
                 RenderBytes::of(drawn.header(), is_other || has_holes(&statistics));
+            report.software_device_bytes =
+                report.render_bytes.device + corners_bytes(drawn.header());
         }
         if self.json {
             for note in &header.notes {
@@ -211,6 +215,8 @@ fn report(header: &Header, statistics: &Statistics) -> Report {
         variables: header.variables.clone(),
         levels: header.levels,
         render_bytes: RenderBytes::of(header, has_holes(statistics)),
+        software_device_bytes: RenderBytes::of(header, has_holes(statistics)).device
+            + corners_bytes(header),
         unit: unit(header),
         meaning,
         channels,

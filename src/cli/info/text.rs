@@ -95,6 +95,10 @@ impl Page<'_> {
             "dims",
             format!("{x} x {y} x {z} = {count} voxels of {}", report.r#type),
         );
+        if report.levels > 1 {
+            let others = "each next with half as many voxels along each axis: --level N";
+            lines.say("levels", format!("{}, {others}", report.levels));
+        }
         if report.components > 1 {
             lines.say(
                 "components",
@@ -201,10 +205,14 @@ impl Page<'_> {
             lines.say("seen from", degrees);
         }
         let RenderBytes { host, device } = self.report.render_bytes;
+        let on_cpu = match self.report.software_device_bytes {
+            same if same == device => String::new(),
+            more => format!(", {} where that computes on the CPU", bytes(more)),
+        };
         let (host, device) = (bytes(host), bytes(device));
         lines.say(
             "to draw",
-            format!("{host} of memory, {device} of the device's"),
+            format!("{host} of memory, {device} of the device's{on_cpu}"),
         );
     }
 

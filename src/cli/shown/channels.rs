@@ -78,6 +78,7 @@ impl Reader<'_> {
             height_factor,
             others: Others::Channels(made),
             stream: None,
+            overview: None,
         })
     }
 }

@@ -59,6 +59,7 @@ impl Reader<'_> {
             height_factor,
             others: Others::Colors(volumes),
             stream: None,
+            overview: None,
         })
     }
 
@@ -99,6 +100,7 @@ impl Reader<'_> {
             height_factor,
             others: Others::Channels(made),
             stream: None,
+            overview: None,
         })
     }
 }

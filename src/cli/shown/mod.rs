@@ -46,6 +46,8 @@ pub struct Shown {
     others: Others,
     /// Where the voxels come from, brick by brick; the volume is its outline then.
     stream: Option<Stream>,
+    /// Of a stream every n-th voxel.
+    overview: Option<Arc<Volume>>,
 }
 
 #[derive(Debug)]
@@ -75,17 +77,7 @@ impl Shown {
         progress: &Progress,
     ) -> Result<Self, Error> {
         check(scene, settings)?;
-        let limits = scene.input.limits();
-        let limits = Limits {
-            // Of several resolutions the finest, not the finest that fits.
-            max_bytes: if scene.input.stream {
-                u64::MAX
-            } else {
-                limits.max_bytes
-            },
-            ..limits
-        };
-        let source = open(&scene.input, &limits)?;
+        let source = open(&scene.input, &limits(scene))?;
         let shown = Self::of_source(source, scene, settings, device, progress)?;
         Ok(shown.at_level(scene))
     }
@@ -101,7 +93,8 @@ impl Shown {
         self
     }
 
-    fn of_source(
+    /// Of a source that is open already, from its file where it has to be.
+    pub fn of_source(
         source: Box<dyn Source>,
         scene: &SceneFlags,
         settings: &Settings,
@@ -119,7 +112,12 @@ impl Shown {
         self.stream.as_ref()
     }
 
-    /// The same of a source that is open already.
+    /// A volume that shows which values there are: of a stream every n-th voxel.
+    pub fn looked_at(&self) -> &Volume {
+        self.overview.as_ref().unwrap_or(&self.volume)
+    }
+
+    /// The same of a source that is open already, from memory.
     pub fn of(
         source: Box<dyn Source>,
         scene: &SceneFlags,
@@ -351,6 +349,7 @@ impl Reader<'_> {
                 height_factor,
                 others: Others::Channels(Vec::new()),
                 stream: None,
+                overview: None,
             });
         }
         if is_cut {
@@ -390,6 +389,7 @@ impl Reader<'_> {
             height_factor,
             others: Others::Channels(others),
             stream: None,
+            overview: None,
         })
     }
 
@@ -431,6 +431,20 @@ impl Reader<'_> {
             self.progress.note(note);
         }
         Ok(source)
+    }
+}
+
+/// What reading may take.
+pub fn limits(scene: &SceneFlags) -> Limits {
+    let limits = scene.input.limits();
+    Limits {
+        // Of several resolutions the finest, not the finest that fits.
+        max_bytes: if scene.input.stream {
+            u64::MAX
+        } else {
+            limits.max_bytes
+        },
+        ..limits
     }
 }
 

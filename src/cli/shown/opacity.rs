@@ -17,6 +17,11 @@ use crate::{
 impl Reader<'_> {
     /// The numbers that words name, on the grid of what they make opaque; heights are drawn so much higher.
     pub fn opacity(&self, grid: &Grid, height_factor: f64) -> Result<Other, Error> {
+        self.numbers(grid, height_factor)
+            .map_err(Error::of_opacity_flags)
+    }
+
+    fn numbers(&self, grid: &Grid, height_factor: f64) -> Result<Other, Error> {
         let flags = &self.scene.opacity;
         let mut input = flags.input(&self.scene.input);
         let limits = input.limits();
@@ -130,6 +135,34 @@ impl Reader<'_> {
             ));
         }
         Ok(function)
+    }
+}
+
+impl Error {
+    /// What is said of the words for INPUT, said of those for what makes it opaque.
+    fn of_opacity_flags(self) -> Self {
+        const HINTS: [(&str, &str); 4] = [
+            (
+                "choose one with --variable NAME",
+                "choose one with --opacity-variable NAME",
+            ),
+            ("leave out --variable", "leave out --opacity-variable"),
+            ("--component 0", "--opacity-component 0"),
+            ("--window -200,800", "--opacity-window -200,800"),
+        ];
+        let Self::Usage { message, hint } = self else {
+            return self;
+        };
+        let found = HINTS.into_iter().find(|(of_input, _)| *of_input == hint);
+        let message = ["variable", "component", "window"]
+            .into_iter()
+            .fold(message, |message, word| {
+                message.replace(&format!("--{word}"), &format!("--opacity-{word}"))
+            });
+        Self::Usage {
+            message,
+            hint: found.map_or(hint, |(_, of_opacity)| of_opacity),
+        }
     }
 }
 

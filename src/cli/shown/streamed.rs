@@ -6,10 +6,12 @@ use crate::cli::exaggerate;
 use crate::cli::flags::{InputFlags, SceneFlags};
 use crate::cli::memory::{DeviceRoom, Held, for_bricks, is_too_large};
 use crate::cli::progress::Progress;
+use crate::format;
 use crate::offscreen::{Stream, StreamOptions};
 use crate::technique::{Settings, Technique};
 use crate::volume::Source;
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::sync::Arc;
 
 /// Whether the volume is drawn brick by brick: because a word says so, or because it is too large and can be.
@@ -30,18 +32,31 @@ pub(super) fn is_wanted(
         () if settings.filter.spline().is_some() => Some("--filter quadratic and cubic"),
         () if settings.wants_light_volume() => Some("--ambient-occlusion and --shadows"),
         () if header.is_labels => Some("labels in their own colours"),
-        () if !source.reads_parts() => Some("a file that is compressed as a whole"),
+        () if !source.reads_parts() => Some(AS_A_WHOLE),
         () => None,
     };
     if !scene.input.stream {
-        if what.is_some() || scene.input.fit {
+        if what.is_some_and(|what| what != AS_A_WHOLE) || scene.input.fit {
             return Ok(false);
         }
         // A little volume does not wait for the device.
         let held = Held::of(scene, 1);
-        return Ok(is_too_large(header, scene, None, held)
+        let is_needed = is_too_large(header, scene, None, held)
             || !crate::cli::memory::is_little(header, scene, held)
-                && is_too_large(header, scene, device.memory()?, held));
+                && is_too_large(header, scene, device.memory()?, held);
+        return match (is_needed, what) {
+            (true, Some(_)) if device.memory()?.is_some() => {
+                let name = source.path().display();
+                Err(in_no_parts(
+                    source,
+                    format!(
+                        "{name}: there is no memory for all of it, and {AS_A_WHOLE} has no parts"
+                    ),
+                    false,
+                ))
+            }
+            (is_needed, what) => Ok(is_needed && what.is_none()),
+        };
     }
     let what = match device.memory()? {
         None => Some("--device reference"),
@@ -49,10 +64,30 @@ pub(super) fn is_wanted(
     };
     match what {
         None => Ok(true),
+        Some(AS_A_WHOLE) => {
+            let message = format!("--stream is not for {AS_A_WHOLE}");
+            Err(in_no_parts(source, message, true))
+        }
         Some(what) => Err(Error::usage(
             format!("--stream is not for {what}"),
             "--fit draws a reduced volume that fits into memory",
         )),
+    }
+}
+
+const AS_A_WHOLE: &str = "a file that is compressed as a whole";
+
+/// Says which command makes bricks of the file.
+fn in_no_parts(source: &dyn Source, message: String, is_usage: bool) -> Error {
+    let path = source.path();
+    let bricks = path.with_file_name(format!("{}.svb", format::stem(path)));
+    let [from, to] = [path, &bricks].map(Path::display);
+    Error::NotInParts {
+        message,
+        hint: format!(
+            "`stratavox convert {from} -o {to}` makes bricks of it; --fit draws it with fewer voxels"
+        ),
+        is_usage,
     }
 }
 
@@ -76,6 +111,7 @@ impl Shown {
         let options = StreamOptions {
             piece_bytes,
             device_bytes,
+            all_device_bytes: device_bytes,
             ..StreamOptions::default()
         };
         let is_earth = source.header().is_earth;
@@ -108,6 +144,7 @@ impl Shown {
         Ok(Self {
             volume: Arc::new(stream.outline().clone()),
             stream: Some(stream),
+            overview: Some(shown.volume),
             ..shown
         })
     }

@@ -2,6 +2,7 @@
 
 use super::{
     Became, Row,
+    parts::Part,
     room::{Room, Share},
 };
 use crate::{
@@ -36,6 +37,8 @@ use std::{
 pub struct Item {
     /// As `render` takes it.
     pub input: String,
+    /// Which of the volumes that it holds.
+    pub part: Part,
     /// A name in the folder of pictures.
     pub picture: PathBuf,
     /// The picture is there and stays.
@@ -270,6 +273,8 @@ impl Item {
     fn row(&self) -> Row {
         Row {
             input: self.input.clone(),
+            series: self.part.series.clone(),
+            variable: self.part.variable.clone(),
             picture: Some(self.picture.display().to_string()),
             became: match self.is_kept {
                 true => Became::Kept,
@@ -304,6 +309,10 @@ impl<'a> Reading<'a> {
         if is_without_layout(&item.input) {
             scene.input.raw = None;
         }
+        if item.part != Part::default() {
+            scene.input.series = item.part.series.clone();
+            scene.input.variable = item.part.variable.clone();
+        }
         let source = load::open(&scene.input, &scene.input.limits())?;
         // The source is of the first of several, where nobody chose.
         let header = source.header();
@@ -311,14 +320,6 @@ impl<'a> Reading<'a> {
             let count = header.variables.len();
             progress.note(&format!("drawn is the first of {count} variables, {first}"));
             scene.input.variable = Some(first.clone());
-        }
-        if let (None, [first, _, ..]) = (&scene.input.series, &header.series[..]) {
-            let count = header.series.len();
-            progress.note(&format!(
-                "drawn is the first of {count} series, {}",
-                first.uid
-            ));
-            scene.input.series = Some(first.uid.clone());
         }
         let held = Held::of(&scene, source.header().components);
         let needed = needed_bytes(source.header(), &scene, self.memory, held);

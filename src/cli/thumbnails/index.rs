@@ -17,6 +17,12 @@ pub struct Index {
 pub struct Row {
     /// The file or folder.
     pub input: String,
+    /// The UID of the series, of a folder that holds several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub series: Option<String>,
+    /// The name of the variable, of a file that holds several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub variable: Option<String>,
     /// Its picture, where there is one, by its name in the folder of pictures.
     pub picture: Option<String>,
     /// What became of it.

@@ -8,6 +8,7 @@ mod batch;
 mod index;
 mod inputs;
 mod names;
+mod parts;
 mod room;
 
 use super::{
@@ -25,6 +26,7 @@ use batch::{Batch, Item};
 use clap::Args;
 use index::{Became, Index, Row};
 use inputs::Inputs;
+use parts::Part;
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -37,6 +39,7 @@ use std::{
     stratavox thumbnails FOLDER -o pictures --recursive --index index.json\n  \
     stratavox thumbnails FOLDER --mode mip --view anterior --size 128x128 -o pictures --resume\n\n\
     A folder that is one volume (DICOM, slices of TIFF, Zarr) is one; of another the volumes inside are drawn.\n\
+    Of a folder of several series, and a file of several variables, each is drawn.\n\
     A volume that cannot be drawn is named, and the others are drawn: the exit code is that of the first failure.\n\
     A volume too large for the memory is drawn with fewer voxels, as by --fit of `render`.")]
 // The volumes are INPUT... here; the one INPUT of other verbs makes room for them.
@@ -92,27 +95,32 @@ impl Thumbnails {
         scene.classification.check()?;
         shown::check(&scene, &settings)?;
         let inputs = Inputs::find(&self.inputs, &scene.input, self.recursive)?;
-        let pictures = names::pictures_of(&inputs.volumes)?;
+        let left_alone = inputs.left_alone;
+        let volumes = inputs.volumes.into_iter().flat_map(|input| {
+            let parts = parts::of_input(&input, &scene.input).into_iter();
+            parts.map(move |part| (input.clone(), part))
+        });
+        let volumes: Vec<(String, Part)> = volumes.collect();
+        let pictures = names::pictures_of(&volumes)?;
         let paths = pictures.iter().map(|name| self.output.join(name)).collect();
-        let kept = self.check(paths, &inputs.volumes, &scene)?;
+        let kept = self.check(paths, &volumes, &scene)?;
 
         let progress = Progress::new(self.progress);
         for note in scene.idle() {
             progress.note(note);
         }
-        if inputs.left_alone > 0 {
-            let count = inputs.left_alone;
+        if left_alone > 0 {
             progress.note(&format!(
-                "{count} files and folders that are no volume are left alone"
+                "{left_alone} files and folders that are no volume are left alone"
             ));
         }
-        let items: Vec<Item> = inputs
-            .volumes
+        let items: Vec<Item> = volumes
             .into_iter()
             .zip(pictures)
             .zip(kept)
-            .map(|((input, picture), is_kept)| Item {
+            .map(|(((input, part), picture), is_kept)| Item {
                 input,
+                part,
                 picture,
                 is_kept,
             })
@@ -186,14 +194,14 @@ impl Thumbnails {
     fn check(
         &self,
         pictures: Vec<PathBuf>,
-        inputs: &[String],
+        inputs: &[(String, Part)],
         scene: &SceneFlags,
     ) -> Result<Vec<bool>, Error> {
         let mut files = scene_file::inputs(scene, self.scene_file.as_deref());
         files.extend(
             inputs
                 .iter()
-                .map(PathBuf::from)
+                .map(|(input, _)| PathBuf::from(input))
                 .filter(|path| path.is_file()),
         );
         let is_made_later =

@@ -1,8 +1,9 @@
 //! What the picture of each volume is called.
 //!
-//! A volume's name without its ending; where two would be called the same, both keep their ending, and where that is
+//! A volume's name without its ending, and behind it that of a part; where two would be called the same, both keep their ending, and where that is
 //! not enough, the folder they lie in goes before it.
 
+use super::parts::Part;
 use crate::{cli::Error, format};
 use std::{
     collections::HashMap,
@@ -10,13 +11,16 @@ use std::{
 };
 
 /// A name for each input, no two alike, also where small and capital letters are one.
-pub fn pictures_of(inputs: &[String]) -> Result<Vec<PathBuf>, Error> {
+pub fn pictures_of(inputs: &[(String, Part)]) -> Result<Vec<PathBuf>, Error> {
     let mut lengths = vec![0; inputs.len()];
     loop {
         let names: Vec<String> = inputs
             .iter()
             .zip(&lengths)
-            .map(|(input, &length)| name_of(input, length))
+            .map(|((input, part), &length)| match part.name.as_str() {
+                "" => name_of(input, length),
+                part => plain(&format!("{}-{part}", name_of(input, length))),
+            })
             .collect();
         let mut alike: HashMap<String, Vec<usize>> = HashMap::new();
         for (at, name) in names.iter().enumerate() {
@@ -30,11 +34,11 @@ pub fn pictures_of(inputs: &[String]) -> Result<Vec<PathBuf>, Error> {
                 let other = names.iter().enumerate().position(|(other, name)| {
                     other != at && name.to_lowercase() == names[at].to_lowercase()
                 });
-                let other = other.map_or("", |other| &inputs[other]);
+                let other = other.map_or("", |other| &inputs[other].0);
                 return Err(Error::usage(
                     format!(
                         "{} and {other} would both be drawn into {}.png",
-                        inputs[at], names[at]
+                        inputs[at].0, names[at]
                     ),
                     "draw them into folders of their own",
                 ));
@@ -69,8 +73,15 @@ fn name_of(input: &str, length: usize) -> String {
         "" => "volume",
         name => name,
     };
-    // The words of a phantom, and what a file's name may hold and no other system likes.
-    name.replace([':', ',', '=', '/', '\\'], "-")
+    plain(name)
+}
+
+/// The words of a phantom, and what a file's name may hold and no other system likes.
+fn plain(name: &str) -> String {
+    name.replace(
+        [':', ',', '=', '/', '\\', '*', '?', '"', '<', '>', '|'],
+        "-",
+    )
 }
 
 #[cfg(test)]
@@ -78,7 +89,8 @@ mod tests {
     use super::*;
 
     fn pictures(inputs: &[&str]) -> Vec<String> {
-        let inputs: Vec<String> = inputs.iter().map(|&input| input.to_owned()).collect();
+        let whole = |&input: &&str| (input.to_owned(), Part::default());
+        let inputs: Vec<_> = inputs.iter().map(whole).collect();
         let names = pictures_of(&inputs).expect("names");
         names
             .iter()
@@ -115,8 +127,21 @@ mod tests {
     }
 
     #[test]
+    fn a_part_stands_behind_the_name() {
+        let part = |name: &str| Part {
+            name: name.to_owned(),
+            ..Part::default()
+        };
+        let inputs = [("scan", "T1/axial"), ("scan", "T2"), ("one.nc", "T")];
+        let inputs = inputs.map(|(input, name)| (input.to_owned(), part(name)));
+        let names = pictures_of(&inputs).expect("names");
+        let wanted = ["scan-T1-axial.png", "scan-T2.png", "one-T.png"];
+        assert_eq!(names, wanted.map(PathBuf::from));
+    }
+
+    #[test]
     fn names_that_cannot_be_kept_apart_are_refused() {
-        let inputs = ["x/a/ct.nii", "y/a/ct.nii"].map(str::to_owned);
+        let inputs = ["x/a/ct.nii", "y/a/ct.nii"].map(|input| (input.to_owned(), Part::default()));
         let error = pictures_of(&inputs).expect_err("refused");
         assert!(
             error.exit_code() == 2 && error.to_string().contains("y/a/ct.nii"),

@@ -55,8 +55,10 @@ pub(super) fn open(
     }
     let mut header = index.header_of(level);
     if let Some([largest, rms]) = index.error_of(level) {
+        // Five digits, written as people do.
+        let rms: f64 = format!("{rms:.4e}").parse().unwrap_or(rms);
         header.notes.push(format!(
-            "level {level} of {last}: values of its voxels differ from those of level 0 by at most {largest}, {rms:.4e} by root mean square"
+            "level {level} of {last}: values of its voxels differ from those of level 0 by at most {largest}, {rms} by root mean square"
         ));
     }
     Ok(BrickSource {

@@ -244,6 +244,10 @@ impl Source for DicomSource {
         &self.header
     }
 
+    fn reads_whole_rows(&self) -> bool {
+        true
+    }
+
     fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
         self.check(pick, region).map_err(at(&self.path))?;
         let wanted = self.count(region).map_err(at(&self.path))?;

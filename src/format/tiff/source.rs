@@ -132,6 +132,10 @@ impl Source for PageSource {
         &self.header
     }
 
+    fn reads_whole_rows(&self) -> bool {
+        true
+    }
+
     fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
         let max_bytes = self.limits.max_bytes;
         let wanted =

@@ -15,12 +15,14 @@ mod npy;
 mod nrrd;
 mod numbers;
 mod slabs;
+mod unpacked;
 
 use crate::volume::{Header, ReadError, Source, VoxelBox, VoxelType};
 use layout::Layout;
 use std::io::{self, Read, Seek, Write};
 use std::ops::Range;
 use std::path::Path;
+pub use unpacked::Unpacked;
 
 /// Bytes of voxels that are read at once, all components together, if a slice is not larger. A compressed source
 /// is decoded from its beginning for each slab, so slabs are large.

@@ -17,6 +17,7 @@ use crate::offscreen::time_slices::Spent;
 use crate::scene::Scene;
 use crate::technique::{InPixel, Inputs, Mode, Part, Skippable, Technique, View};
 use crate::volume::Volume;
+use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::thread;
@@ -141,16 +142,18 @@ impl<'v> Renderer<'v> {
             let (send, ready) = sync_channel::<Read>(AHEAD);
             let (shown, is_hidden, to_read) = (&shown, &is_hidden, missing.clone());
             scope.spawn(move || {
-                let mut places = shown.iter().zip(is_hidden);
-                for brick in to_read {
-                    let hidden = places.find(|(place, _)| place.brick == brick);
-                    if hidden.is_some_and(|(_, hidden)| hidden.load(Ordering::Relaxed)) {
-                        continue;
-                    }
-                    // Nobody waits any more where the picture has failed.
-                    if send.send((brick, stream.read(brick))).is_err() {
-                        break;
-                    }
+                let numbers = shown.iter().map(|shown| shown.brick);
+                let hidden: HashMap<_, _> = numbers.zip(is_hidden).collect();
+                let is_wanted = |brick| !hidden[&brick].load(Ordering::Relaxed);
+                let mut left = &to_read[..];
+                // Nobody waits any more where the picture has failed.
+                let mut is_awaited = true;
+                while is_awaited && !left.is_empty() {
+                    let (row, rest) = left.split_at(stream.together(left));
+                    is_awaited = stream.read_row(row, is_wanted, |brick, voxels| {
+                        send.send((brick, voxels)).is_ok()
+                    });
+                    left = rest;
                 }
             });
             let ahead = Ahead { ready, missing };
@@ -162,16 +165,24 @@ impl<'v> Renderer<'v> {
                 let mut tiles = Vec::new();
                 let before = next;
                 while next < shown.len() && chunk.len() < BRICKS_AT_ONCE {
-                    let brick = shown[next].brick;
-                    next += 1;
-                    if is_hidden[next - 1].load(Ordering::Relaxed) {
+                    let Shown { brick, place, .. } = shown[next];
+                    if is_hidden[next].load(Ordering::Relaxed) {
                         cache.drawn(brick);
+                        next += 1;
                         continue;
                     }
+                    let is_there = cache.get(brick).is_some();
+                    // What is there is drawn before more comes that has no room beside it.
+                    let has_room = is_there
+                        || chunk.is_empty()
+                        || cache.make_room(&mut self.device, stream, &chunk);
+                    if !has_room {
+                        break;
+                    }
+                    next += 1;
                     chunk.push(brick);
-                    let pixels = shown[next - 1].place.pixels;
-                    tiles.push(Some(Tile::around(pixels, scene.extent_pixels)));
-                    if cache.get(brick).is_none() {
+                    tiles.push(Some(Tile::around(place.pixels, scene.extent_pixels)));
+                    if !is_there {
                         let voxels = ahead.take(stream, brick)?;
                         let way = (skippable, scene.settings.apron());
                         cache.put(&mut self.device, stream, brick, &voxels, way, &chunk)?;
@@ -378,5 +389,9 @@ fn shown(stream: &Stream, scene: &Scene, skippable: &Skippable) -> Vec<Shown> {
             range,
         })
     };
-    view.front_to_back(cells).iter().filter_map(shown).collect()
+    let order = match stream.is_of_rows() {
+        true => view.front_to_back_by_rows(cells),
+        false => view.front_to_back(cells),
+    };
+    order.iter().filter_map(shown).collect()
 }

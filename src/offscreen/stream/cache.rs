@@ -23,7 +23,10 @@ pub struct Resident {
     pub volume: GpuVolume,
     cells: Option<(Apron, MacroCells)>,
     empty: Option<EmptySpace>,
+    /// As the driver counts them.
     bytes: u64,
+    /// Of these the empty space.
+    empty_bytes: u64,
     /// Number of the picture that it was last drawn in, and of the brick in it.
     used: (u64, u64),
 }
@@ -44,6 +47,8 @@ impl Resident {
 pub struct Cache {
     bricks: HashMap<usize, Resident>,
     bytes: u64,
+    /// Of the largest brick so far, with all that was made of it.
+    largest_bytes: u64,
     /// What the bricks' empty spaces are of.
     seen: Option<Seen>,
     /// Bricks that the picture has not drawn yet.
@@ -87,6 +92,23 @@ impl Cache {
         }
     }
 
+    /// Lets bricks leave until there is room for one more. False where too few may go, as `kept` stay.
+    pub fn make_room(&mut self, device: &mut Headless, stream: &Stream, kept: &[usize]) -> bool {
+        // Small things lie in blocks, the largest of 64 MiB.
+        let reserve = (stream.all_device_bytes / 16).min(64 << 20);
+        loop {
+            let more = self.largest_bytes;
+            let all = device.gpu().device_bytes().saturating_add(more + reserve);
+            let fits = self.bytes + more <= stream.device_bytes
+                && all <= stream.all_device_bytes
+                && self.bricks.len() < MOST_BRICKS;
+            if fits || !self.drop_one(kept) {
+                return fits;
+            }
+            device.tidy();
+        }
+    }
+
     /// Brings a brick to the device, with what pictures that leave out `wanted` need of it. Bricks of `kept` stay, all
     /// others may have to leave.
     ///
@@ -102,29 +124,31 @@ impl Cache {
         kept: &[usize],
     ) -> Result<(), Error> {
         let cell = stream.cells()[brick];
+        self.make_room(device, stream, kept);
+        let before = device.gpu().owned_device_bytes();
         let made = loop {
             let made = GpuVolume::brick_of(device.gpu(), stream.whole(), cell, voxels);
             match made {
-                Err(gpu::Error::OutOfMemory { .. }) if self.drop_one(kept) => {}
+                Err(gpu::Error::OutOfMemory { .. }) if self.drop_one(kept) => device.tidy(),
                 made => break made?,
             }
         };
-        let bytes = made.staging_bytes(cell.stored);
-        while (self.bytes + bytes > stream.device_bytes() || self.bricks.len() >= MOST_BRICKS)
-            && self.drop_one(kept)
-        {}
+        let texels_bytes = made.staging_bytes(cell.stored);
         fill(device, &made, voxels)?;
         let cells = match wanted {
             Skippable::Nothing => None,
             _ => if_it_fits(MacroCells::of_voxels(device.gpu(), &made, apron, voxels))?,
         };
+        let bytes = device.gpu().owned_device_bytes().saturating_sub(before);
         self.bytes += bytes;
-        self.uploaded_bytes += bytes;
+        self.largest_bytes = self.largest_bytes.max(bytes);
+        self.uploaded_bytes += texels_bytes;
         let resident = Resident {
             volume: made,
             cells: cells.map(|cells| (apron, cells)),
             empty: None,
             bytes,
+            empty_bytes: 0,
             used: (0, 0),
         };
         self.bricks.insert(brick, resident);
@@ -147,11 +171,14 @@ impl Cache {
         };
         if self.seen.as_ref() != Some(seen) {
             self.seen = Some(seen.clone());
-            self.bricks
-                .values_mut()
-                .for_each(|there| there.empty = None);
+            for there in self.bricks.values_mut() {
+                there.empty = None;
+                there.bytes -= there.empty_bytes;
+                self.bytes -= there.empty_bytes;
+                there.empty_bytes = 0;
+            }
         }
-        let mut made: Vec<(usize, EmptySpace)> = Vec::new();
+        let mut made: Vec<(usize, EmptySpace, u64)> = Vec::new();
         for brick in bricks {
             let Some(Resident {
                 cells: Some((of, cells)),
@@ -164,26 +191,33 @@ impl Cache {
             if *of != apron {
                 continue;
             }
-            let newest = made.last().map(|(_, empty)| empty);
+            let newest = made.last().map(|(_, empty, _)| empty);
+            let before = device.gpu().owned_device_bytes();
             let other = self.bricks.values().find_map(|there| there.empty.as_ref());
             let empty = match newest.or(other) {
                 Some(other) => other.of_others(cells),
                 None => EmptySpace::new(device.gpu(), cells, seen),
             };
-            made.extend(if_it_fits(empty)?.map(|empty| (*brick, empty)));
+            let bytes = device.gpu().owned_device_bytes().saturating_sub(before);
+            made.extend(if_it_fits(empty)?.map(|empty| (*brick, empty, bytes)));
         }
         if made.is_empty() {
             return Ok(());
         }
         device.run(|cmd| {
-            for (_, empty) in &made {
+            for (_, empty, _) in &made {
                 // SAFETY: recorded outside rendering; the cells are complete; `run` waits, and all lives meanwhile.
                 unsafe { empty.record(cmd)? };
             }
             Ok(())
         })?;
-        for (brick, empty) in made {
-            self.bricks.get_mut(&brick).expect("found above").empty = Some(empty);
+        for (brick, empty, bytes) in made {
+            let there = self.bricks.get_mut(&brick).expect("found above");
+            there.empty = Some(empty);
+            there.empty_bytes = bytes;
+            there.bytes += bytes;
+            self.bytes += bytes;
+            self.largest_bytes = self.largest_bytes.max(there.bytes);
         }
         Ok(())
     }

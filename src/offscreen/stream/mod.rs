@@ -11,13 +11,14 @@
 
 mod cache;
 mod places;
+mod row;
 
 pub(super) use cache::{Cache, if_it_fits};
 pub(super) use places::{Eye, Place};
 
 use crate::resident::{Apron, Cell, Whole, cells_of_side};
 use crate::volume::{
-    Limits, Overview, Pick, ReadError, Source, Survey, Surveyed, Volume, VoxelType, Voxels,
+    Overview, Pick, ReadError, Source, Survey, Surveyed, Volume, VoxelType, Voxels,
 };
 use glam::DAffine3;
 use std::ops::ControlFlow;
@@ -33,7 +34,9 @@ pub struct Stream {
     cells: Vec<Cell>,
     ranges: Vec<Option<[f64; 2]>>,
     overview: Overview,
+    piece_bytes: u64,
     device_bytes: u64,
+    all_device_bytes: u64,
 }
 
 impl std::fmt::Debug for Stream {
@@ -51,19 +54,23 @@ impl std::fmt::Debug for Stream {
 pub struct StreamOptions {
     /// Voxels of its own along each side of a brick.
     pub side: u32,
-    /// Bytes of voxels that the first look at a source holds at once, twice.
+    /// Bytes of voxels that the first look at a source holds at once, twice, and that neighbours take that are read
+    /// together.
     pub piece_bytes: u64,
-    /// Bytes of the device that bricks may take. Some of them are there at once in any case.
+    /// Bytes of the device that bricks may take. One of them is there in any case.
     pub device_bytes: u64,
+    /// Bytes that all on the device may take, pictures too: bricks leave where they would be more.
+    pub all_device_bytes: u64,
 }
 
 impl Default for StreamOptions {
-    /// Bricks of 120 voxels a side, a whole number of macro cells; 128 MiB; 1 GiB.
+    /// Bricks of 120 voxels a side, a whole number of macro cells; 128 MiB; 1 GiB, and whatever pictures take.
     fn default() -> Self {
         Self {
             side: 120,
             piece_bytes: 128 << 20,
             device_bytes: 1 << 30,
+            all_device_bytes: u64::MAX,
         }
     }
 }
@@ -88,15 +95,14 @@ impl Stream {
         if let Some(Surveyed { side, survey }) = source.surveyed(pick, MOST_SEEN)? {
             let cells = cells_of_side(dims, side);
             if cells.len() == survey.ranges.len() {
-                let device_bytes = options.device_bytes;
-                return Ok(Some(Self::new(source, pick, cells, survey, device_bytes)));
+                return Ok(Some(Self::new(source, pick, cells, survey, options)));
             }
         }
         let cells = cells_of_side(dims, options.side);
         let boxes: Vec<_> = cells.iter().map(|cell| cell.stored).collect();
         let most = [options.piece_bytes, MOST_SEEN];
         let survey = Survey::of(source.as_ref(), pick, &boxes, most, tell)?;
-        Ok(survey.map(|survey| Self::new(source, pick, cells, survey, options.device_bytes)))
+        Ok(survey.map(|survey| Self::new(source, pick, cells, survey, options)))
     }
 
     fn new(
@@ -104,7 +110,7 @@ impl Stream {
         pick: Pick,
         cells: Vec<Cell>,
         survey: Survey,
-        device_bytes: u64,
+        options: StreamOptions,
     ) -> Self {
         let header = source.header();
         let value_range = survey.value_range.unwrap_or([0.0; 2]);
@@ -130,7 +136,9 @@ impl Stream {
             cells,
             ranges: survey.ranges,
             overview: survey.overview,
-            device_bytes,
+            piece_bytes: options.piece_bytes,
+            device_bytes: options.device_bytes,
+            all_device_bytes: options.all_device_bytes,
             source,
         }
     }
@@ -165,8 +173,9 @@ impl Stream {
         &self.cells
     }
 
-    pub(super) fn device_bytes(&self) -> u64 {
-        self.device_bytes
+    /// Whether bricks are best drawn row by row.
+    pub(super) fn is_of_rows(&self) -> bool {
+        self.source.reads_whole_rows()
     }
 
     /// The values that filters may make in a brick; `None` where no sample has one.
@@ -185,20 +194,6 @@ impl Stream {
             + slack
             + rounding * low.abs().max(high.abs());
         Some([(low - beyond) as f32, (high + beyond) as f32])
-    }
-
-    /// The voxels of a brick and its halo.
-    pub(super) fn read(&self, brick: usize) -> Result<Volume, ReadError> {
-        let limits = Limits {
-            max_bytes: u64::MAX,
-            ..Limits::default()
-        };
-        Volume::read(
-            self.source.as_ref(),
-            self.pick,
-            self.cells[brick].stored,
-            &limits,
-        )
     }
 }
 
