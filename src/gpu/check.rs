@@ -172,7 +172,9 @@ impl Gpu {
         let possible = self.image_format_properties(desc, vk::ImageTiling::LINEAR);
         possible.is_ok_and(|possible| {
             let most = possible.max_extent;
-            desc.kind == ImageKind::D2 && desc.extent[0] <= most.width && desc.extent[1] <= most.height
+            desc.kind == ImageKind::D2
+                && desc.extent[0] <= most.width
+                && desc.extent[1] <= most.height
         })
     }
 

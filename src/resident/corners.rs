@@ -27,7 +27,9 @@ const MOST_WORDS: u64 = 1 << 25;
 
 fn words_in_cubes(dims: [u32; 3]) -> u64 {
     let cubes = dims.map(|n| u64::from(n.div_ceil(SIDE as u32)));
-    cubes.into_iter().fold(CUBE_WORDS as u64, u64::saturating_mul)
+    cubes
+        .into_iter()
+        .fold(CUBE_WORDS as u64, u64::saturating_mul)
 }
 
 /// `words` is at most [`MOST_WORDS`], or no image can be made of what comes out.
@@ -92,15 +94,23 @@ impl Corners {
         let layers = nz.div_ceil(SIDE);
         let layer_bytes = 4 * words as usize / layers;
         let image = Image::written_by_host(gpu, &desc(words), |bytes, row_bytes| {
-            assert_eq!(row_bytes, 4 * CORNERS_WIDTH as usize, "rows follow each other");
+            assert_eq!(
+                row_bytes,
+                4 * CORNERS_WIDTH as usize,
+                "rows follow each other"
+            );
             let bytes = &mut bytes[..layers * layer_bytes];
             let layers_left = Mutex::new(bytes.chunks_exact_mut(layer_bytes).enumerate());
-            let next = || layers_left.lock().unwrap_or_else(PoisonError::into_inner).next();
+            let next = || {
+                layers_left
+                    .lock()
+                    .unwrap_or_else(PoisonError::into_inner)
+                    .next()
+            };
             let work = || {
                 while let Some((layer, out)) = next() {
-                    let planes = (layer * SIDE..nz.min((layer + 1) * SIDE)).map(|z| {
-                        words_of(&codes(z * nx * ny..(z + 1) * nx * ny), nx)
-                    });
+                    let planes = (layer * SIDE..nz.min((layer + 1) * SIDE))
+                        .map(|z| words_of(&codes(z * nx * ny..(z + 1) * nx * ny), nx));
                     out.copy_from_slice(bytemuck::cast_slice(&cubes_of(planes, nx, ny)));
                 }
             };
