@@ -92,11 +92,12 @@ impl Settings {
 }
 
 impl Settings {
-    /// What can be left out of pictures of several volumes, given the functions of those that have opacity, by their
+    /// What rays leave out of pictures of several volumes, given the functions of those that have opacity, by their
     /// numbers.
     pub fn skippable_in_all(&self, functions: &[(usize, &TransferFunction)]) -> Skippable {
-        let is_plain = self.mode == Mode::Composite && !self.preintegrated && !self.is_half_angle();
-        if !self.skip || !is_plain || functions.is_empty() {
+        // Patches of mixed slices cost more than they have been seen to leave out.
+        let is_mixed = self.technique == Technique::Raycast && self.mode == Mode::Composite;
+        if !self.skip || !is_mixed || self.preintegrated || functions.is_empty() {
             return Skippable::Nothing;
         }
         let seen = functions.iter().map(|&(n, f)| (n, Seen::new(f)));
@@ -108,7 +109,7 @@ impl Settings {
     }
 }
 
-/// Where all is seen, looking for what is not would only cost.
+/// Where all is seen, looking for what is not would only cost rays; slices go on to look for what is hidden.
 fn unseen(seen: Seen) -> Skippable {
     match seen.is_all() {
         true => Skippable::Nothing,
@@ -123,9 +124,9 @@ impl Settings {
         match (self.mode, function) {
             _ if self.is_half_angle() => Skippable::Nothing,
             (Mode::Composite, Some(function)) if self.preintegrated => {
-                unseen(Seen::between(function))
+                Skippable::Unseen(Seen::between(function))
             }
-            (Mode::Composite, Some(function)) => unseen(Seen::new(function)),
+            (Mode::Composite, Some(function)) => Skippable::Unseen(Seen::new(function)),
             _ => Skippable::Nothing,
         }
     }
