@@ -45,6 +45,7 @@ struct Bracket {
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    read_once();
     if any(id.xy >= frame.extent_pixels) {
         return;
     }
@@ -93,7 +94,7 @@ fn surfaces(pixel: vec2<f32>, before: Surfaces) -> Surfaces {
             var room = 0;
             loop {
                 room = 0;
-                if k < walk.first || k >= walk.end {
+                if !may_skip(walk, k) {
                     break;
                 }
                 let cell = cell_of(walk, k);

@@ -17,6 +17,8 @@ const FETCHED: Slot = ("filter", &["nearest", "linear_fetch", "kernel"]);
 const NARROW: Slot = ("filter", &["nearest", "linear", "linear_fetch"]);
 const NARROW_FETCHED: Slot = ("filter", &["nearest", "linear_fetch"]);
 const TABLE: Slot = ("transfer", &["table"]);
+/// What goes with corners: devices whose sampler is a program.
+const STORED: Slot = ("transfer", &["stored"]);
 const POINTS: Slot = ("transfer", &["points"]);
 /// One number at both ends of a segment. The word is left out of names.
 const SLAB: Slot = ("mix", &["slab"]);
@@ -40,9 +42,9 @@ const BLEND: Slot = ("blend", &["composite"]);
 /// The wanted combinations. Order of the slots is the order of words in a variant's name.
 pub const ENTRIES: &[(&str, &[Slot])] = &[
     ("raycast", &[MODE, ONE, LATTICE, FILTER, HOLES, TABLE]),
-    ("raycast", &[MODE, ONE, RAY, CORNERS, HOLES, TABLE]),
+    ("raycast", &[MODE, ONE, RAY, CORNERS, HOLES, STORED]),
     ("raycast", &[MODE, LIT, RAY, NARROW, HOLES, TABLE]),
-    ("raycast", &[MODE, LIT, RAY, CORNERS, HOLES, TABLE]),
+    ("raycast", &[MODE, LIT, RAY, CORNERS, HOLES, STORED]),
     ("raycast", &[MODE, ONE, LATTICE, FETCHED, HOLES, POINTS]),
     ("raycast", &[MODE, MIXED, LATTICE, NARROW, HOLES, TABLE]),
     (
@@ -50,7 +52,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         &[MODE, MIXED, LATTICE, NARROW_FETCHED, HOLES, POINTS],
     ),
     ("raycast", &[MIDA, ONE, RAY, FILTER, HOLES, TABLE]),
-    ("raycast", &[MIDA, ONE, RAY, CORNERS, HOLES, TABLE]),
+    ("raycast", &[MIDA, ONE, RAY, CORNERS, HOLES, STORED]),
     ("raycast", &[MIDA, ONE, RAY, FETCHED, HOLES, POINTS]),
     ("isosurface", &[("paint", &["alone"]), FILTER, HOLES]),
     ("isosurface", &[("paint", &["alone"]), CORNERS, HOLES]),

@@ -7,7 +7,7 @@ fn classify_channel(channel: u32, value: f32) -> Classified {
         value,
         frame.channel_table_first[channel],
         frame.channel_table_scale[channel],
-        frame.channel_table_count[channel],
-        i32(frame.channel_table_row[channel]),
+        f32(frame.channel_table_count[channel]) - 1.0,
+        frame.channel_table_row[channel],
     );
 }

@@ -16,9 +16,11 @@ struct Walk {
     step: vec3<f32>,
     steps_per_cell: vec3<f32>,
     last_cell: vec3<f32>,
-    // Only these may be left out: the others do not lie on the line, or nothing is known of the cells.
+    // Only these lie on the line.
     first: i32,
     end: i32,
+    // Whether anything is known of the cells.
+    is_known: bool,
 }
 
 // With the samples at t = line.x + k line.y; from samples.x to samples.y they lie there.
@@ -32,8 +34,14 @@ fn walk_of(voxel: Ray, line: vec2<f32>, samples: vec2<i32>) -> Walk {
         1.0 / select(step, tiny, abs(step) < tiny),
         vec3<f32>(frame.cells) - 1.0,
         samples.x,
-        select(samples.y, samples.x, frame.cells.x == 0u),
+        samples.y,
+        frame.cells.x != 0u,
     );
+}
+
+// Whether sample k may be left out.
+fn may_skip(walk: Walk, k: i32) -> bool {
+    return walk.is_known && k >= walk.first && k < walk.end;
 }
 
 // The cell that sample k lies in.
@@ -43,7 +51,7 @@ fn cell_of(walk: Walk, k: i32) -> vec3<i32> {
 
 fn cell_index(cell: vec3<i32>) -> u32 {
     let cells = vec3<i32>(frame.cells);
-    return frame.cells_first + u32(cell.x + cells.x * (cell.y + cells.y * cell.z));
+    return once.cells_first + u32(cell.x + cells.x * (cell.y + cells.y * cell.z));
 }
 
 // The first sample that lies outside of the room around the cell of sample k.

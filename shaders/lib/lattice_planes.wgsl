@@ -30,6 +30,11 @@ fn segment_of(lattice: Lattice, world: Ray, k: i32) -> Segment {
     return Segment(t, select(0.0, plane_length(world), inside));
 }
 
+// The first and the last may still lie outside, and are looked at like all others.
+fn whole_segment(lattice: Lattice, world: Ray, k: i32) -> Segment {
+    return segment_of(lattice, world, k);
+}
+
 // Samples lie at t = x + k y.
 fn line_of(lattice: Lattice, world: Ray) -> vec2<f32> {
     return vec2(plane_t(world, 0), plane_length(world));

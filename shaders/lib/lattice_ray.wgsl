@@ -34,12 +34,17 @@ fn segment_of(lattice: Lattice, world: Ray, k: i32) -> Segment {
     let enter = lattice.start + f32(k) * frame.step_world;
     let is_last = k + 1 >= lattice.count;
     if !is_last && enter >= lattice.t0 {
-        return Segment(lattice.start + (f32(k) + 0.5) * frame.step_world, frame.step_world);
+        return whole_segment(lattice, world, k);
     }
     let front = max(enter, lattice.t0);
     let back = select(lattice.start + f32(k + 1) * frame.step_world, lattice.t1, is_last);
     let length = max(back - front, 0.0);
     return Segment(front + 0.5 * length, length);
+}
+
+// One that is not cut short.
+fn whole_segment(lattice: Lattice, world: Ray, k: i32) -> Segment {
+    return Segment(lattice.start + (f32(k) + 0.5) * frame.step_world, frame.step_world);
 }
 
 // Samples lie at t = x + k y, but for those of the segments that are cut short.

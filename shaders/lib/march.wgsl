@@ -10,6 +10,7 @@
 #import mask
 #import sample_{mix}
 #import mode_{mode}
+#import looks_{mix}
 
 // `before` is what bricks nearer to the eye have gathered.
 fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
@@ -37,20 +38,11 @@ fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
     let walk = walk_of(voxel, line_of(lattice, world), vec2(max(whole.x, first), min(whole.y, end)));
     var k = first - i32(is_cut);
     loop {
-        // On to the next sample that may count: a loop of its own, so that rays that are walked side by side skip and
-        // sample together.
-        loop {
-            if k < walk.first || k >= walk.end {
-                break;
-            }
-            let cell = cell_of(walk, k);
-            let room = empty_room(so_far, cell);
-            if room == 0 {
-                break;
-            }
-            k = after_room(walk, k, cell, room);
-        }
-        if k >= end {
+        // On to the next sample that is taken by itself: all, or those that are cut short and the cut face.
+        let reached = walked(Reached(so_far, k), voxel, world, lattice, walk);
+        so_far = reached.so_far;
+        k = reached.k;
+        if k >= end || is_finished(so_far) {
             break;
         }
         let is_face = k < first;
@@ -67,11 +59,32 @@ fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
         // No light falls along no direction.
         let direction = select(world.direction, vec3(0.0), is_face);
         so_far = add(so_far, sample_at(position, direction), segment);
-        if is_finished(so_far) {
-            break;
-        }
     }
     return so_far;
+}
+
+// What a ray has gathered, and the sample that comes next.
+struct Reached {
+    so_far: Accumulator,
+    k: i32,
+}
+
+// On to the next sample that may count: a loop of its own, so that rays that are walked side by side skip and sample
+// together.
+fn skipped(so_far: Accumulator, walk: Walk, start: i32) -> i32 {
+    var k = start;
+    loop {
+        if !may_skip(walk, k) {
+            break;
+        }
+        let cell = cell_of(walk, k);
+        let room = empty_room(so_far, cell);
+        if room == 0 {
+            break;
+        }
+        k = after_room(walk, k, cell, room);
+    }
+    return k;
 }
 
 fn is_ours(segment: Segment, voxel: Ray) -> bool {

@@ -4,7 +4,7 @@
 #import frame
 
 // The table is folded into rows of this many entries.
-const TABLE_WIDTH: i32 = 4096;
+const TABLE_WIDTH: u32 = 4096u;
 
 @group(0) @binding(4) var transfer_table: texture_2d<f32>;
 
@@ -14,13 +14,12 @@ struct Classified {
 }
 
 fn classify(value: f32) -> Classified {
-    return classified_by(value, frame.table_first, frame.table_scale, frame.table_count, 0);
+    return classified_by(value, once.table_first, once.table_scale, once.table_last, 0u);
 }
 
-fn classified_by(value: f32, first: f32, scale: f32, count: u32, row: i32) -> Classified {
+fn classified_by(value: f32, first: f32, scale: f32, last: f32, row: u32) -> Classified {
     // Clamped before it becomes a whole number: a float out of range has no defined one.
-    let cell = clamp((value - first) * scale, 0.0, f32(count - 1u));
-    let index = i32(cell);
-    let entry = textureLoad(transfer_table, vec2(index & (TABLE_WIDTH - 1), row + index / TABLE_WIDTH), 0);
+    let index = u32(clamp((value - first) * scale, 0.0, last));
+    let entry = textureLoad(transfer_table, vec2(index % TABLE_WIDTH, row + index / TABLE_WIDTH), 0);
     return Classified(entry.xyz, entry.w);
 }

@@ -32,6 +32,10 @@ pub enum Use {
     TransferWrite,
     /// The host reads mapped memory after the submission.
     HostRead,
+    /// The host has written the texels of an image before the submission ([`Image::written_by_host`]).
+    HostWrite,
+    /// Any shader reads a texture, or the same as a storage image.
+    SampledOrRead,
 }
 
 impl Use {
@@ -80,6 +84,14 @@ impl Use {
                 Stage::ALL_TRANSFER,
                 Access::TRANSFER_WRITE,
                 Layout::TRANSFER_DST_OPTIMAL,
+            ),
+            Self::HostWrite => (Stage::HOST, Access::HOST_WRITE, Layout::PREINITIALIZED),
+            Self::SampledOrRead => (
+                Stage::from_raw(DRAW.as_raw() | Stage::COMPUTE_SHADER.as_raw()),
+                Access::from_raw(
+                    Access::SHADER_SAMPLED_READ.as_raw() | Access::SHADER_STORAGE_READ.as_raw(),
+                ),
+                Layout::GENERAL,
             ),
             Self::HostRead => (Stage::HOST, Access::HOST_READ, Layout::GENERAL),
         }

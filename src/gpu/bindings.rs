@@ -19,7 +19,7 @@ pub enum Resource<'a> {
     Texture(vk::ImageView, vk::ImageLayout),
     /// A sampler.
     Sampler(&'a Sampler),
-    /// An image to write, in layout `GENERAL`.
+    /// An image to write, or to read without a sampler, in layout `GENERAL`.
     StorageImage(vk::ImageView),
 }
 
@@ -27,6 +27,16 @@ impl<'a> Resource<'a> {
     /// An image of ours that is read in [`super::Use::ComputeSampled`] or [`super::Use::FragmentSampled`].
     pub fn sampled(image: &Image) -> Self {
         Self::Texture(image.view(), vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL)
+    }
+
+    /// An image of ours that is sampled in [`super::Use::SampledOrRead`].
+    pub fn sampled_or_read(image: &Image) -> Self {
+        Self::Texture(image.view(), vk::ImageLayout::GENERAL)
+    }
+
+    /// An image of ours that is read in [`super::Use::ComputeRead`] or [`super::Use::SampledOrRead`].
+    pub fn read(image: &Image) -> Self {
+        Self::StorageImage(image.view())
     }
 
     /// An image of ours that is written in [`super::Use::ComputeWrite`].

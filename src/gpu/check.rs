@@ -120,7 +120,7 @@ impl Gpu {
             .map(|&n| u128::from(n))
             .product::<u128>();
         let bytes = u64::try_from(bytes).unwrap_or(u64::MAX);
-        let possible = self.image_format_properties(desc)?;
+        let possible = self.image_format_properties(desc, vk::ImageTiling::OPTIMAL)?;
         let max_extent = possible.max_extent;
         within(
             doing,
@@ -167,15 +167,25 @@ impl Gpu {
         )
     }
 
+    /// Whether there are images of one layer of this kind whose rows the host reaches (linear tiling).
+    pub fn has_images_in_rows(&self, desc: &ImageDesc<'_>) -> bool {
+        let possible = self.image_format_properties(desc, vk::ImageTiling::LINEAR);
+        possible.is_ok_and(|possible| {
+            let most = possible.max_extent;
+            desc.kind == ImageKind::D2 && desc.extent[0] <= most.width && desc.extent[1] <= most.height
+        })
+    }
+
     fn image_format_properties(
         &self,
         desc: &ImageDesc<'_>,
+        tiling: vk::ImageTiling,
     ) -> Result<vk::ImageFormatProperties, Error> {
         let doing = || format!("make image `{}`", desc.name);
         let info = vk::PhysicalDeviceImageFormatInfo2::default()
             .format(desc.format)
             .ty(desc.kind.image_type())
-            .tiling(vk::ImageTiling::OPTIMAL)
+            .tiling(tiling)
             .usage(desc.usage);
         let mut properties = vk::ImageFormatProperties2::default();
         // SAFETY: the physical device belongs to the instance; both live as long as we do.

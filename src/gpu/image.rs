@@ -44,7 +44,7 @@ impl ImageKind {
     }
 }
 
-/// What to make: one mip level, one sample, optimal tiling.
+/// What to make: one mip level, one sample.
 #[derive(Clone, Copy, Debug)]
 pub struct ImageDesc<'a> {
     /// What the image is to a shader.
@@ -68,7 +68,7 @@ pub struct Image {
     view: Own<vk::ImageView>,
     raw: Own<vk::Image>,
     // After `view` and `raw`: fields are dropped in this order, and memory goes last.
-    _memory: OwnMemory,
+    memory: OwnMemory,
     kind: ImageKind,
     extent: [u32; 3],
     format: vk::Format,
@@ -79,6 +79,44 @@ impl Image {
     /// An image in layout `UNDEFINED`. Sizes and format are compared with the device first ([`Gpu::check_image`]).
     pub fn new(gpu: &Arc<Gpu>, desc: &ImageDesc<'_>) -> Result<Self, Error> {
         gpu.check_image(desc)?;
+        Self::tiled(gpu, desc, vk::ImageTiling::OPTIMAL)
+    }
+
+    /// A flat image whose texels the host writes itself, once: `write` gets the bytes of all rows and how many bytes
+    /// lie from one row to the next. To be brought from [`super::Use::HostWrite`] into what it is used for.
+    ///
+    /// # Errors
+    /// As [`Image::new`]; where the device has no such images in rows ([`Gpu::has_images_in_rows`]).
+    pub fn written_by_host(
+        gpu: &Arc<Gpu>,
+        desc: &ImageDesc<'_>,
+        write: impl FnOnce(&mut [u8], usize),
+    ) -> Result<Self, Error> {
+        gpu.check_image(desc)?;
+        if !gpu.has_images_in_rows(desc) {
+            return Err(Error::Format {
+                doing: format!("make image `{}` in rows", desc.name),
+                format: desc.format,
+                lacks: "linear tiling for this usage",
+            });
+        }
+        let made = Self::tiled(gpu, desc, vk::ImageTiling::LINEAR)?;
+        let part = vk::ImageSubresource::default().aspect_mask(vk::ImageAspectFlags::COLOR);
+        // SAFETY: the image was made on this device, with linear tiling and this one subresource.
+        let rows = unsafe { gpu.device().get_image_subresource_layout(made.raw(), part) };
+        let allocation = made.memory.get();
+        let mapped = allocation.mapped_ptr().expect("asked for so, and coherent");
+        // SAFETY: the rows lie inside the memory that is bound to the image; nothing else has the image yet.
+        let bytes = unsafe {
+            let first = mapped.cast::<u8>().as_ptr().add(rows.offset as usize);
+            std::slice::from_raw_parts_mut(first, rows.size as usize)
+        };
+        write(bytes, rows.row_pitch as usize);
+        Ok(made)
+    }
+
+    fn tiled(gpu: &Arc<Gpu>, desc: &ImageDesc<'_>, tiling: vk::ImageTiling) -> Result<Self, Error> {
+        let is_in_rows = tiling == vk::ImageTiling::LINEAR;
         let doing = || {
             let [width, height, depth] = desc.extent;
             format!(
@@ -98,7 +136,11 @@ impl Image {
             .mip_levels(1)
             .array_layers(layers)
             .samples(vk::SampleCountFlags::TYPE_1)
-            .tiling(vk::ImageTiling::OPTIMAL)
+            .tiling(tiling)
+            .initial_layout(match is_in_rows {
+                true => vk::ImageLayout::PREINITIALIZED,
+                false => vk::ImageLayout::UNDEFINED,
+            })
             .usage(desc.usage);
         // SAFETY: the device is valid; sizes, format and usage were checked.
         let raw = unsafe { gpu.device().create_image(&info, None) }.doing(doing)?;
@@ -109,8 +151,11 @@ impl Image {
         let memory = AllocationCreateDesc {
             name: desc.name,
             requirements,
-            location: MemoryLocation::GpuOnly,
-            linear: false,
+            location: match is_in_rows {
+                true => MemoryLocation::CpuToGpu,
+                false => MemoryLocation::GpuOnly,
+            },
+            linear: is_in_rows,
             // Gone with the image: in blocks with small things, places that large ones leave come to pieces.
             allocation_scheme: match requirements.size >= OWN_MEMORY_BYTES {
                 true => AllocationScheme::DedicatedImage(raw.get()),
@@ -137,7 +182,7 @@ impl Image {
         Ok(Self {
             view,
             raw,
-            _memory: memory,
+            memory,
             kind: desc.kind,
             extent: desc.extent,
             format: desc.format,

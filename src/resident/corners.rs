@@ -5,33 +5,60 @@
 //! word(x, y, z) = codes of (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1) in plane z, lowest byte first
 //! ```
 //!
-//! Beyond the edge the outermost voxel stands. Four bytes a voxel, beside the texture.
+//! Beyond the edge the outermost voxel stands. Words lie in cubes of 4 x 4 x 4, x fastest inside of one and from one to
+//! the next, so that a ray finds what comes next in the same lines of the cache whichever way it runs; sides are rounded
+//! up to whole cubes. They lie in a storage image: llvmpipe reads a storage buffer lane by lane, and looks up the mip
+//! levels of a texture. Four bytes a voxel, beside the texture.
 
 use super::{GpuVolume, TextureLayout};
-use crate::gpu::{Buffer, Error, Gpu, Memory};
+use crate::gpu::{Error, Gpu, Image, ImageDesc, ImageKind, Use, image_barrier};
+use crate::shaders::CORNERS_WIDTH;
 use crate::volume::{Volume, Voxels};
 use ash::vk;
 use std::num::NonZero;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
+/// Voxels along the side of a cube.
+const SIDE: usize = 4;
+const CUBE_WORDS: usize = SIDE * SIDE * SIDE;
+/// 128 MiB. To make more takes longer than a few pictures win.
+const MOST_WORDS: u64 = 1 << 25;
+
+fn words_in_cubes(dims: [u32; 3]) -> u64 {
+    let cubes = dims.map(|n| u64::from(n.div_ceil(SIDE as u32)));
+    cubes.into_iter().fold(CUBE_WORDS as u64, u64::saturating_mul)
+}
+
+/// `words` is at most [`MOST_WORDS`], or no image can be made of what comes out.
+fn desc(words: u64) -> ImageDesc<'static> {
+    let rows = words.div_ceil(u64::from(CORNERS_WIDTH));
+    ImageDesc {
+        kind: ImageKind::D2,
+        extent: [CORNERS_WIDTH, rows.min(u64::from(u32::MAX)) as u32, 1],
+        format: vk::Format::R32_UINT,
+        usage: vk::ImageUsageFlags::STORAGE,
+        name: "corners",
+    }
+}
+
 /// The words of a volume of 8-bit integers, complete as soon as they are made.
 #[derive(Debug)]
 pub struct Corners {
-    buffer: Buffer,
+    image: Image,
 }
 
 impl Corners {
-    /// Bytes of one voxel.
-    pub const BYTES_PER_VOXEL: u64 = 4;
-
-    /// Whether they pay and can be had: on a software device, of 8-bit integers in one brick, where a buffer may be so
-    /// long.
+    /// Whether they pay and can be had: on a software device, of 8-bit integers in one brick, where that has such an
+    /// image.
     pub fn are_for(gpu: &Gpu, volume: &Volume) -> bool {
-        let voxels: u64 = volume.dims.iter().map(|&n| u64::from(n)).product();
         let is_byte = matches!(volume.voxels, Voxels::U8(_) | Voxels::I8(_));
-        let limit = u64::from(gpu.limits().max_storage_buffer_range);
-        gpu.is_cpu() && is_byte && voxels.saturating_mul(Self::BYTES_PER_VOXEL) <= limit
+        let words = words_in_cubes(volume.dims);
+        gpu.is_cpu()
+            && is_byte
+            && words <= MOST_WORDS
+            && gpu.check_image(&desc(words)).is_ok()
+            && gpu.has_images_in_rows(&desc(words))
     }
 
     /// Those of `volume`.
@@ -52,34 +79,46 @@ impl Corners {
             }
         };
         let [nx, ny, nz] = volume.dims.map(|n| n as usize);
-        let bytes = (nx * ny * nz) as u64 * Self::BYTES_PER_VOXEL;
-        let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
-        let buffer = Buffer::new(gpu, bytes, usage, Memory::Upload, "corners")?;
+        let words = words_in_cubes(volume.dims);
         // Most of the time goes into the first touch of so much memory, which threads share.
-        let plane_bytes = nx * ny * Self::BYTES_PER_VOXEL as usize;
-        buffer.write_with(0, bytes, |words| {
-            let planes = Mutex::new(words.chunks_exact_mut(plane_bytes).enumerate());
-            let next = || planes.lock().unwrap_or_else(PoisonError::into_inner).next();
+        let layers = nz.div_ceil(SIDE);
+        let layer_bytes = 4 * words as usize / layers;
+        let image = Image::written_by_host(gpu, &desc(words), |bytes, row_bytes| {
+            assert_eq!(row_bytes, 4 * CORNERS_WIDTH as usize, "rows follow each other");
+            let bytes = &mut bytes[..layers * layer_bytes];
+            let layers_left = Mutex::new(bytes.chunks_exact_mut(layer_bytes).enumerate());
+            let next = || layers_left.lock().unwrap_or_else(PoisonError::into_inner).next();
             let work = || {
-                while let Some((z, out)) = next() {
-                    let plane = codes(z * nx * ny..(z + 1) * nx * ny);
-                    out.copy_from_slice(bytemuck::cast_slice(&words_of(&plane, nx)));
+                while let Some((layer, out)) = next() {
+                    let planes = (layer * SIDE..nz.min((layer + 1) * SIDE)).map(|z| {
+                        words_of(&codes(z * nx * ny..(z + 1) * nx * ny), nx)
+                    });
+                    out.copy_from_slice(bytemuck::cast_slice(&cubes_of(planes, nx, ny)));
                 }
             };
             let threads = thread::available_parallelism().map_or(1, NonZero::get);
             thread::scope(|scope| {
-                for _ in 1..threads.min(nz) {
+                for _ in 1..threads.min(layers) {
                     scope.spawn(work);
                 }
                 work();
             });
         })?;
-        Ok(Self { buffer })
+        Ok(Self { image })
     }
 
-    /// A u32 for each voxel, x fastest.
-    pub fn buffer(&self) -> &Buffer {
-        &self.buffer
+    /// A u32 for each voxel and what fills the cubes at the far ends, in rows of [`CORNERS_WIDTH`].
+    pub fn image(&self) -> &Image {
+        &self.image
+    }
+
+    /// Records what makes them readable.
+    ///
+    /// # Safety
+    /// `cmd` is recording on their device, outside rendering; they live until it has run. Once is enough.
+    pub unsafe fn record_upload(&self, gpu: &Gpu, cmd: vk::CommandBuffer) {
+        // SAFETY: the caller's promises; the host has written all texels.
+        unsafe { image_barrier(gpu, cmd, &self.image, Use::HostWrite, Use::ComputeRead) };
     }
 }
 
@@ -117,6 +156,22 @@ fn words_of(plane: &[u8], nx: usize) -> Vec<u32> {
     words
 }
 
+/// Puts the words of at most four planes of nx x ny into a layer of cubes.
+fn cubes_of(planes: impl Iterator<Item = Vec<u32>>, nx: usize, ny: usize) -> Vec<u32> {
+    let along_x = nx.div_ceil(SIDE);
+    let mut cubes = vec![0; along_x * ny.div_ceil(SIDE) * CUBE_WORDS];
+    for (z, plane) in planes.enumerate() {
+        for (y, row) in plane.chunks_exact(nx).enumerate() {
+            let first = (y / SIDE) * along_x * CUBE_WORDS + SIDE * (y % SIDE + SIDE * z);
+            for (x, words) in row.chunks(SIDE).enumerate() {
+                let first = first + x * CUBE_WORDS;
+                cubes[first..first + words.len()].copy_from_slice(words);
+            }
+        }
+    }
+    cubes
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -134,5 +189,18 @@ mod tests {
         ];
         assert_eq!(words, expected.map(u32::from_le_bytes));
         assert_eq!(words_of(&[7], 1), [u32::from_le_bytes([7; 4])]);
+    }
+
+    #[test]
+    fn a_word_lies_in_the_cube_of_its_voxel() {
+        let [nx, ny] = [6, 5];
+        let planes = (0..3).map(|z| (0..30).map(|i| 100 * z + i).collect());
+        let cubes = cubes_of(planes, nx, ny);
+        assert_eq!(cubes.len(), 4 * 64);
+        for (x, y, z) in [(0, 0, 0), (3, 3, 2), (4, 0, 1), (5, 4, 0), (2, 4, 2)] {
+            let cube = x / 4 + 2 * (y / 4);
+            let word = cubes[64 * cube + x % 4 + 4 * (y % 4) + 16 * z];
+            assert_eq!(word as usize, 100 * z + x + nx * y);
+        }
     }
 }

@@ -106,7 +106,9 @@ impl GpuTransfer {
             kind: ImageKind::D2,
             extent: [width as u32, (entries.len() / width) as u32, 1],
             format: vk::Format::R32G32B32A32_SFLOAT,
-            usage: vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST,
+            usage: vk::ImageUsageFlags::SAMPLED
+                | vk::ImageUsageFlags::STORAGE
+                | vk::ImageUsageFlags::TRANSFER_DST,
             name: "transfer table",
         };
         let copied = vk::BufferUsageFlags::TRANSFER_SRC;
@@ -153,7 +155,7 @@ impl GpuTransfer {
         &self.layouts
     }
 
-    /// The table, in [`Use::Sampled`] after the upload.
+    /// The table, in [`Use::SampledOrRead`] after the upload.
     pub fn table(&self) -> &Image {
         &self.table
     }
@@ -202,7 +204,7 @@ impl GpuTransfer {
                 cmd,
                 &self.table,
                 Use::TransferWrite,
-                Use::Sampled,
+                Use::SampledOrRead,
             );
             if let Some(slabs) = &self.slabs {
                 slabs.record_upload(&self.gpu, cmd)?;

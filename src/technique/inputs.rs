@@ -50,7 +50,9 @@ impl Inputs<'_> {
         given.push(("volume_sampler", Resource::Sampler(self.volume.sampler())));
         given.extend(self.channels());
         if let Some(transfer) = self.transfer {
-            given.push(("transfer_table", Resource::sampled(transfer.table())));
+            let table = transfer.table();
+            given.push(("transfer_table", Resource::sampled_or_read(table)));
+            given.push(("stored_table", Resource::read(table)));
             given.push(("points", Resource::Storage(transfer.points())));
             let slabs = transfer.slab_table().map(Resource::sampled);
             given.extend(slabs.map(|table| ("slab_table", table)));
@@ -67,9 +69,8 @@ impl Inputs<'_> {
             Skip::Unseen(cells, empty) => [empty.rooms(), cells.ranges()],
             Skip::Exceeded(cells) => [self.ring.buffer(), cells.ranges()],
         };
-        let corners = self.volume.corners().map(Corners::buffer);
-        let corners = corners.unwrap_or(self.ring.buffer());
-        given.push(("corners", Resource::Storage(corners)));
+        let corners = self.volume.corners().map(Corners::image);
+        given.extend(corners.map(|corners| ("corners", Resource::read(corners))));
         given.push(("rooms", Resource::Storage(rooms)));
         given.push(("cell_ranges", Resource::Storage(ranges)));
         given.extend_from_slice(outputs);
@@ -176,11 +177,12 @@ impl Words {
         let is_graded = mix == Mix::Alone && is_lit;
         let is_central = settings.gradient_operator() == Operator::Central
             && settings.keep_gradients != Keep::Always;
+        let reads_corners = settings.reads_corners(mix) && has_corners(parts);
         Self {
             mix: if is_graded { Mix::Graded } else { mix },
             filter: match settings.filter {
                 Filter::Nearest => "nearest",
-                Filter::Linear if settings.reads_corners(mix) && has_corners(parts) => "corners",
+                Filter::Linear if reads_corners => "corners",
                 Filter::Linear if settings.conformance || parts.iter().any(is_fetched) => {
                     "linear_fetch"
                 }
@@ -199,10 +201,10 @@ impl Words {
                 false if settings.smooth => Take::Between,
                 false => Take::Point,
             },
-            transfer: if settings.conformance {
-                "points"
-            } else {
-                "table"
+            transfer: match reads_corners {
+                _ if settings.conformance => "points",
+                true => "stored",
+                false => "table",
             },
             is_plainly_lit: is_graded && is_central && !settings.wants_light_volume(),
         }

@@ -10,6 +10,7 @@ use crate::resident::{Apron, Corners, EmptySpace, MacroCells};
 use crate::scene::{Beside, Scene};
 use crate::technique::{Mix, Mode, Part, Role, Skip, Skippable};
 use crate::transfer::{Seen, TransferFunction};
+use std::sync::Arc;
 
 /// What is known of the volumes that have been drawn.
 #[derive(Debug, Default)]
@@ -58,13 +59,21 @@ impl Renderer<'_> {
         if !scene.settings.reads_corners(mix) {
             return Ok(());
         }
-        let gpu = self.device.gpu();
+        let gpu = &Arc::clone(self.device.gpu());
         let there = self.resident.get_mut(&copied).into_iter().flatten();
         for (made, volume) in there.zip(&self.volumes) {
             let is_one = made.bricks().len() == 1 && made.spline().is_none();
             if made.corners().is_none() && is_one && Corners::are_for(gpu, volume) {
-                let corners = if_it_fits(Corners::new(gpu, volume))?;
-                corners.into_iter().for_each(|c| made.keep_corners(c));
+                let Some(corners) = if_it_fits(Corners::new(gpu, volume))? else {
+                    continue;
+                };
+                let on = Arc::clone(gpu);
+                // SAFETY: they live until they are dropped with the volume, long after the wait.
+                self.device.run(|cmd| unsafe {
+                    corners.record_upload(&on, cmd);
+                    Ok::<(), crate::gpu::Error>(())
+                })?;
+                made.keep_corners(corners);
             }
         }
         Ok(())

@@ -43,7 +43,7 @@ impl Raycast {
         // Kernels, planes and exact control points have the general variant alone.
         let has_lit = of == Mode::Composite
             && *lattice == "ray"
-            && *transfer == "table"
+            && *transfer != "points"
             && !matches!(*filter, "kernel" | "spline");
         let mode = mode_word(of);
         let name = match take {
@@ -53,7 +53,7 @@ impl Raycast {
             _ if of == Mode::Iso => format!("isosurface.{filter}.{holes}"),
             Take::Slab => format!("raycast_slab.composite.{lattice}.{filter}.{holes}"),
             Take::Point if *is_plainly_lit && has_lit => {
-                format!("raycast.composite.lit.ray.{filter}.{holes}.table")
+                format!("raycast.composite.lit.ray.{filter}.{holes}.{transfer}")
             }
             _ => format!(
                 "raycast.{mode}{}.{lattice}.{filter}.{holes}.{transfer}",
