@@ -11,6 +11,8 @@
 
 #[path = "shaders/blue_noise.rs"]
 mod blue_noise;
+#[path = "shaders/opaque.rs"]
+mod opaque;
 #[path = "shaders/variants.rs"]
 mod variants;
 
@@ -77,7 +79,7 @@ impl Book {
             Path::new("shaders").join(file).with_extension("wgsl"),
             &fills,
         );
-        let module = naga::front::wgsl::parse_str(&source.text).unwrap_or_else(|e| {
+        let mut module = naga::front::wgsl::parse_str(&source.text).unwrap_or_else(|e| {
             source.fail(
                 &name,
                 e.location(&source.text),
@@ -85,15 +87,22 @@ impl Book {
             )
         });
         // No capability beyond the core: a shader that needs more is a build error.
-        let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
-            .validate(&module)
-            .unwrap_or_else(|e| {
-                source.fail(
-                    &name,
-                    e.location(&source.text),
-                    &e.emit_to_string(&source.text),
-                )
-            });
+        let check = |module: &naga::Module, flags| {
+            Validator::new(flags, Capabilities::empty())
+                .validate(module)
+                .unwrap_or_else(|e| {
+                    source.fail(
+                        &name,
+                        e.location(&source.text),
+                        &e.emit_to_string(&source.text),
+                    )
+                })
+        };
+        check(&module, ValidationFlags::all());
+        opaque::hide_branches(&mut module);
+        // What was uniform is so still, which nobody can know any longer.
+        let uniformity = ValidationFlags::CONTROL_FLOW_UNIFORMITY;
+        let info = check(&module, ValidationFlags::all().difference(uniformity));
 
         let words = spirv(&module, &info);
         let first = self.spirv.len() / 4;

@@ -4,6 +4,8 @@
 //     D0 = 0 where the transfer function shows any value of the cell, else FAR
 //     D(x) = min over k of max(|k|, D before(x + k))        along x, then y, then z
 //
+// Of several volumes in one place D0 is 0 where any of their functions shows one of their values.
+//
 // Outside the grid is nothing. One thread a cell. Twin: none, but pictures with it and without are the same.
 
 #import cell_grid
@@ -27,7 +29,7 @@ struct Rooms {
 }
 
 struct Pass {
-    // 0: what is seen. 1, 2, 3: along x, y, z.
+    // 0: what is seen. 1, 2, 3: along x, y, z. 4: what is seen of another volume too, after 0.
     number: u32,
 }
 
@@ -45,6 +47,12 @@ fn main(@builtin(global_invocation_id) cell: vec3<u32>) {
     let own = cell_index(cell);
     if which.number == 0u {
         rooms_after.d[own] = select(FAR, 0u, is_seen(cell_ranges.d[own]));
+        return;
+    }
+    if which.number == 4u {
+        if is_seen(cell_ranges.d[own]) {
+            rooms_after.d[own] = 0u;
+        }
         return;
     }
     let axis = which.number - 1u;

@@ -436,8 +436,8 @@ fn hidden_labels_cut_away_what_a_crop_box_cuts_away() {
 fn bricks_leave_a_mixture_bit_identical() {
     let caps = Caps {
         // Few bricks: software drivers compile slices anew for each.
-        max_image_dimension_3d: 15,
-        max_image_array_layers: 9,
+        max_image_dimension_3d: 11,
+        max_image_array_layers: 6,
         ..Caps::UNLIMITED
     };
     let first = with_holes(volume_of(GRID().dims, sheared_affine(), waves), 7);

@@ -28,7 +28,27 @@ fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
     var back_of = first - 3;
     // A cut face is seen before all slabs.
     let is_cut = enters_a_cut(voxel, interval);
-    for (var k = first - i32(is_cut); k < end; k++) {
+    // The cells know of both ends of slabs whose middles lie on the line.
+    let whole = whole_samples(lattice) + vec2(1, -1);
+    let walk = walk_of(voxel, line_of(lattice, world), vec2(max(whole.x, first), min(whole.y, end)));
+    var next = first - i32(is_cut);
+    loop {
+        loop {
+            if next < walk.first || next >= walk.end {
+                break;
+            }
+            let cell = cell_of(walk, next);
+            let room = empty_room(so_far, cell);
+            if room == 0 {
+                break;
+            }
+            next = after_room(walk, next, cell, room);
+        }
+        if next >= end {
+            break;
+        }
+        let k = next;
+        next++;
         var slab = slab_of(lattice, world, k);
         if k < first {
             slab = Slab(interval.x, interval.x, FACE_LENGTH);

@@ -7,7 +7,7 @@
 // src/technique/projection/reference.rs.
 
 #import unit
-#import no_rooms
+#import passed_over
 
 struct Accumulator {
     value: f32,
@@ -30,6 +30,15 @@ fn add(so_far: Accumulator, value: f32, segment: Segment) -> Accumulator {
         return Accumulator(faded, weight, segment.t, so_far.samples);
     }
     return Accumulator(so_far.value, weight, so_far.depth, so_far.samples);
+}
+
+// One less and one more is the same number up to here.
+const EXACT: f32 = 16777216.0;
+
+// What is 0 of 1 fades nothing, and is no larger than what has been met.
+fn is_passed_over(so_far: Accumulator, most: f32) -> bool {
+    let is_met = so_far.weight > 0.0 && so_far.weight < EXACT;
+    return is_met && most <= frame.value_low;
 }
 
 fn is_finished(so_far: Accumulator) -> bool {

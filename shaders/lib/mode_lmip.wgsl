@@ -2,7 +2,7 @@
 // fall from over the threshold. Up to there the largest value is the local maximum itself; a ray that never
 // gets there ends as a MIP. Samples without data are passed over. Twin: src/technique/projection/reference.rs.
 
-#import no_rooms
+#import passed_over
 
 struct Accumulator {
     value: f32,
@@ -24,6 +24,11 @@ fn add(so_far: Accumulator, value: f32, segment: Segment) -> Accumulator {
         return Accumulator(so_far.value, 2.0, so_far.depth, so_far.samples);
     }
     return so_far;
+}
+
+// Under the threshold a value that is no new maximum ends nothing.
+fn is_passed_over(so_far: Accumulator, most: f32) -> bool {
+    return so_far.weight == 1.0 && so_far.value <= frame.lmip_threshold && most <= so_far.value;
 }
 
 fn is_finished(so_far: Accumulator) -> bool {

@@ -15,7 +15,7 @@
 #import opacity
 #import material_{mix}
 #import unit
-#import no_rooms
+#import rooms_passed_over
 
 struct Accumulator {
     color: vec3<f32>,
@@ -62,6 +62,11 @@ fn add(so_far: Accumulator, sample: Sample, segment: Segment) -> Accumulator {
         next.depth = segment.t;
     }
     return next;
+}
+
+// What is not seen counts as a new maximum alone.
+fn is_passed_over(so_far: Accumulator, most: f32) -> bool {
+    return most <= so_far.largest;
 }
 
 // A ray may end as one of a composite does only where no larger value can come, or would take nothing.

@@ -17,6 +17,8 @@ use std::sync::Arc;
 
 /// What is seen, and along the three axes.
 const PASSES: u32 = 4;
+/// What is seen of another volume too.
+const ALSO: u32 = PASSES;
 
 /// The rooms of a volume's macro cells. Made empty; [`EmptySpace::record`] fills them.
 #[derive(Debug)]
@@ -28,6 +30,8 @@ pub struct EmptySpace {
     /// Of even and of odd passes.
     bindings: [Bindings; 2],
     mapping: Arc<Mapping>,
+    /// What further volumes show, in which matter may be too.
+    others: Vec<(Arc<Mapping>, Bindings)>,
 }
 
 /// What maps of all volumes under one transfer function have in common.
@@ -51,8 +55,8 @@ impl Mapping {
         let length = bytes.len() as u64;
         let table = Buffer::new(gpu, length, storage, Memory::Upload, "seen values")?;
         table.write(0, bytes)?;
-        let pass_ring = ParameterRing::new(gpu, size_of::<Pass>() as u32, PASSES, "passes")?;
-        for number in 0..PASSES {
+        let pass_ring = ParameterRing::new(gpu, size_of::<Pass>() as u32, PASSES + 1, "passes")?;
+        for number in 0..=ALSO {
             pass_ring.write(number, bytemuck::bytes_of(&Pass { number }))?;
         }
         Ok(Self {
@@ -60,6 +64,24 @@ impl Mapping {
             pass_ring,
             seen: table,
         })
+    }
+
+    fn bind(
+        &self,
+        gpu: &Arc<Gpu>,
+        grid_ring: &ParameterRing,
+        cells: &MacroCells,
+        [before, after]: [&Buffer; 2],
+    ) -> Result<Bindings, Error> {
+        let given = [
+            ("cell_grid", Resource::Uniform(grid_ring)),
+            ("cell_ranges", Resource::Storage(cells.ranges())),
+            ("seen", Resource::Storage(&self.seen)),
+            ("rooms_before", Resource::Storage(before)),
+            ("rooms_after", Resource::Storage(after)),
+            ("which", Resource::Uniform(&self.pass_ring)),
+        ];
+        Bindings::new(gpu, self.pipeline.layout(), &given)
     }
 }
 
@@ -69,7 +91,27 @@ impl EmptySpace {
     /// # Errors
     /// Where the device gives no memory, or has no buffers of that size.
     pub fn new(gpu: &Arc<Gpu>, cells: &MacroCells, seen: &Seen) -> Result<Self, Error> {
-        Self::with(gpu, cells, Arc::new(Mapping::new(gpu, seen)?))
+        Self::of_several(gpu, &[(cells, seen)])
+    }
+
+    /// Objects for volumes in one place, of one grid in the same bricks: empty is what is so in all of them.
+    ///
+    /// # Errors
+    /// As [`EmptySpace::new`].
+    ///
+    /// # Panics
+    /// Without a volume, or where the volumes have other cells.
+    pub fn of_several(gpu: &Arc<Gpu>, several: &[(&MacroCells, &Seen)]) -> Result<Self, Error> {
+        let ((cells, seen), others) = several.split_first().expect("at least one volume");
+        let mut made = Self::with(gpu, cells, Arc::new(Mapping::new(gpu, seen)?))?;
+        for (other, seen) in others {
+            assert_eq!(other.cell_count(), cells.cell_count(), "the same cells");
+            let mapping = Arc::new(Mapping::new(gpu, seen)?);
+            let rooms = &made.rooms;
+            let bound = mapping.bind(gpu, &made.grid_ring, other, [&rooms[1], &rooms[0]])?;
+            made.others.push((mapping, bound));
+        }
+        Ok(made)
     }
 
     /// The same for other cells under the same transfer function.
@@ -93,18 +135,9 @@ impl EmptySpace {
         };
         let rooms = [rooms()?, rooms()?];
         let grid_ring = ring_of(gpu, cells.grids())?;
-        let bound = |before: &Buffer, after: &Buffer| {
-            let given = [
-                ("cell_grid", Resource::Uniform(&grid_ring)),
-                ("cell_ranges", Resource::Storage(cells.ranges())),
-                ("seen", Resource::Storage(&mapping.seen)),
-                ("rooms_before", Resource::Storage(before)),
-                ("rooms_after", Resource::Storage(after)),
-                ("which", Resource::Uniform(&mapping.pass_ring)),
-            ];
-            Bindings::new(gpu, mapping.pipeline.layout(), &given)
-        };
-        let bindings = [bound(&rooms[1], &rooms[0])?, bound(&rooms[0], &rooms[1])?];
+        let bound = |rooms| mapping.bind(gpu, &grid_ring, cells, rooms);
+        let [a, b] = &rooms;
+        let bindings = [bound([b, a])?, bound([a, b])?];
         Ok(Self {
             gpu: Arc::clone(gpu),
             grids: cells.grids().to_vec(),
@@ -112,6 +145,7 @@ impl EmptySpace {
             grid_ring,
             bindings,
             mapping,
+            others: Vec::new(),
         })
     }
 
@@ -171,9 +205,25 @@ impl EmptySpace {
                 let groups = pipeline.groups(grid.cells)?;
                 let run = within(&part, first, group_count(groups));
                 first += group_count(groups);
+                let others = self.others.iter().filter(|_| pass == 0 && !run.is_empty());
                 // SAFETY: the caller's promises; a pass reads what the one before wrote, the barrier between.
                 unsafe {
-                    pipeline.dispatch_run(cmd, &self.bindings[parity], &offsets, groups, run)
+                    pipeline.dispatch_run(
+                        cmd,
+                        &self.bindings[parity],
+                        &offsets,
+                        groups,
+                        run.clone(),
+                    );
+                    // Each cell may be found to have matter in a further volume.
+                    for (mapping, bindings) in others {
+                        let (rooms, again) = (&self.rooms[parity], Use::ComputeWrite);
+                        buffer_barrier(&self.gpu, cmd, rooms, again, again);
+                        let offsets = [offsets[0], mapping.pass_ring.offset(ALSO)?];
+                        mapping
+                            .pipeline
+                            .dispatch_run(cmd, bindings, &offsets, groups, run.clone());
+                    }
                 };
             }
             // What ends a pass is recorded with its last workgroup.

@@ -28,6 +28,8 @@ pub struct Apron {
     /// How far filtered values may lie beyond those of the voxels, as a multiple of half their range: 0 for filters
     /// without negative weights.
     pub overshoot: f32,
+    /// Whether values between those of voxels are made.
+    pub is_mixed: bool,
 }
 
 /// The ranges of a volume's macro cells. Made empty; [`MacroCells::record`] fills them.
@@ -252,7 +254,7 @@ fn grid_of(
         codes_are_integers: coding.is_integer.into(),
         overshoot: apron.overshoot,
         // A sampler mixes integers with the precision of their format.
-        slack: if coding.is_integer {
+        slack: if coding.is_integer && apron.is_mixed {
             coding.slope.abs()
         } else {
             0.0

@@ -4,6 +4,8 @@
 //! settings.skippable(mix, function)              what can be left out of such a picture
 //!     MacroCells::new(gpu, volume, settings.apron())     once a volume
 //!     EmptySpace::new(gpu, &cells, &seen)                once a transfer function
+//! settings.skippable_in_all(functions)           the same of a mixture
+//!     EmptySpace::of_several(gpu, &[(&cells, &seen), ..])
 //! recording.skip(&skip), Inputs { skip, .. }     for each recording
 //! ```
 
@@ -19,7 +21,8 @@ pub enum Skip<'a> {
     Nothing,
     /// What the transfer function does not show.
     Unseen(&'a MacroCells, &'a EmptySpace),
-    /// What is no larger, or no smaller, than a value that a ray has met.
+    /// What is no larger, or no smaller, than a value that a ray has met, and what modes of maxima pass over beside
+    /// that.
     Exceeded(&'a MacroCells),
 }
 
@@ -30,6 +33,8 @@ pub enum Skippable {
     Nothing,
     /// Samples outside of the seen values: [`Skip::Unseen`].
     Unseen(Seen),
+    /// The same of a mixture, of each of its volumes that has opacity: [`EmptySpace::of_several`].
+    UnseenInAll(Vec<(usize, Seen)>),
     /// Samples that are no new extreme: [`Skip::Exceeded`].
     Exceeded,
 }
@@ -46,7 +51,11 @@ impl Settings {
             Filter::CatmullRom => 1.25f32.powi(3) - 1.0,
             _ => 0.0,
         };
-        Apron { voxels, overshoot }
+        Apron {
+            voxels,
+            overshoot,
+            is_mixed: self.filter != Filter::Nearest,
+        }
     }
 
     /// What can be left out of pictures of one volume under `function`, whose values are in `value_range`. What colours
@@ -64,20 +73,47 @@ impl Settings {
         if self.technique != Technique::Raycast {
             return self.skippable_by_slices(function);
         }
-        if self.preintegrated {
-            return Skippable::Nothing;
-        }
         match (self.mode, function) {
+            (Mode::Composite, Some(function)) if self.preintegrated => {
+                unseen(Seen::between(function))
+            }
+            _ if self.preintegrated => Skippable::Nothing,
             (Mode::Iso, _) => {
                 let levels = self.per_mode.levels.iter().map(|level| level.value as f32);
                 Skippable::Unseen(Seen::of_values(&levels.collect::<Vec<_>>(), value_range))
             }
+            // By how much of it is over what has been met.
+            (Mode::Lmip | Mode::AttenuatedMip, _) => Skippable::Exceeded,
             (Mode::Mip | Mode::Minip, _) if !self.per_mode.exact_maximum => Skippable::Exceeded,
-            (Mode::Composite, Some(function)) if !function.is_graded() => {
-                Skippable::Unseen(Seen::new(function))
-            }
+            (Mode::Composite | Mode::Mida, Some(function)) => unseen(Seen::new(function)),
             _ => Skippable::Nothing,
         }
+    }
+}
+
+impl Settings {
+    /// What rays leave out of pictures of several volumes, given the functions of those that have opacity, by their
+    /// numbers.
+    pub fn skippable_in_all(&self, functions: &[(usize, &TransferFunction)]) -> Skippable {
+        // Patches of mixed slices cost more than they have been seen to leave out.
+        let is_mixed = self.technique == Technique::Raycast && self.mode == Mode::Composite;
+        if !self.skip || !is_mixed || self.preintegrated || functions.is_empty() {
+            return Skippable::Nothing;
+        }
+        let seen = functions.iter().map(|&(n, f)| (n, Seen::new(f)));
+        let seen: Vec<_> = seen.collect();
+        match seen.iter().any(|(_, seen)| seen.is_all()) {
+            true => Skippable::Nothing,
+            false => Skippable::UnseenInAll(seen),
+        }
+    }
+}
+
+/// Where all is seen, looking for what is not would only cost rays; slices go on to look for what is hidden.
+fn unseen(seen: Seen) -> Skippable {
+    match seen.is_all() {
+        true => Skippable::Nothing,
+        false => Skippable::Unseen(seen),
     }
 }
 
@@ -87,7 +123,6 @@ impl Settings {
     fn skippable_by_slices(&self, function: Option<&TransferFunction>) -> Skippable {
         match (self.mode, function) {
             _ if self.is_half_angle() => Skippable::Nothing,
-            (Mode::Composite, Some(function)) if function.is_graded() => Skippable::Nothing,
             (Mode::Composite, Some(function)) if self.preintegrated => {
                 Skippable::Unseen(Seen::between(function))
             }

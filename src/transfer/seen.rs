@@ -8,10 +8,15 @@
 //! Cells are those of the function's [`super::Table`]; one counts as seen where the law has any opacity in it, ends
 //! included, so that neither the table nor the law itself shows what is called unseen.
 
-use super::TransferFunction;
 use super::table::Cut;
+use super::{Cells, Graded, Shape, TransferFunction, Widget};
 
-/// Where a transfer function has opacity. That of its gradients is not counted in.
+/// How many standard deviations away a bell of opacity 1 is no opacity in f32: 1 - exp(-6^2 / 2) is 1.
+const DEVIATIONS: f64 = 6.0;
+/// Cells over the values of a function of gradients, whose widgets lie where its table need not be fine.
+const GRADED_CELLS: usize = 4096;
+
+/// Where a transfer function has opacity, whatever the gradient.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seen {
     /// Value where cell 0 begins; values before it are in cell 0.
@@ -61,7 +66,36 @@ impl Seen {
                 show(pair[0].value, pair[1].value);
             }
         }
-        Self::of_cells(first as f32, (1.0 / width) as f32, &is_seen)
+        let Some(graded) = &function.graded else {
+            return Self::of_cells(first as f32, (1.0 / width) as f32, &is_seen);
+        };
+        // What the table shows is seen as far as its cells reach.
+        let end = |i: usize| match i {
+            0 => f64::NEG_INFINITY,
+            i if i == count => f64::INFINITY,
+            i => first + i as f64 * width,
+        };
+        let seen_cells = (0..count).filter(|&i| is_seen[i]);
+        let of_values = seen_cells.map(|i| [end(i), end(i + 1)]);
+        Self::of_spans(of_values.chain(spans_of(graded)).collect())
+    }
+
+    /// Of ranges of values, ends included.
+    fn of_spans(spans: Vec<[f64; 2]>) -> Self {
+        let ends = || spans.iter().flatten().copied().filter(|v| v.is_finite());
+        let low = ends().reduce(f64::min).unwrap_or(0.0);
+        let high = ends().reduce(f64::max).unwrap_or(0.0);
+        // Something lies beyond the first span and the last one.
+        let width = ((high - low) / (GRADED_CELLS - 4) as f64).max(f64::from(f32::MIN_POSITIVE));
+        let first = low - 2.0 * width;
+        let last = GRADED_CELLS as f64 - 1.0;
+        let cell = |value: f64| ((value - first) / width).floor().clamp(0.0, last) as usize;
+        let mut is_seen = vec![false; GRADED_CELLS];
+        for [from, to] in spans {
+            is_seen[cell(from)..=cell(to)].fill(true);
+        }
+        let scale = (1.0 / width).min(f32::MAX.into());
+        Self::of_cells(first as f32, scale as f32, &is_seen)
     }
 
     /// Single values, those of surfaces: a range shows one where it holds it, within 1/4096 of `value_range`.
@@ -89,6 +123,11 @@ impl Seen {
         Self { first, scale, next }
     }
 
+    /// Whether every value is seen, so that nothing can be left out.
+    pub fn is_all(&self) -> bool {
+        (0..).zip(&self.next).all(|(i, &next)| i == next)
+    }
+
     /// Whether any value of the range may be seen.
     pub fn shows(&self, [low, high]: [f32; 2]) -> bool {
         let last = self.next.len() as f32 - 1.0;
@@ -96,6 +135,55 @@ impl Seen {
         let from = cell(low, -1.0).clamp(0.0, last);
         let to = cell(high, 1.0).clamp(0.0, last);
         self.next[from as usize] <= to as u32
+    }
+}
+
+/// The values that widgets of any opacity reach, whatever the gradient.
+fn spans_of(graded: &Graded) -> Vec<[f64; 2]> {
+    let seen = graded.widgets.iter().filter(|widget| widget.opacity > 0.0);
+    seen.flat_map(spans_of_widget).collect()
+}
+
+fn spans_of_widget(widget: &Widget) -> Vec<[f64; 2]> {
+    let around = |value: f64, reach: f64| vec![[value - reach, value + reach]];
+    match &widget.shape {
+        // As far as the gradient takes it.
+        Shape::Contour { value, .. } => around(*value, f64::INFINITY),
+        Shape::Region { points } => {
+            let pairs = points.windows(2);
+            let seen = pairs.filter(|pair| pair.iter().any(|point| point.opacity > 0.0));
+            seen.map(|pair| [pair[0].value, pair[1].value]).collect()
+        }
+        Shape::Triangle {
+            value, half_width, ..
+        } => around(*value, half_width.abs()),
+        Shape::Rectangle { values, .. } => vec![*values],
+        Shape::Gaussian {
+            value, sigma_value, ..
+        } => around(*value, DEVIATIONS * sigma_value.abs()),
+        Shape::Image {
+            values: [from, to],
+            columns,
+            cells,
+            ..
+        } => {
+            let width = (to - from) / *columns as f64;
+            // Between the middles of cells: each reaches the middle of the next, and another for rounding.
+            let reach = |i: usize| {
+                let column = i as f64;
+                [from + (column - 1.0) * width, from + (column + 2.0) * width]
+            };
+            let seen = (0..*columns).filter(|&i| shows_column(cells, *columns, i));
+            seen.map(reach).collect()
+        }
+    }
+}
+
+fn shows_column(cells: &Cells, columns: usize, column: usize) -> bool {
+    let mut places = (column..cells.count()).step_by(columns);
+    match cells {
+        Cells::Shares(shares) => places.any(|i| shares[i] > 0.0),
+        Cells::Rgba(colors) => places.any(|i| colors[i][3] > 0),
     }
 }
 

@@ -128,7 +128,7 @@ fn picture(renderer: &mut Renderer, scene: &Scene, skip: bool) -> Picture {
     let is_slicer = settings.technique != Technique::Raycast;
     let layers: &[LayerKind] = match settings.mode {
         _ if is_slicer => &[LayerKind::Samples],
-        Mode::Composite => &[
+        Mode::Composite | Mode::Mida => &[
             LayerKind::Depth,
             LayerKind::Transmittance,
             LayerKind::Samples,

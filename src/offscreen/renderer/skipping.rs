@@ -1,21 +1,23 @@
 //! Where rays need not look, made on the device and made anew only where it changes.
 
 use super::{Copied, Renderer, parts_of};
+use crate::gpu;
 use crate::offscreen::Error;
 use crate::offscreen::cost::ms_of_looks;
 use crate::offscreen::stream::if_it_fits;
 use crate::offscreen::time_slices::Work;
 use crate::resident::{Apron, Corners, EmptySpace, MacroCells};
-use crate::scene::Scene;
-use crate::technique::{Mix, Skip, Skippable};
-use crate::transfer::Seen;
+use crate::scene::{Beside, Scene};
+use crate::technique::{Mix, Mode, Part, Role, Skip, Skippable};
+use crate::transfer::{Seen, TransferFunction};
 use std::sync::Arc;
 
 /// What is known of the volumes that have been drawn.
 #[derive(Debug, Default)]
 pub struct Skipped {
-    cells: Option<(Of, MacroCells)>,
-    empty: Option<(Seen, EmptySpace)>,
+    /// Of each volume of a mixture.
+    cells: Option<(Of, Vec<MacroCells>)>,
+    empty: Option<(Vec<(usize, Seen)>, EmptySpace)>,
     wanted: Option<Skippable>,
 }
 
@@ -24,6 +26,7 @@ pub struct Skipped {
 struct Of {
     copied: Copied,
     shown: usize,
+    volumes: usize,
     apron: Apron,
 }
 
@@ -31,10 +34,12 @@ impl Skipped {
     /// What recordings are told.
     pub fn skip(&self) -> Skip<'_> {
         match (&self.wanted, &self.cells, &self.empty) {
-            (Some(Skippable::Exceeded), Some((_, cells)), _) => Skip::Exceeded(cells),
-            (Some(Skippable::Unseen(_)), Some((_, cells)), Some((_, empty))) => {
-                Skip::Unseen(cells, empty)
-            }
+            (Some(Skippable::Exceeded), Some((_, cells)), _) => Skip::Exceeded(&cells[0]),
+            (
+                Some(Skippable::Unseen(_) | Skippable::UnseenInAll(_)),
+                Some((_, cells)),
+                Some((_, empty)),
+            ) => Skip::Unseen(&cells[0], empty),
             _ => Skip::Nothing,
         }
     }
@@ -99,50 +104,53 @@ impl Renderer<'_> {
         let Some((wanted, apron)) = wanted(scene).filter(|_| !is_streamed) else {
             return Ok(());
         };
+        // One volume says nothing of the others.
+        let volumes = match &wanted {
+            Skippable::UnseenInAll(_) => scene.volumes().len(),
+            _ => 1,
+        };
         let of = Of {
             copied: Copied::of(scene),
             shown: self.shown,
+            volumes,
             apron,
         };
-        if self
-            .skipped
-            .cells
-            .as_ref()
-            .is_none_or(|(there, _)| *there != of)
-        {
+        let there = self.skipped.cells.as_ref();
+        if there.is_none_or(|(there, _)| *there != of) {
             self.skipped = Skipped::default();
-            let parts = parts_of(&self.resident, self.shown, scene);
-            let (gpu, volume) = (self.device.gpu(), parts[0].volume);
-            let made = match gpu.is_cpu() && volume.spline().is_none() {
-                true => MacroCells::of_voxels(gpu, volume, of.apron, self.volumes[self.shown]),
-                false => MacroCells::new(gpu, volume, of.apron),
-            };
+            let mut all = Vec::new();
+            for number in 0..volumes {
+                let Some(made) = if_it_fits(self.cells_of(scene, number, apron))? else {
+                    return Ok(());
+                };
+                // A cell of 8^3 voxels with an apron around them, which are not filtered.
+                let looks = 100.0 * made.cell_count() as f64;
+                let expected_ms = ms_of_looks(self.device.gpu(), looks);
+                let work = Work::beside(0..made.group_count()?, expected_ms);
+                self.slices
+                    .run(&mut self.device, None, work, |cmd, _, part| {
+                        // SAFETY: recorded outside rendering; the volume has been uploaded; `run` waits.
+                        unsafe { made.record_part(cmd, part) }
+                    })?;
+                all.push(made);
+            }
+            self.skipped.cells = Some((of, all));
+        }
+        let seen = match &wanted {
+            Skippable::Unseen(seen) => vec![(0, seen.clone())],
+            Skippable::UnseenInAll(seen) => seen.clone(),
+            Skippable::Nothing | Skippable::Exceeded => Vec::new(),
+        };
+        let there = self.skipped.empty.as_ref();
+        if !seen.is_empty() && there.is_none_or(|(there, _)| *there != seen) {
+            let (_, cells) = self.skipped.cells.as_ref().expect("made above");
+            let several: Vec<_> = seen.iter().map(|(n, seen)| (&cells[*n], seen)).collect();
+            let made = EmptySpace::of_several(self.device.gpu(), &several);
             let Some(made) = if_it_fits(made)? else {
                 return Ok(());
             };
-            // A cell of 8^3 voxels with an apron around them, which are not filtered.
-            let expected_ms = ms_of_looks(gpu, 100.0 * made.cell_count() as f64);
-            let work = Work::beside(0..made.group_count()?, expected_ms);
-            self.slices
-                .run(&mut self.device, None, work, |cmd, _, part| {
-                    // SAFETY: recorded outside rendering; the volume has been uploaded; `run` waits.
-                    unsafe { made.record_part(cmd, part) }
-                })?;
-            self.skipped.cells = Some((of, made));
-        }
-        if let Skippable::Unseen(seen) = &wanted
-            && self
-                .skipped
-                .empty
-                .as_ref()
-                .is_none_or(|(there, _)| there != seen)
-        {
-            let (_, cells) = self.skipped.cells.as_ref().expect("made above");
-            let Some(made) = if_it_fits(EmptySpace::new(self.device.gpu(), cells, seen))? else {
-                return Ok(());
-            };
             // Most cells look at some ten others.
-            let expected_ms = ms_of_looks(self.device.gpu(), cells.cell_count() as f64);
+            let expected_ms = ms_of_looks(self.device.gpu(), cells[0].cell_count() as f64);
             for pass in made.group_runs()? {
                 let work = Work::beside(pass, expected_ms);
                 self.slices
@@ -151,17 +159,57 @@ impl Renderer<'_> {
                         unsafe { made.record_part(cmd, part) }
                     })?;
             }
-            self.skipped.empty = Some((seen.clone(), made));
+            self.skipped.empty = Some((seen, made));
         }
         self.skipped.wanted = Some(wanted);
         Ok(())
+    }
+
+    /// Objects for the cells of volume number `number` of the picture.
+    fn cells_of(
+        &self,
+        scene: &Scene,
+        number: usize,
+        apron: Apron,
+    ) -> Result<MacroCells, gpu::Error> {
+        let parts = parts_of(&self.resident, self.shown, scene);
+        let Part { volume, role } = parts[number];
+        let gpu = self.device.gpu();
+        // Nothing lies between two labels.
+        let apron = Apron {
+            is_mixed: apron.is_mixed && role != Role::Labels,
+            ..apron
+        };
+        match gpu.is_cpu() && volume.spline().is_none() {
+            true => MacroCells::of_voxels(gpu, volume, apron, self.volumes[self.shown + number]),
+            false => MacroCells::new(gpu, volume, apron),
+        }
     }
 }
 
 /// What pictures of `scene` need not look at, and what cells must know for it.
 fn wanted(scene: &Scene) -> Option<(Skippable, Apron)> {
     let range = scene.volume.value_range;
-    let wanted = scene.settings.skippable(scene.mix(), scene.transfer, range);
+    let wanted = match (scene.mix(), scene.beside) {
+        (Mix::Channels, _) | (_, Beside::Colors([_, _, _])) if scene.settings.mode != Mode::Iso => {
+            let functions = opacities_of(scene).unwrap_or_default();
+            scene.settings.skippable_in_all(&functions)
+        }
+        (mix, _) => scene.settings.skippable(mix, scene.transfer, range),
+    };
     let apron = scene.view(&scene.volume.grid(), [0.0; 2]).apron()?;
     (wanted != Skippable::Nothing).then_some((wanted, apron))
+}
+
+/// Which volumes of a mixture say how opaque it is, and by which function; `None` where one is missing.
+fn opacities_of<'a>(scene: &Scene<'a>) -> Option<Vec<(usize, &'a TransferFunction)>> {
+    if let Beside::Colors(beside) = scene.beside {
+        // Alpha, the last one.
+        return Some(vec![(beside.len(), scene.transfer?)]);
+    }
+    let roles = scene.roles();
+    let is_opaque_by_next = |n: usize| roles.get(n + 1) == Some(&Role::Opacity);
+    let all = scene.transfers().into_iter().enumerate();
+    let own = all.filter(|&(n, _)| !is_opaque_by_next(n));
+    own.map(|(n, function)| Some((n, function?))).collect()
 }

@@ -97,6 +97,10 @@ impl<'v> Renderer<'v> {
 
     fn skippable(&self, scene: &Scene) -> Skippable {
         let range = scene.volume.value_range;
+        if scene.settings.preintegrated {
+            // Slabs reach farther than bricks know of.
+            return Skippable::Nothing;
+        }
         scene.settings.skippable(scene.mix(), scene.transfer, range)
     }
 
@@ -378,7 +382,10 @@ fn shown(stream: &Stream, scene: &Scene, skippable: &Skippable) -> Vec<Shown> {
             return None;
         }
         let range = stream.range(brick, apron)?;
+        // What is not seen may be the largest.
+        let has_maximum = scene.settings.mode == Mode::Mida;
         if let Skippable::Unseen(seen) = skippable
+            && !has_maximum
             && !seen.shows(range)
         {
             return None;
