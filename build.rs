@@ -13,6 +13,8 @@
 mod blue_noise;
 #[path = "shaders/opaque.rs"]
 mod opaque;
+#[path = "shaders/read_once.rs"]
+mod read_once;
 #[path = "shaders/variants.rs"]
 mod variants;
 
@@ -100,6 +102,7 @@ impl Book {
         };
         check(&module, ValidationFlags::all());
         opaque::hide_branches(&mut module);
+        read_once::read_parameters_once(&mut module);
         // What was uniform is so still, which nobody can know any longer.
         let uniformity = ValidationFlags::CONTROL_FLOW_UNIFORMITY;
         let info = check(&module, ValidationFlags::all().difference(uniformity));

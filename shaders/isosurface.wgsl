@@ -4,6 +4,7 @@
 // opacity leaves. Twin: src/technique/isosurface.rs.
 
 #import ray
+#import pixel_square
 #import brick
 #import room_map
 #import filter_{filter}
@@ -45,13 +46,13 @@ struct Bracket {
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    read_once();
-    if any(id.xy >= frame.extent_pixels) {
+    let pixel = pixel_of(id.xy);
+    if any(pixel >= frame.extent_pixels) {
         return;
     }
-    let found = surfaces(vec2<f32>(id.xy) + 0.5, met_before(id.xy));
-    textureStore(picture, id.xy, vec4(found.color, 1.0 - found.transmittance));
-    textureStore(layers, id.xy, vec4(found.level, found.depth, found.transmittance, found.samples));
+    let found = surfaces(vec2<f32>(pixel) + 0.5, met_before(pixel));
+    textureStore(picture, pixel, vec4(found.color, 1.0 - found.transmittance));
+    textureStore(layers, pixel, vec4(found.level, found.depth, found.transmittance, found.samples));
 }
 
 // What nearer bricks have left in the images.

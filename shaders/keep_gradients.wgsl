@@ -13,7 +13,6 @@
 
 @compute @workgroup_size(4, 4, 4)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    read_once();
     if any(id >= vec3<u32>(frame.brick_dims)) {
         return;
     }

@@ -21,7 +21,6 @@
 
 @compute @workgroup_size(4, 4, 4)
 fn main(@builtin(global_invocation_id) cell: vec3<u32>) {
-    read_once();
     if any(cell >= light_grid.cells) {
         return;
     }

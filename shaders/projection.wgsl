@@ -2,18 +2,19 @@
 // Twin: src/technique/projection/reference.rs.
 
 #import march
+#import pixel_square
 
 // Projected value, weight (0: no valid sample), depth (negative: none), samples.
 @group(0) @binding(6) var accumulation: texture_storage_2d<rgba32float, read_write>;
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    read_once();
-    if any(id.xy >= frame.extent_pixels) {
+    let pixel = pixel_of(id.xy);
+    if any(pixel >= frame.extent_pixels) {
         return;
     }
-    let found = march(vec2<f32>(id.xy) + 0.5, gathered_before(id.xy));
-    textureStore(accumulation, id.xy, vec4(found.value, found.weight, found.depth, found.samples));
+    let found = march(vec2<f32>(pixel) + 0.5, gathered_before(pixel));
+    textureStore(accumulation, pixel, vec4(found.value, found.weight, found.depth, found.samples));
 }
 
 // What nearer bricks have left in the image.

@@ -10,7 +10,6 @@
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    read_once();
     if any(id.xy >= frame.extent_pixels) {
         return;
     }

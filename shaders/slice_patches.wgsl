@@ -49,7 +49,6 @@ struct CornerRay {
 
 @compute @workgroup_size(8, 4)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    read_once();
     let grid = patch_grid();
     if any(id.xy >= grid) {
         return;

@@ -16,7 +16,6 @@ fn main(
     @builtin(position) position: vec4<f32>,
     @location(0) @interpolate(flat) plane: i32,
 ) -> @location(0) vec4<f32> {
-    read_once();
     let world = pixel_ray(position.xy);
     let voxel = voxel_ray(world);
     let slab = plane_slab(world, domain_interval(world, voxel), plane);

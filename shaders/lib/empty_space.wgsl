@@ -51,7 +51,7 @@ fn cell_of(walk: Walk, k: i32) -> vec3<i32> {
 
 fn cell_index(cell: vec3<i32>) -> u32 {
     let cells = vec3<i32>(frame.cells);
-    return once.cells_first + u32(cell.x + cells.x * (cell.y + cells.y * cell.z));
+    return frame.cells_first + u32(cell.x + cells.x * (cell.y + cells.y * cell.z));
 }
 
 // The first sample that lies outside of the room around the cell of sample k.

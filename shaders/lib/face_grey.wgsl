@@ -9,7 +9,7 @@ fn on_face(own: Classified, value: f32) -> Classified {
     if frame.cut_faces != FACES_GREY {
         return own;
     }
-    let grey = (value - once.cut_low) * once.cut_scale;
+    let grey = (value - frame.cut_low) * frame.cut_scale;
     // What is black is open.
     if !(grey > 0.0) {
         return Classified(vec3(0.0), 0.0);

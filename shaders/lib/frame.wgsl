@@ -179,35 +179,3 @@ struct Frame {
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
-
-// What is asked for at each sample. Entry points read it before all else: compilers for CPUs leave reads of uniform
-// buffers in the loop in which they stand, and each is as dear as a look into a table.
-struct Once {
-    code_scale: f32,
-    code_offset: f32,
-    slope: f32,
-    intercept: f32,
-    table_first: f32,
-    table_scale: f32,
-    table_last: f32,
-    cells_first: u32,
-    cut_low: f32,
-    cut_scale: f32,
-}
-
-var<private> once: Once;
-
-fn read_once() {
-    once = Once(
-        frame.code_scale,
-        frame.code_offset,
-        frame.slope,
-        frame.intercept,
-        frame.table_first,
-        frame.table_scale,
-        f32(frame.table_count) - 1.0,
-        frame.cells_first,
-        frame.cut_low,
-        frame.cut_scale,
-    );
-}

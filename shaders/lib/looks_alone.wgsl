@@ -1,5 +1,6 @@
 // Four whole samples at once: where each lies and what is there hangs on none before it, so that their ways to memory
-// overlap. Written out, because compilers do not unroll so much.
+// overlap. Written out, because compilers do not unroll so much. Samples that are cut short, and that of a cut face, come
+// before and behind in loops of their own: drivers on CPUs go through the body of a loop at least once.
 
 const LOOKS_AT_ONCE: i32 = 4;
 
@@ -10,34 +11,42 @@ struct Look {
     is_there: bool,
 }
 
-fn walked(before: Reached, voxel: Ray, world: Ray, lattice: Lattice, walk: Walk) -> Reached {
-    var so_far = before.so_far;
-    var k = before.k;
+fn gathered(before: Accumulator, way: Way, start: i32) -> Accumulator {
+    var so_far = before;
+    var k = start;
+    while k < min(way.walk.first, way.end) && !is_finished(so_far) {
+        so_far = with_sample(so_far, way, k);
+        k++;
+    }
     // Samples that the ray does not take any more are looked at for nothing, and behind the last one it is that again:
     // texels farther on may lie outside of a brick.
-    let last = walk.end - 1;
+    let last = way.walk.end - 1;
     loop {
-        k = skipped(so_far, walk, k);
-        if k < walk.first || k > last || is_finished(so_far) {
+        k = skipped(so_far, way.walk, k);
+        if k > last || is_finished(so_far) {
             break;
         }
-        let first = look(voxel, world, lattice, k);
-        let second = look(voxel, world, lattice, min(k + 1, last));
-        let third = look(voxel, world, lattice, min(k + 2, last));
-        let fourth = look(voxel, world, lattice, min(k + 3, last));
+        let first = look(way, k);
+        let second = look(way, min(k + 1, last));
+        let third = look(way, min(k + 2, last));
+        let fourth = look(way, min(k + 3, last));
         so_far = with_look(so_far, first, true);
         so_far = with_look(so_far, second, k + 1 <= last);
         so_far = with_look(so_far, third, k + 2 <= last);
         so_far = with_look(so_far, fourth, k + 3 <= last);
-        k = min(k + LOOKS_AT_ONCE, walk.end);
+        k = min(k + LOOKS_AT_ONCE, way.walk.end);
     }
-    return Reached(so_far, k);
+    while k < way.end && !is_finished(so_far) {
+        so_far = with_sample(so_far, way, k);
+        k++;
+    }
+    return so_far;
 }
 
-fn look(voxel: Ray, world: Ray, lattice: Lattice, k: i32) -> Look {
-    let segment = whole_segment(lattice, world, k);
-    let position = voxel.origin + segment.t * voxel.direction;
-    return Look(sample_at(position, world.direction), segment, has_data(position));
+fn look(way: Way, k: i32) -> Look {
+    let segment = whole_segment(way.lattice, way.world, k);
+    let position = way.voxel.origin + segment.t * way.voxel.direction;
+    return Look(sample_at(position, way.world.direction), segment, has_data(position));
 }
 
 fn with_look(before: Accumulator, seen: Look, is_ours: bool) -> Accumulator {

@@ -36,37 +36,37 @@ fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
     let is_cut = enters_a_cut(voxel, interval) && is_in_brick(voxel.origin + interval.x * voxel.direction);
     let whole = whole_samples(lattice);
     let walk = walk_of(voxel, line_of(lattice, world), vec2(max(whole.x, first), min(whole.y, end)));
-    var k = first - i32(is_cut);
-    loop {
-        // On to the next sample that is taken by itself: all, or those that are cut short and the cut face.
-        let reached = walked(Reached(so_far, k), voxel, world, lattice, walk);
-        so_far = reached.so_far;
-        k = reached.k;
-        if k >= end || is_finished(so_far) {
-            break;
-        }
-        let is_face = k < first;
-        var segment = segment_of(lattice, world, k);
-        if is_face {
-            segment = Segment(interval.x, FACE_LENGTH);
-        }
-        let position = voxel.origin + segment.t * voxel.direction;
-        k++;
-        so_far.samples += 1.0;
-        if !has_data(position) {
-            continue;
-        }
-        // No light falls along no direction.
-        let direction = select(world.direction, vec3(0.0), is_face);
-        so_far = add(so_far, sample_at(position, direction), segment);
-    }
-    return so_far;
+    let way = Way(world, voxel, lattice, walk, interval.x, first, end);
+    return gathered(so_far, way, first - i32(is_cut));
 }
 
-// What a ray has gathered, and the sample that comes next.
-struct Reached {
-    so_far: Accumulator,
-    k: i32,
+// Where the samples of a ray lie, those from `first` to `end` (excluded); before them comes that of a cut face.
+struct Way {
+    world: Ray,
+    voxel: Ray,
+    lattice: Lattice,
+    walk: Walk,
+    t_face: f32,
+    first: i32,
+    end: i32,
+}
+
+// With sample k, whatever it is.
+fn with_sample(before: Accumulator, way: Way, k: i32) -> Accumulator {
+    let is_face = k < way.first;
+    var segment = segment_of(way.lattice, way.world, k);
+    if is_face {
+        segment = Segment(way.t_face, FACE_LENGTH);
+    }
+    let position = way.voxel.origin + segment.t * way.voxel.direction;
+    var so_far = before;
+    so_far.samples += 1.0;
+    if !has_data(position) {
+        return so_far;
+    }
+    // No light falls along no direction.
+    let direction = select(way.world.direction, vec3(0.0), is_face);
+    return add(so_far, sample_at(position, direction), segment);
 }
 
 // On to the next sample that may count: a loop of its own, so that rays that are walked side by side skip and sample

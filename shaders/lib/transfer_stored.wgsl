@@ -14,7 +14,7 @@ struct Classified {
 
 fn classify(value: f32) -> Classified {
     // Clamped before it becomes a whole number: a float out of range has no defined one.
-    let index = u32(clamp((value - once.table_first) * once.table_scale, 0.0, once.table_last));
+    let index = u32(clamp((value - frame.table_first) * frame.table_scale, 0.0, f32(frame.table_count) - 1.0));
     let entry = textureLoad(stored_table, vec2(index % TABLE_WIDTH, index / TABLE_WIDTH));
     return Classified(entry.xyz, entry.w);
 }

@@ -14,7 +14,7 @@ struct Classified {
 }
 
 fn classify(value: f32) -> Classified {
-    return classified_by(value, once.table_first, once.table_scale, once.table_last, 0u);
+    return classified_by(value, frame.table_first, frame.table_scale, f32(frame.table_count) - 1.0, 0u);
 }
 
 fn classified_by(value: f32, first: f32, scale: f32, last: f32, row: u32) -> Classified {

@@ -13,7 +13,7 @@ struct Coding {
 
 // That of the volume, the first channel.
 fn volume_coding() -> Coding {
-    return Coding(once.code_scale, once.code_offset, once.slope, once.intercept, frame.codes_are_integers);
+    return Coding(frame.code_scale, frame.code_offset, frame.slope, frame.intercept, frame.codes_are_integers);
 }
 
 fn code_from_texel(coding: Coding, texel: f32) -> f32 {

@@ -1,0 +1,118 @@
+//! Reads the parameters of a picture once, where an entry point begins.
+//!
+//! llvmpipe reads a value of a uniform buffer by one instruction where all invocations are sure to be at work, and by
+//! thirty, one word for each of them, after the first branch. In compute passes what is asked for by name is copied to a
+//! variable of the invocation; what is found by a number that is known only then stays where it is. Fragments read few
+//! values, and few of these behind a branch: they were slower with it (`docs/performance.md`).
+
+use naga::{
+    AddressSpace, Arena, Block, EntryPoint, Expression, Function, GlobalVariable, Handle,
+    MemoryDecorations, Module, Range, ShaderStage, Span, Statement,
+};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Puts a copy in the place of each uniform buffer of a compute pass.
+pub fn read_parameters_once(module: &mut Module) {
+    let is_pass = |entry: &EntryPoint| entry.stage == ShaderStage::Compute;
+    if !module.entry_points.iter().all(is_pass) {
+        return;
+    }
+    let uniforms: Vec<_> = module
+        .global_variables
+        .iter()
+        .filter(|(_, variable)| variable.space == AddressSpace::Uniform)
+        .map(|(handle, variable)| (handle, variable.ty, variable.name.clone()))
+        .collect();
+    for (uniform, ty, name) in uniforms {
+        let copy = GlobalVariable {
+            name: name.map(|name| format!("{name}_read")),
+            space: AddressSpace::Private,
+            binding: None,
+            ty,
+            init: None,
+            memory_decorations: MemoryDecorations::empty(),
+        };
+        let copy = module.global_variables.append(copy, Span::UNDEFINED);
+        let entries = module
+            .entry_points
+            .iter_mut()
+            .map(|entry| &mut entry.function);
+        let functions = module.functions.iter_mut().map(|(_, function)| function);
+        let mut members = BTreeSet::new();
+        for function in functions.chain(entries) {
+            redirect(&mut function.expressions, uniform, copy, &mut members);
+        }
+        for entry in &mut module.entry_points {
+            let start = copied(&mut entry.function, uniform, copy, &members);
+            entry.function.body.splice(0..0, start);
+        }
+    }
+}
+
+/// Lets what is asked for by name alone be asked of the copy, and notes it.
+fn redirect(
+    expressions: &mut Arena<Expression>,
+    uniform: Handle<GlobalVariable>,
+    copy: Handle<GlobalVariable>,
+    members: &mut BTreeSet<u32>,
+) {
+    let is_root = |handle: &Handle<Expression>| matches!(expressions[*handle], Expression::GlobalVariable(global) if global == uniform);
+    // From the expression that names the buffer to all that is made of its place.
+    let mut named: Vec<(Handle<Expression>, BTreeSet<u32>, bool)> = Vec::new();
+    let mut root_of = BTreeMap::new();
+    for (handle, expression) in expressions.iter() {
+        match expression {
+            Expression::GlobalVariable(_) if is_root(&handle) => {
+                root_of.insert(handle, named.len());
+                named.push((handle, BTreeSet::new(), true));
+            }
+            Expression::AccessIndex { base, index } => {
+                if let Some(&root) = root_of.get(base) {
+                    if is_root(base) {
+                        named[root].1.insert(*index);
+                    }
+                    root_of.insert(handle, root);
+                }
+            }
+            Expression::Access { base, .. } => {
+                if let Some(&root) = root_of.get(base) {
+                    named[root].2 = false;
+                    root_of.insert(handle, root);
+                }
+            }
+            Expression::Load { pointer } if is_root(pointer) => named[root_of[pointer]].2 = false,
+            _ => {}
+        }
+    }
+    for (handle, own, is_by_name) in named {
+        if is_by_name {
+            expressions[handle] = Expression::GlobalVariable(copy);
+            members.extend(own);
+        }
+    }
+}
+
+/// What an entry point begins with.
+fn copied(
+    function: &mut Function,
+    uniform: Handle<GlobalVariable>,
+    copy: Handle<GlobalVariable>,
+    members: &BTreeSet<u32>,
+) -> Block {
+    let span = Span::UNDEFINED;
+    let mut block = Block::new();
+    for &index in members {
+        let mut add = |expression| function.expressions.append(expression, span);
+        let from = add(Expression::GlobalVariable(uniform));
+        let to = add(Expression::GlobalVariable(copy));
+        let first = add(Expression::AccessIndex { base: from, index });
+        let value = add(Expression::Load { pointer: first });
+        let pointer = add(Expression::AccessIndex { base: to, index });
+        block.push(
+            Statement::Emit(Range::new_from_bounds(first, pointer)),
+            span,
+        );
+        block.push(Statement::Store { pointer, value }, span);
+    }
+    block
+}
