@@ -551,18 +551,18 @@ fn what_cannot_colour_a_surface_is_refused_by_name() {
     let shot = shots(CUBE, &opaque(&[0.0])).remove(0);
     let wide = shot.with(|s| s.filter = Filter::Cubic);
     for (shot, channels, wanted) in [
-        (&shot, vec![numbers; 2], "Iso shows one volume"),
+        (&shot, vec![numbers; 2], "iso shows one volume"),
         (
             &shot,
             vec![of(Role::Labels, Some(&function))],
-            "Iso shows one volume",
+            "iso shows one volume",
         ),
         (
             &shot,
             vec![of(Role::Numbers, None)],
             "needs a transfer function",
         ),
-        (&wide, vec![numbers], "Cubic reads one volume"),
+        (&wide, vec![numbers], "cubic reads one volume"),
     ] {
         let scene = Scene {
             beside: Beside::Channels(&channels),

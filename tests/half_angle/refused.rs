@@ -32,10 +32,10 @@ fn what_half_angle_slices_cannot_do_is_refused_by_name() {
     for (change, wanted) in [
         (
             (|s: &mut Settings| s.technique = Technique::Raycast) as fn(&mut Settings),
-            "half-angle slicing is for 3D slices, not for Raycast",
+            "half-angle slicing is for 3D slices, not for raycast",
         ),
-        (|s| s.technique = Technique::Slices2d, "not for Slices2d"),
-        (|s| s.mode = Mode::Mip, "is for composite, not for Mip"),
+        (|s| s.technique = Technique::Slices2d, "not for slices-2d"),
+        (|s| s.mode = Mode::Mip, "is for composite, not for mode mip"),
         (|s| s.filter = Filter::Cubic, "nearest and linear filters"),
         (|s| s.preintegrated = true, "pre-integrated classification"),
         (
