@@ -87,6 +87,7 @@ fn what_half_angle_slices_cannot_do_is_refused_by_name() {
     let mut renderer = Renderer::new(device(), &volume).unwrap();
     for layer in [LayerKind::Depth, LayerKind::Value, LayerKind::Position] {
         let error = renderer.render(&scene, &[layer]).unwrap_err().to_string();
-        assert!(error.contains(&format!("{layer:?}")), "{error}");
+        let name = layer.name();
+        assert!(error.contains(&format!("`{name}`")), "{error}");
     }
 }
