@@ -1,1 +1,3 @@
+// There is much to do at each sample.
+
 #import looks_one

@@ -10,6 +10,7 @@
 #import mask
 #import sample_{mix}
 #import mode_{mode}
+#import skipped
 #import looks_{mix}
 
 // `before` is what bricks nearer to the eye have gathered.
@@ -67,24 +68,6 @@ fn with_sample(before: Accumulator, way: Way, k: i32) -> Accumulator {
     // No light falls along no direction.
     let direction = select(way.world.direction, vec3(0.0), is_face);
     return add(so_far, sample_at(position, direction), segment);
-}
-
-// On to the next sample that may count: a loop of its own, so that rays that are walked side by side skip and sample
-// together.
-fn skipped(so_far: Accumulator, walk: Walk, start: i32) -> i32 {
-    var k = start;
-    loop {
-        if !may_skip(walk, k) {
-            break;
-        }
-        let cell = cell_of(walk, k);
-        let room = empty_room(so_far, cell);
-        if room == 0 {
-            break;
-        }
-        k = after_room(walk, k, cell, room);
-    }
-    return k;
 }
 
 fn is_ours(segment: Segment, voxel: Ray) -> bool {

@@ -10,6 +10,7 @@
 #import mask
 #import sample_slab
 #import mode_{mode}
+#import skipped
 
 // `before` is what bricks nearer to the eye have gathered.
 fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
@@ -33,22 +34,11 @@ fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
     let walk = walk_of(voxel, line_of(lattice, world), vec2(max(whole.x, first), min(whole.y, end)));
     var next = first - i32(is_cut);
     loop {
-        loop {
-            if next < walk.first || next >= walk.end {
-                break;
-            }
-            let cell = cell_of(walk, next);
-            let room = empty_room(so_far, cell);
-            if room == 0 {
-                break;
-            }
-            next = after_room(walk, next, cell, room);
-        }
-        if next >= end {
+        let k = skipped(so_far, walk, next);
+        if k >= end {
             break;
         }
-        let k = next;
-        next++;
+        next = k + 1;
         var slab = slab_of(lattice, world, k);
         if k < first {
             slab = Slab(interval.x, interval.x, FACE_LENGTH);

@@ -71,14 +71,14 @@ impl Corners {
             && gpu.has_images_in_rows(&desc(words))
     }
 
-    /// Those of `volume`.
+    /// Those of `volume`; none where the device leaves gaps between the rows of an image.
     ///
     /// # Errors
     /// Where the device gives no memory.
     ///
     /// # Panics
     /// Where [`Corners::are_for`] says no.
-    pub fn new(gpu: &Arc<Gpu>, volume: &Volume) -> Result<Self, Error> {
+    pub fn new(gpu: &Arc<Gpu>, volume: &Volume) -> Result<Option<Self>, Error> {
         assert!(Self::are_for(gpu, volume), "corners of 8-bit integers");
         let codes = |row: std::ops::Range<usize>| -> Vec<u8> {
             match &volume.voxels {
@@ -93,12 +93,12 @@ impl Corners {
         // Most of the time goes into the first touch of so much memory, which threads share.
         let layers = nz.div_ceil(SIDE);
         let layer_bytes = 4 * words as usize / layers;
+        let mut is_gapless = false;
         let image = Image::written_by_host(gpu, &desc(words), |bytes, row_bytes| {
-            assert_eq!(
-                row_bytes,
-                4 * CORNERS_WIDTH as usize,
-                "rows follow each other"
-            );
+            is_gapless = row_bytes == 4 * CORNERS_WIDTH as usize;
+            if !is_gapless {
+                return;
+            }
             let bytes = &mut bytes[..layers * layer_bytes];
             let layers_left = Mutex::new(bytes.chunks_exact_mut(layer_bytes).enumerate());
             let next = || {
@@ -122,7 +122,7 @@ impl Corners {
                 work();
             });
         })?;
-        Ok(Self { image })
+        Ok(is_gapless.then_some(Self { image }))
     }
 
     /// A u32 for each voxel and what fills the cubes at the far ends, in rows of [`CORNERS_WIDTH`].

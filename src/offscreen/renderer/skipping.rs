@@ -64,7 +64,7 @@ impl Renderer<'_> {
         for (made, volume) in there.zip(&self.volumes) {
             let is_one = made.bricks().len() == 1 && made.spline().is_none();
             if made.corners().is_none() && is_one && Corners::are_for(gpu, volume) {
-                let Some(corners) = if_it_fits(Corners::new(gpu, volume))? else {
+                let Some(corners) = if_it_fits(Corners::new(gpu, volume))?.flatten() else {
                     continue;
                 };
                 let on = Arc::clone(gpu);

@@ -1,0 +1,20 @@
+// On to the next sample that may count, by what the mode says of the cells on the way (`empty_room`): a loop of its own, so
+// that rays that are walked side by side skip and sample together.
+
+#import empty_space
+
+fn skipped(so_far: Accumulator, walk: Walk, start: i32) -> i32 {
+    var k = start;
+    loop {
+        if !may_skip(walk, k) {
+            break;
+        }
+        let cell = cell_of(walk, k);
+        let room = empty_room(so_far, cell);
+        if room == 0 {
+            break;
+        }
+        k = after_room(walk, k, cell, room);
+    }
+    return k;
+}
