@@ -14,6 +14,7 @@
 //! | 4 | [`scene`], [`offscreen`] | a scene to a [`picture::Picture`]; the only place that submits and waits |
 //! | 4 | [`embed`] | a volume in a host's frames |
 //! | 5 | `cli` | words to scenes, errors to exit codes |
+//! | 6 | `capi` | the same as [`embed`], for C |
 //!
 //! # Spaces
 //!
@@ -185,6 +186,8 @@
 
 pub mod blue_noise;
 pub mod camera;
+#[cfg(feature = "capi")]
+pub mod capi;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod color;

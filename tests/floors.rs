@@ -19,6 +19,7 @@ const FLOORS: &[&[&str]] = &[
     &["scene"],
     &["offscreen"],
     &["cli"],
+    &["capi"],
 ];
 
 /// Modules that hold data and must build where there is no Vulkan.

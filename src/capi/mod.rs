@@ -1,0 +1,68 @@
+//! The interface for C: `include/stratavox.h`.
+//!
+//! The names here are those of C, and the comments of what is exported are those of the header, which is made of them.
+//! [`crate::embed`] does the work. Each function:
+//!
+//! - takes handles ([`handles`]) and structures that say how long they are ([`structure`]), in which zero is the default;
+//! - gives a [`sv_status`] back, and writes a sentence where it fails ([`status`]);
+//! - never unwinds into C, and never uses a handle of something that is gone.
+//!
+//! What cannot be checked stands in `docs/c-interface.md`: pointers that lead nowhere, and Vulkan handles that are none.
+
+#![allow(non_camel_case_types, reason = "the names are those of C")]
+#![allow(
+    clippy::missing_safety_doc,
+    reason = "the comments are those of the header, for C, which has no unsafe"
+)]
+
+mod camera;
+mod device;
+mod failures;
+mod function;
+mod handles;
+mod images;
+mod pick;
+mod record;
+mod renderer;
+mod settings;
+mod status;
+mod structure;
+mod submit;
+mod volume;
+mod words;
+
+pub use camera::sv_camera;
+pub use device::*;
+pub use function::{
+    sv_color_point, sv_function, sv_function_create, sv_function_desc, sv_function_destroy,
+    sv_opacity_point,
+};
+pub use images::{sv_depth_image, sv_image_state, sv_target, sv_target_class};
+pub use pick::{sv_pick, sv_renderer_pick, sv_renderer_record_pick};
+pub use record::{
+    sv_renderer_draw, sv_renderer_draw_depth, sv_renderer_record, sv_renderer_record_into, sv_shot,
+};
+pub use renderer::{
+    sv_renderer, sv_renderer_create, sv_renderer_desc, sv_renderer_destroy, sv_renderer_resize,
+    sv_renderer_set_function, sv_renderer_set_settings, sv_renderer_set_volume,
+};
+pub use settings::{sv_clip_plane, sv_level, sv_light, sv_settings};
+pub use status::{sv_diagnostic, sv_status};
+pub use submit::{
+    sv_submission, sv_submitter, sv_submitter_create, sv_submitter_destroy, sv_submitter_submit,
+    sv_submitter_upload, sv_timeline_point,
+};
+pub use volume::{
+    sv_volume, sv_volume_create, sv_volume_desc, sv_volume_destroy, sv_volume_record_upload,
+    sv_volume_value_range,
+};
+pub use words::{
+    sv_camera_kind, sv_color_space, sv_filter, sv_lattice, sv_mode, sv_technique, sv_version,
+    sv_voxel_type,
+};
+
+/// The version of the library's interface: SV_ABI_VERSION of the header that it was built with. Threads: any.
+#[unsafe(no_mangle)]
+pub extern "C" fn sv_abi_version() -> u32 {
+    sv_version::SV_ABI_VERSION as u32
+}

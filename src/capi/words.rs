@@ -1,0 +1,214 @@
+//! Numbers of C for words of the library. Structures hold them as `uint32_t`: any number may stand there.
+
+use super::status::Failure;
+use crate::color::ColorSpace;
+use crate::technique::{Filter, Lattice, Mode, Technique};
+use crate::volume::VoxelType;
+
+/// Where samples lie.
+#[repr(u32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum sv_technique {
+    /// One ray a pixel, in a compute pass.
+    SV_TECHNIQUE_RAYCAST = 0,
+    /// Planes parallel to the picture, drawn and blended.
+    SV_TECHNIQUE_SLICES_3D = 1,
+    /// The volume's own slices along the axis that faces the eye most.
+    SV_TECHNIQUE_SLICES_2D = 2,
+}
+
+/// What is done with the samples of a ray.
+#[repr(u32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum sv_mode {
+    /// Emission and absorption.
+    SV_MODE_COMPOSITE = 0,
+    /// Maximum.
+    SV_MODE_MIP = 1,
+    /// Minimum.
+    SV_MODE_MINIP = 2,
+    /// Mean, weighted by length.
+    SV_MODE_AVERAGE = 3,
+    /// Integral of the value over world length.
+    SV_MODE_XRAY = 4,
+    /// First local maximum over a threshold, the maximum where there is none. Rays only.
+    SV_MODE_LMIP = 5,
+    /// Maximum of values that what lies before them fades. Rays only.
+    SV_MODE_ATTENUATED_MIP = 6,
+    /// Surfaces where the volume has the values of `levels`. Rays only.
+    SV_MODE_ISO = 7,
+    /// Emission and absorption in which a new maximum takes from what lies before it. Rays only.
+    SV_MODE_MIDA = 8,
+}
+
+/// How a value between voxel centres is made.
+#[repr(u32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum sv_filter {
+    /// Trilinear (bilinear in a 2D stack).
+    SV_FILTER_LINEAR = 0,
+    /// The voxel that the sample lies in.
+    SV_FILTER_NEAREST = 1,
+    /// The quadratic B-spline through the voxels.
+    SV_FILTER_QUADRATIC = 2,
+    /// The cubic B-spline through the voxels.
+    SV_FILTER_CUBIC = 3,
+    /// The quadratic B-spline with voxels as coefficients, which blurs.
+    SV_FILTER_QUADRATIC_SMOOTH = 4,
+    /// The cubic B-spline with voxels as coefficients, which blurs more.
+    SV_FILTER_CUBIC_SMOOTH = 5,
+    /// Catmull and Rom's cubic through the voxels.
+    SV_FILTER_CATMULL_ROM = 6,
+}
+
+/// Which samples rays take.
+#[repr(u32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum sv_lattice {
+    /// Equal steps from where the ray enters the volume.
+    SV_LATTICE_RAY = 0,
+    /// Where the ray meets the planes that SV_TECHNIQUE_SLICES_3D draws.
+    SV_LATTICE_PLANES = 1,
+    /// Equal steps after a first one that hangs on the pixel: grain in place of bands.
+    SV_LATTICE_JITTER = 2,
+}
+
+/// In which numbers colours are blended.
+#[repr(u32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum sv_color_space {
+    /// Linear light: for targets of floats and of `SRGB` formats.
+    SV_COLOR_SPACE_LINEAR = 0,
+    /// sRGB numbers as they are: for `UNORM` targets that are shown as they are.
+    SV_COLOR_SPACE_DISPLAY = 1,
+}
+
+/// The type of stored voxels.
+#[repr(u32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum sv_voxel_type {
+    /// 8 bits, unsigned.
+    SV_VOXEL_U8 = 0,
+    /// 8 bits, signed.
+    SV_VOXEL_I8 = 1,
+    /// 16 bits, unsigned.
+    SV_VOXEL_U16 = 2,
+    /// 16 bits, signed.
+    SV_VOXEL_I16 = 3,
+    /// 32 bits, unsigned. Kept as F32.
+    SV_VOXEL_U32 = 4,
+    /// 32 bits, signed. Kept as F32.
+    SV_VOXEL_I32 = 5,
+    /// Half precision.
+    SV_VOXEL_F16 = 6,
+    /// Single precision.
+    SV_VOXEL_F32 = 7,
+    /// Double precision. Kept as F32.
+    SV_VOXEL_F64 = 8,
+}
+
+/// What a camera is made of.
+#[repr(u32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum sv_camera_kind {
+    /// All of the volume from the front, in perspective.
+    SV_CAMERA_FITTED = 0,
+    /// `eye`, `target` and `up`.
+    SV_CAMERA_LOOK_AT = 1,
+    /// `view_from_world` and `clip_from_view`.
+    SV_CAMERA_MATRICES = 2,
+}
+
+/// The version of this interface.
+#[repr(u32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum sv_version {
+    /// Of this header: compare it with sv_abi_version.
+    SV_ABI_VERSION = 1,
+}
+
+pub(super) const TECHNIQUES: [Technique; 3] =
+    [Technique::Raycast, Technique::Slices3d, Technique::Slices2d];
+
+pub(super) const MODES: [Mode; 9] = [
+    Mode::Composite,
+    Mode::Mip,
+    Mode::Minip,
+    Mode::Average,
+    Mode::Xray,
+    Mode::Lmip,
+    Mode::AttenuatedMip,
+    Mode::Iso,
+    Mode::Mida,
+];
+
+pub(super) const FILTERS: [Filter; 7] = [
+    Filter::Linear,
+    Filter::Nearest,
+    Filter::Quadratic,
+    Filter::Cubic,
+    Filter::QuadraticSmooth,
+    Filter::CubicSmooth,
+    Filter::CatmullRom,
+];
+
+pub(super) const LATTICES: [Lattice; 3] = [Lattice::Ray, Lattice::Planes, Lattice::Jitter];
+
+pub(super) const COLOR_SPACES: [ColorSpace; 2] = [ColorSpace::Linear, ColorSpace::Display];
+
+pub(super) const VOXEL_TYPES: [VoxelType; 9] = [
+    VoxelType::U8,
+    VoxelType::I8,
+    VoxelType::U16,
+    VoxelType::I16,
+    VoxelType::U32,
+    VoxelType::I32,
+    VoxelType::F16,
+    VoxelType::F32,
+    VoxelType::F64,
+];
+
+/// The word of a number.
+pub(super) fn word<T: Copy>(name: &str, words: &[T], number: u32) -> Result<T, Failure> {
+    words.get(number as usize).copied().ok_or_else(|| {
+        let last = words.len() - 1;
+        Failure::argument(format!("{name}: wanted 0 to {last}, found {number}"))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_of_c_is_the_word_of_the_same_name() {
+        use sv_filter::*;
+        use sv_mode::*;
+        use sv_voxel_type::*;
+        assert_eq!(MODES[SV_MODE_MIDA as usize], Mode::Mida);
+        assert_eq!(MODES[SV_MODE_ISO as usize], Mode::Iso);
+        assert_eq!(MODES[SV_MODE_XRAY as usize], Mode::Xray);
+        assert_eq!(
+            TECHNIQUES[sv_technique::SV_TECHNIQUE_SLICES_2D as usize],
+            Technique::Slices2d
+        );
+        assert_eq!(FILTERS[SV_FILTER_CATMULL_ROM as usize], Filter::CatmullRom);
+        assert_eq!(FILTERS[SV_FILTER_CUBIC as usize], Filter::Cubic);
+        assert_eq!(VOXEL_TYPES[SV_VOXEL_F64 as usize], VoxelType::F64);
+        assert_eq!(VOXEL_TYPES[SV_VOXEL_I16 as usize], VoxelType::I16);
+    }
+
+    #[test]
+    fn zero_is_what_the_library_takes_by_default() {
+        let zero = |_: ()| {
+            (
+                TECHNIQUES[0],
+                MODES[0],
+                FILTERS[0],
+                LATTICES[0],
+                COLOR_SPACES[0],
+            )
+        };
+        assert_eq!(zero(()), Default::default());
+    }
+}
