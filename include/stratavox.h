@@ -1,0 +1,946 @@
+/* stratavox: volumes drawn by a host's own Vulkan device. See docs/c-interface.md.
+ *
+ * Made by cbindgen of src/capi; do not edit.
+ *
+ * Rules of all of it:
+ *  - No header of Vulkan is needed: dispatchable handles are pointers, others are uint64_t, enums are plain numbers.
+ *  - Each structure begins with its own size and `next`, which is NULL. All else may be zero, which is the default.
+ *  - Each function that can fail returns an sv_status, and writes what is wrong to `diagnostic`, which may be NULL.
+ *  - A handle of something that is destroyed is an error and never more, and so is one of another kind.
+ *  - What is destroyed first does not matter: what still needs it keeps it.
+ *  - Nothing is submitted, waited for or destroyed that is the host's, but for what sv_submitter_* is asked to submit.
+ */
+
+#ifndef STRATAVOX_H
+#define STRATAVOX_H
+
+#include <stdint.h>
+
+// How a call ended. What failed has changed nothing, unless its function says otherwise.
+enum sv_status
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // Done.
+    SV_OK = 0,
+    // An argument that can never do: a null pointer, a stale handle, a number out of its range.
+    SV_E_ARGUMENT = -1,
+    // Nothing wrong with it, but neither the library nor this device can do it.
+    SV_E_UNSUPPORTED = -2,
+    // More than a limit allows, of the device or of the library: see `wanted` and `allowed`.
+    SV_E_LIMIT = -3,
+    // No memory, of the host or of the device.
+    SV_E_MEMORY = -4,
+    // The device is lost. What is on it can only be destroyed, which stays safe.
+    SV_E_DEVICE_LOST = -5,
+    // Right, but not now: something else comes first, or another thread uses the object.
+    SV_E_STATE = -6,
+    // A structure of another version of this header: see `struct_size` and `next`.
+    SV_E_VERSION = -7,
+    // A mistake of the library's own. Please report it with the text.
+    SV_E_INTERNAL = -8,
+    // The driver refused, and gave no better reason than its number, which the text has.
+    SV_E_DRIVER = -9,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum sv_status sv_status;
+#else
+typedef int32_t sv_status;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// The version of this interface.
+enum sv_version
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // Of this header: compare it with sv_abi_version.
+    SV_ABI_VERSION = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum sv_version sv_version;
+#else
+typedef uint32_t sv_version;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// Features of the device, by their names in the Vulkan specification.
+enum sv_feature
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // Required.
+    SV_FEATURE_DYNAMIC_RENDERING = 1,
+    // Required.
+    SV_FEATURE_SYNCHRONIZATION2 = 2,
+    // Required of `sv_submitter_create` alone.
+    SV_FEATURE_TIMELINE_SEMAPHORE = 4,
+    // Of use, no more.
+    SV_FEATURE_ROBUST_BUFFER_ACCESS = 8,
+    // Of use, no more.
+    SV_FEATURE_ROBUST_IMAGE_ACCESS = 16,
+    // Of use, no more.
+    SV_FEATURE_SHADER_STORAGE_IMAGE_EXTENDED_FORMATS = 32,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum sv_feature sv_feature;
+#else
+typedef uint32_t sv_feature;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// Where samples lie.
+enum sv_technique
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // One ray a pixel, in a compute pass.
+    SV_TECHNIQUE_RAYCAST = 0,
+    // Planes parallel to the picture, drawn and blended.
+    SV_TECHNIQUE_SLICES_3D = 1,
+    // The volume's own slices along the axis that faces the eye most.
+    SV_TECHNIQUE_SLICES_2D = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum sv_technique sv_technique;
+#else
+typedef uint32_t sv_technique;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// What is done with the samples of a ray.
+enum sv_mode
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // Emission and absorption.
+    SV_MODE_COMPOSITE = 0,
+    // Maximum.
+    SV_MODE_MIP = 1,
+    // Minimum.
+    SV_MODE_MINIP = 2,
+    // Mean, weighted by length.
+    SV_MODE_AVERAGE = 3,
+    // Integral of the value over world length.
+    SV_MODE_XRAY = 4,
+    // First local maximum over a threshold, the maximum where there is none. Rays only.
+    SV_MODE_LMIP = 5,
+    // Maximum of values that what lies before them fades. Rays only.
+    SV_MODE_ATTENUATED_MIP = 6,
+    // Surfaces where the volume has the values of `levels`. Rays only.
+    SV_MODE_ISO = 7,
+    // Emission and absorption in which a new maximum takes from what lies before it. Rays only.
+    SV_MODE_MIDA = 8,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum sv_mode sv_mode;
+#else
+typedef uint32_t sv_mode;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// How a value between voxel centres is made.
+enum sv_filter
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // Trilinear (bilinear in a 2D stack).
+    SV_FILTER_LINEAR = 0,
+    // The voxel that the sample lies in.
+    SV_FILTER_NEAREST = 1,
+    // The quadratic B-spline through the voxels.
+    SV_FILTER_QUADRATIC = 2,
+    // The cubic B-spline through the voxels.
+    SV_FILTER_CUBIC = 3,
+    // The quadratic B-spline with voxels as coefficients, which blurs.
+    SV_FILTER_QUADRATIC_SMOOTH = 4,
+    // The cubic B-spline with voxels as coefficients, which blurs more.
+    SV_FILTER_CUBIC_SMOOTH = 5,
+    // Catmull and Rom's cubic through the voxels.
+    SV_FILTER_CATMULL_ROM = 6,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum sv_filter sv_filter;
+#else
+typedef uint32_t sv_filter;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// Which samples rays take.
+enum sv_lattice
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // Equal steps from where the ray enters the volume.
+    SV_LATTICE_RAY = 0,
+    // Where the ray meets the planes that SV_TECHNIQUE_SLICES_3D draws.
+    SV_LATTICE_PLANES = 1,
+    // Equal steps after a first one that hangs on the pixel: grain in place of bands.
+    SV_LATTICE_JITTER = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum sv_lattice sv_lattice;
+#else
+typedef uint32_t sv_lattice;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// In which numbers colours are blended.
+enum sv_color_space
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // Linear light: for targets of floats and of `SRGB` formats.
+    SV_COLOR_SPACE_LINEAR = 0,
+    // sRGB numbers as they are: for `UNORM` targets that are shown as they are.
+    SV_COLOR_SPACE_DISPLAY = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum sv_color_space sv_color_space;
+#else
+typedef uint32_t sv_color_space;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// The type of stored voxels.
+enum sv_voxel_type
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // 8 bits, unsigned.
+    SV_VOXEL_U8 = 0,
+    // 8 bits, signed.
+    SV_VOXEL_I8 = 1,
+    // 16 bits, unsigned.
+    SV_VOXEL_U16 = 2,
+    // 16 bits, signed.
+    SV_VOXEL_I16 = 3,
+    // 32 bits, unsigned. Kept as F32.
+    SV_VOXEL_U32 = 4,
+    // 32 bits, signed. Kept as F32.
+    SV_VOXEL_I32 = 5,
+    // Half precision.
+    SV_VOXEL_F16 = 6,
+    // Single precision.
+    SV_VOXEL_F32 = 7,
+    // Double precision. Kept as F32.
+    SV_VOXEL_F64 = 8,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum sv_voxel_type sv_voxel_type;
+#else
+typedef uint32_t sv_voxel_type;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// What a camera is made of.
+enum sv_camera_kind
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // All of the volume from the front, in perspective.
+    SV_CAMERA_FITTED = 0,
+    // `eye`, `target` and `up`.
+    SV_CAMERA_LOOK_AT = 1,
+    // `view_from_world` and `clip_from_view`.
+    SV_CAMERA_MATRICES = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum sv_camera_kind sv_camera_kind;
+#else
+typedef uint32_t sv_camera_kind;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// What any function of Vulkan is cast to.
+typedef void (*sv_vk_function)(void);
+
+// `vkGetInstanceProcAddr`, with `VkInstance` as a plain pointer: cast yours to it.
+typedef sv_vk_function (*sv_get_instance_proc_addr)(void *instance, const char *name);
+
+// Limits that are stricter than those of the device. 0 is no limit.
+typedef struct sv_limits {
+    // `sizeof(sv_limits)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // `maxImageDimension2D`.
+    uint32_t max_image_dimension_2d;
+    // `maxImageDimension3D`: larger volumes lie in bricks.
+    uint32_t max_image_dimension_3d;
+    // `maxImageArrayLayers`.
+    uint32_t max_image_array_layers;
+    // `maxStorageBufferRange`.
+    uint32_t max_storage_buffer_range;
+    // `maxMemoryAllocationSize`.
+    uint64_t max_allocation_bytes;
+    // `maxMemoryAllocationCount`.
+    uint64_t max_allocations;
+    // The size of the largest memory heap.
+    uint64_t max_heap_bytes;
+} sv_limits;
+
+// A device of the host's, and what is enabled on it: Vulkan cannot be asked for that.
+typedef struct sv_host_device {
+    // `sizeof(sv_host_device)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // The `apiVersion` that the instance was made with, 1.3 or later. 0 is 1.3.
+    uint32_t api_version;
+    // The family of the queues that recordings are submitted to: with graphics and compute.
+    uint32_t queue_family;
+    // `VkInstance`.
+    void *instance;
+    // `VkPhysicalDevice`.
+    void *physical_device;
+    // `VkDevice`. It lives longer than the sv_device.
+    void *device;
+    // Every function of Vulkan is reached through it, and no loader is linked.
+    sv_get_instance_proc_addr get_instance_proc_addr;
+    // Bits of sv_feature that are enabled on the device.
+    uint32_t features;
+    // Not 0: the instance has `VK_EXT_debug_utils`, and objects get names.
+    uint32_t has_debug_utils;
+    // Stricter limits, or NULL.
+    const struct sv_limits *limits;
+    // What sv_device_pipeline_cache gave in an earlier run, or NULL. What another driver made is ignored.
+    const void *pipeline_cache;
+    // Bytes of it.
+    uint64_t pipeline_cache_bytes;
+    // Called once, from the call that notices that the device is lost; or NULL. It may destroy nothing.
+    void (*device_lost)(void *user, const char *text);
+    // What `device_lost` is called with.
+    void *user;
+} sv_host_device;
+
+// A device of the host's, and all that is made on it. 0 is none.
+typedef uint64_t sv_device;
+
+// What went wrong: memory of the caller's, written by calls that fail.
+typedef struct sv_diagnostic {
+    // `sizeof(sv_diagnostic)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // What the call returned.
+    sv_status status;
+    // What was wanted, where a limit was in the way; else 0.
+    uint64_t wanted;
+    // What the limit allows.
+    uint64_t allowed;
+    // What was being done, wanted and found: UTF-8 that ends with a zero, cut where it is longer.
+    char text[256];
+} sv_diagnostic;
+
+// Memory of a device that is the library's.
+typedef struct sv_memory {
+    // `sizeof(sv_memory)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // Bytes in use.
+    uint64_t used_bytes;
+    // Bytes taken from the driver, in use or kept for later.
+    uint64_t reserved_bytes;
+    // The most bytes that were taken at once.
+    uint64_t peak_bytes;
+    // Vulkan objects that exist, those that wait for sv_device_retire among them.
+    uint64_t vulkan_objects;
+    // Handles that are not destroyed yet.
+    uint64_t handles;
+} sv_memory;
+
+// Colour at a value.
+typedef struct sv_color_point {
+    // After rescale.
+    double value;
+    // sRGB numbers from 0 to 1.
+    double srgb[3];
+} sv_color_point;
+
+// Opacity at a value.
+typedef struct sv_opacity_point {
+    // After rescale.
+    double value;
+    // Per reference length, 0 to 1.
+    double opacity;
+} sv_opacity_point;
+
+// A transfer function by control points in order of their values, constant beyond the ends.
+typedef struct sv_function_desc {
+    // `sizeof(sv_function_desc)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // None: black.
+    const struct sv_color_point *colors;
+    // How many there are, at most 4096.
+    uint64_t color_count;
+    // None: transparent.
+    const struct sv_opacity_point *opacities;
+    // How many there are, at most 4096.
+    uint64_t opacity_count;
+    // The world length that opacities are for. 0: the smallest voxel spacing.
+    double reference_length;
+    // Not 0: from one point to the next the value of the first holds. Else it goes straight.
+    uint32_t is_stepped;
+} sv_function_desc;
+
+// A transfer function. 0 is a ramp of greys over the volume's range.
+typedef uint64_t sv_function;
+
+// Pictures of one volume in a host's frames. 0 is none.
+typedef uint64_t sv_renderer;
+
+// What lies under a pixel of a picture by rays: where a composite has become half opaque, the first surface, the place
+// of a maximum.
+typedef struct sv_pick {
+    // `sizeof(sv_pick)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // 0: nothing is there, and all that follows is 0.
+    uint32_t is_hit;
+    // 0: composites have no value.
+    uint32_t has_value;
+    // 0: projecting modes have no colour yet.
+    uint32_t has_color;
+    // 0.
+    uint32_t reserved;
+    // World length from where the ray starts.
+    double distance;
+    // The place in the world.
+    double position[3];
+    // The projected value, or that of the surface.
+    double value;
+    // Premultiplied colour and alpha.
+    float color[4];
+} sv_pick;
+
+// Where the eye is and what it sees, in the world. All zero: all of the volume from the front.
+typedef struct sv_camera {
+    // `sizeof(sv_camera)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // sv_camera_kind.
+    uint32_t kind;
+    // SV_CAMERA_MATRICES, not 0: the larger of two depths is nearer ("reverse Z").
+    uint32_t is_reversed;
+    // SV_CAMERA_LOOK_AT: where rays start.
+    double eye[3];
+    // SV_CAMERA_LOOK_AT: a point in the middle of the picture.
+    double target[3];
+    // SV_CAMERA_LOOK_AT: what points up in the picture. All zero: z.
+    double up[3];
+    // SV_CAMERA_LOOK_AT in perspective: the full vertical angle. 0 is 30.
+    double fov_degrees;
+    // SV_CAMERA_LOOK_AT: the world height of the picture of parallel rays. 0: perspective.
+    double view_height;
+    // SV_CAMERA_LOOK_AT: divides the picture plane. 0 is 1.
+    double zoom;
+    // SV_CAMERA_MATRICES: a turn and a shift, as columns.
+    double view_from_world[16];
+    // SV_CAMERA_MATRICES: perspective or orthographic, as columns, to Vulkan's clip space: y down, depth 0 to 1.
+    double clip_from_view[16];
+} sv_camera;
+
+// One frame of the host's.
+typedef struct sv_shot {
+    // `sizeof(sv_shot)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // The eye; NULL: all of the volume from the front.
+    const struct sv_camera *camera;
+    // Which of the frames in flight, from 0: nothing unfinished was recorded with this number.
+    uint32_t frame;
+    // 0.
+    uint32_t reserved;
+} sv_shot;
+
+// The state of an image at one moment. All zero of `before`: what it holds is given up.
+// All zero of `after`: as rendering leaves it, in `VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL`.
+typedef struct sv_image_state {
+    // `VkImageLayout`.
+    uint32_t layout;
+    // Not 0: `queue_family` owns the image before or after, and ownership goes from one to the other.
+    uint32_t has_queue_family;
+    // Bits of `VkPipelineStageFlags2`.
+    uint64_t stage;
+    // Bits of `VkAccessFlags2`.
+    uint64_t access;
+    // Of the queues that own the image.
+    uint32_t queue_family;
+    // 0.
+    uint32_t reserved;
+} sv_image_state;
+
+// An image of the host's that is drawn into: one level, one layer, one sample.
+typedef struct sv_target {
+    // `sizeof(sv_target)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // `VkImage`.
+    uint64_t image;
+    // `VkImageView` of it, 2D.
+    uint64_t view;
+    // `VkFormat` of the view.
+    uint32_t format;
+    // Pixels across.
+    uint32_t width;
+    // Pixels down.
+    uint32_t height;
+    // Not 0: `clear_color` goes over all of it first.
+    uint32_t is_cleared;
+    // Red, green, blue and alpha, premultiplied.
+    float clear_color[4];
+    // How it arrives.
+    struct sv_image_state before;
+    // How it leaves.
+    struct sv_image_state after;
+} sv_target;
+
+// A volume on a device. 0 is none.
+typedef uint64_t sv_volume;
+
+// What is behind it is cut away: world points with `normal . x < offset`.
+typedef struct sv_clip_plane {
+    // Of any length but 0.
+    double normal[3];
+    // See above.
+    double offset;
+} sv_clip_plane;
+
+// A surface of SV_MODE_ISO.
+typedef struct sv_level {
+    // The value that the volume has there.
+    double value;
+    // Its colour before light, in sRGB numbers from 0 to 1.
+    double srgb[3];
+    // What it takes of the light from behind, 0 to 1.
+    double opacity;
+} sv_level;
+
+// A light that is infinitely far away.
+typedef struct sv_light {
+    // The way to it in the world, of any length but 0.
+    double towards[3];
+    // sRGB numbers from 0 to 1.
+    double srgb[3];
+} sv_light;
+
+// What to compute. All zero: a composite by rays, one sample a voxel.
+typedef struct sv_settings {
+    // `sizeof(sv_settings)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // sv_technique.
+    uint32_t technique;
+    // sv_mode.
+    uint32_t mode;
+    // sv_filter.
+    uint32_t filter;
+    // sv_lattice.
+    uint32_t lattice;
+    // sv_color_space.
+    uint32_t color_space;
+    // Not 0: composites count what lies between two samples too.
+    uint32_t is_preintegrated;
+    // Not 0: samples that cannot matter are taken as well. The picture is the same, and slower.
+    uint32_t keeps_empty_space;
+    // Not 0: MIP and MinIP of the trilinear field itself, not of samples.
+    uint32_t has_exact_maximum;
+    // Samples a voxel along a ray. 0 is 1.
+    double samples_per_voxel;
+    // Rays end where less than this part of the light behind comes through, 0 to 1. 0: never.
+    double termination;
+    // The corner of the box to keep with the smallest voxel coordinates, which go from 0 to the number of voxels.
+    double crop_min[3];
+    // The other corner. Both zero: all of the volume.
+    double crop_max[3];
+    // Planes that cut.
+    const struct sv_clip_plane *clip_planes;
+    // How many there are.
+    uint64_t clip_plane_count;
+    // Surfaces of SV_MODE_ISO.
+    const struct sv_level *levels;
+    // How many there are.
+    uint64_t level_count;
+    // Not 0: composites and surfaces are lit.
+    uint32_t is_lit;
+    // Not 0: `lmip_threshold` counts. Else SV_MODE_LMIP is a MIP.
+    uint32_t has_lmip_threshold;
+    // Part of the colour that needs no light. This and the next three all zero: 0.1, 0.7, 0.2 and 10.
+    double ambient;
+    // Part of the colour of a surface across the light.
+    double diffuse;
+    // White that a surface mirrors.
+    double specular;
+    // How sharply it mirrors. 0 is 10.
+    double shininess;
+    // Lights. None: a white one, carried by the eye.
+    const struct sv_light *lights;
+    // How many there are.
+    uint64_t light_count;
+    // The values that count as 0 and as 1 in SV_MODE_MIDA and SV_MODE_ATTENUATED_MIP. Both zero: the volume's range.
+    double unit_values[2];
+    // SV_MODE_LMIP: the first local maximum over it is shown.
+    double lmip_threshold;
+    // SV_MODE_MIDA: from -1, a composite, to 1, a MIP.
+    double mida_gamma;
+    // SV_MODE_ATTENUATED_MIP: how fast values fade. 0 is 16.
+    double attenuation;
+    // Modes that show one place of a ray: how much darker they are at its far end, 0 to 1.
+    double depth_cue;
+    // SV_LATTICE_JITTER: another pattern.
+    uint32_t jitter_seed;
+    // SV_LATTICE_JITTER: the number of the picture in a film.
+    uint32_t jitter_frame;
+} sv_settings;
+
+// What is drawn into, as far as pipelines have to know.
+typedef struct sv_target_class {
+    // `sizeof(sv_target_class)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // `VkFormat` of the one color target.
+    uint32_t color_format;
+    // Samples of each target, as `VkSampleCountFlagBits`. 0 is 1.
+    uint32_t samples;
+    // `VkFormat` of the depth attachment, or 0 where there is none.
+    uint32_t depth_format;
+    // Not 0: the same image is the stencil attachment too.
+    uint32_t has_stencil;
+    // Not 0: the larger of two depths is nearer.
+    uint32_t is_depth_reversed;
+    // Of `render_pass`, with the color target as its first color attachment.
+    uint32_t subpass;
+    // `VkRenderPass`, or 0 for dynamic rendering.
+    uint64_t render_pass;
+} sv_target_class;
+
+// A depth buffer that rays read: 2D, one level, one layer, one sample, with `VK_IMAGE_USAGE_SAMPLED_BIT`.
+typedef struct sv_depth_image {
+    // `VkImageView` of its depth aspect.
+    uint64_t view;
+    // `VkImageLayout` that it is in when a recording runs, visible to sampled reads of compute shaders.
+    uint32_t layout;
+    // Pixels across.
+    uint32_t width;
+    // Pixels down.
+    uint32_t height;
+    // 0.
+    uint32_t reserved;
+} sv_depth_image;
+
+// What a renderer is made for.
+typedef struct sv_renderer_desc {
+    // `sizeof(sv_renderer_desc)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // Uploaded, with settings of the same kind.
+    sv_volume volume;
+    // 0: a ramp of greys over the volume's range.
+    sv_function function;
+    // What to compute, or NULL.
+    const struct sv_settings *settings;
+    // What is drawn into.
+    const struct sv_target_class *target;
+    // Pixels across.
+    uint32_t width;
+    // Pixels down.
+    uint32_t height;
+    // Frames of the host that may be unfinished at once, at most 64. 0 is 1.
+    uint32_t frames_in_flight;
+    // Not 0: what the host has drawn hides the volume behind it. Cameras are SV_CAMERA_MATRICES then.
+    uint32_t has_host_depth;
+    // Not 0: sv_renderer_draw_depth will be called. Cameras are SV_CAMERA_MATRICES then.
+    uint32_t gives_depth;
+    // 0.
+    uint32_t reserved;
+    // With `has_host_depth` and rays: the host's depth, one image for all frames in flight or one for each.
+    const struct sv_depth_image *depth_images;
+    // How many there are.
+    uint64_t depth_image_count;
+} sv_renderer_desc;
+
+// Command buffers for frames that the library submits. 0 is none.
+typedef uint64_t sv_submitter;
+
+// A timeline semaphore of the host's, and one of its values.
+typedef struct sv_timeline_point {
+    // `VkSemaphore`, of type timeline.
+    uint64_t semaphore;
+    // Its value.
+    uint64_t value;
+} sv_timeline_point;
+
+// When a submission begins and what it reaches.
+typedef struct sv_submission {
+    // `sizeof(sv_submission)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // `VkQueue`, of the device's family.
+    void *queue;
+    // Called before the queue is used, or NULL where nobody else uses it. It calls no function of this header.
+    void (*lock)(void *user);
+    // Called after that; NULL where `lock` is.
+    void (*unlock)(void *user);
+    // What both are called with.
+    void *user;
+    // It begins when all of them are reached.
+    const struct sv_timeline_point *waits;
+    // How many there are.
+    uint64_t wait_count;
+    // All of them are reached when it is done.
+    const struct sv_timeline_point *signals;
+    // How many there are.
+    uint64_t signal_count;
+} sv_submission;
+
+// Voxels, x fastest, then y, then z. `value = slope stored + intercept`.
+typedef struct sv_volume_desc {
+    // `sizeof(sv_volume_desc)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // How many there are along x, y and z: 1 or more of each.
+    uint32_t dims[3];
+    // sv_voxel_type, in the order of bytes of this machine.
+    uint32_t voxel_type;
+    // The voxels, without gaps. They are copied before the call returns. Floats that are not finite hold no data.
+    const void *voxels;
+    // Bytes of them.
+    uint64_t voxel_bytes;
+    // Voxel space, in which voxel (i, j, k) covers [i, i + 1) and so on, to the world: columns of a matrix, the last row
+    // of which is (0, 0, 0, 1). All zero: the two are the same.
+    double world_from_voxel[16];
+    // 0 is 1.
+    double slope;
+    // Value of a stored 0.
+    double intercept;
+    // Not 0: stored numbers like `fill` hold no data.
+    uint32_t has_fill;
+    // What stands where there is no data.
+    double fill;
+    // The settings of the renderers that will draw it, of which technique, filter, light and empty space count; or NULL.
+    const struct sv_settings *settings;
+} sv_volume_desc;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+// The version of the library's interface: SV_ABI_VERSION of the header that it was built with. Threads: any.
+uint32_t sv_abi_version(void);
+
+// Takes a host's device into use. It stays the host's, and only what is made here is destroyed by us.
+//
+// The handles belong together; by sv_device_destroy, the device has finished everything that was recorded with them.
+// Threads: any.
+sv_status sv_device_from_host(const struct sv_host_device *host, sv_device *device, struct sv_diagnostic *diagnostic);
+
+// Destroys everything that was made on the device, in the right order, and what waits for sv_device_retire. Handles of
+// all of it are stale from now on. The `VkDevice` stays, and has finished all that was recorded here, or is lost.
+// Threads: no other call on the device or on what is made on it.
+sv_status sv_device_destroy(sv_device device, struct sv_diagnostic *diagnostic);
+
+// Says that what is recorded from now on is done when the host's count of submissions (or its timeline) reaches
+// `value`. What is destroyed later waits for it. Values only rise. Threads: any.
+sv_status sv_device_announce(sv_device device, uint64_t value, struct sv_diagnostic *diagnostic);
+
+// Frees what was destroyed and waited for `completed` or less. The device has finished all that was recorded under
+// announced values up to it. Threads: any.
+sv_status sv_device_retire(sv_device device, uint64_t completed, struct sv_diagnostic *diagnostic);
+
+// How much memory the library uses on the device. Threads: any.
+sv_status sv_device_memory(sv_device device, struct sv_memory *memory, struct sv_diagnostic *diagnostic);
+
+// How many pipelines were made so far: after the last sv_renderer_create it stays. Threads: any.
+sv_status sv_device_pipelines_made(sv_device device, uint32_t *count, struct sv_diagnostic *diagnostic);
+
+// What the driver has compiled so far, for sv_host_device of a later run. With `data` NULL, `bytes` is set to what there
+// is; else as many bytes are written, where `bytes` says that there is room for them. Threads: any.
+sv_status sv_device_pipeline_cache(sv_device device,
+                                   uint64_t *bytes,
+                                   void *data,
+                                   struct sv_diagnostic *diagnostic);
+
+// Takes control points in. Nothing of it lies on the device. Threads: any.
+sv_status sv_function_create(sv_device device,
+                             const struct sv_function_desc *desc,
+                             sv_function *function,
+                             struct sv_diagnostic *diagnostic);
+
+// Destroys it. Renderers that were made with it have a copy. Threads: any.
+sv_status sv_function_destroy(sv_function function, struct sv_diagnostic *diagnostic);
+
+// Records the copy of what lies under a pixel, for sv_renderer_pick when the frame is done.
+// As sv_renderer_record, after it.
+sv_status sv_renderer_record_pick(sv_renderer renderer,
+                                  void *command_buffer,
+                                  uint32_t frame,
+                                  uint32_t x,
+                                  uint32_t y,
+                                  struct sv_diagnostic *diagnostic);
+
+// What lay under a pixel of a frame that is done, for which sv_renderer_record_pick was recorded with the same pixel.
+// Threads: one at a time for one renderer.
+sv_status sv_renderer_pick(sv_renderer renderer,
+                           uint32_t frame,
+                           uint32_t x,
+                           uint32_t y,
+                           struct sv_pick *pick,
+                           struct sv_diagnostic *diagnostic);
+
+// Level A, first half: records all of a frame that lies outside of the host's rendering. It submits nothing, waits for
+// nothing and makes no Vulkan object.
+//
+// `command_buffer` (`VkCommandBuffer`) is recording, outside rendering, for a queue of the device's family, and is
+// submitted in the order in which it was recorded. Depth images are in the layout that was said.
+// Threads: one at a time for one renderer; others beside it.
+sv_status sv_renderer_record(sv_renderer renderer,
+                             void *command_buffer,
+                             const struct sv_shot *shot,
+                             struct sv_diagnostic *diagnostic);
+
+// Level A, second half: draws what was recorded for `frame` over what the host has drawn. Bound pipeline, descriptor
+// set 0, viewport and scissor are ours afterwards.
+//
+// `command_buffer` is inside rendering to a target of the renderer's class and size, after sv_renderer_record.
+// Threads: one at a time for one renderer.
+sv_status sv_renderer_draw(sv_renderer renderer,
+                           void *command_buffer,
+                           uint32_t frame,
+                           struct sv_diagnostic *diagnostic);
+
+// Writes the depth of a picture by rays into the depth attachment, where it is nearer than what is there. Of composites
+// it is where they become half opaque. As sv_renderer_draw, and depth may be written; wants `gives_depth`.
+sv_status sv_renderer_draw_depth(sv_renderer renderer,
+                                 void *command_buffer,
+                                 uint32_t frame,
+                                 struct sv_diagnostic *diagnostic);
+
+// Level B: sv_renderer_record and sv_renderer_draw into an image that arrives and leaves as `target` says.
+// As sv_renderer_record; the image lives until `command_buffer` has run.
+sv_status sv_renderer_record_into(sv_renderer renderer,
+                                  void *command_buffer,
+                                  const struct sv_shot *shot,
+                                  const struct sv_target *target,
+                                  struct sv_diagnostic *diagnostic);
+
+// Makes all that frames of that size will need: nothing is compiled later.
+// Threads: any; several at once make several renderers.
+sv_status sv_renderer_create(sv_device device,
+                             const struct sv_renderer_desc *desc,
+                             sv_renderer *renderer,
+                             struct sv_diagnostic *diagnostic);
+
+// Frames of another size, or with other depth images, from now on. Nothing waits; what frames in flight use is freed by
+// sv_device_retire. Threads: one at a time for one renderer.
+sv_status sv_renderer_resize(sv_renderer renderer,
+                             uint32_t width,
+                             uint32_t height,
+                             const struct sv_depth_image *depth_images,
+                             uint64_t depth_image_count,
+                             struct sv_diagnostic *diagnostic);
+
+// Another transfer function from the next recording on; 0 is the ramp of greys. It may be called each frame: nothing is
+// compiled, nothing waits. Threads: one at a time for one renderer.
+sv_status sv_renderer_set_function(sv_renderer renderer, sv_function function, struct sv_diagnostic *diagnostic);
+
+// Other numbers in the settings from the next recording on: steps, crops, planes, levels, lights. What needs other
+// pipelines is refused. Threads: one at a time for one renderer.
+sv_status sv_renderer_set_settings(sv_renderer renderer,
+                                   const struct sv_settings *settings,
+                                   struct sv_diagnostic *diagnostic);
+
+// Another volume of the same size and kind from the next recording on: the next time of a series. It is uploaded, or its
+// upload is recorded. Threads: one at a time for one renderer.
+sv_status sv_renderer_set_volume(sv_renderer renderer,
+                                 sv_volume volume,
+                                 sv_function function,
+                                 struct sv_diagnostic *diagnostic);
+
+// Destroys the handle; what frames in flight use is freed by sv_device_retire. Threads: any.
+sv_status sv_renderer_destroy(sv_renderer renderer, struct sv_diagnostic *diagnostic);
+
+// Command buffers for so many frames in flight, at most 64. Wants SV_FEATURE_TIMELINE_SEMAPHORE. Threads: any.
+sv_status sv_submitter_create(sv_device device,
+                              uint32_t frames_in_flight,
+                              sv_submitter *submitter,
+                              struct sv_diagnostic *diagnostic);
+
+// Level C: sv_renderer_record_into in a submission of the library's own. Nothing waits on the CPU but for `lock`.
+//
+// The submission before with the shot's number of a frame is done. Semaphores live until this one is done.
+// Threads: one at a time for one submitter and for one renderer.
+sv_status sv_submitter_submit(sv_submitter submitter,
+                              sv_renderer renderer,
+                              const struct sv_shot *shot,
+                              const struct sv_target *target,
+                              const struct sv_submission *submission,
+                              struct sv_diagnostic *diagnostic);
+
+// sv_volume_record_upload in a submission of the library's own, as number `frame` of the frames in flight.
+// As sv_submitter_submit.
+sv_status sv_submitter_upload(sv_submitter submitter,
+                              sv_volume volume,
+                              uint32_t frame,
+                              const struct sv_submission *submission,
+                              struct sv_diagnostic *diagnostic);
+
+// Destroys the handle; what it has submitted is done, or is waited for by sv_device_retire. Threads: any.
+sv_status sv_submitter_destroy(sv_submitter submitter, struct sv_diagnostic *diagnostic);
+
+// Makes textures for voxels, which are copied to where the upload finds them. Threads: any.
+sv_status sv_volume_create(sv_device device,
+                           const struct sv_volume_desc *desc,
+                           sv_volume *volume,
+                           struct sv_diagnostic *diagnostic);
+
+// Records the upload, once, before anything is made that draws the volume. What it is staged in is freed by
+// sv_device_retire, if sv_device_announce came before.
+//
+// `command_buffer` (`VkCommandBuffer`) is recording, outside rendering, and is submitted before what draws the volume.
+// Threads: any, one at a time for one volume.
+sv_status sv_volume_record_upload(sv_volume volume, void *command_buffer, struct sv_diagnostic *diagnostic);
+
+// The smallest and the largest value that is no hole: two doubles. Threads: any.
+sv_status sv_volume_value_range(sv_volume volume, double *range, struct sv_diagnostic *diagnostic);
+
+// Destroys the handle. Renderers that draw the volume keep it; else it waits for sv_device_retire. Threads: any.
+sv_status sv_volume_destroy(sv_volume volume, struct sv_diagnostic *diagnostic);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* STRATAVOX_H */
