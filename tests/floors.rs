@@ -18,8 +18,7 @@ const FLOORS: &[&[&str]] = &[
     &["embed"],
     &["scene"],
     &["offscreen"],
-    &["cli"],
-    &["capi"],
+    &["cli", "capi"],
 ];
 
 /// Modules that hold data and must build where there is no Vulkan.

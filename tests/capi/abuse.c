@@ -41,7 +41,9 @@ static void bad(sv_status status, sv_status wanted, const char *what) {
     memset(diagnostic.text, 0, sizeof diagnostic.text);
     diagnostic.status = SV_OK;
 }
-#define BAD(wanted, call) bad(call, wanted, #call)
+#define TEXT_OF(line) #line
+#define AT(line) "line " TEXT_OF(line) ": "
+#define BAD(wanted, call) bad(call, wanted, AT(__LINE__) #call)
 
 /* ---- Structures as they should be ---- */
 
@@ -815,7 +817,11 @@ static void submissions(void) {
     const sv_target target = whole_target();
     GOOD(sv_submitter_submit(submitter, renderer, &SHOT, &target, &reentrant, &diagnostic));
     vkQueueWaitIdle(h.queue);
-    for (int k = 0; k < 3; ++k) bad(inside[k], SV_E_STATE, "from a callback");
+    for (int k = 0; k < 3; ++k) {
+        refused += inside[k] == SV_E_STATE;
+        if (inside[k] != SV_E_STATE) failures += 1, fprintf(stderr, "FAILED: a call of a callback: %d\n", (int)inside[k]);
+    }
+    memset(diagnostic.text, 0, sizeof diagnostic.text);
 }
 
 /* ---- A device that is lost ---- */
