@@ -3,11 +3,13 @@
 # make plain   what draws once more, without validation of synchronization
 # make demo    the built-in head with each technique, and with DATA=path a file of yours, into target/demo
 # make gallery six real volumes by the classic techniques, into docs/gallery
+# make capi    the libraries for C, into target/release; make install PREFIX=/usr/local puts them, the header and a
+#              file for pkg-config there; make header writes include/stratavox.h anew
 # make bench   frame times of each technique, mode and projection on this device
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := test
-.PHONY: test plain demo sheet gallery bench driver layers
+.PHONY: test plain demo sheet gallery capi install header bench driver layers
 
 CARGO ?= cargo
 ROOT := $(if $(filter 0,$(shell id -u)),,sudo )
@@ -33,6 +35,8 @@ layers:
 	@find $(LAYER_FOLDERS) -name '*khronos_validation*.json' 2>/dev/null | grep -q . \
 	    && wanted="" || wanted="vulkan-validationlayers"; \
 	command -v spirv-val >/dev/null || wanted="$$wanted spirv-tools"; \
+	echo '#include <vulkan/vulkan.h>' | cc -E - >/dev/null 2>&1 || ! command -v apt-get >/dev/null \
+	    || wanted="$$wanted libvulkan-dev"; \
 	$(call install,Vulkan validation layers)
 
 # $(call install,what): installs the Debian packages in $$wanted, or says what to install by hand.
@@ -47,8 +51,9 @@ if [ -n "$$wanted" ]; then \
 fi
 endef
 
-# The reader of GRIB is off in what people install, because its decoder is young; its tests run like all others.
-TEST := $(CARGO) test --locked --features grib
+# The reader of GRIB is off in what people install, because its decoder is young, and so is the interface for C, which
+# they do not need; their tests run like all others.
+TEST := $(CARGO) test --locked --features grib,capi
 
 # Tests of files and of arithmetic make no device: they run side by side, and the validation layer has nothing to
 # hear there.
@@ -61,9 +66,9 @@ ON_DEVICE := RUST_TEST_THREADS=1 $(TEST) --lib --examples $(addprefix --test ,$(
 # synchronization in; `make plain` runs the same without that, as a cross-check by hand.
 test: driver layers
 	$(CARGO) fmt --check
-	$(CARGO) clippy --locked --all-targets -- -D warnings
+	$(CARGO) clippy --locked --all-targets --features capi -- -D warnings
 	$(CARGO) clippy --locked --all-targets --no-default-features -- -D warnings
-	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --locked --no-deps
+	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --locked --no-deps --features capi
 	$(TEST) --doc
 	$(TEST) $(addprefix --test ,$(WITHOUT_DEVICE))
 	RUST_TEST_THREADS=1 $(TEST) --test cli
@@ -107,6 +112,26 @@ gallery: driver
 	@[ -d "$(VOLUMES)" ] || { echo "VOLUMES=folder names the volumes" >&2; exit 1; }
 	$(CARGO) build --locked --release
 	docs/gallery/draw.sh target/release/stratavox "$(VOLUMES)"
+
+# The libraries for C are made when they are asked for: their types stand here, and not in Cargo.toml, where they would
+# be linked in each build.
+PREFIX ?= /usr/local
+LIBDIR ?= $(PREFIX)/lib
+VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -1)
+
+capi:
+	$(CARGO) rustc --locked --release --lib --no-default-features --features capi --crate-type cdylib,staticlib
+
+install: capi
+	install -d $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(LIBDIR)/pkgconfig
+	install -m 644 include/stratavox.h $(DESTDIR)$(PREFIX)/include
+	install -m 755 target/release/libstratavox.so $(DESTDIR)$(LIBDIR)
+	install -m 644 target/release/libstratavox.a $(DESTDIR)$(LIBDIR)
+	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(LIBDIR)|' -e 's|@VERSION@|$(VERSION)|' include/stratavox.pc.in \
+	    > $(DESTDIR)$(LIBDIR)/pkgconfig/stratavox.pc
+
+header:
+	cbindgen --quiet --config include/cbindgen.toml --output include/stratavox.h .
 
 bench: driver
 	$(CARGO) build --locked --release

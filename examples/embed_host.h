@@ -31,13 +31,13 @@ enum { HOST_QUEUE_FAMILY = 0 };
 
 static const VkImageSubresourceRange HOST_WHOLE = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
 
-static void host_check(int is_right, const char *what) {
+static inline void host_check(int is_right, const char *what) {
     if (is_right) return;
     fprintf(stderr, "the host cannot %s\n", what);
     exit(2);
 }
 
-static VKAPI_ATTR VkBool32 VKAPI_CALL host_listen(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
+static inline VKAPI_ATTR VkBool32 VKAPI_CALL host_listen(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                                   VkDebugUtilsMessageTypeFlagsEXT type,
                                                   const VkDebugUtilsMessengerCallbackDataEXT *data, void *user) {
     (void)severity, (void)type;
@@ -46,7 +46,7 @@ static VKAPI_ATTR VkBool32 VKAPI_CALL host_listen(VkDebugUtilsMessageSeverityFla
     return VK_FALSE;
 }
 
-static void host_make_instance(host *h) {
+static inline void host_make_instance(host *h) {
     const char *mode = getenv("STRATAVOX_VALIDATION");
     const int listens = mode && strcmp(mode, "off");
     const VkValidationFeatureEnableEXT sync = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
@@ -79,7 +79,7 @@ static void host_make_instance(host *h) {
 }
 
 /* The first device, with the two features that stratavox requires, and timelines for what it is to submit. */
-static void host_make_device(host *h) {
+static inline void host_make_device(host *h) {
     uint32_t count = 1;
     const VkResult found = vkEnumeratePhysicalDevices(h->instance, &count, &h->physical_device);
     host_check((found == VK_SUCCESS || found == VK_INCOMPLETE) && count, "find a device");
@@ -105,7 +105,7 @@ static void host_make_device(host *h) {
     host_check(vkCreateCommandPool(h->device, &pool, NULL, &h->pool) == VK_SUCCESS, "make a command pool");
 }
 
-static VkDeviceMemory host_allocate(const host *h, VkMemoryRequirements wanted, VkMemoryPropertyFlags properties) {
+static inline VkDeviceMemory host_allocate(const host *h, VkMemoryRequirements wanted, VkMemoryPropertyFlags properties) {
     VkPhysicalDeviceMemoryProperties types;
     vkGetPhysicalDeviceMemoryProperties(h->physical_device, &types);
     VkMemoryAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = wanted.size};
@@ -119,7 +119,7 @@ static VkDeviceMemory host_allocate(const host *h, VkMemoryRequirements wanted, 
 }
 
 /* `h` stays where it is: the layer speaks to it. */
-static void host_open(host *h, uint32_t width, uint32_t height, VkFormat format) {
+static inline void host_open(host *h, uint32_t width, uint32_t height, VkFormat format) {
     memset(h, 0, sizeof *h);
     h->width = width, h->height = height;
     host_make_instance(h);
@@ -154,7 +154,7 @@ static void host_open(host *h, uint32_t width, uint32_t height, VkFormat format)
 }
 
 /* A command buffer that is being recorded. */
-static VkCommandBuffer host_begin(const host *h) {
+static inline VkCommandBuffer host_begin(const host *h) {
     VkCommandBuffer cmd = VK_NULL_HANDLE;
     const VkCommandBufferAllocateInfo allocate = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
                                                   .commandPool = h->pool,
@@ -167,7 +167,7 @@ static VkCommandBuffer host_begin(const host *h) {
 }
 
 /* Copies the image, which is in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to where the CPU reads it. */
-static void host_fetch(const host *h, VkCommandBuffer cmd) {
+static inline void host_fetch(const host *h, VkCommandBuffer cmd) {
     const VkBufferImageCopy copy = {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                                     .imageExtent = {h->width, h->height, 1}};
     const VkMemoryBarrier2 copied = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
@@ -183,7 +183,7 @@ static void host_fetch(const host *h, VkCommandBuffer cmd) {
 }
 
 /* Hosts with frames in flight do not wait here. */
-static void host_submit_and_wait(const host *h, VkCommandBuffer cmd) {
+static inline void host_submit_and_wait(const host *h, VkCommandBuffer cmd) {
     const VkSubmitInfo submit = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
                                  .commandBufferCount = 1,
                                  .pCommandBuffers = &cmd};
@@ -193,7 +193,7 @@ static void host_submit_and_wait(const host *h, VkCommandBuffer cmd) {
 }
 
 /* What was fetched: red, green, blue and alpha of each pixel. `texels` has room for it. */
-static void host_texels(const host *h, uint8_t *texels) {
+static inline void host_texels(const host *h, uint8_t *texels) {
     void *mapped = NULL;
     host_check(vkMapMemory(h->device, h->memory[1], 0, VK_WHOLE_SIZE, 0, &mapped) == VK_SUCCESS, "map memory");
     memcpy(texels, mapped, (size_t)h->width * h->height * 4);
@@ -201,7 +201,7 @@ static void host_texels(const host *h, uint8_t *texels) {
 }
 
 /* Destroys what host_open made. How many messages the validation layer had. */
-static unsigned host_close(host *h) {
+static inline unsigned host_close(host *h) {
     vkDestroyCommandPool(h->device, h->pool, NULL);
     vkDestroyImageView(h->device, h->view, NULL);
     vkDestroyImage(h->device, h->image, NULL);

@@ -41,7 +41,9 @@ impl From<technique::Error> for Failure {
         let limit = |wanted: usize, limit: usize| (wanted as u64, limit as u64);
         let (status, (wanted, allowed)) = match &error {
             // What does not fit in 64 bits is as large as that.
-            Error::TooManySamples { wanted, limit } => (SV_E_LIMIT, (*wanted as u64, (*limit).into())),
+            Error::TooManySamples { wanted, limit } => {
+                (SV_E_LIMIT, (*wanted as u64, (*limit).into()))
+            }
             Error::LoopsEnd { wanted, limit } => (SV_E_LIMIT, (*wanted as u64, *limit as u64)),
             Error::LevelCount { found, limit: most } => (SV_E_LIMIT, limit(*found, *most)),
             Error::TooManyLights {

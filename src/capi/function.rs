@@ -153,7 +153,12 @@ unsafe fn made(desc: *const sv_function_desc) -> Result<TransferFunction, Failur
     let length = desc.reference_length;
     let is_length = length >= 0.0 && length.is_finite();
     let wanted = "a length, or 0";
-    number("sv_function_desc.reference_length", wanted, length, is_length)?;
+    number(
+        "sv_function_desc.reference_length",
+        wanted,
+        length,
+        is_length,
+    )?;
     let color = colors.iter().map(|point| ColorPoint {
         value: point.value,
         srgb: point.srgb,

@@ -10,7 +10,7 @@
 //! that is global here; each device has a table of its own, so that two of them never wait for each other.
 
 use super::device::Device;
-use super::status::{Failure, sv_status};
+use super::status::Failure;
 use std::any::Any;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
@@ -80,7 +80,9 @@ impl Parts {
     }
 
     fn handle(self) -> u64 {
-        self.kind << (3 * BITS) | self.device << (2 * BITS) | self.generation << BITS
+        self.kind << (3 * BITS)
+            | self.device << (2 * BITS)
+            | self.generation << BITS
             | self.place as u64
     }
 }
@@ -112,7 +114,9 @@ fn parts<T: Kind>(handle: u64) -> Result<Parts, Failure> {
     if parts.kind == T::NUMBER {
         return Ok(parts);
     }
-    let found = NAMES.get(parts.kind as usize).filter(|name| !name.is_empty());
+    let found = NAMES
+        .get(parts.kind as usize)
+        .filter(|name| !name.is_empty());
     Err(Failure::argument(match found {
         Some(found) => format!("wanted a handle of {name}, found one of {found}"),
         None => format!("{name}: {handle:#x} is no handle"),
@@ -235,15 +239,4 @@ impl Table {
         let places = self.places.iter();
         places.filter(|place| place.object.is_some()).count()
     }
-}
-
-/// Of a kind that has no object behind it, for messages of tests.
-#[cfg(test)]
-pub(super) fn all_names() -> &'static [&'static str] {
-    &NAMES
-}
-
-/// The code of a failure, for callers that look for one.
-pub(super) fn is_lost(failure: &Failure) -> bool {
-    failure.status == sv_status::SV_E_DEVICE_LOST
 }

@@ -181,7 +181,12 @@ pub(super) unsafe fn target(pointer: *const sv_target) -> Result<(Target, Load),
                 let is_held = after.layout != vk::ImageLayout::UNDEFINED
                     && after.layout != vk::ImageLayout::PREINITIALIZED;
                 let found = after.layout.as_raw().into();
-                number("sv_target.after.layout", "one that keeps it", found, is_held)?;
+                number(
+                    "sv_target.after.layout",
+                    "one that keeps it",
+                    found,
+                    is_held,
+                )?;
                 after
             }
         },
@@ -219,7 +224,12 @@ fn state(name: &str, c: &sv_image_state) -> Result<TargetState, Failure> {
             | 1_000_001_002
     );
     let wanted = "a VkImageLayout of Vulkan 1.3 or VK_IMAGE_LAYOUT_PRESENT_SRC_KHR";
-    number(&format!("{name}.layout"), wanted, c.layout.into(), is_layout)?;
+    number(
+        &format!("{name}.layout"),
+        wanted,
+        c.layout.into(),
+        is_layout,
+    )?;
     Ok(TargetState {
         layout: vk::ImageLayout::from_raw(c.layout as i32),
         stage: vk::PipelineStageFlags2::from_raw(c.stage),

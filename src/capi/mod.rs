@@ -20,6 +20,7 @@ mod device;
 mod failures;
 mod function;
 mod handles;
+mod host;
 mod images;
 mod pick;
 mod record;
@@ -32,11 +33,15 @@ mod volume;
 mod words;
 
 pub use camera::sv_camera;
-pub use device::*;
+pub use device::{
+    sv_device, sv_device_announce, sv_device_destroy, sv_device_from_host, sv_device_memory,
+    sv_device_pipeline_cache, sv_device_pipelines_made, sv_device_retire, sv_memory,
+};
 pub use function::{
     sv_color_point, sv_function, sv_function_create, sv_function_desc, sv_function_destroy,
     sv_opacity_point,
 };
+pub use host::{sv_feature, sv_get_instance_proc_addr, sv_host_device, sv_limits, sv_vk_function};
 pub use images::{sv_depth_image, sv_image_state, sv_target, sv_target_class};
 pub use pick::{sv_pick, sv_renderer_pick, sv_renderer_record_pick};
 pub use record::{

@@ -3,9 +3,7 @@
 use super::device::{Device, sv_device};
 use super::function::{function, sv_function};
 use super::handles::{self, Kind};
-use super::images::{
-    MOST_FRAMES, depth_images, sv_depth_image, sv_target_class, target_class,
-};
+use super::images::{MOST_FRAMES, depth_images, sv_depth_image, sv_target_class, target_class};
 use super::settings::{settings, sv_settings};
 use super::status::{Failure, guard, number, sv_diagnostic, sv_status};
 use super::structure::{self, Versioned};
@@ -253,9 +251,14 @@ fn extent(device: &Device, extent: [u32; 2]) -> Result<[u32; 2], Failure> {
     let limits = device.gpu.limits();
     let most = [0, 1].map(|k| {
         let of_image = limits.max_image_dimension_2d;
-        limits.max_framebuffer[k].min(limits.max_viewport[k]).min(of_image)
+        limits.max_framebuffer[k]
+            .min(limits.max_viewport[k])
+            .min(of_image)
     });
-    for (name, (found, most)) in ["width", "height"].into_iter().zip(extent.into_iter().zip(most)) {
+    for (name, (found, most)) in ["width", "height"]
+        .into_iter()
+        .zip(extent.into_iter().zip(most))
+    {
         number(name, "1 or more", found.into(), found > 0)?;
         if found > most {
             let doing = format!("draw pictures of such {name}");

@@ -225,7 +225,12 @@ fn direction(name: &str, found: [f64; 3]) -> Result<DVec3, Failure> {
 
 fn plane(plane: &sv_clip_plane) -> Result<ClipPlane, Failure> {
     let name = "sv_clip_plane.offset";
-    number(name, "a finite number", plane.offset, plane.offset.is_finite())?;
+    number(
+        name,
+        "a finite number",
+        plane.offset,
+        plane.offset.is_finite(),
+    )?;
     Ok(ClipPlane {
         normal: direction("sv_clip_plane.normal", plane.normal)?,
         offset: plane.offset,
@@ -274,7 +279,10 @@ fn shading(c: &sv_settings, lights: &[sv_light]) -> Result<Shading, Failure> {
         false => shininess,
     };
     let names = ["ambient", "diffuse", "specular", "shininess"];
-    for (name, found) in names.into_iter().zip([ambient, diffuse, specular, shininess]) {
+    for (name, found) in names
+        .into_iter()
+        .zip([ambient, diffuse, specular, shininess])
+    {
         let is_right = found >= 0.0 && found.is_finite();
         number(&format!("sv_settings.{name}"), "0 or more", found, is_right)?;
     }

@@ -2,7 +2,7 @@
 //!
 //! Every entry runs inside [`guard`]: what goes wrong becomes a status and a sentence, a panic too.
 
-use super::structure::{HEADER_BYTES, field_bytes};
+use super::structure::HEADER_BYTES;
 use std::ffi::{c_char, c_void};
 use std::mem::offset_of;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -97,12 +97,7 @@ impl Failure {
 }
 
 /// Refuses a number by its name.
-pub(super) fn number(
-    name: &str,
-    wanted: &str,
-    found: f64,
-    is_right: bool,
-) -> Result<(), Failure> {
+pub(super) fn number(name: &str, wanted: &str, found: f64, is_right: bool) -> Result<(), Failure> {
     match is_right {
         true => Ok(()),
         false => Err(Failure::argument(format!(
@@ -179,7 +174,7 @@ unsafe fn tell(diagnostic: *mut sv_diagnostic, failure: &Failure) {
     }
 }
 
-const _: () = assert!(offset_of!(sv_diagnostic, next) + field_bytes::<usize>() == HEADER_BYTES);
+const _: () = assert!(offset_of!(sv_diagnostic, status) == HEADER_BYTES);
 
 #[cfg(test)]
 mod tests {

@@ -18,10 +18,6 @@ pub(super) const HEADER_BYTES: usize = 2 * size_of::<*const c_void>();
 /// No structure will ever be so long: what says so is no structure.
 const LONGEST_BYTES: usize = 4096;
 
-pub(super) const fn field_bytes<T>() -> usize {
-    size_of::<T>()
-}
-
 /// A structure with the header.
 ///
 /// # Safety

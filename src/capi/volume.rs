@@ -254,7 +254,10 @@ fn affine(columns: &[f64; 16]) -> Result<DAffine3, Failure> {
         finite(name, matrix.col(column).truncate().to_array())?;
     }
     if matrix.row(3) != DVec4::W {
-        let text = format!("{name}: wanted (0, 0, 0, 1) as the last row, found {}", matrix.row(3));
+        let text = format!(
+            "{name}: wanted (0, 0, 0, 1) as the last row, found {}",
+            matrix.row(3)
+        );
         return Err(Failure::argument(text));
     }
     Ok(DAffine3::from_mat4(matrix))
@@ -264,11 +267,7 @@ fn affine(columns: &[f64; 16]) -> Result<DAffine3, Failure> {
 ///
 /// # Safety
 /// `pointer` points to `bytes` bytes, a multiple of those of one voxel.
-unsafe fn voxels(
-    kind: VoxelType,
-    pointer: *const c_void,
-    bytes: usize,
-) -> Result<Voxels, Failure> {
+unsafe fn voxels(kind: VoxelType, pointer: *const c_void, bytes: usize) -> Result<Voxels, Failure> {
     // SAFETY: the caller's promise.
     let bytes = unsafe { std::slice::from_raw_parts(pointer.cast::<u8>(), bytes) };
     macro_rules! copied {

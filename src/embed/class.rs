@@ -3,7 +3,7 @@
 use super::Error;
 use crate::camera::{Camera, HostDepth};
 use crate::gpu::TargetClass;
-use crate::technique::{Mode, Order, Settings, Technique};
+use crate::technique::{self, Mode, Order, Settings, Technique};
 use ash::vk;
 
 /// What a renderer is made for: all that pipelines and images hang on.
@@ -84,6 +84,10 @@ impl Class {
             }
         }
         settings.check()?;
+        if settings.shading.is_some() && settings.mode.is_projection() {
+            let mode = settings.mode;
+            return Err(technique::Error::NotShaded { mode }.into());
+        }
         let is_tested = is_sliced && self.host_depth;
         if (is_tested || self.gives_depth) && self.target.depth.is_none() {
             return Err(Error::HostDepth {

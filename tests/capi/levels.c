@@ -1,26 +1,20 @@
 /* The three levels draw one picture, several frames in flight, host depth hides, depth and picks come back. */
-#include "../../examples/embed_host.h"
-#include "stratavox.h"
-#include <math.h>
+#include "levels.h"
 
-enum { WIDTH = 64, HEIGHT = 48, VOXELS = 24, BYTES = WIDTH * HEIGHT * 4 };
-static const VkFormat FORMAT = VK_FORMAT_R8G8B8A8_UNORM;
-static const float BEHIND[4] = {0.25f, 0.0f, 0.5f, 1.0f};
+sv_diagnostic diagnostic = {.struct_size = sizeof(sv_diagnostic)};
+host h;
+sv_device device;
+sv_volume volume;
+unsigned failures;
+static unsigned locked, unlocked;
 
-static sv_diagnostic diagnostic = {.struct_size = sizeof(sv_diagnostic)};
-static host h;
-static sv_device device;
-static sv_volume volume;
-static unsigned failures, locked, unlocked;
-
-static void check(sv_status status, const char *what) {
+void check(sv_status status, const char *what) {
     if (status == SV_OK) return;
     fprintf(stderr, "%s: status %d: %s\n", what, (int)status, diagnostic.text);
     exit(1);
 }
-#define CHECK(call) check(call, #call)
 
-static void expect(int is_right, const char *what) {
+void expect(int is_right, const char *what) {
     printf("%s: %s\n", is_right ? "ok" : "FAILED", what);
     failures += !is_right;
 }
@@ -63,7 +57,7 @@ static sv_target whole_target(void) {
     return target;
 }
 
-static void image_barrier(VkCommandBuffer cmd, VkImage image, VkImageAspectFlags aspect, VkImageLayout from,
+void image_barrier(VkCommandBuffer cmd, VkImage image, VkImageAspectFlags aspect, VkImageLayout from,
                           VkImageLayout to) {
     const VkImageMemoryBarrier2 barrier = {.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
                                            .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
@@ -81,7 +75,7 @@ static void image_barrier(VkCommandBuffer cmd, VkImage image, VkImageAspectFlags
 }
 
 /* The host's rendering to its image, and to a depth buffer that is cleared, where there is one. */
-static void begin_rendering(VkCommandBuffer cmd, VkImageView depth, float depth_value) {
+void begin_rendering(VkCommandBuffer cmd, VkImageView depth, float depth_value) {
     const VkRenderingAttachmentInfo color = {.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
                                              .imageView = h.view,
                                              .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
@@ -103,7 +97,7 @@ static void begin_rendering(VkCommandBuffer cmd, VkImageView depth, float depth_
     vkCmdBeginRendering(cmd, &info);
 }
 
-static void fetch(VkCommandBuffer cmd, uint8_t *texels) {
+void fetch(VkCommandBuffer cmd, uint8_t *texels) {
     image_barrier(cmd, h.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                   VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
     host_fetch(&h, cmd);
@@ -111,7 +105,21 @@ static void fetch(VkCommandBuffer cmd, uint8_t *texels) {
     host_texels(&h, texels);
 }
 
-static sv_renderer make_renderer(const sv_settings *settings, sv_function function) {
+/* Dense enough that light from behind is halved inside the ball. */
+sv_function make_function(void) {
+    const sv_color_point colors[] = {{0.0, {1, 0, 0}}, {8.0, {0, 1, 0}}};
+    const sv_opacity_point opacities[] = {{0.0, 0.0}, {8.0, 0.5}};
+    const sv_function_desc described = {.struct_size = sizeof described,
+                                        .colors = colors,
+                                        .color_count = 2,
+                                        .opacities = opacities,
+                                        .opacity_count = 2};
+    sv_function made = 0;
+    CHECK(sv_function_create(device, &described, &made, &diagnostic));
+    return made;
+}
+
+sv_renderer make_renderer(const sv_settings *settings, sv_function function) {
     const sv_target_class class = {.struct_size = sizeof class, .color_format = FORMAT};
     const sv_renderer_desc wanted = {.struct_size = sizeof wanted,
                                      .volume = volume,
@@ -126,7 +134,7 @@ static sv_renderer make_renderer(const sv_settings *settings, sv_function functi
     return made;
 }
 
-static void draw_a(sv_renderer renderer, const sv_camera *camera, uint8_t *texels) {
+void draw_a(sv_renderer renderer, const sv_camera *camera, uint8_t *texels) {
     const sv_shot shot = {.struct_size = sizeof shot, .camera = camera, .frame = 1};
     VkCommandBuffer cmd = host_begin(&h);
     CHECK(sv_renderer_record(renderer, cmd, &shot, &diagnostic));
@@ -195,63 +203,7 @@ static void draw_c(sv_renderer renderer, uint8_t *texels) {
     vkDestroySemaphore(h.device, done, NULL);
 }
 
-/* From the front, as the default is, but by matrices. */
-static sv_camera matrices(double distance, int is_reversed) {
-    const double near = 1.0, far = 100.0, f = 3.0, a = is_reversed ? near / (far - near) : far / (near - far);
-    const double b = is_reversed ? far * near / (far - near) : far * near / (near - far);
-    const sv_camera camera = {
-        .struct_size = sizeof camera,
-        .kind = SV_CAMERA_MATRICES,
-        .is_reversed = (uint32_t)is_reversed,
-        .view_from_world = {-1, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 12, -12, -12 - distance, 1},
-        .clip_from_view = {f * HEIGHT / WIDTH, 0, 0, 0, 0, -f, 0, 0, 0, 0, a, -1, 0, 0, b, 0}};
-    return camera;
-}
-
-/* A depth buffer of the host's, cleared to one depth. */
-typedef struct depth_image {
-    VkImage image;
-    VkImageView view;
-    VkDeviceMemory memory;
-} depth_image;
-
-static depth_image make_depth(void) {
-    depth_image d;
-    const VkImageCreateInfo image = {
-        .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-        .imageType = VK_IMAGE_TYPE_2D,
-        .format = VK_FORMAT_D32_SFLOAT,
-        .extent = {WIDTH, HEIGHT, 1},
-        .mipLevels = 1,
-        .arrayLayers = 1,
-        .samples = VK_SAMPLE_COUNT_1_BIT,
-        .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
-                 VK_IMAGE_USAGE_TRANSFER_DST_BIT};
-    vkCreateImage(h.device, &image, NULL, &d.image);
-    VkMemoryRequirements wanted;
-    vkGetImageMemoryRequirements(h.device, d.image, &wanted);
-    d.memory = host_allocate(&h, wanted, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
-    vkBindImageMemory(h.device, d.image, d.memory, 0);
-    const VkImageViewCreateInfo view = {.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-                                        .image = d.image,
-                                        .viewType = VK_IMAGE_VIEW_TYPE_2D,
-                                        .format = VK_FORMAT_D32_SFLOAT,
-                                        .subresourceRange = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1}};
-    vkCreateImageView(h.device, &view, NULL, &d.view);
-    return d;
-}
-
-static void clear_depth(VkCommandBuffer cmd, const depth_image *d, float depth) {
-    const VkClearDepthStencilValue value = {depth, 0};
-    const VkImageSubresourceRange range = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 1, 0, 1};
-    image_barrier(cmd, d->image, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
-                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-    vkCmdClearDepthStencilImage(cmd, d->image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value, 1, &range);
-    image_barrier(cmd, d->image, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                  VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
-}
-
-static unsigned drawn_pixels(const uint8_t *texels) {
+unsigned drawn_pixels(const uint8_t *texels) {
     unsigned drawn = 0;
     for (int k = 0; k < BYTES; k += 4) drawn += texels[k + 1] != 0;
     return drawn;
@@ -270,15 +222,7 @@ static void test_levels(void) {
     expect(!memcmp(c, b, BYTES), "level C draws what level B draws");
     expect(locked == 1 && unlocked == 1, "the queue was locked and unlocked once");
 
-    const sv_color_point colors[] = {{0.0, {1, 0, 0}}, {8.0, {0, 1, 0}}};
-    const sv_opacity_point opacities[] = {{0.0, 0.0}, {8.0, 0.5}};
-    const sv_function_desc described = {.struct_size = sizeof described,
-                                        .colors = colors,
-                                        .color_count = 2,
-                                        .opacities = opacities,
-                                        .opacity_count = 2};
-    sv_function function = 0;
-    CHECK(sv_function_create(device, &described, &function, &diagnostic));
+    sv_function function = make_function();
     CHECK(sv_device_announce(device, 1, &diagnostic));
     CHECK(sv_renderer_set_function(renderer, function, &diagnostic));
     CHECK(sv_function_destroy(function, &diagnostic));
@@ -327,66 +271,6 @@ static void test_levels(void) {
         expect(drawn_pixels(a) > 20 && !memcmp(a, b, BYTES), "each technique draws a volume of one voxel");
         CHECK(sv_renderer_destroy(renderer, &diagnostic));
         CHECK(sv_volume_destroy(volume, &diagnostic));
-    }
-}
-
-static void test_depth(int is_reversed) {
-    static uint8_t alone[BYTES], far[BYTES], near[BYTES];
-    const float far_depth = is_reversed ? 0.0f : 1.0f, near_depth = is_reversed ? 0.999f : 0.001f;
-    const sv_camera camera = matrices(60.0, is_reversed);
-    sv_renderer plain = make_renderer(NULL, 0);
-    draw_a(plain, &camera, alone);
-    expect(drawn_pixels(alone) > 200, "a camera of matrices shows something");
-
-    depth_image read = make_depth(), attached = make_depth();
-    const sv_depth_image image = {(uint64_t)read.view, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL, WIDTH, HEIGHT, 0};
-    const sv_target_class class = {.struct_size = sizeof class,
-                                   .color_format = FORMAT,
-                                   .depth_format = VK_FORMAT_D32_SFLOAT,
-                                   .is_depth_reversed = (uint32_t)is_reversed};
-    const sv_renderer_desc wanted = {.struct_size = sizeof wanted,
-                                     .volume = volume,
-                                     .target = &class,
-                                     .width = WIDTH,
-                                     .height = HEIGHT,
-                                     .has_host_depth = 1,
-                                     .gives_depth = 1,
-                                     .depth_images = &image,
-                                     .depth_image_count = 1};
-    sv_renderer renderer = 0;
-    CHECK(sv_renderer_create(device, &wanted, &renderer, &diagnostic));
-    for (int is_near = 0; is_near < 2; ++is_near) {
-        const sv_shot shot = {.struct_size = sizeof shot, .camera = &camera};
-        VkCommandBuffer cmd = host_begin(&h);
-        clear_depth(cmd, &read, is_near ? near_depth : far_depth);
-        CHECK(sv_renderer_record(renderer, cmd, &shot, &diagnostic));
-        CHECK(sv_renderer_record_pick(renderer, cmd, 0, WIDTH / 2, HEIGHT / 2, &diagnostic));
-        image_barrier(cmd, attached.image, VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
-                      VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
-        image_barrier(cmd, h.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
-                      VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-        begin_rendering(cmd, attached.view, far_depth);
-        CHECK(sv_renderer_draw(renderer, cmd, 0, &diagnostic));
-        CHECK(sv_renderer_draw_depth(renderer, cmd, 0, &diagnostic));
-        vkCmdEndRendering(cmd);
-        fetch(cmd, is_near ? near : far);
-        sv_pick pick = {.struct_size = sizeof pick};
-        CHECK(sv_renderer_pick(renderer, 0, WIDTH / 2, HEIGHT / 2, &pick, &diagnostic));
-        /* The centre of voxels is at + 0.5; the ball is about (11.5, 13, 12.5), and the front is at larger y. */
-        const int is_there = pick.is_hit && pick.has_color && !pick.has_value && fabs(pick.position[0] - 12.0) < 0.5 &&
-                             pick.position[1] > 5.0 && pick.position[1] < 21.0 && fabs(pick.position[2] - 12.0) < 0.5;
-        if (pick.is_hit) printf("    %g, %g, %g\n", pick.position[0], pick.position[1], pick.position[2]);
-        expect(is_near ? !pick.is_hit : is_there, is_near ? "nothing to pick behind the host" : "a pick lies in the ball");
-    }
-    expect(!memcmp(far, alone, BYTES), "nothing of the host's before it: the picture alone");
-    expect(drawn_pixels(near) == 0, "all of it behind the host: nothing of it");
-    CHECK(sv_renderer_destroy(renderer, &diagnostic));
-    CHECK(sv_renderer_destroy(plain, &diagnostic));
-    const depth_image both[] = {read, attached};
-    for (int k = 0; k < 2; ++k) {
-        vkDestroyImageView(h.device, both[k].view, NULL);
-        vkDestroyImage(h.device, both[k].image, NULL);
-        vkFreeMemory(h.device, both[k].memory, NULL);
     }
 }
 

@@ -1,0 +1,185 @@
+/* Handles of what is gone, of other kinds, of other devices, and of nothing at all. */
+#include "abuse.h"
+
+static sv_status with_renderer(sv_renderer_desc desc) {
+    return sv_renderer_create(device, &desc, &made_handle, &diagnostic);
+}
+
+typedef sv_status (*by_handle)(uint64_t);
+enum { DEVICE = 1, VOLUME, FUNCTION, RENDERER, SUBMITTER };
+
+static sv_status h_announce(uint64_t x) { return sv_device_announce(x, 0, &diagnostic); }
+static sv_status h_retire(uint64_t x) { return sv_device_retire(x, 0, &diagnostic); }
+static sv_status h_memory(uint64_t x) {
+    sv_memory memory = {.struct_size = sizeof memory};
+    return sv_device_memory(x, &memory, &diagnostic);
+}
+static sv_status h_pipelines(uint64_t x) {
+    uint32_t count;
+    return sv_device_pipelines_made(x, &count, &diagnostic);
+}
+static sv_status h_cache(uint64_t x) {
+    uint64_t bytes = 0;
+    return sv_device_pipeline_cache(x, &bytes, NULL, &diagnostic);
+}
+static sv_status h_device_destroy(uint64_t x) { return sv_device_destroy(x, &diagnostic); }
+static sv_status h_volume_create(uint64_t x) {
+    const sv_volume_desc desc = volume_desc();
+    return sv_volume_create(x, &desc, &made_handle, &diagnostic);
+}
+static sv_status h_function_create(uint64_t x) {
+    const sv_function_desc desc = {.struct_size = sizeof desc};
+    return sv_function_create(x, &desc, &made_handle, &diagnostic);
+}
+static sv_status h_renderer_create(uint64_t x) {
+    const sv_renderer_desc desc = renderer_desc();
+    return sv_renderer_create(x, &desc, &made_handle, &diagnostic);
+}
+static sv_status h_submitter_create(uint64_t x) { return sv_submitter_create(x, 1, &made_handle, &diagnostic); }
+static sv_status h_upload(uint64_t x) { return sv_volume_record_upload(x, cmd, &diagnostic); }
+static sv_status h_range(uint64_t x) {
+    double range[2];
+    return sv_volume_value_range(x, range, &diagnostic);
+}
+static sv_status h_volume_destroy(uint64_t x) { return sv_volume_destroy(x, &diagnostic); }
+static sv_status h_of_volume(uint64_t x) {
+    sv_renderer_desc desc = renderer_desc();
+    desc.volume = x;
+    return with_renderer(desc);
+}
+static sv_status h_set_volume(uint64_t x) { return sv_renderer_set_volume(renderer, x, 0, &diagnostic); }
+static sv_status h_submit_upload(uint64_t x) {
+    const sv_submission s = submission();
+    return sv_submitter_upload(submitter, x, 0, &s, &diagnostic);
+}
+static sv_status h_function_destroy(uint64_t x) { return sv_function_destroy(x, &diagnostic); }
+static sv_status h_of_function(uint64_t x) {
+    sv_renderer_desc desc = renderer_desc();
+    desc.function = x;
+    return with_renderer(desc);
+}
+static sv_status h_set_function(uint64_t x) { return sv_renderer_set_function(renderer, x, &diagnostic); }
+static sv_status h_resize(uint64_t x) { return sv_renderer_resize(x, WIDTH, HEIGHT, NULL, 0, &diagnostic); }
+static sv_status h_function_of(uint64_t x) { return sv_renderer_set_function(x, 0, &diagnostic); }
+static sv_status h_settings_of(uint64_t x) { return sv_renderer_set_settings(x, NULL, &diagnostic); }
+static sv_status h_volume_of(uint64_t x) { return sv_renderer_set_volume(x, volume, 0, &diagnostic); }
+static sv_status h_record(uint64_t x) { return sv_renderer_record(x, cmd, &SHOT, &diagnostic); }
+static sv_status h_draw(uint64_t x) { return sv_renderer_draw(x, cmd, 0, &diagnostic); }
+static sv_status h_draw_depth(uint64_t x) { return sv_renderer_draw_depth(x, cmd, 0, &diagnostic); }
+static sv_status h_record_into(uint64_t x) {
+    const sv_target target = whole_target();
+    return sv_renderer_record_into(x, cmd, &SHOT, &target, &diagnostic);
+}
+static sv_status h_record_pick(uint64_t x) { return sv_renderer_record_pick(x, cmd, 0, 0, 0, &diagnostic); }
+static sv_status h_pick(uint64_t x) {
+    sv_pick pick = {.struct_size = sizeof pick};
+    return sv_renderer_pick(x, 0, 0, 0, &pick, &diagnostic);
+}
+static sv_status h_renderer_destroy(uint64_t x) { return sv_renderer_destroy(x, &diagnostic); }
+static sv_status h_submit_of(uint64_t x) {
+    const sv_target target = whole_target();
+    const sv_submission s = submission();
+    return sv_submitter_submit(submitter, x, &SHOT, &target, &s, &diagnostic);
+}
+static sv_status h_submit(uint64_t x) {
+    const sv_target target = whole_target();
+    const sv_submission s = submission();
+    return sv_submitter_submit(x, renderer, &SHOT, &target, &s, &diagnostic);
+}
+static sv_status h_upload_by(uint64_t x) {
+    const sv_submission s = submission();
+    return sv_submitter_upload(x, fresh, 0, &s, &diagnostic);
+}
+static sv_status h_submitter_destroy(uint64_t x) { return sv_submitter_destroy(x, &diagnostic); }
+
+/* `is_optional`: 0 is no error there. */
+static const struct {
+    const char *name;
+    by_handle call;
+    int kind, is_optional;
+} BY_HANDLE[] = {
+    {"sv_device_announce", h_announce, DEVICE, 0},
+    {"sv_device_retire", h_retire, DEVICE, 0},
+    {"sv_device_memory", h_memory, DEVICE, 0},
+    {"sv_device_pipelines_made", h_pipelines, DEVICE, 0},
+    {"sv_device_pipeline_cache", h_cache, DEVICE, 0},
+    {"sv_device_destroy", h_device_destroy, DEVICE, 0},
+    {"sv_volume_create", h_volume_create, DEVICE, 0},
+    {"sv_function_create", h_function_create, DEVICE, 0},
+    {"sv_renderer_create", h_renderer_create, DEVICE, 0},
+    {"sv_submitter_create", h_submitter_create, DEVICE, 0},
+    {"sv_volume_record_upload", h_upload, VOLUME, 0},
+    {"sv_volume_value_range", h_range, VOLUME, 0},
+    {"sv_volume_destroy", h_volume_destroy, VOLUME, 0},
+    {"sv_renderer_create, its volume", h_of_volume, VOLUME, 0},
+    {"sv_renderer_set_volume, its volume", h_set_volume, VOLUME, 0},
+    {"sv_submitter_upload, its volume", h_submit_upload, VOLUME, 0},
+    {"sv_function_destroy", h_function_destroy, FUNCTION, 0},
+    {"sv_renderer_create, its function", h_of_function, FUNCTION, 1},
+    {"sv_renderer_set_function, its function", h_set_function, FUNCTION, 1},
+    {"sv_renderer_resize", h_resize, RENDERER, 0},
+    {"sv_renderer_set_function", h_function_of, RENDERER, 0},
+    {"sv_renderer_set_settings", h_settings_of, RENDERER, 0},
+    {"sv_renderer_set_volume", h_volume_of, RENDERER, 0},
+    {"sv_renderer_record", h_record, RENDERER, 0},
+    {"sv_renderer_draw", h_draw, RENDERER, 0},
+    {"sv_renderer_draw_depth", h_draw_depth, RENDERER, 0},
+    {"sv_renderer_record_into", h_record_into, RENDERER, 0},
+    {"sv_renderer_record_pick", h_record_pick, RENDERER, 0},
+    {"sv_renderer_pick", h_pick, RENDERER, 0},
+    {"sv_renderer_destroy", h_renderer_destroy, RENDERER, 0},
+    {"sv_submitter_submit, its renderer", h_submit_of, RENDERER, 0},
+    {"sv_submitter_submit", h_submit, SUBMITTER, 0},
+    {"sv_submitter_upload", h_upload_by, SUBMITTER, 0},
+    {"sv_submitter_destroy", h_submitter_destroy, SUBMITTER, 0},
+};
+
+void abuse_handles(void) {
+    /* Of each kind one that is gone, and whose place is taken by another one. */
+    uint64_t stale[6] = {0};
+    const sv_volume_desc desc = volume_desc();
+    const sv_function_desc points = {.struct_size = sizeof points};
+    const sv_renderer_desc wanted = renderer_desc();
+    GOOD(sv_device_from_host(&ours, &stale[DEVICE], &diagnostic));
+    GOOD(sv_device_destroy(stale[DEVICE], &diagnostic));
+    GOOD(sv_volume_create(device, &desc, &stale[VOLUME], &diagnostic));
+    GOOD(sv_volume_destroy(stale[VOLUME], &diagnostic));
+    GOOD(sv_volume_create(device, &desc, &fresh, &diagnostic));
+    GOOD(sv_function_create(device, &points, &stale[FUNCTION], &diagnostic));
+    GOOD(sv_function_destroy(stale[FUNCTION], &diagnostic));
+    GOOD(sv_function_create(device, &points, &made_handle, &diagnostic));
+    GOOD(sv_renderer_create(device, &wanted, &stale[RENDERER], &diagnostic));
+    GOOD(sv_renderer_destroy(stale[RENDERER], &diagnostic));
+    GOOD(sv_submitter_create(device, 1, &stale[SUBMITTER], &diagnostic));
+    GOOD(sv_submitter_destroy(stale[SUBMITTER], &diagnostic));
+    const uint64_t live[] = {0, device, volume, function, renderer, submitter};
+    for (size_t k = 0; k < sizeof BY_HANDLE / sizeof *BY_HANDLE; ++k) {
+        const int kind = BY_HANDLE[k].kind;
+        const by_handle call = BY_HANDLE[k].call;
+        const char *name = BY_HANDLE[k].name;
+        if (!BY_HANDLE[k].is_optional) bad(call(0), SV_E_ARGUMENT, name);
+        bad(call(1), SV_E_ARGUMENT, name);
+        bad(call(UINT64_MAX), SV_E_ARGUMENT, name);
+        bad(call((uint64_t)(uintptr_t)&h), SV_E_ARGUMENT, name);
+        bad(call(stale[kind]), SV_E_ARGUMENT, name);
+        /* Another generation, another place, another device, another kind. */
+        bad(call(live[kind] + (1 << 20)), SV_E_ARGUMENT, name);
+        bad(call(live[kind] + 1000), SV_E_ARGUMENT, name);
+        bad(call(live[kind] + ((uint64_t)77 << 40)), SV_E_ARGUMENT, name);
+        bad(call(live[kind] ^ ((uint64_t)15 << 60)), SV_E_ARGUMENT, name);
+        for (int other = 1; other < 6; ++other)
+            if (other != kind) bad(call(live[other]), SV_E_ARGUMENT, name);
+    }
+    /* Of another device. */
+    sv_volume foreign = 0;
+    sv_function foreign_function = 0;
+    GOOD(sv_volume_create(other_device, &desc, &foreign, &diagnostic));
+    GOOD(sv_function_create(other_device, &points, &foreign_function, &diagnostic));
+    BAD(SV_E_ARGUMENT, h_of_volume(foreign));
+    BAD(SV_E_ARGUMENT, h_set_volume(foreign));
+    BAD(SV_E_ARGUMENT, h_submit_upload(foreign));
+    BAD(SV_E_ARGUMENT, h_of_function(foreign_function));
+    BAD(SV_E_ARGUMENT, h_set_function(foreign_function));
+    GOOD(sv_volume_destroy(foreign, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_volume_destroy(foreign, &diagnostic));
+}
