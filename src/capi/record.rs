@@ -41,7 +41,7 @@ pub(super) struct Taken {
 impl Taken {
     /// # Safety
     /// As [`structure::read`] of all that `pointer` points to.
-    pub unsafe fn new(pointer: *const sv_shot, inner: &Inner) -> Result<Self, Failure> {
+    pub unsafe fn new(pointer: *const sv_shot, inner: &mut Inner) -> Result<Self, Failure> {
         // SAFETY: the caller's promise.
         let (shot, (camera, depth)) = unsafe {
             let shot = structure::read(pointer)?;
@@ -53,6 +53,10 @@ impl Taken {
             return Err(Failure::argument(
                 "sv_shot.camera: a renderer with has_host_depth or gives_depth wants SV_CAMERA_MATRICES",
             ));
+        }
+        // What was picked was of another picture.
+        if let Some(picked) = inner.picked.get_mut(shot.frame as usize) {
+            *picked = None;
         }
         Ok(Self {
             camera,

@@ -223,13 +223,14 @@ mod tests {
             next: NULL,
             a: 5,
         };
+        let (right, wrong) = (newer(0), newer(3));
         // SAFETY: each is as long as it says.
         unsafe {
             let found = read((&raw const older).cast::<Ours>()).unwrap();
             assert_eq!((found.a, found.b), (5, 0));
-            let found = read((&raw const newer(0)).cast::<Ours>()).unwrap();
+            let found = read((&raw const right).cast::<Ours>()).unwrap();
             assert_eq!((found.a, found.b), (1, 2));
-            let refused = read((&raw const newer(3)).cast::<Ours>()).map(drop);
+            let refused = read((&raw const wrong).cast::<Ours>()).map(drop);
             assert_eq!(refused.unwrap_err().status, SV_E_VERSION);
         }
     }

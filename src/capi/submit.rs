@@ -168,6 +168,9 @@ pub unsafe extern "C" fn sv_submitter_upload(
                     }
                 })
             };
+            if submitted.is_err() && refused.is_none() {
+                volume.forget_upload();
+            }
             match refused {
                 Some(failure) => Err(failure),
                 None => Ok(submitted?),
@@ -226,9 +229,13 @@ impl Submission {
         move |submit| {
             // SAFETY: the host's functions, with what the host gave for them.
             unsafe {
-                lock.map(|lock| lock(user));
+                if let Some(lock) = lock {
+                    lock(user);
+                }
                 submit();
-                unlock.map(|unlock| unlock(user));
+                if let Some(unlock) = unlock {
+                    unlock(user);
+                }
             }
         }
     }

@@ -7,12 +7,13 @@ use super::status::{Failure, guard, number, sv_diagnostic, sv_status};
 use super::structure::{self, Versioned};
 use super::words::{VOXEL_TYPES, word};
 use crate::embed;
+use crate::gpu::Gpu;
 use crate::volume::{Rescale, Volume, VoxelType, Voxels};
 use ash::vk::{self, Handle};
 use glam::{DAffine3, DMat4, DVec4};
 use half::f16;
 use std::ffi::c_void;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 /// A volume on a device. 0 is none.
 pub type sv_volume = u64;
@@ -53,10 +54,20 @@ unsafe impl Versioned for sv_volume_desc {
     const NAME: &'static str = "sv_volume_desc";
 }
 
-/// What is there of a volume.
-pub(super) struct Held {
-    pub volume: Mutex<Arc<embed::Volume>>,
-    is_uploaded: Mutex<bool>,
+/// What is there of a volume. Calls wait for each other here: none of them calls the host back.
+pub(super) struct Held(Mutex<Inner>);
+
+struct Inner {
+    volume: Arc<embed::Volume>,
+    upload: Upload,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Upload {
+    Wanted,
+    Recorded,
+    /// It was begun, and what it recorded never runs.
+    Failed,
 }
 
 impl Kind for Held {
@@ -65,42 +76,73 @@ impl Kind for Held {
 }
 
 impl Held {
+    fn new(volume: embed::Volume) -> Self {
+        Self(Mutex::new(Inner {
+            volume: Arc::new(volume),
+            upload: Upload::Wanted,
+        }))
+    }
+
+    fn lock(&self) -> Result<MutexGuard<'_, Inner>, Failure> {
+        self.0.lock().map_err(|_| {
+            Failure::state("this sv_volume met a mistake of stratavox before: destroy it")
+        })
+    }
+
     /// For a renderer, which keeps it.
     pub fn share(&self) -> Result<Arc<embed::Volume>, Failure> {
-        match *handles::only(Self::NAME, &self.is_uploaded)? {
-            true => Ok(Arc::clone(&*handles::only(Self::NAME, &self.volume)?)),
-            false => Err(Failure::state(
+        let inner = self.lock()?;
+        match inner.upload {
+            Upload::Recorded => Ok(Arc::clone(&inner.volume)),
+            Upload::Wanted => Err(Failure::state(
                 "the volume is not uploaded: sv_volume_record_upload comes before its renderers",
             )),
+            Upload::Failed => Err(failed()),
         }
     }
 
     /// Refuses one that was uploaded before.
     pub fn check_new(&self) -> Result<(), Failure> {
-        match *handles::only(Self::NAME, &self.is_uploaded)? {
-            false => Ok(()),
-            true => Err(Failure::state("the volume was uploaded before")),
-        }
+        self.lock()?.check_new()
     }
 
     /// Records the upload, once.
     ///
     /// # Safety
     /// As [`embed::Volume::record_upload`].
-    pub unsafe fn record_upload(
-        &self,
-        gpu: &crate::gpu::Gpu,
-        cmd: vk::CommandBuffer,
-    ) -> Result<(), Failure> {
-        self.check_new()?;
-        let mut is_uploaded = handles::only(Self::NAME, &self.is_uploaded)?;
-        let mut volume = handles::only(Self::NAME, &self.volume)?;
-        let volume = Arc::get_mut(&mut volume).expect("shared when it is uploaded");
+    pub unsafe fn record_upload(&self, gpu: &Gpu, cmd: vk::CommandBuffer) -> Result<(), Failure> {
+        let mut inner = self.lock()?;
+        inner.check_new()?;
+        inner.upload = Upload::Failed;
+        let volume = Arc::get_mut(&mut inner.volume).expect("shared when it is uploaded");
         // SAFETY: the caller's promise.
         unsafe { volume.record_upload(gpu, cmd)? };
-        *is_uploaded = true;
+        inner.upload = Upload::Recorded;
         Ok(())
     }
+
+    /// What was recorded was not submitted: its voxels are gone.
+    pub fn forget_upload(&self) {
+        if let Ok(mut inner) = self.lock()
+            && inner.upload == Upload::Recorded
+        {
+            inner.upload = Upload::Failed;
+        }
+    }
+}
+
+impl Inner {
+    fn check_new(&self) -> Result<(), Failure> {
+        match self.upload {
+            Upload::Wanted => Ok(()),
+            Upload::Recorded => Err(Failure::state("the volume was uploaded before")),
+            Upload::Failed => Err(failed()),
+        }
+    }
+}
+
+fn failed() -> Failure {
+    Failure::state("the upload of the volume failed: destroy it and make it again")
 }
 
 /// Makes textures for voxels, which are copied to where the upload finds them. Threads: any.
@@ -135,11 +177,7 @@ pub unsafe extern "C" fn sv_volume_create(
             let found = if low.is_finite() { high } else { low };
             number("a rescaled value", "a finite number", found, is_finite)?;
             let made = embed::Volume::new(&device.gpu, &read, &settings)?;
-            let held = Held {
-                volume: Mutex::new(Arc::new(made)),
-                is_uploaded: Mutex::new(false),
-            };
-            let handle = handles::add(&device, held)?;
+            let handle = handles::add(&device, Held::new(made))?;
             // SAFETY: not NULL; the caller's promise.
             unsafe { volume.write(handle) };
             Ok(())
@@ -180,7 +218,7 @@ pub unsafe extern "C" fn sv_volume_value_range(
     let body = || {
         structure::out("the place of the two values", range)?;
         let (_, held) = handles::find::<Held>(volume)?;
-        let found = handles::only(Held::NAME, &held.volume)?.value_range();
+        let found = held.lock()?.volume.value_range();
         // SAFETY: not NULL; the caller's promise.
         unsafe { range.cast::<[f64; 2]>().write(found) };
         Ok(())

@@ -67,6 +67,8 @@ static void frames(void) {
     sv_pick pick = {.struct_size = sizeof pick};
     BAD(SV_E_ARGUMENT, sv_renderer_pick(renderer, 7, 0, 0, &pick, &diagnostic));
     BAD(SV_E_STATE, sv_renderer_pick(renderer, 1, 0, 0, &pick, &diagnostic));
+    BAD(SV_E_STATE, sv_renderer_pick(renderer, 0, 0, 0, &pick, &diagnostic));
+    BAD(SV_E_STATE, sv_renderer_pick(renderer, 0, WIDTH, UINT32_MAX, &pick, &diagnostic));
     /* Depths want matrices, and an image in their own class. */
     BAD(SV_E_ARGUMENT, sv_renderer_record(deep, cmd, &SHOT, &diagnostic));
     const sv_target whole = whole_target();

@@ -274,6 +274,30 @@ static void test_levels(void) {
     }
 }
 
+/* A device of stricter limits holds the volume in bricks, and draws the same picture. */
+static void test_limits(const sv_host_device *ours) {
+    static uint8_t whole[BYTES], bricks[BYTES];
+    const sv_limits limits = {.struct_size = sizeof limits, .max_image_dimension_3d = 16};
+    const sv_device kept_device = device;
+    const sv_volume kept_volume = volume;
+    sv_host_device strict = *ours;
+    strict.limits = &limits;
+    sv_renderer renderer = make_renderer(NULL, 0);
+    draw_b(renderer, whole);
+    CHECK(sv_renderer_destroy(renderer, &diagnostic));
+    CHECK(sv_device_from_host(&strict, &device, &diagnostic));
+    volume = make_volume(9.0);
+    VkCommandBuffer cmd = host_begin(&h);
+    CHECK(sv_volume_record_upload(volume, cmd, &diagnostic));
+    host_submit_and_wait(&h, cmd);
+    renderer = make_renderer(NULL, 0);
+    draw_b(renderer, bricks);
+    expect(!memcmp(whole, bricks, BYTES), "stricter limits, the same picture");
+    CHECK(sv_device_destroy(device, &diagnostic));
+    expect(sv_renderer_destroy(renderer, &diagnostic) == SV_E_ARGUMENT, "a renderer goes with its device");
+    device = kept_device, volume = kept_volume;
+}
+
 int main(void) {
     host_open(&h, WIDTH, HEIGHT, FORMAT);
     const sv_host_device ours = {
@@ -293,6 +317,7 @@ int main(void) {
     host_submit_and_wait(&h, cmd);
     test_depth(0);
     test_depth(1);
+    test_limits(&ours);
     test_levels();
     volume = ball;
 
