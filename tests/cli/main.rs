@@ -30,6 +30,7 @@ mod presets;
 mod real;
 mod section;
 mod sheet;
+mod thumbnail_views;
 mod thumbnails;
 mod thumbnails_at_once;
 mod weather;
