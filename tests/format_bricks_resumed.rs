@@ -96,7 +96,8 @@ fn a_file_stopped_behind_any_row_ends_as_that_of_one_run() {
         let (wanted, all, said) = whole(numbers);
         assert_eq!(all.len(), 12, "rows of two levels");
         assert_eq!(said.notes.is_empty(), numbers == NumberType::Stored);
-        for rows in 1..=all.len() {
+        let every = if numbers == NumberType::Stored { 1 } else { 5 };
+        for rows in (1..=all.len()).step_by(every) {
             let (mut file, mut lines) = (Vec::new(), Vec::new());
             assert!(gone_on(&mut file, &mut lines, rows, numbers).is_none());
             assert_eq!(lines.len(), rows);

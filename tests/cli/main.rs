@@ -12,6 +12,7 @@ mod bench;
 mod classified;
 mod convert;
 mod convert_refused;
+mod convert_stops;
 mod device;
 mod errors;
 mod examples;
