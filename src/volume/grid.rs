@@ -32,6 +32,16 @@ impl Grid {
         DVec3::from_array(self.dims.map(f64::from))
     }
 
+    /// World length of the longest way through the box: the longest of its four diagonals.
+    pub fn diagonal(&self) -> f64 {
+        let [x, y, z] = DMat3::from(self.world_from_voxel.matrix3)
+            .mul_mat3(&DMat3::from_diagonal(self.far_corner()))
+            .to_cols_array_2d()
+            .map(DVec3::from);
+        let diagonals = [x + y + z, x + y - z, x - y + z, y + z - x];
+        diagonals.map(DVec3::length).into_iter().fold(0.0, f64::max)
+    }
+
     /// World position of the centre of the grid box.
     pub fn center(&self) -> DVec3 {
         self.world_from_voxel
