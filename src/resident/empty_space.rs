@@ -41,7 +41,7 @@ pub struct EmptySpace {
 /// What maps of all volumes under one transfer function have in common.
 #[derive(Debug)]
 struct Mapping {
-    pipeline: ComputePipeline,
+    pipeline: Arc<ComputePipeline>,
     pass_ring: ParameterRing,
     seen: Buffer,
 }
@@ -78,6 +78,15 @@ impl<'a> From<&'a Alike> for Words<'a> {
 
 impl Mapping {
     fn new<'a>(gpu: &Arc<Gpu>, seen: impl Into<Words<'a>>) -> Result<Self, Error> {
+        let pipeline = ComputePipeline::new(gpu, shader("distance_map"))?;
+        Self::by(gpu, Arc::new(pipeline), seen)
+    }
+
+    fn by<'a>(
+        gpu: &Arc<Gpu>,
+        pipeline: Arc<ComputePipeline>,
+        seen: impl Into<Words<'a>>,
+    ) -> Result<Self, Error> {
         let seen = seen.into();
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
         let mut words = vec![
@@ -95,7 +104,7 @@ impl Mapping {
             pass_ring.write(number, bytemuck::bytes_of(&Pass { number }))?;
         }
         Ok(Self {
-            pipeline: ComputePipeline::new(gpu, shader("distance_map"))?,
+            pipeline,
             pass_ring,
             seen: table,
         })
@@ -160,11 +169,22 @@ impl EmptySpace {
         alike: &Alike,
     ) -> Result<Self, Error> {
         let mut made = Self::new(gpu, cells, seen)?;
-        let mapping = Arc::new(Mapping::new(gpu, alike)?);
+        let pipeline = Arc::clone(&made.mapping.pipeline);
+        let mapping = Arc::new(Mapping::by(gpu, pipeline, alike)?);
         let [before, after] = &made.rooms;
         let bound = mapping.bind(gpu, &made.grid_ring, cells, [before, after])?;
         made.alike = Some((mapping, bound));
         Ok(made)
+    }
+
+    /// The same for these cells under another transfer function, without compiling anything.
+    ///
+    /// # Errors
+    /// As [`EmptySpace::new`].
+    pub fn under(&self, cells: &MacroCells, seen: &Seen) -> Result<Self, Error> {
+        let pipeline = Arc::clone(&self.mapping.pipeline);
+        let mapping = Mapping::by(&self.gpu, pipeline, seen)?;
+        Self::with(&self.gpu, cells, Arc::new(mapping))
     }
 
     /// The same for other cells under the same transfer function.
