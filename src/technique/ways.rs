@@ -167,7 +167,7 @@ impl Settings {
 }
 
 const PREINTEGRATED: &str = "pre-integrated classification";
-const ADAPTIVE: &str = "adaptive steps";
+const ADAPTIVE: &str = "sampling by adaptive steps";
 const SMOOTH: &str = "interpolation between slices";
 const CUT_FACES: &str = "an opaque cut face";
 const JITTER: &str = "jitter";

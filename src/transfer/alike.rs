@@ -169,17 +169,18 @@ impl Window {
     }
 
     fn take(&mut self, cells: &[[Material; 2]], next: usize) {
-        for c in 0..4 {
+        let both = self.lows.iter_mut().zip(&mut self.highs);
+        for (c, (lows, highs)) in both.enumerate() {
             let is_outdone = |&cell: &usize| cells[cell][0][c] >= cells[next][0][c];
-            while self.lows[c].back().is_some_and(is_outdone) {
-                self.lows[c].pop_back();
+            while lows.back().is_some_and(is_outdone) {
+                lows.pop_back();
             }
             let is_outdone = |&cell: &usize| cells[cell][1][c] <= cells[next][1][c];
-            while self.highs[c].back().is_some_and(is_outdone) {
-                self.highs[c].pop_back();
+            while highs.back().is_some_and(is_outdone) {
+                highs.pop_back();
             }
-            self.lows[c].push_back(next);
-            self.highs[c].push_back(next);
+            lows.push_back(next);
+            highs.push_back(next);
         }
     }
 }

@@ -34,10 +34,8 @@ impl Grid {
 
     /// World length of the longest way through the box: the longest of its four diagonals.
     pub fn diagonal(&self) -> f64 {
-        let [x, y, z] = DMat3::from(self.world_from_voxel.matrix3)
-            .mul_mat3(&DMat3::from_diagonal(self.far_corner()))
-            .to_cols_array_2d()
-            .map(DVec3::from);
+        let edges = self.world_from_voxel.matrix3 * DMat3::from_diagonal(self.far_corner());
+        let [x, y, z] = [edges.x_axis, edges.y_axis, edges.z_axis];
         let diagonals = [x + y + z, x + y - z, x - y + z, y + z - x];
         diagonals.map(DVec3::length).into_iter().fold(0.0, f64::max)
     }

@@ -17,9 +17,12 @@ use std::sync::Arc;
 pub struct Skipped {
     /// Of each volume of a mixture.
     cells: Option<(Of, Vec<MacroCells>)>,
-    empty: Option<(Vec<(usize, Seen)>, Option<Alike>, EmptySpace)>,
+    empty: Option<(Shown, EmptySpace)>,
     wanted: Option<Skippable>,
 }
+
+/// What functions show, by the numbers of their volumes, and between which values that looks alike.
+type Shown = (Vec<(usize, Seen)>, Option<Alike>);
 
 /// What macro cells are of: which of the volumes, in which form, for which filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,7 +43,7 @@ impl Skipped {
                     Skippable::Unseen(_) | Skippable::UnseenInAll(_) | Skippable::UnseenOrAlike(..),
                 ),
                 Some((_, cells)),
-                Some((_, _, empty)),
+                Some((_, empty)),
             ) => Skip::Unseen(&cells[0], empty),
             _ => Skip::Nothing,
         }
@@ -148,7 +151,7 @@ impl Renderer<'_> {
             _ => None,
         };
         let there = self.skipped.empty.as_ref();
-        let is_there = |(of, like, _): &(_, _, _)| (of, like) == (&seen, &alike);
+        let is_there = |((of, like), _): &(Shown, _)| (of, like) == (&seen, &alike);
         if !seen.is_empty() && !there.is_some_and(is_there) {
             let (_, cells) = self.skipped.cells.as_ref().expect("made above");
             let several: Vec<_> = seen.iter().map(|(n, seen)| (&cells[*n], seen)).collect();
@@ -170,7 +173,7 @@ impl Renderer<'_> {
                         unsafe { made.record_part(cmd, part) }
                     })?;
             }
-            self.skipped.empty = Some((seen, alike, made));
+            self.skipped.empty = Some(((seen, alike), made));
         }
         self.skipped.wanted = Some(wanted);
         Ok(())
