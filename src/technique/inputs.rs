@@ -136,6 +136,8 @@ pub struct Words {
     pub take: Take,
     /// Gradients count for nothing but unhindered light, on central differences.
     pub is_plainly_lit: bool,
+    /// Steps adapt to what is there.
+    pub is_adaptive: bool,
 }
 
 /// What a sample is: a point of a ray, or a piece of it.
@@ -207,6 +209,7 @@ impl Words {
                 false => "table",
             },
             is_plainly_lit: is_graded && is_central && !settings.wants_light_volume(),
+            is_adaptive: settings.adaptive_steps.is_some(),
         }
     }
 }

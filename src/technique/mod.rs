@@ -1,6 +1,7 @@
 //! The closed list of techniques (where samples lie) and modes (what is done with them).
 
 mod accumulation;
+mod alike_cells;
 pub mod blend;
 pub mod composite;
 mod error;
@@ -41,6 +42,7 @@ mod turns;
 mod ways;
 
 pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
+pub use alike_cells::AlikeCells;
 pub use error::Error;
 pub use frame::View;
 pub use gradient_filter::{GradientFilter, GradientSource, Keep, Operator};
@@ -213,6 +215,10 @@ pub struct Settings {
     pub preintegrated: bool,
     /// Samples per smallest voxel spacing; positive. 2D stacks have one a slice.
     pub samples_per_voxel: f64,
+    /// Composite by rays: where the transfer function hardly changes over the values of a macro cell, one sample stands
+    /// for all of a ray in it. No channel of the picture, premultiplied as it is blended, is farther than this from that
+    /// of all samples; over 0, at most 1.
+    pub adaptive_steps: Option<f64>,
     /// Rays per pixel is the square of this; at least 1.
     pub rays_per_side: u32,
     /// Several rays go through uneven places of the pixel, others in each pixel, which [`Self::jitter`] moves.
@@ -264,6 +270,7 @@ impl Default for Settings {
             smooth: false,
             preintegrated: false,
             samples_per_voxel: 1.0,
+            adaptive_steps: None,
             rays_per_side: 1,
             uneven_rays: false,
             termination: 0.0,

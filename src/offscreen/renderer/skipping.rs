@@ -9,7 +9,7 @@ use crate::offscreen::time_slices::Work;
 use crate::resident::{Apron, Corners, EmptySpace, MacroCells};
 use crate::scene::{Beside, Scene};
 use crate::technique::{Mix, Mode, Part, Role, Skip, Skippable};
-use crate::transfer::{Seen, TransferFunction};
+use crate::transfer::{Alike, Seen, TransferFunction};
 use std::sync::Arc;
 
 /// What is known of the volumes that have been drawn.
@@ -17,9 +17,12 @@ use std::sync::Arc;
 pub struct Skipped {
     /// Of each volume of a mixture.
     cells: Option<(Of, Vec<MacroCells>)>,
-    empty: Option<(Vec<(usize, Seen)>, EmptySpace)>,
+    empty: Option<(Shown, EmptySpace)>,
     wanted: Option<Skippable>,
 }
+
+/// What functions show, by the numbers of their volumes, and between which values that looks alike.
+type Shown = (Vec<(usize, Seen)>, Option<Alike>);
 
 /// What macro cells are of: which of the volumes, in which form, for which filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +39,9 @@ impl Skipped {
         match (&self.wanted, &self.cells, &self.empty) {
             (Some(Skippable::Exceeded), Some((_, cells)), _) => Skip::Exceeded(&cells[0]),
             (
-                Some(Skippable::Unseen(_) | Skippable::UnseenInAll(_)),
+                Some(
+                    Skippable::Unseen(_) | Skippable::UnseenInAll(_) | Skippable::UnseenOrAlike(..),
+                ),
                 Some((_, cells)),
                 Some((_, empty)),
             ) => Skip::Unseen(&cells[0], empty),
@@ -137,15 +142,24 @@ impl Renderer<'_> {
             self.skipped.cells = Some((of, all));
         }
         let seen = match &wanted {
-            Skippable::Unseen(seen) => vec![(0, seen.clone())],
+            Skippable::Unseen(seen) | Skippable::UnseenOrAlike(seen, _) => vec![(0, seen.clone())],
             Skippable::UnseenInAll(seen) => seen.clone(),
             Skippable::Nothing | Skippable::Exceeded => Vec::new(),
         };
+        let alike = match &wanted {
+            Skippable::UnseenOrAlike(_, alike) => Some(alike.clone()),
+            _ => None,
+        };
         let there = self.skipped.empty.as_ref();
-        if !seen.is_empty() && there.is_none_or(|(there, _)| *there != seen) {
+        let is_there = |((of, like), _): &(Shown, _)| (of, like) == (&seen, &alike);
+        if !seen.is_empty() && !there.is_some_and(is_there) {
             let (_, cells) = self.skipped.cells.as_ref().expect("made above");
             let several: Vec<_> = seen.iter().map(|(n, seen)| (&cells[*n], seen)).collect();
-            let made = EmptySpace::of_several(self.device.gpu(), &several);
+            let gpu = self.device.gpu();
+            let made = match &alike {
+                Some(alike) => EmptySpace::with_alike(gpu, &cells[0], &seen[0].1, alike),
+                None => EmptySpace::of_several(gpu, &several),
+            };
             let Some(made) = if_it_fits(made)? else {
                 return Ok(());
             };
@@ -159,7 +173,7 @@ impl Renderer<'_> {
                         unsafe { made.record_part(cmd, part) }
                     })?;
             }
-            self.skipped.empty = Some((seen, made));
+            self.skipped.empty = Some(((seen, alike), made));
         }
         self.skipped.wanted = Some(wanted);
         Ok(())
@@ -196,6 +210,11 @@ fn wanted(scene: &Scene) -> Option<(Skippable, Apron)> {
             scene.settings.skippable_in_all(&functions)
         }
         (mix, _) => scene.settings.skippable(mix, scene.transfer, range),
+    };
+    let alike = scene.alike().filter(|_| scene.settings.skip);
+    let wanted = match (wanted, alike, scene.transfer) {
+        (_, Some(alike), Some(function)) => Skippable::UnseenOrAlike(Seen::new(function), alike),
+        (wanted, ..) => wanted,
     };
     let apron = scene.view(&scene.volume.grid(), [0.0; 2]).apron()?;
     (wanted != Skippable::Nothing).then_some((wanted, apron))
