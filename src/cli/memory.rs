@@ -113,12 +113,9 @@ impl RenderBytes {
     }
 }
 
-/// Bytes that devices which compute on the CPU take beside the texture of 8-bit numbers.
+/// Bytes that devices which compute on the CPU take beside the texture of 8-bit and 16-bit numbers.
 pub fn corners_bytes(header: &Header) -> u64 {
-    match header.stored {
-        VoxelType::U8 | VoxelType::I8 => Corners::bytes_of(header.dims),
-        _ => 0,
-    }
+    Corners::bytes_of(header.stored, header.dims).unwrap_or(0)
 }
 
 /// Volumes of one source that are there at once.

@@ -177,16 +177,16 @@ impl Words {
         let is_graded = mix == Mix::Alone && is_lit;
         let is_central = settings.gradient_operator() == Operator::Central
             && settings.keep_gradients != Keep::Always;
-        let reads_corners = settings.reads_corners(mix) && has_corners(parts);
+        let corners = corners_of(parts).filter(|_| settings.reads_corners(mix));
         Self {
             mix: if is_graded { Mix::Graded } else { mix },
             filter: match settings.filter {
                 Filter::Nearest => "nearest",
-                Filter::Linear if reads_corners => "corners",
-                Filter::Linear if settings.conformance || parts.iter().any(is_fetched) => {
-                    "linear_fetch"
-                }
-                Filter::Linear => "linear",
+                Filter::Linear => match corners {
+                    Some(corners) => corners.filter(),
+                    None if settings.conformance || parts.iter().any(is_fetched) => "linear_fetch",
+                    None => "linear",
+                },
                 Filter::CatmullRom => "kernel",
                 _ if settings.conformance || parts.iter().any(is_fetched) => "kernel",
                 _ => "spline",
@@ -201,18 +201,22 @@ impl Words {
                 false if settings.smooth => Take::Between,
                 false => Take::Point,
             },
-            transfer: match reads_corners {
+            transfer: match corners {
                 _ if settings.conformance => "points",
-                true => "stored",
-                false => "table",
+                Some(_) => "stored",
+                None => "table",
             },
             is_plainly_lit: is_graded && is_central && !settings.wants_light_volume(),
         }
     }
 }
 
-fn has_corners(parts: &[Part]) -> bool {
-    parts.iter().all(|part| part.volume.corners().is_some())
+/// Those of the one volume.
+fn corners_of<'a>(parts: &[Part<'a>]) -> Option<&'a Corners> {
+    match parts {
+        [part] => part.volume.corners(),
+        _ => None,
+    }
 }
 
 impl Settings {
