@@ -8,9 +8,9 @@ use shared::{
     Comparison, Shot, compare, device, oblique_camera, projections, ramps, sheared_affine, waves,
 };
 use stratavox::offscreen::{Renderer, reference};
-use stratavox::picture::LayerKind;
+use stratavox::picture::{LayerKind, Picture};
 use stratavox::resident::Corners;
-use stratavox::technique::{Mode, Settings, Shading};
+use stratavox::technique::{FilterBy, Keep, Lattice, Level, Mode, Settings, Shading, Technique};
 use stratavox::transfer::{ColorPoint, OpacityPoint, TransferFunction};
 use stratavox::volume::{Grid, Rescale, Volume, VoxelType, Voxels};
 
@@ -69,28 +69,21 @@ fn what(volume: &Volume, shot: &Shot) -> String {
 }
 
 /// The layer of values, which nothing has classified, and where they lie.
-fn check_layers(renderer: &mut Renderer, volume: &Volume, shot: &Shot, kinds: &[LayerKind]) {
+fn check_layer(renderer: &mut Renderer, volume: &Volume, shot: &Shot, kind: LayerKind) {
     let transfer = ramps();
     let scene = shot.scene(volume, Some(&transfer));
-    let found = renderer.render(&scene, kinds).unwrap().picture;
+    let found = renderer.render(&scene, &[kind]).unwrap().picture;
     let double = reference::render::<f64>(&scene).unwrap();
     let single = reference::render::<f32>(&scene).unwrap();
-    for &kind in kinds {
-        let lists = [&double, &single, &found].map(|picture| {
-            let layer = picture.layers.iter().find(|layer| layer.kind == kind);
-            layer.unwrap().values.clone()
-        });
-        let drawn = lists[1].iter().filter(|&&value| value > 0.01).count();
-        assert!(drawn > 100, "only {drawn} pixels are drawn");
-        let scale = lists[1].iter().copied().fold(1.0, f32::max);
-        let lists = [&lists[0][..], &lists[1][..], &lists[2][..]];
-        compare(
-            &format!("{kind:?} of {}", what(volume, shot)),
-            found.width,
-            lists,
-            scale,
-        );
-    }
+    let lists = [&double, &single, &found].map(|picture| {
+        let layer = picture.layers.iter().find(|layer| layer.kind == kind);
+        &layer.unwrap().values[..]
+    });
+    let what = format!("{kind:?} of {}", what(volume, shot));
+    let drawn = lists[1].iter().filter(|&&value| value > 0.01).count();
+    assert!(drawn > 100, "{what}: only {drawn} pixels are drawn");
+    let scale = lists[1].iter().copied().fold(1.0, f32::max);
+    compare(&what, found.width, lists, scale);
 }
 
 #[test]
@@ -106,10 +99,10 @@ fn words_folded_over_many_rows_have_the_values_of_the_twin() {
             let device = device();
             assert!(!device.gpu().is_cpu() || Corners::are_for(device.gpu(), &volume));
             let mut renderer = Renderer::new(device, &volume).unwrap();
-            for mode in [Mode::Mip, Mode::Minip, Mode::Average] {
-                for shot in shots(grid, mode) {
-                    check_layers(&mut renderer, &volume, &shot, &[LayerKind::Value]);
-                }
+            // One projection each.
+            for (mode, shot) in [(Mode::Mip, 0), (Mode::Average, 1)] {
+                let shot = &shots(grid, mode)[shot];
+                check_layer(&mut renderer, &volume, shot, LayerKind::Value);
             }
         }
     }
@@ -126,7 +119,7 @@ fn long_rows_have_the_values_of_the_twin_from_end_to_end() {
         let mut renderer = Renderer::new(device(), &volume).unwrap();
         for shot in shots(grid, Mode::Average) {
             let shot = shot.with(|settings| settings.samples_per_voxel = 0.005);
-            check_layers(&mut renderer, &volume, &shot, &[LayerKind::Value]);
+            check_layer(&mut renderer, &volume, &shot, LayerKind::Value);
         }
     }
 }
@@ -141,7 +134,13 @@ fn surfaces_lie_where_those_of_the_twin_do() {
         let volume = volume_of(&grid, stored, false);
         let mut renderer = Renderer::new(device(), &volume).unwrap();
         for shot in shots(grid, Mode::Iso) {
-            check_layers(&mut renderer, &volume, &shot, &[LayerKind::Depth]);
+            let level = Level {
+                value: 0.55,
+                srgb: [0.8; 3],
+                opacity: 1.0,
+            };
+            let shot = shot.with(|settings| settings.per_mode.levels = vec![level]);
+            check_layer(&mut renderer, &volume, &shot, LayerKind::Depth);
         }
     }
 }
@@ -185,4 +184,103 @@ fn composites_lit_and_unlit_are_those_of_the_twin_up_to_the_table() {
             }
         }
     }
+}
+
+/// What a picture is made of does not hang on what was drawn before it, with or without a texture.
+#[test]
+fn a_renderer_goes_from_what_reads_corners_alone_to_all_else_and_back() {
+    let grid = Grid {
+        dims: [23, 19, 17],
+        world_from_voxel: sheared_affine(),
+    };
+    let transfer = ramps();
+    let changes: [fn(&mut Settings); 8] = [
+        |_| {},
+        |settings| settings.technique = Technique::Slices3d,
+        |settings| settings.lattice = Lattice::Planes,
+        |settings| {
+            settings.mode = Mode::Mip;
+            settings.per_mode.exact_maximum = true;
+        },
+        |settings| {
+            settings.shading = Some(Shading::default());
+            settings.keep_gradients = Keep::Always;
+        },
+        |settings| settings.preintegrated = true,
+        |settings| settings.filter_by = FilterBy::Sampler,
+        |settings| settings.conformance = true,
+    ];
+    let shot = &shots(grid, Mode::Composite)[0];
+    for (stored, has_holes) in [(VoxelType::U8, false), (VoxelType::I16, true)] {
+        let volume = volume_of(&grid, stored, has_holes);
+        let mut renderer = Renderer::new(device(), &volume).unwrap();
+        for change in changes {
+            let changed = shot.with(change);
+            if has_holes && changed.settings.keep_gradients == Keep::Always {
+                continue;
+            }
+            for shot in [&changed, shot] {
+                let scene = shot.scene(&volume, Some(&transfer));
+                let found = renderer.render(&scene, &[]).unwrap().picture.pixels;
+                let mut fresh = Renderer::new(device(), &volume).unwrap();
+                let wanted = fresh.render(&scene, &[]).unwrap().picture.pixels;
+                assert!(wanted.iter().any(|pixel| pixel[3] > 0.1));
+                assert!(found == wanted, "{}", what(&volume, shot));
+            }
+        }
+    }
+}
+
+/// Rays read corners in both pictures; where there are none, `fetch` has the weights of conformance pictures, which are
+/// the twin's.
+#[test]
+fn fetches_are_those_of_the_twin_in_every_technique() {
+    let grid = Grid {
+        dims: [23, 19, 17],
+        world_from_voxel: sheared_affine(),
+    };
+    for stored in [VoxelType::U8, VoxelType::I16] {
+        let volume = volume_of(&grid, stored, false);
+        let mut renderer = Renderer::new(device(), &volume).unwrap();
+        for technique in [Technique::Raycast, Technique::Slices3d, Technique::Slices2d] {
+            let shot = shots(grid, Mode::Mip)[0].with(|settings| {
+                settings.technique = technique;
+                settings.filter_by = FilterBy::Fetch;
+            });
+            check_layer(&mut renderer, &volume, &shot, LayerKind::Value);
+            let by = renderer.filtered(&shot.settings).unwrap().by;
+            let is_by_corners = technique == Technique::Raycast && renderer.device().gpu().is_cpu();
+            assert_eq!(by, if is_by_corners { "corners" } else { "fetch" });
+        }
+    }
+}
+
+#[test]
+fn the_sampler_is_there_for_who_asks_for_it() {
+    let grid = Grid {
+        dims: [23, 19, 17],
+        world_from_voxel: sheared_affine(),
+    };
+    let volume = volume_of(&grid, VoxelType::U16, false);
+    let mut renderer = Renderer::new(device(), &volume).unwrap();
+    let shot = shots(grid, Mode::Average)[0].with(|s| s.filter_by = FilterBy::Sampler);
+    let transfer = ramps();
+    let scene = shot.scene(&volume, Some(&transfer));
+    let kinds = [LayerKind::Value];
+    let found = renderer.render(&scene, &kinds).unwrap().picture;
+    let wanted = reference::render::<f64>(&scene).unwrap();
+    let filtered = renderer.filtered(&shot.settings).unwrap();
+    assert_eq!((filtered.by, filtered.because), ("sampler", "asked for"));
+    // Sub-texel positions of 4 bits at least (`subTexelPrecisionBits`): half a sixteenth along each axis of the steepest
+    // step that there is.
+    let steepest = 0.2 * 0.61 + 0.15 * 0.53 + 0.15 * 0.57;
+    let value = |picture: &Picture| {
+        let layer = picture
+            .layers
+            .iter()
+            .find(|layer| layer.kind == LayerKind::Value);
+        layer.unwrap().values.clone()
+    };
+    let (wanted, found) = (value(&wanted), value(&found));
+    Comparison::of(&wanted, &found).at_most(3.0 * steepest / 32.0, "by the sampler");
 }

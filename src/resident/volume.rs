@@ -78,6 +78,8 @@ pub struct GpuVolume {
     gradient_source: Option<Box<GpuVolume>>,
     kept_gradients: Option<KeptGradients>,
     pub(super) corners: Option<Corners>,
+    /// Whether the values lie in the textures, and not in corners alone.
+    pub(super) has_texels: bool,
 }
 
 /// What a texture holds.
@@ -175,12 +177,25 @@ impl Plan {
     }
 
     fn make(self, gpu: &Arc<Gpu>, volume: &Volume, cells: &[Cell]) -> Result<GpuVolume, Error> {
+        self.make_with(gpu, volume, cells, None)
+    }
+
+    /// With corners the texture is a single texel, which nobody looks at.
+    fn make_with(
+        self,
+        gpu: &Arc<Gpu>,
+        volume: &Volume,
+        cells: &[Cell],
+        corners: Option<Corners>,
+    ) -> Result<GpuVolume, Error> {
+        let has_texels = corners.is_none();
         let brick = |&cell: &Cell| {
             let stored = cell.stored.dims();
             let mask = || Image::new(gpu, &self.validity(stored));
+            let texels = if has_texels { stored } else { [1; 3] };
             Ok(Brick {
                 cell,
-                values: Image::new(gpu, &self.values(stored))?,
+                values: Image::new(gpu, &self.values(texels))?,
                 validity: self.has_holes.then(mask).transpose()?,
             })
         };
@@ -200,7 +215,8 @@ impl Plan {
             spline: None,
             gradient_source: None,
             kept_gradients: None,
-            corners: None,
+            corners,
+            has_texels,
         })
     }
 }
@@ -307,6 +323,29 @@ impl GpuVolume {
         let made = volumes.iter().zip(plans);
         made.map(|(volume, plan)| plan.make(gpu, volume, &cells))
             .collect()
+    }
+
+    /// Objects for a volume whose values lie in its corners alone. Only what reads nothing else may be drawn of it
+    /// ([`Settings::reads_corners_alone`](crate::technique::Settings::reads_corners_alone)).
+    ///
+    /// # Errors
+    /// As [`GpuVolume::new`].
+    pub(crate) fn of_corners(
+        gpu: &Arc<Gpu>,
+        volume: &Volume,
+        corners: Corners,
+    ) -> Result<Self, Error> {
+        let plan = Plan::of(gpu, volume, TextureLayout::Texture3d);
+        let all = VoxelBox {
+            min: [0; 3],
+            max: volume.dims,
+        };
+        let cell = Cell {
+            index: [0; 3],
+            own: all,
+            stored: all,
+        };
+        plan.make_with(gpu, volume, &[cell], Some(corners))
     }
 
     /// Objects for one brick of a volume that is not all there: `voxels` are those of `cell.stored`. Uploads take them too.

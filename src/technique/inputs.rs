@@ -2,7 +2,7 @@
 //! asks for.
 
 use super::{
-    Filter, Keep, Lattice, LightVolume, Mix, Mode, Operator, Part, Role, Settings, Skip, Technique,
+    Filter, FilterBy, Keep, Lattice, LightVolume, Mix, Mode, Operator, Part, Role, Settings, Skip,
 };
 use crate::gpu::{Bindings, Error, Gpu, Image, Layout, ParameterRing, Resource};
 use crate::resident::{Brick, Corners, GpuTransfer, GpuVolume, TextureLayout};
@@ -170,6 +170,9 @@ impl Words {
     pub fn mixed(settings: &Settings, mix: Mix, parts: &[Part]) -> Self {
         let is_fetched =
             |part: &Part| part.role != Role::Labels && !part.volume.texel().is_filtered;
+        let is_by_fetches = settings.conformance
+            || settings.filter_by == FilterBy::Fetch
+            || parts.iter().any(is_fetched);
         let has_holes = parts.iter().any(|part| part.volume.has_holes());
         let has_surfaces = settings.shading.as_ref().is_some_and(|s| s.has_surfaces);
         let is_lit = has_surfaces || settings.wants_light_volume();
@@ -184,11 +187,11 @@ impl Words {
                 Filter::Nearest => "nearest",
                 Filter::Linear => match corners {
                     Some(corners) => corners.filter(),
-                    None if settings.conformance || parts.iter().any(is_fetched) => "linear_fetch",
+                    None if is_by_fetches => "linear_fetch",
                     None => "linear",
                 },
                 Filter::CatmullRom => "kernel",
-                _ if settings.conformance || parts.iter().any(is_fetched) => "kernel",
+                _ if is_by_fetches => "kernel",
                 _ => "spline",
             },
             holes: if has_holes { "mask" } else { "none" },
@@ -216,16 +219,6 @@ fn corners_of<'a>(parts: &[Part<'a>]) -> Option<&'a Corners> {
     match parts {
         [part] => part.volume.corners(),
         _ => None,
-    }
-}
-
-impl Settings {
-    /// Whether pictures of one volume read its [`Corners`], where it has them: rays on their own lattice, linear.
-    pub fn reads_corners(&self, mix: Mix) -> bool {
-        let is_point = !self.preintegrated && !self.conformance;
-        let is_ray = self.technique == Technique::Raycast && self.lattice != Lattice::Planes;
-        let is_one = matches!(mix, Mix::Alone | Mix::Graded);
-        is_one && is_ray && is_point && self.filter == Filter::Linear
     }
 }
 
