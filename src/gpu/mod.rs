@@ -58,7 +58,7 @@ pub use image::{Image, ImageDesc, ImageKind};
 pub use layout::Layout;
 pub use parameters::ParameterRing;
 pub use pipeline::ComputePipeline;
-pub use raster::{Blend, RasterDesc, RasterPipeline};
+pub use raster::{Blend, DepthClass, DepthUse, RasterDesc, RasterPipeline, TargetClass};
 pub use rendering::{
     Load, begin_rendering, begin_rendering_of, end_rendering, set_area, set_area_of,
 };
