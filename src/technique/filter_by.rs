@@ -3,7 +3,7 @@
 //! ```text
 //! sampler    the device's texture unit: as exact as its sub-texel bits
 //! fetches    the shader itself, from eight texels in f32
-//! corners    the same, on software devices, from four words beside the texture or in its place (`resident::Corners`)
+//! corners    the same, on devices that compute on the CPU, from four words beside the texture or in its place (`resident::Corners`)
 //! ```
 
 use super::{Filter, Keep, Lattice, Mix, Operator, Settings, Technique};
@@ -11,8 +11,9 @@ use super::{Filter, Keep, Lattice, Mix, Operator, Settings, Technique};
 /// A wish for one of them. Conformance pictures fetch, whatever is wished.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum FilterBy {
-    /// Corners where there can be any, else the sampler: it follows from the device, the volume and the picture alone,
-    /// so that the same picture always comes out the same (`docs/sampling-notes.md`).
+    /// Corners where there are any, else the sampler. Renderers of our own make corners for drivers that were found to be
+    /// faster with them ([`Gpu::has_slow_sampler`](crate::gpu::Gpu::has_slow_sampler)): it follows from driver, volume
+    /// and picture alone, so that the same picture always comes out the same (`docs/sampling-notes.md`).
     #[default]
     Auto,
     /// The sampler, where the device has one for the format.

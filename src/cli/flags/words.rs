@@ -122,10 +122,10 @@ impl FilterWord {
 pub enum FilterByWord {
     #[default]
     #[value(
-        help = "fetch for rays on devices that compute on the CPU, whose samplers are slower; else sampler"
+        help = "fetch for rays where the driver is llvmpipe, whose sampler is slower; else sampler"
     )]
     Auto,
-    #[value(help = "the sampler, with its own weights of some 8 bits on graphics devices")]
+    #[value(help = "the device's sampler, whose weights have some 8 bits on graphics cards")]
     Sampler,
     #[value(help = "the shader, with weights in floats")]
     Fetch,

@@ -16,7 +16,7 @@ impl Renderer<'_> {
     /// That of the last picture, which was one of these settings; `None` before there is one.
     pub fn filtered(&self, settings: &Settings) -> Option<Filtered> {
         let (.., words) = self.passes.as_ref()?.key();
-        let is_cpu = self.device.gpu().is_cpu();
+        let has_slow_sampler = self.device.gpu().has_slow_sampler();
         let by = match words.filter {
             "corners8" | "corners16" => "corners",
             "linear" | "spline" => "sampler",
@@ -28,10 +28,10 @@ impl Renderer<'_> {
                 "the filter reads voxels one by one"
             }
             ("corners" | "fetch", FilterBy::Fetch) | ("sampler", FilterBy::Sampler) => "asked for",
-            ("corners", _) => "the device is software, whose sampler is slower",
+            ("corners", _) => "the driver's sampler is slower",
             ("fetch", _) => "the device does not filter the format",
-            (_, _) if is_cpu => "no corners for this volume or this kind of picture",
-            (_, _) => "the device has a sampler of its own",
+            (_, _) if has_slow_sampler => "no corners for this volume or this kind of picture",
+            (_, _) => "no driver but llvmpipe was found to be faster without",
         };
         Some(Filtered { by, because })
     }
