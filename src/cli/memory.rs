@@ -116,7 +116,8 @@ impl RenderBytes {
     }
 }
 
-/// Bytes of the device's memory that pictures by rays take where that computes on the CPU: corners in place of texels.
+/// Bytes of the device's memory that pictures by rays take where its driver is llvmpipe: corners in
+/// place of texels.
 pub fn software_device_bytes(header: &Header, has_holes: bool) -> u64 {
     let mask = if has_holes { header.voxel_count() } else { 0 };
     match Corners::bytes_of(header.stored, header.dims) {

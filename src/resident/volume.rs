@@ -4,12 +4,12 @@
 //! across and axis (k + 2) mod 3 down.
 
 use super::TexelFormat;
-use super::bricks::{Cell, cut};
+use super::bricks::Cell;
 use super::corners::Corners;
 use super::gradients::KeptGradients;
-use crate::gpu::{Error, Gpu, Image, ImageDesc, ImageKind, Sampler};
+use super::plan::Plan;
+use crate::gpu::{Error, Gpu, Image, ImageKind, Sampler};
 use crate::volume::{Coefficients, Grid, Spline, Volume, VoxelBox};
-use ash::vk;
 use std::sync::Arc;
 
 /// How voxels lie in textures.
@@ -119,63 +119,7 @@ pub struct Whole {
     pub has_holes: bool,
 }
 
-/// How a volume will lie in textures, before it is cut.
-struct Plan {
-    layout: TextureLayout,
-    texel: TexelFormat,
-    has_holes: bool,
-}
-
 impl Plan {
-    fn of(gpu: &Gpu, volume: &Volume, layout: TextureLayout) -> Self {
-        Self {
-            layout,
-            texel: TexelFormat::choose(gpu, volume.voxels.voxel_type(), volume.rescale),
-            has_holes: volume.validity.is_some(),
-        }
-    }
-
-    fn values(&self, stored: [u32; 3]) -> ImageDesc<'static> {
-        self.desc(stored, self.texel.format, "volume")
-    }
-
-    fn validity(&self, stored: [u32; 3]) -> ImageDesc<'static> {
-        self.desc(stored, vk::Format::R8_UINT, "validity")
-    }
-
-    fn desc(&self, stored: [u32; 3], format: vk::Format, name: &'static str) -> ImageDesc<'static> {
-        ImageDesc {
-            kind: self.layout.kind(),
-            extent: self.layout.axes().map(|axis| stored[axis]),
-            format,
-            usage: vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST,
-            name,
-        }
-    }
-
-    /// The limit that a brick of so many stored voxels is over.
-    fn check(&self, gpu: &Gpu, stored: [u32; 3]) -> Result<(), Error> {
-        gpu.check_image(&self.values(stored))?;
-        if self.has_holes {
-            gpu.check_image(&self.validity(stored))?;
-        }
-        Ok(())
-    }
-
-    /// Bricks in which all of them fit.
-    fn cut(gpu: &Gpu, plans: &[&Self], dims: [u32; 3]) -> Result<Vec<Cell>, Error> {
-        let halo = plans.first().map_or([0; 3], |plan| plan.layout.halo());
-        let fits = |stored| plans.iter().all(|plan| plan.check(gpu, stored).is_ok());
-        let Some(cells) = cut(dims, halo, fits) else {
-            // The error that names the limit.
-            for plan in plans {
-                plan.check(gpu, dims)?;
-            }
-            unreachable!("what cannot be cut to fit is over a limit");
-        };
-        Ok(cells)
-    }
-
     fn make(self, gpu: &Arc<Gpu>, volume: &Volume, cells: &[Cell]) -> Result<GpuVolume, Error> {
         self.make_with(gpu, volume, cells, None)
     }
