@@ -1,6 +1,9 @@
 //! What a technique left behind to linear premultiplied colour: a draw that is legal inside a host's rendering.
 
+mod depth;
 pub mod reference;
+
+pub use depth::DepthResolve;
 
 use crate::gpu::{
     Bindings, Blend, DepthUse, Error, Gpu, Image, ParameterRing, RasterDesc, RasterPipeline,
