@@ -9,8 +9,8 @@ const FILTER: Slot = (
     "filter",
     &["nearest", "linear", "linear_fetch", "kernel", "spline"],
 );
-/// By corners too: what rays on their own lattice have on software devices.
-const CORNERS: Slot = ("filter", &["corners"]);
+/// By corners too, of 8-bit and of 16-bit voxels: what rays on their own lattice have on software devices.
+const CORNERS: Slot = ("filter", &["corners8", "corners16"]);
 /// Conformance pictures search the points, and never leave filtering to the device.
 const FETCHED: Slot = ("filter", &["nearest", "linear_fetch", "kernel"]);
 /// Several volumes are mixed by narrow filters.

@@ -6,6 +6,7 @@ pub mod blend;
 pub mod composite;
 mod error;
 pub mod faces;
+mod filter_by;
 mod frame;
 mod frame_of_mode;
 pub mod gradient;
@@ -44,6 +45,7 @@ mod ways;
 pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 pub use alike_cells::AlikeCells;
 pub use error::Error;
+pub use filter_by::FilterBy;
 pub use frame::View;
 pub use gradient_filter::{GradientFilter, GradientSource, Keep, Operator};
 pub use in_pixel::InPixel;
@@ -200,6 +202,8 @@ pub struct Settings {
     pub mode: Mode,
     /// How values between voxels are made.
     pub filter: Filter,
+    /// What makes them: the device's sampler or the shader.
+    pub filter_by: FilterBy,
     /// Which samples the ray caster takes.
     pub lattice: Lattice,
     /// What moves the patterns of [`Lattice::Jitter`] and of uneven rays.
@@ -263,6 +267,7 @@ impl Default for Settings {
             technique: Technique::default(),
             mode: Mode::default(),
             filter: Filter::default(),
+            filter_by: FilterBy::default(),
             lattice: Lattice::default(),
             jitter: Jitter::default(),
             order: Order::default(),

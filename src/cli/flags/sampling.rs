@@ -4,7 +4,9 @@ use super::{
     Error, Numbers,
     cuts::{ClipBox, CutFacesWord},
     positive,
-    words::{ColorSpaceWord, FilterWord, LatticeWord, ModeWord, OrderWord, TechniqueWord},
+    words::{
+        ColorSpaceWord, FilterByWord, FilterWord, LatticeWord, ModeWord, OrderWord, TechniqueWord,
+    },
 };
 use crate::{
     picture::ColorSpace,
@@ -31,6 +33,11 @@ pub struct SamplingFlags {
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub filter: Option<FilterWord>,
+    /// What makes it: the device's sampler, or the shader from voxels that it fetches itself, as exactly as floats are
+    /// [default: auto]
+    #[arg(long, value_name = "WAY")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub filter_by: Option<FilterByWord>,
     /// Samples at equal steps along the ray, or on the planes of the slicer [default: ray]
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -143,6 +150,7 @@ impl SamplingFlags {
             technique: self.technique.unwrap_or_default().technique(),
             mode: self.mode.unwrap_or_default().mode(),
             filter: self.filter.unwrap_or_default().filter(),
+            filter_by: self.filter_by.unwrap_or_default().filter_by(),
             lattice: self.lattice()?,
             jitter: Jitter {
                 seed: self.jitter.unwrap_or_default(),

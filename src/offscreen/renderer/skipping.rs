@@ -1,15 +1,17 @@
 //! Where rays need not look, made on the device and made anew only where it changes.
 
 use super::{Copied, Renderer, parts_of};
-use crate::gpu;
+use crate::gpu::{self, Headless};
 use crate::offscreen::Error;
 use crate::offscreen::cost::ms_of_looks;
 use crate::offscreen::stream::if_it_fits;
 use crate::offscreen::time_slices::Work;
-use crate::resident::{Apron, Corners, EmptySpace, MacroCells};
+use crate::offscreen::upload::fill;
+use crate::resident::{Apron, Corners, EmptySpace, GpuVolume, MacroCells};
 use crate::scene::{Beside, Scene};
 use crate::technique::{Mix, Mode, Part, Role, Skip, Skippable};
 use crate::transfer::{Alike, Seen, TransferFunction};
+use crate::volume::Volume;
 use std::sync::Arc;
 
 /// What is known of the volumes that have been drawn.
@@ -64,24 +66,37 @@ impl Renderer<'_> {
         if !scene.settings.reads_corners(mix) {
             return Ok(());
         }
-        let gpu = &Arc::clone(self.device.gpu());
         let there = self.resident.get_mut(&copied).into_iter().flatten();
         for (made, volume) in there.zip(&self.volumes) {
             let is_one = made.bricks().len() == 1 && made.spline().is_none();
-            if made.corners().is_none() && is_one && Corners::are_for(gpu, volume) {
-                let Some(corners) = if_it_fits(Corners::new(gpu, volume))?.flatten() else {
-                    continue;
-                };
-                let on = Arc::clone(gpu);
-                // SAFETY: they live until they are dropped with the volume, long after the wait.
-                self.device.run(|cmd| unsafe {
-                    corners.record_upload(&on, cmd);
-                    Ok::<(), crate::gpu::Error>(())
-                })?;
+            if made.corners().is_none()
+                && is_one
+                && let Some(corners) = corners_of(&mut self.device, volume)?
+            {
                 made.keep_corners(corners);
             }
         }
         Ok(())
+    }
+
+    /// Brings the corners of the one volume, and no texels: whether it can have any.
+    ///
+    /// # Errors
+    /// Where the device is lost.
+    pub(super) fn upload_corners(&mut self, copied: Copied) -> Result<bool, Error> {
+        let &[volume] = &self.volumes[..] else {
+            return Ok(false);
+        };
+        let Some(corners) = corners_of(&mut self.device, volume)? else {
+            return Ok(false);
+        };
+        let made = GpuVolume::of_corners(self.device.gpu(), volume, corners);
+        let Some(made) = if_it_fits(made)? else {
+            return Ok(false);
+        };
+        fill(&mut self.device, &made, volume)?;
+        self.resident.insert(copied, vec![made]);
+        Ok(true)
     }
 
     /// Lists of the patches of slices for pictures of `scene`: whether there are any.
@@ -199,6 +214,23 @@ impl Renderer<'_> {
             false => MacroCells::new(gpu, volume, apron),
         }
     }
+}
+
+/// Complete ones, where the volume can have any.
+fn corners_of(device: &mut Headless, volume: &Volume) -> Result<Option<Corners>, Error> {
+    let gpu = &Arc::clone(device.gpu());
+    if !Corners::are_for(gpu, volume) {
+        return Ok(None);
+    }
+    let made = if_it_fits(Corners::new(gpu, volume))?.flatten();
+    if let Some(corners) = &made {
+        // SAFETY: they live until they are dropped with their volume, long after the wait.
+        device.run(|cmd| unsafe {
+            corners.record_upload(gpu, cmd);
+            Ok::<(), gpu::Error>(())
+        })?;
+    }
+    Ok(made)
 }
 
 /// What pictures of `scene` need not look at, and what cells must know for it.
