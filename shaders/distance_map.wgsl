@@ -6,11 +6,15 @@
 //
 // Of several volumes in one place D0 is 0 where any of their functions shows one of their values.
 //
+// For steps that adapt (looks_adaptive.wgsl) a fifth pass writes ALIKE for 0 where the function hardly changes over the
+// values of the cell, by a table of which values are alike in place of that of those that are seen.
+//
 // Outside the grid is nothing. One thread a cell. Twin: none, but pictures with it and without are the same.
 
 #import cell_grid
 
 const FAR: u32 = 0x10000u;
+const ALIKE: u32 = 0x40000000u;
 
 struct CellRanges {
     d: array<vec2<f32>>,
@@ -21,6 +25,7 @@ struct Seen {
     first: f32,
     scale: f32,
     count: u32,
+    // Or the first that is not alike.
     next: array<u32>,
 }
 
@@ -29,7 +34,7 @@ struct Rooms {
 }
 
 struct Pass {
-    // 0: what is seen. 1, 2, 3: along x, y, z. 4: what is seen of another volume too, after 0.
+    // 0: what is seen. 1, 2, 3: along x, y, z. 4: what is seen of another volume too, after 0. 5: what is alike, after 3.
     number: u32,
 }
 
@@ -52,6 +57,12 @@ fn main(@builtin(global_invocation_id) cell: vec3<u32>) {
     if which.number == 4u {
         if is_seen(cell_ranges.d[own]) {
             rooms_after.d[own] = 0u;
+        }
+        return;
+    }
+    if which.number == 5u {
+        if rooms_after.d[own] == 0u && is_alike(cell_ranges.d[own]) {
+            rooms_after.d[own] = ALIKE;
         }
         return;
     }
@@ -78,10 +89,21 @@ fn main(@builtin(global_invocation_id) cell: vec3<u32>) {
     rooms_after.d[own] = nearest;
 }
 
-// Whether a table shows any of these values. One entry more on both sides: f32 rounds on the way to an entry.
+// Whether a table shows any of these values.
 fn is_seen(range: vec2<f32>) -> bool {
+    let entries = entries_of(range);
+    return seen.next[entries.x] <= entries.y;
+}
+
+fn is_alike(range: vec2<f32>) -> bool {
+    let entries = entries_of(range);
+    return seen.next[entries.x] > entries.y;
+}
+
+// The first and the last. One more on both sides: f32 rounds on the way to an entry.
+fn entries_of(range: vec2<f32>) -> vec2<u32> {
     let last = f32(seen.count - 1u);
     let from_entry = u32(clamp(floor((range.x - seen.first) * seen.scale) - 1.0, 0.0, last));
     let to_entry = u32(clamp(floor((range.y - seen.first) * seen.scale) + 1.0, 0.0, last));
-    return seen.next[from_entry] <= to_entry;
+    return vec2(from_entry, to_entry);
 }

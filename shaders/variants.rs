@@ -9,8 +9,8 @@ const FILTER: Slot = (
     "filter",
     &["nearest", "linear", "linear_fetch", "kernel", "spline"],
 );
-/// By corners too: what rays on their own lattice have on software devices.
-const CORNERS: Slot = ("filter", &["corners"]);
+/// By corners too, of 8-bit and of 16-bit voxels: what rays on their own lattice have on software devices.
+const CORNERS: Slot = ("filter", &["corners8", "corners16"]);
 /// Conformance pictures search the points, and never leave filtering to the device.
 const FETCHED: Slot = ("filter", &["nearest", "linear_fetch", "kernel"]);
 /// Several volumes are mixed by narrow filters.
@@ -32,6 +32,9 @@ const ONE: Slot = ("mix", &["alone", "graded"]);
 /// Graded for nothing but unhindered light on central differences.
 const LIT: Slot = ("mix", &["lit"]);
 const ALONE: Slot = ("mix", &["alone"]);
+/// Steps that adapt to what is there, of volumes without holes.
+const ADAPTIVE: Slot = ("mix", &["adaptive"]);
+const WHOLE: Slot = ("holes", &["none"]);
 const MIXED: Slot = ("mix", &["channels", "colors"]);
 const MODE: Slot = ("mode", &["composite"]);
 /// Modes that slicers do not have leave the lattice of slicers to them.
@@ -45,6 +48,8 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ("raycast", &[MODE, ONE, RAY, CORNERS, HOLES, STORED]),
     ("raycast", &[MODE, LIT, RAY, NARROW, HOLES, TABLE]),
     ("raycast", &[MODE, LIT, RAY, CORNERS, HOLES, STORED]),
+    ("raycast", &[MODE, ADAPTIVE, RAY, NARROW, WHOLE, TABLE]),
+    ("raycast", &[MODE, ADAPTIVE, RAY, CORNERS, WHOLE, STORED]),
     ("raycast", &[MODE, ONE, LATTICE, FETCHED, HOLES, POINTS]),
     ("raycast", &[MODE, MIXED, LATTICE, NARROW, HOLES, TABLE]),
     (

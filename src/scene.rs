@@ -4,7 +4,7 @@ use crate::camera::Camera;
 use crate::shaders::MAX_CHANNELS;
 use crate::technique::mixture::opacities_have_colors;
 use crate::technique::{CutFaces, Error, InPixel, Keep, Mix, Mode, Role, Settings, View};
-use crate::transfer::TransferFunction;
+use crate::transfer::{Alike, Tolerance, TransferFunction};
 use crate::volume::Volume;
 
 /// One of several things seen in the same place.
@@ -149,6 +149,7 @@ impl<'a> Scene<'a> {
         if self.is_graded() {
             self.settings.check_graded()?;
         }
+        self.settings.check_holes(self.volume.validity.is_some())?;
         if self.settings.keep_gradients == Keep::Always && self.volume.validity.is_some() {
             let reason = "where voxels have no data, neighbours of what is zero would be too";
             return Err(Error::NotKept { reason });
@@ -236,6 +237,22 @@ impl<'a> Scene<'a> {
         function
             .reference_length
             .unwrap_or_else(|| self.smallest_spacing())
+    }
+
+    /// Between which values samples look alike, where steps adapt to that.
+    pub(crate) fn alike(&self) -> Option<Alike> {
+        let (error, function) = self.settings.adaptive_steps.zip(self.transfer)?;
+        let tolerance = Tolerance {
+            error,
+            longest_ray: self.volume.grid().diagonal(),
+        };
+        let length = self.length_of(function);
+        Some(Alike::new(
+            function,
+            length,
+            self.settings.color_space,
+            tolerance,
+        ))
     }
 
     fn smallest_spacing(&self) -> f64 {

@@ -26,12 +26,14 @@ struct Walk {
 // With the samples at t = line.x + k line.y; from samples.x to samples.y they lie there.
 fn walk_of(voxel: Ray, line: vec2<f32>, samples: vec2<i32>) -> Walk {
     let cell = f32(CELL_VOXELS);
-    let step = line.y * voxel.direction / cell;
     let tiny = vec3(1e-20);
+    let along = line.y * voxel.direction / cell;
+    // Along an axis on which the ray stays where it is, it leaves no cube.
+    let step = select(along, tiny, abs(along) < tiny);
     return Walk(
         (voxel.origin + line.x * voxel.direction - frame.cells_origin) / cell,
         step,
-        1.0 / select(step, tiny, abs(step) < tiny),
+        1.0 / step,
         vec3<f32>(frame.cells) - 1.0,
         samples.x,
         samples.y,

@@ -234,6 +234,7 @@ fn filtered(settings: Settings, scene: &SceneFlags, shown: &Shown) -> Settings {
     };
     Settings {
         filter,
+        filter_by: shown.filter_by(scene, settings.filter_by),
         per_mode,
         ..settings
     }

@@ -6,12 +6,14 @@ use super::{
     output,
     progress::{Progress, ProgressWord},
     signals::Gate,
+    stamp::{hash_of, stamp_of},
     surface::Surface,
+    unfinished::Unfinished,
 };
 use crate::{
     format::write::{
-        NumberType, Selection, Unpacked, VolumeFormat, WriteVolumeError, WriteVolumeOptions,
-        Written, write_volume,
+        DoneBricks, NumberType, Selection, Unpacked, VolumeFormat, WriteVolumeError,
+        WriteVolumeOptions, Written, write_bricks, write_volume,
     },
     isosurface::Border,
     mesh::MeshFormat,
@@ -19,7 +21,9 @@ use crate::{
     volume::{Header, Source, VoxelBox, VoxelType},
 };
 use clap::Args;
+use serde_json::{Value, json};
 use std::{
+    hash::Hasher,
     io::Write,
     path::{Path, PathBuf},
 };
@@ -32,7 +36,7 @@ use std::{
     stratavox convert phantom:head -o head.nrrd\n  \
     stratavox convert phantom:head -o bone.nii.gz --type u8 --window=-200,800\n  \
     stratavox convert phantom:shells,n=64 -o shells.npy --type f32\n  \
-    stratavox convert phantom:head -o head.svb\n  \
+    stratavox convert phantom:head -o head.svb --resume\n  \
     stratavox convert phantom:head,n=64 -o skull.ply --iso 300"
 )]
 pub struct Convert {
@@ -68,6 +72,9 @@ pub struct Convert {
     /// Close the surface where the volume ends, as printers of solids want it
     #[arg(long, requires = "iso", help_heading = "Surface")]
     closed: bool,
+    /// Go on with a .svb where a run before was stopped; the file is that of one that was not
+    #[arg(long, conflicts_with = "iso")]
+    resume: bool,
     /// Do not compress a .nrrd or .mha
     #[arg(long)]
     uncompressed: bool,
@@ -109,8 +116,10 @@ impl Convert {
                 progress.note(note);
             }
         }
-        let source = self.in_parts(source, &selection, options.format, &progress)?;
-        let written = self.write(source.as_ref(), &selection, &options, &progress, gate)?;
+        let written = match options.format {
+            VolumeFormat::Bricks => self.bricks(source, &selection, &options, &progress, gate)?,
+            _ => self.write(source.as_ref(), &selection, &options, &progress, gate)?,
+        };
         for note in &written.notes {
             progress.note(note);
         }
@@ -122,10 +131,10 @@ impl Convert {
         &self,
         source: Box<dyn Source>,
         selection: &Selection,
-        format: VolumeFormat,
+        done: &DoneBricks,
         progress: &Progress,
     ) -> Result<Box<dyn Source>, Error> {
-        if format != VolumeFormat::Bricks || source.reads_parts() {
+        if source.reads_parts() || done.holds_all_voxels(selection) {
             return Ok(source);
         }
         let folder = self
@@ -135,7 +144,11 @@ impl Convert {
         let folder = folder.unwrap_or(Path::new("."));
         let mut say = |done, of| progress.stage("decode", done, of);
         let unpacked = Unpacked::new(source, selection, folder, &mut say);
-        Ok(Box::new(unpacked.map_err(|error| self.error(error))?))
+        let unpacked = unpacked.map_err(|error| self.error(error))?;
+        Ok(Box::new(match done.count() {
+            0 => unpacked,
+            _ => unpacked.told(),
+        }))
     }
 
     /// What the words say of a surface; `None` where a volume is wanted.
@@ -177,6 +190,12 @@ impl Convert {
                 "name a file that ends in .nrrd, .mha, .nii, .nii.gz, .npy or .svb",
             )
         })?;
+        if self.resume && format != VolumeFormat::Bricks {
+            return Err(Error::usage(
+                "--resume is for a .svb: other files are written in one piece",
+                "leave out --resume",
+            ));
+        }
         let window = self.window.map(|Numbers(ends)| ends);
         if let Some([low, high]) = window
             && low >= high
@@ -215,6 +234,57 @@ impl Convert {
             times,
             components: self.input.components(header)?,
         })
+    }
+
+    /// Writes bricks, from where a run before was stopped.
+    fn bricks(
+        &self,
+        source: Box<dyn Source>,
+        selection: &Selection,
+        options: &WriteVolumeOptions,
+        progress: &Progress,
+        gate: &Gate,
+    ) -> Result<Written, Error> {
+        let conversion = self.identity(source.header())?;
+        let (mut unfinished, done) =
+            Unfinished::open(&self.output, conversion, self.resume, self.force)?;
+        gate.keeps(unfinished.hint());
+        if done.count() > 0 {
+            progress.note(&format!("{} bricks are there and stay", done.count()));
+        }
+        let source = self.in_parts(source, selection, &done, progress);
+        let mut bricks = done.count();
+        let outcome = source.and_then(|source| {
+            let mut say = |done, of| {
+                bricks = done;
+                progress.stage("write", done, of);
+            };
+            let (file, mut note) = unfinished.parts();
+            let numbers = options.numbers;
+            let source = source.as_ref();
+            write_bricks(source, selection, numbers, file, done, &mut note, &mut say)
+                .map_err(|error| self.error(error))
+        });
+        let written = outcome.inspect_err(|_| match bricks {
+            0 => gate.finished(|| Unfinished::remove(&self.output)),
+            _ => progress.note(&unfinished.hint()),
+        })?;
+        unfinished.publish(self.force, gate)?;
+        Ok(written)
+    }
+
+    /// Every word that decides what the file holds, and what is known of the input without reading it.
+    fn identity(&self, header: &Header) -> Result<Value, Error> {
+        let input = serde_json::to_value(&self.input).expect("plain data as JSON");
+        let header = format!("{header:?}");
+        Ok(json!({
+            "input": input,
+            "file": stamp_of(self.input.file())?,
+            "header": hash_of(|hasher| hasher.write(header.as_bytes())),
+            "crop": self.crop.map(|crop| crop.to_string()),
+            "type": self.r#type.map(VoxelType::name),
+            "window": self.window.map(|window| window.to_string()),
+        }))
     }
 
     fn write(

@@ -15,11 +15,14 @@ mod at_once;
 
 pub use at_once::{DeviceRoom, leaves_room, needed_bytes};
 
-use super::{Error, flags::SceneFlags};
+use super::{
+    Error,
+    flags::{InputFlags, SceneFlags},
+};
 use crate::{
     resident::{Corners, KeptGradients, TextureLayout},
-    technique::{GradientSource, Keep, LightPlan, Settings, Technique},
-    volume::{Header, Reduced, Source, VoxelType},
+    technique::{FilterBy, GradientSource, Keep, LightPlan, Settings, Technique},
+    volume::{Header, Reduced, Source, Volume, VoxelType},
 };
 use serde::Serialize;
 
@@ -113,11 +116,29 @@ impl RenderBytes {
     }
 }
 
-/// Bytes that devices which compute on the CPU take beside the texture of 8-bit numbers.
-pub fn corners_bytes(header: &Header) -> u64 {
-    match header.stored {
-        VoxelType::U8 | VoxelType::I8 => Corners::bytes_of(header.dims),
-        _ => 0,
+/// Bytes of the device's memory that pictures by rays take where its driver is llvmpipe: corners in
+/// place of texels.
+pub fn software_device_bytes(header: &Header, has_holes: bool) -> u64 {
+    let mask = if has_holes { header.voxel_count() } else { 0 };
+    match Corners::bytes_of(header.stored, header.dims) {
+        Some(corners) => corners.saturating_add(mask),
+        None => RenderBytes::of(header, has_holes).device,
+    }
+}
+
+/// The sampler, where nobody asks for another way and corners take more than `--max-memory`. What happens to be free does
+/// not count: the same words draw the same picture.
+pub fn filter_by(input: &InputFlags, wanted: FilterBy, volumes: &[&Volume]) -> FilterBy {
+    let bytes_of = |volume: &&Volume| {
+        let stored = volume.voxels.voxel_type();
+        let voxel_bytes = stored.bytes() as u64 + u64::from(volume.validity.is_some());
+        let corners = Corners::bytes_of(stored, volume.dims).unwrap_or(0);
+        (volume.voxels.len() as u64 * voxel_bytes).saturating_add(corners)
+    };
+    let bytes: u64 = volumes.iter().map(bytes_of).fold(0, u64::saturating_add);
+    match (wanted, input.max_memory) {
+        (FilterBy::Auto, Some(there)) if bytes as f64 > SHARE * there as f64 => FilterBy::Sampler,
+        _ => wanted,
     }
 }
 

@@ -38,9 +38,11 @@ mod sheet;
 mod shown;
 mod signals;
 mod small_file;
+mod stamp;
 mod surface;
 mod thumbnails;
 mod timings;
+mod unfinished;
 
 pub use bug::guarded;
 pub use error::Error;

@@ -183,10 +183,21 @@ impl Progress {
         }
     }
 
-    /// What became of a volume: its picture, or why there is none.
-    pub fn volume(&self, input: &str, picture: Option<&str>, error: Option<&str>) {
+    /// What became of a volume, from one of its views where it has several: its picture, or why there is none.
+    pub fn volume(
+        &self,
+        input: &str,
+        view: Option<&str>,
+        picture: Option<&str>,
+        error: Option<&str>,
+    ) {
         if let Told::Json = &self.told {
-            say_json(&serde_json::json!({ "volume": input, "picture": picture, "error": error }));
+            let mut line =
+                serde_json::json!({ "volume": input, "picture": picture, "error": error });
+            if let Some(view) = view {
+                line["view"] = view.into();
+            }
+            say_json(&line);
         }
     }
 

@@ -324,6 +324,7 @@ impl<'a> Renderer<'a> {
         let on_device = self.on_device.as_ref();
         let submitted = on_device.map(|renderer| renderer.device().submissions());
         let submitted = submitted.unwrap_or_default();
+        let filtered = on_device.and_then(|renderer| renderer.filtered(self.job.settings));
         Stages {
             read_ms: in_ms(loaded.read),
             statistics_ms: in_ms(loaded.statistics),
@@ -334,6 +335,8 @@ impl<'a> Renderer<'a> {
             total_ms: ms_since(gate.begun()),
             submissions: submitted.count,
             longest_submission_ms: submitted.longest_ms,
+            filtered_by: filtered.map(|filtered| filtered.by),
+            filtered_because: filtered.map(|filtered| filtered.because),
         }
     }
 

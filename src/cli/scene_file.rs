@@ -152,7 +152,7 @@ mod tests {
         Words::try_parse_from(words).expect("flags").scene
     }
 
-    const ALL: &str = "phantom:head --time 3 --technique slices-2d --mode mip --filter nearest \
+    const ALL: &str = "phantom:head --time 3 --technique slices-2d --mode mip --filter nearest --filter-by fetch \
         --lattice planes --order front-to-back --samples-per-voxel 0.3 --aa 4 --color-space display \
         --crop 0,1,0,1,0.5,1 --clip 1,0,0,5 --clip -1,0,0,-9.1 --conformance --preset mri --window -1,2 \
         --projection orthographic --fov 31.7 --zoom 1.1 --azimuth 12.3 --elevation -4 --roll 7 \

@@ -4,6 +4,7 @@
 //! that one file to be whole. A file that takes long to write has its unfinished part removed instead. Threads of
 //! a driver may be at work at that moment, so the process ends without running anybody's exit handlers.
 
+use super::output::say_aside;
 use std::{
     path::PathBuf,
     sync::{Arc, Mutex, MutexGuard, PoisonError},
@@ -13,12 +14,21 @@ use std::{
 /// The exit code of a process that was asked to stop.
 pub const INTERRUPTED: u8 = 130;
 
-/// Held while a file is written: an interrupt waits for it. Holds the unfinished file that it removes. Made as the
-/// program begins, it knows when that was.
+/// Held while a file is written: an interrupt waits for it. Holds the unfinished file that it removes or speaks of. Made as
+/// the program begins, it knows when that was.
 #[derive(Clone, Debug)]
 pub struct Gate {
-    unfinished: Arc<Mutex<Option<PathBuf>>>,
+    unfinished: Arc<Mutex<Option<Unfinished>>>,
     begun: Instant,
+}
+
+/// A file that is being written.
+#[derive(Debug)]
+enum Unfinished {
+    /// Nobody can go on with it.
+    Removed(PathBuf),
+    /// This is how one goes on with it.
+    Kept(String),
 }
 
 impl Default for Gate {
@@ -50,8 +60,13 @@ impl Gate {
     ) -> Result<T, E> {
         let mut held = self.held();
         let made = make()?;
-        *held = Some(part(&made));
+        *held = Some(Unfinished::Removed(part(&made)));
         Ok(made)
+    }
+
+    /// An interrupt from here on leaves an unfinished file where it is and says this.
+    pub fn keeps(&self, hint: String) {
+        *self.held() = Some(Unfinished::Kept(hint));
     }
 
     /// Runs `end`, which gives the unfinished file its name or removes it: there is nothing to remove any more.
@@ -62,7 +77,7 @@ impl Gate {
         outcome
     }
 
-    fn held(&self) -> MutexGuard<'_, Option<PathBuf>> {
+    fn held(&self) -> MutexGuard<'_, Option<Unfinished>> {
         self.unfinished
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
@@ -76,8 +91,10 @@ pub fn install(gate: &Gate) {
     // A second call in one process is refused by ctrlc: the first handler stays, which is as good.
     let _ = ctrlc::set_handler(move || {
         let unfinished = gate.held();
-        if let Some(part) = unfinished.as_ref() {
-            let _ = std::fs::remove_file(part);
+        match unfinished.as_ref() {
+            Some(Unfinished::Removed(part)) => drop(std::fs::remove_file(part)),
+            Some(Unfinished::Kept(hint)) => say_aside(hint),
+            None => {}
         }
         exit_now(INTERRUPTED)
     });

@@ -55,6 +55,11 @@ pub struct Stages {
     pub submissions: u64,
     /// What the longest of them took.
     pub longest_submission_ms: f64,
+    /// What made values between voxels: `sampler`, `fetch`, or `corners`, which are fetches from words that software
+    /// devices have; `null` on the CPU twins.
+    pub filtered_by: Option<&'static str>,
+    /// Why that.
+    pub filtered_because: Option<&'static str>,
 }
 
 /// What reading a volume took.
@@ -206,6 +211,8 @@ mod tests {
             "total_ms",
             "submissions",
             "longest_submission_ms",
+            "filtered_by",
+            "filtered_because",
         ] {
             assert!(value.get(key).is_some(), "no {key} in {value}");
         }

@@ -19,7 +19,7 @@ impl Renderer {
     /// A shot that the class is not for, a picture that cannot be made.
     ///
     /// # Safety
-    /// - `cmd` is recording on the device, outside rendering, for a queue of [`Gpu::queue_family`], and is submitted in
+    /// - `cmd` is recording on the device, outside rendering, for a queue of [`Gpu::queue_family`](crate::gpu::Gpu::queue_family), and is submitted in
     ///   the order in which it was recorded, after the upload of the volume;
     /// - nothing unfinished was recorded with the shot's number of a frame in flight;
     /// - the image of the host's depth is in the layout that was said, visible to sampled reads of compute shaders.
@@ -47,7 +47,7 @@ impl Renderer {
     /// Where nothing was recorded.
     ///
     /// # Safety
-    /// - `cmd` is recording inside rendering to a target of [`Class::target`] and of the renderer's extent;
+    /// - `cmd` is recording inside rendering to a target of [`Class::target`](super::Class::target) and of the renderer's extent;
     /// - it runs after what [`Renderer::record`] recorded, on the same queue.
     pub unsafe fn draw(&self, cmd: vk::CommandBuffer, frame: u32) -> Result<(), Error> {
         let (there, recorded) = self.recorded(frame, "draw")?;
@@ -76,7 +76,7 @@ impl Renderer {
     /// host draws later, blended or not, is hidden by the volume. Of composites it is where they become half opaque.
     ///
     /// # Errors
-    /// [`Error::NoDepth`] without [`Class::gives_depth`]; where nothing was recorded.
+    /// [`Error::NoDepth`] without [`Class::gives_depth`](super::Class::gives_depth); where nothing was recorded.
     ///
     /// # Safety
     /// As [`Renderer::draw`]; depth may be written.

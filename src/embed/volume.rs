@@ -3,7 +3,7 @@
 use super::Error;
 use crate::gpu::{Buffer, Gpu};
 use crate::resident::{Corners, GpuVolume, MacroCells, Texels, TextureLayout};
-use crate::technique::{GradientSource, Keep, Mix, Settings, Technique};
+use crate::technique::{FilterBy, GradientSource, Keep, Mix, Settings, Technique};
 use crate::volume::{self, Coefficients, Grid};
 use ash::vk;
 use std::sync::Arc;
@@ -72,10 +72,14 @@ impl Volume {
     ) -> Result<(), Error> {
         let copy = &mut self.copies[0];
         let is_one = copy.bricks().len() == 1 && copy.spline().is_none();
-        if is_one && settings.reads_corners(Mix::Alone) && Corners::are_for(gpu, voxels) {
-            if let Some(corners) = Corners::new(gpu, voxels)? {
-                copy.keep_corners(corners);
-            }
+        let is_wanted = settings.filter_by == FilterBy::Fetch || gpu.has_slow_sampler();
+        if is_one
+            && is_wanted
+            && settings.reads_corners(Mix::Alone)
+            && Corners::are_for(gpu, voxels)
+            && let Some(corners) = Corners::new(gpu, voxels)?
+        {
+            copy.keep_corners(corners);
         }
         if settings.skip && !settings.preintegrated {
             let apron = settings.apron();

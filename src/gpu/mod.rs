@@ -290,6 +290,12 @@ impl Gpu {
         self.identity.kind == DeviceKind::Cpu
     }
 
+    /// Whether shaders that fetch and weigh voxels themselves were found to be faster than the driver's sampler: those of
+    /// llvmpipe are, by a half and more, and those of SwiftShader take twice as long (`docs/performance.md`).
+    pub fn has_slow_sampler(&self) -> bool {
+        self.identity().driver_id == vk::DriverId::MESA_LLVMPIPE
+    }
+
     /// The limits that every size is compared with.
     pub fn limits(&self) -> &Caps {
         &self.limits

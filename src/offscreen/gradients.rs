@@ -1,31 +1,42 @@
-//! Whether gradients are kept, where that is left to the device.
+//! Whether gradients are kept and what filters, where that is left to the device.
 
 use crate::gpu::Gpu;
 use crate::resident::KeptGradients;
 use crate::scene::Scene;
-use crate::technique::{Keep, Settings};
+use crate::technique::{FilterBy, Keep, Settings};
 use std::borrow::Cow;
 
 /// Part of the device's memory that kept gradients may take: voxels and pictures want theirs.
 const SHARE: f64 = 0.5;
 
-/// The settings of a scene with [`Keep::Auto`] decided.
+/// The settings of a scene with [`Keep::Auto`] decided, and with [`FilterBy::Auto`] where a device has the sampler.
 pub fn decided<'a>(gpu: &Gpu, scene: &Scene<'a>) -> Cow<'a, Settings> {
     let settings = scene.settings;
-    if settings.keep_gradients != Keep::Auto {
+    let filter_by = filter_by(settings.filter_by, gpu.has_slow_sampler());
+    if settings.keep_gradients != Keep::Auto && settings.filter_by == filter_by {
         return Cow::Borrowed(settings);
     }
     let can_be = settings.kept_operator().is_some() && scene.volume.validity.is_none();
     let voxels = scene.volume.dims.iter().map(|&n| u64::from(n)).product();
     let heap_bytes = gpu.limits().max_heap_bytes;
-    let keep_gradients = match can_be && is_worth_it(gpu.is_cpu(), heap_bytes, voxels) {
-        true => Keep::Always,
-        false => Keep::Never,
+    let keep_gradients = match settings.keep_gradients {
+        Keep::Auto if can_be && is_worth_it(gpu.is_cpu(), heap_bytes, voxels) => Keep::Always,
+        Keep::Auto => Keep::Never,
+        wanted => wanted,
     };
     Cow::Owned(Settings {
         keep_gradients,
+        filter_by,
         ..settings.clone()
     })
+}
+
+/// [`FilterBy::Auto`] goes on to mean corners.
+fn filter_by(wanted: FilterBy, has_slow_sampler: bool) -> FilterBy {
+    match wanted {
+        FilterBy::Auto if !has_slow_sampler => FilterBy::Sampler,
+        wanted => wanted,
+    }
 }
 
 /// Software devices look up four halves no faster than six values (`docs/quality.md`).
@@ -43,5 +54,14 @@ mod tests {
         assert!(is_worth_it(false, 1 << 30, 1 << 26));
         assert!(!is_worth_it(false, 1 << 30, (1 << 26) + 1));
         assert!(!is_worth_it(true, 1 << 40, 1));
+    }
+
+    #[test]
+    fn corners_are_for_drivers_that_are_faster_with_them_or_who_asks_for_them() {
+        use FilterBy::{Auto, Fetch, Sampler};
+        let decided =
+            |has_slow_sampler| [Auto, Sampler, Fetch].map(|w| filter_by(w, has_slow_sampler));
+        assert_eq!(decided(true), [Auto, Sampler, Fetch]);
+        assert_eq!(decided(false), [Sampler, Sampler, Fetch]);
     }
 }

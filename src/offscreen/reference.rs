@@ -20,8 +20,8 @@ use crate::technique::faces::{FACE_LENGTH, cut_face, on_face};
 use crate::technique::mixture::color_of;
 use crate::technique::shading::shade;
 use crate::technique::{
-    Error, Filter, GradientSource, InPixel, LightField, Mix, Mode, Recording, Role, Technique,
-    isosurface, projection, raycast, slices_2d, slices_3d,
+    AlikeCells, Error, Filter, GradientSource, InPixel, LightField, Mix, Mode, Recording, Role,
+    Technique, isosurface, projection, raycast, slices_2d, slices_3d,
 };
 use crate::transfer::{
     Absorption, PackedWidgets, Points, SlabTable, Table, TransferFunction, classify_by_points,
@@ -133,6 +133,8 @@ struct Walk<'a, R> {
     /// What the gradient makes of the only function, where it makes something.
     widgets: Option<PackedWidgets>,
     frame: Frame,
+    /// Where one sample stands for others, where steps adapt.
+    alike: Option<AlikeCells>,
     /// What comes through to samples, where occlusion or shadows are asked for.
     light: Option<&'a LightField<R>>,
     /// Slices to draw; a ray caster has none.
@@ -192,6 +194,9 @@ impl<'a, R: Real> Walk<'a, R> {
             classifiers,
             paint: paint_of(scene),
             widgets,
+            alike: scene
+                .alike()
+                .map(|alike| AlikeCells::new(scene.volume, &alike)),
             frame,
             light,
             slices,
@@ -349,6 +354,10 @@ impl<'a, R: Real> Walk<'a, R> {
                     let sample_at = |p| value_at(p).zip(material_at(p));
                     let classify = |value| self.classify(0, value);
                     raycast::reference::accumulated(frame, lattice, pixel, sample_at, classify)
+                } else if let Some(alike) = &self.alike {
+                    let cell_at = |p| alike.at(p);
+                    let same = |material| material;
+                    raycast::reference::radiance_in_runs(frame, pixel, cell_at, material_at, same)
                 } else {
                     let same = |material| material;
                     raycast::reference::radiance(frame, lattice, pixel, material_at, same)

@@ -8,6 +8,8 @@
 //! ```
 
 mod classified;
+mod copied;
+mod filtered;
 mod gather;
 mod kept;
 mod left;
@@ -30,14 +32,15 @@ use super::time_slices::TimeSlices;
 use super::upload::{keep, upload, upload_with_gradient_source};
 use crate::gpu::{Headless, ParameterRing, Timer, Use};
 use crate::picture::{ColorSpace, LayerKind, Picture};
-use crate::resident::{GpuTransfer, GpuVolume, KeptOperator, TextureLayout};
+use crate::resident::{GpuTransfer, GpuVolume};
 use crate::scene::{Scene, positions_in_pixel};
 use crate::technique::{
-    self, Functions, GradientSource, InPixel, Keep, LightVolume, Mix, Mode, Part, Words,
-    parameter_ring,
+    self, Functions, InPixel, LightVolume, Mix, Mode, Part, Words, parameter_ring,
 };
 use crate::transfer::{Graded, TransferFunction};
-use crate::volume::{Spline, Volume};
+use crate::volume::Volume;
+use copied::Copied;
+pub use filtered::Filtered;
 pub use kept::Kept;
 use pacing::{Known, passes_of};
 use skipping::Skipped;
@@ -82,35 +85,6 @@ pub struct Renderer<'v> {
     /// Passes over all samples of the picture that is being drawn: how many are done, and how many there are.
     passes_done: [usize; 2],
     device: Headless,
-}
-
-/// In which form the volumes are on the device.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-struct Copied {
-    layout: TextureLayout,
-    /// Coefficients in place of voxels.
-    spline: Option<Spline>,
-    /// What gradients are made of beside the values.
-    gradient_source: Option<GradientSource>,
-    /// Gradients that are kept.
-    kept: Option<KeptOperator>,
-}
-
-impl Copied {
-    fn of(scene: &Scene) -> Self {
-        let layout = scene.view(&scene.volume.grid(), [0.0; 2]).texture_layout();
-        let gradient_source = scene.settings.gradient_source_beside(layout);
-        let kept = match scene.settings.keep_gradients {
-            Keep::Always => scene.settings.kept_operator(),
-            Keep::Never | Keep::Auto => None,
-        };
-        Self {
-            kept: kept.filter(|_| scene.has_gradients()),
-            layout,
-            spline: scene.settings.filter.spline(),
-            gradient_source: gradient_source.filter(|_| scene.has_gradients()),
-        }
-    }
 }
 
 /// A transfer function on the device, and what it was made of.
@@ -184,13 +158,22 @@ impl<'v> Renderer<'v> {
         for (settings, _) in &stacks_of(scene) {
             self.upload(&Scene { settings, ..*scene })?;
         }
-        let copied = Copied::of(scene);
+        let mut copied = Copied::of(scene);
+        if copied.is_by_corners {
+            let with_texels = copied.with_texels();
+            let is_there = |copied| self.resident.contains_key(copied);
+            if is_there(&copied) || (!is_there(&with_texels) && self.upload_corners(copied)?) {
+                return Ok(());
+            }
+            copied = with_texels;
+        }
         if !self.resident.contains_key(&copied) {
             let Copied {
                 layout,
                 spline,
                 gradient_source,
                 kept,
+                is_by_corners: _,
             } = copied;
             let device = &mut self.device;
             let mut made = match gradient_source {
@@ -407,7 +390,10 @@ fn parts_of<'a>(
     shown: usize,
     scene: &Scene,
 ) -> Vec<Part<'a>> {
-    let there = &resident[&Copied::of(scene)][shown..];
+    let copied = Copied::of(scene);
+    let there = resident.get(&copied);
+    let there = there.unwrap_or_else(|| &resident[&copied.with_texels()]);
+    let there = &there[shown..];
     let parts = there.iter().zip(scene.roles());
     parts.map(|(volume, role)| Part { volume, role }).collect()
 }

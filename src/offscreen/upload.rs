@@ -89,7 +89,8 @@ pub fn keep(
 pub fn fill(device: &mut Headless, made: &GpuVolume, volume: &Volume) -> Result<(), Error> {
     let slabs = made.slabs(STAGING_BYTES);
     let bytes = slabs.iter().map(|slab| made.staging_bytes(slab.region));
-    let bytes = bytes.max().unwrap_or(0);
+    // Of a volume without texels and holes none.
+    let bytes = bytes.max().unwrap_or(0).max(4);
     let usage = vk::BufferUsageFlags::TRANSFER_SRC;
     let buffers = (0..slabs.len().min(2))
         .map(|_| Buffer::new(device.gpu(), bytes, usage, Memory::Upload, "staging"))

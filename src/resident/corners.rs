@@ -1,38 +1,44 @@
-//! Eight voxels in two words, for devices that compute on the CPU: their sampler is a program that converts and weighs
-//! each texel by itself, and takes twice as long (`docs/performance.md`).
+//! The eight voxels around a sample in four words, for devices that compute on the CPU: their sampler is a program that
+//! converts and weighs each texel by itself, and takes twice as long (`docs/performance.md`).
 //!
 //! ```text
-//! word(x, y, z) = codes of (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1) in plane z, lowest byte first
+//! of 8 bits:   word(w, y, z) = codes of (3 w, y, z), (3 w + 1, y, z), (3 w + 2, y, z), (3 w + 3, y, z), lowest byte first
+//! of 16 bits:  word(w, y, z) = codes of (w, y, z), (w + 1, y, z), lower half first
 //! ```
 //!
-//! Beyond the edge the outermost voxel stands. Words lie in cubes of 4 x 4 x 4, x fastest inside of one and from one to
-//! the next, so that a ray finds what comes next in the same lines of the cache whichever way it runs; sides are rounded
-//! up to whole cubes. They lie in a storage image: llvmpipe reads a storage buffer lane by lane, and looks up the mip
-//! levels of a texture. Four bytes a voxel, beside the texture.
+//! So both ends of an edge along x are in one word: of 8 bits in 4/3 bytes a voxel, of 16 bits in 4. Beyond the edge of
+//! the grid the outermost voxel stands. Words lie in cubes of 4 x 4 x 4, x fastest inside of one and from one to the next,
+//! so that a ray finds what comes next in the same lines of the cache whichever way it runs; sides are rounded up to whole
+//! cubes. They lie in a storage image: llvmpipe reads a storage buffer lane by lane, and looks up the mip levels of a
+//! texture.
 
 use super::{GpuVolume, TextureLayout};
 use crate::gpu::{Error, Gpu, Image, ImageDesc, ImageKind, Use, image_barrier};
-use crate::shaders::CORNERS_WIDTH;
-use crate::volume::{Volume, Voxels};
+use crate::shaders::{CORNERS_WIDTH, VOXELS_A_WORD};
+use crate::volume::{Volume, VoxelType, Voxels};
 use ash::vk;
 use std::num::NonZero;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
-/// Voxels along the side of a cube.
+/// Words along the side of a cube.
 const SIDE: usize = 4;
 const CUBE_WORDS: usize = SIDE * SIDE * SIDE;
-/// 128 MiB. To make more takes longer than a few pictures win.
-const MOST_WORDS: u64 = 1 << 25;
+/// They take no more of the device's largest heap than one part of so many.
+const SHARE: u64 = 4;
+/// Shaders find the word of a voxel in a row of no more.
+const MOST_VOXELS_A_ROW: u32 = 1 << 16;
 
-fn words_in_cubes(dims: [u32; 3]) -> u64 {
-    let cubes = dims.map(|n| u64::from(n.div_ceil(SIDE as u32)));
-    cubes
-        .into_iter()
-        .fold(CUBE_WORDS as u64, u64::saturating_mul)
+/// How many words lie in a row of so many voxels.
+fn words_a_row(stored: VoxelType, voxels: u32) -> Option<u32> {
+    match stored {
+        VoxelType::U8 | VoxelType::I8 => Some(voxels.div_ceil(VOXELS_A_WORD)),
+        VoxelType::U16 | VoxelType::I16 => Some(voxels),
+        _ => None,
+    }
 }
 
-/// `words` is at most [`MOST_WORDS`], or no image can be made of what comes out.
+/// `words` are no more than a heap holds, or no image can be made of what comes out.
 fn desc(words: u64) -> ImageDesc<'static> {
     let rows = words.div_ceil(u64::from(CORNERS_WIDTH));
     ImageDesc {
@@ -44,31 +50,33 @@ fn desc(words: u64) -> ImageDesc<'static> {
     }
 }
 
-/// The words of a volume of 8-bit integers, complete as soon as they are made.
+/// The words of a volume of 8-bit or 16-bit integers, complete as soon as they are made.
 #[derive(Debug)]
 pub struct Corners {
     image: Image,
+    filter: &'static str,
 }
 
 impl Corners {
-    /// Bytes that those of so many voxels take; 0 where these are too many.
-    pub fn bytes_of(dims: [u32; 3]) -> u64 {
-        match words_in_cubes(dims) {
-            words if words <= MOST_WORDS => 4 * words,
-            _ => 0,
-        }
+    /// Bytes that those of so many voxels take; `None` where there are none of this type.
+    pub fn bytes_of(stored: VoxelType, [nx, ny, nz]: [u32; 3]) -> Option<u64> {
+        let sides = [words_a_row(stored, nx)?, ny, nz];
+        let cubes = sides.map(|n| u64::from(n.div_ceil(SIDE as u32)));
+        let bytes = 4 * CUBE_WORDS as u64;
+        Some(cubes.into_iter().fold(bytes, u64::saturating_mul))
     }
 
-    /// Whether they pay and can be had: on a software device, of 8-bit integers in one brick, where that has such an
-    /// image.
+    /// Whether they pay and can be had: on a software device, of 8-bit or 16-bit integers in one brick, where that has
+    /// such an image, in a quarter of its largest heap.
     pub fn are_for(gpu: &Gpu, volume: &Volume) -> bool {
-        let is_byte = matches!(volume.voxels, Voxels::U8(_) | Voxels::I8(_));
-        let words = words_in_cubes(volume.dims);
+        let Some(bytes) = Self::bytes_of(volume.voxels.voxel_type(), volume.dims) else {
+            return false;
+        };
         gpu.is_cpu()
-            && is_byte
-            && words <= MOST_WORDS
-            && gpu.check_image(&desc(words)).is_ok()
-            && gpu.has_images_in_rows(&desc(words))
+            && bytes <= gpu.limits().max_heap_bytes / SHARE
+            && volume.dims[0] <= MOST_VOXELS_A_ROW
+            && gpu.check_image(&desc(bytes / 4)).is_ok()
+            && gpu.has_images_in_rows(&desc(bytes / 4))
     }
 
     /// Those of `volume`; none where the device leaves gaps between the rows of an image.
@@ -79,17 +87,23 @@ impl Corners {
     /// # Panics
     /// Where [`Corners::are_for`] says no.
     pub fn new(gpu: &Arc<Gpu>, volume: &Volume) -> Result<Option<Self>, Error> {
-        assert!(Self::are_for(gpu, volume), "corners of 8-bit integers");
-        let codes = |row: std::ops::Range<usize>| -> Vec<u8> {
-            match &volume.voxels {
-                Voxels::U8(voxels) => voxels[row].to_vec(),
-                // As the texels: moved, not SNORM.
-                Voxels::I8(voxels) => voxels[row].iter().map(|&v| v as u8 ^ 0x80).collect(),
-                _ => unreachable!("checked above"),
-            }
-        };
-        let [nx, ny, nz] = volume.dims.map(|n| n as usize);
-        let words = words_in_cubes(volume.dims);
+        assert!(Self::are_for(gpu, volume), "corners of such a volume");
+        match &volume.voxels {
+            Voxels::U8(voxels) => Self::of_codes(gpu, volume.dims, voxels),
+            Voxels::I8(voxels) => Self::of_codes(gpu, volume.dims, voxels),
+            Voxels::U16(voxels) => Self::of_codes(gpu, volume.dims, voxels),
+            Voxels::I16(voxels) => Self::of_codes(gpu, volume.dims, voxels),
+            _ => unreachable!("asked above"),
+        }
+    }
+
+    fn of_codes<C: Code>(
+        gpu: &Arc<Gpu>,
+        dims: [u32; 3],
+        codes: &[C],
+    ) -> Result<Option<Self>, Error> {
+        let words = Self::bytes_of(C::STORED, dims).expect("codes have words") / 4;
+        let [nx, ny, nz] = dims.map(|n| n as usize);
         // Most of the time goes into the first touch of so much memory, which threads share.
         let layers = nz.div_ceil(SIDE);
         let layer_bytes = 4 * words as usize / layers;
@@ -108,10 +122,12 @@ impl Corners {
                     .next()
             };
             let work = || {
+                let mut words = vec![0; layer_bytes / 4];
                 while let Some((layer, out)) = next() {
-                    let planes = (layer * SIDE..nz.min((layer + 1) * SIDE))
-                        .map(|z| words_of(&codes(z * nx * ny..(z + 1) * nx * ny), nx));
-                    out.copy_from_slice(bytemuck::cast_slice(&cubes_of(planes, nx, ny)));
+                    let planes = layer * SIDE..nz.min((layer + 1) * SIDE);
+                    let codes = &codes[planes.start * nx * ny..planes.end * nx * ny];
+                    put_layer(codes, [nx, ny], &mut words);
+                    out.copy_from_slice(bytemuck::cast_slice(&words));
                 }
             };
             let threads = thread::available_parallelism().map_or(1, NonZero::get);
@@ -122,12 +138,18 @@ impl Corners {
                 work();
             });
         })?;
-        Ok(is_gapless.then_some(Self { image }))
+        let filter = C::FILTER;
+        Ok(is_gapless.then_some(Self { image, filter }))
     }
 
-    /// A u32 for each voxel and what fills the cubes at the far ends, in rows of [`CORNERS_WIDTH`].
+    /// A u32 for each word and what fills the cubes at the far ends, in rows of [`CORNERS_WIDTH`].
     pub fn image(&self) -> &Image {
         &self.image
+    }
+
+    /// The word of shaders that read them.
+    pub(crate) fn filter(&self) -> &'static str {
+        self.filter
     }
 
     /// Records what makes them readable.
@@ -160,65 +182,140 @@ impl GpuVolume {
     }
 }
 
-/// The words of one plane with rows of `nx` codes.
-fn words_of(plane: &[u8], nx: usize) -> Vec<u32> {
-    let mut words = Vec::with_capacity(plane.len());
-    let mut rows = plane.chunks_exact(nx).peekable();
-    while let Some(row) = rows.next() {
-        let next = rows.peek().copied().unwrap_or(row);
-        let pairs = row.windows(2).zip(next.windows(2));
-        words.extend(pairs.map(|(a, b)| u32::from_le_bytes([a[0], a[1], b[0], b[1]])));
-        let (a, b) = (row[nx - 1], next[nx - 1]);
-        words.push(u32::from_le_bytes([a, a, b, b]));
-    }
-    words
+/// A number as it is stored, that has words. Signed ones are moved as texels are (`sampling.md` 2).
+trait Code: Copy + Sync {
+    const STORED: VoxelType;
+    const FILTER: &'static str;
+    /// Of a word, the last of which the next one has too.
+    const VOXELS: usize;
+    fn word(voxels: &[Self]) -> u32;
 }
 
-/// Puts the words of at most four planes of nx x ny into a layer of cubes.
-fn cubes_of(planes: impl Iterator<Item = Vec<u32>>, nx: usize, ny: usize) -> Vec<u32> {
-    let along_x = nx.div_ceil(SIDE);
-    let mut cubes = vec![0; along_x * ny.div_ceil(SIDE) * CUBE_WORDS];
-    for (z, plane) in planes.enumerate() {
-        for (y, row) in plane.chunks_exact(nx).enumerate() {
-            let first = (y / SIDE) * along_x * CUBE_WORDS + SIDE * (y % SIDE + SIDE * z);
-            for (x, words) in row.chunks(SIDE).enumerate() {
-                let first = first + x * CUBE_WORDS;
-                cubes[first..first + words.len()].copy_from_slice(words);
-            }
+impl Code for u8 {
+    const STORED: VoxelType = VoxelType::U8;
+    const FILTER: &'static str = "corners8";
+    const VOXELS: usize = VOXELS_A_WORD as usize + 1;
+    fn word(voxels: &[Self]) -> u32 {
+        u32::from_le_bytes([voxels[0], voxels[1], voxels[2], voxels[3]])
+    }
+}
+
+impl Code for i8 {
+    const STORED: VoxelType = VoxelType::I8;
+    const FILTER: &'static str = u8::FILTER;
+    const VOXELS: usize = u8::VOXELS;
+    fn word(voxels: &[Self]) -> u32 {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|i| voxels[i] as u8);
+        u32::from_le_bytes([a, b, c, d]) ^ 0x8080_8080
+    }
+}
+
+impl Code for u16 {
+    const STORED: VoxelType = VoxelType::U16;
+    const FILTER: &'static str = "corners16";
+    const VOXELS: usize = 2;
+    fn word(voxels: &[Self]) -> u32 {
+        u32::from(voxels[0]) | u32::from(voxels[1]) << 16
+    }
+}
+
+impl Code for i16 {
+    const STORED: VoxelType = VoxelType::I16;
+    const FILTER: &'static str = u16::FILTER;
+    const VOXELS: usize = u16::VOXELS;
+    fn word(voxels: &[Self]) -> u32 {
+        u16::word(&[voxels[0] as u16, voxels[1] as u16]) ^ 0x8000_8000
+    }
+}
+
+/// Puts the words of at most four planes of nx x ny codes into a layer of cubes.
+fn put_layer<C: Code>(codes: &[C], [nx, ny]: [usize; 2], cubes: &mut [u32]) {
+    let new = C::VOXELS - 1;
+    let words = nx.div_ceil(new);
+    let along_x = words.div_ceil(SIDE);
+    // A row, and beyond its end the last voxel again.
+    let mut row = vec![codes[0]; new * words + 1];
+    for (index, there) in codes.chunks_exact(nx).enumerate() {
+        let [y, z] = [index % ny, index / ny];
+        row[..nx].copy_from_slice(there);
+        row[nx..].fill(there[nx - 1]);
+        let first = (y / SIDE) * along_x * CUBE_WORDS + SIDE * (y % SIDE + SIDE * z);
+        let fours = cubes[first..].chunks_mut(CUBE_WORDS);
+        let words = row.windows(C::VOXELS).step_by(new).map(C::word);
+        put_in_fours(words, fours);
+    }
+}
+
+/// Each of the first four words into the first place, the next four into the next.
+fn put_in_fours<'a>(
+    mut words: impl Iterator<Item = u32>,
+    places: impl Iterator<Item = &'a mut [u32]>,
+) {
+    for four in places {
+        for place in four.iter_mut().take(SIDE) {
+            let Some(word) = words.next() else {
+                return;
+            };
+            *place = word;
         }
     }
-    cubes
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shaders::{THIRD, THIRD_BITS};
 
-    #[test]
-    fn a_word_has_four_neighbours_and_at_the_edge_the_edge() {
-        let words = words_of(&[1, 2, 3, 4, 5, 6], 3);
-        let expected = [
-            [1, 2, 4, 5],
-            [2, 3, 5, 6],
-            [3, 3, 6, 6],
-            [4, 5, 4, 5],
-            [5, 6, 5, 6],
-            [6, 6, 6, 6],
-        ];
-        assert_eq!(words, expected.map(u32::from_le_bytes));
-        assert_eq!(words_of(&[7], 1), [u32::from_le_bytes([7; 4])]);
+    /// The words of one row.
+    fn words_of<C: Code>(row: &[C]) -> Vec<u32> {
+        let words = row.len().div_ceil(C::VOXELS - 1);
+        let mut cubes = vec![0; words.div_ceil(SIDE) * CUBE_WORDS];
+        put_layer(row, [row.len(), 1], &mut cubes);
+        let word = |w: usize| cubes[w / SIDE * CUBE_WORDS + w % SIDE];
+        (0..words).map(word).collect()
     }
 
     #[test]
-    fn a_word_lies_in_the_cube_of_its_voxel() {
-        let [nx, ny] = [6, 5];
-        let planes = (0..3).map(|z| (0..30).map(|i| 100 * z + i).collect());
-        let cubes = cubes_of(planes, nx, ny);
-        assert_eq!(cubes.len(), 4 * 64);
+    fn a_word_has_neighbours_of_a_row_and_at_the_edge_the_edge() {
+        let bytes = |words: &[[u8; 4]]| -> Vec<_> {
+            words.iter().map(|&word| u32::from_le_bytes(word)).collect()
+        };
+        assert_eq!(words_of(&[7_u8]), bytes(&[[7; 4]]));
+        assert_eq!(words_of(&[1_u8, 2, 3]), bytes(&[[1, 2, 3, 3]]));
+        let row = [1_u8, 2, 3, 4, 5];
+        assert_eq!(words_of(&row), bytes(&[[1, 2, 3, 4], [4, 5, 5, 5]]));
+        assert_eq!(words_of(&[-128_i8, 0, 127]), bytes(&[[0, 128, 255, 255]]));
+        assert_eq!(words_of(&[1_u16, 2, 3]), [0x2_0001, 0x3_0002, 0x3_0003]);
+        assert_eq!(words_of(&[i16::MIN, -1]), [0x7fff_0000, 0x7fff_7fff]);
+    }
+
+    #[test]
+    fn a_word_lies_in_the_cube_of_its_place() {
+        let [nx, ny, nz] = [6, 5, 3];
+        let codes: Vec<u16> = (0..(nx * ny * nz) as u16).collect();
+        let mut cubes = vec![0; 4 * CUBE_WORDS];
+        put_layer(&codes, [nx, ny], &mut cubes);
         for (x, y, z) in [(0, 0, 0), (3, 3, 2), (4, 0, 1), (5, 4, 0), (2, 4, 2)] {
             let cube = x / 4 + 2 * (y / 4);
             let word = cubes[64 * cube + x % 4 + 4 * (y % 4) + 16 * z];
-            assert_eq!(word as usize, 100 * z + x + nx * y);
+            assert_eq!(word as u16 as usize, x + nx * (y + ny * z));
         }
+    }
+
+    #[test]
+    fn a_product_and_a_shift_are_a_third() {
+        for voxel in 0..MOST_VOXELS_A_ROW {
+            assert_eq!((voxel * THIRD) >> THIRD_BITS, voxel / VOXELS_A_WORD);
+        }
+    }
+
+    #[test]
+    fn bytes_are_those_of_whole_cubes() {
+        let bytes = |stored, dims| Corners::bytes_of(stored, dims);
+        assert_eq!(bytes(VoxelType::U8, [12, 4, 4]), Some(256));
+        assert_eq!(bytes(VoxelType::I8, [13, 5, 4]), Some(4 * 256));
+        assert_eq!(bytes(VoxelType::I16, [4, 4, 4]), Some(256));
+        assert_eq!(bytes(VoxelType::U16, [5, 4, 9]), Some(6 * 256));
+        assert_eq!(bytes(VoxelType::F16, [5, 4, 9]), None);
     }
 }

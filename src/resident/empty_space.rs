@@ -10,7 +10,7 @@ use crate::gpu::{
     buffer_barrier, group_count, within,
 };
 use crate::shaders::{CellGrid, Pass, shader};
-use crate::transfer::Seen;
+use crate::transfer::{Alike, Seen};
 use ash::vk;
 use std::ops::Range;
 use std::sync::Arc;
@@ -19,6 +19,8 @@ use std::sync::Arc;
 const PASSES: u32 = 4;
 /// What is seen of another volume too.
 const ALSO: u32 = PASSES;
+/// What looks alike.
+const LIKE: u32 = PASSES + 1;
 
 /// The rooms of a volume's macro cells. Made empty; [`EmptySpace::record`] fills them.
 #[derive(Debug)]
@@ -32,6 +34,8 @@ pub struct EmptySpace {
     mapping: Arc<Mapping>,
     /// What further volumes show, in which matter may be too.
     others: Vec<(Arc<Mapping>, Bindings)>,
+    /// Where samples look alike.
+    alike: Option<(Arc<Mapping>, Bindings)>,
 }
 
 /// What maps of all volumes under one transfer function have in common.
@@ -42,26 +46,61 @@ struct Mapping {
     seen: Buffer,
 }
 
+/// A table over values, as the shader has it.
+#[derive(Clone, Copy)]
+struct Words<'a> {
+    first: f32,
+    scale: f32,
+    next: &'a [u32],
+}
+
+impl<'a> From<&'a Seen> for Words<'a> {
+    fn from(seen: &'a Seen) -> Self {
+        let Seen { first, scale, next } = seen;
+        Self {
+            first: *first,
+            scale: *scale,
+            next,
+        }
+    }
+}
+
+impl<'a> From<&'a Alike> for Words<'a> {
+    fn from(alike: &'a Alike) -> Self {
+        let Alike { first, scale, end } = alike;
+        Self {
+            first: *first,
+            scale: *scale,
+            next: end,
+        }
+    }
+}
+
 impl Mapping {
-    fn new(gpu: &Arc<Gpu>, seen: &Seen) -> Result<Self, Error> {
+    fn new<'a>(gpu: &Arc<Gpu>, seen: impl Into<Words<'a>>) -> Result<Self, Error> {
         let pipeline = ComputePipeline::new(gpu, shader("distance_map"))?;
         Self::by(gpu, Arc::new(pipeline), seen)
     }
 
-    fn by(gpu: &Arc<Gpu>, pipeline: Arc<ComputePipeline>, seen: &Seen) -> Result<Self, Error> {
+    fn by<'a>(
+        gpu: &Arc<Gpu>,
+        pipeline: Arc<ComputePipeline>,
+        seen: impl Into<Words<'a>>,
+    ) -> Result<Self, Error> {
+        let seen = seen.into();
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
         let mut words = vec![
             seen.first.to_bits(),
             seen.scale.to_bits(),
             seen.next.len() as u32,
         ];
-        words.extend_from_slice(&seen.next);
+        words.extend_from_slice(seen.next);
         let bytes: &[u8] = bytemuck::cast_slice(&words);
         let length = bytes.len() as u64;
         let table = Buffer::new(gpu, length, storage, Memory::Upload, "seen values")?;
         table.write(0, bytes)?;
-        let pass_ring = ParameterRing::new(gpu, size_of::<Pass>() as u32, PASSES + 1, "passes")?;
-        for number in 0..=ALSO {
+        let pass_ring = ParameterRing::new(gpu, size_of::<Pass>() as u32, LIKE + 1, "passes")?;
+        for number in 0..=LIKE {
             pass_ring.write(number, bytemuck::bytes_of(&Pass { number }))?;
         }
         Ok(Self {
@@ -108,14 +147,33 @@ impl EmptySpace {
     /// Without a volume, or where the volumes have other cells.
     pub fn of_several(gpu: &Arc<Gpu>, several: &[(&MacroCells, &Seen)]) -> Result<Self, Error> {
         let ((cells, seen), others) = several.split_first().expect("at least one volume");
-        let mut made = Self::with(gpu, cells, Arc::new(Mapping::new(gpu, seen)?))?;
+        let mut made = Self::with(gpu, cells, Arc::new(Mapping::new(gpu, *seen)?))?;
         for (other, seen) in others {
             assert_eq!(other.cell_count(), cells.cell_count(), "the same cells");
-            let mapping = Arc::new(Mapping::new(gpu, seen)?);
+            let mapping = Arc::new(Mapping::new(gpu, *seen)?);
             let rooms = &made.rooms;
             let bound = mapping.bind(gpu, &made.grid_ring, other, [&rooms[1], &rooms[0]])?;
             made.others.push((mapping, bound));
         }
+        Ok(made)
+    }
+
+    /// The same of one volume, and where samples of it look alike.
+    ///
+    /// # Errors
+    /// As [`EmptySpace::new`].
+    pub fn with_alike(
+        gpu: &Arc<Gpu>,
+        cells: &MacroCells,
+        seen: &Seen,
+        alike: &Alike,
+    ) -> Result<Self, Error> {
+        let mut made = Self::new(gpu, cells, seen)?;
+        let pipeline = Arc::clone(&made.mapping.pipeline);
+        let mapping = Arc::new(Mapping::by(gpu, pipeline, alike)?);
+        let [before, after] = &made.rooms;
+        let bound = mapping.bind(gpu, &made.grid_ring, cells, [before, after])?;
+        made.alike = Some((mapping, bound));
         Ok(made)
     }
 
@@ -161,6 +219,7 @@ impl EmptySpace {
             bindings,
             mapping,
             others: Vec::new(),
+            alike: None,
         })
     }
 
@@ -241,6 +300,10 @@ impl EmptySpace {
                     }
                 };
             }
+            if let Some((mapping, bindings)) = self.alike.as_ref().filter(|_| pass == PASSES - 1) {
+                // SAFETY: the caller's promises; each workgroup looks at what it has written itself, the barrier between.
+                unsafe { self.record_alike(cmd, mapping, bindings, &part, first)? };
+            }
             // What ends a pass is recorded with its last workgroup.
             if part.start >= first || part.end < first {
                 continue;
@@ -251,6 +314,43 @@ impl EmptySpace {
                 buffer_barrier(&self.gpu, cmd, written, Use::ComputeWrite, Use::ComputeRead);
                 let read = &self.rooms[1 - parity];
                 buffer_barrier(&self.gpu, cmd, read, Use::ComputeRead, Use::ComputeWrite);
+            }
+        }
+        Ok(())
+    }
+
+    /// What comes behind the last pass, whose workgroups end with number `end`: cells of the same workgroups.
+    ///
+    /// # Safety
+    /// As [`EmptySpace::record_part`].
+    unsafe fn record_alike(
+        &self,
+        cmd: vk::CommandBuffer,
+        mapping: &Mapping,
+        bindings: &Bindings,
+        part: &Range<u64>,
+        end: u64,
+    ) -> Result<(), Error> {
+        let groups = |grid: &CellGrid| mapping.pipeline.groups(grid.cells);
+        let counts = self.grids.iter().map(|grid| Ok(group_count(groups(grid)?)));
+        let counts = counts.collect::<Result<Vec<u64>, Error>>()?;
+        let mut first = end - counts.iter().sum::<u64>();
+        for ((slot, grid), count) in (0..).zip(&self.grids).zip(counts) {
+            let run = within(part, first, count);
+            first += count;
+            if run.is_empty() {
+                continue;
+            }
+            let offsets = [
+                self.grid_ring.offset(slot)?,
+                mapping.pass_ring.offset(LIKE)?,
+            ];
+            let again = Use::ComputeWrite;
+            // SAFETY: the caller's promises; a cell is marked behind its last pass.
+            unsafe {
+                buffer_barrier(&self.gpu, cmd, &self.rooms[1], again, again);
+                let pipeline = &mapping.pipeline;
+                pipeline.dispatch_run(cmd, bindings, &offsets, groups(grid)?, run);
             }
         }
         Ok(())

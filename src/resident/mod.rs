@@ -9,6 +9,7 @@ mod corners;
 mod empty_space;
 mod gradients;
 mod macro_cells;
+mod plan;
 mod slabs;
 mod texel;
 mod transfer;

@@ -45,7 +45,7 @@ impl GpuVolume {
             part
         };
         let slice = part(whole.min[axis], whole.min[axis] + 1);
-        let count = (bytes / self.staging_bytes(slice)).clamp(1, u32::MAX.into()) as u32;
+        let count = (bytes / self.staging_bytes(slice).max(1)).clamp(1, u32::MAX.into()) as u32;
         let firsts = (whole.min[axis]..whole.max[axis]).step_by(count as usize);
         firsts.map(move |first| Slab {
             brick: index,
@@ -72,16 +72,14 @@ impl GpuVolume {
     /// Where there are fewer bytes, or the region is not one of the volume.
     pub fn write_staged(&self, volume: &Volume, region: VoxelBox, bytes: &mut [u8]) {
         let voxels = region.dims().map(|n| n as usize).iter().product::<usize>();
-        let values_bytes = (voxels * self.texel().bytes()).next_multiple_of(ALIGNMENT);
+        let texel_bytes = self.staged_texel_bytes();
+        let values_bytes = (voxels * texel_bytes).next_multiple_of(ALIGNMENT);
         let (values, validity) = bytes.split_at_mut(values_bytes);
-        self.write_runs(
-            region,
-            self.texel().bytes(),
-            values,
-            |first, stride, out| {
+        if self.has_texels {
+            self.write_runs(region, texel_bytes, values, |first, stride, out| {
                 self.texel().encode(&volume.voxels, first, stride, out);
-            },
-        );
+            });
+        }
         match &volume.validity {
             Some(mask) if self.has_holes() => {
                 self.write_runs(region, 1, validity, |first, stride, out| {
@@ -99,11 +97,20 @@ impl GpuVolume {
     /// Room for [`GpuVolume::staged`]; the next slab may begin behind it.
     pub fn staging_bytes(&self, region: VoxelBox) -> u64 {
         let voxels: u64 = region.dims().iter().map(|&n| u64::from(n)).product();
-        let values = (voxels * self.texel().bytes() as u64).next_multiple_of(ALIGNMENT_BYTES);
+        let values = voxels * self.staged_texel_bytes() as u64;
+        let values = values.next_multiple_of(ALIGNMENT_BYTES);
         if self.has_holes() {
             values + voxels.next_multiple_of(ALIGNMENT_BYTES)
         } else {
             values
+        }
+    }
+
+    /// None where the values lie elsewhere.
+    fn staged_texel_bytes(&self) -> usize {
+        match self.has_texels {
+            true => self.texel().bytes(),
+            false => 0,
         }
     }
 
@@ -130,10 +137,17 @@ impl GpuVolume {
             origin: axes.map(|k| region.min[k].wrapping_sub(stored.min[k])),
             extent: axes.map(|k| region.max[k] - region.min[k]),
         };
-        let values_bytes = part.bytes(self.texel().format).unwrap_or(u64::MAX / 2);
+        let values_bytes = match self.has_texels {
+            true => part.bytes(self.texel().format).unwrap_or(u64::MAX / 2),
+            false => 0,
+        };
         let validity_offset = offset.saturating_add(values_bytes.next_multiple_of(ALIGNMENT_BYTES));
+        if !self.has_texels && slab.before == Use::Nothing {
+            // SAFETY: the caller's promises; the one texel is not looked at, but for its layout.
+            unsafe { image_barrier(self.gpu(), cmd, &brick.values, Use::Nothing, Use::Sampled) };
+        }
         let planes = [
-            (Some(&brick.values), offset),
+            (self.has_texels.then_some(&brick.values), offset),
             (brick.validity.as_ref(), validity_offset),
         ];
         for (image, offset) in planes {

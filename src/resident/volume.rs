@@ -4,12 +4,12 @@
 //! across and axis (k + 2) mod 3 down.
 
 use super::TexelFormat;
-use super::bricks::{Cell, cut};
+use super::bricks::Cell;
 use super::corners::Corners;
 use super::gradients::KeptGradients;
-use crate::gpu::{Error, Gpu, Image, ImageDesc, ImageKind, Sampler};
+use super::plan::Plan;
+use crate::gpu::{Error, Gpu, Image, ImageKind, Sampler};
 use crate::volume::{Coefficients, Grid, Spline, Volume, VoxelBox};
-use ash::vk;
 use std::sync::Arc;
 
 /// How voxels lie in textures.
@@ -78,6 +78,8 @@ pub struct GpuVolume {
     gradient_source: Option<Box<GpuVolume>>,
     kept_gradients: Option<KeptGradients>,
     pub(super) corners: Option<Corners>,
+    /// Whether the values lie in the textures, and not in corners alone.
+    pub(super) has_texels: bool,
 }
 
 /// What a texture holds.
@@ -117,70 +119,27 @@ pub struct Whole {
     pub has_holes: bool,
 }
 
-/// How a volume will lie in textures, before it is cut.
-struct Plan {
-    layout: TextureLayout,
-    texel: TexelFormat,
-    has_holes: bool,
-}
-
 impl Plan {
-    fn of(gpu: &Gpu, volume: &Volume, layout: TextureLayout) -> Self {
-        Self {
-            layout,
-            texel: TexelFormat::choose(gpu, volume.voxels.voxel_type(), volume.rescale),
-            has_holes: volume.validity.is_some(),
-        }
-    }
-
-    fn values(&self, stored: [u32; 3]) -> ImageDesc<'static> {
-        self.desc(stored, self.texel.format, "volume")
-    }
-
-    fn validity(&self, stored: [u32; 3]) -> ImageDesc<'static> {
-        self.desc(stored, vk::Format::R8_UINT, "validity")
-    }
-
-    fn desc(&self, stored: [u32; 3], format: vk::Format, name: &'static str) -> ImageDesc<'static> {
-        ImageDesc {
-            kind: self.layout.kind(),
-            extent: self.layout.axes().map(|axis| stored[axis]),
-            format,
-            usage: vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST,
-            name,
-        }
-    }
-
-    /// The limit that a brick of so many stored voxels is over.
-    fn check(&self, gpu: &Gpu, stored: [u32; 3]) -> Result<(), Error> {
-        gpu.check_image(&self.values(stored))?;
-        if self.has_holes {
-            gpu.check_image(&self.validity(stored))?;
-        }
-        Ok(())
-    }
-
-    /// Bricks in which all of them fit.
-    fn cut(gpu: &Gpu, plans: &[&Self], dims: [u32; 3]) -> Result<Vec<Cell>, Error> {
-        let halo = plans.first().map_or([0; 3], |plan| plan.layout.halo());
-        let fits = |stored| plans.iter().all(|plan| plan.check(gpu, stored).is_ok());
-        let Some(cells) = cut(dims, halo, fits) else {
-            // The error that names the limit.
-            for plan in plans {
-                plan.check(gpu, dims)?;
-            }
-            unreachable!("what cannot be cut to fit is over a limit");
-        };
-        Ok(cells)
-    }
-
     fn make(self, gpu: &Arc<Gpu>, volume: &Volume, cells: &[Cell]) -> Result<GpuVolume, Error> {
+        self.make_with(gpu, volume, cells, None)
+    }
+
+    /// With corners the texture is a single texel, which nobody looks at.
+    fn make_with(
+        self,
+        gpu: &Arc<Gpu>,
+        volume: &Volume,
+        cells: &[Cell],
+        corners: Option<Corners>,
+    ) -> Result<GpuVolume, Error> {
+        let has_texels = corners.is_none();
         let brick = |&cell: &Cell| {
             let stored = cell.stored.dims();
             let mask = || Image::new(gpu, &self.validity(stored));
+            let texels = if has_texels { stored } else { [1; 3] };
             Ok(Brick {
                 cell,
-                values: Image::new(gpu, &self.values(stored))?,
+                values: Image::new(gpu, &self.values(texels))?,
                 validity: self.has_holes.then(mask).transpose()?,
             })
         };
@@ -200,7 +159,8 @@ impl Plan {
             spline: None,
             gradient_source: None,
             kept_gradients: None,
-            corners: None,
+            corners,
+            has_texels,
         })
     }
 }
@@ -307,6 +267,29 @@ impl GpuVolume {
         let made = volumes.iter().zip(plans);
         made.map(|(volume, plan)| plan.make(gpu, volume, &cells))
             .collect()
+    }
+
+    /// Objects for a volume whose values lie in its corners alone. Only what reads nothing else may be drawn of it
+    /// ([`Settings::reads_corners_alone`](crate::technique::Settings::reads_corners_alone)).
+    ///
+    /// # Errors
+    /// As [`GpuVolume::new`].
+    pub(crate) fn of_corners(
+        gpu: &Arc<Gpu>,
+        volume: &Volume,
+        corners: Corners,
+    ) -> Result<Self, Error> {
+        let plan = Plan::of(gpu, volume, TextureLayout::Texture3d);
+        let all = VoxelBox {
+            min: [0; 3],
+            max: volume.dims,
+        };
+        let cell = Cell {
+            index: [0; 3],
+            own: all,
+            stored: all,
+        };
+        plan.make_with(gpu, volume, &[cell], Some(corners))
     }
 
     /// Objects for one brick of a volume that is not all there: `voxels` are those of `cell.stored`. Uploads take them too.

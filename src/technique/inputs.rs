@@ -2,7 +2,7 @@
 //! asks for.
 
 use super::{
-    Filter, Keep, Lattice, LightVolume, Mix, Mode, Operator, Part, Role, Settings, Skip, Technique,
+    Filter, FilterBy, Keep, Lattice, LightVolume, Mix, Mode, Operator, Part, Role, Settings, Skip,
 };
 use crate::gpu::{Bindings, Error, Gpu, Image, Layout, ParameterRing, Resource};
 use crate::resident::{Brick, Corners, GpuTransfer, GpuVolume, TextureLayout};
@@ -136,6 +136,8 @@ pub struct Words {
     pub take: Take,
     /// Gradients count for nothing but unhindered light, on central differences.
     pub is_plainly_lit: bool,
+    /// Steps adapt to what is there.
+    pub is_adaptive: bool,
 }
 
 /// What a sample is: a point of a ray, or a piece of it.
@@ -170,6 +172,9 @@ impl Words {
     pub fn mixed(settings: &Settings, mix: Mix, parts: &[Part]) -> Self {
         let is_fetched =
             |part: &Part| part.role != Role::Labels && !part.volume.texel().is_filtered;
+        let is_by_fetches = settings.conformance
+            || settings.filter_by == FilterBy::Fetch
+            || parts.iter().any(is_fetched);
         let has_holes = parts.iter().any(|part| part.volume.has_holes());
         let has_surfaces = settings.shading.as_ref().is_some_and(|s| s.has_surfaces);
         let is_lit = has_surfaces || settings.wants_light_volume();
@@ -177,18 +182,18 @@ impl Words {
         let is_graded = mix == Mix::Alone && is_lit;
         let is_central = settings.gradient_operator() == Operator::Central
             && settings.keep_gradients != Keep::Always;
-        let reads_corners = settings.reads_corners(mix) && has_corners(parts);
+        let corners = corners_of(parts).filter(|_| settings.reads_corners(mix));
         Self {
             mix: if is_graded { Mix::Graded } else { mix },
             filter: match settings.filter {
                 Filter::Nearest => "nearest",
-                Filter::Linear if reads_corners => "corners",
-                Filter::Linear if settings.conformance || parts.iter().any(is_fetched) => {
-                    "linear_fetch"
-                }
-                Filter::Linear => "linear",
+                Filter::Linear => match corners {
+                    Some(corners) => corners.filter(),
+                    None if is_by_fetches => "linear_fetch",
+                    None => "linear",
+                },
                 Filter::CatmullRom => "kernel",
-                _ if settings.conformance || parts.iter().any(is_fetched) => "kernel",
+                _ if is_by_fetches => "kernel",
                 _ => "spline",
             },
             holes: if has_holes { "mask" } else { "none" },
@@ -201,27 +206,22 @@ impl Words {
                 false if settings.smooth => Take::Between,
                 false => Take::Point,
             },
-            transfer: match reads_corners {
+            transfer: match corners {
                 _ if settings.conformance => "points",
-                true => "stored",
-                false => "table",
+                Some(_) => "stored",
+                None => "table",
             },
             is_plainly_lit: is_graded && is_central && !settings.wants_light_volume(),
+            is_adaptive: settings.adaptive_steps.is_some(),
         }
     }
 }
 
-fn has_corners(parts: &[Part]) -> bool {
-    parts.iter().all(|part| part.volume.corners().is_some())
-}
-
-impl Settings {
-    /// Whether pictures of one volume read its [`Corners`], where it has them: rays on their own lattice, linear.
-    pub fn reads_corners(&self, mix: Mix) -> bool {
-        let is_point = !self.preintegrated && !self.conformance;
-        let is_ray = self.technique == Technique::Raycast && self.lattice != Lattice::Planes;
-        let is_one = matches!(mix, Mix::Alone | Mix::Graded);
-        is_one && is_ray && is_point && self.filter == Filter::Linear
+/// Those of the one volume.
+fn corners_of<'a>(parts: &[Part<'a>]) -> Option<&'a Corners> {
+    match parts {
+        [part] => part.volume.corners(),
+        _ => None,
     }
 }
 

@@ -41,6 +41,49 @@ pub fn march<R: Real, V>(
     samples
 }
 
+/// The same walk in which one sample, that in the middle, stands for all that follow each other in a cell: twin of
+/// `shaders/lib/looks_adaptive.wgsl`. `cell_at` names the cell of a position where samples look alike.
+pub fn march_in_runs<R: Real, V>(
+    frame: &Frame,
+    pixel: [R; 2],
+    cell_at: impl Fn([R; 3]) -> Option<usize>,
+    value_at: impl Fn([R; 3]) -> Option<V>,
+    mut add: impl FnMut(V, Segment<R>) -> ControlFlow<()>,
+) -> u32 {
+    let world = pixel_ray(frame, pixel);
+    let voxel = voxel_ray(frame, &world);
+    let interval = domain_interval(frame, &world, &voxel);
+    if interval[0] >= interval[1] {
+        return 0;
+    }
+    let step = R::from_f32(frame.step_world);
+    let segments = along_ray(frame, pixel, interval).filter(|s| s.length > R::from_f64(0.0));
+    let segments: Vec<Segment<R>> = segments.collect();
+    let cell_of = |segment: &Segment<R>| {
+        let is_whole = segment.length == step;
+        cell_at(voxel.at(segment.t)).filter(|_| is_whole)
+    };
+    let runs = segments.chunk_by(|a, b| match (cell_of(a), cell_of(b)) {
+        (Some(a), Some(b)) => a == b,
+        _ => false,
+    });
+    let mut samples = 0;
+    for run in runs {
+        let middle = run[(run.len() - 1) / 2];
+        let segment = Segment {
+            t: middle.t,
+            length: R::from_f64(run.len() as f64) * middle.length,
+        };
+        samples += 1;
+        if let Some(value) = value_at(voxel.at(segment.t))
+            && add(value, segment).is_break()
+        {
+            break;
+        }
+    }
+    samples
+}
+
 /// The same walk in slabs, each with the values at its two ends: twin of `shaders/lib/march_slab.wgsl`.
 pub fn march_slabs<R: Real>(
     frame: &Frame,

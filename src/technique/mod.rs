@@ -1,10 +1,12 @@
 //! The closed list of techniques (where samples lie) and modes (what is done with them).
 
 mod accumulation;
+mod alike_cells;
 pub mod blend;
 pub mod composite;
 mod error;
 pub mod faces;
+mod filter_by;
 mod frame;
 mod frame_of_mode;
 pub mod gradient;
@@ -41,7 +43,9 @@ mod turns;
 mod ways;
 
 pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
+pub use alike_cells::AlikeCells;
 pub use error::Error;
+pub use filter_by::FilterBy;
 pub use frame::View;
 pub use gradient_filter::{GradientFilter, GradientSource, Keep, Operator};
 pub use in_pixel::InPixel;
@@ -198,6 +202,8 @@ pub struct Settings {
     pub mode: Mode,
     /// How values between voxels are made.
     pub filter: Filter,
+    /// What makes them: the device's sampler or the shader.
+    pub filter_by: FilterBy,
     /// Which samples the ray caster takes.
     pub lattice: Lattice,
     /// What moves the patterns of [`Lattice::Jitter`] and of uneven rays.
@@ -213,6 +219,10 @@ pub struct Settings {
     pub preintegrated: bool,
     /// Samples per smallest voxel spacing; positive. 2D stacks have one a slice.
     pub samples_per_voxel: f64,
+    /// Composite by rays: where the transfer function hardly changes over the values of a macro cell, one sample stands
+    /// for all of a ray in it. No channel of the picture, premultiplied as it is blended, is farther than this from that
+    /// of all samples; over 0, at most 1.
+    pub adaptive_steps: Option<f64>,
     /// Rays per pixel is the square of this; at least 1.
     pub rays_per_side: u32,
     /// Several rays go through uneven places of the pixel, others in each pixel, which [`Self::jitter`] moves.
@@ -257,6 +267,7 @@ impl Default for Settings {
             technique: Technique::default(),
             mode: Mode::default(),
             filter: Filter::default(),
+            filter_by: FilterBy::default(),
             lattice: Lattice::default(),
             jitter: Jitter::default(),
             order: Order::default(),
@@ -264,6 +275,7 @@ impl Default for Settings {
             smooth: false,
             preintegrated: false,
             samples_per_voxel: 1.0,
+            adaptive_steps: None,
             rays_per_side: 1,
             uneven_rays: false,
             termination: 0.0,

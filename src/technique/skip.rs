@@ -11,7 +11,7 @@
 
 use super::{Filter, Mix, Mode, Recording, Settings, Technique};
 use crate::resident::{Apron, EmptySpace, MacroCells};
-use crate::transfer::{Seen, TransferFunction};
+use crate::transfer::{Alike, Seen, TransferFunction};
 
 /// What is known of where a recording need not look. The picture is the same to the bit.
 #[derive(Clone, Copy, Debug, Default)]
@@ -33,6 +33,9 @@ pub enum Skippable {
     Nothing,
     /// Samples outside of the seen values: [`Skip::Unseen`].
     Unseen(Seen),
+    /// The same, and samples beside others that look like them, for [`Settings::adaptive_steps`]:
+    /// [`EmptySpace::with_alike`], and [`Skip::Unseen`].
+    UnseenOrAlike(Seen, Alike),
     /// The same of a mixture, of each of its volumes that has opacity: [`EmptySpace::of_several`].
     UnseenInAll(Vec<(usize, Seen)>),
     /// Samples that are no new extreme: [`Skip::Exceeded`].

@@ -30,6 +30,12 @@ impl Settings {
         of_technique(self.smooth, SMOOTH, Technique::Slices2d, "2D stacks")?;
         of_mode(self.smooth, SMOOTH)?;
         of_technique(is_jittered, JITTER, Technique::Raycast, "ray casting")?;
+        let is_adaptive = self.adaptive_steps.is_some();
+        of_technique(is_adaptive, ADAPTIVE, Technique::Raycast, "ray casting")?;
+        of_mode(is_adaptive, ADAPTIVE)?;
+        if let Some(error) = self.adaptive_steps {
+            self.check_adaptive(error)?;
+        }
         let is_cut = self.cut_faces.is_some();
         of_technique(is_cut, CUT_FACES, Technique::Raycast, "ray casting")?;
         of_mode(is_cut, CUT_FACES)?;
@@ -80,9 +86,51 @@ impl Settings {
         Ok(())
     }
 
+    fn check_adaptive(&self, error: f64) -> Result<(), Error> {
+        if !(error > 0.0 && error <= 1.0) {
+            return Err(Error::OutOfRange {
+                name: "the error of adaptive steps",
+                wanted: "a number over 0 and at most 1",
+                found: error,
+            });
+        }
+        let refuse = |of, found: &str| {
+            Err(Error::NotFor {
+                wanted: ADAPTIVE,
+                of,
+                found: found.to_owned(),
+            })
+        };
+        match () {
+            () if self.conformance => refuse("pictures within an error", "conformance"),
+            () if self.lattice == Lattice::Planes => refuse("the lattice of rays", "planes"),
+            () if self.preintegrated => refuse("samples that are points", PREINTEGRATED),
+            () => Ok(()),
+        }
+    }
+
+    /// Whether steps may adapt to a volume.
+    ///
+    /// # Errors
+    /// [`Error::NotFor`].
+    pub(crate) fn check_holes(&self, has_holes: bool) -> Result<(), Error> {
+        match self.adaptive_steps.is_some() && has_holes {
+            true => Err(Error::NotFor {
+                wanted: ADAPTIVE,
+                of: "volumes that have data everywhere",
+                found: "one with voxels without".to_owned(),
+            }),
+            false => Ok(()),
+        }
+    }
+
     /// A way to sample of its own that is asked for.
     fn way(&self) -> Option<&'static str> {
-        let ways = [(self.preintegrated, PREINTEGRATED), (self.smooth, SMOOTH)];
+        let ways = [
+            (self.preintegrated, PREINTEGRATED),
+            (self.smooth, SMOOTH),
+            (self.adaptive_steps.is_some(), ADAPTIVE),
+        ];
         ways.into_iter()
             .find_map(|(is_on, name)| is_on.then_some(name))
     }
@@ -119,6 +167,7 @@ impl Settings {
 }
 
 const PREINTEGRATED: &str = "pre-integrated classification";
+const ADAPTIVE: &str = "sampling by adaptive steps";
 const SMOOTH: &str = "interpolation between slices";
 const CUT_FACES: &str = "an opaque cut face";
 const JITTER: &str = "jitter";

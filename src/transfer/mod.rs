@@ -9,6 +9,7 @@
 //!
 //! Colour is linear between its points in sRGB numbers and decoded afterwards.
 
+mod alike;
 mod automatic;
 mod boundaries;
 mod channel;
@@ -39,6 +40,7 @@ mod table;
 mod widgets;
 mod window;
 
+pub use alike::{Alike, Tolerance};
 pub use automatic::{Kind, automatic};
 pub use boundaries::{JointCounts, boundaries};
 pub use channel::{CHANNEL_COLORS, of_channel, of_colors};

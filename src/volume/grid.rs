@@ -32,6 +32,14 @@ impl Grid {
         DVec3::from_array(self.dims.map(f64::from))
     }
 
+    /// World length of the longest way through the box: the longest of its four diagonals.
+    pub fn diagonal(&self) -> f64 {
+        let edges = self.world_from_voxel.matrix3 * DMat3::from_diagonal(self.far_corner());
+        let [x, y, z] = [edges.x_axis, edges.y_axis, edges.z_axis];
+        let diagonals = [x + y + z, x + y - z, x - y + z, y + z - x];
+        diagonals.map(DVec3::length).into_iter().fold(0.0, f64::max)
+    }
+
     /// World position of the centre of the grid box.
     pub fn center(&self) -> DVec3 {
         self.world_from_voxel

@@ -29,6 +29,19 @@ pub(crate) struct Difference {
 }
 
 impl Difference {
+    /// Largest, sum of squares, and how many.
+    pub(crate) fn parts(self) -> (f64, f64, u64) {
+        (self.largest, self.sum_of_squares, self.count)
+    }
+
+    pub(crate) fn of_parts(largest: f64, sum_of_squares: f64, count: u64) -> Self {
+        Self {
+            largest,
+            sum_of_squares,
+            count,
+        }
+    }
+
     pub(crate) fn and(self, more: Self) -> Self {
         Self {
             largest: self.largest.max(more.largest),

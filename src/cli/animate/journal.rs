@@ -14,7 +14,10 @@
 //! damage and change, not forgery.
 
 use crate::{
-    cli::Error,
+    cli::{
+        Error,
+        stamp::{difference, hash_of},
+    },
     picture::write_file,
     volume::{Volume, Voxels},
 };
@@ -244,13 +247,6 @@ impl Mark {
     }
 }
 
-/// A hash as it stands in a journal.
-pub fn hash_of(write: impl FnOnce(&mut DefaultHasher)) -> String {
-    let mut hasher = DefaultHasher::new();
-    write(&mut hasher);
-    format!("{:016x}", hasher.finish())
-}
-
 fn hash_voxels(volume: &Volume, hasher: &mut DefaultHasher) {
     match &volume.voxels {
         Voxels::U8(v) => hasher.write(v),
@@ -261,44 +257,6 @@ fn hash_voxels(volume: &Volume, hasher: &mut DefaultHasher) {
         Voxels::F32(v) => hasher.write(bytemuck::cast_slice(v)),
     }
     volume.validity.hash(hasher);
-}
-
-/// Where two values part, as in "`scene.camera.zoom` was 2.0, is 3.0".
-fn difference(place: &str, was: &Value, is: &Value) -> Option<String> {
-    if was == is {
-        return None;
-    }
-    let nothing = serde_json::Map::new();
-    // A topic that is left out has no words.
-    let (a, b) = match (was, is) {
-        (Value::Object(a), Value::Null) => (Some(a), Some(&nothing)),
-        (Value::Null, Value::Object(b)) => (Some(&nothing), Some(b)),
-        (was, is) => (was.as_object(), is.as_object()),
-    };
-    if let (Some(a), Some(b)) = (a, b) {
-        let mut keys: Vec<_> = a.keys().chain(b.keys()).collect();
-        keys.sort();
-        return keys.into_iter().find_map(|key| {
-            let place = if place.is_empty() {
-                key.clone()
-            } else {
-                format!("{place}.{key}")
-            };
-            difference(
-                &place,
-                a.get(key).unwrap_or(&Value::Null),
-                b.get(key).unwrap_or(&Value::Null),
-            )
-        });
-    }
-    let shown = |value: &Value| {
-        let text = value.to_string();
-        match text.char_indices().nth(60) {
-            Some((end, _)) => format!("{}...", &text[..end]),
-            None => text,
-        }
-    };
-    Some(format!("`{place}` was {}, is {}", shown(was), shown(is)))
 }
 
 #[cfg(test)]

@@ -124,8 +124,7 @@ impl CameraFlags {
 
     /// Takes back what [`Self::places_the_eye`] asks for.
     pub fn leave_the_eye(&mut self) {
-        (self.eye, self.view) = (None, None);
-        (self.azimuth, self.elevation) = (None, None);
+        self.leave_the_side();
         (self.projection, self.fov) = (None, None);
     }
 
@@ -143,6 +142,12 @@ impl CameraFlags {
             roll_degrees: self.roll.unwrap_or(0.0),
             ..side
         }
+    }
+
+    /// Makes room for one of several views: nothing else says where to stand.
+    pub fn leave_the_side(&mut self) {
+        (self.eye, self.view) = (None, None);
+        (self.azimuth, self.elevation) = (None, None);
     }
 
     /// The same flags gone around the vertical axis through the target, from +x towards +y.
@@ -242,6 +247,18 @@ pub enum ViewWord {
 }
 
 impl ViewWord {
+    /// The word itself.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Anterior => "anterior",
+            Self::Posterior => "posterior",
+            Self::Left => "left",
+            Self::Right => "right",
+            Self::Superior => "superior",
+            Self::Inferior => "inferior",
+        }
+    }
+
     fn view(self) -> View {
         match self {
             Self::Anterior => View::Anterior,

@@ -29,7 +29,7 @@ mod subject;
 mod values;
 mod words;
 
-pub use camera::{CameraFlags, ProjectionWord};
+pub use camera::{CameraFlags, ProjectionWord, ViewWord};
 pub use channels::{ChannelFlags, ChannelWord, Plan};
 pub use classification::{Classification, ClassificationFlags};
 pub use component::Component;

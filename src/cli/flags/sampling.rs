@@ -4,7 +4,9 @@ use super::{
     Error, Numbers,
     cuts::{ClipBox, CutFacesWord},
     positive,
-    words::{ColorSpaceWord, FilterWord, LatticeWord, ModeWord, OrderWord, TechniqueWord},
+    words::{
+        ColorSpaceWord, FilterByWord, FilterWord, LatticeWord, ModeWord, OrderWord, TechniqueWord,
+    },
 };
 use crate::{
     picture::ColorSpace,
@@ -31,6 +33,11 @@ pub struct SamplingFlags {
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub filter: Option<FilterWord>,
+    /// What makes it: the device's sampler, or the shader from voxels that it fetches itself, as exactly as floats are
+    /// [default: auto]
+    #[arg(long, value_name = "WAY")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub filter_by: Option<FilterByWord>,
     /// Samples at equal steps along the ray, or on the planes of the slicer [default: ray]
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -64,6 +71,11 @@ pub struct SamplingFlags {
     #[arg(long, value_name = "F", value_parser = positive)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub samples_per_voxel: Option<f64>,
+    /// Rays in composite: one sample for all of a ray in a block of 8^3 voxels whose values look alike, so that no channel
+    /// of the picture is farther than this from that of all samples, from 0 to 1: 0.01 is 2.6 of 255 codes in linear light
+    #[arg(long, value_name = "ERROR", value_parser = positive)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub adaptive_steps: Option<f64>,
     /// Rays per pixel, a square number [default: 1]
     #[arg(long, value_name = "N")]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -120,7 +132,7 @@ const TERMINATION_LINEAR: f32 = 1.0 / 8192.0;
 const TERMINATION_DISPLAY: f32 = 1.0 / 512.0;
 /// Which ways to sample go with which technique.
 const WAYS: &str = "--preintegrated is for --mode composite, --smooth for that with --technique slices-2d, --jitter for \
-                    --technique raycast, and --cut-faces for that with --mode composite";
+                    --technique raycast, and --cut-faces and --adaptive-steps for that with --mode composite";
 /// Rays along one side of a pixel.
 const MAX_RAYS_PER_SIDE: u32 = 64;
 
@@ -138,6 +150,7 @@ impl SamplingFlags {
             technique: self.technique.unwrap_or_default().technique(),
             mode: self.mode.unwrap_or_default().mode(),
             filter: self.filter.unwrap_or_default().filter(),
+            filter_by: self.filter_by.unwrap_or_default().filter_by(),
             lattice: self.lattice()?,
             jitter: Jitter {
                 seed: self.jitter.unwrap_or_default(),
@@ -148,6 +161,7 @@ impl SamplingFlags {
             preintegrated: self.preintegrated,
             order: self.order.unwrap_or_default().order(),
             samples_per_voxel: samples_per_voxel(self.samples_per_voxel.unwrap_or(1.0))?,
+            adaptive_steps: self.adaptive_steps,
             rays_per_side: rays_per_side(self.aa.unwrap_or(1))?,
             uneven_rays: self.aa_uneven,
             termination,

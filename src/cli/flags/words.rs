@@ -2,7 +2,7 @@
 
 use crate::{
     picture::ColorSpace,
-    technique::{Filter, Lattice, Mode, Order, Technique},
+    technique::{Filter, FilterBy, Lattice, Mode, Order, Technique},
 };
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
@@ -111,6 +111,33 @@ impl FilterWord {
             Self::QuadraticSmooth => Filter::QuadraticSmooth,
             Self::CubicSmooth => Filter::CubicSmooth,
             Self::CatmullRom => Filter::CatmullRom,
+        }
+    }
+}
+
+/// Every word of `--filter-by`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum FilterByWord {
+    #[default]
+    #[value(
+        help = "fetch for rays where the driver is llvmpipe, whose sampler is slower; else sampler"
+    )]
+    Auto,
+    #[value(help = "the device's sampler, whose weights have some 8 bits on graphics cards")]
+    Sampler,
+    #[value(help = "the shader, with weights in floats")]
+    Fetch,
+}
+
+impl FilterByWord {
+    /// What it stands for.
+    pub fn filter_by(self) -> FilterBy {
+        match self {
+            Self::Auto => FilterBy::Auto,
+            Self::Sampler => FilterBy::Sampler,
+            Self::Fetch => FilterBy::Fetch,
         }
     }
 }

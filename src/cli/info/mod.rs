@@ -7,7 +7,7 @@ use super::{
     Error,
     flags::InputFlags,
     histogram::unit,
-    memory::{RenderBytes, corners_bytes},
+    memory::{RenderBytes, software_device_bytes},
     output::{say, say_aside},
 };
 use crate::{
@@ -98,10 +98,9 @@ impl Info {
             // Uneven levels are drawn from even ones, of which there are more.
             let drawn = self.input.open(&limits)?;
             let is_other = drawn.header().dims != header.dims;
-            report.render_bytes =
-                RenderBytes::of(drawn.header(), is_other || has_holes(&statistics));
-            report.software_device_bytes =
-                report.render_bytes.device + corners_bytes(drawn.header());
+            let has_holes = is_other || has_holes(&statistics);
+            report.render_bytes = RenderBytes::of(drawn.header(), has_holes);
+            report.software_device_bytes = software_device_bytes(drawn.header(), has_holes);
         }
         if self.json {
             for note in &header.notes {
@@ -215,8 +214,7 @@ fn report(header: &Header, statistics: &Statistics) -> Report {
         variables: header.variables.clone(),
         levels: header.levels,
         render_bytes: RenderBytes::of(header, has_holes(statistics)),
-        software_device_bytes: RenderBytes::of(header, has_holes(statistics)).device
-            + corners_bytes(header),
+        software_device_bytes: software_device_bytes(header, has_holes(statistics)),
         unit: unit(header),
         meaning,
         channels,

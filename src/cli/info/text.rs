@@ -207,7 +207,7 @@ impl Page<'_> {
         let RenderBytes { host, device } = self.report.render_bytes;
         let on_cpu = match self.report.software_device_bytes {
             same if same == device => String::new(),
-            more => format!(", {} where that computes on the CPU", bytes(more)),
+            other => format!(", {} by rays on llvmpipe", bytes(other)),
         };
         let (host, device) = (bytes(host), bytes(device));
         lines.say(

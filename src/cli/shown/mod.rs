@@ -15,14 +15,14 @@ use super::{
     flags::{Classification, ClassificationFlags, Plan, SceneFlags, Subject, summary},
     labels,
     load::{load_from, open},
-    memory::{DeviceRoom, Held, fitting},
+    memory::{self, DeviceRoom, Held, fitting},
     progress::Progress,
 };
 use crate::{
     camera::Camera,
     offscreen::Stream,
     scene::{Beside, Channel},
-    technique::{Filter, Mode, PerMode, Role, Settings},
+    technique::{Filter, FilterBy, Mode, PerMode, Role, Settings},
     transfer::{Classified, LabelTable, TransferFunction},
     volume::{Header, Limits, Source, Volume, labels::labels_of},
 };
@@ -248,7 +248,22 @@ impl Shown {
             settings.filter = filter;
         }
         settings.per_mode = self.per_mode.clone();
+        settings.filter_by = self.filter_by(scene, settings.filter_by);
         Ok(camera)
+    }
+
+    /// What makes values between voxels, where memory has a say.
+    pub fn filter_by(&self, scene: &SceneFlags, wanted: FilterBy) -> FilterBy {
+        let parts = self.parts();
+        let beside = parts.beside();
+        let volumes: Vec<_> = [&*self.volume]
+            .into_iter()
+            .chain(beside.volumes())
+            .collect();
+        match self.stream {
+            Some(_) => wanted,
+            None => memory::filter_by(&scene.input, wanted, &volumes),
+        }
     }
 
     /// What [`Parts::beside`] hands out.

@@ -2,13 +2,14 @@
 
 use super::{
     Became, Row,
+    item::Item,
     parts::Part,
     room::{Room, Share},
 };
 use crate::{
     cli::{
         Error,
-        flags::SceneFlags,
+        flags::{SceneFlags, ViewWord},
         line::{Line, encoders},
         load,
         memory::{DeviceMemory, DeviceRoom, Held, needed_bytes},
@@ -23,7 +24,7 @@ use crate::{
 };
 use std::{
     panic::resume_unwind,
-    path::{Path, PathBuf},
+    path::Path,
     sync::{
         Mutex, PoisonError,
         mpsc::{Receiver, Sender, channel, sync_channel},
@@ -31,19 +32,6 @@ use std::{
     thread,
     time::Instant,
 };
-
-/// One volume and its picture.
-#[derive(Debug)]
-pub struct Item {
-    /// As `render` takes it.
-    pub input: String,
-    /// Which of the volumes that it holds.
-    pub part: Part,
-    /// A name in the folder of pictures.
-    pub picture: PathBuf,
-    /// The picture is there and stays.
-    pub is_kept: bool,
-}
 
 /// All that is to be drawn.
 #[derive(Clone, Copy, Debug)]
@@ -80,10 +68,18 @@ struct Read<'a> {
     _share: Share<'a>,
 }
 
-/// A picture and the voxels that it shows.
+/// Pictures and the voxels that they show.
 struct Drawn<P> {
-    picture: P,
+    shots: Vec<Shot<P>>,
     dims: [u32; 3],
+}
+
+/// One of the pictures of a volume.
+struct Shot<P> {
+    /// Which.
+    at: usize,
+    picture: P,
+    notes: Vec<String>,
 }
 
 type Volumes<'a> = Mutex<Option<Receiver<(usize, Noted<Read<'a>>)>>>;
@@ -91,13 +87,13 @@ type Volumes<'a> = Mutex<Option<Receiver<(usize, Noted<Read<'a>>)>>>;
 impl Batch<'_> {
     /// Draws all, and says what became of each and why the first of those that failed did.
     pub fn draw(self) -> Result<(Vec<Row>, Option<Error>), Error> {
-        let places = (0..self.items.len()).filter(|&at| !self.items[at].is_kept);
+        let places = (0..self.items.len()).filter(|&at| self.items[at].is_wanted());
         let places: Vec<usize> = places.collect();
-        let mut rows: Vec<Row> = self.items.iter().map(Item::row).collect();
+        let mut rows: Vec<Vec<Row>> = self.items.iter().map(Item::rows).collect();
         let mut first_error = None;
         if places.is_empty() {
             self.progress.note("all pictures are there already");
-            return Ok((rows, None));
+            return Ok((rows.concat(), None));
         }
         self.progress.stage("prepare", 0, 1);
         let words = self.scene.devices();
@@ -112,7 +108,9 @@ impl Batch<'_> {
             // What all volumes may take together.
             room: &Room::new(self.scene.input.max_memory.unwrap_or(u64::MAX)),
         };
-        let encoders = encoders(self.extent_pixels);
+        let [width, height] = self.extent_pixels;
+        let most = self.items.iter().map(|item| item.pictures.len()).max();
+        let encoders = encoders([width, height.saturating_mul(most.unwrap_or(1) as u32)]);
         let line = &Line::new(devices.len() + encoders + 1);
         let (to_drawers, volumes) = sync_channel(0);
         let volumes: &Volumes = &Mutex::new(Some(volumes));
@@ -136,7 +134,7 @@ impl Batch<'_> {
                 let pictures = to_encoders.clone();
                 scope.spawn(move || {
                     let _stops = line.stops_in_panic();
-                    self.draw_on(device, word, volumes, line, &pictures);
+                    self.draw_on(device, word, volumes, places, line, &pictures);
                 })
             };
             let drawers: Vec<_> = devices.into_iter().zip(words).map(draw).collect();
@@ -161,7 +159,7 @@ impl Batch<'_> {
             }
             written
         })?;
-        Ok((rows, first_error))
+        Ok((rows.concat(), first_error))
     }
 
     fn draw_on<'r>(
@@ -169,6 +167,7 @@ impl Batch<'_> {
         device: Device,
         word: Option<&str>,
         volumes: &Volumes<'r>,
+        places: &[usize],
         line: &Line,
         pictures: &Sender<(usize, Noted<Drawn<Picture>>)>,
     ) {
@@ -178,7 +177,7 @@ impl Batch<'_> {
                 let volumes = volumes.lock().unwrap_or_else(PoisonError::into_inner);
                 volumes.as_ref().and_then(|volumes| volumes.recv().ok())
             };
-            let Some((at, Noted { outcome, mut notes })) = next else {
+            let Some((at, Noted { outcome, notes })) = next else {
                 return;
             };
             if !line.enter(at) {
@@ -187,7 +186,7 @@ impl Batch<'_> {
             let outcome = outcome.and_then(|read| {
                 // A device that a picture failed on is not used for the next.
                 let device = here.take().map_or_else(|| Device::find(word), Ok)?;
-                let (drawn, device) = self.draw_one(&read, device, &mut notes)?;
+                let (drawn, device) = self.draw_one(&self.items[places[at]], &read, device)?;
                 here = Some(device);
                 Ok(drawn)
             });
@@ -197,15 +196,25 @@ impl Batch<'_> {
         }
     }
 
+    /// All views of a volume that has come to the device once.
     fn draw_one(
         &self,
+        item: &Item,
         read: &Read,
         device: Device,
-        notes: &mut Vec<String>,
     ) -> Result<(Drawn<Picture>, Device), Error> {
         let Read { shown, scene, .. } = read;
         let mut settings = self.settings.clone();
-        let camera = shown.camera(scene, self.extent_pixels, &mut settings)?;
+        let mut cameras = Vec::new();
+        for (at, wanted) in item.missing() {
+            let mut scene = scene.clone();
+            if let Some(view) = wanted.view {
+                scene.camera.view = Some(view);
+            }
+            // Views change no settings: --section, which would, goes with none.
+            let camera = shown.camera(&scene, self.extent_pixels, &mut settings)?;
+            cameras.push((at, wanted, camera));
+        }
         let parts = shown.parts();
         let job = Job {
             volume: &shown.volume,
@@ -216,24 +225,43 @@ impl Batch<'_> {
             extent_pixels: self.extent_pixels,
             layers: &[],
         };
-        let mut renderer = Renderer::new(job, &camera, device)?;
-        let picture = renderer.draw(&camera)?.picture;
+        let (_, _, first) = cameras.first().expect("who is read has a picture to come");
+        let mut renderer = Renderer::new(job, first, device)?;
         let reasoned = parts.only(&shown.classification);
-        if let Some(reason) = why_empty(&picture, &shown.volume, reasoned, &camera, &settings) {
-            notes.push(format!("the picture is empty: {reason}"));
+        let mut shots = Vec::new();
+        for (at, wanted, camera) in &cameras {
+            let picture = renderer.draw(camera)?.picture;
+            let reason = why_empty(&picture, &shown.volume, reasoned, camera, &settings);
+            let view = wanted.view.map(|view| format!("--view {}: ", view.name()));
+            let view = view.unwrap_or_default();
+            let note = reason.map(|reason| format!("{view}the picture is empty: {reason}"));
+            shots.push(Shot {
+                at: *at,
+                picture,
+                notes: note.into_iter().collect(),
+            });
         }
         let dims = shown.volume.dims;
-        Ok((Drawn { picture, dims }, renderer.into_device()))
+        Ok((Drawn { shots, dims }, renderer.into_device()))
     }
 
     fn encoded(&self, item: &Item, noted: Noted<Drawn<Picture>>) -> Noted<Drawn<EncodedPicture>> {
-        let outcome = noted.outcome.and_then(|Drawn { mut picture, dims }| {
+        let encoded = |shot: Shot<Picture>| {
+            let mut picture = shot.picture;
             if let Some(background) = self.scene.picture.background() {
                 picture.over_background(background);
             }
-            let path = self.folder.join(&item.picture);
-            let picture = EncodedPicture::new(&picture, &path, self.options)?;
-            Ok(Drawn { picture, dims })
+            let path = self.folder.join(&item.pictures[shot.at].picture);
+            Ok(Shot {
+                at: shot.at,
+                picture: EncodedPicture::new(&picture, &path, self.options)?,
+                notes: shot.notes,
+            })
+        };
+        let outcome = noted.outcome.and_then(|Drawn { shots, dims }| {
+            let shots = shots.into_iter().map(encoded);
+            let shots = shots.collect::<Result<_, Error>>()?;
+            Ok(Drawn { shots, dims })
         });
         Noted {
             outcome,
@@ -241,47 +269,53 @@ impl Batch<'_> {
         }
     }
 
-    /// Writes a picture and says what there is to say of its volume; the error, where there is none.
-    fn put(&self, row: &mut Row, noted: Noted<Drawn<EncodedPicture>>) -> Option<Error> {
-        let written = noted.outcome.and_then(|Drawn { picture, dims }| {
-            self.gate.whole(|| picture.write(self.options.force))?;
-            Ok(dims)
-        });
-        row.notes = noted.notes;
-        let error = match written {
+    /// Writes the pictures of a volume and says what there is to say of each; the first error, where there is one.
+    fn put(&self, rows: &mut [Row], noted: Noted<Drawn<EncodedPicture>>) -> Option<Error> {
+        let mut first_error = None;
+        let missing = rows.iter_mut().enumerate();
+        let missing = missing.filter(|(_, row)| row.became != Became::Kept);
+        match noted.outcome {
+            Ok(Drawn { shots, dims }) => {
+                for ((_, row), shot) in missing.zip(shots) {
+                    row.notes = [noted.notes.clone(), shot.notes].concat();
+                    let written = self.gate.whole(|| shot.picture.write(self.options.force));
+                    let written = written.map_err(Error::from);
+                    self.became(row, written.as_ref().map(|()| dims));
+                    first_error = first_error.or(written.err());
+                }
+            }
+            Err(error) => {
+                for (_, row) in missing {
+                    row.notes = noted.notes.clone();
+                    self.became(row, Err(&error));
+                }
+                first_error = Some(error);
+            }
+        }
+        if let (Some(error), Some(row)) = (&first_error, rows.first()) {
+            self.progress.note(&format!("{}: {error}", row.input));
+        }
+        first_error
+    }
+
+    /// Notes the voxels of a picture that is there, or why there is none.
+    fn became(&self, row: &mut Row, outcome: Result<[u32; 3], &Error>) {
+        match outcome {
             Ok(dims) => {
                 row.dims = Some(dims);
                 row.became = Became::Drawn;
-                None
             }
             Err(error) => {
                 row.error = Some(error.to_string());
                 row.picture = None;
-                Some(error)
             }
-        };
-        if let Some(error) = &row.error {
-            self.progress.note(&format!("{}: {error}", row.input));
         }
-        self.progress
-            .volume(&row.input, row.picture.as_deref(), row.error.as_deref());
-        error
-    }
-}
-
-impl Item {
-    fn row(&self) -> Row {
-        Row {
-            input: self.input.clone(),
-            series: self.part.series.clone(),
-            variable: self.part.variable.clone(),
-            picture: Some(self.picture.display().to_string()),
-            became: match self.is_kept {
-                true => Became::Kept,
-                false => Became::Failed,
-            },
-            ..Row::default()
-        }
+        self.progress.volume(
+            &row.input,
+            row.view.map(ViewWord::name),
+            row.picture.as_deref(),
+            row.error.as_deref(),
+        );
     }
 }
 

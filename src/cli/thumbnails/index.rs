@@ -1,5 +1,6 @@
 //! What became of each volume: a line each for `--index`, and for a person at the end.
 
+use crate::cli::flags::ViewWord;
 use serde::Serialize;
 
 /// The file of `--index`.
@@ -12,7 +13,7 @@ pub struct Index {
     volumes: Vec<Row>,
 }
 
-/// One volume.
+/// One picture of a volume.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Row {
     /// The file or folder.
@@ -23,6 +24,9 @@ pub struct Row {
     /// The name of the variable, of a file that holds several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub variable: Option<String>,
+    /// The side that it is seen from, where several were asked for: each has a row.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub view: Option<ViewWord>,
     /// Its picture, where there is one, by its name in the folder of pictures.
     pub picture: Option<String>,
     /// What became of it.
@@ -35,7 +39,15 @@ pub struct Row {
     pub notes: Vec<String>,
 }
 
-/// What became of a volume.
+impl Row {
+    /// True for another view of the same volume.
+    fn is_of_same_volume(&self, other: &Self) -> bool {
+        let volume = |row: &Self| (row.input.clone(), row.series.clone(), row.variable.clone());
+        volume(self) == volume(other)
+    }
+}
+
+/// What became of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Became {
@@ -91,6 +103,8 @@ pub fn notes_of(rows: &[Row]) -> Vec<String> {
     for row in rows {
         for note in &row.notes {
             match all.iter_mut().find(|(known, _)| known == note) {
+                // Said of the volume, whatever it is seen from.
+                Some((_, about)) if about.iter().any(|known| known.is_of_same_volume(row)) => {}
                 Some((_, about)) => about.push(row),
                 None => all.push((note, vec![row])),
             }
@@ -123,6 +137,8 @@ mod tests {
             row(4, &["c"]),
         ];
         assert_eq!(notes_of(&rows), ["2 volumes: a", "2: b", "4: c"]);
+        let views = [row(1, &["a"]), row(1, &["a"]), row(1, &["b"])];
+        assert_eq!(notes_of(&views), ["1: a", "1: b"]);
         let rows: Vec<Row> = (0..50).map(|k| row(k, &[&format!("note {k}")])).collect();
         let notes = notes_of(&rows);
         assert!(

@@ -1,19 +1,20 @@
 //! `stratavox thumbnails`: many volumes, a small picture each.
 //!
 //! ```text
-//! words -> volumes -> names of pictures -> read | draw | encode | write, all at once -> index, summary
+//! words -> volumes -> names of pictures -> read | draw all views | encode | write, all at once -> index, summary
 //! ```
 
 mod batch;
 mod index;
 mod inputs;
+mod item;
 mod names;
 mod parts;
 mod room;
 
 use super::{
     Error,
-    flags::{Depth, SceneFlags, Size},
+    flags::{Depth, SceneFlags, Size, ViewWord},
     memory::available_bytes,
     output::{self, say_aside, write_whole},
     progress::{Progress, ProgressWord},
@@ -22,10 +23,11 @@ use super::{
     signals::Gate,
 };
 use crate::picture::{BitDepth, WriteOptions};
-use batch::{Batch, Item};
+use batch::Batch;
 use clap::Args;
 use index::{Became, Index, Row};
 use inputs::Inputs;
+use item::{Item, Wanted};
 use parts::Part;
 use std::{
     fs,
@@ -37,7 +39,8 @@ use std::{
 #[command(after_help = "Examples:\n  \
     stratavox thumbnails phantom:head,n=64 phantom:shells,n=64 -o pictures\n  \
     stratavox thumbnails FOLDER -o pictures --recursive --index index.json\n  \
-    stratavox thumbnails FOLDER --mode mip --view anterior --size 128x128 -o pictures --resume\n\n\
+    stratavox thumbnails FOLDER --mode mip --view anterior --size 128x128 -o pictures --resume\n  \
+    stratavox thumbnails FOLDER --views anterior,left,superior -o pictures\n\n\
     A folder that is one volume (DICOM, slices of TIFF, Zarr) is one; of another the volumes inside are drawn.\n\
     Of a folder of several series, and a file of several variables, each is drawn.\n\
     A volume that cannot be drawn is named, and the others are drawn: the exit code is that of the first failure.\n\
@@ -51,6 +54,11 @@ pub struct Thumbnails {
     /// The folder of the pictures; it is made where there is none
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
+    /// Draw every volume from each of these sides, as --view has them, into NAME-SIDE.png; it is read and brought to the
+    /// device once
+    #[arg(long, value_name = "SIDE,SIDE...", value_delimiter = ',', help_heading = "Camera",
+          conflicts_with_all = ["view", "azimuth", "elevation", "eye", "section"])]
+    views: Vec<ViewWord>,
     /// Look into folders inside folders too
     #[arg(long, help_heading = "Batch")]
     recursive: bool,
@@ -101,9 +109,18 @@ impl Thumbnails {
             parts.map(move |part| (input.clone(), part))
         });
         let volumes: Vec<(String, Part)> = volumes.collect();
-        let pictures = names::pictures_of(&volumes)?;
+        let views = self.views();
+        let pictures = names::pictures_of(&names::with_views(&volumes, &views))?;
         let paths = pictures.iter().map(|name| self.output.join(name)).collect();
         let kept = self.check(paths, &volumes, &scene)?;
+        let of_view = |((picture, is_kept), &view)| Wanted {
+            view,
+            picture,
+            is_kept,
+        };
+        let pictures = pictures.into_iter().zip(kept);
+        let wanted = pictures.zip(views.iter().cycle()).map(of_view);
+        let wanted: Vec<Wanted> = wanted.collect();
 
         let progress = Progress::new(self.progress);
         for note in scene.idle() {
@@ -116,13 +133,11 @@ impl Thumbnails {
         }
         let items: Vec<Item> = volumes
             .into_iter()
-            .zip(pictures)
-            .zip(kept)
-            .map(|(((input, part), picture), is_kept)| Item {
+            .zip(wanted.chunks(views.len()))
+            .map(|((input, part), pictures)| Item {
                 input,
                 part,
-                picture,
-                is_kept,
+                pictures: pictures.to_vec(),
             })
             .collect();
         if !self.output.is_dir() {
@@ -158,6 +173,14 @@ impl Thumbnails {
         first_error.map_or(Ok(()), Err)
     }
 
+    /// Every side to stand on; one that no word of --views names where none does.
+    fn views(&self) -> Vec<Option<ViewWord>> {
+        match &self.views[..] {
+            [] => vec![None],
+            views => views.iter().copied().map(Some).collect(),
+        }
+    }
+
     /// The flags laid over those of `--scene`, with what thumbnails are without a word.
     fn whole_scene(&mut self) -> Result<SceneFlags, Error> {
         if self.scene.input.path.is_some() {
@@ -182,6 +205,22 @@ impl Thumbnails {
                 "--stream is for one volume: many are drawn from memory, large ones with fewer voxels",
                 "`render --stream` draws every voxel of one",
             ));
+        }
+        let is_again = |(at, view): (usize, &ViewWord)| self.views[..at].contains(view);
+        if let Some((_, twice)) = self.views.iter().enumerate().find(|&view| is_again(view)) {
+            return Err(Error::usage(
+                format!("--views names {} twice", twice.name()),
+                "a picture is of one view: name each once",
+            ));
+        }
+        if !self.views.is_empty() {
+            if scene.section.section.is_some() {
+                return Err(Error::usage(
+                    "--views places the camera, and the --section of the --scene looks straight at its plane",
+                    "leave out --views, or take a scene without a section",
+                ));
+            }
+            scene.camera.leave_the_side();
         }
         scene.picture.size.get_or_insert(SIZE);
         scene.input.fit = true;

@@ -1,14 +1,32 @@
 //! What the picture of each volume is called.
 //!
-//! A volume's name without its ending, and behind it that of a part; where two would be called the same, both keep their ending, and where that is
+//! A volume's name without its ending, and behind it that of a part and of a view; where two would be called the same, both keep their ending, and where that is
 //! not enough, the folder they lie in goes before it.
 
 use super::parts::Part;
-use crate::{cli::Error, format};
+use crate::{
+    cli::{Error, flags::ViewWord},
+    format,
+};
 use std::{
     collections::HashMap,
     path::{Path, PathBuf},
 };
+
+/// Each volume once for every view, which stands in its name behind that of the part.
+pub fn with_views(volumes: &[(String, Part)], views: &[Option<ViewWord>]) -> Vec<(String, Part)> {
+    let seen = |(input, part): &(String, Part), view: &Option<ViewWord>| {
+        let words = [part.name.as_str(), view.map_or("", ViewWord::name)];
+        let words: Vec<&str> = words.into_iter().filter(|word| !word.is_empty()).collect();
+        let part = Part {
+            name: words.join("-"),
+            ..part.clone()
+        };
+        (input.clone(), part)
+    };
+    let of_volume = |volume| views.iter().map(move |view| seen(volume, view));
+    volumes.iter().flat_map(of_volume).collect()
+}
 
 /// A name for each input, no two alike, also where small and capital letters are one.
 pub fn pictures_of(inputs: &[(String, Part)]) -> Result<Vec<PathBuf>, Error> {
@@ -137,6 +155,28 @@ mod tests {
         let names = pictures_of(&inputs).expect("names");
         let wanted = ["scan-T1-axial.png", "scan-T2.png", "one-T.png"];
         assert_eq!(names, wanted.map(PathBuf::from));
+    }
+
+    #[test]
+    fn a_view_stands_behind_the_part_and_one_without_a_word_changes_no_name() {
+        let part = |name: &str| Part {
+            name: name.to_owned(),
+            ..Part::default()
+        };
+        let volumes = [
+            ("a.nii".to_owned(), part("T1")),
+            ("b.nii".to_owned(), part("")),
+        ];
+        let views = [Some(ViewWord::Left), Some(ViewWord::Superior)];
+        let names = pictures_of(&with_views(&volumes, &views)).expect("names");
+        let wanted = [
+            "a-T1-left.png",
+            "a-T1-superior.png",
+            "b-left.png",
+            "b-superior.png",
+        ];
+        assert_eq!(names, wanted.map(PathBuf::from));
+        assert_eq!(with_views(&volumes, &[None]), volumes);
     }
 
     #[test]

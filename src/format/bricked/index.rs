@@ -80,7 +80,11 @@ pub(crate) enum Coding {
 impl Coding {
     const ALL: [Self; 3] = [Self::Same, Self::Plain, Self::Lz4];
 
-    fn word(self) -> u32 {
+    pub(crate) fn of_word(word: u32) -> Option<Self> {
+        Self::ALL.into_iter().find(|known| known.word() == word)
+    }
+
+    pub(crate) fn word(self) -> u32 {
         match self {
             Self::Same => 0,
             Self::Plain => 1,
@@ -233,6 +237,12 @@ impl Index {
             bytes.map_or(0, |bytes| u64::from_le_bytes(*bytes))
         };
         let (begins, bytes) = (number(16), number(24));
+        if [begins, bytes] == [0; 2] {
+            return Err(missing(
+                BRICKS,
+                "an end: whoever wrote the file was stopped",
+            ));
+        }
         let end = begins.checked_add(bytes);
         if begins < FRONT_BYTES || end != Some(file_bytes) {
             return Err(Problem::Size {
@@ -389,7 +399,7 @@ fn entry_of(bytes: &[u8; 28], index_begins: u64) -> Result<Entry, Problem> {
         let wanted = "a place between the front and the index";
         return Err(invalid(BRICKS, "begins", wanted, &found));
     }
-    let known = Coding::ALL.into_iter().find(|known| known.word() == coding);
+    let known = Coding::of_word(coding);
     let coding = known.ok_or_else(|| {
         let wanted = "0, 1 or 2";
         invalid(BRICKS, "coding", wanted, &coding.to_string())

@@ -14,7 +14,7 @@ mod index;
 mod lines;
 mod region;
 
-pub(crate) use index::{Coding, Entry, Index, Level, MAGIC, checksum};
+pub(crate) use index::{Coding, Entry, FRONT_BYTES, Index, Level, MAGIC, checksum};
 pub(crate) use region::{Bricks, stored_box};
 
 use super::place::open_regular;

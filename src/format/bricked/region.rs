@@ -170,7 +170,9 @@ impl<W: Read + Write + Seek> Bricks<W> {
     pub(crate) fn begin(&mut self, magic: &[u8]) -> std::io::Result<()> {
         let mut front = magic.to_vec();
         front.resize(usize::try_from(FRONT_BYTES).unwrap_or(0), 0);
-        self.append(&front).map(|_| ())
+        let file = self.file.get_mut().unwrap_or_else(PoisonError::into_inner);
+        file.seek(SeekFrom::Start(0))?;
+        file.write_all(&front)
     }
 
     /// Bytes behind all others; gives where they begin.

@@ -2,6 +2,7 @@
 
 use super::layout::Layout;
 use super::numbers::{Bytes, Tally};
+use super::rows::{DoneBricks, Row};
 use super::{Selection, WriteVolumeError, Written};
 use crate::format::bricked::{Bricks, Coding, Entry, Index, Level, MAGIC, checksum, stored_box};
 use crate::format::convert::{Builder, Endian, to_u64};
@@ -12,7 +13,7 @@ use crate::volume::{
 use std::io::{Read, Seek, Write};
 
 /// Voxels of its own along each side of a brick, and of its neighbours' on each side: what bricks on a device store.
-const SIDE: u32 = 120;
+pub(super) const SIDE: u32 = 120;
 const HALO: u32 = 3;
 
 /// Bytes of voxels that are read at once, where a brick is not more.
@@ -60,13 +61,23 @@ impl Part<'_> {
     }
 }
 
-/// Writes all levels. `progress` hears how many bricks are done of how many.
+/// How the work goes on.
+pub(super) struct Course<'a> {
+    /// Bricks that are in the file already.
+    pub done: DoneBricks,
+    /// Hears of each row that is.
+    pub note: &'a mut dyn FnMut(&str) -> std::io::Result<()>,
+    /// Hears how many bricks are done of how many.
+    pub progress: &'a mut dyn FnMut(usize, usize),
+}
+
+/// Writes all levels.
 pub(super) fn write(
     source: &dyn Source,
     selection: &Selection,
     layout: &Layout,
     out: impl Read + Write + Seek,
-    progress: &mut dyn FnMut(usize, usize),
+    course: Course,
 ) -> Result<Written, WriteVolumeError> {
     let from = source.header();
     let mut header = Header::new(
@@ -101,7 +112,7 @@ pub(super) fn write(
         bricks: Bricks::new(out, index),
         done: 0,
         of: usize::try_from(of).unwrap_or(usize::MAX),
-        progress,
+        course,
     };
     writer.bricks.begin(MAGIC)?;
     let mut part = Part {
@@ -137,7 +148,7 @@ struct Writer<'a, W> {
     bricks: Bricks<W>,
     done: usize,
     of: usize,
-    progress: &'a mut dyn FnMut(usize, usize),
+    course: Course<'a>,
 }
 
 impl<W: Read + Write + Seek> Writer<'_, W> {
@@ -154,7 +165,10 @@ impl<W: Read + Write + Seek> Writer<'_, W> {
             for component in 0..components {
                 let pick = Pick { time, component };
                 for row in rows(dims, part.layout.number.bytes()) {
-                    let more = self.add_row(level, pick, &row, part, &mut made)?;
+                    let more = match self.course.done.rows.pop_front() {
+                        Some(done) => self.take_row(done, row.len(), part, &mut made)?,
+                        None => self.add_row(level, pick, &row, part, &mut made)?,
+                    };
                     apart = apart.and(more);
                 }
             }
@@ -169,6 +183,29 @@ impl<W: Read + Write + Seek> Writer<'_, W> {
         made.error = error;
         self.bricks.add_level(made);
         Ok(())
+    }
+
+    /// Those that are in the file.
+    fn take_row(
+        &mut self,
+        done: Row,
+        count: usize,
+        part: &mut Part,
+        made: &mut Level,
+    ) -> Result<Difference, WriteVolumeError> {
+        if done.entries.len() != count {
+            let found = done.entries.len();
+            let problem = format!("a row of {count} bricks was noted with {found}");
+            return Err(std::io::Error::new(std::io::ErrorKind::InvalidData, problem).into());
+        }
+        part.tally = done.tally;
+        if done.has_holes {
+            self.bricks.has_holes();
+        }
+        made.entries.extend(done.entries);
+        self.done = self.done.saturating_add(count);
+        (self.course.progress)(self.done, self.of);
+        Ok(done.apart)
     }
 
     /// Neighbours along x.
@@ -224,8 +261,16 @@ impl<W: Read + Write + Seek> Writer<'_, W> {
             let entry = self.append(&brick, fill)?;
             made.entries.push(entry);
             self.done = self.done.saturating_add(1);
-            (self.progress)(self.done, self.of);
+            (self.course.progress)(self.done, self.of);
         }
+        let first = made.entries.len().saturating_sub(row.len());
+        let noted = Row {
+            entries: made.entries.get(first..).unwrap_or_default().to_vec(),
+            apart,
+            tally: part.tally,
+            has_holes: self.bricks.index().has_holes,
+        };
+        (self.course.note)(&noted.line())?;
         Ok(apart)
     }
 

@@ -14,11 +14,13 @@ mod nifti;
 mod npy;
 mod nrrd;
 mod numbers;
+mod rows;
 mod slabs;
 mod unpacked;
 
 use crate::volume::{Header, ReadError, Source, VoxelBox, VoxelType};
 use layout::Layout;
+pub use rows::DoneBricks;
 use std::io::{self, Read, Seek, Write};
 use std::ops::Range;
 use std::path::Path;
@@ -142,26 +144,20 @@ pub fn write_volume(
     out: &mut (impl Read + Write + Seek),
     progress: &mut dyn FnMut(usize, usize),
 ) -> Result<Written, WriteVolumeError> {
-    let options = &match (options.format, options.numbers) {
-        // Bricks are kept as they are in memory.
-        (VolumeFormat::Bricks, NumberType::Stored) if !source.header().stored.is_kept_exactly() => {
-            WriteVolumeOptions {
-                numbers: NumberType::Values(VoxelType::F32),
-                ..*options
-            }
-        }
-        _ => *options,
-    };
-    let mut layout = Layout::of(source.header(), selection, options)?;
     if options.format == VolumeFormat::Bricks {
-        if !layout.number.is_kept_exactly() {
-            let name = layout.number.name();
-            return Err(WriteVolumeError::NoRoom(format!(
-                "a file of bricks holds u8, i8, u16, i16, f16 or f32, not {name}"
-            )));
-        }
-        return bricks::write(source, selection, &layout, out, progress);
+        let done = DoneBricks::default();
+        let numbers = options.numbers;
+        return write_bricks(
+            source,
+            selection,
+            numbers,
+            out,
+            done,
+            &mut |_| Ok(()),
+            progress,
+        );
     }
+    let mut layout = Layout::of(source.header(), selection, options)?;
     let mut slabs = slabs::Slabs {
         source,
         selection,
@@ -182,4 +178,45 @@ pub fn write_volume(
         notes,
         voxel_bytes: layout.voxel_bytes().unwrap_or(u64::MAX),
     })
+}
+
+/// Writes a part of `source` as bricks to `out`, which ends where those that are `done` end. `note` hears a line of each
+/// row of bricks that is in the file: [`DoneBricks::read`] takes them back, and the file is that of one who was never
+/// stopped.
+///
+/// # Errors
+/// Those of [`write_volume`], and where the bricks that are done are not those of this volume.
+pub fn write_bricks(
+    source: &dyn Source,
+    selection: &Selection,
+    numbers: NumberType,
+    out: &mut (impl Read + Write + Seek),
+    done: DoneBricks,
+    note: &mut dyn FnMut(&str) -> io::Result<()>,
+    progress: &mut dyn FnMut(usize, usize),
+) -> Result<Written, WriteVolumeError> {
+    let options = WriteVolumeOptions {
+        format: VolumeFormat::Bricks,
+        // Bricks are kept as they are in memory.
+        numbers: match numbers {
+            NumberType::Stored if !source.header().stored.is_kept_exactly() => {
+                NumberType::Values(VoxelType::F32)
+            }
+            numbers => numbers,
+        },
+        compress: true,
+    };
+    let layout = Layout::of(source.header(), selection, &options)?;
+    if !layout.number.is_kept_exactly() {
+        let name = layout.number.name();
+        return Err(WriteVolumeError::NoRoom(format!(
+            "a file of bricks holds u8, i8, u16, i16, f16 or f32, not {name}"
+        )));
+    }
+    let course = bricks::Course {
+        done,
+        note,
+        progress,
+    };
+    bricks::write(source, selection, &layout, out, course)
 }

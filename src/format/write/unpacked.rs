@@ -90,6 +90,15 @@ impl Unpacked {
         })
     }
 
+    /// What decoding changed is not told again: a run before has told it.
+    #[must_use]
+    pub fn told(self) -> Self {
+        Self {
+            loss: Mutex::default(),
+            ..self
+        }
+    }
+
     /// Whole rows of the selection, of one slice.
     fn rows(
         &self,

@@ -1,15 +1,17 @@
 //! Where rays need not look, made on the device and made anew only where it changes.
 
 use super::{Copied, Renderer, parts_of};
-use crate::gpu;
+use crate::gpu::{self, Headless};
 use crate::offscreen::Error;
 use crate::offscreen::cost::ms_of_looks;
 use crate::offscreen::stream::if_it_fits;
 use crate::offscreen::time_slices::Work;
-use crate::resident::{Apron, Corners, EmptySpace, MacroCells};
+use crate::offscreen::upload::fill;
+use crate::resident::{Apron, Corners, EmptySpace, GpuVolume, MacroCells};
 use crate::scene::{Beside, Scene};
 use crate::technique::{Mix, Mode, Part, Role, Skip, Skippable};
-use crate::transfer::{Seen, TransferFunction};
+use crate::transfer::{Alike, Seen, TransferFunction};
+use crate::volume::Volume;
 use std::sync::Arc;
 
 /// What is known of the volumes that have been drawn.
@@ -17,9 +19,12 @@ use std::sync::Arc;
 pub struct Skipped {
     /// Of each volume of a mixture.
     cells: Option<(Of, Vec<MacroCells>)>,
-    empty: Option<(Vec<(usize, Seen)>, EmptySpace)>,
+    empty: Option<(Shown, EmptySpace)>,
     wanted: Option<Skippable>,
 }
+
+/// What functions show, by the numbers of their volumes, and between which values that looks alike.
+type Shown = (Vec<(usize, Seen)>, Option<Alike>);
 
 /// What macro cells are of: which of the volumes, in which form, for which filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +41,9 @@ impl Skipped {
         match (&self.wanted, &self.cells, &self.empty) {
             (Some(Skippable::Exceeded), Some((_, cells)), _) => Skip::Exceeded(&cells[0]),
             (
-                Some(Skippable::Unseen(_) | Skippable::UnseenInAll(_)),
+                Some(
+                    Skippable::Unseen(_) | Skippable::UnseenInAll(_) | Skippable::UnseenOrAlike(..),
+                ),
                 Some((_, cells)),
                 Some((_, empty)),
             ) => Skip::Unseen(&cells[0], empty),
@@ -59,24 +66,37 @@ impl Renderer<'_> {
         if !scene.settings.reads_corners(mix) {
             return Ok(());
         }
-        let gpu = &Arc::clone(self.device.gpu());
         let there = self.resident.get_mut(&copied).into_iter().flatten();
         for (made, volume) in there.zip(&self.volumes) {
             let is_one = made.bricks().len() == 1 && made.spline().is_none();
-            if made.corners().is_none() && is_one && Corners::are_for(gpu, volume) {
-                let Some(corners) = if_it_fits(Corners::new(gpu, volume))?.flatten() else {
-                    continue;
-                };
-                let on = Arc::clone(gpu);
-                // SAFETY: they live until they are dropped with the volume, long after the wait.
-                self.device.run(|cmd| unsafe {
-                    corners.record_upload(&on, cmd);
-                    Ok::<(), crate::gpu::Error>(())
-                })?;
+            if made.corners().is_none()
+                && is_one
+                && let Some(corners) = corners_of(&mut self.device, volume)?
+            {
                 made.keep_corners(corners);
             }
         }
         Ok(())
+    }
+
+    /// Brings the corners of the one volume, and no texels: whether it can have any.
+    ///
+    /// # Errors
+    /// Where the device is lost.
+    pub(super) fn upload_corners(&mut self, copied: Copied) -> Result<bool, Error> {
+        let &[volume] = &self.volumes[..] else {
+            return Ok(false);
+        };
+        let Some(corners) = corners_of(&mut self.device, volume)? else {
+            return Ok(false);
+        };
+        let made = GpuVolume::of_corners(self.device.gpu(), volume, corners);
+        let Some(made) = if_it_fits(made)? else {
+            return Ok(false);
+        };
+        fill(&mut self.device, &made, volume)?;
+        self.resident.insert(copied, vec![made]);
+        Ok(true)
     }
 
     /// Lists of the patches of slices for pictures of `scene`: whether there are any.
@@ -137,15 +157,24 @@ impl Renderer<'_> {
             self.skipped.cells = Some((of, all));
         }
         let seen = match &wanted {
-            Skippable::Unseen(seen) => vec![(0, seen.clone())],
+            Skippable::Unseen(seen) | Skippable::UnseenOrAlike(seen, _) => vec![(0, seen.clone())],
             Skippable::UnseenInAll(seen) => seen.clone(),
             Skippable::Nothing | Skippable::Exceeded => Vec::new(),
         };
+        let alike = match &wanted {
+            Skippable::UnseenOrAlike(_, alike) => Some(alike.clone()),
+            _ => None,
+        };
         let there = self.skipped.empty.as_ref();
-        if !seen.is_empty() && there.is_none_or(|(there, _)| *there != seen) {
+        let is_there = |((of, like), _): &(Shown, _)| (of, like) == (&seen, &alike);
+        if !seen.is_empty() && !there.is_some_and(is_there) {
             let (_, cells) = self.skipped.cells.as_ref().expect("made above");
             let several: Vec<_> = seen.iter().map(|(n, seen)| (&cells[*n], seen)).collect();
-            let made = EmptySpace::of_several(self.device.gpu(), &several);
+            let gpu = self.device.gpu();
+            let made = match &alike {
+                Some(alike) => EmptySpace::with_alike(gpu, &cells[0], &seen[0].1, alike),
+                None => EmptySpace::of_several(gpu, &several),
+            };
             let Some(made) = if_it_fits(made)? else {
                 return Ok(());
             };
@@ -159,7 +188,7 @@ impl Renderer<'_> {
                         unsafe { made.record_part(cmd, part) }
                     })?;
             }
-            self.skipped.empty = Some((seen, made));
+            self.skipped.empty = Some(((seen, alike), made));
         }
         self.skipped.wanted = Some(wanted);
         Ok(())
@@ -187,6 +216,23 @@ impl Renderer<'_> {
     }
 }
 
+/// Complete ones, where the volume can have any.
+fn corners_of(device: &mut Headless, volume: &Volume) -> Result<Option<Corners>, Error> {
+    let gpu = &Arc::clone(device.gpu());
+    if !Corners::are_for(gpu, volume) {
+        return Ok(None);
+    }
+    let made = if_it_fits(Corners::new(gpu, volume))?.flatten();
+    if let Some(corners) = &made {
+        // SAFETY: they live until they are dropped with their volume, long after the wait.
+        device.run(|cmd| unsafe {
+            corners.record_upload(gpu, cmd);
+            Ok::<(), gpu::Error>(())
+        })?;
+    }
+    Ok(made)
+}
+
 /// What pictures of `scene` need not look at, and what cells must know for it.
 fn wanted(scene: &Scene) -> Option<(Skippable, Apron)> {
     let range = scene.volume.value_range;
@@ -196,6 +242,11 @@ fn wanted(scene: &Scene) -> Option<(Skippable, Apron)> {
             scene.settings.skippable_in_all(&functions)
         }
         (mix, _) => scene.settings.skippable(mix, scene.transfer, range),
+    };
+    let alike = scene.alike().filter(|_| scene.settings.skip);
+    let wanted = match (wanted, alike, scene.transfer) {
+        (_, Some(alike), Some(function)) => Skippable::UnseenOrAlike(Seen::new(function), alike),
+        (wanted, ..) => wanted,
     };
     let apron = scene.view(&scene.volume.grid(), [0.0; 2]).apron()?;
     (wanted != Skippable::Nothing).then_some((wanted, apron))

@@ -67,6 +67,7 @@ impl<'v> Renderer<'v> {
             () if scene.volumes().len() > 1 => "several volumes",
             () if settings.filter.spline().is_some() => "a filter that reads coefficients",
             () if settings.wants_light_volume() => "occlusion or shadows",
+            () if settings.adaptive_steps.is_some() => "adaptive steps",
             () if settings
                 .gradient_source_beside(crate::resident::TextureLayout::Texture3d)
                 .is_some()

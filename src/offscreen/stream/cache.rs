@@ -136,7 +136,7 @@ impl Cache {
         let texels_bytes = made.staging_bytes(cell.stored);
         fill(device, &made, voxels)?;
         let cells = match wanted {
-            Skippable::Nothing => None,
+            Skippable::Nothing | Skippable::UnseenOrAlike(..) => None,
             _ => if_it_fits(MacroCells::of_voxels(device.gpu(), &made, apron, voxels))?,
         };
         let bytes = device.gpu().owned_device_bytes().saturating_sub(before);

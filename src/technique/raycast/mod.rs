@@ -39,6 +39,7 @@ impl Raycast {
             mix,
             take,
             is_plainly_lit,
+            is_adaptive,
         } = words;
         // Kernels, planes and exact control points have the general variant alone.
         let has_lit = of == Mode::Composite
@@ -54,6 +55,10 @@ impl Raycast {
             Take::Slab => format!("raycast_slab.composite.{lattice}.{filter}.{holes}"),
             Take::Point if *is_plainly_lit && has_lit => {
                 format!("raycast.composite.lit.ray.{filter}.{holes}.{transfer}")
+            }
+            // Of one volume without light or holes: nothing else is checked to be right.
+            Take::Point if *is_adaptive && of == Mode::Composite => {
+                format!("raycast.composite.adaptive.{lattice}.{filter}.{holes}.{transfer}")
             }
             _ => format!(
                 "raycast.{mode}{}.{lattice}.{filter}.{holes}.{transfer}",

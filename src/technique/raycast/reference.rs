@@ -5,7 +5,7 @@ use crate::real::Real;
 use crate::shaders::Frame;
 use crate::technique::Lattice;
 use crate::technique::composite::Composite;
-use crate::technique::march::{march, march_slabs};
+use crate::technique::march::{march, march_in_runs, march_slabs};
 use crate::technique::mida::Mida;
 use std::ops::ControlFlow;
 
@@ -20,6 +20,21 @@ pub fn radiance<R: Real, V>(
 ) -> (Composite<R>, u32) {
     let mut so_far = Composite::default();
     let samples = march(frame, lattice, pixel, value_at, |value, segment| {
+        gather(frame, &mut so_far, classify(value), segment)
+    });
+    (so_far, samples)
+}
+
+/// The same with steps that adapt: `cell_at` names the macro cell of a position where one sample may stand for others.
+pub fn radiance_in_runs<R: Real, V>(
+    frame: &Frame,
+    pixel: [R; 2],
+    cell_at: impl Fn([R; 3]) -> Option<usize>,
+    value_at: impl Fn([R; 3]) -> Option<V>,
+    classify: impl Fn(V) -> [R; 4],
+) -> (Composite<R>, u32) {
+    let mut so_far = Composite::default();
+    let samples = march_in_runs(frame, pixel, cell_at, value_at, |value, segment| {
         gather(frame, &mut so_far, classify(value), segment)
     });
     (so_far, samples)

@@ -1,0 +1,50 @@
+//! In which forms volumes are on the device: what pictures read, and nothing beside it.
+
+use crate::resident::{KeptOperator, TextureLayout};
+use crate::scene::Scene;
+use crate::technique::{GradientSource, Keep};
+use crate::volume::Spline;
+
+/// In which form the volumes are on the device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Copied {
+    /// Of the textures.
+    pub layout: TextureLayout,
+    /// Coefficients in place of voxels.
+    pub spline: Option<Spline>,
+    /// What gradients are made of beside the values.
+    pub gradient_source: Option<GradientSource>,
+    /// Gradients that are kept.
+    pub kept: Option<KeptOperator>,
+    /// Corners in place of texels, where there can be any.
+    pub is_by_corners: bool,
+}
+
+impl Copied {
+    pub fn of(scene: &Scene) -> Self {
+        let layout = scene.view(&scene.volume.grid(), [0.0; 2]).texture_layout();
+        let gradient_source = scene.settings.gradient_source_beside(layout);
+        let kept = match scene.settings.keep_gradients {
+            Keep::Always => scene.settings.kept_operator(),
+            Keep::Never | Keep::Auto => None,
+        };
+        Self {
+            kept: kept.filter(|_| scene.has_gradients()),
+            layout,
+            is_by_corners: scene.settings.reads_corners_alone(scene.mix())
+                && scene.volumes().len() == 1,
+            spline: scene.settings.filter.spline(),
+            gradient_source: gradient_source.filter(|_| scene.has_gradients()),
+        }
+    }
+}
+
+impl Copied {
+    /// What there is where corners alone cannot be had.
+    pub fn with_texels(self) -> Self {
+        Self {
+            is_by_corners: false,
+            ..self
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! Into what a volume is put, and into how many bricks the limits of the device cut it.
+
+use super::bricks::{Cell, cut};
+use super::{TexelFormat, TextureLayout};
+use crate::gpu::{Error, Gpu, ImageDesc};
+use crate::volume::Volume;
+use ash::vk;
+
+/// How a volume will lie in textures, before it is cut.
+pub(super) struct Plan {
+    pub layout: TextureLayout,
+    pub texel: TexelFormat,
+    pub has_holes: bool,
+}
+
+impl Plan {
+    pub fn of(gpu: &Gpu, volume: &Volume, layout: TextureLayout) -> Self {
+        Self {
+            layout,
+            texel: TexelFormat::choose(gpu, volume.voxels.voxel_type(), volume.rescale),
+            has_holes: volume.validity.is_some(),
+        }
+    }
+
+    pub fn values(&self, stored: [u32; 3]) -> ImageDesc<'static> {
+        self.desc(stored, self.texel.format, "volume")
+    }
+
+    pub fn validity(&self, stored: [u32; 3]) -> ImageDesc<'static> {
+        self.desc(stored, vk::Format::R8_UINT, "validity")
+    }
+
+    fn desc(&self, stored: [u32; 3], format: vk::Format, name: &'static str) -> ImageDesc<'static> {
+        ImageDesc {
+            kind: self.layout.kind(),
+            extent: self.layout.axes().map(|axis| stored[axis]),
+            format,
+            usage: vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST,
+            name,
+        }
+    }
+
+    /// The limit that a brick of so many stored voxels is over.
+    pub fn check(&self, gpu: &Gpu, stored: [u32; 3]) -> Result<(), Error> {
+        gpu.check_image(&self.values(stored))?;
+        if self.has_holes {
+            gpu.check_image(&self.validity(stored))?;
+        }
+        Ok(())
+    }
+
+    /// Bricks in which all of them fit.
+    pub fn cut(gpu: &Gpu, plans: &[&Self], dims: [u32; 3]) -> Result<Vec<Cell>, Error> {
+        let halo = plans.first().map_or([0; 3], |plan| plan.layout.halo());
+        let fits = |stored| plans.iter().all(|plan| plan.check(gpu, stored).is_ok());
+        let Some(cells) = cut(dims, halo, fits) else {
+            // The error that names the limit.
+            for plan in plans {
+                plan.check(gpu, dims)?;
+            }
+            unreachable!("what cannot be cut to fit is over a limit");
+        };
+        Ok(cells)
+    }
+}

@@ -1,0 +1,43 @@
+//! What interpolates between voxels.
+//!
+//! ```text
+//! sampler    the device's texture unit: as exact as its sub-texel bits
+//! fetches    the shader itself, from eight texels in f32
+//! corners    the same, on devices that compute on the CPU, from four words beside the texture or in its place (`resident::Corners`)
+//! ```
+
+use super::{Filter, Keep, Lattice, Mix, Operator, Settings, Technique};
+
+/// A wish for one of them. Conformance pictures fetch, whatever is wished.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum FilterBy {
+    /// Corners where there are any, else the sampler. Renderers of our own make corners for drivers that were found to be
+    /// faster with them ([`Gpu::has_slow_sampler`](crate::gpu::Gpu::has_slow_sampler)): it follows from driver, volume
+    /// and picture alone, so that the same picture always comes out the same (`docs/sampling-notes.md`).
+    #[default]
+    Auto,
+    /// The sampler, where the device has one for the format.
+    Sampler,
+    /// Corners where there can be any, else fetches.
+    Fetch,
+}
+
+impl Settings {
+    /// Whether pictures of one volume read its [`Corners`](crate::resident::Corners), where it has them: rays on their
+    /// own lattice, linear.
+    pub fn reads_corners(&self, mix: Mix) -> bool {
+        let is_point = !self.preintegrated && !self.conformance;
+        let is_ray = self.technique == Technique::Raycast && self.lattice != Lattice::Planes;
+        let is_one = matches!(mix, Mix::Alone | Mix::Graded);
+        let is_wished = self.filter_by != FilterBy::Sampler;
+        is_one && is_ray && is_point && is_wished && self.filter == Filter::Linear
+    }
+
+    /// Whether they read nothing else of its values, so that it needs no texture: what fetches voxels one by one does.
+    pub(crate) fn reads_corners_alone(&self, mix: Mix) -> bool {
+        let is_central =
+            self.gradient_operator() == Operator::Central && self.keep_gradients == Keep::Never;
+        let has_texels = self.per_mode.exact_maximum || self.wants_light_volume() || !is_central;
+        self.reads_corners(mix) && !has_texels
+    }
+}
