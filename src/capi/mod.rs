@@ -3,8 +3,8 @@
 //! The names here are those of C, and the comments of what is exported are those of the header, which is made of them.
 //! [`crate::embed`] does the work. Each function:
 //!
-//! - takes handles ([`handles`]) and structures that say how long they are ([`structure`]), in which zero is the default;
-//! - gives a [`sv_status`] back, and writes a sentence where it fails ([`status`]);
+//! - takes handles (`handles`) and structures that say how long they are (`structure`), in which zero is the default;
+//! - gives a [`sv_status`] back, and writes a sentence where it fails (`status`);
 //! - never unwinds into C, and never uses a handle of something that is gone.
 //!
 //! What cannot be checked stands in `docs/c-interface.md`: pointers that lead nowhere, and Vulkan handles that are none.
