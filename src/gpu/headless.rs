@@ -78,19 +78,9 @@ impl Headless {
         let mode = options.validation.mode()?;
         let instance = OwnInstance::new(mode)?;
         let messages = instance.messages().cloned();
-        let missing = |device: &Candidate| {
-            let abilities = devices::abilities(instance.raw(), device);
-            abilities
-                .into_iter()
-                .find(|ability| ability.is_required && !ability.is_present)
-        };
-        let device = choice.pick(instance.devices()?, |device| missing(device).is_none())?;
-        if let Some(ability) = missing(&device) {
-            return Err(Error::MissingFeature {
-                device: device.title(),
-                name: ability.name,
-            });
-        }
+        let is_usable = |device: &Candidate| instance.report(device).is_usable();
+        let device = choice.pick(instance.devices()?, is_usable)?;
+        instance.report(&device).require()?;
         let cache_file = options.pipeline_cache.file(&device.identity);
         let pipeline_cache = cache_file.as_deref().map(cache::load).unwrap_or_default();
         let own = OwnDevice::new(instance, &device, mode)?;
@@ -325,7 +315,7 @@ struct OwnDevice {
 }
 
 impl OwnDevice {
-    /// `from` has every ability that is required.
+    /// `from` has everything that is required.
     fn new(
         instance: OwnInstance,
         from: &Candidate,
@@ -338,10 +328,10 @@ impl OwnDevice {
                 .get_physical_device_queue_family_properties(from.physical_device)
         };
         let queue_family = devices::queue_family(&families).unwrap_or_default();
-        let features = devices::supported(instance.raw(), from);
+        // SAFETY: as above; `from` speaks Vulkan 1.3.
+        let features = unsafe { devices::supported(instance.raw(), from.physical_device) };
         let mut core = vk::PhysicalDeviceFeatures::default()
-            .robust_buffer_access(features.robust_buffer_access)
-            .shader_storage_image_extended_formats(features.shader_storage_image_extended_formats);
+            .robust_buffer_access(features.robust_buffer_access);
         if mode == Some(ValidationMode::GpuAssisted) {
             // What the instrumented shaders need, where the device has it.
             // SAFETY: as above.

@@ -114,7 +114,7 @@ impl OwnInstance {
             .into_iter()
             .map(|physical_device| {
                 // SAFETY: the device was just listed by this instance, which speaks Vulkan 1.3.
-                let identity = unsafe { Identity::of(&self.instance, physical_device) };
+                let identity = unsafe { Identity::of(&self.instance, physical_device, API_VERSION) };
                 Candidate {
                     physical_device,
                     identity,

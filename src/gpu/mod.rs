@@ -36,6 +36,7 @@ mod parameters;
 mod pipeline;
 mod raster;
 mod rendering;
+mod requirements;
 mod sampler;
 mod tile;
 mod timer;
@@ -48,7 +49,9 @@ pub use cache::PipelineCache;
 pub use caps::Caps;
 pub use choice::DeviceChoice;
 pub use copy::{Region, buffer_to_image, clear_image, image_to_buffer};
-pub use devices::{Ability, DeviceReport, list_devices};
+pub use devices::{
+    DeviceReport, Enabled, Finding, HostPhysicalDevice, check_device, list_devices,
+};
 pub use error::Error;
 pub use format::{FormatFeatures, texel_bytes};
 pub use headless::{Headless, Options, Submissions};
@@ -62,6 +65,7 @@ pub use raster::{Blend, RasterDesc, RasterPipeline};
 pub use rendering::{
     Load, begin_rendering, begin_rendering_of, end_rendering, set_area, set_area_of,
 };
+pub use requirements::{Feature, Item, Limit, Need, REQUIREMENTS, Requirement};
 pub use sampler::Sampler;
 pub use tile::Tile;
 pub(crate) use tile::{Groups, boxes, group_count, within};
@@ -143,38 +147,30 @@ impl Gpu {
             get_instance_proc_addr: host.get_instance_proc_addr,
         };
         // SAFETY: the handles are valid and belong together (the caller's promise).
-        let (instance, device, properties, families) = unsafe {
+        let (instance, report, families) = unsafe {
             let instance = ash::Instance::load(&entry, host.instance);
-            let device = ash::Device::load(instance.fp_v1_0(), host.device);
-            let properties = instance.get_physical_device_properties(host.physical_device);
+            let report = check_device(&host.physical());
             let families =
                 instance.get_physical_device_queue_family_properties(host.physical_device);
-            (instance, device, properties, families)
+            (instance, report, families)
         };
-        if properties.api_version < API_VERSION {
-            let name = identity::text(properties.device_name_as_c_str());
-            return Err(too_old(&name, properties.api_version));
+        let identity = &report.identity;
+        let found = identity.api_version;
+        if found < identity::version(API_VERSION) {
+            let [major, minor, patch] = found;
+            let found = vk::make_api_version(0, major, minor, patch);
+            return Err(too_old(&identity.name, found));
         }
-        // SAFETY: instance and device speak Vulkan 1.3, which was just checked.
-        let (identity, limits) = unsafe {
-            let identity = Identity::of(&instance, host.physical_device);
+        report.require()?;
+        let identity = report.identity;
+        // SAFETY: as above; instance and device speak Vulkan 1.3, and there is such a family.
+        let (device, limits) = unsafe {
             (
-                identity,
+                ash::Device::load(instance.fp_v1_0(), host.device),
                 Caps::of(&instance, host.physical_device).clamped_to(&host.caps),
             )
         };
-        host.features.require(&identity.name)?;
-        let family = families.get(host.queue_family as usize);
-        let family = family
-            .filter(|family| family.queue_flags.contains(QUEUE_WORK))
-            .ok_or_else(|| {
-                let name =
-                    "a queue family with graphics and compute, which `queue_family` must name";
-                Error::MissingFeature {
-                    device: identity.name.clone(),
-                    name,
-                }
-            })?;
+        let family = families[host.queue_family as usize];
         let allocator = Allocator::new(&AllocatorCreateDesc {
             instance: instance.clone(),
             device: device.clone(),
@@ -353,10 +349,6 @@ impl Drop for Gpu {
         }
     }
 }
-
-/// What the queue of a recording must be able to do.
-const QUEUE_WORK: vk::QueueFlags =
-    vk::QueueFlags::from_raw(vk::QueueFlags::GRAPHICS.as_raw() | vk::QueueFlags::COMPUTE.as_raw());
 
 fn too_old(what: &str, found: u32) -> Error {
     Error::ApiVersion {
