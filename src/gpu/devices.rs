@@ -2,8 +2,7 @@
 
 use super::{
     API_VERSION, Caps, Error, Features, Identity, Item, Need, REQUIREMENTS, Requirement,
-    Validation, identity::version_text, instance::Candidate,
-    instance::OwnInstance,
+    Validation, identity::version_text, instance::Candidate, instance::OwnInstance,
 };
 use ash::vk;
 use std::fmt;
@@ -314,10 +313,8 @@ pub(super) unsafe fn supported(
 
 /// The first family that our recordings can be submitted to.
 pub(super) fn queue_family(families: &[vk::QueueFamilyProperties]) -> Option<u32> {
-    let found = families.iter().position(|family| {
-        family
-            .queue_flags
-            .contains(super::requirements::QUEUE_WORK)
-    });
+    let found = families
+        .iter()
+        .position(|family| family.queue_flags.contains(super::requirements::QUEUE_WORK));
     found.and_then(|index| u32::try_from(index).ok())
 }

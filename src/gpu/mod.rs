@@ -31,6 +31,8 @@ mod identity;
 mod image;
 mod instance;
 mod layout;
+mod loss;
+mod own_device;
 mod owned;
 mod parameters;
 mod pipeline;
@@ -49,9 +51,7 @@ pub use cache::PipelineCache;
 pub use caps::Caps;
 pub use choice::DeviceChoice;
 pub use copy::{Region, buffer_to_image, clear_image, image_to_buffer};
-pub use devices::{
-    DeviceReport, Enabled, Finding, HostPhysicalDevice, check_device, list_devices,
-};
+pub use devices::{DeviceReport, Enabled, Finding, HostPhysicalDevice, check_device, list_devices};
 pub use error::Error;
 pub use format::{FormatFeatures, texel_bytes};
 pub use headless::{Headless, Options, Submissions};
@@ -73,7 +73,6 @@ pub use timer::Timer;
 pub use validation::{Message, VARIABLE as VALIDATION_VARIABLE, Validation, ValidationMode};
 
 use ash::vk;
-use error::Doing;
 use gpu_allocator::{
     AllocationSizes, AllocatorDebugSettings,
     vulkan::{Allocator, AllocatorCreateDesc},
@@ -87,7 +86,7 @@ use std::{
     fmt,
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
-        atomic::{AtomicU32, Ordering},
+        atomic::{AtomicBool, AtomicU32, Ordering},
     },
 };
 
@@ -111,6 +110,7 @@ pub struct Gpu {
     debug_utils: Option<ash::ext::debug_utils::Device>,
     pipeline_cache: vk::PipelineCache,
     pipelines_made: AtomicU32,
+    is_lost: AtomicBool,
     store: Mutex<Store>,
     /// A device of our own; last, because fields are dropped in this order.
     own_device: Option<Box<dyn Any + Send + Sync>>,
@@ -199,6 +199,7 @@ impl Gpu {
             limits,
             pipeline_cache: vk::PipelineCache::null(),
             pipelines_made: AtomicU32::new(0),
+            is_lost: AtomicBool::new(false),
             store: Mutex::new(Store::new(allocator)),
             own_device,
         };
@@ -209,8 +210,10 @@ impl Gpu {
         };
         let info = vk::PipelineCacheCreateInfo::default().initial_data(data);
         // SAFETY: the device is valid; the data was made by this very driver.
-        gpu.pipeline_cache = unsafe { gpu.device.create_pipeline_cache(&info, None) }
-            .doing(|| "make a pipeline cache".into())?;
+        gpu.pipeline_cache = gpu.call(
+            || "make a pipeline cache".into(),
+            |device| unsafe { device.create_pipeline_cache(&info, None) },
+        )?;
         Ok(Arc::new(gpu))
     }
 
@@ -302,8 +305,10 @@ impl Gpu {
     /// What the driver has compiled so far, for [`HostDevice::pipeline_cache`] of a later run.
     pub fn pipeline_cache_data(&self) -> Result<Vec<u8>, Error> {
         // SAFETY: the cache was made on this device.
-        unsafe { self.device.get_pipeline_cache_data(self.pipeline_cache) }
-            .doing(|| "read the pipeline cache".into())
+        self.call(
+            || "read the pipeline cache".into(),
+            |device| unsafe { device.get_pipeline_cache_data(self.pipeline_cache) },
+        )
     }
 
     /// Names an object for validation messages and debuggers, where the instance can.
