@@ -1,0 +1,319 @@
+//! Whatever call of Vulkan fails, whoever draws is told what could not be done, nothing is left behind, and the next
+//! device draws the same picture.
+//!
+//! Every function that returns a `VkResult` and is called fails with every code that the specification gives it
+//! (`hooked/codes.rs`): its first call, its second and its last. After all faults of a function a fresh device draws,
+//! not after each one, which would take four times as long.
+
+mod hooked;
+mod shared;
+
+use ash::vk;
+use hooked::{FALLIBLE, Fault, Host, Stage, Tape, codes, hooked};
+use std::error::Error;
+use std::sync::Arc;
+use stratavox::gpu::{self, *};
+use stratavox::offscreen::{self, Renderer};
+use stratavox::resident::GpuVolume;
+use stratavox::resolve::Resolve;
+use stratavox::scene::Scene;
+use stratavox::technique::{ACCUMULATION_FORMAT, Mode, Settings, Technique, accumulation};
+
+type Drawn = Result<Vec<u8>, Box<dyn Error>>;
+
+/// What may fail without a word: names of objects, a look for an extension that gives names, and the wait before a
+/// device of our own goes, after which there is nobody to tell.
+const COURTESIES: [&str; 3] = [
+    "vkSetDebugUtilsObjectNameEXT",
+    "vkEnumerateInstanceExtensionProperties",
+    "vkDeviceWaitIdle",
+];
+
+/// Makes each call of `draw` fail in turn. The functions that were called, and how many faults there were.
+fn sweep(tape: &Tape, draw: impl Fn() -> Drawn) -> (Vec<&'static str>, u32) {
+    tape.rewind(None);
+    let wanted = draw().expect("nothing fails yet");
+    assert_eq!(tape.books(), Vec::<&str>::new(), "left by a picture");
+    let calls = tape.calls();
+    let called = FALLIBLE.iter().filter(|name| calls.contains_key(*name));
+    let called: Vec<_> = called.copied().collect();
+    let mut faults = 0;
+    for &function in &called {
+        let count = calls[function];
+        let mut numbers = vec![0, 1, count - 1];
+        numbers.retain(|&call| call < count);
+        numbers.dedup();
+        for (&result, &call) in codes(function)
+            .iter()
+            .flat_map(|r| numbers.iter().map(move |n| (r, n)))
+        {
+            let fault = Fault {
+                function,
+                call,
+                result,
+            };
+            println!("{fault:?}");
+            tape.rewind(Some(fault));
+            let drawn = draw();
+            assert!(tape.has_failed(), "{function} was not called so often");
+            match drawn {
+                Err(error) => assert_told(&*error, fault),
+                Ok(found) => {
+                    assert!(COURTESIES.contains(&function), "nobody heard of {fault:?}");
+                    assert!(found == wanted, "{fault:?}: another picture");
+                }
+            }
+            assert_eq!(tape.after_loss(), Vec::<&str>::new(), "{fault:?}");
+            assert_eq!(tape.books(), Vec::<&str>::new(), "left by {fault:?}");
+            faults += 1;
+        }
+        tape.rewind(None);
+        assert!(draw().unwrap() == wanted, "after faults of {function}");
+    }
+    (called, faults)
+}
+
+/// The error of the device in what a caller got.
+fn of_device<'a>(error: &'a (dyn Error + 'static)) -> &'a gpu::Error {
+    let found = error.downcast_ref::<gpu::Error>();
+    let inside = || match error.downcast_ref::<offscreen::Error>() {
+        Some(offscreen::Error::Gpu(error)) => Some(error),
+        _ => None,
+    };
+    found
+        .or_else(inside)
+        .unwrap_or_else(|| panic!("not of the device: {error}"))
+}
+
+/// The error has the type of the code, and names what was being done.
+fn assert_told(error: &(dyn Error + 'static), fault: Fault) {
+    use gpu::Error as E;
+    use vk::Result as R;
+    let told = of_device(error);
+    let doing = match (fault.result, told) {
+        (
+            R::ERROR_OUT_OF_HOST_MEMORY,
+            E::OutOfMemory {
+                doing,
+                memory: "host",
+            },
+        )
+        | (
+            R::ERROR_OUT_OF_DEVICE_MEMORY,
+            E::OutOfMemory {
+                doing,
+                memory: "device",
+            },
+        )
+        | (R::ERROR_DEVICE_LOST, E::DeviceLost { doing })
+        | (R::ERROR_FORMAT_NOT_SUPPORTED, E::Format { doing, .. }) => doing,
+        (found, E::Vulkan { doing, result }) if found == *result => doing,
+        // The allocator has its own words.
+        (_, E::Allocation { doing, .. })
+            if ["vkAllocateMemory", "vkMapMemory"].contains(&fault.function) =>
+        {
+            doing
+        }
+        (R::ERROR_INCOMPATIBLE_DRIVER | R::ERROR_INITIALIZATION_FAILED, E::NoDriver) => return,
+        _ => panic!("{fault:?} became {told:?}"),
+    };
+    assert!(doing.len() > 5, "{fault:?}: {told}");
+    assert!(
+        told.to_string().starts_with(&format!("cannot {doing}")),
+        "{told}"
+    );
+}
+
+const FEATURES: Features = Features {
+    dynamic_rendering: true,
+    synchronization2: true,
+    timeline_semaphore: false,
+    robust_buffer_access: false,
+    robust_image_access: false,
+};
+
+#[test]
+fn a_host_is_told_of_every_call_that_fails_and_nothing_is_left_on_its_device() {
+    let tape = Tape::begin();
+    let (host, stage) = (Host::new(), Stage::new());
+    let (called, faults) = sweep(&tape, || {
+        let device = host.device(FEATURES);
+        // SAFETY: the handles are right, and everything made on the device is dropped before it.
+        let gpu = unsafe { Gpu::from_host(device.handles(hooked))? };
+        stage.draw(&device, &gpu)
+    });
+    println!("{faults} faults of {} functions: {called:?}", called.len());
+    for of_a_host in [
+        "vkCreateCommandPool",
+        "vkQueueSubmit",
+        "vkWaitForFences",
+        "vkCreateFence",
+    ] {
+        assert!(!called.contains(&of_a_host), "{of_a_host} is the host's");
+    }
+    assert!(faults > 90, "only {faults} faults");
+}
+
+fn options() -> Options {
+    Options {
+        caps: Caps::UNLIMITED,
+        pipeline_cache: PipelineCache::Off,
+        validation: Validation::Off,
+    }
+}
+
+/// A device of our own.
+fn headless() -> Result<Headless, gpu::Error> {
+    // SAFETY: the functions are Vulkan's, or fail as Vulkan's may.
+    unsafe { Headless::through(hooked, &DeviceChoice::Default, &options()) }
+}
+
+#[test]
+fn a_device_of_our_own_tells_of_every_call_that_fails_and_goes_as_a_whole() {
+    let tape = Tape::begin();
+    let stage = Stage::new();
+    let settings = Settings {
+        technique: Technique::Slices3d,
+        ..Settings::default()
+    };
+    let scene = Scene {
+        beside: Default::default(),
+        volume: &stage.volume,
+        transfer: Some(&stage.transfer),
+        camera: &stage.camera,
+        extent_pixels: [16, 12],
+        settings: &settings,
+    };
+    let (called, faults) = sweep(&tape, || {
+        let mut renderer = Renderer::new(headless()?, &stage.volume)?;
+        let pixels = renderer.render(&scene, &[])?.picture.pixels;
+        Ok(bytemuck::cast_slice(&pixels).to_vec())
+    });
+    println!("{faults} faults of {} functions: {called:?}", called.len());
+    let never: Vec<_> = FALLIBLE
+        .iter()
+        .filter(|name| !called.contains(name))
+        .collect();
+    // Names are given to objects where validation listens, and caches are kept in files.
+    assert_eq!(
+        never,
+        [&"vkSetDebugUtilsObjectNameEXT", &"vkGetPipelineCacheData"]
+    );
+    assert!(faults > 150, "only {faults} faults");
+}
+
+#[test]
+fn a_lost_device_is_not_called_again_but_to_destroy_what_was_made_on_it() {
+    let tape = Tape::begin();
+    let (host, stage) = (Host::new(), Stage::new());
+    let device = host.device(FEATURES);
+    // SAFETY: the handles are right; nothing recorded here is submitted, and all of it is dropped before the device.
+    unsafe {
+        let gpu = Gpu::from_host(device.handles(hooked)).unwrap();
+        let timer = Timer::new(&gpu).unwrap().expect("a queue with a clock");
+        let (image, picture) = ("image", "picture");
+        let image = accumulation(&gpu, [8, 8], image).unwrap();
+        let target = accumulation(&gpu, [8, 8], picture).unwrap();
+        let bytes = 16 * 64;
+        let usage = vk::BufferUsageFlags::TRANSFER_DST;
+        let readback = Buffer::new(&gpu, bytes, usage, Memory::Readback, "readback").unwrap();
+        let volume = GpuVolume::new(&gpu, &stage.volume, stage.layout()).unwrap();
+        let staging = volume.stage(&stage.volume).unwrap();
+        assert!(!gpu.is_lost());
+
+        tape.lose_at_next("vkGetQueryPoolResults");
+        let told = timer.elapsed_ms().unwrap_err();
+        assert!(
+            matches!(&told, gpu::Error::DeviceLost { doing } if doing == "read a timer"),
+            "{told}"
+        );
+        assert!(gpu.is_lost());
+
+        let refusals = [
+            Buffer::new(&gpu, 16, usage, Memory::Device, "later").err(),
+            accumulation(&gpu, [8, 8], "later").err(),
+            Sampler::linear_clamp(&gpu).err(),
+            gpu::Timer::new(&gpu).err(),
+            timer.elapsed_ms().err(),
+            gpu.pipeline_cache_data().err(),
+            Resolve::new(&gpu, Mode::Composite, Blend::Replace, ACCUMULATION_FORMAT).err(),
+            GpuVolume::new(&gpu, &stage.volume, stage.layout()).err(),
+        ];
+        for (k, told) in refusals.into_iter().enumerate() {
+            let is_named =
+                matches!(&told, Some(gpu::Error::DeviceLost { doing }) if !doing.is_empty());
+            assert!(is_named, "call {k}: {told:?}");
+        }
+        let told = stage.draw(&device, &gpu).unwrap_err();
+        assert!(
+            matches!(of_device(&*told), gpu::Error::DeviceLost { .. }),
+            "{told}"
+        );
+
+        let cmd = device.begin();
+        timer.start(cmd);
+        volume.record_upload_all(cmd, &staging).unwrap();
+        image_barrier(&gpu, cmd, &image, Use::Nothing, Use::TransferWrite);
+        clear_image(&gpu, cmd, &image, [0.0; 4]);
+        begin_rendering(&gpu, cmd, &[(target.view(), Load::Keep)], [8, 8]);
+        set_area(&gpu, cmd, [8, 8]);
+        end_rendering(&gpu, cmd);
+        image_to_buffer(&gpu, cmd, &image, Region::whole(&image), &readback, 0).unwrap();
+        buffer_barrier(&gpu, cmd, &readback, Use::TransferWrite, Use::HostRead);
+        timer.stop(cmd);
+        assert_eq!(tape.after_loss(), Vec::<&str>::new());
+
+        drop((timer, image, target, readback, volume, staging));
+        gpu.retire(u64::MAX);
+        assert_eq!(Arc::strong_count(&gpu), 1);
+        drop(gpu);
+    }
+    assert_eq!(tape.after_loss(), Vec::<&str>::new());
+    assert_eq!(tape.books(), Vec::<&str>::new());
+}
+
+#[test]
+fn a_host_that_hears_of_the_loss_first_says_so() {
+    let tape = Tape::begin();
+    let (host, stage) = (Host::new(), Stage::new());
+    let device = host.device(FEATURES);
+    // SAFETY: the handles are right, and everything made on the device is dropped before it.
+    let gpu = unsafe { Gpu::from_host(device.handles(hooked)).unwrap() };
+    gpu.declare_lost();
+    tape.lose();
+    let told = stage.draw(&device, &gpu).unwrap_err();
+    assert!(
+        matches!(of_device(&*told), gpu::Error::DeviceLost { .. }),
+        "{told}"
+    );
+    drop(gpu);
+    assert_eq!(tape.after_loss(), Vec::<&str>::new());
+    assert_eq!(tape.books(), Vec::<&str>::new());
+}
+
+#[test]
+fn a_renderer_whose_device_was_lost_says_so_from_then_on() {
+    let tape = Tape::begin();
+    let stage = Stage::new();
+    let settings = Settings::default();
+    let scene = Scene {
+        beside: Default::default(),
+        volume: &stage.volume,
+        transfer: Some(&stage.transfer),
+        camera: &stage.camera,
+        extent_pixels: [16, 12],
+        settings: &settings,
+    };
+    let mut renderer = Renderer::new(headless().unwrap(), &stage.volume).unwrap();
+    renderer.render(&scene, &[]).unwrap();
+    tape.lose_at_next("vkWaitForFences");
+    for _ in 0..3 {
+        let told = renderer.render(&scene, &[]).unwrap_err();
+        let is_lost = matches!(&told, offscreen::Error::Gpu(gpu::Error::DeviceLost { .. }));
+        assert!(is_lost, "{told}");
+    }
+    assert!(renderer.device().gpu().is_lost());
+    drop(renderer);
+    assert_eq!(tape.after_loss(), Vec::<&str>::new());
+    assert_eq!(tape.books(), Vec::<&str>::new());
+}
