@@ -199,8 +199,8 @@ pub const REQUIREMENTS: &[Requirement] = &[
     ),
     recommended(
         Item::Limit(Limit::MaxPerStageDescriptorStorageBuffers, 6),
-        "functions with widgets read point by point, gradients and masks in one picture; without it the picture is \
-         refused by name",
+        "MIDA in light or with a function over gradients, and such pictures in conformance; without it they are refused \
+         by name",
     ),
     recommended(
         Item::Limit(Limit::MaxImageDimension3D, 2048),

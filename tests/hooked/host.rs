@@ -118,9 +118,14 @@ impl Host {
                 .create_device(self.physical_device, &info, None);
             let device = device.unwrap();
             let info = vk::CommandPoolCreateInfo::default();
+            let pool = device.create_command_pool(&info, None).unwrap();
+            let info = vk::CommandBufferAllocateInfo::default()
+                .command_pool(pool)
+                .command_buffer_count(1);
             HostedDevice {
                 queue: device.get_device_queue(0, 0),
-                pool: device.create_command_pool(&info, None).unwrap(),
+                cmd: device.allocate_command_buffers(&info).unwrap()[0],
+                pool,
                 features,
                 device,
                 host: self,
@@ -167,6 +172,7 @@ pub struct HostedDevice<'h> {
     pub features: Features,
     queue: vk::Queue,
     pool: vk::CommandPool,
+    cmd: vk::CommandBuffer,
     host: &'h Host,
 }
 
@@ -190,18 +196,15 @@ impl HostedDevice<'_> {
         }
     }
 
-    /// A command buffer that is being recorded.
+    /// The one command buffer, being recorded from its beginning.
     pub fn begin(&self) -> vk::CommandBuffer {
-        let info = vk::CommandBufferAllocateInfo::default()
-            .command_pool(self.pool)
-            .command_buffer_count(1);
-        // SAFETY: the pool is ours; its buffers go with it.
+        let (info, flags) = (Default::default(), Default::default());
+        // SAFETY: every submission was waited for.
         unsafe {
-            let cmd = self.device.allocate_command_buffers(&info).unwrap()[0];
-            let info = vk::CommandBufferBeginInfo::default();
-            self.device.begin_command_buffer(cmd, &info).unwrap();
-            cmd
+            self.device.reset_command_pool(self.pool, flags).unwrap();
+            self.device.begin_command_buffer(self.cmd, &info).unwrap();
         }
+        self.cmd
     }
 
     pub fn submit_and_wait(&self, cmd: vk::CommandBuffer) {
