@@ -4,6 +4,7 @@
 // opacity leaves. Twin: src/technique/isosurface.rs.
 
 #import ray
+#import host_depth
 #import pixel_square
 #import brick
 #import room_map
@@ -68,7 +69,7 @@ fn met_before(pixel: vec2<u32>) -> Surfaces {
 fn surfaces(pixel: vec2<f32>, before: Surfaces) -> Surfaces {
     let world = pixel_ray(pixel);
     let voxel = voxel_ray(world);
-    let interval = domain_interval(world, voxel);
+    let interval = in_sight(domain_interval(world, voxel), world, pixel);
     var so_far = before;
     let inside = brick_interval(voxel, interval);
     if !(interval.x < interval.y && inside.x < inside.y) || is_finished(before) {

@@ -27,7 +27,7 @@ fn main(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u3
     let eye = vec4(frame.origin, 1.0) * frame.voxel_from_world;
     let height = 0.5 + (f32(slice) + frame.cover_offset) / frame.planes_per_slice;
     if abs(eye[axis] - height) < frame.cover_eye_reach {
-        return Vertex(vec4(2.0 * corners[index] - 1.0, 0.5, 1.0), slice);
+        return Vertex(vec4(2.0 * corners[index] - 1.0, frame.host_near, 1.0), slice);
     }
     var part = vec3(0.0);
     part[(axis + 1u) % 3u] = corners[index].x;

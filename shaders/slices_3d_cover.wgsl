@@ -46,7 +46,7 @@ fn main(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u
         // Corners 0 to 3 of the hexagon; the others fall together with the last.
         let turn = min(fan[corner], 3u);
         let is_right = turn == 1u || turn == 2u;
-        return Vertex(vec4(select(-1.0, 1.0, is_right), select(-1.0, 1.0, turn >= 2u), 0.5, 1.0), plane);
+        return Vertex(vec4(select(-1.0, 1.0, is_right), select(-1.0, 1.0, turn >= 2u), frame.host_near, 1.0), plane);
     }
     let world = plane_vertex(fan[corner], height);
     return Vertex(vec4(world, 1.0) * frame.clip_from_world, plane);

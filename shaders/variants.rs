@@ -174,6 +174,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         &[("source", &["picture", "value", "mean", "cued"])],
     ),
     ("resolve_cover", &[]),
+    ("resolve_depth", &[("left", &["picture", "value"])]),
     ("keep_gradients", &[("layout", &["box", "stack"])]),
     ("merge", &[("operator", &["over", "under", "add"])]),
     (

@@ -11,10 +11,15 @@
 //!                                                 along f
 //! ```
 //!
+//! A host's matrices give the picture's rectangle by its sides instead ([`Projection::Frustum`], [`Projection::Parallel`]):
+//! pixels need not be square then, and the eye need not look at the middle (`camera/matrices.rs`).
+//!
 //! The words of the command line for it stand in `camera/orbit.rs`.
 
+mod matrices;
 mod orbit;
 
+pub use matrices::{HostDepth, Nearer};
 pub use orbit::{BoundingSphere, Lens, Orbit, View, fitted_view_height, up_for};
 
 use glam::DVec3;
@@ -47,6 +52,27 @@ pub enum Projection {
         /// World height of the picture at zoom 1.
         view_height: f64,
     },
+    /// All rays start at the eye and go through a rectangle at distance 1 from it.
+    Frustum(Sides),
+    /// All rays are parallel and start in a rectangle around the eye.
+    Parallel(Sides),
+}
+
+/// A rectangle of the picture plane, seen from the eye: right and up are positive. Left over right mirrors the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the names say it")]
+pub struct Sides {
+    pub left: f64,
+    pub right: f64,
+    pub bottom: f64,
+    pub top: f64,
+}
+
+impl Projection {
+    /// True where all rays start at the eye.
+    pub fn is_perspective(&self) -> bool {
+        matches!(self, Self::Perspective { .. } | Self::Frustum(_))
+    }
 }
 
 /// The camera's own axes in world space: orthonormal, right x up = -forward.
@@ -94,6 +120,20 @@ pub enum Error {
     /// There is no picture upright.
     #[error("the camera's up vector is zero or parallel to the direction it looks along")]
     NoUp,
+    /// A host's view matrix does more than to turn and to move.
+    #[error(
+        "the view matrix: wanted a turn and a shift alone, found axes that are off by {shear:.1e}, or a last row that is not (0, 0, 0, 1)"
+    )]
+    NotRigid {
+        /// The largest error of lengths and right angles.
+        shear: f64,
+    },
+    /// A host's projection matrix is none.
+    #[error("the projection matrix: wanted a perspective or an orthographic one, but {reason}")]
+    NoProjection {
+        /// What it does.
+        reason: &'static str,
+    },
     /// A number of the lens is out of its range.
     #[error("the camera's {what}: wanted {wanted}, found {found}")]
     OutOfRange {
@@ -138,6 +178,18 @@ impl Camera {
             Projection::Orthographic { view_height: h } => {
                 ("view height", "over 0", h, h > 0.0 && h.is_finite())
             }
+            Projection::Frustum(sides) | Projection::Parallel(sides) => {
+                let (width, height) = (sides.right - sides.left, sides.top - sides.bottom);
+                // The one of the two that is no length.
+                let is_bad = |length: f64| length == 0.0 || !length.is_finite();
+                let found = if is_bad(width) { width } else { height };
+                (
+                    "rectangle's width and height",
+                    "not 0",
+                    found,
+                    !is_bad(width) && !is_bad(height),
+                )
+            }
         };
         if !is_good {
             return Err(Error::OutOfRange {
@@ -174,16 +226,29 @@ impl Camera {
                 2.0 * (0.5 * fov_degrees.to_radians()).tan() / self.zoom
             }
             Projection::Orthographic { view_height } => view_height / self.zoom,
+            Projection::Frustum(sides) | Projection::Parallel(sides) => {
+                (sides.top - sides.bottom).abs() / self.zoom
+            }
         }
     }
 
-    /// The rays of a picture of so many pixels across and down. Pixels are square.
+    /// The rays of a picture of so many pixels across and down. Pixels are square, but for the rectangles of hosts.
     pub fn rays(&self, extent_pixels: [u32; 2]) -> Rays {
         let Frame { right, up, forward } = self.frame();
         let [width, height] = extent_pixels.map(f64::from);
-        let pixel = self.plane_height() / height;
-        let (dx, dy) = (pixel * right, -pixel * up);
-        let corner = -0.5 * (width * dx + height * dy);
+        let (dx, dy, corner) = match self.projection {
+            Projection::Perspective { .. } | Projection::Orthographic { .. } => {
+                let pixel = self.plane_height() / height;
+                let (dx, dy) = (pixel * right, -pixel * up);
+                (dx, dy, -0.5 * (width * dx + height * dy))
+            }
+            Projection::Frustum(sides) | Projection::Parallel(sides) => {
+                let across = (sides.right - sides.left) / self.zoom;
+                let down = (sides.bottom - sides.top) / self.zoom;
+                let corner = (sides.left * right + sides.top * up) / self.zoom;
+                (across / width * right, down / height * up, corner)
+            }
+        };
         let rays = Rays {
             origin: self.eye,
             origin_dx: DVec3::ZERO,
@@ -193,14 +258,14 @@ impl Camera {
             direction_dy: DVec3::ZERO,
             forward,
         };
-        match self.projection {
-            Projection::Perspective { .. } => Rays {
+        match self.projection.is_perspective() {
+            true => Rays {
                 direction: forward + corner,
                 direction_dx: dx,
                 direction_dy: dy,
                 ..rays
             },
-            Projection::Orthographic { .. } => Rays {
+            false => Rays {
                 origin: self.eye + corner,
                 origin_dx: dx,
                 origin_dy: dy,

@@ -12,6 +12,7 @@
 //! | 2 | [`resident`], [`isosurface`], `format` | data put on a device; a surface in a volume; bytes of files turned into a [`volume::Source`] |
 //! | 3 | [`technique`], [`resolve`] | `new`, `bind`, `record`, and the CPU twins |
 //! | 4 | [`scene`], [`offscreen`] | a scene to a [`picture::Picture`]; the only place that submits and waits |
+//! | 4 | [`embed`] | a volume in a host's frames |
 //! | 5 | `cli` | words to scenes, errors to exit codes |
 //!
 //! # Spaces
@@ -187,6 +188,7 @@ pub mod camera;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod color;
+pub mod embed;
 #[cfg(feature = "files")]
 mod fence;
 #[cfg(feature = "files")]

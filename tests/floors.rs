@@ -15,6 +15,7 @@ const FLOORS: &[&[&str]] = &[
     &["resident", "isosurface", "format"],
     &["technique"],
     &["resolve"],
+    &["embed"],
     &["scene"],
     &["offscreen"],
     &["cli"],

@@ -95,12 +95,12 @@ fn every_kind_of_owner_is_gone_after_drop_and_retire() {
         ];
         let _compute = ComputePipeline::new(gpu, &ramp()).unwrap();
         let (vertex, fragment) = (cover(), flat());
-        let color_formats = &[vk::Format::R8G8B8A8_UNORM];
         let desc = RasterDesc {
             vertex: &vertex,
             fragment: &fragment,
-            color_formats,
+            target: vk::Format::R8G8B8A8_UNORM.into(),
             blend: Blend::Over,
+            depth: DepthUse::Ignored,
         };
         let raster = RasterPipeline::new(gpu, &desc).unwrap();
         let ring = ParameterRing::new(gpu, 16, 2, "params").unwrap();
@@ -304,12 +304,12 @@ fn stages_that_disagree_about_a_binding_are_refused() {
     let headless = headless();
     let (mut vertex, fragment) = (cover(), flat());
     vertex.bindings = OTHER;
-    let color_formats = &[vk::Format::R8G8B8A8_UNORM];
     let desc = RasterDesc {
         vertex: &vertex,
         fragment: &fragment,
-        color_formats,
+        target: vk::Format::R8G8B8A8_UNORM.into(),
         blend: Blend::Replace,
+        depth: DepthUse::Ignored,
     };
     let refused = RasterPipeline::new(headless.gpu(), &desc)
         .expect_err("a mistake")

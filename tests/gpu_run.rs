@@ -332,8 +332,9 @@ fn every_blend_is_its_formula() {
         let desc = RasterDesc {
             vertex: &cover,
             fragment: &flat,
-            color_formats: &[format],
+            target: format.into(),
             blend,
+            depth: DepthUse::Ignored,
         };
         let pipeline = RasterPipeline::new(&gpu, &desc).unwrap();
         let bindings = Bindings::new(

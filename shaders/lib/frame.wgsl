@@ -176,6 +176,12 @@ struct Frame {
     // How far samples may lie from where a patch says: voxels, and planes where they are slabs.
     patch_reach_voxels: f32,
     patch_reach_planes: f32,
+    // A host's depth of a point p of the world: dot(host_z, (p, 1)) / dot(host_w, (p, 1)). Its depth buffer ends rays
+    // where has_host_depth is not 0; host_near is the depth of its near plane, which covers around the eye lie in.
+    has_host_depth: u32,
+    host_near: f32,
+    host_z: vec4<f32>,
+    host_w: vec4<f32>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -2,6 +2,7 @@
 // mode what for, and which part of the way cannot matter. Twin: src/technique/march.rs.
 
 #import ray
+#import host_depth
 #import brick
 #import faces
 #import lattice_{lattice}
@@ -17,7 +18,7 @@
 fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
     let world = pixel_ray(pixel);
     let voxel = voxel_ray(world);
-    let interval = domain_interval(world, voxel);
+    let interval = in_sight(domain_interval(world, voxel), world, pixel);
     var so_far = before;
     let inside = brick_interval(voxel, interval);
     if !(interval.x < interval.y && inside.x < inside.y) || is_finished(before) {

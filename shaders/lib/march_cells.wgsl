@@ -8,6 +8,7 @@
 // Twin: src/technique/projection/exact.rs.
 
 #import ray
+#import host_depth
 #import brick
 #import filter_linear_fetch
 #import mask
@@ -28,7 +29,7 @@ struct Corners {
 fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
     let world = pixel_ray(pixel);
     let voxel = voxel_ray(world);
-    let interval = domain_interval(world, voxel);
+    let interval = in_sight(domain_interval(world, voxel), world, pixel);
     let inside = brick_interval(voxel, interval);
     var so_far = before;
     if !(interval.x < interval.y && inside.x < inside.y) {

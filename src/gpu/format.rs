@@ -16,6 +16,8 @@ pub struct FormatFeatures {
     pub color: bool,
     /// It can be a color target that is blended into.
     pub blend: bool,
+    /// It can be a depth attachment.
+    pub depth: bool,
 }
 
 impl Gpu {
@@ -51,6 +53,7 @@ impl FormatFeatures {
             storage: has(Flags::STORAGE_IMAGE),
             color: has(Flags::COLOR_ATTACHMENT),
             blend: has(Flags::COLOR_ATTACHMENT_BLEND),
+            depth: has(Flags::DEPTH_STENCIL_ATTACHMENT),
         }
     }
 }

@@ -21,6 +21,7 @@ mod cache;
 mod caps;
 mod check;
 mod choice;
+mod commands;
 mod copy;
 mod devices;
 mod error;
@@ -50,6 +51,7 @@ pub use buffer::{Buffer, Memory};
 pub use cache::PipelineCache;
 pub use caps::Caps;
 pub use choice::DeviceChoice;
+pub use commands::{Commands, TimelinePoint};
 pub use copy::{Region, buffer_to_image, clear_image, image_to_buffer};
 pub use devices::{DeviceReport, Enabled, Finding, HostPhysicalDevice, check_device, list_devices};
 pub use error::Error;
@@ -61,7 +63,7 @@ pub use image::{Image, ImageDesc, ImageKind};
 pub use layout::Layout;
 pub use parameters::ParameterRing;
 pub use pipeline::ComputePipeline;
-pub use raster::{Blend, RasterDesc, RasterPipeline};
+pub use raster::{Blend, DepthClass, DepthUse, RasterDesc, RasterPipeline, TargetClass};
 pub use rendering::{
     Load, begin_rendering, begin_rendering_of, end_rendering, set_area, set_area_of,
 };

@@ -1,8 +1,8 @@
-//! A raster pipeline for dynamic rendering: triangles, no vertex buffers, no depth, no culling.
+//! A raster pipeline for dynamic rendering or a render pass: triangles, no vertex buffers, no culling.
 
 use super::{
-    Bindings, Buffer, Error, Gpu, Layout, error::within, owned::Own, pipeline::first,
-    pipeline::module, pipeline::stage, pipeline::wrong_stage,
+    Bindings, Buffer, Error, Gpu, Layout, owned::Own, pipeline::first, pipeline::module,
+    pipeline::stage, pipeline::wrong_stage,
 };
 use crate::shaders::{Shader, Stage};
 use ash::vk;
@@ -25,6 +25,54 @@ pub enum Blend {
     Min,
 }
 
+/// What is drawn into, as far as a pipeline has to know: rendering of our own, or a host's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct TargetClass {
+    /// The one color target.
+    pub color_format: vk::Format,
+    /// Samples of each target.
+    pub samples: vk::SampleCountFlags,
+    /// The depth attachment, where the rendering has one.
+    pub depth: Option<DepthClass>,
+    /// A render pass and its subpass, with the color target as the first color attachment; `None`: dynamic rendering.
+    pub pass: Option<(vk::RenderPass, u32)>,
+}
+
+/// The depth attachment of a host's rendering.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct DepthClass {
+    /// Its format.
+    pub format: vk::Format,
+    /// The rendering has the same image as stencil attachment too.
+    pub has_stencil: bool,
+    /// The larger of two depths is the nearer one.
+    pub is_reversed: bool,
+}
+
+/// What a pipeline does with the depth attachment, where there is one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum DepthUse {
+    /// Nothing.
+    #[default]
+    Ignored,
+    /// Draws what is not behind it.
+    Tested,
+    /// Draws no color, and writes what is not behind it.
+    Written,
+}
+
+impl From<vk::Format> for TargetClass {
+    /// Dynamic rendering to one color target.
+    fn from(color_format: vk::Format) -> Self {
+        Self {
+            color_format,
+            samples: vk::SampleCountFlags::TYPE_1,
+            depth: None,
+            pass: None,
+        }
+    }
+}
+
 /// What to compile.
 #[derive(Clone, Copy, Debug)]
 pub struct RasterDesc<'a> {
@@ -32,10 +80,12 @@ pub struct RasterDesc<'a> {
     pub vertex: &'a Shader,
     /// Makes colors. Its name stands for the pipeline.
     pub fragment: &'a Shader,
-    /// One for each color target, in order of location.
-    pub color_formats: &'a [vk::Format],
-    /// For all targets alike: another blend for each needs a feature.
+    /// What it draws into.
+    pub target: TargetClass,
+    /// What becomes of the target.
     pub blend: Blend,
+    /// What becomes of its depth.
+    pub depth: DepthUse,
 }
 
 /// Two shaders, ready to draw. Viewport and scissor are dynamic.
@@ -71,14 +121,18 @@ impl RasterPipeline {
             .cull_mode(vk::CullModeFlags::NONE)
             .line_width(1.0);
         let samples = vk::PipelineMultisampleStateCreateInfo::default()
-            .rasterization_samples(vk::SampleCountFlags::TYPE_1);
-        let attachments = vec![desc.blend.attachment(); desc.color_formats.len()];
+            .rasterization_samples(desc.target.samples);
+        let attachments = [match desc.depth {
+            DepthUse::Written => vk::PipelineColorBlendAttachmentState::default(),
+            DepthUse::Ignored | DepthUse::Tested => desc.blend.attachment(),
+        }];
+        let depth = desc.depth.state(desc.target.depth);
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&attachments);
         let dynamic = vk::PipelineDynamicStateCreateInfo::default()
             .dynamic_states(&[vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR]);
-        let mut rendering =
-            vk::PipelineRenderingCreateInfo::default().color_attachment_formats(desc.color_formats);
-        let info = vk::GraphicsPipelineCreateInfo::default()
+        let color_formats = [desc.target.color_format];
+        let mut rendering = desc.target.rendering(&color_formats);
+        let mut info = vk::GraphicsPipelineCreateInfo::default()
             .stages(&stages)
             .vertex_input_state(&vertex_input)
             .input_assembly_state(&assembly)
@@ -86,9 +140,13 @@ impl RasterPipeline {
             .rasterization_state(&rasterization)
             .multisample_state(&samples)
             .color_blend_state(&blend)
+            .depth_stencil_state(&depth)
             .dynamic_state(&dynamic)
-            .layout(layout.raw())
-            .push_next(&mut rendering);
+            .layout(layout.raw());
+        info = match desc.target.pass {
+            Some((pass, subpass)) => info.render_pass(pass).subpass(subpass),
+            None => info.push_next(&mut rendering),
+        };
         // SAFETY: modules and layout were made of the same shaders, whose SPIR-V `build.rs` has validated.
         let raw = first(gpu, doing, |device| unsafe {
             device.create_graphics_pipelines(gpu.pipeline_cache, &[info], None)
@@ -167,31 +225,67 @@ impl RasterPipeline {
 
 fn check_formats(gpu: &Gpu, desc: &RasterDesc<'_>) -> Result<(), Error> {
     let doing = || format!("make raster pipeline `{}`", desc.fragment.name);
-    let allowed = gpu.limits().max_color_attachments.into();
-    within(
-        doing,
-        "maxColorAttachments",
-        desc.color_formats.len() as u64,
-        allowed,
-    )?;
-    for &format in desc.color_formats {
-        let features = gpu.format_features(format);
-        if !features.color {
-            return Err(Error::Format {
-                doing: doing(),
-                format,
-                lacks: "color target",
-            });
+    let lacks = |format, lacks| {
+        Err(Error::Format {
+            doing: doing(),
+            format,
+            lacks,
+        })
+    };
+    let format = desc.target.color_format;
+    let features = gpu.format_features(format);
+    if !features.color {
+        return lacks(format, "color target");
+    }
+    if desc.blend != Blend::Replace && !features.blend {
+        return lacks(format, "blending");
+    }
+    match (desc.target.depth, desc.depth) {
+        (Some(depth), _) if !gpu.format_features(depth.format).depth => {
+            lacks(depth.format, "depth attachment")
         }
-        if desc.blend != Blend::Replace && !features.blend {
-            return Err(Error::Format {
-                doing: doing(),
-                format,
-                lacks: "blending",
-            });
+        (None, DepthUse::Tested | DepthUse::Written) => Err(Error::Argument {
+            doing: doing(),
+            wanted: "a target with a depth attachment".into(),
+            found: "none".into(),
+        }),
+        _ => Ok(()),
+    }
+}
+
+impl TargetClass {
+    fn rendering<'a>(
+        &self,
+        color_formats: &'a [vk::Format],
+    ) -> vk::PipelineRenderingCreateInfo<'a> {
+        let info =
+            vk::PipelineRenderingCreateInfo::default().color_attachment_formats(color_formats);
+        match self.depth {
+            None => info,
+            Some(depth) => {
+                let info = info.depth_attachment_format(depth.format);
+                match depth.has_stencil {
+                    true => info.stencil_attachment_format(depth.format),
+                    false => info,
+                }
+            }
         }
     }
-    Ok(())
+}
+
+impl DepthUse {
+    /// Nearest wins, and so does what has the same depth.
+    fn state(self, class: Option<DepthClass>) -> vk::PipelineDepthStencilStateCreateInfo<'static> {
+        let is_reversed = class.is_some_and(|class| class.is_reversed);
+        let nearer = match is_reversed {
+            true => vk::CompareOp::GREATER_OR_EQUAL,
+            false => vk::CompareOp::LESS_OR_EQUAL,
+        };
+        vk::PipelineDepthStencilStateCreateInfo::default()
+            .depth_test_enable(self != Self::Ignored)
+            .depth_write_enable(self == Self::Written)
+            .depth_compare_op(nearer)
+    }
 }
 
 impl Blend {

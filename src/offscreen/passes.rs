@@ -11,11 +11,11 @@ use crate::gpu::{
 use crate::resident::GpuTransfer;
 use crate::resolve::Resolve;
 use crate::technique::blend::Drawn;
-use crate::technique::projection::Projection;
-use crate::technique::raycast::Raycast;
 use crate::technique::slices_3d::HalfAngleSlicer;
 use crate::technique::slices_3d::half_angle::HalfAngleSlices;
-use crate::technique::{ACCUMULATION_FORMAT, Mode, Order, Settings, Technique, Words};
+use crate::technique::{
+    ACCUMULATION_FORMAT, Inputs, Mode, Order, RayPass, Settings, Technique, Words,
+};
 use std::cell::OnceCell;
 use std::sync::Arc;
 
@@ -51,8 +51,7 @@ pub struct Passes {
 /// Where samples are taken.
 #[derive(Debug)]
 enum Gather {
-    Raycast(Raycast),
-    Projection(Projection),
+    Rays(RayPass),
     Slices(Slicing),
     HalfAngle(HalfAngleSlicer),
 }
@@ -69,13 +68,7 @@ impl Passes {
             technique, mode, ..
         } = *settings;
         let gather = match technique {
-            Technique::Raycast if settings.per_mode.exact_maximum => {
-                Gather::Projection(Projection::exact(gpu, mode, words)?)
-            }
-            Technique::Raycast if mode.is_projection() => {
-                Gather::Projection(Projection::new(gpu, mode, words)?)
-            }
-            Technique::Raycast => Gather::Raycast(Raycast::of_mode(gpu, mode, words)?),
+            Technique::Raycast => Gather::Rays(RayPass::new(gpu, settings, words)?),
             Technique::Slices3d if settings.is_half_angle() => {
                 Gather::HalfAngle(HalfAngleSlicer::new(gpu, words)?)
             }
@@ -112,20 +105,13 @@ impl Passes {
             ..
         } = submission.targets;
         match &self.gather {
-            Gather::Raycast(pass) => {
-                let bound = submission.bind(|inputs| pass.bind(inputs, accumulation, layers))?;
-                let images = [accumulation, layers];
+            Gather::Rays(pass) => {
+                let bind = |inputs: &Inputs| pass.bind(inputs, accumulation, layers, None);
+                let bound = submission.bind(bind)?;
+                let images = pass.images(accumulation, layers);
                 submission.compute(&images, &bound, |cmd, bindings, offset, tiles| {
                     let tiles = tiles.iter().copied();
                     // SAFETY: outside rendering, images as `compute` brings them; all lives until it has run.
-                    unsafe { pass.record_tiles(cmd, bindings, offset, *extent, tiles) }
-                })
-            }
-            Gather::Projection(pass) => {
-                let bound = submission.bind(|inputs| pass.bind(inputs, accumulation))?;
-                submission.compute(&[accumulation], &bound, |cmd, bindings, offset, tiles| {
-                    let tiles = tiles.iter().copied();
-                    // SAFETY: as above.
                     unsafe { pass.record_tiles(cmd, bindings, offset, *extent, tiles) }
                 })
             }
@@ -137,7 +123,7 @@ impl Passes {
     /// Counts a slicer's samples into `layers`; the ray caster has counted them already.
     pub fn count(&self, mut submission: Submission) -> Result<Spent, Error> {
         match self.gather {
-            Gather::Raycast(_) | Gather::Projection(_) => return Ok(Spent::NOTHING),
+            Gather::Rays(_) => return Ok(Spent::NOTHING),
             // The light's samples are no pixel's.
             Gather::HalfAngle(_) => submission.bricks = &submission.bricks[..1],
             Gather::Slices(_) => {}

@@ -37,13 +37,18 @@ pub struct EmptySpace {
 /// What maps of all volumes under one transfer function have in common.
 #[derive(Debug)]
 struct Mapping {
-    pipeline: ComputePipeline,
+    pipeline: Arc<ComputePipeline>,
     pass_ring: ParameterRing,
     seen: Buffer,
 }
 
 impl Mapping {
     fn new(gpu: &Arc<Gpu>, seen: &Seen) -> Result<Self, Error> {
+        let pipeline = ComputePipeline::new(gpu, shader("distance_map"))?;
+        Self::by(gpu, Arc::new(pipeline), seen)
+    }
+
+    fn by(gpu: &Arc<Gpu>, pipeline: Arc<ComputePipeline>, seen: &Seen) -> Result<Self, Error> {
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
         let mut words = vec![
             seen.first.to_bits(),
@@ -60,7 +65,7 @@ impl Mapping {
             pass_ring.write(number, bytemuck::bytes_of(&Pass { number }))?;
         }
         Ok(Self {
-            pipeline: ComputePipeline::new(gpu, shader("distance_map"))?,
+            pipeline,
             pass_ring,
             seen: table,
         })
@@ -112,6 +117,16 @@ impl EmptySpace {
             made.others.push((mapping, bound));
         }
         Ok(made)
+    }
+
+    /// The same for these cells under another transfer function, without compiling anything.
+    ///
+    /// # Errors
+    /// As [`EmptySpace::new`].
+    pub fn under(&self, cells: &MacroCells, seen: &Seen) -> Result<Self, Error> {
+        let pipeline = Arc::clone(&self.mapping.pipeline);
+        let mapping = Mapping::by(&self.gpu, pipeline, seen)?;
+        Self::with(&self.gpu, cells, Arc::new(mapping))
     }
 
     /// The same for other cells under the same transfer function.

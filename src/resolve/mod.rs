@@ -1,10 +1,13 @@
 //! What a technique left behind to linear premultiplied colour: a draw that is legal inside a host's rendering.
 
+mod depth;
 pub mod reference;
 
+pub use depth::DepthResolve;
+
 use crate::gpu::{
-    Bindings, Blend, Error, Gpu, Image, ParameterRing, RasterDesc, RasterPipeline, Resource, Tile,
-    set_area_of,
+    Bindings, Blend, DepthUse, Error, Gpu, Image, ParameterRing, RasterDesc, RasterPipeline,
+    Resource, TargetClass, Tile, set_area_of,
 };
 use crate::resident::GpuTransfer;
 use crate::shaders::shader;
@@ -20,7 +23,7 @@ pub struct Resolve {
 }
 
 impl Resolve {
-    /// Compiles the variant for what `mode` leaves, for a target of `format`.
+    /// Compiles the variant for what `mode` leaves, for such targets. Their depth, where they have one, is not asked.
     ///
     /// [`Blend::Replace`] gives the picture itself, [`Blend::Over`] lays it over what a host has drawn.
     ///
@@ -30,7 +33,7 @@ impl Resolve {
         gpu: &Arc<Gpu>,
         mode: Mode,
         blend: Blend,
-        format: vk::Format,
+        target: impl Into<TargetClass>,
     ) -> Result<Self, Error> {
         let fragment = match mode {
             Mode::Composite | Mode::Mida | Mode::Iso => "resolve.picture",
@@ -39,28 +42,33 @@ impl Resolve {
             }
             Mode::Average => "resolve.mean",
         };
-        Self::of_shader(gpu, fragment, blend, format)
+        Self::of_shader(gpu, fragment, blend, target.into())
     }
 
     /// The same for a mode that projects one place of a ray, darker with its depth.
     ///
     /// # Errors
     /// Where the device does not blend that format, by its name.
-    pub fn cued(gpu: &Arc<Gpu>, blend: Blend, format: vk::Format) -> Result<Self, Error> {
-        Self::of_shader(gpu, "resolve.cued", blend, format)
+    pub fn cued(
+        gpu: &Arc<Gpu>,
+        blend: Blend,
+        target: impl Into<TargetClass>,
+    ) -> Result<Self, Error> {
+        Self::of_shader(gpu, "resolve.cued", blend, target.into())
     }
 
     fn of_shader(
         gpu: &Arc<Gpu>,
         fragment: &str,
         blend: Blend,
-        format: vk::Format,
+        target: TargetClass,
     ) -> Result<Self, Error> {
         let desc = RasterDesc {
             vertex: shader("resolve_cover"),
             fragment: shader(fragment),
-            color_formats: &[format],
+            target,
             blend,
+            depth: DepthUse::Ignored,
         };
         Ok(Self {
             gpu: Arc::clone(gpu),

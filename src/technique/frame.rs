@@ -7,7 +7,7 @@
 use super::blend::extreme_sign;
 use super::shading::set_shading;
 use super::{Filter, InPixel, MAX_SAMPLES_PER_RAY, Settings, Technique};
-use crate::camera::{Camera, Projection, Rays};
+use crate::camera::{Camera, Rays};
 use crate::picture::ColorSpace;
 use crate::resident::{Cell, Coding, TransferLayout, front_to_back, front_to_back_by_rows};
 use crate::shaders::{
@@ -217,6 +217,10 @@ impl View<'_> {
             } else {
                 0.0
             },
+            has_host_depth: 0,
+            host_near: 0.5,
+            host_z: [0.0; 4],
+            host_w: [0.0; 4],
         };
         self.set_light(&mut fields);
         if let Some(shading) = &self.settings.shading {
@@ -277,8 +281,8 @@ impl View<'_> {
 
     /// Where the eye lies, in cells of so many voxels; infinite for parallel rays.
     fn eye_cell(&self, size: [u32; 3]) -> [f64; 3] {
-        match self.camera.projection {
-            Projection::Perspective { .. } => {
+        match self.camera.projection.is_perspective() {
+            true => {
                 let eye = self
                     .grid
                     .world_from_voxel
@@ -286,7 +290,7 @@ impl View<'_> {
                     .transform_point3(self.camera.eye);
                 std::array::from_fn(|k| eye[k] / f64::from(size[k]))
             }
-            Projection::Orthographic { .. } => {
+            false => {
                 let forward = self.rays().forward;
                 self.grid
                     .voxel_rows()
@@ -337,7 +341,9 @@ impl View<'_> {
                 .dot(world_from_voxel.transform_point3(corner(i)) - rays.origin)
         };
         let farthest = (0..8).map(depth).fold(0.0, f64::max);
-        let pixel_world = rays.origin_dx.length() + rays.direction_dx.length() * farthest;
+        let side = |dx: DVec3, dy: DVec3| dx.length().max(dy.length());
+        let pixel_world = side(rays.origin_dx, rays.origin_dy)
+            + side(rays.direction_dx, rays.direction_dy) * farthest;
         let rows = self.grid.voxel_rows().map(|row| row.length());
         2.0 * pixel_world * DVec3::from_array(rows) + 1e-3
     }
@@ -407,6 +413,7 @@ pub(super) fn clip_rows(rays: &Rays, [width, height]: [u32; 2]) -> [[f32; 4]; 4]
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::camera::Projection;
     use glam::dvec4;
 
     fn view_of<'a>(grid: &'a Grid, camera: &'a Camera, settings: &'a Settings) -> View<'a> {

@@ -1,7 +1,6 @@
 //! The parameters that single modes look at.
 
 use super::View;
-use crate::camera::Projection;
 use crate::color::decode_srgb;
 use crate::picture::ColorSpace;
 use crate::shaders::MAX_LEVELS;
@@ -84,9 +83,9 @@ impl View<'_> {
         // The world is moved so that the centre is its origin.
         let radius = 0.5 * self.diagonal();
         let rays = self.rays();
-        let distance = match self.camera.projection {
-            Projection::Perspective { .. } => rays.origin.length(),
-            Projection::Orthographic { .. } => -rays.forward.dot(rays.origin),
+        let distance = match self.camera.projection.is_perspective() {
+            true => rays.origin.length(),
+            false => -rays.forward.dot(rays.origin),
         };
         let near = (distance - radius).max(0.0);
         [near, (distance + radius).max(near + radius)]

@@ -13,8 +13,8 @@
 use super::blend::{Drawn, operator};
 use super::{BATCH_SLICES, Inputs, Order, Patches, Technique, Words};
 use crate::gpu::{
-    Bindings, ComputePipeline, Error, Gpu, Image, RasterDesc, RasterPipeline, Resource, Use,
-    buffer_barrier, set_area,
+    Bindings, ComputePipeline, DepthUse, Error, Gpu, Image, RasterDesc, RasterPipeline, Resource,
+    Use, buffer_barrier, set_area,
 };
 use crate::shaders::shader;
 use ash::vk;
@@ -58,7 +58,8 @@ impl PatchSlicer {
         let desc = RasterDesc {
             vertex: shader("slice_patches_cover"),
             fragment: shader(&drawn.shader_name(name, words)),
-            color_formats: &[format],
+            target: format.into(),
+            depth: DepthUse::Ignored,
             blend: operator(drawn, order),
         };
         Ok(Self {

@@ -11,9 +11,11 @@ use super::slices_2d::{set_slices, stack_axis};
 use super::slices_3d::set_planes;
 use super::{Error, Order, Technique, View};
 use crate::blue_noise::BLUE_NOISE;
+use crate::camera::HostDepth;
 use crate::gpu::{self, Gpu, ParameterRing};
 use crate::resident::{Cell, Coding, GpuTransfer, GpuVolume, TextureLayout, TransferLayout};
 use crate::shaders::{Frame, FrameFields};
+use glam::DVec3;
 use std::sync::Arc;
 
 /// What one recording of a technique shows.
@@ -203,6 +205,25 @@ impl View<'_> {
 }
 
 impl Recording {
+    /// Puts what is recorded behind what a host has drawn: rays end where its depth buffer says, slices are tested
+    /// against it, and both begin at its near plane. `center` is that of the [grid](crate::volume::Grid::center), and
+    /// the view's camera the one that came with `depth` ([`Camera::from_matrices`](crate::camera::Camera::from_matrices)).
+    pub fn behind(&mut self, depth: &HostDepth, center: DVec3) {
+        self.in_depths_of(depth, center);
+        self.frame.has_host_depth = 1;
+    }
+
+    /// Gives what is recorded the depths of a host's clip space, in which slices are drawn and depth is written.
+    pub fn in_depths_of(&mut self, depth: &HostDepth, center: DVec3) {
+        let HostDepth { z, w, nearer } = depth.centered(center);
+        let [z, w] = [z, w].map(|row| row.as_vec4().to_array());
+        self.frame.host_z = z;
+        self.frame.host_w = w;
+        self.frame.host_near = nearer.near() as f32;
+        self.frame.clip_from_world[2] = z;
+        self.frame.clip_from_world[3] = w;
+    }
+
     /// Writes the parameters into a slot that no unfinished recording reads, and gives its offset.
     ///
     /// # Errors

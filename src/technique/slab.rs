@@ -14,7 +14,6 @@
 
 use super::slices_2d::{planes_per_slice, stack_axis};
 use super::{Error, Filter, Mode, Technique, View};
-use crate::camera::Projection;
 use crate::shaders::FrameFields;
 use glam::DVec3;
 
@@ -89,7 +88,7 @@ impl View<'_> {
             };
         }
         let voxels = self.slab_reach();
-        let is_perspective = matches!(self.camera.projection, Projection::Perspective { .. });
+        let is_perspective = self.camera.projection.is_perspective();
         let eye = match (self.settings.technique, is_perspective) {
             (Technique::Slices2d, _) if !voxels.cmplt(DVec3::splat(STEEPEST)).all() => {
                 f64::from(f32::MAX)

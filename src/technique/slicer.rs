@@ -3,7 +3,9 @@
 
 use super::blend::{Drawn, operator};
 use super::{Inputs, Order, Technique, Words};
-use crate::gpu::{Bindings, Error, Gpu, RasterDesc, RasterPipeline, Tile, set_area_of};
+use crate::gpu::{
+    Bindings, DepthUse, Error, Gpu, RasterDesc, RasterPipeline, TargetClass, Tile, set_area_of,
+};
 use crate::shaders::shader;
 use ash::vk;
 use std::ops::Range;
@@ -18,8 +20,9 @@ pub struct Slicer {
 }
 
 impl Slicer {
-    /// Compiles the variant of these words for a target of `format`: view-aligned slices for
-    /// [`Technique::Slices3d`], else the slices of a stack.
+    /// Compiles the variant of these words for such targets: view-aligned slices for [`Technique::Slices3d`], else the
+    /// slices of a stack. Where the rendering has a depth attachment, what a host has drawn hides what lies behind it
+    /// ([`super::Recording::behind`]).
     ///
     /// # Errors
     /// Where the device does not blend that format, by its name.
@@ -29,8 +32,9 @@ impl Slicer {
         drawn: Drawn,
         order: Order,
         words: &Words,
-        format: vk::Format,
+        target: impl Into<TargetClass>,
     ) -> Result<Self, Error> {
+        let target = target.into();
         // Four triangles cover the six corners of a plane in a box, two a rectangle.
         let (name, cover, vertices_per_slice) = match technique {
             Technique::Slices3d => ("slices_3d", "slices_3d_cover", 12),
@@ -39,7 +43,11 @@ impl Slicer {
         let desc = RasterDesc {
             vertex: shader(cover),
             fragment: shader(&drawn.shader_name(name, words)),
-            color_formats: &[format],
+            target,
+            depth: match target.depth {
+                Some(_) => DepthUse::Tested,
+                None => DepthUse::Ignored,
+            },
             blend: operator(drawn, order),
         };
         Ok(Self {

@@ -267,7 +267,7 @@ fn texel_bytes(format: vk::Format) -> usize {
     }
 }
 
-unsafe fn allocate(
+pub(super) unsafe fn allocate(
     host: &Host,
     wanted: vk::MemoryRequirements,
     properties: vk::MemoryPropertyFlags,

@@ -2,11 +2,13 @@
 //! its own. It listens to the validation layer where `STRATAVOX_VALIDATION` is set.
 #![allow(dead_code, unused_imports, reason = "each test file uses its part")]
 
+mod depth;
 mod expected;
 mod image;
 mod loader;
 mod scene;
 
+pub use depth::{ATTACHED, DepthImage, READ};
 pub use expected::{assert_close, over};
 pub use image::HostImage;
 pub use scene::{OnDevice, Stage};
@@ -34,22 +36,33 @@ impl Host {
     /// A host that knows its submissions by fences.
     pub fn new() -> Self {
         // SAFETY: nothing is enabled on the device that is not asked for here.
-        unsafe { Self::with(false, Caps::UNLIMITED) }
+        unsafe { Self::with(false, Caps::UNLIMITED, loader::guarded) }
     }
 
     /// The same with stricter limits.
     pub fn with_caps(caps: Caps) -> Self {
         // SAFETY: as above.
-        unsafe { Self::with(false, caps) }
+        unsafe { Self::with(false, caps, loader::guarded) }
     }
 
     /// A host with a timeline.
     pub fn with_timeline() -> Self {
         // SAFETY: as above.
-        unsafe { Self::with(true, Caps::UNLIMITED) }
+        unsafe { Self::with(true, Caps::UNLIMITED, loader::guarded) }
     }
 
-    unsafe fn with(timeline_semaphore: bool, caps: Caps) -> Self {
+    /// The same, and we may submit to its queue.
+    pub fn that_lets_us_submit() -> Self {
+        let real = loader::entry().static_fn().get_instance_proc_addr;
+        // SAFETY: as above.
+        unsafe { Self::with(true, Caps::UNLIMITED, real) }
+    }
+
+    unsafe fn with(
+        timeline_semaphore: bool,
+        caps: Caps,
+        get_instance_proc_addr: vk::PFN_vkGetInstanceProcAddr,
+    ) -> Self {
         let mode = Validation::default().mode().unwrap();
         // SAFETY: plain Vulkan set-up, every argument of which is right.
         unsafe {
@@ -87,7 +100,7 @@ impl Host {
             let info = vk::CommandPoolCreateInfo::default().flags(flags);
             let pool = device.create_command_pool(&info, None).unwrap();
             let gpu = Gpu::from_host(HostDevice {
-                get_instance_proc_addr: loader::guarded,
+                get_instance_proc_addr,
                 instance: instance.handle(),
                 physical_device,
                 device: device.handle(),
@@ -172,6 +185,29 @@ impl Host {
         [width, height]: [u32; 2],
         drawn: [f32; 4],
     ) {
+        // SAFETY: the caller's promise.
+        unsafe { self.begin_rendering_before(cmd, view, [width, height], drawn, None) };
+    }
+
+    /// The same with a depth buffer, which is kept.
+    ///
+    /// # Safety
+    /// As `vkCmdBeginRendering`: the depth is [`ATTACHED`].
+    pub unsafe fn begin_rendering_before(
+        &self,
+        cmd: vk::CommandBuffer,
+        view: vk::ImageView,
+        [width, height]: [u32; 2],
+        drawn: [f32; 4],
+        depth: Option<&DepthImage>,
+    ) {
+        let depth = depth.map(|depth| {
+            vk::RenderingAttachmentInfo::default()
+                .image_view(depth.view)
+                .image_layout(ATTACHED.2)
+                .load_op(vk::AttachmentLoadOp::LOAD)
+                .store_op(vk::AttachmentStoreOp::STORE)
+        });
         let attachments = [vk::RenderingAttachmentInfo::default()
             .image_view(view)
             .image_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
@@ -185,6 +221,10 @@ impl Host {
             .render_area(extent.into())
             .layer_count(1)
             .color_attachments(&attachments);
+        let info = match &depth {
+            Some(depth) => info.depth_attachment(depth),
+            None => info,
+        };
         // SAFETY: the caller's promise.
         unsafe { self.device.cmd_begin_rendering(cmd, &info) };
     }

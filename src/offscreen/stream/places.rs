@@ -41,7 +41,9 @@ impl Eye {
             rays.forward.dot(point - rays.origin)
         });
         let farthest = depths.into_iter().fold(0.0, f64::max);
-        let pixel_world = rays.origin_dx.length() + rays.direction_dx.length() * farthest;
+        let side = |dx: DVec3, dy: DVec3| dx.length().max(dy.length());
+        let pixel_world = side(rays.origin_dx, rays.origin_dy)
+            + side(rays.direction_dx, rays.direction_dy) * farthest;
         let rows = grid.voxel_rows().map(DVec3::length);
         Self {
             margin: MARGIN_PIXELS * pixel_world * DVec3::from_array(rows) + 1e-3,

@@ -55,7 +55,29 @@ impl Projection {
     /// # Errors
     /// Where an input is missing.
     pub fn bind(&self, inputs: &Inputs, accumulation: &Image) -> Result<Bindings, Error> {
-        let outputs = [("accumulation", Resource::written(accumulation))];
+        // In place of a depth that is not looked at.
+        self.bind_behind(
+            inputs,
+            accumulation,
+            Resource::sampled_or_read(accumulation),
+        )
+    }
+
+    /// The same behind what a host has drawn: `host_depth` is its depth buffer, a texture as large as the picture, of
+    /// which [`super::Recording::behind`] tells the parameters.
+    ///
+    /// # Errors
+    /// Where an input is missing.
+    pub fn bind_behind(
+        &self,
+        inputs: &Inputs,
+        accumulation: &Image,
+        host_depth: Resource,
+    ) -> Result<Bindings, Error> {
+        let outputs = [
+            ("accumulation", Resource::written(accumulation)),
+            ("host_depth", host_depth),
+        ];
         inputs.bind(&self.gpu, self.pipeline.layout(), &outputs)
     }
 

@@ -78,9 +78,26 @@ impl Raycast {
         picture: &Image,
         layers: &Image,
     ) -> Result<Bindings, Error> {
+        // In place of a depth that is not looked at.
+        self.bind_behind(inputs, picture, layers, Resource::sampled_or_read(layers))
+    }
+
+    /// The same behind what a host has drawn: `host_depth` is its depth buffer, a texture as large as the picture, of
+    /// which [`super::Recording::behind`] tells the parameters.
+    ///
+    /// # Errors
+    /// Where an input is missing.
+    pub fn bind_behind(
+        &self,
+        inputs: &Inputs,
+        picture: &Image,
+        layers: &Image,
+        host_depth: Resource,
+    ) -> Result<Bindings, Error> {
         let outputs = [
             ("picture", Resource::written(picture)),
             ("layers", Resource::written(layers)),
+            ("host_depth", host_depth),
         ];
         inputs.bind(&self.gpu, self.pipeline.layout(), &outputs)
     }

@@ -5,7 +5,6 @@
 //! orthogonal grids that switches at 45 degrees; spacing does not weigh.
 
 use super::planes_per_slice;
-use crate::camera::Projection;
 use crate::shaders::FrameFields;
 use crate::technique::{Order, View};
 use glam::DVec3;
@@ -37,9 +36,9 @@ pub fn stack_axis(view: &View) -> usize {
 /// |n_k . v| of each axis.
 pub(super) fn facing(view: &View) -> [f64; 3] {
     let forward = view.rays().forward;
-    let towards = match view.camera.projection {
-        Projection::Orthographic { .. } => forward,
-        Projection::Perspective { .. } => (view.grid.center() - view.camera.eye)
+    let towards = match view.camera.projection.is_perspective() {
+        false => forward,
+        true => (view.grid.center() - view.camera.eye)
             .try_normalize()
             .unwrap_or(forward),
     };
@@ -120,8 +119,8 @@ pub fn set_slices(
 
 /// The first plane that lies above the eye along the axis.
 fn first_plane_above_eye(view: &View, axis: usize, planes_per_slice: f64) -> i32 {
-    match view.camera.projection {
-        Projection::Perspective { .. } => {
+    match view.camera.projection.is_perspective() {
+        true => {
             let eye = view
                 .grid
                 .world_from_voxel
@@ -131,7 +130,7 @@ fn first_plane_above_eye(view: &View, axis: usize, planes_per_slice: f64) -> i32
             ((eye[axis] - 0.5) * planes_per_slice).floor() as i32 + 1
         }
         // The eye is infinitely far below or above.
-        Projection::Orthographic { .. } => {
+        false => {
             let rises = view.grid.voxel_rows()[axis].dot(view.rays().forward) > 0.0;
             if rises { i32::MIN } else { i32::MAX }
         }

@@ -16,7 +16,7 @@
 //!
 //! Kniss, Premoze, Hansen, Shirley and McPherson, "A Model for Volume Lighting and Modeling", IEEE TVCG 9(2), 2003.
 
-use crate::camera::{Projection, Rays};
+use crate::camera::Rays;
 use crate::shaders::FrameFields;
 use crate::technique::frame::clip_rows;
 use crate::technique::{Error, Order, View};
@@ -98,7 +98,7 @@ impl View<'_> {
     /// The cosine is concave along arcs on which it is positive, so it is least at a corner: of the box as the eye
     /// sees it, and of the picture. Rays are inside of both.
     fn check_steepness(&self, normal: DVec3) -> Result<(), Error> {
-        if let Projection::Orthographic { .. } = self.camera.projection {
+        if !self.camera.projection.is_perspective() {
             return Ok(());
         }
         let rays = self.rays();

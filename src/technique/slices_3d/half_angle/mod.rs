@@ -17,9 +17,9 @@ pub mod reference;
 pub use geometry::HalfAngle;
 
 use crate::gpu::{
-    Bindings, Blend, Error, Gpu, Image, ImageDesc, ImageKind, Load, RasterDesc, RasterPipeline,
-    Resource, Tile, Use, begin_rendering, begin_rendering_of, end_rendering, image_barrier,
-    set_area_of,
+    Bindings, Blend, DepthUse, Error, Gpu, Image, ImageDesc, ImageKind, Load, RasterDesc,
+    RasterPipeline, Resource, Tile, Use, begin_rendering, begin_rendering_of, end_rendering,
+    image_barrier, set_area_of,
 };
 use crate::shaders::shader;
 use crate::technique::blend::Drawn;
@@ -90,7 +90,8 @@ impl HalfAngleSlicer {
             let desc = RasterDesc {
                 vertex: shader("slices_3d_cover"),
                 fragment: shader(&fragment),
-                color_formats: &[ACCUMULATION_FORMAT],
+                target: ACCUMULATION_FORMAT.into(),
+                depth: DepthUse::Ignored,
                 blend,
             };
             RasterPipeline::new(gpu, &desc)

@@ -1,0 +1,74 @@
+//! Why nothing is drawn.
+
+/// Why nothing is drawn. Nothing was recorded then, unless it says so.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The picture cannot be made as asked.
+    #[error(transparent)]
+    Technique(#[from] crate::technique::Error),
+    /// The device refused.
+    #[error(transparent)]
+    Gpu(#[from] crate::gpu::Error),
+    /// The camera sees nothing.
+    #[error(transparent)]
+    Camera(#[from] crate::camera::Error),
+    /// What is not drawn inside a host's frame.
+    #[error("{what} is not drawn inside a host's frame: {hint}")]
+    NotEmbedded {
+        /// What was asked for.
+        what: &'static str,
+        /// What to do.
+        hint: &'static str,
+    },
+    /// Pipelines are of another kind of picture.
+    #[error("the renderer was made for {made}, and {wanted} needs another one")]
+    OtherClass {
+        /// What pipelines and textures are for.
+        made: String,
+        /// What was asked for.
+        wanted: String,
+    },
+    /// The voxels are not there yet.
+    #[error(
+        "the volume has not been uploaded: `Volume::record_upload` comes before the first frame"
+    )]
+    NotUploaded,
+    /// A frame in flight that there is none of.
+    #[error("frame {found} of {of} frames in flight")]
+    NoFrame {
+        /// What was asked for.
+        found: u32,
+        /// How many there are.
+        of: u32,
+    },
+    /// Nothing of this frame in flight has been recorded.
+    #[error("nothing was recorded for frame {frame}: `record` comes before `{what}`")]
+    NotRecorded {
+        /// The frame in flight.
+        frame: u32,
+        /// What was called.
+        what: &'static str,
+    },
+    /// The class and the shots, or the images, tell different stories of the host's depth.
+    #[error("the host's depth: wanted {wanted}, found {found}")]
+    HostDepth {
+        /// What would do.
+        wanted: String,
+        /// What was given.
+        found: String,
+    },
+    /// There is no depth in such pictures.
+    #[error("{what} has no depth to give back: rays have, and in modes with a place of their own")]
+    NoDepth {
+        /// Technique and mode.
+        what: String,
+    },
+    /// A pixel outside of the picture.
+    #[error("pixel ({}, {}) of a picture of {} x {}", found[0], found[1], extent[0], extent[1])]
+    NoPixel {
+        /// What was asked for.
+        found: [u32; 2],
+        /// The picture.
+        extent: [u32; 2],
+    },
+}

@@ -1,0 +1,112 @@
+//! A transfer function on a host's device, and what is empty under it.
+
+use super::{Error, Volume};
+use crate::gpu::Gpu;
+use crate::resident::{EmptySpace, GpuTransfer};
+use crate::technique::{Mix, Settings, Skip, Skippable};
+use crate::transfer::{Graded, TransferFunction};
+use ash::vk;
+use std::sync::Arc;
+
+/// A transfer function, or none where surfaces need none.
+#[derive(Debug)]
+pub(super) struct Function {
+    made: Option<GpuTransfer>,
+    skippable: Skippable,
+    empty: Option<EmptySpace>,
+    pub mix: Mix,
+    /// Points and second gradients, which loops of the driver are counted by.
+    pub turns: crate::technique::Functions,
+    is_uploaded: bool,
+}
+
+impl Function {
+    /// Objects for `function`. `before` gives away the pipeline that finds empty space.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        volume: &Volume,
+        settings: &Settings,
+        function: Option<&TransferFunction>,
+        before: Option<&Self>,
+    ) -> Result<Self, Error> {
+        let needs_one = settings.mode != crate::technique::Mode::Iso;
+        if needs_one && function.is_none() {
+            return Err(crate::technique::Error::NoTransferFunction.into());
+        }
+        let mix = match function.is_some_and(TransferFunction::is_graded) {
+            true => Mix::Graded,
+            false => Mix::Alone,
+        };
+        if mix == Mix::Graded {
+            settings.check_graded()?;
+        }
+        let spacing = volume.grid().smallest_spacing();
+        let made = function.map(|function| {
+            let length = function.reference_length.unwrap_or(spacing);
+            match settings.preintegrated {
+                true => GpuTransfer::preintegrated(gpu, function, length, settings.color_space),
+                false => GpuTransfer::new(gpu, function, length, settings.color_space),
+            }
+        });
+        let mut skippable = settings.skippable(mix, function, volume.value_range());
+        let mut empty = None;
+        match (volume.cells(), &skippable) {
+            (Some(cells), Skippable::Unseen(seen)) => {
+                let before = before.and_then(|before| before.empty.as_ref());
+                empty = Some(match before {
+                    Some(before) => before.under(cells, seen)?,
+                    None => EmptySpace::new(gpu, cells, seen)?,
+                });
+            }
+            (Some(_), Skippable::Exceeded) => {}
+            _ => skippable = Skippable::Nothing,
+        }
+        let graded = function.and_then(|function| function.graded.as_ref());
+        Ok(Self {
+            made: made.transpose()?,
+            skippable,
+            empty,
+            mix,
+            turns: crate::technique::Functions {
+                points: function.map_or(0, |f| f.color.len().max(f.opacity.len())),
+                second: graded.is_some_and(Graded::needs_second),
+            },
+            is_uploaded: false,
+        })
+    }
+
+    /// Records what fills the objects, once.
+    ///
+    /// # Safety
+    /// `cmd` is recording, outside rendering, after the upload of the volume.
+    pub unsafe fn record_upload(&mut self, cmd: vk::CommandBuffer) -> Result<(), Error> {
+        if self.is_uploaded {
+            return Ok(());
+        }
+        // SAFETY: the caller's promises.
+        unsafe {
+            if let Some(made) = &self.made {
+                made.record_upload(cmd)?;
+            }
+            if let Some(empty) = &self.empty {
+                empty.record(cmd)?;
+            }
+        }
+        self.is_uploaded = true;
+        Ok(())
+    }
+
+    /// What techniques read.
+    pub fn transfer(&self) -> Option<&GpuTransfer> {
+        self.made.as_ref()
+    }
+
+    /// Where they need not look.
+    pub fn skip<'a>(&'a self, volume: &'a Volume) -> Skip<'a> {
+        match (&self.skippable, volume.cells(), &self.empty) {
+            (Skippable::Exceeded, Some(cells), _) => Skip::Exceeded(cells),
+            (Skippable::Unseen(_), Some(cells), Some(empty)) => Skip::Unseen(cells, empty),
+            _ => Skip::Nothing,
+        }
+    }
+}

@@ -1,0 +1,41 @@
+//! A volume inside a host's frame: three levels over one set of objects.
+//!
+//! ```text
+//!     Volume::new(gpu, voxels, settings)               textures; record_upload once, outside rendering
+//!     Renderer::new(gpu, volume, function, class, ..)  pipelines, images, descriptor sets: all of them
+//! each frame
+//!     renderer.record(cmd, shot)                       outside rendering: parameters, compute passes
+//! A   renderer.draw(cmd, frame)                        inside the host's rendering, over what it has drawn
+//! B   renderer.record_into(cmd, shot, target)          both, into an image that comes and goes in stated states
+//! C   submitter.submit(queue, frame, waits, signals)   the same, submitted by us
+//! ```
+//!
+//! A and B never submit, never wait and make no Vulkan object. What a frame uses is free again when the host says so:
+//! it counts its submissions, calls [`Gpu::announce`](crate::gpu::Gpu::announce) before it records and
+//! [`Gpu::retire`](crate::gpu::Gpu::retire) when the device has done them, and gives a number of a frame in flight
+//! ([`Shot::frame`]) to no second frame before the first is done.
+//!
+//! What a host has drawn hides the volume behind it ([`Class::host_depth`]): rays end at its depth buffer, which they
+//! read as a texture, slices are tested against it in hardware. Its own depth a picture by rays gives back by
+//! [`Renderer::draw_depth`] and [`Renderer::record_pick`].
+//!
+//! Not here, and refused by name: half-angle slices and light volumes (shadows, ambient occlusion), several volumes,
+//! several rays a pixel, cross-fades of stacks. The pieces for them lie one floor below, in [`crate::technique`].
+
+mod class;
+mod error;
+mod frame;
+mod function;
+mod pass;
+mod pick;
+mod recording;
+mod renderer;
+mod submitter;
+mod volume;
+
+pub use class::{Class, HostDepthImage, Shot};
+pub use error::Error;
+pub use pick::Pick;
+pub use renderer::Renderer;
+pub use submitter::{QueueLock, Submitter};
+pub use volume::Volume;

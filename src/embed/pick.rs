@@ -1,0 +1,121 @@
+//! What lies under a pixel.
+
+use super::frame::PICK_BYTES;
+use super::{Error, Renderer};
+use crate::gpu::{Region, Use, image_barrier, image_to_buffer};
+use crate::technique::Mode;
+use crate::volume::{Volume, sample::nearest};
+use ash::vk;
+use glam::DVec3;
+
+/// What the depth of a picture by rays says of one pixel: where a composite has become half opaque, the first surface,
+/// the place of a maximum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pick {
+    /// World length from where the ray starts: the eye, or the near plane of parallel rays.
+    pub distance: f64,
+    /// The place in the world.
+    pub position: DVec3,
+    /// The projected value, or that of the surface; `None` of composites.
+    pub value: Option<f64>,
+    /// Premultiplied colour and alpha there; projecting modes have none before they are classified.
+    pub color: Option<[f32; 4]>,
+}
+
+impl Pick {
+    /// The voxel of `volume` there: the value of what is shown, or the label of a map beside it. `None` outside, and
+    /// where it has no data.
+    pub fn voxel_of(&self, volume: &Volume) -> Option<f64> {
+        let voxel = volume
+            .world_from_voxel
+            .inverse()
+            .transform_point3(self.position);
+        nearest::<f64>(volume, voxel.to_array())
+    }
+}
+
+impl Renderer {
+    /// Records the copy of what lies under a pixel, for [`Renderer::pick`] when the frame is done.
+    ///
+    /// # Errors
+    /// [`Error::NoDepth`], [`Error::NoPixel`], and where nothing was recorded.
+    ///
+    /// # Safety
+    /// As [`Renderer::record`], after it.
+    pub unsafe fn record_pick(
+        &self,
+        cmd: vk::CommandBuffer,
+        frame: u32,
+        pixel: [u32; 2],
+    ) -> Result<(), Error> {
+        let (there, _) = self.recorded(frame, "record_pick")?;
+        let (Some(images), Some(buffer)) = (&there.images, &there.pick) else {
+            return Err(Error::NoDepth {
+                what: self.class.what(),
+            });
+        };
+        if !self.class.settings.mode.has_depth() {
+            return Err(Error::NoDepth {
+                what: self.class.what(),
+            });
+        }
+        let [x, y] = pixel;
+        if x >= self.extent[0] || y >= self.extent[1] {
+            return Err(Error::NoPixel {
+                found: pixel,
+                extent: self.extent,
+            });
+        }
+        let region = Region {
+            origin: [x, y, 0],
+            extent: [1; 3],
+        };
+        for (image, offset) in self.left(images).iter().zip((0..).step_by(16)) {
+            // SAFETY: the caller's promises; `record` left the images as they are here.
+            unsafe {
+                let gpu = &self.gpu;
+                image_barrier(gpu, cmd, image, Use::FragmentSampled, Use::TransferRead);
+                image_to_buffer(gpu, cmd, image, region, buffer, offset)?;
+                image_barrier(gpu, cmd, image, Use::TransferRead, Use::FragmentSampled);
+            }
+        }
+        Ok(())
+    }
+
+    /// What lay under `pixel` in a frame that is done; `None` where nothing has a depth there.
+    ///
+    /// # Errors
+    /// Where nothing was picked.
+    pub fn pick(&self, frame: u32, pixel: [u32; 2]) -> Result<Option<Pick>, Error> {
+        let (there, recorded) = self.recorded(frame, "pick")?;
+        let Some(buffer) = &there.pick else {
+            return Err(Error::NoDepth {
+                what: self.class.what(),
+            });
+        };
+        let mut texels = [[0f32; 4]; PICK_BYTES as usize / 16];
+        buffer.read(0, bytemuck::cast_slice_mut(&mut texels))?;
+        let [picture, layers] = texels;
+        let mode = self.class.settings.mode;
+        let (distance, value, color) = match mode.is_projection() {
+            true => (picture[2], Some(picture[0]), None),
+            false => {
+                let level = (mode == Mode::Iso).then_some(layers[0]);
+                (layers[1], level, Some(picture))
+            }
+        };
+        if distance < 0.0 || (mode.is_projection() && picture[1] == 0.0) {
+            return Ok(None);
+        }
+        let rays = recorded.camera.rays(self.extent);
+        let [x, y] = pixel.map(|n| f64::from(n) + 0.5);
+        let (origin, direction) = rays.at(x, y);
+        let distance = f64::from(distance);
+        Ok(Some(Pick {
+            distance,
+            position: origin + distance * direction,
+            value: value.map(f64::from),
+            color,
+        }))
+    }
+}

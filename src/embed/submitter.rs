@@ -1,0 +1,93 @@
+//! Level C: frames that we submit.
+
+use super::{Error, Renderer, Shot};
+use crate::gpu::{Commands, Gpu, Load, Target, TimelinePoint};
+use ash::vk;
+use std::fmt;
+use std::sync::Arc;
+
+/// A host's queue, and the lock around it: another thread of the host's may submit to it too.
+#[derive(Clone, Copy)]
+pub struct QueueLock<'a> {
+    /// The queue, of [`Gpu::queue_family`].
+    pub queue: vk::Queue,
+    /// Calls what it is given, once, while nobody else uses the queue.
+    pub locked: &'a dyn Fn(&mut dyn FnMut()),
+}
+
+impl fmt::Debug for QueueLock<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut debug = f.debug_struct("QueueLock");
+        debug.field("queue", &self.queue).finish_non_exhaustive()
+    }
+}
+
+/// Command buffers for frames that we submit.
+#[derive(Debug)]
+pub struct Submitter {
+    commands: Commands,
+}
+
+impl Submitter {
+    /// For so many frames in flight.
+    ///
+    /// # Errors
+    /// Where `timelineSemaphore` is not enabled on the device; no memory.
+    pub fn new(gpu: &Arc<Gpu>, frames_in_flight: u32) -> Result<Self, Error> {
+        let commands = Commands::new(gpu, frames_in_flight)?;
+        Ok(Self { commands })
+    }
+
+    /// [`Renderer::record_into`] in a submission of our own, that begins when all of `waits` are reached and reaches
+    /// all of `signals`. Nothing waits on the CPU but for the lock.
+    ///
+    /// # Errors
+    /// As [`Renderer::record_into`]: nothing is submitted then. A device that is lost.
+    ///
+    /// # Safety
+    /// As [`Renderer::record_into`]; semaphores are timelines of the device and live until the submission is done, and
+    /// while `lock` calls back nobody else uses the queue.
+    #[allow(clippy::too_many_arguments, reason = "what a frame is, and when")]
+    pub unsafe fn submit(
+        &mut self,
+        renderer: &mut Renderer,
+        shot: &Shot,
+        target: &Target,
+        load: Load,
+        lock: QueueLock,
+        waits: &[TimelinePoint],
+        signals: &[TimelinePoint],
+    ) -> Result<(), Error> {
+        // SAFETY: the caller's promises.
+        unsafe {
+            self.run(lock, shot.frame, waits, signals, |cmd| {
+                renderer.record_into(cmd, shot, target, load)
+            })
+        }
+    }
+
+    /// Whatever `record` records, submitted in the same way: uploads.
+    ///
+    /// # Errors
+    /// Those of `record`: nothing is submitted then. A device that is lost.
+    ///
+    /// # Safety
+    /// As [`Submitter::submit`].
+    pub unsafe fn run(
+        &mut self,
+        lock: QueueLock,
+        frame: u32,
+        waits: &[TimelinePoint],
+        signals: &[TimelinePoint],
+        record: impl FnOnce(vk::CommandBuffer) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        // SAFETY: the caller's promises.
+        unsafe { self.commands.record(frame, record)? };
+        let mut submitted = Ok(());
+        (lock.locked)(&mut || {
+            // SAFETY: as above; recorded just now.
+            submitted = unsafe { self.commands.submit(lock.queue, frame, waits, signals) };
+        });
+        Ok(submitted?)
+    }
+}

@@ -1,0 +1,177 @@
+//! A volume on a host's device, as the technique of a class reads it.
+
+use super::Error;
+use crate::gpu::{Buffer, Gpu};
+use crate::resident::{Corners, GpuVolume, MacroCells, Texels, TextureLayout};
+use crate::technique::{GradientSource, Keep, Mix, Settings, Technique};
+use crate::volume::{self, Coefficients, Grid};
+use ash::vk;
+use std::sync::Arc;
+
+/// A volume's textures, what is known of its empty space, and its voxels on their way there. Several renderers may
+/// share it.
+#[derive(Debug)]
+pub struct Volume {
+    grid: Grid,
+    value_range: [f64; 2],
+    /// One, or a stack along each axis.
+    copies: Vec<GpuVolume>,
+    /// Of the copy that rays read.
+    cells: Option<MacroCells>,
+    /// Corners and cells come with the voxels.
+    staging: Vec<Buffer>,
+    is_uploaded: bool,
+}
+
+impl Volume {
+    /// Textures for `voxels`, and a staging buffer that holds them: one texture, or the three stacks of
+    /// [`Technique::Slices2d`].
+    ///
+    /// # Errors
+    /// Where the device gives no memory; [`Error::NotEmbedded`] for gradients that are to be kept.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        voxels: &volume::Volume,
+        settings: &Settings,
+    ) -> Result<Self, Error> {
+        if settings.keep_gradients == Keep::Always {
+            return Err(Error::NotEmbedded {
+                what: "a volume with kept gradients",
+                hint: "take `Keep::Never`, or `resident::KeptGradients` and record them",
+            });
+        }
+        let layouts = match settings.technique {
+            Technique::Slices2d => (0..3).map(TextureLayout::Stack).collect(),
+            Technique::Raycast | Technique::Slices3d => vec![TextureLayout::Texture3d],
+        };
+        let (mut copies, mut staging) = (Vec::new(), Vec::new());
+        for layout in layouts {
+            let copy = copy(gpu, voxels, settings, layout, &mut staging)?;
+            copies.push(copy);
+        }
+        let mut made = Self {
+            grid: voxels.grid(),
+            value_range: voxels.value_range,
+            copies,
+            cells: None,
+            staging,
+            is_uploaded: false,
+        };
+        if settings.technique == Technique::Raycast {
+            made.know_empty_space(gpu, voxels, settings)?;
+        }
+        Ok(made)
+    }
+
+    /// Corners and macro cells, for pictures that leave out what cannot be seen.
+    fn know_empty_space(
+        &mut self,
+        gpu: &Arc<Gpu>,
+        voxels: &volume::Volume,
+        settings: &Settings,
+    ) -> Result<(), Error> {
+        let copy = &mut self.copies[0];
+        let is_one = copy.bricks().len() == 1 && copy.spline().is_none();
+        if is_one && settings.reads_corners(Mix::Alone) && Corners::are_for(gpu, voxels) {
+            if let Some(corners) = Corners::new(gpu, voxels)? {
+                copy.keep_corners(corners);
+            }
+        }
+        if settings.skip && !settings.preintegrated {
+            let apron = settings.apron();
+            self.cells = Some(match gpu.is_cpu() && copy.spline().is_none() {
+                true => MacroCells::of_voxels(gpu, copy, apron, voxels)?,
+                false => MacroCells::new(gpu, copy, apron)?,
+            });
+        }
+        Ok(())
+    }
+
+    /// Records the upload, once. What it was staged in goes when that has run: [`Gpu::announce`] comes before.
+    ///
+    /// # Errors
+    /// Where the device cannot dispatch so many cells.
+    ///
+    /// # Safety
+    /// `cmd` is recording, outside rendering, and is submitted before anything that draws the volume.
+    pub unsafe fn record_upload(&mut self, gpu: &Gpu, cmd: vk::CommandBuffer) -> Result<(), Error> {
+        let staged = self.copies.iter().flat_map(|copy| {
+            let beside = copy.gradient_source();
+            [Some(copy), beside].into_iter().flatten()
+        });
+        // SAFETY: the caller's promises; buffers lie in the order of what they fill, and wait for the device.
+        unsafe {
+            for (texture, staging) in staged.zip(&self.staging) {
+                texture.record_upload_all(cmd, staging)?;
+            }
+            for copy in &self.copies {
+                if let Some(corners) = copy.corners() {
+                    corners.record_upload(gpu, cmd);
+                }
+            }
+            if let Some(cells) = &self.cells {
+                cells.record(cmd)?;
+            }
+        }
+        self.staging.clear();
+        self.is_uploaded = true;
+        Ok(())
+    }
+
+    /// Where its voxels lie.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// Smallest and largest valid value.
+    pub fn value_range(&self) -> [f64; 2] {
+        self.value_range
+    }
+
+    /// The copy that lies so; `None` where there is none.
+    pub fn copy(&self, layout: TextureLayout) -> Option<&GpuVolume> {
+        self.copies.iter().find(|copy| copy.layout() == layout)
+    }
+
+    pub(super) fn copies(&self) -> &[GpuVolume] {
+        &self.copies
+    }
+
+    pub(super) fn cells(&self) -> Option<&MacroCells> {
+        self.cells.as_ref()
+    }
+
+    pub(super) fn is_uploaded(&self) -> bool {
+        self.is_uploaded
+    }
+}
+
+/// One copy of the volume, and the buffers that fill it: voxels or coefficients, and what gradients are made of beside.
+fn copy(
+    gpu: &Arc<Gpu>,
+    voxels: &volume::Volume,
+    settings: &Settings,
+    layout: TextureLayout,
+    staging: &mut Vec<Buffer>,
+) -> Result<GpuVolume, Error> {
+    let spline = settings.filter.spline();
+    let values = spline.map(|spline| Coefficients::new(voxels, spline, layout.filtered_axes()));
+    let values = values.as_ref().map(Texels::Coefficients);
+    let values = values.unwrap_or(Texels::Voxels(voxels));
+    let source = settings.gradient_source_beside(layout);
+    let source = source.filter(|_| settings.shading.is_some());
+    let of_spline = source.and_then(GradientSource::spline);
+    let beside = of_spline.map(|spline| Coefficients::new(voxels, spline, [true; 3]));
+    let beside = beside.as_ref().map(Texels::Coefficients);
+    let beside = beside.unwrap_or(Texels::Voxels(voxels));
+    let made = match (source, values) {
+        (Some(_), _) => GpuVolume::with_gradient_source(gpu, values, beside, layout)?,
+        (None, Texels::Voxels(voxels)) => GpuVolume::new(gpu, voxels, layout)?,
+        (None, Texels::Coefficients(values)) => GpuVolume::of_coefficients(gpu, values, layout)?,
+    };
+    staging.push(made.stage(values.volume())?);
+    if let Some(source) = made.gradient_source() {
+        staging.push(source.stage(beside.volume())?);
+    }
+    Ok(made)
+}

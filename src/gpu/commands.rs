@@ -1,0 +1,116 @@
+//! Command buffers of ours for a queue of the host's: recorded and submitted by us, where a host wants that.
+
+use super::{Error, Gpu, error::Doing, owned::Own};
+use ash::vk;
+use std::sync::Arc;
+
+/// A timeline semaphore of the host's, and one of its values.
+pub type TimelinePoint = (vk::Semaphore, u64);
+
+/// One command buffer for each frame in flight, and the pool that they come from.
+#[derive(Debug)]
+pub struct Commands {
+    pool: Own<vk::CommandPool>,
+    buffers: Vec<vk::CommandBuffer>,
+}
+
+impl Commands {
+    /// Command buffers for queues of [`Gpu::queue_family`].
+    ///
+    /// # Errors
+    /// Where `timelineSemaphore` is not enabled on the device; no memory.
+    pub fn new(gpu: &Arc<Gpu>, count: u32) -> Result<Self, Error> {
+        if !gpu.features().timeline_semaphore {
+            return Err(Error::MissingFeature {
+                device: gpu.device_name().into(),
+                name: "timelineSemaphore",
+            });
+        }
+        let doing = || "make command buffers".into();
+        let info = vk::CommandPoolCreateInfo::default()
+            .flags(vk::CommandPoolCreateFlags::RESET_COMMAND_BUFFER)
+            .queue_family_index(gpu.queue_family());
+        // SAFETY: the device is valid.
+        let pool = unsafe { gpu.device().create_command_pool(&info, None) }.doing(doing)?;
+        let pool = Own::new(gpu, pool);
+        let info = vk::CommandBufferAllocateInfo::default()
+            .command_pool(pool.get())
+            .command_buffer_count(count);
+        // SAFETY: the pool is ours.
+        let buffers = unsafe { gpu.device().allocate_command_buffers(&info) }.doing(doing)?;
+        Ok(Self { pool, buffers })
+    }
+
+    /// Records command buffer number `frame`, for [`Commands::submit`].
+    ///
+    /// # Errors
+    /// Those of `record`; a number that there is no buffer of.
+    ///
+    /// # Safety
+    /// The device has finished what was submitted with this number before.
+    pub unsafe fn record<E: From<Error>>(
+        &self,
+        frame: u32,
+        record: impl FnOnce(vk::CommandBuffer) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let device = self.pool.gpu().device();
+        let cmd = self.buffer(frame)?;
+        let info = vk::CommandBufferBeginInfo::default()
+            .flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
+        // SAFETY: the caller's promise: the buffer is in no use.
+        unsafe { device.begin_command_buffer(cmd, &info) }
+            .doing(|| "begin a command buffer".into())?;
+        let recorded = record(cmd);
+        // SAFETY: it is recording.
+        let ended = unsafe { device.end_command_buffer(cmd) };
+        recorded?;
+        ended.doing(|| "end a command buffer".into())?;
+        Ok(())
+    }
+
+    /// Submits what was recorded last with this number: it begins when all of `waits` are reached, and all of `signals`
+    /// are reached when it is done.
+    ///
+    /// # Errors
+    /// A device that is lost; a number that there is no buffer of.
+    ///
+    /// # Safety
+    /// - [`Commands::record`] has recorded it since it was submitted last;
+    /// - nobody else uses the queue meanwhile; it is of the family that the buffers were made for;
+    /// - semaphores are timelines of the device, and live until the submission is done.
+    pub unsafe fn submit(
+        &self,
+        queue: vk::Queue,
+        frame: u32,
+        waits: &[TimelinePoint],
+        signals: &[TimelinePoint],
+    ) -> Result<(), Error> {
+        let point = |&(semaphore, value): &TimelinePoint| {
+            vk::SemaphoreSubmitInfo::default()
+                .semaphore(semaphore)
+                .value(value)
+                .stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
+        };
+        let waits: Vec<_> = waits.iter().map(point).collect();
+        let signals: Vec<_> = signals.iter().map(point).collect();
+        let cmds = [vk::CommandBufferSubmitInfo::default().command_buffer(self.buffer(frame)?)];
+        let submit = [vk::SubmitInfo2::default()
+            .wait_semaphore_infos(&waits)
+            .command_buffer_infos(&cmds)
+            .signal_semaphore_infos(&signals)];
+        let device = self.pool.gpu().device();
+        // SAFETY: the caller's promises; synchronization2 was required of the device.
+        unsafe { device.queue_submit2(queue, &submit, vk::Fence::null()) }
+            .doing(|| "submit a frame".into())
+    }
+
+    fn buffer(&self, frame: u32) -> Result<vk::CommandBuffer, Error> {
+        let wrong = || Error::Argument {
+            doing: "record a frame of ours".into(),
+            wanted: format!("a frame in flight below {}", self.buffers.len()),
+            found: frame.to_string(),
+        };
+        let buffer = self.buffers.get(frame as usize);
+        buffer.copied().ok_or_else(wrong)
+    }
+}

@@ -1,0 +1,85 @@
+//! The compute pass of a picture by rays, whatever its mode.
+
+use super::projection::Projection;
+use super::raycast::Raycast;
+use super::{Inputs, Settings, Words};
+use crate::gpu::{Bindings, Error, Gpu, Image, Resource, Tile};
+use ash::vk;
+use std::sync::Arc;
+
+/// Rays that composite, or that project.
+#[derive(Debug)]
+pub enum RayPass {
+    /// Colours, and what lies beside them.
+    Raycast(Raycast),
+    /// One number a ray, which the resolve classifies.
+    Projection(Projection),
+}
+
+impl RayPass {
+    /// Compiles the variant of the settings and these words.
+    ///
+    /// # Errors
+    /// Where the device refuses.
+    pub fn new(gpu: &Arc<Gpu>, settings: &Settings, words: &Words) -> Result<Self, Error> {
+        let mode = settings.mode;
+        Ok(match mode.is_projection() {
+            _ if settings.per_mode.exact_maximum => {
+                Self::Projection(Projection::exact(gpu, mode, words)?)
+            }
+            true => Self::Projection(Projection::new(gpu, mode, words)?),
+            false => Self::Raycast(Raycast::of_mode(gpu, mode, words)?),
+        })
+    }
+
+    /// The images that a recording fills, of the picture's own and the one beside it.
+    pub fn images<'a>(&self, picture: &'a Image, layers: &'a Image) -> Vec<&'a Image> {
+        match self {
+            Self::Raycast(_) => vec![picture, layers],
+            Self::Projection(_) => vec![picture],
+        }
+    }
+
+    /// Binds inputs and images; `host_depth` as in [`Raycast::bind_behind`].
+    ///
+    /// # Errors
+    /// Where an input is missing.
+    pub fn bind(
+        &self,
+        inputs: &Inputs,
+        picture: &Image,
+        layers: &Image,
+        host_depth: Option<Resource>,
+    ) -> Result<Bindings, Error> {
+        match (self, host_depth) {
+            (Self::Raycast(pass), None) => pass.bind(inputs, picture, layers),
+            (Self::Raycast(pass), Some(depth)) => pass.bind_behind(inputs, picture, layers, depth),
+            (Self::Projection(pass), None) => pass.bind(inputs, picture),
+            (Self::Projection(pass), Some(depth)) => pass.bind_behind(inputs, picture, depth),
+        }
+    }
+
+    /// Records parts of a picture of `extent`.
+    ///
+    /// # Errors
+    /// As [`Raycast::record_tiles`].
+    ///
+    /// # Safety
+    /// As [`Raycast::record_tiles`].
+    pub unsafe fn record_tiles(
+        &self,
+        cmd: vk::CommandBuffer,
+        bindings: &Bindings,
+        offset: u32,
+        extent: [u32; 2],
+        tiles: impl IntoIterator<Item = Tile>,
+    ) -> Result<(), Error> {
+        // SAFETY: the caller's promises.
+        unsafe {
+            match self {
+                Self::Raycast(pass) => pass.record_tiles(cmd, bindings, offset, extent, tiles),
+                Self::Projection(pass) => pass.record_tiles(cmd, bindings, offset, extent, tiles),
+            }
+        }
+    }
+}

@@ -1,0 +1,370 @@
+//! The three levels of `stratavox::embed` draw the very picture that `offscreen::Renderer` makes.
+
+mod embed_shared;
+mod shared;
+
+use ash::vk;
+use embed_shared::{Host, HostImage, Stage};
+use std::sync::Arc;
+use stratavox::embed::{Class, Error, QueueLock, Renderer, Shot, Submitter, Volume};
+use stratavox::gpu::{Load, Target, TargetClass, TargetState, Use};
+use stratavox::offscreen;
+use stratavox::scene::Scene;
+use stratavox::technique::{Level, Mode, Order, Settings, Technique};
+
+/// What is drawn there is what was computed, to the bit.
+const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+
+/// Every way into a host's frame.
+fn all_settings() -> Vec<Settings> {
+    let modes = [
+        Mode::Composite,
+        Mode::Mip,
+        Mode::Average,
+        Mode::Mida,
+        Mode::Iso,
+    ];
+    let rays = modes.map(|mode| Settings {
+        mode,
+        ..Settings::default()
+    });
+    let sliced = [Technique::Slices3d, Technique::Slices2d].into_iter();
+    let slices = sliced.flat_map(|technique| {
+        [Mode::Composite, Mode::Mip, Mode::Xray].map(|mode| Settings {
+            technique,
+            mode,
+            order: Order::BackToFront,
+            ..Settings::default()
+        })
+    });
+    let filters = [
+        stratavox::technique::Filter::Nearest,
+        stratavox::technique::Filter::Cubic,
+    ];
+    let filtered = filters.map(|filter| Settings {
+        filter,
+        ..Settings::default()
+    });
+    let slabs = Settings {
+        preintegrated: true,
+        ..Settings::default()
+    };
+    let all = rays
+        .into_iter()
+        .chain(slices)
+        .chain(filtered)
+        .chain([slabs]);
+    all.map(|mut settings| {
+        // Patches leave out what is nothing: the same picture, drawn otherwise.
+        if settings.mode == Mode::Iso {
+            settings.per_mode.levels = vec![Level {
+                value: 0.5,
+                srgb: [0.9, 0.6, 0.3],
+                opacity: 1.0,
+            }];
+        }
+        settings
+    })
+    .collect()
+}
+
+fn stage(settings: &Settings) -> Stage {
+    let mut stage = Stage::new(settings.clone());
+    // Pictures as hosts draw them: tables, filters of the device, what cannot be seen left out.
+    stage.settings.conformance = false;
+    stage
+}
+
+/// The offscreen picture, in the numbers of [`HostImage::numbers`].
+fn offscreen(stage: &Stage) -> Vec<[f64; 4]> {
+    let scene = Scene {
+        volume: &stage.volume,
+        transfer: Some(&stage.transfer),
+        beside: Default::default(),
+        camera: &stage.camera,
+        extent_pixels: stage.extent,
+        settings: &stage.settings,
+    };
+    let mut renderer = offscreen::Renderer::new(shared::device(), &stage.volume).unwrap();
+    let rendered = renderer.render(&scene, &[]).unwrap();
+    let pixels = rendered.picture.pixels;
+    let seen = pixels.iter().filter(|pixel| pixel[3] > 0.1).count();
+    assert!(seen > 100, "only {seen} pixels show anything");
+    pixels.iter().map(|pixel| pixel.map(f64::from)).collect()
+}
+
+fn class(stage: &Stage) -> Class {
+    Class {
+        settings: stage.settings.clone(),
+        target: FORMAT.into(),
+        frames_in_flight: 2,
+        host_depth: false,
+        gives_depth: false,
+    }
+}
+
+fn shot(stage: &Stage, frame: u32) -> Shot<'_> {
+    Shot {
+        frame,
+        camera: &stage.camera,
+        depth: None,
+    }
+}
+
+fn uploaded(host: &Host, stage: &Stage) -> Arc<Volume> {
+    let mut volume = Volume::new(host.gpu(), &stage.volume, &stage.settings).unwrap();
+    // SAFETY: outside rendering; `run` waits.
+    host.run(|cmd| unsafe { volume.record_upload(host.gpu(), cmd).unwrap() });
+    Arc::new(volume)
+}
+
+fn renderer(host: &Host, stage: &Stage) -> Renderer {
+    let volume = uploaded(host, stage);
+    let function = Some(&stage.transfer);
+    let class = class(stage);
+    Renderer::new(host.gpu(), &volume, function, class, stage.extent, &[]).unwrap()
+}
+
+fn target(image: &HostImage) -> Target {
+    Target {
+        image: image.raw,
+        view: image.view,
+        format: image.format,
+        extent: image.extent,
+        before: Use::Nothing.into(),
+        after: Use::TransferRead.into(),
+    }
+}
+
+/// Only what slicers blend differs: offscreen leaves patches out and merges, in another order of roundings.
+fn assert_same(settings: &Settings, found: &[[f64; 4]], wanted: &[[f64; 4]], level: &str) {
+    let what = format!("{level}: {settings:?}");
+    assert_eq!(found.len(), wanted.len());
+    let off = found.iter().zip(wanted).filter(|(f, w)| f != w).count();
+    assert_eq!(off, 0, "pixels that differ, {what}");
+}
+
+#[test]
+fn level_a_draws_inside_the_hosts_rendering_what_offscreen_makes() {
+    let host = Host::new();
+    for settings in all_settings() {
+        let stage = stage(&settings);
+        let mut renderer = renderer(&host, &stage);
+        let image = HostImage::new(&host, FORMAT, stage.extent);
+        // SAFETY: recorded in order; all of it lives until `run` has waited.
+        host.run(|cmd| unsafe {
+            renderer.record(cmd, &shot(&stage, 0)).unwrap();
+            image.make_target(cmd);
+            host.begin_rendering(cmd, image.view, stage.extent, [0.0; 4]);
+            renderer.draw(cmd, 0).unwrap();
+            host.device.cmd_end_rendering(cmd);
+            image.fetch_drawn(cmd);
+        });
+        assert_same(&settings, &image.numbers(), &offscreen(&stage), "A");
+    }
+}
+
+#[test]
+fn level_b_records_into_an_image_that_comes_and_goes_as_the_host_says() {
+    let host = Host::new();
+    for settings in all_settings() {
+        let stage = stage(&settings);
+        let mut renderer = renderer(&host, &stage);
+        let image = HostImage::new(&host, FORMAT, stage.extent);
+        // SAFETY: as above; the target leaves as the copy reads it.
+        host.run(|cmd| unsafe {
+            let (target, load) = (target(&image), Load::Clear([0.0; 4]));
+            let shot = shot(&stage, 1);
+            renderer.record_into(cmd, &shot, &target, load).unwrap();
+            image.copy_from(cmd, vk::ImageLayout::TRANSFER_SRC_OPTIMAL);
+        });
+        assert_same(&settings, &image.numbers(), &offscreen(&stage), "B");
+    }
+}
+
+#[test]
+fn level_c_submits_under_the_hosts_lock_between_the_hosts_values() {
+    let host = Host::that_lets_us_submit();
+    let device = &host.device;
+    let timeline = || {
+        let mut kind =
+            vk::SemaphoreTypeCreateInfo::default().semaphore_type(vk::SemaphoreType::TIMELINE);
+        let info = vk::SemaphoreCreateInfo::default().push_next(&mut kind);
+        // SAFETY: the device has timelines; destroyed below.
+        unsafe { device.create_semaphore(&info, None).unwrap() }
+    };
+    let (gate, done) = (timeline(), timeline());
+    let locked = std::cell::Cell::new(0);
+    let in_lock = |submit: &mut dyn FnMut()| {
+        locked.set(locked.get() + 1);
+        submit();
+    };
+    let lock = QueueLock {
+        queue: host.queue,
+        locked: &in_lock,
+    };
+    // SAFETY: the semaphores are timelines of the device; waits and destruction in their order.
+    let reached = || unsafe { device.get_semaphore_counter_value(done).unwrap() };
+    let stage = stage(&Settings::default());
+    let mut renderer = renderer(&host, &stage);
+    let image = HostImage::new(&host, FORMAT, stage.extent);
+    let mut submitter = Submitter::new(host.gpu(), 2).unwrap();
+    // SAFETY: one frame in flight; what it uses lives until the wait is over.
+    unsafe {
+        let (shot, target) = (shot(&stage, 0), target(&image));
+        let load = Load::Clear([0.0; 4]);
+        submitter
+            .submit(
+                &mut renderer,
+                &shot,
+                &target,
+                load,
+                lock,
+                &[(gate, 3)],
+                &[(done, 7)],
+            )
+            .unwrap();
+        assert_eq!((locked.get(), reached()), (1, 0), "it begins at value 3");
+        let info = vk::SemaphoreSignalInfo::default().semaphore(gate).value(3);
+        device.signal_semaphore(&info).unwrap();
+        let (semaphores, values) = ([done], [7]);
+        let info = vk::SemaphoreWaitInfo::default()
+            .semaphores(&semaphores)
+            .values(&values);
+        device.wait_semaphores(&info, u64::MAX).unwrap();
+        // The other frame in flight fetches what was drawn.
+        let fetch = |cmd| {
+            image.copy_from(cmd, vk::ImageLayout::TRANSFER_SRC_OPTIMAL);
+            Ok(())
+        };
+        submitter
+            .run(lock, 1, &[(done, 7)], &[(done, 8)], fetch)
+            .unwrap();
+        device.device_wait_idle().unwrap();
+        device.destroy_semaphore(gate, None);
+        device.destroy_semaphore(done, None);
+    }
+    assert_same(&stage.settings, &image.numbers(), &offscreen(&stage), "C");
+}
+
+#[test]
+fn a_recorded_frame_makes_nothing_and_compiles_nothing() {
+    let host = Host::new();
+    let gpu = host.gpu();
+    for settings in all_settings() {
+        let stage = stage(&settings);
+        let mut renderer = renderer(&host, &stage);
+        let made = || (gpu.live_objects(), gpu.pipelines_made(), gpu.device_bytes());
+        let before = made();
+        for frame in [0, 1] {
+            let image = HostImage::new(&host, FORMAT, stage.extent);
+            // SAFETY: as above.
+            host.run(|cmd| unsafe {
+                let (target, load) = (target(&image), Load::Clear([0.0; 4]));
+                let shot = shot(&stage, frame);
+                renderer.record_into(cmd, &shot, &target, load).unwrap();
+            });
+        }
+        assert_eq!(made(), before, "{settings:?}");
+    }
+}
+
+#[test]
+fn a_function_dragged_each_frame_compiles_nothing_and_leaves_nothing() {
+    let host = Host::with_timeline();
+    let gpu = host.gpu();
+    let mut stage = stage(&Settings::default());
+    let mut renderer = renderer(&host, &stage);
+    let image = HostImage::new(&host, FORMAT, stage.extent);
+    let mut pictures = Vec::new();
+    let (mut objects, mut pipelines) = (None, None);
+    for n in 1..=6 {
+        for point in &mut stage.transfer.opacity {
+            point.value *= 0.93;
+        }
+        gpu.announce(n);
+        renderer.set_function(Some(&stage.transfer)).unwrap();
+        // SAFETY: as above: `run` waits, so that the frame is done.
+        unsafe {
+            host.run(|cmd| {
+                let (target, load) = (target(&image), Load::Clear([0.0; 4]));
+                let shot = shot(&stage, (n % 2) as u32);
+                renderer.record_into(cmd, &shot, &target, load).unwrap();
+                image.copy_from(cmd, vk::ImageLayout::TRANSFER_SRC_OPTIMAL);
+            });
+            gpu.retire(n);
+        }
+        assert_same(
+            &stage.settings,
+            &image.numbers(),
+            &offscreen(&stage),
+            "dragged",
+        );
+        pictures.push(image.numbers());
+        let there = gpu.live_objects();
+        assert_eq!(objects.get_or_insert(there.clone()), &there, "frame {n}");
+        let made = gpu.pipelines_made();
+        assert_eq!(pipelines.get_or_insert(made), &made, "frame {n}");
+    }
+    assert!(pictures.windows(2).all(|pair| pair[0] != pair[1]));
+}
+
+#[test]
+fn what_cannot_be_drawn_so_is_refused_by_name() {
+    let host = Host::new();
+    let good = stage(&Settings::default());
+    let volume = uploaded(&host, &good);
+    let refused = |class: Class| {
+        let function = Some(&good.transfer);
+        let made = Renderer::new(host.gpu(), &volume, function, class, good.extent, &[]);
+        made.map(drop).expect_err("refused").to_string()
+    };
+    let with = |change: &dyn Fn(&mut Class)| {
+        let mut class = class(&good);
+        change(&mut class);
+        refused(class)
+    };
+    for (text, found) in [
+        ("several rays", with(&|c| c.settings.rays_per_side = 2)),
+        ("depth attachment", with(&|c| c.gives_depth = true)),
+        ("images to read", with(&|c| c.host_depth = true)),
+        (
+            "front to back",
+            with(&|c| {
+                c.settings.technique = Technique::Slices3d;
+                c.settings.order = Order::FrontToBack;
+            }),
+        ),
+        (
+            "depth attachment for R8G8B8A8_UNORM",
+            with(&|c| {
+                c.target.depth = Some(stratavox::gpu::DepthClass {
+                    format: vk::Format::R8G8B8A8_UNORM,
+                    has_stencil: false,
+                    is_reversed: false,
+                });
+            }),
+        ),
+    ] {
+        assert!(found.contains(text), "wanted {text}, found: {found}");
+    }
+    let mut renderer = renderer(&host, &good);
+    // SAFETY: nothing is recorded.
+    let drawn = unsafe { renderer.draw(vk::CommandBuffer::null(), 0) };
+    assert!(matches!(drawn, Err(Error::NotRecorded { frame: 0, .. })));
+    // SAFETY: as above.
+    let drawn = unsafe { renderer.draw(vk::CommandBuffer::null(), 2) };
+    assert!(matches!(drawn, Err(Error::NoFrame { found: 2, of: 2 })));
+    let other = Settings {
+        mode: Mode::Mip,
+        ..good.settings.clone()
+    };
+    let found = renderer.set_settings(other).expect_err("other pipelines");
+    assert!(found.to_string().contains("needs another one"), "{found}");
+    let cropped = Settings {
+        samples_per_voxel: 2.0,
+        ..good.settings.clone()
+    };
+    renderer.set_settings(cropped).expect("the same pipelines");
+    let _ = (TargetClass::from(FORMAT), TargetState::from(Use::Nothing));
+}
