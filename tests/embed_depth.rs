@@ -315,7 +315,9 @@ fn a_surface_gives_its_depth_back_where_it_is_nearer_than_the_host() {
         opacity: 1.0,
     }];
     // A near plane in the volume moves where rays take their samples, and with them what they find at silhouettes.
-    let before_the_volume = eyes(&stage).into_iter().filter(|eye| !eye.name.contains("far"));
+    let before_the_volume = eyes(&stage)
+        .into_iter()
+        .filter(|eye| !eye.name.contains("far"));
     for eye in before_the_volume {
         let (camera, depth) = Camera::from_matrices(&eye.view, &eye.clip, eye.nearer).unwrap();
         let drawn = depths(&stage, &camera, &depth);

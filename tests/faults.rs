@@ -13,6 +13,7 @@ use hooked::{FALLIBLE, Fault, Host, Stage, Tape, codes, hooked};
 use std::collections::BTreeSet;
 use std::error::Error;
 use std::sync::Arc;
+use stratavox::embed;
 use stratavox::gpu::{self, *};
 use stratavox::offscreen::{self, Renderer};
 use stratavox::resident::GpuVolume;
@@ -115,7 +116,10 @@ fn of_device<'a>(error: &'a (dyn Error + 'static)) -> &'a gpu::Error {
     let found = error.downcast_ref::<gpu::Error>();
     let inside = || match error.downcast_ref::<offscreen::Error>() {
         Some(offscreen::Error::Gpu(error)) => Some(error),
-        _ => None,
+        _ => match error.downcast_ref::<embed::Error>() {
+            Some(embed::Error::Gpu(error)) => Some(error),
+            _ => None,
+        },
     };
     found
         .or_else(inside)
@@ -198,6 +202,39 @@ fn a_host_is_told_of_every_call_that_fails_and_nothing_is_left_on_its_device() {
     assert!(faults > 90, "only {faults} faults");
 }
 
+#[test]
+fn a_host_that_lets_us_submit_is_told_of_every_call_that_fails() {
+    let tape = Tape::begin();
+    let (host, stage) = (Host::new(), Stage::new());
+    let features = Features {
+        timeline_semaphore: true,
+        ..FEATURES
+    };
+    let Swept { called, faults, .. } = sweep(&tape, FALLIBLE, true, || {
+        let device = host.device(features);
+        // SAFETY: the handles are right, and everything made on the device is dropped before it.
+        let gpu = unsafe { Gpu::from_host(device.handles(hooked))? };
+        stage.submit(&device, &gpu)
+    });
+    println!("{faults} faults of {} functions: {called:?}", called.len());
+    for ours in [
+        "vkCreateCommandPool",
+        "vkEndCommandBuffer",
+        "vkQueueSubmit2",
+    ] {
+        assert!(called.contains(&ours), "{ours}");
+    }
+    for of_a_host in [
+        "vkQueueSubmit",
+        "vkWaitForFences",
+        "vkCreateFence",
+        "vkDeviceWaitIdle",
+    ] {
+        assert!(!called.contains(&of_a_host), "{of_a_host} is the host's");
+    }
+    assert!(faults > 90, "only {faults} faults");
+}
+
 fn options() -> Options {
     Options {
         caps: Caps::UNLIMITED,
@@ -238,11 +275,18 @@ fn a_device_of_our_own_tells_of_every_call_that_fails_and_goes_as_a_whole() {
     let Swept { called, faults, .. } =
         sweep(&tape, FALLIBLE, false, || rendered(&stage, &settings));
     println!("{faults} faults of {} functions: {called:?}", called.len());
-    let never = FALLIBLE.iter().filter(|name| !called.contains(name));
-    // Names are given to objects where validation listens, and caches are kept in files.
+    let never = FALLIBLE
+        .iter()
+        .copied()
+        .filter(|name| !called.contains(name));
+    // Names are given to objects where validation listens, caches are kept in files, and hosts have timelines.
     assert_eq!(
         never.collect::<Vec<_>>(),
-        [&"vkSetDebugUtilsObjectNameEXT", &"vkGetPipelineCacheData"]
+        [
+            "vkSetDebugUtilsObjectNameEXT",
+            "vkGetPipelineCacheData",
+            "vkQueueSubmit2"
+        ]
     );
     assert!(faults > 150, "only {faults} faults");
 }

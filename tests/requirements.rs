@@ -80,7 +80,6 @@ fn without(item: Item, whole: HostDevice<'static>) -> Vec<(HostDevice<'static>, 
                 Limit::MaxComputeWorkGroupSizeX => &mut of.max_workgroup_size[0],
                 Limit::MaxComputeWorkGroupSizeY => &mut of.max_workgroup_size[1],
                 Limit::MaxComputeWorkGroupSizeZ => &mut of.max_workgroup_size[2],
-                Limit::MaxColorAttachments => &mut of.max_color_attachments,
                 Limit::MaxImageDimension3D => &mut of.max_image_dimension_3d,
                 Limit::MaxImageArrayLayers => &mut of.max_image_array_layers,
             } = less;

@@ -1,8 +1,8 @@
 //! Devices against the list of requirements: those of this machine, and one that a host has.
 
 use super::{
-    API_VERSION, Caps, Error, Features, Identity, Item, Need, REQUIREMENTS, Requirement,
-    Validation, identity::version_text, instance::Candidate, instance::OwnInstance,
+    API_VERSION, Caps, Error, Feature, Features, Gpu, Identity, Item, Need, REQUIREMENTS,
+    Requirement, Validation, identity::version_text, instance::Candidate, instance::OwnInstance,
 };
 use ash::vk;
 use std::fmt;
@@ -52,7 +52,7 @@ pub struct Finding {
     pub is_met: bool,
 }
 
-/// `maxColorAttachments (wanted 1 or more, found 0)`.
+/// `maxUniformBufferRange (wanted 16384 or more, found 8192)`.
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (item, wanted) = (self.requirement.item, self.requirement.item.wanted());
@@ -96,6 +96,24 @@ impl fmt::Debug for HostPhysicalDevice {
             .field("api_version", &version_text(self.api_version))
             .field("enabled", &self.enabled)
             .finish_non_exhaustive()
+    }
+}
+
+impl Gpu {
+    /// Refuses what needs a feature of the list that the host did not enable.
+    pub(super) fn require(&self, feature: Feature) -> Result<(), Error> {
+        let wanted = |one: &&Requirement| one.item == Item::Feature(feature);
+        match REQUIREMENTS.iter().find(wanted) {
+            Some(requirement) if !feature.is_in(&self.features()) => Err(Error::Unfit {
+                device: self.device_name().into(),
+                missing: vec![Finding {
+                    requirement: *requirement,
+                    found: "not enabled".into(),
+                    is_met: false,
+                }],
+            }),
+            _ => Ok(()),
+        }
     }
 }
 

@@ -69,7 +69,6 @@ pub enum Limit {
     MaxComputeWorkGroupSizeX,
     MaxComputeWorkGroupSizeY,
     MaxComputeWorkGroupSizeZ,
-    MaxColorAttachments,
     MaxImageDimension3D,
     MaxImageArrayLayers,
 }
@@ -148,10 +147,6 @@ pub const REQUIREMENTS: &[Requirement] = &[
     required(
         Item::Limit(Limit::MaxComputeWorkGroupSizeZ, 4),
         "passes over volumes",
-    ),
-    required(
-        Item::Limit(Limit::MaxColorAttachments, 1),
-        "drawing into a target",
     ),
     required(
         format(
@@ -276,7 +271,6 @@ impl Limit {
             Self::MaxComputeWorkGroupSizeX => "maxComputeWorkGroupSize[0]",
             Self::MaxComputeWorkGroupSizeY => "maxComputeWorkGroupSize[1]",
             Self::MaxComputeWorkGroupSizeZ => "maxComputeWorkGroupSize[2]",
-            Self::MaxColorAttachments => "maxColorAttachments",
             Self::MaxImageDimension3D => "maxImageDimension3D",
             Self::MaxImageArrayLayers => "maxImageArrayLayers",
         }
@@ -291,7 +285,6 @@ impl Limit {
             Self::MaxComputeWorkGroupSizeX => caps.max_workgroup_size[0],
             Self::MaxComputeWorkGroupSizeY => caps.max_workgroup_size[1],
             Self::MaxComputeWorkGroupSizeZ => caps.max_workgroup_size[2],
-            Self::MaxColorAttachments => caps.max_color_attachments,
             Self::MaxImageDimension3D => caps.max_image_dimension_3d,
             Self::MaxImageArrayLayers => caps.max_image_array_layers,
         };
@@ -299,7 +292,7 @@ impl Limit {
     }
 }
 
-/// `dynamicRendering`, `maxColorAttachments`, `VK_FORMAT_R32_SFLOAT`: the name, without what is wanted of it.
+/// `dynamicRendering`, `maxUniformBufferRange`, `VK_FORMAT_R32_SFLOAT`: the name, without what is wanted of it.
 impl fmt::Display for Item {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {

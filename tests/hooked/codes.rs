@@ -47,9 +47,11 @@ pub fn codes(function: &str) -> &'static [vk::Result] {
             R::ERROR_OUT_OF_POOL_MEMORY,
         ],
         "vkResetCommandPool" | "vkResetFences" => &[DEVICE],
-        "vkGetQueryPoolResults" | "vkQueueSubmit" | "vkWaitForFences" | "vkDeviceWaitIdle" => {
-            &[HOST, DEVICE, LOST]
-        }
+        "vkGetQueryPoolResults"
+        | "vkQueueSubmit"
+        | "vkQueueSubmit2"
+        | "vkWaitForFences"
+        | "vkDeviceWaitIdle" => &[HOST, DEVICE, LOST],
         "vkSetDebugUtilsObjectNameEXT"
         | "vkCreatePipelineCache"
         | "vkGetPipelineCacheData"

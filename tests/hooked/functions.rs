@@ -164,6 +164,8 @@ fallible! {
     vkResetFences(device: vk::Device, count: u32, fences: *const vk::Fence);
     vkQueueSubmit(
         queue: vk::Queue, count: u32, submits: *const vk::SubmitInfo<'_>, fence: vk::Fence);
+    vkQueueSubmit2(
+        queue: vk::Queue, count: u32, submits: *const vk::SubmitInfo2<'_>, fence: vk::Fence);
     vkWaitForFences(
         device: vk::Device, count: u32, fences: *const vk::Fence, all: vk::Bool32, timeout: u64);
     vkDeviceWaitIdle(device: vk::Device);

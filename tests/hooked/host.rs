@@ -7,9 +7,10 @@ use std::error::Error;
 use std::ffi::{CStr, c_void};
 use std::sync::{Arc, Mutex};
 use stratavox::camera::Camera;
+use stratavox::embed::{self, Class, QueueLock, Shot, Submitter};
 use stratavox::gpu::{
     self, API_VERSION, Blend, Buffer, Caps, Feature, Features, Gpu, HostDevice, Memory, Region,
-    Timer, Use, image_barrier, image_to_buffer,
+    Target, Timer, Use, image_barrier, image_to_buffer,
 };
 use stratavox::resident::{GpuTransfer, GpuVolume, TextureLayout};
 use stratavox::resolve::Resolve;
@@ -343,5 +344,103 @@ impl Stage {
         }
         gpu.pipeline_cache_data()?;
         Ok(texels)
+    }
+
+    /// Draws as a host does that lets us submit, in frames between values of its timeline.
+    pub fn submit(
+        &self,
+        device: &HostedDevice<'_>,
+        gpu: &Arc<Gpu>,
+    ) -> Result<Vec<u8>, Box<dyn Error>> {
+        let mut volume = embed::Volume::new(gpu, &self.volume, &self.settings)?;
+        let mut submitter = Submitter::new(gpu, 3)?;
+        let image = accumulation(gpu, self.extent, "target")?;
+        let usage = vk::BufferUsageFlags::TRANSFER_DST;
+        let bytes = 16 * u64::from(self.extent[0]) * u64::from(self.extent[1]);
+        let readback = Buffer::new(gpu, bytes, usage, Memory::Readback, "readback")?;
+        let class = Class {
+            settings: self.settings.clone(),
+            target: ACCUMULATION_FORMAT.into(),
+            frames_in_flight: 3,
+            host_depth: false,
+            gives_depth: false,
+        };
+        let shot = Shot {
+            frame: 1,
+            camera: &self.camera,
+            depth: None,
+        };
+        let target = Target {
+            image: image.raw(),
+            view: image.view(),
+            format: image.format(),
+            extent: self.extent,
+            before: Use::Nothing.into(),
+            after: Use::TransferRead.into(),
+        };
+        let locked = |submit: &mut dyn FnMut()| submit();
+        let lock = QueueLock {
+            queue: device.queue,
+            locked: &locked,
+        };
+        // SAFETY: all of it lives until the timeline has waited, which goes first.
+        unsafe {
+            gpu.announce(3);
+            let mut renderer;
+            let timeline = Timeline::new(device);
+            let at = |value| [(timeline.semaphore, value)];
+            submitter.run(lock, 0, &[], &at(1), |cmd| volume.record_upload(gpu, cmd))?;
+            let volume = Arc::new(volume);
+            let function = Some(&self.transfer);
+            renderer = embed::Renderer::new(gpu, &volume, function, class, self.extent, &[])?;
+            let load = gpu::Load::Clear([0.0; 4]);
+            submitter.submit(&mut renderer, &shot, &target, load, lock, &at(1), &at(2))?;
+            submitter.run(lock, 2, &at(2), &at(3), |cmd| {
+                image_to_buffer(gpu, cmd, &image, Region::whole(&image), &readback, 0)?;
+                gpu::buffer_barrier(gpu, cmd, &readback, Use::TransferWrite, Use::HostRead);
+                Ok(())
+            })?;
+            timeline.wait(3);
+            gpu.retire(3);
+        }
+        let mut texels = vec![0; bytes as usize];
+        readback.read(0, &mut texels)?;
+        Ok(texels)
+    }
+}
+
+/// A timeline of the host's. Dropping it waits for the device.
+struct Timeline<'d> {
+    semaphore: vk::Semaphore,
+    device: &'d HostedDevice<'d>,
+}
+
+impl<'d> Timeline<'d> {
+    fn new(device: &'d HostedDevice<'_>) -> Self {
+        let kind = vk::SemaphoreType::TIMELINE;
+        let mut kind = vk::SemaphoreTypeCreateInfo::default().semaphore_type(kind);
+        let info = vk::SemaphoreCreateInfo::default().push_next(&mut kind);
+        // SAFETY: the device has timelines; `drop` destroys it.
+        let semaphore = unsafe { device.device.create_semaphore(&info, None) }.unwrap();
+        Self { semaphore, device }
+    }
+
+    fn wait(&self, value: u64) {
+        let (semaphores, values) = ([self.semaphore], [value]);
+        let info = vk::SemaphoreWaitInfo::default()
+            .semaphores(&semaphores)
+            .values(&values);
+        // SAFETY: it is ours, and something that reaches the value was submitted.
+        unsafe { self.device.device.wait_semaphores(&info, u64::MAX) }.unwrap();
+    }
+}
+
+impl Drop for Timeline<'_> {
+    fn drop(&mut self) {
+        // SAFETY: nothing more is submitted.
+        unsafe {
+            self.device.device.device_wait_idle().unwrap();
+            self.device.device.destroy_semaphore(self.semaphore, None);
+        }
     }
 }
