@@ -19,6 +19,11 @@ impl Gpu {
         self.is_lost.store(true, Ordering::Relaxed);
     }
 
+    /// Refuses what would record nothing. `doing` follows the word "cannot".
+    pub(crate) fn check_alive(&self, doing: &str) -> Result<(), Error> {
+        self.call(|| doing.into(), |_| Ok(()))
+    }
+
     /// Makes a call that can fail, unless the device is lost. `doing` follows the word "cannot".
     pub(super) fn call<T>(
         &self,

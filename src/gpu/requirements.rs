@@ -118,7 +118,7 @@ pub const REQUIREMENTS: &[Requirement] = &[
     ),
     required(
         Item::Feature(Feature::DynamicRendering),
-        "drawing: no render pass object is ever made",
+        "drawing into targets of our own, for which no render pass is ever made",
     ),
     required(
         Item::Feature(Feature::Synchronization2),
