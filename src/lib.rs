@@ -11,9 +11,9 @@
 //! | 1 | [`gpu`], [`volume`], [`transfer`], [`camera`], [`picture`], [`mesh`] | Vulkan objects, or data; never both |
 //! | 2 | [`resident`], [`isosurface`], `format` | data put on a device; a surface in a volume; bytes of files turned into a [`volume::Source`] |
 //! | 3 | [`technique`], [`resolve`] | `new`, `bind`, `record`, and the CPU twins |
-//! | 4 | [`scene`], [`offscreen`] | a scene to a [`picture::Picture`]; the only place that submits and waits |
 //! | 4 | [`embed`] | a volume in a host's frames |
-//! | 5 | `cli` | words to scenes, errors to exit codes |
+//! | 5 | [`scene`], [`offscreen`] | a scene to a [`picture::Picture`]; the only place that waits |
+//! | 6 | `cli` | words to scenes, errors to exit codes |
 //!
 //! # Spaces
 //!
@@ -30,7 +30,57 @@
 //! A host keeps its device, its queues, its command buffers and its images: it gives handles to
 //! [`gpu::Gpu::from_host`], and nothing is submitted or waited for behind its back. The device speaks Vulkan
 //! 1.3 and has `dynamicRendering` and `synchronization2` enabled, no more; the queues are of a family with
-//! graphics and compute.
+//! graphics and compute. [`embed`] is the way in, on three levels: draw inside the host's rendering, record into an
+//! image of the host's, or let us submit.
+//!
+//! ```rust,no_run
+//! use ash::vk;
+//! use std::sync::Arc;
+//! use stratavox::camera::{Camera, Nearer};
+//! use stratavox::embed::{Class, Error, Renderer, Shot, Volume};
+//! use stratavox::gpu::{Gpu, TargetClass};
+//! use stratavox::technique::Settings;
+//! use stratavox::transfer::TransferFunction;
+//!
+//! /// Once: textures and their upload, recorded outside rendering; pipelines, images and descriptor sets.
+//! unsafe fn made(
+//!     gpu: &Arc<Gpu>,
+//!     cmd: vk::CommandBuffer,
+//!     target: TargetClass,
+//!     extent: [u32; 2],
+//!     voxels: &stratavox::volume::Volume,
+//!     function: &TransferFunction,
+//! ) -> Result<Renderer, Error> {
+//!     let settings = Settings::default();
+//!     let mut volume = Volume::new(gpu, voxels, &settings)?;
+//!     unsafe { volume.record_upload(gpu, cmd)? };
+//!     let class = Class { settings, target, frames_in_flight: 2, host_depth: false, gives_depth: false };
+//!     Renderer::new(gpu, &Arc::new(volume), Some(function), class, extent, &[])
+//! }
+//!
+//! /// Each frame, with the matrices that the host draws its own geometry with.
+//! unsafe fn frame(
+//!     renderer: &mut Renderer,
+//!     cmd: vk::CommandBuffer,
+//!     frame: u32,
+//!     [view_from_world, clip_from_view]: [glam::DMat4; 2],
+//! ) -> Result<(), Error> {
+//!     let (camera, _) = Camera::from_matrices(&view_from_world, &clip_from_view, Nearer::Smaller)?;
+//!     unsafe { renderer.record(cmd, &Shot { frame, camera: &camera, depth: None })? };
+//!     // vkCmdBeginRendering, the host's own geometry
+//!     unsafe { renderer.draw(cmd, frame)? };
+//!     // vkCmdEndRendering
+//!     Ok(())
+//! }
+//! ```
+//!
+//! `examples/embed.rs` is a whole host, from its device to a PNG; `docs/embedding.md` goes through every barrier, the
+//! host's depth buffer, frames in flight, functions that are dragged, volumes that change.
+//!
+//! # The pieces below
+//!
+//! What [`embed`] does not draw (light volumes, half-angle slices, several volumes, several rays a pixel) a host puts
+//! together itself:
 //!
 //! | step | when | how |
 //! |---|---|---|
@@ -46,14 +96,15 @@
 //! | recording | image | arrives in | leaves in |
 //! |---|---|---|---|
 //! | [`resident::GpuVolume::record_upload`] | textures | `Nothing`, or `Sampled` | `Sampled` |
-//! | [`resident::GpuTransfer::record_upload`] | table | `Nothing` | `Sampled` |
-//! | [`technique::raycast`], [`technique::projection`]: outside rendering | textures, table | `Sampled` | `Sampled` |
+//! | [`resident::GpuTransfer::record_upload`] | table | `Nothing` | `SampledOrRead` |
+//! | [`technique::raycast`], [`technique::projection`]: outside rendering | textures | `Sampled` | `Sampled` |
+//! | | table | `SampledOrRead` | `SampledOrRead` |
 //! | | accumulation, layers | `ComputeWrite` | `ComputeWrite` |
-//! | [`technique::Slicer`]: inside the host's rendering | textures, table | `Sampled` | `Sampled` |
+//! | [`technique::Slicer`]: inside the host's rendering | textures | `Sampled` | `Sampled` |
 //! | | the host's target | `ColorTarget` | `ColorTarget` |
-//! | [`technique::PatchSlicer`]: lists outside the host's rendering, draws inside | textures, table | `Sampled` | `Sampled` |
+//! | [`technique::PatchSlicer`]: lists outside the host's rendering, draws inside | textures | `Sampled` | `Sampled` |
 //! | | the host's target | `ColorTarget` | `ColorTarget` |
-//! | [`technique::slices_3d::HalfAngleSlicer`]: outside rendering | textures, table | `Sampled` | `Sampled` |
+//! | [`technique::slices_3d::HalfAngleSlicer`]: outside rendering | textures | `Sampled` | `Sampled` |
 //! | | accumulation, light buffer | `ColorTarget` | `ColorTarget` |
 //! | [`resolve`]: inside the host's rendering | accumulation | `FragmentSampled` | `FragmentSampled` |
 //! | | the host's target | `ColorTarget` | `ColorTarget` |
@@ -68,84 +119,6 @@
 //! Colour is premultiplied. Targets that hold linear light (floats, `SRGB`) go with
 //! [`picture::ColorSpace::Linear`], `UNORM` targets that are shown as they are with
 //! [`picture::ColorSpace::Display`].
-//!
-//! View-aligned slices in a host's own pass, over what it has drawn:
-//!
-//! ```rust,no_run
-//! use ash::vk;
-//! use std::{error::Error, sync::Arc};
-//! use stratavox::gpu::{Gpu, ParameterRing};
-//! use stratavox::resident::{GpuTransfer, GpuVolume};
-//! use stratavox::technique::blend::Drawn;
-//! use stratavox::technique::{Inputs, Mode, Skip, Slicer, Technique, View, Words, parameter_ring};
-//! use stratavox::transfer::TransferFunction;
-//! use stratavox::volume::Volume;
-//!
-//! struct Shown {
-//!     volume: GpuVolume,
-//!     transfer: GpuTransfer,
-//!     ring: ParameterRing,
-//!     slicer: Slicer,
-//!     /// One for each brick.
-//!     bound: Vec<stratavox::gpu::Bindings>,
-//! }
-//!
-//! impl Shown {
-//!     /// Objects and their descriptor sets, and the upload, recorded outside rendering.
-//!     unsafe fn new(
-//!         gpu: &Arc<Gpu>,
-//!         cmd: vk::CommandBuffer,
-//!         target_format: vk::Format,
-//!         frames_in_flight: u32,
-//!         view: &View,
-//!         voxels: &Volume,
-//!         function: &TransferFunction,
-//!     ) -> Result<Self, Box<dyn Error>> {
-//!         let settings = view.settings;
-//!         let volume = GpuVolume::new(gpu, voxels, view.texture_layout())?;
-//!         let staging = volume.stage(voxels)?;
-//!         let length = view.grid.smallest_spacing();
-//!         let transfer = GpuTransfer::new(gpu, function, length, settings.color_space)?;
-//!         unsafe {
-//!             volume.record_upload_all(cmd, &staging)?;
-//!             transfer.record_upload(cmd)?;
-//!         }
-//!         let bricks = volume.bricks().len() as u32;
-//!         let ring = parameter_ring(gpu, bricks * frames_in_flight)?;
-//!         let words = Words::of(settings, &volume);
-//!         let picture = Drawn::Picture(Mode::Composite);
-//!         let (technique, order) = (Technique::Slices3d, settings.order);
-//!         let slicer = Slicer::new(gpu, technique, picture, order, &words, target_format)?;
-//!         let bind = |brick| {
-//!             let (ring, volume, transfer) = (&ring, &volume, Some(&transfer));
-//!             slicer.bind(&Inputs { ring, volume, brick, transfer, beside: &[], light: None, skip: Skip::Nothing })
-//!         };
-//!         let bound = volume.bricks().iter().map(bind).collect::<Result<_, _>>()?;
-//!         Ok(Self { volume, transfer, ring, slicer, bound })
-//!     }
-//!
-//!     /// One frame, inside the host's rendering to an image of `view.extent_pixels`.
-//!     unsafe fn record(
-//!         &self,
-//!         cmd: vk::CommandBuffer,
-//!         frame_in_flight: u32,
-//!         view: &View,
-//!     ) -> Result<(), Box<dyn Error>> {
-//!         let first_slot = frame_in_flight * self.bound.len() as u32;
-//!         let recordings = view.recordings(&self.volume, Some(&self.transfer))?;
-//!         for (slot, recording) in (first_slot..).zip(recordings) {
-//!             let offset = recording.write(&self.ring, slot)?;
-//!             let (bound, extent) = (&self.bound[recording.brick], view.extent_pixels);
-//!             let slices = 0..recording.slices;
-//!             unsafe { self.slicer.record(cmd, bound, offset, extent, slices) };
-//!         }
-//!         Ok(())
-//!     }
-//! }
-//! ```
-//!
-//! `staging` is dropped while the upload may run: [`gpu::Gpu::announce`] was called with its value before.
-//! `examples/embed` is a whole host, from its device to a PNG, with the ray caster.
 //!
 //! # Several values a voxel
 //!

@@ -1,7 +1,7 @@
 //! The example of a host draws what it says.
 #![cfg(feature = "png")]
 
-#[path = "../examples/embed/main.rs"]
+#[path = "../examples/embed.rs"]
 #[allow(dead_code, reason = "its `main` is not called")]
 mod example;
 

@@ -98,8 +98,12 @@ impl Use {
     }
 }
 
-const STORAGE: Access =
-    Access::from_raw(Access::SHADER_STORAGE_READ.as_raw() | Access::SHADER_STORAGE_WRITE.as_raw());
+/// Textures too: what is written may stand in for one that is not looked at.
+const STORAGE: Access = Access::from_raw(
+    Access::SHADER_STORAGE_READ.as_raw()
+        | Access::SHADER_STORAGE_WRITE.as_raw()
+        | Access::SHADER_SAMPLED_READ.as_raw(),
+);
 const COLOR: Access = Access::from_raw(
     Access::COLOR_ATTACHMENT_READ.as_raw() | Access::COLOR_ATTACHMENT_WRITE.as_raw(),
 );

@@ -15,7 +15,17 @@ pub struct HostImage<'h> {
 }
 
 impl<'h> HostImage<'h> {
-    pub fn new(host: &'h Host, format: vk::Format, [width, height]: [u32; 2]) -> Self {
+    pub fn new(host: &'h Host, format: vk::Format, extent: [u32; 2]) -> Self {
+        Self::of_samples(host, format, extent, vk::SampleCountFlags::TYPE_1)
+    }
+
+    /// With several samples it cannot be fetched.
+    pub fn of_samples(
+        host: &'h Host,
+        format: vk::Format,
+        [width, height]: [u32; 2],
+        samples: vk::SampleCountFlags,
+    ) -> Self {
         let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT
             | vk::ImageUsageFlags::TRANSFER_SRC
             | vk::ImageUsageFlags::TRANSFER_DST;
@@ -29,7 +39,7 @@ impl<'h> HostImage<'h> {
             })
             .mip_levels(1)
             .array_layers(1)
-            .samples(vk::SampleCountFlags::TYPE_1)
+            .samples(samples)
             .usage(usage);
         let bytes = u64::from(width) * u64::from(height) * texel_bytes(format) as u64;
         let buffer_info = vk::BufferCreateInfo::default()
