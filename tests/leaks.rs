@@ -100,8 +100,8 @@ fn loops() -> u32 {
     wanted.map_or(75, |n| n.parse().expect("a number of loops"))
 }
 
-/// Our heap is the same to the byte after every quarter of the loops, as many files are open as before, and the process
-/// as a whole grows by less than 1 MiB in the first quarter and in each further one.
+/// Our heap is the same to the byte after every quarter of the loops but for lists that had to become longer once, in the
+/// first one; as many files are open as before, and the process as a whole grows by less than 1 MiB a quarter.
 #[track_caller]
 fn assert_no_growth(mut draw: impl FnMut()) {
     (0..25).for_each(|_| draw());
@@ -117,8 +117,9 @@ fn assert_no_growth(mut draw: impl FnMut()) {
         before = now;
     }
     println!("{} loops, by quarters: {quarters:?}", loops());
+    assert!(quarters[0].0 < 1024, "bytes more on our heap");
     for (ours, of_process, files_now) in quarters {
-        assert_eq!(ours, 0, "bytes more on our heap");
+        assert_eq!(ours, quarters[0].0, "bytes more on our heap");
         assert_eq!(files_now, files, "open files");
         assert!(of_process < 1 << 20, "{of_process} bytes more");
     }

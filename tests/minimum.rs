@@ -3,6 +3,7 @@
 
 mod shared;
 
+#[allow(dead_code, reason = "not all that the page shows is drawn here")]
 #[path = "../examples/matrix/cells.rs"]
 mod cells;
 
