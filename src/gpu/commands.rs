@@ -56,9 +56,9 @@ impl Commands {
         let cmd = self.buffer(frame)?;
         let info = vk::CommandBufferBeginInfo::default()
             .flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
-        // SAFETY: the caller's promise: the buffer is in no use.
         gpu.call(
             || "begin a command buffer".into(),
+            // SAFETY: the caller's promise: the buffer is in no use.
             |device| unsafe { device.begin_command_buffer(cmd, &info) },
         )?;
         let recorded = record(cmd);

@@ -301,10 +301,10 @@ impl Headless {
         let (commands, fences) = ([self.cmd], [self.done.get()]);
         let submit = vk::SubmitInfo::default().command_buffers(&commands);
         let start = Instant::now();
-        // SAFETY: the recording has ended; the queue is ours, and `&mut self` makes us its only user. The last
-        // submission was waited for, so nothing uses the fence.
         gpu.call(
             || "submit".into(),
+            // SAFETY: the recording has ended; the queue is ours, and `&mut self` makes us its only user. The last
+            // submission was waited for, so nothing uses the fence.
             |device| unsafe {
                 device.reset_fences(&fences)?;
                 device.queue_submit(self.queue, &[submit], fences[0])

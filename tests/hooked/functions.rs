@@ -25,8 +25,8 @@ macro_rules! fallible {
                 type Real = unsafe extern "system" fn($($type),*) -> vk::Result;
                 std::mem::transmute::<usize, Real>(real_of(stringify!($name)))($($arg),*)
             };
-            // SAFETY: outputs are valid where the call has succeeded.
             $(if result == vk::Result::SUCCESS {
+                // SAFETY: outputs are valid where the call has succeeded.
                 unsafe { $then }
             })?
             result
@@ -38,9 +38,10 @@ macro_rules! fallible {
         fn fallible(name: &str) -> Option<(&'static str, Function)> {
             match name {
                 $(stringify!($name) => {
-                    let hook: unsafe extern "system" fn($($type),*) -> vk::Result = $name;
+                    type Hook = unsafe extern "system" fn($($type),*) -> vk::Result;
                     // SAFETY: `vkGetInstanceProcAddr` gives functions of every type as this one.
-                    Some((stringify!($name), unsafe { std::mem::transmute::<_, Function>(hook) }))
+                    let hook = unsafe { std::mem::transmute::<Hook, Function>($name) };
+                    Some((stringify!($name), hook))
                 })*
                 _ => None,
             }
@@ -57,16 +58,19 @@ macro_rules! others {
                 type Real = unsafe extern "system" fn($($type),*);
                 std::mem::transmute::<usize, Real>(real_of(stringify!($name)))($($arg),*);
             }
-            // SAFETY: outputs are valid after the call.
-            $(unsafe { $then })?
+            $({
+                // SAFETY: outputs are valid after the call.
+                unsafe { $then }
+            })?
         })*
 
         fn other(name: &str) -> Option<(&'static str, Function)> {
             match name {
                 $(stringify!($name) => {
-                    let hook: unsafe extern "system" fn($($type),*) = $name;
+                    type Hook = unsafe extern "system" fn($($type),*);
                     // SAFETY: as above.
-                    Some((stringify!($name), unsafe { std::mem::transmute::<_, Function>(hook) }))
+                    let hook = unsafe { std::mem::transmute::<Hook, Function>($name) };
+                    Some((stringify!($name), hook))
                 })*
                 _ => None,
             }

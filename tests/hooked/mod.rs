@@ -190,9 +190,10 @@ pub unsafe extern "system" fn hooked(
     if name == c"vkGetDeviceProcAddr" {
         // SAFETY: this is the function of that name; ours goes back as the type of any function.
         unsafe {
-            REAL.get_or_init(|| std::mem::transmute(found));
-            let ours: vk::PFN_vkGetDeviceProcAddr = device_proc_addr;
-            return Some(std::mem::transmute::<_, unsafe extern "system" fn()>(ours));
+            type Function = unsafe extern "system" fn();
+            type Ours = vk::PFN_vkGetDeviceProcAddr;
+            REAL.get_or_init(|| std::mem::transmute::<Function, Ours>(found));
+            return Some(std::mem::transmute::<Ours, Function>(device_proc_addr));
         }
     }
     in_place_of(found, name)
