@@ -101,7 +101,8 @@ fn loops() -> u32 {
 }
 
 /// Our heap is the same to the byte after every quarter of the loops but for lists that had to become longer once, in the
-/// first one; as many files are open as before, and the process as a whole grows by less than 1 MiB a quarter.
+/// first one; as many files are open as before, and the process as a whole, in whose heap the driver finds its places first,
+/// grows by less than 1 MiB in the last quarter.
 #[track_caller]
 fn assert_no_growth(mut draw: impl FnMut()) {
     (0..25).for_each(|_| draw());
@@ -118,11 +119,12 @@ fn assert_no_growth(mut draw: impl FnMut()) {
     }
     println!("{} loops, by quarters: {quarters:?}", loops());
     assert!(quarters[0].0 < 1024, "bytes more on our heap");
-    for (ours, of_process, files_now) in quarters {
+    for (ours, _, files_now) in quarters {
         assert_eq!(ours, quarters[0].0, "bytes more on our heap");
         assert_eq!(files_now, files, "open files");
-        assert!(of_process < 1 << 20, "{of_process} bytes more");
     }
+    let (_, of_process, _) = quarters[3];
+    assert!(of_process < 1 << 20, "{of_process} bytes more");
 }
 
 /// The heap is that of the whole process.

@@ -5,10 +5,14 @@
 mod codes;
 mod functions;
 mod host;
+mod stage;
+mod told;
 
 pub use codes::codes;
 pub use functions::FALLIBLE;
-pub use host::{Host, HostedDevice, Stage};
+pub use host::{Host, HostedDevice};
+pub use stage::Stage;
+pub use told::{FEATURES, headless, of_device};
 
 use ash::vk;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
