@@ -100,11 +100,11 @@ fn loops() -> u32 {
     wanted.map_or(75, |n| n.parse().expect("a number of loops"))
 }
 
-/// Our heap is the same to the byte after every quarter of the loops but for lists that had to become longer once, in the
+/// Our heap is the same, to so many bytes, after every quarter of the loops but for lists that had to become longer once, in the
 /// first one; as many files are open as before, and the process as a whole, in whose heap the driver finds its places first,
 /// grows by less than 1 MiB in the last quarter.
 #[track_caller]
-fn assert_no_growth(mut draw: impl FnMut()) {
+fn assert_no_growth(slack_bytes: i64, mut draw: impl FnMut()) {
     (0..25).for_each(|_| draw());
     let heap = HEAP_BYTES.load(Ordering::Relaxed);
     let (mut before, files) = footprint();
@@ -120,7 +120,8 @@ fn assert_no_growth(mut draw: impl FnMut()) {
     println!("{} loops, by quarters: {quarters:?}", loops());
     assert!(quarters[0].0 < 1024, "bytes more on our heap");
     for (ours, _, files_now) in quarters {
-        assert_eq!(ours, quarters[0].0, "bytes more on our heap");
+        let more = (ours - quarters[0].0).abs();
+        assert!(more <= slack_bytes, "{more} bytes more on our heap");
         assert_eq!(files_now, files, "open files");
     }
     let (_, of_process, _) = quarters[3];
@@ -144,7 +145,7 @@ fn a_host_that_makes_draws_and_drops_again_and_again_takes_no_more_memory() {
         ..Features::default()
     });
     let mut first = None;
-    assert_no_growth(|| {
+    assert_no_growth(0, || {
         // SAFETY: the handles are right, and everything made on the device is dropped before it.
         let gpu = unsafe { Gpu::from_host(device.handles(hooked)).unwrap() };
         let drawn = stage.draw(&device, &gpu).unwrap();
@@ -174,7 +175,8 @@ fn renderers_one_after_the_other_on_one_device_take_no_more_memory() {
         settings: &settings,
     };
     let mut device = Some(device());
-    assert_no_growth(|| {
+    // Maps have seeds of their own, and make room at other times: one object of 24 bytes a loop is more than that.
+    assert_no_growth(1024, || {
         let free = device.take().expect("given back");
         let mut renderer = Renderer::new(free, &stage.volume).unwrap();
         renderer.render(&scene, &[]).unwrap();
