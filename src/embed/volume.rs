@@ -138,6 +138,7 @@ impl Volume {
     /// # Safety
     /// `cmd` is recording, outside rendering, and is submitted before anything that draws the volume.
     pub unsafe fn record_upload(&mut self, gpu: &Gpu, cmd: vk::CommandBuffer) -> Result<(), Error> {
+        gpu.check_alive("upload a volume")?;
         let staged = self.copies.iter().flat_map(|copy| {
             let beside = copy.gradient_source();
             [Some(copy), beside].into_iter().flatten()

@@ -5,6 +5,7 @@ use super::{TexelFormat, TextureLayout};
 use crate::gpu::{Error, Gpu, ImageDesc};
 use crate::volume::{Rescale, Volume, VoxelType};
 use ash::vk;
+use std::cell::OnceCell;
 
 /// What a volume will take on a device, told before there is one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,14 +94,27 @@ impl Plan {
     /// Bricks in which all of them fit.
     pub fn cut(gpu: &Gpu, plans: &[&Self], dims: [u32; 3]) -> Result<Vec<Cell>, Error> {
         let halo = plans.first().map_or([0; 3], |plan| plan.layout.halo());
-        let fits = |stored| plans.iter().all(|plan| plan.check(gpu, stored).is_ok());
-        let Some(cells) = cut(dims, halo, fits) else {
-            // The error that names the limit.
-            for plan in plans {
-                plan.check(gpu, dims)?;
+        let (too_large, trouble) = (OnceCell::new(), OnceCell::new());
+        let fits = |stored| match plans.iter().try_for_each(|plan| plan.check(gpu, stored)) {
+            Ok(()) => true,
+            Err(limit @ Error::Limit { .. }) => {
+                // The first is that of the whole volume.
+                let _ = too_large.set(limit);
+                false
             }
-            unreachable!("what cannot be cut to fit is over a limit");
+            // Smaller bricks do not help, and the device may well take larger ones.
+            Err(other) => {
+                let _ = trouble.set(other);
+                true
+            }
         };
-        Ok(cells)
+        let cells = cut(dims, halo, fits);
+        match trouble.into_inner() {
+            Some(trouble) => Err(trouble),
+            None => cells.ok_or_else(|| {
+                let limit = too_large.into_inner();
+                limit.expect("what cannot be cut to fit is over a limit")
+            }),
+        }
     }
 }
