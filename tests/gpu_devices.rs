@@ -20,19 +20,8 @@ fn every_device_is_listed_with_what_it_can_do() {
     assert!(!devices.is_empty(), "no device, and no error");
     for device in &devices {
         println!("{device:#?}");
-        let names: Vec<_> = device
-            .abilities
-            .iter()
-            .map(|ability| ability.name)
-            .collect();
-        for name in [
-            "Vulkan 1.3",
-            "synchronization2",
-            "R32G32B32A32_SFLOAT blending",
-            "timestamps",
-        ] {
-            assert!(names.contains(&name), "{name} is not in {names:?}");
-        }
+        let asked: Vec<_> = device.findings.iter().map(|f| f.requirement).collect();
+        assert_eq!(asked, REQUIREMENTS, "everything was looked for");
         assert!(
             device.memory_bytes > 0,
             "{} has no memory",

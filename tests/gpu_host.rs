@@ -226,7 +226,7 @@ fn what_a_host_did_not_enable_is_named() {
         let cases: [(Change, &str); 5] = [
             (
                 |host| host.features.dynamic_rendering = false,
-                "lacks dynamicRendering",
+                "lacks dynamicRendering (wanted enabled, found not enabled)",
             ),
             (
                 |host| host.features.synchronization2 = false,
@@ -234,7 +234,7 @@ fn what_a_host_did_not_enable_is_named() {
             ),
             (
                 |host| host.queue_family = 1000,
-                "lacks a queue family with graphics and compute",
+                "lacks queueFlags of the queue family (wanted GRAPHICS | COMPUTE, found no family 1000)",
             ),
             (
                 |host| host.api_version = vk::API_VERSION_1_2,

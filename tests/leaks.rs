@@ -1,9 +1,14 @@
-//! What a renderer makes on a device goes with it.
+//! What a renderer makes on a device goes with it, however often.
 
+mod hooked;
 mod shared;
 
+use hooked::{Host, Stage, Tape, hooked};
 use shared::{device, oblique_camera, projections, ramps, sheared_affine, volume_of, waves};
-use std::sync::Arc;
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicI64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use stratavox::gpu::{Features, Gpu};
 use stratavox::offscreen::Renderer;
 use stratavox::picture::LayerKind;
 use stratavox::scene::Scene;
@@ -11,6 +16,7 @@ use stratavox::technique::{Mode, Settings, Technique};
 
 #[test]
 fn a_dropped_renderer_leaves_no_vulkan_object() {
+    let _one = one_at_a_time();
     let mut volume = volume_of([9, 8, 7], sheared_affine(), waves);
     volume.validity = Some((0..9 * 8 * 7).map(|i| u8::from(i % 5 != 0)).collect());
     let transfer = ramps();
@@ -47,4 +53,133 @@ fn a_dropped_renderer_leaves_no_vulkan_object() {
         [],
         "what is left"
     );
+}
+
+/// Counts the bytes that Rust has on the heap: ours, to the byte, and nothing of the driver's.
+struct Counted;
+
+static HEAP_BYTES: AtomicI64 = AtomicI64::new(0);
+
+#[global_allocator]
+static COUNTED: Counted = Counted;
+
+// SAFETY: all is handed on to the system's allocator.
+unsafe impl GlobalAlloc for Counted {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        HEAP_BYTES.fetch_add(layout.size() as i64, Ordering::Relaxed);
+        // SAFETY: the caller's promise, here and below.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, at: *mut u8, layout: Layout) {
+        HEAP_BYTES.fetch_sub(layout.size() as i64, Ordering::Relaxed);
+        // SAFETY: as above.
+        unsafe { System.dealloc(at, layout) }
+    }
+}
+
+/// Bytes of memory that this process has in use, the driver's with them, and how many files it has open.
+#[cfg(target_os = "linux")]
+fn footprint() -> (i64, usize) {
+    let pages = std::fs::read_to_string("/proc/self/statm").expect("Linux says it");
+    let resident = pages.split(' ').nth(1).and_then(|n| n.parse::<i64>().ok());
+    let files = std::fs::read_dir("/proc/self/fd").expect("Linux says it");
+    (4096 * resident.expect("a number"), files.count())
+}
+
+/// Elsewhere nobody asks.
+#[cfg(not(target_os = "linux"))]
+fn footprint() -> (i64, usize) {
+    println!("skipped: the memory of this process is not known");
+    (0, 0)
+}
+
+/// Loops of a run: `STRATAVOX_LOOPS=10000` where somebody has the minutes.
+fn loops() -> u32 {
+    let wanted = std::env::var("STRATAVOX_LOOPS").ok();
+    wanted.map_or(75, |n| n.parse().expect("a number of loops"))
+}
+
+/// Our heap is the same, to so many bytes, after every quarter of the loops but for lists that had to become longer once, in the
+/// first one; as many files are open as before, and the process as a whole, in whose heap the driver finds its places first,
+/// grows by less than 1 MiB in the last quarter.
+#[track_caller]
+fn assert_no_growth(slack_bytes: i64, mut draw: impl FnMut()) {
+    (0..25).for_each(|_| draw());
+    let heap = HEAP_BYTES.load(Ordering::Relaxed);
+    let (mut before, files) = footprint();
+    // Printed at the end: what a test prints is kept on our heap.
+    let mut quarters = [(0, 0, 0); 4];
+    for quarter in &mut quarters {
+        (0..loops() / 4).for_each(|_| draw());
+        let ours = HEAP_BYTES.load(Ordering::Relaxed) - heap;
+        let (now, files_now) = footprint();
+        *quarter = (ours, now - before, files_now);
+        before = now;
+    }
+    println!("{} loops, by quarters: {quarters:?}", loops());
+    assert!(quarters[0].0 < 1024, "bytes more on our heap");
+    for (ours, _, files_now) in quarters {
+        let more = (ours - quarters[0].0).abs();
+        assert!(more <= slack_bytes, "{more} bytes more on our heap");
+        assert_eq!(files_now, files, "open files");
+    }
+    let (_, of_process, _) = quarters[3];
+    assert!(of_process < 1 << 20, "{of_process} bytes more");
+}
+
+/// The heap is that of the whole process.
+fn one_at_a_time() -> MutexGuard<'static, ()> {
+    static ONE: Mutex<()> = Mutex::new(());
+    ONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[test]
+fn a_host_that_makes_draws_and_drops_again_and_again_takes_no_more_memory() {
+    let _one = one_at_a_time();
+    let tape = Tape::begin();
+    let (host, stage) = (Host::new(), Stage::new());
+    let device = host.device(Features {
+        dynamic_rendering: true,
+        synchronization2: true,
+        ..Features::default()
+    });
+    let mut first = None;
+    assert_no_growth(0, || {
+        // SAFETY: the handles are right, and everything made on the device is dropped before it.
+        let gpu = unsafe { Gpu::from_host(device.handles(hooked)).unwrap() };
+        let drawn = stage.draw(&device, &gpu).unwrap();
+        drop(gpu);
+        assert_eq!(tape.books(), Vec::<&str>::new());
+        assert!(
+            *first.get_or_insert_with(|| drawn.clone()) == drawn,
+            "another picture"
+        );
+    });
+}
+
+#[test]
+fn renderers_one_after_the_other_on_one_device_take_no_more_memory() {
+    let _one = one_at_a_time();
+    let stage = Stage::new();
+    let settings = Settings {
+        technique: Technique::Slices3d,
+        ..Settings::default()
+    };
+    let scene = Scene {
+        beside: Default::default(),
+        volume: &stage.volume,
+        transfer: Some(&stage.transfer),
+        camera: &stage.camera,
+        extent_pixels: [16, 12],
+        settings: &settings,
+    };
+    let mut device = Some(device());
+    // Maps have seeds of their own, and make room at other times: one object of 24 bytes a loop is more than that.
+    assert_no_growth(1024, || {
+        let free = device.take().expect("given back");
+        let mut renderer = Renderer::new(free, &stage.volume).unwrap();
+        renderer.render(&scene, &[]).unwrap();
+        device = Some(renderer.into_device());
+    });
 }

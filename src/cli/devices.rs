@@ -1,7 +1,7 @@
 //! `stratavox devices`: what is here to draw with, and what it lacks.
 
 use super::{Error, error::visible, output::say};
-use crate::gpu::{DeviceReport, list_devices};
+use crate::gpu::{DeviceReport, Need, Requirement, list_devices};
 use clap::Args;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -40,14 +40,21 @@ fn json_of((index, device): (usize, &DeviceReport)) -> Value {
     let identity = &device.identity;
     let [major, minor, patch] = identity.api_version;
     let abilities: Vec<_> = device
-        .abilities
+        .findings
         .iter()
-        .map(|ability| {
+        .map(|finding| {
+            let Requirement {
+                item,
+                need,
+                unlocks,
+            } = finding.requirement;
             json!({
-                "name": ability.name,
-                "present": ability.is_present,
-                "required": ability.is_required,
-                "without": ability.without,
+                "name": item.to_string(),
+                "wanted": item.wanted(),
+                "found": finding.found,
+                "present": finding.is_met,
+                "required": need == Need::Required,
+                "unlocks": unlocks,
             })
         })
         .collect();
@@ -89,12 +96,14 @@ fn text_of((index, device): (usize, &DeviceReport)) -> String {
         "cannot draw"
     };
     let _ = writeln!(text, "   {verdict}");
-    for ability in device
-        .abilities
-        .iter()
-        .filter(|ability| !ability.is_present)
-    {
-        let _ = writeln!(text, "   lacks {}: {}", ability.name, ability.without);
+    for (need, word) in [
+        (Need::Required, "required"),
+        (Need::Recommended, "recommended"),
+    ] {
+        for finding in device.missing(need) {
+            let unlocks = finding.requirement.unlocks;
+            let _ = writeln!(text, "   lacks {finding}, {word} for {unlocks}");
+        }
     }
     text
 }

@@ -24,6 +24,7 @@ impl Renderer {
     /// - nothing unfinished was recorded with the shot's number of a frame in flight;
     /// - the image of the host's depth is in the layout that was said, visible to sampled reads of compute shaders.
     pub unsafe fn record(&mut self, cmd: vk::CommandBuffer, shot: &Shot) -> Result<(), Error> {
+        self.gpu.check_alive("record a frame")?;
         let frame = self.frame_number(shot.frame)?;
         shot.camera.check()?;
         if !self.volume.is_uploaded() {
@@ -50,6 +51,7 @@ impl Renderer {
     /// - `cmd` is recording inside rendering to a target of [`Class::target`](super::Class::target) and of the renderer's extent;
     /// - it runs after what [`Renderer::record`] recorded, on the same queue.
     pub unsafe fn draw(&self, cmd: vk::CommandBuffer, frame: u32) -> Result<(), Error> {
+        self.gpu.check_alive("draw a frame")?;
         let (there, recorded) = self.recorded(frame, "draw")?;
         let (extent, parts) = (self.extent, &recorded.parts);
         // SAFETY: the caller's promises; what is bound lives as long as the frame, and then until it is retired.

@@ -2,9 +2,10 @@
 
 use super::Error;
 use crate::gpu::{Buffer, Gpu};
-use crate::resident::{Corners, GpuVolume, MacroCells, Texels, TextureLayout};
+use crate::resident::{Corners, GpuVolume, MacroCells, Texels, TextureLayout, VolumePlan};
+use crate::shaders::CELL_VOXELS;
 use crate::technique::{FilterBy, GradientSource, Keep, Mix, Settings, Technique};
-use crate::volume::{self, Coefficients, Grid};
+use crate::volume::{self, Coefficients, Grid, VoxelType};
 use ash::vk;
 use std::sync::Arc;
 
@@ -40,12 +41,8 @@ impl Volume {
                 hint: "take `Keep::Never`, or `resident::KeptGradients` and record them",
             });
         }
-        let layouts = match settings.technique {
-            Technique::Slices2d => (0..3).map(TextureLayout::Stack).collect(),
-            Technique::Raycast | Technique::Slices3d => vec![TextureLayout::Texture3d],
-        };
         let (mut copies, mut staging) = (Vec::new(), Vec::new());
-        for layout in layouts {
+        for layout in layouts_of(settings) {
             let copy = copy(gpu, voxels, settings, layout, &mut staging)?;
             copies.push(copy);
         }
@@ -61,6 +58,48 @@ impl Volume {
             made.know_empty_space(gpu, voxels, settings)?;
         }
         Ok(made)
+    }
+
+    /// What such a volume will take, told before its voxels are read: textures, what is known of empty space, and the
+    /// buffer that it is staged in until its upload has run. Corners, which drivers that compute on the CPU have, come
+    /// to that.
+    ///
+    /// # Errors
+    /// Where not even a voxel fits the limits of the device.
+    pub fn plan(
+        gpu: &Gpu,
+        dims: [u32; 3],
+        stored: VoxelType,
+        has_holes: bool,
+        settings: &Settings,
+    ) -> Result<VolumePlan, Error> {
+        let mut all = VolumePlan {
+            device_bytes: 0,
+            staging_bytes: 0,
+            bricks: 0,
+        };
+        for layout in layouts_of(settings) {
+            let spline = settings.filter.spline();
+            let values = spline.map_or(stored, |_| VoxelType::F32);
+            let beside = settings.gradient_source_beside(layout);
+            let beside = beside.filter(|_| settings.shading.is_some());
+            let beside = beside.map(|source| source.spline().map_or(stored, |_| VoxelType::F32));
+            for stored in [Some(values), beside].into_iter().flatten() {
+                let one = VolumePlan::of(gpu, dims, stored, has_holes, layout)?;
+                all.device_bytes += one.device_bytes;
+                all.staging_bytes += one.staging_bytes;
+                all.bricks = all.bricks.max(one.bricks);
+            }
+        }
+        if settings.technique == Technique::Raycast && settings.skip {
+            let side = u64::from(CELL_VOXELS);
+            let cells = dims
+                .map(|n| u64::from(n).div_ceil(side))
+                .iter()
+                .product::<u64>();
+            all.device_bytes += MacroCells::BYTES_PER_CELL * cells;
+        }
+        Ok(all)
     }
 
     /// Corners and macro cells, for pictures that leave out what cannot be seen.
@@ -99,6 +138,7 @@ impl Volume {
     /// # Safety
     /// `cmd` is recording, outside rendering, and is submitted before anything that draws the volume.
     pub unsafe fn record_upload(&mut self, gpu: &Gpu, cmd: vk::CommandBuffer) -> Result<(), Error> {
+        gpu.check_alive("upload a volume")?;
         let staged = self.copies.iter().flat_map(|copy| {
             let beside = copy.gradient_source();
             [Some(copy), beside].into_iter().flatten()
@@ -147,6 +187,14 @@ impl Volume {
 
     pub(super) fn is_uploaded(&self) -> bool {
         self.is_uploaded
+    }
+}
+
+/// How it lies on the device: a stack for each axis that the eye may look along, or one texture.
+fn layouts_of(settings: &Settings) -> Vec<TextureLayout> {
+    match settings.technique {
+        Technique::Slices2d => (0..3).map(TextureLayout::Stack).collect(),
+        Technique::Raycast | Technique::Slices3d => vec![TextureLayout::Texture3d],
     }
 }
 

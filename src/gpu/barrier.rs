@@ -152,7 +152,7 @@ pub unsafe fn buffer_barrier(
         .size(vk::WHOLE_SIZE)];
     let info = vk::DependencyInfo::default().buffer_memory_barriers(&barriers);
     // SAFETY: the caller's promises; synchronization2 was required of the device.
-    unsafe { gpu.device().cmd_pipeline_barrier2(cmd, &info) };
+    gpu.record(|device| unsafe { device.cmd_pipeline_barrier2(cmd, &info) });
 }
 
 /// The state of a host's image at one moment.
@@ -246,5 +246,5 @@ unsafe fn transition(
         .subresource_range(WHOLE_COLOR)];
     let info = vk::DependencyInfo::default().image_memory_barriers(&barriers);
     // SAFETY: the caller's promises; synchronization2 was required of the device.
-    unsafe { gpu.device().cmd_pipeline_barrier2(cmd, &info) };
+    gpu.record(|device| unsafe { device.cmd_pipeline_barrier2(cmd, &info) });
 }

@@ -1,8 +1,7 @@
 //! Resources bound to the names that shaders give them.
 
 use super::{
-    Buffer, Error, Gpu, Image, Layout, ParameterRing, Sampler, error::Doing,
-    layout::descriptor_type, owned::Own,
+    Buffer, Error, Gpu, Image, Layout, ParameterRing, Sampler, layout::descriptor_type, owned::Own,
 };
 use crate::shaders::{BindingKind, BindingSlot};
 use ash::vk;
@@ -77,14 +76,18 @@ impl Bindings {
             .max_sets(1)
             .pool_sizes(&sizes);
         // SAFETY: the device is valid.
-        let pool = unsafe { gpu.device().create_descriptor_pool(&info, None) }.doing(doing)?;
+        let pool = gpu.call(doing, |device| unsafe {
+            device.create_descriptor_pool(&info, None)
+        })?;
         let pool = Own::new(gpu, pool);
         let layouts = [layout.set()];
         let info = vk::DescriptorSetAllocateInfo::default()
             .descriptor_pool(pool.get())
             .set_layouts(&layouts);
         // SAFETY: the pool is ours and has room for just this set.
-        let set = unsafe { gpu.device().allocate_descriptor_sets(&info) }.doing(doing)?[0];
+        let set = gpu.call(doing, |device| unsafe {
+            device.allocate_descriptor_sets(&info)
+        })?[0];
         gpu.name(set, layout.name());
         let writes: Vec<_> = layout
             .slots()

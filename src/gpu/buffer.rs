@@ -1,6 +1,6 @@
 //! A buffer and its memory.
 
-use super::{Error, Gpu, error::Doing, owned::Own, owned::OwnMemory};
+use super::{Error, Gpu, owned::Own, owned::OwnMemory};
 use ash::vk;
 use gpu_allocator::{
     MemoryLocation,
@@ -49,7 +49,7 @@ impl Buffer {
         let doing = || format!("make buffer `{name}` of {bytes} bytes");
         let info = vk::BufferCreateInfo::default().size(bytes).usage(usage);
         // SAFETY: the device is valid; sizes and usage were checked.
-        let raw = unsafe { gpu.device().create_buffer(&info, None) }.doing(doing)?;
+        let raw = gpu.call(doing, |device| unsafe { device.create_buffer(&info, None) })?;
         let raw = Own::new(gpu, raw);
         gpu.name(raw.get(), name);
         // SAFETY: the buffer was made on this device.
@@ -68,11 +68,9 @@ impl Buffer {
         let memory = OwnMemory::new(gpu, &desc, doing)?;
         let allocation = memory.get();
         // SAFETY: the memory was allocated for this buffer's requirements and is bound once.
-        unsafe {
-            gpu.device()
-                .bind_buffer_memory(raw.get(), allocation.memory(), allocation.offset())
-        }
-        .doing(doing)?;
+        gpu.call(doing, |device| unsafe {
+            device.bind_buffer_memory(raw.get(), allocation.memory(), allocation.offset())
+        })?;
         Ok(Self {
             raw,
             memory,

@@ -1,6 +1,6 @@
 //! Command buffers of ours for a queue of the host's: recorded and submitted by us, where a host wants that.
 
-use super::{Error, Gpu, error::Doing, owned::Own};
+use super::{Error, Feature, Gpu, owned::Own};
 use ash::vk;
 use std::sync::Arc;
 
@@ -20,24 +20,23 @@ impl Commands {
     /// # Errors
     /// Where `timelineSemaphore` is not enabled on the device; no memory.
     pub fn new(gpu: &Arc<Gpu>, count: u32) -> Result<Self, Error> {
-        if !gpu.features().timeline_semaphore {
-            return Err(Error::MissingFeature {
-                device: gpu.device_name().into(),
-                name: "timelineSemaphore",
-            });
-        }
+        gpu.require(Feature::TimelineSemaphore)?;
         let doing = || "make command buffers".into();
         let info = vk::CommandPoolCreateInfo::default()
             .flags(vk::CommandPoolCreateFlags::RESET_COMMAND_BUFFER)
             .queue_family_index(gpu.queue_family());
         // SAFETY: the device is valid.
-        let pool = unsafe { gpu.device().create_command_pool(&info, None) }.doing(doing)?;
+        let pool = gpu.call(doing, |device| unsafe {
+            device.create_command_pool(&info, None)
+        })?;
         let pool = Own::new(gpu, pool);
         let info = vk::CommandBufferAllocateInfo::default()
             .command_pool(pool.get())
             .command_buffer_count(count);
         // SAFETY: the pool is ours.
-        let buffers = unsafe { gpu.device().allocate_command_buffers(&info) }.doing(doing)?;
+        let buffers = gpu.call(doing, |device| unsafe {
+            device.allocate_command_buffers(&info)
+        })?;
         Ok(Self { pool, buffers })
     }
 
@@ -53,19 +52,23 @@ impl Commands {
         frame: u32,
         record: impl FnOnce(vk::CommandBuffer) -> Result<(), E>,
     ) -> Result<(), E> {
-        let device = self.pool.gpu().device();
+        let gpu = self.pool.gpu();
         let cmd = self.buffer(frame)?;
         let info = vk::CommandBufferBeginInfo::default()
             .flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
-        // SAFETY: the caller's promise: the buffer is in no use.
-        unsafe { device.begin_command_buffer(cmd, &info) }
-            .doing(|| "begin a command buffer".into())?;
+        gpu.call(
+            || "begin a command buffer".into(),
+            // SAFETY: the caller's promise: the buffer is in no use.
+            |device| unsafe { device.begin_command_buffer(cmd, &info) },
+        )?;
         let recorded = record(cmd);
         // SAFETY: it is recording.
-        let ended = unsafe { device.end_command_buffer(cmd) };
+        let ended = gpu.call(
+            || "end a command buffer".into(),
+            |device| unsafe { device.end_command_buffer(cmd) },
+        );
         recorded?;
-        ended.doing(|| "end a command buffer".into())?;
-        Ok(())
+        Ok(ended?)
     }
 
     /// Submits what was recorded last with this number: it begins when all of `waits` are reached, and all of `signals`
@@ -98,10 +101,11 @@ impl Commands {
             .wait_semaphore_infos(&waits)
             .command_buffer_infos(&cmds)
             .signal_semaphore_infos(&signals)];
-        let device = self.pool.gpu().device();
         // SAFETY: the caller's promises; synchronization2 was required of the device.
-        unsafe { device.queue_submit2(queue, &submit, vk::Fence::null()) }
-            .doing(|| "submit a frame".into())
+        self.pool.gpu().call(
+            || "submit a frame".into(),
+            |device| unsafe { device.queue_submit2(queue, &submit, vk::Fence::null()) },
+        )
     }
 
     fn buffer(&self, frame: u32) -> Result<vk::CommandBuffer, Error> {

@@ -59,10 +59,9 @@ pub unsafe fn buffer_to_image(
     let copy = [checked(buffer, offset, image, region, "copy to")?];
     let layout = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
     // SAFETY: the region was checked; the rest is the caller's promise.
-    unsafe {
-        gpu.device()
-            .cmd_copy_buffer_to_image(cmd, buffer.raw(), image.raw(), layout, &copy)
-    };
+    gpu.record(|device| unsafe {
+        device.cmd_copy_buffer_to_image(cmd, buffer.raw(), image.raw(), layout, &copy)
+    });
     Ok(())
 }
 
@@ -87,10 +86,9 @@ pub unsafe fn image_to_buffer(
     let copy = [checked(buffer, offset, image, region, "copy from")?];
     let layout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
     // SAFETY: the region was checked; the rest is the caller's promise.
-    unsafe {
-        gpu.device()
-            .cmd_copy_image_to_buffer(cmd, image.raw(), layout, buffer.raw(), &copy)
-    };
+    gpu.record(|device| unsafe {
+        device.cmd_copy_image_to_buffer(cmd, image.raw(), layout, buffer.raw(), &copy)
+    });
     Ok(())
 }
 
@@ -104,10 +102,9 @@ pub unsafe fn clear_image(gpu: &Gpu, cmd: vk::CommandBuffer, image: &Image, colo
     let layout = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
     let color = vk::ClearColorValue { float32: color };
     // SAFETY: the caller's promises.
-    unsafe {
-        gpu.device()
-            .cmd_clear_color_image(cmd, image.raw(), layout, &color, &[WHOLE_COLOR])
-    };
+    gpu.record(|device| unsafe {
+        device.cmd_clear_color_image(cmd, image.raw(), layout, &color, &[WHOLE_COLOR])
+    });
 }
 
 fn checked(

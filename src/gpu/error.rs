@@ -1,5 +1,6 @@
 //! What can go wrong between us and Vulkan, in one sentence each.
 
+use super::Finding;
 use ash::vk;
 
 /// What was being done on the GPU, to what, and why it was refused.
@@ -32,13 +33,13 @@ pub enum Error {
         /// The version that was found.
         found: String,
     },
-    /// The device cannot do (or the host did not enable) what we cannot do without.
-    #[error("{device} lacks {name}")]
-    MissingFeature {
+    /// The device cannot do (or the host did not enable) what nothing can be drawn without.
+    #[error("{device} lacks {}", missing.iter().map(Finding::to_string).collect::<Vec<_>>().join(", "))]
+    Unfit {
         /// The device.
         device: String,
-        /// The feature by the name that the Vulkan specification gives it.
-        name: &'static str,
+        /// Each requirement that is not met, what is wanted and what was found.
+        missing: Vec<Finding>,
     },
     /// Validation was asked for and cannot be had.
     #[error(

@@ -1,13 +1,12 @@
 //! A device of our own, for the tool and the tests: the only place that makes one, submits and waits.
 
 use super::{
-    API_VERSION, Caps, DeviceChoice, Error, Features, Gpu, HostDevice, Message, PipelineCache,
-    Validation, ValidationMode, cache, devices, error::Doing, instance::Candidate,
-    instance::OwnInstance, owned::Own, validation::Messages,
+    API_VERSION, Caps, DeviceChoice, Error, Gpu, HostDevice, Message, PipelineCache, Validation,
+    ValidationMode, cache, instance::Candidate, instance::OwnInstance, own_device::OwnDevice,
+    owned::Own, validation::Messages,
 };
 use ash::vk;
 use std::{
-    fmt,
     path::PathBuf,
     sync::{
         Arc,
@@ -58,7 +57,6 @@ pub struct Headless {
     queue: vk::Queue,
     /// The newest value that was submitted.
     submitted: u64,
-    is_lost: bool,
     submissions: Submissions,
     stop: Option<Arc<AtomicBool>>,
     cache_file: Option<PathBuf>,
@@ -76,21 +74,43 @@ impl Headless {
     /// device lacks, validation that is wanted and not installed.
     pub fn new(choice: &DeviceChoice, options: &Options) -> Result<Self, Error> {
         let mode = options.validation.mode()?;
-        let instance = OwnInstance::new(mode)?;
-        let messages = instance.messages().cloned();
-        let missing = |device: &Candidate| {
-            let abilities = devices::abilities(instance.raw(), device);
-            abilities
-                .into_iter()
-                .find(|ability| ability.is_required && !ability.is_present)
+        Self::of(OwnInstance::new(mode)?, mode, choice, options)
+    }
+
+    /// The same through a `vkGetInstanceProcAddr` of the caller's in place of the loader of this machine: what stands
+    /// between the two hears, and may answer, every call.
+    ///
+    /// # Errors
+    ///
+    /// As [`Headless::new`].
+    ///
+    /// # Safety
+    ///
+    /// It gives functions that do what Vulkan says, and stays until the device is gone.
+    pub unsafe fn through(
+        get_instance_proc_addr: vk::PFN_vkGetInstanceProcAddr,
+        choice: &DeviceChoice,
+        options: &Options,
+    ) -> Result<Self, Error> {
+        let mode = options.validation.mode()?;
+        let functions = ash::StaticFn {
+            get_instance_proc_addr,
         };
-        let device = choice.pick(instance.devices()?, |device| missing(device).is_none())?;
-        if let Some(ability) = missing(&device) {
-            return Err(Error::MissingFeature {
-                device: device.title(),
-                name: ability.name,
-            });
-        }
+        // SAFETY: the caller's promise.
+        let entry = unsafe { ash::Entry::from_static_fn(functions) };
+        Self::of(OwnInstance::through(entry, mode)?, mode, choice, options)
+    }
+
+    fn of(
+        instance: OwnInstance,
+        mode: Option<ValidationMode>,
+        choice: &DeviceChoice,
+        options: &Options,
+    ) -> Result<Self, Error> {
+        let messages = instance.messages().cloned();
+        let is_usable = |device: &Candidate| instance.report(device).is_usable();
+        let device = choice.pick(instance.devices()?, is_usable)?;
+        instance.report(&device).require()?;
         let cache_file = options.pipeline_cache.file(&device.identity);
         let pipeline_cache = cache_file.as_deref().map(cache::load).unwrap_or_default();
         let own = OwnDevice::new(instance, &device, mode)?;
@@ -116,26 +136,32 @@ impl Headless {
         cache_file: Option<PathBuf>,
         messages: Option<Arc<Messages>>,
     ) -> Result<Self, Error> {
-        let device = gpu.device();
         let info = vk::CommandPoolCreateInfo::default()
             .flags(vk::CommandPoolCreateFlags::TRANSIENT)
             .queue_family_index(gpu.queue_family());
         // SAFETY: the device is ours and valid, here and below; the family is the one it was made with.
-        let pool = unsafe { device.create_command_pool(&info, None) }
-            .doing(|| "make a command pool".into())?;
+        let pool = gpu.call(
+            || "make a command pool".into(),
+            |device| unsafe { device.create_command_pool(&info, None) },
+        )?;
         let pool = Own::new(&gpu, pool);
         let info = vk::CommandBufferAllocateInfo::default()
             .command_pool(pool.get())
             .command_buffer_count(1);
         // SAFETY: as above.
-        let cmd = unsafe { device.allocate_command_buffers(&info) }
-            .doing(|| "make a command buffer".into())?[0];
+        let cmd = gpu.call(
+            || "make a command buffer".into(),
+            |device| unsafe { device.allocate_command_buffers(&info) },
+        )?[0];
         let info = vk::FenceCreateInfo::default();
         // SAFETY: as above.
-        let done = unsafe { device.create_fence(&info, None) }.doing(|| "make a fence".into())?;
+        let done = gpu.call(
+            || "make a fence".into(),
+            |device| unsafe { device.create_fence(&info, None) },
+        )?;
         let done = Own::new(&gpu, done);
         // SAFETY: as above; the device was made with one queue of this family.
-        let queue = unsafe { device.get_device_queue(gpu.queue_family(), 0) };
+        let queue = unsafe { gpu.device().get_device_queue(gpu.queue_family(), 0) };
         gpu.name(done.get(), "headless submission");
         Ok(Self {
             pool,
@@ -143,7 +169,6 @@ impl Headless {
             done,
             queue,
             submitted: 0,
-            is_lost: false,
             submissions: Submissions::default(),
             stop: None,
             cache_file,
@@ -177,7 +202,7 @@ impl Headless {
         &mut self,
         record: impl FnOnce(vk::CommandBuffer) -> Result<R, Error>,
     ) -> Result<R, Error> {
-        if self.is_lost {
+        if self.gpu.is_lost() {
             return Err(Error::DeviceLost {
                 doing: "record on a device that was lost before".into(),
             });
@@ -195,7 +220,6 @@ impl Headless {
             self.submit(value)?;
             Ok(result)
         });
-        self.is_lost |= matches!(result, Err(Error::DeviceLost { .. }));
         let result = result?;
         // SAFETY: the submission that signals `value` has ended.
         unsafe { self.gpu.retire(value) };
@@ -205,7 +229,7 @@ impl Headless {
     /// Destroys what was dropped since the last run, and not only with the next one.
     pub fn tidy(&mut self) {
         // What was submitted to a lost device may still run.
-        if !self.is_lost {
+        if !self.gpu.is_lost() {
             // SAFETY: every run has waited for its submission, and nothing was recorded since.
             unsafe { self.gpu.retire(self.submitted) };
         }
@@ -235,7 +259,7 @@ impl Headless {
         &self,
         record: impl FnOnce(vk::CommandBuffer) -> Result<R, Error>,
     ) -> Result<R, Error> {
-        let device = self.gpu.device();
+        let gpu = &self.gpu;
         let begin = vk::CommandBufferBeginInfo::default()
             .flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
         // All by which a recording can write to mapped buffers.
@@ -251,38 +275,47 @@ impl Headless {
         let to_host = vk::DependencyInfo::default().memory_barriers(&to_host);
         // SAFETY: every earlier submission was waited for, so the buffer is free; it is ours alone.
         unsafe {
-            device
-                .reset_command_pool(self.pool.get(), vk::CommandPoolResetFlags::empty())
-                .and_then(|()| device.begin_command_buffer(self.cmd, &begin))
-                .doing(|| "begin recording".into())?;
+            gpu.call(
+                || "begin recording".into(),
+                |device| {
+                    let flags = vk::CommandPoolResetFlags::empty();
+                    device.reset_command_pool(self.pool.get(), flags)?;
+                    device.begin_command_buffer(self.cmd, &begin)
+                },
+            )?;
             let result = record(self.cmd)?;
-            device.cmd_pipeline_barrier2(self.cmd, &to_host);
-            device
-                .end_command_buffer(self.cmd)
-                .doing(|| "end recording".into())?;
+            gpu.record(|device| device.cmd_pipeline_barrier2(self.cmd, &to_host));
+            gpu.call(
+                || "end recording".into(),
+                |device| device.end_command_buffer(self.cmd),
+            )?;
             Ok(result)
         }
     }
 
     /// Submits what was recorded and waits for it.
     fn submit(&mut self, value: u64) -> Result<(), Error> {
-        let device = self.gpu.device();
+        let gpu = Arc::clone(&self.gpu);
         // A fence, not a timeline: waiting for one, validation 1.3.239 races with its own queue thread and crashes
         // once in some ten thousand submissions (KhronosGroup/Vulkan-ValidationLayers#4968 is of that kind).
         let (commands, fences) = ([self.cmd], [self.done.get()]);
         let submit = vk::SubmitInfo::default().command_buffers(&commands);
         let start = Instant::now();
-        // SAFETY: the recording has ended; the queue is ours, and `&mut self` makes us its only user. The last
-        // submission was waited for, so nothing uses the fence.
-        unsafe {
-            device
-                .reset_fences(&fences)
-                .and_then(|()| device.queue_submit(self.queue, &[submit], fences[0]))
-        }
-        .doing(|| "submit".into())?;
+        gpu.call(
+            || "submit".into(),
+            // SAFETY: the recording has ended; the queue is ours, and `&mut self` makes us its only user. The last
+            // submission was waited for, so nothing uses the fence.
+            |device| unsafe {
+                device.reset_fences(&fences)?;
+                device.queue_submit(self.queue, &[submit], fences[0])
+            },
+        )?;
         self.submitted = value;
         // SAFETY: the fence is ours. A driver that hangs is found by its watchdog, which makes this call fail.
-        let waited = unsafe { device.wait_for_fences(&fences, true, u64::MAX) };
+        let waited = gpu.call(
+            || "wait for the device".into(),
+            |device| unsafe { device.wait_for_fences(&fences, true, u64::MAX) },
+        );
         let last_ms = 1e3 * start.elapsed().as_secs_f64();
         self.submissions = Submissions {
             count: self.submissions.count + 1,
@@ -291,9 +324,9 @@ impl Headless {
         };
         if waited.is_err() {
             // Whatever the reason, what was submitted may still run: nothing may be recorded over it.
-            self.is_lost = true;
+            gpu.declare_lost();
         }
-        waited.doing(|| "wait for the device".into())
+        waited
     }
 }
 
@@ -302,7 +335,7 @@ impl Drop for Headless {
         let Some(file) = self
             .cache_file
             .as_deref()
-            .filter(|_| !self.is_lost && self.gpu.pipelines_made() > 0)
+            .filter(|_| !self.gpu.is_lost() && self.gpu.pipelines_made() > 0)
         else {
             return;
         };
@@ -312,89 +345,5 @@ impl Drop for Headless {
             // Losing it costs time in the next run, and nothing else.
             let _ = cache::save(file, &data);
         }
-    }
-}
-
-/// A device that we made, destroyed when dropped. Everything made on it must be gone by then.
-struct OwnDevice {
-    device: ash::Device,
-    queue_family: u32,
-    features: Features,
-    // Last: fields are dropped in this order, after the device was destroyed.
-    instance: OwnInstance,
-}
-
-impl OwnDevice {
-    /// `from` has every ability that is required.
-    fn new(
-        instance: OwnInstance,
-        from: &Candidate,
-        mode: Option<ValidationMode>,
-    ) -> Result<Self, Error> {
-        // SAFETY: the device was listed by this instance, here and below.
-        let families = unsafe {
-            instance
-                .raw()
-                .get_physical_device_queue_family_properties(from.physical_device)
-        };
-        let queue_family = devices::queue_family(&families).unwrap_or_default();
-        let features = devices::supported(instance.raw(), from);
-        let mut core = vk::PhysicalDeviceFeatures::default()
-            .robust_buffer_access(features.robust_buffer_access)
-            .shader_storage_image_extended_formats(features.shader_storage_image_extended_formats);
-        if mode == Some(ValidationMode::GpuAssisted) {
-            // What the instrumented shaders need, where the device has it.
-            // SAFETY: as above.
-            let supported = unsafe {
-                instance
-                    .raw()
-                    .get_physical_device_features(from.physical_device)
-            };
-            core.fragment_stores_and_atomics = supported.fragment_stores_and_atomics;
-            core.vertex_pipeline_stores_and_atomics = supported.vertex_pipeline_stores_and_atomics;
-            core.shader_int64 = supported.shader_int64;
-        }
-        let mut features12 = vk::PhysicalDeviceVulkan12Features::default()
-            .timeline_semaphore(features.timeline_semaphore);
-        let mut features13 = vk::PhysicalDeviceVulkan13Features::default()
-            .dynamic_rendering(features.dynamic_rendering)
-            .synchronization2(features.synchronization2)
-            .robust_image_access(features.robust_image_access);
-        let queues = [vk::DeviceQueueCreateInfo::default()
-            .queue_family_index(queue_family)
-            .queue_priorities(&[1.0])];
-        let info = vk::DeviceCreateInfo::default()
-            .queue_create_infos(&queues)
-            .enabled_features(&core)
-            .push_next(&mut features12)
-            .push_next(&mut features13);
-        // SAFETY: only what the device supports is enabled.
-        let device = unsafe {
-            instance
-                .raw()
-                .create_device(from.physical_device, &info, None)
-        }
-        .doing(|| format!("make a device of {}", from.title()))?;
-        Ok(Self {
-            device,
-            queue_family,
-            features,
-            instance,
-        })
-    }
-}
-
-impl fmt::Debug for OwnDevice {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("OwnDevice")
-            .field("instance", &self.instance)
-            .finish_non_exhaustive()
-    }
-}
-
-impl Drop for OwnDevice {
-    fn drop(&mut self) {
-        // SAFETY: we made it, and everything made on it is gone: the `Gpu` that owns us sees to that.
-        unsafe { self.device.destroy_device(None) };
     }
 }

@@ -1,6 +1,6 @@
 //! What a host hands over: its device, and what it enabled on it.
 
-use super::{Caps, Error, identity::version_text};
+use super::{Caps, Enabled, HostPhysicalDevice, identity::version_text};
 use ash::vk;
 use std::fmt;
 
@@ -29,6 +29,24 @@ pub struct HostDevice<'a> {
     pub pipeline_cache: &'a [u8],
 }
 
+impl HostDevice<'_> {
+    /// What [`super::check_device`] compares with the requirements.
+    pub fn physical(&self) -> HostPhysicalDevice {
+        HostPhysicalDevice {
+            get_instance_proc_addr: self.get_instance_proc_addr,
+            instance: self.instance,
+            api_version: self.api_version,
+            physical_device: self.physical_device,
+            queue_family: Some(self.queue_family),
+            enabled: Some(Enabled {
+                features: self.features,
+                debug_utils: self.debug_utils,
+            }),
+            caps: self.caps,
+        }
+    }
+}
+
 impl fmt::Debug for HostDevice<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("HostDevice")
@@ -49,29 +67,8 @@ impl fmt::Debug for HostDevice<'_> {
 pub struct Features {
     pub dynamic_rendering: bool,
     pub synchronization2: bool,
-    /// Needed by [`super::Headless`] only: a host may use fences.
+    /// A host may use fences instead.
     pub timeline_semaphore: bool,
     pub robust_buffer_access: bool,
     pub robust_image_access: bool,
-    /// For storage images of one or two components of 8 or 16 bits.
-    pub shader_storage_image_extended_formats: bool,
-}
-
-impl Features {
-    /// Refuses a device on which something is not enabled that nothing here works without.
-    pub(super) fn require(&self, device: &str) -> Result<(), Error> {
-        let required = [
-            ("dynamicRendering", self.dynamic_rendering),
-            ("synchronization2", self.synchronization2),
-        ];
-        for (name, enabled) in required {
-            if !enabled {
-                return Err(Error::MissingFeature {
-                    device: device.into(),
-                    name,
-                });
-            }
-        }
-        Ok(())
-    }
 }

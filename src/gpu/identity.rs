@@ -59,16 +59,20 @@ impl DeviceKind {
 }
 
 impl Identity {
-    /// UUID and driver stay empty for a device older than Vulkan 1.2, which cannot be asked.
+    /// UUID and driver stay empty where instance or device are older than Vulkan 1.2 and cannot be asked.
     ///
     /// # Safety
-    /// `physical_device` belongs to `instance`, which speaks Vulkan 1.2 or later.
-    pub(super) unsafe fn of(instance: &ash::Instance, physical_device: vk::PhysicalDevice) -> Self {
+    /// `physical_device` belongs to `instance`, which speaks Vulkan `instance_version`.
+    pub(super) unsafe fn of(
+        instance: &ash::Instance,
+        physical_device: vk::PhysicalDevice,
+        instance_version: u32,
+    ) -> Self {
         let mut properties11 = vk::PhysicalDeviceVulkan11Properties::default();
         let mut properties12 = vk::PhysicalDeviceVulkan12Properties::default();
         // SAFETY: the caller's promise, here and below.
         let properties = unsafe { instance.get_physical_device_properties(physical_device) };
-        if properties.api_version >= vk::API_VERSION_1_2 {
+        if properties.api_version.min(instance_version) >= vk::API_VERSION_1_2 {
             let mut properties2 = vk::PhysicalDeviceProperties2::default()
                 .push_next(&mut properties11)
                 .push_next(&mut properties12);

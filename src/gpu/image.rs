@@ -1,6 +1,6 @@
 //! An image, its memory and its one view.
 
-use super::{Error, Gpu, error::Doing, owned::Own, owned::OwnMemory};
+use super::{Error, Gpu, owned::Own, owned::OwnMemory};
 use ash::vk;
 use gpu_allocator::{
     MemoryLocation,
@@ -143,7 +143,7 @@ impl Image {
             })
             .usage(desc.usage);
         // SAFETY: the device is valid; sizes, format and usage were checked.
-        let raw = unsafe { gpu.device().create_image(&info, None) }.doing(doing)?;
+        let raw = gpu.call(doing, |device| unsafe { device.create_image(&info, None) })?;
         let raw = Own::new(gpu, raw);
         gpu.name(raw.get(), desc.name);
         // SAFETY: the image was made on this device.
@@ -165,18 +165,18 @@ impl Image {
         let memory = OwnMemory::new(gpu, &memory, doing)?;
         let allocation = memory.get();
         // SAFETY: the memory was allocated for this image's requirements and is bound once.
-        unsafe {
-            gpu.device()
-                .bind_image_memory(raw.get(), allocation.memory(), allocation.offset())
-        }
-        .doing(doing)?;
+        gpu.call(doing, |device| unsafe {
+            device.bind_image_memory(raw.get(), allocation.memory(), allocation.offset())
+        })?;
         let info = vk::ImageViewCreateInfo::default()
             .image(raw.get())
             .view_type(desc.kind.view_type())
             .format(desc.format)
             .subresource_range(WHOLE_COLOR);
         // SAFETY: the image has memory, and the view is of its own kind and format.
-        let view = unsafe { gpu.device().create_image_view(&info, None) }.doing(doing)?;
+        let view = gpu.call(doing, |device| unsafe {
+            device.create_image_view(&info, None)
+        })?;
         let view = Own::new(gpu, view);
         gpu.name(view.get(), desc.name);
         Ok(Self {

@@ -20,9 +20,15 @@ pub(super) struct OwnInstance {
 }
 
 impl OwnInstance {
+    /// Through the loader of this machine.
     pub fn new(mode: Option<ValidationMode>) -> Result<Self, Error> {
         // SAFETY: this loads the system's Vulkan loader, whose initializers are harmless.
         let entry = unsafe { ash::Entry::load() }.map_err(|cause| Error::NoLoader { cause })?;
+        Self::through(entry, mode)
+    }
+
+    /// Through this loader.
+    pub fn through(entry: ash::Entry, mode: Option<ValidationMode>) -> Result<Self, Error> {
         check_loader(&entry)?;
         let mut layers = Vec::new();
         let mut extensions = Vec::new();
@@ -114,7 +120,8 @@ impl OwnInstance {
             .into_iter()
             .map(|physical_device| {
                 // SAFETY: the device was just listed by this instance, which speaks Vulkan 1.3.
-                let identity = unsafe { Identity::of(&self.instance, physical_device) };
+                let identity =
+                    unsafe { Identity::of(&self.instance, physical_device, API_VERSION) };
                 Candidate {
                     physical_device,
                     identity,

@@ -1,6 +1,6 @@
 //! The bindings that the shaders of one pipeline declare, as Vulkan wants them.
 
-use super::{Error, Gpu, error::Doing, error::within, owned::Own};
+use super::{Error, Gpu, error::within, owned::Own};
 use crate::shaders::{BindingKind, BindingSlot, Shader, Stage};
 use ash::vk;
 use std::{collections::BTreeMap, sync::Arc};
@@ -37,13 +37,17 @@ impl Layout {
             .collect();
         let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
         // SAFETY: the device is valid; binding numbers differ, being keys of a map.
-        let set = unsafe { gpu.device().create_descriptor_set_layout(&info, None) }.doing(doing)?;
+        let set = gpu.call(doing, |device| unsafe {
+            device.create_descriptor_set_layout(&info, None)
+        })?;
         let set = Own::new(gpu, set);
         gpu.name(set.get(), name);
         let sets = [set.get()];
         let info = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets);
         // SAFETY: the set layout was made on this device.
-        let pipeline = unsafe { gpu.device().create_pipeline_layout(&info, None) }.doing(doing)?;
+        let pipeline = gpu.call(doing, |device| unsafe {
+            device.create_pipeline_layout(&info, None)
+        })?;
         let pipeline = Own::new(gpu, pipeline);
         gpu.name(pipeline.get(), name);
         let slots = declared.into_values().map(|(slot, _)| slot).collect();

@@ -32,11 +32,14 @@ mod identity;
 mod image;
 mod instance;
 mod layout;
+mod loss;
+mod own_device;
 mod owned;
 mod parameters;
 mod pipeline;
 mod raster;
 mod rendering;
+mod requirements;
 mod sampler;
 mod tile;
 mod timer;
@@ -50,7 +53,7 @@ pub use caps::Caps;
 pub use choice::DeviceChoice;
 pub use commands::{Commands, TimelinePoint};
 pub use copy::{Region, buffer_to_image, clear_image, image_to_buffer};
-pub use devices::{Ability, DeviceReport, list_devices};
+pub use devices::{DeviceReport, Enabled, Finding, HostPhysicalDevice, check_device, list_devices};
 pub use error::Error;
 pub use format::{FormatFeatures, texel_bytes};
 pub use headless::{Headless, Options, Submissions};
@@ -64,6 +67,7 @@ pub use raster::{Blend, DepthClass, DepthUse, RasterDesc, RasterPipeline, Target
 pub use rendering::{
     Load, begin_rendering, begin_rendering_of, end_rendering, set_area, set_area_of,
 };
+pub use requirements::{Feature, Item, Limit, Need, REQUIREMENTS, Requirement};
 pub use sampler::Sampler;
 pub use tile::Tile;
 pub(crate) use tile::{Groups, boxes, group_count, within};
@@ -71,7 +75,6 @@ pub use timer::Timer;
 pub use validation::{Message, VARIABLE as VALIDATION_VARIABLE, Validation, ValidationMode};
 
 use ash::vk;
-use error::Doing;
 use gpu_allocator::{
     AllocationSizes, AllocatorDebugSettings,
     vulkan::{Allocator, AllocatorCreateDesc},
@@ -85,7 +88,7 @@ use std::{
     fmt,
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
-        atomic::{AtomicU32, Ordering},
+        atomic::{AtomicBool, AtomicU32, Ordering},
     },
 };
 
@@ -109,6 +112,7 @@ pub struct Gpu {
     debug_utils: Option<ash::ext::debug_utils::Device>,
     pipeline_cache: vk::PipelineCache,
     pipelines_made: AtomicU32,
+    is_lost: AtomicBool,
     store: Mutex<Store>,
     /// A device of our own; last, because fields are dropped in this order.
     own_device: Option<Box<dyn Any + Send + Sync>>,
@@ -145,38 +149,30 @@ impl Gpu {
             get_instance_proc_addr: host.get_instance_proc_addr,
         };
         // SAFETY: the handles are valid and belong together (the caller's promise).
-        let (instance, device, properties, families) = unsafe {
+        let (instance, report, families) = unsafe {
             let instance = ash::Instance::load(&entry, host.instance);
-            let device = ash::Device::load(instance.fp_v1_0(), host.device);
-            let properties = instance.get_physical_device_properties(host.physical_device);
+            let report = check_device(&host.physical());
             let families =
                 instance.get_physical_device_queue_family_properties(host.physical_device);
-            (instance, device, properties, families)
+            (instance, report, families)
         };
-        if properties.api_version < API_VERSION {
-            let name = identity::text(properties.device_name_as_c_str());
-            return Err(too_old(&name, properties.api_version));
+        let identity = &report.identity;
+        let found = identity.api_version;
+        if found < identity::version(API_VERSION) {
+            let [major, minor, patch] = found;
+            let found = vk::make_api_version(0, major, minor, patch);
+            return Err(too_old(&identity.name, found));
         }
-        // SAFETY: instance and device speak Vulkan 1.3, which was just checked.
-        let (identity, limits) = unsafe {
-            let identity = Identity::of(&instance, host.physical_device);
+        report.require()?;
+        let identity = report.identity;
+        // SAFETY: as above; instance and device speak Vulkan 1.3, and there is such a family.
+        let (device, limits) = unsafe {
             (
-                identity,
+                ash::Device::load(instance.fp_v1_0(), host.device),
                 Caps::of(&instance, host.physical_device).clamped_to(&host.caps),
             )
         };
-        host.features.require(&identity.name)?;
-        let family = families.get(host.queue_family as usize);
-        let family = family
-            .filter(|family| family.queue_flags.contains(QUEUE_WORK))
-            .ok_or_else(|| {
-                let name =
-                    "a queue family with graphics and compute, which `queue_family` must name";
-                Error::MissingFeature {
-                    device: identity.name.clone(),
-                    name,
-                }
-            })?;
+        let family = families[host.queue_family as usize];
         let allocator = Allocator::new(&AllocatorCreateDesc {
             instance: instance.clone(),
             device: device.clone(),
@@ -205,6 +201,7 @@ impl Gpu {
             limits,
             pipeline_cache: vk::PipelineCache::null(),
             pipelines_made: AtomicU32::new(0),
+            is_lost: AtomicBool::new(false),
             store: Mutex::new(Store::new(allocator)),
             own_device,
         };
@@ -215,8 +212,10 @@ impl Gpu {
         };
         let info = vk::PipelineCacheCreateInfo::default().initial_data(data);
         // SAFETY: the device is valid; the data was made by this very driver.
-        gpu.pipeline_cache = unsafe { gpu.device.create_pipeline_cache(&info, None) }
-            .doing(|| "make a pipeline cache".into())?;
+        gpu.pipeline_cache = gpu.call(
+            || "make a pipeline cache".into(),
+            |device| unsafe { device.create_pipeline_cache(&info, None) },
+        )?;
         Ok(Arc::new(gpu))
     }
 
@@ -314,8 +313,10 @@ impl Gpu {
     /// What the driver has compiled so far, for [`HostDevice::pipeline_cache`] of a later run.
     pub fn pipeline_cache_data(&self) -> Result<Vec<u8>, Error> {
         // SAFETY: the cache was made on this device.
-        unsafe { self.device.get_pipeline_cache_data(self.pipeline_cache) }
-            .doing(|| "read the pipeline cache".into())
+        self.call(
+            || "read the pipeline cache".into(),
+            |device| unsafe { device.get_pipeline_cache_data(self.pipeline_cache) },
+        )
     }
 
     /// Names an object for validation messages and debuggers, where the instance can.
@@ -361,10 +362,6 @@ impl Drop for Gpu {
         }
     }
 }
-
-/// What the queue of a recording must be able to do.
-const QUEUE_WORK: vk::QueueFlags =
-    vk::QueueFlags::from_raw(vk::QueueFlags::GRAPHICS.as_raw() | vk::QueueFlags::COMPUTE.as_raw());
 
 fn too_old(what: &str, found: u32) -> Error {
     Error::ApiVersion {

@@ -161,6 +161,12 @@ handles! {
     Fence vk::Fence, "fence", destroy_fence;
 }
 
+/// What the allocator hands on as text only.
+const SAID: [vk::Result; 2] = [
+    vk::Result::ERROR_OUT_OF_HOST_MEMORY,
+    vk::Result::ERROR_OUT_OF_DEVICE_MEMORY,
+];
+
 /// The allocator, what is alive, and what waits for the timeline.
 #[derive(Debug)]
 pub(super) struct Store {
@@ -275,12 +281,22 @@ impl Store {
                 max_allocations,
             )?;
         }
-        let allocation = allocator.allocate(desc).map_err(|cause| match cause {
-            AllocationError::OutOfMemory => Error::OutOfMemory {
-                doing: doing(),
-                memory: "device",
-            },
-            cause => Error::Allocation {
+        let allocation = allocator.allocate(desc).map_err(|cause| match &cause {
+            AllocationError::OutOfMemory => {
+                Error::vulkan(doing(), vk::Result::ERROR_OUT_OF_DEVICE_MEMORY)
+            }
+            AllocationError::Internal(text) | AllocationError::FailedToMap(text) => {
+                match SAID.into_iter().find(|result| {
+                    text.contains(&format!("{result:?}")) || text.contains(&result.to_string())
+                }) {
+                    Some(result) => Error::vulkan(doing(), result),
+                    None => Error::Allocation {
+                        doing: doing(),
+                        cause,
+                    },
+                }
+            }
+            _ => Error::Allocation {
                 doing: doing(),
                 cause,
             },

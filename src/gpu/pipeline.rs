@@ -1,8 +1,8 @@
 //! A compute pipeline, and what every pipeline shares.
 
 use super::{
-    Bindings, Error, Gpu, Groups, Layout, Tile, boxes, error::Doing, error::within,
-    layout::stage_flag, owned::Own,
+    Bindings, Error, Gpu, Groups, Layout, Tile, boxes, error::within, layout::stage_flag,
+    owned::Own,
 };
 use crate::shaders::{Shader, Stage};
 use ash::vk;
@@ -56,11 +56,9 @@ impl ComputePipeline {
             .stage(stage(shader, &module))
             .layout(layout.raw());
         // SAFETY: module and layout were made of the same shader, whose SPIR-V `build.rs` has validated.
-        let made = unsafe {
-            gpu.device()
-                .create_compute_pipelines(gpu.pipeline_cache, &[info], None)
-        };
-        let raw = first(gpu, made, doing)?;
+        let raw = first(gpu, doing, |device| unsafe {
+            device.create_compute_pipelines(gpu.pipeline_cache, &[info], None)
+        })?;
         gpu.name(raw.get(), shader.name);
         Ok(Self {
             raw,
@@ -176,11 +174,10 @@ impl ComputePipeline {
         offsets: &[u32],
         boxes: impl IntoIterator<Item = Groups>,
     ) {
-        let device = self.raw.gpu().device();
         let point = vk::PipelineBindPoint::COMPUTE;
         let sets = [bindings.raw()];
         // SAFETY: the caller's promises are all that these calls ask; every pipeline is made with `DISPATCH_BASE`.
-        unsafe {
+        self.raw.gpu().record(|device| unsafe {
             device.cmd_bind_pipeline(cmd, point, self.raw());
             device.cmd_bind_descriptor_sets(cmd, point, self.layout.raw(), 0, &sets, offsets);
             for Groups { base, count } in boxes {
@@ -191,7 +188,7 @@ impl ComputePipeline {
                     _ => device.cmd_dispatch_base(cmd, x, y, z, nx, ny, nz),
                 }
             }
-        }
+        });
     }
 }
 
@@ -209,8 +206,10 @@ pub(super) fn wrong_stage(doing: String, wanted: &str, shader: &Shader) -> Error
 pub(super) fn module(gpu: &Arc<Gpu>, shader: &Shader) -> Result<Own<vk::ShaderModule>, Error> {
     let info = vk::ShaderModuleCreateInfo::default().code(shader.spirv);
     // SAFETY: the SPIR-V was validated when it was built.
-    let raw = unsafe { gpu.device().create_shader_module(&info, None) }
-        .doing(|| format!("load shader `{}`", shader.name))?;
+    let raw = gpu.call(
+        || format!("load shader `{}`", shader.name),
+        |device| unsafe { device.create_shader_module(&info, None) },
+    )?;
     gpu.name(raw, shader.name);
     Ok(Own::new(gpu, raw))
 }
@@ -228,11 +227,11 @@ pub(super) fn stage<'a>(
 /// The one pipeline that was asked for.
 pub(super) fn first(
     gpu: &Arc<Gpu>,
-    made: Result<Vec<vk::Pipeline>, (Vec<vk::Pipeline>, vk::Result)>,
     doing: impl FnOnce() -> String,
+    make: impl FnOnce(&ash::Device) -> Result<Vec<vk::Pipeline>, (Vec<vk::Pipeline>, vk::Result)>,
 ) -> Result<Own<vk::Pipeline>, Error> {
     // On failure Vulkan leaves null handles behind.
-    let raw = made.map_err(|(_, result)| result).doing(doing)?;
+    let raw = gpu.call(doing, |device| make(device).map_err(|(_, result)| result))?;
     gpu.pipelines_made.fetch_add(1, Ordering::Relaxed);
     Ok(Own::new(gpu, raw[0]))
 }

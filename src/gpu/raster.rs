@@ -148,11 +148,9 @@ impl RasterPipeline {
             None => info.push_next(&mut rendering),
         };
         // SAFETY: modules and layout were made of the same shaders, whose SPIR-V `build.rs` has validated.
-        let made = unsafe {
-            gpu.device()
-                .create_graphics_pipelines(gpu.pipeline_cache, &[info], None)
-        };
-        let raw = first(gpu, made, doing)?;
+        let raw = first(gpu, doing, |device| unsafe {
+            device.create_graphics_pipelines(gpu.pipeline_cache, &[info], None)
+        })?;
         gpu.name(raw.get(), name);
         Ok(Self { raw, layout })
     }
@@ -186,16 +184,15 @@ impl RasterPipeline {
         vertices: u32,
         instances: Range<u32>,
     ) {
-        let device = self.raw.gpu().device();
         let point = vk::PipelineBindPoint::GRAPHICS;
         let sets = [bindings.raw()];
         // SAFETY: the caller's promises are all that these calls ask.
-        unsafe {
+        self.raw.gpu().record(|device| unsafe {
             device.cmd_bind_pipeline(cmd, point, self.raw());
             device.cmd_bind_descriptor_sets(cmd, point, self.layout.raw(), 0, &sets, offsets);
             let count = instances.end.saturating_sub(instances.start);
             device.cmd_draw(cmd, vertices, count, 0, instances.start);
-        }
+        });
     }
 
     /// Binds pipeline and bindings and draws what `draws` say: `VkDrawIndirectCommand`s, one after the other.
@@ -212,18 +209,17 @@ impl RasterPipeline {
         draws: &Buffer,
         numbers: Range<u32>,
     ) {
-        let device = self.raw.gpu().device();
         let point = vk::PipelineBindPoint::GRAPHICS;
         let sets = [bindings.raw()];
         let bytes = size_of::<vk::DrawIndirectCommand>() as u64;
         // SAFETY: the caller's promises. One draw a call: more are a feature.
-        unsafe {
+        self.raw.gpu().record(|device| unsafe {
             device.cmd_bind_pipeline(cmd, point, self.raw());
             device.cmd_bind_descriptor_sets(cmd, point, self.layout.raw(), 0, &sets, offsets);
             for number in numbers {
                 device.cmd_draw_indirect(cmd, draws.raw(), u64::from(number) * bytes, 1, 0);
             }
-        }
+        });
     }
 }
 

@@ -49,7 +49,7 @@ pub unsafe fn begin_rendering_of(
         .layer_count(1)
         .color_attachments(&attachments);
     // SAFETY: the caller's promises; dynamicRendering was required of the device.
-    unsafe { gpu.device().cmd_begin_rendering(cmd, &info) };
+    gpu.record(|device| unsafe { device.cmd_begin_rendering(cmd, &info) });
 }
 
 /// Sets viewport and scissor to all of `extent`.
@@ -77,10 +77,10 @@ pub unsafe fn set_area_of(gpu: &Gpu, cmd: vk::CommandBuffer, extent: [u32; 2], t
         max_depth: 1.0,
     };
     // SAFETY: the caller's promise.
-    unsafe {
-        gpu.device().cmd_set_viewport(cmd, 0, &[viewport]);
-        gpu.device().cmd_set_scissor(cmd, 0, &[area(tile)]);
-    }
+    gpu.record(|device| unsafe {
+        device.cmd_set_viewport(cmd, 0, &[viewport]);
+        device.cmd_set_scissor(cmd, 0, &[area(tile)]);
+    });
 }
 
 /// The coordinates of a picture are far under 2^31.
@@ -99,7 +99,7 @@ fn area(tile: Tile) -> vk::Rect2D {
 /// `cmd` is recording on `gpu`'s device, inside that rendering.
 pub unsafe fn end_rendering(gpu: &Gpu, cmd: vk::CommandBuffer) {
     // SAFETY: the caller's promise.
-    unsafe { gpu.device().cmd_end_rendering(cmd) };
+    gpu.record(|device| unsafe { device.cmd_end_rendering(cmd) });
 }
 
 fn attachment<'a>(view: vk::ImageView, load: Load) -> vk::RenderingAttachmentInfo<'a> {

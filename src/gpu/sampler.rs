@@ -1,6 +1,6 @@
 //! How a shader reads between texels, and beyond the edge.
 
-use super::{Error, Gpu, error::Doing, owned::Own};
+use super::{Error, Gpu, owned::Own};
 use ash::vk;
 use std::sync::Arc;
 
@@ -31,8 +31,10 @@ impl Sampler {
             .address_mode_v(clamp)
             .address_mode_w(clamp);
         // SAFETY: the device is valid and these modes need no feature.
-        let raw = unsafe { gpu.device().create_sampler(&info, None) }
-            .doing(|| format!("make sampler `{name}`"))?;
+        let raw = gpu.call(
+            || format!("make sampler `{name}`"),
+            |device| unsafe { device.create_sampler(&info, None) },
+        )?;
         gpu.name(raw, name);
         Ok(Self {
             raw: Own::new(gpu, raw),

@@ -4,7 +4,7 @@
 //! milliseconds = ((stop - start) modulo 2^timestampValidBits) * timestampPeriod * 1e-6
 //! ```
 
-use super::{Error, Gpu, error::Doing, owned::Own};
+use super::{Error, Gpu, owned::Own};
 use ash::vk;
 use std::sync::Arc;
 
@@ -27,8 +27,10 @@ impl Timer {
             .query_type(vk::QueryType::TIMESTAMP)
             .query_count(2);
         // SAFETY: the device is valid.
-        let pool = unsafe { gpu.device().create_query_pool(&info, None) }
-            .doing(|| "make a timer".into())?;
+        let pool = gpu.call(
+            || "make a timer".into(),
+            |device| unsafe { device.create_query_pool(&info, None) },
+        )?;
         gpu.name(pool, "timer");
         Ok(Some(Self {
             pool: Own::new(gpu, pool),
@@ -42,12 +44,11 @@ impl Timer {
     /// `cmd` is recording on our device, outside rendering; the timer lives until it has run, and is started in one
     /// unfinished recording only.
     pub unsafe fn start(&self, cmd: vk::CommandBuffer) {
-        let device = self.pool.gpu().device();
         // SAFETY: the caller's promises; synchronization2 was required of the device.
-        unsafe {
+        self.pool.gpu().record(|device| unsafe {
             device.cmd_reset_query_pool(cmd, self.raw(), 0, 2);
             device.cmd_write_timestamp2(cmd, END_OF_WORK, self.raw(), 0);
-        }
+        });
     }
 
     /// The clock stops when everything recorded so far has ended.
@@ -57,12 +58,9 @@ impl Timer {
     /// As [`Timer::start`], which was recorded into the same command buffer.
     pub unsafe fn stop(&self, cmd: vk::CommandBuffer) {
         // SAFETY: the caller's promises; synchronization2 was required of the device.
-        unsafe {
-            self.pool
-                .gpu()
-                .device()
-                .cmd_write_timestamp2(cmd, END_OF_WORK, self.raw(), 1);
-        }
+        self.pool.gpu().record(|device| unsafe {
+            device.cmd_write_timestamp2(cmd, END_OF_WORK, self.raw(), 1);
+        });
     }
 
     /// What was measured; `None` while the device has not passed both marks. Does not wait.
@@ -72,18 +70,18 @@ impl Timer {
         let gpu = self.pool.gpu();
         let mut ticks = [0_u64; 2];
         // SAFETY: the pool is ours and has two queries.
-        let found = unsafe {
-            gpu.device().get_query_pool_results(
-                self.raw(),
-                0,
-                &mut ticks,
-                vk::QueryResultFlags::TYPE_64,
-            )
-        };
-        match found {
-            Ok(()) => {}
-            Err(vk::Result::NOT_READY) => return Ok(None),
-            Err(result) => return Err(result).doing(|| "read a timer".into()),
+        let is_ready = gpu.call(
+            || "read a timer".into(),
+            |device| unsafe {
+                let flags = vk::QueryResultFlags::TYPE_64;
+                match device.get_query_pool_results(self.raw(), 0, &mut ticks, flags) {
+                    Err(vk::Result::NOT_READY) => Ok(false),
+                    found => found.map(|()| true),
+                }
+            },
+        )?;
+        if !is_ready {
+            return Ok(None);
         }
         let valid = u64::MAX >> (64 - gpu.timestamp_bits.min(64));
         let elapsed = ticks[1].wrapping_sub(ticks[0]) & valid;

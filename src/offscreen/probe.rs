@@ -94,8 +94,9 @@ fn bytes_per_second(device: &mut Headless) -> Result<f64, Error> {
     device.run(|cmd| {
         // SAFETY: recorded outside rendering into buffers of this usage, which live until `run` has waited.
         unsafe {
-            gpu.device()
-                .cmd_fill_buffer(cmd, from.raw(), 0, vk::WHOLE_SIZE, 0x5a5a_a5a5);
+            gpu.record(|device| {
+                device.cmd_fill_buffer(cmd, from.raw(), 0, vk::WHOLE_SIZE, 0x5a5a_a5a5)
+            });
             buffer_barrier(&gpu, cmd, &from, Use::TransferWrite, Use::TransferRead);
         }
         Ok(())
@@ -105,8 +106,7 @@ fn bytes_per_second(device: &mut Headless) -> Result<f64, Error> {
         // SAFETY: as above; both buffers hold so many bytes.
         unsafe {
             buffer_barrier(gpu, cmd, &to, Use::TransferWrite, Use::TransferWrite);
-            gpu.device()
-                .cmd_copy_buffer(cmd, from.raw(), to.raw(), &all);
+            gpu.record(|device| device.cmd_copy_buffer(cmd, from.raw(), to.raw(), &all));
         }
     })?;
     Ok(2.0 * bytes as f64 / seconds)

@@ -21,6 +21,7 @@ pub use corners::Corners;
 pub use empty_space::EmptySpace;
 pub use gradients::{KeptGradients, KeptOperator};
 pub use macro_cells::{Apron, MacroCells};
+pub use plan::VolumePlan;
 pub use texel::{Coding, TexelFormat};
 pub use transfer::{GpuTransfer, TransferLayout};
 pub use upload::Slab;

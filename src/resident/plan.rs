@@ -3,8 +3,50 @@
 use super::bricks::{Cell, cut};
 use super::{TexelFormat, TextureLayout};
 use crate::gpu::{Error, Gpu, ImageDesc};
-use crate::volume::Volume;
+use crate::volume::{Rescale, Volume, VoxelType};
 use ash::vk;
+use std::cell::OnceCell;
+
+/// What a volume will take on a device, told before there is one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct VolumePlan {
+    /// Bytes of its textures, without what the driver pads them by.
+    pub device_bytes: u64,
+    /// Bytes of a buffer that brings all of it there at once.
+    pub staging_bytes: u64,
+    /// Into how many bricks the limits of the device cut it.
+    pub bricks: usize,
+}
+
+impl VolumePlan {
+    /// For a volume of so many voxels of a type; `has_holes`: some have no value.
+    ///
+    /// # Errors
+    /// Where not even a voxel fits, as [`GpuVolume::new`](super::GpuVolume::new).
+    pub fn of(
+        gpu: &Gpu,
+        dims: [u32; 3],
+        stored: VoxelType,
+        has_holes: bool,
+        layout: TextureLayout,
+    ) -> Result<Self, Error> {
+        let plan = Plan {
+            layout,
+            texel: TexelFormat::choose(gpu, stored, Rescale::default()),
+            has_holes,
+        };
+        let cells = Plan::cut(gpu, &[&plan], dims)?;
+        let voxels = |dims: [u32; 3]| dims.iter().map(|&n| u64::from(n)).product::<u64>();
+        let stored = cells.iter().map(|cell| voxels(cell.stored.dims()));
+        let texel_bytes = plan.texel.bytes() as u64 + u64::from(has_holes);
+        let device_bytes = texel_bytes * stored.sum::<u64>();
+        Ok(Self {
+            device_bytes,
+            staging_bytes: device_bytes,
+            bricks: cells.len(),
+        })
+    }
+}
 
 /// How a volume will lie in textures, before it is cut.
 pub(super) struct Plan {
@@ -52,14 +94,27 @@ impl Plan {
     /// Bricks in which all of them fit.
     pub fn cut(gpu: &Gpu, plans: &[&Self], dims: [u32; 3]) -> Result<Vec<Cell>, Error> {
         let halo = plans.first().map_or([0; 3], |plan| plan.layout.halo());
-        let fits = |stored| plans.iter().all(|plan| plan.check(gpu, stored).is_ok());
-        let Some(cells) = cut(dims, halo, fits) else {
-            // The error that names the limit.
-            for plan in plans {
-                plan.check(gpu, dims)?;
+        let (too_large, trouble) = (OnceCell::new(), OnceCell::new());
+        let fits = |stored| match plans.iter().try_for_each(|plan| plan.check(gpu, stored)) {
+            Ok(()) => true,
+            Err(limit @ Error::Limit { .. }) => {
+                // The first is that of the whole volume.
+                let _ = too_large.set(limit);
+                false
             }
-            unreachable!("what cannot be cut to fit is over a limit");
+            // Smaller bricks do not help, and the device may well take larger ones.
+            Err(other) => {
+                let _ = trouble.set(other);
+                true
+            }
         };
-        Ok(cells)
+        let cells = cut(dims, halo, fits);
+        match trouble.into_inner() {
+            Some(trouble) => Err(trouble),
+            None => cells.ok_or_else(|| {
+                let limit = too_large.into_inner();
+                limit.expect("what cannot be cut to fit is over a limit")
+            }),
+        }
     }
 }

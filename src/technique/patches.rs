@@ -179,8 +179,9 @@ impl Patches {
         // SAFETY: the caller's promises.
         unsafe {
             buffer_barrier(&self.gpu, cmd, since, Use::DrawRead, Use::TransferWrite);
-            let device = self.gpu.device();
-            device.cmd_fill_buffer(cmd, since.raw(), 0, vk::WHOLE_SIZE, u32::MAX);
+            self.gpu.record(|device| {
+                device.cmd_fill_buffer(cmd, since.raw(), 0, vk::WHOLE_SIZE, u32::MAX)
+            });
             buffer_barrier(&self.gpu, cmd, since, Use::TransferWrite, Use::DrawRead);
         }
     }
@@ -195,8 +196,9 @@ impl Patches {
         // SAFETY: the caller's promises; both buffers are of one size.
         unsafe {
             buffer_barrier(gpu, cmd, draws, Use::DrawIndirect, Use::TransferWrite);
-            gpu.device()
-                .cmd_copy_buffer(cmd, self.at_rest.raw(), draws.raw(), &regions);
+            gpu.record(|device| {
+                device.cmd_copy_buffer(cmd, self.at_rest.raw(), draws.raw(), &regions)
+            });
             buffer_barrier(gpu, cmd, draws, Use::TransferWrite, Use::ComputeWrite);
             buffer_barrier(gpu, cmd, listed, Use::DrawRead, Use::ComputeWrite);
         }
@@ -235,8 +237,8 @@ impl Patches {
         unsafe {
             buffer_barrier(&self.gpu, cmd, since, Use::DrawRead, Use::TransferWrite);
             let bytes = batch.to_ne_bytes();
-            let device = self.gpu.device();
-            device.cmd_update_buffer(cmd, since.raw(), 0, &bytes);
+            self.gpu
+                .record(|device| device.cmd_update_buffer(cmd, since.raw(), 0, &bytes));
             buffer_barrier(&self.gpu, cmd, since, Use::TransferWrite, next);
         }
     }

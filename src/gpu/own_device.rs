@@ -1,0 +1,92 @@
+//! A device of our own, on which everything is enabled that we use and it has.
+
+use super::{
+    Error, Features, ValidationMode, devices, error::Doing, instance::Candidate,
+    instance::OwnInstance,
+};
+use ash::vk;
+use std::fmt;
+
+/// A device that we made, destroyed when dropped. Everything made on it must be gone by then.
+pub(super) struct OwnDevice {
+    pub device: ash::Device,
+    pub queue_family: u32,
+    pub features: Features,
+    // Last: fields are dropped in this order, after the device was destroyed.
+    pub instance: OwnInstance,
+}
+
+impl OwnDevice {
+    /// `from` has everything that is required.
+    pub fn new(
+        instance: OwnInstance,
+        from: &Candidate,
+        mode: Option<ValidationMode>,
+    ) -> Result<Self, Error> {
+        // SAFETY: the device was listed by this instance, here and below.
+        let families = unsafe {
+            instance
+                .raw()
+                .get_physical_device_queue_family_properties(from.physical_device)
+        };
+        let queue_family = devices::queue_family(&families).unwrap_or_default();
+        // SAFETY: as above; `from` speaks Vulkan 1.3.
+        let features = unsafe { devices::supported(instance.raw(), from.physical_device) };
+        let mut core = vk::PhysicalDeviceFeatures::default()
+            .robust_buffer_access(features.robust_buffer_access);
+        if mode == Some(ValidationMode::GpuAssisted) {
+            // What the instrumented shaders need, where the device has it.
+            // SAFETY: as above.
+            let supported = unsafe {
+                instance
+                    .raw()
+                    .get_physical_device_features(from.physical_device)
+            };
+            core.fragment_stores_and_atomics = supported.fragment_stores_and_atomics;
+            core.vertex_pipeline_stores_and_atomics = supported.vertex_pipeline_stores_and_atomics;
+            core.shader_int64 = supported.shader_int64;
+        }
+        let mut features12 = vk::PhysicalDeviceVulkan12Features::default()
+            .timeline_semaphore(features.timeline_semaphore);
+        let mut features13 = vk::PhysicalDeviceVulkan13Features::default()
+            .dynamic_rendering(features.dynamic_rendering)
+            .synchronization2(features.synchronization2)
+            .robust_image_access(features.robust_image_access);
+        let queues = [vk::DeviceQueueCreateInfo::default()
+            .queue_family_index(queue_family)
+            .queue_priorities(&[1.0])];
+        let info = vk::DeviceCreateInfo::default()
+            .queue_create_infos(&queues)
+            .enabled_features(&core)
+            .push_next(&mut features12)
+            .push_next(&mut features13);
+        // SAFETY: only what the device supports is enabled.
+        let device = unsafe {
+            instance
+                .raw()
+                .create_device(from.physical_device, &info, None)
+        }
+        .doing(|| format!("make a device of {}", from.title()))?;
+        Ok(Self {
+            device,
+            queue_family,
+            features,
+            instance,
+        })
+    }
+}
+
+impl fmt::Debug for OwnDevice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("OwnDevice")
+            .field("instance", &self.instance)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Drop for OwnDevice {
+    fn drop(&mut self) {
+        // SAFETY: we made it, and everything made on it is gone: the `Gpu` that owns us sees to that.
+        unsafe { self.device.destroy_device(None) };
+    }
+}
