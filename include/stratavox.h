@@ -84,8 +84,6 @@ enum sv_feature
     SV_FEATURE_ROBUST_BUFFER_ACCESS = 8,
     // Of use, no more.
     SV_FEATURE_ROBUST_IMAGE_ACCESS = 16,
-    // Of use, no more.
-    SV_FEATURE_SHADER_STORAGE_IMAGE_EXTENDED_FORMATS = 32,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

@@ -16,7 +16,7 @@ impl From<gpu::Error> for Failure {
             Error::Binding { .. } => SV_E_INTERNAL,
             Error::Stopped => SV_E_STATE,
             Error::ApiVersion { .. }
-            | Error::MissingFeature { .. }
+            | Error::Unfit { .. }
             | Error::Format { .. }
             | Error::NoLoader { .. }
             | Error::NoDriver

@@ -26,8 +26,6 @@ pub enum sv_feature {
     SV_FEATURE_ROBUST_BUFFER_ACCESS = 8,
     /// Of use, no more.
     SV_FEATURE_ROBUST_IMAGE_ACCESS = 16,
-    /// Of use, no more.
-    SV_FEATURE_SHADER_STORAGE_IMAGE_EXTENDED_FORMATS = 32,
 }
 
 /// Limits that are stricter than those of the device. 0 is no limit.
@@ -104,7 +102,7 @@ unsafe impl Versioned for sv_host_device {
 pub(super) fn features(bits: u32) -> Result<Features, Failure> {
     use sv_feature::*;
     let has = |feature: sv_feature| bits & feature as u32 != 0;
-    let known = (1..64).contains(&bits) || bits == 0;
+    let known = (0..32).contains(&bits);
     number(
         "sv_host_device.features",
         "bits of sv_feature",
@@ -117,9 +115,6 @@ pub(super) fn features(bits: u32) -> Result<Features, Failure> {
         timeline_semaphore: has(SV_FEATURE_TIMELINE_SEMAPHORE),
         robust_buffer_access: has(SV_FEATURE_ROBUST_BUFFER_ACCESS),
         robust_image_access: has(SV_FEATURE_ROBUST_IMAGE_ACCESS),
-        shader_storage_image_extended_formats: has(
-            SV_FEATURE_SHADER_STORAGE_IMAGE_EXTENDED_FORMATS,
-        ),
     })
 }
 
