@@ -448,6 +448,8 @@ fn a_picked_pixel_says_where_it_is_and_what_voxel_is_there() {
             }
         }
         assert!(hits >= 2 && misses >= 1, "{mode:?}: {hits} hits");
+        let other = renderer.pick(0, [1, 1]);
+        assert!(matches!(other, Err(Error::NotPicked { .. })), "{other:?}");
         // SAFETY: nothing is recorded.
         let outside = unsafe { renderer.record_pick(vk::CommandBuffer::null(), 0, [44, 0]) };
         assert!(matches!(outside, Err(Error::NoPixel { .. })));

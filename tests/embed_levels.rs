@@ -7,7 +7,7 @@ use ash::vk;
 use embed_shared::{Host, HostImage, Stage};
 use std::sync::Arc;
 use stratavox::embed::{Class, Error, QueueLock, Renderer, Shot, Submitter, Volume};
-use stratavox::gpu::{Load, Target, TargetClass, TargetState, Use};
+use stratavox::gpu::{Load, Target, Use};
 use stratavox::offscreen;
 use stratavox::scene::Scene;
 use stratavox::technique::{Level, Mode, Order, Settings, Technique};
@@ -326,6 +326,10 @@ fn what_cannot_be_drawn_so_is_refused_by_name() {
     };
     for (text, found) in [
         ("several rays", with(&|c| c.settings.rays_per_side = 2)),
+        (
+            "adaptive",
+            with(&|c| c.settings.adaptive_steps = Some(0.01)),
+        ),
         ("depth attachment", with(&|c| c.gives_depth = true)),
         ("images to read", with(&|c| c.host_depth = true)),
         (
@@ -366,5 +370,13 @@ fn what_cannot_be_drawn_so_is_refused_by_name() {
         ..good.settings.clone()
     };
     renderer.set_settings(cropped).expect("the same pipelines");
-    let _ = (TargetClass::from(FORMAT), TargetState::from(Use::Nothing));
+    let mut twice = Volume::new(host.gpu(), &good.volume, &good.settings).unwrap();
+    // SAFETY: outside rendering; `run` waits.
+    host.run(|cmd| unsafe {
+        twice.record_upload(host.gpu(), cmd).unwrap();
+        let again = twice.record_upload(host.gpu(), cmd);
+        assert!(matches!(again, Err(Error::Uploaded)), "{again:?}");
+    });
+    let picked = renderer.pick(0, [1, 1]);
+    assert!(matches!(picked, Err(Error::NotRecorded { .. })));
 }

@@ -169,7 +169,7 @@ fn ring(clip_from_world: DMat4, center: DVec3, size: f64, part: f64) -> Vec<Corn
         let normal = turn * (v.cos() * out + v.sin() * DVec3::Z);
         let point = center + turn * (radius * out) + thickness * normal;
         let light = 0.15 + 0.85 * normal.dot(towards_light).max(0.0);
-        let stripe = if i / 8 % 2 == 0 {
+        let stripe = if (i / 8).is_multiple_of(2) {
             dvec3(0.8, 0.25, 0.05)
         } else {
             dvec3(0.1, 0.4, 0.7)

@@ -91,7 +91,11 @@ impl From<embed::Error> for Failure {
             Error::Gpu(error) => return error.into(),
             Error::Camera(error) => return error.into(),
             Error::NotEmbedded { .. } | Error::NoDepth { .. } => SV_E_UNSUPPORTED,
-            Error::OtherClass { .. } | Error::NotUploaded | Error::NotRecorded { .. } => SV_E_STATE,
+            Error::OtherClass { .. }
+            | Error::NotUploaded
+            | Error::Uploaded
+            | Error::NotRecorded { .. }
+            | Error::NotPicked { .. } => SV_E_STATE,
             Error::NoFrame { .. } | Error::HostDepth { .. } | Error::NoPixel { .. } => {
                 SV_E_ARGUMENT
             }

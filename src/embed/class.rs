@@ -63,6 +63,11 @@ impl Class {
                 "add up pictures of `View::in_pixel`",
             ),
             (
+                settings.adaptive_steps.is_some(),
+                "a picture with adaptive steps",
+                "take the step that it needs, or `EmptySpace::with_alike` and record it",
+            ),
+            (
                 settings.smooth,
                 "a cross-fade of two stacks",
                 "draw each of `slices_2d::stack_shares`",

@@ -33,6 +33,9 @@ pub enum Error {
         "the volume has not been uploaded: `Volume::record_upload` comes before the first frame"
     )]
     NotUploaded,
+    /// The voxels have been recorded once.
+    #[error("the volume has been uploaded already: make another one for other voxels")]
+    Uploaded,
     /// A frame in flight that there is none of.
     #[error("frame {found} of {of} frames in flight")]
     NoFrame {
@@ -48,6 +51,14 @@ pub enum Error {
         frame: u32,
         /// What was called.
         what: &'static str,
+    },
+    /// This pixel was not copied since the frame was recorded.
+    #[error("pixel ({}, {}) of frame {frame}: `record_pick` comes after `record` and before `pick`", pixel[0], pixel[1])]
+    NotPicked {
+        /// The frame in flight.
+        frame: u32,
+        /// What was asked for.
+        pixel: [u32; 2],
     },
     /// The class and the shots, or the images, tell different stories of the host's depth.
     #[error("the host's depth: wanted {wanted}, found {found}")]

@@ -23,6 +23,8 @@ pub(super) struct Frame {
     pub resolved: Option<Bindings>,
     pub depth: Option<Bindings>,
     pub pick: Option<Buffer>,
+    /// The pixel whose copy was recorded after the picture.
+    pub picked: Option<[u32; 2]>,
     pub recorded: Option<Recorded>,
 }
 
@@ -83,6 +85,7 @@ impl Frame {
             resolved: None,
             depth: None,
             pick,
+            picked: None,
             recorded: None,
         };
         made.bind(bound)?;

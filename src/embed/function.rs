@@ -3,7 +3,7 @@
 use super::{Error, Volume};
 use crate::gpu::Gpu;
 use crate::resident::{EmptySpace, GpuTransfer};
-use crate::technique::{Mix, Settings, Skip, Skippable};
+use crate::technique::{self, Mix, Mode, Settings, Skip, Skippable};
 use crate::transfer::{Graded, TransferFunction};
 use ash::vk;
 use std::sync::Arc;
@@ -29,9 +29,9 @@ impl Function {
         function: Option<&TransferFunction>,
         before: Option<&Self>,
     ) -> Result<Self, Error> {
-        let needs_one = settings.mode != crate::technique::Mode::Iso;
+        let needs_one = settings.mode != Mode::Iso;
         if needs_one && function.is_none() {
-            return Err(crate::technique::Error::NoTransferFunction.into());
+            return Err(technique::Error::NoTransferFunction.into());
         }
         let mix = match function.is_some_and(TransferFunction::is_graded) {
             true => Mix::Graded,
@@ -39,6 +39,12 @@ impl Function {
         };
         if mix == Mix::Graded {
             settings.check_graded()?;
+            // The picture of a maximum has no gradient.
+            let mode = settings.mode;
+            let has_maximum = mode == Mode::Mida && settings.per_mode.mida_gamma > 0.0;
+            if mode.is_projection() || has_maximum {
+                return Err(technique::Error::NotGraded { mode }.into());
+            }
         }
         let spacing = volume.grid().smallest_spacing();
         let made = function.map(|function| {

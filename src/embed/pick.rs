@@ -43,7 +43,7 @@ impl Renderer {
     /// # Safety
     /// As [`Renderer::record`], after it.
     pub unsafe fn record_pick(
-        &self,
+        &mut self,
         cmd: vk::CommandBuffer,
         frame: u32,
         pixel: [u32; 2],
@@ -79,6 +79,7 @@ impl Renderer {
                 image_barrier(gpu, cmd, image, Use::TransferRead, Use::FragmentSampled);
             }
         }
+        self.frames[frame as usize].picked = Some(pixel);
         Ok(())
     }
 
@@ -88,6 +89,9 @@ impl Renderer {
     /// Where nothing was picked.
     pub fn pick(&self, frame: u32, pixel: [u32; 2]) -> Result<Option<Pick>, Error> {
         let (there, recorded) = self.recorded(frame, "pick")?;
+        if there.picked != Some(pixel) {
+            return Err(Error::NotPicked { frame, pixel });
+        }
         let Some(buffer) = &there.pick else {
             return Err(Error::NoDepth {
                 what: self.class.what(),

@@ -38,6 +38,7 @@ impl Renderer {
             self.gather(cmd, frame, &recorded)?;
         }
         self.frames[frame].recorded = Some(recorded);
+        self.frames[frame].picked = None;
         Ok(())
     }
 

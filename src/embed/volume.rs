@@ -133,12 +133,15 @@ impl Volume {
     /// Records the upload, once. What it was staged in goes when that has run: [`Gpu::announce`] comes before.
     ///
     /// # Errors
-    /// Where the device cannot dispatch so many cells.
+    /// [`Error::Uploaded`] the second time, and where the device cannot dispatch so many cells.
     ///
     /// # Safety
     /// `cmd` is recording, outside rendering, and is submitted before anything that draws the volume.
     pub unsafe fn record_upload(&mut self, gpu: &Gpu, cmd: vk::CommandBuffer) -> Result<(), Error> {
         gpu.check_alive("upload a volume")?;
+        if self.is_uploaded {
+            return Err(Error::Uploaded);
+        }
         let staged = self.copies.iter().flat_map(|copy| {
             let beside = copy.gradient_source();
             [Some(copy), beside].into_iter().flatten()
