@@ -15,5 +15,11 @@ fn main(@builtin(position) position: vec4<f32>) -> @builtin(frag_depth) f32 {
     }
     let world = pixel_ray(position.xy);
     let point = vec4(world.origin + t * world.direction, 1.0);
-    return dot(frame.host_z, point) / dot(frame.host_w, point);
+    let depth = dot(frame.host_z, point) / dot(frame.host_w, point);
+    // Beyond the far plane nothing is drawn; what lies before the near plane hides all.
+    let far = 1.0 - frame.host_near;
+    if (depth - far) * (far - frame.host_near) > 0.0 {
+        discard;
+    }
+    return clamp(depth, 0.0, 1.0);
 }

@@ -370,6 +370,45 @@ fn a_surface_gives_its_depth_back_where_it_is_nearer_than_the_host() {
 }
 
 #[test]
+fn a_depth_that_is_nearer_the_other_way_round_is_refused() {
+    let host = Host::new();
+    let stage = Stage::new(Settings::default());
+    let [eye, ..] = eyes(&stage);
+    let (camera, depth) = Camera::from_matrices(&eye.view, &eye.clip, eye.nearer).unwrap();
+    let mut volume = Volume::new(host.gpu(), &stage.volume, &stage.settings).unwrap();
+    let class = Class {
+        settings: stage.settings.clone(),
+        target: TargetClass {
+            depth: Some(DepthClass {
+                format: vk::Format::D32_SFLOAT,
+                has_stencil: false,
+                is_reversed: true,
+            }),
+            ..FORMAT.into()
+        },
+        frames_in_flight: 1,
+        host_depth: false,
+        gives_depth: true,
+    };
+    // SAFETY: outside rendering; `run` waits.
+    host.run(|cmd| unsafe { volume.record_upload(host.gpu(), cmd).unwrap() });
+    let (function, volume) = (Some(&stage.transfer), Arc::new(volume));
+    let mut renderer =
+        Renderer::new(host.gpu(), &volume, function, class, stage.extent, &[]).unwrap();
+    let shot = Shot {
+        frame: 0,
+        camera: &camera,
+        depth: Some(depth),
+    };
+    // SAFETY: refused before anything is recorded.
+    let refused = unsafe { renderer.record(vk::CommandBuffer::null(), &shot) };
+    assert!(
+        matches!(refused, Err(Error::HostDepth { .. })),
+        "{refused:?}"
+    );
+}
+
+#[test]
 fn a_picked_pixel_says_where_it_is_and_what_voxel_is_there() {
     let host = Host::new();
     for mode in [Mode::Composite, Mode::Mip, Mode::Iso] {

@@ -55,7 +55,6 @@ fn all_settings() -> Vec<Settings> {
         .chain(filtered)
         .chain([slabs]);
     all.map(|mut settings| {
-        // Patches leave out what is nothing: the same picture, drawn otherwise.
         if settings.mode == Mode::Iso {
             settings.per_mode.levels = vec![Level {
                 value: 0.5,
@@ -136,7 +135,6 @@ fn target(image: &HostImage) -> Target {
     }
 }
 
-/// Only what slicers blend differs: offscreen leaves patches out and merges, in another order of roundings.
 fn assert_same(settings: &Settings, found: &[[f64; 4]], wanted: &[[f64; 4]], level: &str) {
     let what = format!("{level}: {settings:?}");
     assert_eq!(found.len(), wanted.len());
@@ -309,6 +307,87 @@ fn a_function_dragged_each_frame_compiles_nothing_and_leaves_nothing() {
     assert!(pictures.windows(2).all(|pair| pair[0] != pair[1]));
 }
 
+/// The picture of a renderer, by level B.
+fn drawn(host: &Host, renderer: &mut Renderer, stage: &Stage) -> Vec<[f64; 4]> {
+    let image = HostImage::new(host, FORMAT, renderer.extent());
+    // SAFETY: as above.
+    host.run(|cmd| unsafe {
+        let (target, load) = (target(&image), Load::Clear([0.0; 4]));
+        let shot = shot(stage, 0);
+        renderer.record_into(cmd, &shot, &target, load).unwrap();
+        image.copy_from(cmd, vk::ImageLayout::TRANSFER_SRC_OPTIMAL);
+    });
+    image.numbers()
+}
+
+#[test]
+fn a_renderer_goes_on_with_another_size_another_volume_and_other_numbers() {
+    let host = Host::new();
+    for technique in [Technique::Raycast, Technique::Slices3d, Technique::Slices2d] {
+        let mut stage = stage(&Settings {
+            technique,
+            ..Settings::default()
+        });
+        let mut renderer = renderer(&host, &stage);
+        let made = host.gpu().pipelines_made();
+        let check = |renderer: &mut Renderer, stage: &Stage, what: &str| {
+            let found = drawn(&host, renderer, stage);
+            assert_same(&stage.settings, &found, &offscreen(stage), what);
+        };
+        check(&mut renderer, &stage, "as made");
+        stage.extent = [37, 29];
+        renderer.resize(stage.extent, &[]).unwrap();
+        check(&mut renderer, &stage, "resized");
+        stage.settings.samples_per_voxel = 1.7;
+        renderer.set_settings(stage.settings.clone()).unwrap();
+        check(&mut renderer, &stage, "with other numbers");
+        // The next time of a series: values in another order.
+        let stratavox::volume::Voxels::F32(values) = &mut stage.volume.voxels else {
+            panic!("the stage has f32 values");
+        };
+        values
+            .iter_mut()
+            .for_each(|value| *value = 0.8 * (1.0 - *value));
+        let next = uploaded(&host, &stage);
+        renderer.set_volume(&next, Some(&stage.transfer)).unwrap();
+        // SAFETY: nothing is recorded.
+        let early = unsafe { renderer.draw(vk::CommandBuffer::null(), 0) };
+        assert!(matches!(early, Err(Error::NotRecorded { .. })), "{early:?}");
+        check(&mut renderer, &stage, "of another volume");
+        assert_eq!(host.gpu().pipelines_made(), made, "{technique:?}");
+    }
+}
+
+#[test]
+fn a_function_that_shows_all_and_then_one_that_does_not_compile_nothing() {
+    let host = Host::new();
+    let mut stage = stage(&Settings::default());
+    let some = stage.transfer.clone();
+    for point in &mut stage.transfer.opacity {
+        point.opacity = 0.5;
+    }
+    let mut renderer = renderer(&host, &stage);
+    let made = host.gpu().pipelines_made();
+    stage.transfer = some;
+    renderer.set_function(Some(&stage.transfer)).unwrap();
+    let found = drawn(&host, &mut renderer, &stage);
+    assert_same(&stage.settings, &found, &offscreen(&stage), "some seen");
+    assert_eq!(host.gpu().pipelines_made(), made);
+}
+
+#[test]
+fn a_volume_whose_cells_are_for_another_filter_is_refused() {
+    let host = Host::new();
+    let linear = stage(&Settings::default());
+    let volume = uploaded(&host, &linear);
+    let mut wide = class(&linear);
+    wide.settings.filter = stratavox::technique::Filter::CubicSmooth;
+    let function = Some(&linear.transfer);
+    let made = Renderer::new(host.gpu(), &volume, function, wide, linear.extent, &[]);
+    let found = made.map(drop).expect_err("another apron").to_string();
+    assert!(found.contains("another filter"), "{found}");
+}
+
 #[test]
 fn what_cannot_be_drawn_so_is_refused_by_name() {
     let host = Host::new();
@@ -378,5 +457,5 @@ fn what_cannot_be_drawn_so_is_refused_by_name() {
         assert!(matches!(again, Err(Error::Uploaded)), "{again:?}");
     });
     let picked = renderer.pick(0, [1, 1]);
-    assert!(matches!(picked, Err(Error::NotRecorded { .. })));
+    assert!(matches!(picked, Err(Error::NotPicked { .. })));
 }

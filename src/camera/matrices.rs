@@ -73,7 +73,8 @@ impl HostDepth {
 
 impl Camera {
     /// The camera of a host's matrices, and what its depth buffer says. Any projection that takes planes parallel to
-    /// the picture to such planes will do: off the middle, without a far plane, mirrored, with oblique near planes.
+    /// the picture to such planes will do: off the middle, without a far plane, mirrored, in perspective with oblique near
+    /// planes.
     ///
     /// # Errors
     /// [`Error::NotRigid`] for a view matrix that is more than a turn (or a mirror) and a shift,
@@ -122,6 +123,10 @@ impl Camera {
         };
         if !is_perspective && z.z == 0.0 {
             return wrong("it has no depth");
+        }
+        // Parallel rays start at the near plane.
+        if !is_perspective && (z.x != 0.0 || z.y != 0.0) {
+            return wrong("its near plane is not parallel to the picture");
         }
         let forward = way * z_axis;
         // The camera's own right hand, of which a matrix may be the mirror.

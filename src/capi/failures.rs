@@ -96,9 +96,10 @@ impl From<embed::Error> for Failure {
             | Error::Uploaded
             | Error::NotRecorded { .. }
             | Error::NotPicked { .. } => SV_E_STATE,
-            Error::NoFrame { .. } | Error::HostDepth { .. } | Error::NoPixel { .. } => {
-                SV_E_ARGUMENT
-            }
+            Error::FramesInFlight { .. }
+            | Error::NoFrame { .. }
+            | Error::HostDepth { .. }
+            | Error::NoPixel { .. } => SV_E_ARGUMENT,
         };
         Self::new(status, error.to_string())
     }

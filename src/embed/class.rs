@@ -22,6 +22,9 @@ pub struct Class {
     pub gives_depth: bool,
 }
 
+/// Frames in flight: more than any host has.
+pub(super) const MOST_FRAMES: u32 = 64;
+
 /// A host's depth buffer as rays read it: one level, one layer, one sample, with `SAMPLED` usage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HostDepthImage {
@@ -63,6 +66,11 @@ impl Class {
                 "add up pictures of `View::in_pixel`",
             ),
             (
+                is_sliced && settings.preintegrated && self.host_depth,
+                "pre-integrated slicing behind what a host has drawn",
+                "slabs reach out of the planes that are tested: take rays",
+            ),
+            (
                 settings.adaptive_steps.is_some(),
                 "a picture with adaptive steps",
                 "take the step that it needs, or `EmptySpace::with_alike` and record it",
@@ -89,6 +97,12 @@ impl Class {
             }
         }
         settings.check()?;
+        if !(1..=MOST_FRAMES).contains(&self.frames_in_flight) {
+            return Err(Error::FramesInFlight {
+                found: self.frames_in_flight,
+                most: MOST_FRAMES,
+            });
+        }
         if settings.shading.is_some() && settings.mode.is_projection() {
             let mode = settings.mode;
             return Err(technique::Error::NotShaded { mode }.into());

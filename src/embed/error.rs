@@ -36,6 +36,14 @@ pub enum Error {
     /// The voxels have been recorded once.
     #[error("the volume has been uploaded already: make another one for other voxels")]
     Uploaded,
+    /// No frame in flight, or more than any host has.
+    #[error("wanted 1 to {most} frames in flight, found {found}")]
+    FramesInFlight {
+        /// What was asked for.
+        found: u32,
+        /// What there may be.
+        most: u32,
+    },
     /// A frame in flight that there is none of.
     #[error("frame {found} of {of} frames in flight")]
     NoFrame {

@@ -18,14 +18,24 @@ pub(super) const PICK_BYTES: u64 = 32;
 pub(super) struct Frame {
     /// What a technique leaves, where that is no draw into the host's target; and what rays leave beside it.
     pub images: Option<[Image; 2]>,
-    /// Of each brick of each copy of the volume.
-    pub bound: Vec<Vec<Bindings>>,
-    pub resolved: Option<Bindings>,
-    pub depth: Option<Bindings>,
+    pub sets: Sets,
+    /// Where the device puts the texels of a pixel.
     pub pick: Option<Buffer>,
-    /// The pixel whose copy was recorded after the picture.
-    pub picked: Option<[u32; 2]>,
+    /// The pixel whose copy was recorded after the picture, and the camera of that.
+    pub picked: Option<([u32; 2], Camera)>,
+    /// What [`super::Renderer::draw`] draws.
     pub recorded: Option<Recorded>,
+}
+
+/// The descriptor sets of one frame in flight.
+#[derive(Debug, Default)]
+pub(super) struct Sets {
+    /// Of each brick of each copy of the volume.
+    pub bricks: Vec<Vec<Bindings>>,
+    /// Of what makes colours of the images.
+    pub resolve: Option<Bindings>,
+    /// Of what writes their depth.
+    pub depth: Option<Bindings>,
 }
 
 /// What was recorded last.
@@ -81,26 +91,27 @@ impl Frame {
         };
         let mut made = Self {
             images,
-            bound: Vec::new(),
-            resolved: None,
-            depth: None,
+            sets: Sets::default(),
             pick,
             picked: None,
             recorded: None,
         };
-        made.bind(bound)?;
+        made.sets = made.bind(bound)?;
         Ok(made)
     }
 
     /// Descriptor sets anew: of another transfer function, or of another depth buffer.
-    pub fn bind(&mut self, bound: &Bound) -> Result<(), Error> {
+    pub fn bind(&self, bound: &Bound) -> Result<Sets, Error> {
         let copies = bound.volume.copies().iter();
         let of_copy = |copy: &GpuVolume| -> Result<Vec<Bindings>, Error> {
             (0..copy.bricks().len())
                 .map(|brick| self.bind_brick(bound, copy, brick))
                 .collect()
         };
-        let all = copies.map(of_copy).collect::<Result<Vec<_>, _>>()?;
+        let mut sets = Sets {
+            bricks: copies.map(of_copy).collect::<Result<_, _>>()?,
+            ..Sets::default()
+        };
         let transfer = bound.function.transfer();
         if let Some([gathered, layers]) = &self.images {
             let (resolve, depth) = match bound.pass {
@@ -118,12 +129,11 @@ impl Frame {
                 Pass::Projected { resolve, .. } => (resolve, None),
                 Pass::Slices(_) => unreachable!("slices in the host's rendering leave no image"),
             };
-            self.resolved = Some(resolve.bind(bound.ring, gathered, transfer)?);
+            sets.resolve = Some(resolve.bind(bound.ring, gathered, transfer)?);
             let depth = depth.map(|(depth, left)| depth.bind(bound.ring, left));
-            self.depth = depth.transpose()?;
+            sets.depth = depth.transpose()?;
         }
-        self.bound = all;
-        Ok(())
+        Ok(sets)
     }
 
     fn bind_brick(&self, bound: &Bound, copy: &GpuVolume, brick: usize) -> Result<Bindings, Error> {

@@ -1,7 +1,7 @@
 //! A transfer function on a host's device, and what is empty under it.
 
 use super::{Error, Volume};
-use crate::gpu::Gpu;
+use crate::gpu::{ComputePipeline, Gpu};
 use crate::resident::{EmptySpace, GpuTransfer};
 use crate::technique::{self, Mix, Mode, Settings, Skip, Skippable};
 use crate::transfer::{Graded, TransferFunction};
@@ -21,13 +21,13 @@ pub(super) struct Function {
 }
 
 impl Function {
-    /// Objects for `function`. `before` gives away the pipeline that finds empty space.
+    /// Objects for `function`. `emptying` finds empty space; without it nothing is left out that is not seen.
     pub fn new(
         gpu: &Arc<Gpu>,
         volume: &Volume,
         settings: &Settings,
         function: Option<&TransferFunction>,
-        before: Option<&Self>,
+        emptying: Option<&Arc<ComputePipeline>>,
     ) -> Result<Self, Error> {
         let needs_one = settings.mode != Mode::Iso;
         if needs_one && function.is_none() {
@@ -37,15 +37,8 @@ impl Function {
             true => Mix::Graded,
             false => Mix::Alone,
         };
-        if mix == Mix::Graded {
-            settings.check_graded()?;
-            // The picture of a maximum has no gradient.
-            let mode = settings.mode;
-            let has_maximum = mode == Mode::Mida && settings.per_mode.mida_gamma > 0.0;
-            if mode.is_projection() || has_maximum {
-                return Err(technique::Error::NotGraded { mode }.into());
-            }
-        }
+        check(mix, settings)?;
+        volume.check(gpu, settings)?;
         let spacing = volume.grid().smallest_spacing();
         let made = function.map(|function| {
             let length = function.reference_length.unwrap_or(spacing);
@@ -56,15 +49,11 @@ impl Function {
         });
         let mut skippable = settings.skippable(mix, function, volume.value_range());
         let mut empty = None;
-        match (volume.cells(), &skippable) {
-            (Some(cells), Skippable::Unseen(seen)) => {
-                let before = before.and_then(|before| before.empty.as_ref());
-                empty = Some(match before {
-                    Some(before) => before.under(cells, seen)?,
-                    None => EmptySpace::new(gpu, cells, seen)?,
-                });
+        match (volume.cells(), &skippable, emptying) {
+            (Some(cells), Skippable::Unseen(seen), Some(pipeline)) => {
+                empty = Some(EmptySpace::by(gpu, pipeline, cells, seen)?);
             }
-            (Some(_), Skippable::Exceeded) => {}
+            (Some(_), Skippable::Exceeded, _) => {}
             _ => skippable = Skippable::Nothing,
         }
         let graded = function.and_then(|function| function.graded.as_ref());
@@ -79,6 +68,11 @@ impl Function {
             },
             is_uploaded: false,
         })
+    }
+
+    /// What was recorded was not submitted: it is recorded again.
+    pub fn forget_upload(&mut self) {
+        self.is_uploaded = false;
     }
 
     /// Records what fills the objects, once.
@@ -114,5 +108,20 @@ impl Function {
             (Skippable::Unseen(_), Some(cells), Some(empty)) => Skip::Unseen(cells, empty),
             _ => Skip::Nothing,
         }
+    }
+}
+
+/// Whether such settings draw such functions.
+pub(super) fn check(mix: Mix, settings: &Settings) -> Result<(), Error> {
+    if mix != Mix::Graded {
+        return Ok(());
+    }
+    settings.check_graded()?;
+    // The picture of a maximum has no gradient.
+    let mode = settings.mode;
+    let has_maximum = mode == Mode::Mida && settings.per_mode.mida_gamma > 0.0;
+    match mode.is_projection() || has_maximum {
+        true => Err(technique::Error::NotGraded { mode }.into()),
+        false => Ok(()),
     }
 }

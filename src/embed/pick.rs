@@ -2,7 +2,7 @@
 
 use super::frame::PICK_BYTES;
 use super::{Error, Renderer};
-use crate::gpu::{Region, Use, image_barrier, image_to_buffer};
+use crate::gpu::{Region, Use, buffer_barrier, image_barrier, image_to_buffer};
 use crate::technique::Mode;
 use crate::volume::{Volume, sample::nearest};
 use ash::vk;
@@ -48,7 +48,8 @@ impl Renderer {
         frame: u32,
         pixel: [u32; 2],
     ) -> Result<(), Error> {
-        let (there, _) = self.recorded(frame, "record_pick")?;
+        let (there, recorded) = self.recorded(frame, "record_pick")?;
+        let camera = recorded.camera;
         let (Some(images), Some(buffer)) = (&there.images, &there.pick) else {
             return Err(Error::NoDepth {
                 what: self.class.what(),
@@ -70,6 +71,16 @@ impl Renderer {
             origin: [x, y, 0],
             extent: [1; 3],
         };
+        // SAFETY: the caller's promises; an earlier pick of the same frame comes first.
+        unsafe {
+            buffer_barrier(
+                &self.gpu,
+                cmd,
+                buffer,
+                Use::TransferWrite,
+                Use::TransferWrite,
+            );
+        }
         for (image, offset) in self.left(images).iter().zip((0..).step_by(16)) {
             // SAFETY: the caller's promises; `record` left the images as they are here.
             unsafe {
@@ -79,7 +90,11 @@ impl Renderer {
                 image_barrier(gpu, cmd, image, Use::TransferRead, Use::FragmentSampled);
             }
         }
-        self.frames[frame as usize].picked = Some(pixel);
+        // SAFETY: as above. A fence alone makes nothing visible to the host.
+        unsafe {
+            buffer_barrier(&self.gpu, cmd, buffer, Use::TransferWrite, Use::HostRead);
+        }
+        self.frames[frame as usize].picked = Some((pixel, camera));
         Ok(())
     }
 
@@ -88,10 +103,11 @@ impl Renderer {
     /// # Errors
     /// Where nothing was picked.
     pub fn pick(&self, frame: u32, pixel: [u32; 2]) -> Result<Option<Pick>, Error> {
-        let (there, recorded) = self.recorded(frame, "pick")?;
-        if there.picked != Some(pixel) {
-            return Err(Error::NotPicked { frame, pixel });
-        }
+        let there = &self.frames[self.frame_number(frame)?];
+        let camera = match there.picked {
+            Some((picked, camera)) if picked == pixel => camera,
+            _ => return Err(Error::NotPicked { frame, pixel }),
+        };
         let Some(buffer) = &there.pick else {
             return Err(Error::NoDepth {
                 what: self.class.what(),
@@ -111,7 +127,7 @@ impl Renderer {
         if distance < 0.0 || (mode.is_projection() && picture[1] == 0.0) {
             return Ok(None);
         }
-        let rays = recorded.camera.rays(self.extent);
+        let rays = camera.rays(self.extent);
         let [x, y] = pixel.map(|n| f64::from(n) + 0.5);
         let (origin, direction) = rays.at(x, y);
         let distance = f64::from(distance);

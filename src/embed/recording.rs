@@ -3,7 +3,7 @@
 use super::frame::{Frame, Part, Recorded};
 use super::pass::Pass;
 use super::{Error, Renderer, Shot};
-use crate::camera::HostDepth;
+use crate::camera::{HostDepth, Nearer};
 use crate::gpu::{
     Image, Load, Target, TargetClass, Tile, Use, begin_rendering, end_rendering, image_barrier,
 };
@@ -57,10 +57,10 @@ impl Renderer {
         let (extent, parts) = (self.extent, &recorded.parts);
         // SAFETY: the caller's promises; what is bound lives as long as the frame, and then until it is retired.
         unsafe {
-            match (&self.pass, &there.resolved) {
+            match (&self.pass, &there.sets.resolve) {
                 (Pass::Slices(slicer), _) => {
                     for part in parts {
-                        let bound = &there.bound[recorded.copy][part.brick];
+                        let bound = &there.sets.bricks[recorded.copy][part.brick];
                         slicer.record(cmd, bound, part.offset, extent, 0..part.slices);
                     }
                 }
@@ -85,7 +85,7 @@ impl Renderer {
     /// As [`Renderer::draw`]; depth may be written.
     pub unsafe fn draw_depth(&self, cmd: vk::CommandBuffer, frame: u32) -> Result<(), Error> {
         let (there, recorded) = self.recorded(frame, "draw_depth")?;
-        match (&self.pass, &there.depth) {
+        match (&self.pass, &there.sets.depth) {
             (
                 Pass::Rays {
                     depth: Some(pass), ..
@@ -167,7 +167,18 @@ impl Renderer {
                 found: "none".into(),
             }),
             (false, _) => Ok(None),
-            (true, depth) => Ok(depth),
+            (true, Some(depth)) => {
+                let is_reversed = self.class.target.depth.map(|depth| depth.is_reversed);
+                let found = depth.nearer == Nearer::Larger;
+                match is_reversed.is_some_and(|wanted| wanted != found) {
+                    true => Err(Error::HostDepth {
+                        wanted: "`Shot::depth` and `Class::target` with the same depth nearer"
+                            .into(),
+                        found: format!("{:?}", depth.nearer),
+                    }),
+                    false => Ok(Some(depth)),
+                }
+            }
         }
     }
 
@@ -244,7 +255,7 @@ impl Renderer {
                 unsafe { image_barrier(gpu, cmd, image, before, after) };
             }
         };
-        let bound = &there.bound[recorded.copy];
+        let bound = &there.sets.bricks[recorded.copy];
         let mut before = Use::Nothing;
         match &self.pass {
             Pass::Rays { pass, .. } => {

@@ -2,10 +2,11 @@
 
 use super::class::what;
 use super::frame::{Bound, Frame};
-use super::function::Function;
+use super::function::{self, Function};
 use super::pass::Pass;
 use super::{Class, Error, HostDepthImage, Volume};
-use crate::gpu::{Gpu, ParameterRing};
+use crate::gpu::{ComputePipeline, Gpu, ParameterRing};
+use crate::resident::EmptySpace;
 use crate::technique::{self, Mode, Settings, Words, parameter_ring};
 use crate::transfer::TransferFunction;
 use std::sync::Arc;
@@ -19,6 +20,10 @@ pub struct Renderer {
     pub(super) words: Words,
     pub(super) volume: Arc<Volume>,
     pub(super) function: Function,
+    /// Finds what is empty under a function.
+    emptying: Option<Arc<ComputePipeline>>,
+    /// That the ring has slots for.
+    most_bricks: usize,
     pub(super) pass: Pass,
     pub(super) ring: ParameterRing,
     pub(super) extent: [u32; 2],
@@ -41,16 +46,24 @@ impl Renderer {
         host_depths: &[HostDepthImage],
     ) -> Result<Self, Error> {
         class.check()?;
-        let function = Function::new(gpu, volume, &class.settings, function, None)?;
+        let emptying = match volume.cells() {
+            Some(_) => Some(EmptySpace::pipeline(gpu)?),
+            None => None,
+        };
+        let settings = &class.settings;
+        let function = Function::new(gpu, volume, settings, function, emptying.as_ref())?;
         let words = words_of(&class.settings, volume, &function)?;
         let pass = Pass::new(gpu, &class, &words)?;
         let bricks = volume.copies().iter().map(|copy| copy.bricks().len()).max();
-        let slots = bricks.unwrap_or(1) as u32 * class.frames_in_flight;
+        let most_bricks = bricks.unwrap_or(1);
+        let slots = (most_bricks as u32).saturating_mul(class.frames_in_flight);
         let mut made = Self {
             gpu: Arc::clone(gpu),
             words,
             volume: Arc::clone(volume),
             function,
+            emptying,
+            most_bricks,
             pass,
             ring: parameter_ring(gpu, slots)?,
             extent,
@@ -91,8 +104,8 @@ impl Renderer {
     /// [`Error::OtherClass`] where it asks for gradients and the one before did not, or the other way round; no memory.
     pub fn set_function(&mut self, function: Option<&TransferFunction>) -> Result<(), Error> {
         let settings = &self.class.settings;
-        let before = Some(&self.function);
-        let made = Function::new(&self.gpu, &self.volume, settings, function, before)?;
+        let emptying = self.emptying.as_ref();
+        let made = Function::new(&self.gpu, &self.volume, settings, function, emptying)?;
         let words = words_of(settings, &self.volume, &made)?;
         if words != self.words {
             return Err(Error::OtherClass {
@@ -100,8 +113,7 @@ impl Renderer {
                 wanted: format!("one that is {:?}", made.mix),
             });
         }
-        self.function = made;
-        self.rebind()
+        self.show(Arc::clone(&self.volume), made)
     }
 
     /// Other numbers in the settings from the next [`Renderer::record`] on: steps, crops, clip planes, levels, lights.
@@ -114,6 +126,7 @@ impl Renderer {
             ..self.class.clone()
         };
         class.check()?;
+        function::check(self.function.mix, &class.settings)?;
         let words = words_of(&class.settings, &self.volume, &self.function)?;
         let kind = |settings: &Settings| {
             (
@@ -139,12 +152,10 @@ impl Renderer {
         }
         if empties_other {
             // Which cells have no surface hangs on the levels.
-            let before = Some(&self.function);
+            let emptying = self.emptying.as_ref();
             let settings = &class.settings;
-            let made = Function::new(&self.gpu, &self.volume, settings, None, before)?;
-            self.function = made;
-            self.class = class;
-            return self.rebind();
+            let made = Function::new(&self.gpu, &self.volume, settings, None, emptying)?;
+            self.show(Arc::clone(&self.volume), made)?;
         }
         self.class = class;
         Ok(())
@@ -161,22 +172,25 @@ impl Renderer {
         function: Option<&TransferFunction>,
     ) -> Result<(), Error> {
         let settings = &self.class.settings;
-        let before = Some(&self.function);
-        let made = Function::new(&self.gpu, volume, settings, function, before)?;
+        let emptying = self.emptying.as_ref();
+        let made = Function::new(&self.gpu, volume, settings, function, emptying)?;
         let words = words_of(settings, volume, &made)?;
         let bricks = |volume: &Volume| {
             let counts = volume.copies().iter().map(|copy| copy.bricks().len());
             counts.max().unwrap_or(1)
         };
-        if words != self.words || bricks(volume) > bricks(&self.volume) {
+        let layouts = |volume: &Volume| {
+            let copies = volume.copies().iter();
+            copies.map(|copy| copy.layout()).collect::<Vec<_>>()
+        };
+        let lies_alike = layouts(volume) == layouts(&self.volume);
+        if !lies_alike || words != self.words || bricks(volume) > self.most_bricks {
             return Err(Error::OtherClass {
-                made: format!("{:?} in {} bricks", self.words, bricks(&self.volume)),
+                made: format!("{:?} in {} bricks", self.words, self.most_bricks),
                 wanted: format!("{words:?} in {} bricks", bricks(volume)),
             });
         }
-        self.volume = Arc::clone(volume);
-        self.function = made;
-        self.rebind()
+        self.show(Arc::clone(volume), made)
     }
 
     /// What it was made for.
@@ -200,14 +214,24 @@ impl Renderer {
         }
     }
 
-    fn rebind(&mut self) -> Result<(), Error> {
-        let mut frames = std::mem::take(&mut self.frames);
-        let bound = frames.iter_mut().enumerate().try_for_each(|(k, frame)| {
+    /// All frames bound to another volume and function before anything is changed. What was recorded with those before
+    /// is drawn no more.
+    fn show(&mut self, volume: Arc<Volume>, function: Function) -> Result<(), Error> {
+        let sets = self.frames.iter().enumerate().map(|(k, frame)| {
             let depth = self.host_depths.get(k).or(self.host_depths.first());
-            frame.bind(&self.bound(depth.copied()))
+            frame.bind(&Bound {
+                volume: &volume,
+                function: &function,
+                ..self.bound(depth.copied())
+            })
         });
-        self.frames = frames;
-        bound
+        let sets = sets.collect::<Result<Vec<_>, _>>()?;
+        for (frame, sets) in self.frames.iter_mut().zip(sets) {
+            frame.sets = sets;
+            frame.recorded = None;
+        }
+        (self.volume, self.function) = (volume, function);
+        Ok(())
     }
 
     pub(super) fn frame_number(&self, frame: u32) -> Result<usize, Error> {

@@ -45,7 +45,8 @@ impl Submitter {
     /// As [`Renderer::record_into`]: nothing is submitted then. A device that is lost.
     ///
     /// # Safety
-    /// As [`Renderer::record_into`]; semaphores are timelines of the device and live until the submission is done, and
+    /// As [`Renderer::record_into`]; nothing unfinished was submitted by this submitter with the shot's number, of
+    /// whatever renderer; semaphores are timelines of the device and live until the submission is done, and
     /// while `lock` calls back nobody else uses the queue.
     #[allow(clippy::too_many_arguments, reason = "what a frame is, and when")]
     pub unsafe fn submit(
@@ -59,11 +60,15 @@ impl Submitter {
         signals: &[TimelinePoint],
     ) -> Result<(), Error> {
         // SAFETY: the caller's promises.
-        unsafe {
+        let submitted = unsafe {
             self.run(lock, shot.frame, waits, signals, |cmd| {
                 renderer.record_into(cmd, shot, target, load)
             })
+        };
+        if submitted.is_err() {
+            renderer.function.forget_upload();
         }
+        submitted
     }
 
     /// Whatever `record` records, submitted in the same way: uploads.
@@ -83,7 +88,11 @@ impl Submitter {
     ) -> Result<(), Error> {
         // SAFETY: the caller's promises.
         unsafe { self.commands.record(frame, record)? };
-        let mut submitted = Ok(());
+        let mut submitted = Err(crate::gpu::Error::Argument {
+            doing: "submit a frame".into(),
+            wanted: "a lock that calls what it is given".into(),
+            found: "one that does not".into(),
+        });
         (lock.locked)(&mut || {
             // SAFETY: as above; recorded just now.
             submitted = unsafe { self.commands.submit(lock.queue, frame, waits, signals) };

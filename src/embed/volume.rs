@@ -1,8 +1,9 @@
 //! A volume on a host's device, as the technique of a class reads it.
 
 use super::Error;
+use super::class::what;
 use crate::gpu::{Buffer, Gpu};
-use crate::resident::{Corners, GpuVolume, MacroCells, Texels, TextureLayout, VolumePlan};
+use crate::resident::{Apron, Corners, GpuVolume, MacroCells, Texels, TextureLayout, VolumePlan};
 use crate::shaders::CELL_VOXELS;
 use crate::technique::{FilterBy, GradientSource, Keep, Mix, Settings, Technique};
 use crate::volume::{self, Coefficients, Grid, VoxelType};
@@ -17,8 +18,8 @@ pub struct Volume {
     value_range: [f64; 2],
     /// One, or a stack along each axis.
     copies: Vec<GpuVolume>,
-    /// Of the copy that rays read.
-    cells: Option<MacroCells>,
+    /// Of the copy that rays read, and how far around a cell was looked.
+    cells: Option<(MacroCells, Apron)>,
     /// Corners and cells come with the voxels.
     staging: Vec<Buffer>,
     is_uploaded: bool,
@@ -122,10 +123,11 @@ impl Volume {
         }
         if settings.skip && !settings.preintegrated {
             let apron = settings.apron();
-            self.cells = Some(match gpu.is_cpu() && copy.spline().is_none() {
+            let cells = match gpu.is_cpu() && copy.spline().is_none() {
                 true => MacroCells::of_voxels(gpu, copy, apron, voxels)?,
                 false => MacroCells::new(gpu, copy, apron)?,
-            });
+            };
+            self.cells = Some((cells, apron));
         }
         Ok(())
     }
@@ -136,7 +138,8 @@ impl Volume {
     /// [`Error::Uploaded`] the second time, and where the device cannot dispatch so many cells.
     ///
     /// # Safety
-    /// `cmd` is recording, outside rendering, and is submitted before anything that draws the volume.
+    /// `cmd` is recording, outside rendering, after [`Gpu::announce`] of its value, and is submitted before anything that
+    /// draws the volume: what is recorded and never submitted is not there, and nobody notices.
     pub unsafe fn record_upload(&mut self, gpu: &Gpu, cmd: vk::CommandBuffer) -> Result<(), Error> {
         gpu.check_alive("upload a volume")?;
         if self.is_uploaded {
@@ -156,7 +159,7 @@ impl Volume {
                     corners.record_upload(gpu, cmd);
                 }
             }
-            if let Some(cells) = &self.cells {
+            if let Some((cells, _)) = &self.cells {
                 cells.record(cmd)?;
             }
         }
@@ -185,7 +188,24 @@ impl Volume {
     }
 
     pub(super) fn cells(&self) -> Option<&MacroCells> {
-        self.cells.as_ref()
+        self.cells.as_ref().map(|(cells, _)| cells)
+    }
+
+    /// Whether it lies on that device, and its cells know what such a filter looks at.
+    pub(super) fn check(&self, gpu: &Arc<Gpu>, settings: &Settings) -> Result<(), Error> {
+        if !self.copies.iter().all(|copy| Arc::ptr_eq(copy.gpu(), gpu)) {
+            return Err(Error::OtherClass {
+                made: "one device".into(),
+                wanted: "a volume on another".into(),
+            });
+        }
+        match &self.cells {
+            Some((_, apron)) if *apron != settings.apron() => Err(Error::OtherClass {
+                made: "a volume for another filter".into(),
+                wanted: what(settings),
+            }),
+            _ => Ok(()),
+        }
     }
 
     pub(super) fn is_uploaded(&self) -> bool {

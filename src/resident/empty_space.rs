@@ -177,14 +177,26 @@ impl EmptySpace {
         Ok(made)
     }
 
-    /// The same for these cells under another transfer function, without compiling anything.
+    /// What finds empty space, for [`EmptySpace::by`].
+    ///
+    /// # Errors
+    /// Where the device refuses.
+    pub fn pipeline(gpu: &Arc<Gpu>) -> Result<Arc<ComputePipeline>, Error> {
+        ComputePipeline::new(gpu, shader("distance_map")).map(Arc::new)
+    }
+
+    /// As [`EmptySpace::new`], without compiling anything.
     ///
     /// # Errors
     /// As [`EmptySpace::new`].
-    pub fn under(&self, cells: &MacroCells, seen: &Seen) -> Result<Self, Error> {
-        let pipeline = Arc::clone(&self.mapping.pipeline);
-        let mapping = Mapping::by(&self.gpu, pipeline, seen)?;
-        Self::with(&self.gpu, cells, Arc::new(mapping))
+    pub fn by(
+        gpu: &Arc<Gpu>,
+        pipeline: &Arc<ComputePipeline>,
+        cells: &MacroCells,
+        seen: &Seen,
+    ) -> Result<Self, Error> {
+        let mapping = Mapping::by(gpu, Arc::clone(pipeline), seen)?;
+        Self::with(gpu, cells, Arc::new(mapping))
     }
 
     /// The same for other cells under the same transfer function.

@@ -375,7 +375,7 @@ impl GpuVolume {
         &self.sampler
     }
 
-    pub(super) fn gpu(&self) -> &Arc<Gpu> {
+    pub(crate) fn gpu(&self) -> &Arc<Gpu> {
         &self.gpu
     }
 }
