@@ -412,6 +412,14 @@ fn what_cannot_be_drawn_so_is_refused_by_name() {
         ("depth attachment", with(&|c| c.gives_depth = true)),
         ("images to read", with(&|c| c.host_depth = true)),
         (
+            "pre-integrated slicing",
+            with(&|c| {
+                c.settings.technique = Technique::Slices2d;
+                c.settings.preintegrated = true;
+                c.host_depth = true;
+            }),
+        ),
+        (
             "front to back",
             with(&|c| {
                 c.settings.technique = Technique::Slices3d;

@@ -286,10 +286,13 @@ mod tests {
             refused.expect_err("no camera").to_string()
         };
         let smaller = Nearer::Smaller;
+        let mut oblique = rh::proj::vulkan::orthographic(-9.0, 12.0, -7.0, 8.0, -20.0, 70.0);
+        oblique.x_axis.z = 0.01;
         for (text, view, clip, nearer) in [
             ("view matrix", look() * 2.0, clip, smaller),
             ("view matrix", look() * f64::NAN, clip, smaller),
             ("plane", look(), DMat4::from_cols_array(&[0.0; 16]), smaller),
+            ("not parallel", look(), oblique, smaller),
             ("last row", look(), clip + DMat4::IDENTITY, smaller),
             ("nearer", look(), clip, Nearer::Larger),
             ("turns", look(), clip * DMat4::from_rotation_z(0.3), smaller),
