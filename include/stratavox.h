@@ -411,8 +411,7 @@ typedef uint64_t sv_function;
 // Pictures of one volume in a host's frames. 0 is none.
 typedef uint64_t sv_renderer;
 
-// What lies under a pixel of a picture by rays: where a composite has become half opaque, the first surface, the place
-// of a maximum.
+// What lies under a pixel: where a composite has become half opaque, the first surface, the place of a maximum.
 typedef struct sv_pick {
     // `sizeof(sv_pick)`.
     uint32_t struct_size;
@@ -420,9 +419,9 @@ typedef struct sv_pick {
     const void *next;
     // 0: nothing is there, and all that follows is 0.
     uint32_t is_hit;
-    // 0: composites have no value.
+    // 0: MIDA and slabs have no value.
     uint32_t has_value;
-    // 0: projecting modes have no colour yet.
+    // 0: projecting modes have no colour yet, and slices none beside their depth.
     uint32_t has_color;
     // 0.
     uint32_t reserved;
@@ -430,7 +429,8 @@ typedef struct sv_pick {
     double distance;
     // The place in the world.
     double position[3];
-    // The projected value, or that of the surface.
+    // The projected value, that of the surface, or of the sample that made a composite half opaque; of a map of labels the
+    // label.
     double value;
     // Premultiplied colour and alpha.
     float color[4];
@@ -678,11 +678,13 @@ typedef struct sv_renderer_desc {
     uint32_t frames_in_flight;
     // Not 0: what the host has drawn hides the volume behind it. Cameras are SV_CAMERA_MATRICES then.
     uint32_t has_host_depth;
-    // Not 0: sv_renderer_draw_depth will be called. Cameras are SV_CAMERA_MATRICES then.
+    // Not 0: sv_renderer_draw_depth will be called, where `target` has a depth attachment (cameras are
+    // SV_CAMERA_MATRICES then), and of slices sv_renderer_record_pick, for which rays need it not.
     uint32_t gives_depth;
     // 0.
     uint32_t reserved;
-    // With `has_host_depth` and rays: the host's depth, one image for all frames in flight or one for each.
+    // With `has_host_depth`, but for composited slices without `gives_depth`, which are tested against the attachment:
+    // the host's depth, one image for all frames in flight or one for each.
     const struct sv_depth_image *depth_images;
     // How many there are.
     uint64_t depth_image_count;
@@ -839,8 +841,8 @@ sv_status sv_renderer_draw(sv_renderer renderer,
                            uint32_t frame,
                            struct sv_diagnostic *diagnostic);
 
-// Writes the depth of a picture by rays into the depth attachment, where it is nearer than what is there. Of composites
-// it is where they become half opaque. As sv_renderer_draw, and depth may be written; wants `gives_depth`.
+// Writes the depth of a picture into the depth attachment, where it is nearer than what is there. Of composites it is
+// where they become half opaque. As sv_renderer_draw, and depth may be written; wants `gives_depth`.
 sv_status sv_renderer_draw_depth(sv_renderer renderer,
                                  void *command_buffer,
                                  uint32_t frame,

@@ -40,11 +40,13 @@ pub struct sv_renderer_desc {
     pub frames_in_flight: u32,
     /// Not 0: what the host has drawn hides the volume behind it. Cameras are SV_CAMERA_MATRICES then.
     pub has_host_depth: u32,
-    /// Not 0: sv_renderer_draw_depth will be called. Cameras are SV_CAMERA_MATRICES then.
+    /// Not 0: sv_renderer_draw_depth will be called, where `target` has a depth attachment (cameras are
+    /// SV_CAMERA_MATRICES then), and of slices sv_renderer_record_pick, for which rays need it not.
     pub gives_depth: u32,
     /// 0.
     pub reserved: u32,
-    /// With `has_host_depth` and rays: the host's depth, one image for all frames in flight or one for each.
+    /// With `has_host_depth`, but for composited slices without `gives_depth`, which are tested against the attachment:
+    /// the host's depth, one image for all frames in flight or one for each.
     pub depth_images: *const sv_depth_image,
     /// How many there are.
     pub depth_image_count: u64,

@@ -15,23 +15,26 @@ pub struct Class {
     pub target: TargetClass,
     /// How many frames of the host may be unfinished at once.
     pub frames_in_flight: u32,
-    /// Whether what the host has drawn hides the volume: each [`Shot`] says its [`HostDepth`] then. Rays read the
-    /// depth from images ([`HostDepthImage`]), slices are tested against the attachment of `target`.
+    /// Whether what the host has drawn hides the volume: each [`Shot`] says its [`HostDepth`] then. Slices that are
+    /// composited one by one are tested against the attachment of `target`; all else reads the depth from images
+    /// ([`HostDepthImage`], [`Class::reads_host_depth`]).
     pub host_depth: bool,
-    /// Whether [`super::Renderer::draw_depth`] will be called: `target` has a depth attachment then.
+    /// Whether depth is given back: by [`super::Renderer::draw_depth`], where `target` has a depth attachment, and of
+    /// slices, for which rays have to look for it, by [`super::Renderer::record_pick`]. Pictures by rays can be picked
+    /// from without.
     pub gives_depth: bool,
 }
 
 /// Frames in flight: more than any host has.
 pub(super) const MOST_FRAMES: u32 = 64;
 
-/// A host's depth buffer as rays read it: one level, one layer, one sample, with `SAMPLED` usage.
+/// A host's depth buffer as shaders read it: one level, one layer, one sample, with `SAMPLED` usage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HostDepthImage {
     /// A view of its depth aspect, 2D.
     pub view: vk::ImageView,
     /// The layout that it is in when what [`super::Renderer::record`] records runs, visible to sampled reads of the
-    /// compute stage: one of those from which shaders read depth.
+    /// compute stage by rays, and of the fragment stage too by slices: one of those from which shaders read depth.
     pub layout: vk::ImageLayout,
     /// Its size: that of the picture.
     pub extent: [u32; 2],
@@ -66,11 +69,6 @@ impl Class {
                 "add up pictures of `View::in_pixel`",
             ),
             (
-                is_sliced && settings.preintegrated && self.host_depth,
-                "pre-integrated slicing behind what a host has drawn",
-                "slabs reach out of the planes that are tested: take rays",
-            ),
-            (
                 settings.adaptive_steps.is_some(),
                 "a picture with adaptive steps",
                 "take the step that it needs, or `EmptySpace::with_alike` and record it",
@@ -84,11 +82,6 @@ impl Class {
                 is_sliced && settings.order == Order::FrontToBack,
                 "slicing from front to back",
                 "what a host has drawn lies behind: take `Order::BackToFront`",
-            ),
-            (
-                is_sliced && settings.mode != Mode::Composite && self.host_depth,
-                "a projection by slices behind what a host has drawn",
-                "take rays",
             ),
         ];
         for (is_wanted, what, hint) in refused {
@@ -107,17 +100,37 @@ impl Class {
             let mode = settings.mode;
             return Err(technique::Error::NotShaded { mode }.into());
         }
-        let is_tested = is_sliced && self.host_depth;
-        if (is_tested || self.gives_depth) && self.target.depth.is_none() {
+        let is_tested = is_sliced && self.host_depth && !self.gathers();
+        let is_written = !is_sliced && self.gives_depth;
+        if (is_tested || is_written) && self.target.depth.is_none() {
             return Err(Error::HostDepth {
                 wanted: "a depth attachment in `Class::target`".into(),
                 found: "none".into(),
             });
         }
-        if self.gives_depth && (is_sliced || !settings.mode.has_depth()) {
+        if self.gives_depth && !settings.mode.has_depth() {
             return Err(Error::NoDepth { what: self.what() });
         }
         Ok(())
+    }
+
+    /// Whether the renderer reads the host's depth from images.
+    pub fn reads_host_depth(&self) -> bool {
+        let has_rays = self.settings.technique == Technique::Raycast || self.gives_depth;
+        self.host_depth && (has_rays || self.gathers())
+    }
+
+    /// Whether slices are gathered in an image of our own: numbers that are no colours yet, and slabs that end at the
+    /// host's depth, which may lie between two slices.
+    pub(super) fn gathers(&self) -> bool {
+        let settings = &self.settings;
+        let is_cut = settings.preintegrated && self.host_depth;
+        settings.technique != Technique::Raycast && (settings.mode != Mode::Composite || is_cut)
+    }
+
+    /// Whether [`super::Renderer::draw_depth`] may be called.
+    pub(super) fn draws_depth(&self) -> bool {
+        self.gives_depth && self.target.depth.is_some()
     }
 
     /// Technique and mode.

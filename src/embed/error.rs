@@ -77,7 +77,9 @@ pub enum Error {
         found: String,
     },
     /// There is no depth in such pictures.
-    #[error("{what} has no depth to give back: rays have, and in modes with a place of their own")]
+    #[error(
+        "{what} has no depth to give back: modes with a place of their own have, of slices with `Class::gives_depth`"
+    )]
     NoDepth {
         /// Technique and mode.
         what: String,

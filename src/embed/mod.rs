@@ -15,12 +15,13 @@
 //! [`Gpu::retire`](crate::gpu::Gpu::retire) when the device has done them, and gives a number of a frame in flight
 //! ([`Shot::frame`]) to no second frame before the first is done.
 //!
-//! What a host has drawn hides the volume behind it ([`Class::host_depth`]): rays end at its depth buffer, which they
-//! read as a texture, slices are tested against it in hardware. Its own depth a picture by rays gives back by
-//! [`Renderer::draw_depth`] and [`Renderer::record_pick`].
+//! What a host has drawn hides the volume behind it ([`Class::host_depth`]): slices that are composited are tested
+//! against it in hardware, all else ends at its depth buffer, read as a texture. Its own depth a picture gives back by
+//! [`Renderer::draw_depth`] and [`Renderer::record_pick`] ([`Class::gives_depth`]).
 //!
 //! Not here, and refused by name: half-angle slices and light volumes (shadows, ambient occlusion), several volumes,
-//! several rays a pixel, cross-fades of stacks. The pieces for them lie one floor below, in [`crate::technique`].
+//! several rays a pixel, adaptive steps, cross-fades of stacks. `docs/embedding.md` says why, and the pieces for them lie
+//! one floor below, in [`crate::technique`].
 
 mod class;
 mod error;

@@ -1,14 +1,13 @@
 //! Levels A and B: what a renderer records.
 
 use super::frame::{Frame, Part, Recorded};
-use super::pass::Pass;
 use super::{Error, Renderer, Shot};
-use crate::camera::{HostDepth, Nearer};
+use crate::camera::{Camera, HostDepth, Nearer};
 use crate::gpu::{
-    Image, Load, Target, TargetClass, Tile, Use, begin_rendering, end_rendering, image_barrier,
+    Bindings, Load, Target, TargetClass, Tile, Use, begin_rendering, end_rendering, image_barrier,
 };
 use crate::technique::blend::clear_color;
-use crate::technique::{self, InPixel, View};
+use crate::technique::{self, InPixel, Recording, View};
 use ash::vk;
 
 impl Renderer {
@@ -31,15 +30,21 @@ impl Renderer {
             return Err(Error::NotUploaded);
         }
         let depth = self.depth_of(shot)?;
-        let recorded = self.describe(frame, shot, depth)?;
+        let mut made = std::mem::take(&mut self.spare);
         // SAFETY: the caller's promises; barriers stand between what is written and what is read.
-        unsafe {
-            self.function.record_upload(cmd)?;
-            self.gather(cmd, frame, &recorded)?;
+        let recorded = self
+            .describe(frame, shot, depth, &mut made)
+            .and_then(|()| unsafe {
+                self.function.record_upload(cmd)?;
+                self.gather(cmd, frame, &made)
+            });
+        if recorded.is_ok() {
+            let there = &mut self.frames[frame];
+            std::mem::swap(&mut there.recorded, &mut made);
+            there.picked = None;
         }
-        self.frames[frame].recorded = Some(recorded);
-        self.frames[frame].picked = None;
-        Ok(())
+        self.spare = made;
+        recorded
     }
 
     /// Level A: draws what [`Renderer::record`] recorded for this frame in flight over what the host has drawn. Bound
@@ -53,53 +58,41 @@ impl Renderer {
     /// - it runs after what [`Renderer::record`] recorded, on the same queue.
     pub unsafe fn draw(&self, cmd: vk::CommandBuffer, frame: u32) -> Result<(), Error> {
         self.gpu.check_alive("draw a frame")?;
-        let (there, recorded) = self.recorded(frame, "draw")?;
-        let (extent, parts) = (self.extent, &recorded.parts);
+        let (there, _, copy) = self.recorded(frame, "draw")?;
+        let (extent, parts) = (self.extent, &there.recorded.picture);
         // SAFETY: the caller's promises; what is bound lives as long as the frame, and then until it is retired.
         unsafe {
-            match (&self.pass, &there.sets.resolve) {
-                (Pass::Slices(slicer), _) => {
-                    for part in parts {
-                        let bound = &there.sets.bricks[recorded.copy][part.brick];
-                        slicer.record(cmd, bound, part.offset, extent, 0..part.slices);
-                    }
-                }
-                (Pass::Rays { resolve, .. } | Pass::Projected { resolve, .. }, Some(bound)) => {
+            match (&self.pass.resolve, &there.sets.resolve) {
+                (Some(resolve), Some(bound)) => {
                     resolve.record(cmd, bound, parts[0].offset, extent);
                 }
-                (Pass::Rays { .. } | Pass::Projected { .. }, None) => {
-                    unreachable!("bound with the frame")
-                }
+                _ => self.draw_slices(cmd, &there.sets.slices[copy], parts),
             }
         }
         Ok(())
     }
 
-    /// Writes the depth of a picture by rays into the depth attachment, where it is nearer than what is there: what the
-    /// host draws later, blended or not, is hidden by the volume. Of composites it is where they become half opaque.
+    /// Writes the depth of a picture into the depth attachment, where it is nearer than what is there: what the host draws
+    /// later, blended or not, is hidden by the volume. Of composites it is where they become half opaque, along rays or
+    /// from slice to slice.
     ///
     /// # Errors
-    /// [`Error::NoDepth`] without [`Class::gives_depth`](super::Class::gives_depth); where nothing was recorded.
+    /// [`Error::NoDepth`] without [`Class::gives_depth`](super::Class::gives_depth) and a depth attachment; where nothing
+    /// was recorded.
     ///
     /// # Safety
     /// As [`Renderer::draw`]; depth may be written.
     pub unsafe fn draw_depth(&self, cmd: vk::CommandBuffer, frame: u32) -> Result<(), Error> {
-        let (there, recorded) = self.recorded(frame, "draw_depth")?;
-        match (&self.pass, &there.sets.depth) {
-            (
-                Pass::Rays {
-                    depth: Some(pass), ..
-                },
-                Some(bound),
-            ) => {
-                // SAFETY: the caller's promises.
-                unsafe { pass.record(cmd, bound, recorded.parts[0].offset, self.extent) };
-                Ok(())
-            }
-            _ => Err(Error::NoDepth {
+        let (there, ..) = self.recorded(frame, "draw_depth")?;
+        let (Some(pass), Some(bound)) = (&self.pass.depth, &there.sets.depth) else {
+            return Err(Error::NoDepth {
                 what: format!("a renderer without `gives_depth` ({})", self.class.what()),
-            }),
-        }
+            });
+        };
+        let offset = there.recorded.picture[0].offset;
+        // SAFETY: the caller's promises.
+        unsafe { pass.record(cmd, bound, offset, self.extent) };
+        Ok(())
     }
 
     /// Level B: [`Renderer::record`] and [`Renderer::draw`] into an image of the host's that arrives and leaves as
@@ -139,28 +132,21 @@ impl Renderer {
 }
 
 impl Renderer {
-    /// The images that the pass leaves, in their order.
-    pub(super) fn left<'a>(&self, [gathered, layers]: &'a [Image; 2]) -> Vec<&'a Image> {
-        match &self.pass {
-            Pass::Rays { pass, .. } => pass.images(gathered, layers),
-            Pass::Slices(_) | Pass::Projected { .. } => vec![gathered],
-        }
-    }
-
+    /// A frame for which something was recorded, with its camera and copy of the volume.
     pub(super) fn recorded(
         &self,
         frame: u32,
         what: &'static str,
-    ) -> Result<(&Frame, &Recorded), Error> {
+    ) -> Result<(&Frame, Camera, usize), Error> {
         let there = &self.frames[self.frame_number(frame)?];
-        match &there.recorded {
-            Some(recorded) => Ok((there, recorded)),
+        match there.recorded.shot {
+            Some((camera, copy)) => Ok((there, camera, copy)),
             None => Err(Error::NotRecorded { frame, what }),
         }
     }
 
     fn depth_of(&self, shot: &Shot) -> Result<Option<HostDepth>, Error> {
-        let is_wanted = self.class.host_depth || self.class.gives_depth;
+        let is_wanted = self.class.host_depth || self.class.draws_depth();
         match (is_wanted, shot.depth) {
             (true, None) => Err(Error::HostDepth {
                 wanted: "`Shot::depth`, from `Camera::from_matrices`".into(),
@@ -182,21 +168,21 @@ impl Renderer {
         }
     }
 
-    /// Parameters into the ring.
+    /// Parameters into the ring, and what they are of into `made`.
     fn describe(
         &self,
         frame: usize,
         shot: &Shot,
         depth: Option<HostDepth>,
-    ) -> Result<Recorded, Error> {
+        made: &mut Recorded,
+    ) -> Result<(), Error> {
         let grid = self.volume.grid();
-        let settings = &self.class.settings;
         let view = View {
             grid,
             camera: shot.camera,
             extent_pixels: self.extent,
             in_pixel: InPixel::CENTER,
-            settings,
+            settings: &self.class.settings,
         };
         let layout = view.texture_layout();
         let mut copies = self.volume.copies().iter();
@@ -205,34 +191,63 @@ impl Renderer {
             wanted: layout,
             found: self.volume.copies()[0].layout(),
         })?;
-        view.check_turns(
-            &self.words,
-            1,
-            self.function.turns,
-            self.gpu.limits().max_loop_turns,
-        )?;
-        let transfer = self.function.transfer();
-        let recordings = view.recordings(&self.volume.copies()[copy], transfer)?;
-        let first = (frame * self.ring.slots() as usize / self.frames.len()) as u32;
+        let (words, functions) = (&self.words, self.function.turns);
+        let limit = self.gpu.limits().max_loop_turns;
+        view.check_turns(words, 1, functions, limit)?;
+        let mut slot = (frame * self.ring.slots() as usize / self.frames.len()) as u32;
         let skip = self.function.skip(&self.volume);
-        let parts = (first..).zip(recordings).map(|(slot, mut recording)| {
+        let (class, center) = (&self.class, grid.center());
+        let is_tested = self.pass.slicer.is_some() && !class.gathers();
+        let mut write = |mut recording: Recording, is_tested: bool| -> Result<Part, Error> {
             recording.skip(skip);
             match depth {
-                Some(depth) if self.class.host_depth => recording.behind(&depth, grid.center()),
-                Some(depth) => recording.in_depths_of(&depth, grid.center()),
+                Some(depth) if class.host_depth && is_tested => recording.tested_in(&depth, center),
+                Some(depth) if class.host_depth => recording.behind(&depth, center),
+                Some(depth) => recording.in_depths_of(&depth, center),
                 None => {}
             }
+            slot += 1;
             Ok(Part {
                 brick: recording.brick,
-                offset: recording.write(&self.ring, slot)?,
+                offset: recording.write(&self.ring, slot - 1)?,
                 slices: recording.slices,
             })
-        });
-        Ok(Recorded {
-            camera: *shot.camera,
-            copy,
-            parts: parts.collect::<Result<_, Error>>()?,
-        })
+        };
+        let Recorded {
+            shot: of,
+            picture,
+            depth: of_slices,
+            order,
+        } = made;
+        let (volume, transfer) = (&self.volume.copies()[copy], self.function.transfer());
+        picture.clear();
+        of_slices.clear();
+        view.each_recording(volume, transfer, order, |recording| {
+            picture.push(write(recording, is_tested)?);
+            Ok::<_, Error>(())
+        })?;
+        if self.pass.slicer.is_some() && self.pass.rays.is_some() {
+            view.check_depth_turns(words, functions, limit)?;
+            view.each_depth_recording(volume, transfer, order, |recording| {
+                of_slices.push(write(recording, false)?);
+                Ok::<_, Error>(())
+            })?;
+        }
+        *of = Some((*shot.camera, copy));
+        Ok(())
+    }
+
+    /// # Safety
+    /// As [`Slicer::record`](technique::Slicer::record), for all bricks.
+    unsafe fn draw_slices(&self, cmd: vk::CommandBuffer, bound: &[Bindings], parts: &[Part]) {
+        let Some(slicer) = &self.pass.slicer else {
+            unreachable!("a picture without slices is resolved");
+        };
+        for part in parts {
+            let slices = 0..part.slices;
+            // SAFETY: the caller's promises.
+            unsafe { slicer.record(cmd, &bound[part.brick], part.offset, self.extent, slices) };
+        }
     }
 
     /// # Safety
@@ -241,48 +256,46 @@ impl Renderer {
         &self,
         cmd: vk::CommandBuffer,
         frame: usize,
-        recorded: &Recorded,
+        made: &Recorded,
     ) -> Result<(), Error> {
         let (gpu, extent) = (&self.gpu, self.extent);
         let there = &self.frames[frame];
-        let Some(images) = &there.images else {
+        let (_, copy) = made.shot.expect("described just now");
+        if let Some(image) = &there.gathered {
+            let target = [(
+                image.view(),
+                Load::Clear(clear_color(self.class.settings.mode)),
+            )];
+            // SAFETY: the caller's promises.
+            unsafe {
+                image_barrier(gpu, cmd, image, Use::Nothing, Use::ColorTarget);
+                begin_rendering(gpu, cmd, &target, extent);
+                self.draw_slices(cmd, &there.sets.slices[copy], &made.picture);
+                end_rendering(gpu, cmd);
+                image_barrier(gpu, cmd, image, Use::ColorTarget, Use::FragmentSampled);
+            }
+        }
+        let Some(rays) = &self.pass.rays else {
             return Ok(());
         };
-        let left = self.left(images);
         let barriers = |before, after| {
-            for image in &left {
+            for image in &there.left {
                 // SAFETY: the caller's promises.
                 unsafe { image_barrier(gpu, cmd, image, before, after) };
             }
         };
-        let bound = &there.sets.bricks[recorded.copy];
+        let parts = match self.pass.slicer {
+            Some(_) => &made.depth,
+            None => &made.picture,
+        };
         let mut before = Use::Nothing;
-        match &self.pass {
-            Pass::Rays { pass, .. } => {
-                for part in &recorded.parts {
-                    barriers(before, Use::ComputeWrite);
-                    before = Use::ComputeWrite;
-                    let whole = [Tile::whole(extent)];
-                    let bound = &bound[part.brick];
-                    // SAFETY: the caller's promises.
-                    unsafe { pass.record_tiles(cmd, bound, part.offset, extent, whole)? };
-                }
-            }
-            Pass::Projected { slicer, .. } => {
-                barriers(before, Use::ColorTarget);
-                before = Use::ColorTarget;
-                let clear = Load::Clear(clear_color(self.class.settings.mode));
-                // SAFETY: the caller's promises.
-                unsafe {
-                    begin_rendering(gpu, cmd, &[(left[0].view(), clear)], extent);
-                    for part in &recorded.parts {
-                        let bound = &bound[part.brick];
-                        slicer.record(cmd, bound, part.offset, extent, 0..part.slices);
-                    }
-                    end_rendering(gpu, cmd);
-                }
-            }
-            Pass::Slices(_) => {}
+        for part in parts {
+            barriers(before, Use::ComputeWrite);
+            before = Use::ComputeWrite;
+            let whole = [Tile::whole(extent)];
+            let bound = &there.sets.rays[copy][part.brick];
+            // SAFETY: the caller's promises.
+            unsafe { rays.record_tiles(cmd, bound, part.offset, extent, whole)? };
         }
         barriers(before, Use::FragmentSampled);
         Ok(())

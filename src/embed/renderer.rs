@@ -1,7 +1,7 @@
 //! Pictures of one volume in a host's frames.
 
 use super::class::what;
-use super::frame::{Bound, Frame};
+use super::frame::{Bound, Frame, Recorded};
 use super::function::{self, Function};
 use super::pass::Pass;
 use super::{Class, Error, HostDepthImage, Volume};
@@ -29,11 +29,13 @@ pub struct Renderer {
     pub(super) extent: [u32; 2],
     host_depths: Vec<HostDepthImage>,
     pub(super) frames: Vec<Frame>,
+    /// What the next recording is told in.
+    pub(super) spare: Recorded,
 }
 
 impl Renderer {
     /// Everything that frames of `extent` pixels will need. `function` may be missing in mode [`Mode::Iso`] alone;
-    /// `host_depths` are wanted of rays with [`Class::host_depth`]: one for all frames in flight, or one for each.
+    /// `host_depths` are wanted where [`Class::reads_host_depth`]: one for all frames in flight, or one for each.
     ///
     /// # Errors
     /// What is not drawn so, by name, what the device cannot do, and no memory.
@@ -53,10 +55,16 @@ impl Renderer {
         let settings = &class.settings;
         let function = Function::new(gpu, volume, settings, function, emptying.as_ref())?;
         let words = words_of(&class.settings, volume, &function)?;
-        let pass = Pass::new(gpu, &class, &words)?;
+        let pass = Pass::new(gpu, &class, &words, function.mix)?;
         let bricks = volume.copies().iter().map(|copy| copy.bricks().len()).max();
         let most_bricks = bricks.unwrap_or(1);
-        let slots = (most_bricks as u32).saturating_mul(class.frames_in_flight);
+        // The depth of slices is looked for with parameters of its own.
+        let walks = if pass.slicer.is_some() && pass.rays.is_some() {
+            2
+        } else {
+            1
+        };
+        let slots = (most_bricks as u32).saturating_mul(walks * class.frames_in_flight);
         let mut made = Self {
             gpu: Arc::clone(gpu),
             words,
@@ -69,6 +77,7 @@ impl Renderer {
             extent,
             host_depths: Vec::new(),
             frames: Vec::new(),
+            spare: Recorded::with_room(most_bricks),
             class,
         };
         made.resize(extent, host_depths)?;
@@ -88,7 +97,7 @@ impl Renderer {
         self.check_depths(extent, host_depths)?;
         let frames = (0..self.class.frames_in_flight as usize).map(|frame| {
             let depth = host_depths.get(frame).or(host_depths.first());
-            Frame::new(&self.bound(depth.copied()), extent)
+            Frame::new(&self.bound(depth.copied()), extent, self.most_bricks)
         });
         let frames = frames.collect::<Result<_, _>>()?;
         self.frames = frames;
@@ -228,7 +237,7 @@ impl Renderer {
         let sets = sets.collect::<Result<Vec<_>, _>>()?;
         for (frame, sets) in self.frames.iter_mut().zip(sets) {
             frame.sets = sets;
-            frame.recorded = None;
+            frame.recorded.shot = None;
         }
         (self.volume, self.function) = (volume, function);
         Ok(())
@@ -243,7 +252,7 @@ impl Renderer {
     }
 
     fn check_depths(&self, extent: [u32; 2], images: &[HostDepthImage]) -> Result<(), Error> {
-        let reads = self.class.host_depth && matches!(self.pass, Pass::Rays { .. });
+        let reads = self.class.reads_host_depth();
         let of = self.class.frames_in_flight as usize;
         let wrong = |wanted: String, found: String| Err(Error::HostDepth { wanted, found });
         match (reads, images.len()) {

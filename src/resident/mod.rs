@@ -16,6 +16,7 @@ mod transfer;
 mod upload;
 mod volume;
 
+pub(crate) use bricks::sort_front_to_back;
 pub use bricks::{Cell, cells_of_side, front_to_back, front_to_back_by_rows};
 pub use corners::Corners;
 pub use empty_space::EmptySpace;

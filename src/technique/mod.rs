@@ -61,7 +61,7 @@ pub use ray_pass::RayPass;
 pub use recording::{Recording, parameter_ring};
 pub use shading::{Light, Shading};
 pub use skip::{Skip, Skippable};
-pub use slicer::Slicer;
+pub use slicer::{Sight, Slicer};
 pub use turns::Functions;
 
 use crate::volume::{Spline, kernel::Kernel};
