@@ -4,6 +4,7 @@
 //! skipped. The libraries are built once, by the cargo that runs this, beside everything else in the target folder.
 
 mod capi_layout;
+mod missing_barrier;
 
 #[path = "../examples/embed.rs"]
 #[allow(dead_code, reason = "its `main` is not called")]
@@ -273,6 +274,29 @@ fn the_host_in_c_draws_the_picture_of_the_host_in_rust() {
     let pairs = found[head.len()..].iter().zip(&wanted);
     let off = pairs.filter(|(found, wanted)| found != wanted).count();
     assert_eq!(off, 0, "bytes that differ");
+}
+
+#[test]
+fn each_barrier_of_the_host_in_c_is_needed() {
+    let mode = stratavox::gpu::Validation::default().mode().unwrap();
+    if mode != Some(stratavox::gpu::ValidationMode::Synchronization) {
+        println!("skipped: STRATAVOX_VALIDATION=sync is not set");
+        return;
+    }
+    if !can_link() {
+        return;
+    }
+    let Some(layer) = missing_barrier::MissingBarrier::new() else {
+        return;
+    };
+    let program = Program::new(&["examples/embed.c"], &[], false);
+    let path = program.folder.path().join("sphere.ppm");
+    let command = || {
+        let mut command = program.command();
+        command.arg(&path).env_remove("STRATAVOX_VALIDATION");
+        command
+    };
+    layer.assert_each_is_missed(command, &[]);
 }
 
 #[test]

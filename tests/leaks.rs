@@ -207,6 +207,8 @@ fn renderers_of_a_host_one_after_the_other_take_no_more_memory() {
         {
             stage.settings.technique = technique;
             let drawn = stage.submit(&device, &gpu).unwrap();
+            // SAFETY: it has waited for its timeline.
+            unsafe { gpu.retire(u64::MAX) };
             assert!(
                 *first.get_or_insert_with(|| drawn.clone()) == drawn,
                 "another picture"

@@ -10,10 +10,24 @@ fn listed() -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let target = root.join("target/api");
     let told = Command::new(env!("CARGO"))
-        .args(["rustdoc", "--locked", "--quiet", "--lib", "--no-default-features"])
+        .args([
+            "rustdoc",
+            "--locked",
+            "--quiet",
+            "--lib",
+            "--no-default-features",
+        ])
         .arg("--target-dir")
         .arg(&target)
-        .args(["--", "-Z", "unstable-options", "--output-format", "json", "--cap-lints", "allow"])
+        .args([
+            "--",
+            "-Z",
+            "unstable-options",
+            "--output-format",
+            "json",
+            "--cap-lints",
+            "allow",
+        ])
         // JSON is for nightly compilers only; the one that is asked is the one that `public-api` is for.
         .env("RUSTC_BOOTSTRAP", "1")
         .env_remove("RUSTDOCFLAGS")

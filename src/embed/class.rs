@@ -60,13 +60,18 @@ impl Class {
         let refused = [
             (
                 settings.wants_light_volume(),
-                "a picture with a light volume (shadows, ambient occlusion, half-angle slices)",
-                "take `technique::LightVolume` or `HalfAngleSlicer` and record them",
+                "a picture with a light volume (shadows, ambient occlusion)",
+                "take `technique::LightVolume` and record it",
             ),
             (
                 settings.rays_per_side > 1,
                 "a picture of several rays a pixel",
                 "add up pictures of `View::in_pixel`",
+            ),
+            (
+                settings.is_half_angle() && (self.host_depth || self.gives_depth),
+                "half-angle slicing behind what a host has drawn, or with its depth",
+                "its slices face neither eye nor light: take rays",
             ),
             (
                 settings.adaptive_steps.is_some(),
@@ -120,12 +125,13 @@ impl Class {
         self.host_depth && (has_rays || self.gathers())
     }
 
-    /// Whether slices are gathered in an image of our own: numbers that are no colours yet, and slabs that end at the
-    /// host's depth, which may lie between two slices.
+    /// Whether slices are gathered in an image of our own: numbers that are no colours yet, slabs that end at the host's
+    /// depth, which may lie between two slices, and slices that eye and light see in turn.
     pub(super) fn gathers(&self) -> bool {
         let settings = &self.settings;
         let is_cut = settings.preintegrated && self.host_depth;
-        settings.technique != Technique::Raycast && (settings.mode != Mode::Composite || is_cut)
+        let is_own = settings.mode != Mode::Composite || is_cut || settings.is_half_angle();
+        settings.technique != Technique::Raycast && is_own
     }
 
     /// Whether [`super::Renderer::draw_depth`] may be called.

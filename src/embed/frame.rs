@@ -6,7 +6,8 @@ use super::{Error, HostDepthImage, Volume};
 use crate::camera::Camera;
 use crate::gpu::{Bindings, Buffer, Gpu, Image, Memory, ParameterRing, Resource};
 use crate::resident::GpuVolume;
-use crate::technique::{Inputs, accumulation};
+use crate::technique::slices_3d::half_angle::{HalfAngleBindings, light_buffer, light_extent};
+use crate::technique::{Inputs, Order, accumulation};
 use ash::vk;
 use std::sync::Arc;
 
@@ -18,6 +19,8 @@ pub(super) const PICK_BYTES: u64 = 32;
 pub(super) struct Frame {
     /// What slices are gathered in, where they are not drawn into the host's target.
     pub gathered: Option<Image>,
+    /// What the light sees of half-angle slices.
+    pub light: Option<Image>,
     /// What rays leave, the one with the depth last.
     pub left: Vec<Image>,
     pub sets: Sets,
@@ -33,6 +36,8 @@ pub(super) struct Frame {
 #[derive(Debug, Default)]
 pub(super) struct Sets {
     pub slices: Vec<Vec<Bindings>>,
+    /// Of half-angle slices, which have one brick of one copy.
+    pub half_angle: Option<HalfAngleBindings>,
     pub rays: Vec<Vec<Bindings>>,
     /// Of what makes colours of the images.
     pub resolve: Option<Bindings>,
@@ -60,6 +65,7 @@ pub(super) struct Part {
     /// Of its parameters.
     pub offset: u32,
     pub slices: u32,
+    pub order: Order,
 }
 
 /// What descriptor sets name.
@@ -74,23 +80,26 @@ pub(super) struct Bound<'a> {
 }
 
 impl Recorded {
-    /// Room for so many bricks.
-    pub fn with_room(bricks: usize) -> Self {
+    /// Room for so many.
+    pub fn with_room(recordings: usize) -> Self {
         Self {
             shot: None,
-            picture: Vec::with_capacity(bricks),
-            depth: Vec::with_capacity(bricks),
-            order: Vec::with_capacity(bricks),
+            picture: Vec::with_capacity(recordings),
+            depth: Vec::with_capacity(recordings),
+            order: Vec::with_capacity(recordings),
         }
     }
 }
 
 impl Frame {
-    /// Images of `extent` and descriptor sets, for volumes of up to `most_bricks`.
-    pub fn new(bound: &Bound, extent: [u32; 2], most_bricks: usize) -> Result<Self, Error> {
+    /// Images of `extent` and descriptor sets, with room for so many recordings.
+    pub fn new(bound: &Bound, extent: [u32; 2], recordings: usize) -> Result<Self, Error> {
         let (gpu, pass) = (bound.gpu, bound.pass);
         let image = |name: &str| accumulation(gpu, extent, name);
-        let is_gathered = pass.slicer.is_some() && pass.resolve.is_some();
+        let is_sliced = pass.slicer.is_some() || pass.half_angle.is_some();
+        let is_gathered = is_sliced && pass.resolve.is_some();
+        let of_light = || light_buffer(gpu, light_extent(bound.volume.grid(), extent));
+        let light = pass.half_angle.is_some().then(of_light).transpose()?;
         let gathered = is_gathered.then(|| image("slices")).transpose()?;
         let of_rays = pass.rays.as_ref().map_or(0, |rays| rays.image_count());
         let left = ["rays", "beside rays"].into_iter().take(of_rays).map(image);
@@ -100,11 +109,12 @@ impl Frame {
         };
         let mut made = Self {
             gathered,
+            light,
             left: left.collect::<Result<_, _>>()?,
             sets: Sets::default(),
             pick: pass.rays.is_some().then(readback).transpose()?,
             picked: None,
-            recorded: Recorded::with_room(most_bricks),
+            recorded: Recorded::with_room(recordings),
         };
         made.sets = made.bind(bound)?;
         Ok(made)
@@ -133,6 +143,10 @@ impl Frame {
                 Some(depth) => slicer.bind_behind(inputs, depth),
                 None => slicer.bind(inputs),
             })?;
+        }
+        if let (Some(slicer), Some(light)) = (&pass.half_angle, &self.light) {
+            let inputs = inputs(bound, &bound.volume.copies()[0], 0);
+            sets.half_angle = Some(slicer.bind(&inputs, light)?);
         }
         if let (Some(rays), [first, .., last] | [first @ last]) = (&pass.rays, &self.left[..]) {
             sets.rays = of_bricks(&|inputs| rays.bind(inputs, first, last, depth))?;

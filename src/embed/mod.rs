@@ -19,9 +19,9 @@
 //! against it in hardware, all else ends at its depth buffer, read as a texture. Its own depth a picture gives back by
 //! [`Renderer::draw_depth`] and [`Renderer::record_pick`] ([`Class::gives_depth`]).
 //!
-//! Not here, and refused by name: half-angle slices and light volumes (shadows, ambient occlusion), several volumes,
-//! several rays a pixel, adaptive steps, cross-fades of stacks. `docs/embedding.md` says why, and the pieces for them lie
-//! one floor below, in [`crate::technique`].
+//! Not here, and refused by name: light volumes (shadows, ambient occlusion), several volumes, several rays a pixel,
+//! adaptive steps, cross-fades of stacks. `docs/embedding.md` says why, and the pieces for them lie one floor below, in
+//! [`crate::technique`].
 
 mod class;
 mod error;

@@ -4,6 +4,7 @@ use super::{Class, Error};
 use crate::gpu::{Blend, Gpu, TargetClass};
 use crate::resolve::{DepthResolve, Resolve};
 use crate::technique::blend::Drawn;
+use crate::technique::slices_3d::HalfAngleSlicer;
 use crate::technique::{ACCUMULATION_FORMAT, Mix, RayPass, Sight, Slicer, Technique, Words};
 use std::sync::Arc;
 
@@ -12,6 +13,8 @@ use std::sync::Arc;
 pub(super) struct Pass {
     /// Draws slices: inside the host's rendering, or into an image of our own where that is resolved. `None`: rays.
     pub slicer: Option<Slicer>,
+    /// In its place: slices that eye and light see in turn.
+    pub half_angle: Option<HalfAngleSlicer>,
     /// Outside of the host's rendering: the picture of rays, or the depth of slices.
     pub rays: Option<RayPass>,
     /// Inside of it: what was gathered outside, to colours.
@@ -37,6 +40,8 @@ impl Pass {
             let drawn = Drawn::Picture(mode);
             Slicer::seen(gpu, technique, drawn, order, words, drawn_into, sight)
         };
+        let is_half = settings.is_half_angle();
+        let half_angle = || HalfAngleSlicer::new(gpu, words);
         let rays = || match is_sliced {
             false => RayPass::new(gpu, settings, words),
             true => RayPass::along_slices(gpu, settings, words, mix),
@@ -49,7 +54,8 @@ impl Pass {
         let has_rays = !is_sliced || class.gives_depth;
         let has_resolve = !is_sliced || is_gathered;
         Ok(Self {
-            slicer: is_sliced.then(slicer).transpose()?,
+            slicer: (is_sliced && !is_half).then(slicer).transpose()?,
+            half_angle: is_half.then(half_angle).transpose()?,
             rays: has_rays.then(rays).transpose()?,
             resolve: has_resolve.then(resolve).transpose()?,
             depth: class.draws_depth().then(depth).transpose()?,

@@ -7,6 +7,7 @@ use crate::gpu::{
     Bindings, Load, Target, TargetClass, Tile, Use, begin_rendering, end_rendering, image_barrier,
 };
 use crate::technique::blend::clear_color;
+use crate::technique::slices_3d::half_angle::HalfAngleSlices;
 use crate::technique::{self, InPixel, Recording, View};
 use ash::vk;
 
@@ -211,6 +212,7 @@ impl Renderer {
                 brick: recording.brick,
                 offset: recording.write(&self.ring, slot - 1)?,
                 slices: recording.slices,
+                order: recording.order,
             })
         };
         let Recorded {
@@ -261,7 +263,25 @@ impl Renderer {
         let (gpu, extent) = (&self.gpu, self.extent);
         let there = &self.frames[frame];
         let (_, copy) = made.shot.expect("described just now");
-        if let Some(image) = &there.gathered {
+        if let (Some(image), Some(slicer)) = (&there.gathered, &self.pass.half_angle) {
+            let (Some(bound), Some(light), [eye, of_light]) =
+                (&there.sets.half_angle, &there.light, &made.picture[..])
+            else {
+                unreachable!("the eye's recording and the light's");
+            };
+            let slices = HalfAngleSlices {
+                offsets: [eye.offset, of_light.offset],
+                count: eye.slices,
+                order: eye.order,
+            };
+            // SAFETY: the caller's promises.
+            unsafe {
+                image_barrier(gpu, cmd, image, Use::Nothing, Use::ColorTarget);
+                image_barrier(gpu, cmd, light, Use::Nothing, Use::ColorTarget);
+                slicer.record(cmd, bound, slices, (image, extent), light);
+                image_barrier(gpu, cmd, image, Use::ColorTarget, Use::FragmentSampled);
+            }
+        } else if let Some(image) = &there.gathered {
             let target = [(
                 image.view(),
                 Load::Clear(clear_color(self.class.settings.mode)),

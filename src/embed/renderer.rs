@@ -58,12 +58,9 @@ impl Renderer {
         let pass = Pass::new(gpu, &class, &words, function.mix)?;
         let bricks = volume.copies().iter().map(|copy| copy.bricks().len()).max();
         let most_bricks = bricks.unwrap_or(1);
-        // The depth of slices is looked for with parameters of its own.
-        let walks = if pass.slicer.is_some() && pass.rays.is_some() {
-            2
-        } else {
-            1
-        };
+        // The depth of slices is looked for with parameters of its own, and the light has its own.
+        let is_twofold = pass.half_angle.is_some() || pass.slicer.is_some() && pass.rays.is_some();
+        let walks = if is_twofold { 2 } else { 1 };
         let slots = (most_bricks as u32).saturating_mul(walks * class.frames_in_flight);
         let mut made = Self {
             gpu: Arc::clone(gpu),
@@ -77,7 +74,7 @@ impl Renderer {
             extent,
             host_depths: Vec::new(),
             frames: Vec::new(),
-            spare: Recorded::with_room(most_bricks),
+            spare: Recorded::with_room(2 * most_bricks),
             class,
         };
         made.resize(extent, host_depths)?;
@@ -97,7 +94,7 @@ impl Renderer {
         self.check_depths(extent, host_depths)?;
         let frames = (0..self.class.frames_in_flight as usize).map(|frame| {
             let depth = host_depths.get(frame).or(host_depths.first());
-            Frame::new(&self.bound(depth.copied()), extent, self.most_bricks)
+            Frame::new(&self.bound(depth.copied()), extent, 2 * self.most_bricks)
         });
         let frames = frames.collect::<Result<_, _>>()?;
         self.frames = frames;
@@ -147,6 +144,7 @@ impl Renderer {
                 settings.filter,
                 settings.per_mode.exact_maximum,
                 settings.per_mode.depth_cue == 0.0,
+                settings.is_half_angle(),
             )
         };
         let is_same = kind(&class.settings) == kind(&self.class.settings) && words == self.words;

@@ -36,11 +36,21 @@ pub fn all_settings() -> Vec<Settings> {
         preintegrated: true,
         ..Settings::default()
     };
+    // What the light has left comes slice by slice.
+    let shaded = stratavox::technique::Shading {
+        shadows: stratavox::technique::Shadows::HalfAngle,
+        ..Default::default()
+    };
+    let in_light = Settings {
+        technique: Technique::Slices3d,
+        shading: Some(shaded),
+        ..Settings::default()
+    };
     let all = rays
         .into_iter()
         .chain(slices)
         .chain(filtered)
-        .chain([slabs]);
+        .chain([slabs, in_light]);
     all.map(|mut settings| {
         if settings.mode == Mode::Iso {
             settings.per_mode.levels = vec![Level {

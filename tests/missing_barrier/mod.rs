@@ -45,7 +45,7 @@ impl MissingBarrier {
     }
 
     /// Runs the program; barrier number `missing` orders nothing.
-    pub fn run(&self, command: &mut Command, missing: Option<u32>) -> Heard {
+    pub fn run(&self, mut command: Command, missing: Option<u32>) -> Heard {
         let enabled = "VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT";
         command
             .env("VK_ADD_LAYER_PATH", self.folder.path())
@@ -70,12 +70,12 @@ impl MissingBarrier {
     }
 
     /// Each barrier of the program is missed but for those that are known to be `unheard`.
-    pub fn assert_each_is_missed(&self, mut program: impl FnMut() -> Command, unheard: &[u32]) {
-        let whole = self.run(&mut program(), None);
+    pub fn assert_each_is_missed(&self, program: impl Fn() -> Command, unheard: &[u32]) {
+        let whole = self.run(program(), None);
         assert_eq!(whole.said, Vec::<String>::new());
         assert!(whole.barriers > 5, "only {} barriers", whole.barriers);
         let is_heard = |&missing: &u32| {
-            let heard = self.run(&mut program(), Some(missing));
+            let heard = self.run(program(), Some(missing));
             !heard.said.is_empty()
         };
         let found: Vec<_> = (0..whole.barriers)
