@@ -97,6 +97,7 @@ impl From<embed::Error> for Failure {
             | Error::NotRecorded { .. }
             | Error::NotPicked { .. } => SV_E_STATE,
             Error::FramesInFlight { .. }
+            | Error::Update { .. }
             | Error::NoFrame { .. }
             | Error::HostDepth { .. }
             | Error::NoPixel { .. } => SV_E_ARGUMENT,

@@ -36,6 +36,14 @@ pub enum Error {
     /// The voxels have been recorded once.
     #[error("the volume has been uploaded already: make another one for other voxels")]
     Uploaded,
+    /// New voxels that the volume does not take.
+    #[error("an update of a volume: wanted {wanted}, found {found}")]
+    Update {
+        /// What would do.
+        wanted: String,
+        /// What was given.
+        found: String,
+    },
     /// No frame in flight, or more than any host has.
     #[error("wanted 1 to {most} frames in flight, found {found}")]
     FramesInFlight {

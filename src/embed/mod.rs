@@ -31,6 +31,7 @@ mod pick;
 mod recording;
 mod renderer;
 mod submitter;
+mod update;
 mod volume;
 
 pub use class::{Class, HostDepthImage, Shot};
@@ -38,4 +39,5 @@ pub use error::Error;
 pub use pick::Pick;
 pub use renderer::Renderer;
 pub use submitter::{QueueLock, Submitter};
+pub use update::Update;
 pub use volume::Volume;

@@ -34,7 +34,7 @@ impl Renderer {
         let recorded = self.describe(frame, shot, depth)?;
         // SAFETY: the caller's promises; barriers stand between what is written and what is read.
         unsafe {
-            self.function.record_upload(cmd)?;
+            self.function.record_upload(cmd, &self.volume)?;
             self.gather(cmd, frame, &recorded)?;
         }
         self.frames[frame].recorded = Some(recorded);

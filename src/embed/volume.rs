@@ -6,16 +6,21 @@ use crate::gpu::{Buffer, Gpu};
 use crate::resident::{Apron, Corners, GpuVolume, MacroCells, Texels, TextureLayout, VolumePlan};
 use crate::shaders::CELL_VOXELS;
 use crate::technique::{FilterBy, GradientSource, Keep, Mix, Settings, Technique};
-use crate::volume::{self, Coefficients, Grid, VoxelType};
+use crate::volume::{self, Coefficients, Grid, Rescale, VoxelType};
 use ash::vk;
 use std::sync::Arc;
+use std::sync::atomic::AtomicU64;
 
 /// A volume's textures, what is known of its empty space, and its voxels on their way there. Several renderers may
 /// share it.
 #[derive(Debug)]
 pub struct Volume {
+    /// Which volume it is.
+    token: Arc<()>,
     grid: Grid,
     value_range: [f64; 2],
+    pub(super) stored: VoxelType,
+    pub(super) rescale: Rescale,
     /// One, or a stack along each axis.
     copies: Vec<GpuVolume>,
     /// Of the copy that rays read, and how far around a cell was looked.
@@ -23,6 +28,8 @@ pub struct Volume {
     /// Corners and cells come with the voxels.
     staging: Vec<Buffer>,
     is_uploaded: bool,
+    /// How many were recorded.
+    pub(super) updates: AtomicU64,
 }
 
 impl Volume {
@@ -48,12 +55,16 @@ impl Volume {
             copies.push(copy);
         }
         let mut made = Self {
+            token: Arc::new(()),
             grid: voxels.grid(),
             value_range: voxels.value_range,
+            stored: voxels.voxels.voxel_type(),
+            rescale: voxels.rescale,
             copies,
             cells: None,
             staging,
             is_uploaded: false,
+            updates: AtomicU64::new(0),
         };
         if settings.technique == Technique::Raycast {
             made.know_empty_space(gpu, voxels, settings)?;
@@ -145,13 +156,9 @@ impl Volume {
         if self.is_uploaded {
             return Err(Error::Uploaded);
         }
-        let staged = self.copies.iter().flat_map(|copy| {
-            let beside = copy.gradient_source();
-            [Some(copy), beside].into_iter().flatten()
-        });
         // SAFETY: the caller's promises; buffers lie in the order of what they fill, and wait for the device.
         unsafe {
-            for (texture, staging) in staged.zip(&self.staging) {
+            for (texture, staging) in self.textures().zip(&self.staging) {
                 texture.record_upload_all(cmd, staging)?;
             }
             for copy in &self.copies {
@@ -185,6 +192,16 @@ impl Volume {
 
     pub(super) fn copies(&self) -> &[GpuVolume] {
         &self.copies
+    }
+
+    /// All that is staged by itself: copies, and what their gradients are made of.
+    pub(super) fn textures(&self) -> impl Iterator<Item = &GpuVolume> {
+        let copies = self.copies.iter();
+        copies.flat_map(|copy| [Some(copy), copy.gradient_source()].into_iter().flatten())
+    }
+
+    pub(super) fn token(&self) -> &Arc<()> {
+        &self.token
     }
 
     pub(super) fn cells(&self) -> Option<&MacroCells> {

@@ -52,6 +52,7 @@ pub use cache::PipelineCache;
 pub use caps::Caps;
 pub use choice::DeviceChoice;
 pub use commands::{Commands, TimelinePoint};
+pub(crate) use copy::buffer_to_buffer;
 pub use copy::{Region, buffer_to_image, clear_image, image_to_buffer};
 pub use devices::{DeviceReport, Enabled, Finding, HostPhysicalDevice, check_device, list_devices};
 pub use error::Error;
