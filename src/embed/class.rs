@@ -97,12 +97,7 @@ impl Class {
             }
         }
         settings.check()?;
-        if !(1..=MOST_FRAMES).contains(&self.frames_in_flight) {
-            return Err(Error::FramesInFlight {
-                found: self.frames_in_flight,
-                most: MOST_FRAMES,
-            });
-        }
+        check_frames(self.frames_in_flight)?;
         if settings.shading.is_some() && settings.mode.is_projection() {
             let mode = settings.mode;
             return Err(technique::Error::NotShaded { mode }.into());
@@ -123,6 +118,17 @@ impl Class {
     /// Technique and mode.
     pub(super) fn what(&self) -> String {
         what(&self.settings)
+    }
+}
+
+/// As many frames in flight as a host may have.
+pub(super) fn check_frames(found: u32) -> Result<(), Error> {
+    match (1..=MOST_FRAMES).contains(&found) {
+        true => Ok(()),
+        false => Err(Error::FramesInFlight {
+            found,
+            most: MOST_FRAMES,
+        }),
     }
 }
 

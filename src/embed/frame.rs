@@ -4,7 +4,7 @@ use super::function::Function;
 use super::pass::Pass;
 use super::{Error, HostDepthImage, Volume};
 use crate::camera::Camera;
-use crate::gpu::{Bindings, Buffer, Gpu, Image, Memory, ParameterRing, Resource};
+use crate::gpu::{Bindings, Blocks, Buffer, Gpu, Image, Memory, ParameterRing, Resource};
 use crate::resident::GpuVolume;
 use crate::technique::{Inputs, accumulation};
 use ash::vk;
@@ -25,6 +25,17 @@ pub(super) struct Frame {
     pub picked: Option<([u32; 2], Camera)>,
     /// What [`super::Renderer::draw`] draws.
     pub recorded: Option<Recorded>,
+    /// What is being recorded part by part.
+    pub begun: Option<Begun>,
+}
+
+/// A frame of which some blocks are recorded.
+#[derive(Debug)]
+pub(super) struct Begun {
+    pub recorded: Recorded,
+    pub blocks: Blocks,
+    /// The first block that is not recorded.
+    pub next: u64,
 }
 
 /// The descriptor sets of one frame in flight.
@@ -95,6 +106,7 @@ impl Frame {
             pick,
             picked: None,
             recorded: None,
+            begun: None,
         };
         made.sets = made.bind(bound)?;
         Ok(made)

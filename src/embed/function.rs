@@ -93,10 +93,9 @@ impl Function {
             if let (Some(made), false) = (&self.made, self.is_uploaded) {
                 made.record_upload(cmd)?;
             }
-            match &self.empty {
-                Some(empty) if !self.is_uploaded => empty.record(cmd)?,
-                Some(empty) if self.found_after != updates => empty.record_again(cmd)?,
-                _ => {}
+            let is_old = !self.is_uploaded || self.found_after != updates;
+            if let Some(empty) = self.empty.as_ref().filter(|_| is_old) {
+                empty.record(cmd)?;
             }
         }
         self.is_uploaded = true;

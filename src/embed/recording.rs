@@ -5,7 +5,8 @@ use super::pass::Pass;
 use super::{Error, Renderer, Shot};
 use crate::camera::{HostDepth, Nearer};
 use crate::gpu::{
-    Image, Load, Target, TargetClass, Tile, Use, begin_rendering, end_rendering, image_barrier,
+    Image, Load, Target, TargetClass, Tile, Use, begin_rendering, begin_rendering_of, end_rendering,
+    image_barrier,
 };
 use crate::technique::blend::clear_color;
 use crate::technique::{self, InPixel, View};
@@ -24,21 +25,14 @@ impl Renderer {
     /// - nothing unfinished was recorded with the shot's number of a frame in flight;
     /// - the image of the host's depth is in the layout that was said, visible to sampled reads of compute shaders.
     pub unsafe fn record(&mut self, cmd: vk::CommandBuffer, shot: &Shot) -> Result<(), Error> {
-        self.gpu.check_alive("record a frame")?;
-        let frame = self.frame_number(shot.frame)?;
-        shot.camera.check()?;
-        if !self.volume.is_uploaded() {
-            return Err(Error::NotUploaded);
-        }
-        let depth = self.depth_of(shot)?;
-        let recorded = self.describe(frame, shot, depth)?;
+        let (frame, recorded) = self.prepare(shot)?;
+        let whole = [Tile::whole(self.extent)];
         // SAFETY: the caller's promises; barriers stand between what is written and what is read.
         unsafe {
             self.function.record_upload(cmd, &self.volume)?;
-            self.gather(cmd, frame, &recorded)?;
+            self.gather(cmd, frame, &recorded, &whole, Share::ALL)?;
         }
         self.frames[frame].recorded = Some(recorded);
-        self.frames[frame].picked = None;
         Ok(())
     }
 
@@ -54,24 +48,8 @@ impl Renderer {
     pub unsafe fn draw(&self, cmd: vk::CommandBuffer, frame: u32) -> Result<(), Error> {
         self.gpu.check_alive("draw a frame")?;
         let (there, recorded) = self.recorded(frame, "draw")?;
-        let (extent, parts) = (self.extent, &recorded.parts);
-        // SAFETY: the caller's promises; what is bound lives as long as the frame, and then until it is retired.
-        unsafe {
-            match (&self.pass, &there.sets.resolve) {
-                (Pass::Slices(slicer), _) => {
-                    for part in parts {
-                        let bound = &there.sets.bricks[recorded.copy][part.brick];
-                        slicer.record(cmd, bound, part.offset, extent, 0..part.slices);
-                    }
-                }
-                (Pass::Rays { resolve, .. } | Pass::Projected { resolve, .. }, Some(bound)) => {
-                    resolve.record(cmd, bound, parts[0].offset, extent);
-                }
-                (Pass::Rays { .. } | Pass::Projected { .. }, None) => {
-                    unreachable!("bound with the frame")
-                }
-            }
-        }
+        // SAFETY: the caller's promises.
+        unsafe { self.draw_tiles(cmd, there, recorded, &[Tile::whole(self.extent)]) };
         Ok(())
     }
 
@@ -118,13 +96,7 @@ impl Renderer {
         target: &Target,
         load: Load,
     ) -> Result<(), Error> {
-        let wanted = TargetClass::from(target.format);
-        if self.class.target != wanted || self.extent != target.extent {
-            return Err(Error::OtherClass {
-                made: format!("{:?} of {:?} pixels", self.class.target, self.extent),
-                wanted: format!("{wanted:?} of {:?} pixels", target.extent),
-            });
-        }
+        self.check_target(target, load)?;
         // SAFETY: the caller's promises.
         unsafe {
             self.record(cmd, shot)?;
@@ -138,7 +110,99 @@ impl Renderer {
     }
 }
 
+/// Which part of a frame is recorded: the first has what comes before all tiles, the last what comes after.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Share {
+    pub is_first: bool,
+    pub is_last: bool,
+}
+
+impl Share {
+    const ALL: Self = Self {
+        is_first: true,
+        is_last: true,
+    };
+}
+
 impl Renderer {
+    /// The frame of a shot and its parameters, written. Nothing that was recorded for it before is drawn or picked now.
+    pub(super) fn prepare(&mut self, shot: &Shot) -> Result<(usize, Recorded), Error> {
+        self.gpu.check_alive("record a frame")?;
+        let frame = self.frame_number(shot.frame)?;
+        shot.camera.check()?;
+        if !self.volume.is_uploaded() {
+            return Err(Error::NotUploaded);
+        }
+        let depth = self.depth_of(shot)?;
+        let recorded = self.describe(frame, shot, depth)?;
+        let there = &mut self.frames[frame];
+        (there.recorded, there.begun, there.picked) = (None, None, None);
+        Ok((frame, recorded))
+    }
+
+    /// Refuses a target that the renderer was not made for, and states that lose what is to be kept.
+    pub(super) fn check_target(&self, target: &Target, load: Load) -> Result<(), Error> {
+        let wanted = TargetClass::from(target.format);
+        if self.class.target != wanted || self.extent != target.extent {
+            return Err(Error::OtherClass {
+                made: format!("{:?} of {:?} pixels", self.class.target, self.extent),
+                wanted: format!("{wanted:?} of {:?} pixels", target.extent),
+            });
+        }
+        let gives_up = |layout: vk::ImageLayout| {
+            let layouts = [vk::ImageLayout::UNDEFINED, vk::ImageLayout::PREINITIALIZED];
+            layouts.contains(&layout)
+        };
+        if load == Load::Keep && target.before.layout == vk::ImageLayout::UNDEFINED {
+            return Err(Error::TargetState {
+                wanted: "`Load::Clear`, or the layout that what is kept is in, in `before`",
+                found: target.before.layout,
+            });
+        }
+        match gives_up(target.after.layout) {
+            true => Err(Error::TargetState {
+                wanted: "a layout in `after` that keeps what was drawn",
+                found: target.after.layout,
+            }),
+            false => Ok(()),
+        }
+    }
+
+    /// Draws some tiles of a picture.
+    ///
+    /// # Safety
+    /// As [`Renderer::draw`]; resolved pictures have been gathered whole.
+    pub(super) unsafe fn draw_tiles(
+        &self,
+        cmd: vk::CommandBuffer,
+        there: &Frame,
+        recorded: &Recorded,
+        tiles: &[Tile],
+    ) {
+        let (extent, parts) = (self.extent, &recorded.parts);
+        // SAFETY: the caller's promises; what is bound lives as long as the frame, and then until it is retired.
+        unsafe {
+            match (&self.pass, &there.sets.resolve) {
+                (Pass::Slices(slicer), _) => {
+                    for (&tile, part) in tiles.iter().flat_map(|t| parts.iter().map(move |p| (t, p)))
+                    {
+                        let bound = &there.sets.bricks[recorded.copy][part.brick];
+                        let slices = 0..part.slices;
+                        slicer.record_tile(cmd, bound, part.offset, extent, slices, tile);
+                    }
+                }
+                (Pass::Rays { resolve, .. } | Pass::Projected { resolve, .. }, Some(bound)) => {
+                    for &tile in tiles {
+                        resolve.record_tile(cmd, bound, parts[0].offset, extent, tile);
+                    }
+                }
+                (Pass::Rays { .. } | Pass::Projected { .. }, None) => {
+                    unreachable!("bound with the frame")
+                }
+            }
+        }
+    }
+
     /// The images that the pass leaves, in their order.
     pub(super) fn left<'a>(&self, [gathered, layers]: &'a [Image; 2]) -> Vec<&'a Image> {
         match &self.pass {
@@ -237,11 +301,13 @@ impl Renderer {
 
     /// # Safety
     /// As [`Renderer::record`].
-    unsafe fn gather(
+    pub(super) unsafe fn gather(
         &self,
         cmd: vk::CommandBuffer,
         frame: usize,
         recorded: &Recorded,
+        tiles: &[Tile],
+        share: Share,
     ) -> Result<(), Error> {
         let (gpu, extent) = (&self.gpu, self.extent);
         let there = &self.frames[frame];
@@ -256,35 +322,44 @@ impl Renderer {
             }
         };
         let bound = &there.sets.bricks[recorded.copy];
-        let mut before = Use::Nothing;
+        let written = match &self.pass {
+            Pass::Rays { .. } => Use::ComputeWrite,
+            Pass::Projected { .. } | Pass::Slices(_) => Use::ColorTarget,
+        };
+        let mut before = match share.is_first {
+            true => Use::Nothing,
+            false => written,
+        };
         match &self.pass {
             Pass::Rays { pass, .. } => {
                 for part in &recorded.parts {
-                    barriers(before, Use::ComputeWrite);
-                    before = Use::ComputeWrite;
-                    let whole = [Tile::whole(extent)];
-                    let bound = &bound[part.brick];
+                    barriers(before, written);
+                    before = written;
+                    let (bound, tiles) = (&bound[part.brick], tiles.iter().copied());
                     // SAFETY: the caller's promises.
-                    unsafe { pass.record_tiles(cmd, bound, part.offset, extent, whole)? };
+                    unsafe { pass.record_tiles(cmd, bound, part.offset, extent, tiles)? };
                 }
             }
             Pass::Projected { slicer, .. } => {
-                barriers(before, Use::ColorTarget);
-                before = Use::ColorTarget;
+                barriers(before, written);
                 let clear = Load::Clear(clear_color(self.class.settings.mode));
-                // SAFETY: the caller's promises.
-                unsafe {
-                    begin_rendering(gpu, cmd, &[(left[0].view(), clear)], extent);
-                    for part in &recorded.parts {
-                        let bound = &bound[part.brick];
-                        slicer.record(cmd, bound, part.offset, extent, 0..part.slices);
+                for &tile in tiles {
+                    // SAFETY: the caller's promises.
+                    unsafe {
+                        begin_rendering_of(gpu, cmd, &[(left[0].view(), clear)], tile);
+                        for part in &recorded.parts {
+                            let (bound, slices) = (&bound[part.brick], 0..part.slices);
+                            slicer.record_tile(cmd, bound, part.offset, extent, slices, tile);
+                        }
+                        end_rendering(gpu, cmd);
                     }
-                    end_rendering(gpu, cmd);
                 }
             }
             Pass::Slices(_) => {}
         }
-        barriers(before, Use::FragmentSampled);
+        if share.is_last {
+            barriers(written, Use::FragmentSampled);
+        }
         Ok(())
     }
 }

@@ -228,7 +228,7 @@ impl Renderer {
         let sets = sets.collect::<Result<Vec<_>, _>>()?;
         for (frame, sets) in self.frames.iter_mut().zip(sets) {
             frame.sets = sets;
-            frame.recorded = None;
+            (frame.recorded, frame.begun) = (None, None);
         }
         (self.volume, self.function) = (volume, function);
         Ok(())

@@ -74,12 +74,17 @@ impl Corners {
     /// Whether they pay and can be had: on a software device, of 8-bit or 16-bit integers in one brick, where that has
     /// such an image, in a quarter of its largest heap.
     pub fn are_for(gpu: &Gpu, volume: &Volume) -> bool {
-        let Some(bytes) = Self::bytes_of(volume.voxels.voxel_type(), volume.dims) else {
+        Self::are_for_such(gpu, volume.voxels.voxel_type(), volume.dims)
+    }
+
+    /// The same before there are voxels.
+    pub(crate) fn are_for_such(gpu: &Gpu, stored: VoxelType, dims: [u32; 3]) -> bool {
+        let Some(bytes) = Self::bytes_of(stored, dims) else {
             return false;
         };
         gpu.is_cpu()
             && bytes <= gpu.limits().max_heap_bytes / SHARE
-            && volume.dims[0] <= MOST_VOXELS_A_ROW
+            && dims[0] <= MOST_VOXELS_A_ROW
             && gpu.check_image(&desc(bytes / 4)).is_ok()
             && gpu.has_images_in_rows(&desc(bytes / 4))
     }

@@ -240,7 +240,8 @@ impl EmptySpace {
         &self.rooms[1]
     }
 
-    /// Records what fills them: after the record of the cells.
+    /// Records what fills them: after the record of the cells, and once more whenever those have changed. The barriers
+    /// of a pass also stand behind compute shaders that read what was there before.
     ///
     /// # Errors
     /// A grid larger than the device can dispatch.
@@ -250,24 +251,6 @@ impl EmptySpace {
     pub unsafe fn record(&self, cmd: vk::CommandBuffer) -> Result<(), Error> {
         // SAFETY: the caller's promises.
         unsafe { self.record_part(cmd, 0..u64::MAX) }
-    }
-
-    /// Records what fills them anew, after the cells have changed: between what reads them before and what reads them
-    /// later.
-    ///
-    /// # Errors
-    /// As [`EmptySpace::record`].
-    ///
-    /// # Safety
-    /// As [`EmptySpace::record`], which was recorded before.
-    pub(crate) unsafe fn record_again(&self, cmd: vk::CommandBuffer) -> Result<(), Error> {
-        // SAFETY: outside rendering; the buffers live until `cmd` has run.
-        unsafe {
-            for rooms in &self.rooms {
-                buffer_barrier(&self.gpu, cmd, rooms, Use::ComputeRead, Use::ComputeWrite);
-            }
-            self.record(cmd)
-        }
     }
 
     /// The workgroups of each pass over all bricks, numbered one after the other: [`EmptySpace::record_part`] records
