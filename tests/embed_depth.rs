@@ -202,11 +202,8 @@ fn draw(host: &Host, stage: &Stage, camera: &Camera, depth: &HostDepth, drawn: &
         host_depth: true,
         gives_depth,
     };
-    let read = HostDepthImage {
-        view: buffer.view,
-        layout: READ.2,
-        extent: stage.extent,
-    };
+    // SAFETY: the buffer outlives the renderer.
+    let read = unsafe { HostDepthImage::new(buffer.view, READ.2, stage.extent) };
     let read = if is_ray { vec![read] } else { Vec::new() };
     let shot = Shot {
         frame: 0,

@@ -1,6 +1,6 @@
 //! Pictures of one volume in a host's frames.
 
-use super::class::what;
+use super::class::{READ_DEPTH, what};
 use super::frame::{Bound, Frame};
 use super::function::{self, Function};
 use super::pass::Pass;
@@ -249,6 +249,11 @@ impl Renderer {
         match (reads, images.len()) {
             (false, 0) => Ok(()),
             (true, count) if count == 1 || count == of => {
+                let unread = |image: &&HostDepthImage| !READ_DEPTH.contains(&image.layout);
+                if let Some(image) = images.iter().find(unread) {
+                    let found = format!("{:?}", image.layout);
+                    return wrong("a layout from which shaders read depth".into(), found);
+                }
                 match images.iter().find(|image| image.extent != extent) {
                     None => Ok(()),
                     Some(image) => wrong(

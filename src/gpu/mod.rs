@@ -70,7 +70,9 @@ pub use memory::{HeapUse, MemoryUse};
 pub(crate) use pace::{Pace, TARGET_MS};
 pub use parameters::ParameterRing;
 pub use pipeline::ComputePipeline;
-pub use raster::{Blend, DepthClass, DepthUse, RasterDesc, RasterPipeline, TargetClass};
+pub use raster::{
+    Blend, DepthClass, DepthUse, HostPass, RasterDesc, RasterPipeline, TargetClass,
+};
 pub use rendering::{
     Load, begin_rendering, begin_rendering_of, end_rendering, set_area, set_area_of,
 };
