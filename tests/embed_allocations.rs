@@ -89,11 +89,8 @@ fn assert_nothing_is_taken(host: &Host, settings: &Settings) {
     let open = vec![1.0; (extent[0] * extent[1]) as usize];
     let buffer = DepthImage::new(host, extent, &open, READ);
     let reads = inside.reads_host_depth();
-    let read = [HostDepthImage {
-        view: buffer.view,
-        layout: READ.2,
-        extent,
-    }];
+    // SAFETY: the buffer outlives the renderers.
+    let read = [unsafe { HostDepthImage::new(buffer.view, READ.2, extent) }];
     let read = if reads { &read[..] } else { &[] };
     let function = Some(&stage.transfer);
     let made = |class, read: &[_]| {

@@ -88,11 +88,8 @@ unsafe fn film(
             host_depth: true,
             gives_depth: false,
         };
-        let read = HostDepthImage {
-            view: host.depth_view,
-            layout: DepthFor::Rays.state().2,
-            extent: EXTENT,
-        };
+        let layout = DepthFor::Rays.state().2;
+        let read = HostDepthImage::new(host.depth_view, layout, EXTENT);
         // Slices are tested against the depth attachment; rays read it.
         let read = if is_ray { vec![read] } else { Vec::new() };
         let (volume, function) = (Arc::new(volume), function());

@@ -1,7 +1,7 @@
 //! What lies under a pixel.
 
 use super::renderer::{sv_renderer, with};
-use super::status::{Failure, guard, sv_diagnostic, sv_status};
+use super::status::{guard, sv_diagnostic, sv_status};
 use super::structure::{self, Versioned};
 use super::volume::commands;
 use std::ffi::c_void;
@@ -54,8 +54,6 @@ pub unsafe extern "C" fn sv_renderer_record_pick(
             let cmd = commands(command_buffer)?;
             // SAFETY: the caller's promise.
             unsafe { inner.renderer.record_pick(cmd, frame, [x, y])? };
-            // There is such a frame: something was recorded for it.
-            inner.picked[frame as usize] = Some([x, y]);
             Ok(())
         })
     };
@@ -79,11 +77,6 @@ pub unsafe extern "C" fn sv_renderer_pick(
         unsafe { structure::check_room(pick.cast_const())? };
         with(renderer, |_, inner| {
             let found = inner.renderer.pick(frame, [x, y])?;
-            if inner.picked[frame as usize] != Some([x, y]) {
-                return Err(Failure::state(format!(
-                    "pixel ({x}, {y}) was not picked: sv_renderer_record_pick of frame {frame} comes first"
-                )));
-            }
             let mut told = sv_pick {
                 struct_size: 0,
                 next: std::ptr::null(),

@@ -55,10 +55,6 @@ impl Taken {
                 "sv_shot.camera: a renderer with has_host_depth or gives_depth wants SV_CAMERA_MATRICES",
             ));
         }
-        // What was picked was of another picture.
-        if let Some(picked) = inner.picked.get_mut(shot.frame as usize) {
-            *picked = None;
-        }
         Ok(Self {
             camera,
             depth,

@@ -63,8 +63,6 @@ pub(super) struct Held(Mutex<Inner>);
 pub(super) struct Inner {
     pub renderer: embed::Renderer,
     pub volume: Arc<embed::Volume>,
-    /// The pixel whose copy was recorded, of each frame in flight.
-    pub picked: Vec<Option<[u32; 2]>>,
 }
 
 impl Kind for Held {
@@ -247,11 +245,7 @@ unsafe fn made(device: &Device, desc: &sv_renderer_desc) -> Result<Inner, Failur
     let extent = extent(device, [desc.width, desc.height])?;
     let gpu = &device.gpu;
     let renderer = embed::Renderer::new(gpu, &volume, function.as_ref(), class, extent, &depths)?;
-    Ok(Inner {
-        renderer,
-        volume,
-        picked: vec![None; frames as usize],
-    })
+    Ok(Inner { renderer, volume })
 }
 
 /// A size that the device can draw to.

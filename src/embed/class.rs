@@ -31,14 +31,37 @@ pub(super) const MOST_FRAMES: u32 = 64;
 /// A host's depth buffer as shaders read it: one level, one layer, one sample, with `SAMPLED` usage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HostDepthImage {
-    /// A view of its depth aspect, 2D.
-    pub view: vk::ImageView,
-    /// The layout that it is in when what [`super::Renderer::record`] records runs, visible to sampled reads of the
-    /// compute stage by rays, and of the fragment stage too by slices: one of those from which shaders read depth.
-    pub layout: vk::ImageLayout,
-    /// Its size: that of the picture.
-    pub extent: [u32; 2],
+    pub(super) view: vk::ImageView,
+    pub(super) layout: vk::ImageLayout,
+    pub(super) extent: [u32; 2],
 }
+
+impl HostDepthImage {
+    /// A 2D view of its depth aspect; the layout that it is in when what [`super::Renderer::record`] records runs, visible
+    /// to sampled reads of the compute stage by rays, and of the fragment stage too by slices; its size, which is that of
+    /// the picture.
+    ///
+    /// # Safety
+    /// The view is one of the device of the renderers that get it, and lives until they have got others
+    /// ([`super::Renderer::resize`]) or are dropped, and all frames that were recorded with it are done.
+    pub unsafe fn new(view: vk::ImageView, layout: vk::ImageLayout, extent: [u32; 2]) -> Self {
+        Self {
+            view,
+            layout,
+            extent,
+        }
+    }
+}
+
+/// From which shaders read depth: the layouts that the specification allows for it.
+pub(super) const READ_DEPTH: [vk::ImageLayout; 6] = [
+    vk::ImageLayout::GENERAL,
+    vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL,
+    vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
+    vk::ImageLayout::DEPTH_READ_ONLY_OPTIMAL,
+    vk::ImageLayout::DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL,
+    vk::ImageLayout::READ_ONLY_OPTIMAL,
+];
 
 /// One frame of a host.
 #[derive(Clone, Copy, Debug)]
@@ -95,12 +118,7 @@ impl Class {
             }
         }
         settings.check()?;
-        if !(1..=MOST_FRAMES).contains(&self.frames_in_flight) {
-            return Err(Error::FramesInFlight {
-                found: self.frames_in_flight,
-                most: MOST_FRAMES,
-            });
-        }
+        check_frames(self.frames_in_flight)?;
         if settings.shading.is_some() && settings.mode.is_projection() {
             let mode = settings.mode;
             return Err(technique::Error::NotShaded { mode }.into());
@@ -142,6 +160,17 @@ impl Class {
     /// Technique and mode.
     pub(super) fn what(&self) -> String {
         what(&self.settings)
+    }
+}
+
+/// As many frames in flight as a host may have.
+pub(super) fn check_frames(found: u32) -> Result<(), Error> {
+    match (1..=MOST_FRAMES).contains(&found) {
+        true => Ok(()),
+        false => Err(Error::FramesInFlight {
+            found,
+            most: MOST_FRAMES,
+        }),
     }
 }
 

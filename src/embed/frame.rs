@@ -4,7 +4,7 @@ use super::function::Function;
 use super::pass::Pass;
 use super::{Error, HostDepthImage, Volume};
 use crate::camera::Camera;
-use crate::gpu::{Bindings, Buffer, Gpu, Image, Memory, ParameterRing, Resource};
+use crate::gpu::{Bindings, Blocks, Buffer, Gpu, Image, Memory, ParameterRing, Resource};
 use crate::resident::GpuVolume;
 use crate::technique::slices_3d::half_angle::{HalfAngleBindings, light_buffer, light_extent};
 use crate::technique::{Inputs, Order, accumulation};
@@ -30,6 +30,17 @@ pub(super) struct Frame {
     pub picked: Option<([u32; 2], Camera)>,
     /// What [`super::Renderer::draw`] draws.
     pub recorded: Recorded,
+    /// What is being recorded part by part.
+    pub begun: Option<Begun>,
+}
+
+/// A frame of which some blocks are recorded.
+#[derive(Debug)]
+pub(super) struct Begun {
+    pub recorded: Recorded,
+    pub blocks: Blocks,
+    /// The first block that is not recorded.
+    pub next: u64,
 }
 
 /// The descriptor sets of one frame in flight, those of bricks for each copy of the volume.
@@ -115,6 +126,7 @@ impl Frame {
             pick: pass.rays.is_some().then(readback).transpose()?,
             picked: None,
             recorded: Recorded::with_room(recordings),
+            begun: None,
         };
         made.sets = made.bind(bound)?;
         Ok(made)

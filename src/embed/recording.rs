@@ -4,7 +4,8 @@ use super::frame::{Frame, Part, Recorded};
 use super::{Error, Renderer, Shot};
 use crate::camera::{Camera, HostDepth, Nearer};
 use crate::gpu::{
-    Bindings, Load, Target, TargetClass, Tile, Use, begin_rendering, end_rendering, image_barrier,
+    Load, Target, TargetClass, Tile, Use, begin_rendering, begin_rendering_of, end_rendering,
+    image_barrier,
 };
 use crate::technique::blend::clear_color;
 use crate::technique::slices_3d::half_angle::HalfAngleSlices;
@@ -24,28 +25,18 @@ impl Renderer {
     /// - nothing unfinished was recorded with the shot's number of a frame in flight;
     /// - the image of the host's depth is in the layout that was said, visible to sampled reads of compute shaders.
     pub unsafe fn record(&mut self, cmd: vk::CommandBuffer, shot: &Shot) -> Result<(), Error> {
-        self.gpu.check_alive("record a frame")?;
-        let frame = self.frame_number(shot.frame)?;
-        shot.camera.check()?;
-        if !self.volume.is_uploaded() {
-            return Err(Error::NotUploaded);
-        }
-        let depth = self.depth_of(shot)?;
-        let mut made = std::mem::take(&mut self.spare);
+        let (frame, made) = self.prepare(shot)?;
+        let whole = [Tile::whole(self.extent)];
         // SAFETY: the caller's promises; barriers stand between what is written and what is read.
-        let recorded = self
-            .describe(frame, shot, depth, &mut made)
-            .and_then(|()| unsafe {
-                self.function.record_upload(cmd)?;
-                self.gather(cmd, frame, &made)
-            });
-        if recorded.is_ok() {
-            let there = &mut self.frames[frame];
-            std::mem::swap(&mut there.recorded, &mut made);
-            there.picked = None;
+        let gathered = unsafe {
+            let uploaded = self.function.record_upload(cmd, &self.volume);
+            uploaded.and_then(|()| self.gather(cmd, frame, &made, &whole, Share::ALL))
+        };
+        match gathered {
+            Ok(()) => self.keep(frame, made),
+            Err(_) => self.spare = made,
         }
-        self.spare = made;
-        recorded
+        gathered
     }
 
     /// Level A: draws what [`Renderer::record`] recorded for this frame in flight over what the host has drawn. Bound
@@ -59,17 +50,9 @@ impl Renderer {
     /// - it runs after what [`Renderer::record`] recorded, on the same queue.
     pub unsafe fn draw(&self, cmd: vk::CommandBuffer, frame: u32) -> Result<(), Error> {
         self.gpu.check_alive("draw a frame")?;
-        let (there, _, copy) = self.recorded(frame, "draw")?;
-        let (extent, parts) = (self.extent, &there.recorded.picture);
-        // SAFETY: the caller's promises; what is bound lives as long as the frame, and then until it is retired.
-        unsafe {
-            match (&self.pass.resolve, &there.sets.resolve) {
-                (Some(resolve), Some(bound)) => {
-                    resolve.record(cmd, bound, parts[0].offset, extent);
-                }
-                _ => self.draw_slices(cmd, &there.sets.slices[copy], parts),
-            }
-        }
+        let (there, ..) = self.recorded(frame, "draw")?;
+        // SAFETY: the caller's promises.
+        unsafe { self.draw_tiles(cmd, there, &there.recorded, &[Tile::whole(self.extent)]) };
         Ok(())
     }
 
@@ -112,13 +95,7 @@ impl Renderer {
         target: &Target,
         load: Load,
     ) -> Result<(), Error> {
-        let wanted = TargetClass::from(target.format);
-        if self.class.target != wanted || self.extent != target.extent {
-            return Err(Error::OtherClass {
-                made: format!("{:?} of {:?} pixels", self.class.target, self.extent),
-                wanted: format!("{wanted:?} of {:?} pixels", target.extent),
-            });
-        }
+        self.check_target(target, load)?;
         // SAFETY: the caller's promises.
         unsafe {
             self.record(cmd, shot)?;
@@ -132,7 +109,102 @@ impl Renderer {
     }
 }
 
+/// Which part of a frame is recorded: the first has what comes before all tiles, the last what comes after.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Share {
+    pub is_first: bool,
+    pub is_last: bool,
+}
+
+impl Share {
+    const ALL: Self = Self {
+        is_first: true,
+        is_last: true,
+    };
+}
+
 impl Renderer {
+    /// The frame of a shot and its parameters, written. Nothing that was recorded for it before is drawn or picked now.
+    pub(super) fn prepare(&mut self, shot: &Shot) -> Result<(usize, Recorded), Error> {
+        self.gpu.check_alive("record a frame")?;
+        let frame = self.frame_number(shot.frame)?;
+        shot.camera.check()?;
+        if !self.volume.is_uploaded() {
+            return Err(Error::NotUploaded);
+        }
+        let depth = self.depth_of(shot)?;
+        let mut made = std::mem::take(&mut self.spare);
+        if let Err(refused) = self.describe(frame, shot, depth, &mut made) {
+            self.spare = made;
+            return Err(refused);
+        }
+        let there = &mut self.frames[frame];
+        (there.recorded.shot, there.begun, there.picked) = (None, None, None);
+        Ok((frame, made))
+    }
+
+    /// What was recorded of a frame, to be drawn. The room of what was recorded before is kept for the next one.
+    pub(super) fn keep(&mut self, frame: usize, made: Recorded) {
+        self.spare = std::mem::replace(&mut self.frames[frame].recorded, made);
+    }
+
+    /// Refuses a target that the renderer was not made for, and states that lose what is to be kept.
+    pub(super) fn check_target(&self, target: &Target, load: Load) -> Result<(), Error> {
+        let wanted = TargetClass::from(target.format);
+        if self.class.target != wanted || self.extent != target.extent {
+            return Err(Error::OtherClass {
+                made: format!("{:?} of {:?} pixels", self.class.target, self.extent),
+                wanted: format!("{wanted:?} of {:?} pixels", target.extent),
+            });
+        }
+        let gives_up = |layout: vk::ImageLayout| {
+            let layouts = [vk::ImageLayout::UNDEFINED, vk::ImageLayout::PREINITIALIZED];
+            layouts.contains(&layout)
+        };
+        if load == Load::Keep && target.before.layout == vk::ImageLayout::UNDEFINED {
+            return Err(Error::TargetState {
+                wanted: "`Load::Clear`, or the layout that what is kept is in, in `before`",
+                found: target.before.layout,
+            });
+        }
+        match gives_up(target.after.layout) {
+            true => Err(Error::TargetState {
+                wanted: "a layout in `after` that keeps what was drawn",
+                found: target.after.layout,
+            }),
+            false => Ok(()),
+        }
+    }
+
+    /// Draws some tiles of a picture.
+    ///
+    /// # Safety
+    /// As [`Renderer::draw`]; resolved pictures have been gathered whole.
+    pub(super) unsafe fn draw_tiles(
+        &self,
+        cmd: vk::CommandBuffer,
+        there: &Frame,
+        recorded: &Recorded,
+        tiles: &[Tile],
+    ) {
+        let (extent, parts) = (self.extent, &recorded.picture);
+        // SAFETY: the caller's promises; what is bound lives as long as the frame, and then until it is retired.
+        unsafe {
+            match (&self.pass.resolve, &there.sets.resolve) {
+                (Some(resolve), Some(bound)) => {
+                    for &tile in tiles {
+                        resolve.record_tile(cmd, bound, parts[0].offset, extent, tile);
+                    }
+                }
+                _ => {
+                    for &tile in tiles {
+                        self.draw_slices(cmd, there, recorded, tile);
+                    }
+                }
+            }
+        }
+    }
+
     /// A frame for which something was recorded, with its camera and copy of the volume.
     pub(super) fn recorded(
         &self,
@@ -240,29 +312,45 @@ impl Renderer {
     }
 
     /// # Safety
-    /// As [`Slicer::record`](technique::Slicer::record), for all bricks.
-    unsafe fn draw_slices(&self, cmd: vk::CommandBuffer, bound: &[Bindings], parts: &[Part]) {
-        let Some(slicer) = &self.pass.slicer else {
-            unreachable!("a picture without slices is resolved");
+    /// As [`Slicer::record_tile`](technique::Slicer::record_tile), for all bricks.
+    unsafe fn draw_slices(
+        &self,
+        cmd: vk::CommandBuffer,
+        there: &Frame,
+        recorded: &Recorded,
+        tile: Tile,
+    ) {
+        let (Some(slicer), Some((_, copy))) = (&self.pass.slicer, recorded.shot) else {
+            unreachable!("a picture without slices is resolved, and this one was described");
         };
-        for part in parts {
-            let slices = 0..part.slices;
+        for part in &recorded.picture {
+            let bound = &there.sets.slices[copy][part.brick];
+            let (extent, slices) = (self.extent, 0..part.slices);
             // SAFETY: the caller's promises.
-            unsafe { slicer.record(cmd, &bound[part.brick], part.offset, self.extent, slices) };
+            unsafe { slicer.record_tile(cmd, bound, part.offset, extent, slices, tile) };
         }
     }
 
     /// # Safety
     /// As [`Renderer::record`].
-    unsafe fn gather(
+    pub(super) unsafe fn gather(
         &self,
         cmd: vk::CommandBuffer,
         frame: usize,
         made: &Recorded,
+        tiles: &[Tile],
+        share: Share,
     ) -> Result<(), Error> {
         let (gpu, extent) = (&self.gpu, self.extent);
         let there = &self.frames[frame];
-        let (_, copy) = made.shot.expect("described just now");
+        let Some((_, copy)) = made.shot else {
+            unreachable!("described before");
+        };
+        // What earlier parts have written stays.
+        let before = |written| match share.is_first {
+            true => Use::Nothing,
+            false => written,
+        };
         if let (Some(image), Some(slicer)) = (&there.gathered, &self.pass.half_angle) {
             let (Some(bound), Some(light), [eye, of_light]) =
                 (&there.sets.half_angle, &there.light, &made.picture[..])
@@ -274,25 +362,29 @@ impl Renderer {
                 count: eye.slices,
                 order: eye.order,
             };
-            // SAFETY: the caller's promises.
-            unsafe {
-                image_barrier(gpu, cmd, image, Use::Nothing, Use::ColorTarget);
-                image_barrier(gpu, cmd, light, Use::Nothing, Use::ColorTarget);
-                slicer.record(cmd, bound, slices, (image, extent), light);
-                image_barrier(gpu, cmd, image, Use::ColorTarget, Use::FragmentSampled);
+            // Eye and light take turns over all of the picture: it is no sum of tiles, and lies in the first part.
+            if share.is_first {
+                // SAFETY: the caller's promises.
+                unsafe {
+                    image_barrier(gpu, cmd, image, Use::Nothing, Use::ColorTarget);
+                    image_barrier(gpu, cmd, light, Use::Nothing, Use::ColorTarget);
+                    slicer.record(cmd, bound, slices, (image, extent), light);
+                    image_barrier(gpu, cmd, image, Use::ColorTarget, Use::FragmentSampled);
+                }
             }
         } else if let Some(image) = &there.gathered {
-            let target = [(
-                image.view(),
-                Load::Clear(clear_color(self.class.settings.mode)),
-            )];
+            let clear = Load::Clear(clear_color(self.class.settings.mode));
             // SAFETY: the caller's promises.
             unsafe {
-                image_barrier(gpu, cmd, image, Use::Nothing, Use::ColorTarget);
-                begin_rendering(gpu, cmd, &target, extent);
-                self.draw_slices(cmd, &there.sets.slices[copy], &made.picture);
-                end_rendering(gpu, cmd);
-                image_barrier(gpu, cmd, image, Use::ColorTarget, Use::FragmentSampled);
+                image_barrier(gpu, cmd, image, before(Use::ColorTarget), Use::ColorTarget);
+                for &tile in tiles {
+                    begin_rendering_of(gpu, cmd, &[(image.view(), clear)], tile);
+                    self.draw_slices(cmd, there, made, tile);
+                    end_rendering(gpu, cmd);
+                }
+                if share.is_last {
+                    image_barrier(gpu, cmd, image, Use::ColorTarget, Use::FragmentSampled);
+                }
             }
         }
         let Some(rays) = &self.pass.rays else {
@@ -308,16 +400,17 @@ impl Renderer {
             Some(_) => &made.depth,
             None => &made.picture,
         };
-        let mut before = Use::Nothing;
+        let mut from = before(Use::ComputeWrite);
         for part in parts {
-            barriers(before, Use::ComputeWrite);
-            before = Use::ComputeWrite;
-            let whole = [Tile::whole(extent)];
-            let bound = &there.sets.rays[copy][part.brick];
+            barriers(from, Use::ComputeWrite);
+            from = Use::ComputeWrite;
+            let (bound, tiles) = (&there.sets.rays[copy][part.brick], tiles.iter().copied());
             // SAFETY: the caller's promises.
-            unsafe { rays.record_tiles(cmd, bound, part.offset, extent, whole)? };
+            unsafe { rays.record_tiles(cmd, bound, part.offset, extent, tiles)? };
         }
-        barriers(before, Use::FragmentSampled);
+        if share.is_last {
+            barriers(Use::ComputeWrite, Use::FragmentSampled);
+        }
         Ok(())
     }
 }

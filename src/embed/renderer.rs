@@ -1,6 +1,6 @@
 //! Pictures of one volume in a host's frames.
 
-use super::class::what;
+use super::class::{READ_DEPTH, what};
 use super::frame::{Bound, Frame, Recorded};
 use super::function::{self, Function};
 use super::pass::Pass;
@@ -235,7 +235,7 @@ impl Renderer {
         let sets = sets.collect::<Result<Vec<_>, _>>()?;
         for (frame, sets) in self.frames.iter_mut().zip(sets) {
             frame.sets = sets;
-            frame.recorded.shot = None;
+            (frame.recorded.shot, frame.begun) = (None, None);
         }
         (self.volume, self.function) = (volume, function);
         Ok(())
@@ -256,6 +256,11 @@ impl Renderer {
         match (reads, images.len()) {
             (false, 0) => Ok(()),
             (true, count) if count == 1 || count == of => {
+                let unread = |image: &&HostDepthImage| !READ_DEPTH.contains(&image.layout);
+                if let Some(image) = images.iter().find(unread) {
+                    let found = format!("{:?}", image.layout);
+                    return wrong("a layout from which shaders read depth".into(), found);
+                }
                 match images.iter().find(|image| image.extent != extent) {
                     None => Ok(()),
                     Some(image) => wrong(

@@ -1,7 +1,7 @@
 //! The light volume of a scene, made on the device.
 
 use super::Error;
-use super::cost::ms_of_looks;
+use crate::technique::cost::ms_of_looks;
 use super::time_slices::{TimeSlices, Work};
 use crate::gpu::Headless;
 use crate::resident::GpuTransfer;

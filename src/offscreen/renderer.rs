@@ -18,7 +18,7 @@ mod skipping;
 mod streaming;
 
 use super::Error;
-use super::cost::ms_of_looks;
+use crate::technique::cost::ms_of_looks;
 use super::fade::{render_faded, stacks_of};
 use super::gradients::decided;
 use super::light::Matter;

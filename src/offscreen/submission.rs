@@ -1,6 +1,6 @@
 //! A picture's bricks in timed submissions, each a part of the picture.
 
-use super::blocks::Blocks;
+use crate::gpu::Blocks;
 use super::targets::Targets;
 use super::time_slices::{Spent, TimeSlices, Work};
 use crate::gpu::{Bindings, Error, Gpu, Headless, Image, Tile, Timer, Use, image_barrier};

@@ -1,6 +1,6 @@
 //! Work in submissions that none takes long, and who is told how far it is.
 
-use super::pace::{Pace, TARGET_MS};
+use crate::gpu::{Pace, TARGET_MS};
 use crate::gpu::{Error, Gpu, Headless, Timer};
 use ash::vk;
 use std::fmt;

@@ -4,6 +4,7 @@ mod accumulation;
 mod alike_cells;
 pub mod blend;
 pub mod composite;
+pub(crate) mod cost;
 mod error;
 pub mod faces;
 mod filter_by;

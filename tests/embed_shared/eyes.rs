@@ -147,11 +147,8 @@ pub fn draw(
     let reads = class.reads_host_depth();
     let state = if reads { READ } else { ATTACHED };
     let buffer = DepthImage::new(host, stage.extent, drawn, state);
-    let read = HostDepthImage {
-        view: buffer.view,
-        layout: READ.2,
-        extent: stage.extent,
-    };
+    // SAFETY: the buffer outlives the renderer.
+    let read = unsafe { HostDepthImage::new(buffer.view, READ.2, stage.extent) };
     let read = if reads { vec![read] } else { Vec::new() };
     let shot = Shot {
         frame: 0,

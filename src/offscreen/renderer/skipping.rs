@@ -3,7 +3,7 @@
 use super::{Copied, Renderer, parts_of};
 use crate::gpu::{self, Headless};
 use crate::offscreen::Error;
-use crate::offscreen::cost::ms_of_looks;
+use crate::technique::cost::ms_of_looks;
 use crate::offscreen::stream::if_it_fits;
 use crate::offscreen::time_slices::Work;
 use crate::offscreen::upload::fill;

@@ -10,7 +10,7 @@
 use super::Renderer;
 use crate::gpu::{Gpu, Tile, Use};
 use crate::offscreen::Error;
-use crate::offscreen::cost::{looks_of_picture, ms_of_looks};
+use crate::technique::cost::{looks_of_picture, ms_of_looks};
 use crate::offscreen::stream::{Cache, Eye, Place, Stream};
 use crate::offscreen::submission::{self, Submission};
 use crate::offscreen::time_slices::Spent;

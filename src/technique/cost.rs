@@ -2,7 +2,7 @@
 
 use crate::gpu::Gpu;
 use crate::resident::Cell;
-use crate::technique::{MAX_SAMPLES_PER_RAY, Mode, Settings, Technique, View};
+use super::{MAX_SAMPLES_PER_RAY, Mode, Settings, Technique, View};
 use glam::DVec3;
 
 /// A look-up of a voxel takes so long with all that is done with it. A driver on two cores took 10 to 20 ns
