@@ -220,7 +220,7 @@ fn what_fails_to_change_leaves_a_renderer_as_it_was() {
         };
         values
             .iter_mut()
-            .for_each(|value| *value = 0.9 - 0.8 * *value);
+            .for_each(|value| *value = 0.7 - 0.8 * *value);
         let [own_volume, other_volume] =
             [&stage, &other].map(|stage| uploaded(&device, &gpu, stage));
         let mut faint = stage.transfer.clone();

@@ -240,7 +240,6 @@ fn slices_give_the_depth_of_the_sample_that_counts() {
 fn of_a_volume_in_bricks_it_is_the_same() {
     let host = Host::with_caps(Caps {
         max_image_dimension_3d: 16,
-        max_image_dimension_2d: 64,
         max_image_array_layers: 9,
         ..Caps::UNLIMITED
     });

@@ -12,7 +12,7 @@ mod embed;
 #[allow(dead_code, reason = "its `main` is not called")]
 mod meshes;
 
-use missing_barrier::MissingBarrier;
+use missing_barrier::*;
 use std::env;
 use std::process::Command;
 use stratavox::gpu::{Validation, ValidationMode};
@@ -33,7 +33,7 @@ fn example() {
     }
 }
 
-fn assert_each_is_missed(name: &str, unheard: &[u32]) {
+fn assert_each_is_missed(name: &str, unheard: &[&str]) {
     if Validation::default().mode().unwrap() != Some(ValidationMode::Synchronization) {
         println!("skipped: STRATAVOX_VALIDATION=sync is not set");
         return;
@@ -54,15 +54,24 @@ fn assert_each_is_missed(name: &str, unheard: &[u32]) {
 
 #[test]
 fn the_smallest_host() {
-    assert_each_is_missed("embed", &[]);
+    assert_each_is_missed("embed", &[NEXT_FUNCTION, NEW_TARGET]);
 }
 
 #[test]
 fn rays_among_meshes() {
-    assert_each_is_missed("rays", &[]);
+    let unheard = [
+        WRITTEN_BY_HOST,
+        NEW_DEPTH,
+        NEW_TARGET,
+        NEXT_FUNCTION,
+        SAME_TARGET,
+        READ_BY_HOST,
+    ];
+    assert_each_is_missed("rays", &unheard);
 }
 
 #[test]
 fn slices_among_meshes() {
-    assert_each_is_missed("slices", &[]);
+    let unheard = [NEW_DEPTH, NEW_TARGET, SAME_DEPTH, SAME_TARGET, READ_BY_HOST];
+    assert_each_is_missed("slices", &unheard);
 }

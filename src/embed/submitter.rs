@@ -37,7 +37,9 @@ pub struct Pacing<'a> {
 impl fmt::Debug for Pacing<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut debug = f.debug_struct("Pacing");
-        debug.field("target_ms", &self.target_ms).finish_non_exhaustive()
+        debug
+            .field("target_ms", &self.target_ms)
+            .finish_non_exhaustive()
     }
 }
 
@@ -103,7 +105,10 @@ impl Submitter {
     ///
     /// # Safety
     /// As [`Submitter::submit`]; `waits` are reached without the calling thread.
-    #[allow(clippy::too_many_arguments, reason = "what a frame is, when, and in which parts")]
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "what a frame is, when, and in which parts"
+    )]
     pub unsafe fn submit_in_parts(
         &mut self,
         renderer: &mut Renderer,

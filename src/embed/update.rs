@@ -180,12 +180,7 @@ impl Volume {
         self.updates.load(Ordering::Acquire)
     }
 
-    fn check_part(
-        &self,
-        part: &VoxelPart,
-        region: VoxelBox,
-        reads: VoxelBox,
-    ) -> Result<(), Error> {
+    fn check_part(&self, part: &VoxelPart, region: VoxelBox, reads: VoxelBox) -> Result<(), Error> {
         let (stored, found) = (self.stored, part.voxels.voxel_type());
         if stored != found {
             return Err(wrong(

@@ -49,11 +49,30 @@ static VKAPI_ATTR void VKAPI_CALL destroy_device(VkDevice device, const VkAlloca
 static PFN_vkCmdPipelineBarrier2 next_barrier2;
 static PFN_vkCmdPipelineBarrier next_barrier;
 
+/* Layouts and accesses, as Vulkan numbers them. */
+static void tell(const VkDependencyInfo *info) {
+    for (uint32_t k = 0; k < info->imageMemoryBarrierCount; k++) {
+        const VkImageMemoryBarrier2 *b = &info->pImageMemoryBarriers[k];
+        fprintf(stderr, "missing: image %d to %d\n", b->oldLayout, b->newLayout);
+    }
+    for (uint32_t k = 0; k < info->bufferMemoryBarrierCount; k++) {
+        const VkBufferMemoryBarrier2 *b = &info->pBufferMemoryBarriers[k];
+        fprintf(stderr, "missing: buffer %llx to %llx\n", (unsigned long long)b->srcAccessMask,
+                (unsigned long long)b->dstAccessMask);
+    }
+    for (uint32_t k = 0; k < info->memoryBarrierCount; k++) {
+        const VkMemoryBarrier2 *b = &info->pMemoryBarriers[k];
+        fprintf(stderr, "missing: memory %llx to %llx\n", (unsigned long long)b->srcAccessMask,
+                (unsigned long long)b->dstAccessMask);
+    }
+}
+
 static VKAPI_ATTR void VKAPI_CALL barrier2(VkCommandBuffer cmd, const VkDependencyInfo *info) {
     if (!is_missing()) {
         next_barrier2(cmd, info);
         return;
     }
+    tell(info);
     for (uint32_t k = 0; k < info->imageMemoryBarrierCount; k++) {
         VkImageMemoryBarrier2 barrier = info->pImageMemoryBarriers[k];
         barrier.srcStageMask = barrier.dstStageMask = 0;
