@@ -119,8 +119,13 @@ fn a_volume_beyond_the_budget_is_refused_before_anything_is_made() {
     gpu.set_memory_budget(None);
     let made = Volume::new(gpu, &stage.volume, &stage.settings).unwrap();
     let memory = gpu.memory();
-    assert!(memory.allocations > 0 && memory.used_bytes >= needed, "{memory:?}");
-    assert!(memory.used_bytes <= memory.reserved_bytes && memory.reserved_bytes <= memory.peak_bytes);
+    assert!(
+        memory.allocations > 0 && memory.used_bytes >= needed,
+        "{memory:?}"
+    );
+    assert!(
+        memory.used_bytes <= memory.reserved_bytes && memory.reserved_bytes <= memory.peak_bytes
+    );
     // No driver here has the extension, or it tells of every heap.
     assert!(memory.heaps.iter().all(|heap| heap.budget_bytes > 0));
     drop(made);

@@ -392,9 +392,7 @@ fn what_is_staged_lives_until_the_update_has_run() {
     let before = gpu.live_objects();
     let region = any_box(&mut Random::new(3));
     kept.change(region, &mut Random::new(4));
-    let update = there
-        .stage_update(region, (&kept.volume()).into())
-        .unwrap();
+    let update = there.stage_update(region, (&kept.volume()).into()).unwrap();
     gpu.announce(1);
     let staged = gpu.live_objects();
     assert_ne!(staged, before);

@@ -45,7 +45,9 @@ pub enum Error {
         found: ash::vk::ImageLayout,
     },
     /// No frame is recorded in parts, or what it shows has changed since.
-    #[error("no frame {frame} is recorded in parts: `begin_parts` comes before `record_part_into`, and once more after a change")]
+    #[error(
+        "no frame {frame} is recorded in parts: `begin_parts` comes before `record_part_into`, and once more after a change"
+    )]
     NotBegun {
         /// The frame in flight.
         frame: u32,

@@ -19,6 +19,9 @@
 //! read as a texture, slices are tested against it in hardware. Its own depth a picture by rays gives back by
 //! [`Renderer::draw_depth`] and [`Renderer::record_pick`].
 //!
+//! While it is drawn, a volume takes new voxels of a box ([`Volume::record_update`]), and a frame may be cut into parts that are
+//! submitted one by one and given up between two of them ([`Renderer::begin_parts`], [`Submitter::submit_in_parts`]).
+//!
 //! Not here, and refused by name: half-angle slices and light volumes (shadows, ambient occlusion), several volumes,
 //! several rays a pixel, cross-fades of stacks. The pieces for them lie one floor below, in [`crate::technique`].
 

@@ -5,8 +5,8 @@ use super::pass::Pass;
 use super::{Error, Renderer, Shot};
 use crate::camera::{HostDepth, Nearer};
 use crate::gpu::{
-    Image, Load, Target, TargetClass, Tile, Use, begin_rendering, begin_rendering_of, end_rendering,
-    image_barrier,
+    Image, Load, Target, TargetClass, Tile, Use, begin_rendering, begin_rendering_of,
+    end_rendering, image_barrier,
 };
 use crate::technique::blend::clear_color;
 use crate::technique::{self, InPixel, View};
@@ -184,7 +184,8 @@ impl Renderer {
         unsafe {
             match (&self.pass, &there.sets.resolve) {
                 (Pass::Slices(slicer), _) => {
-                    for (&tile, part) in tiles.iter().flat_map(|t| parts.iter().map(move |p| (t, p)))
+                    for (&tile, part) in
+                        tiles.iter().flat_map(|t| parts.iter().map(move |p| (t, p)))
                     {
                         let bound = &there.sets.bricks[recorded.copy][part.brick];
                         let slices = 0..part.slices;

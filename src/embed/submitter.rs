@@ -27,17 +27,24 @@ impl fmt::Debug for QueueLock<'_> {
 
 /// How long the parts of a frame last, and who hears of them ([`Submitter::submit_in_parts`]).
 pub struct Pacing<'a> {
-    /// Milliseconds that a submission shall take: 100 are what a desktop does not notice, and far below the seconds after
-    /// which systems take a device for hung.
+    /// Milliseconds that a submission shall take: [`Pacing::TARGET_MS`] are far below the seconds after which systems take a
+    /// device for hung.
     pub target_ms: f64,
     /// Told after each part but the last how much of the frame is done, 0 to 1. [`ControlFlow::Break`] ends the frame.
     pub tell: &'a mut dyn FnMut(f64) -> ControlFlow<()>,
 }
 
+impl Pacing<'_> {
+    /// What is asked for where nothing speaks against it.
+    pub const TARGET_MS: f64 = crate::gpu::TARGET_MS;
+}
+
 impl fmt::Debug for Pacing<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut debug = f.debug_struct("Pacing");
-        debug.field("target_ms", &self.target_ms).finish_non_exhaustive()
+        debug
+            .field("target_ms", &self.target_ms)
+            .finish_non_exhaustive()
     }
 }
 
@@ -103,7 +110,10 @@ impl Submitter {
     ///
     /// # Safety
     /// As [`Submitter::submit`]; `waits` are reached without the calling thread.
-    #[allow(clippy::too_many_arguments, reason = "what a frame is, when, and in which parts")]
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "what a frame is, when, and in which parts"
+    )]
     pub unsafe fn submit_in_parts(
         &mut self,
         renderer: &mut Renderer,

@@ -55,7 +55,10 @@ impl Volume {
         let has_holes = voxels.validity.is_some();
         let plan = Self::plan(gpu, voxels.dims, stored, has_holes, settings)?;
         let bytes = plan.device_bytes.saturating_add(plan.staging_bytes);
-        gpu.check_budget(|| format!("make a volume of {:?} voxels", voxels.dims), bytes)?;
+        gpu.check_budget(
+            || format!("make a volume of {:?} voxels", voxels.dims),
+            bytes,
+        )?;
         let (mut copies, mut staging) = (Vec::new(), Vec::new());
         for layout in layouts_of(settings) {
             let copy = copy(gpu, voxels, settings, layout, &mut staging)?;

@@ -71,7 +71,12 @@ impl Gpu {
         let Some(budget) = there.budget_bytes else {
             return Ok(());
         };
-        within(doing, BUDGET, there.reserved_bytes.saturating_add(bytes), budget)
+        within(
+            doing,
+            BUDGET,
+            there.reserved_bytes.saturating_add(bytes),
+            budget,
+        )
     }
 
     /// Empty where the device has no such extension: it need not be enabled to be asked.

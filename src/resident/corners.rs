@@ -246,7 +246,12 @@ impl Corners {
             let height = rows.dims()[1] as usize;
             let placed = part.rows(rows).map(|first| &codes[first..first + width]);
             for (index, row) in placed.enumerate() {
-                put_row(row, &mut longer, [index % height, index / height], &mut cubes);
+                put_row(
+                    row,
+                    &mut longer,
+                    [index % height, index / height],
+                    &mut cubes,
+                );
             }
             let cube = u64::from(xs.start) + along_x * (u64::from(y) + along_y * u64::from(z));
             changed.put(CUBE_WORDS as u64 * cube, &cubes);

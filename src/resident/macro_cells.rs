@@ -240,11 +240,9 @@ impl MacroCells {
     /// The voxels that are looked at where those of `region` change. Where the device looks itself, nobody else does.
     pub(crate) fn looks_at(&self, region: VoxelBox) -> VoxelBox {
         let grids = self.grids.iter().filter(|_| self.pass.is_none());
-        grids.fold(region, |all, grid| {
-            match CellBox::that_see(grid, region) {
-                Some(cells) => all.around(&cells.looks_at(grid)),
-                None => all,
-            }
+        grids.fold(region, |all, grid| match CellBox::that_see(grid, region) {
+            Some(cells) => all.around(&cells.looks_at(grid)),
+            None => all,
         })
     }
 

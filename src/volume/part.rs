@@ -30,8 +30,7 @@ impl VoxelPart<'_> {
     /// The index of the first voxel of each row of `region`, which lies in it.
     pub(crate) fn rows(&self, region: VoxelBox) -> impl Iterator<Item = usize> {
         let [nx, ny, _] = self.held.dims().map(|n| n as usize);
-        let [x0, y0, z0] =
-            std::array::from_fn(|k| (region.min[k] - self.held.min[k]) as usize);
+        let [x0, y0, z0] = std::array::from_fn(|k| (region.min[k] - self.held.min[k]) as usize);
         let [_, rows, slices] = region.dims().map(|n| n as usize);
         (z0..z0 + slices).flat_map(move |z| (y0..y0 + rows).map(move |y| (z * ny + y) * nx + x0))
     }
