@@ -120,13 +120,19 @@ PREFIX ?= /usr/local
 LIBDIR ?= $(PREFIX)/lib
 VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -1)
 
+# Programs look for the name that the library says of itself; it changes where the interface does.
+SONAME := libstratavox.so.0
+
 capi:
-	$(CARGO) rustc --locked --release --lib --no-default-features --features capi --crate-type cdylib,staticlib
+	$(CARGO) rustc --locked --release --lib --no-default-features --features capi --crate-type cdylib,staticlib -- \
+	    -C link-arg=-Wl,-soname,$(SONAME)
 
 install: capi
 	install -d $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(LIBDIR)/pkgconfig
 	install -m 644 include/stratavox.h $(DESTDIR)$(PREFIX)/include
-	install -m 755 target/release/libstratavox.so $(DESTDIR)$(LIBDIR)
+	install -m 755 target/release/libstratavox.so $(DESTDIR)$(LIBDIR)/libstratavox.so.$(VERSION)
+	ln -sf libstratavox.so.$(VERSION) $(DESTDIR)$(LIBDIR)/$(SONAME)
+	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libstratavox.so
 	install -m 644 target/release/libstratavox.a $(DESTDIR)$(LIBDIR)
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(LIBDIR)|' -e 's|@VERSION@|$(VERSION)|' include/stratavox.pc.in \
 	    > $(DESTDIR)$(LIBDIR)/pkgconfig/stratavox.pc

@@ -306,13 +306,18 @@ fn a_host_in_c_draws_by_each_level_and_gets_depths_and_picks_back() {
         return;
     }
     let program = Program::new(
-        &["tests/capi/levels.c", "tests/capi/levels_depth.c"],
+        &[
+            "tests/capi/levels.c",
+            "tests/capi/levels_depth.c",
+            "tests/capi/levels_life.c",
+            "tests/capi/levels_passes.c",
+        ],
         &[],
         false,
     );
     let told = printed(&mut program.command());
     let good = told.lines().filter(|line| line.starts_with("ok: ")).count();
-    assert!(good >= 25, "{told}");
+    assert!(good >= 45, "{told}");
 }
 
 #[test]

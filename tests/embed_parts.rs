@@ -207,16 +207,9 @@ fn what_ends_a_frame_in_parts_is_told() {
     );
     let none = part(&mut renderer, 2, &right, CLEAR);
     assert!(matches!(none, Err(Error::NoFrame { .. })), "{none:?}");
-    let changes: [&dyn Fn(&mut Renderer); 4] = [
+    let changes: [&dyn Fn(&mut Renderer); 3] = [
         &|renderer| renderer.set_function(Some(&stage.transfer)).unwrap(),
         &|renderer| renderer.resize(EXTENT, &[]).unwrap(),
-        &|renderer| {
-            let other = Settings {
-                samples_per_voxel: 1.5,
-                ..stage.settings.clone()
-            };
-            renderer.set_settings(other).unwrap();
-        },
         &|renderer| drop(whole(&host, renderer, &stage)),
     ];
     for (k, change) in changes.iter().enumerate() {

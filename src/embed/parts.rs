@@ -24,7 +24,7 @@ impl Renderer {
     /// Begins a frame in parts: writes its parameters. How many blocks of 64 x 64 pixels there are; any first part of
     /// them is spread over the picture.
     ///
-    /// What else is recorded for the frame, and any change of function, settings, volume or size, ends it.
+    /// What else is recorded for the frame, and another function, volume or size, ends it.
     ///
     /// # Errors
     /// As [`Renderer::record`].

@@ -27,11 +27,16 @@ impl fmt::Debug for QueueLock<'_> {
 
 /// How long the parts of a frame last, and who hears of them ([`Submitter::submit_in_parts`]).
 pub struct Pacing<'a> {
-    /// Milliseconds that a submission shall take: 100 are what a desktop does not notice, and far below the seconds after
-    /// which systems take a device for hung.
+    /// Milliseconds that a submission shall take: [`Pacing::TARGET_MS`] are far below the seconds after which systems take a
+    /// device for hung.
     pub target_ms: f64,
     /// Told after each part but the last how much of the frame is done, 0 to 1. [`ControlFlow::Break`] ends the frame.
     pub tell: &'a mut dyn FnMut(f64) -> ControlFlow<()>,
+}
+
+impl Pacing<'_> {
+    /// What is asked for where nothing speaks against it.
+    pub const TARGET_MS: f64 = crate::gpu::TARGET_MS;
 }
 
 impl fmt::Debug for Pacing<'_> {

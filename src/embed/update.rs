@@ -37,6 +37,11 @@ impl Update {
     pub fn region(&self) -> VoxelBox {
         self.region
     }
+
+    /// Whether it was staged for this very volume.
+    pub fn is_of(&self, volume: &Volume) -> bool {
+        Arc::ptr_eq(volume.token(), &self.of)
+    }
 }
 
 impl Volume {
@@ -148,7 +153,7 @@ impl Volume {
     ) -> Result<(), Error> {
         let gpu = self.copies()[0].gpu();
         gpu.check_alive("update a volume")?;
-        if !Arc::ptr_eq(self.token(), &update.of) {
+        if !update.is_of(self) {
             return Err(wrong("an update of this volume", "one of another"));
         }
         if !self.is_uploaded() {

@@ -33,6 +33,7 @@ pub struct Fault {
 pub struct Lacking {
     pub format: (vk::Format, vk::FormatFeatureFlags),
     pub timestamps: bool,
+    pub device_extensions: bool,
 }
 
 #[derive(Default)]
