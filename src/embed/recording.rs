@@ -23,7 +23,8 @@ impl Renderer {
     /// - `cmd` is recording on the device, outside rendering, for a queue of [`Gpu::queue_family`](crate::gpu::Gpu::queue_family), and is submitted in
     ///   the order in which it was recorded, after the upload of the volume;
     /// - nothing unfinished was recorded with the shot's number of a frame in flight;
-    /// - the image of the host's depth is in the layout that was said, visible to sampled reads of compute shaders.
+    /// - the image of the host's depth is in the layout that was said, visible to sampled reads of compute shaders, and of
+    ///   fragment shaders where there are slices.
     pub unsafe fn record(&mut self, cmd: vk::CommandBuffer, shot: &Shot) -> Result<(), Error> {
         let (frame, made) = self.prepare(shot)?;
         let whole = [Tile::whole(self.extent)];
@@ -266,7 +267,11 @@ impl Renderer {
         })?;
         let (words, functions) = (&self.words, self.function.turns);
         let limit = self.gpu.limits().max_loop_turns;
+        let finds_depth = self.pass.slicer.is_some() && self.pass.rays.is_some();
         view.check_turns(words, 1, functions, limit)?;
+        if finds_depth {
+            view.check_depth_turns(words, functions, limit)?;
+        }
         let mut slot = (frame * self.ring.slots() as usize / self.frames.len()) as u32;
         let skip = self.function.skip(&self.volume);
         let (class, center) = (&self.class, grid.center());
@@ -300,8 +305,7 @@ impl Renderer {
             picture.push(write(recording, is_tested)?);
             Ok::<_, Error>(())
         })?;
-        if self.pass.slicer.is_some() && self.pass.rays.is_some() {
-            view.check_depth_turns(words, functions, limit)?;
+        if finds_depth {
             view.each_depth_recording(volume, transfer, order, |recording| {
                 of_slices.push(write(recording, false)?);
                 Ok::<_, Error>(())
