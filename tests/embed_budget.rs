@@ -180,3 +180,110 @@ fn what_no_longer_fits_leaves_a_renderer_as_it_was() {
     });
     assert!(image.numbers() == wanted);
 }
+
+/// A driver that has `VK_EXT_memory_budget`, made of one that may not have it.
+mod with_budget {
+    use ash::vk;
+    use std::ffi::{CStr, c_char};
+    use std::mem::transmute;
+    use std::sync::OnceLock;
+
+    pub const BUDGET_BYTES: u64 = 1000 << 20;
+    pub const USED_BYTES: u64 = 3 << 20;
+
+    type Function = unsafe extern "system" fn();
+    static LOADER: OnceLock<ash::Entry> = OnceLock::new();
+    static PROPERTIES: OnceLock<vk::PFN_vkGetPhysicalDeviceMemoryProperties> = OnceLock::new();
+
+    /// # Safety
+    /// As `vkGetInstanceProcAddr`.
+    pub unsafe extern "system" fn proc_addr(
+        instance: vk::Instance,
+        name: *const c_char,
+    ) -> vk::PFN_vkVoidFunction {
+        // SAFETY: the loader is trusted; arguments are handed on; functions are what their names say.
+        unsafe {
+            let loader = LOADER.get_or_init(|| ash::Entry::load().expect("a Vulkan loader"));
+            let real = loader.static_fn().get_instance_proc_addr;
+            let plain = real(instance, c"vkGetPhysicalDeviceMemoryProperties".as_ptr());
+            if let Some(plain) = plain {
+                PROPERTIES.get_or_init(|| {
+                    transmute::<Function, vk::PFN_vkGetPhysicalDeviceMemoryProperties>(plain)
+                });
+            }
+            if CStr::from_ptr(name) == c"vkEnumerateDeviceExtensionProperties" {
+                type Listing = vk::PFN_vkEnumerateDeviceExtensionProperties;
+                return Some(transmute::<Listing, Function>(list));
+            }
+            if CStr::from_ptr(name) == c"vkGetPhysicalDeviceMemoryProperties2" {
+                type Asking = vk::PFN_vkGetPhysicalDeviceMemoryProperties2;
+                return Some(transmute::<Asking, Function>(ask));
+            }
+            real(instance, name)
+        }
+    }
+
+    unsafe extern "system" fn list(
+        _: vk::PhysicalDevice,
+        _: *const c_char,
+        count: *mut u32,
+        out: *mut vk::ExtensionProperties,
+    ) -> vk::Result {
+        let name = ash::ext::memory_budget::NAME;
+        let named = vk::ExtensionProperties::default().extension_name(name);
+        // SAFETY: the caller has room for one where it asks for it.
+        unsafe {
+            *count = 1;
+            if !out.is_null() {
+                out.write(named.expect("a short name"));
+            }
+        }
+        vk::Result::SUCCESS
+    }
+
+    unsafe extern "system" fn ask(
+        device: vk::PhysicalDevice,
+        out: *mut vk::PhysicalDeviceMemoryProperties2<'_>,
+    ) {
+        // SAFETY: the caller's structure and its chain, of which one is known here.
+        unsafe {
+            let plain = PROPERTIES.get().expect("set before this is given away");
+            plain(device, &raw mut (*out).memory_properties);
+            let budget = (*out)
+                .p_next
+                .cast::<vk::PhysicalDeviceMemoryBudgetPropertiesEXT<'_>>();
+            assert_eq!(
+                (*budget).s_type,
+                vk::StructureType::PHYSICAL_DEVICE_MEMORY_BUDGET_PROPERTIES_EXT
+            );
+            (*budget).heap_budget[0] = BUDGET_BYTES;
+            (*budget).heap_usage[0] = USED_BYTES;
+        }
+    }
+}
+
+#[test]
+fn what_the_driver_says_of_its_heaps_is_told() {
+    let host = Host::new();
+    let theirs = host.gpu();
+    // SAFETY: the host's handles, once more; what is enabled is what the host has enabled.
+    let gpu = unsafe {
+        gpu::Gpu::from_host(gpu::HostDevice {
+            get_instance_proc_addr: with_budget::proc_addr,
+            instance: theirs.instance().handle(),
+            physical_device: theirs.physical_device(),
+            device: theirs.device().handle(),
+            queue_family: theirs.queue_family(),
+            api_version: gpu::API_VERSION,
+            features: theirs.features(),
+            debug_utils: false,
+            caps: gpu::Caps::UNLIMITED,
+            pipeline_cache: &[],
+        })
+    };
+    let heaps = gpu.unwrap().memory().heaps;
+    let first = heaps.first().expect("a heap");
+    assert!(first.is_device_local && first.bytes > 0, "{first:?}");
+    let told = (first.budget_bytes, first.used_bytes);
+    assert_eq!(told, (with_budget::BUDGET_BYTES, with_budget::USED_BYTES));
+}

@@ -94,6 +94,10 @@ pub unsafe extern "C" fn sv_renderer_record_part_into(
 /// ended the frame: none of the signals will be reached then, and the target is as sv_renderer_record_part_into says.
 /// Threads: one at a time for one submitter and for one renderer.
 #[unsafe(no_mangle)]
+#[allow(
+    clippy::too_many_arguments,
+    reason = "those of sv_submitter_submit, and two"
+)]
 pub unsafe extern "C" fn sv_submitter_submit_in_parts(
     submitter: sv_submitter,
     renderer: sv_renderer,

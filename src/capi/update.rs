@@ -126,7 +126,8 @@ pub unsafe extern "C" fn sv_volume_record_update(
                 unreachable!("looked at just now");
             };
             // SAFETY: the caller's promise.
-            Ok(unsafe { volume.record_update(cmd, staged)? })
+            unsafe { volume.record_update(cmd, staged)? };
+            Ok(())
         })
     };
     // SAFETY: the caller's promise.

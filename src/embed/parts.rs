@@ -48,7 +48,7 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Error::NotBegun`]; as [`Renderer::record_into`]; [`Error::NotEmbedded`] for composites by slices into a target
-    /// that changes its queue family. What fails ends the frame.
+    /// that changes its queue family. Where the device fails, the frame is at an end.
     ///
     /// # Safety
     /// - As [`Renderer::record_into`], of all parts of a frame: they are submitted in their order, to one queue, and with
@@ -64,11 +64,11 @@ impl Renderer {
     ) -> Result<u64, Error> {
         self.gpu.check_alive("record a part of a frame")?;
         let number = self.frame_number(frame)?;
+        self.check_parts(target, load)?;
         let mut begun = self.frames[number]
             .begun
             .take()
             .ok_or(Error::NotBegun { frame })?;
-        self.check_target(target, load)?;
         let all = begun.blocks.count();
         let part = begun.next..begun.next.saturating_add(count.max(1)).min(all);
         let share = Share {
@@ -78,9 +78,6 @@ impl Renderer {
         let tiles = begun.blocks.tiles(part.clone());
         let recorded = &begun.recorded;
         let is_drawn_at_once = self.pass.resolve.is_none();
-        if is_drawn_at_once {
-            self.check_family(target)?;
-        }
         // SAFETY: the caller's promises.
         unsafe {
             if share.is_first {
@@ -139,7 +136,12 @@ impl Renderer {
         ms_of_looks(&self.gpu, looks_of_picture(&view, slices, 1))
     }
 
-    fn check_family(&self, target: &Target) -> Result<(), Error> {
+    /// Refuses a target that parts cannot be drawn into.
+    pub(super) fn check_parts(&self, target: &Target, load: Load) -> Result<(), Error> {
+        self.check_target(target, load)?;
+        if self.pass.resolve.is_some() {
+            return Ok(());
+        }
         let ours = [vk::QUEUE_FAMILY_IGNORED, self.gpu.queue_family()];
         let families = [target.before.queue_family, target.after.queue_family];
         match families.iter().all(|family| ours.contains(family)) {

@@ -126,6 +126,7 @@ impl Submitter {
         pacing: Pacing,
     ) -> Result<bool, Error> {
         let frame = shot.frame;
+        renderer.check_parts(target, load)?;
         let count = renderer.begin_parts(shot)?;
         let mut pace = Pace::new(count, renderer.expected_ms(shot), pacing.target_ms);
         let ended = loop {

@@ -11,7 +11,7 @@ use super::cell_ranges::{CellBox, ranges};
 use super::{GpuVolume, TextureLayout};
 use crate::gpu::{
     Bindings, Buffer, ComputePipeline, Error, Gpu, Memory, ParameterRing, Resource, Use,
-    buffer_barrier, buffer_to_buffer, group_count, within,
+    buffer_barrier, group_count, within,
 };
 use crate::shaders::{CELL_VOXELS, CellGrid, CellGridFields, Frame, shader};
 use crate::volume::{Volume, VoxelBox, VoxelPart};
@@ -35,20 +35,20 @@ pub struct Apron {
 /// The ranges of a volume's macro cells. Made empty; [`MacroCells::record`] fills them.
 #[derive(Debug)]
 pub struct MacroCells {
-    gpu: Arc<Gpu>,
-    grids: Vec<CellGrid>,
+    pub(super) gpu: Arc<Gpu>,
+    pub(super) grids: Vec<CellGrid>,
     cell_count: u64,
-    ranges: Buffer,
+    pub(super) ranges: Buffer,
     /// `None`: the ranges are there.
-    pass: Option<Ranging>,
+    pub(super) pass: Option<Ranging>,
 }
 
 /// What finds the ranges on the device.
 #[derive(Debug)]
-struct Ranging {
-    pipeline: ComputePipeline,
-    ring: ParameterRing,
-    bindings: Vec<Bindings>,
+pub(super) struct Ranging {
+    pub pipeline: ComputePipeline,
+    pub ring: ParameterRing,
+    pub bindings: Vec<Bindings>,
 }
 
 impl MacroCells {
@@ -223,102 +223,6 @@ impl MacroCells {
                 Use::ComputeRead,
             )
         };
-        Ok(())
-    }
-}
-
-/// Ranges that change with voxels of a box, where they are not found on the device.
-#[derive(Debug, Default)]
-pub(crate) struct ChangedCells {
-    /// Pairs of f32, those of one row of cells after those of another.
-    pub ranges: Vec<[f32; 2]>,
-    /// Where they go; sources are counted from the first of them.
-    copies: Vec<vk::BufferCopy>,
-}
-
-impl MacroCells {
-    /// The voxels that are looked at where those of `region` change. Where the device looks itself, nobody else does.
-    pub(crate) fn looks_at(&self, region: VoxelBox) -> VoxelBox {
-        let grids = self.grids.iter().filter(|_| self.pass.is_none());
-        grids.fold(region, |all, grid| match CellBox::that_see(grid, region) {
-            Some(cells) => all.around(&cells.looks_at(grid)),
-            None => all,
-        })
-    }
-
-    /// What changes with the voxels of `region`; `part` holds all that is looked at.
-    pub(crate) fn changed(&self, part: &VoxelPart, region: VoxelBox) -> ChangedCells {
-        let mut changed = ChangedCells::default();
-        for grid in self.grids.iter().filter(|_| self.pass.is_none()) {
-            let Some(cells) = CellBox::that_see(grid, region) else {
-                continue;
-            };
-            let row_bytes = 8 * u64::from(cells.max[0] - cells.min[0]);
-            let mut from = 8 * changed.ranges.len() as u64;
-            for z in cells.min[2]..cells.max[2] {
-                for y in cells.min[1]..cells.max[1] {
-                    let at = cells.min[0] + grid.cells[0] * (y + grid.cells[1] * z);
-                    changed.copies.push(vk::BufferCopy {
-                        src_offset: from,
-                        dst_offset: 8 * u64::from(grid.first + at),
-                        size: row_bytes,
-                    });
-                    from += row_bytes;
-                }
-            }
-            changed.ranges.extend(ranges(part, grid, cells));
-        }
-        changed
-    }
-
-    /// Records what changes with the voxels of `region`, which are there: between what reads the ranges before and what
-    /// reads them later.
-    ///
-    /// # Errors
-    /// A staging buffer that is too small.
-    ///
-    /// # Safety
-    /// As [`MacroCells::record`]; `staging` holds the ranges of `changed` from byte `first` on when `cmd` runs.
-    pub(crate) unsafe fn record_changed(
-        &self,
-        cmd: vk::CommandBuffer,
-        region: VoxelBox,
-        changed: &ChangedCells,
-        staging: &Buffer,
-        first: u64,
-    ) -> Result<(), Error> {
-        let gpu = &self.gpu;
-        let write = match &self.pass {
-            Some(_) => Use::ComputeWrite,
-            None => Use::TransferWrite,
-        };
-        // SAFETY: outside rendering; the buffers live until `cmd` has run.
-        unsafe {
-            buffer_barrier(gpu, cmd, &self.ranges, Use::ComputeRead, write);
-            match &self.pass {
-                Some(pass) => {
-                    let bricks = self.grids.iter().zip(&pass.bindings);
-                    for (slot, (grid, bindings)) in (0..).zip(bricks) {
-                        let Some(cells) = CellBox::that_see(grid, region) else {
-                            continue;
-                        };
-                        let groups = pass.pipeline.groups_around(cells.min, cells.max);
-                        let offset = [pass.ring.offset(slot)?];
-                        let pipeline = &pass.pipeline;
-                        pipeline.dispatch_boxes(cmd, bindings, &offset, [groups]);
-                    }
-                }
-                None => {
-                    let copies = changed.copies.iter().map(|copy| vk::BufferCopy {
-                        src_offset: first + copy.src_offset,
-                        ..*copy
-                    });
-                    let copies: Vec<_> = copies.collect();
-                    buffer_to_buffer(gpu, cmd, staging, &self.ranges, &copies)?;
-                }
-            }
-            buffer_barrier(gpu, cmd, &self.ranges, write, Use::ComputeRead);
-        }
         Ok(())
     }
 }
