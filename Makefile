@@ -5,11 +5,12 @@
 # make gallery six real volumes by the classic techniques, into docs/gallery
 # make capi    the libraries for C, into target/release; make install PREFIX=/usr/local puts them, the header and a
 #              file for pkg-config there; make header writes include/stratavox.h anew
+# make api     compares what the library shows of itself with docs/public-api.txt
 # make bench   frame times of each technique, mode and projection on this device
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := test
-.PHONY: test plain demo sheet gallery capi install header bench driver layers
+.PHONY: test plain demo sheet gallery capi install header api bench driver layers
 
 CARGO ?= cargo
 ROOT := $(if $(filter 0,$(shell id -u)),,sudo )
@@ -58,7 +59,7 @@ TEST := $(CARGO) test --locked --features grib,capi
 # Tests of files and of arithmetic make no device: they run side by side, and the validation layer has nothing to
 # hear there.
 TESTS := $(basename $(notdir $(wildcard tests/*.rs))) $(filter-out cli,$(notdir $(patsubst %/main.rs,%,$(wildcard tests/*/main.rs))))
-WITHOUT_DEVICE := $(filter cf_% floors format_% isosurface mutations% phantoms picture_% transfer_% volume_%,$(TESTS))
+WITHOUT_DEVICE := $(filter cf_% dependencies public_api floors format_% isosurface mutations% phantoms picture_% transfer_% volume_%,$(TESTS))
 WITH_DEVICE := $(filter-out $(WITHOUT_DEVICE),$(TESTS))
 ON_DEVICE := RUST_TEST_THREADS=1 $(TEST) --lib --examples $(addprefix --test ,$(WITH_DEVICE))
 
@@ -119,19 +120,28 @@ PREFIX ?= /usr/local
 LIBDIR ?= $(PREFIX)/lib
 VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -1)
 
+# Programs look for the name that the library says of itself; it changes where the interface does.
+SONAME := libstratavox.so.0
+
 capi:
-	$(CARGO) rustc --locked --release --lib --no-default-features --features capi --crate-type cdylib,staticlib
+	$(CARGO) rustc --locked --release --lib --no-default-features --features capi --crate-type cdylib,staticlib -- \
+	    -C link-arg=-Wl,-soname,$(SONAME)
 
 install: capi
 	install -d $(DESTDIR)$(PREFIX)/include $(DESTDIR)$(LIBDIR)/pkgconfig
 	install -m 644 include/stratavox.h $(DESTDIR)$(PREFIX)/include
-	install -m 755 target/release/libstratavox.so $(DESTDIR)$(LIBDIR)
+	install -m 755 target/release/libstratavox.so $(DESTDIR)$(LIBDIR)/libstratavox.so.$(VERSION)
+	ln -sf libstratavox.so.$(VERSION) $(DESTDIR)$(LIBDIR)/$(SONAME)
+	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libstratavox.so
 	install -m 644 target/release/libstratavox.a $(DESTDIR)$(LIBDIR)
 	sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@LIBDIR@|$(LIBDIR)|' -e 's|@VERSION@|$(VERSION)|' include/stratavox.pc.in \
 	    > $(DESTDIR)$(LIBDIR)/pkgconfig/stratavox.pc
 
 header:
 	cbindgen --quiet --config include/cbindgen.toml --output include/stratavox.h .
+
+api:
+	$(CARGO) test --locked --no-default-features --test public_api -- --ignored
 
 bench: driver
 	$(CARGO) build --locked --release

@@ -330,6 +330,8 @@ typedef struct sv_host_device {
     void (*device_lost)(void *user, const char *text);
     // What `device_lost` is called with.
     void *user;
+    // As sv_device_set_memory_budget. 0: no budget.
+    uint64_t memory_budget;
 } sv_host_device;
 
 // A device of the host's, and all that is made on it. 0 is none.
@@ -367,6 +369,14 @@ typedef struct sv_memory {
     uint64_t vulkan_objects;
     // Handles that are not destroyed yet.
     uint64_t handles;
+    // The most bytes that may be reserved, or 0 where there is no budget.
+    uint64_t budget_bytes;
+    // In how many pieces they were taken, which `maxMemoryAllocationCount` counts.
+    uint64_t allocations;
+    // What the driver says that this process may use of the device's own memory; 0 without `VK_EXT_memory_budget`.
+    uint64_t device_budget_bytes;
+    // What the driver says that it uses, the host's own with it; 0 without that.
+    uint64_t device_used_bytes;
 } sv_memory;
 
 // Colour at a value.
@@ -410,31 +420,6 @@ typedef uint64_t sv_function;
 
 // Pictures of one volume in a host's frames. 0 is none.
 typedef uint64_t sv_renderer;
-
-// What lies under a pixel of a picture by rays: where a composite has become half opaque, the first surface, the place
-// of a maximum.
-typedef struct sv_pick {
-    // `sizeof(sv_pick)`.
-    uint32_t struct_size;
-    // NULL.
-    const void *next;
-    // 0: nothing is there, and all that follows is 0.
-    uint32_t is_hit;
-    // 0: composites have no value.
-    uint32_t has_value;
-    // 0: projecting modes have no colour yet.
-    uint32_t has_color;
-    // 0.
-    uint32_t reserved;
-    // World length from where the ray starts.
-    double distance;
-    // The place in the world.
-    double position[3];
-    // The projected value, or that of the surface.
-    double value;
-    // Premultiplied colour and alpha.
-    float color[4];
-} sv_pick;
 
 // Where the eye is and what it sees, in the world. All zero: all of the volume from the front.
 typedef struct sv_camera {
@@ -521,8 +506,80 @@ typedef struct sv_target {
     struct sv_image_state after;
 } sv_target;
 
-// A volume on a device. 0 is none.
-typedef uint64_t sv_volume;
+// Command buffers for frames that the library submits. 0 is none.
+typedef uint64_t sv_submitter;
+
+// A timeline semaphore of the host's, and one of its values.
+typedef struct sv_timeline_point {
+    // `VkSemaphore`, of type timeline.
+    uint64_t semaphore;
+    // Its value.
+    uint64_t value;
+} sv_timeline_point;
+
+// When a submission begins and what it reaches.
+typedef struct sv_submission {
+    // `sizeof(sv_submission)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // `VkQueue`, of the device's family.
+    void *queue;
+    // Called before the queue is used, or NULL where nobody else uses it. It calls no function of this header.
+    void (*lock)(void *user);
+    // Called after that; NULL where `lock` is.
+    void (*unlock)(void *user);
+    // What both are called with.
+    void *user;
+    // It begins when all of them are reached.
+    const struct sv_timeline_point *waits;
+    // How many there are.
+    uint64_t wait_count;
+    // All of them are reached when it is done.
+    const struct sv_timeline_point *signals;
+    // How many there are.
+    uint64_t signal_count;
+} sv_submission;
+
+// How long the submissions of a frame last, and who hears of them.
+typedef struct sv_pacing {
+    // `sizeof(sv_pacing)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // Milliseconds that a submission shall take. 0 is 100.
+    double target_ms;
+    // Called after each submission but the last with how much of the frame is done, 0 to 1; not 0 ends the frame. Or NULL.
+    // It calls no function of this header.
+    uint32_t (*tell)(void *user, double done);
+    // What `tell` is called with.
+    void *user;
+} sv_pacing;
+
+// What lies under a pixel: where a composite has become half opaque, the first surface, the place of a maximum.
+typedef struct sv_pick {
+    // `sizeof(sv_pick)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // 0: nothing is there, and all that follows is 0.
+    uint32_t is_hit;
+    // 0: MIDA and slabs have no value.
+    uint32_t has_value;
+    // 0: projecting modes have no colour yet, and slices none beside their depth.
+    uint32_t has_color;
+    // 0.
+    uint32_t reserved;
+    // World length from where the ray starts.
+    double distance;
+    // The place in the world.
+    double position[3];
+    // The projected value, that of the surface, or of the sample that made a composite half opaque; of a map of labels the
+    // label.
+    double value;
+    // Premultiplied colour and alpha.
+    float color[4];
+} sv_pick;
 
 // What is behind it is cut away: world points with `normal . x < offset`.
 typedef struct sv_clip_plane {
@@ -620,6 +677,58 @@ typedef struct sv_settings {
     uint32_t jitter_frame;
 } sv_settings;
 
+// Voxels, x fastest, then y, then z. `value = slope stored + intercept`.
+typedef struct sv_volume_desc {
+    // `sizeof(sv_volume_desc)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // How many there are along x, y and z: 1 or more of each.
+    uint32_t dims[3];
+    // sv_voxel_type, in the order of bytes of this machine.
+    uint32_t voxel_type;
+    // The voxels, without gaps. They are copied before the call returns. Floats that are not finite hold no data.
+    const void *voxels;
+    // Bytes of them.
+    uint64_t voxel_bytes;
+    // Voxel space, in which voxel (i, j, k) covers [i, i + 1) and so on, to the world: columns of a matrix, the last row
+    // of which is (0, 0, 0, 1). All zero: the two are the same.
+    double world_from_voxel[16];
+    // 0 is 1.
+    double slope;
+    // Value of a stored 0.
+    double intercept;
+    // Not 0: stored numbers like `fill` hold no data.
+    uint32_t has_fill;
+    // What stands where there is no data.
+    double fill;
+    // The settings of the renderers that will draw it, of which technique, filter, light and empty space count; or NULL.
+    const struct sv_settings *settings;
+    // Not 0: `value_range` holds all values that the volume has and will get by updates. 0: it is that of the voxels.
+    uint32_t has_value_range;
+    // 0.
+    uint32_t reserved;
+    // Smallest and largest value.
+    double value_range[2];
+} sv_volume_desc;
+
+// What a volume will take.
+typedef struct sv_plan {
+    // `sizeof(sv_plan)`.
+    uint32_t struct_size;
+    // NULL.
+    const void *next;
+    // Bytes of its textures and of what is known of its empty space, without what the driver pads them by.
+    uint64_t device_bytes;
+    // Bytes of the buffer that it is staged in until its upload has run.
+    uint64_t staging_bytes;
+    // Into how many bricks the limits of the device cut it.
+    uint64_t bricks;
+} sv_plan;
+
+// A volume on a device. 0 is none.
+typedef uint64_t sv_volume;
+
 // What is drawn into, as far as pipelines have to know.
 typedef struct sv_target_class {
     // `sizeof(sv_target_class)`.
@@ -678,79 +787,53 @@ typedef struct sv_renderer_desc {
     uint32_t frames_in_flight;
     // Not 0: what the host has drawn hides the volume behind it. Cameras are SV_CAMERA_MATRICES then.
     uint32_t has_host_depth;
-    // Not 0: sv_renderer_draw_depth will be called. Cameras are SV_CAMERA_MATRICES then.
+    // Not 0: sv_renderer_draw_depth will be called, where `target` has a depth attachment (cameras are
+    // SV_CAMERA_MATRICES then), and of slices sv_renderer_record_pick, for which rays need it not.
     uint32_t gives_depth;
     // 0.
     uint32_t reserved;
-    // With `has_host_depth` and rays: the host's depth, one image for all frames in flight or one for each.
+    // With `has_host_depth`, but for composited slices without `gives_depth`, which are tested against the attachment:
+    // the host's depth, one image for all frames in flight or one for each.
     const struct sv_depth_image *depth_images;
     // How many there are.
     uint64_t depth_image_count;
 } sv_renderer_desc;
 
-// Command buffers for frames that the library submits. 0 is none.
-typedef uint64_t sv_submitter;
+// One thing that a device has or lacks. Texts are UTF-8 that end with a zero.
+typedef struct sv_requirement {
+    // Its name in the Vulkan specification.
+    char name[64];
+    // What is wanted of it.
+    char wanted[128];
+    // What was found; empty where no device was asked.
+    char found[128];
+    // What it is for.
+    char unlocks[256];
+    // Not 0: a device that lacks it is refused. 0: it draws less, or slower.
+    uint32_t is_required;
+    // Not 0: it was found to be enough.
+    uint32_t is_met;
+} sv_requirement;
 
-// A timeline semaphore of the host's, and one of its values.
-typedef struct sv_timeline_point {
-    // `VkSemaphore`, of type timeline.
-    uint64_t semaphore;
-    // Its value.
-    uint64_t value;
-} sv_timeline_point;
-
-// When a submission begins and what it reaches.
-typedef struct sv_submission {
-    // `sizeof(sv_submission)`.
+// New voxels of a box.
+typedef struct sv_update_desc {
+    // `sizeof(sv_update_desc)`.
     uint32_t struct_size;
     // NULL.
     const void *next;
-    // `VkQueue`, of the device's family.
-    void *queue;
-    // Called before the queue is used, or NULL where nobody else uses it. It calls no function of this header.
-    void (*lock)(void *user);
-    // Called after that; NULL where `lock` is.
-    void (*unlock)(void *user);
-    // What both are called with.
-    void *user;
-    // It begins when all of them are reached.
-    const struct sv_timeline_point *waits;
-    // How many there are.
-    uint64_t wait_count;
-    // All of them are reached when it is done.
-    const struct sv_timeline_point *signals;
-    // How many there are.
-    uint64_t signal_count;
-} sv_submission;
-
-// Voxels, x fastest, then y, then z. `value = slope stored + intercept`.
-typedef struct sv_volume_desc {
-    // `sizeof(sv_volume_desc)`.
-    uint32_t struct_size;
-    // NULL.
-    const void *next;
-    // How many there are along x, y and z: 1 or more of each.
-    uint32_t dims[3];
-    // sv_voxel_type, in the order of bytes of this machine.
-    uint32_t voxel_type;
-    // The voxels, without gaps. They are copied before the call returns. Floats that are not finite hold no data.
+    // The first voxel of the box, along x, y and z.
+    uint32_t origin[3];
+    // How many there are: 1 or more of each.
+    uint32_t extent[3];
+    // All voxels of the changed volume, of the same type, without gaps. Those of the box are read, and some around it:
+    // beside the box nothing has changed.
     const void *voxels;
-    // Bytes of them.
+    // Bytes of them: as many as the volume was made of.
     uint64_t voxel_bytes;
-    // Voxel space, in which voxel (i, j, k) covers [i, i + 1) and so on, to the world: columns of a matrix, the last row
-    // of which is (0, 0, 0, 1). All zero: the two are the same.
-    double world_from_voxel[16];
-    // 0 is 1.
-    double slope;
-    // Value of a stored 0.
-    double intercept;
-    // Not 0: stored numbers like `fill` hold no data.
-    uint32_t has_fill;
-    // What stands where there is no data.
-    double fill;
-    // The settings of the renderers that will draw it, of which technique, filter, light and empty space count; or NULL.
-    const struct sv_settings *settings;
-} sv_volume_desc;
+} sv_update_desc;
+
+// New voxels on their way into a volume. 0 is none.
+typedef uint64_t sv_update;
 
 #ifdef __cplusplus
 extern "C" {
@@ -781,6 +864,16 @@ sv_status sv_device_retire(sv_device device, uint64_t completed, struct sv_diagn
 // How much memory the library uses on the device. Threads: any.
 sv_status sv_device_memory(sv_device device, struct sv_memory *memory, struct sv_diagnostic *diagnostic);
 
+// Takes no more memory from the driver than so many bytes from now on: what would is SV_E_LIMIT, before the driver is asked.
+// 0: no budget. Threads: any.
+sv_status sv_device_set_memory_budget(sv_device device,
+                                      uint64_t bytes,
+                                      struct sv_diagnostic *diagnostic);
+
+// The host has heard that its device is lost, as it submits and waits itself: from now on every call for work is
+// SV_E_DEVICE_LOST, and nothing calls the device but what destroys. `device_lost` is not called for it. Threads: any.
+sv_status sv_device_declare_lost(sv_device device, struct sv_diagnostic *diagnostic);
+
 // How many pipelines were made so far: after the last sv_renderer_create it stays. Threads: any.
 sv_status sv_device_pipelines_made(sv_device device, uint32_t *count, struct sv_diagnostic *diagnostic);
 
@@ -800,6 +893,38 @@ sv_status sv_function_create(sv_device device,
 // Destroys it. Renderers that were made with it have a copy. Threads: any.
 sv_status sv_function_destroy(sv_function function, struct sv_diagnostic *diagnostic);
 
+// Begins a frame that is recorded in parts, and tells how many blocks of 64 x 64 pixels it has. What else is recorded for the
+// frame, and another function, volume or size, ends it. Threads: one at a time for one renderer.
+sv_status sv_renderer_begin_parts(sv_renderer renderer,
+                                  const struct sv_shot *shot,
+                                  uint64_t *blocks,
+                                  struct sv_diagnostic *diagnostic);
+
+// Level B in parts: records the next `count` blocks, one at least, and tells how many are left. The same `target` each time.
+//
+// Rays, and slices in other modes than composite, touch the target with the last part alone. Composites by slices draw each part
+// into it, and leave it in its state `after`. As sv_renderer_record_into; parts are submitted in their order to one queue.
+sv_status sv_renderer_record_part_into(sv_renderer renderer,
+                                       void *command_buffer,
+                                       uint32_t frame,
+                                       uint64_t count,
+                                       const struct sv_target *target,
+                                       uint64_t *left,
+                                       struct sv_diagnostic *diagnostic);
+
+// Level C in parts: as sv_submitter_submit, in as many submissions as it takes for each to last no longer than `pacing`
+// says (NULL: 100 ms). Between them it waits for the device, for the host's `waits` too. `is_done` is set to 0 where the host
+// ended the frame: none of the signals will be reached then, and the target is as sv_renderer_record_part_into says.
+// Threads: one at a time for one submitter and for one renderer.
+sv_status sv_submitter_submit_in_parts(sv_submitter submitter,
+                                       sv_renderer renderer,
+                                       const struct sv_shot *shot,
+                                       const struct sv_target *target,
+                                       const struct sv_submission *submission,
+                                       const struct sv_pacing *pacing,
+                                       uint32_t *is_done,
+                                       struct sv_diagnostic *diagnostic);
+
 // Records the copy of what lies under a pixel, for sv_renderer_pick when the frame is done.
 // As sv_renderer_record, after it.
 sv_status sv_renderer_record_pick(sv_renderer renderer,
@@ -817,6 +942,13 @@ sv_status sv_renderer_pick(sv_renderer renderer,
                            uint32_t y,
                            struct sv_pick *pick,
                            struct sv_diagnostic *diagnostic);
+
+// What a volume will take: of `desc`, `dims`, `voxel_type`, `has_fill` (there will be holes) and `settings` count, and `voxels`
+// may be NULL. Threads: any.
+sv_status sv_volume_plan(sv_device device,
+                         const struct sv_volume_desc *desc,
+                         struct sv_plan *plan,
+                         struct sv_diagnostic *diagnostic);
 
 // Level A, first half: records all of a frame that lies outside of the host's rendering. It submits nothing, waits for
 // nothing and makes no Vulkan object.
@@ -839,8 +971,8 @@ sv_status sv_renderer_draw(sv_renderer renderer,
                            uint32_t frame,
                            struct sv_diagnostic *diagnostic);
 
-// Writes the depth of a picture by rays into the depth attachment, where it is nearer than what is there. Of composites
-// it is where they become half opaque. As sv_renderer_draw, and depth may be written; wants `gives_depth`.
+// Writes the depth of a picture into the depth attachment, where it is nearer than what is there. Of composites it is
+// where they become half opaque. As sv_renderer_draw, and depth may be written; wants `gives_depth`.
 sv_status sv_renderer_draw_depth(sv_renderer renderer,
                                  void *command_buffer,
                                  uint32_t frame,
@@ -890,6 +1022,20 @@ sv_status sv_renderer_set_volume(sv_renderer renderer,
 // Destroys the handle; what frames in flight use is freed by sv_device_retire. Threads: any.
 sv_status sv_renderer_destroy(sv_renderer renderer, struct sv_diagnostic *diagnostic);
 
+// All that is required and recommended, before there is a device. With `requirements` NULL, `count` is set to how many there
+// are; else as many are written, where `count` says that there is room for them. Threads: any.
+sv_status sv_requirements(struct sv_requirement *requirements,
+                          uint64_t *count,
+                          struct sv_diagnostic *diagnostic);
+
+// The same, and what a physical device has of it: `instance`, `physical_device` and `get_instance_proc_addr` of `host` are
+// asked, and `device`, which may be NULL, is not. Where it is not NULL, `features` are those enabled; else those that the device
+// supports count. A version that is too old is all that is told of a device. Threads: any.
+sv_status sv_check_device(const struct sv_host_device *host,
+                          struct sv_requirement *requirements,
+                          uint64_t *count,
+                          struct sv_diagnostic *diagnostic);
+
 // Command buffers for so many frames in flight, at most 64. Wants SV_FEATURE_TIMELINE_SEMAPHORE. Threads: any.
 sv_status sv_submitter_create(sv_device device,
                               uint32_t frames_in_flight,
@@ -917,6 +1063,28 @@ sv_status sv_submitter_upload(sv_submitter submitter,
 
 // Destroys the handle; what it has submitted is done, or is waited for by sv_device_retire. Threads: any.
 sv_status sv_submitter_destroy(sv_submitter submitter, struct sv_diagnostic *diagnostic);
+
+// Stages new voxels of a box of a volume that was uploaded: a copy of them, where the recording finds it. Their values lie
+// in the volume's `value_range`; where it was made without holes they have none; filters that read coefficients of a
+// spline are SV_E_UNSUPPORTED. Threads: any.
+sv_status sv_volume_stage_update(sv_volume volume,
+                                 const struct sv_update_desc *desc,
+                                 sv_update *update,
+                                 struct sv_diagnostic *diagnostic);
+
+// Records an update between the frames that were recorded before, which show the old voxels, and those recorded later, which
+// show the new ones. Its handle is used up; what it is staged in is freed by sv_device_retire, if sv_device_announce came
+// before.
+//
+// `command_buffer` (`VkCommandBuffer`) is recording, outside rendering, and is submitted to the queue that draws the volume, in
+// the order of recording. Threads: any, one at a time for one volume.
+sv_status sv_volume_record_update(sv_volume volume,
+                                  void *command_buffer,
+                                  sv_update update,
+                                  struct sv_diagnostic *diagnostic);
+
+// Destroys the handle of an update that is not recorded. Threads: any.
+sv_status sv_update_destroy(sv_update update, struct sv_diagnostic *diagnostic);
 
 // Makes textures for voxels, which are copied to where the upload finds them. Threads: any.
 sv_status sv_volume_create(sv_device device,

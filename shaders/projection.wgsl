@@ -1,7 +1,7 @@
 // MIP and its relatives: one ray a pixel, one number a ray; a resolve classifies it once.
 // Twin: src/technique/projection/reference.rs.
 
-#import march
+#import {walk}
 #import pixel_square
 
 // Projected value, weight (0: no valid sample), depth (negative: none), samples.

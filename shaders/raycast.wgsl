@@ -1,7 +1,7 @@
 // Ray casting: one ray a pixel, emission and absorption from front to back (Levoy 1988).
 // Twin: src/technique/raycast/reference.rs.
 
-#import march
+#import {walk}
 #import pixel_square
 
 // Premultiplied colour and alpha.

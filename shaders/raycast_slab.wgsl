@@ -1,11 +1,11 @@
 // Ray casting with pre-integrated classification: the samples are slabs, from front to back.
 // Twin: src/technique/raycast/reference.rs.
 
-#import march_slab
+#import {walk}
 
 // Premultiplied colour and alpha.
 @group(0) @binding(6) var picture: texture_storage_2d<rgba32float, read_write>;
-// 0, depth (negative: none), transmittance, samples.
+// What the mode keeps, depth (negative: none), transmittance, samples.
 @group(0) @binding(7) var layers: texture_storage_2d<rgba32float, read_write>;
 
 @compute @workgroup_size(8, 8)

@@ -3,6 +3,7 @@
 // Twin: src/technique/slices_2d/reference.rs.
 
 #import ray
+#import sight_{sight}
 #import brick
 #import stack_{filter}
 #import stack_at_nearest
@@ -22,7 +23,7 @@ fn main(
     if abs(slope) < 1e-20 {
         discard;
     }
-    let interval = domain_interval(world, voxel);
+    let interval = in_sight(domain_interval(world, voxel), world, position.xy);
     let t = (f32(slice) + 0.5 - voxel.origin[frame.slice_axis]) / slope;
     if !(interval.x <= t && t < interval.y) {
         discard;

@@ -4,6 +4,7 @@
 // Twin: src/technique/slices_3d/reference.rs.
 
 #import ray
+#import sight_{sight}
 #import brick
 #import filter_{filter}
 #import nearest
@@ -18,7 +19,7 @@ fn main(
 ) -> @location(0) vec4<f32> {
     let world = pixel_ray(position.xy);
     let voxel = voxel_ray(world);
-    let interval = domain_interval(world, voxel);
+    let interval = in_sight(domain_interval(world, voxel), world, position.xy);
     let t = plane_t(world, plane);
     if !(interval.x <= t && t < interval.y) {
         discard;

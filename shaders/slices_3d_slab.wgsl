@@ -3,6 +3,7 @@
 // Twin: src/technique/slices_3d/reference.rs.
 
 #import ray
+#import sight_{sight}
 #import brick
 #import slab
 #import filter_{filter}
@@ -18,7 +19,8 @@ fn main(
 ) -> @location(0) vec4<f32> {
     let world = pixel_ray(position.xy);
     let voxel = voxel_ray(world);
-    let slab = plane_slab(world, domain_interval(world, voxel), plane);
+    let interval = in_sight(domain_interval(world, voxel), world, position.xy);
+    let slab = plane_slab(world, interval, plane);
     let t = 0.5 * (slab.front + slab.back);
     if !(slab.length > 0.0) || !is_in_brick(voxel.origin + t * voxel.direction) {
         discard;

@@ -22,11 +22,31 @@ const STORED: Slot = ("transfer", &["stored"]);
 const POINTS: Slot = ("transfer", &["points"]);
 /// One number at both ends of a segment. The word is left out of names.
 const SLAB: Slot = ("mix", &["slab"]);
+/// What a compute pass walks along: a line of samples, one of slabs, or the slices of a stack, by points and by slabs.
+const LINE: Slot = ("walk", &["march"]);
+const SLABS: Slot = ("walk", &["march_slab"]);
+const SLICES: Slot = ("walk", &["march_stack"]);
+const SLICE_SLABS: Slot = ("walk", &["march_stack_slab"]);
+/// The lattice of the slices of a stack, walked along for their depth.
+const STACK: Slot = ("lattice", &["stack"]);
+/// Slices that a host's depth buffer is tested against hide by themselves what lies behind it, others read it.
+const TESTED: Slot = ("sight", &["open"]);
+const SIGHT: Slot = ("sight", &["open", "host"]);
 /// How central differences are made. The words are left out of names: corners have their own way, and it is theirs alone.
 const TAPS: Slot = ("slope", &["taps"]);
 const SHARED: Slot = ("slope", &["corners"]);
 /// Words that stand in no name.
-pub const SILENT: &[&str] = &["alone", "slab", "taps", "corners"];
+pub const SILENT: &[&str] = &[
+    "alone",
+    "slab",
+    "open",
+    "march",
+    "march_slab",
+    "march_stack",
+    "march_stack_slab",
+    "taps",
+    "corners",
+];
 const TRANSFER: Slot = ("transfer", &["table", "points"]);
 const HOLES: Slot = ("holes", &["none", "mask"]);
 const LATTICE: Slot = ("lattice", &["ray", "planes"]);
@@ -44,27 +64,59 @@ const MODE: Slot = ("mode", &["composite"]);
 const RAY: Slot = ("lattice", &["ray"]);
 const MIDA: Slot = ("mode", &["mida"]);
 const BLEND: Slot = ("blend", &["composite"]);
+/// What projections have blended: an extreme, or a sum.
+const NUMBER: Slot = ("blend", &["number"]);
 
 /// The wanted combinations. Order of the slots is the order of words in a variant's name.
 pub const ENTRIES: &[(&str, &[Slot])] = &[
-    ("raycast", &[MODE, ONE, LATTICE, FILTER, HOLES, TABLE, TAPS]),
-    ("raycast", &[MODE, ONE, RAY, CORNERS, HOLES, STORED, SHARED]),
-    ("raycast", &[MODE, LIT, RAY, NARROW, HOLES, TABLE, TAPS]),
-    ("raycast", &[MODE, LIT, RAY, CORNERS, HOLES, STORED, SHARED]),
-    ("raycast", &[MODE, ADAPTIVE, RAY, NARROW, WHOLE, TABLE]),
-    ("raycast", &[MODE, ADAPTIVE, RAY, CORNERS, WHOLE, STORED]),
     (
         "raycast",
-        &[MODE, ONE, LATTICE, FETCHED, HOLES, POINTS, TAPS],
+        &[LINE, MODE, ONE, LATTICE, FILTER, HOLES, TABLE, TAPS],
     ),
-    ("raycast", &[MODE, MIXED, LATTICE, NARROW, HOLES, TABLE]),
     (
         "raycast",
-        &[MODE, MIXED, LATTICE, NARROW_FETCHED, HOLES, POINTS],
+        &[LINE, MODE, ONE, RAY, CORNERS, HOLES, STORED, SHARED],
     ),
-    ("raycast", &[MIDA, ONE, RAY, FILTER, HOLES, TABLE, TAPS]),
-    ("raycast", &[MIDA, ONE, RAY, CORNERS, HOLES, STORED, SHARED]),
-    ("raycast", &[MIDA, ONE, RAY, FETCHED, HOLES, POINTS, TAPS]),
+    (
+        "raycast",
+        &[LINE, MODE, LIT, RAY, NARROW, HOLES, TABLE, TAPS],
+    ),
+    (
+        "raycast",
+        &[LINE, MODE, LIT, RAY, CORNERS, HOLES, STORED, SHARED],
+    ),
+    (
+        "raycast",
+        &[LINE, MODE, ADAPTIVE, RAY, NARROW, WHOLE, TABLE],
+    ),
+    (
+        "raycast",
+        &[LINE, MODE, ADAPTIVE, RAY, CORNERS, WHOLE, STORED],
+    ),
+    (
+        "raycast",
+        &[LINE, MODE, ONE, LATTICE, FETCHED, HOLES, POINTS, TAPS],
+    ),
+    (
+        "raycast",
+        &[LINE, MODE, MIXED, LATTICE, NARROW, HOLES, TABLE],
+    ),
+    (
+        "raycast",
+        &[LINE, MODE, MIXED, LATTICE, NARROW_FETCHED, HOLES, POINTS],
+    ),
+    (
+        "raycast",
+        &[LINE, MIDA, ONE, RAY, FILTER, HOLES, TABLE, TAPS],
+    ),
+    (
+        "raycast",
+        &[LINE, MIDA, ONE, RAY, CORNERS, HOLES, STORED, SHARED],
+    ),
+    (
+        "raycast",
+        &[LINE, MIDA, ONE, RAY, FETCHED, HOLES, POINTS, TAPS],
+    ),
     ("isosurface", &[("paint", &["alone"]), FILTER, HOLES, TAPS]),
     (
         "isosurface",
@@ -75,6 +127,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     (
         "projection",
         &[
+            LINE,
             ("mode", &["mip", "minip", "sum"]),
             ALONE,
             LATTICE,
@@ -85,6 +138,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     (
         "projection",
         &[
+            LINE,
             ("mode", &["mip", "minip", "sum", "lmip", "attenuated_mip"]),
             ALONE,
             RAY,
@@ -95,6 +149,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     (
         "projection",
         &[
+            LINE,
             ("mode", &["lmip", "attenuated_mip"]),
             ALONE,
             RAY,
@@ -102,17 +157,44 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
             HOLES,
         ],
     ),
-    ("slices_3d", &[BLEND, ONE, FILTER, HOLES, TABLE, TAPS]),
-    ("slices_3d", &[BLEND, ONE, FETCHED, HOLES, POINTS, TAPS]),
-    ("slices_3d", &[BLEND, MIXED, NARROW, HOLES, TABLE]),
-    ("slices_3d", &[BLEND, MIXED, NARROW_FETCHED, HOLES, POINTS]),
+    // The depth of slices of a stack.
     (
-        "slices_3d",
-        &[("blend", &["extreme", "sum"]), ALONE, FILTER, HOLES],
+        "raycast",
+        &[SLICES, MODE, ONE, STACK, FILTER, HOLES, TABLE, TAPS],
+    ),
+    (
+        "raycast_slab",
+        &[SLICE_SLABS, MODE, SLAB, STACK, NARROW, HOLES],
+    ),
+    (
+        "projection",
+        &[
+            SLICES,
+            ("mode", &["mip", "minip"]),
+            ALONE,
+            STACK,
+            FILTER,
+            HOLES,
+        ],
     ),
     (
         "slices_3d",
+        &[TESTED, BLEND, ONE, FILTER, HOLES, TABLE, TAPS],
+    ),
+    (
+        "slices_3d",
+        &[TESTED, BLEND, ONE, FETCHED, HOLES, POINTS, TAPS],
+    ),
+    ("slices_3d", &[TESTED, BLEND, MIXED, NARROW, HOLES, TABLE]),
+    (
+        "slices_3d",
+        &[TESTED, BLEND, MIXED, NARROW_FETCHED, HOLES, POINTS],
+    ),
+    ("slices_3d", &[NUMBER, ALONE, SIGHT, FILTER, HOLES]),
+    (
+        "slices_3d",
         &[
+            TESTED,
             ("blend", &["count"]),
             ALONE,
             ("filter", &["nearest"]),
@@ -120,17 +202,24 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         ],
     ),
     ("slices_3d_cover", &[]),
-    ("slices_2d", &[BLEND, ONE, FILTER, HOLES, TABLE, TAPS]),
-    ("slices_2d", &[BLEND, ONE, FETCHED, HOLES, POINTS, TAPS]),
-    ("slices_2d", &[BLEND, MIXED, NARROW, HOLES, TABLE]),
-    ("slices_2d", &[BLEND, MIXED, NARROW_FETCHED, HOLES, POINTS]),
     (
         "slices_2d",
-        &[("blend", &["extreme", "sum"]), ALONE, FILTER, HOLES],
+        &[TESTED, BLEND, ONE, FILTER, HOLES, TABLE, TAPS],
     ),
     (
         "slices_2d",
+        &[TESTED, BLEND, ONE, FETCHED, HOLES, POINTS, TAPS],
+    ),
+    ("slices_2d", &[TESTED, BLEND, MIXED, NARROW, HOLES, TABLE]),
+    (
+        "slices_2d",
+        &[TESTED, BLEND, MIXED, NARROW_FETCHED, HOLES, POINTS],
+    ),
+    ("slices_2d", &[NUMBER, ALONE, SIGHT, FILTER, HOLES]),
+    (
+        "slices_2d",
         &[
+            TESTED,
             ("blend", &["count"]),
             ALONE,
             ("filter", &["nearest"]),
@@ -140,28 +229,31 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ("slices_2d_cover", &[]),
     (
         "raycast_slab",
-        &[("mode", &["composite"]), SLAB, LATTICE, NARROW, HOLES],
+        &[
+            SLABS,
+            ("mode", &["composite"]),
+            SLAB,
+            LATTICE,
+            NARROW,
+            HOLES,
+        ],
     ),
-    (
-        "slices_3d_slab",
-        &[("blend", &["composite"]), SLAB, NARROW, HOLES],
-    ),
+    ("slices_3d_slab", &[BLEND, SLAB, SIGHT, NARROW, HOLES]),
     (
         "slices_3d_slab",
         &[
+            TESTED,
             ("blend", &["count"]),
             SLAB,
             ("filter", &["nearest"]),
             ("holes", &["none"]),
         ],
     ),
-    (
-        "slices_2d_slab",
-        &[("blend", &["composite"]), SLAB, NARROW, HOLES],
-    ),
+    ("slices_2d_slab", &[BLEND, SLAB, SIGHT, NARROW, HOLES]),
     (
         "slices_2d_slab",
         &[
+            TESTED,
             ("blend", &["count"]),
             SLAB,
             ("filter", &["nearest"]),

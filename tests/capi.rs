@@ -4,6 +4,7 @@
 //! skipped. The libraries are built once, by the cargo that runs this, beside everything else in the target folder.
 
 mod capi_layout;
+mod missing_barrier;
 
 #[path = "../examples/embed.rs"]
 #[allow(dead_code, reason = "its `main` is not called")]
@@ -276,18 +277,47 @@ fn the_host_in_c_draws_the_picture_of_the_host_in_rust() {
 }
 
 #[test]
+fn each_barrier_of_the_host_in_c_is_needed() {
+    let mode = stratavox::gpu::Validation::default().mode().unwrap();
+    if mode != Some(stratavox::gpu::ValidationMode::Synchronization) {
+        println!("skipped: STRATAVOX_VALIDATION=sync is not set");
+        return;
+    }
+    if !can_link() {
+        return;
+    }
+    let Some(layer) = missing_barrier::MissingBarrier::new() else {
+        return;
+    };
+    let program = Program::new(&["examples/embed.c"], &[], false);
+    let path = program.folder.path().join("sphere.ppm");
+    let command = || {
+        let mut command = program.command();
+        command.arg(&path).env_remove("STRATAVOX_VALIDATION");
+        command
+    };
+    let unheard = [missing_barrier::NEXT_FUNCTION, missing_barrier::NEW_TARGET];
+    layer.assert_each_is_missed(command, &unheard);
+}
+
+#[test]
 fn a_host_in_c_draws_by_each_level_and_gets_depths_and_picks_back() {
     if !can_link() {
         return;
     }
     let program = Program::new(
-        &["tests/capi/levels.c", "tests/capi/levels_depth.c"],
+        &[
+            "tests/capi/levels.c",
+            "tests/capi/levels_depth.c",
+            "tests/capi/levels_life.c",
+            "tests/capi/levels_passes.c",
+        ],
         &[],
         false,
     );
     let told = printed(&mut program.command());
     let good = told.lines().filter(|line| line.starts_with("ok: ")).count();
-    assert!(good >= 25, "{told}");
+    assert!(good >= 45, "{told}");
 }
 
 #[test]

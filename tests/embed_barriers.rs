@@ -76,12 +76,8 @@ fn level_a(missing: Option<usize>) -> Vec<String> {
         host_depth: true,
         gives_depth: true,
     };
-    let (view, layout) = (buffer.view, READ.2);
-    let read = [HostDepthImage {
-        view,
-        layout,
-        extent,
-    }];
+    // SAFETY: the buffer outlives the renderer.
+    let read = [unsafe { HostDepthImage::new(buffer.view, READ.2, extent) }];
     let function = Some(&stage.transfer);
     let mut renderer = Renderer::new(host.gpu(), &volume, function, class, extent, &read).unwrap();
     let (frame, camera, depth) = (0, &camera, Some(depth));

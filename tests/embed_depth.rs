@@ -5,118 +5,18 @@ mod embed_shared;
 mod shared;
 
 use ash::vk;
-use embed_shared::{ATTACHED, DepthImage, Host, HostImage, READ, Stage};
-use glam::dcamera::rh::proj::vulkan;
-use glam::dcamera::rh::view::look_at_mat4;
-use glam::{DMat4, DVec3, dvec3};
+use embed_shared::{Host, HostImage, Stage, depths, draw, eyes};
+use glam::{DVec3, dvec3};
 use std::sync::Arc;
 use stratavox::camera::{Camera, HostDepth, Nearer, Projection, Sides};
-use stratavox::embed::{Class, Error, HostDepthImage, Renderer, Shot, Volume};
+use stratavox::embed::{Class, Error, Renderer, Shot, Volume};
 use stratavox::gpu::{DepthClass, Load, Target, TargetClass, Use};
 use stratavox::offscreen::{self, reference};
 use stratavox::picture::LayerKind;
 use stratavox::scene::Scene;
-use stratavox::technique::{ClipPlane, Lattice, Level, Mode, Order, Settings, Technique};
+use stratavox::technique::{ClipPlane, Lattice, Level, Mode, Settings, Technique};
 
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
-
-/// A host's matrices around the stage, and which of its depths is nearer.
-struct Eye {
-    name: &'static str,
-    view: DMat4,
-    clip: DMat4,
-    nearer: Nearer,
-}
-
-fn eyes(stage: &Stage) -> [Eye; 4] {
-    let Camera {
-        eye, target, up, ..
-    } = stage.camera;
-    let view = look_at_mat4(eye, target, up);
-    let [width, height] = stage.extent.map(f64::from);
-    let (aspect, distance) = (width / height, eye.distance(target));
-    let (half_height, fov) = (0.16 * distance, 0.34);
-    let half_width = aspect * half_height;
-    let (near, far) = (0.2 * distance, 4.0 * distance);
-    [
-        Eye {
-            name: "perspective",
-            view,
-            clip: vulkan::perspective(fov, aspect, near, far),
-            nearer: Nearer::Smaller,
-        },
-        // Its near plane cuts the volume.
-        Eye {
-            name: "perspective, reversed, without a far plane",
-            view,
-            clip: vulkan::perspective_infinite_reverse(fov, aspect, 0.95 * distance),
-            nearer: Nearer::Larger,
-        },
-        Eye {
-            name: "orthographic",
-            view,
-            clip: vulkan::orthographic(
-                -half_width,
-                half_width,
-                -half_height,
-                half_height,
-                near,
-                far,
-            ),
-            nearer: Nearer::Smaller,
-        },
-        // Off the middle, and its far plane cuts the volume.
-        Eye {
-            name: "orthographic, reversed",
-            view,
-            clip: vulkan::orthographic(
-                -0.5 * half_width,
-                1.5 * half_width,
-                -half_height,
-                half_height,
-                1.05 * distance,
-                -far,
-            ),
-            nearer: Nearer::Larger,
-        },
-    ]
-}
-
-/// Centre and radius: inside, before and behind the volume.
-fn spheres(stage: &Stage) -> [(DVec3, f64); 3] {
-    let center = stage.grid.center();
-    let away = (center - stage.camera.eye).normalize();
-    let aside = away.cross(DVec3::Z).normalize();
-    [
-        (center + 1.5 * aside, 4.0),
-        (center - 16.0 * away - 4.0 * aside, 2.0),
-        (center + 18.0 * away + 2.0 * aside, 9.0),
-    ]
-}
-
-/// The depth buffer that a host would have after it has drawn the spheres exactly.
-fn depths(stage: &Stage, camera: &Camera, depth: &HostDepth) -> Vec<f32> {
-    let rays = camera.rays(stage.extent);
-    let [width, height] = stage.extent;
-    let pixels = (0..width * height).map(|i| [i % width, i / width].map(|n| f64::from(n) + 0.5));
-    let spheres = spheres(stage);
-    let far = 1.0 - depth.nearer.near();
-    let of_pixel = |[x, y]: [f64; 2]| {
-        let (origin, direction) = rays.at(x, y);
-        let hit = |(center, radius): (DVec3, f64)| {
-            let to_center = center - origin;
-            let along = to_center.dot(direction);
-            let inside = radius * radius - (to_center.length_squared() - along * along);
-            (inside > 0.0).then(|| along - inside.sqrt())
-        };
-        let nearest = spheres.into_iter().filter_map(hit).reduce(f64::min);
-        let found = nearest.map(|t| depth.of(origin + t * direction));
-        // What the host's own near and far planes cut away.
-        let found = found.filter(|depth| (0.0..=1.0).contains(depth));
-        found.unwrap_or(far) as f32
-    };
-    pixels.map(of_pixel).collect()
-}
 
 /// What the twin sees through one pixel when the ray ends where the host's depth lies, `moved` a little.
 fn twin(
@@ -175,90 +75,30 @@ fn twin(
     reference::render::<f32>(&scene).unwrap().pixels[0]
 }
 
-struct Found {
-    pixels: Vec<[f64; 4]>,
-    depths: Vec<f32>,
-}
-
-/// What a host gets that draws the volume behind `drawn`.
-fn draw(host: &Host, stage: &Stage, camera: &Camera, depth: &HostDepth, drawn: &[f32]) -> Found {
-    let is_ray = stage.settings.technique == Technique::Raycast;
-    let gives_depth = is_ray && stage.settings.mode.has_depth();
-    let mut volume = Volume::new(host.gpu(), &stage.volume, &stage.settings).unwrap();
-    let state = if is_ray { READ } else { ATTACHED };
-    let buffer = DepthImage::new(host, stage.extent, drawn, state);
-    let image = HostImage::new(host, FORMAT, stage.extent);
-    let class = Class {
-        settings: stage.settings.clone(),
-        target: TargetClass {
-            depth: Some(DepthClass {
-                format: vk::Format::D32_SFLOAT,
-                has_stencil: false,
-                is_reversed: depth.nearer == Nearer::Larger,
-            }),
-            ..FORMAT.into()
-        },
-        frames_in_flight: 1,
-        host_depth: true,
-        gives_depth,
-    };
-    let read = HostDepthImage {
-        view: buffer.view,
-        layout: READ.2,
-        extent: stage.extent,
-    };
-    let read = if is_ray { vec![read] } else { Vec::new() };
-    let shot = Shot {
-        frame: 0,
-        camera,
-        depth: Some(*depth),
-    };
-    // SAFETY: recorded in order; all of it lives until `run` has waited.
-    host.run(|cmd| unsafe { volume.record_upload(host.gpu(), cmd).unwrap() });
-    let volume = Arc::new(volume);
-    let function = Some(&stage.transfer);
-    let mut renderer =
-        Renderer::new(host.gpu(), &volume, function, class, stage.extent, &read).unwrap();
-    // SAFETY: as above.
-    host.run(|cmd| unsafe {
-        renderer.record(cmd, &shot).unwrap();
-        image.make_target(cmd);
-        if is_ray {
-            buffer.barrier(cmd, READ, ATTACHED);
-        }
-        let depth = Some(&buffer);
-        host.begin_rendering_before(cmd, image.view, stage.extent, [0.0; 4], depth);
-        renderer.draw(cmd, 0).unwrap();
-        if gives_depth {
-            renderer.draw_depth(cmd, 0).unwrap();
-        }
-        host.device.cmd_end_rendering(cmd);
-        image.fetch_drawn(cmd);
-    });
-    Found {
-        pixels: image.numbers(),
-        depths: buffer.numbers(),
-    }
-}
-
 fn stages() -> Vec<Stage> {
-    let rays = Settings {
-        technique: Technique::Raycast,
-        ..Settings::default()
+    let of = |technique, mode, preintegrated| {
+        Stage::new(Settings {
+            technique,
+            mode,
+            preintegrated,
+            lattice: match technique {
+                Technique::Raycast => Lattice::Ray,
+                Technique::Slices3d | Technique::Slices2d => Lattice::Planes,
+            },
+            ..Settings::default()
+        })
     };
-    let slices = |technique| Settings {
-        technique,
-        lattice: Lattice::Planes,
-        order: Order::BackToFront,
-        ..Settings::default()
-    };
-    [
-        rays,
-        slices(Technique::Slices3d),
-        slices(Technique::Slices2d),
-    ]
-    .map(Stage::new)
-    .into()
+    let slices = [Technique::Slices3d, Technique::Slices2d];
+    let sliced = slices.into_iter().flat_map(|technique| {
+        [
+            of(technique, Mode::Composite, false),
+            of(technique, Mode::Composite, true),
+            of(technique, Mode::Mip, false),
+            of(technique, Mode::Average, false),
+        ]
+    });
+    let rays = of(Technique::Raycast, Mode::Composite, false);
+    [rays].into_iter().chain(sliced).collect()
 }
 
 /// As [`embed_shared::assert_close`] has it for f32 targets, of 60 slices; and where the end of a ray moves by 1e-5 of
@@ -271,16 +111,27 @@ const MOVED: [f64; 3] = [0.0, -1e-5, 1e-5];
 fn what_a_host_has_drawn_hides_what_lies_behind_it_and_no_more() {
     let host = Host::new();
     for stage in stages() {
-        for eye in eyes(&stage) {
-            let what = format!("{:?}, {}", stage.settings.technique, eye.name);
+        for (nth, eye) in eyes(&stage).into_iter().enumerate() {
+            let Settings {
+                technique,
+                mode,
+                preintegrated,
+                ..
+            } = stage.settings;
+            let slabs = if preintegrated { ", slabs" } else { "" };
+            let what = format!("{technique} {mode}{slabs}, {}", eye.name);
+            // What reads the depth does it in one way: a perspective that is reversed, and parallel rays.
+            if (preintegrated || mode != Mode::Composite) && !(1..3).contains(&nth) {
+                continue;
+            }
             let (camera, depth) = Camera::from_matrices(&eye.view, &eye.clip, eye.nearer).unwrap();
             let drawn = depths(&stage, &camera, &depth);
             let far = (1.0 - eye.nearer.near()) as f32;
             let is_drawn = drawn.iter().filter(|&&d| d != far).count();
             assert!(is_drawn > 150, "{what}: only {is_drawn} pixels of spheres");
-            let found = draw(&host, &stage, &camera, &depth, &drawn);
+            let found = draw(&host, &stage, &camera, &depth, &drawn, None);
             let open = vec![far; drawn.len()];
-            let alone = draw(&host, &stage, &camera, &depth, &open);
+            let alone = draw(&host, &stage, &camera, &depth, &open, None);
             let width = stage.extent[0];
             let (mut worst, mut hidden) = (0.0f64, 0);
             for i in (0..drawn.len()).step_by(7) {
@@ -292,7 +143,8 @@ fn what_a_host_has_drawn_hides_what_lies_behind_it_and_no_more() {
                     off.fold(0.0, f64::max)
                 };
                 let off = MOVED.into_iter().map(off).fold(f64::INFINITY, f64::min);
-                hidden += u32::from(found.pixels[i][3] < alone.pixels[i][3] - 0.05);
+                let seen = found.pixels[i].iter().zip(&alone.pixels[i]);
+                hidden += u32::from(seen.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) > 0.02);
                 assert!(off < ALLOWED, "{what}: pixel {pixel:?} is off by {off}");
                 worst = worst.max(off);
             }
@@ -321,7 +173,7 @@ fn a_surface_gives_its_depth_back_where_it_is_nearer_than_the_host() {
     for eye in before_the_volume {
         let (camera, depth) = Camera::from_matrices(&eye.view, &eye.clip, eye.nearer).unwrap();
         let drawn = depths(&stage, &camera, &depth);
-        let found = draw(&host, &stage, &camera, &depth, &drawn);
+        let found = draw(&host, &stage, &camera, &depth, &drawn, None);
         let scene = Scene {
             volume: &stage.volume,
             transfer: Some(&stage.transfer),

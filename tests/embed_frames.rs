@@ -4,7 +4,7 @@ mod embed_shared;
 mod shared;
 
 use ash::vk;
-use embed_shared::{Host, HostImage, OnDevice, Stage, assert_close, over};
+use embed_shared::{Host, HostImage, OnDevice, Pace, Stage, assert_close, over};
 use glam::DMat3;
 use stratavox::gpu::{Bindings, Blend, Image, ParameterRing, Use, image_barrier};
 use stratavox::resolve::Resolve;
@@ -14,70 +14,6 @@ use stratavox::technique::{Inputs, Mode, Settings, Words, accumulation, paramete
 const FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 const DRAWN: [f32; 4] = [0.25, 0.0, 0.5, 1.0];
 const IN_FLIGHT: usize = 2;
-
-/// Two timelines of the host's: frame n begins when `gate` has reached n, and brings `done` to n.
-struct Pace<'h> {
-    gate: vk::Semaphore,
-    done: vk::Semaphore,
-    host: &'h Host,
-}
-
-impl<'h> Pace<'h> {
-    fn new(host: &'h Host) -> Self {
-        let timeline = || {
-            let mut kind =
-                vk::SemaphoreTypeCreateInfo::default().semaphore_type(vk::SemaphoreType::TIMELINE);
-            let info = vk::SemaphoreCreateInfo::default().push_next(&mut kind);
-            // SAFETY: the device has timelines; `drop` destroys them first.
-            unsafe { host.device.create_semaphore(&info, None).unwrap() }
-        };
-        Self {
-            gate: timeline(),
-            done: timeline(),
-            host,
-        }
-    }
-
-    fn done(&self) -> u64 {
-        // SAFETY: the semaphores are timelines of this device, here and below.
-        unsafe {
-            self.host
-                .device
-                .get_semaphore_counter_value(self.done)
-                .unwrap()
-        }
-    }
-
-    fn open(&self, frame: u64) {
-        let info = vk::SemaphoreSignalInfo::default()
-            .semaphore(self.gate)
-            .value(frame);
-        // SAFETY: as above; values rise.
-        unsafe { self.host.device.signal_semaphore(&info).unwrap() };
-    }
-
-    fn wait(&self, frame: u64) {
-        let (semaphores, values) = ([self.done], [frame]);
-        let info = vk::SemaphoreWaitInfo::default()
-            .semaphores(&semaphores)
-            .values(&values);
-        // SAFETY: as above.
-        unsafe { self.host.device.wait_semaphores(&info, u64::MAX).unwrap() };
-    }
-}
-
-impl Drop for Pace<'_> {
-    fn drop(&mut self) {
-        // A test that fails leaves frames behind a closed gate.
-        self.open(u64::from(u32::MAX) / 4);
-        // SAFETY: what waits for the semaphores is finished first.
-        unsafe {
-            self.host.device.device_wait_idle().unwrap();
-            self.host.device.destroy_semaphore(self.gate, None);
-            self.host.device.destroy_semaphore(self.done, None);
-        }
-    }
-}
 
 /// What a host makes before its first frame.
 struct Ready<'h> {
@@ -172,24 +108,8 @@ impl<'h> Ready<'h> {
     }
 
     /// Submits frame `n` from its slot.
-    fn submit(&self, host: &Host, slot: usize, n: u64, pace: &Pace) {
-        let (cmds, values) = ([self.frames[slot].cmd], [n]);
-        let (waits, signals) = ([pace.gate], [pace.done]);
-        let mut timeline = vk::TimelineSemaphoreSubmitInfo::default()
-            .wait_semaphore_values(&values)
-            .signal_semaphore_values(&values);
-        let submit = vk::SubmitInfo::default()
-            .command_buffers(&cmds)
-            .wait_semaphores(&waits)
-            .wait_dst_stage_mask(&[vk::PipelineStageFlags::ALL_COMMANDS])
-            .signal_semaphores(&signals)
-            .push_next(&mut timeline);
-        // SAFETY: the recording has ended, and the frame is not submitted again before it is finished.
-        unsafe {
-            host.device
-                .queue_submit(host.queue, &[submit], vk::Fence::null())
-                .unwrap()
-        };
+    fn submit(&self, slot: usize, n: u64, pace: &Pace) {
+        pace.submit(self.frames[slot].cmd, n);
     }
 }
 
@@ -227,7 +147,7 @@ fn the_next_frame_is_written_and_recorded_while_the_last_one_waits() {
         }
         host.gpu().announce(n);
         ready.record(&host, &turned(n), slot);
-        ready.submit(&host, slot, n, &pace);
+        ready.submit(slot, n, &pace);
         // Frame n - 1 could not begin while this one was written.
         assert_eq!(pace.done(), n.saturating_sub(IN_FLIGHT as u64));
         if n > 1 {
@@ -251,7 +171,7 @@ fn what_is_dropped_in_use_lives_until_its_frame_is_done() {
     let used = gpu.live_objects();
     gpu.announce(1);
     ready.record(&host, &stage, 0);
-    ready.submit(&host, 0, 1, &pace);
+    ready.submit(0, 1, &pace);
     // The host's own images stay; all that is ours goes.
     let images: Vec<_> = ready.frames.drain(..).map(|frame| frame.image).collect();
     drop(ready);

@@ -4,68 +4,16 @@ mod embed_shared;
 mod shared;
 
 use ash::vk;
-use embed_shared::{Host, HostImage, Stage};
+use embed_shared::{Host, HostImage, Stage, all_settings};
 use std::sync::Arc;
 use stratavox::embed::{Class, Error, QueueLock, Renderer, Shot, Submitter, Volume};
 use stratavox::gpu::{Load, Target, Use};
 use stratavox::offscreen;
 use stratavox::scene::Scene;
-use stratavox::technique::{Level, Mode, Order, Settings, Technique};
+use stratavox::technique::{Mode, Order, Settings, Technique};
 
 /// What is drawn there is what was computed, to the bit.
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
-
-/// Every way into a host's frame.
-fn all_settings() -> Vec<Settings> {
-    let modes = [
-        Mode::Composite,
-        Mode::Mip,
-        Mode::Average,
-        Mode::Mida,
-        Mode::Iso,
-    ];
-    let rays = modes.map(|mode| Settings {
-        mode,
-        ..Settings::default()
-    });
-    let sliced = [Technique::Slices3d, Technique::Slices2d].into_iter();
-    let slices = sliced.flat_map(|technique| {
-        [Mode::Composite, Mode::Mip, Mode::Xray].map(|mode| Settings {
-            technique,
-            mode,
-            order: Order::BackToFront,
-            ..Settings::default()
-        })
-    });
-    let filters = [
-        stratavox::technique::Filter::Nearest,
-        stratavox::technique::Filter::Cubic,
-    ];
-    let filtered = filters.map(|filter| Settings {
-        filter,
-        ..Settings::default()
-    });
-    let slabs = Settings {
-        preintegrated: true,
-        ..Settings::default()
-    };
-    let all = rays
-        .into_iter()
-        .chain(slices)
-        .chain(filtered)
-        .chain([slabs]);
-    all.map(|mut settings| {
-        if settings.mode == Mode::Iso {
-            settings.per_mode.levels = vec![Level {
-                value: 0.5,
-                srgb: [0.9, 0.6, 0.3],
-                opacity: 1.0,
-            }];
-        }
-        settings
-    })
-    .collect()
-}
 
 fn stage(settings: &Settings) -> Stage {
     let mut stage = Stage::new(settings.clone());
@@ -246,6 +194,38 @@ fn level_c_submits_under_the_hosts_lock_between_the_hosts_values() {
 }
 
 #[test]
+fn level_c_draws_in_all_settings_what_offscreen_makes() {
+    let host = Host::that_lets_us_submit();
+    let device = &host.device;
+    let in_lock = |submit: &mut dyn FnMut()| submit();
+    let lock = QueueLock {
+        queue: host.queue,
+        locked: &in_lock,
+    };
+    let mut submitter = Submitter::new(host.gpu(), 2).unwrap();
+    for settings in all_settings() {
+        let stage = stage(&settings);
+        let mut renderer = renderer(&host, &stage);
+        let image = HostImage::new(&host, FORMAT, stage.extent);
+        // SAFETY: the device is done with one submission before its number comes again, and with all before they go.
+        unsafe {
+            let (shot, target) = (shot(&stage, 1), target(&image));
+            let load = Load::Clear([0.0; 4]);
+            submitter
+                .submit(&mut renderer, &shot, &target, load, lock, &[], &[])
+                .unwrap();
+            let fetch = |cmd| {
+                image.copy_from(cmd, vk::ImageLayout::TRANSFER_SRC_OPTIMAL);
+                Ok(())
+            };
+            submitter.run(lock, 0, &[], &[], fetch).unwrap();
+            device.device_wait_idle().unwrap();
+        }
+        assert_same(&settings, &image.numbers(), &offscreen(&stage), "C");
+    }
+}
+
+#[test]
 fn a_recorded_frame_makes_nothing_and_compiles_nothing() {
     let host = Host::new();
     let gpu = host.gpu();
@@ -411,14 +391,6 @@ fn what_cannot_be_drawn_so_is_refused_by_name() {
         ),
         ("depth attachment", with(&|c| c.gives_depth = true)),
         ("images to read", with(&|c| c.host_depth = true)),
-        (
-            "pre-integrated slicing",
-            with(&|c| {
-                c.settings.technique = Technique::Slices2d;
-                c.settings.preintegrated = true;
-                c.host_depth = true;
-            }),
-        ),
         (
             "front to back",
             with(&|c| {

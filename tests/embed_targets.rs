@@ -10,7 +10,7 @@ use glam::dcamera::rh::view::look_at_mat4;
 use std::sync::Arc;
 use stratavox::camera::{Camera, HostDepth, Nearer};
 use stratavox::embed::{Class, Renderer, Shot, Volume};
-use stratavox::gpu::{DepthClass, TargetClass};
+use stratavox::gpu::{DepthClass, HostPass, TargetClass};
 use stratavox::technique::{Settings, Technique};
 
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
@@ -145,7 +145,7 @@ fn a_render_pass_with_a_depth_attachment_shows_the_same() {
                         has_stencil: false,
                         is_reversed: false,
                     }),
-                    pass: Some((pass, 1)),
+                    pass: Some(HostPass::new(pass, 1)),
                     ..FORMAT.into()
                 },
             );

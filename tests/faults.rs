@@ -21,7 +21,12 @@ type Drawn = Result<Vec<u8>, Box<dyn Error>>;
 
 /// What may fail without a word: names of objects, and the wait before a device of our own goes, after which there is
 /// nobody to tell.
-const COURTESIES: [&str; 2] = ["vkSetDebugUtilsObjectNameEXT", "vkDeviceWaitIdle"];
+const COURTESIES: [&str; 3] = [
+    "vkSetDebugUtilsObjectNameEXT",
+    "vkDeviceWaitIdle",
+    // What it tells of is of use, no more.
+    "vkEnumerateDeviceExtensionProperties",
+];
 
 /// What may fail once: memory that the host writes is looked for in a second place, and among the extensions of an
 /// instance we look for one that is needed, and told of, and for one that gives names.

@@ -183,3 +183,38 @@ fn renderers_one_after_the_other_on_one_device_take_no_more_memory() {
         device = Some(renderer.into_device());
     });
 }
+
+#[test]
+fn renderers_of_a_host_one_after_the_other_take_no_more_memory() {
+    let _one = one_at_a_time();
+    let tape = Tape::begin();
+    let (host, mut stage) = (Host::new(), Stage::new());
+    let device = host.device(Features {
+        dynamic_rendering: true,
+        synchronization2: true,
+        timeline_semaphore: true,
+        ..Features::default()
+    });
+    // SAFETY: the handles are right, and everything made on the device is dropped before it.
+    let gpu = unsafe { Gpu::from_host(device.handles(hooked)).unwrap() };
+    // By rays and by slices in turn.
+    let mut pictures = [None, None];
+    // Maps have seeds of their own, as above.
+    assert_no_growth(1024, || {
+        for (technique, first) in [Technique::Raycast, Technique::Slices3d]
+            .into_iter()
+            .zip(&mut pictures)
+        {
+            stage.settings.technique = technique;
+            let drawn = stage.submit(&device, &gpu).unwrap();
+            // SAFETY: it has waited for its timeline.
+            unsafe { gpu.retire(u64::MAX) };
+            assert!(
+                *first.get_or_insert_with(|| drawn.clone()) == drawn,
+                "another picture"
+            );
+        }
+    });
+    drop(gpu);
+    assert_eq!(tape.books(), Vec::<&str>::new());
+}

@@ -100,6 +100,13 @@ fn without(item: Item, whole: HostDevice<'static>) -> Vec<(HostDevice<'static>, 
                 .collect();
         }
         Item::InstanceExtension(_) => host.debug_utils = false,
+        Item::DeviceExtension(_) => {
+            let nothing = Lacking {
+                device_extensions: true,
+                ..nothing
+            };
+            return vec![(host, nothing)];
+        }
         other => panic!("nobody takes {other} away"),
     }
     vec![(host, nothing)]

@@ -67,7 +67,6 @@ unsafe fn film(
         shading: Some(Shading::default()),
         ..Settings::default()
     };
-    let is_ray = technique == Technique::Raycast;
 
     // SAFETY: the caller's promise; every frame is waited for.
     unsafe {
@@ -88,13 +87,11 @@ unsafe fn film(
             host_depth: true,
             gives_depth: false,
         };
-        let read = HostDepthImage {
-            view: host.depth_view,
-            layout: DepthFor::Rays.state().2,
-            extent: EXTENT,
-        };
+        let layout = DepthFor::Rays.state().2;
+        let read = HostDepthImage::new(host.depth_view, layout, EXTENT);
         // Slices are tested against the depth attachment; rays read it.
-        let read = if is_ray { vec![read] } else { Vec::new() };
+        let reads = class.reads_host_depth();
+        let read = if reads { vec![read] } else { Vec::new() };
         let (volume, function) = (Arc::new(volume), function());
         let mut renderer = Renderer::new(&gpu, &volume, Some(&function), class, EXTENT, &read)?;
 
@@ -118,9 +115,15 @@ unsafe fn film(
                 host.draw(cmd, &corners);
                 host.device.cmd_end_rendering(cmd);
                 // Rays go as far as the meshes.
-                host.depth_barrier(cmd, DepthFor::Rendering, DepthFor::Rays);
+                let between = match reads {
+                    true => DepthFor::Rays,
+                    false => DepthFor::Rendering,
+                };
+                host.depth_barrier(cmd, DepthFor::Rendering, between);
                 renderer.record(cmd, &shot)?;
-                host.depth_barrier(cmd, DepthFor::Rays, DepthFor::Rendering);
+                if reads {
+                    host.depth_barrier(cmd, between, DepthFor::Rendering);
+                }
                 host.begin_rendering(cmd, None);
                 renderer.draw(cmd, 0)?;
                 host.finish(cmd);

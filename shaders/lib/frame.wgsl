@@ -31,7 +31,7 @@ struct Frame {
     codes_are_integers: u32,
     // The same as a covector of voxel space: which way each grid axis runs away from the eye.
     forward_voxel: vec3<f32>,
-    // +1 for a maximum, -1 for a minimum.
+    // +1 for a maximum, -1 for a minimum, 0 for a sum.
     extreme_sign: f32,
     // What is kept of the grid, in voxel space, and the cover that slicers draw.
     domain_min: vec3<f32>,

@@ -15,15 +15,17 @@ struct Accumulator {
     // Where opacity reached one half; negative before that.
     depth: f32,
     samples: f32,
+    // That of the sample there.
+    value: f32,
 }
 
 fn begin() -> Accumulator {
-    return Accumulator(vec3(0.0), 1.0, -1.0, 0.0);
+    return Accumulator(vec3(0.0), 1.0, -1.0, 0.0, 0.0);
 }
 
 // As it was left in the images of the picture and beside it.
 fn resumed(picture: vec4<f32>, beside: vec4<f32>) -> Accumulator {
-    return Accumulator(picture.xyz, beside.z, beside.y, beside.w);
+    return Accumulator(picture.xyz, beside.z, beside.y, beside.w, beside.x);
 }
 
 // What the picture gets.
@@ -31,9 +33,9 @@ fn picture_of(found: Accumulator) -> vec4<f32> {
     return vec4(face_color(found.color), 1.0 - found.transmittance);
 }
 
-// 0, depth, transmittance, samples.
+// The value at that depth, the depth, transmittance, samples.
 fn beside_of(found: Accumulator) -> vec4<f32> {
-    return vec4(0.0, found.depth, found.transmittance, found.samples);
+    return vec4(found.value, found.depth, found.transmittance, found.samples);
 }
 
 fn add(so_far: Accumulator, sample: Sample, segment: Segment) -> Accumulator {
@@ -47,6 +49,7 @@ fn add(so_far: Accumulator, sample: Sample, segment: Segment) -> Accumulator {
     next.transmittance *= 1.0 - opacity;
     if so_far.depth < 0.0 && next.transmittance <= 0.5 {
         next.depth = segment.t;
+        next.value = value_of(sample);
     }
     return next;
 }

@@ -31,6 +31,14 @@ pub struct sv_memory {
     pub vulkan_objects: u64,
     /// Handles that are not destroyed yet.
     pub handles: u64,
+    /// The most bytes that may be reserved, or 0 where there is no budget.
+    pub budget_bytes: u64,
+    /// In how many pieces they were taken, which `maxMemoryAllocationCount` counts.
+    pub allocations: u64,
+    /// What the driver says that this process may use of the device's own memory; 0 without `VK_EXT_memory_budget`.
+    pub device_budget_bytes: u64,
+    /// What the driver says that it uses, the host's own with it; 0 without that.
+    pub device_used_bytes: u64,
 }
 
 // SAFETY: as the trait wants it.
@@ -156,6 +164,7 @@ pub unsafe extern "C" fn sv_device_from_host(
                 pipeline_cache,
             })?
         };
+        gpu.set_memory_budget((host.memory_budget > 0).then_some(host.memory_budget));
         let listener = host.device_lost.map(|call| Listener {
             call,
             user: host.user,
@@ -244,19 +253,59 @@ pub unsafe extern "C" fn sv_device_memory(
     let body = || {
         let device = handles::device(device)?;
         let gpu = &device.gpu;
+        let memory_use = gpu.memory();
+        let local = memory_use.heaps.iter().filter(|heap| heap.is_device_local);
         let objects = gpu.live_objects().values().sum::<usize>();
         let handles = device.objects.lock().map_or(0, |table| table.len());
         let found = sv_memory {
             struct_size: 0,
             next: std::ptr::null(),
-            used_bytes: gpu.owned_device_bytes(),
-            reserved_bytes: gpu.device_bytes(),
-            peak_bytes: gpu.peak_device_bytes(),
+            used_bytes: memory_use.used_bytes,
+            reserved_bytes: memory_use.reserved_bytes,
+            peak_bytes: memory_use.peak_bytes,
             vulkan_objects: objects as u64,
             handles: handles as u64,
+            budget_bytes: memory_use.budget_bytes.unwrap_or(0),
+            allocations: memory_use.allocations,
+            device_budget_bytes: local.clone().map(|heap| heap.budget_bytes).sum(),
+            device_used_bytes: local.map(|heap| heap.used_bytes).sum(),
         };
         // SAFETY: the caller's promise.
         unsafe { structure::write(memory, &found) }
+    };
+    // SAFETY: the caller's promise.
+    unsafe { guard(diagnostic, body) }
+}
+
+/// Takes no more memory from the driver than so many bytes from now on: what would is SV_E_LIMIT, before the driver is asked.
+/// 0: no budget. Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sv_device_set_memory_budget(
+    device: sv_device,
+    bytes: u64,
+    diagnostic: *mut sv_diagnostic,
+) -> sv_status {
+    let body = || {
+        let device = handles::device(device)?;
+        device.gpu.set_memory_budget((bytes > 0).then_some(bytes));
+        Ok(())
+    };
+    // SAFETY: the caller's promise.
+    unsafe { guard(diagnostic, body) }
+}
+
+/// The host has heard that its device is lost, as it submits and waits itself: from now on every call for work is
+/// SV_E_DEVICE_LOST, and nothing calls the device but what destroys. `device_lost` is not called for it. Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sv_device_declare_lost(
+    device: sv_device,
+    diagnostic: *mut sv_diagnostic,
+) -> sv_status {
+    let body = || {
+        let device = handles::device(device)?;
+        device.gpu.declare_lost();
+        device.is_lost.store(true, Ordering::Relaxed);
+        Ok(())
     };
     // SAFETY: the caller's promise.
     unsafe { guard(diagnostic, body) }

@@ -95,8 +95,11 @@ impl From<embed::Error> for Failure {
             | Error::NotUploaded
             | Error::Uploaded
             | Error::NotRecorded { .. }
+            | Error::NotBegun { .. }
             | Error::NotPicked { .. } => SV_E_STATE,
             Error::FramesInFlight { .. }
+            | Error::TargetState { .. }
+            | Error::Update { .. }
             | Error::NoFrame { .. }
             | Error::HostDepth { .. }
             | Error::NoPixel { .. } => SV_E_ARGUMENT,

@@ -24,13 +24,14 @@ pub(super) trait Kind: Any + Send + Sync {
 }
 
 /// By their numbers.
-const NAMES: [&str; 6] = [
+const NAMES: [&str; 7] = [
     "",
     "sv_device",
     "sv_volume",
     "sv_function",
     "sv_renderer",
     "sv_submitter",
+    "sv_update",
 ];
 
 const BITS: u32 = 20;

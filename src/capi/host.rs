@@ -91,6 +91,8 @@ pub struct sv_host_device {
     pub device_lost: Option<unsafe extern "C" fn(user: *mut c_void, text: *const c_char)>,
     /// What `device_lost` is called with.
     pub user: *mut c_void,
+    /// As sv_device_set_memory_budget. 0: no budget.
+    pub memory_budget: u64,
 }
 
 // SAFETY: as the trait wants it.

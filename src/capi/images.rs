@@ -3,7 +3,7 @@
 use super::status::{Failure, number};
 use super::structure::{self, Versioned};
 use crate::embed::HostDepthImage;
-use crate::gpu::{DepthClass, Load, Target, TargetClass, TargetState, Use};
+use crate::gpu::{DepthClass, HostPass, Load, Target, TargetClass, TargetState, Use};
 use ash::vk::{self, Handle};
 use std::ffi::c_void;
 
@@ -127,7 +127,8 @@ pub(super) unsafe fn target_class(c: &sv_target_class) -> Result<TargetClass, Fa
         },
         pass: match c.render_pass {
             0 => None,
-            pass => Some((vk::RenderPass::from_raw(pass), c.subpass)),
+            // SAFETY: the caller's promise.
+            pass => Some(unsafe { HostPass::new(vk::RenderPass::from_raw(pass), c.subpass) }),
         },
     })
 }
@@ -142,14 +143,13 @@ pub(super) unsafe fn depth_images(
     // SAFETY: the caller's promise.
     let images = unsafe { structure::array(name, pointer, count, MOST_FRAMES.into())? };
     let image = |c: &sv_depth_image| {
-        Ok(HostDepthImage {
-            view: match c.view {
-                0 => return Err(Failure::argument("sv_depth_image.view is 0")),
-                view => vk::ImageView::from_raw(view),
-            },
-            layout: read_layout(c.layout)?,
-            extent: [c.width, c.height],
-        })
+        if c.view == 0 {
+            return Err(Failure::argument("sv_depth_image.view is 0"));
+        }
+        let view = vk::ImageView::from_raw(c.view);
+        let layout = layout("sv_depth_image.layout", c.layout)?;
+        // SAFETY: the caller's promise.
+        Ok(unsafe { HostDepthImage::new(view, layout, [c.width, c.height]) })
     };
     images.iter().map(image).collect()
 }
@@ -176,31 +176,13 @@ pub(super) unsafe fn target(pointer: *const sv_target) -> Result<(Target, Load),
         before: state("sv_target.before", &c.before)?,
         after: match is_zero(&c.after) {
             true => Use::ColorTarget.into(),
-            false => {
-                let after = state("sv_target.after", &c.after)?;
-                let is_held = after.layout != vk::ImageLayout::UNDEFINED
-                    && after.layout != vk::ImageLayout::PREINITIALIZED;
-                let found = after.layout.as_raw().into();
-                number(
-                    "sv_target.after.layout",
-                    "one that keeps it",
-                    found,
-                    is_held,
-                )?;
-                after
-            }
+            false => state("sv_target.after", &c.after)?,
         },
     };
     let load = match c.is_cleared {
         0 => Load::Keep,
         _ => Load::Clear(c.clear_color),
     };
-    if load == Load::Keep && target.before.layout == vk::ImageLayout::UNDEFINED {
-        return Err(Failure::argument(
-            "sv_target: what it holds is to be kept, and before.layout is VK_IMAGE_LAYOUT_UNDEFINED, which gives it up: \
-             set is_cleared, or say the layout that it is in",
-        ));
-    }
     Ok((target, load))
 }
 
@@ -214,24 +196,8 @@ fn is_zero(state: &sv_image_state) -> bool {
 }
 
 fn state(name: &str, c: &sv_image_state) -> Result<TargetState, Failure> {
-    // Of Vulkan 1.0 to 1.3, and VK_IMAGE_LAYOUT_PRESENT_SRC_KHR.
-    let is_layout = matches!(
-        c.layout,
-        0..=8
-            | 1_000_117_000..=1_000_117_001
-            | 1_000_241_000..=1_000_241_003
-            | 1_000_314_000..=1_000_314_001
-            | 1_000_001_002
-    );
-    let wanted = "a VkImageLayout of Vulkan 1.3 or VK_IMAGE_LAYOUT_PRESENT_SRC_KHR";
-    number(
-        &format!("{name}.layout"),
-        wanted,
-        c.layout.into(),
-        is_layout,
-    )?;
     Ok(TargetState {
-        layout: vk::ImageLayout::from_raw(c.layout as i32),
+        layout: layout(&format!("{name}.layout"), c.layout)?,
         stage: vk::PipelineStageFlags2::from_raw(c.stage),
         access: vk::AccessFlags2::from_raw(c.access),
         queue_family: match c.has_queue_family {
@@ -241,22 +207,20 @@ fn state(name: &str, c: &sv_image_state) -> Result<TargetState, Failure> {
     })
 }
 
-/// From which shaders read depth: the layouts that the specification allows for it.
-fn read_layout(layout: u32) -> Result<vk::ImageLayout, Failure> {
-    use vk::ImageLayout as Layout;
-    let found = Layout::from_raw(layout as i32);
-    let is_right = [
-        Layout::GENERAL,
-        Layout::DEPTH_STENCIL_READ_ONLY_OPTIMAL,
-        Layout::SHADER_READ_ONLY_OPTIMAL,
-        Layout::DEPTH_READ_ONLY_OPTIMAL,
-        Layout::DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL,
-        Layout::READ_ONLY_OPTIMAL,
-    ]
-    .contains(&found);
-    let wanted = "a VkImageLayout from which shaders read depth";
-    number("sv_depth_image.layout", wanted, layout.into(), is_right)?;
-    Ok(found)
+/// A layout that is one.
+fn layout(name: &str, found: u32) -> Result<vk::ImageLayout, Failure> {
+    // Of Vulkan 1.0 to 1.3, and VK_IMAGE_LAYOUT_PRESENT_SRC_KHR.
+    let is_layout = matches!(
+        found,
+        0..=8
+            | 1_000_117_000..=1_000_117_001
+            | 1_000_241_000..=1_000_241_003
+            | 1_000_314_000..=1_000_314_001
+            | 1_000_001_002
+    );
+    let wanted = "a VkImageLayout of Vulkan 1.3 or VK_IMAGE_LAYOUT_PRESENT_SRC_KHR";
+    number(name, wanted, found.into(), is_layout)?;
+    Ok(vk::ImageLayout::from_raw(found as i32))
 }
 
 /// Drivers are not asked about numbers that are no format: some would look past the end of a table.

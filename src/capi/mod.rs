@@ -22,20 +22,25 @@ mod function;
 mod handles;
 mod host;
 mod images;
+mod parts;
 mod pick;
+mod plan;
 mod record;
 mod renderer;
+mod requirements;
 mod settings;
 mod status;
 mod structure;
 mod submit;
+mod update;
 mod volume;
 mod words;
 
 pub use camera::sv_camera;
 pub use device::{
-    sv_device, sv_device_announce, sv_device_destroy, sv_device_from_host, sv_device_memory,
-    sv_device_pipeline_cache, sv_device_pipelines_made, sv_device_retire, sv_memory,
+    sv_device, sv_device_announce, sv_device_declare_lost, sv_device_destroy, sv_device_from_host,
+    sv_device_memory, sv_device_pipeline_cache, sv_device_pipelines_made, sv_device_retire,
+    sv_device_set_memory_budget, sv_memory,
 };
 pub use function::{
     sv_color_point, sv_function, sv_function_create, sv_function_desc, sv_function_destroy,
@@ -43,7 +48,11 @@ pub use function::{
 };
 pub use host::{sv_feature, sv_get_instance_proc_addr, sv_host_device, sv_limits, sv_vk_function};
 pub use images::{sv_depth_image, sv_image_state, sv_target, sv_target_class};
+pub use parts::{
+    sv_pacing, sv_renderer_begin_parts, sv_renderer_record_part_into, sv_submitter_submit_in_parts,
+};
 pub use pick::{sv_pick, sv_renderer_pick, sv_renderer_record_pick};
+pub use plan::{sv_plan, sv_volume_plan};
 pub use record::{
     sv_renderer_draw, sv_renderer_draw_depth, sv_renderer_record, sv_renderer_record_into, sv_shot,
 };
@@ -51,11 +60,15 @@ pub use renderer::{
     sv_renderer, sv_renderer_create, sv_renderer_desc, sv_renderer_destroy, sv_renderer_resize,
     sv_renderer_set_function, sv_renderer_set_settings, sv_renderer_set_volume,
 };
+pub use requirements::{sv_check_device, sv_requirement, sv_requirements};
 pub use settings::{sv_clip_plane, sv_level, sv_light, sv_settings};
 pub use status::{sv_diagnostic, sv_status};
 pub use submit::{
     sv_submission, sv_submitter, sv_submitter_create, sv_submitter_destroy, sv_submitter_submit,
     sv_submitter_upload, sv_timeline_point,
+};
+pub use update::{
+    sv_update, sv_update_desc, sv_update_destroy, sv_volume_record_update, sv_volume_stage_update,
 };
 pub use volume::{
     sv_volume, sv_volume_create, sv_volume_desc, sv_volume_destroy, sv_volume_record_upload,

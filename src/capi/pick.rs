@@ -1,13 +1,12 @@
 //! What lies under a pixel.
 
 use super::renderer::{sv_renderer, with};
-use super::status::{Failure, guard, sv_diagnostic, sv_status};
+use super::status::{guard, sv_diagnostic, sv_status};
 use super::structure::{self, Versioned};
 use super::volume::commands;
 use std::ffi::c_void;
 
-/// What lies under a pixel of a picture by rays: where a composite has become half opaque, the first surface, the place
-/// of a maximum.
+/// What lies under a pixel: where a composite has become half opaque, the first surface, the place of a maximum.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct sv_pick {
@@ -17,9 +16,9 @@ pub struct sv_pick {
     pub next: *const c_void,
     /// 0: nothing is there, and all that follows is 0.
     pub is_hit: u32,
-    /// 0: composites have no value.
+    /// 0: MIDA and slabs have no value.
     pub has_value: u32,
-    /// 0: projecting modes have no colour yet.
+    /// 0: projecting modes have no colour yet, and slices none beside their depth.
     pub has_color: u32,
     /// 0.
     pub reserved: u32,
@@ -27,7 +26,8 @@ pub struct sv_pick {
     pub distance: f64,
     /// The place in the world.
     pub position: [f64; 3],
-    /// The projected value, or that of the surface.
+    /// The projected value, that of the surface, or of the sample that made a composite half opaque; of a map of labels the
+    /// label.
     pub value: f64,
     /// Premultiplied colour and alpha.
     pub color: [f32; 4],
@@ -54,8 +54,6 @@ pub unsafe extern "C" fn sv_renderer_record_pick(
             let cmd = commands(command_buffer)?;
             // SAFETY: the caller's promise.
             unsafe { inner.renderer.record_pick(cmd, frame, [x, y])? };
-            // There is such a frame: something was recorded for it.
-            inner.picked[frame as usize] = Some([x, y]);
             Ok(())
         })
     };
@@ -79,11 +77,6 @@ pub unsafe extern "C" fn sv_renderer_pick(
         unsafe { structure::check_room(pick.cast_const())? };
         with(renderer, |_, inner| {
             let found = inner.renderer.pick(frame, [x, y])?;
-            if inner.picked[frame as usize] != Some([x, y]) {
-                return Err(Failure::state(format!(
-                    "pixel ({x}, {y}) was not picked: sv_renderer_record_pick of frame {frame} comes first"
-                )));
-            }
             let mut told = sv_pick {
                 struct_size: 0,
                 next: std::ptr::null(),

@@ -49,14 +49,11 @@ impl Taken {
             (shot, camera(shot.camera, inner.volume.grid(), extent)?)
         };
         let class = inner.renderer.class();
-        if depth.is_none() && (class.host_depth || class.gives_depth) {
+        let writes_depth = class.gives_depth && class.target.depth.is_some();
+        if depth.is_none() && (class.host_depth || writes_depth) {
             return Err(Failure::argument(
                 "sv_shot.camera: a renderer with has_host_depth or gives_depth wants SV_CAMERA_MATRICES",
             ));
-        }
-        // What was picked was of another picture.
-        if let Some(picked) = inner.picked.get_mut(shot.frame as usize) {
-            *picked = None;
         }
         Ok(Self {
             camera,
@@ -124,8 +121,8 @@ pub unsafe extern "C" fn sv_renderer_draw(
     unsafe { guard(diagnostic, body) }
 }
 
-/// Writes the depth of a picture by rays into the depth attachment, where it is nearer than what is there. Of composites
-/// it is where they become half opaque. As sv_renderer_draw, and depth may be written; wants `gives_depth`.
+/// Writes the depth of a picture into the depth attachment, where it is nearer than what is there. Of composites it is
+/// where they become half opaque. As sv_renderer_draw, and depth may be written; wants `gives_depth`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sv_renderer_draw_depth(
     renderer: sv_renderer,

@@ -40,11 +40,13 @@ pub struct sv_renderer_desc {
     pub frames_in_flight: u32,
     /// Not 0: what the host has drawn hides the volume behind it. Cameras are SV_CAMERA_MATRICES then.
     pub has_host_depth: u32,
-    /// Not 0: sv_renderer_draw_depth will be called. Cameras are SV_CAMERA_MATRICES then.
+    /// Not 0: sv_renderer_draw_depth will be called, where `target` has a depth attachment (cameras are
+    /// SV_CAMERA_MATRICES then), and of slices sv_renderer_record_pick, for which rays need it not.
     pub gives_depth: u32,
     /// 0.
     pub reserved: u32,
-    /// With `has_host_depth` and rays: the host's depth, one image for all frames in flight or one for each.
+    /// With `has_host_depth`, but for composited slices without `gives_depth`, which are tested against the attachment:
+    /// the host's depth, one image for all frames in flight or one for each.
     pub depth_images: *const sv_depth_image,
     /// How many there are.
     pub depth_image_count: u64,
@@ -61,8 +63,6 @@ pub(super) struct Held(Mutex<Inner>);
 pub(super) struct Inner {
     pub renderer: embed::Renderer,
     pub volume: Arc<embed::Volume>,
-    /// The pixel whose copy was recorded, of each frame in flight.
-    pub picked: Vec<Option<[u32; 2]>>,
 }
 
 impl Kind for Held {
@@ -245,11 +245,7 @@ unsafe fn made(device: &Device, desc: &sv_renderer_desc) -> Result<Inner, Failur
     let extent = extent(device, [desc.width, desc.height])?;
     let gpu = &device.gpu;
     let renderer = embed::Renderer::new(gpu, &volume, function.as_ref(), class, extent, &depths)?;
-    Ok(Inner {
-        renderer,
-        volume,
-        picked: vec![None; frames as usize],
-    })
+    Ok(Inner { renderer, volume })
 }
 
 /// A size that the device can draw to.

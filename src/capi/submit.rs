@@ -62,7 +62,7 @@ unsafe impl Versioned for sv_submission {
 const MOST_POINTS: u64 = 256;
 
 /// One thread at a time.
-struct Held(Mutex<Submitter>);
+pub(super) struct Held(pub Mutex<Submitter>);
 
 impl Kind for Held {
     const NUMBER: u64 = 5;
@@ -193,16 +193,16 @@ pub unsafe extern "C" fn sv_submitter_destroy(
 }
 
 /// What a caller's structure says.
-struct Submission {
+pub(super) struct Submission {
     c: sv_submission,
-    waits: Vec<TimelinePoint>,
-    signals: Vec<TimelinePoint>,
+    pub waits: Vec<TimelinePoint>,
+    pub signals: Vec<TimelinePoint>,
 }
 
 impl Submission {
     /// # Safety
     /// As [`structure::read`] of all that `pointer` points to.
-    unsafe fn new(pointer: *const sv_submission) -> Result<Self, Failure> {
+    pub unsafe fn new(pointer: *const sv_submission) -> Result<Self, Failure> {
         // SAFETY: the caller's promise.
         let c = unsafe { structure::read(pointer)? };
         if c.queue.is_null() {
@@ -224,7 +224,7 @@ impl Submission {
     }
 
     /// Calls what it is given between the host's two functions.
-    fn locked(&self) -> impl Fn(&mut dyn FnMut()) {
+    pub fn locked(&self) -> impl Fn(&mut dyn FnMut()) {
         let (lock, unlock, user) = (self.c.lock, self.c.unlock, self.c.user);
         move |submit| {
             // SAFETY: the host's functions, with what the host gave for them.
@@ -240,7 +240,7 @@ impl Submission {
         }
     }
 
-    fn lock<'a>(&self, locked: &'a dyn Fn(&mut dyn FnMut())) -> QueueLock<'a> {
+    pub fn lock<'a>(&self, locked: &'a dyn Fn(&mut dyn FnMut())) -> QueueLock<'a> {
         QueueLock {
             queue: vk::Queue::from_raw(self.c.queue as u64),
             locked,

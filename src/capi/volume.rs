@@ -47,6 +47,12 @@ pub struct sv_volume_desc {
     pub fill: f64,
     /// The settings of the renderers that will draw it, of which technique, filter, light and empty space count; or NULL.
     pub settings: *const sv_settings,
+    /// Not 0: `value_range` holds all values that the volume has and will get by updates. 0: it is that of the voxels.
+    pub has_value_range: u32,
+    /// 0.
+    pub reserved: u32,
+    /// Smallest and largest value.
+    pub value_range: [f64; 2],
 }
 
 // SAFETY: as the trait wants it.
@@ -60,6 +66,15 @@ pub(super) struct Held(Mutex<Inner>);
 struct Inner {
     volume: Arc<embed::Volume>,
     upload: Upload,
+    source: Source,
+}
+
+/// How the host's numbers become values: those of updates too.
+#[derive(Clone, Copy)]
+pub(super) struct Source {
+    pub kind: VoxelType,
+    pub rescale: Rescale,
+    pub fill: Option<f64>,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -76,11 +91,17 @@ impl Kind for Held {
 }
 
 impl Held {
-    fn new(volume: embed::Volume) -> Self {
+    fn new(volume: embed::Volume, source: Source) -> Self {
         Self(Mutex::new(Inner {
             volume: Arc::new(volume),
             upload: Upload::Wanted,
+            source,
         }))
+    }
+
+    /// How its voxels are told.
+    pub fn source(&self) -> Result<Source, Failure> {
+        Ok(self.lock()?.source)
     }
 
     fn lock(&self) -> Result<MutexGuard<'_, Inner>, Failure> {
@@ -159,25 +180,28 @@ pub unsafe extern "C" fn sv_volume_create(
         device.run(|| {
             // SAFETY: the caller's promise.
             let desc = unsafe { structure::read(desc)? };
-            let (words, bytes) = check(&desc, device.gpu.limits().max_heap_bytes)?;
+            let (kind, bytes) = check(&desc, device.gpu.limits().max_heap_bytes)?;
             let range = [0.0, 1.0];
             // SAFETY: as above.
             let settings = unsafe { settings(desc.settings, range)? };
             let affine = affine(&desc.world_from_voxel)?;
             // SAFETY: as many bytes as the caller says, which are as many as there are voxels.
-            let voxels = unsafe { voxels(words, desc.voxels, bytes)? };
+            let bytes = unsafe { std::slice::from_raw_parts(desc.voxels.cast::<u8>(), bytes) };
+            let voxels = voxels(kind, bytes)?;
             let rescale = Rescale {
                 slope: if desc.slope == 0.0 { 1.0 } else { desc.slope },
                 intercept: desc.intercept,
             };
             let fill = (desc.has_fill != 0).then_some(desc.fill);
-            let read = Volume::from_voxels(desc.dims, affine, voxels, rescale, fill)?;
-            let [low, high] = read.value_range;
-            let is_finite = low.is_finite() && high.is_finite();
-            let found = if low.is_finite() { high } else { low };
-            number("a rescaled value", "a finite number", found, is_finite)?;
+            let mut read = Volume::from_voxels(desc.dims, affine, voxels, rescale, fill)?;
+            read.value_range = value_range(&desc, read.value_range)?;
             let made = embed::Volume::new(&device.gpu, &read, &settings)?;
-            let handle = handles::add(&device, Held::new(made))?;
+            let source = Source {
+                kind,
+                rescale,
+                fill,
+            };
+            let handle = handles::add(&device, Held::new(made, source))?;
             // SAFETY: not NULL; the caller's promise.
             unsafe { volume.write(handle) };
             Ok(())
@@ -281,6 +305,32 @@ fn check(desc: &sv_volume_desc, most_bytes: u64) -> Result<(VoxelType, usize), F
     Ok((kind, wanted as usize))
 }
 
+/// That of the voxels, or a wider one that the caller tells.
+fn value_range(desc: &sv_volume_desc, found: [f64; 2]) -> Result<[f64; 2], Failure> {
+    let [low, high] = found;
+    let is_finite = low.is_finite() && high.is_finite();
+    let bad = if low.is_finite() { high } else { low };
+    number("a rescaled value", "a finite number", bad, is_finite)?;
+    let reserved = desc.reserved;
+    number(
+        "sv_volume_desc.reserved",
+        "0",
+        reserved.into(),
+        reserved == 0,
+    )?;
+    if desc.has_value_range == 0 {
+        return Ok(found);
+    }
+    let [least, most] = desc.value_range;
+    let holds = least.is_finite() && most.is_finite() && least <= low && high <= most;
+    match holds {
+        true => Ok([least, most]),
+        false => Err(Failure::argument(format!(
+            "sv_volume_desc.value_range: wanted finite numbers around {low} and {high}, found {least} and {most}"
+        ))),
+    }
+}
+
 /// An invertible transform from columns; all zero is the identity.
 fn affine(columns: &[f64; 16]) -> Result<DAffine3, Failure> {
     let name = "sv_volume_desc.world_from_voxel";
@@ -301,13 +351,8 @@ fn affine(columns: &[f64; 16]) -> Result<DAffine3, Failure> {
     Ok(DAffine3::from_mat4(matrix))
 }
 
-/// A copy of the caller's voxels.
-///
-/// # Safety
-/// `pointer` points to `bytes` bytes, a multiple of those of one voxel.
-unsafe fn voxels(kind: VoxelType, pointer: *const c_void, bytes: usize) -> Result<Voxels, Failure> {
-    // SAFETY: the caller's promise.
-    let bytes = unsafe { std::slice::from_raw_parts(pointer.cast::<u8>(), bytes) };
+/// A copy of the caller's voxels, as they are kept.
+pub(super) fn voxels(kind: VoxelType, bytes: &[u8]) -> Result<Voxels, Failure> {
     macro_rules! copied {
         ($number:ty, $kept:expr) => {{
             let (numbers, _) = bytes.as_chunks::<{ size_of::<$number>() }>();

@@ -15,27 +15,53 @@ pub struct Class {
     pub target: TargetClass,
     /// How many frames of the host may be unfinished at once.
     pub frames_in_flight: u32,
-    /// Whether what the host has drawn hides the volume: each [`Shot`] says its [`HostDepth`] then. Rays read the
-    /// depth from images ([`HostDepthImage`]), slices are tested against the attachment of `target`.
+    /// Whether what the host has drawn hides the volume: each [`Shot`] says its [`HostDepth`] then. Slices that are
+    /// composited one by one are tested against the attachment of `target`; all else reads the depth from images
+    /// ([`HostDepthImage`], [`Class::reads_host_depth`]).
     pub host_depth: bool,
-    /// Whether [`super::Renderer::draw_depth`] will be called: `target` has a depth attachment then.
+    /// Whether depth is given back: by [`super::Renderer::draw_depth`], where `target` has a depth attachment, and of
+    /// slices, for which rays have to look for it, by [`super::Renderer::record_pick`]. Pictures by rays can be picked
+    /// from without.
     pub gives_depth: bool,
 }
 
 /// Frames in flight: more than any host has.
 pub(super) const MOST_FRAMES: u32 = 64;
 
-/// A host's depth buffer as rays read it: one level, one layer, one sample, with `SAMPLED` usage.
+/// A host's depth buffer as shaders read it: one level, one layer, one sample, with `SAMPLED` usage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HostDepthImage {
-    /// A view of its depth aspect, 2D.
-    pub view: vk::ImageView,
-    /// The layout that it is in when what [`super::Renderer::record`] records runs, visible to sampled reads of the
-    /// compute stage: one of those from which shaders read depth.
-    pub layout: vk::ImageLayout,
-    /// Its size: that of the picture.
-    pub extent: [u32; 2],
+    pub(super) view: vk::ImageView,
+    pub(super) layout: vk::ImageLayout,
+    pub(super) extent: [u32; 2],
 }
+
+impl HostDepthImage {
+    /// A 2D view of its depth aspect; the layout that it is in when what [`super::Renderer::record`] records runs, visible
+    /// to sampled reads of the compute stage by rays, and of the fragment stage too by slices; its size, which is that of
+    /// the picture.
+    ///
+    /// # Safety
+    /// The view is one of the device of the renderers that get it, and lives until they have got others
+    /// ([`super::Renderer::resize`]) or are dropped, and all frames that were recorded with it are done.
+    pub unsafe fn new(view: vk::ImageView, layout: vk::ImageLayout, extent: [u32; 2]) -> Self {
+        Self {
+            view,
+            layout,
+            extent,
+        }
+    }
+}
+
+/// From which shaders read depth: the layouts that the specification allows for it.
+pub(super) const READ_DEPTH: [vk::ImageLayout; 6] = [
+    vk::ImageLayout::GENERAL,
+    vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL,
+    vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
+    vk::ImageLayout::DEPTH_READ_ONLY_OPTIMAL,
+    vk::ImageLayout::DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL,
+    vk::ImageLayout::READ_ONLY_OPTIMAL,
+];
 
 /// One frame of a host.
 #[derive(Clone, Copy, Debug)]
@@ -57,8 +83,8 @@ impl Class {
         let refused = [
             (
                 settings.wants_light_volume(),
-                "a picture with a light volume (shadows, ambient occlusion, half-angle slices)",
-                "take `technique::LightVolume` or `HalfAngleSlicer` and record them",
+                "a picture with a light volume (shadows, ambient occlusion)",
+                "take `technique::LightVolume` and record it",
             ),
             (
                 settings.rays_per_side > 1,
@@ -66,9 +92,9 @@ impl Class {
                 "add up pictures of `View::in_pixel`",
             ),
             (
-                is_sliced && settings.preintegrated && self.host_depth,
-                "pre-integrated slicing behind what a host has drawn",
-                "slabs reach out of the planes that are tested: take rays",
+                settings.is_half_angle() && (self.host_depth || self.gives_depth),
+                "half-angle slicing behind what a host has drawn, or with its depth",
+                "its slices face neither eye nor light: take rays",
             ),
             (
                 settings.adaptive_steps.is_some(),
@@ -85,11 +111,6 @@ impl Class {
                 "slicing from front to back",
                 "what a host has drawn lies behind: take `Order::BackToFront`",
             ),
-            (
-                is_sliced && settings.mode != Mode::Composite && self.host_depth,
-                "a projection by slices behind what a host has drawn",
-                "take rays",
-            ),
         ];
         for (is_wanted, what, hint) in refused {
             if is_wanted {
@@ -97,32 +118,59 @@ impl Class {
             }
         }
         settings.check()?;
-        if !(1..=MOST_FRAMES).contains(&self.frames_in_flight) {
-            return Err(Error::FramesInFlight {
-                found: self.frames_in_flight,
-                most: MOST_FRAMES,
-            });
-        }
+        check_frames(self.frames_in_flight)?;
         if settings.shading.is_some() && settings.mode.is_projection() {
             let mode = settings.mode;
             return Err(technique::Error::NotShaded { mode }.into());
         }
-        let is_tested = is_sliced && self.host_depth;
-        if (is_tested || self.gives_depth) && self.target.depth.is_none() {
+        let is_tested = is_sliced && self.host_depth && !self.gathers();
+        let is_written = !is_sliced && self.gives_depth;
+        if (is_tested || is_written) && self.target.depth.is_none() {
             return Err(Error::HostDepth {
                 wanted: "a depth attachment in `Class::target`".into(),
                 found: "none".into(),
             });
         }
-        if self.gives_depth && (is_sliced || !settings.mode.has_depth()) {
+        if self.gives_depth && !settings.mode.has_depth() {
             return Err(Error::NoDepth { what: self.what() });
         }
         Ok(())
     }
 
+    /// Whether the renderer reads the host's depth from images.
+    pub fn reads_host_depth(&self) -> bool {
+        let has_rays = self.settings.technique == Technique::Raycast || self.gives_depth;
+        self.host_depth && (has_rays || self.gathers())
+    }
+
+    /// Whether slices are gathered in an image of our own: numbers that are no colours yet, slabs that end at the host's
+    /// depth, which may lie between two slices, and slices that eye and light see in turn.
+    pub(super) fn gathers(&self) -> bool {
+        let settings = &self.settings;
+        let is_cut = settings.preintegrated && self.host_depth;
+        let is_own = settings.mode != Mode::Composite || is_cut || settings.is_half_angle();
+        settings.technique != Technique::Raycast && is_own
+    }
+
+    /// Whether [`super::Renderer::draw_depth`] may be called.
+    pub(super) fn draws_depth(&self) -> bool {
+        self.gives_depth && self.target.depth.is_some()
+    }
+
     /// Technique and mode.
     pub(super) fn what(&self) -> String {
         what(&self.settings)
+    }
+}
+
+/// As many frames in flight as a host may have.
+pub(super) fn check_frames(found: u32) -> Result<(), Error> {
+    match (1..=MOST_FRAMES).contains(&found) {
+        true => Ok(()),
+        false => Err(Error::FramesInFlight {
+            found,
+            most: MOST_FRAMES,
+        }),
     }
 }
 

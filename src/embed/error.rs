@@ -36,6 +36,30 @@ pub enum Error {
     /// The voxels have been recorded once.
     #[error("the volume has been uploaded already: make another one for other voxels")]
     Uploaded,
+    /// A target that loses what it holds.
+    #[error("a target in layout {found:?}: wanted {wanted}")]
+    TargetState {
+        /// What would do.
+        wanted: &'static str,
+        /// The layout that was given.
+        found: ash::vk::ImageLayout,
+    },
+    /// No frame is recorded in parts, or what it shows has changed since.
+    #[error(
+        "no frame {frame} is recorded in parts: `begin_parts` comes before `record_part_into`, and once more after a change"
+    )]
+    NotBegun {
+        /// The frame in flight.
+        frame: u32,
+    },
+    /// New voxels that the volume does not take.
+    #[error("an update of a volume: wanted {wanted}, found {found}")]
+    Update {
+        /// What would do.
+        wanted: String,
+        /// What was given.
+        found: String,
+    },
     /// No frame in flight, or more than any host has.
     #[error("wanted 1 to {most} frames in flight, found {found}")]
     FramesInFlight {
@@ -77,7 +101,9 @@ pub enum Error {
         found: String,
     },
     /// There is no depth in such pictures.
-    #[error("{what} has no depth to give back: rays have, and in modes with a place of their own")]
+    #[error(
+        "{what} has no depth to give back: modes with a place of their own have, of slices with `Class::gives_depth`"
+    )]
     NoDepth {
         /// Technique and mode.
         what: String,

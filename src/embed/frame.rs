@@ -4,9 +4,10 @@ use super::function::Function;
 use super::pass::Pass;
 use super::{Error, HostDepthImage, Volume};
 use crate::camera::Camera;
-use crate::gpu::{Bindings, Buffer, Gpu, Image, Memory, ParameterRing, Resource};
+use crate::gpu::{Bindings, Blocks, Buffer, Gpu, Image, Memory, ParameterRing, Resource};
 use crate::resident::GpuVolume;
-use crate::technique::{Inputs, accumulation};
+use crate::technique::slices_3d::half_angle::{HalfAngleBindings, light_buffer, light_extent};
+use crate::technique::{Inputs, Order, accumulation};
 use ash::vk;
 use std::sync::Arc;
 
@@ -16,35 +17,56 @@ pub(super) const PICK_BYTES: u64 = 32;
 /// What one frame in flight has to itself.
 #[derive(Debug)]
 pub(super) struct Frame {
-    /// What a technique leaves, where that is no draw into the host's target; and what rays leave beside it.
-    pub images: Option<[Image; 2]>,
+    /// What slices are gathered in, where they are not drawn into the host's target.
+    pub gathered: Option<Image>,
+    /// What the light sees of half-angle slices.
+    pub light: Option<Image>,
+    /// What rays leave, the one with the depth last.
+    pub left: Vec<Image>,
     pub sets: Sets,
     /// Where the device puts the texels of a pixel.
     pub pick: Option<Buffer>,
     /// The pixel whose copy was recorded after the picture, and the camera of that.
     pub picked: Option<([u32; 2], Camera)>,
     /// What [`super::Renderer::draw`] draws.
-    pub recorded: Option<Recorded>,
+    pub recorded: Recorded,
+    /// What is being recorded part by part.
+    pub begun: Option<Begun>,
 }
 
-/// The descriptor sets of one frame in flight.
+/// A frame of which some blocks are recorded.
+#[derive(Debug)]
+pub(super) struct Begun {
+    pub recorded: Recorded,
+    pub blocks: Blocks,
+    /// The first block that is not recorded.
+    pub next: u64,
+}
+
+/// The descriptor sets of one frame in flight, those of bricks for each copy of the volume.
 #[derive(Debug, Default)]
 pub(super) struct Sets {
-    /// Of each brick of each copy of the volume.
-    pub bricks: Vec<Vec<Bindings>>,
+    pub slices: Vec<Vec<Bindings>>,
+    /// Of half-angle slices, which have one brick of one copy.
+    pub half_angle: Option<HalfAngleBindings>,
+    pub rays: Vec<Vec<Bindings>>,
     /// Of what makes colours of the images.
     pub resolve: Option<Bindings>,
     /// Of what writes their depth.
     pub depth: Option<Bindings>,
 }
 
-/// What was recorded last.
-#[derive(Debug)]
+/// What was recorded last. Vectors keep their room from frame to frame.
+#[derive(Debug, Default)]
 pub(super) struct Recorded {
-    pub camera: Camera,
-    /// Which copy of the volume.
-    pub copy: usize,
-    pub parts: Vec<Part>,
+    /// The camera, and which copy of the volume. `None`: nothing that may be drawn.
+    pub shot: Option<(Camera, usize)>,
+    /// Bricks in the order of the picture.
+    pub picture: Vec<Part>,
+    /// Bricks of the depth of slices, from front to back.
+    pub depth: Vec<Part>,
+    /// For sorting.
+    pub order: Vec<usize>,
 }
 
 /// One brick of it.
@@ -54,6 +76,7 @@ pub(super) struct Part {
     /// Of its parameters.
     pub offset: u32,
     pub slices: u32,
+    pub order: Order,
 }
 
 /// What descriptor sets name.
@@ -67,34 +90,43 @@ pub(super) struct Bound<'a> {
     pub host_depth: Option<HostDepthImage>,
 }
 
+impl Recorded {
+    /// Room for so many.
+    pub fn with_room(recordings: usize) -> Self {
+        Self {
+            shot: None,
+            picture: Vec::with_capacity(recordings),
+            depth: Vec::with_capacity(recordings),
+            order: Vec::with_capacity(recordings),
+        }
+    }
+}
+
 impl Frame {
-    /// Images of `extent` and descriptor sets.
-    pub fn new(bound: &Bound, extent: [u32; 2]) -> Result<Self, Error> {
-        let gpu = bound.gpu;
-        let image = |name| accumulation(gpu, extent, name);
-        let images = match bound.pass {
-            Pass::Slices(_) => None,
-            Pass::Rays { .. } | Pass::Projected { .. } => {
-                Some([image("gathered")?, image("layers")?])
-            }
-        };
-        let usage = vk::BufferUsageFlags::TRANSFER_DST;
-        let pick = match bound.pass {
-            Pass::Rays { .. } => Some(Buffer::new(
-                gpu,
-                PICK_BYTES,
-                usage,
-                Memory::Readback,
-                "picked texels",
-            )?),
-            Pass::Slices(_) | Pass::Projected { .. } => None,
+    /// Images of `extent` and descriptor sets, with room for so many recordings.
+    pub fn new(bound: &Bound, extent: [u32; 2], recordings: usize) -> Result<Self, Error> {
+        let (gpu, pass) = (bound.gpu, bound.pass);
+        let image = |name: &str| accumulation(gpu, extent, name);
+        let is_sliced = pass.slicer.is_some() || pass.half_angle.is_some();
+        let is_gathered = is_sliced && pass.resolve.is_some();
+        let of_light = || light_buffer(gpu, light_extent(bound.volume.grid(), extent));
+        let light = pass.half_angle.is_some().then(of_light).transpose()?;
+        let gathered = is_gathered.then(|| image("slices")).transpose()?;
+        let of_rays = pass.rays.as_ref().map_or(0, |rays| rays.image_count());
+        let left = ["rays", "beside rays"].into_iter().take(of_rays).map(image);
+        let readback = || {
+            let usage = vk::BufferUsageFlags::TRANSFER_DST;
+            Buffer::new(gpu, PICK_BYTES, usage, Memory::Readback, "picked texels")
         };
         let mut made = Self {
-            images,
+            gathered,
+            light,
+            left: left.collect::<Result<_, _>>()?,
             sets: Sets::default(),
-            pick,
+            pick: pass.rays.is_some().then(readback).transpose()?,
             picked: None,
-            recorded: None,
+            recorded: Recorded::with_room(recordings),
+            begun: None,
         };
         made.sets = made.bind(bound)?;
         Ok(made)
@@ -102,58 +134,54 @@ impl Frame {
 
     /// Descriptor sets anew: of another transfer function, or of another depth buffer.
     pub fn bind(&self, bound: &Bound) -> Result<Sets, Error> {
-        let copies = bound.volume.copies().iter();
-        let of_copy = |copy: &GpuVolume| -> Result<Vec<Bindings>, Error> {
-            (0..copy.bricks().len())
-                .map(|brick| self.bind_brick(bound, copy, brick))
-                .collect()
-        };
-        let mut sets = Sets {
-            bricks: copies.map(of_copy).collect::<Result<_, _>>()?,
-            ..Sets::default()
-        };
-        let transfer = bound.function.transfer();
-        if let Some([gathered, layers]) = &self.images {
-            let (resolve, depth) = match bound.pass {
-                Pass::Rays {
-                    pass,
-                    resolve,
-                    depth,
-                } => {
-                    let left = match pass {
-                        crate::technique::RayPass::Raycast(_) => layers,
-                        crate::technique::RayPass::Projection(_) => gathered,
-                    };
-                    (resolve, depth.as_ref().map(|depth| (depth, left)))
-                }
-                Pass::Projected { resolve, .. } => (resolve, None),
-                Pass::Slices(_) => unreachable!("slices in the host's rendering leave no image"),
+        let pass = bound.pass;
+        let depth = bound.host_depth;
+        let depth = depth.map(|image| Resource::Texture(image.view, image.layout));
+        let of_bricks = |bind: &dyn Fn(&Inputs) -> Result<Bindings, crate::gpu::Error>| {
+            let copies = bound.volume.copies().iter();
+            let of_copy = |copy: &GpuVolume| {
+                let bricks = 0..copy.bricks().len();
+                bricks
+                    .map(|brick| bind(&inputs(bound, copy, brick)))
+                    .collect()
             };
-            sets.resolve = Some(resolve.bind(bound.ring, gathered, transfer)?);
-            let depth = depth.map(|(depth, left)| depth.bind(bound.ring, left));
-            sets.depth = depth.transpose()?;
+            copies.map(of_copy).collect::<Result<Vec<Vec<_>>, _>>()
+        };
+        let mut sets = Sets::default();
+        if let Some(slicer) = &pass.slicer {
+            // What is drawn into the host's target is tested by the device, and reads nothing.
+            let depth = depth.filter(|_| self.gathered.is_some());
+            sets.slices = of_bricks(&|inputs| match depth {
+                Some(depth) => slicer.bind_behind(inputs, depth),
+                None => slicer.bind(inputs),
+            })?;
+        }
+        if let (Some(slicer), Some(light)) = (&pass.half_angle, &self.light) {
+            let inputs = inputs(bound, &bound.volume.copies()[0], 0);
+            sets.half_angle = Some(slicer.bind(&inputs, light)?);
+        }
+        if let (Some(rays), [first, .., last] | [first @ last]) = (&pass.rays, &self.left[..]) {
+            sets.rays = of_bricks(&|inputs| rays.bind(inputs, first, last, depth))?;
+        }
+        let shown = self.gathered.as_ref().or(self.left.first());
+        if let (Some(resolve), Some(shown)) = (&pass.resolve, shown) {
+            sets.resolve = Some(resolve.bind(bound.ring, shown, bound.function.transfer())?);
+        }
+        if let (Some(depth), Some(last)) = (&pass.depth, self.left.last()) {
+            sets.depth = Some(depth.bind(bound.ring, last)?);
         }
         Ok(sets)
     }
+}
 
-    fn bind_brick(&self, bound: &Bound, copy: &GpuVolume, brick: usize) -> Result<Bindings, Error> {
-        let inputs = Inputs {
-            ring: bound.ring,
-            volume: copy,
-            brick: &copy.bricks()[brick],
-            transfer: bound.function.transfer(),
-            beside: &[],
-            light: None,
-            skip: bound.function.skip(bound.volume),
-        };
-        Ok(match (bound.pass, &self.images) {
-            (Pass::Rays { pass, .. }, Some([gathered, layers])) => {
-                let depth = bound.host_depth;
-                let depth = depth.map(|image| Resource::Texture(image.view, image.layout));
-                pass.bind(&inputs, gathered, layers, depth)?
-            }
-            (Pass::Slices(slicer) | Pass::Projected { slicer, .. }, _) => slicer.bind(&inputs)?,
-            (Pass::Rays { .. }, None) => unreachable!("rays leave images"),
-        })
+fn inputs<'a>(bound: &Bound<'a>, copy: &'a GpuVolume, brick: usize) -> Inputs<'a> {
+    Inputs {
+        ring: bound.ring,
+        volume: copy,
+        brick: &copy.bricks()[brick],
+        transfer: bound.function.transfer(),
+        beside: &[],
+        light: None,
+        skip: bound.function.skip(bound.volume),
     }
 }

@@ -18,6 +18,8 @@ pub(super) struct Function {
     /// Points and second gradients, which loops of the driver are counted by.
     pub turns: crate::technique::Functions,
     is_uploaded: bool,
+    /// After how many updates of the volume its empty space was found.
+    found_after: u64,
 }
 
 impl Function {
@@ -67,6 +69,7 @@ impl Function {
                 second: graded.is_some_and(Graded::needs_second),
             },
             is_uploaded: false,
+            found_after: 0,
         })
     }
 
@@ -75,24 +78,28 @@ impl Function {
         self.is_uploaded = false;
     }
 
-    /// Records what fills the objects, once.
+    /// Records what fills the objects, once, and what is empty once more after an update of the volume.
     ///
     /// # Safety
-    /// `cmd` is recording, outside rendering, after the upload of the volume.
-    pub unsafe fn record_upload(&mut self, cmd: vk::CommandBuffer) -> Result<(), Error> {
-        if self.is_uploaded {
-            return Ok(());
-        }
+    /// `cmd` is recording, outside rendering, after the upload of the volume and its updates.
+    pub unsafe fn record_upload(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        volume: &Volume,
+    ) -> Result<(), Error> {
+        let updates = volume.updates();
         // SAFETY: the caller's promises.
         unsafe {
-            if let Some(made) = &self.made {
+            if let (Some(made), false) = (&self.made, self.is_uploaded) {
                 made.record_upload(cmd)?;
             }
-            if let Some(empty) = &self.empty {
+            let is_old = !self.is_uploaded || self.found_after != updates;
+            if let Some(empty) = self.empty.as_ref().filter(|_| is_old) {
                 empty.record(cmd)?;
             }
         }
         self.is_uploaded = true;
+        self.found_after = updates;
         Ok(())
     }
 

@@ -15,27 +15,34 @@
 //! [`Gpu::retire`](crate::gpu::Gpu::retire) when the device has done them, and gives a number of a frame in flight
 //! ([`Shot::frame`]) to no second frame before the first is done.
 //!
-//! What a host has drawn hides the volume behind it ([`Class::host_depth`]): rays end at its depth buffer, which they
-//! read as a texture, slices are tested against it in hardware. Its own depth a picture by rays gives back by
-//! [`Renderer::draw_depth`] and [`Renderer::record_pick`].
+//! What a host has drawn hides the volume behind it ([`Class::host_depth`]): slices that are composited are tested
+//! against it in hardware, all else ends at its depth buffer, read as a texture. Its own depth a picture gives back by
+//! [`Renderer::draw_depth`] and [`Renderer::record_pick`] ([`Class::gives_depth`]).
 //!
-//! Not here, and refused by name: half-angle slices and light volumes (shadows, ambient occlusion), several volumes,
-//! several rays a pixel, cross-fades of stacks. The pieces for them lie one floor below, in [`crate::technique`].
+//! While it is drawn, a volume takes new voxels of a box ([`Volume::record_update`]), and a frame may be cut into parts that are
+//! submitted one by one and given up between two of them ([`Renderer::begin_parts`], [`Submitter::submit_in_parts`]).
+//!
+//! Not here, and refused by name: light volumes (shadows, ambient occlusion), several volumes, several rays a pixel,
+//! adaptive steps, cross-fades of stacks. `docs/embedding.md` says why, and the pieces for them lie one floor below, in
+//! [`crate::technique`].
 
 mod class;
 mod error;
 mod frame;
 mod function;
+mod parts;
 mod pass;
 mod pick;
 mod recording;
 mod renderer;
 mod submitter;
+mod update;
 mod volume;
 
 pub use class::{Class, HostDepthImage, Shot};
 pub use error::Error;
 pub use pick::Pick;
 pub use renderer::Renderer;
-pub use submitter::{QueueLock, Submitter};
+pub use submitter::{Pacing, QueueLock, Submitter};
+pub use update::Update;
 pub use volume::Volume;

@@ -3,28 +3,31 @@
 use super::frame::PICK_BYTES;
 use super::{Error, Renderer};
 use crate::gpu::{Region, Use, buffer_barrier, image_barrier, image_to_buffer};
-use crate::technique::Mode;
+use crate::technique::{Mode, Technique};
 use crate::volume::{Volume, sample::nearest};
 use ash::vk;
 use glam::DVec3;
 
-/// What the depth of a picture by rays says of one pixel: where a composite has become half opaque, the first surface,
-/// the place of a maximum.
+/// What the depth of a picture says of one pixel: where a composite has become half opaque, the first surface, the place
+/// of a maximum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pick {
     /// World length from where the ray starts: the eye, or the near plane of parallel rays.
     pub distance: f64,
     /// The place in the world.
     pub position: DVec3,
-    /// The projected value, or that of the surface; `None` of composites.
+    /// What the volume has there, as the filter makes it: the projected value, that of the surface, or that of the sample
+    /// with which a composite became half opaque. Of a map of labels, which the nearest filter reads, it is the label.
+    /// `None` of [`Mode::Mida`], which keeps another number, and of slabs, which have two values.
     pub value: Option<f64>,
-    /// Premultiplied colour and alpha there; projecting modes have none before they are classified.
+    /// Premultiplied colour and alpha of the pixel. Projecting modes have none before they are classified, and rays that
+    /// look for the depth of slices end there.
     pub color: Option<[f32; 4]>,
 }
 
 impl Pick {
-    /// The voxel of `volume` there: the value of what is shown, or the label of a map beside it. `None` outside, and
-    /// where it has no data.
+    /// The voxel of another `volume` there, on the CPU: the label of a map beside what is shown. `None` outside, and where
+    /// it has no data.
     pub fn voxel_of(&self, volume: &Volume) -> Option<f64> {
         let voxel = volume
             .world_from_voxel
@@ -48,18 +51,13 @@ impl Renderer {
         frame: u32,
         pixel: [u32; 2],
     ) -> Result<(), Error> {
-        let (there, recorded) = self.recorded(frame, "record_pick")?;
-        let camera = recorded.camera;
-        let (Some(images), Some(buffer)) = (&there.images, &there.pick) else {
+        let (there, camera, _) = self.recorded(frame, "record_pick")?;
+        let has_depth = self.class.settings.mode.has_depth();
+        let Some(buffer) = there.pick.as_ref().filter(|_| has_depth) else {
             return Err(Error::NoDepth {
                 what: self.class.what(),
             });
         };
-        if !self.class.settings.mode.has_depth() {
-            return Err(Error::NoDepth {
-                what: self.class.what(),
-            });
-        }
         let [x, y] = pixel;
         if x >= self.extent[0] || y >= self.extent[1] {
             return Err(Error::NoPixel {
@@ -81,7 +79,7 @@ impl Renderer {
                 Use::TransferWrite,
             );
         }
-        for (image, offset) in self.left(images).iter().zip((0..).step_by(16)) {
+        for (image, offset) in there.left.iter().zip((0..).step_by(16)) {
             // SAFETY: the caller's promises; `record` left the images as they are here.
             unsafe {
                 let gpu = &self.gpu;
@@ -116,12 +114,18 @@ impl Renderer {
         let mut texels = [[0f32; 4]; PICK_BYTES as usize / 16];
         buffer.read(0, bytemuck::cast_slice_mut(&mut texels))?;
         let [picture, layers] = texels;
-        let mode = self.class.settings.mode;
+        let settings = &self.class.settings;
+        let mode = settings.mode;
         let (distance, value, color) = match mode.is_projection() {
             true => (picture[2], Some(picture[0]), None),
             false => {
-                let level = (mode == Mode::Iso).then_some(layers[0]);
-                (layers[1], level, Some(picture))
+                let has_value = match mode {
+                    Mode::Composite => !settings.preintegrated,
+                    _ => mode == Mode::Iso,
+                };
+                let is_whole = settings.technique == Technique::Raycast;
+                let value = has_value.then_some(layers[0]);
+                (layers[1], value, is_whole.then_some(picture))
             }
         };
         if distance < 0.0 || (mode.is_projection() && picture[1] == 0.0) {

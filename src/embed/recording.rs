@@ -1,14 +1,15 @@
 //! Levels A and B: what a renderer records.
 
 use super::frame::{Frame, Part, Recorded};
-use super::pass::Pass;
 use super::{Error, Renderer, Shot};
-use crate::camera::{HostDepth, Nearer};
+use crate::camera::{Camera, HostDepth, Nearer};
 use crate::gpu::{
-    Image, Load, Target, TargetClass, Tile, Use, begin_rendering, end_rendering, image_barrier,
+    Load, Target, TargetClass, Tile, Use, begin_rendering, begin_rendering_of, end_rendering,
+    image_barrier,
 };
 use crate::technique::blend::clear_color;
-use crate::technique::{self, InPixel, View};
+use crate::technique::slices_3d::half_angle::HalfAngleSlices;
+use crate::technique::{self, InPixel, Recording, View};
 use ash::vk;
 
 impl Renderer {
@@ -22,24 +23,21 @@ impl Renderer {
     /// - `cmd` is recording on the device, outside rendering, for a queue of [`Gpu::queue_family`](crate::gpu::Gpu::queue_family), and is submitted in
     ///   the order in which it was recorded, after the upload of the volume;
     /// - nothing unfinished was recorded with the shot's number of a frame in flight;
-    /// - the image of the host's depth is in the layout that was said, visible to sampled reads of compute shaders.
+    /// - the image of the host's depth is in the layout that was said, visible to sampled reads of compute shaders, and of
+    ///   fragment shaders where there are slices.
     pub unsafe fn record(&mut self, cmd: vk::CommandBuffer, shot: &Shot) -> Result<(), Error> {
-        self.gpu.check_alive("record a frame")?;
-        let frame = self.frame_number(shot.frame)?;
-        shot.camera.check()?;
-        if !self.volume.is_uploaded() {
-            return Err(Error::NotUploaded);
-        }
-        let depth = self.depth_of(shot)?;
-        let recorded = self.describe(frame, shot, depth)?;
+        let (frame, made) = self.prepare(shot)?;
+        let whole = [Tile::whole(self.extent)];
         // SAFETY: the caller's promises; barriers stand between what is written and what is read.
-        unsafe {
-            self.function.record_upload(cmd)?;
-            self.gather(cmd, frame, &recorded)?;
+        let gathered = unsafe {
+            let uploaded = self.function.record_upload(cmd, &self.volume);
+            uploaded.and_then(|()| self.gather(cmd, frame, &made, &whole, Share::ALL))
+        };
+        match gathered {
+            Ok(()) => self.keep(frame, made),
+            Err(_) => self.spare = made,
         }
-        self.frames[frame].recorded = Some(recorded);
-        self.frames[frame].picked = None;
-        Ok(())
+        gathered
     }
 
     /// Level A: draws what [`Renderer::record`] recorded for this frame in flight over what the host has drawn. Bound
@@ -53,53 +51,33 @@ impl Renderer {
     /// - it runs after what [`Renderer::record`] recorded, on the same queue.
     pub unsafe fn draw(&self, cmd: vk::CommandBuffer, frame: u32) -> Result<(), Error> {
         self.gpu.check_alive("draw a frame")?;
-        let (there, recorded) = self.recorded(frame, "draw")?;
-        let (extent, parts) = (self.extent, &recorded.parts);
-        // SAFETY: the caller's promises; what is bound lives as long as the frame, and then until it is retired.
-        unsafe {
-            match (&self.pass, &there.sets.resolve) {
-                (Pass::Slices(slicer), _) => {
-                    for part in parts {
-                        let bound = &there.sets.bricks[recorded.copy][part.brick];
-                        slicer.record(cmd, bound, part.offset, extent, 0..part.slices);
-                    }
-                }
-                (Pass::Rays { resolve, .. } | Pass::Projected { resolve, .. }, Some(bound)) => {
-                    resolve.record(cmd, bound, parts[0].offset, extent);
-                }
-                (Pass::Rays { .. } | Pass::Projected { .. }, None) => {
-                    unreachable!("bound with the frame")
-                }
-            }
-        }
+        let (there, ..) = self.recorded(frame, "draw")?;
+        // SAFETY: the caller's promises.
+        unsafe { self.draw_tiles(cmd, there, &there.recorded, &[Tile::whole(self.extent)]) };
         Ok(())
     }
 
-    /// Writes the depth of a picture by rays into the depth attachment, where it is nearer than what is there: what the
-    /// host draws later, blended or not, is hidden by the volume. Of composites it is where they become half opaque.
+    /// Writes the depth of a picture into the depth attachment, where it is nearer than what is there: what the host draws
+    /// later, blended or not, is hidden by the volume. Of composites it is where they become half opaque, along rays or
+    /// from slice to slice.
     ///
     /// # Errors
-    /// [`Error::NoDepth`] without [`Class::gives_depth`](super::Class::gives_depth); where nothing was recorded.
+    /// [`Error::NoDepth`] without [`Class::gives_depth`](super::Class::gives_depth) and a depth attachment; where nothing
+    /// was recorded.
     ///
     /// # Safety
     /// As [`Renderer::draw`]; depth may be written.
     pub unsafe fn draw_depth(&self, cmd: vk::CommandBuffer, frame: u32) -> Result<(), Error> {
-        let (there, recorded) = self.recorded(frame, "draw_depth")?;
-        match (&self.pass, &there.sets.depth) {
-            (
-                Pass::Rays {
-                    depth: Some(pass), ..
-                },
-                Some(bound),
-            ) => {
-                // SAFETY: the caller's promises.
-                unsafe { pass.record(cmd, bound, recorded.parts[0].offset, self.extent) };
-                Ok(())
-            }
-            _ => Err(Error::NoDepth {
+        let (there, ..) = self.recorded(frame, "draw_depth")?;
+        let (Some(pass), Some(bound)) = (&self.pass.depth, &there.sets.depth) else {
+            return Err(Error::NoDepth {
                 what: format!("a renderer without `gives_depth` ({})", self.class.what()),
-            }),
-        }
+            });
+        };
+        let offset = there.recorded.picture[0].offset;
+        // SAFETY: the caller's promises.
+        unsafe { pass.record(cmd, bound, offset, self.extent) };
+        Ok(())
     }
 
     /// Level B: [`Renderer::record`] and [`Renderer::draw`] into an image of the host's that arrives and leaves as
@@ -118,13 +96,7 @@ impl Renderer {
         target: &Target,
         load: Load,
     ) -> Result<(), Error> {
-        let wanted = TargetClass::from(target.format);
-        if self.class.target != wanted || self.extent != target.extent {
-            return Err(Error::OtherClass {
-                made: format!("{:?} of {:?} pixels", self.class.target, self.extent),
-                wanted: format!("{wanted:?} of {:?} pixels", target.extent),
-            });
-        }
+        self.check_target(target, load)?;
         // SAFETY: the caller's promises.
         unsafe {
             self.record(cmd, shot)?;
@@ -138,29 +110,117 @@ impl Renderer {
     }
 }
 
+/// Which part of a frame is recorded: the first has what comes before all tiles, the last what comes after.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Share {
+    pub is_first: bool,
+    pub is_last: bool,
+}
+
+impl Share {
+    const ALL: Self = Self {
+        is_first: true,
+        is_last: true,
+    };
+}
+
 impl Renderer {
-    /// The images that the pass leaves, in their order.
-    pub(super) fn left<'a>(&self, [gathered, layers]: &'a [Image; 2]) -> Vec<&'a Image> {
-        match &self.pass {
-            Pass::Rays { pass, .. } => pass.images(gathered, layers),
-            Pass::Slices(_) | Pass::Projected { .. } => vec![gathered],
+    /// The frame of a shot and its parameters, written. Nothing that was recorded for it before is drawn or picked now.
+    pub(super) fn prepare(&mut self, shot: &Shot) -> Result<(usize, Recorded), Error> {
+        self.gpu.check_alive("record a frame")?;
+        let frame = self.frame_number(shot.frame)?;
+        shot.camera.check()?;
+        if !self.volume.is_uploaded() {
+            return Err(Error::NotUploaded);
+        }
+        let depth = self.depth_of(shot)?;
+        let mut made = std::mem::take(&mut self.spare);
+        if let Err(refused) = self.describe(frame, shot, depth, &mut made) {
+            self.spare = made;
+            return Err(refused);
+        }
+        let there = &mut self.frames[frame];
+        (there.recorded.shot, there.begun, there.picked) = (None, None, None);
+        Ok((frame, made))
+    }
+
+    /// What was recorded of a frame, to be drawn. The room of what was recorded before is kept for the next one.
+    pub(super) fn keep(&mut self, frame: usize, made: Recorded) {
+        self.spare = std::mem::replace(&mut self.frames[frame].recorded, made);
+    }
+
+    /// Refuses a target that the renderer was not made for, and states that lose what is to be kept.
+    pub(super) fn check_target(&self, target: &Target, load: Load) -> Result<(), Error> {
+        let wanted = TargetClass::from(target.format);
+        if self.class.target != wanted || self.extent != target.extent {
+            return Err(Error::OtherClass {
+                made: format!("{:?} of {:?} pixels", self.class.target, self.extent),
+                wanted: format!("{wanted:?} of {:?} pixels", target.extent),
+            });
+        }
+        let gives_up = |layout: vk::ImageLayout| {
+            let layouts = [vk::ImageLayout::UNDEFINED, vk::ImageLayout::PREINITIALIZED];
+            layouts.contains(&layout)
+        };
+        if load == Load::Keep && target.before.layout == vk::ImageLayout::UNDEFINED {
+            return Err(Error::TargetState {
+                wanted: "`Load::Clear`, or the layout that what is kept is in, in `before`",
+                found: target.before.layout,
+            });
+        }
+        match gives_up(target.after.layout) {
+            true => Err(Error::TargetState {
+                wanted: "a layout in `after` that keeps what was drawn",
+                found: target.after.layout,
+            }),
+            false => Ok(()),
         }
     }
 
+    /// Draws some tiles of a picture.
+    ///
+    /// # Safety
+    /// As [`Renderer::draw`]; resolved pictures have been gathered whole.
+    pub(super) unsafe fn draw_tiles(
+        &self,
+        cmd: vk::CommandBuffer,
+        there: &Frame,
+        recorded: &Recorded,
+        tiles: &[Tile],
+    ) {
+        let (extent, parts) = (self.extent, &recorded.picture);
+        // SAFETY: the caller's promises; what is bound lives as long as the frame, and then until it is retired.
+        unsafe {
+            match (&self.pass.resolve, &there.sets.resolve) {
+                (Some(resolve), Some(bound)) => {
+                    for &tile in tiles {
+                        resolve.record_tile(cmd, bound, parts[0].offset, extent, tile);
+                    }
+                }
+                _ => {
+                    for &tile in tiles {
+                        self.draw_slices(cmd, there, recorded, tile);
+                    }
+                }
+            }
+        }
+    }
+
+    /// A frame for which something was recorded, with its camera and copy of the volume.
     pub(super) fn recorded(
         &self,
         frame: u32,
         what: &'static str,
-    ) -> Result<(&Frame, &Recorded), Error> {
+    ) -> Result<(&Frame, Camera, usize), Error> {
         let there = &self.frames[self.frame_number(frame)?];
-        match &there.recorded {
-            Some(recorded) => Ok((there, recorded)),
+        match there.recorded.shot {
+            Some((camera, copy)) => Ok((there, camera, copy)),
             None => Err(Error::NotRecorded { frame, what }),
         }
     }
 
     fn depth_of(&self, shot: &Shot) -> Result<Option<HostDepth>, Error> {
-        let is_wanted = self.class.host_depth || self.class.gives_depth;
+        let is_wanted = self.class.host_depth || self.class.draws_depth();
         match (is_wanted, shot.depth) {
             (true, None) => Err(Error::HostDepth {
                 wanted: "`Shot::depth`, from `Camera::from_matrices`".into(),
@@ -182,21 +242,21 @@ impl Renderer {
         }
     }
 
-    /// Parameters into the ring.
+    /// Parameters into the ring, and what they are of into `made`.
     fn describe(
         &self,
         frame: usize,
         shot: &Shot,
         depth: Option<HostDepth>,
-    ) -> Result<Recorded, Error> {
+        made: &mut Recorded,
+    ) -> Result<(), Error> {
         let grid = self.volume.grid();
-        let settings = &self.class.settings;
         let view = View {
             grid,
             camera: shot.camera,
             extent_pixels: self.extent,
             in_pixel: InPixel::CENTER,
-            settings,
+            settings: &self.class.settings,
         };
         let layout = view.texture_layout();
         let mut copies = self.volume.copies().iter();
@@ -205,86 +265,156 @@ impl Renderer {
             wanted: layout,
             found: self.volume.copies()[0].layout(),
         })?;
-        view.check_turns(
-            &self.words,
-            1,
-            self.function.turns,
-            self.gpu.limits().max_loop_turns,
-        )?;
-        let transfer = self.function.transfer();
-        let recordings = view.recordings(&self.volume.copies()[copy], transfer)?;
-        let first = (frame * self.ring.slots() as usize / self.frames.len()) as u32;
+        let (words, functions) = (&self.words, self.function.turns);
+        let limit = self.gpu.limits().max_loop_turns;
+        let finds_depth = self.pass.slicer.is_some() && self.pass.rays.is_some();
+        view.check_turns(words, 1, functions, limit)?;
+        if finds_depth {
+            view.check_depth_turns(words, functions, limit)?;
+        }
+        let mut slot = (frame * self.ring.slots() as usize / self.frames.len()) as u32;
         let skip = self.function.skip(&self.volume);
-        let parts = (first..).zip(recordings).map(|(slot, mut recording)| {
+        let (class, center) = (&self.class, grid.center());
+        let is_tested = self.pass.slicer.is_some() && !class.gathers();
+        let mut write = |mut recording: Recording, is_tested: bool| -> Result<Part, Error> {
             recording.skip(skip);
             match depth {
-                Some(depth) if self.class.host_depth => recording.behind(&depth, grid.center()),
-                Some(depth) => recording.in_depths_of(&depth, grid.center()),
+                Some(depth) if class.host_depth && is_tested => recording.tested_in(&depth, center),
+                Some(depth) if class.host_depth => recording.behind(&depth, center),
+                Some(depth) => recording.in_depths_of(&depth, center),
                 None => {}
             }
+            slot += 1;
             Ok(Part {
                 brick: recording.brick,
-                offset: recording.write(&self.ring, slot)?,
+                offset: recording.write(&self.ring, slot - 1)?,
                 slices: recording.slices,
+                order: recording.order,
             })
-        });
-        Ok(Recorded {
-            camera: *shot.camera,
-            copy,
-            parts: parts.collect::<Result<_, Error>>()?,
-        })
+        };
+        let Recorded {
+            shot: of,
+            picture,
+            depth: of_slices,
+            order,
+        } = made;
+        let (volume, transfer) = (&self.volume.copies()[copy], self.function.transfer());
+        picture.clear();
+        of_slices.clear();
+        view.each_recording(volume, transfer, order, |recording| {
+            picture.push(write(recording, is_tested)?);
+            Ok::<_, Error>(())
+        })?;
+        if finds_depth {
+            view.each_depth_recording(volume, transfer, order, |recording| {
+                of_slices.push(write(recording, false)?);
+                Ok::<_, Error>(())
+            })?;
+        }
+        *of = Some((*shot.camera, copy));
+        Ok(())
+    }
+
+    /// # Safety
+    /// As [`Slicer::record_tile`](technique::Slicer::record_tile), for all bricks.
+    unsafe fn draw_slices(
+        &self,
+        cmd: vk::CommandBuffer,
+        there: &Frame,
+        recorded: &Recorded,
+        tile: Tile,
+    ) {
+        let (Some(slicer), Some((_, copy))) = (&self.pass.slicer, recorded.shot) else {
+            unreachable!("a picture without slices is resolved, and this one was described");
+        };
+        for part in &recorded.picture {
+            let bound = &there.sets.slices[copy][part.brick];
+            let (extent, slices) = (self.extent, 0..part.slices);
+            // SAFETY: the caller's promises.
+            unsafe { slicer.record_tile(cmd, bound, part.offset, extent, slices, tile) };
+        }
     }
 
     /// # Safety
     /// As [`Renderer::record`].
-    unsafe fn gather(
+    pub(super) unsafe fn gather(
         &self,
         cmd: vk::CommandBuffer,
         frame: usize,
-        recorded: &Recorded,
+        made: &Recorded,
+        tiles: &[Tile],
+        share: Share,
     ) -> Result<(), Error> {
         let (gpu, extent) = (&self.gpu, self.extent);
         let there = &self.frames[frame];
-        let Some(images) = &there.images else {
+        let Some((_, copy)) = made.shot else {
+            unreachable!("described before");
+        };
+        // What earlier parts have written stays.
+        let before = |written| match share.is_first {
+            true => Use::Nothing,
+            false => written,
+        };
+        if let (Some(image), Some(slicer)) = (&there.gathered, &self.pass.half_angle) {
+            let (Some(bound), Some(light), [eye, of_light]) =
+                (&there.sets.half_angle, &there.light, &made.picture[..])
+            else {
+                unreachable!("the eye's recording and the light's");
+            };
+            let slices = HalfAngleSlices {
+                offsets: [eye.offset, of_light.offset],
+                count: eye.slices,
+                order: eye.order,
+            };
+            // Eye and light take turns over all of the picture: it is no sum of tiles, and lies in the first part.
+            if share.is_first {
+                // SAFETY: the caller's promises.
+                unsafe {
+                    image_barrier(gpu, cmd, image, Use::Nothing, Use::ColorTarget);
+                    image_barrier(gpu, cmd, light, Use::Nothing, Use::ColorTarget);
+                    slicer.record(cmd, bound, slices, (image, extent), light);
+                    image_barrier(gpu, cmd, image, Use::ColorTarget, Use::FragmentSampled);
+                }
+            }
+        } else if let Some(image) = &there.gathered {
+            let clear = Load::Clear(clear_color(self.class.settings.mode));
+            // SAFETY: the caller's promises.
+            unsafe {
+                image_barrier(gpu, cmd, image, before(Use::ColorTarget), Use::ColorTarget);
+                for &tile in tiles {
+                    begin_rendering_of(gpu, cmd, &[(image.view(), clear)], tile);
+                    self.draw_slices(cmd, there, made, tile);
+                    end_rendering(gpu, cmd);
+                }
+                if share.is_last {
+                    image_barrier(gpu, cmd, image, Use::ColorTarget, Use::FragmentSampled);
+                }
+            }
+        }
+        let Some(rays) = &self.pass.rays else {
             return Ok(());
         };
-        let left = self.left(images);
         let barriers = |before, after| {
-            for image in &left {
+            for image in &there.left {
                 // SAFETY: the caller's promises.
                 unsafe { image_barrier(gpu, cmd, image, before, after) };
             }
         };
-        let bound = &there.sets.bricks[recorded.copy];
-        let mut before = Use::Nothing;
-        match &self.pass {
-            Pass::Rays { pass, .. } => {
-                for part in &recorded.parts {
-                    barriers(before, Use::ComputeWrite);
-                    before = Use::ComputeWrite;
-                    let whole = [Tile::whole(extent)];
-                    let bound = &bound[part.brick];
-                    // SAFETY: the caller's promises.
-                    unsafe { pass.record_tiles(cmd, bound, part.offset, extent, whole)? };
-                }
-            }
-            Pass::Projected { slicer, .. } => {
-                barriers(before, Use::ColorTarget);
-                before = Use::ColorTarget;
-                let clear = Load::Clear(clear_color(self.class.settings.mode));
-                // SAFETY: the caller's promises.
-                unsafe {
-                    begin_rendering(gpu, cmd, &[(left[0].view(), clear)], extent);
-                    for part in &recorded.parts {
-                        let bound = &bound[part.brick];
-                        slicer.record(cmd, bound, part.offset, extent, 0..part.slices);
-                    }
-                    end_rendering(gpu, cmd);
-                }
-            }
-            Pass::Slices(_) => {}
+        let parts = match self.pass.slicer {
+            Some(_) => &made.depth,
+            None => &made.picture,
+        };
+        let mut from = before(Use::ComputeWrite);
+        for part in parts {
+            barriers(from, Use::ComputeWrite);
+            from = Use::ComputeWrite;
+            let (bound, tiles) = (&there.sets.rays[copy][part.brick], tiles.iter().copied());
+            // SAFETY: the caller's promises.
+            unsafe { rays.record_tiles(cmd, bound, part.offset, extent, tiles)? };
         }
-        barriers(before, Use::FragmentSampled);
+        if share.is_last {
+            barriers(Use::ComputeWrite, Use::FragmentSampled);
+        }
         Ok(())
     }
 }

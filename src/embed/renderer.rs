@@ -1,7 +1,7 @@
 //! Pictures of one volume in a host's frames.
 
-use super::class::what;
-use super::frame::{Bound, Frame};
+use super::class::{READ_DEPTH, what};
+use super::frame::{Bound, Frame, Recorded};
 use super::function::{self, Function};
 use super::pass::Pass;
 use super::{Class, Error, HostDepthImage, Volume};
@@ -29,11 +29,13 @@ pub struct Renderer {
     pub(super) extent: [u32; 2],
     host_depths: Vec<HostDepthImage>,
     pub(super) frames: Vec<Frame>,
+    /// What the next recording is told in.
+    pub(super) spare: Recorded,
 }
 
 impl Renderer {
     /// Everything that frames of `extent` pixels will need. `function` may be missing in mode [`Mode::Iso`] alone;
-    /// `host_depths` are wanted of rays with [`Class::host_depth`]: one for all frames in flight, or one for each.
+    /// `host_depths` are wanted where [`Class::reads_host_depth`]: one for all frames in flight, or one for each.
     ///
     /// # Errors
     /// What is not drawn so, by name, what the device cannot do, and no memory.
@@ -53,10 +55,13 @@ impl Renderer {
         let settings = &class.settings;
         let function = Function::new(gpu, volume, settings, function, emptying.as_ref())?;
         let words = words_of(&class.settings, volume, &function)?;
-        let pass = Pass::new(gpu, &class, &words)?;
+        let pass = Pass::new(gpu, &class, &words, function.mix)?;
         let bricks = volume.copies().iter().map(|copy| copy.bricks().len()).max();
         let most_bricks = bricks.unwrap_or(1);
-        let slots = (most_bricks as u32).saturating_mul(class.frames_in_flight);
+        // The depth of slices is looked for with parameters of its own, and the light has its own.
+        let is_twofold = pass.half_angle.is_some() || pass.slicer.is_some() && pass.rays.is_some();
+        let walks = if is_twofold { 2 } else { 1 };
+        let slots = (most_bricks as u32).saturating_mul(walks * class.frames_in_flight);
         let mut made = Self {
             gpu: Arc::clone(gpu),
             words,
@@ -69,6 +74,7 @@ impl Renderer {
             extent,
             host_depths: Vec::new(),
             frames: Vec::new(),
+            spare: Recorded::with_room(2 * most_bricks),
             class,
         };
         made.resize(extent, host_depths)?;
@@ -88,7 +94,7 @@ impl Renderer {
         self.check_depths(extent, host_depths)?;
         let frames = (0..self.class.frames_in_flight as usize).map(|frame| {
             let depth = host_depths.get(frame).or(host_depths.first());
-            Frame::new(&self.bound(depth.copied()), extent)
+            Frame::new(&self.bound(depth.copied()), extent, 2 * self.most_bricks)
         });
         let frames = frames.collect::<Result<_, _>>()?;
         self.frames = frames;
@@ -138,6 +144,7 @@ impl Renderer {
                 settings.filter,
                 settings.per_mode.exact_maximum,
                 settings.per_mode.depth_cue == 0.0,
+                settings.is_half_angle(),
             )
         };
         let is_same = kind(&class.settings) == kind(&self.class.settings) && words == self.words;
@@ -228,7 +235,7 @@ impl Renderer {
         let sets = sets.collect::<Result<Vec<_>, _>>()?;
         for (frame, sets) in self.frames.iter_mut().zip(sets) {
             frame.sets = sets;
-            frame.recorded = None;
+            (frame.recorded.shot, frame.begun) = (None, None);
         }
         (self.volume, self.function) = (volume, function);
         Ok(())
@@ -243,12 +250,17 @@ impl Renderer {
     }
 
     fn check_depths(&self, extent: [u32; 2], images: &[HostDepthImage]) -> Result<(), Error> {
-        let reads = self.class.host_depth && matches!(self.pass, Pass::Rays { .. });
+        let reads = self.class.reads_host_depth();
         let of = self.class.frames_in_flight as usize;
         let wrong = |wanted: String, found: String| Err(Error::HostDepth { wanted, found });
         match (reads, images.len()) {
             (false, 0) => Ok(()),
             (true, count) if count == 1 || count == of => {
+                let unread = |image: &&HostDepthImage| !READ_DEPTH.contains(&image.layout);
+                if let Some(image) = images.iter().find(unread) {
+                    let found = format!("{:?}", image.layout);
+                    return wrong("a layout from which shaders read depth".into(), found);
+                }
                 match images.iter().find(|image| image.extent != extent) {
                     None => Ok(()),
                     Some(image) => wrong(

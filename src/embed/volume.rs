@@ -6,16 +6,21 @@ use crate::gpu::{Buffer, Gpu};
 use crate::resident::{Apron, Corners, GpuVolume, MacroCells, Texels, TextureLayout, VolumePlan};
 use crate::shaders::CELL_VOXELS;
 use crate::technique::{FilterBy, GradientSource, Keep, Mix, Settings, Technique};
-use crate::volume::{self, Coefficients, Grid, VoxelType};
+use crate::volume::{self, Coefficients, Grid, Rescale, VoxelType};
 use ash::vk;
 use std::sync::Arc;
+use std::sync::atomic::AtomicU64;
 
 /// A volume's textures, what is known of its empty space, and its voxels on their way there. Several renderers may
 /// share it.
 #[derive(Debug)]
 pub struct Volume {
+    /// Which volume it is.
+    token: Arc<()>,
     grid: Grid,
     value_range: [f64; 2],
+    pub(super) stored: VoxelType,
+    pub(super) rescale: Rescale,
     /// One, or a stack along each axis.
     copies: Vec<GpuVolume>,
     /// Of the copy that rays read, and how far around a cell was looked.
@@ -23,6 +28,8 @@ pub struct Volume {
     /// Corners and cells come with the voxels.
     staging: Vec<Buffer>,
     is_uploaded: bool,
+    /// How many were recorded.
+    pub(super) updates: AtomicU64,
 }
 
 impl Volume {
@@ -30,7 +37,9 @@ impl Volume {
     /// [`Technique::Slices2d`].
     ///
     /// # Errors
-    /// Where the device gives no memory; [`Error::NotEmbedded`] for gradients that are to be kept.
+    /// Where the device gives no memory; [`Error::NotEmbedded`] for gradients that are to be kept; a
+    /// [`Limit`](crate::gpu::Error::Limit) where what [`Volume::plan`] says is more than is left of the host's budget
+    /// ([`Gpu::set_memory_budget`]), before anything is made.
     pub fn new(
         gpu: &Arc<Gpu>,
         voxels: &volume::Volume,
@@ -42,18 +51,30 @@ impl Volume {
                 hint: "take `Keep::Never`, or `resident::KeptGradients` and record them",
             });
         }
+        let stored = voxels.voxels.voxel_type();
+        let has_holes = voxels.validity.is_some();
+        let plan = Self::plan(gpu, voxels.dims, stored, has_holes, settings)?;
+        let bytes = plan.device_bytes.saturating_add(plan.staging_bytes);
+        gpu.check_budget(
+            || format!("make a volume of {:?} voxels", voxels.dims),
+            bytes,
+        )?;
         let (mut copies, mut staging) = (Vec::new(), Vec::new());
         for layout in layouts_of(settings) {
             let copy = copy(gpu, voxels, settings, layout, &mut staging)?;
             copies.push(copy);
         }
         let mut made = Self {
+            token: Arc::new(()),
             grid: voxels.grid(),
             value_range: voxels.value_range,
+            stored,
+            rescale: voxels.rescale,
             copies,
             cells: None,
             staging,
             is_uploaded: false,
+            updates: AtomicU64::new(0),
         };
         if settings.technique == Technique::Raycast {
             made.know_empty_space(gpu, voxels, settings)?;
@@ -62,8 +83,7 @@ impl Volume {
     }
 
     /// What such a volume will take, told before its voxels are read: textures, what is known of empty space, and the
-    /// buffer that it is staged in until its upload has run. Corners, which drivers that compute on the CPU have, come
-    /// to that.
+    /// buffer that it is staged in until its upload has run; without what the driver pads each of them by.
     ///
     /// # Errors
     /// Where not even a voxel fits the limits of the device.
@@ -92,7 +112,12 @@ impl Volume {
                 all.bricks = all.bricks.max(one.bricks);
             }
         }
-        if settings.technique == Technique::Raycast && settings.skip {
+        let is_raycast = settings.technique == Technique::Raycast;
+        let is_one = all.bricks == 1;
+        if is_raycast && is_one && wants_corners(gpu, stored, dims, settings) {
+            all.device_bytes += Corners::bytes_of(stored, dims).unwrap_or_default();
+        }
+        if is_raycast && settings.skip {
             let side = u64::from(CELL_VOXELS);
             let cells = dims
                 .map(|n| u64::from(n).div_ceil(side))
@@ -111,12 +136,9 @@ impl Volume {
         settings: &Settings,
     ) -> Result<(), Error> {
         let copy = &mut self.copies[0];
-        let is_one = copy.bricks().len() == 1 && copy.spline().is_none();
-        let is_wanted = settings.filter_by == FilterBy::Fetch || gpu.has_slow_sampler();
-        if is_one
-            && is_wanted
-            && settings.reads_corners(Mix::Alone)
-            && Corners::are_for(gpu, voxels)
+        let stored = voxels.voxels.voxel_type();
+        if copy.bricks().len() == 1
+            && wants_corners(gpu, stored, voxels.dims, settings)
             && let Some(corners) = Corners::new(gpu, voxels)?
         {
             copy.keep_corners(corners);
@@ -145,13 +167,9 @@ impl Volume {
         if self.is_uploaded {
             return Err(Error::Uploaded);
         }
-        let staged = self.copies.iter().flat_map(|copy| {
-            let beside = copy.gradient_source();
-            [Some(copy), beside].into_iter().flatten()
-        });
         // SAFETY: the caller's promises; buffers lie in the order of what they fill, and wait for the device.
         unsafe {
-            for (texture, staging) in staged.zip(&self.staging) {
+            for (texture, staging) in self.textures().zip(&self.staging) {
                 texture.record_upload_all(cmd, staging)?;
             }
             for copy in &self.copies {
@@ -187,6 +205,16 @@ impl Volume {
         &self.copies
     }
 
+    /// All that is staged by itself: copies, and what their gradients are made of.
+    pub(super) fn textures(&self) -> impl Iterator<Item = &GpuVolume> {
+        let copies = self.copies.iter();
+        copies.flat_map(|copy| [Some(copy), copy.gradient_source()].into_iter().flatten())
+    }
+
+    pub(super) fn token(&self) -> &Arc<()> {
+        &self.token
+    }
+
     pub(super) fn cells(&self) -> Option<&MacroCells> {
         self.cells.as_ref().map(|(cells, _)| cells)
     }
@@ -211,6 +239,15 @@ impl Volume {
     pub(super) fn is_uploaded(&self) -> bool {
         self.is_uploaded
     }
+}
+
+/// Whether corners pay for such a volume, where it is one brick.
+fn wants_corners(gpu: &Gpu, stored: VoxelType, dims: [u32; 3], settings: &Settings) -> bool {
+    let is_wanted = settings.filter_by == FilterBy::Fetch || gpu.has_slow_sampler();
+    is_wanted
+        && settings.filter.spline().is_none()
+        && settings.reads_corners(Mix::Alone)
+        && Corners::are_for_such(gpu, stored, dims)
 }
 
 /// How it lies on the device: a stack for each axis that the eye may look along, or one texture.

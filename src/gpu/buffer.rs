@@ -65,7 +65,8 @@ impl Buffer {
             linear: true,
             allocation_scheme: AllocationScheme::GpuAllocatorManaged,
         };
-        let memory = OwnMemory::new(gpu, &desc, doing)?;
+        let alone = AllocationScheme::DedicatedBuffer(raw.get());
+        let memory = OwnMemory::new(gpu, &desc, alone, doing)?;
         let allocation = memory.get();
         // SAFETY: the memory was allocated for this buffer's requirements and is bound once.
         gpu.call(doing, |device| unsafe {

@@ -11,6 +11,7 @@ pub type TimelinePoint = (vk::Semaphore, u64);
 #[derive(Debug)]
 pub struct Commands {
     pool: Own<vk::CommandPool>,
+    fence: Own<vk::Fence>,
     buffers: Vec<vk::CommandBuffer>,
 }
 
@@ -37,7 +38,14 @@ impl Commands {
         let buffers = gpu.call(doing, |device| unsafe {
             device.allocate_command_buffers(&info)
         })?;
-        Ok(Self { pool, buffers })
+        let info = vk::FenceCreateInfo::default();
+        // SAFETY: the device is valid.
+        let fence = gpu.call(doing, |device| unsafe { device.create_fence(&info, None) })?;
+        Ok(Self {
+            pool,
+            fence: Own::new(gpu, fence),
+            buffers,
+        })
     }
 
     /// Records command buffer number `frame`, for [`Commands::submit`].
@@ -80,13 +88,15 @@ impl Commands {
     /// # Safety
     /// - [`Commands::record`] has recorded it since it was submitted last;
     /// - nobody else uses the queue meanwhile; it is of the family that the buffers were made for;
-    /// - semaphores are timelines of the device, and live until the submission is done.
+    /// - semaphores are timelines of the device, and live until the submission is done;
+    /// - after one that `is_fenced`, [`Commands::wait`] comes before the next one.
     pub unsafe fn submit(
         &self,
         queue: vk::Queue,
         frame: u32,
         waits: &[TimelinePoint],
         signals: &[TimelinePoint],
+        is_fenced: bool,
     ) -> Result<(), Error> {
         let point = |&(semaphore, value): &TimelinePoint| {
             vk::SemaphoreSubmitInfo::default()
@@ -101,10 +111,30 @@ impl Commands {
             .wait_semaphore_infos(&waits)
             .command_buffer_infos(&cmds)
             .signal_semaphore_infos(&signals)];
+        let fence = match is_fenced {
+            true => self.fence.get(),
+            false => vk::Fence::null(),
+        };
         // SAFETY: the caller's promises; synchronization2 was required of the device.
         self.pool.gpu().call(
             || "submit a frame".into(),
-            |device| unsafe { device.queue_submit2(queue, &submit, vk::Fence::null()) },
+            |device| unsafe { device.queue_submit2(queue, &submit, fence) },
+        )
+    }
+
+    /// Waits for what was submitted last with `is_fenced`.
+    ///
+    /// # Errors
+    /// A device that is lost.
+    pub fn wait(&self) -> Result<(), Error> {
+        let fence = [self.fence.get()];
+        self.pool.gpu().call(
+            || "wait for a part of a frame".into(),
+            // SAFETY: the fence is ours, and in no use when the wait is over.
+            |device| unsafe {
+                device.wait_for_fences(&fence, true, u64::MAX)?;
+                device.reset_fences(&fence)
+            },
         )
     }
 

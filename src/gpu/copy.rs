@@ -92,6 +92,50 @@ pub unsafe fn image_to_buffer(
     Ok(())
 }
 
+/// Copies parts of `from` into `to`: first byte there, first byte here, bytes.
+///
+/// # Errors
+///
+/// A part outside of either; nothing is recorded then.
+///
+/// # Safety
+///
+/// - `cmd` is recording on `gpu`'s device, outside rendering; both live until it has run;
+/// - nothing else uses these bytes of `to` meanwhile; what `from` has is visible to transfers.
+pub(crate) unsafe fn buffer_to_buffer(
+    gpu: &Gpu,
+    cmd: vk::CommandBuffer,
+    from: &Buffer,
+    to: &Buffer,
+    parts: &[vk::BufferCopy],
+) -> Result<(), Error> {
+    let ends_in = |buffer: &Buffer, first: u64, bytes: u64| {
+        let end = first.checked_add(bytes);
+        end.is_some_and(|end| end <= buffer.bytes())
+    };
+    let outside = parts.iter().find(|part| {
+        part.size == 0
+            || !ends_in(from, part.src_offset, part.size)
+            || !ends_in(to, part.dst_offset, part.size)
+    });
+    if let Some(part) = outside {
+        return Err(Error::Argument {
+            doing: format!("copy buffer `{}` to `{}`", from.name(), to.name()),
+            wanted: format!("bytes inside their {} and {}", from.bytes(), to.bytes()),
+            found: format!(
+                "{} from {} on to {}",
+                part.size, part.src_offset, part.dst_offset
+            ),
+        });
+    }
+    if parts.is_empty() {
+        return Ok(());
+    }
+    // SAFETY: the parts were checked; the rest is the caller's promise.
+    gpu.record(|device| unsafe { device.cmd_copy_buffer(cmd, from.raw(), to.raw(), parts) });
+    Ok(())
+}
+
 /// Fills all of a color image with one color.
 ///
 /// # Safety

@@ -300,6 +300,11 @@ impl There<'_> {
                 (words, found == wanted)
             }
             Item::InstanceExtension(_) => yes_or_no(self.asked.debug_utils, "enabled"),
+            Item::DeviceExtension(name) => {
+                // SAFETY: the physical device is one of the instance's.
+                let has = unsafe { has_extension(self.instance, self.asked.physical_device, name) };
+                yes_or_no(has, "supported")
+            }
         }
     }
 }
@@ -327,6 +332,23 @@ pub(super) unsafe fn supported(
         robust_buffer_access: core.robust_buffer_access == vk::TRUE,
         robust_image_access: features13.robust_image_access == vk::TRUE,
     }
+}
+
+/// Whether a device has an extension; one that cannot be asked has none.
+///
+/// # Safety
+/// `physical_device` belongs to `instance`.
+pub(super) unsafe fn has_extension(
+    instance: &ash::Instance,
+    physical_device: vk::PhysicalDevice,
+    name: &str,
+) -> bool {
+    // SAFETY: the caller's promise.
+    let all = unsafe { instance.enumerate_device_extension_properties(physical_device) };
+    all.unwrap_or_default().iter().any(|extension| {
+        let found = extension.extension_name_as_c_str();
+        found.is_ok_and(|found| found.to_bytes() == name.as_bytes())
+    })
 }
 
 /// The first family that our recordings can be submitted to.

@@ -148,6 +148,7 @@ impl Image {
         gpu.name(raw.get(), desc.name);
         // SAFETY: the image was made on this device.
         let requirements = unsafe { gpu.device().get_image_memory_requirements(raw.get()) };
+        let alone = AllocationScheme::DedicatedImage(raw.get());
         let memory = AllocationCreateDesc {
             name: desc.name,
             requirements,
@@ -158,11 +159,11 @@ impl Image {
             linear: is_in_rows,
             // Gone with the image: in blocks with small things, places that large ones leave come to pieces.
             allocation_scheme: match requirements.size >= OWN_MEMORY_BYTES {
-                true => AllocationScheme::DedicatedImage(raw.get()),
+                true => alone,
                 false => AllocationScheme::GpuAllocatorManaged,
             },
         };
-        let memory = OwnMemory::new(gpu, &memory, doing)?;
+        let memory = OwnMemory::new(gpu, &memory, alone, doing)?;
         let allocation = memory.get();
         // SAFETY: the memory was allocated for this image's requirements and is bound once.
         gpu.call(doing, |device| unsafe {

@@ -16,6 +16,7 @@
 
 mod barrier;
 mod bindings;
+mod blocks;
 mod buffer;
 mod cache;
 mod caps;
@@ -33,8 +34,10 @@ mod image;
 mod instance;
 mod layout;
 mod loss;
+mod memory;
 mod own_device;
 mod owned;
+mod pace;
 mod parameters;
 mod pipeline;
 mod raster;
@@ -47,11 +50,13 @@ mod validation;
 
 pub use barrier::{Target, TargetState, Use, buffer_barrier, image_barrier};
 pub use bindings::{Bindings, Resource};
+pub(crate) use blocks::Blocks;
 pub use buffer::{Buffer, Memory};
 pub use cache::PipelineCache;
 pub use caps::Caps;
 pub use choice::DeviceChoice;
 pub use commands::{Commands, TimelinePoint};
+pub(crate) use copy::buffer_to_buffer;
 pub use copy::{Region, buffer_to_image, clear_image, image_to_buffer};
 pub use devices::{DeviceReport, Enabled, Finding, HostPhysicalDevice, check_device, list_devices};
 pub use error::Error;
@@ -61,9 +66,11 @@ pub use host::{Features, HostDevice};
 pub use identity::{DeviceKind, Identity};
 pub use image::{Image, ImageDesc, ImageKind};
 pub use layout::Layout;
+pub use memory::{HeapUse, MemoryUse};
+pub(crate) use pace::{Pace, TARGET_MS};
 pub use parameters::ParameterRing;
 pub use pipeline::ComputePipeline;
-pub use raster::{Blend, DepthClass, DepthUse, RasterDesc, RasterPipeline, TargetClass};
+pub use raster::{Blend, DepthClass, DepthUse, HostPass, RasterDesc, RasterPipeline, TargetClass};
 pub use rendering::{
     Load, begin_rendering, begin_rendering_of, end_rendering, set_area, set_area_of,
 };

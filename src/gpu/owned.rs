@@ -3,11 +3,10 @@
 //! An owner's `Drop` never waits: it hands the raw object to the [`Store`] with the newest value that
 //! the timeline was announced to reach. [`Store::retire`] destroys what the timeline has passed.
 
-use super::{Error, Gpu, error::within};
+use super::{Error, Gpu, LARGEST_BLOCK_BYTES, MemoryUse, error::within, memory::BUDGET};
 use ash::vk;
-use gpu_allocator::{
-    AllocationError, vulkan::Allocation, vulkan::AllocationCreateDesc, vulkan::Allocator,
-};
+use gpu_allocator::AllocationError;
+use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme, Allocator};
 use std::{
     collections::{BTreeMap, VecDeque},
     sync::Arc,
@@ -53,10 +52,12 @@ pub(super) struct OwnMemory {
 }
 
 impl OwnMemory {
-    /// Allocates, after `desc` was compared with the limits. `doing` follows the word "cannot".
+    /// Allocates, after `desc` was compared with the limits. `alone` stands for memory of its own. `doing` follows the
+    /// word "cannot".
     pub fn new(
         gpu: &Arc<Gpu>,
         desc: &AllocationCreateDesc<'_>,
+        alone: AllocationScheme,
         doing: impl Fn() -> String,
     ) -> Result<Self, Error> {
         let limits = gpu.limits();
@@ -73,7 +74,8 @@ impl OwnMemory {
             size,
             limits.max_heap_bytes,
         )?;
-        let allocation = gpu.store().allocate(desc, limits.max_allocations, &doing)?;
+        let most = limits.max_allocations;
+        let allocation = gpu.store().allocate(desc, alone, most, &doing)?;
         Ok(Self {
             gpu: Arc::clone(gpu),
             allocation: Some(allocation),
@@ -181,6 +183,8 @@ pub(super) struct Store {
     owned_bytes: u64,
     /// The most that was taken from the driver at once.
     peak_bytes: u64,
+    /// The most that may be.
+    budget_bytes: Option<u64>,
 }
 
 impl Store {
@@ -192,6 +196,7 @@ impl Store {
             live: BTreeMap::new(),
             owned_bytes: 0,
             peak_bytes: 0,
+            budget_bytes: None,
         }
     }
 
@@ -258,12 +263,38 @@ impl Store {
         self.peak_bytes
     }
 
+    pub fn set_budget(&mut self, bytes: Option<u64>) {
+        self.budget_bytes = bytes;
+    }
+
+    /// Without the driver's word.
+    pub fn memory(&self) -> MemoryUse {
+        let blocks = |allocator: &Allocator| allocator.generate_report().blocks.len() as u64;
+        MemoryUse {
+            budget_bytes: self.budget_bytes,
+            used_bytes: self.owned_bytes,
+            reserved_bytes: self.reserved_bytes(),
+            peak_bytes: self.peak_bytes,
+            allocations: self.allocator.as_ref().map_or(0, blocks),
+            heaps: Vec::new(),
+        }
+    }
+
     fn allocate(
         &mut self,
         desc: &AllocationCreateDesc<'_>,
+        alone: AllocationScheme,
         max_allocations: u64,
         doing: impl Fn() -> String,
     ) -> Result<Allocation, Error> {
+        let mut desc = desc.clone();
+        if let Some(budget) = self.budget_bytes {
+            let (size, reserved) = (desc.requirements.size, self.reserved_bytes());
+            within(&doing, BUDGET, reserved.saturating_add(size), budget)?;
+            if reserved.saturating_add(size.max(LARGEST_BLOCK_BYTES)) > budget {
+                desc.allocation_scheme = alone;
+            }
+        }
         let allocator = self
             .allocator
             .as_mut()
@@ -281,7 +312,7 @@ impl Store {
                 max_allocations,
             )?;
         }
-        let allocation = allocator.allocate(desc).map_err(|cause| match &cause {
+        let allocation = allocator.allocate(&desc).map_err(|cause| match &cause {
             AllocationError::OutOfMemory => {
                 Error::vulkan(doing(), vk::Result::ERROR_OUT_OF_DEVICE_MEMORY)
             }

@@ -93,6 +93,15 @@ impl ComputePipeline {
         Ok(groups)
     }
 
+    /// Workgroups that have the threads of a box, from its first to before its end: neighbours too.
+    pub(crate) fn groups_around(&self, first: [u32; 3], end: [u32; 3]) -> Groups {
+        let base = std::array::from_fn(|k| first[k] / self.workgroup[k]);
+        Groups {
+            base,
+            count: std::array::from_fn(|k| end[k].div_ceil(self.workgroup[k]) - base[k]),
+        }
+    }
+
     /// Workgroups of a part of a picture of `extent`, one thread a pixel.
     pub(crate) fn groups_of(&self, extent: [u32; 2], tile: Tile) -> Result<Groups, Error> {
         self.groups([extent[0], extent[1], 1])?;

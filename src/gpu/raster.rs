@@ -34,8 +34,23 @@ pub struct TargetClass {
     pub samples: vk::SampleCountFlags,
     /// The depth attachment, where the rendering has one.
     pub depth: Option<DepthClass>,
-    /// A render pass and its subpass, with the color target as the first color attachment; `None`: dynamic rendering.
-    pub pass: Option<(vk::RenderPass, u32)>,
+    /// A render pass of the host's; `None`: dynamic rendering.
+    pub pass: Option<HostPass>,
+}
+
+/// A render pass of the host's and the subpass that is drawn in, with the color target as its first color attachment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct HostPass {
+    raw: vk::RenderPass,
+    subpass: u32,
+}
+
+impl HostPass {
+    /// # Safety
+    /// The render pass is one of the device that pipelines are made on for it, has that subpass, and lives until they are made.
+    pub unsafe fn new(raw: vk::RenderPass, subpass: u32) -> Self {
+        Self { raw, subpass }
+    }
 }
 
 /// The depth attachment of a host's rendering.
@@ -144,7 +159,7 @@ impl RasterPipeline {
             .dynamic_state(&dynamic)
             .layout(layout.raw());
         info = match desc.target.pass {
-            Some((pass, subpass)) => info.render_pass(pass).subpass(subpass),
+            Some(pass) => info.render_pass(pass.raw).subpass(pass.subpass),
             None => info.push_next(&mut rendering),
         };
         // SAFETY: modules and layout were made of the same shaders, whose SPIR-V `build.rs` has validated.

@@ -19,10 +19,10 @@ pub enum Load {
 /// - `cmd` is recording on `gpu`'s device, outside rendering;
 /// - each view is of a color image of at least `extent`, in [`super::Use::ColorTarget`], and lives until `cmd` has
 ///   run.
-pub unsafe fn begin_rendering(
+pub unsafe fn begin_rendering<const N: usize>(
     gpu: &Gpu,
     cmd: vk::CommandBuffer,
-    targets: &[(vk::ImageView, Load)],
+    targets: &[(vk::ImageView, Load); N],
     extent: [u32; 2],
 ) {
     // SAFETY: the caller's promises.
@@ -34,16 +34,13 @@ pub unsafe fn begin_rendering(
 /// # Safety
 ///
 /// As [`begin_rendering`]; the images are as large as the tile reaches.
-pub unsafe fn begin_rendering_of(
+pub unsafe fn begin_rendering_of<const N: usize>(
     gpu: &Gpu,
     cmd: vk::CommandBuffer,
-    targets: &[(vk::ImageView, Load)],
+    targets: &[(vk::ImageView, Load); N],
     tile: Tile,
 ) {
-    let attachments: Vec<_> = targets
-        .iter()
-        .map(|&(view, load)| attachment(view, load))
-        .collect();
+    let attachments = targets.map(|(view, load)| attachment(view, load));
     let info = vk::RenderingInfo::default()
         .render_area(area(tile))
         .layer_count(1)

@@ -2,7 +2,7 @@
 //!
 //! Required is what nothing can be drawn without; recommended, what makes more pictures possible, or the same faster.
 //! Names are those of the Vulkan specification. Of Vulkan 1.3 itself, what is not listed is not used: shaders declare
-//! the capabilities `Shader` and `ImageQuery` alone, and no device extension is ever called.
+//! the capabilities `Shader` and `ImageQuery` alone, and no device extension is ever enabled.
 
 use super::{API_VERSION, Caps, Features};
 use ash::vk;
@@ -46,6 +46,8 @@ pub enum Item {
     Format(vk::Format, vk::FormatFeatureFlags),
     /// An extension, to be enabled when the instance is made.
     InstanceExtension(&'static str),
+    /// An extension that the device has. It need not be enabled: the physical device alone is asked by it.
+    DeviceExtension(&'static str),
 }
 
 /// A feature that has to be enabled when the device is made.
@@ -222,6 +224,10 @@ pub const REQUIREMENTS: &[Requirement] = &[
         Item::InstanceExtension("VK_EXT_debug_utils"),
         "names of our objects in validation messages and debuggers",
     ),
+    recommended(
+        Item::DeviceExtension("VK_EXT_memory_budget"),
+        "reports of how much memory this process may still use",
+    ),
 ];
 
 /// What the queue of a recording must be able to do.
@@ -302,7 +308,7 @@ impl fmt::Display for Item {
             Self::Feature(feature) => write!(f, "{}", feature.name()),
             Self::Limit(limit, _) => write!(f, "{}", limit.name()),
             Self::Format(format, _) => write!(f, "VK_FORMAT_{format:?}"),
-            Self::InstanceExtension(name) => write!(f, "{name}"),
+            Self::InstanceExtension(name) | Self::DeviceExtension(name) => write!(f, "{name}"),
         }
     }
 }
@@ -317,6 +323,7 @@ impl Item {
             Self::Queue(flags) => format!("{flags:?}"),
             Self::Timestamps => "1 or more".into(),
             Self::Feature(_) | Self::InstanceExtension(_) => "enabled".into(),
+            Self::DeviceExtension(_) => "supported".into(),
             Self::Limit(_, least) => format!("{least} or more"),
             Self::Format(_, features) => format!("{features:?}"),
         }

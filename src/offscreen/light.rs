@@ -1,11 +1,11 @@
 //! The light volume of a scene, made on the device.
 
 use super::Error;
-use super::cost::ms_of_looks;
 use super::time_slices::{TimeSlices, Work};
 use crate::gpu::Headless;
 use crate::resident::GpuTransfer;
 use crate::scene::Scene;
+use crate::technique::cost::ms_of_looks;
 use crate::technique::{
     ClipPlane, Filter, GradientFilter, Inputs, LightPlan, LightVolume, Part, Skip, parameter_ring,
 };

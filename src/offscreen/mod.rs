@@ -2,14 +2,11 @@
 //!
 //! The only place that submits and waits.
 
-mod blocks;
-mod cost;
 mod denoise;
 mod fade;
 mod gathered;
 mod gradients;
 mod light;
-mod pace;
 mod passes;
 mod patched;
 mod position;

@@ -108,8 +108,8 @@ impl Passes {
             Gather::Rays(pass) => {
                 let bind = |inputs: &Inputs| pass.bind(inputs, accumulation, layers, None);
                 let bound = submission.bind(bind)?;
-                let images = pass.images(accumulation, layers);
-                submission.compute(&images, &bound, |cmd, bindings, offset, tiles| {
+                let images = &[accumulation, layers][..pass.image_count()];
+                submission.compute(images, &bound, |cmd, bindings, offset, tiles| {
                     let tiles = tiles.iter().copied();
                     // SAFETY: outside rendering, images as `compute` brings them; all lives until it has run.
                     unsafe { pass.record_tiles(cmd, bindings, offset, *extent, tiles) }

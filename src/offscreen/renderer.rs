@@ -18,7 +18,6 @@ mod skipping;
 mod streaming;
 
 use super::Error;
-use super::cost::ms_of_looks;
 use super::fade::{render_faded, stacks_of};
 use super::gradients::decided;
 use super::light::Matter;
@@ -34,6 +33,7 @@ use crate::gpu::{Headless, ParameterRing, Timer, Use};
 use crate::picture::{ColorSpace, LayerKind, Picture};
 use crate::resident::{GpuTransfer, GpuVolume};
 use crate::scene::{Scene, positions_in_pixel};
+use crate::technique::cost::ms_of_looks;
 use crate::technique::{
     self, Functions, InPixel, LightVolume, Mix, Mode, Part, Words, parameter_ring,
 };

@@ -1,8 +1,8 @@
 //! A picture's bricks in timed submissions, each a part of the picture.
 
-use super::blocks::Blocks;
 use super::targets::Targets;
 use super::time_slices::{Spent, TimeSlices, Work};
+use crate::gpu::Blocks;
 use crate::gpu::{Bindings, Error, Gpu, Headless, Image, Tile, Timer, Use, image_barrier};
 use crate::technique::{Inputs, Order};
 use ash::vk;

@@ -1,7 +1,7 @@
 //! Work in submissions that none takes long, and who is told how far it is.
 
-use super::pace::{Pace, TARGET_MS};
 use crate::gpu::{Error, Gpu, Headless, Timer};
+use crate::gpu::{Pace, TARGET_MS};
 use ash::vk;
 use std::fmt;
 use std::ops::Range;

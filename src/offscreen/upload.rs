@@ -1,10 +1,10 @@
 //! Volumes through a staging buffer to the device, a slab at a time.
 
-use super::cost::{looks_of_cells, ms_of_looks};
 use super::time_slices::{TimeSlices, Work};
 use crate::gpu::{Buffer, Error, Headless, Memory};
 use crate::resident::{GpuVolume, KeptGradients, KeptOperator, Slab, Texels, TextureLayout};
 use crate::technique::GradientSource;
+use crate::technique::cost::{looks_of_cells, ms_of_looks};
 use crate::volume::{Coefficients, Spline, Volume};
 use ash::vk;
 use std::panic::resume_unwind;

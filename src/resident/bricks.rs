@@ -74,14 +74,24 @@ fn cells(dims: [u32; 3], size: [u32; 3], halo: [u32; 3]) -> Vec<Cell> {
 /// `eye_cell` is where the eye lies, in cells; infinite coordinates stand for parallel rays that come from
 /// there.
 pub fn front_to_back(cells: &[Cell], eye_cell: [f64; 3]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..cells.len()).collect();
+    sort_front_to_back(&mut order, |i| &cells[i], eye_cell);
+    order
+}
+
+/// The same of bricks that are there already, by their numbers: nothing is allocated.
+pub(crate) fn sort_front_to_back<'a>(
+    order: &mut [usize],
+    cell: impl Fn(usize) -> &'a Cell,
+    eye_cell: [f64; 3],
+) {
     let steps = |cell: &Cell| -> u64 {
         (0..3)
             .map(|k| steps_along(cell.index[k], eye_cell[k]))
             .sum()
     };
-    let mut order: Vec<usize> = (0..cells.len()).collect();
-    order.sort_by_key(|&i| steps(&cells[i]));
-    order
+    // Of equal ones the lower number first.
+    order.sort_unstable_by_key(|&i| (steps(cell(i)), i));
 }
 
 /// The same, neighbours along x one after the other: along a ray none of the three numbers of steps falls.

@@ -3,23 +3,66 @@
 //! `shaders/macro_cells.wgsl`, bit by bit.
 
 use crate::shaders::{CELL_VOXELS, CellGrid};
-use crate::volume::{Volume, Voxels};
+use crate::volume::{VoxelBox, VoxelPart, Voxels};
 use half::f16;
-use std::ops::RangeInclusive;
 
-/// Smallest and largest value of each cell of a grid, x fastest. `corner` is the first voxel of `volume` in the grid.
-pub(super) fn ranges(volume: &Volume, corner: [u32; 3], grid: &CellGrid) -> Vec<[f32; 2]> {
-    let held = Held {
-        dims: volume.dims.map(|n| n as usize),
-        corner: corner.map(|n| n as usize),
-    };
-    let codes = match &volume.voxels {
-        Voxels::U8(v) => code_ranges(v, &held, grid, |c| c.into()),
-        Voxels::I8(v) => code_ranges(v, &held, grid, |c| c.into()),
-        Voxels::U16(v) => code_ranges(v, &held, grid, |c| c.into()),
-        Voxels::I16(v) => code_ranges(v, &held, grid, |c| c.into()),
-        Voxels::F16(v) => code_ranges(v, &held, grid, f16::to_f32),
-        Voxels::F32(v) => code_ranges(v, &held, grid, |c| c),
+/// Cells of a grid: from `min` to before `max` along each axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct CellBox {
+    pub min: [u32; 3],
+    pub max: [u32; 3],
+}
+
+impl CellBox {
+    /// All of them.
+    pub fn whole(grid: &CellGrid) -> Self {
+        Self {
+            min: [0; 3],
+            max: grid.cells,
+        }
+    }
+
+    /// Those that look at voxels of `region`; `None` where the grid does not hold any.
+    pub fn that_see(grid: &CellGrid, region: VoxelBox) -> Option<Self> {
+        let stored = VoxelBox {
+            min: grid.stored_min.map(|n| n as u32),
+            max: grid.stored_last.map(|n| n as u32 + 1),
+        };
+        let seen = region.and(&stored)?;
+        // Cell c looks at voxels from origin + 8 c - apron to origin + 8 c + 7 + apron.
+        let side = CELL_VOXELS as i32;
+        let cell = |voxel: i32, axis: usize| {
+            let last = grid.cells[axis] as i32 - 1;
+            (voxel - grid.origin[axis]).div_euclid(side).clamp(0, last) as u32
+        };
+        let at = |voxel: u32, beyond: i32, axis: usize| cell(voxel as i32 + beyond, axis);
+        Some(Self {
+            min: std::array::from_fn(|k| at(seen.min[k], -grid.apron, k)),
+            max: std::array::from_fn(|k| at(seen.max[k] - 1, grid.apron, k) + 1),
+        })
+    }
+
+    /// The voxels that they look at: their own and the apron, as far as the brick stores them.
+    pub fn looks_at(self, grid: &CellGrid) -> VoxelBox {
+        let side = CELL_VOXELS as i32;
+        let first = |k: usize| grid.origin[k] + self.min[k] as i32 * side - grid.apron;
+        let end = |k: usize| grid.origin[k] + self.max[k] as i32 * side + grid.apron;
+        VoxelBox {
+            min: std::array::from_fn(|k| first(k).max(grid.stored_min[k]) as u32),
+            max: std::array::from_fn(|k| end(k).min(grid.stored_last[k] + 1) as u32),
+        }
+    }
+}
+
+/// Smallest and largest value of some cells of a grid, x fastest, from what they look at.
+pub(super) fn ranges(part: &VoxelPart, grid: &CellGrid, cells: CellBox) -> Vec<[f32; 2]> {
+    let codes = match part.voxels {
+        Voxels::U8(v) => code_ranges(v, part, grid, cells, |c| c.into()),
+        Voxels::I8(v) => code_ranges(v, part, grid, cells, |c| c.into()),
+        Voxels::U16(v) => code_ranges(v, part, grid, cells, |c| c.into()),
+        Voxels::I16(v) => code_ranges(v, part, grid, cells, |c| c.into()),
+        Voxels::F16(v) => code_ranges(v, part, grid, cells, f16::to_f32),
+        Voxels::F32(v) => code_ranges(v, part, grid, cells, |c| c),
     };
     codes.into_iter().map(|ends| range_of(ends, grid)).collect()
 }
@@ -34,34 +77,30 @@ fn range_of(ends: [f32; 2], grid: &CellGrid) -> [f32; 2] {
     [low - beyond, high + beyond]
 }
 
-/// Which voxels of the grid are in memory.
-struct Held {
-    dims: [usize; 3],
-    corner: [usize; 3],
-}
-
 /// Smallest and largest code of each cell and its apron.
 fn code_ranges<T: Copy + PartialOrd>(
     voxels: &[T],
-    held: &Held,
+    part: &VoxelPart,
     grid: &CellGrid,
+    cells: CellBox,
     to_f32: impl Fn(T) -> f32,
 ) -> Vec<[f32; 2]> {
-    let [nx, ny, _] = held.dims;
-    // Voxels of the cells and the apron along an axis, as far as the brick stores them.
-    let around = |axis: usize, cell: u32| -> RangeInclusive<usize> {
-        let own = grid.origin[axis] + (cell * CELL_VOXELS) as i32;
-        let last = own + CELL_VOXELS as i32 - 1 + grid.apron;
-        let from = (own - grid.apron).max(grid.stored_min[axis]);
-        let place = |voxel: i32| voxel as usize - held.corner[axis];
-        place(from)..=place(last.min(grid.stored_last[axis]))
+    // Of one row of cells along an axis.
+    let along = |axis: usize, cell: u32| {
+        let mut one = cells;
+        (one.min[axis], one.max[axis]) = (cell, cell + 1);
+        one.looks_at(grid)
     };
-    let mut found = Vec::with_capacity(grid.cells.iter().product::<u32>() as usize);
-    for cz in 0..grid.cells[2] {
-        for cy in 0..grid.cells[1] {
-            // All rows of a layer of cells at once, then the columns of each cell.
-            let rows = around(2, cz).flat_map(|z| around(1, cy).map(move |y| (z * ny + y) * nx));
-            let mut rows = rows.map(|start| &voxels[start..start + nx]);
+    let whole = cells.looks_at(grid);
+    let length = (whole.max[0] - whole.min[0]) as usize;
+    let mut found = Vec::new();
+    for cz in cells.min[2]..cells.max[2] {
+        for cy in cells.min[1]..cells.max[1] {
+            // All rows of a row of cells at once, then the columns of each cell.
+            let mut seen = along(1, cy);
+            let deep = along(2, cz);
+            (seen.min[2], seen.max[2]) = (deep.min[2], deep.max[2]);
+            let mut rows = part.rows(seen).map(|first| &voxels[first..first + length]);
             let mut least = rows.next().expect("cells have voxels").to_vec();
             let mut most = least.clone();
             for row in rows {
@@ -70,10 +109,11 @@ fn code_ranges<T: Copy + PartialOrd>(
                     *most = if code > *most { code } else { *most };
                 }
             }
-            for cx in 0..grid.cells[0] {
-                let columns = around(0, cx);
-                let first = *columns.start();
-                let ends = columns.fold([least[first], most[first]], |[low, high], x| {
+            for cx in cells.min[0]..cells.max[0] {
+                let columns = along(0, cx);
+                let [first, end] =
+                    [columns.min[0], columns.max[0]].map(|x| (x - whole.min[0]) as usize);
+                let ends = (first..end).fold([least[first], most[first]], |[low, high], x| {
                     [
                         if least[x] < low { least[x] } else { low },
                         if most[x] > high { most[x] } else { high },

@@ -22,8 +22,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
 /// Words along the side of a cube.
-const SIDE: usize = 4;
-const CUBE_WORDS: usize = SIDE * SIDE * SIDE;
+pub(super) const SIDE: usize = 4;
+pub(super) const CUBE_WORDS: usize = SIDE * SIDE * SIDE;
 /// They take no more of the device's largest heap than one part of so many.
 const SHARE: u64 = 4;
 /// Shaders find the word of a voxel in a row of no more.
@@ -45,7 +45,7 @@ fn desc(words: u64) -> ImageDesc<'static> {
         kind: ImageKind::D2,
         extent: [CORNERS_WIDTH, rows.min(u64::from(u32::MAX)) as u32, 1],
         format: vk::Format::R32_UINT,
-        usage: vk::ImageUsageFlags::STORAGE,
+        usage: vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::TRANSFER_DST,
         name: "corners",
     }
 }
@@ -53,8 +53,10 @@ fn desc(words: u64) -> ImageDesc<'static> {
 /// The words of a volume of 8-bit or 16-bit integers, complete as soon as they are made.
 #[derive(Debug)]
 pub struct Corners {
-    image: Image,
+    pub(super) image: Image,
     filter: &'static str,
+    /// Voxels of a row from one word to the next.
+    pub(super) new_voxels: u32,
 }
 
 impl Corners {
@@ -69,12 +71,17 @@ impl Corners {
     /// Whether they pay and can be had: on a software device, of 8-bit or 16-bit integers in one brick, where that has
     /// such an image, in a quarter of its largest heap.
     pub fn are_for(gpu: &Gpu, volume: &Volume) -> bool {
-        let Some(bytes) = Self::bytes_of(volume.voxels.voxel_type(), volume.dims) else {
+        Self::are_for_such(gpu, volume.voxels.voxel_type(), volume.dims)
+    }
+
+    /// The same before there are voxels.
+    pub(crate) fn are_for_such(gpu: &Gpu, stored: VoxelType, dims: [u32; 3]) -> bool {
+        let Some(bytes) = Self::bytes_of(stored, dims) else {
             return false;
         };
         gpu.is_cpu()
             && bytes <= gpu.limits().max_heap_bytes / SHARE
-            && volume.dims[0] <= MOST_VOXELS_A_ROW
+            && dims[0] <= MOST_VOXELS_A_ROW
             && gpu.check_image(&desc(bytes / 4)).is_ok()
             && gpu.has_images_in_rows(&desc(bytes / 4))
     }
@@ -138,8 +145,11 @@ impl Corners {
                 work();
             });
         })?;
-        let filter = C::FILTER;
-        Ok(is_gapless.then_some(Self { image, filter }))
+        Ok(is_gapless.then_some(Self {
+            image,
+            filter: C::FILTER,
+            new_voxels: C::VOXELS as u32 - 1,
+        }))
     }
 
     /// A u32 for each word and what fills the cubes at the far ends, in rows of [`CORNERS_WIDTH`].
@@ -183,7 +193,7 @@ impl GpuVolume {
 }
 
 /// A number as it is stored, that has words. Signed ones are moved as texels are (`sampling.md` 2).
-trait Code: Copy + Sync {
+pub(super) trait Code: Copy + Sync {
     const STORED: VoxelType;
     const FILTER: &'static str;
     /// Of a word, the last of which the next one has too.
@@ -230,20 +240,31 @@ impl Code for i16 {
 
 /// Puts the words of at most four planes of nx x ny codes into a layer of cubes.
 fn put_layer<C: Code>(codes: &[C], [nx, ny]: [usize; 2], cubes: &mut [u32]) {
-    let new = C::VOXELS - 1;
-    let words = nx.div_ceil(new);
-    let along_x = words.div_ceil(SIDE);
-    // A row, and beyond its end the last voxel again.
-    let mut row = vec![codes[0]; new * words + 1];
-    for (index, there) in codes.chunks_exact(nx).enumerate() {
+    let along_x = nx.div_ceil(C::VOXELS - 1).div_ceil(SIDE);
+    let mut longer = Vec::new();
+    for (index, row) in codes.chunks_exact(nx).enumerate() {
         let [y, z] = [index % ny, index / ny];
-        row[..nx].copy_from_slice(there);
-        row[nx..].fill(there[nx - 1]);
-        let first = (y / SIDE) * along_x * CUBE_WORDS + SIDE * (y % SIDE + SIDE * z);
-        let fours = cubes[first..].chunks_mut(CUBE_WORDS);
-        let words = row.windows(C::VOXELS).step_by(new).map(C::word);
-        put_in_fours(words, fours);
+        let cubes = &mut cubes[(y / SIDE) * along_x * CUBE_WORDS..];
+        put_row(row, &mut longer, [y % SIDE, z], cubes);
     }
+}
+
+/// Puts the words of a row of codes into a row of cubes, at (y, z) of each. `row` is room that is used again.
+pub(super) fn put_row<C: Code>(
+    codes: &[C],
+    row: &mut Vec<C>,
+    [y, z]: [usize; 2],
+    cubes: &mut [u32],
+) {
+    let new = C::VOXELS - 1;
+    let words = codes.len().div_ceil(new);
+    row.clear();
+    row.extend_from_slice(codes);
+    // Beyond the end the last voxel again.
+    row.resize(new * words + 1, codes[codes.len() - 1]);
+    let fours = cubes[SIDE * (y + SIDE * z)..].chunks_mut(CUBE_WORDS);
+    let words = row.windows(C::VOXELS).step_by(new).map(C::word);
+    put_in_fours(words, fours);
 }
 
 /// Each of the first four words into the first place, the next four into the next.

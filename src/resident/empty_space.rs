@@ -240,7 +240,8 @@ impl EmptySpace {
         &self.rooms[1]
     }
 
-    /// Records what fills them: after the record of the cells.
+    /// Records what fills them: after the record of the cells, and once more whenever those have changed. The barriers
+    /// of a pass also stand behind compute shaders that read what was there before.
     ///
     /// # Errors
     /// A grid larger than the device can dispatch.

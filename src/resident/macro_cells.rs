@@ -7,14 +7,14 @@
 //!
 //! Techniques leave out what lies in cells that cannot matter; the picture stays the same to the bit.
 
-use super::cell_ranges::ranges;
+use super::cell_ranges::{CellBox, ranges};
 use super::{GpuVolume, TextureLayout};
 use crate::gpu::{
     Bindings, Buffer, ComputePipeline, Error, Gpu, Memory, ParameterRing, Resource, Use,
     buffer_barrier, group_count, within,
 };
 use crate::shaders::{CELL_VOXELS, CellGrid, CellGridFields, Frame, shader};
-use crate::volume::{Volume, VoxelBox};
+use crate::volume::{Volume, VoxelBox, VoxelPart};
 use ash::vk;
 use std::ops::Range;
 use std::sync::Arc;
@@ -35,20 +35,20 @@ pub struct Apron {
 /// The ranges of a volume's macro cells. Made empty; [`MacroCells::record`] fills them.
 #[derive(Debug)]
 pub struct MacroCells {
-    gpu: Arc<Gpu>,
-    grids: Vec<CellGrid>,
+    pub(super) gpu: Arc<Gpu>,
+    pub(super) grids: Vec<CellGrid>,
     cell_count: u64,
-    ranges: Buffer,
+    pub(super) ranges: Buffer,
     /// `None`: the ranges are there.
-    pass: Option<Ranging>,
+    pub(super) pass: Option<Ranging>,
 }
 
 /// What finds the ranges on the device.
 #[derive(Debug)]
-struct Ranging {
-    pipeline: ComputePipeline,
-    ring: ParameterRing,
-    bindings: Vec<Bindings>,
+pub(super) struct Ranging {
+    pub pipeline: ComputePipeline,
+    pub ring: ParameterRing,
+    pub bindings: Vec<Bindings>,
 }
 
 impl MacroCells {
@@ -102,7 +102,11 @@ impl MacroCells {
         assert_eq!(volume.held.dims(), voxels.dims, "the same voxels");
         let made = Self::empty(gpu, volume, apron, Memory::Upload)?;
         for grid in &made.grids {
-            let ranges = ranges(voxels, volume.held.min, grid);
+            let part = VoxelPart {
+                held: volume.held,
+                ..voxels.into()
+            };
+            let ranges = ranges(&part, grid, CellBox::whole(grid));
             let offset = 8 * u64::from(grid.first);
             made.ranges.write(offset, bytemuck::cast_slice(&ranges))?;
         }
@@ -123,7 +127,9 @@ impl MacroCells {
             first += grid.cells.iter().product::<u32>();
             grids.push(grid);
         }
-        let storage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_SRC;
+        let storage = vk::BufferUsageFlags::STORAGE_BUFFER
+            | vk::BufferUsageFlags::TRANSFER_SRC
+            | vk::BufferUsageFlags::TRANSFER_DST;
         let bytes = 8 * u64::from(first);
         Ok(Self {
             gpu: Arc::clone(gpu),

@@ -5,6 +5,8 @@
 
 mod bricks;
 mod cell_ranges;
+mod changed_cells;
+mod changed_corners;
 mod corners;
 mod empty_space;
 mod gradients;
@@ -16,7 +18,10 @@ mod transfer;
 mod upload;
 mod volume;
 
+pub(crate) use bricks::sort_front_to_back;
 pub use bricks::{Cell, cells_of_side, front_to_back, front_to_back_by_rows};
+pub(crate) use changed_cells::ChangedCells;
+pub(crate) use changed_corners::ChangedCorners;
 pub use corners::Corners;
 pub use empty_space::EmptySpace;
 pub use gradients::{KeptGradients, KeptOperator};

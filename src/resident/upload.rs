@@ -7,7 +7,7 @@
 
 use super::{Brick, GpuVolume};
 use crate::gpu::{Buffer, Error, Memory, Region, Use, buffer_to_image, image_barrier};
-use crate::volume::{Volume, VoxelBox};
+use crate::volume::{Volume, VoxelBox, VoxelPart};
 use ash::vk;
 use std::ops::Range;
 
@@ -34,6 +34,18 @@ impl GpuVolume {
         numbered
             .flat_map(|(index, brick)| self.slabs_of(index, brick, bytes))
             .collect()
+    }
+
+    /// What each brick stores of `region`, for copies into a volume that was uploaded before.
+    pub fn slabs_in(&self, region: VoxelBox) -> impl Iterator<Item = Slab> {
+        let numbered = self.bricks().iter().enumerate();
+        numbered.filter_map(move |(brick, there)| {
+            Some(Slab {
+                brick,
+                region: there.cell.stored.and(&region)?,
+                before: Use::Sampled,
+            })
+        })
     }
 
     fn slabs_of(&self, index: usize, brick: &Brick, bytes: u64) -> impl Iterator<Item = Slab> {
@@ -71,18 +83,28 @@ impl GpuVolume {
     /// # Panics
     /// Where there are fewer bytes, or the region is not one of the volume.
     pub fn write_staged(&self, volume: &Volume, region: VoxelBox, bytes: &mut [u8]) {
+        let part = VoxelPart {
+            held: self.held,
+            ..volume.into()
+        };
+        self.write_part(&part, region, bytes);
+    }
+
+    /// The same where other voxels are at hand than those of the whole.
+    pub(crate) fn write_part(&self, part: &VoxelPart, region: VoxelBox, bytes: &mut [u8]) {
+        let held = part.held;
         let voxels = region.dims().map(|n| n as usize).iter().product::<usize>();
         let texel_bytes = self.staged_texel_bytes();
         let values_bytes = (voxels * texel_bytes).next_multiple_of(ALIGNMENT);
         let (values, validity) = bytes.split_at_mut(values_bytes);
         if self.has_texels {
-            self.write_runs(region, texel_bytes, values, |first, stride, out| {
-                self.texel().encode(&volume.voxels, first, stride, out);
+            self.write_runs(held, region, texel_bytes, values, |first, stride, out| {
+                self.texel().encode(part.voxels, first, stride, out);
             });
         }
-        match &volume.validity {
+        match part.validity {
             Some(mask) if self.has_holes() => {
-                self.write_runs(region, 1, validity, |first, stride, out| {
+                self.write_runs(held, region, 1, validity, |first, stride, out| {
                     let mask = mask[first..].iter().step_by(stride);
                     out.iter_mut()
                         .zip(mask)
@@ -203,20 +225,21 @@ impl GpuVolume {
         Ok(())
     }
 
-    /// Calls `write` with the first voxel, the stride between voxels and the place of each run of texels of a region,
-    /// of `texel_bytes` each. Goes through blocks: where texels lie along other axes than voxels, what one run brings
+    /// Calls `write` with the first of the voxels of `held`, the stride between voxels and the place of each run of texels
+    /// of a region, of `texel_bytes` each. Goes through blocks: where texels lie along other axes than voxels, what one run brings
     /// into the cache serves its neighbours.
     fn write_runs(
         &self,
+        held: VoxelBox,
         region: VoxelBox,
         texel_bytes: usize,
         texels: &mut [u8],
         write: impl Fn(usize, usize, &mut [u8]),
     ) {
-        let [nx, ny, _] = self.held.dims().map(|n| n as usize);
+        let [nx, ny, _] = held.dims().map(|n| n as usize);
         let axes = self.layout().axes();
         let strides = axes.map(|axis| [1, nx, nx * ny][axis]);
-        let origin = axes.map(|axis| (region.min[axis] - self.held.min[axis]) as usize);
+        let origin = axes.map(|axis| (region.min[axis] - held.min[axis]) as usize);
         let dims = axes.map(|axis| (region.max[axis] - region.min[axis]) as usize);
         let run_length = if strides[0] == 1 { dims[0] } else { BLOCK };
         for deep in blocks(dims[2], BLOCK) {

@@ -8,7 +8,7 @@
 //!
 //! All colours are premultiplied (Porter and Duff 1984); `algorithms.md` 1.6.
 
-use super::{Mode, Order, Take, Words};
+use super::{Mode, Order, Sight, Take, Words};
 use crate::gpu::Blend;
 use crate::real::Real;
 use crate::transfer::opacity_over;
@@ -33,7 +33,7 @@ pub enum Drawn {
 
 impl Drawn {
     /// The fragment shader of a slicer.
-    pub fn shader_name(self, slicer: &str, words: &Words) -> String {
+    pub(super) fn shader_name(self, slicer: &str, words: &Words, sight: Sight) -> String {
         let Words {
             filter,
             holes,
@@ -43,19 +43,20 @@ impl Drawn {
             ..
         } = words;
         let mix = mix.word();
+        let sight = match sight {
+            Sight::Open | Sight::Tested => "",
+            Sight::Read => ".host",
+        };
         let slicer = format!("{slicer}{}", take.word());
         match self {
             Self::Picture(Mode::Composite) if *take == Take::Slab => {
-                format!("{slicer}.composite.{filter}.{holes}")
+                format!("{slicer}.composite{sight}.{filter}.{holes}")
             }
             // Modes that need rays are refused where parameters are made: nothing is drawn by these.
             Self::Picture(Mode::Composite | Mode::Mida | Mode::Iso) => {
                 format!("{slicer}.composite{mix}.{filter}.{holes}.{transfer}")
             }
-            Self::Picture(Mode::Mip | Mode::Minip | Mode::Lmip | Mode::AttenuatedMip) => {
-                format!("{slicer}.extreme.{filter}.{holes}")
-            }
-            Self::Picture(Mode::Average | Mode::Xray) => format!("{slicer}.sum.{filter}.{holes}"),
+            Self::Picture(_) => format!("{slicer}.number{sight}.{filter}.{holes}"),
             Self::Count => format!("{slicer}.count.nearest.none"),
         }
     }
@@ -86,9 +87,13 @@ pub fn clear_color(mode: Mode) -> [f32; 4] {
     }
 }
 
-/// +1 where a mode looks for the largest, -1 where for the smallest value.
+/// +1 where a mode looks for the largest, -1 where for the smallest value, 0 where values are added up.
 pub fn extreme_sign(mode: Mode) -> f32 {
-    if mode == Mode::Minip { -1.0 } else { 1.0 }
+    match mode {
+        Mode::Minip => -1.0,
+        Mode::Average | Mode::Xray => 0.0,
+        _ => 1.0,
+    }
 }
 
 /// The target after one more fragment. `classify` gives (red, green, blue, extinction).

@@ -280,7 +280,7 @@ impl View<'_> {
     }
 
     /// Where the eye lies, in cells of so many voxels; infinite for parallel rays.
-    fn eye_cell(&self, size: [u32; 3]) -> [f64; 3] {
+    pub(super) fn eye_cell(&self, size: [u32; 3]) -> [f64; 3] {
         match self.camera.projection.is_perspective() {
             true => {
                 let eye = self

@@ -28,12 +28,17 @@ impl View<'_> {
         let per_mode = &self.settings.per_mode;
         let [low, high] = per_mode.unit_values;
         let [near, far] = self.depth_range();
-        let mut levels = per_mode.levels.clone();
-        levels.sort_by(|a, b| a.value.total_cmp(&b.value));
-        levels.truncate(MAX_LEVELS as usize);
+        // No more than these: a mode that looks at them has checked it.
+        let mut levels: [_; MAX_LEVELS as usize] = std::array::from_fn(|i| per_mode.levels.get(i));
+        levels.sort_by(|a, b| match (a, b) {
+            (Some(a), Some(b)) => a.value.total_cmp(&b.value),
+            // Places that are not taken come last.
+            _ => b.is_some().cmp(&a.is_some()),
+        });
+        let level_count = levels.iter().flatten().count() as u32;
         let mut level_values = [[0.0; 4]; MAX_LEVELS as usize];
         let mut level_colors = level_values;
-        for (i, level) in levels.iter().enumerate() {
+        for (i, level) in levels.into_iter().flatten().enumerate() {
             level_values[i][0] = level.value as f32;
             let [r, g, b] = level.srgb.map(|c| self.shown(c) as f32);
             level_colors[i] = [r, g, b, level.opacity as f32];
@@ -50,7 +55,7 @@ impl View<'_> {
             depth_cue: per_mode.depth_cue as f32,
             depth_near: near as f32,
             depth_scale: finite(1.0 / (far - near)),
-            level_count: levels.len() as u32,
+            level_count,
             level_values,
             level_colors,
         }

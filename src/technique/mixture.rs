@@ -15,7 +15,7 @@ use super::Error;
 use crate::color::decode_srgb;
 use crate::picture::ColorSpace;
 use crate::real::Real;
-use crate::resident::{GpuTransfer, GpuVolume};
+use crate::resident::{Cell, GpuTransfer, GpuVolume};
 use crate::shaders::{FrameFields, MAX_CHANNELS};
 
 /// How volumes on one grid go together.
@@ -90,15 +90,14 @@ pub(super) fn set_channels(
         return Err(Error::TooManyChannels { wanted, limit });
     }
     fields.channel_count = parts.len() as u32;
-    let cells = |part: &Part| {
-        let bricks = part.volume.bricks().iter();
-        bricks.map(|brick| brick.cell).collect::<Vec<_>>()
-    };
+    fn cells<'a>(part: &Part<'a>) -> impl Iterator<Item = Cell> + 'a {
+        part.volume.bricks().iter().map(|brick| brick.cell)
+    }
     let is_classified = parts.iter().any(|part| part.role == Role::Material);
     fields.colors_are_classified = is_classified.into();
     for (c, part) in parts.iter().enumerate() {
         let (volume, first) = (part.volume, parts[0].volume);
-        if volume.grid() != first.grid() || cells(part) != cells(&parts[0]) {
+        if volume.grid() != first.grid() || cells(part).ne(cells(&parts[0])) {
             return Err(Error::OtherGrid);
         }
         let coding = volume.texel().coding;

@@ -4,6 +4,7 @@ mod accumulation;
 mod alike_cells;
 pub mod blend;
 pub mod composite;
+pub(crate) mod cost;
 mod error;
 pub mod faces;
 mod filter_by;
@@ -61,7 +62,7 @@ pub use ray_pass::RayPass;
 pub use recording::{Recording, parameter_ring};
 pub use shading::{Light, Shading};
 pub use skip::{Skip, Skippable};
-pub use slicer::Slicer;
+pub use slicer::{Sight, Slicer};
 pub use turns::Functions;
 
 use crate::volume::{Spline, kernel::Kernel};

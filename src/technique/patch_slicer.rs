@@ -11,7 +11,7 @@
 //! ```
 
 use super::blend::{Drawn, operator};
-use super::{BATCH_SLICES, Inputs, Order, Patches, Technique, Words};
+use super::{BATCH_SLICES, Inputs, Order, Patches, Sight, Technique, Words};
 use crate::gpu::{
     Bindings, ComputePipeline, DepthUse, Error, Gpu, Image, RasterDesc, RasterPipeline, Resource,
     Use, buffer_barrier, set_area,
@@ -57,7 +57,7 @@ impl PatchSlicer {
         };
         let desc = RasterDesc {
             vertex: shader("slice_patches_cover"),
-            fragment: shader(&drawn.shader_name(name, words)),
+            fragment: shader(&drawn.shader_name(name, words, Sight::Open)),
             target: format.into(),
             depth: DepthUse::Ignored,
             blend: operator(drawn, order),

@@ -2,7 +2,7 @@
 
 use super::projection::Projection;
 use super::raycast::Raycast;
-use super::{Inputs, Settings, Words};
+use super::{Inputs, Mix, Settings, Technique, Words};
 use crate::gpu::{Bindings, Error, Gpu, Image, Resource, Tile};
 use ash::vk;
 use std::sync::Arc;
@@ -32,11 +32,42 @@ impl RayPass {
         })
     }
 
-    /// The images that a recording fills, of the picture's own and the one beside it.
-    pub fn images<'a>(&self, picture: &'a Image, layers: &'a Image) -> Vec<&'a Image> {
+    /// Compiles what finds the depth of slices: rays that take the samples of the slices one after the other
+    /// ([`super::View::each_depth_recording`]). `words` are those of the picture; what lights it has no say.
+    ///
+    /// # Errors
+    /// Where the device refuses.
+    pub fn along_slices(
+        gpu: &Arc<Gpu>,
+        settings: &Settings,
+        words: &Words,
+        mix: Mix,
+    ) -> Result<Self, Error> {
+        let words = Words {
+            mix,
+            is_plainly_lit: false,
+            ..*words
+        };
+        let words = match settings.technique {
+            Technique::Slices2d => Words {
+                lattice: "stack",
+                transfer: "table",
+                ..words
+            },
+            Technique::Slices3d | Technique::Raycast => Words {
+                lattice: "planes",
+                ..words
+            },
+        };
+        Self::new(gpu, settings, &words)
+    }
+
+    /// How many images a recording fills: the picture's own and the one beside it, or the first alone. The last of them
+    /// has the depth.
+    pub fn image_count(&self) -> usize {
         match self {
-            Self::Raycast(_) => vec![picture, layers],
-            Self::Projection(_) => vec![picture],
+            Self::Raycast(_) => 2,
+            Self::Projection(_) => 1,
         }
     }
 

@@ -13,7 +13,9 @@ use super::{Error, Order, Technique, View};
 use crate::blue_noise::BLUE_NOISE;
 use crate::camera::HostDepth;
 use crate::gpu::{self, Gpu, ParameterRing};
-use crate::resident::{Cell, Coding, GpuTransfer, GpuVolume, TextureLayout, TransferLayout};
+use crate::resident::{
+    Cell, Coding, GpuTransfer, GpuVolume, TextureLayout, TransferLayout, sort_front_to_back,
+};
 use crate::shaders::{Frame, FrameFields};
 use glam::DVec3;
 use std::sync::Arc;
@@ -29,6 +31,15 @@ pub struct Recording {
     pub order: Order,
     /// The parameters.
     pub frame: Frame,
+}
+
+/// What bricks are gone through for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Walk {
+    /// The picture, in the order of its technique.
+    Picture,
+    /// The depth of slices, from front to back.
+    Depth,
 }
 
 impl View<'_> {
@@ -65,34 +76,92 @@ impl View<'_> {
         parts: &[Part],
         transfer: Option<&GpuTransfer>,
     ) -> Result<Vec<Recording>, Error> {
+        let mut all = Vec::new();
+        self.each_brick(parts, transfer, Walk::Picture, &mut Vec::new(), |one| {
+            all.push(one);
+            Ok::<_, Error>(())
+        })?;
+        Ok(all)
+    }
+
+    /// The same handed to `each` one after the other. `order` is room to sort bricks in: where it has been given before
+    /// for as many, nothing is allocated.
+    ///
+    /// # Errors
+    /// Those of [`View::recordings`] and of `each`.
+    pub fn each_recording<E: From<Error>>(
+        &self,
+        volume: &GpuVolume,
+        transfer: Option<&GpuTransfer>,
+        order: &mut Vec<usize>,
+        each: impl FnMut(Recording) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let parts = [Part::numbers(volume)];
+        self.each_brick(&parts, transfer, Walk::Picture, order, each)
+    }
+
+    /// What is recorded for the depth of slices ([`super::RayPass::along_slices`]), which rays find that walk along the
+    /// slices from front to back, and end where a composite has become half opaque.
+    ///
+    /// # Errors
+    /// As [`View::each_recording`].
+    pub fn each_depth_recording<E: From<Error>>(
+        &self,
+        volume: &GpuVolume,
+        transfer: Option<&GpuTransfer>,
+        order: &mut Vec<usize>,
+        each: impl FnMut(Recording) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let parts = [Part::numbers(volume)];
+        self.each_brick(&parts, transfer, Walk::Depth, order, each)
+    }
+
+    fn each_brick<E: From<Error>>(
+        &self,
+        parts: &[Part],
+        transfer: Option<&GpuTransfer>,
+        walk: Walk,
+        order: &mut Vec<usize>,
+        mut each: impl FnMut(Recording) -> Result<(), E>,
+    ) -> Result<(), E> {
         let volume = parts.first().ok_or(Error::NoColor { found: 0 })?.volume;
-        let fields = self.fields_of(volume, parts, transfer)?;
-        let cells: Vec<_> = volume.bricks().iter().map(|brick| brick.cell).collect();
-        self.check_slabs(cells.len())?;
+        let mut fields = self.fields_of(volume, parts, transfer)?;
+        let bricks = volume.bricks();
+        self.check_slabs(bricks.len())?;
         if self.settings.is_half_angle() {
             if parts.len() > 1 {
-                return Err(Error::NotShadedTogether);
+                return Err(Error::NotShadedTogether.into());
             }
-            return match cells.len() {
-                1 => Ok(self.half_angle_recordings(&fields)?.to_vec()),
-                bricks => Err(Error::ShadowsNeedOneBrick { bricks }),
+            return match bricks.len() {
+                1 => self
+                    .half_angle_recordings(&fields)?
+                    .into_iter()
+                    .try_for_each(each),
+                bricks => Err(Error::ShadowsNeedOneBrick { bricks }.into()),
             };
         }
-        let mut order = self.front_to_back(&cells);
+        order.clear();
+        order.extend(0..bricks.len());
+        let eye_cell = self.eye_cell(bricks[0].cell.own.dims());
+        sort_front_to_back(order, |i| &bricks[i].cell, eye_cell);
         let settings = self.settings;
-        if settings.technique != Technique::Raycast && settings.order == Order::BackToFront {
+        let is_sliced = settings.technique != Technique::Raycast && walk == Walk::Picture;
+        if is_sliced && settings.order == Order::BackToFront {
             order.reverse();
         }
-        let recording = |(nth, &brick): (usize, &usize)| {
-            let cell = &cells[brick];
+        if walk == Walk::Depth {
+            fields.termination = 0.5;
+        }
+        for (nth, &brick) in order.iter().enumerate() {
+            let cell = &bricks[brick].cell;
             let mut fields = fields;
-            if cells.len() > 1 {
+            if bricks.len() > 1 {
                 self.set_brick(cell, nth == 0, &mut fields);
-                fields.is_last_brick = (nth + 1 == cells.len()).into();
+                fields.is_last_brick = (nth + 1 == bricks.len()).into();
             }
-            self.recording(brick, Some(cell), fields)
-        };
-        Ok(order.iter().enumerate().map(recording).collect())
+            each(self.recording(brick, Some(cell), fields))?;
+        }
+        Ok(())
     }
 
     /// What is recorded for the one brick of `volume`, which is a part of what the picture shows
@@ -205,23 +274,30 @@ impl View<'_> {
 }
 
 impl Recording {
-    /// Puts what is recorded behind what a host has drawn: rays end where its depth buffer says, slices are tested
-    /// against it, and both begin at its near plane. `center` is that of the [grid](crate::volume::Grid::center), and
-    /// the view's camera the one that came with `depth` ([`Camera::from_matrices`](crate::camera::Camera::from_matrices)).
+    /// Puts what is recorded behind what a host has drawn, which it reads from an image: rays, and slices with
+    /// [`Sight::Read`](super::Sight::Read), end where that says, and begin at the host's near plane. `center` is that of
+    /// the [grid](crate::volume::Grid::center), and the view's camera the one that came with `depth`
+    /// ([`Camera::from_matrices`](crate::camera::Camera::from_matrices)).
     pub fn behind(&mut self, depth: &HostDepth, center: DVec3) {
         self.in_depths_of(depth, center);
         self.frame.has_host_depth = 1;
     }
 
-    /// Gives what is recorded the depths of a host's clip space, in which slices are drawn and depth is written.
+    /// Draws slices in the depths of a host's clip space, for its depth attachment to be tested
+    /// ([`Sight::Tested`](super::Sight::Tested)).
+    pub fn tested_in(&mut self, depth: &HostDepth, center: DVec3) {
+        self.in_depths_of(depth, center);
+        self.frame.clip_from_world[2] = self.frame.host_z;
+        self.frame.clip_from_world[3] = self.frame.host_w;
+    }
+
+    /// Tells what is recorded the depths of a host's clip space, in which a resolve writes depth.
     pub fn in_depths_of(&mut self, depth: &HostDepth, center: DVec3) {
         let HostDepth { z, w, nearer } = depth.centered(center);
         let [z, w] = [z, w].map(|row| row.as_vec4().to_array());
         self.frame.host_z = z;
         self.frame.host_w = w;
         self.frame.host_near = nearer.near() as f32;
-        self.frame.clip_from_world[2] = z;
-        self.frame.clip_from_world[3] = w;
     }
 
     /// Writes the parameters into a slot that no unfinished recording reads, and gives its offset.

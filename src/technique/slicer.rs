@@ -4,12 +4,25 @@
 use super::blend::{Drawn, operator};
 use super::{Inputs, Order, Technique, Words};
 use crate::gpu::{
-    Bindings, DepthUse, Error, Gpu, RasterDesc, RasterPipeline, TargetClass, Tile, set_area_of,
+    Bindings, DepthUse, Error, Gpu, RasterDesc, RasterPipeline, Resource, TargetClass, Tile,
+    set_area_of,
 };
 use crate::shaders::shader;
 use ash::vk;
 use std::ops::Range;
 use std::sync::Arc;
+
+/// What hides samples of slices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sight {
+    /// Nothing.
+    Open,
+    /// The depth attachment of the rendering, slice by slice.
+    Tested,
+    /// What a host has drawn, read from an image ([`Slicer::bind_behind`]): of projections, which are drawn into an image
+    /// that has no depth attachment, and of slabs, which reach out of the slices that would be tested.
+    Read,
+}
 
 /// The pipeline that draws the slices of one technique.
 #[derive(Debug)]
@@ -22,7 +35,7 @@ pub struct Slicer {
 impl Slicer {
     /// Compiles the variant of these words for such targets: view-aligned slices for [`Technique::Slices3d`], else the
     /// slices of a stack. Where the rendering has a depth attachment, what a host has drawn hides what lies behind it
-    /// ([`super::Recording::behind`]).
+    /// ([`super::Recording::tested_in`]).
     ///
     /// # Errors
     /// Where the device does not blend that format, by its name.
@@ -35,6 +48,26 @@ impl Slicer {
         target: impl Into<TargetClass>,
     ) -> Result<Self, Error> {
         let target = target.into();
+        let sight = match target.depth {
+            Some(_) => Sight::Tested,
+            None => Sight::Open,
+        };
+        Self::seen(gpu, technique, drawn, order, words, target, sight)
+    }
+
+    /// The same with another word on what hides samples.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn seen(
+        gpu: &Arc<Gpu>,
+        technique: Technique,
+        drawn: Drawn,
+        order: Order,
+        words: &Words,
+        target: TargetClass,
+        sight: Sight,
+    ) -> Result<Self, Error> {
         // Four triangles cover the six corners of a plane in a box, two a rectangle.
         let (name, cover, vertices_per_slice) = match technique {
             Technique::Slices3d => ("slices_3d", "slices_3d_cover", 12),
@@ -42,11 +75,11 @@ impl Slicer {
         };
         let desc = RasterDesc {
             vertex: shader(cover),
-            fragment: shader(&drawn.shader_name(name, words)),
+            fragment: shader(&drawn.shader_name(name, words, sight)),
             target,
-            depth: match target.depth {
-                Some(_) => DepthUse::Tested,
-                None => DepthUse::Ignored,
+            depth: match sight {
+                Sight::Tested => DepthUse::Tested,
+                Sight::Open | Sight::Read => DepthUse::Ignored,
             },
             blend: operator(drawn, order),
         };
@@ -63,6 +96,16 @@ impl Slicer {
     /// Where an input is missing.
     pub fn bind(&self, inputs: &Inputs) -> Result<Bindings, Error> {
         inputs.bind(&self.gpu, self.pipeline.layout(), &[])
+    }
+
+    /// The same for [`Sight::Read`]: `host_depth` is the host's depth buffer, a texture as large as the picture, of which
+    /// [`super::Recording::behind`] tells the parameters.
+    ///
+    /// # Errors
+    /// Where an input is missing.
+    pub fn bind_behind(&self, inputs: &Inputs, host_depth: Resource) -> Result<Bindings, Error> {
+        let host_depth = [("host_depth", host_depth)];
+        inputs.bind(&self.gpu, self.pipeline.layout(), &host_depth)
     }
 
     /// Records the draw of `slices`, counted in the order of drawing, of the parameters at `offset` of the ring,

@@ -100,13 +100,44 @@ impl View<'_> {
         max_loop_turns: u32,
     ) -> Result<(), Error> {
         // Of a slicer every invocation takes one sample.
-        if self.settings.technique != Technique::Raycast || max_loop_turns == u32::MAX {
+        if self.settings.technique != Technique::Raycast {
+            return Ok(());
+        }
+        let wanted = self.longest_sample_count();
+        self.check_loops(words, volumes, functions, max_loop_turns, wanted)
+    }
+
+    /// The same for rays that find the depth of slices, one volume's.
+    ///
+    /// # Errors
+    /// [`Error::LoopsEnd`].
+    pub fn check_depth_turns(
+        &self,
+        words: &Words,
+        functions: Functions,
+        max_loop_turns: u32,
+    ) -> Result<(), Error> {
+        let wanted = match self.settings.technique {
+            Technique::Slices2d => self.longest_stack(),
+            Technique::Slices3d | Technique::Raycast => self.longest_sample_count(),
+        };
+        self.check_loops(words, 1, functions, max_loop_turns, wanted)
+    }
+
+    fn check_loops(
+        &self,
+        words: &Words,
+        volumes: usize,
+        functions: Functions,
+        max_loop_turns: u32,
+        wanted: f64,
+    ) -> Result<(), Error> {
+        if max_loop_turns == u32::MAX {
             return Ok(());
         }
         let turns = turns_per_sample(self.settings, words, volumes, functions);
         let clip = 2.0 * self.settings.clip_planes.len() as f64;
         let limit = (f64::from(max_loop_turns) - SPARE - clip).max(0.0) / turns as f64;
-        let wanted = self.longest_sample_count();
         if wanted <= limit {
             return Ok(());
         }

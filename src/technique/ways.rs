@@ -77,11 +77,11 @@ impl Settings {
             });
         }
         if self.shading.is_some() || self.ambient_occlusion.is_some() {
-            self.refuse_way("samples without light", "shaded ones")?;
+            self.refuse_way("samples without light", || "shaded ones".to_owned())?;
         }
         if self.filter.kernel().is_some() {
-            let found = format!("the filter {}", self.filter);
-            self.refuse_way("nearest and linear filters", &found)?;
+            let found = || format!("the filter {}", self.filter);
+            self.refuse_way("nearest and linear filters", found)?;
         }
         Ok(())
     }
@@ -140,7 +140,9 @@ impl Settings {
     /// # Errors
     /// [`Error::NotFor`].
     pub(crate) fn check_mixed(&self) -> Result<(), Error> {
-        self.refuse_way("one volume of numbers", "several that are mixed")
+        self.refuse_way("one volume of numbers", || {
+            "several that are mixed".to_owned()
+        })
     }
 
     /// The same for functions of gradients.
@@ -148,18 +150,17 @@ impl Settings {
     /// # Errors
     /// [`Error::NotFor`].
     pub(crate) fn check_graded(&self) -> Result<(), Error> {
-        self.refuse_way(
-            "functions of the value alone",
-            "one of the value and its gradient",
-        )
+        self.refuse_way("functions of the value alone", || {
+            "one of the value and its gradient".to_owned()
+        })
     }
 
-    fn refuse_way(&self, of: &'static str, found: &str) -> Result<(), Error> {
+    fn refuse_way(&self, of: &'static str, found: impl FnOnce() -> String) -> Result<(), Error> {
         match self.way() {
             Some(wanted) => Err(Error::NotFor {
                 wanted,
                 of,
-                found: found.to_owned(),
+                found: found(),
             }),
             None => Ok(()),
         }

@@ -38,6 +38,7 @@ pub use grid::Grid;
 pub use histogram::Histogram;
 pub use joint::{JointHistogram, steepest_gradient};
 pub use magnitude::Magnitude;
+pub use part::VoxelPart;
 pub(crate) use part::part_of;
 pub use prefilter::{Coefficients, Spline};
 #[cfg(feature = "files")]

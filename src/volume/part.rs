@@ -1,6 +1,40 @@
 //! Voxels of a box, cut out of those of a larger one.
 
-use super::{VoxelBox, Voxels};
+use super::{Volume, VoxelBox, Voxels};
+
+/// Voxels of a box of a grid, all of which need not be at hand.
+#[derive(Clone, Copy, Debug)]
+pub struct VoxelPart<'a> {
+    /// The box that they fill.
+    pub held: VoxelBox,
+    /// x fastest, then y, then z.
+    pub voxels: &'a Voxels,
+    /// As [`Volume::validity`], of the same box.
+    pub validity: Option<&'a [u8]>,
+}
+
+impl<'a> From<&'a Volume> for VoxelPart<'a> {
+    fn from(volume: &'a Volume) -> Self {
+        Self {
+            held: VoxelBox {
+                min: [0; 3],
+                max: volume.dims,
+            },
+            voxels: &volume.voxels,
+            validity: volume.validity.as_deref(),
+        }
+    }
+}
+
+impl VoxelPart<'_> {
+    /// The index of the first voxel of each row of `region`, which lies in it.
+    pub(crate) fn rows(&self, region: VoxelBox) -> impl Iterator<Item = usize> {
+        let [nx, ny, _] = self.held.dims().map(|n| n as usize);
+        let [x0, y0, z0] = std::array::from_fn(|k| (region.min[k] - self.held.min[k]) as usize);
+        let [_, rows, slices] = region.dims().map(|n| n as usize);
+        (z0..z0 + slices).flat_map(move |z| (y0..y0 + rows).map(move |y| (z * ny + y) * nx + x0))
+    }
+}
 
 /// The numbers of `part` of a box of `dims`.
 pub(crate) fn part_of(voxels: &Voxels, dims: [u32; 3], part: VoxelBox) -> Voxels {

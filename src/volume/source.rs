@@ -285,6 +285,28 @@ pub struct VoxelBox {
 }
 
 impl VoxelBox {
+    /// Whether all of its voxels are in `other` too.
+    pub fn is_in(&self, other: &Self) -> bool {
+        (0..3).all(|k| self.min[k] >= other.min[k] && self.max[k] <= other.max[k])
+    }
+
+    /// What both have; `None` where they have no voxel in common.
+    pub fn and(&self, other: &Self) -> Option<Self> {
+        let both = Self {
+            min: std::array::from_fn(|k| self.min[k].max(other.min[k])),
+            max: std::array::from_fn(|k| self.max[k].min(other.max[k])),
+        };
+        (0..3).all(|k| both.min[k] < both.max[k]).then_some(both)
+    }
+
+    /// The smallest box that has the voxels of both.
+    pub fn around(&self, other: &Self) -> Self {
+        Self {
+            min: std::array::from_fn(|k| self.min[k].min(other.min[k])),
+            max: std::array::from_fn(|k| self.max[k].max(other.max[k])),
+        }
+    }
+
     /// Voxels along x, y, z.
     pub fn dims(&self) -> [u32; 3] {
         std::array::from_fn(|k| self.max[k] - self.min[k])

@@ -9,6 +9,7 @@ sv_volume volume, fresh;
 sv_function function;
 sv_renderer renderer, deep;
 sv_submitter submitter;
+sv_update staged;
 VkCommandBuffer cmd;
 uint8_t voxels[VOXELS * VOXELS * VOXELS];
 uint64_t made_handle;
@@ -142,6 +143,8 @@ int main(void) {
     cmd = host_begin(&h);
     GOOD(sv_volume_record_upload(volume, cmd, &diagnostic));
     host_submit_and_wait(&h, cmd);
+    const sv_update_desc update = update_desc();
+    GOOD(sv_volume_stage_update(volume, &update, &staged, &diagnostic));
     wanted.volume = volume;
     GOOD(sv_renderer_create(device, &wanted, &renderer, &diagnostic));
     const sv_target_class with_depth = {

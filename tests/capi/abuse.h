@@ -16,6 +16,7 @@ extern sv_volume volume, fresh;
 extern sv_function function;
 extern sv_renderer renderer, deep;
 extern sv_submitter submitter;
+extern sv_update staged;
 extern VkCommandBuffer cmd;
 extern uint8_t voxels[VOXELS * VOXELS * VOXELS];
 extern uint64_t made_handle;
@@ -54,6 +55,15 @@ void abuse_frames(void);
 static inline sv_volume_desc volume_desc(void) {
     const sv_volume_desc made = {.struct_size = sizeof made,
                                  .dims = {VOXELS, VOXELS, VOXELS},
+                                 .voxels = voxels,
+                                 .voxel_bytes = sizeof voxels};
+    return made;
+}
+
+/* All of it, as it is. */
+static inline sv_update_desc update_desc(void) {
+    const sv_update_desc made = {.struct_size = sizeof made,
+                                 .extent = {VOXELS, VOXELS, VOXELS},
                                  .voxels = voxels,
                                  .voxel_bytes = sizeof voxels};
     return made;

@@ -6,7 +6,7 @@ static sv_status with_renderer(sv_renderer_desc desc) {
 }
 
 typedef sv_status (*by_handle)(uint64_t);
-enum { DEVICE = 1, VOLUME, FUNCTION, RENDERER, SUBMITTER };
+enum { DEVICE = 1, VOLUME, FUNCTION, RENDERER, SUBMITTER, UPDATE };
 
 static sv_status h_announce(uint64_t x) { return sv_device_announce(x, 0, &diagnostic); }
 static sv_status h_retire(uint64_t x) { return sv_device_retire(x, 0, &diagnostic); }
@@ -21,6 +21,35 @@ static sv_status h_pipelines(uint64_t x) {
 static sv_status h_cache(uint64_t x) {
     uint64_t bytes = 0;
     return sv_device_pipeline_cache(x, &bytes, NULL, &diagnostic);
+}
+static sv_status h_budget(uint64_t x) { return sv_device_set_memory_budget(x, 0, &diagnostic); }
+static sv_status h_declare_lost(uint64_t x) { return sv_device_declare_lost(x, &diagnostic); }
+static sv_status h_plan(uint64_t x) {
+    const sv_volume_desc desc = volume_desc();
+    sv_plan plan = {.struct_size = sizeof plan};
+    return sv_volume_plan(x, &desc, &plan, &diagnostic);
+}
+static sv_status h_stage(uint64_t x) {
+    const sv_update_desc desc = update_desc();
+    return sv_volume_stage_update(x, &desc, &made_handle, &diagnostic);
+}
+static sv_status h_update_into(uint64_t x) { return sv_volume_record_update(x, cmd, staged, &diagnostic); }
+static sv_status h_record_update(uint64_t x) { return sv_volume_record_update(volume, cmd, x, &diagnostic); }
+static sv_status h_update_destroy(uint64_t x) { return sv_update_destroy(x, &diagnostic); }
+static sv_status h_begin_parts(uint64_t x) {
+    uint64_t blocks;
+    return sv_renderer_begin_parts(x, &SHOT, &blocks, &diagnostic);
+}
+static sv_status h_record_part(uint64_t x) {
+    const sv_target target = whole_target();
+    uint64_t left;
+    return sv_renderer_record_part_into(x, cmd, 0, 1, &target, &left, &diagnostic);
+}
+static sv_status h_parts(uint64_t x) {
+    const sv_target target = whole_target();
+    const sv_submission s = submission();
+    uint32_t done;
+    return sv_submitter_submit_in_parts(x, renderer, &SHOT, &target, &s, NULL, &done, &diagnostic);
 }
 static sv_status h_device_destroy(uint64_t x) { return sv_device_destroy(x, &diagnostic); }
 static sv_status h_volume_create(uint64_t x) {
@@ -103,6 +132,16 @@ static const struct {
     {"sv_device_memory", h_memory, DEVICE, 0},
     {"sv_device_pipelines_made", h_pipelines, DEVICE, 0},
     {"sv_device_pipeline_cache", h_cache, DEVICE, 0},
+    {"sv_device_set_memory_budget", h_budget, DEVICE, 0},
+    {"sv_device_declare_lost", h_declare_lost, DEVICE, 0},
+    {"sv_volume_plan", h_plan, DEVICE, 0},
+    {"sv_volume_stage_update", h_stage, VOLUME, 0},
+    {"sv_volume_record_update", h_update_into, VOLUME, 0},
+    {"sv_volume_record_update, its update", h_record_update, UPDATE, 0},
+    {"sv_update_destroy", h_update_destroy, UPDATE, 0},
+    {"sv_renderer_begin_parts", h_begin_parts, RENDERER, 0},
+    {"sv_renderer_record_part_into", h_record_part, RENDERER, 0},
+    {"sv_submitter_submit_in_parts", h_parts, SUBMITTER, 0},
     {"sv_device_destroy", h_device_destroy, DEVICE, 0},
     {"sv_volume_create", h_volume_create, DEVICE, 0},
     {"sv_function_create", h_function_create, DEVICE, 0},
@@ -136,7 +175,7 @@ static const struct {
 
 void abuse_handles(void) {
     /* Of each kind one that is gone, and whose place is taken by another one. */
-    uint64_t stale[6] = {0};
+    uint64_t stale[7] = {0};
     const sv_volume_desc desc = volume_desc();
     const sv_function_desc points = {.struct_size = sizeof points};
     const sv_renderer_desc wanted = renderer_desc();
@@ -152,7 +191,10 @@ void abuse_handles(void) {
     GOOD(sv_renderer_destroy(stale[RENDERER], &diagnostic));
     GOOD(sv_submitter_create(device, 1, &stale[SUBMITTER], &diagnostic));
     GOOD(sv_submitter_destroy(stale[SUBMITTER], &diagnostic));
-    const uint64_t live[] = {0, device, volume, function, renderer, submitter};
+    const sv_update_desc update = update_desc();
+    GOOD(sv_volume_stage_update(volume, &update, &stale[UPDATE], &diagnostic));
+    GOOD(sv_update_destroy(stale[UPDATE], &diagnostic));
+    const uint64_t live[] = {0, device, volume, function, renderer, submitter, staged};
     for (size_t k = 0; k < sizeof BY_HANDLE / sizeof *BY_HANDLE; ++k) {
         const int kind = BY_HANDLE[k].kind;
         const by_handle call = BY_HANDLE[k].call;
@@ -167,7 +209,7 @@ void abuse_handles(void) {
         bad(call(live[kind] + 1000), SV_E_ARGUMENT, name);
         bad(call(live[kind] + ((uint64_t)77 << 40)), SV_E_ARGUMENT, name);
         bad(call(live[kind] ^ ((uint64_t)15 << 60)), SV_E_ARGUMENT, name);
-        for (int other = 1; other < 6; ++other)
+        for (int other = 1; other < 7; ++other)
             if (other != kind) bad(call(live[other]), SV_E_ARGUMENT, name);
     }
     /* Of another device. */

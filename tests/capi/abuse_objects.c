@@ -126,6 +126,89 @@ static void volumes(void) {
     BAD(SV_E_STATE, sv_submitter_upload(submitter, volume, 0, &s, &diagnostic));
 }
 
+static sv_status with_update(sv_update_desc desc) {
+    return sv_volume_stage_update(volume, &desc, &made_handle, &diagnostic);
+}
+
+static void updates(void) {
+    const sv_update_desc start = update_desc();
+#define with with_update
+    for (int axis = 0; axis < 3; ++axis) {
+        WITH(sv_update_desc, start, extent[axis], 0, SV_E_ARGUMENT);
+        WITH(sv_update_desc, start, extent[axis], VOXELS + 1, SV_E_ARGUMENT);
+        WITH(sv_update_desc, start, extent[axis], UINT32_MAX, SV_E_ARGUMENT);
+        WITH(sv_update_desc, start, origin[axis], 1, SV_E_ARGUMENT);
+        WITH(sv_update_desc, start, origin[axis], UINT32_MAX, SV_E_ARGUMENT);
+    }
+    WITH(sv_update_desc, start, voxels, NULL, SV_E_ARGUMENT);
+    WITH(sv_update_desc, start, voxel_bytes, 0, SV_E_ARGUMENT);
+    WITH(sv_update_desc, start, voxel_bytes, sizeof voxels - 1, SV_E_ARGUMENT);
+    WITH(sv_update_desc, start, voxel_bytes, UINT64_MAX, SV_E_ARGUMENT);
+#undef with
+    BAD(SV_E_ARGUMENT, sv_volume_stage_update(volume, &start, NULL, &diagnostic));
+    BAD(SV_E_STATE, sv_volume_stage_update(fresh, &start, &made_handle, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_volume_record_update(volume, NULL, staged, &diagnostic));
+    /* Ranges that hold not all values, or are none. */
+    sv_volume_desc ranged = volume_desc();
+    ranged.has_value_range = 1;
+#define with with_volume
+    WITH(sv_volume_desc, ranged, value_range[1], 10.0, SV_E_ARGUMENT);
+    ranged.value_range[1] = 255.0;
+    WITH(sv_volume_desc, ranged, value_range[0], 3.0, SV_E_ARGUMENT);
+    WITH(sv_volume_desc, ranged, value_range[0], (double)NAN, SV_E_ARGUMENT);
+    WITH(sv_volume_desc, ranged, value_range[1], (double)INFINITY, SV_E_ARGUMENT);
+    WITH(sv_volume_desc, ranged, reserved, 1, SV_E_ARGUMENT);
+#undef with
+}
+
+static void plans_and_requirements(void) {
+    sv_plan plan = {.struct_size = sizeof plan};
+    sv_volume_desc desc = volume_desc();
+    desc.dims[1] = 0;
+    BAD(SV_E_ARGUMENT, sv_volume_plan(device, &desc, &plan, &diagnostic));
+    desc.dims[1] = 8, desc.voxel_type = 77;
+    BAD(SV_E_ARGUMENT, sv_volume_plan(device, &desc, &plan, &diagnostic));
+    uint64_t count = 3;
+    sv_requirement few[3];
+    BAD(SV_E_LIMIT, sv_requirements(few, &count, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_requirements(few, NULL, &diagnostic));
+    count = 3;
+    BAD(SV_E_LIMIT, sv_check_device(&ours, few, &count, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_check_device(&ours, few, NULL, &diagnostic));
+    sv_host_device wrong = ours;
+    wrong.instance = NULL;
+    BAD(SV_E_ARGUMENT, sv_check_device(&wrong, few, &count, &diagnostic));
+    wrong = ours, wrong.physical_device = NULL;
+    BAD(SV_E_ARGUMENT, sv_check_device(&wrong, few, &count, &diagnostic));
+    wrong = ours, wrong.get_instance_proc_addr = NULL;
+    BAD(SV_E_ARGUMENT, sv_check_device(&wrong, few, &count, &diagnostic));
+    wrong = ours, wrong.features = 64;
+    BAD(SV_E_ARGUMENT, sv_check_device(&wrong, few, &count, &diagnostic));
+}
+
+static void parts(void) {
+    const sv_target target = whole_target();
+    const sv_submission s = submission();
+    uint64_t blocks = 0;
+    uint32_t done = 0;
+    BAD(SV_E_ARGUMENT, sv_renderer_begin_parts(renderer, &SHOT, NULL, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_renderer_begin_parts(renderer, NULL, &blocks, &diagnostic));
+    BAD(SV_E_STATE, sv_renderer_record_part_into(renderer, cmd, 0, 1, &target, &blocks, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_renderer_record_part_into(renderer, cmd, 7, 1, &target, &blocks, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_renderer_record_part_into(renderer, cmd, 0, 1, &target, NULL, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_renderer_record_part_into(renderer, NULL, 0, 1, &target, &blocks, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_submitter_submit_in_parts(submitter, renderer, &SHOT, &target, &s, NULL, NULL, &diagnostic));
+    const double wrong[] = {-1.0, (double)NAN, (double)INFINITY};
+    for (int k = 0; k < 3; ++k) {
+        const sv_pacing pacing = {.struct_size = sizeof pacing, .target_ms = wrong[k]};
+        BAD(SV_E_ARGUMENT,
+            sv_submitter_submit_in_parts(submitter, renderer, &SHOT, &target, &s, &pacing, &done, &diagnostic));
+    }
+    sv_target kept = target;
+    kept.is_cleared = 0;
+    BAD(SV_E_ARGUMENT, sv_submitter_submit_in_parts(submitter, renderer, &SHOT, &kept, &s, NULL, &done, &diagnostic));
+}
+
 static void functions(void) {
     static const sv_color_point colors[] = {{0, {0, 0, 0}}, {1, {1, 1, 1}}};
     static const sv_opacity_point opacities[] = {{0, 0}, {1, 1}};
@@ -161,5 +244,8 @@ void abuse_objects(void) {
     null_pointers();
     devices();
     volumes();
+    updates();
+    plans_and_requirements();
+    parts();
     functions();
 }

@@ -38,6 +38,26 @@ static sv_status s_submission(void *x) {
     return sv_submitter_submit(submitter, renderer, &SHOT, &target, x, &diagnostic);
 }
 
+static sv_status s_plan(void *x) {
+    const sv_volume_desc desc = volume_desc();
+    return sv_volume_plan(device, &desc, x, &diagnostic);
+}
+static sv_status s_planned(void *x) {
+    sv_plan plan = {.struct_size = sizeof plan};
+    return sv_volume_plan(device, x, &plan, &diagnostic);
+}
+static sv_status s_update(void *x) { return sv_volume_stage_update(volume, x, &made_handle, &diagnostic); }
+static sv_status s_pacing(void *x) {
+    const sv_target target = whole_target();
+    const sv_submission s = submission();
+    uint32_t done;
+    return sv_submitter_submit_in_parts(submitter, renderer, &SHOT, &target, &s, x, &done, &diagnostic);
+}
+static sv_status s_checked(void *x) {
+    uint64_t count = 0;
+    return sv_check_device(x, NULL, &count, &diagnostic);
+}
+
 static const struct {
     const char *name;
     sv_status (*call)(void *);
@@ -56,6 +76,11 @@ static const struct {
     {"sv_camera", s_camera, sizeof(sv_camera), 1, 0},
     {"sv_target", s_target, sizeof(sv_target), 0, 0},
     {"sv_pick", s_pick, sizeof(sv_pick), 0, 1},
+    {"sv_plan", s_plan, sizeof(sv_plan), 0, 1},
+    {"sv_volume_desc, planned", s_planned, sizeof(sv_volume_desc), 0, 0},
+    {"sv_update_desc", s_update, sizeof(sv_update_desc), 0, 0},
+    {"sv_pacing", s_pacing, sizeof(sv_pacing), 1, 0},
+    {"sv_host_device, checked", s_checked, sizeof(sv_host_device), 0, 0},
     {"sv_submission", s_submission, sizeof(sv_submission), 0, 0},
 };
 

@@ -42,7 +42,7 @@ static sv_volume make_volume(double radius) {
     return made;
 }
 
-static sv_target whole_target(void) {
+sv_target whole_target(void) {
     const sv_target target = {.struct_size = sizeof target,
                               .image = (uint64_t)h.image,
                               .view = (uint64_t)h.view,
@@ -146,7 +146,7 @@ void draw_a(sv_renderer renderer, const sv_camera *camera, uint8_t *texels) {
     fetch(cmd, texels);
 }
 
-static void draw_b(sv_renderer renderer, uint8_t *texels) {
+void draw_b(sv_renderer renderer, uint8_t *texels) {
     const sv_shot shot = {.struct_size = sizeof shot};
     const sv_target target = whole_target();
     VkCommandBuffer cmd = host_begin(&h);
@@ -319,6 +319,10 @@ int main(void) {
     test_depth(1);
     test_limits(&ours);
     test_levels();
+    volume = ball;
+    test_passes();
+    test_asked(&ours);
+    test_life();
     volume = ball;
 
     uint64_t bytes = 0;

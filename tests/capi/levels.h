@@ -34,6 +34,17 @@ void draw_a(sv_renderer renderer, const sv_camera *camera, uint8_t *texels);
 /* Pixels that are not of the host's colour alone. */
 unsigned drawn_pixels(const uint8_t *texels);
 
+sv_target whole_target(void);
+/* By level B, and what lies there then. */
+void draw_b(sv_renderer renderer, uint8_t *texels);
+
+/* What is asked before there is a device, and a volume; a budget; a device that the host loses. */
+void test_asked(const sv_host_device *ours);
+/* New voxels of a box, frames in parts. */
+void test_life(void);
+/* A render pass of the host's, several samples, a queue family that is named. */
+void test_passes(void);
+
 /* What the host has drawn hides the volume, depth is written, picks come back. */
 void test_depth(int is_reversed);
 

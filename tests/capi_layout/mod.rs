@@ -25,9 +25,13 @@ pub fn asserts() -> Vec<String> {
     let mut asserts = Vec::new();
     layout! { asserts:
         sv_limits { struct_size, next, max_image_dimension_2d, max_image_dimension_3d, max_image_array_layers, max_storage_buffer_range, max_allocation_bytes, max_allocations, max_heap_bytes }
-        sv_host_device { struct_size, next, api_version, queue_family, instance, physical_device, device, get_instance_proc_addr, features, has_debug_utils, limits, pipeline_cache, pipeline_cache_bytes, device_lost, user }
+        sv_host_device { struct_size, next, api_version, queue_family, instance, physical_device, device, get_instance_proc_addr, features, has_debug_utils, limits, pipeline_cache, pipeline_cache_bytes, device_lost, user, memory_budget }
         sv_diagnostic { struct_size, next, status, wanted, allowed, text }
-        sv_memory { struct_size, next, used_bytes, reserved_bytes, peak_bytes, vulkan_objects, handles }
+        sv_memory { struct_size, next, used_bytes, reserved_bytes, peak_bytes, vulkan_objects, handles, budget_bytes, allocations, device_budget_bytes, device_used_bytes }
+        sv_plan { struct_size, next, device_bytes, staging_bytes, bricks }
+        sv_update_desc { struct_size, next, origin, extent, voxels, voxel_bytes }
+        sv_pacing { struct_size, next, target_ms, tell, user }
+        sv_requirement { name, wanted, found, unlocks, is_required, is_met }
         sv_color_point { value, srgb }
         sv_opacity_point { value, opacity }
         sv_function_desc { struct_size, next, colors, color_count, opacities, opacity_count, reference_length, is_stepped }
@@ -45,7 +49,7 @@ pub fn asserts() -> Vec<String> {
         sv_renderer_desc { struct_size, next, volume, function, settings, target, width, height, frames_in_flight, has_host_depth, gives_depth, reserved, depth_images, depth_image_count }
         sv_timeline_point { semaphore, value }
         sv_submission { struct_size, next, queue, lock, unlock, user, waits, wait_count, signals, signal_count }
-        sv_volume_desc { struct_size, next, dims, voxel_type, voxels, voxel_bytes, world_from_voxel, slope, intercept, has_fill, fill, settings }
+        sv_volume_desc { struct_size, next, dims, voxel_type, voxels, voxel_bytes, world_from_voxel, slope, intercept, has_fill, fill, settings, has_value_range, reserved, value_range }
     }
     for (name, number) in [
         ("SV_E_DRIVER", sv_status::SV_E_DRIVER as i32),

@@ -37,9 +37,12 @@ const COPIED_FROM: State = (
     vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
 );
 
-/// What compute shaders read.
+/// What shaders read: rays in compute, slices in fragments.
 pub const READ: State = (
-    vk::PipelineStageFlags::COMPUTE_SHADER,
+    vk::PipelineStageFlags::from_raw(
+        vk::PipelineStageFlags::COMPUTE_SHADER.as_raw()
+            | vk::PipelineStageFlags::FRAGMENT_SHADER.as_raw(),
+    ),
     vk::AccessFlags::SHADER_READ,
     vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL,
 );

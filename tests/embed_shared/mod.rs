@@ -4,14 +4,20 @@
 
 mod depth;
 mod expected;
+mod eyes;
 mod image;
 mod loader;
+mod pace;
 mod scene;
+mod settings;
 
 pub use depth::{ATTACHED, DepthImage, READ};
 pub use expected::{assert_close, over};
+pub use eyes::{Eye, Found, depths, draw, eyes, spheres};
 pub use image::HostImage;
+pub use pace::Pace;
 pub use scene::{OnDevice, Stage};
+pub use settings::all_settings;
 
 use ash::{ext, vk};
 use std::ffi::{CStr, c_void};

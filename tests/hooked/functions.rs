@@ -90,6 +90,10 @@ fallible! {
     vkEnumerateInstanceExtensionProperties(
         layer: *const c_char, count: *mut u32, out: *mut vk::ExtensionProperties);
     vkEnumeratePhysicalDevices(instance: vk::Instance, count: *mut u32, out: *mut vk::PhysicalDevice);
+    vkEnumerateDeviceExtensionProperties(
+        device: vk::PhysicalDevice, layer: *const c_char, count: *mut u32,
+        out: *mut vk::ExtensionProperties)
+        => { if lacking().device_extensions { *count = 0 } };
     vkGetPhysicalDeviceImageFormatProperties2(
         device: vk::PhysicalDevice, info: *const vk::PhysicalDeviceImageFormatInfo2<'_>,
         out: *mut vk::ImageFormatProperties2<'_>);

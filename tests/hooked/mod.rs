@@ -33,6 +33,7 @@ pub struct Fault {
 pub struct Lacking {
     pub format: (vk::Format, vk::FormatFeatureFlags),
     pub timestamps: bool,
+    pub device_extensions: bool,
 }
 
 #[derive(Default)]
@@ -96,6 +97,24 @@ impl Tape {
                 result: vk::Result::ERROR_DEVICE_LOST,
             })
         });
+    }
+
+    /// Makes the `nth` call of `function` from now on fail, and keeps the books.
+    pub fn fail_from_now(&self, function: &'static str, nth: u32, result: vk::Result) {
+        with(|state| {
+            let before = state.calls.get(function).copied().unwrap_or(0);
+            state.has_failed = false;
+            state.fault = Some(Fault {
+                function,
+                call: before + nth,
+                result,
+            });
+        });
+    }
+
+    /// Nothing fails any more.
+    pub fn mend(&self) {
+        with(|state| state.fault = None);
     }
 
     pub fn calls(&self) -> BTreeMap<&'static str, u32> {

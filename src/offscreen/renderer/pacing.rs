@@ -1,9 +1,9 @@
 //! How long the next picture will take, by what the last one took.
 
 use super::Renderer;
-use crate::offscreen::cost::{looks_of_picture, ms_of_looks};
 use crate::offscreen::time_slices::Spent;
 use crate::scene::Scene;
+use crate::technique::cost::{looks_of_picture, ms_of_looks};
 use crate::technique::{Jitter, Recording, Settings, Skip, Technique, View};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;

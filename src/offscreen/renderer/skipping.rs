@@ -3,12 +3,12 @@
 use super::{Copied, Renderer, parts_of};
 use crate::gpu::{self, Headless};
 use crate::offscreen::Error;
-use crate::offscreen::cost::ms_of_looks;
 use crate::offscreen::stream::if_it_fits;
 use crate::offscreen::time_slices::Work;
 use crate::offscreen::upload::fill;
 use crate::resident::{Apron, Corners, EmptySpace, GpuVolume, MacroCells};
 use crate::scene::{Beside, Scene};
+use crate::technique::cost::ms_of_looks;
 use crate::technique::{Mix, Mode, Part, Role, Skip, Skippable};
 use crate::transfer::{Alike, Seen, TransferFunction};
 use crate::volume::Volume;

@@ -10,11 +10,11 @@
 use super::Renderer;
 use crate::gpu::{Gpu, Tile, Use};
 use crate::offscreen::Error;
-use crate::offscreen::cost::{looks_of_picture, ms_of_looks};
 use crate::offscreen::stream::{Cache, Eye, Place, Stream};
 use crate::offscreen::submission::{self, Submission};
 use crate::offscreen::time_slices::Spent;
 use crate::scene::Scene;
+use crate::technique::cost::{looks_of_picture, ms_of_looks};
 use crate::technique::{InPixel, Inputs, Mode, Part, Skippable, Technique, View};
 use crate::volume::Volume;
 use std::collections::HashMap;

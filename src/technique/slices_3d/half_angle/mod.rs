@@ -14,7 +14,7 @@
 mod geometry;
 pub mod reference;
 
-pub use geometry::HalfAngle;
+pub use geometry::{HalfAngle, light_extent};
 
 use crate::gpu::{
     Bindings, Blend, DepthUse, Error, Gpu, Image, ImageDesc, ImageKind, Load, RasterDesc,

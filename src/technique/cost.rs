@@ -1,8 +1,8 @@
 //! What work will take, guessed before anything like it was measured: rather too much than too little.
 
+use super::{MAX_SAMPLES_PER_RAY, Mode, Settings, Technique, View};
 use crate::gpu::Gpu;
 use crate::resident::Cell;
-use crate::technique::{MAX_SAMPLES_PER_RAY, Mode, Settings, Technique, View};
 use glam::DVec3;
 
 /// A look-up of a voxel takes so long with all that is done with it. A driver on two cores took 10 to 20 ns

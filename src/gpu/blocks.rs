@@ -5,7 +5,7 @@
 //! order     n/2 + the numbers 0 .. n by their bits from the lowest on (van der Corput 1935), modulo n
 //! ```
 
-use crate::gpu::Tile;
+use super::Tile;
 use std::ops::Range;
 
 /// A picture in blocks.

@@ -143,7 +143,7 @@ mod tests {
 
     #[test]
     fn a_part_a_hundred_times_as_dear_as_the_rest_does_not_make_one_long_submission() {
-        use crate::offscreen::blocks::Blocks;
+        use crate::gpu::Blocks;
         // Rows of a picture of 1024 x 1024 pixels, cheap but for a band of any height anywhere; first guesses are for
         // the dear ones, as those of pictures are for rays that skip nothing.
         let blocks = Blocks::new([1024, 1024], [1, 128]);

@@ -1,0 +1,149 @@
+//! Frames in parts, each a submission, that a host may end.
+
+use super::handles::{self, Kind};
+use super::images::{sv_target, target};
+use super::record::{Taken, sv_shot};
+use super::renderer::{self, sv_renderer, with};
+use super::status::{guard, number, sv_diagnostic, sv_status};
+use super::structure::{self, Versioned};
+use super::submit::{self, Submission, sv_submission, sv_submitter};
+use super::volume::commands;
+use crate::embed::Pacing;
+use std::ffi::c_void;
+use std::ops::ControlFlow;
+
+/// How long the submissions of a frame last, and who hears of them.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct sv_pacing {
+    /// `sizeof(sv_pacing)`.
+    pub struct_size: u32,
+    /// NULL.
+    pub next: *const c_void,
+    /// Milliseconds that a submission shall take. 0 is 100.
+    pub target_ms: f64,
+    /// Called after each submission but the last with how much of the frame is done, 0 to 1; not 0 ends the frame. Or NULL.
+    /// It calls no function of this header.
+    pub tell: Option<unsafe extern "C" fn(user: *mut c_void, done: f64) -> u32>,
+    /// What `tell` is called with.
+    pub user: *mut c_void,
+}
+
+// SAFETY: as the trait wants it.
+unsafe impl Versioned for sv_pacing {
+    const NAME: &'static str = "sv_pacing";
+}
+
+/// Begins a frame that is recorded in parts, and tells how many blocks of 64 x 64 pixels it has. What else is recorded for the
+/// frame, and another function, volume or size, ends it. Threads: one at a time for one renderer.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sv_renderer_begin_parts(
+    renderer: sv_renderer,
+    shot: *const sv_shot,
+    blocks: *mut u64,
+    diagnostic: *mut sv_diagnostic,
+) -> sv_status {
+    let body = || {
+        structure::out("the place of the number of blocks", blocks)?;
+        with(renderer, |_, inner| {
+            // SAFETY: the caller's promise.
+            unsafe {
+                let taken = Taken::new(shot, inner)?;
+                blocks.write(inner.renderer.begin_parts(&taken.shot())?);
+            }
+            Ok(())
+        })
+    };
+    // SAFETY: the caller's promise.
+    unsafe { guard(diagnostic, body) }
+}
+
+/// Level B in parts: records the next `count` blocks, one at least, and tells how many are left. The same `target` each time.
+///
+/// Rays, and slices in other modes than composite, touch the target with the last part alone. Composites by slices draw each part
+/// into it, and leave it in its state `after`. As sv_renderer_record_into; parts are submitted in their order to one queue.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sv_renderer_record_part_into(
+    renderer: sv_renderer,
+    command_buffer: *mut c_void,
+    frame: u32,
+    count: u64,
+    target: *const sv_target,
+    left: *mut u64,
+    diagnostic: *mut sv_diagnostic,
+) -> sv_status {
+    let body = || {
+        structure::out("the place of the number of blocks", left)?;
+        with(renderer, |_, inner| {
+            let cmd = commands(command_buffer)?;
+            // SAFETY: the caller's promise.
+            unsafe {
+                let (target, load) = self::target(target)?;
+                let renderer = &mut inner.renderer;
+                left.write(renderer.record_part_into(cmd, frame, count, &target, load)?);
+            }
+            Ok(())
+        })
+    };
+    // SAFETY: the caller's promise.
+    unsafe { guard(diagnostic, body) }
+}
+
+/// Level C in parts: as sv_submitter_submit, in as many submissions as it takes for each to last no longer than `pacing`
+/// says (NULL: 100 ms). Between them it waits for the device, for the host's `waits` too. `is_done` is set to 0 where the host
+/// ended the frame: none of the signals will be reached then, and the target is as sv_renderer_record_part_into says.
+/// Threads: one at a time for one submitter and for one renderer.
+#[unsafe(no_mangle)]
+#[allow(
+    clippy::too_many_arguments,
+    reason = "those of sv_submitter_submit, and two"
+)]
+pub unsafe extern "C" fn sv_submitter_submit_in_parts(
+    submitter: sv_submitter,
+    renderer: sv_renderer,
+    shot: *const sv_shot,
+    target: *const sv_target,
+    submission: *const sv_submission,
+    pacing: *const sv_pacing,
+    is_done: *mut u32,
+    diagnostic: *mut sv_diagnostic,
+) -> sv_status {
+    let body = || {
+        structure::out("the place of is_done", is_done)?;
+        let (device, held) = handles::find::<submit::Held>(submitter)?;
+        handles::find_on::<renderer::Held>(&device, renderer)?;
+        let mut submitter = handles::only(submit::Held::NAME, &held.0)?;
+        with(renderer, |_, inner| {
+            // SAFETY: the caller's promise.
+            unsafe {
+                let taken = Taken::new(shot, inner)?;
+                let (target, load) = self::target(target)?;
+                let submission = Submission::new(submission)?;
+                let pacing = structure::read_or_zero(pacing)?;
+                let ms = pacing.target_ms;
+                let name = "sv_pacing.target_ms";
+                number(name, "0 or more", ms, ms.is_finite() && ms >= 0.0)?;
+                let mut tell = |done: f64| match pacing.tell {
+                    Some(tell) if tell(pacing.user, done) != 0 => ControlFlow::Break(()),
+                    _ => ControlFlow::Continue(()),
+                };
+                let pacing = Pacing {
+                    target_ms: if ms == 0.0 { Pacing::TARGET_MS } else { ms },
+                    tell: &mut tell,
+                };
+                let locked = submission.locked();
+                let lock = submission.lock(&locked);
+                let (waits, signals) = (&submission.waits, &submission.signals);
+                let renderer = &mut inner.renderer;
+                let shot = taken.shot();
+                let done = submitter.submit_in_parts(
+                    renderer, &shot, &target, load, lock, waits, signals, pacing,
+                )?;
+                is_done.write(done.into());
+            }
+            Ok(())
+        })
+    };
+    // SAFETY: the caller's promise.
+    unsafe { guard(diagnostic, body) }
+}

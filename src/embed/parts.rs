@@ -1,0 +1,155 @@
+//! A frame in parts, on devices that take long for one: each part is a submission of its own, and a host may stop
+//! between two of them.
+//!
+//! ```text
+//! renderer.begin_parts(shot)                            parameters; how many blocks of the picture there are
+//! renderer.record_part_into(cmd, frame, n, target, ..)  the next n of them, until none is left
+//! submitter.submit_in_parts(..)                         both, as many blocks a submission as take 100 ms
+//! ```
+//!
+//! All parts together draw the very picture that one recording would.
+
+use super::frame::Begun;
+use super::recording::Share;
+use super::{Error, Renderer, Shot};
+use crate::gpu::{Blocks, Load, Target, Tile, Use, begin_rendering, end_rendering};
+use crate::technique::cost::{looks_of_picture, ms_of_looks};
+use crate::technique::{InPixel, View};
+use ash::vk;
+
+/// Pixels along the side of a block.
+const SIDE: u32 = 64;
+
+impl Renderer {
+    /// Begins a frame in parts: writes its parameters. How many blocks of 64 x 64 pixels there are; any first part of
+    /// them is spread over the picture.
+    ///
+    /// What else is recorded for the frame, and another function, volume or size, ends it.
+    ///
+    /// # Errors
+    /// As [`Renderer::record`].
+    pub fn begin_parts(&mut self, shot: &Shot) -> Result<u64, Error> {
+        let (frame, recorded) = self.prepare(shot)?;
+        let blocks = Blocks::new(self.extent, self.extent.map(|n| n.div_ceil(SIDE)));
+        let count = blocks.count();
+        self.frames[frame].begun = Some(Begun {
+            recorded,
+            blocks,
+            next: 0,
+        });
+        Ok(count)
+    }
+
+    /// Level B, in parts: records the next `count` blocks, one at least, and says how many are left.
+    ///
+    /// Rays, and slices in other modes than composite, touch the target with the last part alone: a frame that is given up
+    /// before has left it as it was, in its state `before`. Composites by slices draw each part into it: after each it is in its
+    /// state `after`, cleared or kept as `load` says where no block is drawn yet.
+    ///
+    /// # Errors
+    /// [`Error::NotBegun`]; as [`Renderer::record_into`]; [`Error::NotEmbedded`] for composites by slices into a target
+    /// that changes its queue family. Where the device fails, the frame is at an end.
+    ///
+    /// # Safety
+    /// - As [`Renderer::record_into`], of all parts of a frame: they are submitted in their order, to one queue, and with
+    ///   nothing else between them that uses the target, the volume being the same;
+    /// - the target is in the state that was said above.
+    pub unsafe fn record_part_into(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        frame: u32,
+        count: u64,
+        target: &Target,
+        load: Load,
+    ) -> Result<u64, Error> {
+        self.gpu.check_alive("record a part of a frame")?;
+        let number = self.frame_number(frame)?;
+        self.check_parts(target, load)?;
+        let mut begun = self.frames[number]
+            .begun
+            .take()
+            .ok_or(Error::NotBegun { frame })?;
+        let all = begun.blocks.count();
+        let part = begun.next..begun.next.saturating_add(count.max(1)).min(all);
+        let share = Share {
+            is_first: part.start == 0,
+            is_last: part.end == all,
+        };
+        let tiles = begun.blocks.tiles(part.clone());
+        let recorded = &begun.recorded;
+        let is_drawn_at_once = self.pass.resolve.is_none();
+        // SAFETY: the caller's promises.
+        unsafe {
+            if share.is_first {
+                self.function.record_upload(cmd, &self.volume)?;
+            }
+            self.gather(cmd, number, recorded, &tiles, share)?;
+            if is_drawn_at_once || share.is_last {
+                let (again, load) = match is_drawn_at_once && !share.is_first {
+                    true => (true, Load::Keep),
+                    false => (false, load),
+                };
+                let arriving = Target {
+                    before: if again { target.after } else { target.before },
+                    ..*target
+                };
+                let whole = [Tile::whole(self.extent)];
+                let drawn: &[_] = if is_drawn_at_once { &tiles } else { &whole };
+                arriving.enter(&self.gpu, cmd, Use::ColorTarget);
+                begin_rendering(&self.gpu, cmd, &[(target.view, load)], self.extent);
+                self.draw_tiles(cmd, &self.frames[number], recorded, drawn);
+                end_rendering(&self.gpu, cmd);
+                target.leave(&self.gpu, cmd, Use::ColorTarget);
+            }
+        }
+        match share.is_last {
+            true => self.keep(number, begun.recorded),
+            false => {
+                begun.next = part.end;
+                self.frames[number].begun = Some(begun);
+            }
+        }
+        Ok(all - part.end)
+    }
+
+    /// Gives a frame in parts up.
+    pub(super) fn end_parts(&mut self, frame: u32) {
+        if let Some(there) = self.frames.get_mut(frame as usize) {
+            there.begun = None;
+        }
+    }
+
+    /// A first guess of what a frame takes, rather too much.
+    pub(super) fn expected_ms(&self, shot: &Shot) -> f64 {
+        let view = View {
+            grid: self.volume.grid(),
+            camera: shot.camera,
+            extent_pixels: self.extent,
+            in_pixel: InPixel::CENTER,
+            settings: &self.class.settings,
+        };
+        let begun = self.frames.get(shot.frame as usize);
+        let begun = begun.and_then(|frame| frame.begun.as_ref());
+        let slices = begun.map_or(0, |begun| {
+            begun.recorded.picture.iter().map(|part| part.slices).sum()
+        });
+        ms_of_looks(&self.gpu, looks_of_picture(&view, slices, 1))
+    }
+
+    /// Refuses a target that parts cannot be drawn into.
+    pub(super) fn check_parts(&self, target: &Target, load: Load) -> Result<(), Error> {
+        self.check_target(target, load)?;
+        if self.pass.resolve.is_some() {
+            return Ok(());
+        }
+        let ours = [vk::QUEUE_FAMILY_IGNORED, self.gpu.queue_family()];
+        let families = [target.before.queue_family, target.after.queue_family];
+        match families.iter().all(|family| ours.contains(family)) {
+            true => Ok(()),
+            false => Err(Error::NotEmbedded {
+                what: "a composite by slices in parts into a target that changes its queue family",
+                hint: "each part draws into it: take rays, or `record_into`",
+            }),
+        }
+    }
+}

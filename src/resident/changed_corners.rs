@@ -1,0 +1,142 @@
+//! Corners after voxels of a box have changed: the cubes of words that have some of them, and no others.
+
+use super::Corners;
+use super::corners::{CUBE_WORDS, Code, SIDE, put_row};
+use crate::gpu::{Buffer, Error, Gpu, Region, Use, buffer_to_image, image_barrier};
+use crate::shaders::CORNERS_WIDTH;
+use crate::volume::{VoxelBox, VoxelPart, Voxels};
+use ash::vk;
+use std::ops::Range;
+
+/// Words that change with voxels of a box.
+#[derive(Debug, Default)]
+pub(crate) struct ChangedCorners {
+    /// Those of one row of cubes after those of another.
+    pub words: Vec<u32>,
+    /// Where they go, in their order.
+    copies: Vec<Region>,
+}
+
+impl Corners {
+    /// The cubes, along each axis, that have words of voxels of `region`, and the voxels that those are made of.
+    fn cubes_of(&self, region: VoxelBox, dims: [u32; 3]) -> ([Range<u32>; 3], VoxelBox) {
+        // A word has the first voxel of the next one too.
+        let sides = [self.new_voxels * SIDE as u32, SIDE as u32, SIDE as u32];
+        let shared = [1, 0, 0];
+        let cubes = std::array::from_fn(|k| {
+            let first = region.min[k].saturating_sub(shared[k]) / sides[k];
+            first..region.max[k].div_ceil(sides[k])
+        });
+        let voxels = VoxelBox {
+            min: std::array::from_fn(|k| cubes[k].start * sides[k]),
+            max: std::array::from_fn(|k| (cubes[k].end * sides[k] + shared[k]).min(dims[k])),
+        };
+        (cubes, voxels)
+    }
+
+    /// The voxels that are looked at where those of `region` change, in a volume of `dims`.
+    pub(crate) fn looks_at(&self, region: VoxelBox, dims: [u32; 3]) -> VoxelBox {
+        self.cubes_of(region, dims).1
+    }
+
+    /// What changes with the voxels of `region`; `part` holds all that is looked at.
+    pub(crate) fn changed(
+        &self,
+        part: &VoxelPart,
+        region: VoxelBox,
+        dims: [u32; 3],
+    ) -> ChangedCorners {
+        match part.voxels {
+            Voxels::U8(voxels) => self.changed_codes(voxels, part, region, dims),
+            Voxels::I8(voxels) => self.changed_codes(voxels, part, region, dims),
+            Voxels::U16(voxels) => self.changed_codes(voxels, part, region, dims),
+            Voxels::I16(voxels) => self.changed_codes(voxels, part, region, dims),
+            _ => unreachable!("corners are of codes"),
+        }
+    }
+
+    fn changed_codes<C: Code>(
+        &self,
+        codes: &[C],
+        part: &VoxelPart,
+        region: VoxelBox,
+        dims: [u32; 3],
+    ) -> ChangedCorners {
+        let ([xs, ys, zs], voxels) = self.cubes_of(region, dims);
+        let all = |voxels: u32, side: u32| u64::from(voxels.div_ceil(side));
+        let along_x = all(dims[0], self.new_voxels * SIDE as u32);
+        let along_y = all(dims[1], SIDE as u32);
+        let run = CUBE_WORDS * xs.len();
+        let width = voxels.dims()[0] as usize;
+        let mut changed = ChangedCorners::default();
+        let mut longer = Vec::new();
+        for (z, y) in zs.flat_map(|z| ys.clone().map(move |y| (z, y))) {
+            let side = SIDE as u32;
+            let mut rows = voxels;
+            (rows.min[1], rows.max[1]) = (y * side, voxels.max[1].min((y + 1) * side));
+            (rows.min[2], rows.max[2]) = (z * side, voxels.max[2].min((z + 1) * side));
+            let mut cubes = vec![0; run];
+            let height = rows.dims()[1] as usize;
+            let placed = part.rows(rows).map(|first| &codes[first..first + width]);
+            for (index, row) in placed.enumerate() {
+                put_row(
+                    row,
+                    &mut longer,
+                    [index % height, index / height],
+                    &mut cubes,
+                );
+            }
+            let cube = u64::from(xs.start) + along_x * (u64::from(y) + along_y * u64::from(z));
+            changed.put(CUBE_WORDS as u64 * cube, &cubes);
+        }
+        changed
+    }
+
+    /// Records what [`Corners::changed`] gave, from byte `first` of `staging` on: between what reads them before and what
+    /// reads them later.
+    ///
+    /// # Errors
+    /// A staging buffer that is too small.
+    ///
+    /// # Safety
+    /// `cmd` is recording on their device, outside rendering; they and `staging` live until it has run, and `staging`
+    /// holds the words then; [`Corners::record_upload`] was recorded before.
+    pub(crate) unsafe fn record_changed(
+        &self,
+        gpu: &Gpu,
+        cmd: vk::CommandBuffer,
+        changed: &ChangedCorners,
+        staging: &Buffer,
+        first: u64,
+    ) -> Result<(), Error> {
+        let (read, write) = (Use::ComputeRead, Use::TransferWrite);
+        let mut offset = first;
+        // SAFETY: the caller's promises; the two barriers put the copies between earlier and later uses.
+        unsafe {
+            image_barrier(gpu, cmd, &self.image, read, write);
+            for &region in &changed.copies {
+                buffer_to_image(gpu, cmd, staging, offset, &self.image, region)?;
+                offset += 4 * u64::from(region.extent[0]);
+            }
+            image_barrier(gpu, cmd, &self.image, write, read);
+        }
+        Ok(())
+    }
+}
+
+impl ChangedCorners {
+    /// Words from word number `first` of the image on, row by row of it.
+    fn put(&mut self, first: u64, words: &[u32]) {
+        let width = u64::from(CORNERS_WIDTH);
+        let (mut at, end) = (first, first + words.len() as u64);
+        while at < end {
+            let count = (width - at % width).min(end - at);
+            self.copies.push(Region {
+                origin: [(at % width) as u32, (at / width) as u32, 0],
+                extent: [count as u32, 1, 1],
+            });
+            at += count;
+        }
+        self.words.extend_from_slice(words);
+    }
+}
