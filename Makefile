@@ -59,7 +59,7 @@ TEST := $(CARGO) test --locked --features grib,capi
 # Tests of files and of arithmetic make no device: they run side by side, and the validation layer has nothing to
 # hear there.
 TESTS := $(basename $(notdir $(wildcard tests/*.rs))) $(filter-out cli,$(notdir $(patsubst %/main.rs,%,$(wildcard tests/*/main.rs))))
-WITHOUT_DEVICE := $(filter cf_% dependencies public_api floors format_% isosurface mutations% phantoms picture_% transfer_% volume_%,$(TESTS))
+WITHOUT_DEVICE := $(filter host dependencies public_api format_% mutations%,$(TESTS))
 WITH_DEVICE := $(filter-out $(WITHOUT_DEVICE),$(TESTS))
 ON_DEVICE := RUST_TEST_THREADS=1 $(TEST) --lib --examples $(addprefix --test ,$(WITH_DEVICE))
 

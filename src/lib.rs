@@ -3,7 +3,7 @@
 //!
 //! # Floors
 //!
-//! A module uses lower floors only; `tests/floors.rs` holds us to it.
+//! A module uses lower floors only; `tests/host/floors.rs` holds us to it.
 //!
 //! | floor | modules | what they know |
 //! |---|---|---|
