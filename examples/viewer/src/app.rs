@@ -20,7 +20,7 @@ use winit::window::WindowId;
 pub fn run(words: Words) -> Result<(), Error> {
     let steps = match (&words.script, &words.screenshot) {
         (Some(path), _) => Some(script::read(path)?),
-        (None, Some(path)) => Some([Step::Frame, Step::Window(path.clone())].into()),
+        (None, Some(path)) => Some([Step::Frame, Step::Frame, Step::Window(path.clone())].into()),
         (None, None) => None,
     };
     let subject = Subject::open(&words)?;

@@ -4,20 +4,27 @@
 //! turn    azimuth -= 0.4 degrees a point to the right, elevation += 0.4 degrees a point down
 //! move    the target goes with the pointer: one pixel is  plane height / picture height  of the world at its distance
 //! zoom    a notch of the wheel is a factor of 1.2, towards what the pointer is on
+//! fit     zoom so that the corners of the box reach to 0.94 of the way from the middle of the picture to its sides
 //! ```
 
 use glam::DVec3;
 use stratavox::camera::{BoundingSphere, Camera, Error, Lens, Orbit};
+use stratavox::volume::Grid;
 
 const DEGREES_PER_POINT: f64 = 0.4;
 /// At the very poles the picture's upright is another one.
 const STEEPEST_DEGREES: f64 = 89.9;
 const FOV_DEGREES: f64 = 30.0;
+/// Where the farthest corner of a box that fits is, on the way from the middle of the picture to its side.
+const FIT: f64 = 0.94;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Eye {
+    grid: Grid,
     bounds: BoundingSphere,
     side: Orbit,
+    /// False until the zoom is that of [`Eye::fit`], or a hand's.
+    is_fitted: bool,
     pub orbit: Orbit,
     pub target: DVec3,
     pub zoom: f64,
@@ -25,21 +32,53 @@ pub struct Eye {
 }
 
 impl Eye {
-    /// All of `bounds`, from `side`.
-    pub fn new(bounds: BoundingSphere, side: Orbit) -> Self {
+    /// All of the box of `grid`, from `side`.
+    pub fn new(grid: Grid, side: Orbit) -> Self {
+        let bounds = BoundingSphere::of_grid(&grid.world_from_voxel, grid.dims);
         Self {
             target: bounds.center,
+            grid,
             bounds,
             side,
+            is_fitted: false,
             orbit: side,
             zoom: 1.0,
             is_parallel: false,
         }
     }
 
+    /// Zooms so that the box just fits a picture of this size, the first time and after [`Eye::reset`].
+    pub fn fit(&mut self, extent: [u32; 2]) {
+        if self.is_fitted {
+            return;
+        }
+        self.zoom = 1.0;
+        let Ok(camera) = self.camera(extent) else {
+            return;
+        };
+        let frame = camera.frame();
+        let half_height = 0.5 * camera.plane_height();
+        let half_width = half_height * f64::from(extent[0]) / f64::from(extent[1]);
+        let far = self.grid.far_corner();
+        let reach = (0..8).map(|k| {
+            let side = |axis: usize| if k >> axis & 1 == 1 { far[axis] } else { 0.0 };
+            let voxel = DVec3::new(side(0), side(1), side(2));
+            let from_eye = self.grid.world_from_voxel.transform_point3(voxel) - camera.eye;
+            let depth = match self.is_parallel {
+                true => 1.0,
+                false => from_eye.dot(frame.forward),
+            };
+            let [x, y] = [frame.right, frame.up].map(|axis| (from_eye.dot(axis) / depth).abs());
+            (x / half_width).max(y / half_height)
+        });
+        self.zoom = FIT / reach.fold(f64::MIN_POSITIVE, f64::max);
+        self.is_fitted = true;
+    }
+
     /// Back to where it began, with the projection that it has.
     pub fn reset(&mut self) {
-        (self.orbit, self.target, self.zoom) = (self.side, self.bounds.center, 1.0);
+        (self.orbit, self.target) = (self.side, self.bounds.center);
+        self.is_fitted = false;
     }
 
     pub fn camera(&self, extent: [u32; 2]) -> Result<Camera, Error> {
@@ -110,16 +149,17 @@ impl Eye {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DAffine3;
     use stratavox::camera::View;
 
     const EXTENT: [u32; 2] = [640, 480];
 
     fn eye() -> Eye {
-        let bounds = BoundingSphere {
-            center: DVec3::new(3.0, -2.0, 7.0),
-            radius: 50.0,
+        let grid = Grid {
+            dims: [64, 50, 20],
+            world_from_voxel: DAffine3::from_translation(DVec3::new(3.0, -2.0, 7.0)),
         };
-        Eye::new(bounds, View::Anterior.orbit())
+        Eye::new(grid, View::Anterior.orbit())
     }
 
     /// The pixel that a point of the world is seen at, found on the plane through the target.
@@ -161,6 +201,28 @@ mod tests {
             eye.approach(1.7, [x - 320.0, y - 240.0], EXTENT);
             let found = on_plane(&eye, x, y);
             assert!((found - seen).length() < 1e-9, "{found} {seen}");
+        }
+    }
+
+    #[test]
+    fn a_box_that_fits_reaches_almost_to_the_side() {
+        // From the front the near face is 64 wide and 20 high, 25 nearer than the middle.
+        for (is_parallel, extent) in [(false, EXTENT), (true, EXTENT), (false, [100, 400])] {
+            let mut eye = Eye {
+                is_parallel,
+                ..eye()
+            };
+            eye.fit(extent);
+            let camera = eye.camera(extent).unwrap();
+            let nearer = if is_parallel {
+                1.0
+            } else {
+                (camera.target - camera.eye).length() - 25.0
+            };
+            let half_height = 0.5 * camera.plane_height() * nearer;
+            let half_width = half_height * f64::from(extent[0]) / f64::from(extent[1]);
+            let found = (32.0 / half_width).max(10.0 / half_height);
+            assert!((found - FIT).abs() < 1e-12, "{found}");
         }
     }
 

@@ -11,7 +11,7 @@ use egui::{
 use stratavox::technique::{Filter, Mode, Technique};
 use stratavox::transfer::{Preset, TransferFunction};
 
-const WIDTH: f32 = 312.0;
+const WIDTH: f32 = 316.0;
 const ACCENT: Color32 = Color32::from_rgb(236, 170, 96);
 
 /// Fonts a little larger than egui's own, a dark panel, one warm colour.
@@ -22,7 +22,7 @@ pub fn set_style(context: &Context) {
             font.size *= 1.08;
         }
         style.spacing.item_spacing = vec2(8.0, 6.0);
-        style.spacing.slider_width = 150.0;
+        style.spacing.slider_width = 118.0;
         style.spacing.interact_size.y = 22.0;
         let visuals = &mut style.visuals;
         visuals.panel_fill = Color32::from_rgb(27, 28, 31);
@@ -46,9 +46,17 @@ pub fn show(ui: &mut Ui, view: &mut View) {
         Panel::right("panel")
             .exact_size(WIDTH)
             .resizable(false)
+            .show_separator_line(false)
             .frame(frame)
             .show(ui, |ui| {
-                ScrollArea::vertical().show(ui, |ui| beside(ui, view));
+                let below = Panel::bottom("status").frame(Frame::new());
+                below
+                    .show_separator_line(false)
+                    .show(ui, |ui| status(ui, view));
+                let above = CentralPanel::no_frame();
+                above.show(ui, |ui| {
+                    ScrollArea::vertical().show(ui, |ui| beside(ui, view));
+                });
             });
     }
     CentralPanel::no_frame().show(ui, |ui| picture(ui, view));
@@ -129,7 +137,6 @@ fn beside(ui: &mut Ui, view: &mut View) {
         let unit = view.subject.voxels.unit.clone().unwrap_or_default();
         pick(ui, picked, &unit);
     }
-    ui.with_layout(Layout::bottom_up(Align::Min), |ui| status(ui, view));
 }
 
 fn subject(ui: &mut Ui, view: &mut View) {
@@ -140,7 +147,8 @@ fn subject(ui: &mut Ui, view: &mut View) {
     let stored = subject.header().stored.name();
     let unit = subject.voxels.unit.as_deref().unwrap_or_default();
     let [low, high] = subject.voxels.value_range.map(short);
-    ui.weak(format!("{x} × {y} × {z} voxels of {spacing}, {stored}"));
+    ui.weak(format!("{x} × {y} × {z} voxels, {stored}"));
+    ui.weak(format!("each {spacing}"));
     ui.weak(format!("values {low} to {high} {unit}"));
     if subject.way.height_factor != 1.0 {
         ui.weak(format!(
@@ -209,7 +217,8 @@ fn ways(ui: &mut Ui, view: &mut View) {
                     }
                 });
             ui.end_row();
-            ui.label("Samples");
+            ui.label("Samples")
+                .on_hover_text("along a ray, for each smallest spacing of voxels");
             let samples = Slider::new(&mut view.look.samples_per_voxel, 0.25..=4.0)
                 .logarithmic(true)
                 .max_decimals(2)
@@ -325,7 +334,7 @@ fn chosen(ui: &mut Ui, grip: Option<Grip>, function: &mut TransferFunction) {
             }
         }
         _ => {
-            ui.weak("Drag a point; double click adds one, right click removes.");
+            ui.weak("drag points, double click adds one");
         }
     });
 }
@@ -404,17 +413,14 @@ fn status(ui: &mut Ui, view: &View) {
     let status = &view.status;
     let [width, height] = status.extent;
     let megabytes = status.device_bytes as f64 / f64::from(1 << 20);
-    ui.weak("H shows the keys");
-    ui.weak(format!(
-        "{megabytes:.0} MB, {} pipelines, {}",
-        status.pipelines, status.present
-    ));
+    ui.separator();
+    ui.weak(&status.device);
     let took = status
         .picture_ms
         .map_or(String::new(), |ms| format!(" in {ms:.1} ms"));
-    ui.weak(format!("{width} × {height}{took}"));
-    ui.weak(&status.device);
-    ui.separator();
+    ui.weak(format!("{width} × {height}{took}, {}", status.present));
+    ui.weak(format!("{megabytes:.0} MB, {} pipelines", status.pipelines));
+    ui.label(RichText::new("H shows the keys").color(ACCENT));
 }
 
 fn help(context: &Context, view: &mut View) {

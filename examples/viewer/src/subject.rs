@@ -5,7 +5,7 @@ use crate::words::Words;
 use glam::{DAffine3, DVec3};
 use std::path::Path;
 use std::sync::Arc;
-use stratavox::camera::{BoundingSphere, Orbit};
+use stratavox::camera::Orbit;
 use stratavox::format;
 use stratavox::transfer::{Quantity, ValueSummary};
 use stratavox::volume::{
@@ -96,10 +96,6 @@ impl Subject {
 
     pub fn header(&self) -> &Header {
         self.source.header()
-    }
-
-    pub fn bounds(&self) -> BoundingSphere {
-        BoundingSphere::of_grid(&self.voxels.world_from_voxel, self.voxels.dims)
     }
 
     /// From where it is seen at first, as `stratavox render` has it: three sides of a box are seen, and of a piece of

@@ -64,7 +64,7 @@ impl View {
     pub fn new(subject: Subject, has_panel: bool) -> Self {
         let mut view = Self {
             look: Look::new(&subject),
-            eye: Eye::new(subject.bounds(), subject.side()),
+            eye: Eye::new(subject.voxels.grid(), subject.side()),
             wanted_time: subject.time,
             subject,
             curve: Curve::default(),

@@ -581,6 +581,7 @@ impl Window {
     unsafe fn draw_volume(&mut self, begun: Begun, place: [u32; 2]) -> Result<(), Error> {
         let (cmd, frame) = (begun.cmd, begun.frame);
         self.view.status.extent = place;
+        self.view.eye.fit(place);
         let parts = self.parts();
         let extent = place.map(|side| side.div_ceil(parts));
         // SAFETY: the caller's promise.
