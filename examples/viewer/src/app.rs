@@ -126,6 +126,8 @@ impl ApplicationHandler<()> for App {
     fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         match event {
             WindowEvent::CloseRequested => self.end(events, Ok(())),
+            // Nobody has asked: another program has done it.
+            WindowEvent::Destroyed => self.end(events, Err(Error::SurfaceLost)),
             WindowEvent::RedrawRequested => self.frame(events),
             event => {
                 if let Some(window) = &mut self.window {

@@ -74,18 +74,25 @@ fn picture(ui: &mut Ui, view: &mut View) {
     let per_point = ui.ctx().pixels_per_point();
     let pixels =
         [rect.width(), rect.height()].map(|side| (side * per_point).round().max(1.0) as u32);
-    let delta = response.drag_delta();
-    let (right, down) = (f64::from(delta.x), f64::from(delta.y));
-    let has_shift = ui.input(|input| input.modifiers.shift);
-    let moves = response.dragged_by(PointerButton::Middle)
-        || response.dragged_by(PointerButton::Primary) && has_shift;
-    if moves {
-        let [right, down] = [right, down].map(|points| points * f64::from(per_point));
-        view.eye.shift(right, down, pixels);
-    } else if response.dragged_by(PointerButton::Primary) {
-        view.eye.turn(right, down);
+    // From where the button went down: slow frames lose nothing of what the hand did.
+    let pointer = response
+        .interact_pointer_pos()
+        .filter(|_| response.dragged());
+    let from = view
+        .held
+        .or_else(|| ui.input(|input| input.pointer.press_origin()));
+    if let (Some(to), Some(from)) = (pointer, from) {
+        let (right, down) = (f64::from(to.x - from.x), f64::from(to.y - from.y));
+        let has_shift = ui.input(|input| input.modifiers.shift);
+        if response.dragged_by(PointerButton::Middle) || has_shift {
+            let [right, down] = [right, down].map(|points| points * f64::from(per_point));
+            view.eye.shift(right, down, pixels);
+        } else if response.dragged_by(PointerButton::Primary) {
+            view.eye.turn(right, down);
+        }
+        view.is_moving = true;
     }
-    view.is_moving |= response.dragged() && delta != egui::Vec2::ZERO;
+    view.held = pointer;
     if let Some(pointer) = response.hover_pos() {
         let notches = ui.input(|input| input.smooth_scroll_delta().y / 50.0);
         if notches != 0.0 {

@@ -22,6 +22,8 @@ pub struct View {
     pub wanted_time: u32,
     /// Where the picture is, in points.
     pub picture: Rect,
+    /// Where the pointer was that drags the picture, when it was last heard of.
+    pub held: Option<Pos2>,
     /// A hand is on something that changes the picture.
     pub is_moving: bool,
     /// The place in the picture that is to be looked at, in points of the window.
@@ -62,7 +64,7 @@ pub struct Status {
 
 impl View {
     pub fn new(subject: Subject, has_panel: bool) -> Self {
-        let mut view = Self {
+        Self {
             look: Look::new(&subject),
             eye: Eye::new(subject.voxels.grid(), subject.side()),
             wanted_time: subject.time,
@@ -72,6 +74,7 @@ impl View {
             has_help: false,
             is_playing: false,
             picture: Rect::ZERO,
+            held: None,
             is_moving: false,
             to_pick: None,
             picked: None,
@@ -79,9 +82,7 @@ impl View {
             commands: VecDeque::new(),
             wanted_variable: None,
             status: Status::default(),
-        };
-        view.curve.chosen = None;
-        view
+        }
     }
 
     /// Another subject in the same window.

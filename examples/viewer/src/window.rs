@@ -198,6 +198,7 @@ impl Window {
         self.hear_device(begun.frame)?;
         let step = self.next_step()?;
         let output = self.lay_out(step.as_ref());
+        let reports = matches!(step, Some(Step::Report));
         self.obey_step(step);
         self.obey_commands();
         self.follow_time()?;
@@ -206,6 +207,9 @@ impl Window {
             .get(&ViewportId::ROOT)
             .map(|out| out.repaint_delay);
         let written = self.record(begun, output)?;
+        if reports {
+            self.report();
+        }
         let swapchain = self.swapchain.as_ref().expect("looked at above");
         let fits = self.frames.show(&self.host, swapchain, begun)?;
         self.is_resized |= !fits;
@@ -228,8 +232,11 @@ impl Window {
     /// When the next frame is due: at once where something is on its way.
     fn due(&self, delay: Duration) -> Option<Instant> {
         let now = Instant::now();
+        // Read for other textures, a time is asked for once more.
+        let is_behind = self.view.wanted_time != self.view.subject.time;
+        let is_behind = is_behind && self.reader.pending.is_none();
         let is_busy = self.steps.is_some() || self.is_resized || self.asked.is_some();
-        if is_busy || self.arrived.is_some() || self.is_stale() {
+        if is_busy || is_behind || self.is_stale() {
             self.ask_for_frame();
         }
         let rest = self.last_move.map(|moved| moved + REST);
@@ -375,8 +382,8 @@ impl Window {
             Some(Step::Time(time)) => self.view.wanted_time = time.min(self.view.times() - 1),
             Some(Step::Window(path)) => self.saves.push(Save::Window(path)),
             Some(Step::Picture(path)) => self.saves.push(Save::Picture(path)),
-            Some(Step::Report) => self.report(),
-            Some(Step::Events(_) | Step::Frame) | None => {}
+            // Of what this frame draws: afterwards.
+            Some(Step::Report | Step::Events(_) | Step::Frame) | None => {}
         }
     }
 

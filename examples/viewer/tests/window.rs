@@ -284,7 +284,7 @@ fn a_dragged_point_changes_the_picture_and_makes_no_pipeline() {
     let report = display.play(folder.path(), &words, "report\n");
     let from = report.numbers("handle Opacity(5)", 0);
     let to = [from[0] - 7.0, from[1] - 40.0];
-    let color = report.numbers("handle Color(9)", 0);
+    let color = report.numbers("handle Color(7)", 0);
     let lines = format!(
         "report\npicture 1.png\ndrag {} {} {} {}\nreport\npicture 2.png\ndrag {} {} {} {}\nreport\npicture 3.png\n",
         from[0],
@@ -293,7 +293,7 @@ fn a_dragged_point_changes_the_picture_and_makes_no_pipeline() {
         to[1],
         color[0],
         color[1],
-        color[0] - 25.0,
+        color[0] + 14.0,
         color[1]
     );
     let report = display.play(folder.path(), &words, &lines);
@@ -387,19 +387,13 @@ fn a_hand_on_a_real_pointer_and_keyboard_turns_the_volume() {
     ]);
     // The first picture takes a while; what is typed meanwhile waits for it.
     tool(&["mousemove", "100", "100", "key", "c"]);
-    tool(&[
-        "mousedown",
-        "1",
-        "mousemove",
-        "--sync",
-        "120",
-        "100",
-        "mousemove",
-        "--sync",
-        "150",
-        "100",
-    ]);
-    std::thread::sleep(Duration::from_millis(500));
+    // A hand takes its time, and some of it within one slow frame.
+    let rest = || std::thread::sleep(Duration::from_millis(200));
+    tool(&["mousedown", "1"]);
+    for x in ["101", "120", "150"] {
+        tool(&["mousemove", "--sync", x, "100"]);
+        rest();
+    }
     tool(&["mouseup", "1"]);
     tool(&["key", "c", "key", "shift+s", "key", "q"]);
     let since = Instant::now();
@@ -425,7 +419,11 @@ fn what_cannot_be_shown_is_said_in_a_sentence() {
     let folder = TempDir::new().unwrap();
     for (words, code, part) in [
         (&["nowhere.nii"][..], 3, "cannot read nowhere.nii"),
-        (&["phantom:head,n=16", "--variable", "x"], 2, "--variable x"),
+        (
+            &["phantom:head,n=16", "--component", "1"],
+            2,
+            "--component 1: a voxel has 1",
+        ),
         (
             &["phantom:head,n=16", "--time", "1"],
             2,
@@ -460,4 +458,42 @@ fn what_cannot_be_shown_is_said_in_a_sentence() {
         .unwrap();
     assert_eq!(output.status.code(), Some(5), "{}", texts(&output));
     assert!(texts(&output).contains("no display"), "{}", texts(&output));
+}
+
+#[test]
+fn every_mode_and_filter_is_drawn_or_refused_by_name() {
+    let Some(display) = Display::new() else {
+        return;
+    };
+    let folder = TempDir::new().unwrap();
+    let words = ["phantom:head,n=24", "--size", "420x300"];
+    let mut lines = "key H\nwindow help.png\nkey H\n".to_owned();
+    for mode in 0..9 {
+        lines += &format!("picture mode-{mode}.png\nkey M\n");
+    }
+    lines += "key L\npicture lit.png\nkey L\n";
+    for filter in 0..5 {
+        lines += &format!("picture filter-{filter}.png\nkey F\n");
+    }
+    // Slices: what needs rays is refused, and the picture stays.
+    lines += "key 2\nkey M\nkey M\nkey M\nkey M\nreport\nkey M\nreport\nkey 3\nkey F\nkey F\nframes 1\nreport\n";
+    let report = display.play(folder.path(), &words, &lines);
+    let drawn = |name: String| pixels(&folder.path().join(name)).1;
+    let modes: Vec<_> = (0..9).map(|k| drawn(format!("mode-{k}.png"))).collect();
+    for (k, mode) in modes.iter().enumerate() {
+        let same = modes[..k].iter().position(|other| other == mode);
+        assert_eq!(same, None, "mode {k} looks as another");
+    }
+    assert!(drawn("lit.png".into()) != modes[0], "light changes nothing");
+    let filters: Vec<_> = (0..5).map(|k| drawn(format!("filter-{k}.png"))).collect();
+    assert!(filters[0] == modes[0], "nine modes on is the first again");
+    for k in 1..5 {
+        assert!(filters[k] != filters[k - 1], "filter {k} changes nothing");
+    }
+    assert!(
+        report.0.contains("look slices-3d xray linear"),
+        "{}",
+        report.0
+    );
+    assert!(report.0.contains("message"), "{}", report.0);
 }
