@@ -10,7 +10,7 @@
 //! painter    that image and egui's triangles     script     a hand for tests;  shot  pictures into files
 //! ```
 //!
-//! A frame, in `window.rs`: egui lays it out; what it changed goes to the renderer (`set_function`, `set_settings`,
+//! A frame, in `window/mod.rs`: egui lays it out; what it changed goes to the renderer (`set_function`, `set_settings`,
 //! `set_volume`, `resize`, or another renderer where pipelines or textures are others); the volume is drawn where
 //! anything of its picture changed; the window shows that picture, and the panel beside it.
 

@@ -280,7 +280,7 @@ fn a_dragged_point_changes_the_picture_and_makes_no_pipeline() {
         return;
     };
     let folder = TempDir::new().unwrap();
-    let words = ["phantom:head,n=32", "--size", "640x600"];
+    let words = ["phantom:head,n=32", "--size", "640x760"];
     let report = display.play(folder.path(), &words, "report\n");
     let from = report.numbers("handle Opacity(5)", 0);
     let to = [from[0] - 7.0, from[1] - 40.0];

@@ -1,15 +1,15 @@
 //! The panel beside the picture, the help over it, and what the pointer does to the picture.
 
-use crate::curve::Grip;
+mod function;
+mod ways;
+
 use crate::keys::{KEYS, POINTER};
-use crate::look::{FILTERS, Look, MODES, TECHNIQUES};
 use crate::view::{Picked, View, short};
 use egui::{
-    Align, Align2, CentralPanel, Color32, ComboBox, Context, DragValue, FontId, Frame, Grid, Key,
-    Layout, Margin, Panel, PointerButton, RichText, ScrollArea, Sense, Slider, Stroke, Ui, vec2,
+    Align2, CentralPanel, Color32, ComboBox, Context, FontId, Frame, Grid, Key, Margin, Panel,
+    PointerButton, RichText, ScrollArea, Sense, Slider, Stroke, Ui, vec2,
 };
-use stratavox::technique::{Filter, Mode, Technique};
-use stratavox::transfer::{Preset, TransferFunction};
+use stratavox::technique::Mode;
 
 const WIDTH: f32 = 316.0;
 const ACCENT: Color32 = Color32::from_rgb(236, 170, 96);
@@ -24,6 +24,7 @@ pub fn set_style(context: &Context) {
         style.spacing.item_spacing = vec2(8.0, 6.0);
         style.spacing.slider_width = 118.0;
         style.spacing.interact_size.y = 22.0;
+        style.interaction.selectable_labels = false;
         let visuals = &mut style.visuals;
         visuals.panel_fill = Color32::from_rgb(27, 28, 31);
         visuals.window_fill = Color32::from_rgb(33, 34, 38);
@@ -130,10 +131,10 @@ fn heading(ui: &mut Ui, text: &str) {
 fn beside(ui: &mut Ui, view: &mut View) {
     subject(ui, view);
     heading(ui, "Picture");
-    ways(ui, view);
+    ways::ways(ui, view);
     match view.look.mode {
-        Mode::Iso => surfaces(ui, &mut view.look),
-        _ => function(ui, view),
+        Mode::Iso => ways::surfaces(ui, &mut view.look),
+        _ => function::function(ui, view),
     }
     if view.times() > 1 {
         heading(ui, "Time");
@@ -179,199 +180,6 @@ fn subject(ui: &mut Ui, view: &mut View) {
         if chosen != variables[0] {
             view.wanted_variable = Some(chosen);
         }
-    }
-}
-
-fn ways(ui: &mut Ui, view: &mut View) {
-    ui.horizontal(|ui| {
-        for technique in TECHNIQUES {
-            let name = match technique {
-                Technique::Raycast => "Rays",
-                Technique::Slices3d => "3D slices",
-                Technique::Slices2d => "2D slices",
-            };
-            ui.selectable_value(&mut view.look.technique, technique, name);
-        }
-    });
-    Grid::new("ways")
-        .num_columns(2)
-        .spacing([12.0, 6.0])
-        .show(ui, |ui| {
-            ui.label("Mode");
-            let mut mode = view.look.mode;
-            let is_sliced = view.look.technique != Technique::Raycast;
-            ComboBox::from_id_salt("mode")
-                .width(170.0)
-                .selected_text(mode_name(mode))
-                .show_ui(ui, |ui| {
-                    for one in MODES {
-                        ui.add_enabled_ui(!(is_sliced && one.needs_rays()), |ui| {
-                            ui.selectable_value(&mut mode, one, mode_name(one));
-                        });
-                    }
-                });
-            if mode != view.look.mode {
-                view.look.set_mode(mode, &view.subject.voxels);
-            }
-            ui.end_row();
-            ui.label("Filter");
-            ComboBox::from_id_salt("filter")
-                .width(170.0)
-                .selected_text(filter_name(view.look.filter))
-                .show_ui(ui, |ui| {
-                    for one in FILTERS {
-                        ui.selectable_value(&mut view.look.filter, one, filter_name(one));
-                    }
-                });
-            ui.end_row();
-            ui.label("Samples")
-                .on_hover_text("along a ray, for each smallest spacing of voxels");
-            let samples = Slider::new(&mut view.look.samples_per_voxel, 0.25..=4.0)
-                .logarithmic(true)
-                .max_decimals(2)
-                .suffix(" a voxel");
-            let response = ui.add_enabled(view.look.technique != Technique::Slices2d, samples);
-            view.is_moving |= response.dragged();
-            ui.end_row();
-        });
-    ui.horizontal(|ui| {
-        ui.checkbox(&mut view.eye.is_parallel, "Parallel");
-        let can_be_lit = matches!(view.look.mode, Mode::Composite | Mode::Mida);
-        ui.add_enabled_ui(can_be_lit, |ui| ui.checkbox(&mut view.look.is_lit, "Light"));
-        if ui.button("Reset view").clicked() {
-            view.eye.reset();
-        }
-    });
-}
-
-fn function(ui: &mut Ui, view: &mut View) {
-    heading(ui, "Transfer function");
-    if matches!(view.look.mode, Mode::Composite | Mode::Mida) {
-        let mut preset = view.look.preset;
-        let name = |preset: Option<Preset>| preset.map_or("automatic", Preset::name);
-        ui.horizontal(|ui| {
-            ComboBox::from_id_salt("preset")
-                .width(190.0)
-                .selected_text(name(preset))
-                .show_ui(ui, |ui| {
-                    let all = Preset::ALL.into_iter().map(Some);
-                    for one in [None].into_iter().chain(all) {
-                        let text = one.map_or("what suits the values", Preset::description);
-                        ui.selectable_value(&mut preset, one, name(one))
-                            .on_hover_text(text);
-                    }
-                });
-            if ui.button("Undo edits").clicked() || preset != view.look.preset {
-                view.look.set_preset(preset, &view.subject);
-                view.curve.chosen = None;
-            }
-        });
-    }
-    let is_integral = view.look.mode == Mode::Xray;
-    let summary = &view.subject.summary;
-    let Some(function) = view.look.function_mut() else {
-        return;
-    };
-    let shown = [0.0005, 0.9995].map(|share| summary.quantile(share));
-    let values = domain(function, if is_integral { None } else { Some(shown) });
-    let histogram = (!is_integral).then_some(&view.subject.histogram);
-    let before = function.clone();
-    view.curve.show(ui, function, histogram, values);
-    ends(ui, values);
-    chosen(ui, view.curve.chosen, function);
-    view.is_moving |= *function != before;
-    if function.is_graded() {
-        ui.weak("Opacity hangs on the gradient too.");
-    }
-}
-
-/// The values that the curve is drawn over: most of the voxels, and all of the points.
-fn domain(function: &TransferFunction, shown: Option<[f64; 2]>) -> [f64; 2] {
-    let opacity = function.opacity.iter().map(|point| point.value);
-    let points = opacity.chain(function.color.iter().map(|point| point.value));
-    let all = points.chain(shown.into_iter().flatten());
-    let ends = [f64::INFINITY, f64::NEG_INFINITY];
-    let [low, high] = all.fold(ends, |[low, high], v| [low.min(v), high.max(v)]);
-    match low < high {
-        true => [low, high],
-        false => [low - 0.5, low + 0.5],
-    }
-}
-
-fn ends(ui: &mut Ui, values: [f64; 2]) {
-    ui.horizontal(|ui| {
-        ui.weak(short(values[0]));
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.weak(short(values[1]));
-        });
-    });
-}
-
-/// The chosen point in numbers.
-fn chosen(ui: &mut Ui, grip: Option<Grip>, function: &mut TransferFunction) {
-    ui.horizontal(|ui| match grip {
-        Some(Grip::Opacity(i)) if i < function.opacity.len() => {
-            let mut point = function.opacity[i];
-            let speed = 0.002 * (point.value.abs() + 1.0);
-            ui.label("value");
-            ui.add(
-                DragValue::new(&mut point.value)
-                    .speed(speed)
-                    .max_decimals(4),
-            );
-            ui.label("opacity");
-            ui.add(
-                DragValue::new(&mut point.opacity)
-                    .speed(0.001)
-                    .range(0.0..=1.0)
-                    .max_decimals(4),
-            );
-            crate::curve::set_opacity(function, i, point.value, point.opacity);
-        }
-        Some(Grip::Color(i)) if i < function.color.len() => {
-            let mut value = function.color[i].value;
-            let speed = 0.002 * (value.abs() + 1.0);
-            ui.label("value");
-            ui.add(DragValue::new(&mut value).speed(speed).max_decimals(4));
-            crate::curve::set_color_value(function, i, value);
-            let mut srgb = function.color[i].srgb.map(|c| (255.0 * c).round() as u8);
-            ui.label("colour");
-            if ui.color_edit_button_srgb(&mut srgb).changed() {
-                function.color[i].srgb = srgb.map(|c| f64::from(c) / 255.0);
-            }
-        }
-        _ => {
-            ui.weak("drag points, double click adds one");
-        }
-    });
-}
-
-fn surfaces(ui: &mut Ui, look: &mut Look) {
-    heading(ui, "Surfaces");
-    let [low, high] = look.per_mode.unit_values;
-    let mut is_gone = None;
-    for (i, level) in look.per_mode.levels.iter_mut().enumerate() {
-        ui.horizontal(|ui| {
-            let mut srgb = level.srgb.map(|c| (255.0 * c).round() as u8);
-            if ui.color_edit_button_srgb(&mut srgb).changed() {
-                level.srgb = srgb.map(|c| f64::from(c) / 255.0);
-            }
-            ui.add(Slider::new(&mut level.value, low..=high).max_decimals(3));
-            if i > 0 && ui.small_button("×").clicked() {
-                is_gone = Some(i);
-            }
-        });
-        ui.horizontal(|ui| {
-            ui.add_space(44.0);
-            ui.add(
-                Slider::new(&mut level.opacity, 0.0..=1.0)
-                    .max_decimals(2)
-                    .text("opacity"),
-            );
-        });
-    }
-    if let Some(i) = is_gone {
-        look.per_mode.levels.remove(i);
     }
 }
 
@@ -452,30 +260,4 @@ fn help(context: &Context, view: &mut View) {
                 });
         });
     view.has_help = is_open && !context.input(|input| input.key_pressed(Key::Escape));
-}
-
-fn mode_name(mode: Mode) -> &'static str {
-    match mode {
-        Mode::Composite => "composite",
-        Mode::Mip => "maximum (MIP)",
-        Mode::Minip => "minimum",
-        Mode::Average => "average",
-        Mode::Xray => "X-ray",
-        Mode::Lmip => "first local maximum",
-        Mode::AttenuatedMip => "attenuated maximum",
-        Mode::Mida => "MIDA",
-        Mode::Iso => "surfaces",
-    }
-}
-
-fn filter_name(filter: Filter) -> &'static str {
-    match filter {
-        Filter::Nearest => "nearest",
-        Filter::Linear => "linear",
-        Filter::Cubic => "cubic B-spline",
-        Filter::CatmullRom => "Catmull-Rom",
-        Filter::CubicSmooth => "smoothing B-spline",
-        Filter::Quadratic => "quadratic B-spline",
-        Filter::QuadraticSmooth => "smoothing quadratic",
-    }
 }
