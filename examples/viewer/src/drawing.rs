@@ -11,11 +11,18 @@ use stratavox::embed::{Class, Renderer, Shot, Volume};
 use stratavox::gpu::{
     Bindings, Gpu, Image, ImageDesc, ImageKind, Load, Target, TargetState, Timer, Use,
 };
+use stratavox::technique::Mode;
 use stratavox::transfer::TransferFunction;
 use stratavox::volume;
 
-/// Behind the volume, linear light: a blue so dark that everything stands out against it.
-pub const BACKGROUND: [f32; 4] = [0.008, 0.011, 0.016, 1.0];
+/// Behind the volume, linear light: a blue so dark that everything stands out against it. A projection begins with the
+/// black of its lowest value, and its box is not to be seen.
+fn background(mode: Mode) -> [f32; 4] {
+    match mode.is_projection() {
+        true => [0.0, 0.0, 0.0, 1.0],
+        false => [0.008, 0.011, 0.016, 1.0],
+    }
+}
 
 pub struct Drawing {
     gpu: Arc<Gpu>,
@@ -129,7 +136,7 @@ impl Drawing {
             if let Some(timer) = timer {
                 timer.start(cmd);
             }
-            let load = Load::Clear(BACKGROUND);
+            let load = Load::Clear(background(self.renderer.class().settings.mode));
             self.renderer.record_into(cmd, &shot, &target, load)?;
             if let Some(timer) = timer {
                 timer.stop(cmd);

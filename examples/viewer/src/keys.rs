@@ -131,7 +131,7 @@ pub const KEYS: &[Row] = &[
         Key::ArrowLeft,
         Command::Turn([-25.0, 0.0]),
         None,
-        "← → ↑ ↓",
+        "arrows",
         "turn",
     ),
     row(Key::ArrowRight, Command::Turn([25.0, 0.0]), None, "", ""),

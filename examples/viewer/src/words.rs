@@ -33,7 +33,7 @@ pub struct Words {
     #[arg(long, value_name = "NAME")]
     pub device: Option<String>,
     /// Width and height of the window, in pixels
-    #[arg(long, value_name = "WxH", default_value = "1280x800", value_parser = size)]
+    #[arg(long, value_name = "WxH", default_value = "1360x860", value_parser = size)]
     pub size: [u32; 2],
     /// How frames reach the screen
     #[arg(long, default_value = "fifo")]

@@ -244,6 +244,7 @@ fn help(context: &Context, view: &mut View) {
         .open(&mut is_open)
         .collapsible(false)
         .resizable(false)
+        .vscroll(true)
         .anchor(Align2::CENTER_CENTER, vec2(-0.5 * WIDTH, 0.0))
         .show(context, |ui| {
             Grid::new("keys")
