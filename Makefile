@@ -1,6 +1,8 @@
 # make test    everything that must hold, on whatever Vulkan device is here (a software driver is installed
 #              by apt where there is none)
 # make plain   what draws once more, without validation of synchronization
+# make viewer  the tests of examples/viewer, in a window of a display without a screen (Xvfb is installed by apt where it is
+#              missing); make viewer-lint what clippy says of it
 # make demo    the built-in head with each technique, and with DATA=path a file of yours, into target/demo
 # make gallery six real volumes by the classic techniques, into docs/gallery
 # make capi    the libraries for C, into target/release; make install PREFIX=/usr/local puts them, the header and a
@@ -10,7 +12,7 @@
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := test
-.PHONY: test plain demo sheet gallery capi install header api bench driver layers
+.PHONY: test plain viewer viewer-lint demo sheet gallery capi install header api bench driver layers display
 
 CARGO ?= cargo
 ROOT := $(if $(filter 0,$(shell id -u)),,sudo )
@@ -40,6 +42,16 @@ layers:
 	    || wanted="$$wanted libvulkan-dev"; \
 	$(call install,Vulkan validation layers)
 
+# What a window needs that winit opens when it runs, by library and Debian's package.
+WINDOW := libX11-xcb.so.1:libx11-xcb1 libXcursor.so.1:libxcursor1 libXi.so.6:libxi6 libxkbcommon-x11.so.0:libxkbcommon-x11-0
+
+display:
+	@wanted=""; command -v Xvfb >/dev/null || wanted="$$wanted xvfb"; \
+	command -v xdotool >/dev/null || wanted="$$wanted xdotool"; \
+	for pair in $(WINDOW); do \
+	    ldconfig -p 2>/dev/null | grep -q "$${pair%%:*}" || wanted="$$wanted $${pair#*:}"; done; \
+	$(call install,display without a screen)
+
 # $(call install,what): installs the Debian packages in $$wanted, or says what to install by hand.
 define install
 if [ -n "$$wanted" ]; then \
@@ -65,8 +77,8 @@ ON_DEVICE := RUST_TEST_THREADS=1 $(TEST) --lib --examples $(addprefix --test ,$(
 
 # One device at a time: a software driver uses all cores anyway. What draws runs under the validation layer with
 # synchronization in; `make plain` runs the same without that, as a cross-check by hand.
-test: driver layers
-	$(CARGO) fmt --check
+test: driver layers display
+	$(CARGO) fmt --all --check
 	$(CARGO) clippy --locked --all-targets --features capi -- -D warnings
 	$(CARGO) clippy --locked --all-targets --no-default-features -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --locked --no-deps --features capi
@@ -75,6 +87,16 @@ test: driver layers
 	RUST_TEST_THREADS=1 $(TEST) --test cli
 	STRATAVOX_VALIDATION=sync $(ON_DEVICE)
 	STRATAVOX_VALIDATION=sync RUST_TEST_THREADS=1 $(TEST) --test cli -- bench:: device:: mixed:: pictures::
+	$(VIEWER)
+
+# A package of its own, with a window and a panel that nothing else builds.
+VIEWER := RUST_TEST_THREADS=1 $(CARGO) test --locked --package stratavox-viewer
+
+viewer: driver layers display
+	$(VIEWER)
+
+viewer-lint:
+	$(CARGO) clippy --locked --package stratavox-viewer --all-targets -- -D warnings
 
 plain: driver layers
 	$(ON_DEVICE)

@@ -93,7 +93,13 @@ fallible! {
     vkEnumerateDeviceExtensionProperties(
         device: vk::PhysicalDevice, layer: *const c_char, count: *mut u32,
         out: *mut vk::ExtensionProperties)
-        => { if lacking().device_extensions { *count = 0 } };
+        => {
+            // Without names, and not fewer: who has no room for all of them is asked again.
+            if !out.is_null() && lacking().device_extensions {
+                let extensions = std::slice::from_raw_parts_mut(out, *count as usize);
+                extensions.iter_mut().for_each(|one| one.extension_name = [0; 256]);
+            }
+        };
     vkGetPhysicalDeviceImageFormatProperties2(
         device: vk::PhysicalDevice, info: *const vk::PhysicalDeviceImageFormatInfo2<'_>,
         out: *mut vk::ImageFormatProperties2<'_>);

@@ -1,0 +1,214 @@
+//! What is looked at: an open source, one volume of it in memory, and what its values look like as a whole.
+
+use crate::error::Error;
+use crate::words::Words;
+use glam::{DAffine3, DVec3};
+use std::path::Path;
+use std::sync::Arc;
+use stratavox::camera::Orbit;
+use stratavox::format;
+use stratavox::transfer::{Quantity, ValueSummary};
+use stratavox::volume::{
+    Grid, Header, Histogram, Limits, Magnitude, Meaning, Pick, Rescale, Source, Volume, Voxels,
+    Wanted, luma, phantom, read_colors,
+};
+
+/// Bins of the histogram under the transfer function: one for each of its pixels.
+const BINS: usize = 256;
+
+pub struct Subject {
+    pub source: Arc<dyn Source>,
+    /// The name in the title of the window.
+    pub name: String,
+    pub voxels: Arc<Volume>,
+    pub time: u32,
+    pub summary: ValueSummary,
+    pub histogram: Histogram,
+    /// How a voxel is made one number, and how much higher than it is the volume is drawn.
+    pub way: Way,
+}
+
+/// From the numbers of a source to a volume that is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Way {
+    pub component: u32,
+    /// Colours are drawn by their luma: a host's frame has one number a voxel.
+    pub is_luma: bool,
+    pub height_factor: f64,
+}
+
+impl Subject {
+    /// What the words name. Of several variables the first is taken where none is named: the panel has the others.
+    pub fn open(words: &Words) -> Result<Self, Error> {
+        let limits = Limits::default();
+        let wanted = Wanted {
+            variable: words.variable.clone(),
+            series: words.series.clone(),
+            level: words.level,
+            as_stored: false,
+        };
+        let source = match words.input.starts_with("phantom:") {
+            true => {
+                let variable = words
+                    .variable
+                    .iter()
+                    .map(|name| format!(",variable={name}"));
+                let spec = words.input.clone() + &variable.collect::<String>();
+                phantom::open(&spec, &limits)?
+            }
+            false => format::open(Path::new(&words.input), &wanted, &limits)?,
+        };
+        let header = source.header();
+        check(words, header)?;
+        let is_color = matches!(header.meaning, Meaning::Rgb | Meaning::Rgba);
+        let is_vector = header.meaning == Meaning::Vector && header.components > 1;
+        let source: Arc<dyn Source> = match words.component {
+            None if is_vector => Arc::new(Magnitude::new(source)),
+            _ => Arc::from(source),
+        };
+        let header = source.header();
+        for note in &header.notes {
+            println!("{note}");
+        }
+        let grid = Grid {
+            dims: header.dims,
+            world_from_voxel: header.world_from_voxel,
+        };
+        let way = Way {
+            component: words.component.unwrap_or(0),
+            is_luma: words.component.is_none() && is_color,
+            height_factor: match header.is_earth {
+                true => height_factor(&grid),
+                false => 1.0,
+            },
+        };
+        let voxels = way.read(source.as_ref(), words.time)?;
+        Ok(Self {
+            name: name(words, header),
+            summary: summary(&voxels),
+            histogram: Histogram::of(&voxels, BINS),
+            voxels: Arc::new(voxels),
+            time: words.time,
+            source,
+            way,
+        })
+    }
+
+    pub fn header(&self) -> &Header {
+        self.source.header()
+    }
+
+    /// From where it is seen at first, as `stratavox render` has it: three sides of a box are seen, and of a piece of
+    /// the Earth the south, with east on the right.
+    pub fn side(&self) -> Orbit {
+        let [azimuth_degrees, elevation_degrees] = match self.header().is_earth {
+            true => [-60.0, 25.0],
+            false => [60.0, 15.0],
+        };
+        Orbit {
+            azimuth_degrees,
+            elevation_degrees,
+            roll_degrees: 0.0,
+        }
+    }
+}
+
+impl Way {
+    /// One time of the source.
+    pub fn read(&self, source: &dyn Source, time: u32) -> Result<Volume, Error> {
+        let limits = Limits::default();
+        let pick = Pick {
+            time,
+            component: self.component,
+        };
+        let mut volume = match self.is_luma {
+            true => luma_of(&read_colors(source, time, &limits)?)?,
+            false => Volume::read(source, pick, source.header().whole(), &limits)?,
+        };
+        let stretch = DAffine3::from_scale(DVec3::new(1.0, 1.0, self.height_factor));
+        volume.world_from_voxel = stretch * volume.world_from_voxel;
+        Ok(volume)
+    }
+}
+
+/// Refuses words that name what is not there.
+fn check(words: &Words, header: &Header) -> Result<(), Error> {
+    let wrong = |text: String| Err(Error::Words(text));
+    if let Some(name) = &words.variable
+        && !header.variables.contains(name)
+    {
+        let there = match header.variables.is_empty() {
+            true => "the variable of such a file has no name".to_owned(),
+            false => format!("there are {}", header.variables.join(", ")),
+        };
+        return wrong(format!("--variable {name}: {there}"));
+    }
+    if words.time >= header.times {
+        let (time, times) = (words.time, header.times);
+        return wrong(format!("--time {time}: there are {times}, counted from 0"));
+    }
+    match words.component {
+        Some(component) if component >= header.components => wrong(format!(
+            "--component {component}: a voxel has {}, counted from 0",
+            header.components
+        )),
+        _ => Ok(()),
+    }
+}
+
+fn name(words: &Words, header: &Header) -> String {
+    let input = words.input.trim_end_matches('/');
+    let file = match input.strip_prefix("phantom:") {
+        Some(phantom) => phantom.to_owned(),
+        None => {
+            let name = Path::new(input).file_name();
+            name.map_or(input.to_owned(), |name| name.to_string_lossy().into_owned())
+        }
+    };
+    match header.variables.first() {
+        Some(variable) if header.variables.len() > 1 => format!("{file}: {variable}"),
+        _ => file,
+    }
+}
+
+/// The weather lies in a sheet ten kilometres high and thousands wide: it is drawn so high that it is four times as
+/// wide as high, to two digits.
+fn height_factor(grid: &Grid) -> f64 {
+    let m = grid.world_from_voxel.matrix3;
+    let far = grid.far_corner();
+    let [x, y, z] = [m.x_axis * far.x, m.y_axis * far.y, m.z_axis * far.z];
+    let sides = x.abs() + y.abs() + z.abs();
+    let factor = sides.x.max(sides.y) / (4.0 * sides.z);
+    if !(factor > 1.0 && factor.is_finite()) || grid.dims.contains(&1) {
+        return 1.0;
+    }
+    let unit = 10_f64.powf(factor.log10().floor() - 1.0);
+    (factor / unit).round() * unit
+}
+
+fn luma_of(colors: &[Volume]) -> Result<Volume, Error> {
+    let first = &colors[0];
+    let count = first.voxels.len();
+    let values = (0..count).map(|i| luma(colors, i).unwrap_or(0.0) as f32);
+    let voxels = Voxels::F32(values.collect());
+    let place = first.world_from_voxel;
+    Volume::from_voxels(first.dims, place, voxels, Rescale::default(), None)
+        .map_err(|problem| Error::Words(problem.to_string()))
+}
+
+/// What the values look like as a whole.
+fn summary(volume: &Volume) -> ValueSummary {
+    let diagonal = volume.grid().diagonal();
+    let Rescale { slope, intercept } = volume.rescale;
+    ValueSummary::of(
+        volume.voxels.len(),
+        volume.value_range,
+        diagonal,
+        volume.hounsfield,
+        |i| {
+            let is_valid = volume.validity.as_ref().is_none_or(|valid| valid[i] != 0);
+            is_valid.then(|| f64::from(volume.voxels.stored(i)) * slope + intercept)
+        },
+    )
+    .measuring(Quantity::of_unit(volume.unit.as_deref()))
+}
