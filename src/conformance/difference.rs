@@ -26,8 +26,11 @@ impl Difference {
     /// Of A and B.
     pub fn of(a: &Package, b: &Package) -> Self {
         let mut difference = Self::default();
-        let mut others: BTreeMap<&str, &Record> =
-            b.cases.iter().map(|record| (record.name.as_str(), record)).collect();
+        let mut others: BTreeMap<&str, &Record> = b
+            .cases
+            .iter()
+            .map(|record| (record.name.as_str(), record))
+            .collect();
         for one in &a.cases {
             match others.remove(one.name.as_str()) {
                 None => difference.alone.push(format!("{}: in A alone", one.name)),
@@ -53,7 +56,10 @@ impl Difference {
         let (of_a, of_b) = (ratio(a), ratio(b));
         let (low, high) = (of_a.min(of_b), of_a.max(of_b));
         if high > LEAST_RATIO && high > TOLD_RATIO * low {
-            let line = format!("{}: {of_a:.3} of what is allowed in A, {of_b:.3} in B", a.name);
+            let line = format!(
+                "{}: {of_a:.3} of what is allowed in A, {of_b:.3} in B",
+                a.name
+            );
             self.margins.push(line);
         }
         self.same += usize::from(timeless(a) == timeless(b));

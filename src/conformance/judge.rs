@@ -14,7 +14,7 @@ use std::time::Instant;
 /// Of the numbers of a case at most so many parts may hang on rounding: else it says nothing.
 const MOST_LEFT_OUT: f64 = 0.1;
 
-/// Runs `case` and judges it. The pictures are there where they tell of a failure.
+/// Runs `case` and judges it; the pictures are those that were compared, where it has drawn any.
 pub fn judge(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
     let start = Instant::now();
     let (mut record, pictures) = judged(case, stand);
@@ -27,7 +27,6 @@ pub fn judge(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
         record.reason = "the validation layer complains".to_owned();
     }
     record.ms = 1e3 * start.elapsed().as_secs_f64();
-    let pictures = pictures.filter(|_| record.verdict == Verdict::Fail);
     (record, pictures)
 }
 
@@ -36,7 +35,10 @@ fn judged(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
     let needs: Vec<Found> = match stand.device() {
         Ok(device) => {
             let gpu = device.gpu();
-            case.needs.iter().map(|&item| Found::of(gpu, item)).collect()
+            case.needs
+                .iter()
+                .map(|&item| Found::of(gpu, item))
+                .collect()
         }
         Err(error) => return (of(verdict_of(&error), error.to_string()), None),
     };
@@ -86,7 +88,9 @@ fn verdict_of(error: &gpu::Error) -> Verdict {
 
 /// What a need that is not met comes to.
 fn lacking(needs: &[Found]) -> Option<(Verdict, String)> {
-    let wrong = needs.iter().find(|need| need.library_has && !need.device_has);
+    let wrong = needs
+        .iter()
+        .find(|need| need.library_has && !need.device_has);
     if let Some(need) = wrong {
         let reason = format!(
             "the library takes {} as there, and the device says {}",
@@ -97,7 +101,10 @@ fn lacking(needs: &[Found]) -> Option<(Verdict, String)> {
     let need = needs.iter().find(|need| !need.library_has)?;
     let Found { name, wanted, .. } = need;
     let reason = match need.device_has {
-        false => format!("{name}: wanted {wanted}, the device says {}", need.device_says),
+        false => format!(
+            "{name}: wanted {wanted}, the device says {}",
+            need.device_says
+        ),
         true => format!("{name}: wanted {wanted}, lowered for this run"),
     };
     Some((Verdict::NotSupported, reason))

@@ -83,7 +83,12 @@ impl Package {
         if parts != 1 || self.asked.filter != "*" {
             complain("it is a part of the profile: a filter or a shard was asked for".to_owned());
         }
-        let wanted = chosen(list, self.asked.profile, &self.asked.filter, self.asked.shard);
+        let wanted = chosen(
+            list,
+            self.asked.profile,
+            &self.asked.filter,
+            self.asked.shard,
+        );
         let mut found: BTreeMap<&str, usize> = BTreeMap::new();
         for record in &self.cases {
             *found.entry(&record.name).or_default() += 1;
@@ -100,11 +105,17 @@ impl Package {
         }
         for record in &self.cases {
             if !record.verdict.is_good() {
-                complain(format!("{}: {}, {}", record.name, record.verdict, record.reason));
+                complain(format!(
+                    "{}: {}, {}",
+                    record.name, record.verdict, record.reason
+                ));
             }
             let named = record.needs.iter().any(|need| !need.library_has);
             if record.verdict == Verdict::NotSupported && !named {
-                complain(format!("{}: not supported, and nothing named that lacks", record.name));
+                complain(format!(
+                    "{}: not supported, and nothing named that lacks",
+                    record.name
+                ));
             }
         }
         complaints

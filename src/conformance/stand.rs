@@ -18,10 +18,7 @@ pub struct Stand {
 
 impl Stand {
     /// Devices come from `make`.
-    pub fn new(
-        seed: u64,
-        make: impl FnMut() -> Result<Headless, gpu::Error> + 'static,
-    ) -> Self {
+    pub fn new(seed: u64, make: impl FnMut() -> Result<Headless, gpu::Error> + 'static) -> Self {
         Self {
             make: Box::new(make),
             device: None,

@@ -61,7 +61,8 @@ pub fn run(
             let again = ask(plan, &mut fresh, &mut outcome.device, case, true)?;
             if again.verdict != record.verdict {
                 record.runs = vec![record.verdict, again.verdict];
-                record.reason = format!("flaky, {} when run again: {}", again.verdict, record.reason);
+                record.reason =
+                    format!("flaky, {} when run again: {}", again.verdict, record.reason);
             }
         }
         heard(outcome.records.len() + 1, &record);
@@ -165,7 +166,10 @@ impl Worker {
     ) -> Answer {
         let again = if is_again { "again " } else { "" };
         let names = self.names.as_mut().expect("closed only when dropped");
-        if writeln!(names, "{again}{name}").and_then(|()| names.flush()).is_err() {
+        if writeln!(names, "{again}{name}")
+            .and_then(|()| names.flush())
+            .is_err()
+        {
             return Answer::Gone;
         }
         loop {
@@ -193,7 +197,10 @@ impl Worker {
     /// How it ended, and what it said last.
     fn last_words(&mut self) -> String {
         let ended = self.child.wait().map_or_else(|e| e.to_string(), how);
-        let lines = self.last_lines.lock().unwrap_or_else(PoisonError::into_inner);
+        let lines = self
+            .last_lines
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
         let lines: Vec<&str> = lines.iter().map(String::as_str).collect();
         match lines.is_empty() {
             true => ended,

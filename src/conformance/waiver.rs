@@ -52,7 +52,9 @@ impl Waivers {
         }
         for (nth, waiver) in read.waivers.iter().enumerate() {
             let wrong = |field, wanted, found: &str| {
-                Err(format!("waiver {nth}, {field}: wanted {wanted}, found {found:?}"))
+                Err(format!(
+                    "waiver {nth}, {field}: wanted {wanted}, found {found:?}"
+                ))
             };
             if day(&waiver.expires).is_none() {
                 return wrong("expires", "a day as 2027-06-30", &waiver.expires);
@@ -65,7 +67,11 @@ impl Waivers {
                     return wrong("from, before", "a version as 22.3.6", end);
                 }
             }
-            if let Some(good) = waiver.verdicts.iter().find(|v| matches!(v, Verdict::Pass | Verdict::Waived)) {
+            if let Some(good) = waiver
+                .verdicts
+                .iter()
+                .find(|v| matches!(v, Verdict::Pass | Verdict::Waived))
+            {
                 return wrong("verdicts", "what can be waived", good.word());
             }
         }
@@ -99,33 +105,51 @@ impl Waiver {
         let found = version(&device.driver_info);
         matches(&self.driver, &device.driver)
             && self.from.as_ref().is_none_or(|from| version(from) <= found)
-            && self.before.as_ref().is_none_or(|before| found < version(before))
+            && self
+                .before
+                .as_ref()
+                .is_none_or(|before| found < version(before))
     }
 }
 
 /// The first numbers with dots between: `Mesa 22.3.6 (LLVM 15.0.6)` is 22, 3, 6.
 fn version(text: &str) -> Vec<u32> {
     let first = text.split(|c: char| !c.is_ascii_digit() && c != '.');
-    let first = first.into_iter().find(|part| part.starts_with(|c: char| c.is_ascii_digit()));
-    first.unwrap_or_default().split('.').filter_map(|n| n.parse().ok()).collect()
+    let first = first
+        .into_iter()
+        .find(|part| part.starts_with(|c: char| c.is_ascii_digit()));
+    first
+        .unwrap_or_default()
+        .split('.')
+        .filter_map(|n| n.parse().ok())
+        .collect()
 }
 
 fn day(text: &str) -> Option<[u32; 3]> {
-    let numbers: Vec<u32> = text.split('-').map(|n| n.parse().ok()).collect::<Option<_>>()?;
+    let numbers: Vec<u32> = text
+        .split('-')
+        .map(|n| n.parse().ok())
+        .collect::<Option<_>>()?;
     let day: [u32; 3] = numbers.try_into().ok()?;
     ((1..=12).contains(&day[1]) && (1..=31).contains(&day[2])).then_some(day)
 }
 
 /// Year, month and day of now, UTC (Hinnant, "chrono-compatible low-level date algorithms": civil_from_days).
 pub fn today() -> [u32; 3] {
-    let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |d| d.as_secs());
+    let seconds = SystemTime::now()
+        .duration_since(UNIX_EPOCH)
+        .map_or(0, |d| d.as_secs());
     let z = seconds / 86_400 + 719_468;
     let (era, of_era) = (z / 146_097, z % 146_097);
     let year = (of_era - of_era / 1460 + of_era / 36_524 - of_era / 146_096) / 365;
     let of_year = of_era - (365 * year + year / 4 - year / 100);
     let shifted = (5 * of_year + 2) / 153;
     let day = of_year - (153 * shifted + 2) / 5 + 1;
-    let month = if shifted < 10 { shifted + 3 } else { shifted - 9 };
+    let month = if shifted < 10 {
+        shifted + 3
+    } else {
+        shifted - 9
+    };
     let year = year + era * 400 + u64::from(month <= 2);
     [year as u32, month as u32, day as u32]
 }
@@ -158,13 +182,62 @@ mod tests {
         let waivers = Waivers::read(FILE).unwrap();
         let mesa = "Mesa 22.3.6 (LLVM 15.0.6)";
         for (name, verdict, driver, info, day, wanted) in [
-            ("probe.a", Verdict::Fail, "llvmpipe", mesa, [2027, 6, 30], Verdict::Waived),
-            ("probe.a", Verdict::Fail, "llvmpipe", mesa, [2027, 7, 1], Verdict::Fail),
-            ("probe.a", Verdict::Crash, "llvmpipe", mesa, [2026, 1, 1], Verdict::Crash),
-            ("twin.a", Verdict::Fail, "llvmpipe", mesa, [2026, 1, 1], Verdict::Fail),
-            ("probe.a", Verdict::Fail, "radv", mesa, [2026, 1, 1], Verdict::Fail),
-            ("probe.a", Verdict::Fail, "llvmpipe", "Mesa 23.0.0", [2026, 1, 1], Verdict::Fail),
-            ("probe.a", Verdict::Fail, "llvmpipe", "Mesa 22.2.9", [2026, 1, 1], Verdict::Fail),
+            (
+                "probe.a",
+                Verdict::Fail,
+                "llvmpipe",
+                mesa,
+                [2027, 6, 30],
+                Verdict::Waived,
+            ),
+            (
+                "probe.a",
+                Verdict::Fail,
+                "llvmpipe",
+                mesa,
+                [2027, 7, 1],
+                Verdict::Fail,
+            ),
+            (
+                "probe.a",
+                Verdict::Crash,
+                "llvmpipe",
+                mesa,
+                [2026, 1, 1],
+                Verdict::Crash,
+            ),
+            (
+                "twin.a",
+                Verdict::Fail,
+                "llvmpipe",
+                mesa,
+                [2026, 1, 1],
+                Verdict::Fail,
+            ),
+            (
+                "probe.a",
+                Verdict::Fail,
+                "radv",
+                mesa,
+                [2026, 1, 1],
+                Verdict::Fail,
+            ),
+            (
+                "probe.a",
+                Verdict::Fail,
+                "llvmpipe",
+                "Mesa 23.0.0",
+                [2026, 1, 1],
+                Verdict::Fail,
+            ),
+            (
+                "probe.a",
+                Verdict::Fail,
+                "llvmpipe",
+                "Mesa 22.2.9",
+                [2026, 1, 1],
+                Verdict::Fail,
+            ),
         ] {
             let mut record = Record::unmeasured(name, Profile::Full, verdict, String::new());
             waivers.apply(&mut record, &device(driver, info), day);
@@ -182,7 +255,11 @@ mod tests {
             ("\"known\"", "\"\"", "reason"),
             ("\"22.3\"", "\"new\"", "from"),
             ("[\"fail\"]", "[\"pass\"]", "verdicts"),
-            ("stratavox_waivers\": 1", "stratavox_waivers\": 2", "stratavox_waivers"),
+            (
+                "stratavox_waivers\": 1",
+                "stratavox_waivers\": 2",
+                "stratavox_waivers",
+            ),
             ("\"link\"", "\"url\"", "url"),
         ] {
             let error = Waivers::read(&FILE.replace(from, to)).unwrap_err();

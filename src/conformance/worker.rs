@@ -11,6 +11,7 @@ use super::judge::judge;
 use super::measurement::Pictures;
 use super::record::{DeviceRecord, Record};
 use super::stand::Stand;
+use super::verdict::Verdict;
 use crate::picture::compare::{Comparison, Image};
 use crate::picture::{ColorSpace, Picture, WriteOptions, write_picture};
 use serde::{Deserialize, Serialize};
@@ -40,8 +41,10 @@ pub enum Trouble {
     Babble,
     /// Says that the device is lost.
     LoseDevice,
-    /// Fails each time in the first run of a process, and passes in the second.
+    /// Says that the case fails, when it is run for the first time.
     Flake,
+    /// Says that the case fails.
+    Fail,
 }
 
 impl Trouble {
@@ -54,6 +57,7 @@ impl Trouble {
             "babble" => Self::Babble,
             "lose-device" => Self::LoseDevice,
             "flake" => Self::Flake,
+            "fail" => Self::Fail,
             _ => return None,
         })
     }
@@ -91,16 +95,18 @@ pub fn serve(
         let (mut record, found) = judge(case, stand);
         match trouble {
             Some(Trouble::LoseDevice) => {
-                record.verdict = super::verdict::Verdict::DeviceLost;
+                record.verdict = Verdict::DeviceLost;
                 record.reason = "asked for".to_owned();
             }
-            Some(Trouble::Flake) if is_first => {
-                record.verdict = super::verdict::Verdict::Fail;
+            Some(Trouble::Flake) if !is_first => {}
+            Some(Trouble::Flake | Trouble::Fail) => {
+                record.verdict = Verdict::Fail;
                 record.reason = "asked for".to_owned();
             }
             _ => {}
         }
-        if let Some((folder, found)) = pictures.zip(found) {
+        let shown = found.filter(|_| record.verdict == Verdict::Fail);
+        if let Some((folder, found)) = pictures.zip(shown) {
             record.pictures = written(folder, wanted, &found)?;
         }
         say(&mut out, &Line::Record(Box::new(record)))?;
@@ -116,7 +122,7 @@ fn suffer(trouble: Trouble) {
             std::thread::park();
         },
         Trouble::Babble => println!("no record"),
-        Trouble::LoseDevice | Trouble::Flake => {}
+        Trouble::LoseDevice | Trouble::Flake | Trouble::Fail => {}
     }
 }
 

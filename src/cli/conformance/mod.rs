@@ -12,10 +12,10 @@ use std::path::PathBuf;
 #[derive(Args, Debug)]
 #[command(args_conflicts_with_subcommands = true)]
 #[command(after_help = "Examples:\n  \
-    stratavox conformance --device cpu --json result.json --junit result.xml --html result\n  \
-    stratavox conformance --filter 'slices_3d.*|probe.*' --profile full\n  \
-    stratavox conformance verify result.json\n  \
-    stratavox conformance diff one.json other.json")]
+    stratavox conformance --filter 'probe.math.*' --json math.json --junit math.xml --html math\n  \
+    stratavox conformance --filter 'probe.math.*' --json a.json && stratavox conformance diff a.json a.json\n  \
+    stratavox conformance --profile full --json FILE\n  \
+    stratavox conformance verify FILE")]
 pub struct Conformance {
     #[command(subcommand)]
     verb: Option<Verb>,
@@ -26,13 +26,13 @@ pub struct Conformance {
 #[derive(Debug, Subcommand)]
 enum Verb {
     /// Check that a package is a whole and unchanged run of its profile without a failure
-    #[command(after_help = "Example:\n  stratavox conformance verify result.json")]
+    #[command(after_help = "Example:\n  stratavox conformance verify FILE")]
     Verify {
         /// What `--json` has written
         package: PathBuf,
     },
     /// Compare the packages of two runs or two drivers
-    #[command(after_help = "Example:\n  stratavox conformance diff one.json other.json")]
+    #[command(after_help = "Example:\n  stratavox conformance diff FILE OTHER")]
     Diff {
         /// What `--json` has written
         a: PathBuf,

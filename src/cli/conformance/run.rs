@@ -8,13 +8,13 @@ use super::super::{
 use super::words::{LimitsWord, ProfileWord, shard};
 use crate::conformance::case::Case;
 use crate::conformance::record::{Asked, Package, Record};
+use crate::conformance::report::{html, junit};
 use crate::conformance::stand::Stand;
 use crate::conformance::supervisor::{self, Plan, chosen};
 use crate::conformance::tree::cases;
 use crate::conformance::verdict::Verdict;
 use crate::conformance::waiver::{Waivers, today};
 use crate::conformance::worker::{self, Trouble};
-use crate::conformance::report::{html, junit};
 use crate::gpu::{DeviceChoice, Headless, Options};
 use clap::Args;
 use std::ffi::OsString;
@@ -70,7 +70,7 @@ pub struct Run {
     /// Where a worker puts pictures
     #[arg(long, hide = true, value_name = "DIR")]
     pictures: Option<PathBuf>,
-    /// What a worker does at some cases: GLOB=abort|exit|hang|babble|lose-device|flake
+    /// What a worker does at some cases: GLOB=abort|exit|hang|babble|lose-device|flake|fail
     #[arg(long, hide = true, value_name = "GLOB=WORD", value_parser = trouble)]
     fault: Option<Fault>,
 }
@@ -85,7 +85,8 @@ struct Fault {
 fn trouble(text: &str) -> Result<Fault, String> {
     let found = text.split_once('=');
     let found = found.and_then(|(pattern, word)| Some((pattern, Trouble::of(word)?)));
-    let (pattern, trouble) = found.ok_or("wanted GLOB=abort|exit|hang|babble|lose-device|flake")?;
+    let (pattern, trouble) =
+        found.ok_or("wanted GLOB=abort|exit|hang|babble|lose-device|flake|fail")?;
     Ok(Fault {
         text: text.to_owned(),
         pattern: pattern.to_owned(),
@@ -111,7 +112,10 @@ impl Run {
         let chosen = chosen(&all, self.profile.into(), &self.filter, self.shard);
         if chosen.is_empty() {
             return Err(Error::usage(
-                format!("--filter {}: no case of this profile and shard has such a name", self.filter),
+                format!(
+                    "--filter {}: no case of this profile and shard has such a name",
+                    self.filter
+                ),
                 "`stratavox conformance --list` says their names",
             ));
         }
@@ -138,7 +142,9 @@ impl Run {
     }
 
     fn choice(&self) -> DeviceChoice {
-        self.device.as_deref().map_or(DeviceChoice::Default, DeviceChoice::from)
+        self.device
+            .as_deref()
+            .map_or(DeviceChoice::Default, DeviceChoice::from)
     }
 
     fn judge(&self, all: &[Case], chosen: &[&Case], gate: &Gate) -> Result<(), Error> {
@@ -154,8 +160,7 @@ impl Run {
         };
         drop(Headless::new(&self.choice(), &options)?);
         let plan = Plan {
-            program: std::env::current_exe()
-                .map_err(|cause| Error::output("a worker", &cause))?,
+            program: std::env::current_exe().map_err(|cause| Error::output("a worker", &cause))?,
             words: self.words(),
             time_per_case: Duration::from_secs_f64(self.timeout),
         };
@@ -165,7 +170,9 @@ impl Run {
         let mut records = outcome.records;
         if let Some(device) = &outcome.device {
             let today = today();
-            records.iter_mut().for_each(|record| waivers.apply(record, device, today));
+            records
+                .iter_mut()
+                .for_each(|record| waivers.apply(record, device, today));
         }
         let asked = Asked {
             profile: self.profile.into(),
@@ -243,20 +250,34 @@ impl Run {
 fn tell(package: &Package) -> Result<(), Error> {
     let device = package.device.as_ref();
     let name = device.map_or("no device", |device| &device.name);
-    let mut text = format!("{name}: {} cases in {:.1} s\n", package.cases.len(), package.seconds);
+    let mut text = format!(
+        "{name}: {} cases in {:.1} s\n",
+        package.cases.len(),
+        package.seconds
+    );
     for verdict in Verdict::ALL {
         if let Some(count) = package.summary.get(&verdict) {
             text.push_str(&format!("  {verdict:<16} {count}\n"));
         }
     }
     for record in package.cases.iter().filter(|record| record.unexpected_pass) {
-        text.push_str(&format!("  {} passes, and a waiver says it does not\n", record.name));
+        text.push_str(&format!(
+            "  {} passes, and a waiver says it does not\n",
+            record.name
+        ));
     }
     say(&text)?;
-    let bad = package.cases.iter().filter(|record| !record.verdict.is_good()).count();
+    let bad = package
+        .cases
+        .iter()
+        .filter(|record| !record.verdict.is_good())
+        .count();
     match bad {
         0 => Ok(()),
-        _ => Err(Error::Differs(format!("{bad} of {} cases are not well", package.cases.len()))),
+        _ => Err(Error::Differs(format!(
+            "{bad} of {} cases are not well",
+            package.cases.len()
+        ))),
     }
 }
 
@@ -274,7 +295,10 @@ impl Progress {
 
     fn heard(&self, done: usize, record: &Record) {
         if !record.verdict.is_good() {
-            say_aside(&format!("{}: {}: {}", record.verdict, record.name, record.reason));
+            say_aside(&format!(
+                "{}: {}: {}",
+                record.verdict, record.name, record.reason
+            ));
         }
         if self.is_shown {
             let end = if done == self.of { "\n" } else { "" };

@@ -152,7 +152,11 @@ fn values(shot: &Shot, chord: &Chord, field: &Field, bits: u32) -> Option<Vec<(f
 
 fn composite(shot: &Shot, chord: &Chord, values: &[(f64, f64)], classes: &Classes) -> Answer {
     let [opacity_slope, color_slope] = classes.slopes();
-    let table = if shot.settings.conformance { 0.0 } else { TABLE };
+    let table = if shot.settings.conformance {
+        0.0
+    } else {
+        TABLE
+    };
     let (mut color, mut transmittance) = ([0.0; 3], 1.0);
     // Depth that may come or go, and colour that may be off.
     let (mut depth_off, mut color_off, mut thickest) = (0.0, 0.0f64, 0.0f64);
@@ -193,17 +197,24 @@ fn projected(
     let count = values.len() as f64;
     let length = chord.length();
     let all = || values.iter().map(|v| v.0);
-    let sum: f64 = chord.samples.iter().zip(values).map(|(s, v)| s.1 * v.0).sum();
+    let sum: f64 = chord
+        .samples
+        .iter()
+        .zip(values)
+        .map(|(s, v)| s.1 * v.0)
+        .sum();
     let largest = all().map(f64::abs).fold(0.0, f64::max);
     // Sums grow by three roundings a sample, each of no more than all of it.
-    let of_sum = (3.0 * count * U + 8.0 * U) * largest * length
-        + off * length
-        + 2.0 * chord.blur * largest;
+    let of_sum =
+        (3.0 * count * U + 8.0 * U) * largest * length + off * length + 2.0 * chord.blur * largest;
     let (value, value_allowed) = match mode {
         Mode::Mip => (all().fold(f64::NEG_INFINITY, f64::max), off),
         Mode::Minip => (all().fold(f64::INFINITY, f64::min), off),
         // Where both ends move together, mean and length do.
-        Mode::Average => (sum / length, off + (6.0 * count * U + 20.0 * U) * largest + 4.0 * chord.blur / length * largest),
+        Mode::Average => (
+            sum / length,
+            off + (6.0 * count * U + 20.0 * U) * largest + 4.0 * chord.blur / length * largest,
+        ),
         _ => (sum, of_sum),
     };
     let [opacity_slope, color_slope] = classes.slopes();

@@ -98,9 +98,9 @@ impl Shot {
         let m = voxel.matrix3.transpose();
         let size = |k: usize, v: DVec3| m.col(k).abs().dot(v.abs());
         let moved = voxel.transform_point3(center);
-        let of_origin = DVec3::from_array([0, 1, 2].map(|k| {
-            8.0 * U * (size(k, origin - center) + moved[k].abs())
-        }));
+        let of_origin = DVec3::from_array(
+            [0, 1, 2].map(|k| 8.0 * U * (size(k, origin - center) + moved[k].abs())),
+        );
         let of_direction = DVec3::from_array([0, 1, 2].map(|k| 8.0 * U * size(k, direction)));
         let far = self.grid.far_corner();
         let [low, high] = self.settings.crop.unwrap_or([DVec3::ZERO, far]);
@@ -115,7 +115,8 @@ impl Shot {
             }
             let mut ends = [low, high].map(|face| {
                 let t = (face - o[k]) / d[k];
-                let blur = (of_origin[k] + of_direction[k] * t.abs()) / d[k].abs() + 2.0 * U * t.abs();
+                let blur =
+                    (of_origin[k] + of_direction[k] * t.abs()) / d[k].abs() + 2.0 * U * t.abs();
                 (t, blur)
             });
             ends.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -124,8 +125,8 @@ impl Shot {
         }
         let h = self.view().step_world();
         let is_stack = self.settings.technique == Technique::Slices2d;
-        let is_ray = self.settings.technique == Technique::Raycast
-            && self.settings.lattice == Lattice::Ray;
+        let is_ray =
+            self.settings.technique == Technique::Raycast && self.settings.lattice == Lattice::Ray;
         let n = rays.forward;
         let (height, slope, spacing, of_plane) = if is_stack {
             let k = stack_axis(&self.view());
@@ -134,7 +135,12 @@ impl Shot {
             let height = n.dot(origin - center);
             let sizes = n.abs().dot((origin - center).abs());
             let slopes = n.abs().dot(direction.abs());
-            (height, n.dot(direction), h, (8.0 * U * sizes, 8.0 * U * slopes))
+            (
+                height,
+                n.dot(direction),
+                h,
+                (8.0 * U * sizes, 8.0 * U * slopes),
+            )
         };
         let (mut t0, mut t1) = (enter.0, leave.0);
         let mut blur = enter.1.max(leave.1);

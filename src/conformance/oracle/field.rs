@@ -97,17 +97,25 @@ impl Field {
         let codes = all.map(|(x, y, z)| code(x, y, z));
         let (voxels, slope, added) = match stored {
             VoxelType::U8 => (Voxels::U8(codes.map(|c| c as u8).collect()), 1.0, 0.0),
-            VoxelType::I8 => (Voxels::I8(codes.map(|c| (c - 128.0) as i8).collect()), 1.0, 128.0),
-            VoxelType::U16 => {
-                (Voxels::U16(codes.map(|c| (256.0 * c) as u16).collect()), 256.0, 0.0)
-            }
+            VoxelType::I8 => (
+                Voxels::I8(codes.map(|c| (c - 128.0) as i8).collect()),
+                1.0,
+                128.0,
+            ),
+            VoxelType::U16 => (
+                Voxels::U16(codes.map(|c| (256.0 * c) as u16).collect()),
+                256.0,
+                0.0,
+            ),
             VoxelType::I16 => {
                 let moved = codes.map(|c| (256.0 * (c - 128.0)) as i16);
                 (Voxels::I16(moved.collect()), 256.0, 128.0)
             }
-            VoxelType::F16 => {
-                (Voxels::F16(codes.map(half::f16::from_f64).collect()), 1.0, 0.0)
-            }
+            VoxelType::F16 => (
+                Voxels::F16(codes.map(half::f16::from_f64).collect()),
+                1.0,
+                0.0,
+            ),
             _ => (Voxels::F32(codes.map(|c| c as f32).collect()), 1.0, 0.0),
         };
         let rescale = Rescale {

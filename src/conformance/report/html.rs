@@ -19,12 +19,21 @@ pub fn html(package: &Package) -> String {
     );
     summary(&mut page, package);
     device(&mut page, package);
-    let bad: Vec<_> = package.cases.iter().filter(|r| !r.verdict.is_good()).collect();
+    let bad: Vec<_> = package
+        .cases
+        .iter()
+        .filter(|r| !r.verdict.is_good())
+        .collect();
     if !bad.is_empty() {
         let _ = writeln!(page, "<h2>Not well</h2>");
         bad.iter().for_each(|record| told(&mut page, record));
     }
-    section(&mut page, package, "Warnings of quality", Verdict::QualityWarning);
+    section(
+        &mut page,
+        package,
+        "Warnings of quality",
+        Verdict::QualityWarning,
+    );
     section(&mut page, package, "Known, and waived", Verdict::Waived);
     section(&mut page, package, "Not supported", Verdict::NotSupported);
     all(&mut page, package);
@@ -34,8 +43,14 @@ pub fn html(package: &Package) -> String {
 
 fn summary(page: &mut String, package: &Package) {
     let (class, sentence) = match package.is_good() {
-        true => ("good", "Every case that this device supports lies inside of its bounds."),
-        false => ("bad", "Some cases do not lie inside of their bounds, or did not end."),
+        true => (
+            "good",
+            "Every case that this device supports lies inside of its bounds.",
+        ),
+        false => (
+            "bad",
+            "Some cases do not lie inside of their bounds, or did not end.",
+        ),
     };
     let _ = writeln!(page, "<p class=\"{class}\"><b>{sentence}</b></p><table>");
     for verdict in Verdict::ALL {
@@ -47,7 +62,10 @@ fn summary(page: &mut String, package: &Package) {
     let known = package.cases.iter().filter(|record| record.unexpected_pass);
     for record in known {
         let name = escaped(&record.name);
-        let _ = writeln!(page, "<p class=\"soft\">{name} passes, and a waiver says it does not.</p>");
+        let _ = writeln!(
+            page,
+            "<p class=\"soft\">{name} passes, and a waiver says it does not.</p>"
+        );
     }
 }
 
@@ -65,7 +83,10 @@ fn device(page: &mut String, package: &Package) {
     ];
     if let Some(device) = &package.device {
         rows.push(("device", format!("{} ({})", device.name, device.kind)));
-        rows.push(("driver", format!("{} {}", device.driver, device.driver_info)));
+        rows.push((
+            "driver",
+            format!("{} {}", device.driver, device.driver_info),
+        ));
         rows.push(("Vulkan", device.vulkan.clone()));
         for (name, number) in &device.limits {
             rows.push((name, number.to_string()));
@@ -82,7 +103,11 @@ fn section(page: &mut String, package: &Package, title: &str, verdict: Verdict) 
     let of = |record: &&Record| record.verdict == verdict;
     if package.cases.iter().any(|record| of(&record)) {
         let _ = writeln!(page, "<h2>{title}</h2>");
-        package.cases.iter().filter(of).for_each(|record| told(page, record));
+        package
+            .cases
+            .iter()
+            .filter(of)
+            .for_each(|record| told(page, record));
     }
 }
 
@@ -125,7 +150,11 @@ fn told(page: &mut String, record: &Record) {
         );
     }
     if let Some(bound) = &record.bound {
-        let inputs: Vec<_> = bound.inputs.iter().map(|(name, n)| format!("{name} = {n}")).collect();
+        let inputs: Vec<_> = bound
+            .inputs
+            .iter()
+            .map(|(name, n)| format!("{name} = {n}"))
+            .collect();
         let _ = writeln!(
             page,
             "<details><summary>bound {}</summary><p>{}</p><p>{}</p></details>",

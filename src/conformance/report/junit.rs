@@ -16,7 +16,9 @@ pub fn junit(package: &Package) -> String {
     let skipped = count(|verdict| matches!(verdict, Verdict::NotSupported | Verdict::Waived));
     let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
     let device = package.device.as_ref();
-    let name = device.map_or_else(String::new, |d| format!("{}, {} {}", d.name, d.driver, d.driver_info));
+    let name = device.map_or_else(String::new, |d| {
+        format!("{}, {} {}", d.name, d.driver, d.driver_info)
+    });
     let _ = writeln!(
         text,
         "<testsuites>\n<testsuite name=\"stratavox conformance on {}\" tests=\"{}\" failures=\"{failures}\" \
@@ -45,7 +47,10 @@ fn case(text: &mut String, record: &Record) {
     let _ = match record.verdict {
         Verdict::Pass => writeln!(text, "/>"),
         Verdict::QualityWarning => {
-            writeln!(text, "><system-out>quality_warning: {reason}</system-out></testcase>")
+            writeln!(
+                text,
+                "><system-out>quality_warning: {reason}</system-out></testcase>"
+            )
         }
         Verdict::NotSupported | Verdict::Waived => writeln!(
             text,
@@ -57,6 +62,9 @@ fn case(text: &mut String, record: &Record) {
             "><failure type=\"fail\" message=\"{reason}\">{}</failure></testcase>",
             escaped(record.bound.as_ref().map_or("", |bound| &bound.derivation))
         ),
-        verdict => writeln!(text, "><error type=\"{verdict}\" message=\"{reason}\"/></testcase>"),
+        verdict => writeln!(
+            text,
+            "><error type=\"{verdict}\" message=\"{reason}\"/></testcase>"
+        ),
     };
 }

@@ -49,12 +49,42 @@ const fn placement(
 
 /// All of them. Modes that project have no order.
 pub const PLACEMENTS: [Placement; 6] = [
-    placement("raycast.ray", Technique::Raycast, Lattice::Ray, Order::BackToFront),
-    placement("raycast.planes", Technique::Raycast, Lattice::Planes, Order::BackToFront),
-    placement("slices_3d.over", Technique::Slices3d, Lattice::Ray, Order::BackToFront),
-    placement("slices_3d.under", Technique::Slices3d, Lattice::Ray, Order::FrontToBack),
-    placement("slices_2d.over", Technique::Slices2d, Lattice::Ray, Order::BackToFront),
-    placement("slices_2d.under", Technique::Slices2d, Lattice::Ray, Order::FrontToBack),
+    placement(
+        "raycast.ray",
+        Technique::Raycast,
+        Lattice::Ray,
+        Order::BackToFront,
+    ),
+    placement(
+        "raycast.planes",
+        Technique::Raycast,
+        Lattice::Planes,
+        Order::BackToFront,
+    ),
+    placement(
+        "slices_3d.over",
+        Technique::Slices3d,
+        Lattice::Ray,
+        Order::BackToFront,
+    ),
+    placement(
+        "slices_3d.under",
+        Technique::Slices3d,
+        Lattice::Ray,
+        Order::FrontToBack,
+    ),
+    placement(
+        "slices_2d.over",
+        Technique::Slices2d,
+        Lattice::Ray,
+        Order::BackToFront,
+    ),
+    placement(
+        "slices_2d.under",
+        Technique::Slices2d,
+        Lattice::Ray,
+        Order::FrontToBack,
+    ),
 ];
 
 /// The modes that every placement has.
@@ -169,14 +199,18 @@ pub fn needs(placement: Placement, stored: VoxelType, by_sampler: bool) -> Vec<I
             _ => vk::Format::R16_UNORM,
         };
         let linear = vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR;
-        needs.push(Item::Format(format, vk::FormatFeatureFlags::SAMPLED_IMAGE | linear));
+        needs.push(Item::Format(
+            format,
+            vk::FormatFeatureFlags::SAMPLED_IMAGE | linear,
+        ));
     }
     needs
 }
 
 /// Slices blended in 32-bit floats.
 pub fn blended_floats() -> Item {
-    let blend = vk::FormatFeatureFlags::COLOR_ATTACHMENT | vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND;
+    let blend =
+        vk::FormatFeatureFlags::COLOR_ATTACHMENT | vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND;
     Item::Format(vk::Format::R32G32B32A32_SFLOAT, blend)
 }
 

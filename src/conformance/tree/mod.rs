@@ -2,6 +2,7 @@
 
 mod exact;
 mod ground;
+mod probe;
 mod relation;
 mod twin;
 
@@ -10,6 +11,7 @@ use super::case::Case;
 /// Every case of every profile, in the order in which they run.
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
+    cases.extend(probe::cases());
     cases.extend(exact::cases());
     cases.extend(relation::cases());
     cases.extend(twin::cases());

@@ -114,9 +114,15 @@ impl Relation {
             Self::Skipped => one(stand, &with(|s| s.skip = !s.skip), &volume, &function)?,
             Self::PermutedColors => {
                 let mut permuted = function.clone();
-                permuted.color.iter_mut().for_each(|point| point.srgb.rotate_left(1));
+                permuted
+                    .color
+                    .iter_mut()
+                    .for_each(|point| point.srgb.rotate_left(1));
                 let mut picture = one(stand, &shot, &volume, &permuted)?;
-                picture.pixels.iter_mut().for_each(|pixel| pixel[..3].rotate_right(1));
+                picture
+                    .pixels
+                    .iter_mut()
+                    .for_each(|pixel| pixel[..3].rotate_right(1));
                 picture
             }
             Self::OtherOrder => {
@@ -151,7 +157,10 @@ impl Relation {
         let segments = shot.grid.diagonal() / shot.grid.smallest_spacing() * 1.5;
         let (bound, allowed) = match is_exact {
             true => (
-                Bound::new("same-bytes", "the same operations on the same numbers: no bit differs"),
+                Bound::new(
+                    "same-bytes",
+                    "the same operations on the same numbers: no bit differs",
+                ),
                 0.0,
             ),
             false => {
@@ -160,9 +169,15 @@ impl Relation {
 each place is off by 8 u of the sum of sizes of what it is made of, its value by the slopes of the field (at most 0.26 a voxel on \
 an axis), its extinction by the steepest slope of the function over 1 - 0.4, log by 2^-21 and exp by (3 + 2x) 2^-23: seen by at \
 most all of the light, on both sides, times the longest segment; sums grow with the largest value and the length.";
-                let scale = if shot.settings.mode == Mode::Xray { 2.0 * segments } else { 2.0 };
+                let scale = if shot.settings.mode == Mode::Xray {
+                    2.0 * segments
+                } else {
+                    2.0
+                };
                 (
-                    Bound::new("two-ways", text).with("segments", segments).with("slip_per_segment", slips),
+                    Bound::new("two-ways", text)
+                        .with("segments", segments)
+                        .with("slip_per_segment", slips),
                     scale * segments * (12.0 * U + slips),
                 )
             }
@@ -179,7 +194,12 @@ most all of the light, on both sides, times the longest segment; sums grow with 
             }
             for c in 0..4 {
                 let [wanted, found] = [first, second].map(|p| f64::from(p.pixels[i][c]));
-                measurement.take(|| format!("channel {c} of pixel {pixel:?}"), wanted, found, allowed);
+                measurement.take(
+                    || format!("channel {c} of pixel {pixel:?}"),
+                    wanted,
+                    found,
+                    allowed,
+                );
             }
         }
         let drawn = first.pixels.iter().filter(|pixel| pixel[3] > 0.01).count();
@@ -214,6 +234,12 @@ fn volume_of(shot: &Shot, field: impl Fn(DVec3) -> f64) -> Volume {
     let voxels = (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| (x, y, z))));
     let values: Vec<f32> = voxels.map(|(x, y, z)| at(x, y, z)).collect();
     let affine = shot.grid.world_from_voxel;
-    Volume::from_voxels(shot.grid.dims, affine, Voxels::F32(values), Rescale::default(), None)
-        .expect("as many voxels as the grid has")
+    Volume::from_voxels(
+        shot.grid.dims,
+        affine,
+        Voxels::F32(values),
+        Rescale::default(),
+        None,
+    )
+    .expect("as many voxels as the grid has")
 }
