@@ -58,7 +58,7 @@ TEST := $(CARGO) test --locked --features grib,capi
 # Tests of files and of arithmetic make no device: they run side by side, and the validation layer has nothing to
 # hear there.
 TESTS := $(basename $(notdir $(wildcard tests/*.rs))) $(filter-out cli,$(notdir $(patsubst %/main.rs,%,$(wildcard tests/*/main.rs))))
-WITHOUT_DEVICE := $(filter cf_% floors format_% isosurface mutations% phantoms picture_% transfer_% volume_%,$(TESTS))
+WITHOUT_DEVICE := $(filter cf_% conformance_package floors format_% isosurface mutations% phantoms picture_% transfer_% volume_%,$(TESTS))
 WITH_DEVICE := $(filter-out $(WITHOUT_DEVICE),$(TESTS))
 ON_DEVICE := RUST_TEST_THREADS=1 $(TEST) --lib --examples $(addprefix --test ,$(WITH_DEVICE))
 
@@ -73,7 +73,7 @@ test: driver layers
 	$(TEST) $(addprefix --test ,$(WITHOUT_DEVICE))
 	RUST_TEST_THREADS=1 $(TEST) --test cli
 	STRATAVOX_VALIDATION=sync $(ON_DEVICE)
-	STRATAVOX_VALIDATION=sync RUST_TEST_THREADS=1 $(TEST) --test cli -- bench:: device:: mixed:: pictures::
+	STRATAVOX_VALIDATION=sync RUST_TEST_THREADS=1 $(TEST) --test cli -- bench:: conformance::a_run device:: mixed:: pictures::
 
 plain: driver layers
 	$(ON_DEVICE)

@@ -42,12 +42,14 @@ impl Bound {
 pub struct Worst {
     /// Which number: a pixel, a channel, an index.
     pub at: String,
-    /// What it should be.
+    /// What it should be; as all of these, a word where it is no number that JSON has.
+    #[serde(with = "any_float")]
     pub expected: f64,
-    /// What it is; a word where it is no number that JSON has.
+    /// What it is.
     #[serde(with = "any_float")]
     pub found: f64,
     /// How far apart the two may be.
+    #[serde(with = "any_float")]
     pub allowed: f64,
     /// How far they are, in parts of that.
     #[serde(with = "any_float")]
@@ -210,6 +212,16 @@ mod tests {
         let text = serde_json::to_string(&found.worst).unwrap();
         let read: Worst = serde_json::from_str(&text).unwrap();
         assert!(read.found.is_nan() && read.ratio == f64::INFINITY, "{text}");
+        let mut found = Measurement::new(Bound::default(), 1);
+        found.take(|| "nothing is there".into(), f64::NAN, f64::NAN, 0.0);
+        assert_eq!(found.worst.ratio, 0.0);
+        found.take(|| "something is there".into(), f64::NAN, 1.0, 0.0);
+        let text = serde_json::to_string(&found.worst).unwrap();
+        let read: Worst = serde_json::from_str(&text).unwrap();
+        assert!(
+            read.expected.is_nan() && read.ratio == f64::INFINITY,
+            "{text}"
+        );
     }
 
     #[test]

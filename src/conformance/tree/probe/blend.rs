@@ -12,17 +12,20 @@ use crate::conformance::stand::Stand;
 use crate::gpu::{Blend, Item};
 use ash::vk;
 
-const DERIVATION: &str = "One blend rounds its source, its product and its sum: 3 half units of the format (each of numbers no larger \
-than those that are blended; of 8 bits half a code each). What was off before it is kept in the part that the operator leaves: \
+const DERIVATION: &str = "One blend rounds its source, its product and its sum: 3 roundings of the format (each of numbers no larger \
+than those that are blended; of 8 bits half a code each, of 16-bit floats a unit of the last place, because they may be cut off: more \
+than half a unit is a warning). What was off before it is kept in the part that the operator leaves: \
 1 - a for over (a itself off by half a unit in 8 bits), all of it for under and add, and under multiplies its source by \
 1 - A, whose error comes as well. The recursion E' = g E + e is run beside the exact blend. Maxima and minima round the source alone.";
 
+/// A format and the most that one rounding of a number of size 1 may change. Halves may be cut off as well as rounded
+/// (Vulkan specification, conversion to 16-bit floats).
 const FORMATS: [(&str, vk::Format, f64); 3] = [
     ("rgba8_unorm", vk::Format::R8G8B8A8_UNORM, 0.5 / 255.0),
     (
         "rgba16_sfloat",
         vk::Format::R16G16B16A16_SFLOAT,
-        0.5 / 1024.0,
+        1.0 / 1024.0,
     ),
     (
         "rgba32_sfloat",
@@ -161,6 +164,11 @@ impl Of {
             self.as_instances,
         )?;
         let (wanted, allowed) = self.exact(clear, &colors);
+        let half = Self {
+            unit: 0.5 * self.unit,
+            ..self
+        };
+        let (_, better) = half.exact(clear, &colors);
         let bound = Bound::new("blends", DERIVATION)
             .with("unit", self.unit)
             .with("layers", self.layers.into());
@@ -170,6 +178,10 @@ impl Of {
                 let found = kit::number(self.format, &texels, 4 * pixel + c);
                 let at = || format!("channel {c} of pixel {pixel}");
                 measurement.take(at, wanted[c], found, allowed[c]);
+                if self.format == vk::Format::R16G16B16A16_SFLOAT {
+                    let meaning = "16-bit floats are cut off and not rounded";
+                    measurement.prefer(meaning, at, wanted[c], found, better[c]);
+                }
             }
         }
         Ok(measurement)
