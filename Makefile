@@ -3,13 +3,14 @@
 # make plain   what draws once more, without validation of synchronization
 # make demo    the built-in head with each technique, and with DATA=path a file of yours, into target/demo
 # make gallery six real volumes by the classic techniques, into docs/gallery
+# make conformance   whether the drivers here tell the truth, SwiftShader beside them, into target/conformance
 # make capi    the libraries for C, into target/release; make install PREFIX=/usr/local puts them, the header and a
 #              file for pkg-config there; make header writes include/stratavox.h anew
 # make bench   frame times of each technique, mode and projection on this device
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := test
-.PHONY: test plain demo sheet gallery capi install header bench driver layers
+.PHONY: test plain conformance swiftshader demo sheet gallery capi install header bench driver layers
 
 CARGO ?= cargo
 ROOT := $(if $(filter 0,$(shell id -u)),,sudo )
@@ -77,6 +78,25 @@ test: driver layers
 
 plain: driver layers
 	$(ON_DEVICE)
+
+# A second driver, from Debian's chromium: unpacked, and not installed.
+SWIFTSHADER := target/swiftshader/usr/lib/chromium/vk_swiftshader_icd.json
+
+swiftshader:
+	@mkdir -p target/swiftshader
+	@[ -f $(SWIFTSHADER) ] || { cd target/swiftshader && apt-get download chromium-common && dpkg -x chromium-common_*.deb .; }
+
+# Each run must be well, and each package whole; how they differ is told.
+conformance: driver swiftshader
+	$(CARGO) build --locked --release
+	@mkdir -p target/conformance
+	set -e; judge() { \
+	    target/release/stratavox conformance --force --waivers docs/conformance-waivers.json \
+	        --json target/conformance/$$1.json --junit target/conformance/$$1.xml --html target/conformance/$$1; \
+	    target/release/stratavox conformance verify target/conformance/$$1.json; }; \
+	judge default; \
+	export VK_DRIVER_FILES=$(CURDIR)/$(SWIFTSHADER) VK_ICD_FILENAMES=$(CURDIR)/$(SWIFTSHADER); judge swiftshader
+	target/release/stratavox conformance diff target/conformance/default.json target/conformance/swiftshader.json || true
 
 demo: driver
 	$(CARGO) build --locked --release

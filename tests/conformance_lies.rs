@@ -11,6 +11,7 @@ use lying::{Lie, State, lying, tell, told};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use stratavox::conformance::case::Case;
+use stratavox::conformance::glob::matches;
 use stratavox::conformance::judge::judge;
 use stratavox::conformance::record::Record;
 use stratavox::conformance::stand::Stand;
@@ -118,14 +119,14 @@ const LIES: &[(&str, Lie, &str)] = &[
         "probe.raster.shared_edges.0",
     ),
     (
-        "the last slice is not drawn",
+        "the last instance is not drawn",
         Changed(State::LastInstanceDropped),
-        PLANES,
+        "probe.blend.over.rgba32_sfloat.instances.8",
     ),
     (
-        "the first slice is not drawn",
+        "the first instance is not drawn",
         Changed(State::FirstInstanceDropped),
-        STACK,
+        "probe.blend.add.rgba16_sfloat.instances.8",
     ),
     (
         "the last triangle is not drawn",
@@ -278,7 +279,7 @@ const LIES: &[(&str, Lie, &str)] = &[
     ),
     (
         "one face of the box is not seen",
-        Shader("lib/ray.wgsl", "min(leave.z, ", "min(leave.x, "),
+        Shader("lib/ray.wgsl", "leave.y), leave.z)", "leave.y), leave.x)"),
         "raycast.ray.composite.homogeneous.linear_fetch.u16.orthographic",
     ),
     (
@@ -546,17 +547,16 @@ fn stand() -> Stand {
     })
 }
 
-/// The first case that a pattern means and that does not say what it says without the lie.
+/// The first case that a pattern means and that does not say what it says without the lie, or why there is none.
 fn caught<'c>(
     all: &'c [Case],
     pattern: &str,
     lie: Lie,
     healthy: &mut BTreeMap<String, Verdict>,
-) -> Option<(&'c str, Record)> {
-    let meant = all
-        .iter()
-        .filter(|case| stratavox::conformance::glob::matches(pattern, &case.name));
-    for case in meant {
+) -> Result<(&'c str, Record), String> {
+    let is_meant = |case: &&Case| matches(pattern, &case.name);
+    let mut missed = String::new();
+    for case in all.iter().filter(is_meant) {
         let truth = *healthy.entry(case.name.clone()).or_insert_with(|| {
             tell(None);
             judge(case, &mut stand()).0.verdict
@@ -565,13 +565,18 @@ fn caught<'c>(
         let record = judge(case, &mut stand()).0;
         let is_told = told() > 0;
         tell(None);
-        assert!(truth.is_good(), "{} without a lie: {truth}", case.name);
-        assert!(is_told, "{lie:?} was not told to {}", case.name);
-        if record.verdict != truth && record.verdict != Verdict::InternalError {
-            return Some((&case.name, record));
+        if !truth.is_good() || !is_told || record.verdict == Verdict::InternalError {
+            let Record { name, reason, .. } = record;
+            return Err(format!(
+                "{name}: told {is_told}, {truth} without it, {reason}"
+            ));
         }
+        if record.verdict != truth {
+            return Ok((&case.name, record));
+        }
+        let _ = write!(missed, "{} is {truth}; ", case.name);
     }
-    None
+    Err(missed)
 }
 
 #[test]
@@ -582,11 +587,11 @@ fn every_lie_is_caught_and_the_page_says_by_what() {
     let mut missed = Vec::new();
     for (what, lie, pattern) in LIES {
         match caught(&all, pattern, *lie, &mut healthy) {
-            Some((name, record)) => {
+            Ok((name, record)) => {
                 println!("{what}: {}", record.reason);
                 let _ = writeln!(table, "| {what} | `{name}` | {} |", record.verdict);
             }
-            None => missed.push(*what),
+            Err(why) => missed.push(format!("{what}: {why}")),
         }
     }
     assert!(missed.is_empty(), "not caught: {missed:#?}");

@@ -125,7 +125,7 @@ pub fn answer(
     let values = values(shot, chord, field, bits)?;
     Some(match shot.settings.mode {
         Mode::Composite => composite(shot, chord, &values, classes),
-        mode => projected(shot, chord, &values, classes, mode),
+        mode => projected(chord, &values, classes, mode),
     })
 }
 
@@ -165,8 +165,8 @@ fn composite(shot: &Shot, chord: &Chord, values: &[(f64, f64)], classes: &Classe
         let sigma = -(-opacity).ln_1p();
         let x = sigma * d;
         let alpha = -(-x).exp_m1();
-        for k in 0..3 {
-            color[k] += transmittance * alpha * c[k];
+        for (sum, c) in color.iter_mut().zip(c) {
+            *sum += transmittance * alpha * c;
         }
         transmittance *= 1.0 - alpha;
         let opacity_off = opacity_slope * off + table + 4.0 * U;
@@ -186,13 +186,7 @@ fn composite(shot: &Shot, chord: &Chord, values: &[(f64, f64)], classes: &Classe
     }
 }
 
-fn projected(
-    shot: &Shot,
-    chord: &Chord,
-    values: &[(f64, f64)],
-    classes: &Classes,
-    mode: Mode,
-) -> Answer {
+fn projected(chord: &Chord, values: &[(f64, f64)], classes: &Classes, mode: Mode) -> Answer {
     let off = values.iter().map(|v| v.1).fold(0.0, f64::max);
     let count = values.len() as f64;
     let length = chord.length();
@@ -221,7 +215,6 @@ fn projected(
     let clamped = value.clamp(classes.range[0], classes.range[1]);
     let (color, opacity) = classes.at(clamped);
     let [r, g, b] = color.map(|c| c * opacity);
-    let _ = shot;
     Answer {
         value,
         value_allowed,

@@ -130,6 +130,10 @@ fn drawn(
 }
 
 impl Of {
+    #[allow(
+        clippy::needless_range_loop,
+        reason = "a channel is looked up in three arrays"
+    )]
     fn measure(self, stand: &mut Stand, name: &str) -> Result<Measurement, Stop> {
         let is_codes = self.format == vk::Format::R8G8B8A8_UNORM;
         let mut random = stand.random(name);
@@ -188,6 +192,10 @@ impl Of {
     }
 
     /// The exact blend and what each channel may be off by.
+    #[allow(
+        clippy::needless_range_loop,
+        reason = "a channel is looked up in three arrays"
+    )]
     fn exact(self, clear: [f32; 4], colors: &[[f32; 4]]) -> ([f64; 4], [f64; 4]) {
         let is_codes = self.format == vk::Format::R8G8B8A8_UNORM;
         let size = |n: f64| {

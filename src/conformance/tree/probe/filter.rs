@@ -191,36 +191,30 @@ impl Of {
 
     /// `None` where two texels are as near.
     fn nearest(self, values: &[f64], place: [f64; 3]) -> Option<f64> {
-        let mut index = [0; 3];
-        for k in 0..3 {
-            let is_layer = k == 2 && self.kind == ImageKind::D2Array;
-            let at = if is_layer {
-                layer_of(place[k]) + 0.5
-            } else {
-                place[k]
-            };
-            if (at - at.round()).abs() < 1.0 / 64.0 {
-                return None;
-            }
-            index[k] = at.floor() as i64;
+        let [x, y, z] = place;
+        let z = match self.kind {
+            ImageKind::D2Array => layer_of(z) + 0.5,
+            _ => z,
+        };
+        let is_border = |at: &f64| (at - at.round()).abs() < 1.0 / 64.0;
+        if [x, y, z].iter().any(is_border) {
+            return None;
         }
+        let index = [x, y, z].map(|at| at.floor() as i64);
         Some(self.texel(values, index))
     }
 
     /// The smallest and the largest legal result.
     fn legal(self, values: &[f64], place: [f64; 3], bits: u32) -> [f64; 2] {
         let scale = 2f64.powi(bits.min(30) as i32);
-        let mut first = [0i64; 3];
-        let mut weights = [[0.0; 2]; 3];
-        for k in 0..3 {
-            let at = place[k] - 0.5;
-            first[k] = at.floor() as i64;
-            let part = at - at.floor();
-            weights[k] = [
+        let mut first = place.map(|p| (p - 0.5).floor() as i64);
+        let mut weights = place.map(|p| {
+            let part = (p - 0.5) - (p - 0.5).floor();
+            [
                 (part * scale).floor() / scale,
                 (part * scale).ceil() / scale,
-            ];
-        }
+            ]
+        });
         if self.kind == ImageKind::D2Array {
             first[2] = layer_of(place[2]) as i64;
             weights[2] = [0.0; 2];
