@@ -7,6 +7,7 @@
 
 mod shaders;
 mod states;
+mod table;
 
 use ash::vk;
 use std::collections::HashMap;
@@ -14,6 +15,7 @@ use std::ffi::{CStr, c_char};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 pub use states::State;
+pub use table::LIES;
 
 /// One thing that is not as it should be.
 #[derive(Clone, Copy, Debug)]
