@@ -514,7 +514,7 @@ pub const LIES: &[(&str, Lie, &str)] = &[
         Shader(
             "probe/store.wgsl",
             "numbers.d[id.y * dims.x + id.x]",
-            "quantizeToF16(numbers.d[id.y * dims.x + id.x])",
+            "bitcast<vec4<f32>>(bitcast<vec4<u32>>(numbers.d[id.y * dims.x + id.x]) & vec4(0xffffe000u))",
         ),
         "probe.store.rgba32_sfloat",
     ),
