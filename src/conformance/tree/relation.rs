@@ -12,7 +12,7 @@
 use super::ground::{self, PLACEMENTS, PROJECTIONS, Placement};
 use crate::conformance::case::{Case, Profile, Stop};
 use crate::conformance::measurement::{Bound, Measurement, Pictures};
-use crate::conformance::oracle::Shot;
+use crate::conformance::oracle::{Chord, Shot};
 use crate::conformance::stand::Stand;
 use crate::picture::Picture;
 use crate::technique::{Filter, Mode, Order, Settings};
@@ -103,7 +103,7 @@ impl Relation {
         let shot = ground::shot(placement, mode, (Filter::Linear, false), is_perspective);
         let shot = shot.with(|settings| settings.crop = None);
         let function = ground::ramps();
-        let volume = volume_of(&shot, |p| ground::waves(p));
+        let volume = volume_of(&shot, ground::waves);
         let one = |stand: &mut Stand, shot: &Shot, volume: &Volume, function: &TransferFunction| {
             stand.render(&shot.scene(volume, Some(function)), &[])
         };
@@ -153,45 +153,26 @@ impl Relation {
 
     fn compare(self, shot: &Shot, first: &Picture, second: &Picture) -> Measurement {
         let is_exact = matches!(self, Self::Repeated | Self::Skipped | Self::PermutedColors);
-        // Segments that a ray of this picture can have at most.
-        let segments = shot.grid.diagonal() / shot.grid.smallest_spacing() * 1.5;
-        let (bound, allowed) = match is_exact {
-            true => (
-                Bound::new(
-                    "same-bytes",
-                    "the same operations on the same numbers: no bit differs",
-                ),
-                0.0,
+        let bound = match is_exact {
+            true => Bound::new(
+                "same-bytes",
+                "the same operations on the same numbers: no bit differs",
             ),
-            false => {
-                let slips = slips(shot);
-                let text = "u = 2^-24, N segments at most. Each blend and each sum rounds thrice on either side (12 N u together); \
-each place is off by 8 u of the sum of sizes of what it is made of, its value by the slopes of the field (at most 0.26 a voxel on \
-an axis), its extinction by the steepest slope of the function over 1 - 0.4, log by 2^-21 and exp by (3 + 2x) 2^-23: seen by at \
-most all of the light, on both sides, times the longest segment; sums grow with the largest value and the length.";
-                let scale = if shot.settings.mode == Mode::Xray {
-                    2.0 * segments
-                } else {
-                    2.0
-                };
-                (
-                    Bound::new("two-ways", text)
-                        .with("segments", segments)
-                        .with("slip_per_segment", slips),
-                    scale * segments * (12.0 * U + slips),
-                )
-            }
+            false => Bound::new("two-ways", TWO_WAYS),
         };
         let mut measurement = Measurement::new(bound, 1000);
         for (i, pixel) in shot.pixels().enumerate() {
+            let chord = shot.chord(pixel);
             // Where a ray meets an end of the domain at a sample, either may have it.
-            let hangs = !is_exact
-                && (shot.chord(pixel).is_some_and(|chord| chord.hangs)
-                    || shot.chord(pixel).is_none() != (first.pixels[i][3] == 0.0));
-            if hangs {
+            let hangs = chord.as_ref().is_some_and(|chord| chord.hangs);
+            if !is_exact && hangs {
                 measurement.leave_out();
                 continue;
             }
+            let allowed = match &chord {
+                Some(chord) if !is_exact => apart(shot, chord),
+                _ => 0.0,
+            };
             for c in 0..4 {
                 let [wanted, found] = [first, second].map(|p| f64::from(p.pixels[i][c]));
                 measurement.take(
@@ -213,19 +194,24 @@ most all of the light, on both sides, times the longest segment; sums grow with 
     }
 }
 
-/// What one segment may be off by on one side.
-fn slips(shot: &Shot) -> f64 {
-    let size = |k: usize| {
-        let voxel = shot.grid.world_from_voxel.inverse();
-        let m = voxel.matrix3.transpose();
-        let reach = shot.camera.eye.distance(shot.grid.center()) + shot.grid.diagonal();
-        8.0 * U * (2.0 * m.col(k).abs().element_sum() * reach + f64::from(shot.grid.dims[k]))
-    };
-    let moved = (0..3).map(size).fold(0.0, f64::max);
-    let value = 3.0 * 0.26 * moved + 24.0 * U;
-    // 0.4 - 0.15 over 0.3 is the steepest rise of opacity, 0.6 over 0.5 of a colour.
-    let extinction = (0.25 / 0.3 * value + 4.0 * U) / 0.6 + 1.0 / f64::from(1u32 << 21);
-    extinction * 2.0 + 1.2 * value + 5.0 * 2.0 * U
+const TWO_WAYS: &str = "u = 2^-24, for each ray, on both sides: a sample's place is off by its blur (8 u of the sum of sizes of what it \
+is made of), its value by the slopes of the field (0.21, 0.08 and 0.06 a voxel at most) times that and by 24 u, its opacity by 5/6, \
+its extinction by that over (1 - 0.4) and 2^-21 for log, over the smallest spacing and times its length, its opacity by 5 x 2^-23 for \
+exp and its colour by 1.2: seen by at most all of the light. Each blend and each sum rounds thrice: 12 u. X-rays: value times length.";
+
+/// How far two ways of a pixel may be apart.
+fn apart(shot: &Shot, chord: &Chord) -> f64 {
+    let value = dvec3(0.21, 0.08, 0.06).dot(chord.blur_voxels) + 24.0 * U;
+    let samples = chord.samples.len() as f64;
+    if shot.settings.mode == Mode::Xray {
+        // Opacity and colour of the integral: 5/6 and 1.2 a unit of value, and its sum of that size.
+        let integral = chord.length() * (value + 6.0 * samples * U);
+        return 2.0 * (5.0 / 6.0 + 1.2) * integral + 24.0 * U;
+    }
+    let opacity = 5.0 / 6.0 * value + 4.0 * U;
+    let extinction = opacity / 0.6 + 1.0 / f64::from(1u32 << 21);
+    let depth = extinction * chord.length() / shot.grid.smallest_spacing();
+    2.0 * (depth + samples * (12.0 + 10.0) * U + 1.2 * value)
 }
 
 fn volume_of(shot: &Shot, field: impl Fn(DVec3) -> f64) -> Volume {

@@ -103,7 +103,7 @@ fn unorm(stand: &mut Stand, format: vk::Format, bits: u32) -> Result<Measurement
 fn halves(stand: &mut Stand) -> Result<Measurement, Stop> {
     let texels: Vec<u8> = (0..=u16::MAX).flat_map(u16::to_le_bytes).collect();
     let found = fetched(stand, WIDE, vk::Format::R16_SFLOAT, &texels)?;
-    let wanted = (0..=u16::MAX).map(|code| f16::from_bits(code));
+    let wanted = (0..=u16::MAX).map(f16::from_bits);
     let mut measurement = Measurement::new(Bound::new("float", FLOAT), 65_536);
     for (wanted, found) in wanted.zip(found) {
         let is_tiny = wanted.to_f64() != 0.0 && wanted.to_f64().abs() < f16::MIN_POSITIVE.to_f64();
