@@ -1,8 +1,11 @@
 // How far away the nearest cell with matter is, in cells (Chebyshev distance; Deakin and Knackstedt 2020), by four
 // passes:
 //
-//     D0 = 0 where the transfer function shows any value of the cell, else FAR
-//     D(x) = min over k of max(|k|, D before(x + k))        along x, then y, then z
+//     D0 = 0 where the transfer function shows any value of the cell, else REACH
+//     D(x) = min over |k| < REACH of REACH and max(|k|, D before(x + k))        along x, then y, then z
+//
+// Farther than REACH counts as REACH: where nothing is for long, another leap costs a ray less than a longer search costs
+// the map, which is made anew for each transfer function.
 //
 // Of several volumes in one place D0 is 0 where any of their functions shows one of their values.
 //
@@ -13,7 +16,7 @@
 
 #import cell_grid
 
-const FAR: u32 = 0x10000u;
+const REACH: u32 = 16u;
 const ALIKE: u32 = 0x40000000u;
 
 struct CellRanges {
@@ -51,7 +54,7 @@ fn main(@builtin(global_invocation_id) cell: vec3<u32>) {
     }
     let own = cell_index(cell);
     if which.number == 0u {
-        rooms_after.d[own] = select(FAR, 0u, is_seen(cell_ranges.d[own]));
+        rooms_after.d[own] = select(REACH, 0u, is_seen(cell_ranges.d[own]));
         return;
     }
     if which.number == 4u {
@@ -77,6 +80,7 @@ fn main(@builtin(global_invocation_id) cell: vec3<u32>) {
     let before = cell[axis];
     let behind = cell_grid.cells[axis] - 1u - before;
     let reach = max(before, behind);
+    // At most REACH.
     var nearest = rooms_before.d[own];
     for (var k = 1u; k <= reach && k < nearest; k++) {
         if k <= before {

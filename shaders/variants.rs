@@ -22,8 +22,11 @@ const STORED: Slot = ("transfer", &["stored"]);
 const POINTS: Slot = ("transfer", &["points"]);
 /// One number at both ends of a segment. The word is left out of names.
 const SLAB: Slot = ("mix", &["slab"]);
+/// How central differences are made. The words are left out of names: corners have their own way, and it is theirs alone.
+const TAPS: Slot = ("slope", &["taps"]);
+const SHARED: Slot = ("slope", &["corners"]);
 /// Words that stand in no name.
-pub const SILENT: &[&str] = &["alone", "slab"];
+pub const SILENT: &[&str] = &["alone", "slab", "taps", "corners"];
 const TRANSFER: Slot = ("transfer", &["table", "points"]);
 const HOLES: Slot = ("holes", &["none", "mask"]);
 const LATTICE: Slot = ("lattice", &["ray", "planes"]);
@@ -44,24 +47,30 @@ const BLEND: Slot = ("blend", &["composite"]);
 
 /// The wanted combinations. Order of the slots is the order of words in a variant's name.
 pub const ENTRIES: &[(&str, &[Slot])] = &[
-    ("raycast", &[MODE, ONE, LATTICE, FILTER, HOLES, TABLE]),
-    ("raycast", &[MODE, ONE, RAY, CORNERS, HOLES, STORED]),
-    ("raycast", &[MODE, LIT, RAY, NARROW, HOLES, TABLE]),
-    ("raycast", &[MODE, LIT, RAY, CORNERS, HOLES, STORED]),
+    ("raycast", &[MODE, ONE, LATTICE, FILTER, HOLES, TABLE, TAPS]),
+    ("raycast", &[MODE, ONE, RAY, CORNERS, HOLES, STORED, SHARED]),
+    ("raycast", &[MODE, LIT, RAY, NARROW, HOLES, TABLE, TAPS]),
+    ("raycast", &[MODE, LIT, RAY, CORNERS, HOLES, STORED, SHARED]),
     ("raycast", &[MODE, ADAPTIVE, RAY, NARROW, WHOLE, TABLE]),
     ("raycast", &[MODE, ADAPTIVE, RAY, CORNERS, WHOLE, STORED]),
-    ("raycast", &[MODE, ONE, LATTICE, FETCHED, HOLES, POINTS]),
+    (
+        "raycast",
+        &[MODE, ONE, LATTICE, FETCHED, HOLES, POINTS, TAPS],
+    ),
     ("raycast", &[MODE, MIXED, LATTICE, NARROW, HOLES, TABLE]),
     (
         "raycast",
         &[MODE, MIXED, LATTICE, NARROW_FETCHED, HOLES, POINTS],
     ),
-    ("raycast", &[MIDA, ONE, RAY, FILTER, HOLES, TABLE]),
-    ("raycast", &[MIDA, ONE, RAY, CORNERS, HOLES, STORED]),
-    ("raycast", &[MIDA, ONE, RAY, FETCHED, HOLES, POINTS]),
-    ("isosurface", &[("paint", &["alone"]), FILTER, HOLES]),
-    ("isosurface", &[("paint", &["alone"]), CORNERS, HOLES]),
-    ("isosurface", &[("paint", &["by"]), NARROW, HOLES]),
+    ("raycast", &[MIDA, ONE, RAY, FILTER, HOLES, TABLE, TAPS]),
+    ("raycast", &[MIDA, ONE, RAY, CORNERS, HOLES, STORED, SHARED]),
+    ("raycast", &[MIDA, ONE, RAY, FETCHED, HOLES, POINTS, TAPS]),
+    ("isosurface", &[("paint", &["alone"]), FILTER, HOLES, TAPS]),
+    (
+        "isosurface",
+        &[("paint", &["alone"]), CORNERS, HOLES, SHARED],
+    ),
+    ("isosurface", &[("paint", &["by"]), NARROW, HOLES, TAPS]),
     ("projection_cells", &[("mode", &["mip", "minip"]), HOLES]),
     (
         "projection",
@@ -93,8 +102,8 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
             HOLES,
         ],
     ),
-    ("slices_3d", &[BLEND, ONE, FILTER, HOLES, TABLE]),
-    ("slices_3d", &[BLEND, ONE, FETCHED, HOLES, POINTS]),
+    ("slices_3d", &[BLEND, ONE, FILTER, HOLES, TABLE, TAPS]),
+    ("slices_3d", &[BLEND, ONE, FETCHED, HOLES, POINTS, TAPS]),
     ("slices_3d", &[BLEND, MIXED, NARROW, HOLES, TABLE]),
     ("slices_3d", &[BLEND, MIXED, NARROW_FETCHED, HOLES, POINTS]),
     (
@@ -111,8 +120,8 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         ],
     ),
     ("slices_3d_cover", &[]),
-    ("slices_2d", &[BLEND, ONE, FILTER, HOLES, TABLE]),
-    ("slices_2d", &[BLEND, ONE, FETCHED, HOLES, POINTS]),
+    ("slices_2d", &[BLEND, ONE, FILTER, HOLES, TABLE, TAPS]),
+    ("slices_2d", &[BLEND, ONE, FETCHED, HOLES, POINTS, TAPS]),
     ("slices_2d", &[BLEND, MIXED, NARROW, HOLES, TABLE]),
     ("slices_2d", &[BLEND, MIXED, NARROW_FETCHED, HOLES, POINTS]),
     (
@@ -172,8 +181,11 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
             ("holes", &["none"]),
         ],
     ),
-    ("slices_3d_half", &[ONE, NARROW, HOLES, TABLE]),
-    ("slices_3d_half", &[ONE, NARROW_FETCHED, HOLES, POINTS]),
+    ("slices_3d_half", &[ONE, NARROW, HOLES, TABLE, TAPS]),
+    (
+        "slices_3d_half",
+        &[ONE, NARROW_FETCHED, HOLES, POINTS, TAPS],
+    ),
     (
         "resolve",
         &[("source", &["picture", "value", "mean", "cued"])],
@@ -194,6 +206,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
             ("filter", &["nearest", "kernel"]),
             HOLES,
             POINTS,
+            TAPS,
         ],
     ),
     ("light_volume", &[]),

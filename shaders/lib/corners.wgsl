@@ -17,28 +17,55 @@ fn filtered(values: Values, coding: Coding, voxel: vec3<f32>) -> f32 {
     let below = vec3<u32>(place);
     let weight = place - vec3<f32>(below);
     let above = min(below.yz + 1u, vec2<u32>(last.yz));
-    let row_words = 16u * ((word_of(u32(last.x)) + 4u) & ~3u);
-    let layer_words = row_words * ((u32(frame.dims.y) + 3u) >> 2u);
-    let column = word_of(below.x);
-    let x = in_cube(column, 0u) + 16u * (column & ~3u);
-    let low = x + in_cube(below.y, 2u) + row_words * (below.y >> 2u);
-    let high = x + in_cube(above.x, 2u) + row_words * (above.x >> 2u);
-    let front = in_cube(below.z, 4u) + layer_words * (below.z >> 2u);
-    let back = in_cube(above.y, 4u) + layer_words * (above.y >> 2u);
-    let edges = Edges(below.x, column, weight.x);
+    let grid = grid_of_words();
+    let x = edges_of(below.x);
+    let low = x.first + row_of(grid, below.y);
+    let high = x.first + row_of(grid, above.x);
+    let front = layer_of(grid, below.z);
+    let back = layer_of(grid, above.y);
     let code = lerp(
-        lerp(edge(edges, word(low + front)), edge(edges, word(high + front)), weight.y),
-        lerp(edge(edges, word(low + back)), edge(edges, word(high + back)), weight.y),
+        lerp(edge(x, low + front, weight.x), edge(x, high + front, weight.x), weight.y),
+        lerp(edge(x, low + back, weight.x), edge(x, high + back, weight.x), weight.y),
         weight.z,
     );
     return value_from_code(coding, code + coding.offset);
 }
 
-// Where four edges along x begin, which word of its row that is in, and how far along them the sample lies.
+// Words from one row of cubes to the next along y, and along z.
+struct GridOfWords {
+    row: u32,
+    layer: u32,
+}
+
+fn grid_of_words() -> GridOfWords {
+    let row = 16u * ((word_of(u32(frame.dims.x) - 1u) + 4u) & ~3u);
+    return GridOfWords(row, row * ((u32(frame.dims.y) + 3u) >> 2u));
+}
+
+fn row_of(grid: GridOfWords, y: u32) -> u32 {
+    return in_cube(y, 2u) + grid.row * (y >> 2u);
+}
+
+fn layer_of(grid: GridOfWords, z: u32) -> u32 {
+    return in_cube(z, 4u) + grid.layer * (z >> 2u);
+}
+
+// Edges along x that begin at one voxel: which word of its row that is in, and how far that is from the row's beginning.
 struct Edges {
     voxel: u32,
     column: u32,
-    weight: f32,
+    first: u32,
+}
+
+fn edges_of(voxel: u32) -> Edges {
+    let column = word_of(voxel);
+    return Edges(voxel, column, in_cube(column, 0u) + 16u * (column & ~3u));
+}
+
+// Between the ends of the edge in that word.
+fn edge(edges: Edges, index: u32, weight: f32) -> f32 {
+    let ends = ends_of(edges, word(index));
+    return lerp(ends.x, ends.y, weight);
 }
 
 fn in_cube(word: u32, bit: u32) -> u32 {

@@ -6,7 +6,7 @@ fn word_of(voxel: u32) -> u32 {
     return voxel;
 }
 
-fn edge(edges: Edges, word: u32) -> f32 {
+fn ends_of(edges: Edges, word: u32) -> vec2<f32> {
     // Of numbers with a sign, which this never is, processors make floats by one instruction.
-    return lerp(f32(i32(word & 0xffffu)), f32(i32(word >> 16u)), edges.weight);
+    return vec2(f32(i32(word & 0xffffu)), f32(i32(word >> 16u)));
 }

@@ -11,8 +11,8 @@ fn word_of(voxel: u32) -> u32 {
     return (voxel * THIRD) >> THIRD_BITS;
 }
 
-fn edge(edges: Edges, word: u32) -> f32 {
+fn ends_of(edges: Edges, word: u32) -> vec2<f32> {
     let ends = word >> (8u * (edges.voxel - VOXELS_A_WORD * edges.column));
     // Of numbers with a sign, which this never is, processors make floats by one instruction.
-    return lerp(f32(i32(ends & 255u)), f32(i32((ends >> 8u) & 255u)), edges.weight);
+    return vec2(f32(i32(ends & 255u)), f32(i32((ends >> 8u) & 255u)));
 }

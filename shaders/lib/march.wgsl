@@ -55,20 +55,30 @@ struct Way {
 
 // With sample k, whatever it is.
 fn with_sample(before: Accumulator, way: Way, k: i32) -> Accumulator {
-    let is_face = k < way.first;
-    var segment = segment_of(way.lattice, way.world, k);
-    if is_face {
-        segment = Segment(way.t_face, FACE_LENGTH);
-    }
-    let position = way.voxel.origin + segment.t * way.voxel.direction;
+    let segment = segment_at(way, k);
     var so_far = before;
     so_far.samples += 1.0;
-    if !has_data(position) {
+    if !has_data(position_in(way, segment)) {
         return so_far;
     }
+    return add(so_far, sample_in(way, k, segment), segment);
+}
+
+fn segment_at(way: Way, k: i32) -> Segment {
+    if k < way.first {
+        return Segment(way.t_face, FACE_LENGTH);
+    }
+    return segment_of(way.lattice, way.world, k);
+}
+
+fn position_in(way: Way, segment: Segment) -> vec3<f32> {
+    return way.voxel.origin + segment.t * way.voxel.direction;
+}
+
+fn sample_in(way: Way, k: i32, segment: Segment) -> Sample {
     // No light falls along no direction.
-    let direction = select(way.world.direction, vec3(0.0), is_face);
-    return add(so_far, sample_at(position, direction), segment);
+    let direction = select(way.world.direction, vec3(0.0), k < way.first);
+    return sample_at(position_in(way, segment), direction);
 }
 
 fn is_ours(segment: Segment, voxel: Ray) -> bool {
