@@ -13,7 +13,7 @@ use std::path::PathBuf;
 #[command(args_conflicts_with_subcommands = true)]
 #[command(after_help = "Examples:\n  \
     stratavox conformance --filter 'probe.math.*' --json math.json --junit math.xml --html math\n  \
-    stratavox conformance --filter 'probe.math.*' --json a.json && stratavox conformance diff a.json a.json\n  \
+    stratavox conformance diff FILE OTHER\n  \
     stratavox conformance --profile full --json FILE\n  \
     stratavox conformance verify FILE")]
 pub struct Conformance {
