@@ -5,6 +5,7 @@
 #              missing); make viewer-lint what clippy says of it
 # make demo    the built-in head with each technique, and with DATA=path a file of yours, into target/demo
 # make gallery six real volumes by the classic techniques, into docs/gallery
+# make conformance   whether the drivers here tell the truth, SwiftShader beside them, into target/conformance
 # make capi    the libraries for C, into target/release; make install PREFIX=/usr/local puts them, the header and a
 #              file for pkg-config there; make header writes include/stratavox.h anew
 # make api     compares what the library shows of itself with docs/public-api.txt
@@ -12,7 +13,7 @@
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := test
-.PHONY: test plain viewer viewer-lint demo sheet gallery capi install header api bench driver layers display
+.PHONY: test plain viewer viewer-lint conformance swiftshader demo sheet gallery capi install header api bench driver layers display
 
 CARGO ?= cargo
 ROOT := $(if $(filter 0,$(shell id -u)),,sudo )
@@ -71,7 +72,7 @@ TEST := $(CARGO) test --locked --features grib,capi
 # Tests of files and of arithmetic make no device: they run side by side, and the validation layer has nothing to
 # hear there.
 TESTS := $(basename $(notdir $(wildcard tests/*.rs))) $(filter-out cli,$(notdir $(patsubst %/main.rs,%,$(wildcard tests/*/main.rs))))
-WITHOUT_DEVICE := $(filter host dependencies public_api format_% mutations%,$(TESTS))
+WITHOUT_DEVICE := $(filter host conformance_package dependencies public_api format_% mutations%,$(TESTS))
 WITH_DEVICE := $(filter-out $(WITHOUT_DEVICE),$(TESTS))
 ON_DEVICE := RUST_TEST_THREADS=1 $(TEST) --lib --examples $(addprefix --test ,$(WITH_DEVICE))
 
@@ -86,7 +87,7 @@ test: driver layers display
 	$(TEST) $(addprefix --test ,$(WITHOUT_DEVICE))
 	RUST_TEST_THREADS=1 $(TEST) --test cli
 	STRATAVOX_VALIDATION=sync $(ON_DEVICE)
-	STRATAVOX_VALIDATION=sync RUST_TEST_THREADS=1 $(TEST) --test cli -- bench:: device:: mixed:: pictures::
+	STRATAVOX_VALIDATION=sync RUST_TEST_THREADS=1 $(TEST) --test cli -- bench:: conformance::a_run device:: mixed:: pictures::
 	$(VIEWER)
 
 # A package of its own, with a window and a panel that nothing else builds.
@@ -100,6 +101,25 @@ viewer-lint:
 
 plain: driver layers
 	$(ON_DEVICE)
+
+# A second driver, from Debian's chromium: unpacked, and not installed.
+SWIFTSHADER := target/swiftshader/usr/lib/chromium/vk_swiftshader_icd.json
+
+swiftshader:
+	@mkdir -p target/swiftshader
+	@[ -f $(SWIFTSHADER) ] || { cd target/swiftshader && apt-get download chromium-common && dpkg -x chromium-common_*.deb .; }
+
+# Each run must be well, and each package whole; how they differ is told.
+conformance: driver swiftshader
+	$(CARGO) build --locked --release
+	@mkdir -p target/conformance
+	set -e; judge() { \
+	    target/release/stratavox conformance --force --waivers docs/conformance-waivers.json \
+	        --json target/conformance/$$1.json --junit target/conformance/$$1.xml --html target/conformance/$$1; \
+	    target/release/stratavox conformance verify target/conformance/$$1.json; }; \
+	judge default; \
+	export VK_DRIVER_FILES=$(CURDIR)/$(SWIFTSHADER) VK_ICD_FILENAMES=$(CURDIR)/$(SWIFTSHADER); judge swiftshader
+	target/release/stratavox conformance diff target/conformance/default.json target/conformance/swiftshader.json || true
 
 demo: driver
 	$(CARGO) build --locked --release

@@ -23,14 +23,19 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
-use variants::{ENTRIES, SILENT, Slot};
+use variants::{ENTRIES, PROBES, SILENT, Slot};
 
 fn main() {
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
     println!("cargo:rerun-if-changed=build.rs");
     println!("cargo:rerun-if-changed=shaders");
     let mut book = Book::default();
-    for (file, slots) in ENTRIES {
+    println!("cargo:rerun-if-env-changed=CARGO_FEATURE_CONFORMANCE");
+    let probes = match env::var_os("CARGO_FEATURE_CONFORMANCE") {
+        Some(_) => PROBES,
+        None => &[],
+    };
+    for (file, slots) in ENTRIES.iter().chain(probes) {
         for words in combinations(slots) {
             book.add(file, slots, &words);
         }
@@ -101,7 +106,10 @@ impl Book {
                 })
         };
         check(&module, ValidationFlags::all());
-        opaque::hide_branches(&mut module);
+        // A probe is to see what a device makes of it as it stands.
+        if !file.starts_with("probe/") {
+            opaque::hide_branches(&mut module);
+        }
         read_once::read_parameters_once(&mut module);
         // What was uniform is so still, which nobody can know any longer.
         let uniformity = ValidationFlags::CONTROL_FLOW_UNIFORMITY;

@@ -310,3 +310,21 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ("slice_patches_cover", &[]),
     ("opaque_patches", &[]),
 ];
+
+/// What asks a device and draws nothing: only with the feature `conformance`.
+pub const PROBES: &[(&str, &[Slot])] = &[
+    ("probe/filter_3d", &[]),
+    ("probe/filter_array", &[]),
+    ("probe/fetch", &[]),
+    (
+        "probe/store",
+        &[("format", &["rgba32float", "rgba16float"])],
+    ),
+    ("probe/shapes", &[]),
+    ("probe/color", &[]),
+    ("probe/shared_memory", &[]),
+    ("probe/atomics", &[]),
+    ("probe/dispatch", &[]),
+    ("probe/steps", &[]),
+    ("probe/math", &[]),
+];

@@ -13,8 +13,9 @@
 //! | 3 | [`technique`], [`resolve`] | `new`, `bind`, `record`, and the CPU twins |
 //! | 4 | [`embed`] | a volume in a host's frames |
 //! | 5 | [`scene`], [`offscreen`] | a scene to a [`picture::Picture`]; the only place that waits |
-//! | 6 | `cli` | words to scenes, errors to exit codes |
-//! | 6 | `capi` | what [`embed`] does, for C |
+//! | 6 | `conformance` | cases with exact answers, and verdicts on devices |
+//! | 7 | `cli` | words to scenes, errors to exit codes |
+//! | 7 | `capi` | what [`embed`] does, for C |
 //!
 //! # Spaces
 //!
@@ -164,6 +165,8 @@ pub mod capi;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod color;
+#[cfg(feature = "conformance")]
+pub mod conformance;
 pub mod embed;
 #[cfg(feature = "files")]
 mod fence;

@@ -12,6 +12,7 @@ mod bench;
 mod bug;
 mod cameras_file;
 mod compare;
+mod conformance;
 mod convert;
 mod devices;
 mod error;
@@ -21,7 +22,6 @@ mod flags;
 mod histogram;
 mod info;
 mod labels;
-mod later;
 mod line;
 mod load;
 mod manuals;
@@ -75,8 +75,7 @@ enum Verb {
     Preset(preset::PresetVerb),
     Completions(manuals::Completions),
     Man(manuals::Man),
-    #[command(flatten)]
-    Later(later::Later),
+    Conformance(Box<conformance::Conformance>),
 }
 
 /// Runs the program with these words (the first is its own name) and gives its exit code.
@@ -119,7 +118,7 @@ fn obey(words: Vec<OsString>, gate: &Gate) -> Result<(), Error> {
         Verb::Preset(preset) => preset.run(gate),
         Verb::Completions(completions) => completions.run(Words::command()),
         Verb::Man(man) => man.run(Words::command(), gate),
-        Verb::Later(verb) => verb.refuse(),
+        Verb::Conformance(conformance) => conformance.run(gate),
     }
 }
 

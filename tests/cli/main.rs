@@ -10,6 +10,7 @@ mod animate_mixed;
 mod animate_stops;
 mod bench;
 mod classified;
+mod conformance;
 mod convert;
 mod convert_refused;
 mod convert_stops;

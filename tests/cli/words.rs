@@ -3,13 +3,6 @@
 use crate::person::Folder;
 
 #[test]
-fn a_word_that_is_not_built_exits_2_and_is_named() {
-    let folder = Folder::new();
-    let run = folder.run("conformance --device cpu");
-    run.assert_refused(2, &["`stratavox conformance`", "not built yet"]);
-}
-
-#[test]
 fn modes_that_walk_along_rays_are_drawn_and_what_they_lack_is_refused_by_name() {
     let folder = Folder::new();
     let of_head = "render phantom:head,n=16 --size 16x16 -o";

@@ -18,6 +18,7 @@ const FLOORS: &[&[&str]] = &[
     &["embed"],
     &["scene"],
     &["offscreen"],
+    &["conformance"],
     &["cli", "capi"],
 ];
 

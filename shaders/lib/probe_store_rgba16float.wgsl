@@ -1,0 +1,1 @@
+@group(0) @binding(0) var stored: texture_storage_2d<rgba16float, write>;

@@ -1,0 +1,89 @@
+//! Two packages side by side: two drivers, or two runs on one.
+
+use super::record::{Package, Record};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// A case whose worst number lies by so many times more of its allowance off is told.
+const TOLD_RATIO: f64 = 1.25;
+/// Of less nobody wants to hear.
+const LEAST_RATIO: f64 = 0.01;
+
+/// How two packages differ.
+#[derive(Debug, Default)]
+pub struct Difference {
+    /// Cases with two verdicts, a line each.
+    pub verdicts: Vec<String>,
+    /// Cases that stand in one of them alone.
+    pub alone: Vec<String>,
+    /// Cases whose worst numbers are further in the one than in the other.
+    pub margins: Vec<String>,
+    /// Cases that are the same but for times.
+    pub same: usize,
+}
+
+impl Difference {
+    /// Of A and B.
+    pub fn of(a: &Package, b: &Package) -> Self {
+        let mut difference = Self::default();
+        let mut others: BTreeMap<&str, &Record> = b
+            .cases
+            .iter()
+            .map(|record| (record.name.as_str(), record))
+            .collect();
+        for one in &a.cases {
+            match others.remove(one.name.as_str()) {
+                None => difference.alone.push(format!("{}: in A alone", one.name)),
+                Some(other) => difference.compare(one, other),
+            }
+        }
+        let alone = others.keys().map(|name| format!("{name}: in B alone"));
+        difference.alone.extend(alone);
+        difference
+    }
+
+    fn compare(&mut self, a: &Record, b: &Record) {
+        if a.verdict != b.verdict {
+            let line = format!("{}: {} in A, {} in B", a.name, a.verdict, b.verdict);
+            self.verdicts.push(line);
+            return;
+        }
+        let timeless = |record: &Record| Record {
+            ms: 0.0,
+            ..record.clone()
+        };
+        let ratio = |record: &Record| record.worst.as_ref().map_or(0.0, |worst| worst.ratio);
+        let (of_a, of_b) = (ratio(a), ratio(b));
+        let (low, high) = (of_a.min(of_b), of_a.max(of_b));
+        if high > LEAST_RATIO && high > TOLD_RATIO * low {
+            let line = format!(
+                "{}: {of_a:.3} of what is allowed in A, {of_b:.3} in B",
+                a.name
+            );
+            self.margins.push(line);
+        }
+        self.same += usize::from(timeless(a) == timeless(b));
+    }
+
+    /// Whether both say the same of every case.
+    pub fn agrees(&self) -> bool {
+        self.verdicts.is_empty() && self.alone.is_empty()
+    }
+
+    /// For a person.
+    pub fn text(&self) -> String {
+        let mut text = String::new();
+        for (title, lines) in [
+            ("other verdicts", &self.verdicts),
+            ("in one alone", &self.alone),
+            ("other margins", &self.margins),
+        ] {
+            let _ = writeln!(text, "{title}: {}", lines.len());
+            for line in lines {
+                let _ = writeln!(text, "  {line}");
+            }
+        }
+        let _ = writeln!(text, "the same but for times: {}", self.same);
+        text
+    }
+}

@@ -1,0 +1,115 @@
+//! What a case asks of a device, looked up twice: as the library knows the device, and by a query of its own.
+//!
+//! | library | query | said |
+//! |---|---|---|
+//! | has it | has it | the case runs |
+//! | lacks it | lacks it | not_supported |
+//! | lacks it | has it, and the limits of the run were lowered | not_supported, and that it was lowered |
+//! | otherwise | | internal_error: one of the two is wrong |
+
+use crate::gpu::{Feature, Gpu, Item, Limit};
+use ash::vk;
+use serde::{Deserialize, Serialize};
+
+/// One need compared with a device.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Found {
+    /// The feature, limit or format, by its name in Vulkan.
+    pub name: String,
+    /// What is wanted of it.
+    pub wanted: String,
+    /// What the device says to a query of its own.
+    pub device_says: String,
+    /// Whether the device has it.
+    pub device_has: bool,
+    /// Whether the library takes it as there.
+    pub library_has: bool,
+}
+
+impl Found {
+    /// Both ways of asking `gpu` for `item`.
+    pub fn of(gpu: &Gpu, item: Item) -> Self {
+        let (device_says, device_has) = asked(gpu, item);
+        Self {
+            name: item.to_string(),
+            wanted: item.wanted(),
+            device_says,
+            device_has,
+            library_has: known(gpu, item),
+        }
+    }
+}
+
+/// As the library has it: limits of the run are in it.
+fn known(gpu: &Gpu, item: Item) -> bool {
+    match item {
+        Item::Feature(feature) => feature.is_in(&gpu.features()),
+        Item::Limit(limit, least) => limit.of(gpu.limits()) >= least,
+        Item::Format(format, wanted) => {
+            let has = gpu.format_features(format);
+            let of = |flag: vk::FormatFeatureFlags, has: bool| !wanted.contains(flag) || has;
+            use vk::FormatFeatureFlags as Flags;
+            of(Flags::SAMPLED_IMAGE, has.sampled)
+                && of(Flags::SAMPLED_IMAGE_FILTER_LINEAR, has.linear)
+                && of(Flags::STORAGE_IMAGE, has.storage)
+                && of(Flags::COLOR_ATTACHMENT, has.color)
+                && of(Flags::COLOR_ATTACHMENT_BLEND, has.blend)
+        }
+        _ => true,
+    }
+}
+
+/// By queries of Vulkan alone.
+fn asked(gpu: &Gpu, item: Item) -> (String, bool) {
+    let (instance, device) = (gpu.instance(), gpu.physical_device());
+    match item {
+        Item::Format(format, wanted) => {
+            let mut found = vk::FormatProperties2::default();
+            // SAFETY: the physical device belongs to the instance; both live as long as `gpu`.
+            unsafe {
+                instance.get_physical_device_format_properties2(device, format, &mut found);
+            }
+            let found = found.format_properties.optimal_tiling_features;
+            (format!("{:?}", found & wanted), found.contains(wanted))
+        }
+        Item::Limit(limit, least) => {
+            // SAFETY: as above.
+            let limits = unsafe { instance.get_physical_device_properties(device) }.limits;
+            let found: u64 = match limit {
+                Limit::MaxUniformBufferRange => limits.max_uniform_buffer_range,
+                Limit::MaxPerStageDescriptorStorageBuffers => {
+                    limits.max_per_stage_descriptor_storage_buffers
+                }
+                Limit::MaxComputeWorkGroupInvocations => limits.max_compute_work_group_invocations,
+                Limit::MaxComputeWorkGroupSizeX => limits.max_compute_work_group_size[0],
+                Limit::MaxComputeWorkGroupSizeY => limits.max_compute_work_group_size[1],
+                Limit::MaxComputeWorkGroupSizeZ => limits.max_compute_work_group_size[2],
+                Limit::MaxImageDimension3D => limits.max_image_dimension3_d,
+                Limit::MaxImageArrayLayers => limits.max_image_array_layers,
+            }
+            .into();
+            (found.to_string(), found >= least)
+        }
+        Item::Feature(feature) => {
+            let mut features12 = vk::PhysicalDeviceVulkan12Features::default();
+            let mut features13 = vk::PhysicalDeviceVulkan13Features::default();
+            let mut features = vk::PhysicalDeviceFeatures2::default()
+                .push_next(&mut features12)
+                .push_next(&mut features13);
+            // SAFETY: as above.
+            unsafe { instance.get_physical_device_features2(device, &mut features) };
+            let core = features.features.robust_buffer_access;
+            let has = vk::TRUE
+                == match feature {
+                    Feature::DynamicRendering => features13.dynamic_rendering,
+                    Feature::Synchronization2 => features13.synchronization2,
+                    Feature::TimelineSemaphore => features12.timeline_semaphore,
+                    Feature::RobustBufferAccess => core,
+                    Feature::RobustImageAccess => features13.robust_image_access,
+                };
+            let says = if has { "supported" } else { "not supported" };
+            (says.to_owned(), has)
+        }
+        _ => ("not asked".to_owned(), true),
+    }
+}

@@ -1,0 +1,13 @@
+//! Exact answers, in f64 and from camera and grid alone: none of it calls the functions of the shaders' twins.
+//!
+//! ```text
+//! Shot -> Chord (what a ray meets, where its samples lie) -> Answer (what the mode makes of them, and how exact f32 is)
+//! ```
+
+mod answer;
+mod chord;
+mod field;
+
+pub use answer::{Answer, Classes, DERIVATION, answer};
+pub use chord::{Chord, Shot};
+pub use field::{Field, Kind};

@@ -1,0 +1,115 @@
+//! The device that cases are run on, made when it is first needed and kept from case to case.
+
+use super::case::Stop;
+use crate::gpu::{self, Headless};
+use crate::offscreen::Renderer;
+use crate::picture::{LayerKind, Picture};
+use crate::scene::Scene;
+
+type Make = Box<dyn FnMut() -> Result<Headless, gpu::Error>>;
+
+/// A device, and the seed of what is random in a case.
+pub struct Stand {
+    make: Make,
+    device: Option<Headless>,
+    /// What is random follows from it alone.
+    pub seed: u64,
+}
+
+impl Stand {
+    /// Devices come from `make`.
+    pub fn new(seed: u64, make: impl FnMut() -> Result<Headless, gpu::Error> + 'static) -> Self {
+        Self {
+            make: Box::new(make),
+            device: None,
+            seed,
+        }
+    }
+
+    /// The device.
+    ///
+    /// # Errors
+    /// Where there is none.
+    pub fn device(&mut self) -> Result<&mut Headless, gpu::Error> {
+        if self.device.is_none() {
+            self.device = Some((self.make)()?);
+        }
+        Ok(self.device.as_mut().expect("made above"))
+    }
+
+    /// Forgets the device: the next case has a new one.
+    pub fn drop_device(&mut self) {
+        self.device = None;
+    }
+
+    /// A picture of a scene of one volume.
+    ///
+    /// # Errors
+    /// Those of [`Renderer::render`].
+    pub fn render(&mut self, scene: &Scene, layers: &[LayerKind]) -> Result<Picture, Stop> {
+        self.with_renderer(scene, |renderer| {
+            Ok(renderer.render(scene, layers)?.picture)
+        })
+    }
+
+    /// A renderer of the scene's volumes, for as long as `work` wants it.
+    ///
+    /// # Errors
+    /// Those of `work`, and of making a renderer.
+    pub fn with_renderer<T>(
+        &mut self,
+        scene: &Scene,
+        work: impl FnOnce(&mut Renderer) -> Result<T, Stop>,
+    ) -> Result<T, Stop> {
+        self.device()?;
+        let device = self.device.take().expect("made above");
+        // Where this fails the device is gone with it, and the next case has a new one.
+        let mut renderer = Renderer::several(device, scene.volumes())?;
+        let done = work(&mut renderer);
+        self.device = Some(renderer.into_device());
+        done
+    }
+
+    /// Numbers of the seed and a name: the same in every run.
+    pub fn random(&self, name: &str) -> Random {
+        let mut state = self.seed;
+        for byte in name.bytes() {
+            state = (state ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+        Random(state)
+    }
+}
+
+impl std::fmt::Debug for Stand {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Stand")
+            .field("device", &self.device)
+            .field("seed", &self.seed)
+            .finish_non_exhaustive()
+    }
+}
+
+/// SplitMix64 (Steele, Lea and Flood 2014).
+#[derive(Clone, Copy, Debug)]
+pub struct Random(u64);
+
+impl Random {
+    /// The next 64 bits.
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// From 0 (included) to 1 (excluded), of 24 bits: an f32 holds it.
+    pub fn unit(&mut self) -> f64 {
+        (self.bits() >> 40) as f64 / f64::from(1u32 << 24)
+    }
+
+    /// A whole number below `n`.
+    pub fn below(&mut self, n: u32) -> u32 {
+        (((self.bits() >> 32) * u64::from(n)) >> 32) as u32
+    }
+}

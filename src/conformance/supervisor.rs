@@ -1,0 +1,261 @@
+//! Cases handed to worker processes, one name at a time: what a case breaks is its own process.
+//!
+//! ```text
+//! for each name:  worker alive?  no -> start one
+//!                 name -> worker, record <- worker       in time: that is the record
+//!                                                        too late: killed, `timeout`
+//!                                                        gone: `crash`, with how it ended and its last words
+//!                 not good -> once more, in a worker of its own: another verdict is told as a flake
+//! ```
+
+use super::case::{Case, Profile};
+use super::record::{DeviceRecord, Record};
+use super::verdict::Verdict;
+use super::worker::Line;
+use std::collections::VecDeque;
+use std::ffi::OsString;
+use std::io::{self, BufRead, BufReader, Read, Write};
+use std::path::PathBuf;
+use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::Duration;
+
+/// How workers are started and how long they are waited for.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The program.
+    pub program: PathBuf,
+    /// Its words.
+    pub words: Vec<OsString>,
+    /// What one case may take.
+    pub time_per_case: Duration,
+}
+
+/// What became of all cases.
+#[derive(Debug, Default)]
+pub struct Outcome {
+    /// As the first worker saw it.
+    pub device: Option<DeviceRecord>,
+    /// One for each case, in their order.
+    pub records: Vec<Record>,
+}
+
+/// Runs `cases`; `heard` is called after each with how many are done.
+///
+/// # Errors
+/// Where no worker can be started.
+pub fn run(
+    plan: &Plan,
+    cases: &[&Case],
+    mut heard: impl FnMut(usize, &Record),
+) -> io::Result<Outcome> {
+    let mut outcome = Outcome::default();
+    let mut worker = None;
+    for case in cases {
+        let mut record = ask(plan, &mut worker, &mut outcome.device, case, false)?;
+        if !record.verdict.is_good() {
+            // Of its own: nothing of an earlier case is in it.
+            let mut fresh = None;
+            let again = ask(plan, &mut fresh, &mut outcome.device, case, true)?;
+            if again.verdict != record.verdict {
+                record.runs = vec![record.verdict, again.verdict];
+                record.reason =
+                    format!("flaky, {} when run again: {}", again.verdict, record.reason);
+            }
+        }
+        heard(outcome.records.len() + 1, &record);
+        outcome.records.push(record);
+    }
+    Ok(outcome)
+}
+
+fn ask(
+    plan: &Plan,
+    worker: &mut Option<Worker>,
+    device: &mut Option<DeviceRecord>,
+    case: &Case,
+    is_again: bool,
+) -> io::Result<Record> {
+    let alive = match worker.take() {
+        Some(alive) => alive,
+        None => Worker::start(plan)?,
+    };
+    let mut alive = alive;
+    let of = |verdict, reason| Record::unmeasured(&case.name, case.profile, verdict, reason);
+    match alive.ask(&case.name, is_again, plan.time_per_case, device) {
+        Answer::Record(record) => {
+            // A lost device stays lost for its process.
+            if record.verdict != Verdict::DeviceLost {
+                *worker = Some(alive);
+            }
+            Ok(*record)
+        }
+        Answer::Late => {
+            alive.kill();
+            let seconds = plan.time_per_case.as_secs_f64();
+            Ok(of(Verdict::Timeout, format!("not done after {seconds} s")))
+        }
+        Answer::Gone => {
+            let reason = alive.last_words();
+            Ok(of(Verdict::Crash, reason))
+        }
+        Answer::Nonsense(line) => {
+            alive.kill();
+            let reason = format!("the worker said {line:?}, which is no record");
+            Ok(of(Verdict::InternalError, reason))
+        }
+    }
+}
+
+enum Answer {
+    Record(Box<Record>),
+    Late,
+    Gone,
+    Nonsense(String),
+}
+
+/// The last lines that it wrote for people.
+const LAST_LINES: usize = 6;
+
+struct Worker {
+    child: Child,
+    /// Closed to let it end.
+    names: Option<ChildStdin>,
+    lines: Receiver<String>,
+    last_lines: Arc<Mutex<VecDeque<String>>>,
+}
+
+impl Worker {
+    fn start(plan: &Plan) -> io::Result<Self> {
+        let mut child = Command::new(&plan.program)
+            .args(&plan.words)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()?;
+        let names = child.stdin.take();
+        let out = child.stdout.take().expect("piped above");
+        let err = child.stderr.take().expect("piped above");
+        let (send, lines) = channel();
+        thread::spawn(move || {
+            for line in BufReader::new(out).lines().map_while(Result::ok) {
+                if send.send(line).is_err() {
+                    break;
+                }
+            }
+        });
+        let last_lines = Arc::new(Mutex::new(VecDeque::new()));
+        let kept = Arc::clone(&last_lines);
+        thread::spawn(move || keep_last(err, &kept));
+        Ok(Self {
+            child,
+            names,
+            lines,
+            last_lines,
+        })
+    }
+
+    fn ask(
+        &mut self,
+        name: &str,
+        is_again: bool,
+        time: Duration,
+        device: &mut Option<DeviceRecord>,
+    ) -> Answer {
+        let again = if is_again { "again " } else { "" };
+        let names = self.names.as_mut().expect("closed only when dropped");
+        if writeln!(names, "{again}{name}")
+            .and_then(|()| names.flush())
+            .is_err()
+        {
+            return Answer::Gone;
+        }
+        loop {
+            let line = match self.lines.recv_timeout(time) {
+                Ok(line) => line,
+                Err(RecvTimeoutError::Timeout) => return Answer::Late,
+                Err(RecvTimeoutError::Disconnected) => return Answer::Gone,
+            };
+            match serde_json::from_str(&line) {
+                Ok(Line::Device(found)) => {
+                    device.get_or_insert(found);
+                }
+                Ok(Line::Record(record)) if record.name == name => return Answer::Record(record),
+                Ok(Line::Record(_)) | Err(_) => return Answer::Nonsense(line),
+            }
+        }
+    }
+
+    fn kill(&mut self) {
+        // One that is gone already is as good.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+
+    /// How it ended, and what it said last.
+    fn last_words(&mut self) -> String {
+        let ended = self.child.wait().map_or_else(|e| e.to_string(), how);
+        let lines = self
+            .last_lines
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        let lines: Vec<&str> = lines.iter().map(String::as_str).collect();
+        match lines.is_empty() {
+            true => ended,
+            false => format!("{ended}; it said: {}", lines.join(" / ")),
+        }
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        // At the end of its names it ends by itself; one that does not is not waited for.
+        self.names = None;
+        for _ in 0..100 {
+            if !matches!(self.child.try_wait(), Ok(None)) {
+                return;
+            }
+            thread::sleep(Duration::from_millis(20));
+        }
+        self.kill();
+    }
+}
+
+fn keep_last(err: impl Read, kept: &Mutex<VecDeque<String>>) {
+    for line in BufReader::new(err).lines().map_while(Result::ok) {
+        let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if kept.len() == LAST_LINES {
+            kept.pop_front();
+        }
+        kept.push_back(line);
+    }
+}
+
+fn how(status: ExitStatus) -> String {
+    #[cfg(unix)]
+    if let Some(signal) = std::os::unix::process::ExitStatusExt::signal(&status) {
+        return format!("ended by signal {signal}");
+    }
+    match status.code() {
+        Some(code) => format!("ended with exit code {code}"),
+        None => "ended".to_owned(),
+    }
+}
+
+/// The cases of a profile whose names a pattern means, and of those part `shard[0]` of `shard[1]`, counted from 1.
+pub fn chosen<'c>(
+    cases: &'c [Case],
+    profile: Profile,
+    pattern: &str,
+    shard: [u32; 2],
+) -> Vec<&'c Case> {
+    let of_profile = cases.iter().filter(|case| case.profile <= profile);
+    let meant = of_profile.filter(|case| super::glob::matches(pattern, &case.name));
+    let part = |(nth, case): (usize, &'c Case)| {
+        let is_mine = nth as u64 % u64::from(shard[1]) == u64::from(shard[0]) - 1;
+        is_mine.then_some(case)
+    };
+    meant.enumerate().filter_map(part).collect()
+}

@@ -1,0 +1,144 @@
+//! Pictures of fields whose answer is known in closed form (A1, A2, A5 and their like): every placement, mode, filter,
+//! type and projection.
+
+use super::ground::{self, FILTERS, MODES, PLACEMENTS, PROJECTIONS, Placement, TYPES};
+use crate::conformance::case::{Case, Profile, Stop};
+use crate::conformance::measurement::{Bound, Measurement, Pictures};
+use crate::conformance::oracle::{Answer, Classes, Kind, Shot, answer};
+use crate::conformance::stand::Stand;
+use crate::picture::LayerKind;
+use crate::technique::{Filter, Mode};
+use crate::volume::VoxelType;
+
+/// The product.
+pub fn cases() -> Vec<Case> {
+    let mut cases = Vec::new();
+    for placement in PLACEMENTS {
+        for (mode_word, mode) in MODES {
+            let Some(word) = placement.word_in(mode) else {
+                continue;
+            };
+            for kind in [Kind::Homogeneous, Kind::Ramp] {
+                for filter in FILTERS {
+                    for stored in TYPES {
+                        for projection in PROJECTIONS {
+                            let name = format!(
+                                "{word}.{mode_word}.{}.{}.{}.{}",
+                                kind.word(),
+                                filter.0,
+                                stored.0,
+                                projection.0
+                            );
+                            let of = Of {
+                                placement,
+                                mode,
+                                kind,
+                                filter: (filter.1, filter.2),
+                                stored: stored.1,
+                                is_perspective: projection.1,
+                            };
+                            if let Some(profile) = of.profile() {
+                                cases.push(of.case(name).of(profile));
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+    cases
+}
+
+#[derive(Clone, Copy)]
+struct Of {
+    placement: Placement,
+    mode: Mode,
+    kind: Kind,
+    filter: (Filter, bool),
+    stored: VoxelType,
+    is_perspective: bool,
+}
+
+impl Of {
+    /// The baseline has each pair of words somewhere, not each combination of all.
+    fn profile(&self) -> Option<Profile> {
+        let is_wide = self.filter.0.kernel().is_some();
+        let is_common = matches!(self.stored, VoxelType::U8 | VoxelType::U16 | VoxelType::F32);
+        match self.kind {
+            // Of one value filters and types say little.
+            Kind::Homogeneous if is_wide || self.filter.0 == Filter::Nearest => None,
+            Kind::Homogeneous if !is_common => Some(Profile::Full),
+            Kind::Homogeneous => Some(Profile::Baseline),
+            Kind::Ramp if is_wide && self.stored != VoxelType::I16 => Some(Profile::Full),
+            // The eye of one projection knows what a type is.
+            Kind::Ramp if !is_common && self.is_perspective => Some(Profile::Full),
+            Kind::Ramp => Some(Profile::Baseline),
+        }
+    }
+
+    fn case(self, name: String) -> Case {
+        let mut case = Case::new(name, move |stand| self.measure(stand));
+        case.needs = ground::needs(self.placement, self.stored, self.filter.1);
+        case
+    }
+
+    fn measure(self, stand: &mut Stand) -> Result<Measurement, Stop> {
+        let shot = ground::shot(self.placement, self.mode, self.filter, self.is_perspective);
+        let field = self.kind.field();
+        let volume = field.volume(&shot, self.stored);
+        let classes = Classes::RAMP;
+        let function = classes.function();
+        let scene = shot.scene(&volume, Some(&function));
+        let layers: &[LayerKind] = match self.mode.is_projection() {
+            true => &[LayerKind::Value],
+            false => &[],
+        };
+        let bits = stand.device()?.gpu().limits().subtexel_bits;
+        let found = stand.render(&scene, layers)?;
+        let values = found.layers.first().map(|layer| layer.values.as_slice());
+        Ok(compare(&shot, values, &found.pixels, bits, |chord| {
+            answer(&shot, chord, &field, &classes, bits)
+        }))
+    }
+}
+
+fn compare(
+    shot: &Shot,
+    values: Option<&[f32]>,
+    pixels: &[[f32; 4]],
+    bits: u32,
+    of: impl Fn(&crate::conformance::oracle::Chord) -> Option<Answer>,
+) -> Measurement {
+    let bound = Bound::new("f32-ray", crate::conformance::oracle::DERIVATION)
+        .with("subTexelPrecisionBits", bits.into());
+    let mut measurement = Measurement::new(bound, 1000);
+    let mut expected = Vec::new();
+    for (i, pixel) in shot.pixels().enumerate() {
+        let at = |what: &str| format!("{what} of pixel {pixel:?}");
+        let wanted = match shot.chord(pixel) {
+            Some(chord) => of(&chord),
+            None => Some(Answer::NOTHING),
+        };
+        let Some(wanted) = wanted else {
+            measurement.leave_out();
+            expected.push(pixels[i]);
+            continue;
+        };
+        expected.push(wanted.pixel.map(|n| n as f32));
+        if let Some(values) = values {
+            let found = values[i].into();
+            measurement.take(|| at("value"), wanted.value, found, wanted.value_allowed);
+        }
+        for c in 0..4 {
+            let found = pixels[i][c].into();
+            let channel = ["red", "green", "blue", "alpha"][c];
+            measurement.take(|| at(channel), wanted.pixel[c], found, wanted.pixel_allowed);
+        }
+    }
+    measurement.pictures = Some(Pictures {
+        width: shot.extent[0],
+        expected,
+        found: pixels.to_vec(),
+    });
+    measurement
+}

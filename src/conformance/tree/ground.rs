@@ -1,0 +1,239 @@
+//! What cases of pictures stand on: a grid that is neither axis-aligned nor orthogonal nor isotropic, an eye that looks
+//! along no axis, and the words of placements, projections, filters, types and modes.
+
+use crate::camera::{Camera, Projection};
+use crate::conformance::oracle::Shot;
+use crate::gpu::Item;
+use crate::technique::{Filter, FilterBy, Lattice, Mode, Order, Settings, Technique};
+use crate::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
+use crate::volume::{Grid, VoxelType};
+use ash::vk;
+use glam::{DAffine3, DMat3, DVec3, dvec3};
+
+/// Sheared, of unequal spacing, far from the origin.
+pub fn grid() -> Grid {
+    let m = DMat3::from_cols(
+        dvec3(1.1, 0.2, -0.1),
+        dvec3(-0.3, 0.9, 0.2),
+        dvec3(0.1, 0.3, 1.6),
+    );
+    Grid {
+        dims: [17, 21, 13],
+        world_from_voxel: DAffine3::from_mat3_translation(m, dvec3(250.0, -80.0, 1000.0)),
+    }
+}
+
+/// Where samples lie and in which order they are blended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// The word of names.
+    pub word: &'static str,
+    pub technique: Technique,
+    pub lattice: Lattice,
+    pub order: Order,
+}
+
+const fn placement(
+    word: &'static str,
+    technique: Technique,
+    lattice: Lattice,
+    order: Order,
+) -> Placement {
+    Placement {
+        word,
+        technique,
+        lattice,
+        order,
+    }
+}
+
+/// All of them. Modes that project have no order.
+pub const PLACEMENTS: [Placement; 6] = [
+    placement(
+        "raycast.ray",
+        Technique::Raycast,
+        Lattice::Ray,
+        Order::BackToFront,
+    ),
+    placement(
+        "raycast.planes",
+        Technique::Raycast,
+        Lattice::Planes,
+        Order::BackToFront,
+    ),
+    placement(
+        "slices_3d.over",
+        Technique::Slices3d,
+        Lattice::Ray,
+        Order::BackToFront,
+    ),
+    placement(
+        "slices_3d.under",
+        Technique::Slices3d,
+        Lattice::Ray,
+        Order::FrontToBack,
+    ),
+    placement(
+        "slices_2d.over",
+        Technique::Slices2d,
+        Lattice::Ray,
+        Order::BackToFront,
+    ),
+    placement(
+        "slices_2d.under",
+        Technique::Slices2d,
+        Lattice::Ray,
+        Order::FrontToBack,
+    ),
+];
+
+/// The modes that every placement has.
+pub const MODES: [(&str, Mode); 5] = [
+    ("composite", Mode::Composite),
+    ("mip", Mode::Mip),
+    ("minip", Mode::Minip),
+    ("average", Mode::Average),
+    ("xray", Mode::Xray),
+];
+
+/// Types that voxels are kept in.
+pub const TYPES: [(&str, VoxelType); 6] = [
+    ("u8", VoxelType::U8),
+    ("i8", VoxelType::I8),
+    ("u16", VoxelType::U16),
+    ("i16", VoxelType::I16),
+    ("f16", VoxelType::F16),
+    ("f32", VoxelType::F32),
+];
+
+/// A filter, and whether the device's sampler does it.
+pub const FILTERS: [(&str, Filter, bool); 7] = [
+    ("nearest", Filter::Nearest, false),
+    ("linear_fetch", Filter::Linear, false),
+    ("linear", Filter::Linear, true),
+    ("quadratic_smooth", Filter::QuadraticSmooth, false),
+    ("cubic_smooth", Filter::CubicSmooth, false),
+    ("catmull_rom", Filter::CatmullRom, false),
+    ("cubic_smooth_sampler", Filter::CubicSmooth, true),
+];
+
+/// How rays spread.
+pub const PROJECTIONS: [(&str, bool); 2] = [("orthographic", false), ("perspective", true)];
+
+impl Placement {
+    /// True where the rasterizer blends.
+    pub fn is_slicer(&self) -> bool {
+        self.technique != Technique::Raycast
+    }
+
+    /// The first part of names: modes that project have no order.
+    pub fn word_in(&self, mode: Mode) -> Option<&'static str> {
+        match (mode.is_projection(), self.word) {
+            (false, word) => Some(word),
+            (true, "slices_3d.over") => Some("slices_3d"),
+            (true, "slices_2d.over") => Some("slices_2d"),
+            (true, "slices_3d.under" | "slices_2d.under") => None,
+            (true, word) => Some(word),
+        }
+    }
+}
+
+/// One picture.
+pub fn shot(
+    placement: Placement,
+    mode: Mode,
+    (filter, by_sampler): (Filter, bool),
+    is_perspective: bool,
+) -> Shot {
+    let grid = grid();
+    let far = grid.far_corner();
+    let size = (grid.world_from_voxel.matrix3 * far).length();
+    let center = grid.center();
+    let projection = match is_perspective {
+        true => Projection::Perspective { fov_degrees: 26.0 },
+        false => Projection::Orthographic {
+            view_height: 0.7 * size,
+        },
+    };
+    // No tap of any filter lies outside the grid, and no plane of a stack at an end.
+    let margin = 2.125;
+    Shot {
+        grid,
+        camera: Camera {
+            eye: center + size * dvec3(0.9, -1.3, 0.6),
+            target: center,
+            up: dvec3(0.1, 0.0, 1.0),
+            projection,
+            zoom: 1.0,
+        },
+        extent: [32, 28],
+        settings: Settings {
+            technique: placement.technique,
+            lattice: placement.lattice,
+            order: placement.order,
+            mode,
+            filter,
+            filter_by: match by_sampler {
+                true => FilterBy::Sampler,
+                false => FilterBy::Fetch,
+            },
+            conformance: !by_sampler,
+            color_space: crate::conformance::oracle::Classes::SPACE,
+            crop: Some([DVec3::splat(margin), far - margin]),
+            ..Settings::default()
+        },
+    }
+}
+
+/// What a picture asks of a device beyond what all need.
+pub fn needs(placement: Placement, stored: VoxelType, by_sampler: bool) -> Vec<Item> {
+    let mut needs = Vec::new();
+    if placement.is_slicer() {
+        needs.push(blended_floats());
+    }
+    if by_sampler {
+        let format = match stored {
+            VoxelType::F16 => vk::Format::R16_SFLOAT,
+            VoxelType::F32 => vk::Format::R32_SFLOAT,
+            VoxelType::U8 | VoxelType::I8 => vk::Format::R8_UNORM,
+            _ => vk::Format::R16_UNORM,
+        };
+        let linear = vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR;
+        needs.push(Item::Format(
+            format,
+            vk::FormatFeatureFlags::SAMPLED_IMAGE | linear,
+        ));
+    }
+    needs
+}
+
+/// Slices blended in 32-bit floats.
+pub fn blended_floats() -> Item {
+    let blend =
+        vk::FormatFeatureFlags::COLOR_ATTACHMENT | vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND;
+    Item::Format(vk::Format::R32G32B32A32_SFLOAT, blend)
+}
+
+/// A field that varies along every axis, between about 0 and 1.
+pub fn waves(p: DVec3) -> f64 {
+    0.5 + 0.2 * (0.61 * p.x).sin()
+        + 0.15 * (0.53 * p.y + 0.4).cos()
+        + 0.15 * (0.37 * p.z - p.x * 0.2).sin()
+}
+
+/// Colours and opacities with ramps between 0 and 1.
+pub fn ramps() -> TransferFunction {
+    let color = |value, srgb| ColorPoint { value, srgb };
+    let opacity = |value, opacity| OpacityPoint { value, opacity };
+    TransferFunction {
+        color: vec![
+            color(0.0, [0.1, 0.2, 0.9]),
+            color(0.5, [0.2, 0.8, 0.3]),
+            color(1.0, [1.0, 0.5, 0.1]),
+        ],
+        opacity: vec![opacity(0.2, 0.0), opacity(0.6, 0.15), opacity(0.9, 0.4)],
+        reference_length: None,
+        interpolation: Interpolation::Linear,
+        graded: None,
+    }
+}

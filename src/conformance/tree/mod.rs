@@ -1,0 +1,19 @@
+//! All cases, by name. The list is the same on every device: what a device lacks is for the verdict to say.
+
+mod exact;
+mod ground;
+mod probe;
+mod relation;
+mod twin;
+
+use super::case::Case;
+
+/// Every case of every profile, in the order in which they run.
+pub fn cases() -> Vec<Case> {
+    let mut cases = Vec::new();
+    cases.extend(probe::cases());
+    cases.extend(exact::cases());
+    cases.extend(relation::cases());
+    cases.extend(twin::cases());
+    cases
+}

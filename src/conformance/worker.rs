@@ -1,0 +1,160 @@
+//! The process in which cases run: names come in, a line each, and records go out, a line of JSON each.
+//!
+//! ```text
+//! in   raycast.ray.mip.ramp.linear.u8.orthographic
+//! out  {"device":{...}}                once, before the first record
+//! out  {"record":{...}}
+//! ```
+
+use super::case::Case;
+use super::judge::judge;
+use super::measurement::Pictures;
+use super::record::{DeviceRecord, Record};
+use super::stand::Stand;
+use super::verdict::Verdict;
+use crate::picture::compare::{Comparison, Image};
+use crate::picture::{ColorSpace, Picture, WriteOptions, write_picture};
+use serde::{Deserialize, Serialize};
+use std::io::{self, BufRead, Write};
+use std::path::Path;
+
+/// A line of a worker.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Line {
+    /// The device that cases run on.
+    Device(DeviceRecord),
+    /// What is said of the case that was asked for.
+    Record(Box<Record>),
+}
+
+/// What a worker does in place of the case that it is asked for: so that the supervisor can be seen to survive it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trouble {
+    /// Ends by a signal.
+    Abort,
+    /// Ends with an exit code.
+    Exit,
+    /// Never answers.
+    Hang,
+    /// Answers what is no record.
+    Babble,
+    /// Says that the device is lost.
+    LoseDevice,
+    /// Says that the case fails, when it is run for the first time.
+    Flake,
+    /// Says that the case fails.
+    Fail,
+}
+
+impl Trouble {
+    /// The trouble of that word.
+    pub fn of(word: &str) -> Option<Self> {
+        Some(match word {
+            "abort" => Self::Abort,
+            "exit" => Self::Exit,
+            "hang" => Self::Hang,
+            "babble" => Self::Babble,
+            "lose-device" => Self::LoseDevice,
+            "flake" => Self::Flake,
+            "fail" => Self::Fail,
+            _ => return None,
+        })
+    }
+}
+
+/// Answers until the names end. `pictures` is where those of failures are put; `trouble` names cases and what happens
+/// at them.
+///
+/// # Errors
+/// Where a line cannot be read or written.
+pub fn serve(
+    cases: &[Case],
+    stand: &mut Stand,
+    pictures: Option<&Path>,
+    trouble: Option<(&str, Trouble)>,
+) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    let mut is_introduced = false;
+    for name in io::stdin().lock().lines() {
+        let name = name?;
+        let wanted = name.strip_prefix("again ").unwrap_or(&name);
+        let is_first = wanted == name;
+        let Some(case) = cases.iter().find(|case| case.name == wanted) else {
+            return Err(io::Error::other(format!("there is no case {wanted}")));
+        };
+        if !is_introduced && let Ok(device) = stand.device() {
+            say(&mut out, &Line::Device(DeviceRecord::of(device.gpu())))?;
+            is_introduced = true;
+        }
+        let trouble = trouble.filter(|(pattern, _)| super::glob::matches(pattern, wanted));
+        let trouble = trouble.map(|(_, trouble)| trouble);
+        if let Some(trouble) = trouble {
+            suffer(trouble);
+        }
+        let (mut record, found) = judge(case, stand);
+        match trouble {
+            Some(Trouble::LoseDevice) => {
+                record.verdict = Verdict::DeviceLost;
+                record.reason = "asked for".to_owned();
+            }
+            Some(Trouble::Flake) if !is_first => {}
+            Some(Trouble::Flake | Trouble::Fail) => {
+                record.verdict = Verdict::Fail;
+                record.reason = "asked for".to_owned();
+            }
+            _ => {}
+        }
+        let shown = found.filter(|_| record.verdict == Verdict::Fail);
+        if let Some((folder, found)) = pictures.zip(shown) {
+            record.pictures = written(folder, wanted, &found)?;
+        }
+        say(&mut out, &Line::Record(Box::new(record)))?;
+    }
+    Ok(())
+}
+
+fn suffer(trouble: Trouble) {
+    match trouble {
+        Trouble::Abort => std::process::abort(),
+        Trouble::Exit => std::process::exit(3),
+        Trouble::Hang => loop {
+            std::thread::park();
+        },
+        Trouble::Babble => println!("no record"),
+        Trouble::LoseDevice | Trouble::Flake | Trouble::Fail => {}
+    }
+}
+
+fn say(out: &mut impl Write, line: &Line) -> io::Result<()> {
+    serde_json::to_writer(&mut *out, line)?;
+    out.write_all(b"\n")?;
+    out.flush()
+}
+
+/// Expected, found and where they differ, as files; their names.
+fn written(folder: &Path, name: &str, pictures: &Pictures) -> io::Result<Vec<String>> {
+    let of = |pixels: &[[f32; 4]]| Picture {
+        width: pictures.width,
+        height: (pixels.len() as u32) / pictures.width,
+        pixels: pixels.to_vec(),
+        color_space: ColorSpace::Linear,
+        layers: Vec::new(),
+    };
+    let (expected, found) = (of(&pictures.expected), of(&pictures.found));
+    let mut all = vec![("expected", expected.clone()), ("found", found.clone())];
+    if let Ok(comparison) = Comparison::of(&Image::from(&expected), &Image::from(&found)) {
+        all.push(("difference", comparison.picture()));
+    }
+    let options = WriteOptions {
+        force: true,
+        ..WriteOptions::default()
+    };
+    let mut names = Vec::new();
+    for (what, picture) in all {
+        let file = format!("{name}.{what}.png");
+        write_picture(&picture, &folder.join(&file), options).map_err(io::Error::other)?;
+        names.push(file);
+    }
+    Ok(names)
+}

@@ -1,0 +1,163 @@
+//! Packages are looked through as ones that somebody handed in, and two are compared. No device is asked.
+#![cfg(feature = "conformance")]
+
+use std::collections::BTreeMap;
+use stratavox::conformance::case::{Case, Profile};
+use stratavox::conformance::difference::Difference;
+use stratavox::conformance::measurement::Worst;
+use stratavox::conformance::need::Found;
+use stratavox::conformance::record::{Asked, DeviceRecord, Package, Record};
+use stratavox::conformance::report::{html, junit};
+use stratavox::conformance::supervisor::chosen;
+use stratavox::conformance::tree::cases;
+use stratavox::conformance::verdict::Verdict;
+
+fn device() -> DeviceRecord {
+    DeviceRecord {
+        name: "a <device>".into(),
+        kind: "cpu".into(),
+        driver: "a driver".into(),
+        driver_info: "1.2.3".into(),
+        driver_version: 1,
+        vulkan: "1.3.0".into(),
+        vendor_id: 1,
+        device_id: 2,
+        uuid: "00".into(),
+        limits: BTreeMap::new(),
+    }
+}
+
+fn whole(list: &[Case], change: impl FnOnce(&mut Vec<Record>)) -> Package {
+    let all = chosen(list, Profile::Baseline, "*", [1, 1]).into_iter();
+    let passed =
+        |case: &Case| Record::unmeasured(&case.name, case.profile, Verdict::Pass, String::new());
+    let mut records = all.map(passed).collect();
+    change(&mut records);
+    let asked = Asked {
+        profile: Profile::Baseline,
+        filter: "*".into(),
+        shard: [1, 1],
+        seed: 1,
+        limits: "device".into(),
+    };
+    Package::new(list, asked, Some(device()), records, 1.0)
+}
+
+/// As it comes out of a file.
+fn read(package: &Package) -> Package {
+    serde_json::from_str(&serde_json::to_string_pretty(package).unwrap()).unwrap()
+}
+
+#[test]
+fn a_whole_package_has_nothing_to_complain_of_and_each_change_is_named() {
+    let list = cases();
+    let good = read(&whole(&list, |_| {}));
+    assert_eq!(good.complaints(&list), [""; 0]);
+    let named = |package: Package, word: &str| {
+        let complaints = package.complaints(&list);
+        assert!(
+            complaints.iter().any(|c| c.contains(word)),
+            "{word}: {complaints:?}"
+        );
+    };
+    named(whole(&list, |records| drop(records.pop())), "is missing");
+    named(
+        whole(&list, |records| records.push(records[0].clone())),
+        "stands 2 times",
+    );
+    named(
+        whole(&list, |records| records[0].name = "other".into()),
+        "is no case of this list",
+    );
+    named(
+        whole(&list, |records| records[0].verdict = Verdict::Crash),
+        "crash",
+    );
+    named(
+        whole(&list, |records| records[0].verdict = Verdict::NotSupported),
+        "nothing named",
+    );
+    let changed = |change: fn(&mut Package)| {
+        let mut package = good.clone();
+        change(&mut package);
+        package
+    };
+    named(
+        changed(|p| p.cases[0].verdict = Verdict::QualityWarning),
+        "it was changed",
+    );
+    named(changed(|p| p.cases[0].checked += 1), "it was changed");
+    named(changed(|p| p.suite = "0.0.0".into()), "made by suite");
+    named(changed(|p| p.list_sha256.clear()), "list of cases");
+    named(changed(|p| p.device = None), "no device");
+    named(changed(|p| p.asked.shard = [1, 2]), "a part of the profile");
+    named(changed(|p| p.asked.shard = [0, 0]), "part 0 of 0");
+    named(
+        changed(|p| p.asked.limits = "vulkan-minimum".into()),
+        "lowered",
+    );
+    // Times alone may differ.
+    let mut later = good.clone();
+    later.seconds = 99.0;
+    later.cases[0].ms = 99.0;
+    assert_eq!(later.complaints(&list), [""; 0]);
+}
+
+#[test]
+fn what_a_device_lacks_is_named_in_a_package() {
+    let list = cases();
+    let lacking = Found {
+        name: "timelineSemaphore".into(),
+        wanted: "enabled".into(),
+        device_says: "not supported".into(),
+        device_has: false,
+        library_has: false,
+    };
+    let package = whole(&list, |records| {
+        records[0].verdict = Verdict::NotSupported;
+        records[0].needs = vec![lacking];
+    });
+    assert_eq!(package.complaints(&list), [""; 0]);
+}
+
+#[test]
+fn two_packages_differ_where_they_say_other_things() {
+    let list = cases();
+    let a = whole(&list, |_| {});
+    assert!(Difference::of(&a, &a).agrees());
+    let b = whole(&list, |records| {
+        records[3].verdict = Verdict::Fail;
+        records[5].worst = Some(Worst {
+            ratio: 0.5,
+            ..Worst::default()
+        });
+        records.pop();
+    });
+    let difference = Difference::of(&a, &b);
+    assert!(!difference.agrees());
+    assert_eq!(difference.verdicts.len(), 1, "{}", difference.text());
+    assert_eq!(difference.alone.len(), 1);
+    assert_eq!(difference.margins.len(), 1);
+    assert_eq!(difference.same, a.cases.len() - 3);
+}
+
+#[test]
+fn names_of_devices_and_reasons_cannot_break_a_report() {
+    let list = cases();
+    let package = whole(&list, |records| {
+        records[0].verdict = Verdict::Fail;
+        records[0].reason = "a < b & \"c\" \u{1b}[0m".into();
+        records[1].verdict = Verdict::Timeout;
+        records[2].verdict = Verdict::NotSupported;
+    });
+    for text in [html(&package), junit(&package)] {
+        assert!(text.contains("a &lt;device&gt;"), "the device");
+        assert!(
+            text.contains("a &lt; b &amp; &quot;c&quot; ?[0m"),
+            "the reason"
+        );
+    }
+    let xml = junit(&package);
+    assert!(xml.contains("failures=\"1\" errors=\"1\" skipped=\"1\""));
+    assert_eq!(xml.matches("<testcase").count(), package.cases.len());
+}
