@@ -50,6 +50,16 @@ impl Package {
 
     /// What is wrong with a package that claims to be a whole run of its profile; nothing where it is one and is good.
     pub fn complaints(&self, list: &[Case]) -> Vec<String> {
+        let mut complaints = self.complaints_of_part(list);
+        if self.asked.shard != [1, 1] || self.asked.filter != "*" {
+            complaints
+                .push("it is a part of the profile: a filter or a shard was asked for".to_owned());
+        }
+        complaints
+    }
+
+    /// The same of one that claims to be what was asked for: a part of its profile is as good.
+    pub fn complaints_of_part(&self, list: &[Case]) -> Vec<String> {
         let mut complaints = Vec::new();
         let mut complain = |text: String| complaints.push(text);
         if self.stratavox_conformance != SCHEMA {
@@ -79,9 +89,6 @@ impl Package {
         if part == 0 || part > parts {
             complain(format!("part {part} of {parts}"));
             return complaints;
-        }
-        if parts != 1 || self.asked.filter != "*" {
-            complain("it is a part of the profile: a filter or a shard was asked for".to_owned());
         }
         let wanted = chosen(
             list,

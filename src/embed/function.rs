@@ -17,7 +17,13 @@ pub(super) struct Function {
     pub mix: Mix,
     /// Points and second gradients, which loops of the driver are counted by.
     pub turns: crate::technique::Functions,
-    is_uploaded: bool,
+    uploaded: Uploaded,
+}
+
+/// What was recorded of a function, and so is there for what is recorded later.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Uploaded {
+    is_done: bool,
     /// After how many updates of the volume its empty space was found.
     found_after: u64,
 }
@@ -68,14 +74,18 @@ impl Function {
                 points: function.map_or(0, |f| f.color.len().max(f.opacity.len())),
                 second: graded.is_some_and(Graded::needs_second),
             },
-            is_uploaded: false,
-            found_after: 0,
+            uploaded: Uploaded::default(),
         })
     }
 
-    /// What was recorded was not submitted: it is recorded again.
-    pub fn forget_upload(&mut self) {
-        self.is_uploaded = false;
+    /// What is there, for [`Function::forget_later`].
+    pub fn uploaded(&self) -> Uploaded {
+        self.uploaded
+    }
+
+    /// What was recorded since then was not submitted: it is recorded again.
+    pub fn forget_later(&mut self, then: Uploaded) {
+        self.uploaded = then;
     }
 
     /// Records what fills the objects, once, and what is empty once more after an update of the volume.
@@ -90,16 +100,18 @@ impl Function {
         let updates = volume.updates();
         // SAFETY: the caller's promises.
         unsafe {
-            if let (Some(made), false) = (&self.made, self.is_uploaded) {
+            if let (Some(made), false) = (&self.made, self.uploaded.is_done) {
                 made.record_upload(cmd)?;
             }
-            let is_old = !self.is_uploaded || self.found_after != updates;
+            let is_old = !self.uploaded.is_done || self.uploaded.found_after != updates;
             if let Some(empty) = self.empty.as_ref().filter(|_| is_old) {
                 empty.record(cmd)?;
             }
         }
-        self.is_uploaded = true;
-        self.found_after = updates;
+        self.uploaded = Uploaded {
+            is_done: true,
+            found_after: updates,
+        };
         Ok(())
     }
 

@@ -12,7 +12,7 @@
 use super::frame::Begun;
 use super::recording::Share;
 use super::{Error, Renderer, Shot};
-use crate::gpu::{Blocks, Load, Target, Tile, Use, begin_rendering, end_rendering};
+use crate::gpu::{Blocks, Load, Target, TargetState, Tile, Use, begin_rendering, end_rendering};
 use crate::technique::cost::{looks_of_picture, ms_of_looks};
 use crate::technique::{InPixel, View};
 use ash::vk;
@@ -24,7 +24,8 @@ impl Renderer {
     /// Begins a frame in parts: writes its parameters. How many blocks of 64 x 64 pixels there are; any first part of
     /// them is spread over the picture.
     ///
-    /// What else is recorded for the frame, and another function, volume or size, ends it.
+    /// What else is recorded for the frame, and another function, volume or size, ends it. As before [`Renderer::record`], what
+    /// was recorded for the frame before is done: its parameters are written over, and what is not done draws with those.
     ///
     /// # Errors
     /// As [`Renderer::record`].
@@ -89,8 +90,22 @@ impl Renderer {
                     true => (true, Load::Keep),
                     false => (false, load),
                 };
+                // A state that nobody waits for, as that of an image to be shown, orders no part after another: what is
+                // drawn into does.
+                let between = TargetState {
+                    stage: target.after.stage | vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT,
+                    access: target.after.access | vk::AccessFlags2::COLOR_ATTACHMENT_WRITE,
+                    ..target.after
+                };
                 let arriving = Target {
-                    before: if again { target.after } else { target.before },
+                    before: if again { between } else { target.before },
+                    ..*target
+                };
+                let leaving = Target {
+                    after: match is_drawn_at_once && !share.is_last {
+                        true => between,
+                        false => target.after,
+                    },
                     ..*target
                 };
                 let whole = [Tile::whole(self.extent)];
@@ -99,7 +114,7 @@ impl Renderer {
                 begin_rendering(&self.gpu, cmd, &[(target.view, load)], self.extent);
                 self.draw_tiles(cmd, &self.frames[number], recorded, drawn);
                 end_rendering(&self.gpu, cmd);
-                target.leave(&self.gpu, cmd, Use::ColorTarget);
+                leaving.leave(&self.gpu, cmd, Use::ColorTarget);
             }
         }
         match share.is_last {

@@ -51,6 +51,7 @@ impl Renderer {
         frame: u32,
         pixel: [u32; 2],
     ) -> Result<(), Error> {
+        self.gpu.check_alive("record a pick")?;
         let (there, camera, _) = self.recorded(frame, "record_pick")?;
         let has_depth = self.class.settings.mode.has_depth();
         let Some(buffer) = there.pick.as_ref().filter(|_| has_depth) else {

@@ -68,6 +68,7 @@ impl Renderer {
     /// # Safety
     /// As [`Renderer::draw`]; depth may be written.
     pub unsafe fn draw_depth(&self, cmd: vk::CommandBuffer, frame: u32) -> Result<(), Error> {
+        self.gpu.check_alive("draw the depth of a volume")?;
         let (there, ..) = self.recorded(frame, "draw_depth")?;
         let (Some(pass), Some(bound)) = (&self.pass.depth, &there.sets.depth) else {
             return Err(Error::NoDepth {

@@ -190,7 +190,10 @@ impl Renderer {
             let copies = volume.copies().iter();
             copies.map(|copy| copy.layout()).collect::<Vec<_>>()
         };
-        let lies_alike = layouts(volume) == layouts(&self.volume);
+        // Half-angle slices have an image of the light's view of the grid.
+        let is_as_large =
+            self.pass.half_angle.is_none() || volume.grid().dims == self.volume.grid().dims;
+        let lies_alike = layouts(volume) == layouts(&self.volume) && is_as_large;
         if !lies_alike || words != self.words || bricks(volume) > self.most_bricks {
             return Err(Error::OtherClass {
                 made: format!("{:?} in {} bricks", self.words, self.most_bricks),

@@ -86,6 +86,7 @@ impl Submitter {
         waits: &[TimelinePoint],
         signals: &[TimelinePoint],
     ) -> Result<(), Error> {
+        let uploaded = renderer.function.uploaded();
         // SAFETY: the caller's promises.
         let submitted = unsafe {
             self.run(lock, shot.frame, waits, signals, |cmd| {
@@ -93,7 +94,7 @@ impl Submitter {
             })
         };
         if submitted.is_err() {
-            renderer.function.forget_upload();
+            renderer.function.forget_later(uploaded);
         }
         submitted
     }
@@ -141,6 +142,7 @@ impl Submitter {
                     break Err(error);
                 }
             }
+            let uploaded = renderer.function.uploaded();
             let (is_last, blocks) = (part.end == count, part.end - part.start);
             let begun = Instant::now();
             // SAFETY: the caller's promises; each part is done before the next one is recorded.
@@ -155,9 +157,7 @@ impl Submitter {
                 }
             };
             if let Err(error) = run {
-                if part.start == 0 {
-                    renderer.function.forget_upload();
-                }
+                renderer.function.forget_later(uploaded);
                 break Err(error);
             }
             if is_last {

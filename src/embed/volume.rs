@@ -117,7 +117,7 @@ impl Volume {
         if is_raycast && is_one && wants_corners(gpu, stored, dims, settings) {
             all.device_bytes += Corners::bytes_of(stored, dims).unwrap_or_default();
         }
-        if is_raycast && settings.skip {
+        if is_raycast && settings.skip && !settings.preintegrated {
             let side = u64::from(CELL_VOXELS);
             let cells = dims
                 .map(|n| u64::from(n).div_ceil(side))

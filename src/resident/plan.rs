@@ -7,6 +7,9 @@ use crate::volume::{Rescale, Volume, VoxelType};
 use ash::vk;
 use std::cell::OnceCell;
 
+/// A plan is made of no more: 2^40.
+const MOST_VOXELS: u128 = 1 << 40;
+
 /// What a volume will take on a device, told before there is one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VolumePlan {
@@ -22,7 +25,8 @@ impl VolumePlan {
     /// For a volume of so many voxels of a type; `has_holes`: some have no value.
     ///
     /// # Errors
-    /// Where not even a voxel fits, as [`GpuVolume::new`](super::GpuVolume::new).
+    /// Where not even a voxel fits, as [`GpuVolume::new`](super::GpuVolume::new); no voxels, and more than a tebi, which
+    /// nobody has and whose bricks would fill the memory.
     pub fn of(
         gpu: &Gpu,
         dims: [u32; 3],
@@ -30,6 +34,14 @@ impl VolumePlan {
         has_holes: bool,
         layout: TextureLayout,
     ) -> Result<Self, Error> {
+        let count: u128 = dims.iter().map(|&n| u128::from(n)).product();
+        if count == 0 || count > MOST_VOXELS {
+            return Err(Error::Argument {
+                doing: format!("plan a volume of {dims:?} voxels"),
+                wanted: format!("1 to {MOST_VOXELS} voxels"),
+                found: count.to_string(),
+            });
+        }
         let plan = Plan {
             layout,
             texel: TexelFormat::choose(gpu, stored, Rescale::default()),

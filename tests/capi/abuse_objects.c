@@ -166,6 +166,11 @@ static void plans_and_requirements(void) {
     sv_volume_desc desc = volume_desc();
     desc.dims[1] = 0;
     BAD(SV_E_ARGUMENT, sv_volume_plan(device, &desc, &plan, &diagnostic));
+    /* More bricks than there is memory for their list. */
+    for (unsigned most = 1u << 22; most; most = most == UINT32_MAX ? 0 : UINT32_MAX) {
+        desc.dims[0] = desc.dims[1] = desc.dims[2] = most;
+        BAD(SV_E_ARGUMENT, sv_volume_plan(device, &desc, &plan, &diagnostic));
+    }
     desc.dims[1] = 8, desc.voxel_type = 77;
     BAD(SV_E_ARGUMENT, sv_volume_plan(device, &desc, &plan, &diagnostic));
     uint64_t count = 3;

@@ -102,7 +102,7 @@ void test_depth(int is_reversed) {
         sv_pick pick = {.struct_size = sizeof pick};
         CHECK(sv_renderer_pick(renderer, 0, WIDTH / 2, HEIGHT / 2, &pick, &diagnostic));
         /* The centre of voxels is at + 0.5; the ball is about (11.5, 13, 12.5), and the front is at larger y. */
-        const int is_there = pick.is_hit && pick.has_color && !pick.has_value && fabs(pick.position[0] - 12.0) < 0.5 &&
+        const int is_there = pick.is_hit && pick.has_color && pick.has_value && fabs(pick.position[0] - 12.0) < 0.5 &&
                              pick.position[1] > 5.0 && pick.position[1] < 21.0 && fabs(pick.position[2] - 12.0) < 0.5;
         if (pick.is_hit) printf("    %g, %g, %g\n", pick.position[0], pick.position[1], pick.position[2]);
         expect(is_near ? !pick.is_hit : is_there, is_near ? "nothing to pick behind the host" : "a pick lies in the ball");

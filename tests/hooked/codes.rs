@@ -21,7 +21,9 @@ pub fn codes(function: &str) -> &'static [vk::Result] {
             R::ERROR_INCOMPATIBLE_DRIVER,
         ],
         "vkEnumerateInstanceVersion" => &[HOST],
-        "vkEnumerateInstanceExtensionProperties" => &[HOST, DEVICE, R::ERROR_LAYER_NOT_PRESENT],
+        "vkEnumerateInstanceExtensionProperties" | "vkEnumerateDeviceExtensionProperties" => {
+            &[HOST, DEVICE, R::ERROR_LAYER_NOT_PRESENT]
+        }
         "vkEnumeratePhysicalDevices" => &[HOST, DEVICE, R::ERROR_INITIALIZATION_FAILED],
         "vkGetPhysicalDeviceImageFormatProperties2" => {
             &[HOST, DEVICE, R::ERROR_FORMAT_NOT_SUPPORTED]

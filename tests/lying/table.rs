@@ -352,7 +352,7 @@ pub const LIES: &[(&str, Lie, &str)] = &[
     (
         "slices sum up without lengths",
         Shader(
-            "lib/blend_sum.wgsl",
+            "lib/blend_number.wgsl",
             "value * length_world, length_world",
             "value, length_world",
         ),

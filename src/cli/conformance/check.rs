@@ -7,9 +7,12 @@ use crate::conformance::tree::cases;
 use std::path::Path;
 
 /// Says what is wrong with a package, exit code 1, or that nothing is.
-pub fn verify(path: &Path) -> Result<(), Error> {
+pub fn verify(path: &Path, is_part: bool) -> Result<(), Error> {
     let package = read(path)?;
-    let complaints = package.complaints(&cases());
+    let complaints = match is_part {
+        true => package.complaints_of_part(&cases()),
+        false => package.complaints(&cases()),
+    };
     let asked = &package.asked;
     if complaints.is_empty() {
         let device = package.device.as_ref().map_or("", |device| &device.name);

@@ -26,13 +26,20 @@ pub struct Conformance {
 #[derive(Debug, Subcommand)]
 enum Verb {
     /// Check that a package is a whole and unchanged run of its profile without a failure
-    #[command(after_help = "Example:\n  stratavox conformance verify FILE")]
+    #[command(
+        after_help = "Example:\n  stratavox conformance --filter probe.math.exp --json a && stratavox conformance verify --part a"
+    )]
     Verify {
+        /// Of what a filter or a shard was asked for: whole as far as it goes
+        #[arg(long)]
+        part: bool,
         /// What `--json` has written
         package: PathBuf,
     },
     /// Compare the packages of two runs or two drivers
-    #[command(after_help = "Example:\n  stratavox conformance diff FILE OTHER")]
+    #[command(
+        after_help = "Example:\n  stratavox conformance --filter probe.math.exp --json a && stratavox conformance diff a a"
+    )]
     Diff {
         /// What `--json` has written
         a: PathBuf,
@@ -46,7 +53,7 @@ impl Conformance {
     pub fn run(self, gate: &Gate) -> Result<(), Error> {
         match self.verb {
             None => self.run.run(gate),
-            Some(Verb::Verify { package }) => check::verify(&package),
+            Some(Verb::Verify { part, package }) => check::verify(&package, part),
             Some(Verb::Diff { a, b }) => check::diff(&a, &b),
         }
     }

@@ -173,6 +173,8 @@ impl Window {
         // SAFETY: the caller's promise.
         unsafe { read.textures.record_upload(self.host.gpu(), cmd)? };
         drawing.set_volume(&Arc::new(read.textures), look.function())?;
+        // What was asked of the volume before is gone with it.
+        self.asked = None;
         self.view.subject.voxels = Arc::new(read.voxels);
         self.view.subject.time = read.time;
         Ok(())

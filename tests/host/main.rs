@@ -1,0 +1,85 @@
+//! What needs no device: readers and writers of files, and arithmetic. One program, because linking fifty takes minutes.
+//! Those that measure memory are programs of their own.
+
+#[cfg(feature = "files")]
+#[path = "../shared/dicom.rs"]
+mod dicom;
+#[cfg(feature = "files")]
+#[path = "../shared/encode.rs"]
+mod encode;
+#[cfg(feature = "files")]
+#[path = "../shared/files.rs"]
+mod files;
+#[cfg(feature = "files")]
+#[path = "../shared/fixtures.rs"]
+mod fixtures;
+#[cfg(feature = "files")]
+#[path = "../shared/nifti.rs"]
+mod nifti;
+#[cfg(all(feature = "png", feature = "exr"))]
+#[path = "../picture_shared/mod.rs"]
+mod picture_shared;
+#[cfg(feature = "files")]
+#[path = "../shared/tiff.rs"]
+mod tiff;
+#[path = "../transfer_shared/mod.rs"]
+mod transfer_shared;
+#[cfg(feature = "files")]
+#[path = "../shared/truth.rs"]
+mod truth;
+#[cfg(feature = "files")]
+#[path = "../shared/vtk.rs"]
+mod vtk;
+#[cfg(feature = "files")]
+#[path = "../shared/zarr.rs"]
+mod zarr;
+
+mod cf_wrf;
+mod floors;
+mod format_bricks;
+mod format_bricks_resumed;
+mod format_dicom;
+mod format_dicom_fixtures;
+mod format_dicom_places;
+mod format_dicom_values;
+mod format_escapes;
+mod format_hdf5;
+mod format_hostile;
+mod format_meaning;
+mod format_metaimage;
+mod format_metaimage_refused;
+mod format_netcdf;
+mod format_nifti;
+mod format_nifti_place;
+mod format_nifti_refused;
+mod format_npy;
+mod format_nrrd;
+mod format_nrrd_meaning;
+mod format_nrrd_refused;
+mod format_raw;
+mod format_tiff;
+mod format_vti;
+mod format_vti_refused;
+mod format_vtk;
+mod format_weather;
+mod format_zarr;
+mod format_zarr_ngff;
+mod isosurface;
+mod phantoms;
+mod picture_compare;
+mod picture_files;
+mod picture_hostile;
+mod picture_output;
+mod transfer_choice;
+mod transfer_file;
+mod transfer_import;
+mod transfer_law;
+mod transfer_materials;
+mod transfer_widgets;
+mod volume_filters;
+mod volume_joint;
+mod volume_mixtures;
+mod volume_read;
+mod volume_reduce;
+mod volume_sample;
+mod volume_statistics;
