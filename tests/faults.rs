@@ -202,12 +202,8 @@ fn a_host_that_lets_us_submit_is_told_of_every_call_that_fails() {
     ] {
         assert!(called.contains(&ours), "{ours}");
     }
-    for of_a_host in [
-        "vkQueueSubmit",
-        "vkWaitForFences",
-        "vkCreateFence",
-        "vkDeviceWaitIdle",
-    ] {
+    // A submitter has fences, for frames in parts: of one that is whole nobody waits for them.
+    for of_a_host in ["vkQueueSubmit", "vkWaitForFences", "vkDeviceWaitIdle"] {
         assert!(!called.contains(&of_a_host), "{of_a_host} is the host's");
     }
     assert!(faults > 90, "only {faults} faults");
