@@ -234,10 +234,7 @@ unsafe fn choose(
     let names = found.iter().map(|c| c.report.identity.name.clone());
     let names: Vec<_> = names.chain(refused).collect();
     // The kinds are in the order of their speed.
-    let best = found
-        .into_iter()
-        .filter(is_wanted)
-        .min_by_key(|choice| speed(choice));
+    let best = found.into_iter().filter(is_wanted).min_by_key(speed);
     best.ok_or_else(|| {
         let there = match names.is_empty() {
             true => "no driver offers one".to_owned(),

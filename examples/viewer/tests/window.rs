@@ -83,8 +83,11 @@ impl Drop for Display {
     }
 }
 
+#[allow(
+    clippy::explicit_write,
+    reason = "the harness keeps what `eprintln!` writes for itself"
+)]
 fn skipped<T>(why: &str) -> Option<T> {
-    // Not `eprintln!`, which the harness keeps for itself.
     writeln!(std::io::stderr(), "skipped: {why}").unwrap();
     None
 }
