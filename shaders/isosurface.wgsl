@@ -5,7 +5,7 @@
 
 #import ray
 #import host_depth
-#import pixel_square
+#import drawn_tile
 #import brick
 #import room_map
 #import filter_{filter}
@@ -46,12 +46,13 @@ struct Bracket {
 }
 
 @compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let pixel = pixel_of(id.xy);
+fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) own: vec3<u32>) {
+    let tile = drawn_tile(group);
+    let pixel = pixel_in(tile, own.xy);
     if any(pixel >= frame.extent_pixels) {
         return;
     }
-    let found = surfaces(vec2<f32>(pixel) + 0.5, met_before(pixel));
+    let found = surfaces(vec2<f32>(pixel) + 0.5, tile, met_before(pixel));
     textureStore(picture, pixel, vec4(found.color, 1.0 - found.transmittance));
     textureStore(layers, pixel, vec4(found.level, found.depth, found.transmittance, found.samples));
 }
@@ -66,12 +67,12 @@ fn met_before(pixel: vec2<u32>) -> Surfaces {
 }
 
 // A segment belongs to the brick that its far end lies in; its near end lies in the voxels around.
-fn surfaces(pixel: vec2<f32>, before: Surfaces) -> Surfaces {
+fn surfaces(pixel: vec2<f32>, tile: RayTile, before: Surfaces) -> Surfaces {
     let world = pixel_ray(pixel);
     let voxel = voxel_ray(world);
     let interval = in_sight(domain_interval(world, voxel), world, pixel);
     var so_far = before;
-    let inside = brick_interval(voxel, interval);
+    let inside = counted(brick_interval(voxel, interval), tile);
     if !(interval.x < interval.y && inside.x < inside.y) || is_finished(before) {
         return so_far;
     }

@@ -148,11 +148,11 @@ impl Hiding {
     /// What an entry point begins with.
     fn start_of(&self, function: &mut Function, types: &UniqueArena<Type>) -> Block {
         let is_bound = |given: &FunctionArgument| {
-            use BuiltIn::{GlobalInvocationId, Position, VertexIndex};
+            use BuiltIn::{GlobalInvocationId, LocalInvocationId, Position, VertexIndex};
             matches!(
                 given.binding,
                 Some(Binding::BuiltIn(
-                    Position { .. } | GlobalInvocationId | VertexIndex
+                    Position { .. } | GlobalInvocationId | LocalInvocationId | VertexIndex
                 ))
             )
         };

@@ -304,6 +304,18 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ("light_volume", &[]),
     // No picture: the ceiling of the device.
     ("probe", &[]),
+    // Which tiles rays draw: all that they may meet something in, or all over the box.
+    (
+        "ray_tiles",
+        &[("known", &["rooms"]), ("left", &["picture"])],
+    ),
+    (
+        "ray_tiles",
+        &[
+            ("known", &["box"]),
+            ("left", &["picture", "mida", "number"]),
+        ],
+    ),
     ("macro_cells", &[("layout", &["box", "stack"])]),
     ("distance_map", &[]),
     ("slice_patches", &[("planes", &["view", "stack"])]),

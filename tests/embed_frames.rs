@@ -9,7 +9,9 @@ use glam::DMat3;
 use stratavox::gpu::{Bindings, Blend, Image, ParameterRing, Use, image_barrier};
 use stratavox::resolve::Resolve;
 use stratavox::technique::raycast::Raycast;
-use stratavox::technique::{Inputs, Mode, Settings, Words, accumulation, parameter_ring};
+use stratavox::technique::{
+    Inputs, Mode, RayBindings, RayTiles, Settings, Words, accumulation, parameter_ring,
+};
 
 const FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 const DRAWN: [f32; 4] = [0.25, 0.0, 0.5, 1.0];
@@ -30,7 +32,7 @@ struct InFlight<'h> {
     image: HostImage<'h>,
     gathered: Image,
     layers: Image,
-    bound: Bindings,
+    bound: RayBindings,
     resolved: Bindings,
 }
 
@@ -54,10 +56,11 @@ impl<'h> Ready<'h> {
         let in_flight = |_| {
             let gathered = accumulation(gpu, stage.extent, "gathered").unwrap();
             let layers = accumulation(gpu, stage.extent, "layers").unwrap();
+            let tiles = RayTiles::new(gpu, stage.extent).unwrap();
             InFlight {
                 cmd: host.command_buffer(),
                 image: HostImage::new(host, FORMAT, stage.extent),
-                bound: raycast.bind(&inputs, &gathered, &layers).unwrap(),
+                bound: raycast.bind(&inputs, &gathered, &layers, &tiles).unwrap(),
                 resolved: resolve.bind(&ring, &gathered, None).unwrap(),
                 gathered,
                 layers,

@@ -5,14 +5,15 @@ mod shared;
 
 use ash::vk;
 use embed_shared::{Host, HostImage, OnDevice, Stage, assert_close, over};
-use stratavox::gpu::{Bindings, Blend, Caps, Image, ParameterRing, Use, image_barrier};
+use stratavox::gpu::{Blend, Caps, Image, ParameterRing, Use, image_barrier};
 use stratavox::picture::ColorSpace;
 use stratavox::resolve::Resolve;
 use stratavox::technique::blend::Drawn;
 use stratavox::technique::projection::Projection;
 use stratavox::technique::raycast::Raycast;
 use stratavox::technique::{
-    Inputs, Mode, Order, Settings, Slicer, Technique, Words, accumulation, parameter_ring,
+    Inputs, Mode, Order, RayBindings, RayTiles, Settings, Slicer, Technique, Words, accumulation,
+    parameter_ring,
 };
 
 /// Behind the volume, in numbers that 8 bits and halves hold exactly where they are not sRGB.
@@ -56,7 +57,8 @@ fn over_the_hosts_drawing(host: &Host, stage: &Stage, format: vk::Format) -> usi
     let gathered = accumulation(gpu, stage.extent, "gathered").unwrap();
     let layers = accumulation(gpu, stage.extent, "layers").unwrap();
     let gather = Gather::new(host, mode, &words);
-    let bind = |brick| gather.bind(&inputs(&ring, &there, brick), &gathered, &layers);
+    let tiles = RayTiles::new(gpu, stage.extent).unwrap();
+    let bind = |brick| gather.bind(&inputs(&ring, &there, brick), &gathered, &layers, &tiles);
     let bound: Vec<_> = (0..bricks).map(bind).collect();
     let resolve = Resolve::new(gpu, mode, Blend::Over, format).unwrap();
     let resolved = resolve
@@ -106,14 +108,26 @@ impl Gather {
         }
     }
 
-    fn bind(&self, inputs: &Inputs, gathered: &Image, layers: &Image) -> Bindings {
+    fn bind(
+        &self,
+        inputs: &Inputs,
+        gathered: &Image,
+        layers: &Image,
+        tiles: &RayTiles,
+    ) -> RayBindings {
         match self {
-            Self::Raycast(pass) => pass.bind(inputs, gathered, layers).unwrap(),
-            Self::Projection(pass) => pass.bind(inputs, gathered).unwrap(),
+            Self::Raycast(pass) => pass.bind(inputs, gathered, layers, tiles).unwrap(),
+            Self::Projection(pass) => pass.bind(inputs, gathered, tiles).unwrap(),
         }
     }
 
-    unsafe fn record(&self, cmd: vk::CommandBuffer, bound: &Bindings, at: u32, extent: [u32; 2]) {
+    unsafe fn record(
+        &self,
+        cmd: vk::CommandBuffer,
+        bound: &RayBindings,
+        at: u32,
+        extent: [u32; 2],
+    ) {
         // SAFETY: the caller's promises.
         unsafe {
             match self {

@@ -8,6 +8,7 @@ use glam::{DAffine3, DVec3, dvec3};
 use shared::{device, device_with, oblique_camera, projections, volume_of};
 use skipping_shared::{Numbers, balls, cameras, hills, samples_of_same_pictures};
 use std::sync::Arc;
+use stratavox::camera::{Camera, Projection};
 use stratavox::gpu::{self, Buffer, Caps, Headless, Memory, Use, buffer_barrier};
 use stratavox::offscreen::Renderer;
 use stratavox::resident::{GpuVolume, MacroCells, TextureLayout};
@@ -310,5 +311,89 @@ fn a_voxel_at_the_border_of_a_cell_is_seen_from_the_cells_beside() {
         };
         let [skipped, whole] = samples_of_same_pictures(&mut renderer, &scene);
         assert!(skipped < whole, "{settings:?}: {skipped} of {whole}");
+    }
+}
+
+/// Small balls far from one another, looked at through wide and narrow lenses, from outside and from between them, in
+/// pictures whose tiles are wider and narrower than a cell.
+#[test]
+fn tiles_that_meet_nothing_are_left_out_and_no_others() {
+    let mut numbers = Numbers(23);
+    let side = 96.0;
+    let centers: Vec<_> = (0..4).map(|_| side * numbers.point()).collect();
+    let ball = |p: DVec3| {
+        let is_inside = |&center: &DVec3| (p - center).length() < 1.5;
+        100.0 * f64::from(centers.iter().any(is_inside))
+    };
+    let volume = volume_of([96, 96, 96], DAffine3::IDENTITY, ball);
+    let point = |(value, opacity)| OpacityPoint { value, opacity };
+    let function = TransferFunction {
+        color: vec![ColorPoint {
+            value: 0.0,
+            srgb: [1.0; 3],
+        }],
+        opacity: [(20.0, 0.0), (100.0, 0.7)].map(point).into(),
+        reference_length: None,
+        interpolation: Interpolation::Linear,
+        graded: None,
+    };
+    for caps in [
+        Caps::UNLIMITED,
+        Caps {
+            max_image_dimension_3d: 56,
+            ..Caps::UNLIMITED
+        },
+    ] {
+        let mut renderer = Renderer::new(device_with(caps), &volume).expect("a renderer");
+        let mut sums = [0.0; 2];
+        for number in 0..24 {
+            let per_side = 1 + numbers.below(2) as u32;
+            let mode = [Mode::Composite, Mode::Composite, Mode::Mida, Mode::Mip][numbers.below(4)];
+            let lattice = [Lattice::Ray, Lattice::Planes, Lattice::Jitter][numbers.below(3)];
+            let settings = Settings {
+                mode,
+                lattice: match mode {
+                    Mode::Mida => Lattice::Ray,
+                    _ => lattice,
+                },
+                rays_per_side: per_side,
+                uneven_rays: per_side > 1,
+                jitter: Jitter { seed: 5, frame: 2 },
+                ..Settings::default()
+            };
+            let away = [0.0, 90.0, 400.0, 1e5][numbers.below(4)];
+            let target = side * numbers.point();
+            let eye = target + (1.0 + away) * (numbers.point() - 0.5);
+            let height = [2.0, 60.0, 200.0][numbers.below(3)];
+            let camera = Camera {
+                eye,
+                target,
+                up: DVec3::Z,
+                zoom: 1.0,
+                projection: match numbers.below(2) {
+                    0 => Projection::Orthographic {
+                        view_height: height,
+                    },
+                    _ => Projection::Perspective {
+                        fov_degrees: [5.0, 40.0, 150.0][numbers.below(3)],
+                    },
+                },
+            };
+            let scene = Scene {
+                volume: &volume,
+                transfer: Some(&function),
+                beside: Default::default(),
+                camera: &camera,
+                extent_pixels: [9 + numbers.below(150) as u32, 7 + numbers.below(100) as u32],
+                settings: &settings,
+            };
+            let found = samples_of_same_pictures(&mut renderer, &scene);
+            assert!(found[0] <= found[1], "{number}: {found:?} samples");
+            sums = [sums[0] + found[0], sums[1] + found[1]];
+        }
+        assert!(
+            sums[0] < 0.5 * sums[1],
+            "hardly anything was left out: {sums:?}"
+        );
     }
 }

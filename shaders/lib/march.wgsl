@@ -4,6 +4,7 @@
 #import ray
 #import host_depth
 #import brick
+#import drawn_tile
 #import faces
 #import lattice_{lattice}
 #import filter_{filter}
@@ -15,12 +16,12 @@
 #import looks_{mix}
 
 // `before` is what bricks nearer to the eye have gathered.
-fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
+fn march(pixel: vec2<f32>, tile: RayTile, before: Accumulator) -> Accumulator {
     let world = pixel_ray(pixel);
     let voxel = voxel_ray(world);
     let interval = in_sight(domain_interval(world, voxel), world, pixel);
     var so_far = before;
-    let inside = brick_interval(voxel, interval);
+    let inside = counted(brick_interval(voxel, interval), tile);
     if !(interval.x < interval.y && inside.x < inside.y) || is_finished(before) {
         return so_far;
     }

@@ -10,6 +10,7 @@
 #import ray
 #import host_depth
 #import brick
+#import drawn_tile
 #import filter_linear_fetch
 #import mask
 #import holes_{holes}
@@ -26,11 +27,11 @@ struct Corners {
     high: vec4<f32>,
 }
 
-fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
+fn march(pixel: vec2<f32>, tile: RayTile, before: Accumulator) -> Accumulator {
     let world = pixel_ray(pixel);
     let voxel = voxel_ray(world);
     let interval = in_sight(domain_interval(world, voxel), world, pixel);
-    let inside = brick_interval(voxel, interval);
+    let inside = counted(brick_interval(voxel, interval), tile);
     var so_far = before;
     if !(interval.x < interval.y && inside.x < inside.y) {
         return so_far;

@@ -4,6 +4,7 @@
 #import host_depth
 #import brick
 #import faces
+#import drawn_tile
 #import stack_range
 #import stack_{filter}
 #import stack_at_nearest
@@ -17,7 +18,7 @@ struct Segment {
 }
 
 // `before` is what bricks nearer to the eye have gathered.
-fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
+fn march(pixel: vec2<f32>, tile: RayTile, before: Accumulator) -> Accumulator {
     let world = pixel_ray(pixel);
     let voxel = voxel_ray(world);
     let axis = frame.slice_axis;
@@ -28,7 +29,7 @@ fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
     if abs(slope) < 1e-20 || !(interval.x < interval.y) {
         return so_far;
     }
-    let slices = stack_range(voxel.origin[axis], slope, interval, 0, i32(frame.dims[axis]) - 1);
+    let slices = stack_range(voxel.origin[axis], slope, counted(interval, tile), 0, i32(frame.dims[axis]) - 1);
     for (var i = 0; i < slices.count && !is_finished(so_far); i++) {
         let slice = slices.first + i * slices.step;
         let t = (f32(slice) + 0.5 - voxel.origin[axis]) / slope;

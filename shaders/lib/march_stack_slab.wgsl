@@ -2,6 +2,7 @@
 
 #import host_depth
 #import faces
+#import drawn_tile
 #import stack_range
 #import stack_slab
 #import mode_{mode}
@@ -12,7 +13,7 @@ struct Segment {
 }
 
 // `before` is what bricks nearer to the eye have gathered.
-fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
+fn march(pixel: vec2<f32>, tile: RayTile, before: Accumulator) -> Accumulator {
     let world = pixel_ray(pixel);
     let voxel = voxel_ray(world);
     let axis = frame.slice_axis;
@@ -24,7 +25,7 @@ fn march(pixel: vec2<f32>, before: Accumulator) -> Accumulator {
         return so_far;
     }
     // A slab is named by its lower plane; the outermost reach half a voxel beyond the slices.
-    let slabs = stack_range(voxel.origin[axis], slope, interval, -1, i32(frame.dims[axis]) - 1);
+    let slabs = stack_range(voxel.origin[axis], slope, counted(interval, tile), -1, i32(frame.dims[axis]) - 1);
     for (var i = 0; i < slabs.count && !is_finished(so_far); i++) {
         let slab = stack_slab(voxel, slope, interval, slabs.first + i * slabs.step);
         so_far.samples += select(0.0, 1.0, slab.is_ours);

@@ -16,6 +16,7 @@
 #import material_{mix}
 #import unit
 #import rooms_passed_over
+#import no_value
 
 struct Accumulator {
     color: vec3<f32>,
@@ -27,8 +28,6 @@ struct Accumulator {
     largest: f32,
 }
 
-// No value so far.
-const NO_VALUE: f32 = -1e30;
 // That of the largest extinction, which stands for opacity 1.
 const CAP: f32 = 0.999755;
 

@@ -7,7 +7,7 @@ use crate::camera::Camera;
 use crate::gpu::{Bindings, Blocks, Buffer, Gpu, Image, Memory, ParameterRing, Resource};
 use crate::resident::GpuVolume;
 use crate::technique::slices_3d::half_angle::{HalfAngleBindings, light_buffer, light_extent};
-use crate::technique::{Inputs, Order, accumulation};
+use crate::technique::{Inputs, Order, RayBindings, RayTiles, accumulation};
 use ash::vk;
 use std::sync::Arc;
 
@@ -23,6 +23,8 @@ pub(super) struct Frame {
     pub light: Option<Image>,
     /// What rays leave, the one with the depth last.
     pub left: Vec<Image>,
+    /// Which tiles rays draw.
+    pub tiles: Option<RayTiles>,
     pub sets: Sets,
     /// Where the device puts the texels of a pixel.
     pub pick: Option<Buffer>,
@@ -49,7 +51,7 @@ pub(super) struct Sets {
     pub slices: Vec<Vec<Bindings>>,
     /// Of half-angle slices, which have one brick of one copy.
     pub half_angle: Option<HalfAngleBindings>,
-    pub rays: Vec<Vec<Bindings>>,
+    pub rays: Vec<Vec<RayBindings>>,
     /// Of what makes colours of the images.
     pub resolve: Option<Bindings>,
     /// Of what writes their depth.
@@ -114,6 +116,7 @@ impl Frame {
         let gathered = is_gathered.then(|| image("slices")).transpose()?;
         let of_rays = pass.rays.as_ref().map_or(0, |rays| rays.image_count());
         let left = ["rays", "beside rays"].into_iter().take(of_rays).map(image);
+        let tiles = pass.rays.is_some().then(|| RayTiles::new(gpu, extent));
         let readback = || {
             let usage = vk::BufferUsageFlags::TRANSFER_DST;
             Buffer::new(gpu, PICK_BYTES, usage, Memory::Readback, "picked texels")
@@ -122,6 +125,7 @@ impl Frame {
             gathered,
             light,
             left: left.collect::<Result<_, _>>()?,
+            tiles: tiles.transpose()?,
             sets: Sets::default(),
             pick: pass.rays.is_some().then(readback).transpose()?,
             picked: None,
@@ -137,21 +141,11 @@ impl Frame {
         let pass = bound.pass;
         let depth = bound.host_depth;
         let depth = depth.map(|image| Resource::Texture(image.view, image.layout));
-        let of_bricks = |bind: &dyn Fn(&Inputs) -> Result<Bindings, crate::gpu::Error>| {
-            let copies = bound.volume.copies().iter();
-            let of_copy = |copy: &GpuVolume| {
-                let bricks = 0..copy.bricks().len();
-                bricks
-                    .map(|brick| bind(&inputs(bound, copy, brick)))
-                    .collect()
-            };
-            copies.map(of_copy).collect::<Result<Vec<Vec<_>>, _>>()
-        };
         let mut sets = Sets::default();
         if let Some(slicer) = &pass.slicer {
             // What is drawn into the host's target is tested by the device, and reads nothing.
             let depth = depth.filter(|_| self.gathered.is_some());
-            sets.slices = of_bricks(&|inputs| match depth {
+            sets.slices = of_bricks(bound, |inputs| match depth {
                 Some(depth) => slicer.bind_behind(inputs, depth),
                 None => slicer.bind(inputs),
             })?;
@@ -160,8 +154,10 @@ impl Frame {
             let inputs = inputs(bound, &bound.volume.copies()[0], 0);
             sets.half_angle = Some(slicer.bind(&inputs, light)?);
         }
-        if let (Some(rays), [first, .., last] | [first @ last]) = (&pass.rays, &self.left[..]) {
-            sets.rays = of_bricks(&|inputs| rays.bind(inputs, first, last, depth))?;
+        if let (Some(rays), Some(tiles)) = (&pass.rays, &self.tiles)
+            && let [first, .., last] | [first @ last] = &self.left[..]
+        {
+            sets.rays = of_bricks(bound, |inputs| rays.bind(inputs, first, last, tiles, depth))?;
         }
         let shown = self.gathered.as_ref().or(self.left.first());
         if let (Some(resolve), Some(shown)) = (&pass.resolve, shown) {
@@ -172,6 +168,21 @@ impl Frame {
         }
         Ok(sets)
     }
+}
+
+/// Those of all bricks of each copy.
+fn of_bricks<B>(
+    bound: &Bound,
+    bind: impl Fn(&Inputs) -> Result<B, crate::gpu::Error>,
+) -> Result<Vec<Vec<B>>, crate::gpu::Error> {
+    let copies = bound.volume.copies().iter();
+    let of_copy = |copy: &GpuVolume| {
+        let bricks = 0..copy.bricks().len();
+        bricks
+            .map(|brick| bind(&inputs(bound, copy, brick)))
+            .collect()
+    };
+    copies.map(of_copy).collect()
 }
 
 fn inputs<'a>(bound: &Bound<'a>, copy: &'a GpuVolume, brick: usize) -> Inputs<'a> {

@@ -22,8 +22,10 @@ pub enum Use {
     Sampled,
     /// A vertex or fragment shader reads a storage buffer.
     DrawRead,
-    /// The parameters of a draw.
+    /// The parameters of a draw or of a dispatch.
     DrawIndirect,
+    /// As `before`: a compute shader has used it, and the content is given up.
+    ComputeDone,
     /// A color target, blended or not.
     ColorTarget,
     /// The source of a copy.
@@ -70,6 +72,7 @@ impl Use {
                 Access::INDIRECT_COMMAND_READ,
                 Layout::GENERAL,
             ),
+            Self::ComputeDone => (Stage::COMPUTE_SHADER, STORAGE, Layout::UNDEFINED),
             Self::ColorTarget => (
                 Stage::COLOR_ATTACHMENT_OUTPUT,
                 COLOR,
@@ -151,6 +154,23 @@ pub unsafe fn buffer_barrier(
         .buffer(buffer.raw())
         .size(vk::WHOLE_SIZE)];
     let info = vk::DependencyInfo::default().buffer_memory_barriers(&barriers);
+    // SAFETY: the caller's promises; synchronization2 was required of the device.
+    gpu.record(|device| unsafe { device.cmd_pipeline_barrier2(cmd, &info) });
+}
+
+/// Orders two uses of everything that they use, which keeps its layout.
+///
+/// # Safety
+///
+/// `cmd` is recording on `gpu`'s device, outside rendering.
+pub(crate) unsafe fn memory_barrier(gpu: &Gpu, cmd: vk::CommandBuffer, before: Use, after: Use) {
+    let ((src_stage, src_access, _), (dst_stage, dst_access, _)) = (before.state(), after.state());
+    let barriers = [vk::MemoryBarrier2::default()
+        .src_stage_mask(src_stage)
+        .src_access_mask(src_access)
+        .dst_stage_mask(dst_stage)
+        .dst_access_mask(dst_access)];
+    let info = vk::DependencyInfo::default().memory_barriers(&barriers);
     // SAFETY: the caller's promises; synchronization2 was required of the device.
     gpu.record(|device| unsafe { device.cmd_pipeline_barrier2(cmd, &info) });
 }

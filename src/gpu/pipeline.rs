@@ -1,7 +1,7 @@
 //! A compute pipeline, and what every pipeline shares.
 
 use super::{
-    Bindings, Error, Gpu, Groups, Layout, Tile, boxes, error::within, layout::stage_flag,
+    Bindings, Buffer, Error, Gpu, Groups, Layout, Tile, boxes, error::within, layout::stage_flag,
     owned::Own,
 };
 use crate::shaders::{Shader, Stage};
@@ -197,6 +197,30 @@ impl ComputePipeline {
                     _ => device.cmd_dispatch_base(cmd, x, y, z, nx, ny, nz),
                 }
             }
+        });
+    }
+
+    /// Binds pipeline and bindings and dispatches as many workgroups as `groups` begins with: a
+    /// `VkDispatchIndirectCommand`.
+    ///
+    /// # Safety
+    ///
+    /// As [`ComputePipeline::dispatch`]; `groups` has `INDIRECT_BUFFER` usage, is in `Use::DrawIndirect`, and holds
+    /// numbers within the limits of [`ComputePipeline::groups`].
+    pub(crate) unsafe fn dispatch_indirect(
+        &self,
+        cmd: vk::CommandBuffer,
+        bindings: &Bindings,
+        offsets: &[u32],
+        groups: &Buffer,
+    ) {
+        let point = vk::PipelineBindPoint::COMPUTE;
+        let sets = [bindings.raw()];
+        // SAFETY: the caller's promises are all that these calls ask.
+        self.raw.gpu().record(|device| unsafe {
+            device.cmd_bind_pipeline(cmd, point, self.raw());
+            device.cmd_bind_descriptor_sets(cmd, point, self.layout.raw(), 0, &sets, offsets);
+            device.cmd_dispatch_indirect(cmd, groups.raw(), 0);
         });
     }
 }

@@ -101,12 +101,13 @@ impl Passes {
         let Targets {
             accumulation,
             layers,
+            tiles,
             extent,
             ..
         } = submission.targets;
         match &self.gather {
             Gather::Rays(pass) => {
-                let bind = |inputs: &Inputs| pass.bind(inputs, accumulation, layers, None);
+                let bind = |inputs: &Inputs| pass.bind(inputs, accumulation, layers, tiles, None);
                 let bound = submission.bind(bind)?;
                 let images = &[accumulation, layers][..pass.image_count()];
                 submission.compute(images, &bound, |cmd, bindings, offset, tiles| {

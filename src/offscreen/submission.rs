@@ -3,8 +3,8 @@
 use super::targets::Targets;
 use super::time_slices::{Spent, TimeSlices, Work};
 use crate::gpu::Blocks;
-use crate::gpu::{Bindings, Error, Gpu, Headless, Image, Tile, Timer, Use, image_barrier};
-use crate::technique::{Inputs, Order};
+use crate::gpu::{Error, Gpu, Headless, Image, Tile, Timer, Use, image_barrier};
+use crate::technique::{Inputs, Order, RayBindings};
 use ash::vk;
 use std::ops::Range;
 
@@ -59,10 +59,7 @@ const MOST_OF_A_BLOCK: f64 = 0.25;
 
 impl Submission<'_, '_> {
     /// One descriptor set for each brick.
-    pub fn bind(
-        &self,
-        bind: impl Fn(&Inputs) -> Result<Bindings, Error>,
-    ) -> Result<Vec<Bindings>, Error> {
+    pub fn bind<B>(&self, bind: impl Fn(&Inputs) -> Result<B, Error>) -> Result<Vec<B>, Error> {
         self.bricks
             .iter()
             .map(|brick| bind(&brick.inputs))
@@ -125,8 +122,8 @@ impl Submission<'_, '_> {
     pub fn compute(
         self,
         images: &[&Image],
-        bound: &[Bindings],
-        record: impl Fn(vk::CommandBuffer, &Bindings, u32, &[Tile]) -> Result<(), Error>,
+        bound: &[RayBindings],
+        record: impl Fn(vk::CommandBuffer, &RayBindings, u32, &[Tile]) -> Result<(), Error>,
     ) -> Result<Spent, Error> {
         let (bricks, resumes) = (self.bricks, self.resumes);
         self.in_tiles(|cmd, gpu, drawn| {

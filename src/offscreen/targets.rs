@@ -4,7 +4,7 @@ use crate::gpu::{
     Buffer, Error, Gpu, Headless, Image, Memory, Region, Use, image_barrier, image_to_buffer,
 };
 use crate::technique::slices_3d::half_angle::light_buffer;
-use crate::technique::{PatchRoom, Patches, accumulation};
+use crate::technique::{PatchRoom, Patches, RayTiles, accumulation};
 use ash::vk;
 use std::sync::Arc;
 
@@ -22,6 +22,8 @@ pub struct Targets {
     pub layers: Image,
     /// Resolved colour.
     pub picture: Image,
+    /// Which tiles rays draw.
+    pub tiles: RayTiles,
     /// What the light sees of half-angle slices, once they were wanted.
     light_buffer: Option<Image>,
     /// Which parts of slices are drawn, once that was wanted.
@@ -39,6 +41,7 @@ impl Targets {
             accumulation: accumulation(gpu, extent, "accumulation")?,
             layers: accumulation(gpu, extent, "layers")?,
             picture: accumulation(gpu, extent, "picture")?,
+            tiles: RayTiles::new(gpu, extent)?,
             light_buffer: None,
             patches: None,
             readback: Buffer::new(gpu, bytes, usage, Memory::Readback, "readback")?,

@@ -2,8 +2,8 @@
 
 use super::projection::Projection;
 use super::raycast::Raycast;
-use super::{Inputs, Mix, Settings, Technique, Words};
-use crate::gpu::{Bindings, Error, Gpu, Image, Resource, Tile};
+use super::{Inputs, Mix, RayBindings, RayTiles, Settings, Technique, Words};
+use crate::gpu::{Error, Gpu, Image, Resource, Tile};
 use ash::vk;
 use std::sync::Arc;
 
@@ -80,13 +80,18 @@ impl RayPass {
         inputs: &Inputs,
         picture: &Image,
         layers: &Image,
+        tiles: &RayTiles,
         host_depth: Option<Resource>,
-    ) -> Result<Bindings, Error> {
+    ) -> Result<RayBindings, Error> {
         match (self, host_depth) {
-            (Self::Raycast(pass), None) => pass.bind(inputs, picture, layers),
-            (Self::Raycast(pass), Some(depth)) => pass.bind_behind(inputs, picture, layers, depth),
-            (Self::Projection(pass), None) => pass.bind(inputs, picture),
-            (Self::Projection(pass), Some(depth)) => pass.bind_behind(inputs, picture, depth),
+            (Self::Raycast(pass), None) => pass.bind(inputs, picture, layers, tiles),
+            (Self::Raycast(pass), Some(depth)) => {
+                pass.bind_behind(inputs, picture, layers, tiles, depth)
+            }
+            (Self::Projection(pass), None) => pass.bind(inputs, picture, tiles),
+            (Self::Projection(pass), Some(depth)) => {
+                pass.bind_behind(inputs, picture, tiles, depth)
+            }
         }
     }
 
@@ -100,7 +105,7 @@ impl RayPass {
     pub unsafe fn record_tiles(
         &self,
         cmd: vk::CommandBuffer,
-        bindings: &Bindings,
+        bindings: &RayBindings,
         offset: u32,
         extent: [u32; 2],
         tiles: impl IntoIterator<Item = Tile>,

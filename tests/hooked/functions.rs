@@ -250,6 +250,7 @@ others! {
         cmd: vk::CommandBuffer, point: vk::PipelineBindPoint, layout: vk::PipelineLayout, first: u32,
         sets: u32, set: *const vk::DescriptorSet, offsets: u32, offset: *const u32);
     vkCmdDispatch(cmd: vk::CommandBuffer, x: u32, y: u32, z: u32);
+    vkCmdDispatchIndirect(cmd: vk::CommandBuffer, buffer: vk::Buffer, offset: vk::DeviceSize);
     vkCmdDispatchBase(
         cmd: vk::CommandBuffer, x: u32, y: u32, z: u32, count_x: u32, count_y: u32, count_z: u32);
     vkCmdDraw(cmd: vk::CommandBuffer, vertices: u32, instances: u32, vertex: u32, instance: u32);

@@ -14,7 +14,8 @@ use stratavox::resident::{GpuTransfer, GpuVolume, TextureLayout};
 use stratavox::resolve::Resolve;
 use stratavox::technique::raycast::Raycast;
 use stratavox::technique::{
-    ACCUMULATION_FORMAT, Inputs, Mode, Settings, Skip, View, Words, accumulation, parameter_ring,
+    ACCUMULATION_FORMAT, Inputs, Mode, RayTiles, Settings, Skip, View, Words, accumulation,
+    parameter_ring,
 };
 use stratavox::transfer::TransferFunction;
 use stratavox::volume::{Grid, Volume};
@@ -84,7 +85,8 @@ impl Stage {
             brick: &voxels.bricks()[0],
             transfer: Some(&transfer),
         };
-        let bound = raycast.bind(&inputs, &gathered, &layers)?;
+        let tiles = RayTiles::new(gpu, extent)?;
+        let bound = raycast.bind(&inputs, &gathered, &layers, &tiles)?;
         let resolve = Resolve::new(gpu, Mode::Composite, Blend::Replace, ACCUMULATION_FORMAT)?;
         let resolved = resolve.bind(&ring, &gathered, Some(&transfer))?;
         let usage = vk::BufferUsageFlags::TRANSFER_DST;

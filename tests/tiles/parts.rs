@@ -7,16 +7,16 @@ use crate::shared::{
 use ash::vk;
 use std::sync::Arc;
 use stratavox::gpu::{
-    self, Bindings, Buffer, Caps, Gpu, Headless, Image, Load, Memory, ParameterRing, Region, Tile,
-    Use, begin_rendering, begin_rendering_of, end_rendering, image_barrier, image_to_buffer,
+    self, Buffer, Caps, Gpu, Headless, Image, Load, Memory, ParameterRing, Region, Tile, Use,
+    begin_rendering, begin_rendering_of, end_rendering, image_barrier, image_to_buffer,
 };
 use stratavox::picture::ColorSpace;
 use stratavox::resident::{GpuTransfer, GpuVolume};
 use stratavox::technique::blend::Drawn;
 use stratavox::technique::raycast::Raycast;
 use stratavox::technique::{
-    ACCUMULATION_FORMAT, InPixel, Inputs, Mode, Order, Settings, Skip, Slicer, Technique, View,
-    Words, accumulation, parameter_ring,
+    ACCUMULATION_FORMAT, InPixel, Inputs, Mode, Order, RayTiles, Settings, Skip, Slicer, Technique,
+    View, Words, accumulation, parameter_ring,
 };
 
 /// Numbers that look random and are the same each time (Knuth's linear congruence).
@@ -129,7 +129,7 @@ impl Ready {
         }
     }
 
-    fn bind(&self, bind: impl Fn(&Inputs) -> Result<Bindings, gpu::Error>) -> Vec<Bindings> {
+    fn bind<B>(&self, bind: impl Fn(&Inputs) -> Result<B, gpu::Error>) -> Vec<B> {
         let bound = self.recorded.iter().map(|&(brick, ..)| {
             bind(&Inputs {
                 ring: &self.ring,
@@ -163,7 +163,8 @@ impl Ready {
     /// Premultiplied colours by rays, `tiles` in a submission each.
     fn by_rays(&mut self, submissions: &[Vec<Tile>]) -> Vec<[u32; 4]> {
         let pass = Raycast::new(&self.gpu, &self.words).unwrap();
-        let bound = self.bind(|inputs| pass.bind(inputs, &self.picture, &self.layers));
+        let list = RayTiles::new(&self.gpu, EXTENT).unwrap();
+        let bound = self.bind(|inputs| pass.bind(inputs, &self.picture, &self.layers, &list));
         let mut before = Use::Nothing;
         for tiles in submissions {
             let (gpu, images) = (&self.gpu, [&self.picture, &self.layers]);
@@ -275,7 +276,8 @@ fn so_do_tiles_of_slices_and_runs_of_slices_that_load_what_the_ones_before_have_
 fn a_tile_that_cuts_a_workgroup_is_refused() {
     let mut ready = Ready::new(&Settings::default());
     let pass = Raycast::new(&ready.gpu, &ready.words).unwrap();
-    let bound = ready.bind(|inputs| pass.bind(inputs, &ready.picture, &ready.layers));
+    let list = RayTiles::new(&ready.gpu, EXTENT).unwrap();
+    let bound = ready.bind(|inputs| pass.bind(inputs, &ready.picture, &ready.layers, &list));
     let offset = ready.recorded[0].1;
     for (origin, extent) in [
         ([4, 0], [23, 21]),

@@ -4,17 +4,16 @@ pub mod exact;
 pub mod reference;
 
 use super::inputs::mode_word;
-use super::{Inputs, Mode, Words};
-use crate::gpu::{Bindings, ComputePipeline, Error, Gpu, Image, Resource, Tile};
-use crate::shaders::shader;
+use super::ray_tiles::{Nothing, TilePass};
+use super::{Inputs, Mode, RayBindings, RayTiles, Words};
+use crate::gpu::{Error, Gpu, Image, Resource, Tile};
 use ash::vk;
 use std::sync::Arc;
 
 /// The compute pass of one mode.
 #[derive(Debug)]
 pub struct Projection {
-    gpu: Arc<Gpu>,
-    pipeline: ComputePipeline,
+    pass: TilePass,
 }
 
 impl Projection {
@@ -44,23 +43,24 @@ impl Projection {
 
     fn of_shader(gpu: &Arc<Gpu>, name: &str) -> Result<Self, Error> {
         Ok(Self {
-            gpu: Arc::clone(gpu),
-            pipeline: ComputePipeline::new(gpu, shader(name))?,
+            pass: TilePass::new(gpu, name, Nothing::BeyondProjection)?,
         })
     }
 
     /// Binds inputs and the image that a recording fills, an R32G32B32A32_SFLOAT storage image:
-    /// (value, weight, depth or -1, samples).
+    /// (value, weight, depth or -1, samples). `tiles` has room for as many pixels, and is used by no unfinished recording.
     ///
     /// # Errors
     /// Where an input is missing.
-    pub fn bind(&self, inputs: &Inputs, accumulation: &Image) -> Result<Bindings, Error> {
+    pub fn bind(
+        &self,
+        inputs: &Inputs,
+        accumulation: &Image,
+        tiles: &RayTiles,
+    ) -> Result<RayBindings, Error> {
         // In place of a depth that is not looked at.
-        self.bind_behind(
-            inputs,
-            accumulation,
-            Resource::sampled_or_read(accumulation),
-        )
+        let depth = Resource::sampled_or_read(accumulation);
+        self.bind_behind(inputs, accumulation, tiles, depth)
     }
 
     /// The same behind what a host has drawn: `host_depth` is its depth buffer, a texture as large as the picture, of
@@ -72,13 +72,11 @@ impl Projection {
         &self,
         inputs: &Inputs,
         accumulation: &Image,
+        tiles: &RayTiles,
         host_depth: Resource,
-    ) -> Result<Bindings, Error> {
-        let outputs = [
-            ("accumulation", Resource::written(accumulation)),
-            ("host_depth", host_depth),
-        ];
-        inputs.bind(&self.gpu, self.pipeline.layout(), &outputs)
+    ) -> Result<RayBindings, Error> {
+        let images = [("accumulation", accumulation)];
+        self.pass.bind(inputs, tiles, &images, host_depth)
     }
 
     /// Records one picture, all of it at once, of the parameters at `offset` of the ring.
@@ -92,7 +90,7 @@ impl Projection {
     pub unsafe fn record(
         &self,
         cmd: vk::CommandBuffer,
-        bindings: &Bindings,
+        bindings: &RayBindings,
         offset: u32,
         extent: [u32; 2],
     ) -> Result<(), Error> {
@@ -114,19 +112,12 @@ impl Projection {
     pub unsafe fn record_tiles(
         &self,
         cmd: vk::CommandBuffer,
-        bindings: &Bindings,
+        bindings: &RayBindings,
         offset: u32,
         extent: [u32; 2],
         tiles: impl IntoIterator<Item = Tile>,
     ) -> Result<(), Error> {
-        for tile in tiles {
-            let boxes = [self.pipeline.groups_of(extent, tile)?];
-            // SAFETY: the caller's promises; the bindings come from `bind`.
-            unsafe {
-                self.pipeline
-                    .dispatch_boxes(cmd, bindings, &[offset], boxes)
-            };
-        }
-        Ok(())
+        // SAFETY: the caller's promises; the bindings come from `bind`.
+        unsafe { self.pass.record(cmd, bindings, offset, extent, tiles) }
     }
 }

@@ -3,17 +3,16 @@
 pub mod reference;
 
 use super::inputs::mode_word;
-use super::{Inputs, Mix, Mode, Take, Words};
-use crate::gpu::{Bindings, ComputePipeline, Error, Gpu, Image, Resource, Tile};
-use crate::shaders::shader;
+use super::ray_tiles::{Nothing, TilePass};
+use super::{Inputs, Mix, Mode, RayBindings, RayTiles, Take, Words};
+use crate::gpu::{Error, Gpu, Image, Resource, Tile};
 use ash::vk;
 use std::sync::Arc;
 
 /// The compute pass.
 #[derive(Debug)]
 pub struct Raycast {
-    gpu: Arc<Gpu>,
-    pipeline: ComputePipeline,
+    pass: TilePass,
 }
 
 impl Raycast {
@@ -65,15 +64,19 @@ impl Raycast {
                 mix.word()
             ),
         };
+        let nothing = match of {
+            Mode::Mida => Nothing::BeyondMida,
+            _ if *lattice == "stack" => Nothing::Beyond,
+            _ => Nothing::OfComposite,
+        };
         Ok(Self {
-            gpu: Arc::clone(gpu),
-            pipeline: ComputePipeline::new(gpu, shader(&name))?,
+            pass: TilePass::new(gpu, &name, nothing)?,
         })
     }
 
     /// Binds inputs and the two images that a recording fills, both R32G32B32A32_SFLOAT storage images:
     /// `picture` gets premultiplied colour and alpha, `layers` (what the mode keeps, depth or -1,
-    /// transmittance, samples).
+    /// transmittance, samples). `tiles` has room for as many pixels, and is used by no unfinished recording.
     ///
     /// # Errors
     /// Where an input is missing.
@@ -82,9 +85,11 @@ impl Raycast {
         inputs: &Inputs,
         picture: &Image,
         layers: &Image,
-    ) -> Result<Bindings, Error> {
+        tiles: &RayTiles,
+    ) -> Result<RayBindings, Error> {
         // In place of a depth that is not looked at.
-        self.bind_behind(inputs, picture, layers, Resource::sampled_or_read(layers))
+        let depth = Resource::sampled_or_read(layers);
+        self.bind_behind(inputs, picture, layers, tiles, depth)
     }
 
     /// The same behind what a host has drawn: `host_depth` is its depth buffer, a texture as large as the picture, of
@@ -97,14 +102,11 @@ impl Raycast {
         inputs: &Inputs,
         picture: &Image,
         layers: &Image,
+        tiles: &RayTiles,
         host_depth: Resource,
-    ) -> Result<Bindings, Error> {
-        let outputs = [
-            ("picture", Resource::written(picture)),
-            ("layers", Resource::written(layers)),
-            ("host_depth", host_depth),
-        ];
-        inputs.bind(&self.gpu, self.pipeline.layout(), &outputs)
+    ) -> Result<RayBindings, Error> {
+        let images = [("picture", picture), ("layers", layers)];
+        self.pass.bind(inputs, tiles, &images, host_depth)
     }
 
     /// Records one picture, all of it at once, of the parameters at `offset` of the ring.
@@ -118,7 +120,7 @@ impl Raycast {
     pub unsafe fn record(
         &self,
         cmd: vk::CommandBuffer,
-        bindings: &Bindings,
+        bindings: &RayBindings,
         offset: u32,
         extent: [u32; 2],
     ) -> Result<(), Error> {
@@ -140,19 +142,12 @@ impl Raycast {
     pub unsafe fn record_tiles(
         &self,
         cmd: vk::CommandBuffer,
-        bindings: &Bindings,
+        bindings: &RayBindings,
         offset: u32,
         extent: [u32; 2],
         tiles: impl IntoIterator<Item = Tile>,
     ) -> Result<(), Error> {
-        for tile in tiles {
-            let boxes = [self.pipeline.groups_of(extent, tile)?];
-            // SAFETY: the caller's promises; the bindings come from `bind`.
-            unsafe {
-                self.pipeline
-                    .dispatch_boxes(cmd, bindings, &[offset], boxes)
-            };
-        }
-        Ok(())
+        // SAFETY: the caller's promises; the bindings come from `bind`.
+        unsafe { self.pass.record(cmd, bindings, offset, extent, tiles) }
     }
 }
