@@ -49,7 +49,7 @@ impl Window {
         }
         let view = &mut self.view;
         view.status.pipelines = self.host.gpu().pipelines_made();
-        view.status.device_bytes = self.host.gpu().device_bytes();
+        view.status.device_bytes = self.host.gpu().memory().reserved_bytes;
         let mut output = self.context.run_ui(input, |ui| panel::show(ui, view));
         if self.view.is_moving {
             self.last_move = Some(Instant::now());
