@@ -153,10 +153,14 @@ impl Window {
             None => {}
             Some(Picked::Nothing) => println!("pick nothing"),
             Some(Picked::Something {
-                position, value, ..
+                position,
+                value,
+                name,
+                ..
             }) => {
                 let [x, y, z] = position.to_array();
                 println!("pick {x} {y} {z} {}", value.unwrap_or(f64::NAN));
+                println!("called {}", name.as_deref().unwrap_or("nothing"));
             }
         }
         if let Some(message) = &view.message {
