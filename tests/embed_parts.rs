@@ -46,7 +46,7 @@ fn ways() -> Vec<Settings> {
 fn assert_count(settings: &Settings, is_cut: bool, count: u64) {
     let is_sliced = settings.technique != Technique::Raycast;
     match settings.shading.is_some() {
-        true => assert!(count > 20 && count % 2 == 0, "{count}"),
+        true => assert!(count > 20 && count.is_multiple_of(2), "{count}"),
         false if is_cut && is_sliced => assert!([6, 15].contains(&count), "{count}"),
         false => assert_eq!(count, 6),
     }

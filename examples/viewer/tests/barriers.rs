@@ -11,6 +11,12 @@ use missing_barrier::*;
 use std::fs;
 use tempfile::TempDir;
 
+/// From a colour target to what the window shows: layers of 2023 do not look at what dynamic rendering stores, and presentation
+/// waits for a semaphore.
+const SHOWN: &str = "image 2 to 1000001002";
+/// What the CPU reads: no layer sees that.
+const COPIED_TO_HOST: &str = "buffer 1000 to 2000";
+
 #[test]
 fn each_barrier_of_a_window_is_needed() {
     if std::env::var("STRATAVOX_VALIDATION").as_deref() != Ok("sync") {
@@ -31,5 +37,18 @@ fn each_barrier_of_a_window_is_needed() {
         viewer.env_remove("STRATAVOX_VALIDATION");
         viewer
     };
-    layer.assert_each_is_missed(program, &[]);
+    let unheard = [
+        NEXT_FUNCTION,
+        // The picture of the volume and the window, of each of two frames.
+        NEW_TARGET,
+        NEW_TARGET,
+        NEW_TARGET,
+        NEW_TARGET,
+        // Of the first frame, and of one that was drawn while the script went on.
+        SHOWN,
+        SHOWN,
+        COPIED_TO_HOST,
+        COPIED_TO_HOST,
+    ];
+    layer.assert_each_is_missed(program, &unheard);
 }
