@@ -128,13 +128,19 @@ fn parts_together_are_the_frame() {
             let wanted = whole(&host, &mut renderer, &stage);
             for size in [1, 4, u64::MAX] {
                 let image = HostImage::new(&host, FORMAT, EXTENT);
+                // In a layout that parts leave behind them: the next one that named it would be heard.
+                let target = Target {
+                    before: Use::TransferWrite.into(),
+                    ..target(&image)
+                };
+                // SAFETY: the image is the host's; `run` waits.
+                host.run(|cmd| unsafe { image.clear(cmd, [1.0; 4]) });
                 let count = renderer.begin_parts(&shot(&stage, 1)).unwrap();
                 assert_count(&settings, is_cut, count);
                 let mut left = count;
                 while left > 0 {
                     // SAFETY: one part a submission, in order; `run` waits.
                     host.run(|cmd| unsafe {
-                        let target = target(&image);
                         let after = renderer.record_part_into(cmd, 1, size, &target, CLEAR);
                         let after = after.unwrap();
                         assert_eq!(after, left.saturating_sub(size));
