@@ -91,7 +91,7 @@ test: driver layers display
 	$(VIEWER)
 
 # A package of its own, with a window and a panel that nothing else builds.
-VIEWER := RUST_TEST_THREADS=1 $(CARGO) test --locked --package stratavox-viewer
+VIEWER := STRATAVOX_VALIDATION=sync RUST_TEST_THREADS=1 $(CARGO) test --locked --package stratavox-viewer
 
 viewer: driver layers display
 	$(VIEWER)

@@ -541,7 +541,7 @@ typedef struct sv_submission {
     uint64_t signal_count;
 } sv_submission;
 
-// How long the submissions of a frame last, and who hears of them.
+// How long the submissions of a frame, an upload or an update last, and who hears of them.
 typedef struct sv_pacing {
     // `sizeof(sv_pacing)`.
     uint32_t struct_size;
@@ -549,12 +549,18 @@ typedef struct sv_pacing {
     const void *next;
     // Milliseconds that a submission shall take. 0 is 100.
     double target_ms;
-    // Called after each submission but the last with how much of the frame is done, 0 to 1; not 0 ends the frame. Or NULL.
+    // Called after each submission but the last with how much is done, 0 to 1; not 0 ends it. Or NULL.
     // It calls no function of this header.
     uint32_t (*tell)(void *user, double done);
     // What `tell` is called with.
     void *user;
 } sv_pacing;
+
+// A volume on a device. 0 is none.
+typedef uint64_t sv_volume;
+
+// New voxels on their way into a volume. 0 is none.
+typedef uint64_t sv_update;
 
 // What lies under a pixel: where a composite has become half opaque, the first surface, the place of a maximum.
 typedef struct sv_pick {
@@ -726,9 +732,6 @@ typedef struct sv_plan {
     uint64_t bricks;
 } sv_plan;
 
-// A volume on a device. 0 is none.
-typedef uint64_t sv_volume;
-
 // What is drawn into, as far as pipelines have to know.
 typedef struct sv_target_class {
     // `sizeof(sv_target_class)`.
@@ -832,9 +835,6 @@ typedef struct sv_update_desc {
     uint64_t voxel_bytes;
 } sv_update_desc;
 
-// New voxels on their way into a volume. 0 is none.
-typedef uint64_t sv_update;
-
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -893,14 +893,15 @@ sv_status sv_function_create(sv_device device,
 // Destroys it. Renderers that were made with it have a copy. Threads: any.
 sv_status sv_function_destroy(sv_function function, struct sv_diagnostic *diagnostic);
 
-// Begins a frame that is recorded in parts, and tells how many blocks of 64 x 64 pixels it has. What else is recorded for the
-// frame, and another function, volume or size, ends it. Threads: one at a time for one renderer.
+// Begins a frame that is recorded in parts, and tells how many pieces it has: blocks of 64 x 64 pixels, smaller where those
+// are thought to take long, slices of half-angle slicing, and what a new function has to be found empty. What else is recorded
+// for the frame, another function, volume or size, and an update of the volume, ends it. Threads: one at a time for one renderer.
 sv_status sv_renderer_begin_parts(sv_renderer renderer,
                                   const struct sv_shot *shot,
-                                  uint64_t *blocks,
+                                  uint64_t *pieces,
                                   struct sv_diagnostic *diagnostic);
 
-// Level B in parts: records the next `count` blocks, one at least, and tells how many are left. The same `target` each time.
+// Level B in parts: records the next `count` pieces, one at least, and tells how many are left. The same `target` each time.
 //
 // Rays, and slices in other modes than composite, touch the target with the last part alone. Composites by slices draw each part
 // into it, and leave it in its state `after`. As sv_renderer_record_into; parts are submitted in their order to one queue.
@@ -920,6 +921,28 @@ sv_status sv_submitter_submit_in_parts(sv_submitter submitter,
                                        sv_renderer renderer,
                                        const struct sv_shot *shot,
                                        const struct sv_target *target,
+                                       const struct sv_submission *submission,
+                                       const struct sv_pacing *pacing,
+                                       uint32_t *is_done,
+                                       struct sv_diagnostic *diagnostic);
+
+// sv_submitter_upload in as many submissions as it takes for each to last no longer than `pacing` says (NULL: 100 ms). Between
+// them it waits for the device, for the host's `waits` too. `is_done` is set to 0 where the host ended it: none of the signals
+// will be reached then, and the rest of the upload is still to be recorded. As sv_submitter_submit_in_parts.
+sv_status sv_submitter_upload_in_parts(sv_submitter submitter,
+                                       sv_volume volume,
+                                       uint32_t frame,
+                                       const struct sv_submission *submission,
+                                       const struct sv_pacing *pacing,
+                                       uint32_t *is_done,
+                                       struct sv_diagnostic *diagnostic);
+
+// sv_volume_record_update in submissions of the library's own, in parts. `is_done` is set to 0 where the host ended it: none of
+// the signals will be reached then, and the rest of the update is still to be recorded. As sv_submitter_upload_in_parts.
+sv_status sv_submitter_update_in_parts(sv_submitter submitter,
+                                       sv_volume volume,
+                                       sv_update update,
+                                       uint32_t frame,
                                        const struct sv_submission *submission,
                                        const struct sv_pacing *pacing,
                                        uint32_t *is_done,
@@ -1073,8 +1096,9 @@ sv_status sv_volume_stage_update(sv_volume volume,
                                  struct sv_diagnostic *diagnostic);
 
 // Records an update between the frames that were recorded before, which show the old voxels, and those recorded later, which
-// show the new ones. Its handle is used up; what it is staged in is freed by sv_device_retire, if sv_device_announce came
-// before.
+// show the new ones. Updates of one volume are recorded as they were staged: SV_E_STATE where another comes first, or was
+// destroyed, and this was staged after it. The handle of one that is recorded is used up; what it is staged in is freed by
+// sv_device_retire, if sv_device_announce came before.
 //
 // `command_buffer` (`VkCommandBuffer`) is recording, outside rendering, and is submitted to the queue that draws the volume, in
 // the order of recording. Threads: any, one at a time for one volume.
@@ -1083,8 +1107,21 @@ sv_status sv_volume_record_update(sv_volume volume,
                                   sv_update update,
                                   struct sv_diagnostic *diagnostic);
 
-// Destroys the handle of an update that is not recorded. Threads: any.
-sv_status sv_update_destroy(sv_update update, struct sv_diagnostic *diagnostic);
+// Records the next `count` pieces of an update, one at least and none of them long, and tells how many are left. Where there are
+// none, the handle is used up. Until then the volume is not drawn (SV_E_STATE); where the update is destroyed before, that lasts
+// until another one is recorded that changes all of its voxels. As sv_volume_record_update, of all parts, which are submitted in
+// their order.
+sv_status sv_volume_record_update_part(sv_volume volume,
+                                       void *command_buffer,
+                                       sv_update update,
+                                       uint64_t count,
+                                       uint64_t *left,
+                                       struct sv_diagnostic *diagnostic);
+
+// Destroys the handle of an update that is not recorded: those that were staged after it will not be recorded any more, for
+// they were staged from voxels that hold these. Threads: any.
+sv_status sv_update_destroy(sv_update update,
+                            struct sv_diagnostic *diagnostic);
 
 // Makes textures for voxels, which are copied to where the upload finds them. Threads: any.
 sv_status sv_volume_create(sv_device device,
@@ -1098,6 +1135,14 @@ sv_status sv_volume_create(sv_device device,
 // `command_buffer` (`VkCommandBuffer`) is recording, outside rendering, and is submitted before what draws the volume.
 // Threads: any, one at a time for one volume.
 sv_status sv_volume_record_upload(sv_volume volume, void *command_buffer, struct sv_diagnostic *diagnostic);
+
+// Records the next `count` pieces of the upload, one at least and none of them long, and tells how many are left. Where there
+// are none, the volume is uploaded. As sv_volume_record_upload, of all parts, which are submitted in their order.
+sv_status sv_volume_record_upload_part(sv_volume volume,
+                                       void *command_buffer,
+                                       uint64_t count,
+                                       uint64_t *left,
+                                       struct sv_diagnostic *diagnostic);
 
 // The smallest and the largest value that is no hole: two doubles. Threads: any.
 sv_status sv_volume_value_range(sv_volume volume, double *range, struct sv_diagnostic *diagnostic);

@@ -79,7 +79,13 @@ impl<'h> Ready<'h> {
     /// Parameters into the frame's own slot, commands into its own command buffer; nothing is made.
     fn record(&self, host: &Host, stage: &Stage, slot: usize) {
         let gpu = host.gpu();
-        let made = || (gpu.live_objects(), gpu.pipelines_made(), gpu.device_bytes());
+        let made = || {
+            (
+                gpu.live_objects(),
+                gpu.pipelines_made(),
+                gpu.memory().reserved_bytes,
+            )
+        };
         let before = made();
         let OnDevice { volume, transfer } = &self.there;
         let recordings = stage.view().recordings(volume, Some(transfer)).unwrap();

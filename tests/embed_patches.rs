@@ -72,7 +72,13 @@ fn patches_inside_the_hosts_rendering_are_the_picture_of_whole_slices() {
             cells.record(cmd).unwrap();
             empty.record(cmd).unwrap();
         });
-        let made = || (gpu.live_objects(), gpu.pipelines_made(), gpu.device_bytes());
+        let made = || {
+            (
+                gpu.live_objects(),
+                gpu.pipelines_made(),
+                gpu.memory().reserved_bytes,
+            )
+        };
         let before = made();
         // SAFETY: as above.
         host.run(|cmd| unsafe {

@@ -32,9 +32,9 @@ fn a_plan_tells_bytes_and_bricks_of_what_is_made_later() {
             let (dims, stored) = (stage.volume.dims, stage.volume.voxels.voxel_type());
             let holes = stage.volume.validity.is_some();
             let plan = Volume::plan(gpu, dims, stored, holes, &stage.settings).unwrap();
-            let before = gpu.owned_device_bytes();
+            let before = gpu.memory().used_bytes;
             let made = Volume::new(gpu, &stage.volume, &stage.settings).unwrap();
-            let took = gpu.owned_device_bytes() - before;
+            let took = gpu.memory().used_bytes - before;
             let what = format!("{technique:?} {filter:?}: {plan:?}, took {took}");
             let layout = stage.view().texture_layout();
             let bricks = made.copy(layout).unwrap().bricks().len();

@@ -168,7 +168,7 @@ fn a_constructor_that_fails_halfway_leaves_nothing_behind() {
 fn a_small_user_takes_little_memory_from_the_driver() {
     let headless = headless();
     let _buffer = small(headless.gpu());
-    assert_eq!(headless.gpu().device_bytes(), 4 << 20);
+    assert_eq!(headless.gpu().memory().reserved_bytes, 4 << 20);
 }
 
 #[test]

@@ -383,7 +383,7 @@ fn all_that_lies_on_the_device_stays_under_what_it_may_take() {
         let mut renderer = Renderer::streamed(device(), &stream).expect("a renderer");
         renderer.render(&scene, &[]).expect("a picture");
         let picture = renderer.render(&scene, &[]).expect("a picture").picture;
-        (renderer.device().gpu().peak_device_bytes(), picture)
+        (renderer.device().gpu().memory().peak_bytes, picture)
     };
     // 8 bricks of 67 floats a side are 9.6 MB, and pictures and copies take blocks of 4 MiB.
     let (all, whole) = peak_of(u64::MAX);

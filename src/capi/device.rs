@@ -83,7 +83,7 @@ impl Device {
     }
 
     /// Runs `body`, and hears whether it meets a lost device.
-    pub fn run(&self, body: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
+    pub fn run<T>(&self, body: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
         self.check()?;
         let ended = body();
         if let Err(failure) = &ended

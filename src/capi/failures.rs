@@ -93,6 +93,8 @@ impl From<embed::Error> for Failure {
             Error::NotEmbedded { .. } | Error::NoDepth { .. } => SV_E_UNSUPPORTED,
             Error::OtherClass { .. }
             | Error::NotUploaded
+            | Error::UpdateOrder { .. }
+            | Error::HalfUpdated { .. }
             | Error::Uploaded
             | Error::NotRecorded { .. }
             | Error::NotBegun { .. }

@@ -1,6 +1,6 @@
 //! Images of the host's: what is drawn into, and depths that are read.
 
-use super::status::{Failure, number};
+use super::status::{Failure, number, reserved};
 use super::structure::{self, Versioned};
 use crate::embed::HostDepthImage;
 use crate::gpu::{DepthClass, HostPass, Load, Target, TargetClass, TargetState, Use};
@@ -146,6 +146,7 @@ pub(super) unsafe fn depth_images(
         if c.view == 0 {
             return Err(Failure::argument("sv_depth_image.view is 0"));
         }
+        reserved("sv_depth_image.reserved", c.reserved)?;
         let view = vk::ImageView::from_raw(c.view);
         let layout = layout("sv_depth_image.layout", c.layout)?;
         // SAFETY: the caller's promise.
@@ -192,10 +193,12 @@ fn is_zero(state: &sv_image_state) -> bool {
         state.has_queue_family,
         state.stage,
         state.access,
-    ) == (0, 0, 0, 0)
+        state.reserved,
+    ) == (0, 0, 0, 0, 0)
 }
 
 fn state(name: &str, c: &sv_image_state) -> Result<TargetState, Failure> {
+    reserved(&format!("{name}.reserved"), c.reserved)?;
     Ok(TargetState {
         layout: layout(&format!("{name}.layout"), c.layout)?,
         stage: vk::PipelineStageFlags2::from_raw(c.stage),

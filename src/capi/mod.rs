@@ -50,6 +50,7 @@ pub use host::{sv_feature, sv_get_instance_proc_addr, sv_host_device, sv_limits,
 pub use images::{sv_depth_image, sv_image_state, sv_target, sv_target_class};
 pub use parts::{
     sv_pacing, sv_renderer_begin_parts, sv_renderer_record_part_into, sv_submitter_submit_in_parts,
+    sv_submitter_update_in_parts, sv_submitter_upload_in_parts,
 };
 pub use pick::{sv_pick, sv_renderer_pick, sv_renderer_record_pick};
 pub use plan::{sv_plan, sv_volume_plan};
@@ -68,11 +69,12 @@ pub use submit::{
     sv_submitter_upload, sv_timeline_point,
 };
 pub use update::{
-    sv_update, sv_update_desc, sv_update_destroy, sv_volume_record_update, sv_volume_stage_update,
+    sv_update, sv_update_desc, sv_update_destroy, sv_volume_record_update,
+    sv_volume_record_update_part, sv_volume_stage_update,
 };
 pub use volume::{
     sv_volume, sv_volume_create, sv_volume_desc, sv_volume_destroy, sv_volume_record_upload,
-    sv_volume_value_range,
+    sv_volume_record_upload_part, sv_volume_value_range,
 };
 pub use words::{
     sv_camera_kind, sv_color_space, sv_filter, sv_lattice, sv_mode, sv_technique, sv_version,

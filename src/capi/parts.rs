@@ -1,18 +1,19 @@
-//! Frames in parts, each a submission, that a host may end.
+//! Frames, uploads and updates in parts, each a submission, that a host may end.
 
 use super::handles::{self, Kind};
 use super::images::{sv_target, target};
 use super::record::{Taken, sv_shot};
 use super::renderer::{self, sv_renderer, with};
-use super::status::{guard, number, sv_diagnostic, sv_status};
+use super::status::{Failure, guard, number, sv_diagnostic, sv_status};
 use super::structure::{self, Versioned};
 use super::submit::{self, Submission, sv_submission, sv_submitter};
-use super::volume::commands;
+use super::update::{self, sv_update};
+use super::volume::{self, commands, sv_volume};
 use crate::embed::Pacing;
 use std::ffi::c_void;
 use std::ops::ControlFlow;
 
-/// How long the submissions of a frame last, and who hears of them.
+/// How long the submissions of a frame, an upload or an update last, and who hears of them.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct sv_pacing {
@@ -22,7 +23,7 @@ pub struct sv_pacing {
     pub next: *const c_void,
     /// Milliseconds that a submission shall take. 0 is 100.
     pub target_ms: f64,
-    /// Called after each submission but the last with how much of the frame is done, 0 to 1; not 0 ends the frame. Or NULL.
+    /// Called after each submission but the last with how much is done, 0 to 1; not 0 ends it. Or NULL.
     /// It calls no function of this header.
     pub tell: Option<unsafe extern "C" fn(user: *mut c_void, done: f64) -> u32>,
     /// What `tell` is called with.
@@ -34,22 +35,23 @@ unsafe impl Versioned for sv_pacing {
     const NAME: &'static str = "sv_pacing";
 }
 
-/// Begins a frame that is recorded in parts, and tells how many blocks of 64 x 64 pixels it has. What else is recorded for the
-/// frame, and another function, volume or size, ends it. Threads: one at a time for one renderer.
+/// Begins a frame that is recorded in parts, and tells how many pieces it has: blocks of 64 x 64 pixels, smaller where those
+/// are thought to take long, slices of half-angle slicing, and what a new function has to be found empty. What else is recorded
+/// for the frame, another function, volume or size, and an update of the volume, ends it. Threads: one at a time for one renderer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sv_renderer_begin_parts(
     renderer: sv_renderer,
     shot: *const sv_shot,
-    blocks: *mut u64,
+    pieces: *mut u64,
     diagnostic: *mut sv_diagnostic,
 ) -> sv_status {
     let body = || {
-        structure::out("the place of the number of blocks", blocks)?;
+        structure::out("the place of the number of pieces", pieces)?;
         with(renderer, |_, inner| {
             // SAFETY: the caller's promise.
             unsafe {
                 let taken = Taken::new(shot, inner)?;
-                blocks.write(inner.renderer.begin_parts(&taken.shot())?);
+                pieces.write(inner.renderer.begin_parts(&taken.shot())?);
             }
             Ok(())
         })
@@ -58,7 +60,7 @@ pub unsafe extern "C" fn sv_renderer_begin_parts(
     unsafe { guard(diagnostic, body) }
 }
 
-/// Level B in parts: records the next `count` blocks, one at least, and tells how many are left. The same `target` each time.
+/// Level B in parts: records the next `count` pieces, one at least, and tells how many are left. The same `target` each time.
 ///
 /// Rays, and slices in other modes than composite, touch the target with the last part alone. Composites by slices draw each part
 /// into it, and leave it in its state `after`. As sv_renderer_record_into; parts are submitted in their order to one queue.
@@ -73,7 +75,7 @@ pub unsafe extern "C" fn sv_renderer_record_part_into(
     diagnostic: *mut sv_diagnostic,
 ) -> sv_status {
     let body = || {
-        structure::out("the place of the number of blocks", left)?;
+        structure::out("the place of the number of pieces", left)?;
         with(renderer, |_, inner| {
             let cmd = commands(command_buffer)?;
             // SAFETY: the caller's promise.
@@ -119,23 +121,17 @@ pub unsafe extern "C" fn sv_submitter_submit_in_parts(
                 let taken = Taken::new(shot, inner)?;
                 let (target, load) = self::target(target)?;
                 let submission = Submission::new(submission)?;
-                let pacing = structure::read_or_zero(pacing)?;
-                let ms = pacing.target_ms;
-                let name = "sv_pacing.target_ms";
-                number(name, "0 or more", ms, ms.is_finite() && ms >= 0.0)?;
-                let mut tell = |done: f64| match pacing.tell {
-                    Some(tell) if tell(pacing.user, done) != 0 => ControlFlow::Break(()),
-                    _ => ControlFlow::Continue(()),
-                };
-                let pacing = Pacing {
-                    target_ms: if ms == 0.0 { Pacing::TARGET_MS } else { ms },
-                    tell: &mut tell,
-                };
+                let pacing = paced(pacing)?;
                 let locked = submission.locked();
                 let lock = submission.lock(&locked);
                 let (waits, signals) = (&submission.waits, &submission.signals);
                 let renderer = &mut inner.renderer;
                 let shot = taken.shot();
+                let mut tell = |done: f64| told(&pacing, done);
+                let pacing = Pacing {
+                    target_ms: pacing.target_ms,
+                    tell: &mut tell,
+                };
                 let done = submitter.submit_in_parts(
                     renderer, &shot, &target, load, lock, waits, signals, pacing,
                 )?;
@@ -146,4 +142,120 @@ pub unsafe extern "C" fn sv_submitter_submit_in_parts(
     };
     // SAFETY: the caller's promise.
     unsafe { guard(diagnostic, body) }
+}
+
+/// sv_submitter_upload in as many submissions as it takes for each to last no longer than `pacing` says (NULL: 100 ms). Between
+/// them it waits for the device, for the host's `waits` too. `is_done` is set to 0 where the host ended it: none of the signals
+/// will be reached then, and the rest of the upload is still to be recorded. As sv_submitter_submit_in_parts.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sv_submitter_upload_in_parts(
+    submitter: sv_submitter,
+    volume: sv_volume,
+    frame: u32,
+    submission: *const sv_submission,
+    pacing: *const sv_pacing,
+    is_done: *mut u32,
+    diagnostic: *mut sv_diagnostic,
+) -> sv_status {
+    let body = || {
+        structure::out("the place of is_done", is_done)?;
+        let (device, held) = handles::find::<submit::Held>(submitter)?;
+        let volume = handles::find_on::<volume::Held>(&device, volume)?;
+        let mut submitter = handles::only(submit::Held::NAME, &held.0)?;
+        // SAFETY: the caller's promise.
+        device.run(|| unsafe {
+            let submission = Submission::new(submission)?;
+            let pacing = paced(pacing)?;
+            let locked = submission.locked();
+            let lock = submission.lock(&locked);
+            let (waits, signals) = (&submission.waits, &submission.signals);
+            let mut tell = |done: f64| told(&pacing, done);
+            let pacing = Pacing {
+                target_ms: pacing.target_ms,
+                tell: &mut tell,
+            };
+            let done = volume.upload(|volume| {
+                let gpu = &device.gpu;
+                submitter.upload_in_parts(gpu, volume, frame, lock, waits, signals, pacing)
+            })?;
+            is_done.write(done.into());
+            Ok(())
+        })
+    };
+    // SAFETY: the caller's promise.
+    unsafe { guard(diagnostic, body) }
+}
+
+/// sv_volume_record_update in submissions of the library's own, in parts. `is_done` is set to 0 where the host ended it: none of
+/// the signals will be reached then, and the rest of the update is still to be recorded. As sv_submitter_upload_in_parts.
+#[unsafe(no_mangle)]
+#[allow(
+    clippy::too_many_arguments,
+    reason = "those of sv_submitter_upload_in_parts, and one"
+)]
+pub unsafe extern "C" fn sv_submitter_update_in_parts(
+    submitter: sv_submitter,
+    volume: sv_volume,
+    update: sv_update,
+    frame: u32,
+    submission: *const sv_submission,
+    pacing: *const sv_pacing,
+    is_done: *mut u32,
+    diagnostic: *mut sv_diagnostic,
+) -> sv_status {
+    let body = || {
+        structure::out("the place of is_done", is_done)?;
+        let (device, held) = handles::find::<submit::Held>(submitter)?;
+        let volume = handles::find_on::<volume::Held>(&device, volume)?;
+        let mut submitter = handles::only(submit::Held::NAME, &held.0)?;
+        // SAFETY: the caller's promise.
+        device.run(|| unsafe {
+            let submission = Submission::new(submission)?;
+            let pacing = paced(pacing)?;
+            let locked = submission.locked();
+            let lock = submission.lock(&locked);
+            let (waits, signals) = (&submission.waits, &submission.signals);
+            let mut tell = |done: f64| told(&pacing, done);
+            let pacing = Pacing {
+                target_ms: pacing.target_ms,
+                tell: &mut tell,
+            };
+            let done = update::with(&device, update, &volume, |volume, staged| {
+                Ok(submitter
+                    .update_in_parts(volume, staged, frame, lock, waits, signals, pacing)?)
+            })?;
+            is_done.write(done.into());
+            Ok(())
+        })
+    };
+    // SAFETY: the caller's promise.
+    unsafe { guard(diagnostic, body) }
+}
+
+/// What a caller says of it, with the time that is asked for where none is told.
+///
+/// # Safety
+/// As [`structure::read_or_zero`].
+unsafe fn paced(pointer: *const sv_pacing) -> Result<sv_pacing, Failure> {
+    // SAFETY: the caller's promise.
+    let mut pacing = unsafe { structure::read_or_zero(pointer)? };
+    let ms = pacing.target_ms;
+    let name = "sv_pacing.target_ms";
+    number(name, "0 or more", ms, ms.is_finite() && ms >= 0.0)?;
+    if ms == 0.0 {
+        pacing.target_ms = Pacing::TARGET_MS;
+    }
+    Ok(pacing)
+}
+
+/// Asks the host.
+///
+/// # Safety
+/// `tell` is a function of the host's that takes `user`.
+unsafe fn told(pacing: &sv_pacing, done: f64) -> ControlFlow<()> {
+    match pacing.tell {
+        // SAFETY: the caller's promise.
+        Some(tell) if unsafe { tell(pacing.user, done) } != 0 => ControlFlow::Break(()),
+        _ => ControlFlow::Continue(()),
+    }
 }

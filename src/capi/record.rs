@@ -3,7 +3,7 @@
 use super::camera::{camera, sv_camera};
 use super::images::{sv_target, target};
 use super::renderer::{Inner, sv_renderer, with};
-use super::status::{Failure, guard, sv_diagnostic, sv_status};
+use super::status::{Failure, guard, reserved, sv_diagnostic, sv_status};
 use super::structure::{self, Versioned};
 use super::volume::commands;
 use crate::camera::{Camera, HostDepth};
@@ -48,6 +48,7 @@ impl Taken {
             let extent = inner.renderer.extent();
             (shot, camera(shot.camera, inner.volume.grid(), extent)?)
         };
+        reserved("sv_shot.reserved", shot.reserved)?;
         let class = inner.renderer.class();
         let writes_depth = class.gives_depth && class.target.depth.is_some();
         if depth.is_none() && (class.host_depth || writes_depth) {

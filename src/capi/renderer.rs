@@ -5,7 +5,7 @@ use super::function::{function, sv_function};
 use super::handles::{self, Kind};
 use super::images::{MOST_FRAMES, depth_images, sv_depth_image, sv_target_class, target_class};
 use super::settings::{settings, sv_settings};
-use super::status::{Failure, guard, number, sv_diagnostic, sv_status};
+use super::status::{Failure, guard, number, reserved, sv_diagnostic, sv_status};
 use super::structure::{self, Versioned};
 use super::volume::{self, sv_volume};
 use crate::embed::{self, Class};
@@ -229,12 +229,7 @@ unsafe fn made(device: &Device, desc: &sv_renderer_desc) -> Result<Inner, Failur
         let doing = "keep frames in flight";
         return Err(Failure::limit(doing, frames.into(), MOST_FRAMES.into()));
     }
-    number(
-        "sv_renderer_desc.reserved",
-        "0",
-        desc.reserved.into(),
-        desc.reserved == 0,
-    )?;
+    reserved("sv_renderer_desc.reserved", desc.reserved)?;
     let class = Class {
         settings,
         target,

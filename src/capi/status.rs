@@ -106,6 +106,11 @@ pub(super) fn number(name: &str, wanted: &str, found: f64, is_right: bool) -> Re
     }
 }
 
+/// Refuses what is not zero where nothing is told yet.
+pub(super) fn reserved(name: &str, found: u32) -> Result<(), Failure> {
+    number(name, "0", found.into(), found == 0)
+}
+
 /// Runs `body`, and tells the caller how it ended. Nothing unwinds from here into C.
 ///
 /// # Safety

@@ -149,31 +149,15 @@ pub unsafe extern "C" fn sv_submitter_upload(
         let volume = handles::find_on::<volume::Held>(&device, volume)?;
         let mut submitter = handles::only(Held::NAME, &held.0)?;
         device.run(|| {
-            let mut refused = None;
             // SAFETY: the caller's promise.
-            let submitted = unsafe {
+            unsafe {
                 let submission = Submission::new(submission)?;
                 let locked = submission.locked();
                 let lock = submission.lock(&locked);
                 let (waits, signals) = (&submission.waits, &submission.signals);
-                volume.check_new()?;
-                submitter.run(lock, frame, waits, signals, |cmd| {
-                    match volume.record_upload(&device.gpu, cmd) {
-                        Ok(()) => Ok(()),
-                        // Its own word comes below; this one only ends the recording.
-                        Err(failure) => {
-                            refused = Some(failure);
-                            Err(crate::embed::Error::NotUploaded)
-                        }
-                    }
+                volume.upload(|volume| {
+                    submitter.upload(&device.gpu, volume, frame, lock, waits, signals)
                 })
-            };
-            if submitted.is_err() && refused.is_none() {
-                volume.forget_upload();
-            }
-            match refused {
-                Some(failure) => Err(failure),
-                None => Ok(submitted?),
             }
         })
     };

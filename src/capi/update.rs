@@ -1,5 +1,6 @@
 //! New voxels of a box of a volume that is drawn.
 
+use super::device::Device;
 use super::handles::{self, Kind};
 use super::status::{Failure, guard, sv_diagnostic, sv_status};
 use super::structure::{self, Versioned};
@@ -97,8 +98,9 @@ pub unsafe extern "C" fn sv_volume_stage_update(
 }
 
 /// Records an update between the frames that were recorded before, which show the old voxels, and those recorded later, which
-/// show the new ones. Its handle is used up; what it is staged in is freed by sv_device_retire, if sv_device_announce came
-/// before.
+/// show the new ones. Updates of one volume are recorded as they were staged: SV_E_STATE where another comes first, or was
+/// destroyed, and this was staged after it. The handle of one that is recorded is used up; what it is staged in is freed by
+/// sv_device_retire, if sv_device_announce came before.
 ///
 /// `command_buffer` (`VkCommandBuffer`) is recording, outside rendering, and is submitted to the queue that draws the volume, in
 /// the order of recording. Threads: any, one at a time for one volume.
@@ -116,11 +118,7 @@ pub unsafe extern "C" fn sv_volume_record_update(
         device.run(|| {
             let volume = held.share()?;
             let mut staged = handles::only(Held::NAME, &staged.0)?;
-            if !staged.as_ref().is_some_and(|staged| staged.is_of(&volume)) {
-                return Err(Failure::argument(
-                    "sv_update: the handle is of one that was staged for another sv_volume, or is recorded",
-                ));
-            }
+            check(&volume, staged.as_ref())?;
             handles::remove::<Held>(update)?;
             let Some(staged) = staged.take() else {
                 unreachable!("looked at just now");
@@ -134,7 +132,71 @@ pub unsafe extern "C" fn sv_volume_record_update(
     unsafe { guard(diagnostic, body) }
 }
 
-/// Destroys the handle of an update that is not recorded. Threads: any.
+/// Records the next `count` pieces of an update, one at least and none of them long, and tells how many are left. Where there are
+/// none, the handle is used up. Until then the volume is not drawn (SV_E_STATE); where the update is destroyed before, that lasts
+/// until another one is recorded that changes all of its voxels. As sv_volume_record_update, of all parts, which are submitted in
+/// their order.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sv_volume_record_update_part(
+    volume: sv_volume,
+    command_buffer: *mut c_void,
+    update: sv_update,
+    count: u64,
+    left: *mut u64,
+    diagnostic: *mut sv_diagnostic,
+) -> sv_status {
+    let body = || {
+        structure::out("the place of the number of pieces", left)?;
+        let (device, held) = handles::find::<volume::Held>(volume)?;
+        let cmd = commands(command_buffer)?;
+        let found = device.run(|| {
+            with(&device, update, &held, |volume, staged| {
+                // SAFETY: the caller's promise.
+                Ok(unsafe { volume.record_update_part(cmd, staged, count)? })
+            })
+        })?;
+        // SAFETY: not NULL; the caller's promise.
+        unsafe { left.write(found) };
+        Ok(())
+    };
+    // SAFETY: the caller's promise.
+    unsafe { guard(diagnostic, body) }
+}
+
+/// What a call does with an update, which is used up where nothing of it is left.
+pub(super) fn with<T>(
+    device: &Device,
+    update: sv_update,
+    volume: &volume::Held,
+    work: impl FnOnce(&embed::Volume, &mut embed::Update) -> Result<T, Failure>,
+) -> Result<T, Failure> {
+    let held = handles::find_on::<Held>(device, update)?;
+    let volume = volume.share()?;
+    let mut staged = handles::only(Held::NAME, &held.0)?;
+    check(&volume, staged.as_ref())?;
+    let Some(there) = staged.as_mut() else {
+        unreachable!("looked at just now");
+    };
+    let done = work(&volume, there);
+    if there.parts() == 0 {
+        *staged = None;
+        handles::remove::<Held>(update)?;
+    }
+    done
+}
+
+/// Whether it is an update of the volume, and its turn.
+fn check(volume: &embed::Volume, staged: Option<&embed::Update>) -> Result<(), Failure> {
+    match staged.filter(|staged| staged.is_of(volume)) {
+        Some(staged) => Ok(volume.check_update(staged)?),
+        None => Err(Failure::argument(
+            "sv_update: the handle is of one that was staged for another sv_volume, or is recorded",
+        )),
+    }
+}
+
+/// Destroys the handle of an update that is not recorded: those that were staged after it will not be recorded any more, for
+/// they were staged from voxels that hold these. Threads: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sv_update_destroy(
     update: sv_update,

@@ -3,11 +3,10 @@
 use super::device::sv_device;
 use super::handles::{self, Kind};
 use super::settings::{finite, settings, sv_settings};
-use super::status::{Failure, guard, number, sv_diagnostic, sv_status};
+use super::status::{Failure, guard, number, reserved, sv_diagnostic, sv_status};
 use super::structure::{self, Versioned};
 use super::words::{VOXEL_TYPES, word};
 use crate::embed;
-use crate::gpu::Gpu;
 use crate::volume::{Rescale, Volume, VoxelType, Voxels};
 use ash::vk::{self, Handle};
 use glam::{DAffine3, DMat4, DVec4};
@@ -64,8 +63,8 @@ unsafe impl Versioned for sv_volume_desc {
 pub(super) struct Held(Mutex<Inner>);
 
 struct Inner {
-    volume: Arc<embed::Volume>,
-    upload: Upload,
+    /// Missing while it is uploaded, which may call the host.
+    volume: Option<Arc<embed::Volume>>,
     source: Source,
 }
 
@@ -77,14 +76,6 @@ pub(super) struct Source {
     pub fill: Option<f64>,
 }
 
-#[derive(Clone, Copy, PartialEq)]
-enum Upload {
-    Wanted,
-    Recorded,
-    /// It was begun, and what it recorded never runs.
-    Failed,
-}
-
 impl Kind for Held {
     const NUMBER: u64 = 2;
     const NAME: &'static str = "sv_volume";
@@ -93,8 +84,7 @@ impl Kind for Held {
 impl Held {
     fn new(volume: embed::Volume, source: Source) -> Self {
         Self(Mutex::new(Inner {
-            volume: Arc::new(volume),
-            upload: Upload::Wanted,
+            volume: Some(Arc::new(volume)),
             source,
         }))
     }
@@ -110,60 +100,42 @@ impl Held {
         })
     }
 
+    fn volume(&self) -> Result<Arc<embed::Volume>, Failure> {
+        self.lock()?.volume.clone().ok_or_else(busy)
+    }
+
     /// For a renderer, which keeps it.
     pub fn share(&self) -> Result<Arc<embed::Volume>, Failure> {
-        let inner = self.lock()?;
-        match inner.upload {
-            Upload::Recorded => Ok(Arc::clone(&inner.volume)),
-            Upload::Wanted => Err(Failure::state(
+        let volume = self.volume()?;
+        match volume.upload_parts()? {
+            0 => Ok(volume),
+            _ => Err(Failure::state(
                 "the volume is not uploaded: sv_volume_record_upload comes before its renderers",
             )),
-            Upload::Failed => Err(failed()),
         }
     }
 
-    /// Refuses one that was uploaded before.
-    pub fn check_new(&self) -> Result<(), Failure> {
-        self.lock()?.check_new()
-    }
-
-    /// Records the upload, once.
-    ///
-    /// # Safety
-    /// As [`embed::Volume::record_upload`].
-    pub unsafe fn record_upload(&self, gpu: &Gpu, cmd: vk::CommandBuffer) -> Result<(), Failure> {
-        let mut inner = self.lock()?;
-        inner.check_new()?;
-        inner.upload = Upload::Failed;
-        let volume = Arc::get_mut(&mut inner.volume).expect("shared when it is uploaded");
-        // SAFETY: the caller's promise.
-        unsafe { volume.record_upload(gpu, cmd)? };
-        inner.upload = Upload::Recorded;
-        Ok(())
-    }
-
-    /// What was recorded was not submitted: its voxels are gone.
-    pub fn forget_upload(&self) {
-        if let Ok(mut inner) = self.lock()
-            && inner.upload == Upload::Recorded
-        {
-            inner.upload = Upload::Failed;
-        }
+    /// Uploads it, once, or a part of it.
+    pub fn upload<T>(
+        &self,
+        work: impl FnOnce(&mut embed::Volume) -> Result<T, embed::Error>,
+    ) -> Result<T, Failure> {
+        let mut taken = self.lock()?.volume.take().ok_or_else(busy)?;
+        let done = match Arc::get_mut(&mut taken) {
+            Some(volume) => work(volume).map_err(Failure::from),
+            // Renderers have it, or another call looks at it.
+            None => match taken.upload_parts()? {
+                0 => Err(embed::Error::Uploaded.into()),
+                _ => Err(busy()),
+            },
+        };
+        self.lock()?.volume = Some(taken);
+        done
     }
 }
 
-impl Inner {
-    fn check_new(&self) -> Result<(), Failure> {
-        match self.upload {
-            Upload::Wanted => Ok(()),
-            Upload::Recorded => Err(Failure::state("the volume was uploaded before")),
-            Upload::Failed => Err(failed()),
-        }
-    }
-}
-
-fn failed() -> Failure {
-    Failure::state("the upload of the volume failed: destroy it and make it again")
+fn busy() -> Failure {
+    Failure::state("another thread uses this sv_volume, or a call of the host's back")
 }
 
 /// Makes textures for voxels, which are copied to where the upload finds them. Threads: any.
@@ -226,7 +198,34 @@ pub unsafe extern "C" fn sv_volume_record_upload(
         let (device, held) = handles::find::<Held>(volume)?;
         let cmd = commands(command_buffer)?;
         // SAFETY: the caller's promise.
-        device.run(|| unsafe { held.record_upload(&device.gpu, cmd) })
+        device.run(|| held.upload(|volume| unsafe { volume.record_upload(&device.gpu, cmd) }))
+    };
+    // SAFETY: the caller's promise.
+    unsafe { guard(diagnostic, body) }
+}
+
+/// Records the next `count` pieces of the upload, one at least and none of them long, and tells how many are left. Where there
+/// are none, the volume is uploaded. As sv_volume_record_upload, of all parts, which are submitted in their order.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn sv_volume_record_upload_part(
+    volume: sv_volume,
+    command_buffer: *mut c_void,
+    count: u64,
+    left: *mut u64,
+    diagnostic: *mut sv_diagnostic,
+) -> sv_status {
+    let body = || {
+        structure::out("the place of the number of pieces", left)?;
+        let (device, held) = handles::find::<Held>(volume)?;
+        let cmd = commands(command_buffer)?;
+        let part = |volume: &mut embed::Volume| {
+            // SAFETY: the caller's promise.
+            unsafe { volume.record_upload_part(&device.gpu, cmd, count) }
+        };
+        let found = device.run(|| held.upload(part))?;
+        // SAFETY: not NULL; the caller's promise.
+        unsafe { left.write(found) };
+        Ok(())
     };
     // SAFETY: the caller's promise.
     unsafe { guard(diagnostic, body) }
@@ -242,7 +241,7 @@ pub unsafe extern "C" fn sv_volume_value_range(
     let body = || {
         structure::out("the place of the two values", range)?;
         let (_, held) = handles::find::<Held>(volume)?;
-        let found = held.lock()?.volume.value_range();
+        let found = held.volume()?.value_range();
         // SAFETY: not NULL; the caller's promise.
         unsafe { range.cast::<[f64; 2]>().write(found) };
         Ok(())
@@ -311,13 +310,7 @@ fn value_range(desc: &sv_volume_desc, found: [f64; 2]) -> Result<[f64; 2], Failu
     let is_finite = low.is_finite() && high.is_finite();
     let bad = if low.is_finite() { high } else { low };
     number("a rescaled value", "a finite number", bad, is_finite)?;
-    let reserved = desc.reserved;
-    number(
-        "sv_volume_desc.reserved",
-        "0",
-        reserved.into(),
-        reserved == 0,
-    )?;
+    reserved("sv_volume_desc.reserved", desc.reserved)?;
     if desc.has_value_range == 0 {
         return Ok(found);
     }

@@ -361,7 +361,7 @@ impl<'a> Renderer<'a> {
     /// Device memory in use or kept for later.
     pub fn device_bytes(&self) -> u64 {
         match &self.on_device {
-            Some(renderer) => renderer.device().gpu().device_bytes(),
+            Some(renderer) => renderer.device().gpu().memory().reserved_bytes,
             None => 0,
         }
     }

@@ -60,6 +60,23 @@ pub enum Error {
         /// What was given.
         found: String,
     },
+    /// Updates of a volume that are not recorded as they were staged.
+    #[error("an update of a volume out of its order: wanted {wanted}, found {found}")]
+    UpdateOrder {
+        /// What would do.
+        wanted: &'static str,
+        /// What was given.
+        found: String,
+    },
+    /// Voxels of which a part is new.
+    #[error(
+        "voxels from {:?} to before {:?} are half changed: record the rest of their update, or one of all of them",
+        region.min, region.max
+    )]
+    HalfUpdated {
+        /// What the update changes.
+        region: crate::volume::VoxelBox,
+    },
     /// No frame in flight, or more than any host has.
     #[error("wanted 1 to {most} frames in flight, found {found}")]
     FramesInFlight {

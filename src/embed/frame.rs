@@ -6,7 +6,9 @@ use super::{Error, HostDepthImage, Volume};
 use crate::camera::Camera;
 use crate::gpu::{Bindings, Blocks, Buffer, Gpu, Image, Memory, ParameterRing, Resource};
 use crate::resident::GpuVolume;
-use crate::technique::slices_3d::half_angle::{HalfAngleBindings, light_buffer, light_extent};
+use crate::technique::slices_3d::half_angle::{
+    HalfAngleBindings, Steps, light_buffer, light_extent,
+};
 use crate::technique::{Inputs, Order, RayBindings, RayTiles, accumulation};
 use ash::vk;
 use std::sync::Arc;
@@ -36,13 +38,34 @@ pub(super) struct Frame {
     pub begun: Option<Begun>,
 }
 
-/// A frame of which some blocks are recorded.
+/// A frame of which some is recorded.
 #[derive(Debug)]
 pub(super) struct Begun {
     pub recorded: Recorded,
-    pub blocks: Blocks,
-    /// The first block that is not recorded.
+    pub cut: Cut,
+    /// The first block or step that is not recorded.
     pub next: u64,
+    /// How often the volume was updated before.
+    pub after: u64,
+    /// What the picture is thought to take.
+    pub expected_ms: f64,
+}
+
+/// How a picture is cut.
+#[derive(Debug)]
+pub(super) enum Cut {
+    Blocks(Blocks),
+    /// Half-angle slices, which are no sum of blocks: eye and light take turns over all of the picture.
+    Steps(Steps),
+}
+
+impl Cut {
+    pub fn count(&self) -> u64 {
+        match self {
+            Self::Blocks(blocks) => blocks.count(),
+            Self::Steps(steps) => steps.count(),
+        }
+    }
 }
 
 /// The descriptor sets of one frame in flight, those of bricks for each copy of the volume.

@@ -1,5 +1,6 @@
 //! A transfer function on a host's device, and what is empty under it.
 
+use super::pieces::run_of;
 use super::{Error, Volume};
 use crate::gpu::{ComputePipeline, Gpu};
 use crate::resident::{EmptySpace, GpuTransfer};
@@ -23,10 +24,14 @@ pub(super) struct Function {
 /// What was recorded of a function, and so is there for what is recorded later.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Uploaded {
-    is_done: bool,
-    /// After how many updates of the volume its empty space was found.
+    has_table: bool,
+    /// Pieces of its empty space that are found, after so many updates of the volume.
+    found: u64,
     found_after: u64,
 }
+
+/// Macro cells that one piece goes through: each looks at some ten others.
+const PIECE_CELLS: u64 = 1 << 14;
 
 impl Function {
     /// Objects for `function`. `emptying` finds empty space; without it nothing is left out that is not seen.
@@ -88,29 +93,68 @@ impl Function {
         self.uploaded = then;
     }
 
-    /// Records what fills the objects, once, and what is empty once more after an update of the volume.
+    /// Pieces that are left of what [`Function::record_part`] records, none of them long: the tables, which are small, come
+    /// with the first.
+    ///
+    /// # Errors
+    /// A grid larger than the device can dispatch.
+    pub fn left(&self, volume: &Volume) -> Result<u64, Error> {
+        let (all, _) = self.pieces()?;
+        let left = all.saturating_sub(self.found(volume));
+        Ok(match self.uploaded.has_table {
+            true => left,
+            false => left.max(1),
+        })
+    }
+
+    /// Pieces of all passes, and the workgroups that they are cut of.
+    fn pieces(&self) -> Result<(u64, u64), Error> {
+        let Some(empty) = &self.empty else {
+            return Ok((0, 0));
+        };
+        let runs = empty.group_runs()?;
+        let cells = empty.rooms().bytes() / 4;
+        let all = runs.len() as u64 * cells.div_ceil(PIECE_CELLS);
+        Ok((all, runs.last().map_or(0, |last| last.end)))
+    }
+
+    fn found(&self, volume: &Volume) -> u64 {
+        match self.uploaded.found_after == volume.updates.done() {
+            true => self.uploaded.found,
+            false => 0,
+        }
+    }
+
+    /// Records the next pieces of what fills the objects, once, and what is empty once more after an update of the volume.
+    ///
+    /// # Errors
+    /// As [`Function::left`].
     ///
     /// # Safety
-    /// `cmd` is recording, outside rendering, after the upload of the volume and its updates.
-    pub unsafe fn record_upload(
+    /// `cmd` is recording, outside rendering, after the upload of the volume and its updates; parts are submitted in their
+    /// order.
+    pub unsafe fn record_part(
         &mut self,
         cmd: vk::CommandBuffer,
         volume: &Volume,
+        count: u64,
     ) -> Result<(), Error> {
-        let updates = volume.updates();
+        let (all, groups) = self.pieces()?;
+        let first = self.found(volume);
+        let part = first..first.saturating_add(count).min(all);
         // SAFETY: the caller's promises.
         unsafe {
-            if let (Some(made), false) = (&self.made, self.uploaded.is_done) {
+            if let (Some(made), false) = (&self.made, self.uploaded.has_table) {
                 made.record_upload(cmd)?;
             }
-            let is_old = !self.uploaded.is_done || self.uploaded.found_after != updates;
-            if let Some(empty) = self.empty.as_ref().filter(|_| is_old) {
-                empty.record(cmd)?;
+            if let (Some(empty), false) = (&self.empty, part.is_empty()) {
+                empty.record_part(cmd, run_of(groups, &part, all))?;
             }
         }
         self.uploaded = Uploaded {
-            is_done: true,
-            found_after: updates,
+            has_table: true,
+            found: part.end,
+            found_after: volume.updates.done(),
         };
         Ok(())
     }

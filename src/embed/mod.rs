@@ -30,19 +30,26 @@ mod class;
 mod error;
 mod frame;
 mod function;
+mod in_parts;
 mod parts;
 mod pass;
 mod pick;
+mod pieces;
 mod recording;
 mod renderer;
 mod submitter;
 mod update;
+#[cfg(test)]
+mod updated_cells;
+mod updates;
+mod upload;
 mod volume;
 
 pub use class::{Class, HostDepthImage, Shot};
 pub use error::Error;
+pub use in_parts::Pacing;
 pub use pick::Pick;
 pub use renderer::Renderer;
-pub use submitter::{Pacing, QueueLock, Submitter};
+pub use submitter::{QueueLock, Submitter};
 pub use update::Update;
 pub use volume::Volume;

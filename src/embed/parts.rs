@@ -2,14 +2,15 @@
 //! between two of them.
 //!
 //! ```text
-//! renderer.begin_parts(shot)                            parameters; how many blocks of the picture there are
+//! renderer.begin_parts(shot)                            parameters; how many pieces there are: mostly blocks of the picture
 //! renderer.record_part_into(cmd, frame, n, target, ..)  the next n of them, until none is left
 //! submitter.submit_in_parts(..)                         both, as many blocks a submission as take 100 ms
 //! ```
 //!
 //! All parts together draw the very picture that one recording would.
 
-use super::frame::Begun;
+use super::frame::{Begun, Cut};
+use super::pieces::PIECE_MS;
 use super::recording::Share;
 use super::{Error, Renderer, Shot};
 use crate::gpu::{Blocks, Load, Target, TargetState, Tile, Use, begin_rendering, end_rendering};
@@ -17,35 +18,52 @@ use crate::technique::cost::{looks_of_picture, ms_of_looks};
 use crate::technique::{InPixel, View};
 use ash::vk;
 
-/// Pixels along the side of a block.
+/// Pixels along the side of a block, and of one that is thought to take long.
 const SIDE: u32 = 64;
+const SMALLEST_SIDE: u32 = Tile::STEP;
 
 impl Renderer {
-    /// Begins a frame in parts: writes its parameters. How many blocks of 64 x 64 pixels there are; any first part of
-    /// them is spread over the picture.
+    /// Begins a frame in parts: writes its parameters. How many pieces there are: blocks of 64 x 64 pixels, or of 32, 16 or 8
+    /// where larger ones are thought to take long, any first part of them spread over the picture; of half-angle slices each
+    /// slice, or bands of it; and before them what a new function, or an update of the volume, has to be found empty.
     ///
-    /// What else is recorded for the frame, and another function, volume or size, ends it. As before [`Renderer::record`], what
-    /// was recorded for the frame before is done: its parameters are written over, and what is not done draws with those.
+    /// What else is recorded for the frame, another function, volume or size, and an update of the volume, ends it. As before
+    /// [`Renderer::record`], what was recorded for the frame before is done: its parameters are written over, and what is not
+    /// done draws with those.
     ///
     /// # Errors
     /// As [`Renderer::record`].
     pub fn begin_parts(&mut self, shot: &Shot) -> Result<u64, Error> {
         let (frame, recorded) = self.prepare(shot)?;
-        let blocks = Blocks::new(self.extent, self.extent.map(|n| n.div_ceil(SIDE)));
-        let count = blocks.count();
+        let slices = recorded.picture.iter().map(|part| part.slices).sum();
+        let expected_ms = self.expected_ms(shot, slices);
+        // A slice is drawn twice, and both are counted.
+        let a_step = expected_ms / f64::from(slices.max(1));
+        let bands = (a_step / PIECE_MS).ceil().max(1.0) as u32;
+        let cut = match self.steps(frame, &recorded, bands) {
+            Some(steps) => Cut::Steps(steps),
+            None => {
+                let side = self.side_of_block(expected_ms);
+                let count = self.extent.map(|n| n.div_ceil(side));
+                Cut::Blocks(Blocks::new(self.extent, count))
+            }
+        };
+        let count = cut.count() + self.function.left(&self.volume)?;
         self.frames[frame].begun = Some(Begun {
             recorded,
-            blocks,
+            cut,
             next: 0,
+            after: self.volume.updates.done(),
+            expected_ms,
         });
         Ok(count)
     }
 
-    /// Level B, in parts: records the next `count` blocks, one at least, and says how many are left.
+    /// Level B, in parts: records the next `count` pieces, one at least, and says how many are left.
     ///
     /// Rays, and slices in other modes than composite, touch the target with the last part alone: a frame that is given up
-    /// before has left it as it was, in its state `before`. Composites by slices draw each part into it: after each it is in its
-    /// state `after`, cleared or kept as `load` says where no block is drawn yet.
+    /// before has left it as it was, in its state `before`. Composites by slices draw each part with a block into it: after each
+    /// it is in its state `after`, cleared or kept as `load` says where no block is drawn yet.
     ///
     /// # Errors
     /// [`Error::NotBegun`]; as [`Renderer::record_into`]; [`Error::NotEmbedded`] for composites by slices into a target
@@ -53,7 +71,7 @@ impl Renderer {
     ///
     /// # Safety
     /// - As [`Renderer::record_into`], of all parts of a frame: they are submitted in their order, to one queue, and with
-    ///   nothing else between them that uses the target, the volume being the same;
+    ///   nothing else between them that uses the target;
     /// - the target is in the state that was said above.
     pub unsafe fn record_part_into(
         &mut self,
@@ -66,25 +84,40 @@ impl Renderer {
         self.gpu.check_alive("record a part of a frame")?;
         let number = self.frame_number(frame)?;
         self.check_parts(target, load)?;
-        let mut begun = self.frames[number]
-            .begun
-            .take()
-            .ok_or(Error::NotBegun { frame })?;
-        let all = begun.blocks.count();
-        let part = begun.next..begun.next.saturating_add(count.max(1)).min(all);
+        self.volume.updates.check_whole()?;
+        let begun = self.frames[number].begun.take();
+        let is_current = |begun: &Begun| begun.after == self.volume.updates.done();
+        let begun = begun.filter(is_current);
+        let mut begun = begun.ok_or(Error::NotBegun { frame })?;
+        let all = begun.cut.count();
+        let before = self.function.left(&self.volume)?.min(count.max(1));
+        if before > 0 {
+            // SAFETY: the caller's promises.
+            unsafe { self.function.record_part(cmd, &self.volume, before)? };
+        }
+        let count = count.max(1) - before;
+        if count == 0 {
+            let left = all - begun.next + self.function.left(&self.volume)?;
+            self.frames[number].begun = Some(begun);
+            return Ok(left);
+        }
+        let part = begun.next..begun.next.saturating_add(count).min(all);
         let share = Share {
             is_first: part.start == 0,
             is_last: part.end == all,
         };
-        let tiles = begun.blocks.tiles(part.clone());
         let recorded = &begun.recorded;
         let is_drawn_at_once = self.pass.resolve.is_none();
         // SAFETY: the caller's promises.
         unsafe {
-            if share.is_first {
-                self.function.record_upload(cmd, &self.volume)?;
+            let tiles = match &begun.cut {
+                Cut::Blocks(blocks) => blocks.tiles(part.clone()),
+                Cut::Steps(_) => Vec::new(),
+            };
+            match &begun.cut {
+                Cut::Blocks(_) => self.gather(cmd, number, recorded, &tiles, share)?,
+                Cut::Steps(steps) => self.gather_steps(cmd, number, steps, part.clone()),
             }
-            self.gather(cmd, number, recorded, &tiles, share)?;
             if is_drawn_at_once || share.is_last {
                 let (again, load) = match is_drawn_at_once && !share.is_first {
                     true => (true, Load::Keep),
@@ -134,8 +167,33 @@ impl Renderer {
         }
     }
 
-    /// A first guess of what a frame takes, rather too much.
-    pub(super) fn expected_ms(&self, shot: &Shot) -> f64 {
+    /// What is left of a frame in parts: pieces of the function, then those of the picture with what they are thought to take.
+    pub(super) fn left_of(&self, frame: u32) -> Result<[(u64, f64); 2], Error> {
+        let function = self.function.left(&self.volume)?;
+        let begun = self.frames.get(frame as usize);
+        let begun = begun.and_then(|frame| frame.begun.as_ref());
+        let picture = begun.map_or((0, 0.0), |begun| {
+            (begun.cut.count() - begun.next, begun.expected_ms)
+        });
+        Ok([(function, PIECE_MS * function as f64), picture])
+    }
+
+    /// The largest side of which a block is not thought to take long.
+    fn side_of_block(&self, expected_ms: f64) -> u32 {
+        let [width, height] = self.extent.map(f64::from);
+        let is_long = |side: u32| {
+            let part = f64::from(side).powi(2) / (width * height);
+            part.min(1.0) * expected_ms > PIECE_MS
+        };
+        let mut side = SIDE;
+        while side > SMALLEST_SIDE && is_long(side) {
+            side /= 2;
+        }
+        side
+    }
+
+    /// A first guess of what a picture takes, rather too much.
+    fn expected_ms(&self, shot: &Shot, slices: u32) -> f64 {
         let view = View {
             grid: self.volume.grid(),
             camera: shot.camera,
@@ -143,11 +201,6 @@ impl Renderer {
             in_pixel: InPixel::CENTER,
             settings: &self.class.settings,
         };
-        let begun = self.frames.get(shot.frame as usize);
-        let begun = begun.and_then(|frame| frame.begun.as_ref());
-        let slices = begun.map_or(0, |begun| {
-            begun.recorded.picture.iter().map(|part| part.slices).sum()
-        });
         ms_of_looks(&self.gpu, looks_of_picture(&view, slices, 1))
     }
 

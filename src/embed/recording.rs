@@ -8,9 +8,10 @@ use crate::gpu::{
     image_barrier,
 };
 use crate::technique::blend::clear_color;
-use crate::technique::slices_3d::half_angle::HalfAngleSlices;
+use crate::technique::slices_3d::half_angle::{HalfAngleSlices, Steps};
 use crate::technique::{self, InPixel, Recording, View};
 use ash::vk;
+use std::ops::Range;
 
 impl Renderer {
     /// Records all of a frame that lies outside of the host's rendering: parameters, the upload of a new transfer
@@ -30,8 +31,14 @@ impl Renderer {
         let whole = [Tile::whole(self.extent)];
         // SAFETY: the caller's promises; barriers stand between what is written and what is read.
         let gathered = unsafe {
-            let uploaded = self.function.record_upload(cmd, &self.volume);
-            uploaded.and_then(|()| self.gather(cmd, frame, &made, &whole, Share::ALL))
+            let uploaded = self.function.record_part(cmd, &self.volume, u64::MAX);
+            uploaded.and_then(|()| match self.steps(frame, &made, 1) {
+                Some(steps) => {
+                    self.gather_steps(cmd, frame, &steps, 0..steps.count());
+                    Ok(())
+                }
+                None => self.gather(cmd, frame, &made, &whole, Share::ALL),
+            })
         };
         match gathered {
             Ok(()) => self.keep(frame, made),
@@ -134,6 +141,7 @@ impl Renderer {
         if !self.volume.is_uploaded() {
             return Err(Error::NotUploaded);
         }
+        self.volume.updates.check_whole()?;
         let depth = self.depth_of(shot)?;
         let mut made = std::mem::take(&mut self.spare);
         if let Err(refused) = self.describe(frame, shot, depth, &mut made) {
@@ -336,6 +344,60 @@ impl Renderer {
         }
     }
 
+    /// Half-angle slices in steps, each of the two pictures in so many bands; `None` where there are none.
+    pub(super) fn steps(&self, frame: usize, made: &Recorded, bands: u32) -> Option<Steps> {
+        self.pass.half_angle.as_ref()?;
+        let [width, height, _] = self.frames[frame].light.as_ref()?.extent();
+        let [eye, light] = &made.picture[..] else {
+            unreachable!("the eye's recording and the light's");
+        };
+        let slices = HalfAngleSlices {
+            offsets: [eye.offset, light.offset],
+            count: eye.slices,
+            order: eye.order,
+        };
+        Some(Steps::new(slices, [self.extent, [width, height]], bands))
+    }
+
+    /// # Safety
+    /// As [`Renderer::record`]; steps follow each other.
+    pub(super) unsafe fn gather_steps(
+        &self,
+        cmd: vk::CommandBuffer,
+        frame: usize,
+        steps: &Steps,
+        part: Range<u64>,
+    ) {
+        let there = &self.frames[frame];
+        let (Some(image), Some(light), Some(slicer), Some(bound)) = (
+            &there.gathered,
+            &there.light,
+            &self.pass.half_angle,
+            &there.sets.half_angle,
+        ) else {
+            unreachable!("steps are of half-angle slices");
+        };
+        let is_last = part.end == steps.count();
+        // SAFETY: the caller's promises; what earlier parts have drawn stays.
+        unsafe {
+            if part.start == 0 {
+                for image in [image, light] {
+                    image_barrier(&self.gpu, cmd, image, Use::Nothing, Use::ColorTarget);
+                }
+            }
+            steps.record(slicer, cmd, bound, image, light, part);
+            if is_last {
+                image_barrier(
+                    &self.gpu,
+                    cmd,
+                    image,
+                    Use::ColorTarget,
+                    Use::FragmentSampled,
+                );
+            }
+        }
+    }
+
     /// # Safety
     /// As [`Renderer::record`].
     pub(super) unsafe fn gather(
@@ -356,28 +418,7 @@ impl Renderer {
             true => Use::Nothing,
             false => written,
         };
-        if let (Some(image), Some(slicer)) = (&there.gathered, &self.pass.half_angle) {
-            let (Some(bound), Some(light), [eye, of_light]) =
-                (&there.sets.half_angle, &there.light, &made.picture[..])
-            else {
-                unreachable!("the eye's recording and the light's");
-            };
-            let slices = HalfAngleSlices {
-                offsets: [eye.offset, of_light.offset],
-                count: eye.slices,
-                order: eye.order,
-            };
-            // Eye and light take turns over all of the picture: it is no sum of tiles, and lies in the first part.
-            if share.is_first {
-                // SAFETY: the caller's promises.
-                unsafe {
-                    image_barrier(gpu, cmd, image, Use::Nothing, Use::ColorTarget);
-                    image_barrier(gpu, cmd, light, Use::Nothing, Use::ColorTarget);
-                    slicer.record(cmd, bound, slices, (image, extent), light);
-                    image_barrier(gpu, cmd, image, Use::ColorTarget, Use::FragmentSampled);
-                }
-            }
-        } else if let Some(image) = &there.gathered {
+        if let Some(image) = &there.gathered {
             let clear = Load::Clear(clear_color(self.class.settings.mode));
             // SAFETY: the caller's promises.
             unsafe {

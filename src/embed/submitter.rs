@@ -1,13 +1,11 @@
 //! Level C: frames that we submit.
 
 use super::class::check_frames;
-use super::{Error, Renderer, Shot};
-use crate::gpu::{Commands, Gpu, Load, Pace, Target, TimelinePoint};
+use super::{Error, Renderer, Shot, Volume};
+use crate::gpu::{Commands, Gpu, Load, Target, TimelinePoint};
 use ash::vk;
 use std::fmt;
-use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::time::Instant;
 
 /// A host's queue, and the lock around it: another thread of the host's may submit to it too.
 #[derive(Clone, Copy)]
@@ -25,33 +23,10 @@ impl fmt::Debug for QueueLock<'_> {
     }
 }
 
-/// How long the parts of a frame last, and who hears of them ([`Submitter::submit_in_parts`]).
-pub struct Pacing<'a> {
-    /// Milliseconds that a submission shall take: [`Pacing::TARGET_MS`] are far below the seconds after which systems take a
-    /// device for hung.
-    pub target_ms: f64,
-    /// Told after each part but the last how much of the frame is done, 0 to 1. [`ControlFlow::Break`] ends the frame.
-    pub tell: &'a mut dyn FnMut(f64) -> ControlFlow<()>,
-}
-
-impl Pacing<'_> {
-    /// What is asked for where nothing speaks against it.
-    pub const TARGET_MS: f64 = crate::gpu::TARGET_MS;
-}
-
-impl fmt::Debug for Pacing<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut debug = f.debug_struct("Pacing");
-        debug
-            .field("target_ms", &self.target_ms)
-            .finish_non_exhaustive()
-    }
-}
-
 /// Command buffers for frames that we submit.
 #[derive(Debug)]
 pub struct Submitter {
-    commands: Commands,
+    pub(super) commands: Commands,
 }
 
 impl Submitter {
@@ -99,94 +74,37 @@ impl Submitter {
         submitted
     }
 
-    /// The same in as many submissions as it takes for each to last no longer than `pacing` says: the first begins when all
-    /// of `waits` are reached, the last reaches all of `signals`. Between them the CPU waits for the device, and `pacing`
-    /// is told how far the frame is and may end it. What is drawn is to the bit what [`Submitter::submit`] draws.
-    ///
-    /// True: the last part is submitted. False: the frame was ended before; no signal will be reached, the renderer is free for
-    /// another frame, and the target is as [`Renderer::record_part_into`] says.
+    /// [`Volume::record_upload`] in a submission of our own, with number `frame` of the frames in flight.
     ///
     /// # Errors
-    /// As [`Submitter::submit`]; then, too, no signal will be reached.
+    /// As [`Volume::record_upload`], and as [`Submitter::submit`]; the upload may be recorded again then.
     ///
     /// # Safety
-    /// As [`Submitter::submit`]; `waits` are reached without the calling thread.
-    #[allow(
-        clippy::too_many_arguments,
-        reason = "what a frame is, when, and in which parts"
-    )]
-    pub unsafe fn submit_in_parts(
+    /// As [`Submitter::submit`], and [`Volume::record_upload`].
+    pub unsafe fn upload(
         &mut self,
-        renderer: &mut Renderer,
-        shot: &Shot,
-        target: &Target,
-        load: Load,
+        gpu: &Gpu,
+        volume: &mut Volume,
+        frame: u32,
         lock: QueueLock,
         waits: &[TimelinePoint],
         signals: &[TimelinePoint],
-        pacing: Pacing,
-    ) -> Result<bool, Error> {
-        let frame = shot.frame;
-        renderer.check_parts(target, load)?;
-        let count = renderer.begin_parts(shot)?;
-        let mut pace = Pace::new(count, renderer.expected_ms(shot), pacing.target_ms);
-        let ended = loop {
-            let Some(part) = pace.next() else {
-                break Ok(true);
-            };
-            if part.start == 0 && !waits.is_empty() {
-                // By itself: how long the host takes is no part of how long blocks take.
-                // SAFETY: the caller's promises.
-                let waited = unsafe { self.run_and_wait(lock, frame, waits, |_| Ok(())) };
-                if let Err(error) = waited {
-                    break Err(error);
-                }
-            }
-            let uploaded = renderer.function.uploaded();
-            let (is_last, blocks) = (part.end == count, part.end - part.start);
-            let begun = Instant::now();
-            // SAFETY: the caller's promises; each part is done before the next one is recorded.
-            let run = unsafe {
-                let record = |cmd| {
-                    let recorded = renderer.record_part_into(cmd, frame, blocks, target, load);
-                    recorded.map(drop)
-                };
-                match is_last {
-                    true => self.run(lock, frame, &[], signals, record),
-                    false => self.run_and_wait(lock, frame, &[], record),
-                }
-            };
-            if let Err(error) = run {
-                renderer.function.forget_later(uploaded);
-                break Err(error);
-            }
-            if is_last {
-                break Ok(true);
-            }
-            pace.took(part, 1e3 * begun.elapsed().as_secs_f64());
-            if (pacing.tell)(pace.part()).is_break() {
-                break Ok(false);
-            }
-        };
-        renderer.end_parts(frame);
-        ended
-    }
-
-    /// # Safety
-    /// As [`Submitter::run`].
-    unsafe fn run_and_wait(
-        &mut self,
-        lock: QueueLock,
-        frame: u32,
-        waits: &[TimelinePoint],
-        record: impl FnOnce(vk::CommandBuffer) -> Result<(), Error>,
     ) -> Result<(), Error> {
+        let recorded = volume.recorded_pieces();
         // SAFETY: the caller's promises.
-        unsafe { self.run_fenced(lock, frame, waits, &[], true, record)? };
-        Ok(self.commands.wait()?)
+        let submitted = unsafe {
+            self.run(lock, frame, waits, signals, |cmd| {
+                volume.record_pieces(gpu, cmd, u64::MAX).map(drop)
+            })
+        };
+        match submitted {
+            Ok(()) => volume.end_upload(),
+            Err(_) => volume.forget_pieces(recorded),
+        }
+        submitted
     }
 
-    /// Whatever `record` records, submitted in the same way: uploads.
+    /// Whatever `record` records, submitted in the same way: picks, and the host's own.
     ///
     /// # Errors
     /// Those of `record`: nothing is submitted then. A device that is lost.
@@ -207,7 +125,7 @@ impl Submitter {
 
     /// # Safety
     /// As [`Submitter::run`]; where `is_fenced`, [`Commands::wait`] comes before the next one.
-    unsafe fn run_fenced(
+    pub(super) unsafe fn run_fenced(
         &mut self,
         lock: QueueLock,
         frame: u32,

@@ -6,30 +6,37 @@
 //! volume.record_update(cmd, update)        copies between barriers: frames before see the old voxels, later ones the new
 //! ```
 //!
+//! Updates are recorded in the order in which they were staged (`updates.rs`), each all at once or in pieces.
+//!
 //! What is drawn then is to the bit what a new volume of the changed voxels would show.
 
+use super::pieces::{PIECE_BYTES, PIECE_CELLS, Placed, placed, within};
+use super::updates::Turn;
 use super::{Error, Volume};
-use crate::gpu::{Buffer, Memory};
-use crate::resident::{ChangedCells, ChangedCorners, GpuVolume, Slab};
+use crate::gpu::{Buffer, Memory, Region};
+use crate::resident::{ChangedCells, GpuVolume};
+use crate::shaders::CELL_VOXELS;
 use crate::volume::{Rescale, VoxelBox, VoxelPart};
 use ash::vk;
-use std::sync::Arc;
-use std::sync::atomic::Ordering;
 
 /// Copies into images begin at multiples of so many bytes.
 const ALIGNMENT_BYTES: u64 = 4;
 
-/// New voxels of a box of a volume, staged: [`Volume::record_update`] brings them there.
+/// New voxels of a box of a volume, staged: [`Volume::record_update`] brings them there. Dropped before it is recorded, it
+/// takes with it all that were staged after it: they were staged from voxels that hold these.
 #[derive(Debug)]
 pub struct Update {
-    /// Of which volume.
-    of: Arc<()>,
+    turn: Turn,
     region: VoxelBox,
     staging: Buffer,
-    /// For each texture of the volume, in their order: where in the buffer, and where it goes.
-    slabs: Vec<Vec<(u64, Slab)>>,
-    corners: (u64, ChangedCorners),
+    slabs: Vec<Placed>,
+    /// Where the words of each run of copies begin in the buffer.
+    corners: Vec<(u64, Vec<Region>)>,
+    /// Where ranges begin in the buffer, and the boxes around which they are found.
     cells: (u64, ChangedCells),
+    boxes: Vec<VoxelBox>,
+    /// Pieces: slabs, corners, boxes of cells.
+    recorded: u64,
 }
 
 impl Update {
@@ -40,7 +47,34 @@ impl Update {
 
     /// Whether it was staged for this very volume.
     pub fn is_of(&self, volume: &Volume) -> bool {
-        Arc::ptr_eq(volume.token(), &self.of)
+        self.turn.is_of(&volume.updates)
+    }
+
+    /// Pieces that are left of it, none of them long: [`Volume::record_update_part`] records some.
+    pub fn parts(&self) -> u64 {
+        self.count() - self.recorded
+    }
+
+    fn count(&self) -> u64 {
+        (self.slabs.len() + self.corners.len() + self.boxes.len()) as u64
+    }
+
+    /// What is recorded, for [`Update::forget_pieces`].
+    pub(super) fn recorded_pieces(&self) -> u64 {
+        self.recorded
+    }
+
+    /// What was recorded since then was not submitted: it is recorded again.
+    pub(super) fn forget_pieces(&mut self, then: u64) {
+        self.recorded = then;
+    }
+
+    /// Tells all who draw the volume how much of it is submitted.
+    pub(super) fn settle(&self) {
+        match self.parts() {
+            0 => self.turn.end(),
+            _ => self.turn.begin(),
+        }
     }
 }
 
@@ -89,19 +123,21 @@ impl Volume {
         self.check_part(&part, region, reads)?;
         let dims = self.grid().dims;
         let mut bytes = 0;
-        let slabs = self.textures().map(|texture| {
-            let placed = texture.slabs_in(region).map(|slab| {
-                let offset = bytes;
-                bytes += texture.staging_bytes(slab.region);
-                (offset, slab)
-            });
-            placed.collect::<Vec<_>>()
-        });
-        let slabs: Vec<_> = slabs.collect();
+        let mut slabs = Vec::new();
+        for texture in self.textures().enumerate() {
+            let changed = texture.1.slabs_in(region, PIECE_BYTES);
+            slabs.extend(placed(texture, changed, &mut bytes));
+        }
         let corners = self.copies().iter().find_map(GpuVolume::corners);
         let corners = corners.map(|corners| corners.changed(&part, region, dims));
         let corners = corners.unwrap_or_default();
         let cells = self.cells().map(|cells| cells.changed(&part, region));
+        let boxes = match &cells {
+            None => Vec::new(),
+            // What is there already is copied at once: 8 bytes of 8^3 voxels.
+            Some(cells) if !cells.ranges.is_empty() => vec![region],
+            Some(_) => region.slabs(slices_of_cells(region)).collect(),
+        };
         let cells = cells.unwrap_or_default();
         let corner_bytes: &[u8] = bytemuck::cast_slice(&corners.words);
         let cell_bytes: &[u8] = bytemuck::cast_slice(&cells.ranges);
@@ -111,23 +147,26 @@ impl Volume {
         let gpu = self.copies()[0].gpu();
         let usage = vk::BufferUsageFlags::TRANSFER_SRC;
         let staging = Buffer::new(gpu, all, usage, Memory::Upload, "staging of an update")?;
-        for (texture, slabs) in self.textures().zip(&slabs) {
-            for (offset, slab) in slabs {
-                let bytes = texture.staging_bytes(slab.region);
-                staging.write_with(*offset, bytes, |out| {
-                    texture.write_part(&part, slab.region, out);
+        for (number, texture) in self.textures().enumerate() {
+            for placed in slabs.iter().filter(|placed| placed.texture == number) {
+                let region = placed.slab.region;
+                staging.write_with(placed.from, texture.staging_bytes(region), |out| {
+                    texture.write_part(&part, region, out);
                 })?;
             }
         }
         staging.write(first_corner, corner_bytes)?;
         staging.write(first_cell, cell_bytes)?;
+        let runs = corners.runs(PIECE_BYTES).into_iter();
         Ok(Update {
-            of: Arc::clone(self.token()),
+            turn: self.updates.turn(region),
             region,
             staging,
             slabs,
-            corners: (first_corner, corners),
+            corners: runs.map(|(at, run)| (first_corner + at, run)).collect(),
             cells: (first_cell, cells),
+            boxes,
+            recorded: 0,
         })
     }
 
@@ -140,7 +179,9 @@ impl Volume {
     /// barrier after compute shaders that read them and one before; corners are copied to in the same way.
     ///
     /// # Errors
-    /// [`Error::NotUploaded`] before the volume was; [`Error::Update`] for an update of another volume.
+    /// [`Error::NotUploaded`] before the volume was; [`Error::Update`] for an update of another volume;
+    /// [`Error::UpdateOrder`] where another comes first, or was given up; [`Error::HalfUpdated`] where one was given up of which
+    /// a part is there, and this one does not change all of its voxels. What is refused is dropped.
     ///
     /// # Safety
     /// `cmd` is recording, outside rendering, after [`Gpu::announce`](crate::gpu::Gpu::announce) of its value, and is
@@ -149,40 +190,94 @@ impl Volume {
     pub unsafe fn record_update(
         &self,
         cmd: vk::CommandBuffer,
-        update: Update,
+        mut update: Update,
+    ) -> Result<(), Error> {
+        // SAFETY: the caller's promises.
+        unsafe { self.record_update_part(cmd, &mut update, u64::MAX)? };
+        Ok(())
+    }
+
+    /// Records the next `count` pieces of an update, one at least, and says how many are left. Until there are none, the volume
+    /// is not drawn ([`Error::HalfUpdated`]); where the update is given up before, that lasts until another one is recorded
+    /// that changes all of its voxels.
+    ///
+    /// # Errors
+    /// As [`Volume::record_update`]; the update is what it was then.
+    ///
+    /// # Safety
+    /// As [`Volume::record_update`], of all parts, which are submitted in their order. The update lives until they are
+    /// recorded.
+    pub unsafe fn record_update_part(
+        &self,
+        cmd: vk::CommandBuffer,
+        update: &mut Update,
+        count: u64,
+    ) -> Result<u64, Error> {
+        // SAFETY: the caller's promises.
+        unsafe { self.record_update_pieces(cmd, update, count)? };
+        update.settle();
+        Ok(update.parts())
+    }
+
+    /// The same where nobody is told before it is submitted: [`Update::settle`] comes then.
+    ///
+    /// # Safety
+    /// As [`Volume::record_update_part`].
+    pub(super) unsafe fn record_update_pieces(
+        &self,
+        cmd: vk::CommandBuffer,
+        update: &mut Update,
+        count: u64,
     ) -> Result<(), Error> {
         let gpu = self.copies()[0].gpu();
         gpu.check_alive("update a volume")?;
+        self.check_update(update)?;
+        let [slabs, corners] = [update.slabs.len(), update.corners.len()].map(|n| n as u64);
+        let (first, end) = (update.recorded, update.count());
+        let part = first..first.saturating_add(count.max(1)).min(end);
+        let run_in = |of| {
+            let run = within(&part, of);
+            run.start as usize..run.end as usize
+        };
+        let staging = &update.staging;
+        // SAFETY: the caller's promises; barriers stand before and after each copy.
+        unsafe {
+            for placed in &update.slabs[run_in(0..slabs)] {
+                let texture = self.textures().nth(placed.texture);
+                let texture = texture.expect("staged for this one");
+                texture.record_upload(cmd, staging, placed.from, &placed.slab)?;
+            }
+            if let Some(corners_there) = self.copies().iter().find_map(GpuVolume::corners) {
+                for (at, run) in &update.corners[run_in(slabs..slabs + corners)] {
+                    corners_there.record_changed(gpu, cmd, run, staging, *at)?;
+                }
+            }
+            if let Some(cells) = self.cells() {
+                let (first, changed) = &update.cells;
+                for &region in &update.boxes[run_in(slabs + corners..end)] {
+                    cells.record_changed(cmd, region, changed, staging, *first)?;
+                }
+            }
+        }
+        update.recorded = part.end;
+        Ok(())
+    }
+
+    /// Whether an update may be recorded now.
+    ///
+    /// # Errors
+    /// As [`Volume::record_update`].
+    pub fn check_update(&self, update: &Update) -> Result<(), Error> {
         if !update.is_of(self) {
             return Err(wrong("an update of this volume", "one of another"));
         }
         if !self.is_uploaded() {
             return Err(Error::NotUploaded);
         }
-        let staging = &update.staging;
-        // SAFETY: the caller's promises; barriers stand before and after each copy.
-        unsafe {
-            for (texture, slabs) in self.textures().zip(&update.slabs) {
-                for (offset, slab) in slabs {
-                    texture.record_upload(cmd, staging, *offset, slab)?;
-                }
-            }
-            if let Some(corners) = self.copies().iter().find_map(GpuVolume::corners) {
-                let (first, changed) = &update.corners;
-                corners.record_changed(gpu, cmd, changed, staging, *first)?;
-            }
-            if let Some(cells) = self.cells() {
-                let (first, changed) = &update.cells;
-                cells.record_changed(cmd, update.region, changed, staging, *first)?;
-            }
+        if update.parts() == 0 {
+            return Err(wrong("an update that is not recorded", "one that is"));
         }
-        self.updates.fetch_add(1, Ordering::Release);
-        Ok(())
-    }
-
-    /// How many updates were recorded.
-    pub(super) fn updates(&self) -> u64 {
-        self.updates.load(Ordering::Acquire)
+        update.turn.check()
     }
 
     fn check_part(&self, part: &VoxelPart, region: VoxelBox, reads: VoxelBox) -> Result<(), Error> {
@@ -235,6 +330,13 @@ impl Volume {
             )),
         }
     }
+}
+
+/// Slices of a box whose cells are a piece.
+fn slices_of_cells(region: VoxelBox) -> u32 {
+    let [nx, ny, _] = region.dims().map(|n| u64::from(n / CELL_VOXELS) + 2);
+    let layers = (PIECE_CELLS / (nx * ny)).max(1);
+    (layers as u32).saturating_mul(CELL_VOXELS)
 }
 
 fn wrong(wanted: impl Into<String>, found: impl Into<String>) -> Error {

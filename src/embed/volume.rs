@@ -2,21 +2,19 @@
 
 use super::Error;
 use super::class::what;
-use crate::gpu::{Buffer, Gpu};
+use super::updates::Updates;
+use super::upload::Upload;
+use crate::gpu::Gpu;
 use crate::resident::{Apron, Corners, GpuVolume, MacroCells, Texels, TextureLayout, VolumePlan};
 use crate::shaders::CELL_VOXELS;
 use crate::technique::{FilterBy, GradientSource, Keep, Mix, Settings, Technique};
 use crate::volume::{self, Coefficients, Grid, Rescale, VoxelType};
-use ash::vk;
 use std::sync::Arc;
-use std::sync::atomic::AtomicU64;
 
 /// A volume's textures, what is known of its empty space, and its voxels on their way there. Several renderers may
 /// share it.
 #[derive(Debug)]
 pub struct Volume {
-    /// Which volume it is.
-    token: Arc<()>,
     grid: Grid,
     value_range: [f64; 2],
     pub(super) stored: VoxelType,
@@ -25,11 +23,8 @@ pub struct Volume {
     copies: Vec<GpuVolume>,
     /// Of the copy that rays read, and how far around a cell was looked.
     cells: Option<(MacroCells, Apron)>,
-    /// Corners and cells come with the voxels.
-    staging: Vec<Buffer>,
-    is_uploaded: bool,
-    /// How many were recorded.
-    pub(super) updates: AtomicU64,
+    pub(super) upload: Upload,
+    pub(super) updates: Arc<Updates>,
 }
 
 impl Volume {
@@ -59,22 +54,20 @@ impl Volume {
             || format!("make a volume of {:?} voxels", voxels.dims),
             bytes,
         )?;
-        let (mut copies, mut staging) = (Vec::new(), Vec::new());
+        let (mut copies, mut upload) = (Vec::new(), Upload::default());
         for layout in layouts_of(settings) {
-            let copy = copy(gpu, voxels, settings, layout, &mut staging)?;
+            let copy = copy(gpu, voxels, settings, layout, &mut upload)?;
             copies.push(copy);
         }
         let mut made = Self {
-            token: Arc::new(()),
             grid: voxels.grid(),
             value_range: voxels.value_range,
             stored,
             rescale: voxels.rescale,
             copies,
             cells: None,
-            staging,
-            is_uploaded: false,
-            updates: AtomicU64::new(0),
+            upload,
+            updates: Arc::default(),
         };
         if settings.technique == Technique::Raycast {
             made.know_empty_space(gpu, voxels, settings)?;
@@ -154,38 +147,6 @@ impl Volume {
         Ok(())
     }
 
-    /// Records the upload, once. What it was staged in goes when that has run: [`Gpu::announce`] comes before.
-    ///
-    /// # Errors
-    /// [`Error::Uploaded`] the second time, and where the device cannot dispatch so many cells.
-    ///
-    /// # Safety
-    /// `cmd` is recording, outside rendering, after [`Gpu::announce`] of its value, and is submitted before anything that
-    /// draws the volume: what is recorded and never submitted is not there, and nobody notices.
-    pub unsafe fn record_upload(&mut self, gpu: &Gpu, cmd: vk::CommandBuffer) -> Result<(), Error> {
-        gpu.check_alive("upload a volume")?;
-        if self.is_uploaded {
-            return Err(Error::Uploaded);
-        }
-        // SAFETY: the caller's promises; buffers lie in the order of what they fill, and wait for the device.
-        unsafe {
-            for (texture, staging) in self.textures().zip(&self.staging) {
-                texture.record_upload_all(cmd, staging)?;
-            }
-            for copy in &self.copies {
-                if let Some(corners) = copy.corners() {
-                    corners.record_upload(gpu, cmd);
-                }
-            }
-            if let Some((cells, _)) = &self.cells {
-                cells.record(cmd)?;
-            }
-        }
-        self.staging.clear();
-        self.is_uploaded = true;
-        Ok(())
-    }
-
     /// Where its voxels lie.
     pub fn grid(&self) -> &Grid {
         &self.grid
@@ -211,12 +172,17 @@ impl Volume {
         copies.flat_map(|copy| [Some(copy), copy.gradient_source()].into_iter().flatten())
     }
 
-    pub(super) fn token(&self) -> &Arc<()> {
-        &self.token
-    }
-
     pub(super) fn cells(&self) -> Option<&MacroCells> {
         self.cells.as_ref().map(|(cells, _)| cells)
+    }
+
+    /// As on devices that do not compute on the CPU, before the upload.
+    #[cfg(test)]
+    pub(super) fn find_cells_on_device(&mut self, gpu: &Arc<Gpu>) -> Result<(), Error> {
+        if let Some((cells, apron)) = &mut self.cells {
+            *cells = MacroCells::new(gpu, &self.copies[0], *apron)?;
+        }
+        Ok(())
     }
 
     /// Whether it lies on that device, and its cells know what such a filter looks at.
@@ -234,10 +200,6 @@ impl Volume {
             }),
             _ => Ok(()),
         }
-    }
-
-    pub(super) fn is_uploaded(&self) -> bool {
-        self.is_uploaded
     }
 }
 
@@ -258,13 +220,13 @@ fn layouts_of(settings: &Settings) -> Vec<TextureLayout> {
     }
 }
 
-/// One copy of the volume, and the buffers that fill it: voxels or coefficients, and what gradients are made of beside.
+/// One copy of the volume, with what fills it: voxels or coefficients, and what gradients are made of beside.
 fn copy(
     gpu: &Arc<Gpu>,
     voxels: &volume::Volume,
     settings: &Settings,
     layout: TextureLayout,
-    staging: &mut Vec<Buffer>,
+    upload: &mut Upload,
 ) -> Result<GpuVolume, Error> {
     let spline = settings.filter.spline();
     let values = spline.map(|spline| Coefficients::new(voxels, spline, layout.filtered_axes()));
@@ -281,9 +243,9 @@ fn copy(
         (None, Texels::Voxels(voxels)) => GpuVolume::new(gpu, voxels, layout)?,
         (None, Texels::Coefficients(values)) => GpuVolume::of_coefficients(gpu, values, layout)?,
     };
-    staging.push(made.stage(values.volume())?);
+    upload.stage(&made, values.volume())?;
     if let Some(source) = made.gradient_source() {
-        staging.push(source.stage(beside.volume())?);
+        upload.stage(source, beside.volume())?;
     }
     Ok(made)
 }

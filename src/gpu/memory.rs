@@ -83,8 +83,8 @@ impl Gpu {
     fn heaps(&self) -> Vec<HeapUse> {
         let (instance, physical_device) = (&self.instance, self.physical_device);
         // SAFETY: the handles are valid.
-        let has_budget = unsafe { has_extension(instance, physical_device, BUDGET_EXTENSION) };
-        if !has_budget {
+        let has_budget = || unsafe { has_extension(instance, physical_device, BUDGET_EXTENSION) };
+        if !self.tells_heaps.get_or_init(has_budget) {
             return Vec::new();
         }
         let mut budgets = vk::PhysicalDeviceMemoryBudgetPropertiesEXT::default();

@@ -95,7 +95,7 @@ use std::{
     ffi::CString,
     fmt,
     sync::{
-        Arc, Mutex, MutexGuard, PoisonError,
+        Arc, Mutex, MutexGuard, OnceLock, PoisonError,
         atomic::{AtomicBool, AtomicU32, Ordering},
     },
 };
@@ -121,6 +121,8 @@ pub struct Gpu {
     pipeline_cache: vk::PipelineCache,
     pipelines_made: AtomicU32,
     is_lost: AtomicBool,
+    /// Whether the driver tells of its heaps, once somebody has asked.
+    tells_heaps: OnceLock<bool>,
     store: Mutex<Store>,
     /// A device of our own; last, because fields are dropped in this order.
     own_device: Option<Box<dyn Any + Send + Sync>>,
@@ -210,6 +212,7 @@ impl Gpu {
             pipeline_cache: vk::PipelineCache::null(),
             pipelines_made: AtomicU32::new(0),
             is_lost: AtomicBool::new(false),
+            tells_heaps: OnceLock::new(),
             store: Mutex::new(Store::new(allocator)),
             own_device,
         };
@@ -245,21 +248,6 @@ impl Gpu {
     /// How many raw objects of each kind exist: those with an owner and those that wait to be destroyed.
     pub fn live_objects(&self) -> BTreeMap<&'static str, usize> {
         self.store().live()
-    }
-
-    /// Bytes of memory taken from the driver, in use or kept for later.
-    pub fn device_bytes(&self) -> u64 {
-        self.store().reserved_bytes()
-    }
-
-    /// The most bytes of memory that were taken from the driver at once.
-    pub fn peak_device_bytes(&self) -> u64 {
-        self.store().peak_bytes()
-    }
-
-    /// Bytes of memory in use, padded as the driver wants them.
-    pub fn owned_device_bytes(&self) -> u64 {
-        self.store().owned_bytes()
     }
 
     /// The functions of the device.

@@ -249,18 +249,8 @@ impl Store {
     }
 
     /// Bytes that are allocated from the driver, whether in use or kept for later.
-    pub fn reserved_bytes(&self) -> u64 {
+    fn reserved_bytes(&self) -> u64 {
         self.allocator.as_ref().map_or(0, Allocator::capacity)
-    }
-
-    /// Bytes of memory that have an owner, as the driver counts them.
-    pub fn owned_bytes(&self) -> u64 {
-        self.owned_bytes
-    }
-
-    /// The largest of all [`Store::reserved_bytes`].
-    pub fn peak_bytes(&self) -> u64 {
-        self.peak_bytes
     }
 
     pub fn set_budget(&mut self, bytes: Option<u64>) {

@@ -5,14 +5,13 @@ use super::submission::Submission;
 use super::targets::Targets;
 use super::time_slices::Spent;
 use crate::gpu::{
-    Blend, Error, Gpu, Load, ParameterRing, Tile, Use, begin_rendering_of, end_rendering,
-    image_barrier,
+    Blend, Error, Gpu, Load, ParameterRing, Use, begin_rendering_of, end_rendering, image_barrier,
 };
 use crate::resident::GpuTransfer;
 use crate::resolve::Resolve;
 use crate::technique::blend::Drawn;
 use crate::technique::slices_3d::HalfAngleSlicer;
-use crate::technique::slices_3d::half_angle::HalfAngleSlices;
+use crate::technique::slices_3d::half_angle::{HalfAngleSlices, Steps};
 use crate::technique::{
     ACCUMULATION_FORMAT, Inputs, Mode, Order, RayPass, Settings, Technique, Words,
 };
@@ -177,60 +176,31 @@ fn run_half_angle(slicer: &HalfAngleSlicer, submission: Submission) -> Result<Sp
         unreachable!("the eye's recording and the light's");
     };
     let (targets, light_buffer) = (submission.targets, submission.targets.light_buffer());
-    let picture = (&targets.accumulation, targets.extent);
+    let picture = &targets.accumulation;
     let bound = slicer.bind(&eye.inputs, light_buffer)?;
     let slices = HalfAngleSlices {
         offsets: [eye.offset, light.offset],
         count: eye.slices,
         order: eye.order,
     };
-    // Of a slice first what the eye sees, then what the light sees, each in bands.
+    // A slice is drawn twice.
     let bands = submission.pieces(0.5 / f64::from(slices.count.max(1)));
     let [light_width, light_height, _] = light_buffer.extent();
-    let seen = [targets.extent, [light_width, light_height]];
-    let [eye_bands, light_bands] = seen.map(|extent| bands_of(extent, bands));
-    let per_slice = (eye_bands.len() + light_bands.len()) as u64;
-    // At least one, which clears.
-    let units = (per_slice * u64::from(slices.count)).max(1);
+    let extents = [targets.extent, [light_width, light_height]];
+    let steps = Steps::new(slices, extents, bands);
+    let units = steps.count();
     // SAFETY: recorded in order, with barriers between; `run` waits, and all that is bound lives meanwhile.
     submission.run(units, |cmd, gpu, part| unsafe {
         if part.start == 0 {
-            for image in [picture.0, light_buffer] {
+            for image in [picture, light_buffer] {
                 image_barrier(gpu, cmd, image, Use::Nothing, Use::ColorTarget);
             }
-            slicer.record_clear(cmd, picture, light_buffer);
         }
-        for unit in part.clone() {
-            let (slice, step) = ((unit / per_slice) as u32, (unit % per_slice) as usize);
-            if slice >= slices.count {
-                break;
-            }
-            match step.checked_sub(eye_bands.len()) {
-                None => {
-                    let tile = eye_bands[step];
-                    slicer.record_eye(cmd, &bound, slices, picture, light_buffer, (slice, tile));
-                }
-                Some(step) => {
-                    let tile = light_bands[step];
-                    slicer.record_light(cmd, &bound, slices, light_buffer, (slice, tile));
-                }
-            }
-        }
-        if part.end == units {
-            image_barrier(gpu, cmd, picture.0, Use::ColorTarget, Use::FragmentSampled);
+        let is_last = part.end == units;
+        steps.record(slicer, cmd, &bound, picture, light_buffer, part);
+        if is_last {
+            image_barrier(gpu, cmd, picture, Use::ColorTarget, Use::FragmentSampled);
         }
         Ok(())
     })
-}
-
-/// A picture from top to bottom in so many bands, as far as its rows go.
-fn bands_of([width, height]: [u32; 2], count: u32) -> Vec<Tile> {
-    let rows = height.div_ceil(count).max(1);
-    let firsts = (0..height).step_by(rows as usize);
-    firsts
-        .map(|first| Tile {
-            origin: [0, first],
-            extent: [width, rows.min(height - first)],
-        })
-        .collect()
 }

@@ -92,8 +92,8 @@ impl Corners {
         changed
     }
 
-    /// Records what [`Corners::changed`] gave, from byte `first` of `staging` on: between what reads them before and what
-    /// reads them later.
+    /// Records a run of what [`Corners::changed`] gave, from byte `first` of `staging` on: between what reads them before and
+    /// what reads them later.
     ///
     /// # Errors
     /// A staging buffer that is too small.
@@ -105,7 +105,7 @@ impl Corners {
         &self,
         gpu: &Gpu,
         cmd: vk::CommandBuffer,
-        changed: &ChangedCorners,
+        run: &[Region],
         staging: &Buffer,
         first: u64,
     ) -> Result<(), Error> {
@@ -114,9 +114,9 @@ impl Corners {
         // SAFETY: the caller's promises; the two barriers put the copies between earlier and later uses.
         unsafe {
             image_barrier(gpu, cmd, &self.image, read, write);
-            for &region in &changed.copies {
+            for &region in run {
                 buffer_to_image(gpu, cmd, staging, offset, &self.image, region)?;
-                offset += 4 * u64::from(region.extent[0]);
+                offset += bytes_of(region);
             }
             image_barrier(gpu, cmd, &self.image, write, read);
         }
@@ -124,7 +124,31 @@ impl Corners {
     }
 }
 
+/// A run of words in a row.
+fn bytes_of(copy: Region) -> u64 {
+    4 * u64::from(copy.extent[0])
+}
+
 impl ChangedCorners {
+    /// The copies in runs of no more than so many bytes, with the byte of `words` that each begins at.
+    pub fn runs(&self, bytes: u64) -> Vec<(u64, Vec<Region>)> {
+        let mut runs: Vec<(u64, Vec<Region>)> = Vec::new();
+        let (mut at, mut room) = (0, 0);
+        for &copy in &self.copies {
+            let length = bytes_of(copy);
+            match runs.last_mut() {
+                Some((_, run)) if length <= room => run.push(copy),
+                _ => {
+                    runs.push((at, vec![copy]));
+                    room = bytes;
+                }
+            }
+            at += length;
+            room = room.saturating_sub(length);
+        }
+        runs
+    }
+
     /// Words from word number `first` of the image on, row by row of it.
     fn put(&mut self, first: u64, words: &[u32]) {
         let width = u64::from(CORNERS_WIDTH);

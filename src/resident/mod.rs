@@ -21,7 +21,6 @@ mod volume;
 pub(crate) use bricks::sort_front_to_back;
 pub use bricks::{Cell, cells_of_side, front_to_back, front_to_back_by_rows};
 pub(crate) use changed_cells::ChangedCells;
-pub(crate) use changed_corners::ChangedCorners;
 pub use corners::Corners;
 pub use empty_space::EmptySpace;
 pub use gradients::{KeptGradients, KeptOperator};

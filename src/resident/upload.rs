@@ -5,7 +5,7 @@
 //! in slabs       slabs -> staged -> record_upload, for each
 //! ```
 
-use super::{Brick, GpuVolume};
+use super::GpuVolume;
 use crate::gpu::{Buffer, Error, Memory, Region, Use, buffer_to_image, image_barrier};
 use crate::volume::{Volume, VoxelBox, VoxelPart};
 use ash::vk;
@@ -27,47 +27,69 @@ pub struct Slab {
 }
 
 impl GpuVolume {
-    /// All of the volume in parts small enough to be staged in `bytes` (or one slice), for its first upload:
+    /// All of the volume in parts small enough to be staged in `bytes` (or one row of a slice), for its first upload:
     /// the first slab of a brick comes after [`Use::Nothing`], the others after [`Use::Sampled`].
     pub fn slabs(&self, bytes: u64) -> Vec<Slab> {
         let numbered = self.bricks().iter().enumerate();
-        numbered
-            .flat_map(|(index, brick)| self.slabs_of(index, brick, bytes))
-            .collect()
+        let whole = numbered.map(|(brick, there)| Slab {
+            brick,
+            region: there.cell.stored,
+            before: Use::Nothing,
+        });
+        whole.flat_map(|slab| self.cut(slab, bytes)).collect()
     }
 
-    /// What each brick stores of `region`, for copies into a volume that was uploaded before.
-    pub fn slabs_in(&self, region: VoxelBox) -> impl Iterator<Item = Slab> {
+    /// What each brick stores of `region`, in parts of so many bytes, for copies into a volume that was uploaded before.
+    pub fn slabs_in(&self, region: VoxelBox, bytes: u64) -> impl Iterator<Item = Slab> {
         let numbered = self.bricks().iter().enumerate();
-        numbered.filter_map(move |(brick, there)| {
+        let stored = numbered.filter_map(move |(brick, there)| {
             Some(Slab {
                 brick,
                 region: there.cell.stored.and(&region)?,
                 before: Use::Sampled,
             })
-        })
+        });
+        stored.flat_map(move |slab| self.cut(slab, bytes))
     }
 
-    fn slabs_of(&self, index: usize, brick: &Brick, bytes: u64) -> impl Iterator<Item = Slab> {
-        let axis = self.layout().axes()[2];
-        let whole = brick.cell.stored;
+    /// Slices of a slab, as many as fit into `bytes`; of slices that do not fit, rows.
+    fn cut(&self, slab: Slab, bytes: u64) -> Vec<Slab> {
+        let [_, down, deep] = self.layout().axes();
+        let fits = |part: &VoxelBox| self.staging_bytes(*part) <= bytes;
+        let slices = self.cut_along(slab.region, deep, bytes);
+        let parts = slices.flat_map(|part| match fits(&part) {
+            true => self.cut_along(part, down, u64::MAX),
+            false => self.cut_along(part, down, bytes),
+        });
+        let parts = parts.enumerate().map(|(number, region)| Slab {
+            region,
+            before: if number == 0 {
+                slab.before
+            } else {
+                Use::Sampled
+            },
+            ..slab
+        });
+        parts.collect()
+    }
+
+    /// Parts along an axis, each as long as fits into `bytes`, or of length one.
+    fn cut_along(
+        &self,
+        whole: VoxelBox,
+        axis: usize,
+        bytes: u64,
+    ) -> impl Iterator<Item = VoxelBox> + use<> {
         let part = move |first: u32, end: u32| {
             let mut part = whole;
             (part.min[axis], part.max[axis]) = (first, end);
             part
         };
-        let slice = part(whole.min[axis], whole.min[axis] + 1);
-        let count = (bytes / self.staging_bytes(slice).max(1)).clamp(1, u32::MAX.into()) as u32;
-        let firsts = (whole.min[axis]..whole.max[axis]).step_by(count as usize);
-        firsts.map(move |first| Slab {
-            brick: index,
-            region: part(first, first.saturating_add(count).min(whole.max[axis])),
-            before: if first == whole.min[axis] {
-                Use::Nothing
-            } else {
-                Use::Sampled
-            },
-        })
+        let (first, end) = (whole.min[axis], whole.max[axis]);
+        let one = self.staging_bytes(part(first, first + 1)).max(1);
+        let count = (bytes / one).clamp(1, u32::MAX.into()) as u32;
+        let firsts = (first..end).step_by(count as usize);
+        firsts.map(move |first| part(first, first.saturating_add(count).min(end)))
     }
 
     /// The texels of `region` as [`GpuVolume::record_upload`] wants them in a staging buffer: values, then,

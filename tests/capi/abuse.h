@@ -33,6 +33,15 @@ void bad(sv_status status, sv_status wanted, const char *what);
 #define AT(line) "line " TEXT_OF(line) ": "
 #define BAD(wanted, call) bad(call, wanted, AT(__LINE__) #call)
 
+/* The same, and the words name `name`. */
+#define NAMED(wanted, name, call)                                                                  \
+    do {                                                                                           \
+        const sv_status found = call;                                                              \
+        const int is_named = strstr(diagnostic.text, name) != NULL;                                \
+        if (!is_named) failures += 1, fprintf(stderr, "FAILED: not named: %s\n", AT(__LINE__) name); \
+        bad(found, wanted, AT(__LINE__) #call);                                                    \
+    } while (0)
+
 /* One call of `with` with one wrong field. */
 #define WITH(kind, start, field, value, wanted) \
     do {                                        \

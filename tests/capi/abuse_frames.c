@@ -54,6 +54,9 @@ static void frames(void) {
     sv_shot late = SHOT;
     late.frame = 2;
     BAD(SV_E_ARGUMENT, sv_renderer_record(renderer, cmd, &late, &diagnostic));
+    sv_shot reserved = SHOT;
+    reserved.reserved = 7;
+    NAMED(SV_E_ARGUMENT, "sv_shot.reserved: wanted 0, found 7", sv_renderer_record(renderer, cmd, &reserved, &diagnostic));
     late.frame = UINT32_MAX;
     BAD(SV_E_ARGUMENT, sv_renderer_record(renderer, cmd, &late, &diagnostic));
     BAD(SV_E_ARGUMENT, sv_renderer_draw(renderer, cmd, 2, &diagnostic));
@@ -88,6 +91,12 @@ static void frames(void) {
     WITH(sv_target, whole, after.layout, 77, SV_E_ARGUMENT);
     WITH(sv_target, whole, after.layout, VK_IMAGE_LAYOUT_UNDEFINED, SV_E_ARGUMENT);
     WITH(sv_target, whole, after.layout, VK_IMAGE_LAYOUT_PREINITIALIZED, SV_E_ARGUMENT);
+    sv_target later = whole;
+    later.before.reserved = 1;
+    NAMED(SV_E_ARGUMENT, "sv_target.before.reserved", with(later));
+    later = whole;
+    later.after = (sv_image_state){.reserved = 1};
+    NAMED(SV_E_ARGUMENT, "sv_target.after.reserved", with(later));
 #undef with
 }
 
@@ -117,6 +126,30 @@ static void submissions(void) {
     WITH(sv_submission, pointed, signal_count, UINT64_MAX, SV_E_LIMIT);
 #undef with
     BAD(SV_E_ARGUMENT, sv_submitter_upload(submitter, fresh, 99, &start, &diagnostic));
+    uint32_t is_done = 0;
+    uint64_t left = 0;
+    const sv_pacing wrong = {.struct_size = sizeof wrong, .target_ms = -1.0};
+    BAD(SV_E_ARGUMENT, sv_submitter_upload_in_parts(submitter, fresh, 99, &start, NULL, &is_done, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_submitter_upload_in_parts(submitter, fresh, 0, &start, &wrong, &is_done, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_submitter_upload_in_parts(submitter, fresh, 0, &start, NULL, NULL, &diagnostic));
+    BAD(SV_E_STATE, sv_submitter_upload_in_parts(submitter, volume, 0, &start, NULL, &is_done, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_submitter_update_in_parts(submitter, volume, staged, 99, &start, NULL, &is_done, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_submitter_update_in_parts(submitter, volume, staged, 0, NULL, NULL, &is_done, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_submitter_update_in_parts(submitter, volume, staged, 0, &start, &wrong, &is_done, &diagnostic));
+    BAD(SV_E_STATE, sv_submitter_update_in_parts(submitter, fresh, staged, 0, &start, NULL, &is_done, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_volume_record_upload_part(fresh, NULL, 1, &left, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_volume_record_upload_part(fresh, cmd, 1, NULL, &diagnostic));
+    BAD(SV_E_STATE, sv_volume_record_upload_part(volume, cmd, 1, &left, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_volume_record_update_part(volume, NULL, staged, 1, &left, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_volume_record_update_part(volume, cmd, staged, 1, NULL, &diagnostic));
+    /* One that was staged later. */
+    const sv_update_desc desc = update_desc();
+    sv_update second = 0;
+    GOOD(sv_volume_stage_update(volume, &desc, &second, &diagnostic));
+    BAD(SV_E_STATE, sv_volume_record_update(volume, cmd, second, &diagnostic));
+    BAD(SV_E_STATE, sv_volume_record_update_part(volume, cmd, second, 1, &left, &diagnostic));
+    BAD(SV_E_STATE, sv_submitter_update_in_parts(submitter, volume, second, 0, &start, NULL, &is_done, &diagnostic));
+    GOOD(sv_update_destroy(second, &diagnostic));
     /* From a callback, what is in use says so. */
     sv_submission reentrant = start;
     reentrant.lock = calls_back, reentrant.unlock = nothing;

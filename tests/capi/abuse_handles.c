@@ -119,6 +119,28 @@ static sv_status h_upload_by(uint64_t x) {
     const sv_submission s = submission();
     return sv_submitter_upload(x, fresh, 0, &s, &diagnostic);
 }
+static uint64_t left_over;
+static uint32_t is_over;
+static sv_status h_upload_part(uint64_t x) { return sv_volume_record_upload_part(x, cmd, 1, &left_over, &diagnostic); }
+static sv_status h_update_part_into(uint64_t x) {
+    return sv_volume_record_update_part(x, cmd, staged, 1, &left_over, &diagnostic);
+}
+static sv_status h_update_part(uint64_t x) {
+    return sv_volume_record_update_part(volume, cmd, x, 1, &left_over, &diagnostic);
+}
+static sv_status upload_by(uint64_t by, uint64_t into) {
+    const sv_submission s = submission();
+    return sv_submitter_upload_in_parts(by, into, 0, &s, NULL, &is_over, &diagnostic);
+}
+static sv_status h_upload_parts(uint64_t x) { return upload_by(x, fresh); }
+static sv_status h_upload_parts_into(uint64_t x) { return upload_by(submitter, x); }
+static sv_status update_by(uint64_t by, uint64_t into, uint64_t of) {
+    const sv_submission s = submission();
+    return sv_submitter_update_in_parts(by, into, of, 0, &s, NULL, &is_over, &diagnostic);
+}
+static sv_status h_update_parts(uint64_t x) { return update_by(x, volume, staged); }
+static sv_status h_update_parts_into(uint64_t x) { return update_by(submitter, x, staged); }
+static sv_status h_update_parts_of(uint64_t x) { return update_by(submitter, volume, x); }
 static sv_status h_submitter_destroy(uint64_t x) { return sv_submitter_destroy(x, &diagnostic); }
 
 /* `is_optional`: 0 is no error there. */
@@ -138,6 +160,14 @@ static const struct {
     {"sv_volume_stage_update", h_stage, VOLUME, 0},
     {"sv_volume_record_update", h_update_into, VOLUME, 0},
     {"sv_volume_record_update, its update", h_record_update, UPDATE, 0},
+    {"sv_volume_record_upload_part", h_upload_part, VOLUME, 0},
+    {"sv_volume_record_update_part", h_update_part_into, VOLUME, 0},
+    {"sv_volume_record_update_part, its update", h_update_part, UPDATE, 0},
+    {"sv_submitter_upload_in_parts", h_upload_parts, SUBMITTER, 0},
+    {"sv_submitter_upload_in_parts, its volume", h_upload_parts_into, VOLUME, 0},
+    {"sv_submitter_update_in_parts", h_update_parts, SUBMITTER, 0},
+    {"sv_submitter_update_in_parts, its volume", h_update_parts_into, VOLUME, 0},
+    {"sv_submitter_update_in_parts, its update", h_update_parts_of, UPDATE, 0},
     {"sv_update_destroy", h_update_destroy, UPDATE, 0},
     {"sv_renderer_begin_parts", h_begin_parts, RENDERER, 0},
     {"sv_renderer_record_part_into", h_record_part, RENDERER, 0},

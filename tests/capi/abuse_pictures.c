@@ -150,6 +150,9 @@ static void renderers(void) {
                                            {1, VK_IMAGE_LAYOUT_GENERAL, WIDTH - 1, HEIGHT, 0},
                                            {1, VK_IMAGE_LAYOUT_GENERAL, WIDTH, 0, 0}};
     for (int k = 0; k < 5; ++k) WITH(sv_renderer_desc, hidden, depth_images, &wrong_images[k], SV_E_ARGUMENT);
+    const sv_depth_image later = {1, VK_IMAGE_LAYOUT_GENERAL, WIDTH, HEIGHT, 3};
+    hidden.depth_images = &later;
+    NAMED(SV_E_ARGUMENT, "sv_depth_image.reserved: wanted 0, found 3", with(hidden));
     sv_renderer_desc unhidden = start;
     unhidden.depth_image_count = 1;
     WITH(sv_renderer_desc, unhidden, depth_images, &image, SV_E_ARGUMENT);

@@ -30,7 +30,7 @@ pub struct Host {
     messages: Arc<AtomicUsize>,
     instance: ash::Instance,
     /// Last: the library that all functions are in.
-    _entry: ash::Entry,
+    entry: ash::Entry,
 }
 
 /// A device that will do, and the family of its queue.
@@ -103,7 +103,7 @@ impl Host {
                 messenger,
                 messages,
                 instance,
-                _entry: entry,
+                entry,
             })
         }
     }
@@ -116,6 +116,24 @@ impl Host {
     /// Where the validation layer counts its messages: it lives longer than the device, and so may its messages.
     pub fn messages(&self) -> Arc<AtomicUsize> {
         Arc::clone(&self.messages)
+    }
+
+    /// Another surface of the window, in the place of one that was lost. Nothing uses that any more.
+    pub fn renew_surface(&mut self, window: &Window) -> Result<(), Error> {
+        // SAFETY: the caller's promise; the window lives longer than both.
+        unsafe {
+            self.surfaces.destroy_surface(self.surface, None);
+            self.surface = vk::SurfaceKHR::null();
+            self.surface = surface(&self.entry, &self.instance, window)?;
+            let (device, family) = (self.physical_device, self.gpu().queue_family());
+            let shows =
+                self.surfaces
+                    .get_physical_device_surface_support(device, family, self.surface);
+            match shows.doing("ask the device for the window")? {
+                true => Ok(()),
+                false => Err(Error::SurfaceLost),
+            }
+        }
     }
 
     /// Waits until nothing is unfinished. Of a lost device nothing is.

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::sync::Arc;
 use stratavox::camera::Orbit;
 use stratavox::format;
-use stratavox::transfer::{Quantity, ValueSummary};
+use stratavox::transfer::{LabelTable, Quantity, ValueSummary};
 use stratavox::volume::{
     Grid, Header, Histogram, Limits, Magnitude, Meaning, Pick, Rescale, Source, Volume, Voxels,
     Wanted, luma, phantom, read_colors,
@@ -26,6 +26,7 @@ pub struct Subject {
     pub histogram: Histogram,
     /// How a voxel is made one number, and how much higher than it is the volume is drawn.
     pub way: Way,
+    names: LabelTable,
 }
 
 /// From the numbers of a source to a volume that is drawn.
@@ -91,7 +92,14 @@ impl Subject {
             time: words.time,
             source,
             way,
+            names: names(words)?,
         })
+    }
+
+    /// What a label is called.
+    pub fn name_of(&self, value: Option<f64>) -> Option<String> {
+        let label = self.names.labels.get(&(value? as i64))?;
+        Some(label.name.clone()).filter(|name| !name.is_empty())
     }
 
     pub fn header(&self) -> &Header {
@@ -129,6 +137,16 @@ impl Way {
         volume.world_from_voxel = stretch * volume.world_from_voxel;
         Ok(volume)
     }
+}
+
+/// The names that the words bring.
+fn names(words: &Words) -> Result<LabelTable, Error> {
+    let Some(path) = &words.label_tf else {
+        return Ok(LabelTable::default());
+    };
+    let wrong = |problem: String| Error::Words(format!("--label-tf {}: {problem}", path.display()));
+    let text = std::fs::read(path).map_err(|cause| wrong(cause.to_string()))?;
+    LabelTable::parse(&text).map_err(|problem| wrong(problem.to_string()))
 }
 
 /// Refuses words that name what is not there.

@@ -38,6 +38,19 @@ impl Swapchain {
         window: [u32; 2],
         present: Present,
     ) -> Result<Option<Self>, Error> {
+        let made = Self::instead_of(host, old.as_ref(), window, present);
+        if let Some(old) = old {
+            old.destroy(host);
+        }
+        made
+    }
+
+    fn instead_of(
+        host: &Host,
+        old: Option<&Self>,
+        window: [u32; 2],
+        present: Present,
+    ) -> Result<Option<Self>, Error> {
         let (surfaces, surface) = (&host.surfaces, host.surface);
         let physical_device = host.physical_device;
         // SAFETY: the handles are the host's own; nothing unfinished uses the old swapchain (the caller's promise).
@@ -55,9 +68,6 @@ impl Swapchain {
                 _ => [found.current_extent.width, found.current_extent.height],
             };
             if extent.contains(&0) || window.contains(&0) {
-                if let Some(old) = old {
-                    old.destroy(host);
-                }
                 return Ok(None);
             }
             let formats = surfaces
@@ -120,11 +130,8 @@ impl Swapchain {
                 .composite_alpha(alpha)
                 .present_mode(mode)
                 .clipped(true)
-                .old_swapchain(old.as_ref().map_or(vk::SwapchainKHR::null(), |old| old.raw));
+                .old_swapchain(old.map_or(vk::SwapchainKHR::null(), |old| old.raw));
             let made = host.swapchains.create_swapchain(&info, None);
-            if let Some(old) = old {
-                old.destroy(host);
-            }
             let mut swapchain = Self {
                 raw: made.doing("make the images of the window")?,
                 images: Vec::new(),

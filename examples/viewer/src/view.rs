@@ -47,6 +47,8 @@ pub enum Picked {
         /// Of the voxel there; `None` where it has no data.
         value: Option<f64>,
         is_label: bool,
+        /// What the label is called.
+        name: Option<String>,
     },
 }
 

@@ -29,6 +29,9 @@ pub struct Words {
     /// One of several resolutions of a file, 0 the finest
     #[arg(long, value_name = "N")]
     pub level: Option<u32>,
+    /// What labels are called: a file that `stratavox render --label-tf` takes
+    #[arg(long, value_name = "FILE")]
+    pub label_tf: Option<PathBuf>,
     /// A device by a part of its name
     #[arg(long, value_name = "NAME")]
     pub device: Option<String>,

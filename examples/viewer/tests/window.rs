@@ -1,10 +1,10 @@
 //! The viewer in a window of a display without a screen, with a script for a hand, and the validation layer listening.
-//!
-//! Where there is no Xvfb nothing can be tested: that is said as `skipped: ...`, past the harness.
 
-use std::io::{BufRead, BufReader, Write};
+mod display;
+
+use display::{Display, skipped, texts};
 use std::path::Path;
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 use stratavox::camera::{Camera, Lens, Orbit};
 use stratavox::gpu::{DeviceChoice, Headless, Options};
@@ -16,40 +16,10 @@ use stratavox::transfer::{Classified, ValueSummary, automatic};
 use stratavox::volume::{Limits, Pick, Volume, phantom};
 use tempfile::TempDir;
 
-/// A display without a screen; dropping it ends it.
-struct Display {
-    server: Child,
-    name: String,
-}
-
 impl Display {
-    /// `None` where there is none to be had, which is said.
-    fn new() -> Option<Self> {
-        let mut command = Command::new("Xvfb");
-        command.args([
-            "-displayfd",
-            "1",
-            "-screen",
-            "0",
-            "1400x900x24",
-            "-nolisten",
-            "tcp",
-        ]);
-        let server = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn();
-        let Ok(mut server) = server else {
-            return skipped("there is no Xvfb");
-        };
-        let mut number = String::new();
-        let told = BufReader::new(server.stdout.take()?).read_line(&mut number);
-        assert!(told.is_ok_and(|bytes| bytes > 0), "Xvfb did not start");
-        let name = format!(":{}", number.trim());
-        Some(Self { server, name })
-    }
-
-    fn viewer(&self, folder: &Path) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_stratavox-viewer"));
-        command.current_dir(folder).env("DISPLAY", &self.name);
-        command.env_remove("WAYLAND_DISPLAY");
+    /// A viewer that the validation layer listens to.
+    fn heard(&self, folder: &Path) -> Command {
+        let mut command = self.viewer(folder);
         command.args(["--validation", "sync"]);
         command
     }
@@ -58,7 +28,7 @@ impl Display {
     fn play(&self, folder: &Path, words: &[&str], lines: &str) -> Report {
         let script = folder.join("script.txt");
         std::fs::write(&script, lines).unwrap();
-        let mut command = self.viewer(folder);
+        let mut command = self.heard(folder);
         let output = command
             .args(words)
             .arg("--script")
@@ -73,28 +43,6 @@ impl Display {
         );
         Report(text)
     }
-}
-
-impl Drop for Display {
-    fn drop(&mut self) {
-        // It is gone already where it crashed.
-        let _ = self.server.kill();
-        let _ = self.server.wait();
-    }
-}
-
-#[allow(
-    clippy::explicit_write,
-    reason = "the harness keeps what `eprintln!` writes for itself"
-)]
-fn skipped<T>(why: &str) -> Option<T> {
-    writeln!(std::io::stderr(), "skipped: {why}").unwrap();
-    None
-}
-
-fn texts(output: &Output) -> String {
-    let text = |bytes| String::from_utf8_lossy(bytes).into_owned();
-    text(&output.stdout) + &text(&output.stderr)
 }
 
 /// What the viewer said.
@@ -278,6 +226,51 @@ fn a_click_says_where_the_sphere_is() {
 }
 
 #[test]
+fn a_click_on_a_label_says_what_it_is_called() {
+    let Some(display) = Display::new() else {
+        return;
+    };
+    let folder = TempDir::new().unwrap();
+    // A cube of one label in a larger one of another.
+    let side = |i: usize| [i % 16, i / 16 % 16, i / 256];
+    let inside =
+        |i: usize, margin: usize| side(i).iter().all(|n| (margin..16 - margin).contains(n));
+    let label = |i: usize| {
+        if inside(i, 2) {
+            3
+        } else {
+            7 * u8::from(inside(i, 1))
+        }
+    };
+    let mut file =
+        b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 16 16 16\nencoding: raw\n\n".to_vec();
+    file.extend((0..16 * 16 * 16).map(label));
+    std::fs::write(folder.path().join("map.nrrd"), file).unwrap();
+    std::fs::write(folder.path().join("names.txt"), "3 heart\n7 lung\n").unwrap();
+    let lines = "click 100 75\nframes 3\nreport\n";
+    let size = ["map.nrrd", "--bare", "--size", "200x150"];
+    let named = [&size[..], &["--label-tf", "names.txt"]].concat();
+    let report = display.play(folder.path(), &named, lines);
+    let picked = report.numbers("pick", 0)[3];
+    let name = match picked {
+        3.0 => "called heart",
+        7.0 => "called lung",
+        _ => panic!("{}", report.0),
+    };
+    assert!(report.0.contains(name), "{}", report.0);
+    let report = display.play(folder.path(), &size, lines);
+    assert!(report.0.contains("called nothing"), "{}", report.0);
+    let unknown = [&size[..], &["--label-tf", "none.txt"]].concat();
+    let output = display.heard(folder.path()).args(unknown).output().unwrap();
+    assert_eq!(output.status.code(), Some(2), "{}", texts(&output));
+    assert!(
+        texts(&output).contains("--label-tf none.txt"),
+        "{}",
+        texts(&output)
+    );
+}
+
+#[test]
 fn a_dragged_point_changes_the_picture_and_makes_no_pipeline() {
     let Some(display) = Display::new() else {
         return;
@@ -367,7 +360,7 @@ fn a_hand_on_a_real_pointer_and_keyboard_turns_the_volume() {
         return;
     }
     let folder = TempDir::new().unwrap();
-    let mut viewer = display.viewer(folder.path());
+    let mut viewer = display.heard(folder.path());
     viewer.args(["phantom:head,n=32", "--bare", "--size", "300x200"]);
     let viewer = viewer
         .stdout(Stdio::piped())
@@ -438,14 +431,14 @@ fn what_cannot_be_shown_is_said_in_a_sentence() {
             "none is called `abacus`",
         ),
     ] {
-        let output = display.viewer(folder.path()).args(words).output().unwrap();
+        let output = display.heard(folder.path()).args(words).output().unwrap();
         let text = texts(&output);
         assert_eq!(output.status.code(), Some(code), "{words:?}: {text}");
         assert!(text.contains(part), "{words:?}: {text}");
     }
     let script = folder.path().join("bad.txt");
     std::fs::write(&script, "key M\ndance 3\n").unwrap();
-    let mut viewer = display.viewer(folder.path());
+    let mut viewer = display.heard(folder.path());
     let output = viewer.arg("--script").arg(&script).output().unwrap();
     assert_eq!(output.status.code(), Some(2), "{}", texts(&output));
     assert!(
@@ -453,7 +446,7 @@ fn what_cannot_be_shown_is_said_in_a_sentence() {
         "{}",
         texts(&output)
     );
-    let mut viewer = display.viewer(folder.path());
+    let mut viewer = display.heard(folder.path());
     let output = viewer
         .arg("phantom:head,n=16")
         .env("DISPLAY", ":4711")

@@ -98,7 +98,11 @@ impl Cache {
         let reserve = (stream.all_device_bytes / 16).min(64 << 20);
         loop {
             let more = self.largest_bytes;
-            let all = device.gpu().device_bytes().saturating_add(more + reserve);
+            let all = device
+                .gpu()
+                .memory()
+                .reserved_bytes
+                .saturating_add(more + reserve);
             let fits = self.bytes + more <= stream.device_bytes
                 && all <= stream.all_device_bytes
                 && self.bricks.len() < MOST_BRICKS;
@@ -125,7 +129,7 @@ impl Cache {
     ) -> Result<(), Error> {
         let cell = stream.cells()[brick];
         self.make_room(device, stream, kept);
-        let before = device.gpu().owned_device_bytes();
+        let before = device.gpu().memory().used_bytes;
         let made = loop {
             let made = GpuVolume::brick_of(device.gpu(), stream.whole(), cell, voxels);
             match made {
@@ -139,7 +143,7 @@ impl Cache {
             Skippable::Nothing | Skippable::UnseenOrAlike(..) => None,
             _ => if_it_fits(MacroCells::of_voxels(device.gpu(), &made, apron, voxels))?,
         };
-        let bytes = device.gpu().owned_device_bytes().saturating_sub(before);
+        let bytes = device.gpu().memory().used_bytes.saturating_sub(before);
         self.bytes += bytes;
         self.largest_bytes = self.largest_bytes.max(bytes);
         self.uploaded_bytes += texels_bytes;
@@ -192,13 +196,13 @@ impl Cache {
                 continue;
             }
             let newest = made.last().map(|(_, empty, _)| empty);
-            let before = device.gpu().owned_device_bytes();
+            let before = device.gpu().memory().used_bytes;
             let other = self.bricks.values().find_map(|there| there.empty.as_ref());
             let empty = match newest.or(other) {
                 Some(other) => other.of_others(cells),
                 None => EmptySpace::new(device.gpu(), cells, seen),
             };
-            let bytes = device.gpu().owned_device_bytes().saturating_sub(before);
+            let bytes = device.gpu().memory().used_bytes.saturating_sub(before);
             made.extend(if_it_fits(empty)?.map(|empty| (*brick, empty, bytes)));
         }
         if made.is_empty() {

@@ -207,10 +207,12 @@ fn pick(ui: &mut Ui, picked: &Picked, unit: &str) {
             position,
             value,
             is_label,
+            name,
         } => {
             let word = if *is_label { "label" } else { "value" };
-            let value = value.map_or("no data".to_owned(), |value| {
-                format!("{} {unit}", short(value))
+            let value = value.map_or("no data".to_owned(), |value| match name {
+                Some(name) => format!("{} {name}", short(value)),
+                None => format!("{} {unit}", short(value)),
             });
             Grid::new("pick").num_columns(2).show(ui, |ui| {
                 ui.weak(word);

@@ -49,7 +49,7 @@ impl Window {
         }
         let view = &mut self.view;
         view.status.pipelines = self.host.gpu().pipelines_made();
-        view.status.device_bytes = self.host.gpu().device_bytes();
+        view.status.device_bytes = self.host.gpu().memory().reserved_bytes;
         let mut output = self.context.run_ui(input, |ui| panel::show(ui, view));
         if self.view.is_moving {
             self.last_move = Some(Instant::now());
@@ -153,10 +153,14 @@ impl Window {
             None => {}
             Some(Picked::Nothing) => println!("pick nothing"),
             Some(Picked::Something {
-                position, value, ..
+                position,
+                value,
+                name,
+                ..
             }) => {
                 let [x, y, z] = position.to_array();
                 println!("pick {x} {y} {z} {}", value.unwrap_or(f64::NAN));
+                println!("called {}", name.as_deref().unwrap_or("nothing"));
             }
         }
         if let Some(message) = &view.message {

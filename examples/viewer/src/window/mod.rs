@@ -63,6 +63,8 @@ pub struct Window {
     last_move: Option<Instant>,
     awaited_size: Option<([u32; 2], Instant)>,
     is_resized: bool,
+    /// Nothing was shown on it yet: lost once more, it stays so.
+    is_surface_new: bool,
     swapchain: Option<Swapchain>,
     frames: Frames,
     context: egui::Context,
@@ -92,6 +94,14 @@ enum Save {
 pub struct Next {
     pub at: Option<Instant>,
     pub ends: bool,
+}
+
+impl Next {
+    /// Until something happens.
+    const NOTHING: Self = Self {
+        at: None,
+        ends: false,
+    };
 }
 
 impl Window {
@@ -134,6 +144,7 @@ impl Window {
             last_move: None,
             awaited_size: None,
             is_resized: false,
+            is_surface_new: false,
             swapchain: None,
             frames,
             context,
@@ -168,11 +179,29 @@ impl Window {
     /// Lays out, draws and shows a frame.
     pub fn frame(&mut self) -> Result<Next, Error> {
         let frame = self.frame_inner();
-        if let Err(Error::DeviceLost(_)) = &frame {
+        match &frame {
             // The host hears first: stratavox asks nothing of the device from here on.
-            self.host.gpu().declare_lost();
+            Err(Error::DeviceLost(_)) => self.host.gpu().declare_lost(),
+            // A display may come back as another. What is on the device is not lost with it.
+            Err(Error::SurfaceLost) if !self.is_surface_new => {
+                self.renew_surface()?;
+                return Ok(Next::NOTHING);
+            }
+            _ => {}
         }
         frame
+    }
+
+    fn renew_surface(&mut self) -> Result<(), Error> {
+        self.host.finish();
+        self.frames.retire_all(&self.host);
+        if let Some(swapchain) = self.swapchain.take() {
+            swapchain.destroy(&self.host);
+        }
+        self.host.renew_surface(&self.window)?;
+        (self.is_surface_new, self.is_resized) = (true, true);
+        self.ask_for_frame();
+        Ok(())
     }
 
     fn frame_inner(&mut self) -> Result<Next, Error> {
@@ -181,18 +210,12 @@ impl Window {
         }
         let Some(swapchain) = &self.swapchain else {
             // Minimized: nothing is drawn until there is a size again.
-            return Ok(Next {
-                at: None,
-                ends: false,
-            });
+            return Ok(Next::NOTHING);
         };
         let Some(begun) = self.frames.begin(&self.host, swapchain)? else {
             self.is_resized = true;
             self.ask_for_frame();
-            return Ok(Next {
-                at: None,
-                ends: false,
-            });
+            return Ok(Next::NOTHING);
         };
         self.hear_device(begun.frame)?;
         let step = self.next_step()?;
@@ -212,6 +235,7 @@ impl Window {
         let swapchain = self.swapchain.as_ref().expect("looked at above");
         let fits = self.frames.show(&self.host, swapchain, begun)?;
         self.is_resized |= !fits;
+        self.is_surface_new = false;
         if !written.is_empty() {
             // A screenshot is worth a wait.
             self.host.finish();
@@ -296,6 +320,7 @@ impl Window {
                     position,
                     value: pick.voxel_of(voxels),
                     is_label: self.view.subject.summary.labels.is_some(),
+                    name: self.view.subject.name_of(pick.voxel_of(voxels)),
                 }
             }));
         }

@@ -13,8 +13,10 @@
 
 mod geometry;
 pub mod reference;
+mod steps;
 
 pub use geometry::{HalfAngle, light_extent};
+pub(crate) use steps::Steps;
 
 use crate::gpu::{
     Bindings, Blend, DepthUse, Error, Gpu, Image, ImageDesc, ImageKind, Load, RasterDesc,
