@@ -161,3 +161,30 @@ fn names_of_devices_and_reasons_cannot_break_a_report() {
     assert!(xml.contains("failures=\"1\" errors=\"1\" skipped=\"1\""));
     assert_eq!(xml.matches("<testcase").count(), package.cases.len());
 }
+
+#[test]
+fn branches_of_two_packages_count_the_same_numbers_and_the_worst() {
+    let list = cases();
+    let with = |ratio: f64, hash: &str| {
+        whole(&list, |records| {
+            for record in records.iter_mut().take(3) {
+                record.found_sha256 = hash.repeat(64);
+            }
+            records[1].found_sha256 = "c".repeat(64);
+            records[0].worst = Some(Worst {
+                ratio,
+                ..Worst::default()
+            });
+        })
+    };
+    let (a, b) = (with(0.25, "a"), with(0.5, "b"));
+    let difference = Difference::of(&a, &b);
+    let words: Vec<&str> = list[0].name.split('.').take(2).collect();
+    let branch = difference.branches[&words.join(".")];
+    // Of the others no number is known: they are not the same.
+    assert_eq!((branch.same_numbers, branch.worst), (1, [0.25, 0.5]));
+    let all: usize = difference.branches.values().map(|branch| branch.cases).sum();
+    assert_eq!(all, a.cases.len());
+    let line = format!("| `{}` | {} | 1 | 0.250 | 0.500 |", words.join("."), branch.cases);
+    assert!(difference.text().contains(&line), "{}", difference.text());
+}
