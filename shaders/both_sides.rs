@@ -14,8 +14,8 @@
 //! have to allow stays behind its branch.
 
 use naga::{
-    AddressSpace, Arena, Block, Expression, Function, GlobalVariable, Handle, LocalVariable, Module,
-    Span, Statement,
+    AddressSpace, Arena, Block, Expression, Function, GlobalVariable, Handle, LocalVariable,
+    Module, Span, Statement,
 };
 
 /// Replaces such branches of the whole module.

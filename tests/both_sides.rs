@@ -62,7 +62,11 @@ fn a_second_side_that_costs_nothing_is_asked_without_a_branch() {
         ("while y < x && y < 9.0 { y += 1.0; }", 2),
     ] {
         let is_loop = question.starts_with("while");
-        assert_eq!(counts(question), [before, usize::from(is_loop)], "{question}");
+        assert_eq!(
+            counts(question),
+            [before, usize::from(is_loop)],
+            "{question}"
+        );
     }
 }
 

@@ -183,8 +183,16 @@ fn branches_of_two_packages_count_the_same_numbers_and_the_worst() {
     let branch = difference.branches[&words.join(".")];
     // Of the others no number is known: they are not the same.
     assert_eq!((branch.same_numbers, branch.worst), (1, [0.25, 0.5]));
-    let all: usize = difference.branches.values().map(|branch| branch.cases).sum();
+    let all: usize = difference
+        .branches
+        .values()
+        .map(|branch| branch.cases)
+        .sum();
     assert_eq!(all, a.cases.len());
-    let line = format!("| `{}` | {} | 1 | 0.250 | 0.500 |", words.join("."), branch.cases);
+    let line = format!(
+        "| `{}` | {} | 1 | 0.250 | 0.500 |",
+        words.join("."),
+        branch.cases
+    );
     assert!(difference.text().contains(&line), "{}", difference.text());
 }

@@ -203,9 +203,7 @@ fn name_of(device: Option<&Headless>) -> String {
 
 fn driver_of(device: Option<&Headless>) -> String {
     match device {
-        Some(device) => {
-            driver_text(device.gpu().identity())
-        }
+        Some(device) => driver_text(device.gpu().identity()),
         None => format!("stratavox {}", env!("CARGO_PKG_VERSION")),
     }
 }

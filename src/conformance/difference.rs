@@ -31,7 +31,8 @@ pub struct Branch {
     pub cases: usize,
     /// Of how many every number that was found is the same, bit for bit.
     pub same_numbers: usize,
-    /// The largest part of what is allowed that a number of A and of B takes.
+    /// The largest part of what is allowed that a number of A and of B takes, where both have the same verdict: a warning
+    /// measures by what is stricter.
     pub worst: [f64; 2],
 }
 
@@ -62,12 +63,12 @@ impl Difference {
         branch.cases += 1;
         let is_known = !a.found_sha256.is_empty();
         branch.same_numbers += usize::from(is_known && a.found_sha256 == b.found_sha256);
-        branch.worst = [branch.worst[0].max(of_a), branch.worst[1].max(of_b)];
         if a.verdict != b.verdict {
             let line = format!("{}: {} in A, {} in B", a.name, a.verdict, b.verdict);
             self.verdicts.push(line);
             return;
         }
+        branch.worst = [branch.worst[0].max(of_a), branch.worst[1].max(of_b)];
         let timeless = |record: &Record| Record {
             ms: 0.0,
             ..record.clone()

@@ -17,9 +17,9 @@ use super::worker::Line;
 use std::collections::VecDeque;
 use std::ffi::OsString;
 use std::io::{self, BufRead, BufReader, Read, Write};
+use std::num::NonZero;
 use std::path::PathBuf;
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
-use std::num::NonZero;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -81,7 +81,10 @@ pub fn run(
             let gone = || Err(io::Error::other("a thread of the supervisor panicked"));
             thread.join().unwrap_or_else(|_| gone())
         };
-        threads.into_iter().map(ended).collect::<io::Result<Vec<_>>>()
+        threads
+            .into_iter()
+            .map(ended)
+            .collect::<io::Result<Vec<_>>>()
     })?;
     let (mut records, _) = done.into_inner().unwrap_or_else(PoisonError::into_inner);
     records.sort_by_key(|&(place, _)| place);
