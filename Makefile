@@ -114,15 +114,16 @@ swiftshader:
 	    && { apt-get download -qq chromium-common || { $(APT) update -qq && apt-get download -qq chromium-common; }; } \
 	    && dpkg -x chromium-common_*.deb . && rm -f chromium-common_*.deb && cd $(CURDIR) && [ -f $(SWIFTSHADER) ]; }
 
-# What it is asked in `make test`: all probes, and pictures of each technique and mode. `make conformance` asks all.
+# What it is asked in `make test`: all probes, and pictures of each technique and mode. `make conformance` asks all. The
+# program is that of the tests before: `cargo run` would build it once more.
 SECOND := probe.*|*.linear_fetch.u16.perspective|twin.*.linear_fetch.perspective|twin.raycast.planes.composite.*|$\
     relation.*.composite.orthographic
 
 second:
 	@mkdir -p target/conformance; if ! why=$$($(MAKE) --no-print-directory swiftshader 2>&1); then \
 	    echo "the conformance suite on SwiftShader: skipped, the driver could not be fetched: $$why"; exit 0; fi; \
-	ask() { $(ON_SWIFTSHADER) $(CARGO) run --quiet --locked --features grib,capi -- conformance "$$@"; }; \
-	ask --force --filter '$(SECOND)' --waivers docs/conformance-waivers.json --json target/conformance/second.json \
+	$(TEST) --quiet --no-run --test cli && ask() { $(ON_SWIFTSHADER) target/debug/stratavox conformance "$$@"; } \
+	    && ask --force --filter '$(SECOND)' --waivers docs/conformance-waivers.json --json target/conformance/second.json \
 	    && ask verify --part target/conformance/second.json
 
 # Each run must be well, and each package whole; how they differ is told.

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use stratavox::conformance::case::{Case, Profile};
 use stratavox::conformance::difference::Difference;
-use stratavox::conformance::measurement::Worst;
+use stratavox::conformance::measurement::{Bound, Measurement, Worst};
 use stratavox::conformance::need::Found;
 use stratavox::conformance::record::{Asked, DeviceRecord, Package, Record};
 use stratavox::conformance::report::{html, junit};
@@ -195,4 +195,21 @@ fn branches_of_two_packages_count_the_same_numbers_and_the_worst() {
         branch.cases
     );
     assert!(difference.text().contains(&line), "{}", difference.text());
+}
+
+#[test]
+fn the_hash_is_of_what_was_found_in_its_order() {
+    let hash = |numbers: [f64; 2]| {
+        let mut found = Measurement::new(Bound::default(), 1);
+        numbers
+            .iter()
+            .for_each(|&number| found.take(String::new, 1.0, number, 1.0));
+        found.found_sha256()
+    };
+    assert_eq!(hash([1.0, 2.0]), hash([1.0, 2.0]));
+    for other in [[2.0, 1.0], [1.0, 2.0 + f64::EPSILON], [-1.0, 2.0]] {
+        assert_ne!(hash([1.0, 2.0]), hash(other), "{other:?}");
+    }
+    let none = Measurement::new(Bound::default(), 1);
+    assert_eq!(none.found_sha256(), "");
 }

@@ -244,23 +244,6 @@ mod tests {
     }
 
     #[test]
-    fn the_hash_is_of_what_was_found_in_its_order() {
-        let hash = |numbers: [f64; 2]| {
-            let mut found = Measurement::new(Bound::default(), 1);
-            numbers
-                .iter()
-                .for_each(|&number| found.take(String::new, 1.0, number, 1.0));
-            found.found_sha256()
-        };
-        assert_eq!(hash([1.0, 2.0]), hash([1.0, 2.0]));
-        for other in [[2.0, 1.0], [1.0, 2.0 + f64::EPSILON], [-1.0, 2.0]] {
-            assert_ne!(hash([1.0, 2.0]), hash(other), "{other:?}");
-        }
-        let none = Measurement::new(Bound::default(), 1);
-        assert_eq!(none.found_sha256(), "");
-    }
-
-    #[test]
     fn nothing_allowed_is_exact() {
         let mut found = Measurement::new(Bound::default(), 1);
         found.take(|| "a".into(), 1.0, 1.0, 0.0);
