@@ -115,7 +115,8 @@ swiftshader:
 	    && dpkg -x chromium-common_*.deb . && rm -f chromium-common_*.deb && cd $(CURDIR) && [ -f $(SWIFTSHADER) ]; }
 
 # What it is asked in `make test`: all probes, and pictures of each technique and mode. `make conformance` asks all. The
-# program is that of the tests before: `cargo run` would build it once more.
+# program is that of the tests before: `cargo run` would build it once more. Of the library's own tests those of the device
+# layer cost a second there.
 SECOND := probe.*|*.linear_fetch.u16.perspective|twin.*.linear_fetch.perspective|twin.raycast.planes.composite.*|$\
     relation.*.composite.orthographic
 
@@ -124,7 +125,8 @@ second:
 	    echo "the conformance suite on SwiftShader: skipped, the driver could not be fetched: $$why"; exit 0; fi; \
 	$(TEST) --quiet --no-run --test cli && ask() { $(ON_SWIFTSHADER) target/debug/stratavox conformance "$$@"; } \
 	    && ask --force --filter '$(SECOND)' --waivers docs/conformance-waivers.json --json target/conformance/second.json \
-	    && ask verify --part target/conformance/second.json
+	    && ask verify --part target/conformance/second.json \
+	    && $(ON_SWIFTSHADER) RUST_TEST_THREADS=1 $(TEST) --quiet --test gpu_run --test gpu_limits
 
 # Each run must be well, and each package whole; how they differ is told.
 conformance: driver swiftshader
