@@ -207,7 +207,7 @@ fn the_hash_is_of_what_was_found_in_its_order() {
         found.found_sha256()
     };
     assert_eq!(hash([1.0, 2.0]), hash([1.0, 2.0]));
-    for other in [[2.0, 1.0], [1.0, 2.0 + f64::EPSILON], [-1.0, 2.0]] {
+    for other in [[2.0, 1.0], [1.0 + f64::EPSILON, 2.0], [-1.0, 2.0]] {
         assert_ne!(hash([1.0, 2.0]), hash(other), "{other:?}");
     }
     let none = Measurement::new(Bound::default(), 1);

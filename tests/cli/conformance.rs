@@ -97,6 +97,8 @@ fn a_run_is_written_as_records_for_a_server_and_as_a_page_and_is_the_same_twice(
     );
     let page = std::fs::read_to_string(folder.path("page/index.html")).expect("a page");
     assert!(page.contains(DRAWN) && page.contains("subTexelPrecisionBits"));
+    let names: Vec<&str> = verdicts(&first).into_iter().map(|(name, _)| name).collect();
+    assert_eq!(names, ["probe.math.exp", "probe.math.sqrt", DRAWN]);
     for jobs in ["1", "2", "16"] {
         let (_, again) = run(&folder, &format!("--jobs {jobs}"));
         assert_eq!(first["content_sha256"], again["content_sha256"], "{jobs}");
