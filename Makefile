@@ -1,5 +1,6 @@
 # make test    everything that must hold, on whatever Vulkan device is here (a software driver is installed
-#              by apt where there is none)
+#              by apt where there is none); the conformance suite in part on SwiftShader too, which is fetched by apt, and
+#              skipped by name where that cannot be
 # make plain   what draws once more, without validation of synchronization
 # make viewer  the tests of examples/viewer, in a window of a display without a screen (Xvfb is installed by apt where it is
 #              missing); make viewer-lint what clippy says of it
@@ -13,7 +14,7 @@
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := test
-.PHONY: test plain viewer viewer-lint conformance swiftshader demo sheet gallery capi install header api bench driver layers display
+.PHONY: test plain viewer viewer-lint conformance swiftshader second demo sheet gallery capi install header api bench driver layers display
 
 CARGO ?= cargo
 ROOT := $(if $(filter 0,$(shell id -u)),,sudo )
@@ -72,7 +73,7 @@ TEST := $(CARGO) test --locked --features grib,capi
 # Tests of files and of arithmetic make no device: they run side by side, and the validation layer has nothing to
 # hear there.
 TESTS := $(basename $(notdir $(wildcard tests/*.rs))) $(filter-out cli,$(notdir $(patsubst %/main.rs,%,$(wildcard tests/*/main.rs))))
-WITHOUT_DEVICE := $(filter host conformance_package dependencies public_api format_% mutations%,$(TESTS))
+WITHOUT_DEVICE := $(filter host both_sides conformance_package dependencies public_api format_% mutations%,$(TESTS))
 WITH_DEVICE := $(filter-out $(WITHOUT_DEVICE),$(TESTS))
 ON_DEVICE := RUST_TEST_THREADS=1 $(TEST) --lib --examples $(addprefix --test ,$(WITH_DEVICE))
 
@@ -89,6 +90,7 @@ test: driver layers display
 	STRATAVOX_VALIDATION=sync $(ON_DEVICE)
 	STRATAVOX_VALIDATION=sync RUST_TEST_THREADS=1 $(TEST) --test cli -- bench:: conformance::a_run device:: mixed:: pictures::
 	$(VIEWER)
+	@$(MAKE) --no-print-directory second
 
 # A package of its own, with a window and a panel that nothing else builds.
 VIEWER := STRATAVOX_VALIDATION=sync RUST_TEST_THREADS=1 $(CARGO) test --locked --package stratavox-viewer
@@ -105,9 +107,26 @@ plain: driver layers
 # A second driver, from Debian's chromium: unpacked, and not installed.
 SWIFTSHADER := target/swiftshader/usr/lib/chromium/vk_swiftshader_icd.json
 
+ON_SWIFTSHADER := VK_DRIVER_FILES=$(CURDIR)/$(SWIFTSHADER) VK_ICD_FILENAMES=$(CURDIR)/$(SWIFTSHADER)
+
 swiftshader:
-	@mkdir -p target/swiftshader
-	@[ -f $(SWIFTSHADER) ] || { cd target/swiftshader && apt-get download chromium-common && dpkg -x chromium-common_*.deb .; }
+	@[ -f $(SWIFTSHADER) ] || { mkdir -p target/swiftshader && cd target/swiftshader && rm -f chromium-common_*.deb \
+	    && { apt-get download -qq chromium-common || { $(APT) update -qq && apt-get download -qq chromium-common; }; } \
+	    && dpkg -x chromium-common_*.deb . && rm -f chromium-common_*.deb && cd $(CURDIR) && [ -f $(SWIFTSHADER) ]; }
+
+# What it is asked in `make test`: all probes, and pictures of each technique and mode. `make conformance` asks all. The
+# program is that of the tests before: `cargo run` would build it once more. Of the library's own tests those of the device
+# layer cost a second there.
+SECOND := probe.*|*.linear_fetch.u16.perspective|twin.*.linear_fetch.perspective|twin.raycast.planes.composite.*|$\
+    relation.*.composite.orthographic
+
+second:
+	@mkdir -p target/conformance; if ! why=$$($(MAKE) --no-print-directory swiftshader 2>&1); then \
+	    echo "the conformance suite on SwiftShader: skipped, the driver could not be fetched: $$why"; exit 0; fi; \
+	$(TEST) --quiet --no-run --test cli && ask() { $(ON_SWIFTSHADER) target/debug/stratavox conformance "$$@"; } \
+	    && ask --force --filter '$(SECOND)' --waivers docs/conformance-waivers.json --json target/conformance/second.json \
+	    && ask verify --part target/conformance/second.json \
+	    && $(ON_SWIFTSHADER) RUST_TEST_THREADS=1 $(TEST) --quiet --test gpu_run --test gpu_limits
 
 # Each run must be well, and each package whole; how they differ is told.
 conformance: driver swiftshader
@@ -118,7 +137,7 @@ conformance: driver swiftshader
 	        --json target/conformance/$$1.json --junit target/conformance/$$1.xml --html target/conformance/$$1; \
 	    target/release/stratavox conformance verify target/conformance/$$1.json; }; \
 	judge default; \
-	export VK_DRIVER_FILES=$(CURDIR)/$(SWIFTSHADER) VK_ICD_FILENAMES=$(CURDIR)/$(SWIFTSHADER); judge swiftshader
+	export $(ON_SWIFTSHADER); judge swiftshader
 	target/release/stratavox conformance diff target/conformance/default.json target/conformance/swiftshader.json || true
 
 demo: driver

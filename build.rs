@@ -11,6 +11,8 @@
 
 #[path = "shaders/blue_noise.rs"]
 mod blue_noise;
+#[path = "shaders/both_sides.rs"]
+mod both_sides;
 #[path = "shaders/opaque.rs"]
 mod opaque;
 #[path = "shaders/read_once.rs"]
@@ -108,6 +110,7 @@ impl Book {
         check(&module, ValidationFlags::all());
         // A probe is to see what a device makes of it as it stands.
         if !file.starts_with("probe/") {
+            both_sides::ask_both_sides(&mut module);
             opaque::hide_branches(&mut module);
         }
         read_once::read_parameters_once(&mut module);

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use stratavox::conformance::case::{Case, Profile};
 use stratavox::conformance::difference::Difference;
-use stratavox::conformance::measurement::Worst;
+use stratavox::conformance::measurement::{Bound, Measurement, Worst};
 use stratavox::conformance::need::Found;
 use stratavox::conformance::record::{Asked, DeviceRecord, Package, Record};
 use stratavox::conformance::report::{html, junit};
@@ -160,4 +160,56 @@ fn names_of_devices_and_reasons_cannot_break_a_report() {
     let xml = junit(&package);
     assert!(xml.contains("failures=\"1\" errors=\"1\" skipped=\"1\""));
     assert_eq!(xml.matches("<testcase").count(), package.cases.len());
+}
+
+#[test]
+fn branches_of_two_packages_count_the_same_numbers_and_the_worst() {
+    let list = cases();
+    let with = |ratio: f64, hash: &str| {
+        whole(&list, |records| {
+            for record in records.iter_mut().take(3) {
+                record.found_sha256 = hash.repeat(64);
+            }
+            records[1].found_sha256 = "c".repeat(64);
+            records[0].worst = Some(Worst {
+                ratio,
+                ..Worst::default()
+            });
+        })
+    };
+    let (a, b) = (with(0.25, "a"), with(0.5, "b"));
+    let difference = Difference::of(&a, &b);
+    let words: Vec<&str> = list[0].name.split('.').take(2).collect();
+    let branch = difference.branches[&words.join(".")];
+    // Of the others no number is known: they are not the same.
+    assert_eq!((branch.same_numbers, branch.worst), (1, [0.25, 0.5]));
+    let all: usize = difference
+        .branches
+        .values()
+        .map(|branch| branch.cases)
+        .sum();
+    assert_eq!(all, a.cases.len());
+    let line = format!(
+        "| `{}` | {} | 1 | 0.250 | 0.500 |",
+        words.join("."),
+        branch.cases
+    );
+    assert!(difference.text().contains(&line), "{}", difference.text());
+}
+
+#[test]
+fn the_hash_is_of_what_was_found_in_its_order() {
+    let hash = |numbers: [f64; 2]| {
+        let mut found = Measurement::new(Bound::default(), 1);
+        numbers
+            .iter()
+            .for_each(|&number| found.take(String::new, 1.0, number, 1.0));
+        found.found_sha256()
+    };
+    assert_eq!(hash([1.0, 2.0]), hash([1.0, 2.0]));
+    for other in [[2.0, 1.0], [1.0 + f64::EPSILON, 2.0], [-1.0, 2.0]] {
+        assert_ne!(hash([1.0, 2.0]), hash(other), "{other:?}");
+    }
+    let none = Measurement::new(Bound::default(), 1);
+    assert_eq!(none.found_sha256(), "");
 }

@@ -1,7 +1,7 @@
 //! `stratavox devices`: what is here to draw with, and what it lacks.
 
 use super::{Error, error::visible, output::say};
-use crate::gpu::{DeviceReport, Need, Requirement, list_devices};
+use crate::gpu::{DeviceReport, Identity, Need, Requirement, list_devices};
 use clap::Args;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -72,6 +72,12 @@ fn json_of((index, device): (usize, &DeviceReport)) -> Value {
     })
 }
 
+/// The driver's name, and its version as far as it has words for it.
+pub fn driver_text(identity: &Identity) -> String {
+    let text = format!("{} {}", identity.driver_name, identity.driver_info);
+    text.trim_end().to_owned()
+}
+
 fn text_of((index, device): (usize, &DeviceReport)) -> String {
     let identity = &device.identity;
     let [major, minor, patch] = identity.api_version;
@@ -85,9 +91,8 @@ fn text_of((index, device): (usize, &DeviceReport)) -> String {
     let _ = writeln!(text, "   uuid    {}", uuid_text(&identity.uuid));
     let _ = writeln!(
         text,
-        "   driver  {} {}, Vulkan {major}.{minor}.{patch}",
-        visible(&identity.driver_name),
-        visible(&identity.driver_info),
+        "   driver  {}, Vulkan {major}.{minor}.{patch}",
+        visible(&driver_text(identity)),
     );
     let _ = writeln!(text, "   memory  {} MiB", device.memory_bytes >> 20);
     let verdict = if device.is_usable() {

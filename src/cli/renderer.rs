@@ -2,6 +2,7 @@
 
 use super::{
     Error,
+    devices::driver_text,
     flags::Classification,
     memory::{DeviceMemory, DeviceRoom},
     progress::Progress,
@@ -202,10 +203,7 @@ fn name_of(device: Option<&Headless>) -> String {
 
 fn driver_of(device: Option<&Headless>) -> String {
     match device {
-        Some(device) => {
-            let identity = device.gpu().identity();
-            format!("{} {}", identity.driver_name, identity.driver_info)
-        }
+        Some(device) => driver_text(device.gpu().identity()),
         None => format!("stratavox {}", env!("CARGO_PKG_VERSION")),
     }
 }

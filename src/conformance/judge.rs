@@ -111,6 +111,7 @@ fn lacking(needs: &[Found]) -> Option<(Verdict, String)> {
 }
 
 fn measured(case: &Case, measurement: Measurement) -> (Record, Option<Pictures>) {
+    let found_sha256 = measurement.found_sha256();
     let Measurement {
         bound,
         checked,
@@ -119,6 +120,7 @@ fn measured(case: &Case, measurement: Measurement) -> (Record, Option<Pictures>)
         worst,
         quality,
         pictures,
+        ..
     } = measurement;
     let all = (checked + left_out) as f64;
     let (verdict, reason, worst) = if worst.ratio > 1.0 {
@@ -148,6 +150,7 @@ fn measured(case: &Case, measurement: Measurement) -> (Record, Option<Pictures>)
     let record = Record {
         checked,
         left_out,
+        found_sha256,
         worst: (worst.allowed > 0.0 || worst.ratio > 0.0).then_some(worst),
         bound: Some(bound),
         ..Record::unmeasured(&case.name, case.profile, verdict, reason)

@@ -7,6 +7,7 @@
 //! A second, stricter allowance may be given: outside of it, and inside of the first, is a quality warning.
 
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 
 /// Where a bound comes from.
@@ -84,6 +85,8 @@ pub struct Measurement {
     pub quality: Option<(Worst, &'static str)>,
     /// For the report of a failure.
     pub pictures: Option<Pictures>,
+    /// Over all numbers that were found.
+    found: Sha256,
 }
 
 impl Measurement {
@@ -97,12 +100,14 @@ impl Measurement {
             worst: Worst::default(),
             quality: None,
             pictures: None,
+            found: Sha256::new(),
         }
     }
 
     /// One number. What is not a number is infinitely wrong, but where that is expected.
     pub fn take(&mut self, at: impl FnOnce() -> String, expected: f64, found: f64, allowed: f64) {
         self.checked += 1;
+        self.found.update(found.to_le_bytes());
         let ratio = ratio_of(expected, found, allowed);
         if ratio > self.worst.ratio {
             self.worst = Worst {
@@ -149,6 +154,15 @@ impl Measurement {
         }
     }
 
+    /// SHA-256 of all numbers that were found, in their order: two runs with the same one have found the same, bit for
+    /// bit. Empty where there were none.
+    pub fn found_sha256(&self) -> String {
+        match self.checked {
+            0 => String::new(),
+            _ => hex(&self.found.clone().finalize()),
+        }
+    }
+
     /// A number whose answer hangs on rounding.
     pub fn leave_out(&mut self) {
         self.left_out += 1;
@@ -158,6 +172,11 @@ impl Measurement {
     pub fn hold(&mut self, at: impl FnOnce() -> String, holds: bool) {
         self.take(at, 1.0, f64::from(u8::from(holds)), 0.5);
     }
+}
+
+/// As hashes stand in records.
+pub(super) fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 fn ratio_of(expected: f64, found: f64, allowed: f64) -> f64 {

@@ -2,6 +2,7 @@
 
 use super::SCHEMA;
 use super::case::{Case, Profile};
+use super::measurement::hex;
 use super::record::{Asked, DeviceRecord, Package, Record};
 use super::supervisor::chosen;
 use super::verdict::Verdict;
@@ -144,8 +145,4 @@ fn list_sha256(list: &[Case], profile: Profile) -> String {
         hash.update(b"\n");
     }
     hex(&hash.finalize())
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

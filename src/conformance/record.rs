@@ -27,6 +27,9 @@ pub struct Record {
     pub checked: usize,
     /// Numbers whose answer hangs on rounding.
     pub left_out: usize,
+    /// SHA-256 of what was found in their place, as f64, the lowest byte first.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub found_sha256: String,
     /// The number that is farthest out, as far as any is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub worst: Option<Worst>,
@@ -74,6 +77,7 @@ impl Record {
             needs: Vec::new(),
             checked: 0,
             left_out: 0,
+            found_sha256: String::new(),
             worst: None,
             bound: None,
             runs: Vec::new(),

@@ -7,6 +7,8 @@
 //!                                                        gone: `crash`, with how it ended and its last words
 //!                 not good -> once more, in a worker of its own: another verdict is told as a flake
 //! ```
+//!
+//! Several workers take from one list, each the next name. Which of them took which leaves no trace in a record.
 
 use super::case::{Case, Profile};
 use super::record::{DeviceRecord, Record};
@@ -15,8 +17,10 @@ use super::worker::Line;
 use std::collections::VecDeque;
 use std::ffi::OsString;
 use std::io::{self, BufRead, BufReader, Read, Write};
+use std::num::NonZero;
 use std::path::PathBuf;
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
@@ -31,12 +35,14 @@ pub struct Plan {
     pub words: Vec<OsString>,
     /// What one case may take.
     pub time_per_case: Duration,
+    /// How many workers there are at a time.
+    pub jobs: NonZero<usize>,
 }
 
 /// What became of all cases.
 #[derive(Debug, Default)]
 pub struct Outcome {
-    /// As the first worker saw it.
+    /// As a worker saw it.
     pub device: Option<DeviceRecord>,
     /// One for each case, in their order.
     pub records: Vec<Record>,
@@ -45,30 +51,66 @@ pub struct Outcome {
 /// Runs `cases`; `heard` is called after each with how many are done.
 ///
 /// # Errors
-/// Where no worker can be started.
+/// Where a worker cannot be started.
 pub fn run(
     plan: &Plan,
     cases: &[&Case],
-    mut heard: impl FnMut(usize, &Record),
+    heard: impl FnMut(usize, &Record) + Send,
 ) -> io::Result<Outcome> {
-    let mut outcome = Outcome::default();
-    let mut worker = None;
-    for case in cases {
-        let mut record = ask(plan, &mut worker, &mut outcome.device, case, false)?;
-        if !record.verdict.is_good() {
-            // Of its own: nothing of an earlier case is in it.
-            let mut fresh = None;
-            let again = ask(plan, &mut fresh, &mut outcome.device, case, true)?;
-            if again.verdict != record.verdict {
-                record.runs = vec![record.verdict, again.verdict];
-                record.reason =
-                    format!("flaky, {} when run again: {}", again.verdict, record.reason);
-            }
+    let next = AtomicUsize::new(0);
+    // Records by the place of their case, and who wants to hear of them.
+    let done = Mutex::new((Vec::with_capacity(cases.len()), heard));
+    let work = || -> io::Result<Option<DeviceRecord>> {
+        let (mut worker, mut device) = (None, None);
+        loop {
+            let place = next.fetch_add(1, Ordering::Relaxed);
+            let Some(case) = cases.get(place) else {
+                return Ok(device);
+            };
+            let record = settled(plan, &mut worker, &mut device, case)
+                .inspect_err(|_| next.store(cases.len(), Ordering::Relaxed))?;
+            let (records, heard) = &mut *done.lock().unwrap_or_else(PoisonError::into_inner);
+            heard(records.len() + 1, &record);
+            records.push((place, record));
         }
-        heard(outcome.records.len() + 1, &record);
-        outcome.records.push(record);
+    };
+    let jobs = plan.jobs.get().min(cases.len());
+    let devices = thread::scope(|scope| {
+        let threads: Vec<_> = (0..jobs).map(|_| scope.spawn(work)).collect();
+        let ended = |thread: thread::ScopedJoinHandle<'_, _>| {
+            let gone = || Err(io::Error::other("a thread of the supervisor panicked"));
+            thread.join().unwrap_or_else(|_| gone())
+        };
+        threads
+            .into_iter()
+            .map(ended)
+            .collect::<io::Result<Vec<_>>>()
+    })?;
+    let (mut records, _) = done.into_inner().unwrap_or_else(PoisonError::into_inner);
+    records.sort_by_key(|&(place, _)| place);
+    Ok(Outcome {
+        device: devices.into_iter().flatten().next(),
+        records: records.into_iter().map(|(_, record)| record).collect(),
+    })
+}
+
+/// What is said of a case in the end.
+fn settled(
+    plan: &Plan,
+    worker: &mut Option<Worker>,
+    device: &mut Option<DeviceRecord>,
+    case: &Case,
+) -> io::Result<Record> {
+    let mut record = ask(plan, worker, device, case, false)?;
+    if !record.verdict.is_good() {
+        // Of its own: nothing of an earlier case is in it.
+        let again = ask(plan, &mut None, device, case, true)?;
+        if again.verdict != record.verdict {
+            record.runs = vec![record.verdict, again.verdict];
+            record.reason = format!("flaky, {} when run again: {}", again.verdict, record.reason);
+        }
     }
-    Ok(outcome)
+    Ok(record)
 }
 
 fn ask(

@@ -59,6 +59,7 @@ fn what_cannot_be_asked_exits_2() {
         ("--shard 4/3", "4/3"),
         ("--shard 0/3", "0/3"),
         ("--timeout 0", "--timeout"),
+        ("--jobs 0", "--jobs"),
         ("--profile most", "most"),
     ] {
         let ran = folder.run(&format!("conformance {words}"));
@@ -85,6 +86,7 @@ fn a_run_is_written_as_records_for_a_server_and_as_a_page_and_is_the_same_twice(
                 .is_some_and(|text| text.len() > 80),
             "{case}"
         );
+        assert_eq!(case["found_sha256"].as_str().map(str::len), Some(64));
         let ratio = case["worst"]["ratio"].as_f64().expect("a ratio");
         assert!(ratio > 0.0 && ratio <= 1.0, "{case}");
     }
@@ -95,8 +97,12 @@ fn a_run_is_written_as_records_for_a_server_and_as_a_page_and_is_the_same_twice(
     );
     let page = std::fs::read_to_string(folder.path("page/index.html")).expect("a page");
     assert!(page.contains(DRAWN) && page.contains("subTexelPrecisionBits"));
-    let (_, second) = run(&folder, "");
-    assert_eq!(first["content_sha256"], second["content_sha256"]);
+    let names: Vec<&str> = verdicts(&first).into_iter().map(|(name, _)| name).collect();
+    assert_eq!(names, ["probe.math.exp", "probe.math.sqrt", DRAWN]);
+    for jobs in ["1", "2", "16"] {
+        let (_, again) = run(&folder, &format!("--jobs {jobs}"));
+        assert_eq!(first["content_sha256"], again["content_sha256"], "{jobs}");
+    }
     let (_, other) = run(&folder, "--seed 2");
     assert_ne!(first["content_sha256"], other["content_sha256"]);
     // A part of the profile is no package.

@@ -19,7 +19,9 @@ use crate::gpu::{DeviceChoice, Headless, Options};
 use clap::Args;
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
+use std::num::NonZero;
 use std::path::PathBuf;
+use std::thread;
 use std::time::{Duration, Instant};
 
 /// What to ask, of what, and where to write it.
@@ -43,6 +45,9 @@ pub struct Run {
     /// Seconds that one case may take
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds)]
     timeout: f64,
+    /// Workers at a time, each with a device of its own [default: one for each core, 8 at most]
+    #[arg(long, value_name = "N")]
+    jobs: Option<NonZero<usize>>,
     /// Known problems of drivers
     #[arg(long, value_name = "FILE.json")]
     waivers: Option<PathBuf>,
@@ -92,6 +97,12 @@ fn trouble(text: &str) -> Result<Fault, String> {
         pattern: pattern.to_owned(),
         trouble,
     })
+}
+
+/// More workers than this want more memory than they spare time.
+fn jobs() -> NonZero<usize> {
+    const MOST: NonZero<usize> = NonZero::new(8).unwrap();
+    thread::available_parallelism().map_or(NonZero::<usize>::MIN, |cores| cores.min(MOST))
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -163,6 +174,7 @@ impl Run {
             program: std::env::current_exe().map_err(|cause| Error::output("a worker", &cause))?,
             words: self.words(),
             time_per_case: Duration::from_secs_f64(self.timeout),
+            jobs: self.jobs.unwrap_or_else(jobs),
         };
         let progress = Progress::new(chosen.len());
         let outcome = supervisor::run(&plan, chosen, |done, record| progress.heard(done, record));
