@@ -298,6 +298,8 @@ fn each_barrier_of_the_host_in_c_is_needed() {
     };
     let unheard = [
         missing_barrier::NEXT_FUNCTION,
+        missing_barrier::LIST_BEFORE,
+        missing_barrier::PART_BEFORE,
         missing_barrier::NEW_TARGET,
         missing_barrier::READ_BY_HOST,
     ];

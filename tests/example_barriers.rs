@@ -54,7 +54,10 @@ fn assert_each_is_missed(name: &str, unheard: &[&str]) {
 
 #[test]
 fn the_smallest_host() {
-    assert_each_is_missed("embed", &[NEXT_FUNCTION, LIST_BEFORE, NEW_TARGET]);
+    assert_each_is_missed(
+        "embed",
+        &[NEXT_FUNCTION, LIST_BEFORE, PART_BEFORE, NEW_TARGET],
+    );
 }
 
 #[test]
@@ -65,6 +68,7 @@ fn rays_among_meshes() {
         NEW_TARGET,
         NEXT_FUNCTION,
         LIST_BEFORE,
+        PART_BEFORE,
         SAME_TARGET,
         READ_BY_HOST,
     ];

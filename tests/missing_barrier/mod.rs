@@ -19,6 +19,8 @@ pub const READ_BY_HOST: &str = "memory 1000 to 2000";
 pub const NEXT_FUNCTION: &str = "buffer 200000000 to 700000000";
 /// A list of tiles, after it was drawn: of a brick or a part of the picture before, and there is none in a picture of one.
 pub const LIST_BEFORE: &str = "buffer 700000000 to 200000000";
+/// The same of the images that rays fill.
+pub const PART_BEFORE: &str = "memory 700000000 to 700000000";
 
 const NAME: &str = "VK_LAYER_STRATAVOX_missing_barrier";
 const VALIDATION: &str = "VK_LAYER_KHRONOS_validation";
