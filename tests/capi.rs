@@ -300,6 +300,7 @@ fn each_barrier_of_the_host_in_c_is_needed() {
         missing_barrier::NEXT_FUNCTION,
         missing_barrier::LIST_BEFORE,
         missing_barrier::PART_BEFORE,
+        missing_barrier::ORDERED_TWICE,
         missing_barrier::NEW_TARGET,
         missing_barrier::READ_BY_HOST,
     ];

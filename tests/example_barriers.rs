@@ -56,7 +56,13 @@ fn assert_each_is_missed(name: &str, unheard: &[&str]) {
 fn the_smallest_host() {
     assert_each_is_missed(
         "embed",
-        &[NEXT_FUNCTION, LIST_BEFORE, PART_BEFORE, NEW_TARGET],
+        &[
+            NEXT_FUNCTION,
+            LIST_BEFORE,
+            PART_BEFORE,
+            ORDERED_TWICE,
+            NEW_TARGET,
+        ],
     );
 }
 
@@ -69,6 +75,7 @@ fn rays_among_meshes() {
         NEXT_FUNCTION,
         LIST_BEFORE,
         PART_BEFORE,
+        ORDERED_TWICE,
         SAME_TARGET,
         READ_BY_HOST,
     ];

@@ -18,9 +18,11 @@ pub const READ_BY_HOST: &str = "memory 1000 to 2000";
 /// What is read is written by the next function, and there is none in a program of one.
 pub const NEXT_FUNCTION: &str = "buffer 200000000 to 700000000";
 /// A list of tiles, after it was drawn: of a brick or a part of the picture before, and there is none in a picture of one.
-pub const LIST_BEFORE: &str = "buffer 700000000 to 200000000";
+pub const LIST_BEFORE: &str = "buffer 1 to 1000";
 /// The same of the images that rays fill.
 pub const PART_BEFORE: &str = "memory 700000000 to 700000000";
+/// What is empty, which rays read: the barrier before it orders that too.
+pub const ORDERED_TWICE: &str = "buffer 700000000 to 200000000";
 
 const NAME: &str = "VK_LAYER_STRATAVOX_missing_barrier";
 const VALIDATION: &str = "VK_LAYER_KHRONOS_validation";

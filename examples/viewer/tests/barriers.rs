@@ -40,9 +40,8 @@ fn each_barrier_of_a_window_is_needed() {
     let unheard = [
         NEXT_FUNCTION,
         LIST_BEFORE,
-        LIST_BEFORE,
         PART_BEFORE,
-        PART_BEFORE,
+        ORDERED_TWICE,
         // The picture of the volume and the window, of each of two frames.
         NEW_TARGET,
         NEW_TARGET,
