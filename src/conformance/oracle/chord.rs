@@ -34,6 +34,8 @@ pub struct Chord {
     pub origin: DVec3,
     /// In voxel space, for one unit of world length.
     pub direction: DVec3,
+    /// Where it enters and leaves the domain, in world length.
+    pub ends: [f64; 2],
     /// Where the samples lie and the world length that each stands for.
     pub samples: Vec<(f64, f64)>,
     /// How many there are depends on rounding: a plane lies at an end of the domain.
@@ -123,6 +125,18 @@ impl Shot {
             enter = if ends[0].0 > enter.0 { ends[0] } else { enter };
             leave = if ends[1].0 < leave.0 { ends[1] } else { leave };
         }
+        for plane in &self.settings.clip_planes {
+            let height = plane.normal.dot(origin) - plane.offset;
+            let slope = plane.normal.dot(direction);
+            let t = -height / slope;
+            let away = plane.normal.abs().dot((origin - center).abs());
+            let blur = (8.0 * U * (away + height.abs()) + 8.0 * U * t.abs()) / slope.abs();
+            if slope > 0.0 && t > enter.0 {
+                enter = (t, blur);
+            } else if slope < 0.0 && t < leave.0 {
+                leave = (t, blur);
+            }
+        }
         let h = self.view().step_world();
         let is_stack = self.settings.technique == Technique::Slices2d;
         let is_ray =
@@ -165,6 +179,7 @@ impl Shot {
         Some(Chord {
             origin: o,
             direction: d,
+            ends: [t0, t1],
             samples,
             hangs: hangs || is_edge,
             blur: 2.0 * blur,
