@@ -31,8 +31,10 @@ pub fn linear<R: Real>(volume: &Volume, p: [R; 3]) -> Option<R> {
 
 /// The bilinear value at `p` inside slice `slice` of axis `axis`; `p[axis]` is not looked at.
 pub fn linear_in_slice<R: Real>(volume: &Volume, axis: usize, slice: u32, p: [R; 3]) -> Option<R> {
-    let mut taps = std::array::from_fn(|k| Taps::new(p[k], volume.dims[k]));
-    taps[axis] = Taps::only(slice.min(volume.dims[axis] - 1));
+    let taps = std::array::from_fn(|k| match k == axis {
+        true => Taps::only(slice.min(volume.dims[axis] - 1)),
+        false => Taps::new(p[k], volume.dims[k]),
+    });
     interpolated(volume, taps)
 }
 

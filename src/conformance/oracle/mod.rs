@@ -8,6 +8,7 @@ mod answer;
 mod chord;
 mod field;
 mod matter;
+mod places;
 mod seen;
 mod tracked;
 mod voxels;

@@ -48,11 +48,14 @@ impl Numbers {
         }
     }
 
-    /// The value at a place. Along the axis of a stack it is that of the slice that the place lies in.
+    /// The value at a place; outside of the outermost centres it is that at them. Along the axis of a stack it is that of the slice that the place lies in.
     pub fn at(&self, filter: Filter, place: DVec3, stack: Option<usize>) -> f64 {
-        let taps: [Vec<(i64, f64)>; 3] = std::array::from_fn(|k| match stack == Some(k) {
-            true => taps(Filter::Nearest, place[k]),
-            false => taps(filter, place[k]),
+        let taps: [Vec<(i64, f64)>; 3] = std::array::from_fn(|k| {
+            let inside = place[k].clamp(0.5, self.dims[k] as f64 - 0.5);
+            match filter == Filter::Nearest || stack == Some(k) {
+                true => taps(Filter::Nearest, place[k]),
+                false => taps(filter, inside),
+            }
         });
         let mut sum = 0.0;
         for &(z, of_z) in &taps[2] {

@@ -42,15 +42,39 @@ pub fn measure(
     layers: &[LayerKind],
     of: impl Fn(&Chord) -> Seen,
 ) -> Result<Measurement, Stop> {
-    let found = stand.render(scene, layers)?;
     let allowed = errors::<true>(scene)?;
     let bound = Bound::new("running-error", DERIVATION);
+    compare(stand, shot, scene, layers, (bound, Some(&allowed)), of)
+}
+
+/// The same where each answer says itself what it is allowed.
+pub fn measure_within(
+    stand: &mut Stand,
+    shot: &Shot,
+    scene: &Scene,
+    layers: &[LayerKind],
+    bound: Bound,
+    of: impl Fn(&Chord) -> Seen,
+) -> Result<Measurement, Stop> {
+    compare(stand, shot, scene, layers, (bound, None), of)
+}
+
+fn compare(
+    stand: &mut Stand,
+    shot: &Shot,
+    scene: &Scene,
+    layers: &[LayerKind],
+    (bound, allowed): (Bound, Option<&Picture>),
+    of: impl Fn(&Chord) -> Seen,
+) -> Result<Measurement, Stop> {
+    let found = stand.render(scene, layers)?;
     let mut measurement = Measurement::new(bound, 1000);
     let mut expected = Vec::with_capacity(found.pixels.len());
     for (i, pixel) in shot.pixels().enumerate() {
         let chord = shot.chord(pixel);
         let hangs = chord.as_ref().is_some_and(|chord| chord.hangs);
-        let is_sure = allowed.pixels[i].iter().all(|error| error.is_finite());
+        let errors = allowed.map_or([0.0; 4], |allowed| allowed.pixels[i]);
+        let is_sure = errors.iter().all(|error| error.is_finite());
         if hangs || !is_sure {
             measurement.leave_out();
             expected.push(found.pixels[i]);
@@ -60,30 +84,29 @@ pub fn measure(
         expected.push(wanted.pixel.map(|n| n as f32));
         for c in 0..4 {
             let channel = ["red", "green", "blue", "alpha"][c];
-            let error = f64::from(allowed.pixels[i][c]) + OF_F64 + wanted.slack;
+            let error = f64::from(errors[c]) + OF_F64 + wanted.slack;
             let at = || format!("{channel} of pixel {pixel:?}");
             measurement.take(at, wanted.pixel[c], found.pixels[i][c].into(), error);
         }
         for &kind in layers {
-            let wanted = match kind {
+            let number = match kind {
                 LayerKind::Depth => wanted.depth,
                 _ => wanted.value,
             };
-            let numbers = [&found, &allowed].map(|picture| layer(picture, kind));
-            let [Some(found), Some(error)] = numbers else {
-                return Err(Stop::Suite(format!("no layer {}", kind.name())));
-            };
-            let error = match f64::from(error[i]) {
+            let missing = || Stop::Suite(format!("no layer {}", kind.name()));
+            let found = layer(&found, kind).ok_or_else(missing)?;
+            let error = match allowed.and_then(|allowed| layer(allowed, kind)) {
                 // Nothing is there, whatever rounds.
-                none if none.is_nan() => 0.0,
-                error => error + OF_F64 * wanted.abs().max(1.0),
+                Some(errors) if errors[i].is_nan() => 0.0,
+                Some(errors) => f64::from(errors[i]) + OF_F64 * number.abs().max(1.0),
+                None => wanted.slack,
             };
             if error.is_infinite() {
                 measurement.leave_out();
                 continue;
             }
             let at = || format!("{} of pixel {pixel:?}", kind.name());
-            measurement.take(at, wanted, found[i].into(), error);
+            measurement.take(at, number, found[i].into(), error);
         }
     }
     let drawn = found.pixels.iter().filter(|pixel| pixel[3] > 0.01).count();

@@ -88,7 +88,7 @@ fn with_cell<R: Real>(
     let start = in_cell(first);
     let last_index = frame.dims.map(|n| n as i32 - 1);
     // Along an axis on which the ray stays at voxel centres the upper corner has no weight.
-    let stays: [bool; 3] = std::array::from_fn(|k| start[k] == zero && voxel.direction[k] == zero);
+    let stays: [bool; 3] = std::array::from_fn(|k| voxel.direction[k] == zero && start[k] == zero);
     let mut corners = [zero; 8];
     for (i, corner) in corners.iter_mut().enumerate() {
         let index = std::array::from_fn(|k| {

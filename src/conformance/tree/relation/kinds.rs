@@ -64,8 +64,7 @@ impl Kind {
             }
             Self::RaysOnPlanes => (is_composite || is_xray) && placement.word == "slices_3d.over",
             Self::Mirrored | Self::Turned => is_composite || is_xray,
-            Self::InTwo => (is_composite || is_xray) && is_fixed,
-            Self::ClearOutside => is_composite && is_fixed,
+            Self::InTwo | Self::ClearOutside => is_composite && is_fixed,
             Self::Summed => is_xray,
         }
     }

@@ -93,10 +93,18 @@ pub fn measure(
             })
             .into();
     });
+    let mut function = ground::ramps();
+    if mode == Mode::Xray {
+        // Integrals of 20 voxels: not all of them at the end of the function.
+        let points = &mut function.color;
+        points.iter_mut().for_each(|point| point.value *= 16.0);
+        let points = &mut function.opacity;
+        points.iter_mut().for_each(|point| point.value *= 16.0);
+    }
     let sight = Sight {
         numbers: Numbers::of(&shot, ground::waves),
         shot,
-        function: ground::ramps(),
+        function,
     };
     if kind == Kind::Summed {
         return summed(stand, &sight);
@@ -220,15 +228,11 @@ fn roundings(stand: &mut Stand, kind: Kind, sight: &Sight) -> Result<(Rough, Rou
             let whole = sight.rough(stand)?;
             let rays = shot.camera.rays(shot.extent);
             let (width, row) = (shot.extent[0] as usize, voxels.matrix3.inverse().row(1));
-            let is_composite = shot.settings.mode == Mode::Composite;
             let both = low.with(high, |i, low, high| {
                 let at = [i % width, i / width].map(|n| n as f64 + 0.5);
                 let goes_up = row.dot(rays.at(at[0], at[1]).1) > 0.0;
                 let (front, back) = if goes_up { (low, high) } else { (high, low) };
-                match is_composite {
-                    true => std::array::from_fn(|c| front[c] + (1.0 - front[3]) * back[c]),
-                    false => std::array::from_fn(|c| front[c] + back[c]),
-                }
+                std::array::from_fn(|c| front[c] + (1.0 - front[3]) * back[c])
             });
             return Ok((whole, both));
         }
