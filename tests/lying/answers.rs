@@ -128,4 +128,13 @@ pub const ANSWERS: &[(&str, Lie, &str)] = &[
         Shader("lib/kernel.wgsl", "0.5 + f * g", "0.499 + f * g"),
         "raycast.ray.xray.marschner_lobb.quadratic_smooth.f32.perspective",
     ),
+    (
+        "light is taken a little less than it is",
+        Shader(
+            "lib/light_buffer.wgsl",
+            "return 1.0 - between_texels",
+            "return 1.0 - 0.99 * between_texels",
+        ),
+        "slices_3d.half_angle.from_behind.*",
+    ),
 ];

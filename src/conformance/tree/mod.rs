@@ -6,6 +6,7 @@ mod ground;
 mod probe;
 mod relation;
 mod seen;
+mod shadow;
 mod slab;
 mod surface;
 mod twin;
@@ -20,6 +21,7 @@ pub fn cases() -> Vec<Case> {
     cases.extend(seen::cases());
     cases.extend(surface::cases());
     cases.extend(slab::cases());
+    cases.extend(shadow::cases());
     cases.extend(relation::cases());
     cases.extend(twin::cases());
     cases
