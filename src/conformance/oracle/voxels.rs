@@ -48,7 +48,8 @@ impl Numbers {
         }
     }
 
-    /// The value at a place; outside of the outermost centres it is that at them. Along the axis of a stack it is that of the slice that the place lies in.
+    /// The value at a place; outside of the outermost centres it is that at them. Along the axis of a stack it is that
+    /// of the slice that the place lies in.
     pub fn at(&self, filter: Filter, place: DVec3, stack: Option<usize>) -> f64 {
         let taps: [Vec<(i64, f64)>; 3] = std::array::from_fn(|k| {
             let inside = place[k].clamp(0.5, self.dims[k] as f64 - 0.5);
