@@ -32,21 +32,29 @@ pub const ANSWERS: &[(&str, Lie, &str)] = &[
         "raycast.ray.mida.waves.linear_fetch.f32.perspective",
     ),
     (
-        "surfaces lie where a segment is halved for the last time",
-        Shader("isosurface.wgsl", "clamp(part, 0.0, 1.0)", "1.0"),
+        "surfaces are met a hundredth too soon",
+        Shader(
+            "isosurface.wgsl",
+            "let t = crossing(bracket, level);",
+            "let t = crossing(bracket, level) - 0.01;",
+        ),
         "raycast.ray.iso.plane.linear_fetch.f32.orthographic",
     ),
     (
-        "surfaces are searched for in four halves",
-        Shader("isosurface.wgsl", "i < HALVINGS", "i < 4u"),
+        "surfaces lie where segments end",
+        Shader(
+            "isosurface.wgsl",
+            "let t = crossing(bracket, level);",
+            "let t = far.t;",
+        ),
         "raycast.ray.iso.ball.linear_fetch.f32.*",
     ),
     (
-        "a cell of the table is cut in the middle",
+        "a slab has the mean of its upper half",
         Shader(
             "lib/transfer_slabs.wgsl",
-            "let middle = 0.5 * (in_first + in_last) - 0.5;",
-            "let middle = 0.0;",
+            "let low = slab_position(min(front, back));",
+            "let low = slab_position(0.5 * (front + back));",
         ),
         "raycast.ray.composite.slabs_spike.linear_fetch.f32.perspective",
     ),

@@ -19,9 +19,14 @@ use glam::{DVec3, dvec3};
 /// Half a unit in the last place of an f32 at 1.
 const U: f64 = 1.0 / (1u32 << 24) as f64;
 
-const EXTREME: &str = "u = 2^-24. A maximum is as continuous as what it is of: the field, off by its slopes (0.21, 0.08 and 0.06 a voxel at \
-most) times the blur of the place, and by 8 taps x 3 u of 1.25. Where the derivative is zero is found to 64 u of the derivative: over a way \
-of less than 2 in a cell that costs 128 u of the value. Three times that for the pixel: opacity rises by 5/6 and colour by 1.2 a unit of value.";
+/// How steep `saddles` are along each axis.
+const SADDLES: DVec3 = dvec3(0.9, 0.8, 0.7);
+
+const EXTREME: &str = "u = 2^-24. A maximum is as continuous as what it is of: the field, off by its slopes (0.3 times 0.9, 0.8 and \
+0.7 a voxel at most) times the blur of the place, and by 8 taps x 3 u of 1.25. Where the derivative along a cell is zero is found to 64 u \
+of its terms. Over a cell these are at most, with s1 = 2.4, s2 = 1.91 and s3 = 0.504 the sums and the product of these steepnesses, \
+0.3 (s1 + 2 s2 + 3 s3) where the ray enters, 0.3 (2 s2 + 6 s3) that is linear on the way and 0.3 x 3 s3 that is quadratic: less than 5 \
+together, which costs 320 u of the value. Three times that for the pixel: opacity rises by 5/6 and colour by 1.2 a unit of value.";
 
 /// What is in the voxels, and what is made of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -188,8 +193,8 @@ fn draw(
     };
     if look == Look::Exact {
         let of = |chord: &Chord| {
-            // Of `waves`: what the value rises by at most, times the blur, 8 taps, and both sides of a root.
-            let off = dvec3(0.21, 0.08, 0.06).dot(chord.blur_voxels) + (24.0 + 128.0) * 1.25 * U;
+            // What the value rises by at most, times the blur, 8 taps, and both sides of a root.
+            let off = 0.3 * SADDLES.dot(chord.blur_voxels) + (24.0 * 1.25 + 320.0) * U;
             Seen {
                 slack: 3.0 * off,
                 ..seen(&shot, chord, &parts)
@@ -270,6 +275,7 @@ fn parts(shot: &Shot, look: Look) -> Vec<Part> {
     match look {
         Look::Channels => beside(Role::Numbers, &other),
         Look::Opacity => beside(Role::Opacity, &other),
+        Look::Exact => vec![part(function.clone(), Role::Numbers, &saddles)],
         Look::Labels => beside(Role::Labels, &|p| {
             (0.2 * p.dot(DVec3::ONE)).floor() % 3.0 / 2.0
         }),
@@ -323,6 +329,12 @@ fn shape(i: usize) -> Shape {
             points: vec![point(0.1, 0.1), point(0.5, 0.8), point(0.95, 0.3)],
         },
     }
+}
+
+/// A field that bends inside of cells, and not at their walls alone: between 0.2 and 0.8.
+fn saddles(p: DVec3) -> f64 {
+    let [x, y, z] = (SADDLES * p).to_array();
+    0.5 + 0.3 * x.sin() * y.sin() * z.sin()
 }
 
 /// rho(x, y, z) = (1 - sin(pi z / 2) + a (1 + cos(2 pi f cos(pi r / 2)))) / (2 (1 + a)), f = 6, a = 1/4.
