@@ -128,7 +128,11 @@ pub fn cases() -> Vec<Case> {
             });
             case.needs = ground::needs(placement, VoxelType::F32, false);
             case.profile = profile(placement, mode, look, filter, is_perspective);
-            cases.push(case);
+            // More than a tenth of the pixels would hang on rounding: their case would be void.
+            let is_void = mode == Mode::Average && case.profile == Profile::Full;
+            if !(is_void && look == Look::Waves) {
+                cases.push(case);
+            }
         }
     }
     cases

@@ -112,10 +112,10 @@ fn draw(stand: &mut Stand, towards: DVec3, per_voxel: u32) -> Result<Measurement
         if !(1..SIDE - 1).contains(&x) || !(1..SIDE - 1).contains(&y) {
             continue;
         }
-        for c in 0..4 {
+        for (c, &found) in pixel.iter().enumerate() {
             let wanted = if c == 3 { alpha } else { color };
             let at = || format!("channel {c} of pixel {:?}", [x, y]);
-            measurement.take(at, wanted, pixel[c].into(), allowed);
+            measurement.take(at, wanted, found.into(), allowed);
         }
     }
     Ok(measurement)

@@ -242,9 +242,9 @@ fn compare(
             depths[i].into(),
             off,
         );
-        for c in 0..4 {
+        for (c, color) in color.into_iter().enumerate() {
             let at = || format!("channel {c} of pixel {pixel:?}");
-            measurement.take(at, color[c], found.pixels[i][c].into(), color_off);
+            measurement.take(at, color, found.pixels[i][c].into(), color_off);
         }
     }
     let drawn = found.pixels.iter().filter(|pixel| pixel[3] > 0.01).count();

@@ -300,9 +300,9 @@ fn compare(kind: Kind, shot: &Shot, first: Rough, second: Rough) -> Measurement 
             measurement.leave_out();
             continue;
         }
-        for c in 0..4 {
+        for (c, allowed) in allowed.into_iter().enumerate() {
             let at = || format!("channel {c} of pixel {pixel:?}");
-            measurement.take(at, first.pixels[i][c], second.pixels[i][c], allowed[c]);
+            measurement.take(at, first.pixels[i][c], second.pixels[i][c], allowed);
         }
     }
     let drawn = second.pixels.iter().filter(|pixel| pixel[3] > 0.01).count();
