@@ -1,4 +1,5 @@
-//! f32 or f64: the twins are written once for both, f32 to prove a shader and f64 to prove the mathematics.
+//! f32 or f64: the twins are written once for both, f32 to prove a shader and f64 to prove the mathematics. A third
+//! kind knows how far off a device may be (`conformance::oracle::Tracked`).
 //!
 //! A number does what it does in WGSL, one rounding an operation: no fused multiply-add, and `round`
 //! goes to the even neighbor on a tie.
@@ -6,7 +7,7 @@
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// An f32 or an f64.
+/// An f32, an f64, or a number that behaves as one.
 pub trait Real:
     Copy
     + Debug
@@ -50,6 +51,16 @@ pub trait Real:
     fn min(self, other: Self) -> Self;
     /// The larger; the one that is a number where the other is not.
     fn max(self, other: Self) -> Self;
+    /// From this to `other`, so much of the way.
+    fn lerp(self, other: Self, part: Self) -> Self {
+        self + part * (other - self)
+    }
+    /// A pixel begins: numbers that keep what has become of them forget it.
+    fn begin() {}
+    /// The same number at the end of its pixel, with what has become of it.
+    fn ended(self) -> Self {
+        self
+    }
 }
 
 macro_rules! real {
@@ -125,9 +136,4 @@ pub fn sub<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
 /// a times s
 pub fn scale<R: Real>(a: [R; 3], s: R) -> [R; 3] {
     [a[0] * s, a[1] * s, a[2] * s]
-}
-
-/// a + f (b - a)
-pub fn lerp<R: Real>(a: R, b: R, f: R) -> R {
-    a + f * (b - a)
 }

@@ -18,7 +18,7 @@ const MOST_LEFT_OUT: f64 = 0.1;
 pub fn judge(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
     let start = Instant::now();
     let (mut record, pictures) = judged(case, stand);
-    if let Ok(device) = stand.device() {
+    if let Some(Ok(device)) = stand.wants_device().then(|| stand.device()) {
         let messages = device.take_validation_messages();
         record.validation_messages = messages.iter().map(ToString::to_string).collect();
     }
@@ -32,15 +32,16 @@ pub fn judge(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
 
 fn judged(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
     let of = |verdict, reason| Record::unmeasured(&case.name, case.profile, verdict, reason);
-    let needs: Vec<Found> = match stand.device() {
-        Ok(device) => {
+    let needs: Vec<Found> = match stand.wants_device().then(|| stand.device()) {
+        Some(Ok(device)) => {
             let gpu = device.gpu();
             case.needs
                 .iter()
                 .map(|&item| Found::of(gpu, item))
                 .collect()
         }
-        Err(error) => return (of(verdict_of(&error), error.to_string()), None),
+        Some(Err(error)) => return (of(verdict_of(&error), error.to_string()), None),
+        None => Vec::new(),
     };
     if let Some((verdict, reason)) = lacking(&needs) {
         let record = Record {

@@ -5,12 +5,17 @@ use crate::gpu::{self, Headless};
 use crate::offscreen::Renderer;
 use crate::picture::{LayerKind, Picture};
 use crate::scene::Scene;
+use crate::technique;
 
 type Make = Box<dyn FnMut() -> Result<Headless, gpu::Error>>;
+
+/// What draws a scene where no device does.
+pub type Draw = fn(&Scene) -> Result<Picture, technique::Error>;
 
 /// A device, and the seed of what is random in a case.
 pub struct Stand {
     make: Make,
+    draw: Option<Draw>,
     device: Option<Headless>,
     /// What is random follows from it alone.
     pub seed: u64,
@@ -21,8 +26,34 @@ impl Stand {
     pub fn new(seed: u64, make: impl FnMut() -> Result<Headless, gpu::Error> + 'static) -> Self {
         Self {
             make: Box::new(make),
+            draw: None,
             device: None,
             seed,
+        }
+    }
+
+    /// No device: pictures are drawn by `draw`, a twin of [`crate::offscreen::reference`], which cases of pictures
+    /// judge as they judge a device.
+    pub fn without_device(seed: u64, draw: Draw) -> Self {
+        let none = || Err(gpu::Error::NoDriver);
+        let mut stand = Self::new(seed, none);
+        stand.draw = Some(draw);
+        stand
+    }
+
+    /// Whether there is a device, or should be.
+    pub fn wants_device(&self) -> bool {
+        self.draw.is_none()
+    }
+
+    /// Bits of the weights of the device's sampler; those of f32 where there is none.
+    ///
+    /// # Errors
+    /// Where there is no device and should be.
+    pub fn subtexel_bits(&mut self) -> Result<u32, gpu::Error> {
+        match self.draw {
+            Some(_) => Ok(f32::MANTISSA_DIGITS - 1),
+            None => Ok(self.device()?.gpu().limits().subtexel_bits),
         }
     }
 
@@ -47,6 +78,14 @@ impl Stand {
     /// # Errors
     /// Those of [`Renderer::render`].
     pub fn render(&mut self, scene: &Scene, layers: &[LayerKind]) -> Result<Picture, Stop> {
+        if let Some(draw) = self.draw {
+            let refused = |error: technique::Error| Stop::Suite(error.to_string());
+            let mut picture = draw(scene).map_err(refused)?;
+            let place = |kind: &LayerKind| picture.layers.iter().position(|l| l.kind == *kind);
+            let places: Vec<_> = layers.iter().filter_map(place).collect();
+            picture.layers = places.iter().map(|&i| picture.layers[i].clone()).collect();
+            return Ok(picture);
+        }
         self.with_renderer(scene, |renderer| {
             Ok(renderer.render(scene, layers)?.picture)
         })

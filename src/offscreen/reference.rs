@@ -54,6 +54,7 @@ pub fn render<R: Real>(scene: &Scene) -> Result<Picture, Error> {
 }
 
 fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
+    R::begin();
     let grid = scene.volume.grid();
     let mode = scene.settings.mode;
     // What the device has in place of the voxels of interpolating splines.
@@ -88,6 +89,7 @@ fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     let space = scene.settings.color_space;
     let points = Points::new(&transfer, Absorption::Opacity, space);
     let resolve = |g: &Gathered<R>| {
+        R::begin();
         let [red, green, blue, alpha] =
             premultiplied(mode, g.accumulation, |v| classify_by_points(&points, v));
         [g.light * red, g.light * green, g.light * blue, alpha]
@@ -103,7 +105,7 @@ fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
             gathered(in_pixel)?
         };
         for (pixel, found) in pixels.iter_mut().zip(&found) {
-            let color = resolve(found);
+            let color = resolve(found).map(R::ended);
             *pixel = std::array::from_fn(|c| pixel[c] + weight * color[c]);
         }
     }
@@ -229,11 +231,17 @@ impl<'a, R: Real> Walk<'a, R> {
     }
 
     fn gather(&self, x: u32, y: u32) -> Gathered<R> {
+        R::begin();
         let pixel = [x, y].map(|n| R::from_f64(f64::from(n)) + R::from_f64(0.5));
-        match self.scene.settings.mode {
+        let found = match self.scene.settings.mode {
             Mode::Iso => self.surfaces(pixel),
             mode if mode.is_projection() => self.project(pixel),
             _ => self.composite(pixel),
+        };
+        Gathered {
+            accumulation: found.accumulation.map(R::ended),
+            depth: found.depth.map(R::ended),
+            ..found
         }
     }
 

@@ -58,7 +58,7 @@ pub fn classify_by_points<N: Real>(points: &Points, value: N) -> [N; 4] {
 
 /// What the `count` points from `first` on say of `value`.
 fn at<N: Real>(points: &Points, first: usize, count: usize, value: N) -> [N; 3] {
-    let n = |x: f32| N::from_f64(x.into());
+    let n = N::from_f32;
     let entry = |i: usize| points.entries[first + i].map(n);
     // How many points stand at or below the value.
     let mut passed = 0;
@@ -74,7 +74,7 @@ fn at<N: Real>(points: &Points, first: usize, count: usize, value: N) -> [N; 3] 
         let right = entry(passed);
         let t = (value - left[0]) / (right[0] - left[0]);
         for (c, found) in found.iter_mut().enumerate() {
-            *found = *found + t * (right[c + 1] - *found);
+            *found = found.lerp(right[c + 1], t);
         }
     }
     found

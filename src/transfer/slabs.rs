@@ -104,7 +104,7 @@ fn mean_between<N: Real>(table: &SlabTable, front: N, back: N) -> [N; 4] {
         cell.max(-far).min(far)
     };
     let last = table.cells.len() - 1;
-    let cell_of = |at: N| (at.floor().to_f64().max(0.0) as usize).min(last);
+    let cell_of = |at: N| (at.to_f64().floor().max(0.0) as usize).min(last);
     let number = |x: f32| N::from_f32(x);
     let (low, high) = (position(front.min(back)), position(front.max(back)));
     let (first, end) = (cell_of(low), cell_of(high));

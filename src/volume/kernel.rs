@@ -46,7 +46,7 @@ pub struct Taps<R> {
 impl Kernel {
     /// The weights at fraction `f` from 0 to 1. Their sum is 1.
     pub fn weights<R: Real>(self, f: R) -> [R; 4] {
-        let n = R::from_f32;
+        let n = R::from_f64;
         let (half, one, two) = (n(0.5), n(1.0), n(2.0));
         let g = one - f;
         match self {
@@ -66,7 +66,7 @@ impl Kernel {
 
     /// The taps at coordinate `p` of an axis of `dim` voxels.
     pub fn taps<R: Real>(self, p: R, dim: u32) -> Taps<R> {
-        let half = R::from_f32(0.5);
+        let half = R::from_f64(0.5);
         let last = R::from_f64(f64::from(dim)) - half;
         let mut base = p.max(half).min(last);
         if self != Self::Quadratic {
@@ -77,7 +77,7 @@ impl Kernel {
         Taps {
             first: i.to_i32() - 1,
             weights: self.weights(f),
-            support: self.support(f > R::from_f32(0.0)),
+            support: self.support(f > R::from_f64(0.0)),
         }
     }
 
@@ -96,7 +96,7 @@ impl Kernel {
 impl<R: Real> Taps<R> {
     /// All the weight on one voxel.
     fn only(voxel: u32) -> Self {
-        let (zero, one) = (R::from_f32(0.0), R::from_f32(1.0));
+        let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
         Self {
             first: voxel as i32,
             weights: [one, zero, zero, zero],
@@ -129,18 +129,20 @@ pub fn convolved_in_slice<R: Real>(
     slice: u32,
     p: [R; 3],
 ) -> Option<R> {
-    let mut taps = std::array::from_fn(|k| kernel.taps(p[k], volume.dims[k]));
-    taps[axis] = Taps::only(slice.min(volume.dims[axis] - 1));
+    let taps = std::array::from_fn(|k| match k == axis {
+        true => Taps::only(slice.min(volume.dims[axis] - 1)),
+        false => kernel.taps(p[k], volume.dims[k]),
+    });
     weighted(volume, taps)
 }
 
 fn weighted<R: Real>(volume: &Volume, [tx, ty, tz]: [Taps<R>; 3]) -> Option<R> {
     let [nx, ny, nz] = volume.dims;
-    let mut sum = R::from_f32(0.0);
+    let mut sum = R::from_f64(0.0);
     for z in 0..4 {
-        let mut plane = R::from_f32(0.0);
+        let mut plane = R::from_f64(0.0);
         for y in 0..4 {
-            let mut row = R::from_f32(0.0);
+            let mut row = R::from_f64(0.0);
             for x in 0..4 {
                 if !(tx.has_weight(x) && ty.has_weight(y) && tz.has_weight(z)) {
                     continue;

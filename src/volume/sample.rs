@@ -12,7 +12,7 @@
 //! `None` is no data: a voxel of the footprint whose exact weight is not zero is invalid.
 
 use super::Volume;
-use crate::real::{Real, lerp};
+use crate::real::Real;
 
 /// The value of the voxel that `p` lies in, or of the nearest one.
 pub fn nearest<R: Real>(volume: &Volume, p: [R; 3]) -> Option<R> {
@@ -31,8 +31,10 @@ pub fn linear<R: Real>(volume: &Volume, p: [R; 3]) -> Option<R> {
 
 /// The bilinear value at `p` inside slice `slice` of axis `axis`; `p[axis]` is not looked at.
 pub fn linear_in_slice<R: Real>(volume: &Volume, axis: usize, slice: u32, p: [R; 3]) -> Option<R> {
-    let mut taps = std::array::from_fn(|k| Taps::new(p[k], volume.dims[k]));
-    taps[axis] = Taps::only(slice.min(volume.dims[axis] - 1));
+    let taps = std::array::from_fn(|k| match k == axis {
+        true => Taps::only(slice.min(volume.dims[axis] - 1)),
+        false => Taps::new(p[k], volume.dims[k]),
+    });
     interpolated(volume, taps)
 }
 
@@ -79,9 +81,9 @@ fn interpolated<R: Real>(volume: &Volume, taps: [Taps<R>; 3]) -> Option<R> {
         all_valid &= valid || !(weight[0][x] && weight[1][y] && weight[2][z]);
         R::from_f32(code)
     };
-    let mut row = |y, z| lerp(code(0, y, z), code(1, y, z), taps[0].fraction);
-    let mut plane = |z| lerp(row(0, z), row(1, z), taps[1].fraction);
-    let code = lerp(plane(0), plane(1), taps[2].fraction);
+    let mut row = |y, z| code(0, y, z).lerp(code(1, y, z), taps[0].fraction);
+    let mut plane = |z| row(0, z).lerp(row(1, z), taps[1].fraction);
+    let code = plane(0).lerp(plane(1), taps[2].fraction);
     all_valid
         .then(|| code * R::from_f64(volume.rescale.slope) + R::from_f64(volume.rescale.intercept))
 }

@@ -5,6 +5,7 @@
 //! Lie::Shader    a shader is another: its WGSL with one text in place of another, compiled anew
 //! ```
 
+mod answers;
 mod shaders;
 mod states;
 mod table;
@@ -14,6 +15,7 @@ use std::collections::HashMap;
 use std::ffi::{CStr, c_char};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
+pub use answers::ANSWERS;
 pub use states::State;
 pub use table::LIES;
 

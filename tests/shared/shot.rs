@@ -3,7 +3,11 @@
 //! Written a second time on purpose and not by calling `src/ray.rs` or `src/lattice.rs`: the exact answers
 //! stand on it.
 
+#[path = "../../src/conformance/oracle/places.rs"]
+mod places;
+
 use glam::{DAffine3, DVec3};
+use places::{planes, segments};
 use stratavox::camera::Camera;
 use stratavox::scene::Scene;
 use stratavox::shaders::Frame;
@@ -180,46 +184,6 @@ impl Shot {
 /// a unit vector, each of them rounded. `apart` is (|face| + |o|) / |d|.
 fn rounding(t: f64, apart: f64) -> f64 {
     4.0 * (apart + t.abs()) * f64::from(f32::EPSILON) / 2.0
-}
-
-/// Equal steps, and a shorter one at the end.
-fn segments(enter: f64, leave: f64, h: f64) -> Vec<(f64, f64)> {
-    let full = ((leave - enter) / h).floor() as usize;
-    let start = |i: usize| enter + i as f64 * h;
-    let mut samples: Vec<_> = (0..full).map(|i| (start(i) + 0.5 * h, h)).collect();
-    let rest = leave - start(full);
-    if rest > 0.0 {
-        samples.push((start(full) + 0.5 * rest, rest));
-    }
-    samples
-}
-
-/// Where `height + t slope` is a whole number and a half times `spacing`.
-fn planes(
-    ends: [f64; 2],
-    blur: f64,
-    height: f64,
-    slope: f64,
-    spacing: f64,
-) -> (Vec<(f64, f64)>, bool) {
-    if slope == 0.0 {
-        return (Vec::new(), true);
-    }
-    let at = |t: f64| (height + t * slope) / spacing - 0.5;
-    let ends = ends.map(at);
-    // The plane's own t is rounded as the ends are.
-    let near = 2.0 * blur * slope.abs() / spacing;
-    let hangs = ends.iter().any(|end| (end - end.round()).abs() <= near);
-    let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-    let length = spacing / slope.abs();
-    let t_of = |k: i64| ((k as f64 + 0.5) * spacing - height) / slope;
-    let mut samples: Vec<_> = (low.ceil() as i64..=high.floor() as i64)
-        .map(|k| (t_of(k), length))
-        .collect();
-    if slope < 0.0 {
-        samples.reverse();
-    }
-    (samples, hangs)
 }
 
 impl Chord {

@@ -6,6 +6,7 @@
 //! stack of axis k  planes through voxel centres, a sample stands for 1 / |(voxel_from_world r)_k|
 //! ```
 
+use super::places::{planes, segments};
 use crate::camera::Camera;
 use crate::scene::Scene;
 use crate::technique::slices_2d::stack_axis;
@@ -34,6 +35,8 @@ pub struct Chord {
     pub origin: DVec3,
     /// In voxel space, for one unit of world length.
     pub direction: DVec3,
+    /// Where it enters and leaves the domain, in world length.
+    pub ends: [f64; 2],
     /// Where the samples lie and the world length that each stands for.
     pub samples: Vec<(f64, f64)>,
     /// How many there are depends on rounding: a plane lies at an end of the domain.
@@ -123,6 +126,18 @@ impl Shot {
             enter = if ends[0].0 > enter.0 { ends[0] } else { enter };
             leave = if ends[1].0 < leave.0 { ends[1] } else { leave };
         }
+        for plane in &self.settings.clip_planes {
+            let height = plane.normal.dot(origin) - plane.offset;
+            let slope = plane.normal.dot(direction);
+            let t = -height / slope;
+            let away = plane.normal.abs().dot((origin - center).abs());
+            let blur = (8.0 * U * (away + height.abs()) + 8.0 * U * t.abs()) / slope.abs();
+            if slope > 0.0 && t > enter.0 {
+                enter = (t, blur);
+            } else if slope < 0.0 && t < leave.0 {
+                leave = (t, blur);
+            }
+        }
         let h = self.view().step_world();
         let is_stack = self.settings.technique == Technique::Slices2d;
         let is_ray =
@@ -165,51 +180,13 @@ impl Shot {
         Some(Chord {
             origin: o,
             direction: d,
+            ends: [t0, t1],
             samples,
             hangs: hangs || is_edge,
             blur: 2.0 * blur,
             blur_voxels: of_origin + of_direction * farthest + d.abs() * (2.0 * blur),
         })
     }
-}
-
-/// Equal steps, and a shorter one at the end.
-fn segments(enter: f64, leave: f64, h: f64) -> Vec<(f64, f64)> {
-    let full = ((leave - enter) / h).floor() as usize;
-    let start = |i: usize| enter + i as f64 * h;
-    let mut samples: Vec<_> = (0..full).map(|i| (start(i) + 0.5 * h, h)).collect();
-    let rest = leave - start(full);
-    if rest > 0.0 {
-        samples.push((start(full) + 0.5 * rest, rest));
-    }
-    samples
-}
-
-/// Where `height + t slope` is a whole number and a half times `spacing`.
-fn planes(
-    ends: [f64; 2],
-    blur: f64,
-    height: f64,
-    slope: f64,
-    spacing: f64,
-) -> (Vec<(f64, f64)>, bool) {
-    if slope == 0.0 {
-        return (Vec::new(), true);
-    }
-    let at = |t: f64| (height + t * slope) / spacing - 0.5;
-    let ends = ends.map(at);
-    let near = 2.0 * blur * slope.abs() / spacing;
-    let hangs = ends.iter().any(|end| (end - end.round()).abs() <= near);
-    let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-    let length = spacing / slope.abs();
-    let t_of = |k: i64| ((k as f64 + 0.5) * spacing - height) / slope;
-    let mut samples: Vec<_> = (low.ceil() as i64..=high.floor() as i64)
-        .map(|k| (t_of(k), length))
-        .collect();
-    if slope < 0.0 {
-        samples.reverse();
-    }
-    (samples, hangs)
 }
 
 impl Chord {

@@ -62,6 +62,11 @@ impl Field {
         (self.at_first + self.slope.dot(voxel - 0.5)) / 256.0 + INTERCEPT
     }
 
+    /// How much the value rises from voxel to voxel along each axis.
+    pub fn slope(&self) -> DVec3 {
+        self.slope / 256.0
+    }
+
     /// How much the value changes from voxel to voxel, at most, along each axis.
     pub fn steps(&self) -> DVec3 {
         self.slope.abs() / 256.0

@@ -7,7 +7,16 @@
 mod answer;
 mod chord;
 mod field;
+mod matter;
+mod places;
+mod seen;
+mod tracked;
+mod voxels;
 
 pub use answer::{Answer, Classes, DERIVATION, answer};
 pub use chord::{Chord, Shot};
 pub use field::{Field, Kind};
+pub use matter::Part;
+pub use seen::{FILTERS, Seen, seen};
+pub use tracked::Tracked;
+pub use voxels::Numbers;

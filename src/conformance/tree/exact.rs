@@ -93,7 +93,7 @@ impl Of {
             true => &[LayerKind::Value],
             false => &[],
         };
-        let bits = stand.device()?.gpu().limits().subtexel_bits;
+        let bits = stand.subtexel_bits()?;
         let found = stand.render(&scene, layers)?;
         let values = found.layers.first().map(|layer| layer.values.as_slice());
         Ok(compare(&shot, values, &found.pixels, bits, |chord| {

@@ -1,9 +1,14 @@
 //! All cases, by name. The list is the same on every device: what a device lacks is for the verdict to say.
 
+mod drawn;
 mod exact;
 mod ground;
 mod probe;
 mod relation;
+mod seen;
+mod shadow;
+mod slab;
+mod surface;
 mod twin;
 
 use super::case::Case;
@@ -13,6 +18,10 @@ pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     cases.extend(probe::cases());
     cases.extend(exact::cases());
+    cases.extend(seen::cases());
+    cases.extend(surface::cases());
+    cases.extend(slab::cases());
+    cases.extend(shadow::cases());
     cases.extend(relation::cases());
     cases.extend(twin::cases());
     cases

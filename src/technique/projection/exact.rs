@@ -11,7 +11,7 @@
 use super::reference::Projected;
 use crate::lattice::Segment;
 use crate::ray::{Ray, domain_interval, pixel_ray, voxel_ray};
-use crate::real::{Real, lerp};
+use crate::real::Real;
 use crate::shaders::Frame;
 use crate::technique::Mode;
 
@@ -88,7 +88,7 @@ fn with_cell<R: Real>(
     let start = in_cell(first);
     let last_index = frame.dims.map(|n| n as i32 - 1);
     // Along an axis on which the ray stays at voxel centres the upper corner has no weight.
-    let stays: [bool; 3] = std::array::from_fn(|k| start[k] == zero && voxel.direction[k] == zero);
+    let stays: [bool; 3] = std::array::from_fn(|k| voxel.direction[k] == zero && start[k] == zero);
     let mut corners = [zero; 8];
     for (i, corner) in corners.iter_mut().enumerate() {
         let index = std::array::from_fn(|k| {
@@ -104,8 +104,8 @@ fn with_cell<R: Real>(
     for t in [first, first + a.min(b), first + a.max(b), last] {
         if t >= first && t <= last {
             let [x, y, z] = in_cell(t).map(|p| p.max(zero).min(one));
-            let row = |i: usize| lerp(corners[i], corners[i + 1], x);
-            let value = lerp(lerp(row(0), row(2), y), lerp(row(4), row(6), y), z);
+            let row = |i: usize| corners[i].lerp(corners[i + 1], x);
+            let value = row(0).lerp(row(2), y).lerp(row(4).lerp(row(6), y), z);
             // Of extremes there is no last one.
             let _goes_on = so_far.add(frame, mode, value, Segment { t, length: zero });
         }

@@ -12,7 +12,7 @@
 use super::stack::facing;
 use crate::lattice::Slab;
 use crate::ray::{Ray, domain_interval, pixel_ray, voxel_ray};
-use crate::real::{Real, lerp};
+use crate::real::Real;
 use crate::shaders::Frame;
 use crate::technique::View;
 use crate::technique::blend::Fragment;
@@ -68,7 +68,7 @@ impl<R: Real> Level<R> {
         if self.part == R::from_f64(0.0) {
             return Some(below);
         }
-        Some(lerp(below, in_slice(high)?, self.part))
+        Some(below.lerp(in_slice(high)?, self.part))
     }
 
     /// The nearer slice.

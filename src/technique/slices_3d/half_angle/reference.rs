@@ -2,7 +2,7 @@
 //! `dimmed.wgsl`.
 
 use crate::ray::{domain_interval, pixel_ray, plane_length, plane_t, voxel_ray};
-use crate::real::{Real, add, dot, lerp, scale, sub};
+use crate::real::{Real, add, dot, scale, sub};
 use crate::shaders::Frame;
 use crate::technique::blend::Fragment;
 
@@ -36,13 +36,13 @@ impl<R: Real> LightBuffer<R> {
             (low, high, (texel - low).max(zero).min(one))
         };
         let ((left, right, across), (top, bottom, down)) = (at(0), at(1));
-        let upper = lerp(self.taken_at(left, top), self.taken_at(right, top), across);
-        let lower = lerp(
-            self.taken_at(left, bottom),
-            self.taken_at(right, bottom),
-            across,
-        );
-        one - lerp(upper, lower, down)
+        let upper = self
+            .taken_at(left, top)
+            .lerp(self.taken_at(right, top), across);
+        let lower = self
+            .taken_at(left, bottom)
+            .lerp(self.taken_at(right, bottom), across);
+        one - upper.lerp(lower, down)
     }
 
     fn taken_at(&self, x: R, y: R) -> R {

@@ -1,0 +1,120 @@
+//! A picture against the answer of each of its rays, which is allowed what the arithmetic of the picture itself may be
+//! off by.
+
+use crate::conformance::case::Stop;
+use crate::conformance::measurement::{Bound, Measurement, Pictures};
+use crate::conformance::oracle::{Chord, Seen, Shot, Tracked};
+use crate::conformance::stand::Stand;
+use crate::offscreen::reference;
+use crate::picture::{LayerKind, Picture};
+use crate::scene::Scene;
+use crate::technique;
+
+/// What a model leaves over, of f64 and of nothing else.
+const OF_F64: f64 = 1e-9;
+
+/// How the bounds of running errors are made.
+pub const DERIVATION: &str = "Running error analysis: the twin of the shaders runs once over this scene with numbers that carry how far any \
+device may be from them (oracle/tracked.rs). Each operation may round either way, 2^-23 of its result; division 5/2, square roots 5 of \
+these, exp 3 + 2 |x|, log 2^-21 near 1, pow exp2(y log2 x), mix x (1 - a) + y a (Vulkan specification, precision of SPIR-V \
+instructions). Errors of operands go through each operation at their worst, none against another. What comes as f32 is within 2^-24 \
+of what it stands for. allowed = that error of this channel of this pixel, a worst case. Where a comparison or a floor could turn \
+out otherwise, the pixel hangs on rounding and is left out.";
+
+/// How far any device may be from the true picture of a scene: errors in place of numbers, infinite where the answer
+/// hangs on rounding. `ROUNDED` as in [`Tracked`].
+pub fn errors<const ROUNDED: bool>(scene: &Scene) -> Result<Picture, Stop> {
+    let wrong = |error: technique::Error| Stop::Suite(error.to_string());
+    reference::render::<Tracked<ROUNDED>>(scene).map_err(wrong)
+}
+
+/// What `picture` has of a layer.
+pub fn layer(picture: &Picture, kind: LayerKind) -> Option<&[f32]> {
+    let found = picture.layers.iter().find(|layer| layer.kind == kind);
+    found.map(|layer| layer.values.as_slice())
+}
+
+/// Draws the scene of a shot and compares each ray with what it should see.
+pub fn measure(
+    stand: &mut Stand,
+    shot: &Shot,
+    scene: &Scene,
+    layers: &[LayerKind],
+    of: impl Fn(&Chord) -> Seen,
+) -> Result<Measurement, Stop> {
+    let allowed = errors::<true>(scene)?;
+    let bound = Bound::new("running-error", DERIVATION);
+    compare(stand, shot, scene, layers, (bound, Some(&allowed)), of)
+}
+
+/// The same where each answer says itself what it is allowed.
+pub fn measure_within(
+    stand: &mut Stand,
+    shot: &Shot,
+    scene: &Scene,
+    layers: &[LayerKind],
+    bound: Bound,
+    of: impl Fn(&Chord) -> Seen,
+) -> Result<Measurement, Stop> {
+    compare(stand, shot, scene, layers, (bound, None), of)
+}
+
+fn compare(
+    stand: &mut Stand,
+    shot: &Shot,
+    scene: &Scene,
+    layers: &[LayerKind],
+    (bound, allowed): (Bound, Option<&Picture>),
+    of: impl Fn(&Chord) -> Seen,
+) -> Result<Measurement, Stop> {
+    let found = stand.render(scene, layers)?;
+    let mut measurement = Measurement::new(bound, 1000);
+    let mut expected = Vec::with_capacity(found.pixels.len());
+    for (i, pixel) in shot.pixels().enumerate() {
+        let chord = shot.chord(pixel);
+        let hangs = chord.as_ref().is_some_and(|chord| chord.hangs);
+        let errors = allowed.map_or([0.0; 4], |allowed| allowed.pixels[i]);
+        let is_sure = errors.iter().all(|error| error.is_finite());
+        if hangs || !is_sure {
+            measurement.leave_out();
+            expected.push(found.pixels[i]);
+            continue;
+        }
+        let wanted = chord.map_or(Seen::NOTHING, |chord| of(&chord));
+        expected.push(wanted.pixel.map(|n| n as f32));
+        for c in 0..4 {
+            let channel = ["red", "green", "blue", "alpha"][c];
+            let error = f64::from(errors[c]) + OF_F64 + wanted.slack;
+            let at = || format!("{channel} of pixel {pixel:?}");
+            measurement.take(at, wanted.pixel[c], found.pixels[i][c].into(), error);
+        }
+        for &kind in layers {
+            let number = match kind {
+                LayerKind::Depth => wanted.depth,
+                _ => wanted.value,
+            };
+            let missing = || Stop::Suite(format!("no layer {}", kind.name()));
+            let found = layer(&found, kind).ok_or_else(missing)?;
+            let error = match allowed.and_then(|allowed| layer(allowed, kind)) {
+                // Nothing is there, whatever rounds.
+                Some(errors) if errors[i].is_nan() => 0.0,
+                Some(errors) => f64::from(errors[i]) + OF_F64 * number.abs().max(1.0),
+                None => wanted.slack,
+            };
+            if error.is_infinite() {
+                measurement.leave_out();
+                continue;
+            }
+            let at = || format!("{} of pixel {pixel:?}", kind.name());
+            measurement.take(at, number, found[i].into(), error);
+        }
+    }
+    let drawn = found.pixels.iter().filter(|pixel| pixel[3] > 0.01).count();
+    measurement.hold(|| "pixels that are drawn".into(), drawn > 40);
+    measurement.pictures = Some(Pictures {
+        width: shot.extent[0],
+        expected,
+        found: found.pixels,
+    });
+    Ok(measurement)
+}

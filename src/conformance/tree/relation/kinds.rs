@@ -1,0 +1,86 @@
+//! The relations, and for which pictures each holds.
+
+use super::super::ground::Placement;
+use crate::technique::{Lattice, Mode, Order};
+
+/// What is done to a picture that leaves it as it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the table of the module says it")]
+pub enum Kind {
+    Repeated,
+    WithLayers,
+    InSmallSubmissions,
+    Skipped,
+    PermutedColors,
+    ScaledValues,
+    ScaledWorld,
+    OtherMode,
+    OtherOrder,
+    RaysOnPlanes,
+    Mirrored,
+    Turned,
+    InTwo,
+    ClearOutside,
+    Summed,
+    Furnace,
+}
+
+impl Kind {
+    /// By the words of names.
+    pub const ALL: [(&str, Self); 16] = [
+        ("repeated", Self::Repeated),
+        ("with_layers", Self::WithLayers),
+        ("in_small_submissions", Self::InSmallSubmissions),
+        ("skipped", Self::Skipped),
+        ("permuted_colors", Self::PermutedColors),
+        ("scaled_values", Self::ScaledValues),
+        ("scaled_world", Self::ScaledWorld),
+        ("other_mode", Self::OtherMode),
+        ("other_order", Self::OtherOrder),
+        ("rays_on_planes", Self::RaysOnPlanes),
+        ("mirrored", Self::Mirrored),
+        ("turned", Self::Turned),
+        ("in_two", Self::InTwo),
+        ("clear_outside", Self::ClearOutside),
+        ("summed", Self::Summed),
+        ("furnace", Self::Furnace),
+    ];
+
+    /// Whether pictures of a placement and a mode stand in it.
+    pub fn is_for(self, placement: Placement, mode: Mode) -> bool {
+        let is_composite = mode == Mode::Composite;
+        let is_xray = mode == Mode::Xray;
+        // Where the domain ends, samples of rays begin: another domain, other samples.
+        let is_fixed = placement.is_slicer() || placement.lattice == Lattice::Planes;
+        match self {
+            Self::Skipped => true,
+            Self::Repeated => is_composite || is_xray,
+            Self::WithLayers | Self::InSmallSubmissions => is_composite || mode == Mode::Mip,
+            Self::PermutedColors | Self::ScaledWorld | Self::Furnace => is_composite,
+            Self::ScaledValues => is_composite || mode == Mode::Mip || mode == Mode::Iso,
+            Self::OtherMode => matches!(mode, Mode::Mida | Mode::Lmip),
+            Self::OtherOrder => {
+                is_composite && placement.is_slicer() && placement.order == Order::BackToFront
+            }
+            Self::RaysOnPlanes => (is_composite || is_xray) && placement.word == "slices_3d.over",
+            Self::Mirrored | Self::Turned => is_composite || is_xray,
+            Self::InTwo | Self::ClearOutside => is_composite && is_fixed,
+            Self::Summed => is_xray,
+        }
+    }
+
+    /// Whether no bit may differ.
+    pub fn is_exact(self) -> bool {
+        matches!(
+            self,
+            Self::Repeated
+                | Self::WithLayers
+                | Self::InSmallSubmissions
+                | Self::Skipped
+                | Self::PermutedColors
+                | Self::ScaledValues
+                | Self::ScaledWorld
+                | Self::OtherMode
+        )
+    }
+}

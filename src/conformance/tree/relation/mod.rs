@@ -1,0 +1,83 @@
+//! Relations between pictures: no answer is known, and two of them must agree.
+//!
+//! | relation | allowed |
+//! |---|---|
+//! | the same picture twice; with other layers asked for; in small submissions | nothing |
+//! | empty space skipped and not, in every mode | nothing |
+//! | colours of the function permuted, and the picture's | nothing |
+//! | values times 4 and the function's; the world twice as large | nothing: powers of two round nothing |
+//! | MIDA of gamma -1 and compositing; LMIP of no threshold and MIP | nothing |
+//! | front to back and back to front; view-aligned slices and rays on their lattice | both running errors |
+//! | the volume mirrored along an axis, or its axes taken in turn, and the world with them | both |
+//! | both halves of a box, one over the other, and the whole | all three |
+//! | a crop, and a function that is clear outside of it | both |
+//! | an X-ray of a sum, and the sum of X-rays | all three |
+//! | one colour in front of a background of it, and that colour | one |
+
+mod kinds;
+mod pair;
+
+use super::ground::{self, PLACEMENTS, PROJECTIONS, Placement};
+use crate::conformance::case::{Case, Profile};
+use crate::technique::{Lattice, Mode, Order};
+use crate::volume::VoxelType;
+pub use kinds::Kind;
+
+/// Modes of which something must stay as it is, on rays.
+const MODES: [(&str, Mode); 9] = [
+    ("composite", Mode::Composite),
+    ("xray", Mode::Xray),
+    ("mip", Mode::Mip),
+    ("minip", Mode::Minip),
+    ("average", Mode::Average),
+    ("lmip", Mode::Lmip),
+    ("attenuated_mip", Mode::AttenuatedMip),
+    ("iso", Mode::Iso),
+    ("mida", Mode::Mida),
+];
+
+/// Every relation for every placement, mode and projection that has it.
+pub fn cases() -> Vec<Case> {
+    let mut cases = Vec::new();
+    for placement in PLACEMENTS {
+        for (projection, is_perspective) in PROJECTIONS {
+            for (word, kind) in Kind::ALL {
+                for (mode_word, mode) in MODES {
+                    let Some(of) = placement.word_in(mode) else {
+                        continue;
+                    };
+                    if !has(placement, mode) || !kind.is_for(placement, mode) {
+                        continue;
+                    }
+                    let name = format!("relation.{word}.{of}.{mode_word}.{projection}");
+                    let mut case = Case::new(name, move |stand| {
+                        pair::measure(stand, kind, placement, mode, is_perspective)
+                    });
+                    case.needs = ground::needs(placement, VoxelType::F32, false);
+                    case.profile = profile(kind, placement, mode, is_perspective);
+                    cases.push(case);
+                }
+            }
+        }
+    }
+    cases
+}
+
+fn has(placement: Placement, mode: Mode) -> bool {
+    !mode.needs_rays() || (!placement.is_slicer() && placement.lattice == Lattice::Ray)
+}
+
+/// The baseline has each relation in each placement, and the modes where they are other shaders.
+fn profile(kind: Kind, placement: Placement, mode: Mode, is_perspective: bool) -> Profile {
+    let is_common = mode == Mode::Composite || mode.needs_rays();
+    let is_first = placement.order == Order::BackToFront;
+    let is_in = match kind {
+        Kind::Skipped => is_perspective || mode == Mode::Composite,
+        _ if mode == Mode::Composite => is_perspective || is_first,
+        _ => is_perspective != (is_common || mode == Mode::Xray),
+    };
+    match is_in {
+        true => Profile::Baseline,
+        false => Profile::Full,
+    }
+}

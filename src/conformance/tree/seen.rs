@@ -1,0 +1,350 @@
+//! Pictures of voxels that no line goes through, each ray followed a second time in f64 by `oracle::seen`: A11, A14 and
+//! A15, A17 to A19, the modes along rays, mixtures, cuts.
+
+use super::drawn::{measure, measure_within};
+use super::ground::{self, MODES, PLACEMENTS, PROJECTIONS, Placement};
+use crate::conformance::case::{Case, Profile, Stop};
+use crate::conformance::measurement::{Bound, Measurement};
+use crate::conformance::oracle::{Chord, FILTERS, Numbers, Part, Seen, Shot, seen};
+use crate::conformance::stand::Stand;
+use crate::picture::LayerKind;
+use crate::scene::{Beside, Channel};
+use crate::technique::{
+    ClipPlane, Filter, Lattice, Light, Mode, Order, Role, Settings, Shading, Technique,
+};
+use crate::transfer::{Graded, OpacityPoint, Shape, TransferFunction, Widget};
+use crate::volume::VoxelType;
+use glam::{DVec3, dvec3};
+
+/// Half a unit in the last place of an f32 at 1.
+const U: f64 = 1.0 / (1u32 << 24) as f64;
+
+/// How steep `saddles` are along each axis.
+const SADDLES: DVec3 = dvec3(0.9, 0.8, 0.7);
+
+const EXTREME: &str = "u = 2^-24. A maximum is as continuous as what it is of: the field, off by its slopes (0.3 times 0.9, 0.8 and \
+0.7 a voxel at most) times the blur of the place, and by 8 taps x 3 u of 1.25. Where the derivative along a cell is zero is found to 64 u \
+of its terms. Over a cell these are at most, with s1 = 2.4, s2 = 1.91 and s3 = 0.504 the sums and the product of these steepnesses, \
+0.3 (s1 + 2 s2 + 3 s3) where the ray enters, 0.3 (2 s2 + 6 s3) that is linear on the way and 0.3 x 3 s3 that is quadratic: less than 5 \
+together, which costs 320 u of the value. Three times that for the pixel: opacity rises by 5/6 and colour by 1.2 a unit of value.";
+
+/// What is in the voxels, and what is made of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Look {
+    /// A field that varies along every axis.
+    Waves,
+    /// The signal of Marschner and Lobb (1994), over 40 voxels from -1 to 1 along each axis, as far as the grid goes.
+    MarschnerLobb,
+    /// Light from the eye.
+    Lit,
+    /// Three lights.
+    Lamps,
+    /// An emitter over value and gradient.
+    Widget(usize),
+    /// Three clip planes.
+    Clipped,
+    /// Two things in one place.
+    Channels,
+    /// Colour by one, opacity by the other.
+    Opacity,
+    /// Names of things beside numbers.
+    Labels,
+    /// The extreme of the trilinear field.
+    Exact,
+}
+
+/// By what it is known in names.
+const WIDGETS: [&str; 5] = ["contour", "triangle", "rectangle", "gaussian", "region"];
+
+impl Look {
+    fn word(self) -> &'static str {
+        match self {
+            Self::Waves => "waves",
+            Self::MarschnerLobb => "marschner_lobb",
+            Self::Lit => "headlight",
+            Self::Lamps => "lamps",
+            Self::Widget(i) => WIDGETS[i],
+            Self::Clipped => "clipped",
+            Self::Channels => "channels",
+            Self::Opacity => "opacity_beside",
+            Self::Labels => "labels",
+            Self::Exact => "exact",
+        }
+    }
+}
+
+/// All of them.
+pub fn cases() -> Vec<Case> {
+    let mut all = Vec::new();
+    let linear = FILTERS[1];
+    let smooth = [FILTERS[2], FILTERS[3], FILTERS[4]];
+    for placement in PLACEMENTS {
+        for mode in MODES {
+            for filter in FILTERS {
+                all.push((placement, mode, Look::Waves, filter));
+            }
+            all.push((placement, mode, Look::Clipped, linear));
+        }
+        let composite = MODES[0];
+        for look in [Look::Lit, Look::Lamps] {
+            all.extend([linear, FILTERS[4]].map(|filter| (placement, composite, look, filter)));
+        }
+        all.extend((0..WIDGETS.len()).map(|i| (placement, composite, Look::Widget(i), linear)));
+        for look in [Look::Channels, Look::Opacity, Look::Labels] {
+            all.push((placement, composite, look, linear));
+        }
+        for filter in smooth.into_iter().chain([linear]) {
+            for mode in [MODES[1], MODES[4]] {
+                all.push((placement, mode, Look::MarschnerLobb, filter));
+            }
+        }
+    }
+    let rays = PLACEMENTS[0];
+    for mode in [MODES[1], MODES[2]] {
+        all.push((rays, mode, Look::Exact, linear));
+    }
+    for mode in [
+        ("lmip", Mode::Lmip),
+        ("attenuated_mip", Mode::AttenuatedMip),
+        ("mida", Mode::Mida),
+    ] {
+        all.extend(FILTERS.map(|filter| (rays, mode, Look::Waves, filter)));
+        if mode.1 == Mode::Mida {
+            all.push((rays, mode, Look::Lamps, linear));
+        }
+    }
+    let mut cases = Vec::new();
+    for (placement, (mode_word, mode), look, (filter_word, filter)) in all {
+        let Some(of) = placement.word_in(mode) else {
+            continue;
+        };
+        for (projection, is_perspective) in PROJECTIONS {
+            let name = format!(
+                "{of}.{mode_word}.{}.{filter_word}.f32.{projection}",
+                look.word()
+            );
+            let mut case = Case::new(name, move |stand| {
+                draw(stand, placement, mode, look, filter, is_perspective)
+            });
+            case.needs = ground::needs(placement, VoxelType::F32, false);
+            case.profile = profile(placement, mode, look, filter, is_perspective);
+            // More than a tenth of the pixels would hang on rounding: their case would be void.
+            let is_void = mode == Mode::Average && case.profile == Profile::Full;
+            if !(is_void && look == Look::Waves) {
+                cases.push(case);
+            }
+        }
+    }
+    cases
+}
+
+/// The baseline has each look in each technique, and the filters where something hangs on them.
+fn profile(
+    placement: Placement,
+    mode: Mode,
+    look: Look,
+    filter: Filter,
+    is_perspective: bool,
+) -> Profile {
+    let is_first = placement.order == Order::BackToFront && placement.lattice == Lattice::Ray;
+    let is_linear = filter == Filter::Linear;
+    let is_in = match look {
+        Look::Waves if mode.needs_rays() => is_linear || is_perspective,
+        Look::Waves => is_perspective && (is_linear || (is_first && filter == Filter::CubicSmooth)),
+        Look::MarschnerLobb => is_perspective && is_first && mode == Mode::Xray,
+        Look::Clipped => is_perspective && matches!(mode, Mode::Composite | Mode::Xray),
+        Look::Exact => true,
+        Look::Lit | Look::Lamps => is_linear,
+        Look::Widget(_) | Look::Channels | Look::Opacity | Look::Labels => {
+            is_first && is_perspective != (placement.technique == Technique::Slices2d)
+        }
+    };
+    match is_in {
+        true => Profile::Baseline,
+        false => Profile::Full,
+    }
+}
+
+fn draw(
+    stand: &mut Stand,
+    placement: Placement,
+    mode: Mode,
+    look: Look,
+    filter: Filter,
+    is_perspective: bool,
+) -> Result<Measurement, Stop> {
+    let shot = ground::shot(placement, mode, (filter, false), is_perspective);
+    let shot = shot.with(|settings| set(settings, look));
+    let parts = parts(&shot, look);
+    let beside: Vec<Channel> = parts[1..]
+        .iter()
+        .map(|part| Channel {
+            volume: &part.numbers.volume,
+            transfer: Some(&part.function),
+            role: part.role,
+        })
+        .collect();
+    let mut scene = shot.scene(&parts[0].numbers.volume, Some(&parts[0].function));
+    if !beside.is_empty() {
+        scene.beside = Beside::Channels(&beside);
+    }
+    let is_by_rays = placement.technique == Technique::Raycast;
+    let layers: &[LayerKind] = match (mode.is_projection(), is_by_rays && mode.has_depth()) {
+        (true, true) => &[LayerKind::Value, LayerKind::Depth],
+        (true, false) => &[LayerKind::Value],
+        (false, true) => &[LayerKind::Depth],
+        (false, false) => &[],
+    };
+    if look == Look::Exact {
+        let of = |chord: &Chord| {
+            // What the value rises by at most, times the blur, 8 taps, and both sides of a root.
+            let off = 0.3 * SADDLES.dot(chord.blur_voxels) + (24.0 * 1.25 + 320.0) * U;
+            Seen {
+                slack: 3.0 * off,
+                ..seen(&shot, chord, &parts)
+            }
+        };
+        let bound = Bound::new("f32-extreme", EXTREME);
+        return measure_within(stand, &shot, &scene, &[LayerKind::Value], bound, of);
+    }
+    measure(stand, &shot, &scene, layers, |chord| {
+        seen(&shot, chord, &parts)
+    })
+}
+
+fn set(settings: &mut Settings, look: Look) {
+    let [low, high] = settings.crop.expect("the ground has one");
+    settings.crop = None;
+    settings.per_mode.lmip_threshold = 0.6;
+    settings.per_mode.unit_values = [0.1, 0.9];
+    settings.per_mode.attenuation = 4.0;
+    settings.per_mode.mida_gamma = -0.25;
+    settings.per_mode.exact_maximum = look == Look::Exact;
+    let light = |towards, srgb| Light { towards, srgb };
+    match look {
+        Look::Lit => settings.shading = Some(Shading::default()),
+        Look::Lamps => {
+            settings.shading = Some(Shading {
+                ambient: 0.2,
+                diffuse: 0.5,
+                specular: 0.4,
+                shininess: 23.0,
+                lights: vec![
+                    light(dvec3(1.0, -2.0, 0.7), [1.0, 0.9, 0.8]),
+                    light(dvec3(-0.3, 0.2, 3.0), [0.2, 0.3, 0.6]),
+                    light(DVec3::NEG_X, [0.3; 3]),
+                ],
+                ..Shading::default()
+            });
+        }
+        Look::Clipped => {
+            let middle = ground::grid().center();
+            settings.clip_planes = [
+                (dvec3(1.0, 0.4, -0.3), 4.1),
+                (dvec3(-0.5, 1.0, 0.6), 5.7),
+                (dvec3(-0.2, -0.8, 1.0), 6.3),
+            ]
+            .map(|(normal, back)| ClipPlane {
+                normal: normal.normalize(),
+                offset: normal.normalize().dot(middle) - back,
+            })
+            .into();
+        }
+        // No tap lies outside.
+        Look::MarschnerLobb => settings.crop = Some([low, high]),
+        _ => {}
+    }
+}
+
+fn parts(shot: &Shot, look: Look) -> Vec<Part> {
+    // A sample is never clear: what is divided by extinction has digits.
+    let mut function = ground::ramps();
+    function.opacity[0].opacity = 0.03;
+    let part = |function: TransferFunction, role, field: &dyn Fn(DVec3) -> f64| Part {
+        numbers: Numbers::of(shot, field),
+        function,
+        role,
+    };
+    let mut tinted = ground::ramps();
+    tinted.color.reverse();
+    for (point, value) in tinted.color.iter_mut().zip([0.0, 0.4, 1.0]) {
+        point.value = value;
+    }
+    tinted.opacity[0].opacity = 0.05;
+    let other = |p: DVec3| ground::waves(dvec3(9.0 - p.y, p.z + 2.0, 0.7 * p.x));
+    let beside = |role, field: &dyn Fn(DVec3) -> f64| {
+        let first = part(function.clone(), Role::Numbers, &ground::waves);
+        vec![first, part(tinted.clone(), role, field)]
+    };
+    match look {
+        Look::Channels => beside(Role::Numbers, &other),
+        Look::Opacity => beside(Role::Opacity, &other),
+        Look::Exact => vec![part(function.clone(), Role::Numbers, &saddles)],
+        Look::Labels => beside(Role::Labels, &|p| {
+            (0.2 * p.dot(DVec3::ONE)).floor() % 3.0 / 2.0
+        }),
+        Look::MarschnerLobb => vec![part(function.clone(), Role::Numbers, &marschner_lobb)],
+        Look::Widget(i) => {
+            let widget = Widget {
+                srgb: (i % 2 == 0).then_some([0.9, 0.6, 0.3]),
+                opacity: 0.7,
+                second: None,
+                shape: shape(i),
+            };
+            let graded = Graded {
+                steepest: Some(0.3),
+                share: Vec::new(),
+                widgets: vec![widget],
+            };
+            let function = TransferFunction {
+                graded: Some(graded),
+                ..function.clone()
+            };
+            vec![part(function, Role::Numbers, &ground::waves)]
+        }
+        _ => vec![part(function.clone(), Role::Numbers, &ground::waves)],
+    }
+}
+
+fn shape(i: usize) -> Shape {
+    let point = |value, opacity| OpacityPoint { value, opacity };
+    match WIDGETS[i] {
+        "contour" => Shape::Contour {
+            value: 0.6,
+            half_width: 1.5,
+        },
+        "triangle" => Shape::Triangle {
+            value: 0.5,
+            half_width: 0.3,
+            threshold: 0.1,
+            top: 1.2,
+        },
+        "rectangle" => Shape::Rectangle {
+            values: [0.4, 0.7],
+            gradients: [0.2, 0.6],
+        },
+        "gaussian" => Shape::Gaussian {
+            value: 0.5,
+            gradient: 0.4,
+            sigma_value: 0.2,
+            sigma_gradient: 0.3,
+        },
+        _ => Shape::Region {
+            points: vec![point(0.1, 0.1), point(0.5, 0.8), point(0.95, 0.3)],
+        },
+    }
+}
+
+/// A field that bends inside of cells, and not at their walls alone: between 0.2 and 0.8.
+fn saddles(p: DVec3) -> f64 {
+    let [x, y, z] = (SADDLES * p).to_array();
+    0.5 + 0.3 * x.sin() * y.sin() * z.sin()
+}
+
+/// rho(x, y, z) = (1 - sin(pi z / 2) + a (1 + cos(2 pi f cos(pi r / 2)))) / (2 (1 + a)), f = 6, a = 1/4.
+fn marschner_lobb(p: DVec3) -> f64 {
+    use std::f64::consts::PI;
+    let [x, y, z] = ((p - dvec3(8.5, 10.5, 6.5)) / 20.0).to_array();
+    let wave = (12.0 * PI * (0.5 * PI * x.hypot(y)).cos()).cos();
+    (1.0 - (0.5 * PI * z).sin() + 0.25 * (1.0 + wave)) / 2.5
+}
