@@ -35,10 +35,9 @@ fn judged(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
     let needs: Vec<Found> = match stand.device() {
         Ok(device) => {
             let gpu = device.gpu();
-            case.needs
-                .iter()
-                .map(|&item| Found::of(gpu, item))
-                .collect()
+            let needs = case.needs.iter().map(|&item| Found::of(gpu, item));
+            let wants = case.wants.iter().map(|&want| Found::wanted(gpu, want));
+            needs.chain(wants).collect()
         }
         Err(error) => return (of(verdict_of(&error), error.to_string()), None),
     };
