@@ -26,6 +26,9 @@ const CUT: &str = "Vulkan specification, primitive clipping: what lies nearer th
 whose depth is nearer to either than the bound of planes are left out.";
 const COARSE: &str = "depth is coarser than 32-bit floats or is not the nearest code";
 
+/// What f64 rounds where a code at the end of a range is compared: far less than a code of 24 bits.
+const ROUNDED: f64 = 1e-12;
+
 const OPERATORS: [(&str, vk::CompareOp); 8] = [
     ("never", vk::CompareOp::NEVER),
     ("less", vk::CompareOp::LESS),
@@ -116,7 +119,7 @@ fn picture(kept: Kept, height: u32, corners: &[[f32; 4]]) -> Picture<'_> {
 /// One depth of a host's against what is kept of it.
 fn keep(measurement: &mut Measurement, kept: Kept, at: impl Fn() -> String, z: f64, found: f64) {
     let [low, high] = kept.candidates(z);
-    measurement.take_in(&at, [low, high], found, 0.0);
+    measurement.take_in(&at, [low, high], found, ROUNDED);
     if let Some(most) = kept.most {
         // A product in 32-bit floats may come out at either side of the middle of two codes.
         let nearest = 0.5 / most + 2.0 * SINGLE * z;
@@ -218,7 +221,7 @@ fn compared(
         let is_drawn = f64::from(u8::from(answers[0]));
         measurement.take(at, is_drawn, colors[i].into(), 0.0);
         match answers[0] && writes {
-            true => measurement.take_in(at, candidates, found[i], 0.0),
+            true => measurement.take_in(at, candidates, found[i], ROUNDED),
             false => measurement.take(at, there, found[i], 0.0),
         }
     }
