@@ -293,22 +293,20 @@ fn ordered(stand: &mut Stand, kept: Kept, is_reversed: bool) -> Result<Measureme
     Ok(measurement)
 }
 
+/// Triangles with depths at their corners, and the corners in clip space.
+type Sloped = (Vec<(plane::Triangle, [f64; 3])>, Vec<[f32; 4]>);
+
 /// A mesh with depths at its corners.
-fn sloped(
-    stand: &mut Stand,
-    name: &str,
-    height: u32,
-    [low, high]: [f64; 2],
-) -> (Vec<(plane::Triangle, [f64; 3])>, Vec<[f32; 4]>) {
+fn sloped(stand: &mut Stand, name: &str, height: u32, [low, high]: [f64; 2]) -> Sloped {
     let mut random = stand.random(name);
     let size = [WIDTH as f64, f64::from(height)];
     let mut corners = Vec::new();
     let mut all = Vec::new();
     for triangle in plane::mesh(&mut random, size) {
         let z = [0; 3].map(|_| f64::from((low + (high - low) * random.unit()) as f32));
-        for i in 0..3 {
-            let [x, y] = [0, 1].map(|k| 2.0 * triangle.0[i][k] / size[k] - 1.0);
-            corners.push([x, y, z[i], 1.0].map(|n| n as f32));
+        for (corner, z) in triangle.0.iter().zip(z) {
+            let [x, y] = [0, 1].map(|k| 2.0 * corner[k] / size[k] - 1.0);
+            corners.push([x, y, z, 1.0].map(|n| n as f32));
         }
         all.push((triangle, z));
     }
