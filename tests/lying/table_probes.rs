@@ -43,15 +43,6 @@ pub const PROBE_LIES: &[(&str, Lie, &str)] = &[
         "probe.lod.2d_array.nearest.mixed.explicit",
     ),
     (
-        "levels by derivatives are one too fine",
-        Shader(
-            "probe/implicit_level.wgsl",
-            "probed_sampler, place)",
-            "probed_sampler, 0.5 * place)",
-        ),
-        "probe.lod.3d.to_nearest.implicit",
-    ),
-    (
         "LESS is LESS_OR_EQUAL",
         Changed(State::Compare(CompareOp::LESS, CompareOp::LESS_OR_EQUAL)),
         "probe.depth.compare.less.d16_unorm",

@@ -13,7 +13,6 @@ mod kit;
 mod large;
 mod limits;
 mod lod;
-mod lod_implicit;
 mod math;
 mod plane;
 mod push;

@@ -31,15 +31,22 @@ pub fn cases() -> Vec<Case> {
     vec![
         Case::new("probe.robust.buffer.whole.read", |stand| read(stand, false)).needing(buffer),
         Case::new("probe.robust.buffer.part.read", |stand| read(stand, true)).needing(buffer),
-        Case::new("probe.robust.buffer.whole.write", |stand| {
-            write(stand, false)
-        })
-        .needing(buffer),
-        Case::new("probe.robust.buffer.part.write", |stand| write(stand, true)).needing(buffer),
+        written("whole.write", "probe/beyond_write", BYTES),
+        written("part.write", "probe/beyond_write", BYTES / 2),
+        written("whole.atomic", "probe/beyond_atomic", BYTES),
+        written("part.atomic", "probe/beyond_atomic", BYTES / 2),
         Case::new("probe.robust.uniform.dynamic_offsets", uniform).needing(buffer),
         Case::new("probe.robust.image.read", image_read).needing(image),
         Case::new("probe.robust.image.write", image_write),
     ]
+}
+
+/// What a shader writes beyond so many bytes that are bound.
+fn written(word: &str, name: &'static str, range: u64) -> Case {
+    let case = Case::new(format!("probe.robust.buffer.{word}"), move |stand| {
+        write(stand, name, range)
+    });
+    case.needing(Item::Feature(Feature::RobustBufferAccess))
 }
 
 const BYTES: u64 = 4096;
@@ -179,8 +186,7 @@ fn read(stand: &mut Stand, is_part: bool) -> Result<Measurement, Stop> {
     Ok(measurement)
 }
 
-fn write(stand: &mut Stand, is_part: bool) -> Result<Measurement, Stop> {
-    let range = if is_part { BYTES / 2 } else { BYTES };
+fn write(stand: &mut Stand, name: &'static str, range: u64) -> Result<Measurement, Stop> {
     let end = (range / 4) as u32;
     let beyond = places(stand, end).into_iter().filter(|&place| place >= end);
     let places: Vec<u32> = beyond.collect();
@@ -193,7 +199,6 @@ fn write(stand: &mut Stand, is_part: bool) -> Result<Measurement, Stop> {
         ("places", Resource::Storage(&given)),
         ("bound", Resource::Storage(&stand_in)),
     ];
-    let name = "probe/beyond_write";
     dispatch(device, name, &neighbours, range, &resources, places.len())?;
     let mut measurement = Measurement::new(Bound::new("robust-write", WRITTEN), 2 * WORDS as usize);
     for (i, &found) in neighbours.words().iter().enumerate() {
