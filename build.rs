@@ -15,12 +15,14 @@ mod blue_noise;
 mod both_sides;
 #[path = "shaders/opaque.rs"]
 mod opaque;
+#[path = "shaders/probes.rs"]
+mod probes;
 #[path = "shaders/read_once.rs"]
 mod read_once;
 #[path = "shaders/variants.rs"]
 mod variants;
 
-use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::valid::{ValidationFlags, Validator};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -95,9 +97,9 @@ impl Book {
                 &e.emit_to_string(&source.text),
             )
         });
-        // No capability beyond the core: a shader that needs more is a build error.
+        // No capability beyond the core, but for probes: a shader that needs more is a build error.
         let check = |module: &naga::Module, flags| {
-            Validator::new(flags, Capabilities::empty())
+            Validator::new(flags, probes::capabilities(file))
                 .validate(module)
                 .unwrap_or_else(|e| {
                     source.fail(
@@ -118,7 +120,7 @@ impl Book {
         let uniformity = ValidationFlags::CONTROL_FLOW_UNIFORMITY;
         let info = check(&module, ValidationFlags::all().difference(uniformity));
 
-        let words = spirv(&module, &info);
+        let words = spirv(&module, &info, file);
         let first = self.spirv.len() / 4;
         self.spirv
             .extend(words.iter().flat_map(|word| word.to_le_bytes()));
@@ -218,7 +220,7 @@ impl Source {
     }
 }
 
-fn spirv(module: &naga::Module, info: &naga::valid::ModuleInfo) -> Vec<u32> {
+fn spirv(module: &naga::Module, info: &naga::valid::ModuleInfo, file: &str) -> Vec<u32> {
     use naga::back::spv;
     let options = spv::Options {
         lang_version: (1, 5),
@@ -229,6 +231,7 @@ fn spirv(module: &naga::Module, info: &naga::valid::ModuleInfo) -> Vec<u32> {
         capabilities: Some(
             [spirv::Capability::Shader, spirv::Capability::ImageQuery]
                 .into_iter()
+                .chain(probes::spirv_capabilities(file).iter().copied())
                 .collect(),
         ),
         zero_initialize_workgroup_memory: spv::ZeroInitializeWorkgroupMemoryMode::None,
@@ -242,7 +245,8 @@ fn spirv(module: &naga::Module, info: &naga::valid::ModuleInfo) -> Vec<u32> {
         shader_stage: module.entry_points[0].stage,
         entry_point: "main".into(),
     };
-    spv::write_vec(module, info, &options, Some(&entry)).expect("a valid module can be written")
+    let words = spv::write_vec(module, info, &options, Some(&entry));
+    probes::finished(file, words.expect("a valid module can be written"))
 }
 
 fn stage(module: &naga::Module) -> String {

@@ -323,15 +323,66 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ("opaque_patches", &[]),
 ];
 
+/// Formats whose storage images every device has (Vulkan specification, required format support), and that shaders may name
+/// without a feature.
+const STORAGE_FORMATS: &[&str] = &[
+    "rgba8unorm",
+    "rgba8snorm",
+    "rgba8uint",
+    "rgba8sint",
+    "rgba16uint",
+    "rgba16sint",
+    "rgba16float",
+    "r32uint",
+    "r32sint",
+    "r32float",
+    "rgba32uint",
+    "rgba32sint",
+    "rgba32float",
+];
+
 /// What asks a device and draws nothing: only with the feature `conformance`.
 pub const PROBES: &[(&str, &[Slot])] = &[
     ("probe/filter_3d", &[]),
     ("probe/filter_array", &[]),
     ("probe/fetch", &[]),
+    ("probe/store", &[("format", STORAGE_FORMATS)]),
+    ("probe/load", &[("format", STORAGE_FORMATS)]),
     (
-        "probe/store",
+        "probe/specials_store",
         &[("format", &["rgba32float", "rgba16float"])],
     ),
+    ("probe/specials", &[]),
+    ("probe/push", &[("bytes", &["128", "256"])]),
+    ("probe/many", &[]),
+    ("probe/spots", &[]),
+    ("probe/beyond_read", &[]),
+    ("probe/beyond_write", &[]),
+    ("probe/beyond_atomic", &[]),
+    ("probe/beyond_uniform", &[]),
+    ("probe/beyond_fetch", &[]),
+    ("probe/beyond_store", &[]),
+    (
+        "probe/subgroup",
+        &[(
+            "operation",
+            &[
+                "basic",
+                "vote",
+                "arithmetic",
+                "ballot",
+                "broadcast",
+                "shuffle",
+            ],
+        )],
+    ),
+    ("probe/varyings", &[]),
+    ("probe/varied", &[]),
+    ("probe/depth", &[]),
+    ("probe/levels_3d", &[]),
+    ("probe/levels_array", &[]),
+    ("probe/relay_draw", &[]),
+    ("probe/relay_compute", &[]),
     ("probe/shapes", &[]),
     ("probe/color", &[]),
     ("probe/shared_memory", &[]),

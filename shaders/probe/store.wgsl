@@ -3,7 +3,7 @@
 #import probe_store_{format}
 
 struct Numbers {
-    d: array<vec4<f32>>,
+    d: array<vec4<Number>>,
 }
 
 @group(0) @binding(1) var<storage, read> numbers: Numbers;

@@ -1,6 +1,7 @@
 //! A case: a name in the tree, what it asks of a device, and what it does there.
 
 use super::measurement::Measurement;
+use super::need::Want;
 use super::stand::Stand;
 use crate::gpu::{self, Item};
 use crate::offscreen;
@@ -55,6 +56,8 @@ pub struct Case {
     pub profile: Profile,
     /// What a device has to have for it.
     pub needs: Vec<Item>,
+    /// The same, of what the library has no need of.
+    pub wants: Vec<Want>,
     /// The measurement.
     pub run: Run,
 }
@@ -69,6 +72,7 @@ impl Case {
             name: name.into(),
             profile: Profile::Baseline,
             needs: Vec::new(),
+            wants: Vec::new(),
             run: Box::new(run),
         }
     }
@@ -76,6 +80,12 @@ impl Case {
     /// The same, which needs something.
     pub fn needing(mut self, item: Item) -> Self {
         self.needs.push(item);
+        self
+    }
+
+    /// The same, which needs something that the library does not.
+    pub fn wanting(mut self, want: Want) -> Self {
+        self.wants.push(want);
         self
     }
 

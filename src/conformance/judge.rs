@@ -35,10 +35,9 @@ fn judged(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
     let needs: Vec<Found> = match stand.wants_device().then(|| stand.device()) {
         Some(Ok(device)) => {
             let gpu = device.gpu();
-            case.needs
-                .iter()
-                .map(|&item| Found::of(gpu, item))
-                .collect()
+            let needs = case.needs.iter().map(|&item| Found::of(gpu, item));
+            let wants = case.wants.iter().map(|&want| Found::wanted(gpu, want));
+            needs.chain(wants).collect()
         }
         Some(Err(error)) => return (of(verdict_of(&error), error.to_string()), None),
         None => Vec::new(),

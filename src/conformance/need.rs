@@ -1,4 +1,5 @@
-//! What a case asks of a device, looked up twice: as the library knows the device, and by a query of its own.
+//! What a case asks of a device, looked up twice: as the library knows the device, and by a query of its own. Of what the
+//! library has no need, the query alone says.
 //!
 //! | library | query | said |
 //! |---|---|---|
@@ -10,6 +11,17 @@
 use crate::gpu::{Feature, Gpu, Item, Limit};
 use ash::vk;
 use serde::{Deserialize, Serialize};
+
+/// What a case needs and the library does not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Want {
+    /// Operations of subgroups, in compute shaders.
+    Subgroups(vk::SubgroupFeatureFlags),
+    /// Infinities, what is no number and signs of zero are kept in 32-bit floats, where a shader asks for it.
+    SpecialFloats,
+    /// So many bytes of push constants, or more.
+    PushConstants(u32),
+}
 
 /// One need compared with a device.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,6 +50,59 @@ impl Found {
             library_has: known(gpu, item),
         }
     }
+
+    /// What the device says of `want`.
+    pub fn wanted(gpu: &Gpu, want: Want) -> Self {
+        let mut properties11 = vk::PhysicalDeviceVulkan11Properties::default();
+        let mut properties12 = vk::PhysicalDeviceVulkan12Properties::default();
+        let mut properties = vk::PhysicalDeviceProperties2::default()
+            .push_next(&mut properties11)
+            .push_next(&mut properties12);
+        // SAFETY: the physical device belongs to the instance; both live as long as `gpu`.
+        unsafe {
+            let instance = gpu.instance();
+            instance.get_physical_device_properties2(gpu.physical_device(), &mut properties);
+        }
+        let limits = properties.properties.limits;
+        let (name, wanted, device_says, has) = match want {
+            Want::Subgroups(wanted) => {
+                let stages = properties11.subgroup_supported_stages;
+                let found = properties11.subgroup_supported_operations;
+                let is_compute = stages.contains(vk::ShaderStageFlags::COMPUTE);
+                (
+                    "subgroupSupportedOperations",
+                    format!("{wanted:?} in COMPUTE"),
+                    format!("{found:?} in {stages:?}"),
+                    is_compute && found.contains(wanted),
+                )
+            }
+            Want::SpecialFloats => {
+                let found = properties12.shader_signed_zero_inf_nan_preserve_float32 == vk::TRUE;
+                (
+                    "shaderSignedZeroInfNanPreserveFloat32",
+                    "true".to_owned(),
+                    found.to_string(),
+                    found,
+                )
+            }
+            Want::PushConstants(bytes) => {
+                let found = limits.max_push_constants_size;
+                (
+                    "maxPushConstantsSize",
+                    format!("{bytes} or more"),
+                    found.to_string(),
+                    found >= bytes,
+                )
+            }
+        };
+        Self {
+            name: name.to_owned(),
+            wanted,
+            device_says,
+            device_has: has,
+            library_has: has,
+        }
+    }
 }
 
 /// As the library has it: limits of the run are in it.
@@ -54,6 +119,7 @@ fn known(gpu: &Gpu, item: Item) -> bool {
                 && of(Flags::STORAGE_IMAGE, has.storage)
                 && of(Flags::COLOR_ATTACHMENT, has.color)
                 && of(Flags::COLOR_ATTACHMENT_BLEND, has.blend)
+                && of(Flags::DEPTH_STENCIL_ATTACHMENT, has.depth)
         }
         _ => true,
     }

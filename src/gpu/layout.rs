@@ -19,7 +19,7 @@ pub struct Layout {
 
 impl Layout {
     /// `name` stands for the shaders in errors.
-    pub(super) fn new(gpu: &Arc<Gpu>, shaders: &[&Shader], name: &str) -> Result<Self, Error> {
+    pub(crate) fn new(gpu: &Arc<Gpu>, shaders: &[&Shader], name: &str) -> Result<Self, Error> {
         let doing = || format!("make the layout of `{name}`");
         let declared = union(shaders, name)?;
         for shader in shaders {

@@ -14,7 +14,7 @@ use std::{
 
 /// A raw object together with the duty to destroy it once, when the GPU is done with it.
 #[derive(Debug)]
-pub(super) struct Own<H: Handle> {
+pub(crate) struct Own<H: Handle> {
     gpu: Arc<Gpu>,
     handle: H,
 }
@@ -46,7 +46,7 @@ impl<H: Handle> Drop for Own<H> {
 
 /// Memory of one buffer or image, with the duty to free it.
 #[derive(Debug)]
-pub(super) struct OwnMemory {
+pub(crate) struct OwnMemory {
     gpu: Arc<Gpu>,
     allocation: Option<Allocation>,
 }
@@ -98,7 +98,7 @@ impl Drop for OwnMemory {
 }
 
 /// A kind of raw object that we create and destroy.
-pub(super) trait Handle: Copy + std::fmt::Debug + Into<Raw> {
+pub(crate) trait Handle: Copy + std::fmt::Debug + Into<Raw> {
     /// What live objects of this kind are counted under.
     const WORD: &'static str;
 }
@@ -107,7 +107,7 @@ macro_rules! handles {
     ($($kind:ident $handle:ty, $word:literal, $destroy:ident;)*) => {
         /// A raw object without its owner.
         #[derive(Debug)]
-        pub(super) enum Raw {
+        pub(crate) enum Raw {
             $($kind($handle),)*
             Memory(Allocation),
         }
@@ -161,6 +161,8 @@ handles! {
     QueryPool vk::QueryPool, "query pool", destroy_query_pool;
     CommandPool vk::CommandPool, "command pool", destroy_command_pool;
     Fence vk::Fence, "fence", destroy_fence;
+    Semaphore vk::Semaphore, "semaphore", destroy_semaphore;
+    Event vk::Event, "event", destroy_event;
 }
 
 /// What the allocator hands on as text only.

@@ -236,7 +236,7 @@ pub(super) fn wrong_stage(doing: String, wanted: &str, shader: &Shader) -> Error
 }
 
 /// The SPIR-V of a shader on the device; needed only until its pipeline is made.
-pub(super) fn module(gpu: &Arc<Gpu>, shader: &Shader) -> Result<Own<vk::ShaderModule>, Error> {
+pub(crate) fn module(gpu: &Arc<Gpu>, shader: &Shader) -> Result<Own<vk::ShaderModule>, Error> {
     let info = vk::ShaderModuleCreateInfo::default().code(shader.spirv);
     // SAFETY: the SPIR-V was validated when it was built.
     let raw = gpu.call(
@@ -247,7 +247,7 @@ pub(super) fn module(gpu: &Arc<Gpu>, shader: &Shader) -> Result<Own<vk::ShaderMo
     Ok(Own::new(gpu, raw))
 }
 
-pub(super) fn stage<'a>(
+pub(crate) fn stage<'a>(
     shader: &Shader,
     module: &Own<vk::ShaderModule>,
 ) -> vk::PipelineShaderStageCreateInfo<'a> {
@@ -258,7 +258,7 @@ pub(super) fn stage<'a>(
 }
 
 /// The one pipeline that was asked for.
-pub(super) fn first(
+pub(crate) fn first(
     gpu: &Arc<Gpu>,
     doing: impl FnOnce() -> String,
     make: impl FnOnce(&ash::Device) -> Result<Vec<vk::Pipeline>, (Vec<vk::Pipeline>, vk::Result)>,

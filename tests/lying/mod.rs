@@ -9,6 +9,8 @@ mod answers;
 mod shaders;
 mod states;
 mod table;
+mod table_probes;
+mod transfers;
 
 use ash::vk;
 use std::collections::HashMap;
@@ -18,6 +20,31 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 pub use answers::ANSWERS;
 pub use states::State;
 pub use table::LIES;
+pub use table_probes::PROBE_LIES;
+
+/// The real function of that name, called.
+macro_rules! behind {
+    ($name:ident: fn($($type:ty),*) $(-> $out:ty)?, ($($arg:expr),*)) => {{
+        type Real = unsafe extern "system" fn($($type),*) $(-> $out)?;
+        std::mem::transmute::<usize, Real>(real(stringify!($name)))($($arg),*)
+    }};
+}
+
+/// The hook of that name, one of those of the module that asks.
+macro_rules! hooks {
+    ($name:expr, $($function:ident),*) => {
+        match $name.to_str().ok()? {
+            $(stringify!($function) => {
+                // SAFETY: `vkGetDeviceProcAddr` gives functions of every type as this one.
+                let hook = unsafe { std::mem::transmute::<*const (), Function>($function as *const ()) };
+                Some((stringify!($function), hook))
+            })*
+            _ => None,
+        }
+    };
+}
+
+use {behind, hooks};
 
 /// One thing that is not as it should be.
 #[derive(Clone, Copy, Debug)]
@@ -61,7 +88,10 @@ fn real(name: &'static str) -> usize {
 }
 
 fn in_place_of(found: Function, name: &CStr) -> Function {
-    let Some((name, hook)) = states::hook(name).or_else(|| shaders::hook(name)) else {
+    let Some((name, hook)) = states::hook(name)
+        .or_else(|| transfers::hook(name))
+        .or_else(|| shaders::hook(name))
+    else {
         return found;
     };
     let mut real = REAL.lock().unwrap_or_else(PoisonError::into_inner);

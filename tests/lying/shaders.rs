@@ -141,7 +141,8 @@ fn compiled(text: &str) -> Vec<u32> {
     use naga::back::spv;
     let module =
         naga::front::wgsl::parse_str(text).unwrap_or_else(|e| panic!("{}", e.emit_to_string(text)));
-    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+    let more = Capabilities::SUBGROUP | Capabilities::IMMEDIATES;
+    let mut validator = Validator::new(ValidationFlags::all(), more);
     let info = validator
         .validate(&module)
         .unwrap_or_else(|e| panic!("{}", e.emit_to_string(text)));

@@ -1,7 +1,7 @@
 //! Calls whose arguments are changed on their way to the driver.
 #![allow(non_snake_case, reason = "functions are named as Vulkan names them")]
 
-use super::{Function, Lie, count, lie, real};
+use super::{Function, Lie, behind, count, hooks, lie, real};
 use ash::vk;
 use std::ffi::CStr;
 use vk::{BlendFactor as Factor, BlendOp as Op};
@@ -36,49 +36,46 @@ pub enum State {
     ClearedTo(f32),
     FillsWith(u32),
     CountersAhead,
+    /// This operator of depth is that one.
+    Compare(vk::CompareOp, vk::CompareOp),
+    NoDepthWrites,
+    NoDepthTest,
+    DepthClamped,
+    DepthRangeForgotten,
+    DepthClearedTo(f32),
+    /// This way between levels is that one.
+    BetweenLevels(vk::SamplerMipmapMode, vk::SamplerMipmapMode),
+    BiasForgotten,
+    LevelsUnbounded,
+    MinifiedAsMagnified,
+    BuffersNotCopied,
+    /// What is bound of a buffer reaches so many times as far.
+    RangeTimes(u64),
+    DynamicOffsetsForgotten,
+    LastWordNotPushed,
+    /// Subgroups are said to be so many times as large.
+    SubgroupsTimes(u32),
+    SubmittedBackwards,
 }
 
-fn state() -> Option<State> {
+pub fn state() -> Option<State> {
     match lie() {
         Some(Lie::State(state)) => Some(state),
         _ => None,
     }
 }
 
-/// The real function of that name, called.
-macro_rules! behind {
-    ($name:ident: fn($($type:ty),*) $(-> $out:ty)?, ($($arg:expr),*)) => {{
-        type Real = unsafe extern "system" fn($($type),*) $(-> $out)?;
-        std::mem::transmute::<usize, Real>(real(stringify!($name)))($($arg),*)
-    }};
-}
-
 /// What is handed out in place of a function, and its name for good.
 pub fn hook(name: &CStr) -> Option<(&'static str, Function)> {
-    macro_rules! table {
-        ($($function:ident),*) => {
-            match name.to_str().ok()? {
-                $(stringify!($function) => {
-                    // SAFETY: `vkGetDeviceProcAddr` gives functions of every type as this one.
-                    let hook = unsafe { std::mem::transmute::<*const (), Function>($function as *const ()) };
-                    Some((stringify!($function), hook))
-                })*
-                _ => None,
-            }
-        };
-    }
-    table!(
+    hooks!(
+        name,
         vkCreateGraphicsPipelines,
         vkCreateSampler,
         vkCmdSetViewport,
         vkCmdSetScissor,
         vkCmdDraw,
         vkCmdDispatch,
-        vkCmdCopyBufferToImage,
-        vkCmdCopyImageToBuffer,
-        vkCmdBeginRendering,
-        vkCmdFillBuffer,
-        vkGetSemaphoreCounterValue
+        vkCmdBeginRendering
     )
 }
 
@@ -125,7 +122,16 @@ unsafe extern "system" fn vkCreateGraphicsPipelines(
                 raster.cull_mode = mode;
                 count();
             }
+            Some(State::DepthClamped) => {
+                raster.depth_clamp_enable = vk::TRUE;
+                count();
+            }
             _ => {}
+        }
+        let mut depth = info.p_depth_stencil_state.as_ref().copied();
+        if let Some(depth) = &mut depth {
+            change_depth(depth);
+            info.p_depth_stencil_state = depth;
         }
         let changes = |a: vk::PipelineColorBlendAttachmentState| {
             (
@@ -146,6 +152,24 @@ unsafe extern "system" fn vkCreateGraphicsPipelines(
         behind!(vkCreateGraphicsPipelines:
             fn(vk::Device, vk::PipelineCache, u32, *const vk::GraphicsPipelineCreateInfo<'static>, Alloc, *mut vk::Pipeline) -> vk::Result,
             (device, cache, number, &info, alloc, out))
+    }
+}
+
+fn change_depth(depth: &mut vk::PipelineDepthStencilStateCreateInfo<'_>) {
+    match state() {
+        Some(State::Compare(from, to)) if depth.depth_compare_op == from => {
+            depth.depth_compare_op = to;
+            count();
+        }
+        Some(State::NoDepthWrites) => {
+            depth.depth_write_enable = vk::FALSE;
+            count();
+        }
+        Some(State::NoDepthTest) => {
+            depth.depth_test_enable = vk::FALSE;
+            count();
+        }
+        _ => {}
     }
 }
 
@@ -171,6 +195,22 @@ unsafe extern "system" fn vkCreateSampler(
                 (info.mag_filter, info.min_filter) = (to, to);
                 count();
             }
+            Some(State::BetweenLevels(from, to)) if info.mipmap_mode == from => {
+                info.mipmap_mode = to;
+                count();
+            }
+            Some(State::BiasForgotten) if info.mip_lod_bias != 0.0 => {
+                info.mip_lod_bias = 0.0;
+                count();
+            }
+            Some(State::LevelsUnbounded) if info.max_lod > 0.0 => {
+                (info.min_lod, info.max_lod) = (0.0, vk::LOD_CLAMP_NONE);
+                count();
+            }
+            Some(State::MinifiedAsMagnified) if info.min_filter != info.mag_filter => {
+                info.min_filter = info.mag_filter;
+                count();
+            }
             _ => {}
         }
         behind!(vkCreateSampler:
@@ -194,6 +234,10 @@ unsafe extern "system" fn vkCmdSetViewport(
                 viewport.y += y;
                 viewport.width += width;
                 viewport.height += height;
+                count();
+            }
+            Some(State::DepthRangeForgotten) => {
+                (viewport.min_depth, viewport.max_depth) = (0.0, 1.0);
                 count();
             }
             Some(State::UpsideDown) => {
@@ -268,66 +312,6 @@ unsafe extern "system" fn vkCmdDispatch(cmd: vk::CommandBuffer, x: u32, y: u32, 
     unsafe { behind!(vkCmdDispatch: fn(vk::CommandBuffer, u32, u32, u32), (cmd, x, y, z)) };
 }
 
-unsafe extern "system" fn vkCmdCopyBufferToImage(
-    cmd: vk::CommandBuffer,
-    buffer: vk::Buffer,
-    image: vk::Image,
-    layout: vk::ImageLayout,
-    number: u32,
-    regions: *const vk::BufferImageCopy,
-) {
-    // SAFETY: as above; the rows of the buffer stay as long as they are.
-    unsafe {
-        let mut copy = *regions;
-        let whole = copy.image_extent;
-        match state() {
-            Some(State::LastColumnNotCopied) if whole.width > 1 => {
-                copy.buffer_row_length = whole.width;
-                copy.buffer_image_height = whole.height;
-                copy.image_extent.width -= 1;
-                count();
-            }
-            Some(State::LastSliceNotCopied) if whole.depth > 1 => {
-                copy.image_extent.depth -= 1;
-                count();
-            }
-            Some(State::LastSliceNotCopied) if copy.image_subresource.layer_count > 1 => {
-                copy.image_subresource.layer_count -= 1;
-                count();
-            }
-            _ => {}
-        }
-        behind!(vkCmdCopyBufferToImage:
-            fn(vk::CommandBuffer, vk::Buffer, vk::Image, vk::ImageLayout, u32, *const vk::BufferImageCopy),
-            (cmd, buffer, image, layout, number, &copy));
-    }
-}
-
-unsafe extern "system" fn vkCmdCopyImageToBuffer(
-    cmd: vk::CommandBuffer,
-    image: vk::Image,
-    layout: vk::ImageLayout,
-    buffer: vk::Buffer,
-    number: u32,
-    regions: *const vk::BufferImageCopy,
-) {
-    // SAFETY: as above; a column less is read, from one texel further on.
-    unsafe {
-        let mut copy = *regions;
-        let whole = copy.image_extent;
-        if state() == Some(State::ReadbackOneTexelOff) && whole.width > 1 {
-            copy.buffer_row_length = whole.width;
-            copy.buffer_image_height = whole.height;
-            copy.image_offset.x += 1;
-            copy.image_extent.width -= 1;
-            count();
-        }
-        behind!(vkCmdCopyImageToBuffer:
-            fn(vk::CommandBuffer, vk::Image, vk::ImageLayout, vk::Buffer, u32, *const vk::BufferImageCopy),
-            (cmd, image, layout, buffer, number, &copy));
-    }
-}
-
 unsafe extern "system" fn vkCmdBeginRendering(
     cmd: vk::CommandBuffer,
     info: *const vk::RenderingInfo<'static>,
@@ -347,40 +331,12 @@ unsafe extern "system" fn vkCmdBeginRendering(
             }
         }
         info.p_color_attachments = attachments.as_ptr();
-        behind!(vkCmdBeginRendering: fn(vk::CommandBuffer, *const vk::RenderingInfo<'static>), (cmd, &info));
-    }
-}
-
-unsafe extern "system" fn vkCmdFillBuffer(
-    cmd: vk::CommandBuffer,
-    buffer: vk::Buffer,
-    offset: vk::DeviceSize,
-    size: vk::DeviceSize,
-    word: u32,
-) {
-    let mut word = word;
-    if let Some(State::FillsWith(other)) = state() {
-        word = other;
-        count();
-    }
-    // SAFETY: as above.
-    unsafe {
-        behind!(vkCmdFillBuffer: fn(vk::CommandBuffer, vk::Buffer, vk::DeviceSize, vk::DeviceSize, u32), (cmd, buffer, offset, size, word));
-    }
-}
-
-unsafe extern "system" fn vkGetSemaphoreCounterValue(
-    device: vk::Device,
-    semaphore: vk::Semaphore,
-    out: *mut u64,
-) -> vk::Result {
-    // SAFETY: as above.
-    unsafe {
-        let result = behind!(vkGetSemaphoreCounterValue: fn(vk::Device, vk::Semaphore, *mut u64) -> vk::Result, (device, semaphore, out));
-        if state() == Some(State::CountersAhead) {
-            *out += 1;
+        let mut depth = info.p_depth_attachment.as_ref().copied();
+        if let (Some(depth), Some(State::DepthClearedTo(z))) = (&mut depth, state()) {
+            depth.clear_value.depth_stencil.depth = z;
+            info.p_depth_attachment = depth;
             count();
         }
-        result
+        behind!(vkCmdBeginRendering: fn(vk::CommandBuffer, *const vk::RenderingInfo<'static>), (cmd, &info));
     }
 }

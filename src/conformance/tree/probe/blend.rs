@@ -34,6 +34,26 @@ const FORMATS: [(&str, vk::Format, f64); 3] = [
     ),
 ];
 
+/// Formats of fewer channels or other codes, blended where the device says that it can; and their channels.
+const CLAIMED: [(&str, vk::Format, f64, usize); 6] = [
+    ("r8_unorm", vk::Format::R8_UNORM, 0.5 / 255.0, 1),
+    ("r16_unorm", vk::Format::R16_UNORM, 0.5 / 65_535.0, 1),
+    (
+        "rgba16_unorm",
+        vk::Format::R16G16B16A16_UNORM,
+        0.5 / 65_535.0,
+        4,
+    ),
+    ("r16_sfloat", vk::Format::R16_SFLOAT, 1.0 / 1024.0, 1),
+    ("rg16_sfloat", vk::Format::R16G16_SFLOAT, 1.0 / 1024.0, 2),
+    (
+        "r32_sfloat",
+        vk::Format::R32_SFLOAT,
+        0.5 / (1u32 << 23) as f64,
+        1,
+    ),
+];
+
 const BLENDS: [(&str, Blend); 6] = [
     ("replace", Blend::Replace),
     ("over", Blend::Over),
@@ -49,29 +69,31 @@ pub fn cases() -> Vec<Case> {
     for (blend_word, blend) in BLENDS {
         for (format_word, format, unit) in FORMATS {
             for layers in [1u32, 8, 64, 512] {
-                for as_instances in [true, false] {
-                    let of_what = if as_instances {
-                        "instances"
-                    } else {
-                        "triangles"
-                    };
+                for (of_what, as_instances) in [("instances", true), ("triangles", false)] {
                     let name = format!("probe.blend.{blend_word}.{format_word}.{of_what}.{layers}");
                     let of = Of {
                         blend,
                         format,
                         unit,
+                        channels: 4,
                         layers,
                         as_instances,
                     };
-                    let seeded = name.clone();
-                    let mut features = vk::FormatFeatureFlags::COLOR_ATTACHMENT;
-                    if blend != Blend::Replace {
-                        features |= vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND;
-                    }
-                    let case = Case::new(name, move |stand| of.measure(stand, &seeded));
-                    cases.push(case.needing(Item::Format(format, features)));
+                    cases.push(of.case(name));
                 }
             }
+        }
+        for (format_word, format, unit, channels) in CLAIMED {
+            let name = format!("probe.blend.{blend_word}.{format_word}.instances.8");
+            let of = Of {
+                blend,
+                format,
+                unit,
+                channels,
+                layers: 8,
+                as_instances: true,
+            };
+            cases.push(of.case(name));
         }
     }
     for (word, blend) in [("max", Blend::Max), ("min", Blend::Min)] {
@@ -91,6 +113,8 @@ struct Of {
     blend: Blend,
     format: vk::Format,
     unit: f64,
+    /// That the format has; the fourth is alpha, which is one where there is none.
+    channels: usize,
     layers: u32,
     as_instances: bool,
 }
@@ -130,12 +154,37 @@ fn drawn(
 }
 
 impl Of {
+    fn case(self, name: String) -> Case {
+        let mut features = vk::FormatFeatureFlags::COLOR_ATTACHMENT;
+        if self.blend != Blend::Replace {
+            features |= vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND;
+        }
+        let seeded = name.clone();
+        let case = Case::new(name, move |stand| self.measure(stand, &seeded));
+        case.needing(Item::Format(self.format, features))
+    }
+
+    fn is_codes(self) -> bool {
+        !self.is_halves()
+            && !matches!(
+                self.format,
+                vk::Format::R32_SFLOAT | vk::Format::R32G32B32A32_SFLOAT
+            )
+    }
+
+    fn is_halves(self) -> bool {
+        matches!(
+            self.format,
+            vk::Format::R16_SFLOAT | vk::Format::R16G16_SFLOAT | vk::Format::R16G16B16A16_SFLOAT
+        )
+    }
+
     #[allow(
         clippy::needless_range_loop,
         reason = "a channel is looked up in three arrays"
     )]
     fn measure(self, stand: &mut Stand, name: &str) -> Result<Measurement, Stop> {
-        let is_codes = self.format == vk::Format::R8G8B8A8_UNORM;
+        let is_codes = self.is_codes();
         let mut random = stand.random(name);
         // Premultiplied, so that sums of over and under stay under 1; what is added up stays there too.
         let share = if self.blend == Blend::Add {
@@ -176,13 +225,13 @@ impl Of {
         let bound = Bound::new("blends", DERIVATION)
             .with("unit", self.unit)
             .with("layers", self.layers.into());
-        let mut measurement = Measurement::new(bound, 1000);
+        let mut measurement = Measurement::new(bound, 250);
         for pixel in 0..(EXTENT[0] * EXTENT[1]) as usize {
-            for c in 0..4 {
-                let found = kit::number(self.format, &texels, 4 * pixel + c);
+            for c in 0..self.channels {
+                let found = kit::number(self.format, &texels, self.channels * pixel + c);
                 let at = || format!("channel {c} of pixel {pixel}");
                 measurement.take(at, wanted[c], found, allowed[c]);
-                if self.format == vk::Format::R16G16B16A16_SFLOAT {
+                if self.is_halves() {
                     let meaning = "16-bit floats are cut off and not rounded";
                     measurement.prefer(meaning, at, wanted[c], found, better[c]);
                 }
@@ -197,7 +246,7 @@ impl Of {
         reason = "a channel is looked up in three arrays"
     )]
     fn exact(self, clear: [f32; 4], colors: &[[f32; 4]]) -> ([f64; 4], [f64; 4]) {
-        let is_codes = self.format == vk::Format::R8G8B8A8_UNORM;
+        let is_codes = self.is_codes();
         let size = |n: f64| {
             if is_codes {
                 self.unit
@@ -208,6 +257,9 @@ impl Of {
         let mut d = clear.map(f64::from);
         let mut e = [0.0; 4];
         for s in colors {
+            if self.channels < 4 {
+                (d[3], e[3]) = (1.0, 0.0);
+            }
             let s = s.map(f64::from);
             let (alpha, alpha_e) = (d[3], e[3]);
             for c in 0..4 {

@@ -8,7 +8,7 @@ use super::kit;
 use crate::conformance::case::{Case, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
 use crate::conformance::stand::Stand;
-use crate::gpu::{Image, ImageDesc, ImageKind, Item, Resource, Use, image_barrier};
+use crate::gpu::{ImageKind, Item, Resource};
 use ash::vk;
 use half::f16;
 use std::sync::Arc;
@@ -20,13 +20,9 @@ const UNORM: &str = "code / (2^b - 1) is a division, or a product with a rounded
 The code comes back by rounding where the error is under half a code, which is checked with the same number.";
 const FLOAT: &str = "A float is fetched as it is. Numbers too small to be normal may become zero (Vulkan lets shaders flush \
 them), which is a warning, and what is no number stays none.";
-const STORE: &str = "A storage image of 32-bit floats keeps each number; one of 16-bit floats one of the two halves around it \
-(Vulkan specification, conversion to 16-bit floats): that it is not the nearer one is a warning.";
-
-/// Every format that volumes and targets have.
+/// Every format that volumes have.
 pub fn cases() -> Vec<Case> {
     let sampled = |format| Item::Format(format, vk::FormatFeatureFlags::SAMPLED_IMAGE);
-    let storage = |format| Item::Format(format, vk::FormatFeatureFlags::STORAGE_IMAGE);
     let unorm = |name, format, bits| {
         Case::new(name, move |stand| unorm(stand, format, bits)).needing(sampled(format))
     };
@@ -41,10 +37,6 @@ pub fn cases() -> Vec<Case> {
             .needing(sampled(vk::Format::R16_SFLOAT)),
         Case::new("probe.fetch.r32_sfloat.all_kinds", singles)
             .needing(sampled(vk::Format::R32_SFLOAT)),
-        Case::new("probe.store.rgba32_sfloat", |stand| stored(stand, false))
-            .needing(storage(vk::Format::R32G32B32A32_SFLOAT)),
-        Case::new("probe.store.rgba16_sfloat", |stand| stored(stand, true))
-            .needing(storage(vk::Format::R16G16B16A16_SFLOAT)),
     ]
 }
 
@@ -169,58 +161,4 @@ fn float(measurement: &mut Measurement, wanted: f64, found: f32, is_tiny: bool) 
         false if wanted.is_nan() => measurement.hold(at, found.is_nan()),
         false => measurement.take(at, wanted, found, 0.0),
     }
-}
-
-fn stored(stand: &mut Stand, is_half: bool) -> Result<Measurement, Stop> {
-    const EXTENT: [u32; 2] = [64, 32];
-    let mut random = stand.random("stored");
-    let count = EXTENT[0] * EXTENT[1];
-    let numbers: Vec<[f32; 4]> = (0..count)
-        .map(|_| [0; 4].map(|_| (2.0 * random.unit() - 1.0) as f32))
-        .collect();
-    let (format, name) = match is_half {
-        true => (vk::Format::R16G16B16A16_SFLOAT, "probe/store.rgba16float"),
-        false => (vk::Format::R32G32B32A32_SFLOAT, "probe/store.rgba32float"),
-    };
-    let device = stand.device()?;
-    let gpu = Arc::clone(device.gpu());
-    let stored = Image::new(
-        &gpu,
-        &ImageDesc {
-            kind: ImageKind::D2,
-            extent: [EXTENT[0], EXTENT[1], 1],
-            format,
-            usage: vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::TRANSFER_SRC,
-            name: "stored",
-        },
-    )?;
-    let given = kit::buffer(&gpu, &numbers, "numbers")?;
-    device.run(|cmd| {
-        // SAFETY: recorded outside rendering; `run` waits.
-        unsafe { image_barrier(&gpu, cmd, &stored, Use::Nothing, Use::ComputeWrite) };
-        Ok(())
-    })?;
-    let resources = [
-        ("stored", Resource::written(&stored)),
-        ("numbers", Resource::Storage(&given)),
-    ];
-    kit::compute(device, name, &resources, [EXTENT[0] / 8, EXTENT[1] / 8, 1])?;
-    let texels = kit::texels(device, &stored, Use::ComputeWrite)?;
-    let mut measurement = Measurement::new(Bound::new("store", STORE), 4 * count as usize);
-    for (i, &wanted) in numbers.as_flattened().iter().enumerate() {
-        let found = kit::number(format, &texels, i);
-        let wanted = f64::from(wanted);
-        let at = || format!("number {i}");
-        // Halves around a number are 2^-10 of its power of two apart.
-        let apart = match is_half {
-            true => (2f64.powi(-10) * 2f64.powf(wanted.abs().log2().floor())).max(2f64.powi(-24)),
-            false => 0.0,
-        };
-        measurement.take(at, wanted, found, apart);
-        if is_half {
-            let meaning = "stores of 16-bit floats are cut off and not rounded";
-            measurement.prefer(meaning, at, wanted, found, 0.5 * apart);
-        }
-    }
-    Ok(measurement)
 }

@@ -206,33 +206,44 @@ impl Of {
 
     /// The smallest and the largest legal result.
     fn legal(self, values: &[f64], place: [f64; 3], bits: u32) -> [f64; 2] {
-        let scale = 2f64.powi(bits.min(30) as i32);
-        let mut first = place.map(|p| (p - 0.5).floor() as i64);
-        let mut weights = place.map(|p| {
-            let part = (p - 0.5) - (p - 0.5).floor();
-            [
-                (part * scale).floor() / scale,
-                (part * scale).ceil() / scale,
-            ]
-        });
-        if self.kind == ImageKind::D2Array {
-            first[2] = layer_of(place[2]) as i64;
-            weights[2] = [0.0; 2];
-        }
-        let mut extremes = [f64::INFINITY, f64::NEG_INFINITY];
-        for corner in 0..8 {
-            let w = [0, 1, 2].map(|k: usize| weights[k][corner >> k & 1]);
-            let mut sum = 0.0;
-            for tap in 0..8 {
-                let bit = |k: usize| (tap >> k & 1) as i64;
-                let share = [0, 1, 2].map(|k: usize| if bit(k) == 1 { w[k] } else { 1.0 - w[k] });
-                let index = [0, 1, 2].map(|k: usize| first[k] + bit(k));
-                sum += share.iter().product::<f64>() * self.texel(values, index);
-            }
-            extremes = [extremes[0].min(sum), extremes[1].max(sum)];
-        }
-        extremes
+        let layer = (self.kind == ImageKind::D2Array).then(|| layer_of(place[2]) as i64);
+        legal(&|index| self.texel(values, index), place, layer, bits)
     }
+}
+
+/// The smallest and the largest legal result at a place in texels, of texels by index; of one layer, where there are such.
+pub fn legal(
+    texel: &dyn Fn([i64; 3]) -> f64,
+    place: [f64; 3],
+    layer: Option<i64>,
+    bits: u32,
+) -> [f64; 2] {
+    let scale = 2f64.powi(bits.min(30) as i32);
+    let mut first = place.map(|p| (p - 0.5).floor() as i64);
+    let mut weights = place.map(|p| {
+        let part = (p - 0.5) - (p - 0.5).floor();
+        [
+            (part * scale).floor() / scale,
+            (part * scale).ceil() / scale,
+        ]
+    });
+    if let Some(layer) = layer {
+        first[2] = layer;
+        weights[2] = [0.0; 2];
+    }
+    let mut extremes = [f64::INFINITY, f64::NEG_INFINITY];
+    for corner in 0..8 {
+        let w = [0, 1, 2].map(|k: usize| weights[k][corner >> k & 1]);
+        let mut sum = 0.0;
+        for tap in 0..8 {
+            let bit = |k: usize| (tap >> k & 1) as i64;
+            let share = [0, 1, 2].map(|k: usize| if bit(k) == 1 { w[k] } else { 1.0 - w[k] });
+            let index = [0, 1, 2].map(|k: usize| first[k] + bit(k));
+            sum += share.iter().product::<f64>() * texel(index);
+        }
+        extremes = [extremes[0].min(sum), extremes[1].max(sum)];
+    }
+    extremes
 }
 
 /// Layers are chosen, never mixed.
@@ -267,7 +278,7 @@ fn ask(
 }
 
 /// Bytes and values of texels of random codes of 16 bits.
-fn texels_of(format: vk::Format, codes: &[u32]) -> (Vec<u8>, Vec<f64>) {
+pub fn texels_of(format: vk::Format, codes: &[u32]) -> (Vec<u8>, Vec<f64>) {
     let all = codes.iter().copied();
     match format {
         vk::Format::R8_UNORM => (

@@ -163,37 +163,58 @@ pub struct Drawing<'a> {
 
 /// Draws in one call and gives the target's texels.
 pub fn draw(stand: &mut Stand, drawing: &Drawing<'_>) -> Result<Vec<u8>, Stop> {
+    let given = [("corners", drawing.corners), ("colors", drawing.colors)];
+    render(stand, ["probe/shapes", "probe/color"], drawing, &given)
+}
+
+/// The same with shaders of the caller's and what they read; the first is what vertices are counted by.
+pub fn draw_with(
+    stand: &mut Stand,
+    shaders: [&str; 2],
+    format: vk::Format,
+    extent: [u32; 2],
+    given: &[(&str, &[[f32; 4]])],
+) -> Result<Vec<u8>, Stop> {
+    let drawing = Drawing {
+        format,
+        extent,
+        clear: [0.0; 4],
+        blend: Blend::Replace,
+        corners: given[0].1,
+        colors: &[],
+        instances: 1,
+    };
+    render(stand, shaders, &drawing, given)
+}
+
+fn render(
+    stand: &mut Stand,
+    [vertex, fragment]: [&str; 2],
+    drawing: &Drawing<'_>,
+    given: &[(&str, &[[f32; 4]])],
+) -> Result<Vec<u8>, Stop> {
     let device = stand.device()?;
     let gpu = Arc::clone(device.gpu());
-    let corners = buffer(&gpu, drawing.corners, "corners")?;
-    let colors = buffer(&gpu, drawing.colors, "colors")?;
-    let [width, height] = drawing.extent;
-    let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC;
-    let target = Image::new(
-        &gpu,
-        &ImageDesc {
-            kind: ImageKind::D2,
-            extent: [width, height, 1],
-            format: drawing.format,
-            usage,
-            name: "target",
-        },
-    )?;
+    let buffers = given
+        .iter()
+        .map(|(name, numbers)| Ok((*name, buffer(&gpu, numbers, name)?)));
+    let buffers: Vec<_> = buffers.collect::<Result<_, Stop>>()?;
+    let target = target(&gpu, drawing.format, drawing.extent)?;
     let pipeline = RasterPipeline::new(
         &gpu,
         &RasterDesc {
-            vertex: shader("probe/shapes"),
-            fragment: shader("probe/color"),
+            vertex: shader(vertex),
+            fragment: shader(fragment),
             target: drawing.format.into(),
             blend: drawing.blend,
             depth: DepthUse::Ignored,
         },
     )?;
-    let given = [
-        ("corners", Resource::Storage(&corners)),
-        ("colors", Resource::Storage(&colors)),
-    ];
-    let bindings = Bindings::new(&gpu, pipeline.layout(), &given)?;
+    let resources = buffers
+        .iter()
+        .map(|(name, b)| (*name, Resource::Storage(b)));
+    let resources: Vec<_> = resources.collect();
+    let bindings = Bindings::new(&gpu, pipeline.layout(), &resources)?;
     device.run(|cmd| {
         // SAFETY: recorded in order, with barriers between; `run` waits, and all that is bound lives meanwhile.
         unsafe {
@@ -210,12 +231,33 @@ pub fn draw(stand: &mut Stand, drawing: &Drawing<'_>) -> Result<Vec<u8>, Stop> {
     texels(device, &target, Use::ColorTarget)
 }
 
-/// Number `i` of texels of floats, halves or codes of 8 bits.
+/// An image to draw into, sample and copy from.
+pub fn target(
+    gpu: &Arc<Gpu>,
+    format: vk::Format,
+    [width, height]: [u32; 2],
+) -> Result<Image, Stop> {
+    let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC;
+    let desc = ImageDesc {
+        kind: ImageKind::D2,
+        extent: [width, height, 1],
+        format,
+        usage,
+        name: "target",
+    };
+    Ok(Image::new(gpu, &desc)?)
+}
+
+/// Number `i` of texels of floats, halves or codes of 8 or 16 bits.
 pub fn number(format: vk::Format, texels: &[u8], i: usize) -> f64 {
+    let two = || [texels[2 * i], texels[2 * i + 1]];
     match format {
         vk::Format::R8G8B8A8_UNORM | vk::Format::R8_UNORM => f64::from(texels[i]) / 255.0,
-        vk::Format::R16G16B16A16_SFLOAT => {
-            half::f16::from_le_bytes([texels[2 * i], texels[2 * i + 1]]).to_f64()
+        vk::Format::R16_UNORM | vk::Format::R16G16B16A16_UNORM => {
+            f64::from(u16::from_le_bytes(two())) / 65_535.0
+        }
+        vk::Format::R16_SFLOAT | vk::Format::R16G16_SFLOAT | vk::Format::R16G16B16A16_SFLOAT => {
+            half::f16::from_le_bytes(two()).to_f64()
         }
         _ => {
             let mut bytes = [0; 4];

@@ -1,26 +1,52 @@
-//! The parts of a driver that pictures stand on, one by one: filters, formats, blending, the rasterizer, compute, memory.
+//! The parts of a driver that pictures stand on, one by one: filters, levels, formats, blending, the rasterizer, depth,
+//! compute, subgroups, memory, order.
 
+mod alias;
 mod blend;
 mod compute;
 mod convert;
+mod depth;
+mod depth_draw;
 mod filter;
+mod interpolate;
 mod kit;
+mod large;
 mod limits;
+mod lod;
 mod math;
-mod memory;
+mod plane;
+mod push;
 mod raster;
+mod raw;
+mod relay;
+mod robust;
+mod special;
+mod store;
+mod subgroup;
+mod timeline;
 
 use crate::conformance::case::Case;
 
 /// All of them.
 pub fn cases() -> Vec<Case> {
     let mut cases = filter::cases();
+    cases.extend(lod::cases());
     cases.extend(convert::cases());
+    cases.extend(store::cases());
+    cases.extend(special::cases());
     cases.extend(math::cases());
     cases.extend(blend::cases());
     cases.extend(raster::cases());
+    cases.extend(interpolate::cases());
+    cases.extend(depth::cases());
     cases.extend(compute::cases());
-    cases.extend(memory::cases());
+    cases.extend(subgroup::cases());
+    cases.extend(push::cases());
+    cases.extend(relay::cases());
+    cases.extend(timeline::cases());
+    cases.extend(alias::cases());
+    cases.extend(robust::cases());
     cases.extend(limits::cases());
+    cases.extend(large::cases());
     cases
 }

@@ -1,0 +1,3 @@
+@group(0) @binding(0) var loaded: texture_storage_2d<rgba8unorm, read>;
+
+alias Number = f32;

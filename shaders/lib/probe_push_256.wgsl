@@ -1,0 +1,1 @@
+const PUSHED = 16u;

@@ -1,0 +1,3 @@
+@group(0) @binding(0) var stored: texture_storage_2d<rgba8unorm, write>;
+
+alias Number = f32;

@@ -1,0 +1,146 @@
+//! Timeline semaphores: counters, waits, large numbers.
+
+use super::raw::refused;
+use crate::conformance::case::{Case, Stop};
+use crate::conformance::measurement::{Bound, Measurement};
+use crate::conformance::stand::Stand;
+use crate::gpu::owned::Own;
+use crate::gpu::{Feature, Gpu, Item};
+use ash::vk;
+use std::sync::Arc;
+
+const LARGE: &str = "Counters have 64 bits, and maxTimelineSemaphoreValueDifference is 2^31 - 1 or more (Vulkan specification, required \
+limits): steps of that size, across the middle of what 64 bits hold.";
+const TIMELINE: &str = "The Vulkan specification says what the counter of a timeline semaphore is after each signal, and that a wait \
+ends when its value is reached and not before.";
+/// Small steps, and large ones.
+pub fn cases() -> Vec<Case> {
+    let need = Item::Feature(Feature::TimelineSemaphore);
+    vec![
+        Case::new("probe.timeline_semaphore", timeline).needing(need),
+        Case::new("probe.timeline_semaphore.large_values", large).needing(need),
+    ]
+}
+
+/// A timeline that starts at `value`.
+fn made(gpu: &Arc<Gpu>, value: u64) -> Result<Own<vk::Semaphore>, Stop> {
+    let mut kind = vk::SemaphoreTypeCreateInfo::default()
+        .semaphore_type(vk::SemaphoreType::TIMELINE)
+        .initial_value(value);
+    let info = vk::SemaphoreCreateInfo::default().push_next(&mut kind);
+    // SAFETY: the feature is a need of these cases.
+    let semaphore = unsafe { gpu.device().create_semaphore(&info, None) };
+    Ok(Own::new(
+        gpu,
+        semaphore.map_err(refused("make a semaphore"))?,
+    ))
+}
+
+fn timeline(stand: &mut Stand) -> Result<Measurement, Stop> {
+    let gpu = Arc::clone(stand.device()?.gpu());
+    let semaphore = made(&gpu, 5)?;
+    let asked = ask_timeline(&gpu, semaphore.get());
+    // SAFETY: the one queue of a device of ours; what was submitted goes before the semaphore does.
+    let _ = unsafe { gpu.device().device_wait_idle() };
+    asked
+}
+
+/// Counters around half of what 64 bits hold, in the largest steps that every device takes.
+fn large(stand: &mut Stand) -> Result<Measurement, Stop> {
+    const STEP: u64 = (1 << 31) - 1;
+    let gpu = Arc::clone(stand.device()?.gpu());
+    let start = (1u64 << 63) - 2 * STEP;
+    let semaphore = made(&gpu, start)?;
+    let device = gpu.device();
+    let semaphores = [semaphore.get()];
+    let mut measurement = Measurement::new(Bound::new("large-timeline", LARGE), 12);
+    for step in 1..=4u64 {
+        let value = start + step * STEP;
+        let signal = vk::SemaphoreSignalInfo::default()
+            .semaphore(semaphore.get())
+            .value(value);
+        let (here, next) = ([value], [value + 1]);
+        let wait = |values| {
+            vk::SemaphoreWaitInfo::default()
+                .semaphores(&semaphores)
+                .values(values)
+        };
+        // SAFETY: a timeline of this device; values rise, by no more than every device allows.
+        let (counter, reached, beyond) = unsafe {
+            device
+                .signal_semaphore(&signal)
+                .map_err(refused("signal a semaphore"))?;
+            let counter = device.get_semaphore_counter_value(semaphore.get());
+            (
+                counter.map_err(refused("read a counter"))?,
+                device.wait_semaphores(&wait(&here), 0),
+                device.wait_semaphores(&wait(&next), 0),
+            )
+        };
+        measurement.hold(|| format!("the counter is {value}"), counter == value);
+        measurement.hold(|| format!("{value} is reached"), reached == Ok(()));
+        let is_open = beyond == Err(vk::Result::TIMEOUT);
+        measurement.hold(|| format!("one more than {value} is not"), is_open);
+    }
+    Ok(measurement)
+}
+
+fn ask_timeline(gpu: &Gpu, semaphore: vk::Semaphore) -> Result<Measurement, Stop> {
+    const SECONDS: u64 = 10_000_000_000;
+    let device = gpu.device();
+    let mut measurement = Measurement::new(Bound::new("timeline", TIMELINE), 8);
+    let semaphores = [semaphore];
+    let counter = || {
+        // SAFETY: a timeline of this device, here and below.
+        unsafe { device.get_semaphore_counter_value(semaphore) }.map_err(refused("read a counter"))
+    };
+    let reached = |value: u64, time: u64| {
+        let values = [value];
+        let info = vk::SemaphoreWaitInfo::default()
+            .semaphores(&semaphores)
+            .values(&values);
+        // SAFETY: as above.
+        match unsafe { device.wait_semaphores(&info, time) } {
+            Ok(()) => Ok(true),
+            Err(vk::Result::TIMEOUT) => Ok(false),
+            Err(result) => Err(refused("wait for a semaphore")(result)),
+        }
+    };
+    let signal = |value: u64| {
+        let info = vk::SemaphoreSignalInfo::default()
+            .semaphore(semaphore)
+            .value(value);
+        // SAFETY: as above; values rise.
+        unsafe { device.signal_semaphore(&info) }.map_err(refused("signal a semaphore"))
+    };
+    measurement.hold(|| "the counter starts at 5".into(), counter()? == 5);
+    signal(7)?;
+    measurement.hold(|| "the host signals 7".into(), counter()? == 7);
+    measurement.hold(|| "7 is reached".into(), reached(7, SECONDS)?);
+    measurement.hold(|| "8 is not".into(), !reached(8, 0)?);
+    let point = |value: u64| {
+        vk::SemaphoreSubmitInfo::default()
+            .semaphore(semaphore)
+            .value(value)
+            .stage_mask(vk::PipelineStageFlags2::ALL_COMMANDS)
+    };
+    let (waits, signals) = ([point(8)], [point(9)]);
+    let submit = [vk::SubmitInfo2::default()
+        .wait_semaphore_infos(&waits)
+        .signal_semaphore_infos(&signals)];
+    // SAFETY: the one queue of a device of ours, which nobody else uses meanwhile; synchronization2 is required.
+    let submitted = unsafe {
+        let queue = device.get_device_queue(gpu.queue_family(), 0);
+        device.queue_submit2(queue, &submit, vk::Fence::null())
+    };
+    submitted.map_err(refused("submit"))?;
+    measurement.hold(
+        || "what waits for 8 has not signalled 9".into(),
+        !reached(9, 20_000_000)?,
+    );
+    signal(8)?;
+    measurement.hold(|| "9 follows 8".into(), reached(9, SECONDS)?);
+    measurement.hold(|| "the counter ends at 9".into(), counter()? == 9);
+    measurement.hold(|| "what was reached stays so".into(), reached(5, 0)?);
+    Ok(measurement)
+}

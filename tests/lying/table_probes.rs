@@ -1,0 +1,312 @@
+//! Lies about what pictures of this library do not show, and the probe that must see each.
+
+use super::Lie::{self, Shader, State as Changed};
+use super::State;
+use ash::vk;
+use vk::{CompareOp, SamplerMipmapMode as Mode};
+
+/// What is wrong, how, and the case that must see it.
+pub const PROBE_LIES: &[(&str, Lie, &str)] = &[
+    (
+        "levels are mixed where the nearest is asked for",
+        Changed(State::BetweenLevels(Mode::NEAREST, Mode::LINEAR)),
+        "probe.lod.3d.nearest.to_nearest.explicit",
+    ),
+    (
+        "the nearest level is read where two are to be mixed",
+        Changed(State::BetweenLevels(Mode::LINEAR, Mode::NEAREST)),
+        "probe.lod.2d_array.linear.mixed.explicit",
+    ),
+    (
+        "the bias of a level is forgotten",
+        Changed(State::BiasForgotten),
+        "probe.lod.3d.nearest.mixed.biased_down",
+    ),
+    (
+        "nothing bounds a level",
+        Changed(State::LevelsUnbounded),
+        "probe.lod.2d_array.nearest.to_nearest.clamped",
+    ),
+    (
+        "what is minified is filtered as if it were magnified",
+        Changed(State::MinifiedAsMagnified),
+        "probe.lod.3d.magnified_or_minified",
+    ),
+    (
+        "levels that are asked for are half a level finer",
+        Shader("probe/levels_array.wgsl", "place.w)", "place.w - 0.5)"),
+        "probe.lod.2d_array.nearest.mixed.explicit",
+    ),
+    (
+        "LESS is LESS_OR_EQUAL",
+        Changed(State::Compare(CompareOp::LESS, CompareOp::LESS_OR_EQUAL)),
+        "probe.depth.compare.less.d16_unorm",
+    ),
+    (
+        "GREATER is LESS",
+        Changed(State::Compare(CompareOp::GREATER, CompareOp::LESS)),
+        "probe.depth.order.nearest_is_1.d16_unorm",
+    ),
+    (
+        "EQUAL is ALWAYS",
+        Changed(State::Compare(CompareOp::EQUAL, CompareOp::ALWAYS)),
+        "probe.depth.compare.equal.d32_sfloat",
+    ),
+    (
+        "depth is not written",
+        Changed(State::NoDepthWrites),
+        "probe.depth.write.d32_sfloat",
+    ),
+    (
+        "depth is not tested",
+        Changed(State::NoDepthTest),
+        "probe.depth.order.nearest_is_0.d32_sfloat",
+    ),
+    (
+        "the depths of the viewport are forgotten",
+        Changed(State::DepthRangeForgotten),
+        "probe.depth.plane.reversed.d16_unorm",
+    ),
+    (
+        "what is too near is drawn",
+        Changed(State::DepthClamped),
+        "probe.depth.cut.d16_unorm",
+    ),
+    (
+        "depth is cleared to something else",
+        Changed(State::DepthClearedTo(0.375)),
+        "probe.depth.clear.d16_unorm",
+    ),
+    (
+        "depths have fifteen bits",
+        Shader(
+            "probe/depth.wgsl",
+            "depths.d[64u * u32(at.y) + u32(at.x)]",
+            "floor(32767.0 * depths.d[64u * u32(at.y) + u32(at.x)]) / 32767.0",
+        ),
+        "probe.depth.write.d16_unorm",
+    ),
+    (
+        "perspective is forgotten",
+        Shader(
+            "lib/probe_varyings.wgsl",
+            "@interpolate(perspective)",
+            "@interpolate(linear)",
+        ),
+        "probe.interpolate.perspective.0",
+    ),
+    (
+        "there is perspective where none is asked for",
+        Shader(
+            "lib/probe_varyings.wgsl",
+            "@interpolate(linear)",
+            "@interpolate(perspective)",
+        ),
+        "probe.interpolate.linear.0",
+    ),
+    (
+        "what is flat is the second corner's",
+        Shader(
+            "probe/varyings.wgsl",
+            "number, number, number)",
+            "number, number, numbers.d[vertex / 3u * 3u + (vertex + 1u) % 3u].x)",
+        ),
+        "probe.interpolate.flat.0",
+    ),
+    (
+        "pixels have their numbers at their corners",
+        Changed(State::Viewport([0.5, 0.5, 0.0, 0.0])),
+        "probe.interpolate.inverse_w.0",
+    ),
+    (
+        "infinities are the largest number",
+        Shader(
+            "probe/specials.wgsl",
+            "vec4(a + b,",
+            "vec4(clamp(a + b, -3.4e38, 3.4e38),",
+        ),
+        "probe.special.arithmetic",
+    ),
+    (
+        "infinities are stored as the largest half",
+        Shader(
+            "probe/specials_store.wgsl",
+            "numbers.d[id.y * dims.x + id.x]",
+            "clamp(numbers.d[id.y * dims.x + id.x], vec4(-65504.0), vec4(65504.0))",
+        ),
+        "probe.special.store.rgba16_sfloat",
+    ),
+    (
+        "subgroups are said to be twice as large",
+        Changed(State::SubgroupsTimes(2)),
+        "probe.subgroup.size",
+    ),
+    (
+        "places in a subgroup repeat",
+        Shader(
+            "probe/subgroup.wgsl",
+            "vec4(size, lane,",
+            "vec4(size, lane / 2u,",
+        ),
+        "probe.subgroup.basic",
+    ),
+    (
+        "any are all",
+        Shader(
+            "lib/probe_subgroup_vote.wgsl",
+            "subgroupAll(number >= 8u)",
+            "subgroupAny(number >= 8u)",
+        ),
+        "probe.subgroup.vote",
+    ),
+    (
+        "sums of a subgroup count their own number twice",
+        Shader(
+            "lib/probe_subgroup_arithmetic.wgsl",
+            "subgroupAdd(number),",
+            "subgroupAdd(number) + number,",
+        ),
+        "probe.subgroup.arithmetic",
+    ),
+    (
+        "sums up to an invocation include its own",
+        Shader(
+            "lib/probe_subgroup_arithmetic.wgsl",
+            "subgroupExclusiveAdd",
+            "subgroupInclusiveAdd",
+        ),
+        "probe.subgroup.arithmetic",
+    ),
+    (
+        "a ballot forgets its first invocation",
+        Shader(
+            "lib/probe_subgroup_ballot.wgsl",
+            "(number & 1u) == 1u",
+            "(number & 1u) == 1u && lane > 0u",
+        ),
+        "probe.subgroup.ballot",
+    ),
+    (
+        "the second invocation is taken for the first",
+        Shader(
+            "lib/probe_subgroup_broadcast.wgsl",
+            "subgroupBroadcastFirst(number)",
+            "subgroupBroadcast(number, 1u)",
+        ),
+        "probe.subgroup.broadcast",
+    ),
+    (
+        "shuffles go to the wrong neighbour",
+        Shader("lib/probe_subgroup_shuffle.wgsl", "lane ^ 3u", "lane ^ 2u"),
+        "probe.subgroup.shuffle",
+    ),
+    (
+        "the last word is not pushed",
+        Changed(State::LastWordNotPushed),
+        "probe.push_constants.128",
+    ),
+    (
+        "buffers are not copied",
+        Changed(State::BuffersNotCopied),
+        "probe.relay.barriers",
+    ),
+    (
+        "submissions run the last first",
+        Changed(State::SubmittedBackwards),
+        "probe.relay.submissions",
+    ),
+    (
+        "large counters are ahead of themselves",
+        Changed(State::CountersAhead),
+        "probe.timeline_semaphore.large_values",
+    ),
+    (
+        "an image in a memory that had another is not written whole",
+        Changed(State::LastColumnNotCopied),
+        "probe.memory.aliased_images",
+    ),
+    (
+        "a buffer keeps what an image in its place has left",
+        Changed(State::FillsWith(0)),
+        "probe.memory.image_over_buffer",
+    ),
+    (
+        "shaders read beyond what is bound",
+        Changed(State::RangeTimes(2)),
+        "probe.robust.buffer.whole.read",
+    ),
+    (
+        "shaders write beyond what is bound",
+        Changed(State::RangeTimes(2)),
+        "probe.robust.buffer.whole.write",
+    ),
+    (
+        "dynamic offsets are forgotten",
+        Changed(State::DynamicOffsetsForgotten),
+        "probe.robust.uniform.dynamic_offsets",
+    ),
+    (
+        "texels beyond an image are those of its edge",
+        Shader(
+            "probe/beyond_fetch.wgsl",
+            "textureLoad(probed, place.xyz, 0)",
+            "textureLoad(probed, clamp(place.xyz, vec3(0), vec3(7, 5, 4)), 0)",
+        ),
+        "probe.robust.image.read",
+    ),
+    (
+        "stores beyond an image are stored at its edge",
+        Shader(
+            "probe/beyond_store.wgsl",
+            "places.d[id.x].xy",
+            "clamp(places.d[id.x].xy, vec2(0), vec2(7, 5))",
+        ),
+        "probe.robust.image.write",
+    ),
+    (
+        "places in large buffers have 24 bits",
+        Shader(
+            "probe/spots.wgsl",
+            "large.d[places.d[id.x]] = ~word",
+            "large.d[places.d[id.x] & 0xffffffu] = ~word",
+        ),
+        "probe.limits.storage_buffer",
+    ),
+    (
+        "a part of many workgroups is not run",
+        Changed(State::LastGroupDropped(2)),
+        "probe.compute.dispatch.many",
+    ),
+    (
+        "stored codes are cut off and not rounded",
+        Shader(
+            "probe/store.wgsl",
+            "numbers.d[id.y * dims.x + id.x]",
+            "trunc(255.0 * numbers.d[id.y * dims.x + id.x]) / 255.0",
+        ),
+        "probe.store.rgba8_unorm",
+    ),
+    (
+        "signed numbers of 16 bits are stored without their sign",
+        Shader(
+            "probe/store.wgsl",
+            "numbers.d[id.y * dims.x + id.x]",
+            "abs(numbers.d[id.y * dims.x + id.x])",
+        ),
+        "probe.store.rgba16_sint",
+    ),
+    (
+        "channels are loaded in another order",
+        Shader(
+            "probe/load.wgsl",
+            "vec2<i32>(id.xy));",
+            "vec2<i32>(id.xy)).zyxw;",
+        ),
+        "probe.load.rgba8_unorm",
+    ),
+    (
+        "MAX of a single channel adds",
+        Changed(State::BlendOp(vk::BlendOp::MAX, vk::BlendOp::ADD)),
+        "probe.blend.max.r16_sfloat.instances.8",
+    ),
+];
