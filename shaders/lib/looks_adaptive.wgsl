@@ -6,9 +6,6 @@
 // memory hangs on the one before. What is empty is a run too, of which the one sample adds nothing.
 // Twin: src/technique/march.rs (`march_in_runs`).
 
-// In place of a distance: here samples look alike.
-const ROOM_ALIKE: i32 = 0x40000000;
-
 // From k up to `end` (excluded).
 struct Run {
     k: i32,
