@@ -100,8 +100,10 @@ fn loops() -> u32 {
     wanted.map_or(75, |n| n.parse().expect("a number of loops"))
 }
 
-/// Our heap is the same, to so many bytes, after every quarter of the loops but for lists that had to become longer once; as many files are open as before, and the process as a whole, in whose heap the driver finds its places first,
-/// grows by less than 1 MiB in the last quarter.
+/// What is lost in each loop is missed in each quarter of the loops; a map with holes becomes larger once, at a time of
+/// its own. So the quarter in which our heap grew most is left out, and the others together grow by no more than the
+/// slack: 24 bytes a loop would be 1296 in three quarters. As many files are open as before, and the process as a whole,
+/// in whose heap the driver finds its places first, grows by less than 1 MiB in the last quarter.
 #[track_caller]
 fn assert_no_growth(slack_bytes: i64, mut draw: impl FnMut()) {
     (0..25).for_each(|_| draw());
@@ -117,19 +119,17 @@ fn assert_no_growth(slack_bytes: i64, mut draw: impl FnMut()) {
         before = now;
     }
     println!("{} loops, by quarters: {quarters:?}", loops());
-    // What is lost in each loop is missed in each quarter; maps with holes become larger once, at a time of their own.
     let mut had = 0;
-    let mut grown = 0;
-    for (number, (ours, _, files_now)) in (0..).zip(quarters) {
-        let most = if number == 0 { 1024 } else { slack_bytes };
-        grown += u32::from((ours - had).abs() > most);
-        had = ours;
-        assert_eq!(files_now, files, "open files");
-    }
-    let most = u32::from(slack_bytes > 0);
+    let mut grown = quarters.map(|(ours, _, _)| ours - std::mem::replace(&mut had, ours));
+    grown.sort_unstable();
+    let steady: i64 = grown[..3].iter().sum();
     assert!(
-        grown <= most,
-        "our heap has grown in {grown} quarters: {quarters:?}"
+        steady <= slack_bytes && (slack_bytes > 0 || grown[3] < 1024),
+        "our heap grows by {steady} bytes beside its largest step: {quarters:?}"
+    );
+    assert!(
+        quarters.iter().all(|(_, _, open)| *open == files),
+        "of {files} open files: {quarters:?}"
     );
     let (_, of_process, _) = quarters[3];
     assert!(of_process < 1 << 20, "{of_process} bytes more");
