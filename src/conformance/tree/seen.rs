@@ -5,12 +5,15 @@ use super::drawn::{measure, measure_within};
 use super::ground::{self, MODES, PLACEMENTS, PROJECTIONS, Placement};
 use crate::conformance::case::{Case, Profile, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
-use crate::conformance::oracle::{Chord, FILTERS, Numbers, Part, Seen, Shot, seen};
+use crate::conformance::oracle::{
+    Chord, FILTERS, Numbers, Open, Part, Seen, Shot, seen, seen_through,
+};
 use crate::conformance::stand::Stand;
 use crate::picture::LayerKind;
 use crate::scene::{Beside, Channel};
 use crate::technique::{
-    ClipPlane, Filter, Lattice, Light, Mode, Order, Role, Settings, Shading, Technique,
+    AmbientOcclusion, ClipPlane, Filter, Lattice, Light, Mode, Order, Role, Settings, Shading,
+    Shadows, Technique,
 };
 use crate::transfer::{Graded, OpacityPoint, Shape, TransferFunction, Widget};
 use crate::volume::VoxelType;
@@ -41,6 +44,12 @@ enum Look {
     Lamps,
     /// An emitter over value and gradient.
     Widget(usize),
+    /// Three lights, each as far as matter lets it through.
+    Shadows,
+    /// Three lights that have a size, and less from all around where matter is near.
+    SoftShadows,
+    /// Less light where matter is near, in a crop.
+    Occluded,
     /// Three clip planes.
     Clipped,
     /// Two things in one place.
@@ -53,6 +62,9 @@ enum Look {
     Exact,
 }
 
+/// Where matter takes light away. It is one extinction all over: what comes through is known.
+const DIMMED: [Look; 3] = [Look::Shadows, Look::SoftShadows, Look::Occluded];
+
 /// By what it is known in names.
 const WIDGETS: [&str; 5] = ["contour", "triangle", "rectangle", "gaussian", "region"];
 
@@ -63,6 +75,9 @@ impl Look {
             Self::MarschnerLobb => "marschner_lobb",
             Self::Lit => "headlight",
             Self::Lamps => "lamps",
+            Self::Shadows => "shadows",
+            Self::SoftShadows => "soft_shadows",
+            Self::Occluded => "occluded",
             Self::Widget(i) => WIDGETS[i],
             Self::Clipped => "clipped",
             Self::Channels => "channels",
@@ -90,7 +105,7 @@ pub fn cases() -> Vec<Case> {
             all.extend([linear, FILTERS[4]].map(|filter| (placement, composite, look, filter)));
         }
         all.extend((0..WIDGETS.len()).map(|i| (placement, composite, Look::Widget(i), linear)));
-        for look in [Look::Channels, Look::Opacity, Look::Labels] {
+        for look in DIMMED.into_iter().chain([Look::Channels, Look::Opacity, Look::Labels]) {
             all.push((placement, composite, look, linear));
         }
         for filter in smooth.into_iter().chain([linear]) {
@@ -149,13 +164,17 @@ fn profile(
     let is_first = placement.order == Order::BackToFront && placement.lattice == Lattice::Ray;
     let is_linear = filter == Filter::Linear;
     let is_in = match look {
+        // One shader for all kernels, which takes SwiftShader ten seconds.
+        Look::Waves if mode == Mode::Mida => {
+            is_linear || (is_perspective && filter == Filter::CubicSmooth)
+        }
         Look::Waves if mode.needs_rays() => is_linear || is_perspective,
         Look::Waves => is_perspective && (is_linear || (is_first && filter == Filter::CubicSmooth)),
         Look::MarschnerLobb => is_perspective && is_first && mode == Mode::Xray,
         Look::Clipped => is_perspective && matches!(mode, Mode::Composite | Mode::Xray),
         Look::Exact => true,
         Look::Lit | Look::Lamps => is_linear,
-        Look::Widget(_) | Look::Channels | Look::Opacity | Look::Labels => {
+        _ => {
             is_first && is_perspective != (placement.technique == Technique::Slices2d)
         }
     };
@@ -207,8 +226,13 @@ fn draw(
         let bound = Bound::new("f32-extreme", EXTREME);
         return measure_within(stand, &shot, &scene, &[LayerKind::Value], bound, of);
     }
+    let function = &parts[0].function;
+    let open = DIMMED.contains(&look).then(|| {
+        let per_length = function.reference_length.expect("one all over has one");
+        Open::new(&shot, -(-function.opacity[0].opacity).ln_1p() / per_length)
+    });
     measure(stand, &shot, &scene, layers, |chord| {
-        seen(&shot, chord, &parts)
+        seen_through(&shot, chord, &parts, open.as_ref())
     })
 }
 
@@ -221,9 +245,10 @@ fn set(settings: &mut Settings, look: Look) {
     settings.per_mode.mida_gamma = -0.25;
     settings.per_mode.exact_maximum = look == Look::Exact;
     let light = |towards, srgb| Light { towards, srgb };
+    let shadows = |light_size_degrees| Shadows::Volume { light_size_degrees };
     match look {
         Look::Lit => settings.shading = Some(Shading::default()),
-        Look::Lamps => {
+        Look::Lamps | Look::Shadows | Look::SoftShadows => {
             settings.shading = Some(Shading {
                 ambient: 0.2,
                 diffuse: 0.5,
@@ -234,6 +259,11 @@ fn set(settings: &mut Settings, look: Look) {
                     light(dvec3(-0.3, 0.2, 3.0), [0.2, 0.3, 0.6]),
                     light(DVec3::NEG_X, [0.3; 3]),
                 ],
+                shadows: match look {
+                    Look::Shadows => shadows(0.0),
+                    Look::SoftShadows => shadows(9.0),
+                    _ => Shadows::Off,
+                },
                 ..Shading::default()
             });
         }
@@ -252,7 +282,15 @@ fn set(settings: &mut Settings, look: Look) {
         }
         // No tap lies outside.
         Look::MarschnerLobb => settings.crop = Some([low, high]),
+        // Along faces of cells: those inside are whole.
+        Look::Occluded => settings.crop = Some([low.ceil(), high.floor()]),
         _ => {}
+    }
+    if matches!(look, Look::Occluded | Look::SoftShadows) {
+        settings.ambient_occlusion = Some(AmbientOcclusion {
+            strength: 0.9,
+            radius_world: Some(4.3),
+        });
     }
 }
 
@@ -284,6 +322,14 @@ fn parts(shot: &Shot, look: Look) -> Vec<Part> {
             (0.2 * p.dot(DVec3::ONE)).floor() % 3.0 / 2.0
         }),
         Look::MarschnerLobb => vec![part(function.clone(), Role::Numbers, &marschner_lobb)],
+        _ if DIMMED.contains(&look) => {
+            function.opacity = vec![OpacityPoint {
+                value: 0.0,
+                opacity: 0.2,
+            }];
+            function.reference_length = Some(1.0);
+            vec![part(function, Role::Numbers, &ground::waves)]
+        }
         Look::Widget(i) => {
             let widget = Widget {
                 srgb: (i % 2 == 0).then_some([0.9, 0.6, 0.3]),
