@@ -152,7 +152,11 @@ pub const ANSWERS: &[(&str, Lie, &str)] = &[
     ),
     (
         "each light has the shadow of the first",
-        Shader("lib/light.wgsl", "frame.shadow_bundle + lamp", "frame.shadow_bundle"),
+        Shader(
+            "lib/light.wgsl",
+            "frame.shadow_bundle + lamp",
+            "frame.shadow_bundle",
+        ),
         "raycast.ray.composite.soft_shadows.linear_fetch.f32.perspective",
     ),
     (

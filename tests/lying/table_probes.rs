@@ -57,8 +57,30 @@ pub const PROBE_LIES: &[(&str, Lie, &str)] = &[
     ),
     (
         "derivatives to the right and down are exchanged",
-        Shader("probe/derivatives.wgsl", "dpdx(computed), dpdy(computed)", "dpdy(computed), dpdx(computed)"),
+        Shader(
+            "probe/derivatives.wgsl",
+            "dpdx(computed), dpdy(computed)",
+            "dpdy(computed), dpdx(computed)",
+        ),
         "probe.derivative.computed",
+    ),
+    (
+        "infinities are stored as the largest number",
+        Shader(
+            "probe/specials_store.wgsl",
+            "numbers.d[id.y * dims.x + id.x])",
+            "clamp(numbers.d[id.y * dims.x + id.x], vec4(-65504.0), vec4(65504.0)))",
+        ),
+        "probe.special.store.rgba16_sfloat",
+    ),
+    (
+        "sums that are infinite are the largest number",
+        Shader(
+            "probe/specials.wgsl",
+            "vec4(a + b,",
+            "vec4(min(a + b, 3.4e38),",
+        ),
+        "probe.special.arithmetic",
     ),
     (
         "LESS is LESS_OR_EQUAL",

@@ -9,8 +9,8 @@
 //! triangle     max(0, 1 - |f - v| / (w s / top))              rectangle, bell: as they say
 //! ```
 
-use super::light::Open;
 use super::Shot;
+use super::light::Open;
 use super::voxels::{Numbers, stack_of};
 use crate::technique::{Filter, Light, Role, Shading};
 use crate::transfer::{Shape, TransferFunction, Widget};

@@ -48,7 +48,7 @@ enum Look {
     Shadows,
     /// Three lights that have a size, and less from all around where matter is near.
     SoftShadows,
-    /// Less light where matter is near, in a crop.
+    /// Less light where matter is near.
     Occluded,
     /// Three clip planes.
     Clipped,
@@ -95,17 +95,24 @@ pub fn cases() -> Vec<Case> {
     let smooth = [FILTERS[2], FILTERS[3], FILTERS[4]];
     for placement in PLACEMENTS {
         for mode in MODES {
-            for filter in FILTERS {
-                all.push((placement, mode, Look::Waves, filter));
-            }
+            // Maxima among samples that lie nearer to each other than Catmull and Rom's weights may be off are none to know.
+            let is_by_samples = matches!(mode.1, Mode::Mip | Mode::Minip) && !placement.is_slicer();
+            let known = FILTERS
+                .iter()
+                .take(FILTERS.len() - usize::from(is_by_samples));
+            all.extend(known.map(|&filter| (placement, mode, Look::Waves, filter)));
             all.push((placement, mode, Look::Clipped, linear));
         }
         let composite = MODES[0];
-        for look in [Look::Lit, Look::Lamps] {
-            all.extend([linear, FILTERS[4]].map(|filter| (placement, composite, look, filter)));
+        // Highlights by Catmull and Rom's weights may be off by more than there is light.
+        for (look, filter) in [(Look::Lit, FILTERS[4]), (Look::Lamps, FILTERS[3])] {
+            all.extend([linear, filter].map(|filter| (placement, composite, look, filter)));
         }
         all.extend((0..WIDGETS.len()).map(|i| (placement, composite, Look::Widget(i), linear)));
-        for look in DIMMED.into_iter().chain([Look::Channels, Look::Opacity, Look::Labels]) {
+        for look in DIMMED
+            .into_iter()
+            .chain([Look::Channels, Look::Opacity, Look::Labels])
+        {
             all.push((placement, composite, look, linear));
         }
         for filter in smooth.into_iter().chain([linear]) {
@@ -143,11 +150,7 @@ pub fn cases() -> Vec<Case> {
             });
             case.needs = ground::needs(placement, VoxelType::F32, false);
             case.profile = profile(placement, mode, look, filter, is_perspective);
-            // More than a tenth of the pixels would hang on rounding: their case would be void.
-            let is_void = mode == Mode::Average && case.profile == Profile::Full;
-            if !(is_void && look == Look::Waves) {
-                cases.push(case);
-            }
+            cases.push(case);
         }
     }
     cases
@@ -174,14 +177,12 @@ fn profile(
         Look::Clipped => is_perspective && matches!(mode, Mode::Composite | Mode::Xray),
         Look::Exact => true,
         Look::Lit | Look::Lamps => is_linear,
-        _ => {
-            is_first && is_perspective != (placement.technique == Technique::Slices2d)
-        }
+        _ => is_first && is_perspective != (placement.technique == Technique::Slices2d),
     };
-    match is_in {
-        true => Profile::Baseline,
-        false => Profile::Full,
+    if is_in {
+        return Profile::Baseline;
     }
+    Profile::Full
 }
 
 fn draw(
@@ -209,6 +210,8 @@ fn draw(
     }
     let is_by_rays = placement.technique == Technique::Raycast;
     let layers: &[LayerKind] = match (mode.is_projection(), is_by_rays && mode.has_depth()) {
+        // Its colour shows it.
+        (true, _) if mode == Mode::Average => &[],
         (true, true) => &[LayerKind::Value, LayerKind::Depth],
         (true, false) => &[LayerKind::Value],
         (false, true) => &[LayerKind::Depth],
@@ -282,9 +285,11 @@ fn set(settings: &mut Settings, look: Look) {
         }
         // No tap lies outside.
         Look::MarschnerLobb => settings.crop = Some([low, high]),
-        // Along faces of cells: those inside are whole.
-        Look::Occluded => settings.crop = Some([low.ceil(), high.floor()]),
         _ => {}
+    }
+    if DIMMED.contains(&look) {
+        // Along faces of cells: those inside are whole.
+        settings.crop = Some([low.ceil(), high.floor()]);
     }
     if matches!(look, Look::Occluded | Look::SoftShadows) {
         settings.ambient_occlusion = Some(AmbientOcclusion {

@@ -177,7 +177,7 @@ fn measure(
             .map(|errors| errors.pixels[i].map(f64::from));
         let is_sure = errors.is_none_or(|errors| errors.iter().all(|error| error.is_finite()));
         if jumps(i) || !is_sure {
-            measurement.leave_out();
+            measurement.leave_out(4);
             continue;
         }
         for c in 0..4 {

@@ -73,7 +73,8 @@ fn profile(kind: Kind, placement: Placement, mode: Mode, is_perspective: bool) -
     let is_first = placement.order == Order::BackToFront;
     let is_in = match kind {
         Kind::Skipped => is_perspective || mode == Mode::Composite,
-        Kind::InBricks | Kind::LitInBricks => is_perspective && is_first,
+        Kind::InBricks => is_perspective && is_first && mode != Mode::Xray,
+        Kind::LitInBricks => is_perspective && is_first,
         _ if mode == Mode::Composite => is_perspective || is_first,
         _ => is_perspective != (is_common || mode == Mode::Xray),
     };

@@ -319,7 +319,7 @@ fn compare(kind: Kind, shot: &Shot, first: Rough, second: Rough) -> Measurement 
         // Where a ray meets an end of the domain at a sample, either may have it.
         let hangs = !kind.is_exact() && shot.chord(pixel).is_some_and(|chord| chord.hangs);
         if hangs || !allowed.iter().all(|error| error.is_finite()) {
-            measurement.leave_out();
+            measurement.leave_out(4);
             continue;
         }
         for (c, allowed) in allowed.into_iter().enumerate() {
@@ -374,7 +374,7 @@ fn summed(stand: &mut Stand, sight: &Sight) -> Result<Measurement, Stop> {
         }
         let hangs = shot.chord(pixel).is_none_or(|chord| chord.hangs);
         if hangs || off.is_infinite() {
-            measurement.leave_out();
+            measurement.leave_out(1);
             continue;
         }
         measurement.take(|| format!("value of pixel {pixel:?}"), a + b, sum, off);
