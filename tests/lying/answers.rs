@@ -137,8 +137,8 @@ pub const ANSWERS: &[(&str, Lie, &str)] = &[
         "raycast.ray.xray.marschner_lobb.quadratic_smooth.f32.perspective",
     ),
     (
-        "the last piece of a way to a light is dropped",
-        Shader("light_volume.wgsl", "i < end", "i + 1u < end"),
+        "the first piece of a way to a light is dropped",
+        Shader("light_volume.wgsl", "var i = first;", "var i = first + 1u;"),
         "raycast.ray.composite.shadows.linear_fetch.f32.perspective",
     ),
     (

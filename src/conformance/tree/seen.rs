@@ -95,18 +95,22 @@ pub fn cases() -> Vec<Case> {
     let smooth = [FILTERS[2], FILTERS[3], FILTERS[4]];
     for placement in PLACEMENTS {
         for mode in MODES {
-            // Maxima among samples that lie nearer to each other than Catmull and Rom's weights may be off are none to know.
+            // What Catmull and Rom's weights may be off by hides which of two samples is larger, and adds up through
+            // all that lies before a slice.
             let is_by_samples = matches!(mode.1, Mode::Mip | Mode::Minip) && !placement.is_slicer();
-            let known = FILTERS
-                .iter()
-                .take(FILTERS.len() - usize::from(is_by_samples));
-            all.extend(known.map(|&filter| (placement, mode, Look::Waves, filter)));
+            let is_hidden = is_by_samples || placement.word == "slices_3d.under";
+            let known = &FILTERS[..FILTERS.len() - usize::from(is_hidden)];
+            all.extend(
+                known
+                    .iter()
+                    .map(|&filter| (placement, mode, Look::Waves, filter)),
+            );
             all.push((placement, mode, Look::Clipped, linear));
         }
         let composite = MODES[0];
-        // Highlights by Catmull and Rom's weights may be off by more than there is light.
-        for (look, filter) in [(Look::Lit, FILTERS[4]), (Look::Lamps, FILTERS[3])] {
-            all.extend([linear, filter].map(|filter| (placement, composite, look, filter)));
+        // By kernels of more weights, light may be off by so much that bounds say nothing: `twin` has it.
+        for look in [Look::Lit, Look::Lamps] {
+            all.push((placement, composite, look, linear));
         }
         all.extend((0..WIDGETS.len()).map(|i| (placement, composite, Look::Widget(i), linear)));
         for look in DIMMED
@@ -179,10 +183,7 @@ fn profile(
         Look::Lit | Look::Lamps => is_linear,
         _ => is_first && is_perspective != (placement.technique == Technique::Slices2d),
     };
-    if is_in {
-        return Profile::Baseline;
-    }
-    Profile::Full
+    [Profile::Full, Profile::Baseline][usize::from(is_in)]
 }
 
 fn draw(
@@ -326,7 +327,11 @@ fn parts(shot: &Shot, look: Look) -> Vec<Part> {
         Look::Labels => beside(Role::Labels, &|p| {
             (0.2 * p.dot(DVec3::ONE)).floor() % 3.0 / 2.0
         }),
-        Look::MarschnerLobb => vec![part(function.clone(), Role::Numbers, &marschner_lobb)],
+        Look::MarschnerLobb => vec![part(
+            function.clone(),
+            Role::Numbers,
+            &ground::marschner_lobb,
+        )],
         _ if DIMMED.contains(&look) => {
             function.opacity = vec![OpacityPoint {
                 value: 0.0,
@@ -390,12 +395,4 @@ fn shape(i: usize) -> Shape {
 fn saddles(p: DVec3) -> f64 {
     let [x, y, z] = (SADDLES * p).to_array();
     0.5 + 0.3 * x.sin() * y.sin() * z.sin()
-}
-
-/// rho(x, y, z) = (1 - sin(pi z / 2) + a (1 + cos(2 pi f cos(pi r / 2)))) / (2 (1 + a)), f = 6, a = 1/4.
-fn marschner_lobb(p: DVec3) -> f64 {
-    use std::f64::consts::PI;
-    let [x, y, z] = ((p - dvec3(8.5, 10.5, 6.5)) / 20.0).to_array();
-    let wave = (12.0 * PI * (0.5 * PI * x.hypot(y)).cos()).cos();
-    (1.0 - (0.5 * PI * z).sin() + 0.25 * (1.0 + wave)) / 2.5
 }
