@@ -23,7 +23,6 @@ fn stand() -> Stand {
             caps: lower(Caps::UNLIMITED),
             pipeline_cache: PipelineCache::Off,
             validation: Validation::Off,
-            ..Options::default()
         };
         // SAFETY: its functions are Vulkan's, or lie within what Vulkan allows.
         unsafe { Headless::through(lying, &DeviceChoice::Default, &options) }

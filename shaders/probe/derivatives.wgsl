@@ -7,8 +7,9 @@ struct Numbers {
 @group(0) @binding(4) var<storage, read> steps: Numbers;
 
 @fragment
-fn main(@builtin(position) at: vec4<f32>) -> @location(0) vec4<f32> {
-    let computed = 0.25 * at.x + 2.0 * at.y;
-    let loaded = steps.d[0].x * at.x + steps.d[0].y * at.y;
+fn main(@builtin(position) at: vec4<f32>, @location(0) @interpolate(flat) color: vec4<f32>) -> @location(0) vec4<f32> {
+    // The colour is nothing.
+    let computed = color.x + 0.25 * at.x + 2.0 * at.y;
+    let loaded = color.x + steps.d[0].x * at.x + steps.d[0].y * at.y;
     return vec4(dpdx(computed), dpdy(computed), dpdx(loaded), dpdy(loaded));
 }
