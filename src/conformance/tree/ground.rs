@@ -185,6 +185,12 @@ pub fn shot(
     }
 }
 
+/// Whether what Catmull and Rom's weights may be off by hides which of two samples of a ray is the larger.
+pub fn hides_maxima(placement: Placement, mode: Mode, filter: Filter) -> bool {
+    let is_by_samples = matches!(mode, Mode::Mip | Mode::Minip) && !placement.is_slicer();
+    filter == Filter::CatmullRom && is_by_samples
+}
+
 /// What a picture asks of a device beyond what all need.
 pub fn needs(placement: Placement, stored: VoxelType, by_sampler: bool) -> Vec<Item> {
     let mut needs = Vec::new();

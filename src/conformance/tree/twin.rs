@@ -46,6 +46,9 @@ pub fn cases() -> Vec<Case> {
             let Some(of) = placement.word_in(mode) else {
                 return;
             };
+            if ground::hides_maxima(placement, mode, filter.1) {
+                return;
+            }
             for (projection, is_perspective) in PROJECTIONS {
                 let of_look = match look {
                     Look::Plain => "plain",
