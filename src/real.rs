@@ -55,6 +55,14 @@ pub trait Real:
     fn lerp(self, other: Self, part: Self) -> Self {
         self + part * (other - self)
     }
+    /// The least and the most that this may be.
+    fn range(self) -> [f64; 2] {
+        [self.to_f64(); 2]
+    }
+    /// This, where `other` may as well be what a device has.
+    fn or(self, _other: Self) -> Self {
+        self
+    }
     /// A pixel begins: numbers that keep what has become of them forget it.
     fn begin() {}
     /// The same number at the end of its pixel, with what has become of it.

@@ -15,14 +15,14 @@ use stratavox::conformance::record::Record;
 use stratavox::conformance::stand::Stand;
 use stratavox::conformance::tree::cases;
 use stratavox::conformance::verdict::Verdict;
-use stratavox::gpu::{DeviceChoice, Headless, Options, PipelineCache, Validation};
+use stratavox::gpu::{Caps, DeviceChoice, Headless, Options, PipelineCache, Validation};
 
 fn stand() -> Stand {
-    Stand::new(1, || {
+    Stand::new(1, |lower| {
         let options = Options {
+            caps: lower(Caps::UNLIMITED),
             pipeline_cache: PipelineCache::Off,
             validation: Validation::Off,
-            ..Options::default()
         };
         // SAFETY: its functions are Vulkan's, or lie within what Vulkan allows.
         unsafe { Headless::through(lying, &DeviceChoice::Default, &options) }

@@ -163,9 +163,9 @@ impl Measurement {
         }
     }
 
-    /// A number whose answer hangs on rounding.
-    pub fn leave_out(&mut self) {
-        self.left_out += 1;
+    /// So many numbers whose answers hang on rounding.
+    pub fn leave_out(&mut self, numbers: usize) {
+        self.left_out += numbers;
     }
 
     /// One fact that holds or does not.

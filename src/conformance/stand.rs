@@ -1,13 +1,16 @@
 //! The device that cases are run on, made when it is first needed and kept from case to case.
 
 use super::case::Stop;
-use crate::gpu::{self, Headless};
+use crate::gpu::{self, Caps, Headless};
 use crate::offscreen::Renderer;
 use crate::picture::{LayerKind, Picture};
 use crate::scene::Scene;
 use crate::technique;
 
-type Make = Box<dyn FnMut() -> Result<Headless, gpu::Error>>;
+type Make = Box<dyn FnMut(Lower) -> Result<Headless, gpu::Error>>;
+
+/// The limits of a run, made stricter.
+pub type Lower = fn(Caps) -> Caps;
 
 /// What draws a scene where no device does.
 pub type Draw = fn(&Scene) -> Result<Picture, technique::Error>;
@@ -22,8 +25,11 @@ pub struct Stand {
 }
 
 impl Stand {
-    /// Devices come from `make`.
-    pub fn new(seed: u64, make: impl FnMut() -> Result<Headless, gpu::Error> + 'static) -> Self {
+    /// Devices come from `make`, which lowers the limits of the run as it is told.
+    pub fn new(
+        seed: u64,
+        make: impl FnMut(Lower) -> Result<Headless, gpu::Error> + 'static,
+    ) -> Self {
         Self {
             make: Box::new(make),
             draw: None,
@@ -35,7 +41,7 @@ impl Stand {
     /// No device: pictures are drawn by `draw`, a twin of [`crate::offscreen::reference`], which cases of pictures
     /// judge as they judge a device.
     pub fn without_device(seed: u64, draw: Draw) -> Self {
-        let none = || Err(gpu::Error::NoDriver);
+        let none = |_: Lower| Err(gpu::Error::NoDriver);
         let mut stand = Self::new(seed, none);
         stand.draw = Some(draw);
         stand
@@ -63,7 +69,7 @@ impl Stand {
     /// Where there is none.
     pub fn device(&mut self) -> Result<&mut Headless, gpu::Error> {
         if self.device.is_none() {
-            self.device = Some((self.make)()?);
+            self.device = Some((self.make)(|caps| caps)?);
         }
         Ok(self.device.as_mut().expect("made above"))
     }
@@ -89,6 +95,22 @@ impl Stand {
         self.with_renderer(scene, |renderer| {
             Ok(renderer.render(scene, layers)?.picture)
         })
+    }
+
+    /// The same picture by a second device of lower limits, which is gone afterwards.
+    ///
+    /// # Errors
+    /// Those of [`Renderer::render`], and where the validation layer complains.
+    pub fn render_lowered(&mut self, lower: Lower, scene: &Scene) -> Result<Picture, Stop> {
+        if self.draw.is_some() {
+            return self.render(scene, &[]);
+        }
+        let mut renderer = Renderer::several((self.make)(lower)?, scene.volumes())?;
+        let picture = renderer.render(scene, &[])?.picture;
+        match renderer.device().take_validation_messages().first() {
+            Some(message) => Err(Stop::Suite(message.to_string())),
+            None => Ok(picture),
+        }
     }
 
     /// A renderer of the scene's volumes, for as long as `work` wants it.

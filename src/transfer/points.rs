@@ -60,22 +60,37 @@ pub fn classify_by_points<N: Real>(points: &Points, value: N) -> [N; 4] {
 fn at<N: Real>(points: &Points, first: usize, count: usize, value: N) -> [N; 3] {
     let n = N::from_f32;
     let entry = |i: usize| points.entries[first + i].map(n);
-    // How many points stand at or below the value.
-    let mut passed = 0;
-    while passed < count && entry(passed)[0] <= value {
-        passed += 1;
-    }
     if count == 0 {
         return [n(0.0); 3];
     }
-    let left = entry(passed.max(1) - 1);
-    let mut found = [left[1], left[2], left[3]];
-    if passed > 0 && passed < count && !points.step {
-        let right = entry(passed);
-        let t = (value - left[0]) / (right[0] - left[0]);
-        for (c, found) in found.iter_mut().enumerate() {
-            *found = found.lerp(right[c + 1], t);
+    // What the function is after so many points.
+    let after = |passed: usize| {
+        let left = entry(passed.max(1) - 1);
+        let mut found = [left[1], left[2], left[3]];
+        if passed > 0 && passed < count && !points.step {
+            let right = entry(passed);
+            let t = (value - left[0]) / (right[0] - left[0]);
+            for (c, found) in found.iter_mut().enumerate() {
+                *found = found.lerp(right[c + 1], t);
+            }
         }
+        found
+    };
+    let passed = |is_passed: &dyn Fn(N) -> bool| {
+        let is_passed = |i: &usize| is_passed(entry(*i)[0]);
+        (0..count).take_while(is_passed).count()
+    };
+    let [low, high] = value.range();
+    if points.step || low == high {
+        return after(passed(&|point| point <= value));
     }
-    found
+    // Lines meet where they end: whichever of them a device is on, it is near.
+    let own = passed(&|point| point.to_f64() <= value.to_f64());
+    let first = passed(&|point| point.range()[1] <= low);
+    let last = passed(&|point| point.range()[0] <= high);
+    let others = (first..=last).filter(|&passed| passed != own);
+    others.fold(after(own), |found, passed| {
+        let other = after(passed);
+        std::array::from_fn(|c| found[c].or(other[c]))
+    })
 }

@@ -137,6 +137,70 @@ pub const ANSWERS: &[(&str, Lie, &str)] = &[
         "raycast.ray.xray.marschner_lobb.quadratic_smooth.f32.perspective",
     ),
     (
+        "the first piece of a way to a light is dropped",
+        Shader("light_volume.wgsl", "var i = first;", "var i = first + 1u;"),
+        "raycast.ray.composite.shadows.linear_fetch.f32.perspective",
+    ),
+    (
+        "cells absorb what they show",
+        Shader(
+            "light_cells.wgsl",
+            "light_cells.d[index] = extinction_of(opacity, light_grid.cell_length);",
+            "light_cells.d[index] = opacity;",
+        ),
+        "slices_3d.over.composite.shadows.linear_fetch.f32.perspective",
+    ),
+    (
+        "each light has the shadow of the first",
+        Shader(
+            "lib/light.wgsl",
+            "frame.shadow_bundle + lamp",
+            "frame.shadow_bundle",
+        ),
+        "raycast.ray.composite.soft_shadows.linear_fetch.f32.perspective",
+    ),
+    (
+        "light is read half a cell too near",
+        Shader(
+            "lib/light.wgsl",
+            "frame.light_reach * towards",
+            "0.5 * frame.light_reach * towards",
+        ),
+        "slices_2d.over.composite.occluded.linear_fetch.f32.orthographic",
+    ),
+    (
+        "nodes of light are weighed the wrong way round",
+        Shader(
+            "lib/light.wgsl",
+            "select(1.0 - part, part, corner",
+            "select(part, 1.0 - part, corner",
+        ),
+        "raycast.ray.composite.occluded.linear_fetch.f32.perspective",
+    ),
+    (
+        "what a crop cuts away still takes light",
+        Shader("light_cells.wgsl", "return share;", "return 1.0;"),
+        "raycast.ray.composite.occluded.linear_fetch.f32.perspective",
+    ),
+    (
+        "samples near a seam of bricks belong to both",
+        Shader(
+            "lib/brick.wgsl",
+            "all(voxel < frame.brick_max)",
+            "all(voxel < frame.brick_max + 0.1)",
+        ),
+        "relation.in_bricks.raycast.ray.composite.perspective",
+    ),
+    (
+        "samples near a seam of bricks belong to none",
+        Shader(
+            "lib/brick.wgsl",
+            "all(voxel >= frame.brick_min)",
+            "all(voxel >= frame.brick_min + 0.1)",
+        ),
+        "relation.in_bricks.slices_3d.xray.*",
+    ),
+    (
         "light is taken a little less than it is",
         Shader(
             "lib/light_buffer.wgsl",

@@ -38,6 +38,51 @@ pub const PROBE_LIES: &[(&str, Lie, &str)] = &[
         "probe.lod.2d_array.nearest.mixed.explicit",
     ),
     (
+        "levels by derivatives are one too fine",
+        Shader(
+            "probe/implicit_level.wgsl",
+            "probed_sampler, place)",
+            "probed_sampler, 0.5 * place)",
+        ),
+        "probe.lod.3d.to_nearest.implicit",
+    ),
+    (
+        "levels by derivatives are found along one axis",
+        Shader(
+            "probe/implicit_level.wgsl",
+            "probed_sampler, place)",
+            "probed_sampler, vec3(0.5, 0.5, place.z))",
+        ),
+        "probe.lod.3d.mixed.implicit_oblique",
+    ),
+    (
+        "derivatives to the right and down are exchanged",
+        Shader(
+            "probe/derivatives.wgsl",
+            "dpdx(computed), dpdy(computed)",
+            "dpdy(computed), dpdx(computed)",
+        ),
+        "probe.derivative.computed",
+    ),
+    (
+        "infinities are stored as the largest number",
+        Shader(
+            "probe/specials_store.wgsl",
+            "numbers.d[id.y * dims.x + id.x])",
+            "clamp(numbers.d[id.y * dims.x + id.x], vec4(-65504.0), vec4(65504.0)))",
+        ),
+        "probe.special.store.rgba16_sfloat",
+    ),
+    (
+        "sums that are infinite are the largest number",
+        Shader(
+            "probe/specials.wgsl",
+            "vec4(a + b,",
+            "vec4(min(a + b, 3.4e38),",
+        ),
+        "probe.special.arithmetic",
+    ),
+    (
         "LESS is LESS_OR_EQUAL",
         Changed(State::Compare(CompareOp::LESS, CompareOp::LESS_OR_EQUAL)),
         "probe.depth.compare.less.d16_unorm",

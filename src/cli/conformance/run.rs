@@ -139,9 +139,9 @@ impl Run {
 
     fn serve(&self, all: &[Case]) -> Result<(), Error> {
         let (choice, caps) = (self.choice(), self.limits.caps());
-        let mut stand = Stand::new(self.seed, move || {
+        let mut stand = Stand::new(self.seed, move |lower| {
             let options = Options {
-                caps,
+                caps: lower(caps),
                 ..Options::default()
             };
             Headless::new(&choice, &options)

@@ -3,12 +3,14 @@
 //!
 //! ```text
 //! extinction   s = -ln(1 - min(a, 1 - 2^-12)) / d0            of several: the sum, their colours weighted by it
-//! light        c (ambient + sum L diffuse |n.l|) + sum L specular |n.h|^e        n of central differences
+//! light        c (ambient o + sum L t diffuse |n.l|) + sum L t specular |n.h|^e   n of central differences, o and t
+//!              what comes through of all light and of a lamp (`light.rs`)
 //! contour      max(0, 1 - |f - v| / (r h |grad f|))           half-width r in smallest spacings h (Levoy 1988)
 //! triangle     max(0, 1 - |f - v| / (w s / top))              rectangle, bell: as they say
 //! ```
 
 use super::Shot;
+use super::light::Open;
 use super::voxels::{Numbers, stack_of};
 use crate::technique::{Filter, Light, Role, Shading};
 use crate::transfer::{Shape, TransferFunction, Widget};
@@ -29,13 +31,18 @@ pub struct Matter<'a> {
     shot: &'a Shot,
     parts: &'a [Part],
     stack: Option<usize>,
+    open: Option<&'a Open>,
 }
 
 impl<'a> Matter<'a> {
     /// The first is the scene's volume.
-    pub fn new(shot: &'a Shot, parts: &'a [Part]) -> Self {
-        let stack = stack_of(shot);
-        Self { shot, parts, stack }
+    pub fn new(shot: &'a Shot, parts: &'a [Part], open: Option<&'a Open>) -> Self {
+        Self {
+            shot,
+            parts,
+            stack: stack_of(shot),
+            open,
+        }
     }
 
     /// The value of a part at a place in voxel space.
@@ -63,7 +70,7 @@ impl<'a> Matter<'a> {
         };
         let color = match &self.shot.settings.shading {
             Some(shading) => self.lit(shading, color, place, along),
-            None => color,
+            None => color * self.ambient(place, along),
         };
         (color.to_array(), all)
     }
@@ -165,6 +172,11 @@ impl<'a> Matter<'a> {
             * of_voxels
     }
 
+    /// What is left of the light from all around.
+    fn ambient(&self, place: DVec3, along: DVec3) -> f64 {
+        self.open.map_or(1.0, |open| open.ambient(place, along))
+    }
+
     fn lit(&self, shading: &Shading, color: DVec3, place: DVec3, along: DVec3) -> DVec3 {
         let gradient = self.gradient(place);
         let [low, high] = self.parts[0].numbers.volume.value_range;
@@ -181,13 +193,14 @@ impl<'a> Matter<'a> {
             true => &headlight[..],
             false => &shading.lights,
         };
-        let mut lit = shading.ambient * color;
-        for light in lights {
+        let mut lit = shading.ambient * self.ambient(place, along) * color;
+        for (i, light) in lights.iter().enumerate() {
             let to_light = light.towards.normalize();
             let halfway = (to_light + to_eye).normalize();
             let diffuse = shading.diffuse * normal.dot(to_light).abs();
             let specular = shading.specular * normal.dot(halfway).abs().powf(shading.shininess);
-            lit += DVec3::from_array(light.srgb) * (diffuse * color + specular);
+            let left = self.open.map_or(1.0, |open| open.lamp(i, place, to_light));
+            lit += left * DVec3::from_array(light.srgb) * (diffuse * color + specular);
         }
         lit
     }

@@ -7,6 +7,7 @@
 mod answer;
 mod chord;
 mod field;
+mod light;
 mod matter;
 mod places;
 mod seen;
@@ -16,7 +17,8 @@ mod voxels;
 pub use answer::{Answer, Classes, DERIVATION, answer};
 pub use chord::{Chord, Shot};
 pub use field::{Field, Kind};
+pub use light::Open;
 pub use matter::Part;
-pub use seen::{FILTERS, Seen, seen};
+pub use seen::{FILTERS, Seen, seen, seen_through};
 pub use tracked::Tracked;
 pub use voxels::Numbers;

@@ -10,6 +10,7 @@
 //! ```
 
 use super::chord::{Chord, Shot};
+use super::light::Open;
 use super::matter::{Matter, Part};
 use crate::technique::{Filter, Mode};
 use glam::DVec3;
@@ -39,11 +40,16 @@ impl Seen {
 
 /// One ray's.
 pub fn seen(shot: &Shot, chord: &Chord, parts: &[Part]) -> Seen {
+    seen_through(shot, chord, parts, None)
+}
+
+/// The same where matter takes light away.
+pub fn seen_through(shot: &Shot, chord: &Chord, parts: &[Part], open: Option<&Open>) -> Seen {
     let mode = shot.settings.mode;
     if chord.samples.is_empty() {
         return Seen::NOTHING;
     }
-    let matter = Matter::new(shot, parts);
+    let matter = Matter::new(shot, parts, open);
     if !mode.is_projection() {
         return absorbed(shot, chord, &matter);
     }

@@ -103,6 +103,18 @@ impl<const ROUNDED: bool> Tracked<ROUNDED> {
         Self::with(pick.value, error)
     }
 
+    /// The most that this, exact, comes to by a positive power.
+    fn most_to(self, y: Self) -> f64 {
+        let log = self.value.log2();
+        if log == f64::NEG_INFINITY {
+            return 0.0;
+        }
+        let power = y.value * log;
+        let off = y.value * self.of_log(log) + y.error * log.abs() + EPS * power.abs();
+        let own = (3.0 + 2.0 * (power.abs() + off)) * EPS;
+        (power + off).exp2() * (1.0 + own) + LEAST
+    }
+
     /// What a logarithm may be off by by itself, its argument being somewhere here.
     fn of_log(self, found: f64) -> f64 {
         let (low, high) = (self.value - self.error, self.value + self.error);
@@ -257,8 +269,9 @@ impl<const R: bool> Real for Tracked<R> {
 
     fn powf(self, y: Self) -> Self {
         let value = self.value.powf(y.value);
+        let most = Self::exact(self.value + self.error).most_to(y);
         if self.value <= self.error {
-            return Self::with(value, (self.value + self.error).powf(y.value));
+            return Self::with(value, most);
         }
         let log = self.value.log2();
         let carried = self.error / (self.value - self.error) / std::f64::consts::LN_2;
@@ -269,7 +282,12 @@ impl<const R: bool> Real for Tracked<R> {
             + EPS * (power.abs() + y.value.abs() * log_error);
         let carried = value * (power_error * std::f64::consts::LN_2).exp_m1();
         let own = (3.0 + 2.0 * (power.abs() + power_error)) * EPS;
-        Self::rounded(value, carried, own)
+        let found = Self::rounded(value, carried, own);
+        // Near zero the power is as uncertain as it is large, and no more.
+        match y.value > y.error {
+            true => Self::with(value, found.error.min(most)),
+            false => found,
+        }
     }
 
     fn abs(self) -> Self {
@@ -303,6 +321,15 @@ impl<const R: bool> Real for Tracked<R> {
             true => self,
             false => Self::rounded(value, carried + times(sizes, EPS), EPS),
         }
+    }
+
+    fn range(self) -> [f64; 2] {
+        [self.value - self.error, self.value + self.error]
+    }
+
+    fn or(self, other: Self) -> Self {
+        let apart = (self.value - other.value).abs();
+        Self::with(self.value, self.error.max(apart + other.error))
     }
 
     fn begin() {
@@ -342,6 +369,18 @@ mod tests {
             widest = widest.max(off / tracked.error);
         }
         assert!(widest > 0.01, "errors are no bounds but {widest} of them");
+    }
+
+    #[test]
+    fn a_power_of_nearly_nothing_is_nearly_nothing() {
+        for part in [0.5, 0.99, 1.0 - 1e-12, 1.0, 2.0, 1e6] {
+            Number::begin();
+            let base = Number::with(1e-3, 1e-3 * part);
+            let found = base.powf(Number::from_f64(23.0));
+            let largest = (base.value + base.error).powi(23);
+            assert!(found.error >= largest - found.value, "{part}: {found:?}");
+            assert!(found.error <= 1.001 * largest + LEAST, "{part}: {found:?}");
+        }
     }
 
     #[test]

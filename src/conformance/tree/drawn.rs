@@ -13,13 +13,16 @@ use crate::technique;
 /// What a model leaves over, of f64 and of nothing else.
 const OF_F64: f64 = 1e-9;
 
+/// Of a channel that may be off by so much of all light nothing is known.
+const WIDEST: f32 = 0.1;
+
 /// How the bounds of running errors are made.
 pub const DERIVATION: &str = "Running error analysis: the twin of the shaders runs once over this scene with numbers that carry how far any \
 device may be from them (oracle/tracked.rs). Each operation may round either way, 2^-23 of its result; division 5/2, square roots 5 of \
 these, exp 3 + 2 |x|, log 2^-21 near 1, pow exp2(y log2 x), mix x (1 - a) + y a (Vulkan specification, precision of SPIR-V \
 instructions). Errors of operands go through each operation at their worst, none against another. What comes as f32 is within 2^-24 \
 of what it stands for. allowed = that error of this channel of this pixel, a worst case. Where a comparison or a floor could turn \
-out otherwise, the pixel hangs on rounding and is left out.";
+out otherwise the pixel hangs on rounding, and where the bound of a channel is a tenth of all light it says nothing: both are left out.";
 
 /// How far any device may be from the true picture of a scene: errors in place of numbers, infinite where the answer
 /// hangs on rounding. `ROUNDED` as in [`Tracked`].
@@ -70,13 +73,14 @@ fn compare(
     let found = stand.render(scene, layers)?;
     let mut measurement = Measurement::new(bound, 1000);
     let mut expected = Vec::with_capacity(found.pixels.len());
+    let mut widest = 0.0f64;
     for (i, pixel) in shot.pixels().enumerate() {
         let chord = shot.chord(pixel);
         let hangs = chord.as_ref().is_some_and(|chord| chord.hangs);
         let errors = allowed.map_or([0.0; 4], |allowed| allowed.pixels[i]);
-        let is_sure = errors.iter().all(|error| error.is_finite());
+        let is_sure = errors.iter().all(|&error| error < WIDEST);
         if hangs || !is_sure {
-            measurement.leave_out();
+            measurement.leave_out(4 + layers.len());
             expected.push(found.pixels[i]);
             continue;
         }
@@ -87,6 +91,7 @@ fn compare(
             let error = f64::from(errors[c]) + OF_F64 + wanted.slack;
             let at = || format!("{channel} of pixel {pixel:?}");
             measurement.take(at, wanted.pixel[c], found.pixels[i][c].into(), error);
+            widest = widest.max(error);
         }
         for &kind in layers {
             let number = match kind {
@@ -97,18 +102,21 @@ fn compare(
             let found = layer(&found, kind).ok_or_else(missing)?;
             let error = match allowed.and_then(|allowed| layer(allowed, kind)) {
                 // Nothing is there, whatever rounds.
-                Some(errors) if errors[i].is_nan() => 0.0,
+                Some(_) if number.is_nan() => 0.0,
                 Some(errors) => f64::from(errors[i]) + OF_F64 * number.abs().max(1.0),
                 None => wanted.slack,
             };
             if error.is_infinite() {
-                measurement.leave_out();
+                measurement.leave_out(1);
                 continue;
             }
             let at = || format!("{} of pixel {pixel:?}", kind.name());
             measurement.take(at, number, found[i].into(), error);
         }
     }
+    // What a channel of the picture may be off by at most.
+    let inputs = &mut measurement.bound.inputs;
+    inputs.insert("widest".into(), widest);
     let drawn = found.pixels.iter().filter(|pixel| pixel[3] > 0.01).count();
     measurement.hold(|| "pixels that are drawn".into(), drawn > 40);
     measurement.pictures = Some(Pictures {

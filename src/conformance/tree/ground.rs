@@ -185,6 +185,12 @@ pub fn shot(
     }
 }
 
+/// Whether what Catmull and Rom's weights may be off by hides which of two samples of a ray is the larger.
+pub fn hides_maxima(placement: Placement, mode: Mode, filter: Filter) -> bool {
+    let is_by_samples = matches!(mode, Mode::Mip | Mode::Minip) && !placement.is_slicer();
+    filter == Filter::CatmullRom && is_by_samples
+}
+
 /// What a picture asks of a device beyond what all need.
 pub fn needs(placement: Placement, stored: VoxelType, by_sampler: bool) -> Vec<Item> {
     let mut needs = Vec::new();
@@ -219,6 +225,15 @@ pub fn waves(p: DVec3) -> f64 {
     0.5 + 0.2 * (0.61 * p.x).sin()
         + 0.15 * (0.53 * p.y + 0.4).cos()
         + 0.15 * (0.37 * p.z - p.x * 0.2).sin()
+}
+
+/// The signal of Marschner and Lobb:
+/// rho(x, y, z) = (1 - sin(pi z / 2) + a (1 + cos(2 pi f cos(pi r / 2)))) / (2 (1 + a)), f = 6, a = 1/4.
+pub fn marschner_lobb(p: DVec3) -> f64 {
+    use std::f64::consts::PI;
+    let [x, y, z] = ((p - dvec3(8.5, 10.5, 6.5)) / 20.0).to_array();
+    let wave = (12.0 * PI * (0.5 * PI * x.hypot(y)).cos()).cos();
+    (1.0 - (0.5 * PI * z).sin() + 0.25 * (1.0 + wave)) / 2.5
 }
 
 /// Colours and opacities with ramps between 0 and 1.

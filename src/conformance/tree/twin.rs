@@ -46,6 +46,9 @@ pub fn cases() -> Vec<Case> {
             let Some(of) = placement.word_in(mode) else {
                 return;
             };
+            if ground::hides_maxima(placement, mode, filter.1) {
+                return;
+            }
             for (projection, is_perspective) in PROJECTIONS {
                 let of_look = match look {
                     Look::Plain => "plain",
@@ -177,7 +180,7 @@ fn measure(
             .map(|errors| errors.pixels[i].map(f64::from));
         let is_sure = errors.is_none_or(|errors| errors.iter().all(|error| error.is_finite()));
         if jumps(i) || !is_sure {
-            measurement.leave_out();
+            measurement.leave_out(4);
             continue;
         }
         for c in 0..4 {

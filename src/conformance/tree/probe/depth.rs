@@ -214,7 +214,7 @@ fn compared(
         let candidates = kept.candidates(new.into());
         let answers = candidates.map(|new| passes(compare, new, there));
         if answers[0] != answers[1] {
-            measurement.leave_out();
+            measurement.leave_out(1);
             continue;
         }
         let at = || format!("{new} against {there} at pixel {i}");
@@ -333,7 +333,7 @@ fn planes(stand: &mut Stand, kept: Kept, range: [f32; 2]) -> Result<Measurement,
         let centre = [x, y].map(|n| n as f64 + 0.5);
         let is_over = |t: &&(plane::Triangle, _)| t.0.depth_inside(centre) > 2.0 * displaced;
         let Some((triangle, z)) = all.iter().find(is_over) else {
-            measurement.leave_out();
+            measurement.leave_out(1);
             continue;
         };
         let values =
@@ -362,7 +362,7 @@ fn cut(stand: &mut Stand, kept: Kept) -> Result<Measurement, Stop> {
         let centre = [x, y].map(|n| n as f64 + 0.5);
         let is_over = |t: &&(plane::Triangle, _)| t.0.depth_inside(centre) > 2.0 * displaced;
         let Some((triangle, z)) = all.iter().find(is_over) else {
-            measurement.leave_out();
+            measurement.leave_out(1);
             continue;
         };
         let off = DEMANDED * (OPERATIONS * triangle.size(*z, size) + 2.0);
@@ -380,7 +380,7 @@ fn cut(stand: &mut Stand, kept: Kept) -> Result<Measurement, Stop> {
                 let wanted = f64::from(u8::from(inside));
                 measurement.take(|| format!("pixel [{x}, {y}]"), wanted, found.into(), 0.0);
             }
-            _ => measurement.leave_out(),
+            _ => measurement.leave_out(1),
         }
     }
     Ok(measurement)

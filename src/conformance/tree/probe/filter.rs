@@ -170,7 +170,7 @@ impl Of {
             if !self.is_linear {
                 match self.nearest(values, place) {
                     Some(wanted) => measurement.take(at, wanted, found.into(), fine),
-                    None => measurement.leave_out(),
+                    None => measurement.leave_out(1),
                 }
                 continue;
             }

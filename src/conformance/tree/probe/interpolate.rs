@@ -85,7 +85,7 @@ fn measure(stand: &mut Stand, channel: usize, nth: u32) -> Result<Measurement, S
         let centre = [x, y].map(|n| n as f64 + 0.5);
         let is_over = |drawn: &&Drawn| drawn.on_screen.depth_inside(centre) > 2.0 * displaced;
         let Some(drawn) = all.iter().find(is_over) else {
-            measurement.leave_out();
+            measurement.leave_out(1);
             continue;
         };
         let found = kit::number(FORMAT, &texels, 4 * pixel + channel);

@@ -6,8 +6,8 @@
 //! ```
 
 use super::filter::{legal, texels_of};
-use super::kit;
 use super::raw::{self, RawImage};
+use super::{kit, lod_implicit};
 use crate::conformance::case::{Case, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
 use crate::conformance::stand::{Random, Stand};
@@ -77,6 +77,7 @@ pub fn cases() -> Vec<Case> {
         };
         cases.push(of.case(format!("probe.lod.{kind_word}.magnified_or_minified")));
     }
+    cases.extend(lod_implicit::cases());
     cases
 }
 

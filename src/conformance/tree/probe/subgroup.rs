@@ -150,7 +150,7 @@ fn measure(stand: &mut Stand, word: &str, together: Together) -> Result<Measurem
                             let found = member.found[i].into();
                             measurement.take(at, wanted.into(), found, 0.0);
                         }
-                        None => measurement.leave_out(),
+                        None => measurement.leave_out(1),
                     }
                 }
             }

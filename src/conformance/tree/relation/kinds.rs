@@ -11,6 +11,8 @@ pub enum Kind {
     WithLayers,
     InSmallSubmissions,
     Skipped,
+    InBricks,
+    LitInBricks,
     PermutedColors,
     ScaledValues,
     ScaledWorld,
@@ -27,11 +29,13 @@ pub enum Kind {
 
 impl Kind {
     /// By the words of names.
-    pub const ALL: [(&str, Self); 16] = [
+    pub const ALL: [(&str, Self); 18] = [
         ("repeated", Self::Repeated),
         ("with_layers", Self::WithLayers),
         ("in_small_submissions", Self::InSmallSubmissions),
         ("skipped", Self::Skipped),
+        ("in_bricks", Self::InBricks),
+        ("lit_in_bricks", Self::LitInBricks),
         ("permuted_colors", Self::PermutedColors),
         ("scaled_values", Self::ScaledValues),
         ("scaled_world", Self::ScaledWorld),
@@ -54,6 +58,8 @@ impl Kind {
         let is_fixed = placement.is_slicer() || placement.lattice == Lattice::Planes;
         match self {
             Self::Skipped => true,
+            Self::InBricks => is_composite || is_xray || mode == Mode::Mip || mode == Mode::Lmip,
+            Self::LitInBricks => is_composite,
             Self::Repeated => is_composite || is_xray,
             Self::WithLayers | Self::InSmallSubmissions => is_composite || mode == Mode::Mip,
             Self::PermutedColors | Self::ScaledWorld | Self::Furnace => is_composite,
@@ -77,6 +83,8 @@ impl Kind {
                 | Self::WithLayers
                 | Self::InSmallSubmissions
                 | Self::Skipped
+                | Self::InBricks
+                | Self::LitInBricks
                 | Self::PermutedColors
                 | Self::ScaledValues
                 | Self::ScaledWorld

@@ -2,7 +2,7 @@
 //!
 //! | relation | allowed |
 //! |---|---|
-//! | the same picture twice; with other layers asked for; in small submissions | nothing |
+//! | the same picture twice; with other layers asked for; in small submissions; in bricks, lit too | nothing |
 //! | empty space skipped and not, in every mode | nothing |
 //! | colours of the function permuted, and the picture's | nothing |
 //! | values times 4 and the function's; the world twice as large | nothing: powers of two round nothing |
@@ -73,6 +73,8 @@ fn profile(kind: Kind, placement: Placement, mode: Mode, is_perspective: bool) -
     let is_first = placement.order == Order::BackToFront;
     let is_in = match kind {
         Kind::Skipped => is_perspective || mode == Mode::Composite,
+        Kind::InBricks => is_perspective && is_first && mode != Mode::Xray,
+        Kind::LitInBricks => is_perspective && is_first,
         _ if mode == Mode::Composite => is_perspective || is_first,
         _ => is_perspective != (is_common || mode == Mode::Xray),
     };

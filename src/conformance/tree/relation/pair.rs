@@ -8,8 +8,9 @@ use crate::conformance::case::Stop;
 use crate::conformance::measurement::{Bound, Measurement, Pictures};
 use crate::conformance::oracle::{Numbers, Shot};
 use crate::conformance::stand::Stand;
+use crate::gpu::Caps;
 use crate::picture::{LayerKind, Picture};
-use crate::technique::{Filter, Lattice, Level, Mode, Order, Technique};
+use crate::technique::{Filter, Lattice, Level, Mode, Order, Shading, Technique};
 use crate::transfer::{ColorPoint, OpacityPoint, TransferFunction};
 use glam::{DAffine3, DVec3, dvec3};
 
@@ -119,6 +120,12 @@ pub fn measure(
 fn same_bits(stand: &mut Stand, kind: Kind, sight: &Sight) -> Result<(Rough, Rough), Stop> {
     let mut first = sight.clone();
     let mut other = sight.clone();
+    if kind == Kind::LitInBricks {
+        for sight in [&mut first, &mut other] {
+            sight.shot.settings.filter = Filter::CatmullRom;
+            sight.shot.settings.shading = Some(Shading::default());
+        }
+    }
     let settings = &mut other.shot.settings;
     match kind {
         Kind::Skipped => settings.skip = !settings.skip,
@@ -168,6 +175,12 @@ fn same_bits(stand: &mut Stand, kind: Kind, sight: &Sight) -> Result<(Rough, Rou
             };
             Rough::exact(&other.picture(stand, layers)?)
         }
+        Kind::InBricks | Kind::LitInBricks => {
+            let scene = other
+                .shot
+                .scene(&other.numbers.volume, Some(&other.function));
+            Rough::exact(&stand.render_lowered(in_bricks, &scene)?)
+        }
         Kind::InSmallSubmissions if stand.wants_device() => {
             let scene = other
                 .shot
@@ -186,6 +199,15 @@ fn same_bits(stand: &mut Stand, kind: Kind, sight: &Sight) -> Result<(Rough, Rou
         found.pixels.iter_mut().for_each(|p| p[..3].rotate_right(1));
     }
     Ok((wanted, found))
+}
+
+/// Neither texture holds the ground in one piece, along no axis.
+fn in_bricks(caps: Caps) -> Caps {
+    Caps {
+        max_image_dimension_3d: caps.max_image_dimension_3d.min(12),
+        max_image_array_layers: caps.max_image_array_layers.min(8),
+        ..caps
+    }
 }
 
 fn roundings(stand: &mut Stand, kind: Kind, sight: &Sight) -> Result<(Rough, Rough), Stop> {
@@ -297,7 +319,7 @@ fn compare(kind: Kind, shot: &Shot, first: Rough, second: Rough) -> Measurement 
         // Where a ray meets an end of the domain at a sample, either may have it.
         let hangs = !kind.is_exact() && shot.chord(pixel).is_some_and(|chord| chord.hangs);
         if hangs || !allowed.iter().all(|error| error.is_finite()) {
-            measurement.leave_out();
+            measurement.leave_out(4);
             continue;
         }
         for (c, allowed) in allowed.into_iter().enumerate() {
@@ -352,7 +374,7 @@ fn summed(stand: &mut Stand, sight: &Sight) -> Result<Measurement, Stop> {
         }
         let hangs = shot.chord(pixel).is_none_or(|chord| chord.hangs);
         if hangs || off.is_infinite() {
-            measurement.leave_out();
+            measurement.leave_out(1);
             continue;
         }
         measurement.take(|| format!("value of pixel {pixel:?}"), a + b, sum, off);
