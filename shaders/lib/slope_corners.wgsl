@@ -1,4 +1,4 @@
-// Six trilinear values from sixteen words, where six look-ups take twenty-four: with v the voxels i-1 .. i+2 of each axis,
+// Six trilinear values from ten texels, where six look-ups take twelve: with v the voxels i-1 .. i+2 of each axis,
 // held at the edges of the grid, and w how far from i to i+1,
 //
 //     before = lerp(v[i-1], v[i], w)        between = lerp(v[i], v[i+1], w)        after = lerp(v[i+1], v[i+2], w)
@@ -19,22 +19,31 @@ fn central_slope(place: Place) -> Slope {
     let v1 = vec3<u32>(clamp(i, vec3(0), last));
     let v2 = vec3<u32>(clamp(i + 1, vec3(0), last));
     let v3 = vec3<u32>(clamp(i + 2, vec3(0), last));
-    let grid = grid_of_words();
-    let y = vec4(row_of(grid, v0.y), row_of(grid, v1.y), row_of(grid, v2.y), row_of(grid, v3.y));
+    let grid = grid_of_texels();
+    let row = row_of(grid, v1.y);
+    let row_before = row_of(grid, v0.y);
+    let row_after = row_of(grid, v3.y);
     let z = vec4(layer_of(grid, v0.z), layer_of(grid, v1.z), layer_of(grid, v2.z), layer_of(grid, v3.z));
 
-    let four = Four(edges_of(v0.x), edges_of(v2.x), v1.x == v0.x, v3.x == v2.x, weight.x);
-    let low_front = four_at(four, y.y + z.y);
-    let high_front = four_at(four, y.z + z.y);
-    let low_back = four_at(four, y.y + z.z);
-    let high_back = four_at(four, y.z + z.z);
     // Where the upper voxel is held, the lower one is it.
-    let x = edges_of(v1.x);
-    let part = select(weight.x, 0.0, v2.x == v1.x);
-    let before_y = vec2(edge(x, x.first + y.x + z.y, part), edge(x, x.first + y.x + z.z, part));
-    let after_y = vec2(edge(x, x.first + y.w + z.y, part), edge(x, x.first + y.w + z.z, part));
-    let before_z = vec2(edge(x, x.first + y.y + z.x, part), edge(x, x.first + y.z + z.x, part));
-    let after_z = vec2(edge(x, x.first + y.y + z.w, part), edge(x, x.first + y.z + z.w, part));
+    let held = vec2(v2.x == v1.x, v2.y == v1.y);
+    let four = Four(column_of(v0.x), column_of(v2.x), v1.x == v0.x, v3.x == v2.x, weight.x);
+    let front_first = upper_held(face_of(four.first, row, z.y), held.y);
+    let front_third = upper_held(face_of(four.third, row, z.y), held.y);
+    let back_first = upper_held(face_of(four.first, row, z.z), held.y);
+    let back_third = upper_held(face_of(four.third, row, z.z), held.y);
+    let low_front = four_at(four, front_first.low, front_third.low);
+    let high_front = four_at(four, front_first.high, front_third.high);
+    let low_back = four_at(four, back_first.low, back_third.low);
+    let high_back = four_at(four, back_first.high, back_third.high);
+    let x = column_of(v1.x);
+    let part = select(weight.x, 0.0, held.x);
+    let before_y = vec2(across(face_of(x, row_before, z.y).low, part), across(face_of(x, row_before, z.z).low, part));
+    let after_y = vec2(across(face_of(x, row_after, z.y).low, part), across(face_of(x, row_after, z.z).low, part));
+    let front_before = upper_held(face_of(x, row, z.x), held.y);
+    let back_after = upper_held(face_of(x, row, z.w), held.y);
+    let before_z = vec2(across(front_before.low, part), across(front_before.high, part));
+    let after_z = vec2(across(back_after.low, part), across(back_after.high, part));
 
     // Before and after along x, before and after along y by z, before and after along z by y.
     let front = vec2(low_front.between, high_front.between);
@@ -52,11 +61,11 @@ fn central_slope(place: Place) -> Slope {
     return Slope(0.5 * volume_coding().slope * slope, neighbours_are_valid(place));
 }
 
-// Four voxels of a row: edges that begin at the first and at the third, whether the second and the fourth are held
-// there, and how far the place lies from the second to the third.
+// Four voxels of a row: where the first and the third begin a face, whether the second and the fourth are held there, and
+// how far the place lies from the second to the third.
 struct Four {
-    first: Edges,
-    third: Edges,
+    first: Along,
+    third: Along,
     second_is_first: bool,
     fourth_is_third: bool,
     weight: f32,
@@ -68,14 +77,20 @@ struct AlongRow {
     slope: f32,
 }
 
-fn four_at(four: Four, row: u32) -> AlongRow {
-    let low = ends_of(four.first, word(four.first.first + row));
-    let high = ends_of(four.third, word(four.third.first + row));
+fn four_at(four: Four, low: vec2<f32>, high: vec2<f32>) -> AlongRow {
     let second = select(low.y, low.x, four.second_is_first);
     let fourth = select(high.y, high.x, four.fourth_is_third);
     let before = lerp(low.x, second, four.weight);
     let after = lerp(high.x, fourth, four.weight);
     return AlongRow(lerp(second, high.x, four.weight), after - before);
+}
+
+fn across(ends: vec2<f32>, weight: f32) -> f32 {
+    return lerp(ends.x, ends.y, weight);
+}
+
+fn upper_held(face: Face, is_held: bool) -> Face {
+    return Face(face.low, select(face.high, face.low, is_held));
 }
 
 // Neither a loop nor a branch where there is nothing to ask: drivers on CPUs keep them.

@@ -20,7 +20,7 @@ use crate::volume::{Rescale, VoxelBox, VoxelPart};
 use ash::vk;
 
 /// Copies into images begin at multiples of so many bytes.
-const ALIGNMENT_BYTES: u64 = 4;
+const ALIGNMENT_BYTES: u64 = 16;
 
 /// New voxels of a box of a volume, staged: [`Volume::record_update`] brings them there. Dropped before it is recorded, it
 /// takes with it all that were staged after it: they were staged from voxels that hold these.

@@ -1,7 +1,7 @@
-//! Corners after voxels of a box have changed: the cubes of words that have some of them, and no others.
+//! Corners after voxels of a box have changed: the cubes of texels that have some of them, and no others.
 
 use super::Corners;
-use super::corners::{CUBE_WORDS, Code, SIDE, put_row};
+use super::corners::{CUBE_TEXELS, CUBE_WORDS, Code, RowPlace, SIDE, TEXEL_WORDS, put_row};
 use crate::gpu::{Buffer, Error, Gpu, Region, Use, buffer_to_image, image_barrier};
 use crate::shaders::CORNERS_WIDTH;
 use crate::volume::{VoxelBox, VoxelPart, Voxels};
@@ -18,11 +18,16 @@ pub(crate) struct ChangedCorners {
 }
 
 impl Corners {
-    /// The cubes, along each axis, that have words of voxels of `region`, and the voxels that those are made of.
+    /// Voxels from one cube to the next.
+    fn sides(&self) -> [u32; 3] {
+        self.new_voxels.map(|new| new * SIDE as u32)
+    }
+
+    /// The cubes, along each axis, that have texels of voxels of `region`, and the voxels that those are made of.
     fn cubes_of(&self, region: VoxelBox, dims: [u32; 3]) -> ([Range<u32>; 3], VoxelBox) {
-        // A word has the first voxel of the next one too.
-        let sides = [self.new_voxels * SIDE as u32, SIDE as u32, SIDE as u32];
-        let shared = [1, 0, 0];
+        // A texel has the first voxels of the next ones too.
+        let sides = self.sides();
+        let shared = [1, 1, 0];
         let cubes = std::array::from_fn(|k| {
             let first = region.min[k].saturating_sub(shared[k]) / sides[k];
             first..region.max[k].div_ceil(sides[k])
@@ -63,37 +68,38 @@ impl Corners {
         dims: [u32; 3],
     ) -> ChangedCorners {
         let ([xs, ys, zs], voxels) = self.cubes_of(region, dims);
-        let all = |voxels: u32, side: u32| u64::from(voxels.div_ceil(side));
-        let along_x = all(dims[0], self.new_voxels * SIDE as u32);
-        let along_y = all(dims[1], SIDE as u32);
+        let sides = self.sides();
+        let [along_x, along_y] = [0, 1].map(|k| u64::from(dims[k].div_ceil(sides[k])));
         let run = CUBE_WORDS * xs.len();
         let width = voxels.dims()[0] as usize;
         let mut changed = ChangedCorners::default();
         let mut longer = Vec::new();
         for (z, y) in zs.flat_map(|z| ys.clone().map(move |y| (z, y))) {
-            let side = SIDE as u32;
             let mut rows = voxels;
-            (rows.min[1], rows.max[1]) = (y * side, voxels.max[1].min((y + 1) * side));
-            (rows.min[2], rows.max[2]) = (z * side, voxels.max[2].min((z + 1) * side));
+            for (k, cube) in [(1, y), (2, z)] {
+                rows.min[k] = cube * sides[k];
+                rows.max[k] = voxels.max[k].min((cube + 1) * sides[k] + u32::from(k == 1));
+            }
             let mut cubes = vec![0; run];
             let height = rows.dims()[1] as usize;
             let placed = part.rows(rows).map(|first| &codes[first..first + width]);
             for (index, row) in placed.enumerate() {
-                put_row(
-                    row,
-                    &mut longer,
-                    [index % height, index / height],
-                    &mut cubes,
-                );
+                let place = RowPlace {
+                    y: index % height,
+                    z: index / height,
+                    is_last: rows.min[1] + (index % height) as u32 == dims[1] - 1,
+                    cubes: xs.len(),
+                };
+                put_row(row, &mut longer, place, &mut cubes);
             }
             let cube = u64::from(xs.start) + along_x * (u64::from(y) + along_y * u64::from(z));
-            changed.put(CUBE_WORDS as u64 * cube, &cubes);
+            changed.put(CUBE_TEXELS as u64 * cube, &cubes);
         }
         changed
     }
 
-    /// Records a run of what [`Corners::changed`] gave, from byte `first` of `staging` on: between what reads them before and
-    /// what reads them later.
+    /// Records a run of what [`Corners::changed`] gave, from byte `first` of `staging` on: between what reads them before
+    /// and what reads them later.
     ///
     /// # Errors
     /// A staging buffer that is too small.
@@ -124,9 +130,9 @@ impl Corners {
     }
 }
 
-/// A run of words in a row.
+/// A run of texels in a row.
 fn bytes_of(copy: Region) -> u64 {
-    4 * u64::from(copy.extent[0])
+    (4 * TEXEL_WORDS) as u64 * u64::from(copy.extent[0])
 }
 
 impl ChangedCorners {
@@ -149,10 +155,10 @@ impl ChangedCorners {
         runs
     }
 
-    /// Words from word number `first` of the image on, row by row of it.
+    /// The words of texels from number `first` of the image on, row by row of it.
     fn put(&mut self, first: u64, words: &[u32]) {
         let width = u64::from(CORNERS_WIDTH);
-        let (mut at, end) = (first, first + words.len() as u64);
+        let (mut at, end) = (first, first + (words.len() / TEXEL_WORDS) as u64);
         while at < end {
             let count = (width - at % width).min(end - at);
             self.copies.push(Region {

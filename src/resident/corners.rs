@@ -1,75 +1,83 @@
-//! The eight voxels around a sample in four words, for devices that compute on the CPU: their sampler is a program that
-//! converts and weighs each texel by itself, and takes twice as long (`docs/performance.md`).
+//! The eight voxels around a sample in two texels, for devices that compute on the CPU: their sampler is a program that
+//! converts and weighs each voxel by itself, and takes twice as long (`docs/performance.md`).
 //!
 //! ```text
-//! of 8 bits:   word(w, y, z) = codes of (3 w, y, z), (3 w + 1, y, z), (3 w + 2, y, z), (3 w + 3, y, z), lowest byte first
-//! of 16 bits:  word(w, y, z) = codes of (w, y, z), (w + 1, y, z), lower half first
+//! of 8 bits:   texel(i, j, z) = codes of (3 i .. 3 i + 3, 3 j .. 3 j + 3, z), a row in each of four words
+//! of 16 bits:  texel(i, j, z) = codes of (3 i .. 3 i + 3, j .. j + 1, z), a row in two of four words
 //! ```
 //!
-//! So both ends of an edge along x are in one word: of 8 bits in 4/3 bytes a voxel, of 16 bits in 4. Beyond the edge of
-//! the grid the outermost voxel stands. Words lie in cubes of 4 x 4 x 4, x fastest inside of one and from one to the next,
-//! so that a ray finds what comes next in the same lines of the cache whichever way it runs; sides are rounded up to whole
-//! cubes. They lie in a storage image: llvmpipe reads a storage buffer lane by lane, and looks up the mip levels of a
-//! texture.
+//! So the corners of each face between voxel centres are in one texel: of 8 bits in 16/9 bytes a voxel, of 16 bits in
+//! 16/3. x first, lowest bits first; beyond the edge of the grid the outermost voxel stands. Texels lie in cubes of
+//! 4 x 4 x 4, z fastest inside of one, then x, so that a line of the cache is as deep as it is wide; from one cube to the
+//! next x is fastest, and sides are rounded up to whole cubes. They lie in a storage image: llvmpipe reads a storage
+//! buffer lane by lane, looks up the mip levels of a texture, and loads a texel of 16 bytes at once, where four gathers
+//! take longer.
 
 use super::{GpuVolume, TextureLayout};
 use crate::gpu::{Error, Gpu, Image, ImageDesc, ImageKind, Use, image_barrier};
-use crate::shaders::{CORNERS_WIDTH, VOXELS_A_WORD};
+use crate::shaders::{CORNERS_WIDTH, TEXEL_COLUMNS};
 use crate::volume::{Volume, VoxelType, Voxels};
 use ash::vk;
 use std::num::NonZero;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
-/// Words along the side of a cube.
+/// Texels along the side of a cube.
 pub(super) const SIDE: usize = 4;
-pub(super) const CUBE_WORDS: usize = SIDE * SIDE * SIDE;
-/// They take no more of the device's largest heap than one part of so many.
-const SHARE: u64 = 4;
-/// Shaders find the word of a voxel in a row of no more.
+pub(super) const CUBE_TEXELS: usize = SIDE * SIDE * SIDE;
+/// Words of a texel.
+pub(super) const TEXEL_WORDS: usize = 4;
+const TEXEL_BYTES: u64 = 4 * TEXEL_WORDS as u64;
+pub(super) const CUBE_WORDS: usize = TEXEL_WORDS * CUBE_TEXELS;
+/// New voxels along x.
+const COLUMNS: usize = TEXEL_COLUMNS as usize;
+/// They take no more of the device's largest heap than so many parts of so many: on llvmpipe 768 of 2048 MiB, where 512^3
+/// voxels of 16 bits take 688.
+const SHARE: [u64; 2] = [3, 8];
+/// Shaders find the texel of a voxel in a row of no more, along x and y.
 const MOST_VOXELS_A_ROW: u32 = 1 << 16;
 
-/// How many words lie in a row of so many voxels.
-fn words_a_row(stored: VoxelType, voxels: u32) -> Option<u32> {
+/// New voxels of a texel along each axis.
+fn new_voxels(stored: VoxelType) -> Option<[u32; 3]> {
     match stored {
-        VoxelType::U8 | VoxelType::I8 => Some(voxels.div_ceil(VOXELS_A_WORD)),
-        VoxelType::U16 | VoxelType::I16 => Some(voxels),
+        VoxelType::U8 | VoxelType::I8 => Some([TEXEL_COLUMNS, u8::NEW_ROWS as u32, 1]),
+        VoxelType::U16 | VoxelType::I16 => Some([TEXEL_COLUMNS, u16::NEW_ROWS as u32, 1]),
         _ => None,
     }
 }
 
-/// `words` are no more than a heap holds, or no image can be made of what comes out.
-fn desc(words: u64) -> ImageDesc<'static> {
-    let rows = words.div_ceil(u64::from(CORNERS_WIDTH));
+/// `texels` are no more than a heap holds, or no image can be made of what comes out.
+fn desc(texels: u64) -> ImageDesc<'static> {
+    let rows = texels.div_ceil(u64::from(CORNERS_WIDTH));
     ImageDesc {
         kind: ImageKind::D2,
         extent: [CORNERS_WIDTH, rows.min(u64::from(u32::MAX)) as u32, 1],
-        format: vk::Format::R32_UINT,
+        format: vk::Format::R32G32B32A32_UINT,
         usage: vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::TRANSFER_DST,
         name: "corners",
     }
 }
 
-/// The words of a volume of 8-bit or 16-bit integers, complete as soon as they are made.
+/// The texels of a volume of 8-bit or 16-bit integers, complete as soon as they are made.
 #[derive(Debug)]
 pub struct Corners {
     pub(super) image: Image,
     filter: &'static str,
-    /// Voxels of a row from one word to the next.
-    pub(super) new_voxels: u32,
+    /// Voxels from one texel to the next along each axis.
+    pub(super) new_voxels: [u32; 3],
 }
 
 impl Corners {
     /// Bytes that those of so many voxels take; `None` where there are none of this type.
-    pub fn bytes_of(stored: VoxelType, [nx, ny, nz]: [u32; 3]) -> Option<u64> {
-        let sides = [words_a_row(stored, nx)?, ny, nz];
-        let cubes = sides.map(|n| u64::from(n.div_ceil(SIDE as u32)));
+    pub fn bytes_of(stored: VoxelType, dims: [u32; 3]) -> Option<u64> {
+        let new = new_voxels(stored)?;
+        let cubes = [0, 1, 2].map(|k| u64::from(dims[k].div_ceil(new[k]).div_ceil(SIDE as u32)));
         let bytes = 4 * CUBE_WORDS as u64;
         Some(cubes.into_iter().fold(bytes, u64::saturating_mul))
     }
 
     /// Whether they pay and can be had: on a software device, of 8-bit or 16-bit integers in one brick, where that has
-    /// such an image, in a quarter of its largest heap.
+    /// such an image, in three eighths of its largest heap.
     pub fn are_for(gpu: &Gpu, volume: &Volume) -> bool {
         Self::are_for_such(gpu, volume.voxels.voxel_type(), volume.dims)
     }
@@ -80,10 +88,10 @@ impl Corners {
             return false;
         };
         gpu.is_cpu()
-            && bytes <= gpu.limits().max_heap_bytes / SHARE
-            && dims[0] <= MOST_VOXELS_A_ROW
-            && gpu.check_image(&desc(bytes / 4)).is_ok()
-            && gpu.has_images_in_rows(&desc(bytes / 4))
+            && bytes <= gpu.limits().max_heap_bytes / SHARE[1] * SHARE[0]
+            && dims[0].max(dims[1]) <= MOST_VOXELS_A_ROW
+            && gpu.check_image(&desc(bytes / TEXEL_BYTES)).is_ok()
+            && gpu.has_images_in_rows(&desc(bytes / TEXEL_BYTES))
     }
 
     /// Those of `volume`; none where the device leaves gaps between the rows of an image.
@@ -109,14 +117,15 @@ impl Corners {
         dims: [u32; 3],
         codes: &[C],
     ) -> Result<Option<Self>, Error> {
-        let words = Self::bytes_of(C::STORED, dims).expect("codes have words") / 4;
+        let bytes = Self::bytes_of(C::STORED, dims).expect("codes have texels");
+        let texels = bytes / TEXEL_BYTES;
         let [nx, ny, nz] = dims.map(|n| n as usize);
         // Most of the time goes into the first touch of so much memory, which threads share.
         let layers = nz.div_ceil(SIDE);
-        let layer_bytes = 4 * words as usize / layers;
+        let layer_bytes = bytes as usize / layers;
         let mut is_gapless = false;
-        let image = Image::written_by_host(gpu, &desc(words), |bytes, row_bytes| {
-            is_gapless = row_bytes == 4 * CORNERS_WIDTH as usize;
+        let image = Image::written_by_host(gpu, &desc(texels), |bytes, row_bytes| {
+            is_gapless = row_bytes as u64 == TEXEL_BYTES * u64::from(CORNERS_WIDTH);
             if !is_gapless {
                 return;
             }
@@ -148,11 +157,11 @@ impl Corners {
         Ok(is_gapless.then_some(Self {
             image,
             filter: C::FILTER,
-            new_voxels: C::VOXELS as u32 - 1,
+            new_voxels: new_voxels(C::STORED).expect("codes have texels"),
         }))
     }
 
-    /// A u32 for each word and what fills the cubes at the far ends, in rows of [`CORNERS_WIDTH`].
+    /// Four u32 for each texel and what fills the cubes at the far ends, in rows of [`CORNERS_WIDTH`].
     pub fn image(&self) -> &Image {
         &self.image
     }
@@ -192,92 +201,112 @@ impl GpuVolume {
     }
 }
 
-/// A number as it is stored, that has words. Signed ones are moved as texels are (`sampling.md` 2).
+/// A number as it is stored, that has texels. Signed ones are moved as texels of a texture are (`sampling.md` 2).
 pub(super) trait Code: Copy + Sync {
     const STORED: VoxelType;
     const FILTER: &'static str;
-    /// Of a word, the last of which the next one has too.
-    const VOXELS: usize;
-    fn word(voxels: &[Self]) -> u32;
+    /// Words that four neighbours take.
+    const ROW_WORDS: usize;
+    /// Rows from one texel to the next, which has the last one of this too.
+    const NEW_ROWS: usize = TEXEL_WORDS / Self::ROW_WORDS - 1;
+    fn put(four: &[Self], words: &mut [u32]);
 }
 
 impl Code for u8 {
     const STORED: VoxelType = VoxelType::U8;
     const FILTER: &'static str = "corners8";
-    const VOXELS: usize = VOXELS_A_WORD as usize + 1;
-    fn word(voxels: &[Self]) -> u32 {
-        u32::from_le_bytes([voxels[0], voxels[1], voxels[2], voxels[3]])
+    const ROW_WORDS: usize = 1;
+    fn put(four: &[Self], words: &mut [u32]) {
+        words[0] = u32::from_le_bytes([four[0], four[1], four[2], four[3]]);
     }
 }
 
 impl Code for i8 {
     const STORED: VoxelType = VoxelType::I8;
     const FILTER: &'static str = u8::FILTER;
-    const VOXELS: usize = u8::VOXELS;
-    fn word(voxels: &[Self]) -> u32 {
-        let [a, b, c, d] = [0, 1, 2, 3].map(|i| voxels[i] as u8);
-        u32::from_le_bytes([a, b, c, d]) ^ 0x8080_8080
+    const ROW_WORDS: usize = u8::ROW_WORDS;
+    fn put(four: &[Self], words: &mut [u32]) {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|i| four[i] as u8);
+        words[0] = u32::from_le_bytes([a, b, c, d]) ^ 0x8080_8080;
     }
 }
 
 impl Code for u16 {
     const STORED: VoxelType = VoxelType::U16;
     const FILTER: &'static str = "corners16";
-    const VOXELS: usize = 2;
-    fn word(voxels: &[Self]) -> u32 {
-        u32::from(voxels[0]) | u32::from(voxels[1]) << 16
+    const ROW_WORDS: usize = 2;
+    fn put(four: &[Self], words: &mut [u32]) {
+        words[0] = u32::from(four[0]) | u32::from(four[1]) << 16;
+        words[1] = u32::from(four[2]) | u32::from(four[3]) << 16;
     }
 }
 
 impl Code for i16 {
     const STORED: VoxelType = VoxelType::I16;
     const FILTER: &'static str = u16::FILTER;
-    const VOXELS: usize = u16::VOXELS;
-    fn word(voxels: &[Self]) -> u32 {
-        u16::word(&[voxels[0] as u16, voxels[1] as u16]) ^ 0x8000_8000
+    const ROW_WORDS: usize = u16::ROW_WORDS;
+    fn put(four: &[Self], words: &mut [u32]) {
+        let moved = [0, 1, 2, 3].map(|i| four[i] as u16 ^ 0x8000);
+        u16::put(&moved, words);
     }
 }
 
-/// Puts the words of at most four planes of nx x ny codes into a layer of cubes.
+/// Puts at most four planes of nx x ny codes into a layer of cubes.
 fn put_layer<C: Code>(codes: &[C], [nx, ny]: [usize; 2], cubes: &mut [u32]) {
-    let along_x = nx.div_ceil(C::VOXELS - 1).div_ceil(SIDE);
     let mut longer = Vec::new();
     for (index, row) in codes.chunks_exact(nx).enumerate() {
-        let [y, z] = [index % ny, index / ny];
-        let cubes = &mut cubes[(y / SIDE) * along_x * CUBE_WORDS..];
-        put_row(row, &mut longer, [y % SIDE, z], cubes);
+        let place = RowPlace {
+            y: index % ny,
+            z: index / ny,
+            is_last: index % ny == ny - 1,
+            cubes: nx.div_ceil(COLUMNS).div_ceil(SIDE),
+        };
+        put_row(row, &mut longer, place, cubes);
     }
 }
 
-/// Puts the words of a row of codes into a row of cubes, at (y, z) of each. `row` is room that is used again.
-pub(super) fn put_row<C: Code>(
-    codes: &[C],
-    row: &mut Vec<C>,
-    [y, z]: [usize; 2],
-    cubes: &mut [u32],
-) {
-    let new = C::VOXELS - 1;
-    let words = codes.len().div_ceil(new);
-    row.clear();
-    row.extend_from_slice(codes);
-    // Beyond the end the last voxel again.
-    row.resize(new * words + 1, codes[codes.len() - 1]);
-    let fours = cubes[SIDE * (y + SIDE * z)..].chunks_mut(CUBE_WORDS);
-    let words = row.windows(C::VOXELS).step_by(new).map(C::word);
-    put_in_fours(words, fours);
+/// Where a row of voxels lies in a layer of cubes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RowPlace {
+    pub y: usize,
+    /// In its cube.
+    pub z: usize,
+    /// The outermost one stands beyond the edge too.
+    pub is_last: bool,
+    /// In a row of them.
+    pub cubes: usize,
 }
 
-/// Each of the first four words into the first place, the next four into the next.
-fn put_in_fours<'a>(
-    mut words: impl Iterator<Item = u32>,
-    places: impl Iterator<Item = &'a mut [u32]>,
+/// Puts a row of codes into those of a layer's `cubes` that have some of it. `longer` is room that is used again.
+pub(super) fn put_row<C: Code>(
+    codes: &[C],
+    longer: &mut Vec<C>,
+    place: RowPlace,
+    cubes: &mut [u32],
 ) {
-    for four in places {
-        for place in four.iter_mut().take(SIDE) {
-            let Some(word) = words.next() else {
-                return;
-            };
-            *place = word;
+    let texels = codes.len().div_ceil(COLUMNS);
+    longer.clear();
+    longer.extend_from_slice(codes);
+    longer.resize(COLUMNS * texels + 1, codes[codes.len() - 1]);
+    let RowPlace { y, z, is_last, .. } = place;
+    // As the first row of one texel or one within it, and as the last of the texel before.
+    let [texel, row] = [y / C::NEW_ROWS, y % C::NEW_ROWS];
+    let before = (row == 0 && texel > 0).then(|| (texel - 1, C::NEW_ROWS..=C::NEW_ROWS));
+    let until = if is_last { C::NEW_ROWS } else { row };
+    for (texel, rows) in before.into_iter().chain([(texel, row..=until)]) {
+        // Beside the cubes that are asked for there may be others, which share some of these voxels.
+        let mut rows_of_cubes = cubes.chunks_exact_mut(CUBE_WORDS * place.cubes);
+        let Some(cubes) = rows_of_cubes.nth(texel / SIDE) else {
+            continue;
+        };
+        let first = TEXEL_WORDS * (z + SIDE * SIDE * (texel % SIDE));
+        for first in rows.map(|row| first + C::ROW_WORDS * row) {
+            let fours = longer.windows(COLUMNS + 1).step_by(COLUMNS);
+            for (column, four) in fours.take(SIDE * place.cubes).enumerate() {
+                let at =
+                    first + CUBE_WORDS * (column / SIDE) + TEXEL_WORDS * SIDE * (column % SIDE);
+                C::put(four, &mut cubes[at..at + C::ROW_WORDS]);
+            }
         }
     }
 }
@@ -287,56 +316,75 @@ mod tests {
     use super::*;
     use crate::shaders::{THIRD, THIRD_BITS};
 
-    /// The words of one row.
-    fn words_of<C: Code>(row: &[C]) -> Vec<u32> {
-        let words = row.len().div_ceil(C::VOXELS - 1);
-        let mut cubes = vec![0; words.div_ceil(SIDE) * CUBE_WORDS];
-        put_layer(row, [row.len(), 1], &mut cubes);
-        let word = |w: usize| cubes[w / SIDE * CUBE_WORDS + w % SIDE];
-        (0..words).map(word).collect()
+    /// The texels of planes of nx x ny codes, and the words of the one at (i, j, z).
+    fn texels_of<C: Code>(codes: &[C], [nx, ny]: [usize; 2]) -> impl Fn([usize; 3]) -> [u32; 4] {
+        let [along_x, along_y] =
+            [nx.div_ceil(COLUMNS), ny.div_ceil(C::NEW_ROWS)].map(|n| n.div_ceil(SIDE));
+        let mut cubes = vec![0; along_x * along_y * CUBE_WORDS];
+        put_layer(codes, [nx, ny], &mut cubes);
+        move |[i, j, z]| {
+            let cube = i / SIDE + along_x * (j / SIDE);
+            let texel = CUBE_TEXELS * cube + z + SIDE * (i % SIDE + SIDE * (j % SIDE));
+            [0, 1, 2, 3].map(|word| cubes[TEXEL_WORDS * texel + word])
+        }
     }
 
     #[test]
-    fn a_word_has_neighbours_of_a_row_and_at_the_edge_the_edge() {
-        let bytes = |words: &[[u8; 4]]| -> Vec<_> {
-            words.iter().map(|&word| u32::from_le_bytes(word)).collect()
-        };
-        assert_eq!(words_of(&[7_u8]), bytes(&[[7; 4]]));
-        assert_eq!(words_of(&[1_u8, 2, 3]), bytes(&[[1, 2, 3, 3]]));
-        let row = [1_u8, 2, 3, 4, 5];
-        assert_eq!(words_of(&row), bytes(&[[1, 2, 3, 4], [4, 5, 5, 5]]));
-        assert_eq!(words_of(&[-128_i8, 0, 127]), bytes(&[[0, 128, 255, 255]]));
-        assert_eq!(words_of(&[1_u16, 2, 3]), [0x2_0001, 0x3_0002, 0x3_0003]);
-        assert_eq!(words_of(&[i16::MIN, -1]), [0x7fff_0000, 0x7fff_7fff]);
+    fn a_texel_has_neighbours_of_a_plane_and_at_the_edge_the_edge() {
+        let rows = |rows: [[u8; 4]; 4]| rows.map(u32::from_le_bytes);
+        assert_eq!(texels_of(&[7_u8], [1, 1])([0; 3]), rows([[7; 4]; 4]));
+        let codes: Vec<u8> = (0..20).collect();
+        let texel = texels_of(&codes, [5, 4]);
+        assert_eq!(
+            texel([0, 0, 0]),
+            rows([
+                [0, 1, 2, 3],
+                [5, 6, 7, 8],
+                [10, 11, 12, 13],
+                [15, 16, 17, 18]
+            ])
+        );
+        assert_eq!(texel([1, 1, 0]), rows([[18, 19, 19, 19]; 4]));
+        let signed = texels_of(&[-128_i8, 0, 127], [3, 1]);
+        assert_eq!(signed([0; 3]), rows([[0, 128, 255, 255]; 4]));
+        let wide = texels_of(&[1_u16, 2, 3, 4, 5, 6], [3, 2]);
+        assert_eq!(wide([0; 3]), [0x2_0001, 0x3_0003, 0x5_0004, 0x6_0006]);
+        assert_eq!(wide([0, 1, 0]), [0x5_0004, 0x6_0006, 0x5_0004, 0x6_0006]);
+        let signed = texels_of(&[i16::MIN, -1], [2, 1]);
+        assert_eq!(
+            signed([0; 3]),
+            [0x7fff_0000, 0x7fff_7fff, 0x7fff_0000, 0x7fff_7fff]
+        );
     }
 
     #[test]
-    fn a_word_lies_in_the_cube_of_its_place() {
-        let [nx, ny, nz] = [6, 5, 3];
-        let codes: Vec<u16> = (0..(nx * ny * nz) as u16).collect();
-        let mut cubes = vec![0; 4 * CUBE_WORDS];
-        put_layer(&codes, [nx, ny], &mut cubes);
-        for (x, y, z) in [(0, 0, 0), (3, 3, 2), (4, 0, 1), (5, 4, 0), (2, 4, 2)] {
-            let cube = x / 4 + 2 * (y / 4);
-            let word = cubes[64 * cube + x % 4 + 4 * (y % 4) + 16 * z];
-            assert_eq!(word as u16 as usize, x + nx * (y + ny * z));
+    fn each_texel_lies_in_the_cube_of_its_place() {
+        let [nx, ny, nz] = [16, 14, 3];
+        let code = |x: usize, y: usize, z: usize| (x + nx * (y + ny * z)) as u16;
+        let codes: Vec<u16> = (0..code(0, 0, nz)).collect();
+        let bytes: Vec<u8> = codes.iter().map(|&code| code as u8).collect();
+        let wide = texels_of(&codes, [nx, ny]);
+        let narrow = texels_of(&bytes, [nx, ny]);
+        for (i, j, z) in [(0, 0, 0), (3, 3, 2), (4, 0, 1), (5, 4, 0), (2, 4, 2)] {
+            assert_eq!(wide([i, j, z])[0] as u16, code(3 * i, j, z));
+            assert_eq!(narrow([i, j, z])[0] as u8, code(3 * i, 3 * j, z) as u8);
         }
     }
 
     #[test]
     fn a_product_and_a_shift_are_a_third() {
         for voxel in 0..MOST_VOXELS_A_ROW {
-            assert_eq!((voxel * THIRD) >> THIRD_BITS, voxel / VOXELS_A_WORD);
+            assert_eq!((voxel * THIRD) >> THIRD_BITS, voxel / TEXEL_COLUMNS);
         }
     }
 
     #[test]
     fn bytes_are_those_of_whole_cubes() {
         let bytes = |stored, dims| Corners::bytes_of(stored, dims);
-        assert_eq!(bytes(VoxelType::U8, [12, 4, 4]), Some(256));
-        assert_eq!(bytes(VoxelType::I8, [13, 5, 4]), Some(4 * 256));
-        assert_eq!(bytes(VoxelType::I16, [4, 4, 4]), Some(256));
-        assert_eq!(bytes(VoxelType::U16, [5, 4, 9]), Some(6 * 256));
+        assert_eq!(bytes(VoxelType::U8, [12, 12, 4]), Some(1024));
+        assert_eq!(bytes(VoxelType::I8, [13, 13, 4]), Some(4 * 1024));
+        assert_eq!(bytes(VoxelType::I16, [12, 4, 4]), Some(1024));
+        assert_eq!(bytes(VoxelType::U16, [13, 4, 9]), Some(6 * 1024));
         assert_eq!(bytes(VoxelType::F16, [5, 4, 9]), None);
     }
 }
