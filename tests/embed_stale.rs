@@ -41,6 +41,9 @@ fn shot(stage: &Stage, frame: u32) -> Shot<'_> {
     }
 }
 
+/// Something that a host changes.
+type Change<'a> = Box<dyn Fn(&mut Renderer) + 'a>;
+
 /// A frame by level B.
 fn drawn(host: &Host, renderer: &mut Renderer, stage: &Stage) -> Vec<[f64; 4]> {
     let image = HostImage::new(host, FORMAT, renderer.extent());
@@ -105,7 +108,7 @@ fn a_frame_of_what_was_replaced_is_drawn_no_more() {
         let mut renderer = renderer(&host, &stage);
         let other = uploaded(&host, &stage);
         let function = stage.transfer.clone();
-        let mut changes: Vec<(&str, Box<dyn Fn(&mut Renderer) + '_>)> = vec![
+        let mut changes: Vec<(&str, Change)> = vec![
             (
                 "set_function",
                 Box::new(|renderer| renderer.set_function(Some(&function)).unwrap()),
