@@ -2,6 +2,7 @@
 #              by apt where there is none); the conformance suite in part on SwiftShader too, which is fetched by apt, and
 #              skipped by name where that cannot be
 # make plain   what draws once more, without validation of synchronization
+# make least   the same under the least limits that Vulkan allows
 # make viewer  the tests of examples/viewer, in a window of a display without a screen (Xvfb is installed by apt where it is
 #              missing); make viewer-lint what clippy says of it
 # make demo    the built-in head with each technique, and with DATA=path a file of yours, into target/demo
@@ -14,7 +15,7 @@
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := test
-.PHONY: test plain viewer viewer-lint conformance swiftshader second demo sheet gallery capi install header api bench driver layers display
+.PHONY: test plain least viewer viewer-lint conformance swiftshader second demo sheet gallery capi install header api bench driver layers display
 
 CARGO ?= cargo
 ROOT := $(if $(filter 0,$(shell id -u)),,sudo )
@@ -89,6 +90,7 @@ test: driver layers display
 	RUST_TEST_THREADS=1 $(TEST) --test cli
 	STRATAVOX_VALIDATION=sync $(ON_DEVICE)
 	STRATAVOX_VALIDATION=sync RUST_TEST_THREADS=1 $(TEST) --test cli -- bench:: conformance::a_run device:: mixed:: pictures::
+	$(UNDER_LEAST) $(LEAST_OF_ALL)
 	$(VIEWER)
 	@$(MAKE) --no-print-directory second
 
@@ -104,6 +106,16 @@ viewer-lint:
 plain: driver layers
 	$(ON_DEVICE)
 
+# Limits clamped to Vulkan's least: the same pictures (`tests/shared/limits.rs`). Not asked are tests whose subject is limits
+# of their own. `make test` asks LEAST_OF_ALL.
+NOT_LEAST := gpu_% requirements minimum float_blend conformance_% matrix capi codes both_sides %_example example_%
+WITH_MORE := fetches_are_those_of_the_twin_in_every_technique words_folded_over_many_rows_have_the_values_of_the_twin
+LEAST_OF_ALL := --test embed_pictures --test embed_levels --test embed_flight --test exact_shapes
+UNDER_LEAST := STRATAVOX_LIMITS=least RUST_TEST_THREADS=1 $(TEST)
+
+least: driver layers
+	$(UNDER_LEAST) $(addprefix --test ,$(filter-out $(NOT_LEAST),$(WITH_DEVICE))) -- $(addprefix --skip ,$(WITH_MORE))
+
 # A second driver, from Debian's chromium: unpacked, and not installed.
 SWIFTSHADER := target/swiftshader/usr/lib/chromium/vk_swiftshader_icd.json
 
@@ -116,7 +128,7 @@ swiftshader:
 
 # What it is asked in `make test`: all probes, and pictures of each technique and mode. `make conformance` asks all. The
 # program is that of the tests before: `cargo run` would build it once more. Of the library's own tests those of the device
-# layer cost a second there.
+# layer cost a second there, and those of hosts, which compare each level with the offscreen picture to the bit, 30.
 SECOND := probe.*|*.linear_fetch.u16.perspective|twin.*.linear_fetch.perspective|twin.raycast.planes.composite.*|$\
     relation.*.composite.orthographic
 
@@ -126,7 +138,9 @@ second:
 	$(TEST) --quiet --no-run --test cli && ask() { $(ON_SWIFTSHADER) target/debug/stratavox conformance "$$@"; } \
 	    && ask --force --filter '$(SECOND)' --waivers docs/conformance-waivers.json --json target/conformance/second.json \
 	    && ask verify --part target/conformance/second.json \
-	    && $(ON_SWIFTSHADER) RUST_TEST_THREADS=1 $(TEST) --quiet --test gpu_run --test gpu_limits
+	    && $(ON_SWIFTSHADER) RUST_TEST_THREADS=1 $(TEST) --quiet --test gpu_run --test gpu_limits --test embed_flight \
+	        --test embed_pictures --test embed_stale --test embed_targets \
+	    && $(ON_SWIFTSHADER) RUST_TEST_THREADS=1 $(TEST) --quiet --test embed_levels -- level_
 
 # Each run must be well, and each package whole; how they differ is told.
 conformance: driver swiftshader

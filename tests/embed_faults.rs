@@ -128,12 +128,9 @@ fn sweep(tape: &Tape, drawn: &mut Drawn, change: &Change) -> u32 {
     let alive = drawn.gpu.live_objects();
     let mut faults = 0;
     for (&function, &count) in &called {
-        let mut numbers = vec![0, 1, count - 1];
-        numbers.retain(|&call| call < count);
-        numbers.dedup();
         for (&result, nth) in codes(function)
             .iter()
-            .flat_map(|r| numbers.iter().map(move |&n| (r, n)))
+            .flat_map(|r| numbers_of(count).into_iter().map(move |n| (r, n)))
         {
             let what = format!("{}: call {nth} of {function}, {result:?}", change.name);
             tape.fail_from_now(function, nth, result);
@@ -157,6 +154,14 @@ fn sweep(tape: &Tape, drawn: &mut Drawn, change: &Change) -> u32 {
     }
     println!("{}: {faults} faults of {:?}", change.name, called.keys());
     faults
+}
+
+/// The first, the second and the last of so many calls.
+fn numbers_of(count: u32) -> Vec<u32> {
+    let mut numbers = vec![0, 1, count - 1];
+    numbers.retain(|&call| call < count);
+    numbers.dedup();
+    numbers
 }
 
 /// What may fail, and was called since.
@@ -277,7 +282,7 @@ fn resized(tape: &Tape, drawn: &mut Drawn) -> u32 {
     for (&function, &count) in &called {
         for (&result, nth) in codes(function)
             .iter()
-            .flat_map(|r| [0, count - 1].map(|n| (r, n)))
+            .flat_map(|r| numbers_of(count).into_iter().map(move |n| (r, n)))
         {
             let what = format!("resize: call {nth} of {function}, {result:?}");
             tape.fail_from_now(function, nth, result);

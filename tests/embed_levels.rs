@@ -4,12 +4,10 @@ mod embed_shared;
 mod shared;
 
 use ash::vk;
-use embed_shared::{Host, HostImage, Stage, all_settings};
+use embed_shared::{Host, HostImage, Stage, all_settings, offscreen};
 use std::sync::Arc;
 use stratavox::embed::{Class, Error, QueueLock, Renderer, Shot, Submitter, Volume};
 use stratavox::gpu::{Load, Target, Use};
-use stratavox::offscreen;
-use stratavox::scene::Scene;
 use stratavox::technique::{Mode, Order, Settings, Technique};
 
 /// What is drawn there is what was computed, to the bit.
@@ -20,24 +18,6 @@ fn stage(settings: &Settings) -> Stage {
     // Pictures as hosts draw them: tables, filters of the device, what cannot be seen left out.
     stage.settings.conformance = false;
     stage
-}
-
-/// The offscreen picture, in the numbers of [`HostImage::numbers`].
-fn offscreen(stage: &Stage) -> Vec<[f64; 4]> {
-    let scene = Scene {
-        volume: &stage.volume,
-        transfer: Some(&stage.transfer),
-        beside: Default::default(),
-        camera: &stage.camera,
-        extent_pixels: stage.extent,
-        settings: &stage.settings,
-    };
-    let mut renderer = offscreen::Renderer::new(shared::device(), &stage.volume).unwrap();
-    let rendered = renderer.render(&scene, &[]).unwrap();
-    let pixels = rendered.picture.pixels;
-    let seen = pixels.iter().filter(|pixel| pixel[3] > 0.1).count();
-    assert!(seen > 100, "only {seen} pixels show anything");
-    pixels.iter().map(|pixel| pixel.map(f64::from)).collect()
 }
 
 fn class(stage: &Stage) -> Class {

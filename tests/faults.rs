@@ -209,6 +209,27 @@ fn a_host_that_lets_us_submit_is_told_of_every_call_that_fails() {
     assert!(faults > 90, "only {faults} faults");
 }
 
+#[test]
+fn a_host_that_lets_us_submit_in_parts_is_told_of_every_call_that_fails() {
+    let tape = Tape::begin();
+    let (host, stage) = (Host::new(), Stage::new());
+    let features = Features {
+        timeline_semaphore: true,
+        ..FEATURES
+    };
+    let Swept { called, faults, .. } = sweep(&tape, FALLIBLE, true, || {
+        let device = host.device(features);
+        // SAFETY: the handles are right, and everything made on the device is dropped before it.
+        let gpu = unsafe { Gpu::from_host(device.handles(hooked))? };
+        stage.submit_in_parts(&device, &gpu)
+    });
+    println!("{faults} faults of {} functions: {called:?}", called.len());
+    for ours in ["vkQueueSubmit2", "vkWaitForFences", "vkResetFences"] {
+        assert!(called.contains(&ours), "{ours}");
+    }
+    assert!(faults > 100, "only {faults} faults");
+}
+
 /// Renders on a device of our own, made for it.
 fn rendered(stage: &Stage, settings: &Settings) -> Drawn {
     let scene = Scene {

@@ -1,5 +1,7 @@
 //! The middle of several runs: one that was disturbed does not count.
 
+#![allow(dead_code, reason = "each bench uses its part")]
+
 use std::time::Instant;
 
 /// Milliseconds, the median of `runs` after one that is not counted: first use compiles and allocates.

@@ -9,7 +9,8 @@ use super::structure::{self, Versioned};
 use super::submit::{self, Submission, sv_submission, sv_submitter};
 use super::update::{self, sv_update};
 use super::volume::{self, commands, sv_volume};
-use crate::embed::Pacing;
+use crate::embed::{Pacing, QueueLock};
+use crate::gpu::TimelinePoint;
 use std::ffi::c_void;
 use std::ops::ControlFlow;
 
@@ -120,24 +121,18 @@ pub unsafe extern "C" fn sv_submitter_submit_in_parts(
             unsafe {
                 let taken = Taken::new(shot, inner)?;
                 let (target, load) = self::target(target)?;
-                let submission = Submission::new(submission)?;
-                let pacing = paced(pacing)?;
-                let locked = submission.locked();
-                let lock = submission.lock(&locked);
-                let (waits, signals) = (&submission.waits, &submission.signals);
-                let renderer = &mut inner.renderer;
-                let shot = taken.shot();
-                let mut tell = |done: f64| told(&pacing, done);
-                let pacing = Pacing {
-                    target_ms: pacing.target_ms,
-                    tell: &mut tell,
-                };
-                let done = submitter.submit_in_parts(
-                    renderer, &shot, &target, load, lock, waits, signals, pacing,
-                )?;
-                is_done.write(done.into());
+                let (shot, renderer) = (taken.shot(), &mut inner.renderer);
+                in_parts(
+                    submission,
+                    pacing,
+                    is_done,
+                    |lock, waits, signals, pacing| {
+                        Ok(submitter.submit_in_parts(
+                            renderer, &shot, &target, load, lock, waits, signals, pacing,
+                        )?)
+                    },
+                )
             }
-            Ok(())
         })
     };
     // SAFETY: the caller's promise.
@@ -164,22 +159,17 @@ pub unsafe extern "C" fn sv_submitter_upload_in_parts(
         let mut submitter = handles::only(submit::Held::NAME, &held.0)?;
         // SAFETY: the caller's promise.
         device.run(|| unsafe {
-            let submission = Submission::new(submission)?;
-            let pacing = paced(pacing)?;
-            let locked = submission.locked();
-            let lock = submission.lock(&locked);
-            let (waits, signals) = (&submission.waits, &submission.signals);
-            let mut tell = |done: f64| told(&pacing, done);
-            let pacing = Pacing {
-                target_ms: pacing.target_ms,
-                tell: &mut tell,
-            };
-            let done = volume.upload(|volume| {
-                let gpu = &device.gpu;
-                submitter.upload_in_parts(gpu, volume, frame, lock, waits, signals, pacing)
-            })?;
-            is_done.write(done.into());
-            Ok(())
+            in_parts(
+                submission,
+                pacing,
+                is_done,
+                |lock, waits, signals, pacing| {
+                    volume.upload(|volume| {
+                        let gpu = &device.gpu;
+                        submitter.upload_in_parts(gpu, volume, frame, lock, waits, signals, pacing)
+                    })
+                },
+            )
         })
     };
     // SAFETY: the caller's promise.
@@ -210,26 +200,47 @@ pub unsafe extern "C" fn sv_submitter_update_in_parts(
         let mut submitter = handles::only(submit::Held::NAME, &held.0)?;
         // SAFETY: the caller's promise.
         device.run(|| unsafe {
-            let submission = Submission::new(submission)?;
-            let pacing = paced(pacing)?;
-            let locked = submission.locked();
-            let lock = submission.lock(&locked);
-            let (waits, signals) = (&submission.waits, &submission.signals);
-            let mut tell = |done: f64| told(&pacing, done);
-            let pacing = Pacing {
-                target_ms: pacing.target_ms,
-                tell: &mut tell,
-            };
-            let done = update::with(&device, update, &volume, |volume, staged| {
-                Ok(submitter
-                    .update_in_parts(volume, staged, frame, lock, waits, signals, pacing)?)
-            })?;
-            is_done.write(done.into());
-            Ok(())
+            in_parts(
+                submission,
+                pacing,
+                is_done,
+                |lock, waits, signals, pacing| {
+                    update::with(&device, update, &volume, |volume, staged| {
+                        Ok(submitter
+                            .update_in_parts(volume, staged, frame, lock, waits, signals, pacing)?)
+                    })
+                },
+            )
         })
     };
     // SAFETY: the caller's promise.
     unsafe { guard(diagnostic, body) }
+}
+
+/// Does `work` as `submission` and `pacing` say, and tells in `is_done` whether all of it is submitted.
+///
+/// # Safety
+/// As [`Submission::new`] and [`paced`]; `is_done` is the caller's to write.
+unsafe fn in_parts(
+    submission: *const sv_submission,
+    pacing: *const sv_pacing,
+    is_done: *mut u32,
+    work: impl FnOnce(QueueLock, &[TimelinePoint], &[TimelinePoint], Pacing) -> Result<bool, Failure>,
+) -> Result<(), Failure> {
+    // SAFETY: the caller's promise, here and below.
+    let (submission, asked) = unsafe { (Submission::new(submission)?, paced(pacing)?) };
+    let locked = submission.locked();
+    let lock = submission.lock(&locked);
+    // SAFETY: as above.
+    let mut tell = |done: f64| unsafe { told(&asked, done) };
+    let pacing = Pacing {
+        target_ms: asked.target_ms,
+        tell: &mut tell,
+    };
+    let done = work(lock, &submission.waits, &submission.signals, pacing)?;
+    // SAFETY: as above.
+    unsafe { is_done.write(done.into()) };
+    Ok(())
 }
 
 /// What a caller says of it, with the time that is asked for where none is told.

@@ -19,8 +19,16 @@
 //! against it in hardware, all else ends at its depth buffer, read as a texture. Its own depth a picture gives back by
 //! [`Renderer::draw_depth`] and [`Renderer::record_pick`] ([`Class::gives_depth`]).
 //!
-//! While it is drawn, a volume takes new voxels of a box ([`Volume::record_update`]), and a frame may be cut into parts that are
-//! submitted one by one and given up between two of them ([`Renderer::begin_parts`], [`Submitter::submit_in_parts`]).
+//! While it is drawn, a volume takes new voxels of a box ([`Volume::stage_update`], [`Volume::record_update`]). Frames, uploads
+//! and updates may be cut into parts that are submitted one by one and given up between two of them:
+//!
+//! ```text
+//!             B, recorded                          C, submitted until the host says no
+//! a frame     Renderer::begin_parts                Submitter::submit_in_parts
+//!             Renderer::record_part_into
+//! an upload   Volume::record_upload_part           Submitter::upload_in_parts
+//! an update   Volume::record_update_part           Submitter::update_in_parts
+//! ```
 //!
 //! Not here, and refused by name: light volumes (shadows, ambient occlusion), several volumes, several rays a pixel,
 //! adaptive steps, cross-fades of stacks. `docs/embedding.md` says why, and the pieces for them lie one floor below, in

@@ -14,8 +14,7 @@ use super::pieces::PIECE_MS;
 use super::recording::Share;
 use super::{Error, Renderer, Shot};
 use crate::gpu::{Blocks, Load, Target, TargetState, Tile, Use, begin_rendering, end_rendering};
-use crate::technique::cost::{looks_of_picture, ms_of_looks};
-use crate::technique::{InPixel, View};
+use crate::technique::cost::{looks_of_dearest_pixel, looks_of_picture, ms_of_looks};
 use ash::vk;
 
 /// Pixels along the side of a block, and of one that is thought to take long.
@@ -36,14 +35,16 @@ impl Renderer {
     pub fn begin_parts(&mut self, shot: &Shot) -> Result<u64, Error> {
         let (frame, recorded) = self.prepare(shot)?;
         let slices = recorded.picture.iter().map(|part| part.slices).sum();
-        let expected_ms = self.expected_ms(shot, slices);
+        let view = self.view(shot);
+        let ms = |looks| ms_of_looks(&self.gpu, looks);
+        let expected_ms = ms(looks_of_picture(&view, slices, 1));
         // A slice is drawn twice, and both are counted.
         let a_step = expected_ms / f64::from(slices.max(1));
         let bands = (a_step / PIECE_MS).ceil().max(1.0) as u32;
         let cut = match self.steps(frame, &recorded, bands) {
             Some(steps) => Cut::Steps(steps),
             None => {
-                let side = self.side_of_block(expected_ms);
+                let side = side_of_block(ms(looks_of_dearest_pixel(&view, slices)));
                 let count = self.extent.map(|n| n.div_ceil(side));
                 Cut::Blocks(Blocks::new(self.extent, count))
             }
@@ -178,32 +179,6 @@ impl Renderer {
         Ok([(function, PIECE_MS * function as f64), picture])
     }
 
-    /// The largest side of which a block is not thought to take long.
-    fn side_of_block(&self, expected_ms: f64) -> u32 {
-        let [width, height] = self.extent.map(f64::from);
-        let is_long = |side: u32| {
-            let part = f64::from(side).powi(2) / (width * height);
-            part.min(1.0) * expected_ms > PIECE_MS
-        };
-        let mut side = SIDE;
-        while side > SMALLEST_SIDE && is_long(side) {
-            side /= 2;
-        }
-        side
-    }
-
-    /// A first guess of what a picture takes, rather too much.
-    fn expected_ms(&self, shot: &Shot, slices: u32) -> f64 {
-        let view = View {
-            grid: self.volume.grid(),
-            camera: shot.camera,
-            extent_pixels: self.extent,
-            in_pixel: InPixel::CENTER,
-            settings: &self.class.settings,
-        };
-        ms_of_looks(&self.gpu, looks_of_picture(&view, slices, 1))
-    }
-
     /// Refuses a target that parts cannot be drawn into.
     pub(super) fn check_parts(&self, target: &Target, load: Load) -> Result<(), Error> {
         self.check_target(target, load)?;
@@ -218,6 +193,31 @@ impl Renderer {
                 what: "a composite by slices in parts into a target that changes its queue family",
                 hint: "each part draws into it: take rays, or `record_into`",
             }),
+        }
+    }
+}
+
+/// The largest side of which a block is not thought to take long, wherever it lies.
+fn side_of_block(pixel_ms: f64) -> u32 {
+    let is_long = |side: u32| f64::from(side).powi(2) * pixel_ms > PIECE_MS;
+    let mut side = SIDE;
+    while side > SMALLEST_SIDE && is_long(side) {
+        side /= 2;
+    }
+    side
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_block_takes_no_longer_than_a_piece_but_where_it_is_the_smallest() {
+        for pixel_ms in [0.0, 1e-6, 0.004, 0.005, 0.02, 0.3, 0.4, 5.0] {
+            let side = side_of_block(pixel_ms);
+            let ms = |side: u32| f64::from(side).powi(2) * pixel_ms;
+            assert!(side == SMALLEST_SIDE || ms(side) <= PIECE_MS, "{pixel_ms}");
+            assert!(side == SIDE || ms(2 * side) > PIECE_MS, "{pixel_ms}");
         }
     }
 }

@@ -251,6 +251,16 @@ impl Renderer {
         }
     }
 
+    pub(super) fn view<'a>(&'a self, shot: &Shot<'a>) -> View<'a> {
+        View {
+            grid: self.volume.grid(),
+            camera: shot.camera,
+            extent_pixels: self.extent,
+            in_pixel: InPixel::CENTER,
+            settings: &self.class.settings,
+        }
+    }
+
     /// Parameters into the ring, and what they are of into `made`.
     fn describe(
         &self,
@@ -259,14 +269,8 @@ impl Renderer {
         depth: Option<HostDepth>,
         made: &mut Recorded,
     ) -> Result<(), Error> {
-        let grid = self.volume.grid();
-        let view = View {
-            grid,
-            camera: shot.camera,
-            extent_pixels: self.extent,
-            in_pixel: InPixel::CENTER,
-            settings: &self.class.settings,
-        };
+        let view = self.view(shot);
+        let grid = view.grid;
         let layout = view.texture_layout();
         let mut copies = self.volume.copies().iter();
         let copy = copies.position(|copy| copy.layout() == layout);

@@ -111,6 +111,13 @@ impl Bindings {
     }
 }
 
+impl Drop for Bindings {
+    /// A set goes with its pool, but not its name: lavapipe keeps that (Mesa 22.3).
+    fn drop(&mut self) {
+        self.gpu().unname(self.set);
+    }
+}
+
 /// What a descriptor points to.
 enum Info {
     Buffer([vk::DescriptorBufferInfo; 1]),

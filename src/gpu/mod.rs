@@ -317,15 +317,27 @@ impl Gpu {
 
     /// Names an object for validation messages and debuggers, where the instance can.
     fn name(&self, handle: impl vk::Handle, name: &str) {
-        let Some(debug_utils) = &self.debug_utils else {
-            return;
-        };
-        let Ok(name) = CString::new(name) else { return };
-        let info = vk::DebugUtilsObjectNameInfoEXT::default()
-            .object_handle(handle)
-            .object_name(&name);
-        // SAFETY: the handle was made on this device. A name is a courtesy: its failure changes nothing.
-        let _ = unsafe { debug_utils.set_debug_utils_object_name(&info) };
+        if let Ok(name) = CString::new(name) {
+            self.set_name(
+                vk::DebugUtilsObjectNameInfoEXT::default().object_name(&name),
+                handle,
+            );
+        }
+    }
+
+    /// Takes a name away, for drivers that do not free it with the object.
+    fn unname(&self, handle: impl vk::Handle) {
+        if !self.is_lost() {
+            self.set_name(vk::DebugUtilsObjectNameInfoEXT::default(), handle);
+        }
+    }
+
+    fn set_name(&self, info: vk::DebugUtilsObjectNameInfoEXT, handle: impl vk::Handle) {
+        if let Some(debug_utils) = &self.debug_utils {
+            let info = info.object_handle(handle);
+            // SAFETY: the handle was made on this device. A name is a courtesy: its failure changes nothing.
+            let _ = unsafe { debug_utils.set_debug_utils_object_name(&info) };
+        }
     }
 
     fn store(&self) -> MutexGuard<'_, Store> {

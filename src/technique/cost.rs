@@ -25,12 +25,23 @@ const RAYS: u32 = 16;
 
 /// Looks that one picture takes where nothing is skipped. `slices`: of a slicer, those of all bricks.
 pub fn looks_of_picture(view: &View, slices: u32, volumes: usize) -> f64 {
+    let [width, height] = view.extent_pixels.map(f64::from);
+    let mean = looks_of_pixels(view, slices).sum::<f64>() / f64::from(RAYS * RAYS);
+    mean * width * height * volumes as f64
+}
+
+/// The same of the pixel of one volume that takes most.
+pub fn looks_of_dearest_pixel(view: &View, slices: u32) -> f64 {
+    looks_of_pixels(view, slices).fold(0.0, f64::max)
+}
+
+/// Those of some pixels, which lie evenly over the picture.
+fn looks_of_pixels(view: &View, slices: u32) -> impl Iterator<Item = f64> {
     let settings = view.settings;
     let [width, height] = view.extent_pixels.map(f64::from);
     let rays = view.rays();
     let voxel_from_world = view.world_from_voxel().inverse();
-    let mut samples = 0.0;
-    for at in 0..RAYS * RAYS {
+    (0..RAYS * RAYS).map(move |at| {
         let x = (f64::from(at % RAYS) + 0.5) * width / f64::from(RAYS);
         let y = (f64::from(at / RAYS) + 0.5) * height / f64::from(RAYS);
         let origin = rays.origin + x * rays.origin_dx + y * rays.origin_dy;
@@ -40,14 +51,13 @@ pub fn looks_of_picture(view: &View, slices: u32, volumes: usize) -> f64 {
             voxel_from_world.transform_point3(origin),
             voxel_from_world.transform_vector3(direction),
         ) * direction.length();
-        samples += match settings.technique {
+        let samples = match settings.technique {
             Technique::Raycast => (length / view.step_world()).min(MAX_SAMPLES_PER_RAY.into()),
             _ if length > 0.0 => slices.into(),
             _ => 0.0,
         };
-    }
-    let pixels = width * height / f64::from(RAYS * RAYS);
-    samples * pixels * looks_of_sample(settings) * volumes as f64
+        samples * looks_of_sample(settings)
+    })
 }
 
 /// In units of t: how much of a ray lies in a box.

@@ -1,8 +1,11 @@
 //! What a host's image must hold, and how far a device may be off it.
 
-use super::HostImage;
+use super::{HostImage, Stage};
+use crate::shared::device;
 use ash::vk;
 use stratavox::color::encode_srgb;
+use stratavox::offscreen::Renderer;
+use stratavox::scene::Scene;
 
 /// What the arithmetic of a device may change in a twin's picture of [`super::Stage`]: both compute in f32,
 /// in the same order, and neither exactly.
@@ -14,6 +17,24 @@ fn arithmetic() -> f64 {
     let position_voxels = 5.0 * 200.0 * 2f64.powi(-24);
     let value = (1.0 / 3.0 + 1.0 / 4.0) * position_voxels;
     40.0 * 0.25 / 0.3 * value
+}
+
+/// The offscreen picture, in the numbers of [`HostImage::numbers`]: what hosts draw too, to the bit.
+pub fn offscreen(stage: &Stage) -> Vec<[f64; 4]> {
+    let scene = Scene {
+        volume: &stage.volume,
+        transfer: Some(&stage.transfer),
+        beside: Default::default(),
+        camera: &stage.camera,
+        extent_pixels: stage.extent,
+        settings: &stage.settings,
+    };
+    let mut renderer = Renderer::new(device(), &stage.volume).unwrap();
+    let rendered = renderer.render(&scene, &[]).unwrap();
+    let pixels = rendered.picture.pixels;
+    let seen = pixels.iter().filter(|pixel| pixel[3] > 0.1).count();
+    assert!(seen > 100, "only {seen} pixels show anything");
+    pixels.iter().map(|pixel| pixel.map(f64::from)).collect()
 }
 
 /// A premultiplied pixel over what the host has drawn, premultiplied too.

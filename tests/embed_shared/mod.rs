@@ -12,13 +12,14 @@ mod scene;
 mod settings;
 
 pub use depth::{ATTACHED, DepthImage, READ};
-pub use expected::{assert_close, over};
+pub use expected::{assert_close, offscreen, over};
 pub use eyes::{Eye, Found, depths, draw, eyes, spheres};
 pub use image::HostImage;
 pub use pace::Pace;
 pub use scene::{OnDevice, Stage};
 pub use settings::all_settings;
 
+use crate::shared::allowed;
 use ash::{ext, vk};
 use std::ffi::{CStr, c_void};
 use std::sync::{Arc, Mutex};
@@ -119,7 +120,7 @@ impl Host {
                     ..Features::default()
                 },
                 debug_utils: mode.is_some(),
-                caps,
+                caps: allowed(caps),
                 pipeline_cache: &[],
             });
             Self {

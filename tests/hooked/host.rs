@@ -1,6 +1,7 @@
 //! A host with devices of its own, each made for one picture.
 
 use super::entry;
+use crate::shared::allowed;
 use ash::{ext, vk};
 use std::ffi::{CStr, c_void};
 use std::sync::Mutex;
@@ -177,7 +178,7 @@ impl HostedDevice<'_> {
             api_version: API_VERSION,
             features: self.features,
             debug_utils: true,
-            caps: Caps::UNLIMITED,
+            caps: allowed(Caps::UNLIMITED),
             pipeline_cache: &[],
         }
     }

@@ -4,9 +4,10 @@ use super::HostedDevice;
 use crate::shared::{oblique_camera, projections, ramps, sheared_affine, volume_of, waves};
 use ash::vk;
 use std::error::Error;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use stratavox::camera::Camera;
-use stratavox::embed::{self, Class, QueueLock, Shot, Submitter};
+use stratavox::embed::{self, Class, Pacing, QueueLock, Shot, Submitter};
 use stratavox::gpu::{
     self, Blend, Buffer, Gpu, Memory, Region, Target, Timer, Use, image_barrier, image_to_buffer,
 };
@@ -18,7 +19,7 @@ use stratavox::technique::{
     parameter_ring,
 };
 use stratavox::transfer::TransferFunction;
-use stratavox::volume::{Grid, Volume};
+use stratavox::volume::{Grid, Volume, VoxelBox};
 
 /// A small picture: a volume, what it looks like, and from where.
 pub struct Stage {
@@ -140,6 +141,24 @@ impl Stage {
         device: &HostedDevice<'_>,
         gpu: &Arc<Gpu>,
     ) -> Result<Vec<u8>, Box<dyn Error>> {
+        self.submit_in(device, gpu, false)
+    }
+
+    /// The same with each piece of upload and frame by itself, and an update of some voxels to what they are between.
+    pub fn submit_in_parts(
+        &self,
+        device: &HostedDevice<'_>,
+        gpu: &Arc<Gpu>,
+    ) -> Result<Vec<u8>, Box<dyn Error>> {
+        self.submit_in(device, gpu, true)
+    }
+
+    fn submit_in(
+        &self,
+        device: &HostedDevice<'_>,
+        gpu: &Arc<Gpu>,
+        in_parts: bool,
+    ) -> Result<Vec<u8>, Box<dyn Error>> {
         let mut volume = embed::Volume::new(gpu, &self.volume, &self.settings)?;
         let mut submitter = Submitter::new(gpu, 3)?;
         let image = accumulation(gpu, self.extent, "target")?;
@@ -173,27 +192,82 @@ impl Stage {
         };
         // SAFETY: all of it lives until the timeline has waited, which goes first.
         unsafe {
-            gpu.announce(3);
+            gpu.announce(4);
             let mut renderer;
             let timeline = Timeline::new(device);
             let at = |value| [(timeline.semaphore, value)];
-            submitter.run(lock, 0, &[], &at(1), |cmd| volume.record_upload(gpu, cmd))?;
+            let go_on = &mut |_| ControlFlow::Continue(());
+            let first = &mut volume;
+            match in_parts {
+                false => submitter.upload(gpu, first, 0, lock, &[], &at(1))?,
+                true => {
+                    submitter.upload_in_parts(
+                        gpu,
+                        first,
+                        0,
+                        lock,
+                        &[],
+                        &at(1),
+                        a_piece_each(go_on),
+                    )?;
+                }
+            }
             let volume = Arc::new(volume);
             let function = Some(&self.transfer);
             renderer = embed::Renderer::new(gpu, &volume, function, class, self.extent, &[])?;
-            let load = gpu::Load::Clear([0.0; 4]);
-            submitter.submit(&mut renderer, &shot, &target, load, lock, &at(1), &at(2))?;
-            submitter.run(lock, 2, &at(2), &at(3), |cmd| {
+            if in_parts {
+                let (min, max) = ([3, 0, 7], [9, 12, 10]);
+                let same = (&self.volume).into();
+                let mut update = volume.stage_update(VoxelBox { min, max }, same)?;
+                let (waits, signals) = (at(1), at(2));
+                submitter.update_in_parts(
+                    &volume,
+                    &mut update,
+                    2,
+                    lock,
+                    &waits,
+                    &signals,
+                    a_piece_each(go_on),
+                )?;
+            }
+            let (load, drawn) = (gpu::Load::Clear([0.0; 4]), at(3));
+            let waits = at(if in_parts { 2 } else { 1 });
+            match in_parts {
+                false => {
+                    submitter.submit(&mut renderer, &shot, &target, load, lock, &waits, &drawn)?;
+                }
+                true => {
+                    submitter.submit_in_parts(
+                        &mut renderer,
+                        &shot,
+                        &target,
+                        load,
+                        lock,
+                        &waits,
+                        &drawn,
+                        a_piece_each(go_on),
+                    )?;
+                }
+            }
+            submitter.run(lock, 0, &drawn, &at(4), |cmd| {
                 image_to_buffer(gpu, cmd, &image, Region::whole(&image), &readback, 0)?;
                 gpu::buffer_barrier(gpu, cmd, &readback, Use::TransferWrite, Use::HostRead);
                 Ok(())
             })?;
-            timeline.wait(3);
-            gpu.retire(3);
+            timeline.wait(4);
+            gpu.retire(4);
         }
         let mut texels = vec![0; bytes as usize];
         readback.read(0, &mut texels)?;
         Ok(texels)
+    }
+}
+
+/// No piece is done in no time: each is a submission.
+fn a_piece_each(tell: &mut dyn FnMut(f64) -> ControlFlow<()>) -> Pacing<'_> {
+    Pacing {
+        target_ms: 1e-6,
+        tell,
     }
 }
 

@@ -1,6 +1,7 @@
 //! What a device is asked for, and what of it is told.
 
 use super::hooked;
+use crate::shared::allowed;
 use std::error::Error;
 use stratavox::gpu::{self, *};
 use stratavox::{embed, offscreen};
@@ -31,7 +32,7 @@ pub const FEATURES: Features = Features {
 
 fn options() -> Options {
     Options {
-        caps: Caps::UNLIMITED,
+        caps: allowed(Caps::UNLIMITED),
         pipeline_cache: PipelineCache::Off,
         validation: Validation::Off,
     }

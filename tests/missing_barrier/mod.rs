@@ -3,7 +3,9 @@
 
 #![allow(dead_code, reason = "each test file uses its part")]
 
-use std::fs;
+#[path = "../layer/mod.rs"]
+mod layer;
+
 use std::process::Command;
 
 /// A rendering that begins: layers of 2023 do not look at what dynamic rendering loads and clears. The barrier before one
@@ -45,27 +47,10 @@ impl MissingBarrier {
     /// `None` where there is no compiler, or no headers of layers.
     pub fn new() -> Option<Self> {
         let folder = tempfile::tempdir().unwrap();
-        let library = folder.path().join("layer.so");
-        let source = folder.path().join("layer.c");
-        fs::write(&source, include_str!("layer.c")).unwrap();
-        let built = Command::new("cc")
-            .args(["-shared", "-fPIC", "-Wall", "-Wextra"])
-            .arg(&source)
-            .arg("-o")
-            .arg(&library)
-            .output();
-        let is_built = built.is_ok_and(|built| built.status.success());
-        if !is_built {
-            println!("skipped: no compiler, or no headers of Vulkan (Debian: libvulkan-dev)");
+        if !layer::build(folder.path(), NAME, include_str!("layer.c")) {
+            println!("skipped: {}", layer::UNBUILT);
             return None;
         }
-        let manifest = format!(
-            r#"{{"file_format_version": "1.2.0", "layer": {{"name": "{NAME}", "type": "INSTANCE",
-            "library_path": "{}", "api_version": "1.3.0", "implementation_version": "1",
-            "description": "one barrier orders nothing"}}}}"#,
-            library.display()
-        );
-        fs::write(folder.path().join("layer.json"), manifest).unwrap();
         Some(Self { folder })
     }
 

@@ -4,12 +4,14 @@
 #![allow(dead_code, unused_imports, reason = "each test file uses its part")]
 
 mod agree;
+mod limits;
 pub mod oracle;
 mod shot;
 mod way;
 mod worst;
 
 pub use agree::compare;
+pub use limits::allowed;
 pub use shot::{Chord, Shot};
 pub use way::{Device, Matter, Twin, Way};
 pub use worst::Worst;
@@ -29,7 +31,7 @@ pub fn device() -> Headless {
 /// The same with stricter limits.
 pub fn device_with(caps: Caps) -> Headless {
     let options = Options {
-        caps,
+        caps: allowed(caps),
         pipeline_cache: PipelineCache::Off,
         ..Options::default()
     };

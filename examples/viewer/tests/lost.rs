@@ -3,6 +3,8 @@
 #![cfg(target_os = "linux")]
 
 mod display;
+#[path = "../../../tests/layer/mod.rs"]
+mod layer;
 
 use display::{Display, skipped, texts};
 use std::fs;
@@ -16,27 +18,12 @@ const SURFACE_LOST: i32 = -1_000_000_000;
 const OUT_OF_DATE: i32 = -1_000_001_004;
 const DEVICE_LOST: i32 = -4;
 
-/// The layer, built; `None` where there is no compiler, or no headers of layers.
+/// The layer, built; `None` where that cannot be.
 fn layer(folder: &Path) -> Option<()> {
-    let (source, library) = (folder.join("layer.c"), folder.join("layer.so"));
-    fs::write(&source, include_str!("failing/layer.c")).unwrap();
-    let built = Command::new("cc")
-        .args(["-shared", "-fPIC", "-Wall", "-Wextra"])
-        .arg(&source)
-        .arg("-o")
-        .arg(&library)
-        .output();
-    if !built.is_ok_and(|built| built.status.success()) {
-        return skipped("no compiler, or no headers of Vulkan (Debian: libvulkan-dev)");
+    match layer::build(folder, NAME, include_str!("failing/layer.c")) {
+        true => Some(()),
+        false => skipped(layer::UNBUILT),
     }
-    let manifest = format!(
-        r#"{{"file_format_version": "1.2.0", "layer": {{"name": "{NAME}", "type": "INSTANCE",
-        "library_path": "{}", "api_version": "1.3.0", "implementation_version": "1",
-        "description": "one call fails"}}}}"#,
-        library.display()
-    );
-    fs::write(folder.join("layer.json"), manifest).unwrap();
-    Some(())
 }
 
 /// A viewer of which call number `at` of `name` ends so.

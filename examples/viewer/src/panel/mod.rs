@@ -25,6 +25,8 @@ pub fn set_style(context: &Context) {
         style.spacing.slider_width = 118.0;
         style.spacing.interact_size.y = 22.0;
         style.interaction.selectable_labels = false;
+        // What fades in takes frames, which may be slow.
+        style.animation_time = 0.0;
         let visuals = &mut style.visuals;
         visuals.panel_fill = Color32::from_rgb(27, 28, 31);
         visuals.window_fill = Color32::from_rgb(33, 34, 38);
@@ -130,15 +132,15 @@ fn heading(ui: &mut Ui, text: &str) {
 
 fn beside(ui: &mut Ui, view: &mut View) {
     subject(ui, view);
+    if view.times() > 1 {
+        heading(ui, "Time");
+        time(ui, view);
+    }
     heading(ui, "Picture");
     ways::ways(ui, view);
     match view.look.mode {
         Mode::Iso => ways::surfaces(ui, &mut view.look),
         _ => function::function(ui, view),
-    }
-    if view.times() > 1 {
-        heading(ui, "Time");
-        time(ui, view);
     }
     if let Some(picked) = &view.picked {
         heading(ui, "Under the pointer");
@@ -247,6 +249,7 @@ fn help(context: &Context, view: &mut View) {
         .collapsible(false)
         .resizable(false)
         .vscroll(true)
+        .default_height(0.9 * context.content_rect().height())
         .anchor(Align2::CENTER_CENTER, vec2(-0.5 * WIDTH, 0.0))
         .show(context, |ui| {
             Grid::new("keys")

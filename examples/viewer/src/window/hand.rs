@@ -34,7 +34,9 @@ impl Window {
     pub(super) fn lay_out(&mut self, step: Option<&Step>) -> FullOutput {
         let mut input = self.egui.take_egui_input(&self.window);
         if self.steps.is_some() {
-            // A script is the only hand.
+            // A script is the only hand, and its frames are even: a press and a release on either side of a slow one
+            // would be no click.
+            input.time = Some(self.context.cumulative_frame_nr() as f64 / 60.0);
             input.events = match step {
                 Some(Step::Events(events)) => events.clone(),
                 _ => Vec::new(),
