@@ -1,5 +1,5 @@
-// Trilinear from two texels, each with the four corners of a face of the cell between voxel centres, for devices whose
-// sampler is a program: x first, then y, then z. What a texel holds, filter_corners8.wgsl and filter_corners16.wgsl say.
+// Trilinear from the corners of two faces of the cell between voxel centres, for devices whose sampler is a program: x
+// first, then y, then z. What a texel holds and how a face is read, filter_corners8.wgsl and filter_corners16.wgsl say.
 // Twin: src/resident/corners.rs makes them.
 
 #import box
@@ -7,13 +7,6 @@
 
 // The texels are folded into rows of this many.
 const CORNERS_WIDTH: u32 = 8192u;
-// New voxels along x. A third is a product and a shift, exact below 3 * 2^15: a division of whole numbers is a long way.
-const TEXEL_COLUMNS: u32 = 3u;
-const THIRD: u32 = 43691u;
-const THIRD_BITS: u32 = 17u;
-
-// Texels lie in cubes of 4 x 4 x 4, z fastest inside of one, then x, and x fastest from one to the next.
-@group(0) @binding(37) var corners: texture_storage_2d<rgba32uint, read>;
 
 fn filtered(values: Values, coding: Coding, voxel: vec3<f32>) -> f32 {
     let last = frame.dims - 1.0;
@@ -39,7 +32,8 @@ fn in_face(face: Face, weight: vec2<f32>) -> f32 {
     return lerp(lerp(face.low.x, face.low.y, weight.x), lerp(face.high.x, face.high.y, weight.x), weight.y);
 }
 
-// Texels from one row of cubes to the next along y, and along z.
+// Texels lie in cubes of 4 x 4 x 4, z fastest inside of one, then x, and x fastest from one to the next: how many from one
+// row of cubes to the next along y, and along z.
 struct GridOfTexels {
     row: u32,
     layer: u32,
@@ -47,35 +41,36 @@ struct GridOfTexels {
 
 fn grid_of_texels() -> GridOfTexels {
     let last = vec2<u32>(frame.dims.xy) - 1u;
-    let row = 16u * ((third_of(last.x) + 4u) & ~3u);
-    return GridOfTexels(row, row * ((row_in(last.y).x + 4u) >> 2u));
+    let row = 16u * ((in_texel(last.x).x + 4u) & ~3u);
+    return GridOfTexels(row, row * ((in_row_of_texels(last.y).x + 4u) >> 2u));
 }
 
-// A place along an axis: how far it lies in its texel, and what it adds to where that is.
+// A place along an axis: how far it lies in its texel, what it adds to where that is, and what the next voxel along y adds.
 struct Along {
     inside: u32,
     first: u32,
+    next: u32,
 }
 
 fn column_of(x: u32) -> Along {
-    let texel = third_of(x);
-    return Along(x - TEXEL_COLUMNS * texel, ((texel & 3u) << 2u) + ((texel & ~3u) << 4u));
+    let column = in_texel(x);
+    return Along(column.y, ((column.x & 3u) << 2u) + ((column.x & ~3u) << 4u), 0u);
 }
 
 fn row_of(grid: GridOfTexels, y: u32) -> Along {
-    let row = row_in(y);
-    return Along(row.y, ((row.x & 3u) << 4u) + grid.row * (row.x >> 2u));
+    let row = in_row_of_texels(y);
+    let next = in_row_of_texels(min(y + 1u, u32(frame.dims.y) - 1u));
+    return Along(row.y, row_of_texels(grid, row.x), row_of_texels(grid, next.x));
+}
+
+fn row_of_texels(grid: GridOfTexels, row: u32) -> u32 {
+    return ((row & 3u) << 4u) + grid.row * (row >> 2u);
 }
 
 fn layer_of(grid: GridOfTexels, z: u32) -> u32 {
     return (z & 3u) + grid.layer * (z >> 2u);
 }
 
-fn third_of(voxel: u32) -> u32 {
-    return (voxel * THIRD) >> THIRD_BITS;
-}
-
-fn face_of(column: Along, row: Along, layer: u32) -> Face {
-    let index = column.first + row.first + layer;
-    return corners_in(textureLoad(corners, vec2(index % CORNERS_WIDTH, index / CORNERS_WIDTH)), column.inside, row.inside);
+fn folded(index: u32) -> vec2<u32> {
+    return vec2(index % CORNERS_WIDTH, index / CORNERS_WIDTH);
 }

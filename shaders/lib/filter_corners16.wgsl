@@ -1,20 +1,26 @@
-// Corners of 16-bit voxels: a texel holds 4 x 2 of a plane, a row in two components, lower half first. The upper row and the
-// last column are the first of the next ones too.
+// Corners of 16-bit voxels: a texel holds a voxel and, in its upper half, the next one in the row. A face as one texel of
+// 16 bytes would take a third more memory, and was hardly faster (docs/performance.md).
 
 #import corners
 
-// Which texel a row of voxels begins in, and which row of it that is.
-fn row_in(y: u32) -> vec2<u32> {
+@group(0) @binding(37) var corners: texture_storage_2d<r32uint, read>;
+
+// Which texel a voxel begins in, along x, and how far it lies in that.
+fn in_texel(x: u32) -> vec2<u32> {
+    return vec2(x, 0u);
+}
+
+// The same along y.
+fn in_row_of_texels(y: u32) -> vec2<u32> {
     return vec2(y, 0u);
 }
 
-fn corners_in(texel: vec4<u32>, column: u32, row: u32) -> Face {
-    return Face(ends_in(texel.xy, column), ends_in(texel.zw, column));
+fn face_of(column: Along, row: Along, layer: u32) -> Face {
+    return Face(ends_at(column.first + row.first + layer), ends_at(column.first + row.next + layer));
 }
 
-fn ends_in(row: vec2<u32>, column: u32) -> vec2<f32> {
-    let middle = (row.x >> 16u) | (row.y << 16u);
-    let ends = select(select(row.x, middle, column == 1u), row.y, column == 2u);
+fn ends_at(index: u32) -> vec2<f32> {
+    let ends = textureLoad(corners, folded(index)).x;
     // Of numbers with a sign, which this never is, processors make floats by one instruction.
     return vec2(f32(i32(ends & 0xffffu)), f32(i32(ends >> 16u)));
 }

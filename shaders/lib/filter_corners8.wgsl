@@ -1,18 +1,30 @@
-// Corners of 8-bit voxels: a texel holds 4 x 4 of a plane, a row in each component, lowest byte first. The last row and the
-// last column are the first of the next ones too.
+// Corners of 8-bit voxels: a texel holds 4 x 4 of a plane, a row in each component, lowest byte first. The last row and
+// the last column are the first of the next ones too.
 
 #import corners
 
-// Which texel a row of voxels begins in, and which row of it that is.
-fn row_in(y: u32) -> vec2<u32> {
-    let texel = third_of(y);
-    return vec2(texel, y - 3u * texel);
+@group(0) @binding(37) var corners: texture_storage_2d<rgba32uint, read>;
+
+// A third is a product and a shift, exact below 3 * 2^15: a division of whole numbers is a long way.
+const THIRD: u32 = 43691u;
+const THIRD_BITS: u32 = 17u;
+
+// Which texel a voxel begins in, along x, and how far it lies in that.
+fn in_texel(x: u32) -> vec2<u32> {
+    let texel = (x * THIRD) >> THIRD_BITS;
+    return vec2(texel, x - 3u * texel);
 }
 
-fn corners_in(texel: vec4<u32>, column: u32, row: u32) -> Face {
-    let low = select(select(texel.x, texel.y, row == 1u), texel.z, row == 2u);
-    let high = select(select(texel.y, texel.z, row == 1u), texel.w, row == 2u);
-    return Face(ends_in(low, 8u * column), ends_in(high, 8u * column));
+// The same along y.
+fn in_row_of_texels(y: u32) -> vec2<u32> {
+    return in_texel(y);
+}
+
+fn face_of(column: Along, row: Along, layer: u32) -> Face {
+    let texel = textureLoad(corners, folded(column.first + row.first + layer));
+    let low = select(select(texel.x, texel.y, row.inside == 1u), texel.z, row.inside == 2u);
+    let high = select(select(texel.y, texel.z, row.inside == 1u), texel.w, row.inside == 2u);
+    return Face(ends_in(low, 8u * column.inside), ends_in(high, 8u * column.inside));
 }
 
 fn ends_in(row: u32, shift: u32) -> vec2<f32> {

@@ -1,7 +1,7 @@
 //! Corners after voxels of a box have changed: the cubes of texels that have some of them, and no others.
 
 use super::Corners;
-use super::corners::{CUBE_TEXELS, CUBE_WORDS, Code, RowPlace, SIDE, TEXEL_WORDS, put_row};
+use super::corners::{CUBE_TEXELS, Code, RowPlace, SIDE, put_row};
 use crate::gpu::{Buffer, Error, Gpu, Region, Use, buffer_to_image, image_barrier};
 use crate::shaders::CORNERS_WIDTH;
 use crate::volume::{VoxelBox, VoxelPart, Voxels};
@@ -15,19 +15,20 @@ pub(crate) struct ChangedCorners {
     pub words: Vec<u32>,
     /// Where they go, in their order.
     copies: Vec<Region>,
+    texel_bytes: u64,
 }
 
 impl Corners {
     /// Voxels from one cube to the next.
     fn sides(&self) -> [u32; 3] {
-        self.new_voxels.map(|new| new * SIDE as u32)
+        self.texel.new_voxels.map(|new| new * SIDE as u32)
     }
 
     /// The cubes, along each axis, that have texels of voxels of `region`, and the voxels that those are made of.
     fn cubes_of(&self, region: VoxelBox, dims: [u32; 3]) -> ([Range<u32>; 3], VoxelBox) {
-        // A texel has the first voxels of the next ones too.
+        // A texel has the first voxels of the next one along x too, and one of more than a row those along y.
         let sides = self.sides();
-        let shared = [1, 1, 0];
+        let shared = [1, u32::from(self.texel.words > 1), 0];
         let cubes = std::array::from_fn(|k| {
             let first = region.min[k].saturating_sub(shared[k]) / sides[k];
             first..region.max[k].div_ceil(sides[k])
@@ -70,9 +71,12 @@ impl Corners {
         let ([xs, ys, zs], voxels) = self.cubes_of(region, dims);
         let sides = self.sides();
         let [along_x, along_y] = [0, 1].map(|k| u64::from(dims[k].div_ceil(sides[k])));
-        let run = CUBE_WORDS * xs.len();
+        let run = C::TEXEL.cube_words() * xs.len();
         let width = voxels.dims()[0] as usize;
-        let mut changed = ChangedCorners::default();
+        let mut changed = ChangedCorners {
+            texel_bytes: C::TEXEL.bytes(),
+            ..ChangedCorners::default()
+        };
         let mut longer = Vec::new();
         for (z, y) in zs.flat_map(|z| ys.clone().map(move |y| (z, y))) {
             let mut rows = voxels;
@@ -122,17 +126,12 @@ impl Corners {
             image_barrier(gpu, cmd, &self.image, read, write);
             for &region in run {
                 buffer_to_image(gpu, cmd, staging, offset, &self.image, region)?;
-                offset += bytes_of(region);
+                offset += self.texel.bytes() * u64::from(region.extent[0]);
             }
             image_barrier(gpu, cmd, &self.image, write, read);
         }
         Ok(())
     }
-}
-
-/// A run of texels in a row.
-fn bytes_of(copy: Region) -> u64 {
-    (4 * TEXEL_WORDS) as u64 * u64::from(copy.extent[0])
 }
 
 impl ChangedCorners {
@@ -141,7 +140,7 @@ impl ChangedCorners {
         let mut runs: Vec<(u64, Vec<Region>)> = Vec::new();
         let (mut at, mut room) = (0, 0);
         for &copy in &self.copies {
-            let length = bytes_of(copy);
+            let length = self.texel_bytes * u64::from(copy.extent[0]);
             match runs.last_mut() {
                 Some((_, run)) if length <= room => run.push(copy),
                 _ => {
@@ -158,7 +157,7 @@ impl ChangedCorners {
     /// The words of texels from number `first` of the image on, row by row of it.
     fn put(&mut self, first: u64, words: &[u32]) {
         let width = u64::from(CORNERS_WIDTH);
-        let (mut at, end) = (first, first + (words.len() / TEXEL_WORDS) as u64);
+        let (mut at, end) = (first, first + 4 * words.len() as u64 / self.texel_bytes);
         while at < end {
             let count = (width - at % width).min(end - at);
             self.copies.push(Region {

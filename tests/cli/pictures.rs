@@ -256,7 +256,7 @@ fn info_has_the_promised_keys_and_exact_numbers() {
     let render_bytes = info["render_bytes"].take();
     assert!(render_bytes["host"].as_u64() >= Some(8), "{render_bytes}");
     assert!(render_bytes["device"].as_u64() >= Some(8), "{render_bytes}");
-    // A cube of 4 x 4 x 4 words of corners.
+    // A cube of 4 x 4 x 4 texels of corners, of a word each.
     assert_eq!(info["software_device_bytes"].take(), 256);
     let wanted = json(
         r#"{"format":"nrrd","dims":[2,2,1],"components":1,"times":1,"type":"i16","spacing":[2.0,3.0,4.0],
