@@ -102,8 +102,9 @@ fn loops() -> u32 {
 
 /// What is lost in each loop is missed in each quarter of the loops; a map with holes becomes larger once, at a time of
 /// its own. So the quarter in which our heap grew most is left out, and the others together grow by no more than the
-/// slack: 24 bytes a loop would be 1296 in three quarters. As many files are open as before, and the process as a whole,
-/// in whose heap the driver finds its places first, grows by less than 1 MiB in the last quarter.
+/// slack: 24 bytes a loop would be 1296 in three quarters. As many files are open as before. The process as a whole, in
+/// which the driver's threads make heaps of their own when they first meet, grows by whole MiB in some quarter or other:
+/// in the two in which it grew least, by less than 1 MiB together.
 #[track_caller]
 fn assert_no_growth(slack_bytes: i64, mut draw: impl FnMut()) {
     (0..25).for_each(|_| draw());
@@ -131,8 +132,10 @@ fn assert_no_growth(slack_bytes: i64, mut draw: impl FnMut()) {
         quarters.iter().all(|(_, _, open)| *open == files),
         "of {files} open files: {quarters:?}"
     );
-    let (_, of_process, _) = quarters[3];
-    assert!(of_process < 1 << 20, "{of_process} bytes more");
+    let mut of_process = quarters.map(|(_, grown, _)| grown);
+    of_process.sort_unstable();
+    let steady = of_process[0].max(0) + of_process[1];
+    assert!(steady < 1 << 20, "{steady} bytes more: {quarters:?}");
 }
 
 /// The heap is that of the whole process.
