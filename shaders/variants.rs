@@ -52,8 +52,8 @@ const HOLES: Slot = ("holes", &["none", "mask"]);
 const LATTICE: Slot = ("lattice", &["ray", "planes"]);
 /// One number a voxel, alone or with its gradient. The word `alone` is left out of names.
 const ONE: Slot = ("mix", &["alone", "graded"]);
-/// Graded for nothing but unhindered light on central differences.
-const LIT: Slot = ("mix", &["lit"]);
+/// Graded for no more than unhindered light and weights of opacity, by central differences.
+const LEAN: Slot = ("mix", &["lit", "weighed"]);
 const ALONE: Slot = ("mix", &["alone"]);
 /// Steps that adapt to what is there, of volumes without holes.
 const ADAPTIVE: Slot = ("mix", &["adaptive"]);
@@ -79,11 +79,11 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "raycast",
-        &[LINE, MODE, LIT, RAY, NARROW, HOLES, TABLE, TAPS],
+        &[LINE, MODE, LEAN, RAY, NARROW, HOLES, TABLE, TAPS],
     ),
     (
         "raycast",
-        &[LINE, MODE, LIT, RAY, CORNERS, HOLES, STORED, SHARED],
+        &[LINE, MODE, LEAN, RAY, CORNERS, HOLES, STORED, SHARED],
     ),
     (
         "raycast",

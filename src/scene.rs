@@ -73,8 +73,7 @@ impl<'a> Scene<'a> {
         match self.beside {
             Beside::Channels(channels) if !channels.is_empty() => Mix::Channels,
             Beside::Colors(_) | Beside::Classified(_) => Mix::Colors,
-            _ if self.is_graded() => Mix::Graded,
-            Beside::Nothing | Beside::Channels(_) => Mix::Alone,
+            Beside::Nothing | Beside::Channels(_) => Mix::of_one(self.transfer),
         }
     }
 
@@ -143,7 +142,7 @@ impl<'a> Scene<'a> {
         let only_composite = |role: &Role| matches!(role, Role::Labels | Role::Opacity);
         let Settings { mode, filter, .. } = *self.settings;
         self.settings.check()?;
-        if !matches!(self.mix(), Mix::Alone | Mix::Graded) {
+        if !self.mix().is_of_one() {
             self.settings.check_mixed()?;
         }
         if self.is_graded() {
@@ -177,7 +176,7 @@ impl<'a> Scene<'a> {
             });
         }
         match self.mix() {
-            Mix::Alone | Mix::Graded => Ok(()),
+            mix if mix.is_of_one() => Ok(()),
             _ if self.is_graded() => Err(Error::NotGradedTogether),
             Mix::Channels if mode == Mode::Iso => self.check_painted(),
             _ if self.settings.shading.is_some() => Err(Error::NotShadedTogether),

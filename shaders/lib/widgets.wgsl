@@ -7,17 +7,9 @@
 // how they lie in the buffer, and the twin: src/transfer/widgets.rs.
 
 #import frame
-#import opacity
 #import extinction
+#import shares
 #import transfer_{transfer}
-
-struct Widgets {
-    // (1 / steepest, count of shares, count of widgets, 1 where second derivatives count), shares, five entries a
-    // widget, cells of images.
-    d: array<vec4<f32>>,
-}
-
-@group(0) @binding(20) var<storage, read> widgets: Widgets;
 
 const WIDGET_ENTRIES: u32 = 5u;
 
@@ -38,10 +30,10 @@ fn classify_by_gradient(material: Classified, value: f32, magnitude: f32, second
     let head = widgets.d[0];
     let share_count = u32(head.y);
     let steepness = magnitude * head.x;
-    var sum = material.extinction;
-    if share_count > 0u {
-        let opacity = opacity_over(sum, frame.reference_length);
-        sum = extinction_of(opacity * share_at(share_count, steepness), frame.reference_length);
+    var sum = weighed(material.extinction, steepness);
+    // A mean of one is that one, to the bit: `material_weighed.wgsl` makes none.
+    if head.z == 0.0 {
+        return Classified(material.color, sum);
     }
     var light = sum * material.color;
     for (var i = 0u; i < u32(head.z); i++) {
@@ -65,25 +57,6 @@ fn classify_by_gradient(material: Classified, value: f32, magnitude: f32, second
         return Classified(vec3(0.0), 0.0);
     }
     return Classified(light / sum, sum);
-}
-
-// Between the points that a steepness lies between, constant beyond them.
-fn share_at(count: u32, steepness: f32) -> f32 {
-    var share = widgets.d[1].y;
-    for (var i = 1u; i <= count; i++) {
-        let left = widgets.d[i];
-        if left.x > steepness {
-            break;
-        }
-        share = left.y;
-        if i < count {
-            let right = widgets.d[i + 1u];
-            if right.x > steepness {
-                share = left.y + (steepness - left.x) / (right.x - left.x) * (right.y - left.y);
-            }
-        }
-    }
-    return share;
 }
 
 // What is opaque of the widget that begins at entry `first`.

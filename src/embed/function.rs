@@ -46,10 +46,8 @@ impl Function {
         if needs_one && function.is_none() {
             return Err(technique::Error::NoTransferFunction.into());
         }
-        let mix = match function.is_some_and(TransferFunction::is_graded) {
-            true => Mix::Graded,
-            false => Mix::Alone,
-        };
+        // Functions that weigh by gradients may be followed by others that do more.
+        let mix = Mix::of_one(function).general();
         check(mix, settings)?;
         volume.check(gpu, settings)?;
         let spacing = volume.grid().smallest_spacing();
@@ -176,7 +174,7 @@ impl Function {
 
 /// Whether such settings draw such functions.
 pub(super) fn check(mix: Mix, settings: &Settings) -> Result<(), Error> {
-    if mix != Mix::Graded {
+    if !mix.is_graded() {
         return Ok(());
     }
     settings.check_graded()?;

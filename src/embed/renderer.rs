@@ -284,7 +284,7 @@ impl Renderer {
 /// The variant of the shaders for these settings: the same for all copies of the volume.
 fn words_of(settings: &Settings, volume: &Volume, function: &Function) -> Result<Words, Error> {
     let copy = &volume.copies()[0];
-    let is_graded = function.mix == technique::Mix::Graded;
+    let is_graded = function.mix.is_graded();
     let lacks_source = settings.gradient_source_beside(copy.layout()).is_some()
         && copy.gradient_source().is_none();
     if is_graded && lacks_source {

@@ -180,7 +180,7 @@ impl<'a, R: Real> Walk<'a, R> {
             let functions = scene.transfers().into_iter();
             functions.map(classifier).collect::<Result<_, Error>>()?
         };
-        let widgets = scene.transfer.filter(|_| scene.mix() == Mix::Graded);
+        let widgets = scene.transfer.filter(|_| scene.mix().is_graded());
         let widgets = widgets.map(|f| PackedWidgets::new(f, scene.length_of(f), space));
         let Recording {
             mut frame, slices, ..

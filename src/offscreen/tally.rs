@@ -40,7 +40,7 @@ pub fn check_layers(scene: &Scene, wanted: &[LayerKind]) -> Result<(), Error> {
 /// True where a label can be told at the first hit: in a map over the volume, or in a volume of numbers that nothing
 /// mixes.
 pub fn has_labels(scene: &Scene) -> bool {
-    let is_alone = matches!(scene.mix(), Mix::Alone | Mix::Graded);
+    let is_alone = scene.mix().is_of_one();
     label_map(scene).is_some() && (!is_alone || scene.settings.filter == Filter::Nearest)
 }
 

@@ -42,7 +42,7 @@ impl Drawn {
             take,
             ..
         } = words;
-        let mix = mix.word();
+        let mix = mix.general().word();
         let sight = match sight {
             Sight::Open | Sight::Tested => "",
             Sight::Read => ".host",

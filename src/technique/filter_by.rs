@@ -28,9 +28,8 @@ impl Settings {
     pub fn reads_corners(&self, mix: Mix) -> bool {
         let is_point = !self.preintegrated && !self.conformance;
         let is_ray = self.technique == Technique::Raycast && self.lattice != Lattice::Planes;
-        let is_one = matches!(mix, Mix::Alone | Mix::Graded);
         let is_wished = self.filter_by != FilterBy::Sampler;
-        is_one && is_ray && is_point && is_wished && self.filter == Filter::Linear
+        mix.is_of_one() && is_ray && is_point && is_wished && self.filter == Filter::Linear
     }
 
     /// Whether they read nothing else of its values, so that it needs no texture: what fetches voxels one by one does.

@@ -134,8 +134,6 @@ pub struct Words {
     pub mix: Mix,
     /// What a sample is.
     pub take: Take,
-    /// Gradients count for nothing but unhindered light, on central differences.
-    pub is_plainly_lit: bool,
     /// Steps adapt to what is there.
     pub is_adaptive: bool,
 }
@@ -178,13 +176,17 @@ impl Words {
         let has_holes = parts.iter().any(|part| part.volume.has_holes());
         let has_surfaces = settings.shading.as_ref().is_some_and(|s| s.has_surfaces);
         let is_lit = has_surfaces || settings.wants_light_volume();
-        // A function of gradients is no longer alone.
-        let is_graded = mix == Mix::Alone && is_lit;
-        let is_central = settings.gradient_operator() == Operator::Central
-            && settings.keep_gradients != Keep::Always;
+        let is_general = settings.gradient_operator() != Operator::Central
+            || settings.keep_gradients == Keep::Always
+            || settings.wants_light_volume();
         let corners = corners_of(parts).filter(|_| settings.reads_corners(mix));
         Self {
-            mix: if is_graded { Mix::Graded } else { mix },
+            mix: match mix {
+                Mix::Alone if is_lit && is_general => Mix::Graded,
+                Mix::Alone if is_lit => Mix::Lit,
+                Mix::Weighed if is_general => Mix::Graded,
+                _ => mix,
+            },
             filter: match settings.filter {
                 Filter::Nearest => "nearest",
                 Filter::Linear => match corners {
@@ -211,7 +213,6 @@ impl Words {
                 Some(_) => "stored",
                 None => "table",
             },
-            is_plainly_lit: is_graded && is_central && !settings.wants_light_volume(),
             is_adaptive: settings.adaptive_steps.is_some(),
         }
     }

@@ -17,6 +17,7 @@ use crate::picture::ColorSpace;
 use crate::real::Real;
 use crate::resident::{Cell, GpuTransfer, GpuVolume};
 use crate::shaders::{FrameFields, MAX_CHANNELS};
+use crate::transfer::TransferFunction;
 
 /// How volumes on one grid go together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -26,6 +27,10 @@ pub enum Mix {
     Alone,
     /// There is one, and its gradient counts.
     Graded,
+    /// The same, for nothing but unhindered light, by central differences.
+    Lit,
+    /// The same, by central differences, for such light and to weigh the opacity by its magnitude.
+    Weighed,
     /// Each is a thing of its own with a transfer function of its own.
     Channels,
     /// Red, green, blue, and perhaps alpha, of one colour.
@@ -33,11 +38,40 @@ pub enum Mix {
 }
 
 impl Mix {
+    /// How `function` goes with a volume that is alone.
+    pub fn of_one(function: Option<&TransferFunction>) -> Self {
+        match function.and_then(|function| function.graded.as_ref()) {
+            None => Self::Alone,
+            Some(graded) if graded.widgets.is_empty() && !graded.share.is_empty() => Self::Weighed,
+            Some(_) => Self::Graded,
+        }
+    }
+
+    /// Whether there is one volume.
+    pub fn is_of_one(self) -> bool {
+        self == Self::Alone || self.is_graded()
+    }
+
+    /// Whether gradients count.
+    pub fn is_graded(self) -> bool {
+        matches!(self, Self::Graded | Self::Lit | Self::Weighed)
+    }
+
+    /// With all that gradients may count for.
+    pub(crate) fn general(self) -> Self {
+        match self.is_graded() {
+            true => Self::Graded,
+            false => self,
+        }
+    }
+
     /// Its part of a shader's name.
     pub(super) fn word(self) -> &'static str {
         match self {
             Self::Alone => "",
             Self::Graded => ".graded",
+            Self::Lit => ".lit",
+            Self::Weighed => ".weighed",
             Self::Channels => ".channels",
             Self::Colors => ".colors",
         }

@@ -43,11 +43,7 @@ impl RayPass {
         words: &Words,
         mix: Mix,
     ) -> Result<Self, Error> {
-        let words = Words {
-            mix,
-            is_plainly_lit: false,
-            ..*words
-        };
+        let words = Words { mix, ..*words };
         let words = match settings.technique {
             Technique::Slices2d => Words {
                 lattice: "stack",

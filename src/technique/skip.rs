@@ -69,7 +69,7 @@ impl Settings {
         function: Option<&TransferFunction>,
         value_range: [f64; 2],
     ) -> Skippable {
-        let is_one = matches!(mix, Mix::Alone | Mix::Graded) || self.mode == Mode::Iso;
+        let is_one = mix.is_of_one() || self.mode == Mode::Iso;
         if !self.skip || !is_one {
             return Skippable::Nothing;
         }

@@ -11,7 +11,7 @@
 //! light for lamps and for the corners of a cell of the light volume. Clip planes are gone over once a ray, and once
 //! more for cut faces.
 
-use super::{Error, Filter, Keep, Mix, Operator, Settings, Take, Technique, View, Words};
+use super::{Error, Filter, Keep, Operator, Settings, Take, Technique, View, Words};
 
 /// Of what is rare: surfaces that are refined, the first turns of everything.
 const SPARE: f64 = 2048.0;
@@ -55,7 +55,7 @@ pub fn turns_per_sample(
     let are_kept = settings.keep_gradients == Keep::Always;
     let is_weighted = settings.gradient_operator() != Operator::Central;
     let looks = match (words.mix, words.take) {
-        (Mix::Graded, _) => {
+        (mix, _) if mix.is_graded() => {
             let first = if is_weighted || are_kept { 1 } else { 7 };
             first + if functions.second { 28 } else { 0 }
         }
@@ -63,13 +63,13 @@ pub fn turns_per_sample(
         _ => 1,
     };
     // Four layers of four rows, with the turns that end them, and the choice of the weights.
-    let weights = if words.mix == Mix::Graded && is_weighted && !are_kept {
+    let weights = if words.mix.is_graded() && is_weighted && !are_kept {
         5 * 5 + 5
     } else {
         0
     };
     // Over lights, and over the corners of a cell of the light volume for each of them and for ambient light.
-    let light = if words.mix == Mix::Graded {
+    let light = if words.mix.is_graded() {
         let corners = if settings.wants_light_volume() { 9 } else { 1 };
         let shading = settings.shading.as_ref();
         let lights = shading.map_or(0, |shading| shading.lights.len().max(1)) as u64;

@@ -226,6 +226,9 @@ pub fn classify_by_gradient<N: Real>(
             reference_length,
         );
     }
+    if widgets == 0 {
+        return [r, g, b, sum];
+    }
     let mut light = [r, g, b].map(|c| sum * c);
     for widget in 0..widgets {
         let first = 1 + shares + STRIDE * widget;

@@ -37,24 +37,21 @@ impl Raycast {
             transfer,
             mix,
             take,
-            is_plainly_lit,
             is_adaptive,
         } = words;
         // Kernels, planes and exact control points have the general variant alone.
-        let has_lit = of == Mode::Composite
+        let has_lean = of == Mode::Composite
             && *lattice == "ray"
             && *transfer != "points"
             && !matches!(*filter, "kernel" | "spline");
+        let mix = if has_lean { *mix } else { mix.general() };
         let mode = mode_word(of);
         let name = match take {
-            _ if of == Mode::Iso && *mix == Mix::Channels => {
+            _ if of == Mode::Iso && mix == Mix::Channels => {
                 format!("isosurface.by.{filter}.{holes}")
             }
             _ if of == Mode::Iso => format!("isosurface.{filter}.{holes}"),
             Take::Slab => format!("raycast_slab.composite.{lattice}.{filter}.{holes}"),
-            Take::Point if *is_plainly_lit && has_lit => {
-                format!("raycast.composite.lit.ray.{filter}.{holes}.{transfer}")
-            }
             // Of one volume without light or holes: nothing else is checked to be right.
             Take::Point if *is_adaptive && of == Mode::Composite => {
                 format!("raycast.composite.adaptive.{lattice}.{filter}.{holes}.{transfer}")

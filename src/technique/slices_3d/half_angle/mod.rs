@@ -87,7 +87,10 @@ impl HalfAngleSlicer {
             mix,
             ..
         } = words;
-        let fragment = format!("slices_3d_half{}.{filter}.{holes}.{transfer}", mix.word());
+        let fragment = format!(
+            "slices_3d_half{}.{filter}.{holes}.{transfer}",
+            mix.general().word()
+        );
         let pipeline = |blend| {
             let desc = RasterDesc {
                 vertex: shader("slices_3d_cover"),

@@ -1,0 +1,3 @@
+// As where gradients count for more.
+
+#import sample_graded
