@@ -15,7 +15,7 @@
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := test
-.PHONY: test plain least viewer viewer-lint conformance swiftshader second demo sheet gallery capi install header api bench driver layers display
+.PHONY: test plain least viewer-lint conformance swiftshader demo sheet gallery capi install header api bench driver layers display
 
 CARGO ?= cargo
 ROOT := $(if $(filter 0,$(shell id -u)),,sudo )
@@ -76,23 +76,44 @@ TEST := $(CARGO) test --locked --features grib,capi
 TESTS := $(basename $(notdir $(wildcard tests/*.rs))) $(filter-out cli,$(notdir $(patsubst %/main.rs,%,$(wildcard tests/*/main.rs))))
 WITHOUT_DEVICE := $(filter host both_sides conformance_package dependencies public_api format_% mutations%,$(TESTS))
 WITH_DEVICE := $(filter-out $(WITHOUT_DEVICE),$(TESTS))
-ON_DEVICE := RUST_TEST_THREADS=1 $(TEST) --lib --examples $(addprefix --test ,$(WITH_DEVICE))
+ON_DEVICE := RUST_TEST_THREADS=1 $(TEST)
+# $(call half,1) and $(call half,0): every other test.
+half = $(addprefix --test ,$(shell printf '%s\n' $(WITH_DEVICE) | awk 'NR % 2 == $(1)'))
 
-# One device at a time: a software driver uses all cores anyway. What draws runs under the validation layer with
-# synchronization in; `make plain` runs the same without that, as a cross-check by hand.
+# One device at a time in a process; two processes, since small pictures keep one core busy, that of the driver's compiler.
+# What draws runs under the validation layer with synchronization in; `make plain` runs the same without that, as a
+# cross-check by hand.
 test: driver layers display
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --locked --all-targets --features capi -- -D warnings
 	$(CARGO) clippy --locked --all-targets --no-default-features -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --locked --no-deps --features capi
+	$(TEST) --no-run
+	$(VIEWER) --no-run
+	@echo "two groups of tests at a time; each is shown when it has ended"
+	@$(MAKE) --no-print-directory --jobs=2 --output-sync=target $(GROUPS)
+
+GROUPS := drawn-odd drawn-even command-line command-line-drawn without-device least-of-all viewer second
+.PHONY: $(GROUPS)
+
+drawn-odd:
+	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --lib --examples $(call half,1)
+
+drawn-even:
+	STRATAVOX_VALIDATION=sync $(ON_DEVICE) $(call half,0)
+
+command-line:
+	$(ON_DEVICE) --test cli
+
+command-line-drawn:
+	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --test cli -- bench:: conformance::a_run device:: mixed:: pictures::
+
+without-device:
 	$(TEST) --doc
 	$(TEST) $(addprefix --test ,$(WITHOUT_DEVICE))
-	RUST_TEST_THREADS=1 $(TEST) --test cli
-	STRATAVOX_VALIDATION=sync $(ON_DEVICE)
-	STRATAVOX_VALIDATION=sync RUST_TEST_THREADS=1 $(TEST) --test cli -- bench:: conformance::a_run device:: mixed:: pictures::
+
+least-of-all:
 	$(UNDER_LEAST) $(LEAST_OF_ALL)
-	$(VIEWER)
-	@$(MAKE) --no-print-directory second
 
 # A package of its own, with a window and a panel that nothing else builds.
 VIEWER := STRATAVOX_VALIDATION=sync RUST_TEST_THREADS=1 $(CARGO) test --locked --package stratavox-viewer
@@ -104,7 +125,7 @@ viewer-lint:
 	$(CARGO) clippy --locked --package stratavox-viewer --all-targets -- -D warnings
 
 plain: driver layers
-	$(ON_DEVICE)
+	$(ON_DEVICE) --lib --examples $(addprefix --test ,$(WITH_DEVICE))
 
 # Limits clamped to Vulkan's least: the same pictures (`tests/shared/limits.rs`). Not asked are tests whose subject is limits
 # of their own. `make test` asks LEAST_OF_ALL.
