@@ -3,10 +3,11 @@
 //! `gpu` is the technique alone, `wall` all of [`Renderer::render`]: parameters, submissions, resolve, readback.
 
 mod median;
+mod scan;
 
 use median::{median, median_of};
+use scan::{SCAN, scan};
 use std::error::Error;
-use std::path::{Path, PathBuf};
 use stratavox::camera::{BoundingSphere, Camera, Lens, View};
 use stratavox::format;
 use stratavox::gpu::{DeviceChoice, Headless, Options};
@@ -19,9 +20,6 @@ use stratavox::volume::{Limits, Pick, Source, Volume, Wanted, phantom};
 
 const EXTENT: [u32; 2] = [256, 256];
 const RUNS: usize = 5;
-
-/// The scan, in the folder that `STRATAVOX_DATA` names.
-const SCAN: &str = "ct-cranium/cranium.nrrd";
 
 const TECHNIQUES: [(Technique, &str); 3] = [
     (Technique::Raycast, "raycast"),
@@ -53,12 +51,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("skipped: no data at {}", scan.display());
     }
     Ok(())
-}
-
-fn scan() -> PathBuf {
-    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
-    let folder = std::env::var_os("STRATAVOX_DATA").map_or_else(beside, PathBuf::from);
-    folder.join(SCAN)
 }
 
 /// One row a technique and mode.

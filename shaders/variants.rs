@@ -343,6 +343,10 @@ const STORAGE_FORMATS: &[&str] = &[
 
 /// What asks a device and draws nothing: only with the feature `conformance`.
 pub const PROBES: &[(&str, &[Slot])] = &[
+    (
+        "probe/fragment_caster",
+        &[ALONE, ("holes", &["none"]), TABLE],
+    ),
     ("probe/filter_3d", &[]),
     ("probe/filter_array", &[]),
     ("probe/fetch", &[]),

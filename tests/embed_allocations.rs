@@ -11,7 +11,7 @@ use std::cell::Cell;
 use std::sync::Arc;
 use stratavox::camera::{Camera, Nearer};
 use stratavox::embed::{Class, HostDepthImage, Renderer, Shot, Volume};
-use stratavox::gpu::{Caps, DepthClass, Load, Target, TargetClass, Use};
+use stratavox::gpu::{Caps, DepthClass, Load, TargetClass};
 use stratavox::technique::{Settings, Technique};
 
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
@@ -98,14 +98,7 @@ fn assert_nothing_is_taken(host: &Host, settings: &Settings) {
     };
     let (mut inside, mut outside) = (made(inside, read), made(outside, &[]));
     let image = HostImage::new(host, FORMAT, extent);
-    let target = Target {
-        image: image.raw,
-        view: image.view,
-        format: FORMAT,
-        extent,
-        before: Use::Nothing.into(),
-        after: Use::TransferRead.into(),
-    };
+    let target = image.target();
     for nth in 0..4 {
         let frame = nth % 2;
         let shot = Shot {

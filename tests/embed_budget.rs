@@ -7,7 +7,7 @@ use ash::vk;
 use embed_shared::{Host, HostImage, Stage};
 use std::sync::Arc;
 use stratavox::embed::{self, Class, Renderer, Shot, Volume};
-use stratavox::gpu::{self, Load, Target, Use};
+use stratavox::gpu::{self, Load};
 use stratavox::technique::{Settings, Technique};
 
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
@@ -35,14 +35,7 @@ fn picture(host: &Host, stage: &Stage) -> Result<Vec<[f64; 4]>, embed::Error> {
     let (volume, function) = (Arc::new(volume), Some(&stage.transfer));
     let mut renderer = Renderer::new(gpu, &volume, function, class, stage.extent, &[])?;
     let image = HostImage::new(host, FORMAT, stage.extent);
-    let target = Target {
-        image: image.raw,
-        view: image.view,
-        format: image.format,
-        extent: image.extent,
-        before: Use::Nothing.into(),
-        after: Use::TransferRead.into(),
-    };
+    let target = image.target();
     let shot = Shot {
         frame: 0,
         camera: &stage.camera,
@@ -159,14 +152,7 @@ fn what_no_longer_fits_leaves_a_renderer_as_it_was() {
     );
     assert_eq!(renderer.extent(), stage.extent);
     let image = HostImage::new(&host, FORMAT, stage.extent);
-    let target = Target {
-        image: image.raw,
-        view: image.view,
-        format: image.format,
-        extent: image.extent,
-        before: Use::Nothing.into(),
-        after: Use::TransferRead.into(),
-    };
+    let target = image.target();
     let shot = Shot {
         frame: 0,
         camera: &stage.camera,

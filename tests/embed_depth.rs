@@ -10,7 +10,7 @@ use glam::{DVec3, dvec3};
 use std::sync::Arc;
 use stratavox::camera::{Camera, HostDepth, Nearer, Projection, Sides};
 use stratavox::embed::{Class, Error, Renderer, Shot, Volume};
-use stratavox::gpu::{DepthClass, Load, Target, TargetClass, Use};
+use stratavox::gpu::{DepthClass, Load, TargetClass};
 use stratavox::offscreen::{self, reference};
 use stratavox::picture::LayerKind;
 use stratavox::scene::Scene;
@@ -328,14 +328,7 @@ fn a_picked_pixel_says_where_it_is_and_what_voxel_is_there() {
         let mut renderer =
             Renderer::new(host.gpu(), &volume, function, class, stage.extent, &[]).unwrap();
         let image = HostImage::new(&host, FORMAT, stage.extent);
-        let target = Target {
-            image: image.raw,
-            view: image.view,
-            format: FORMAT,
-            extent: stage.extent,
-            before: Use::Nothing.into(),
-            after: Use::TransferRead.into(),
-        };
+        let target = image.target();
         let (mut hits, mut misses) = (0, 0);
         for pixel in [[22, 18], [20, 12], [30, 20], [0, 0], [43, 35]] {
             let shot = Shot {

@@ -9,7 +9,7 @@ use embed_shared::{Host, HostImage, Pace, Stage};
 use glam::DMat3;
 use std::sync::Arc;
 use stratavox::embed::{Class, Renderer, Shot, Volume};
-use stratavox::gpu::{Load, Target, Use};
+use stratavox::gpu::Load;
 use stratavox::technique::{Mode, Settings, Technique};
 
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
@@ -55,14 +55,7 @@ fn record(
         camera: &stage.camera,
         depth: None,
     };
-    let target = Target {
-        image: image.raw,
-        view: image.view,
-        format: FORMAT,
-        extent: stage.extent,
-        before: Use::Nothing.into(),
-        after: Use::TransferRead.into(),
-    };
+    let target = image.target();
     // SAFETY: outside rendering; the frame that last had this number is done, and all of it lives until this one is.
     unsafe {
         let load = Load::Clear([0.0; 4]);

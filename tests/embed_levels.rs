@@ -7,7 +7,7 @@ use ash::vk;
 use embed_shared::{Host, HostImage, Stage, all_settings, offscreen};
 use std::sync::Arc;
 use stratavox::embed::{Class, Error, QueueLock, Renderer, Shot, Submitter, Volume};
-use stratavox::gpu::{Load, Target, Use};
+use stratavox::gpu::Load;
 use stratavox::technique::{Mode, Order, Settings, Technique};
 
 /// What is drawn there is what was computed, to the bit.
@@ -52,17 +52,6 @@ fn renderer(host: &Host, stage: &Stage) -> Renderer {
     Renderer::new(host.gpu(), &volume, function, class, stage.extent, &[]).unwrap()
 }
 
-fn target(image: &HostImage) -> Target {
-    Target {
-        image: image.raw,
-        view: image.view,
-        format: image.format,
-        extent: image.extent,
-        before: Use::Nothing.into(),
-        after: Use::TransferRead.into(),
-    }
-}
-
 fn assert_same(settings: &Settings, found: &[[f64; 4]], wanted: &[[f64; 4]], level: &str) {
     let what = format!("{level}: {settings:?}");
     assert_eq!(found.len(), wanted.len());
@@ -99,7 +88,7 @@ fn level_b_records_into_an_image_that_comes_and_goes_as_the_host_says() {
         let image = HostImage::new(&host, FORMAT, stage.extent);
         // SAFETY: as above; the target leaves as the copy reads it.
         host.run(|cmd| unsafe {
-            let (target, load) = (target(&image), Load::Clear([0.0; 4]));
+            let (target, load) = (image.target(), Load::Clear([0.0; 4]));
             let shot = shot(&stage, 1);
             renderer.record_into(cmd, &shot, &target, load).unwrap();
             image.copy_from(cmd, vk::ImageLayout::TRANSFER_SRC_OPTIMAL);
@@ -137,7 +126,7 @@ fn level_c_submits_under_the_hosts_lock_between_the_hosts_values() {
     let mut submitter = Submitter::new(host.gpu(), 2).unwrap();
     // SAFETY: one frame in flight; what it uses lives until the wait is over.
     unsafe {
-        let (shot, target) = (shot(&stage, 0), target(&image));
+        let (shot, target) = (shot(&stage, 0), image.target());
         let load = Load::Clear([0.0; 4]);
         submitter
             .submit(
@@ -189,7 +178,7 @@ fn level_c_draws_in_all_settings_what_offscreen_makes() {
         let image = HostImage::new(&host, FORMAT, stage.extent);
         // SAFETY: the device is done with one submission before its number comes again, and with all before they go.
         unsafe {
-            let (shot, target) = (shot(&stage, 1), target(&image));
+            let (shot, target) = (shot(&stage, 1), image.target());
             let load = Load::Clear([0.0; 4]);
             submitter
                 .submit(&mut renderer, &shot, &target, load, lock, &[], &[])
@@ -224,7 +213,7 @@ fn a_recorded_frame_makes_nothing_and_compiles_nothing() {
             let image = HostImage::new(&host, FORMAT, stage.extent);
             // SAFETY: as above.
             host.run(|cmd| unsafe {
-                let (target, load) = (target(&image), Load::Clear([0.0; 4]));
+                let (target, load) = (image.target(), Load::Clear([0.0; 4]));
                 let shot = shot(&stage, frame);
                 renderer.record_into(cmd, &shot, &target, load).unwrap();
             });
@@ -251,7 +240,7 @@ fn a_function_dragged_each_frame_compiles_nothing_and_leaves_nothing() {
         // SAFETY: as above: `run` waits, so that the frame is done.
         unsafe {
             host.run(|cmd| {
-                let (target, load) = (target(&image), Load::Clear([0.0; 4]));
+                let (target, load) = (image.target(), Load::Clear([0.0; 4]));
                 let shot = shot(&stage, (n % 2) as u32);
                 renderer.record_into(cmd, &shot, &target, load).unwrap();
                 image.copy_from(cmd, vk::ImageLayout::TRANSFER_SRC_OPTIMAL);
@@ -278,7 +267,7 @@ fn drawn(host: &Host, renderer: &mut Renderer, stage: &Stage) -> Vec<[f64; 4]> {
     let image = HostImage::new(host, FORMAT, renderer.extent());
     // SAFETY: as above.
     host.run(|cmd| unsafe {
-        let (target, load) = (target(&image), Load::Clear([0.0; 4]));
+        let (target, load) = (image.target(), Load::Clear([0.0; 4]));
         let shot = shot(stage, 0);
         renderer.record_into(cmd, &shot, &target, load).unwrap();
         image.copy_from(cmd, vk::ImageLayout::TRANSFER_SRC_OPTIMAL);

@@ -83,17 +83,6 @@ fn shot(stage: &Stage, frame: u32) -> Shot<'_> {
     }
 }
 
-fn target(image: &HostImage) -> Target {
-    Target {
-        image: image.raw,
-        view: image.view,
-        format: image.format,
-        extent: image.extent,
-        before: Use::Nothing.into(),
-        after: Use::TransferRead.into(),
-    }
-}
-
 const CLEAR: Load = Load::Clear([0.25, 0.5, 0.0, 1.0]);
 
 /// The frame in one.
@@ -101,7 +90,7 @@ fn whole(host: &Host, renderer: &mut Renderer, stage: &Stage) -> Vec<[f64; 4]> {
     let image = HostImage::new(host, FORMAT, EXTENT);
     // SAFETY: recorded in order; `run` waits.
     host.run(|cmd| unsafe {
-        let target = target(&image);
+        let target = image.target();
         renderer
             .record_into(cmd, &shot(stage, 0), &target, CLEAR)
             .unwrap();
@@ -183,7 +172,7 @@ fn blocks_are_smaller_where_a_picture_takes_long() {
     while left > 0 {
         // SAFETY: one part a submission, in order; `run` waits.
         host.run(|cmd| unsafe {
-            let after = renderer.record_part_into(cmd, 1, 7, &target(&image), CLEAR);
+            let after = renderer.record_part_into(cmd, 1, 7, &image.target(), CLEAR);
             left = after.unwrap();
         });
     }
@@ -261,7 +250,7 @@ fn what_ends_a_frame_in_parts_is_told() {
         });
         found
     };
-    let right = target(&image);
+    let right = image.target();
     let none = part(&mut renderer, 0, &right, CLEAR);
     assert!(
         matches!(none, Err(Error::NotBegun { frame: 0 })),
@@ -351,7 +340,7 @@ fn submissions_follow_each_other_and_a_host_may_end_them() {
         let wanted = whole(&host, &mut renderer, &stage);
         let image = HostImage::new(&host, FORMAT, EXTENT);
         let mut submitter = Submitter::new(host.gpu(), 1).unwrap();
-        let (shot, target) = (shot(&stage, 0), target(&image));
+        let (shot, target) = (shot(&stage, 0), image.target());
         let count = renderer.begin_parts(&shot).unwrap() as usize;
         let (waits, signals) = ([(timeline, 2 * n)], [(timeline, 2 * n + 1)]);
         for stops in [true, false] {

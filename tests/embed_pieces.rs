@@ -14,7 +14,7 @@ use stratavox::camera::Camera;
 use stratavox::embed::{
     Class, Error, Pacing, QueueLock, Renderer, Shot, Submitter, Update, Volume,
 };
-use stratavox::gpu::{Caps, Load, Target, Use};
+use stratavox::gpu::{Caps, Load};
 use stratavox::technique::{Filter, Order, Settings, Technique};
 use stratavox::transfer::{OpacityPoint, TransferFunction};
 use stratavox::volume::{self, VoxelBox};
@@ -110,17 +110,6 @@ fn shot(camera: &Camera, frame: u32) -> Shot<'_> {
 
 const CLEAR: Load = Load::Clear([0.0; 4]);
 
-fn target(image: &HostImage) -> Target {
-    Target {
-        image: image.raw,
-        view: image.view,
-        format: image.format,
-        extent: image.extent,
-        before: Use::Nothing.into(),
-        after: Use::TransferRead.into(),
-    }
-}
-
 fn fetched(host: &Host, image: &HostImage) -> Vec<[f64; 4]> {
     // SAFETY: it was left so; `run` waits.
     host.run(|cmd| unsafe { image.copy_from(cmd, vk::ImageLayout::TRANSFER_SRC_OPTIMAL) });
@@ -133,7 +122,7 @@ fn drawn(host: &Host, renderer: &mut Renderer, camera: &Camera) -> Result<Vec<[f
     let mut recorded = Ok(());
     // SAFETY: `run` waits.
     host.run(|cmd| unsafe {
-        recorded = renderer.record_into(cmd, &shot(camera, 0), &target(&image), CLEAR);
+        recorded = renderer.record_into(cmd, &shot(camera, 0), &image.target(), CLEAR);
     });
     recorded?;
     Ok(fetched(host, &image))
@@ -325,7 +314,7 @@ fn what_a_new_function_finds_empty_comes_in_pieces() {
         let mut left = 0;
         // SAFETY: parts in order; `run` waits.
         host.run(|cmd| unsafe {
-            let part = renderer.record_part_into(cmd, 1, 1, &target(&image), CLEAR);
+            let part = renderer.record_part_into(cmd, 1, 1, &image.target(), CLEAR);
             left = part.unwrap();
         });
         left
@@ -357,7 +346,7 @@ fn what_a_new_function_finds_empty_comes_in_pieces() {
     update(&host, &there, same).unwrap();
     // SAFETY: what is refused records nothing.
     host.run(|cmd| unsafe {
-        let ended = renderer.record_part_into(cmd, 1, 1, &target(&image), CLEAR);
+        let ended = renderer.record_part_into(cmd, 1, 1, &image.target(), CLEAR);
         assert!(matches!(ended, Err(Error::NotBegun { .. })), "{ended:?}");
     });
 }
@@ -427,7 +416,7 @@ fn what_was_not_submitted_is_recorded_again() {
         // A function is forgotten with the frame that brought it, at once and in parts.
         let mut renderer = self::renderer(&host, &there, &settings);
         refuses(1, &mut |lock, _| {
-            let (shot, target) = (shot(&camera, 0), target(&image));
+            let (shot, target) = (shot(&camera, 0), image.target());
             // SAFETY: as above.
             let done =
                 unsafe { submitter.submit(&mut renderer, &shot, &target, CLEAR, lock, &[], &[]) };
@@ -437,7 +426,7 @@ fn what_was_not_submitted_is_recorded_again() {
         for refuse in [1, 4, 9] {
             let mut renderer = self::renderer(&host, &there, &settings);
             refuses(refuse, &mut |lock, pacing| {
-                let (shot, target) = (shot(&camera, 0), target(&image));
+                let (shot, target) = (shot(&camera, 0), image.target());
                 // SAFETY: as above.
                 unsafe {
                     submitter.submit_in_parts(

@@ -7,7 +7,7 @@ use ash::vk;
 use embed_shared::{Host, HostImage, Stage};
 use std::sync::Arc;
 use stratavox::embed::{Class, Error, Renderer, Shot, Volume};
-use stratavox::gpu::{Load, Target, Use};
+use stratavox::gpu::Load;
 use stratavox::technique::{Level, Mode, Order, Settings, Technique};
 
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
@@ -47,14 +47,7 @@ type Change<'a> = Box<dyn Fn(&mut Renderer) + 'a>;
 /// A frame by level B.
 fn drawn(host: &Host, renderer: &mut Renderer, stage: &Stage) -> Vec<[f64; 4]> {
     let image = HostImage::new(host, FORMAT, renderer.extent());
-    let target = Target {
-        image: image.raw,
-        view: image.view,
-        format: image.format,
-        extent: image.extent,
-        before: Use::Nothing.into(),
-        after: Use::TransferRead.into(),
-    };
+    let target = image.target();
     // SAFETY: recorded in order; `run` waits.
     host.run(|cmd| unsafe {
         let load = Load::Clear([0.0; 4]);

@@ -9,7 +9,7 @@ use embed_shared::{Host, HostImage, Stage};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use stratavox::embed::{Class, Renderer, Shot, Volume};
-use stratavox::gpu::{Load, Target, Use};
+use stratavox::gpu::Load;
 use stratavox::technique::{Mode, Settings, Technique};
 
 const FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
@@ -97,14 +97,7 @@ impl<'h> Drawn<'h> {
             camera: &camera,
             depth: None,
         };
-        let target = Target {
-            image: self.image.raw,
-            view: self.image.view,
-            format: FORMAT,
-            extent: EXTENT,
-            before: Use::Nothing.into(),
-            after: Use::TransferRead.into(),
-        };
+        let target = self.image.target();
         let (device, renderer) = (&self.host.device, &mut self.renderer);
         let cmds = [self.cmd];
         self.host.record(self.cmd, |cmd| {

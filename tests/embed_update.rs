@@ -14,7 +14,7 @@ use mutate::Random;
 use std::sync::Arc;
 use stratavox::camera::Camera;
 use stratavox::embed::{Class, Error, Renderer, Shot, Volume};
-use stratavox::gpu::{Caps, Load, Target, Use};
+use stratavox::gpu::{Caps, Load};
 use stratavox::technique::{Filter, Mode, Order, Settings, Technique};
 use stratavox::volume::{self, Rescale, VoxelBox, VoxelPart, VoxelType, Voxels};
 
@@ -174,17 +174,6 @@ fn renderer(host: &Host, volume: &Arc<Volume>, settings: &Settings) -> Renderer 
     Renderer::new(host.gpu(), volume, Some(&function), class, EXTENT, &[]).unwrap()
 }
 
-fn target(image: &HostImage) -> Target {
-    Target {
-        image: image.raw,
-        view: image.view,
-        format: image.format,
-        extent: image.extent,
-        before: Use::Nothing.into(),
-        after: Use::TransferRead.into(),
-    }
-}
-
 /// A frame into an image that is copied from.
 ///
 /// # Safety
@@ -206,7 +195,7 @@ unsafe fn record(
     // SAFETY: the caller's promise.
     unsafe {
         renderer
-            .record_into(cmd, &shot, &target(image), load)
+            .record_into(cmd, &shot, &image.target(), load)
             .unwrap();
         image.copy_from(cmd, vk::ImageLayout::TRANSFER_SRC_OPTIMAL);
     }

@@ -9,9 +9,12 @@ mod hooked;
 mod shared;
 
 use ash::vk;
-use hooked::{FALLIBLE, FEATURES, Fault, Host, Stage, Tape, codes, headless, hooked, of_device};
+use hooked::{
+    FALLIBLE, FEATURES, Fault, Host, HostedDevice, Stage, Tape, codes, headless, hooked, of_device,
+};
 use std::collections::BTreeSet;
 use std::error::Error;
+use std::sync::Arc;
 use stratavox::gpu::{self, Features, Gpu};
 use stratavox::offscreen::Renderer;
 use stratavox::scene::Scene;
@@ -182,26 +185,12 @@ fn a_host_is_told_of_every_call_that_fails_and_nothing_is_left_on_its_device() {
 
 #[test]
 fn a_host_that_lets_us_submit_is_told_of_every_call_that_fails() {
-    let tape = Tape::begin();
-    let (host, stage) = (Host::new(), Stage::new());
-    let features = Features {
-        timeline_semaphore: true,
-        ..FEATURES
-    };
-    let Swept { called, faults, .. } = sweep(&tape, FALLIBLE, true, || {
-        let device = host.device(features);
-        // SAFETY: the handles are right, and everything made on the device is dropped before it.
-        let gpu = unsafe { Gpu::from_host(device.handles(hooked))? };
-        stage.submit(&device, &gpu)
-    });
-    println!("{faults} faults of {} functions: {called:?}", called.len());
-    for ours in [
+    let ours = [
         "vkCreateCommandPool",
         "vkEndCommandBuffer",
         "vkQueueSubmit2",
-    ] {
-        assert!(called.contains(&ours), "{ours}");
-    }
+    ];
+    let Swept { called, faults, .. } = submitted(Stage::submit, ours);
     // A submitter has fences, for frames in parts: of one that is whole nobody waits for them.
     for of_a_host in ["vkQueueSubmit", "vkWaitForFences", "vkDeviceWaitIdle"] {
         assert!(!called.contains(&of_a_host), "{of_a_host} is the host's");
@@ -211,23 +200,33 @@ fn a_host_that_lets_us_submit_is_told_of_every_call_that_fails() {
 
 #[test]
 fn a_host_that_lets_us_submit_in_parts_is_told_of_every_call_that_fails() {
+    let ours = ["vkQueueSubmit2", "vkWaitForFences", "vkResetFences"];
+    let Swept { faults, .. } = submitted(Stage::submit_in_parts, ours);
+    assert!(faults > 100, "only {faults} faults");
+}
+
+type Submit = fn(&Stage, &HostedDevice<'_>, &Arc<Gpu>) -> Drawn;
+
+/// Every call fails in turn of those that `submit` makes, `ours` among them.
+fn submitted(submit: Submit, ours: [&str; 3]) -> Swept {
     let tape = Tape::begin();
     let (host, stage) = (Host::new(), Stage::new());
     let features = Features {
         timeline_semaphore: true,
         ..FEATURES
     };
-    let Swept { called, faults, .. } = sweep(&tape, FALLIBLE, true, || {
+    let swept = sweep(&tape, FALLIBLE, true, || {
         let device = host.device(features);
         // SAFETY: the handles are right, and everything made on the device is dropped before it.
         let gpu = unsafe { Gpu::from_host(device.handles(hooked))? };
-        stage.submit_in_parts(&device, &gpu)
+        submit(&stage, &device, &gpu)
     });
+    let Swept { called, faults, .. } = &swept;
     println!("{faults} faults of {} functions: {called:?}", called.len());
-    for ours in ["vkQueueSubmit2", "vkWaitForFences", "vkResetFences"] {
+    for ours in ours {
         assert!(called.contains(&ours), "{ours}");
     }
-    assert!(faults > 100, "only {faults} faults");
+    swept
 }
 
 /// Renders on a device of our own, made for it.

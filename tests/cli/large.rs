@@ -210,7 +210,44 @@ fn frames_of_a_film_are_the_pictures_that_are_drawn_from_the_file() {
             "{frame} is not that of {words}"
         );
     }
+}
+
+#[test]
+fn each_time_of_a_film_is_the_picture_that_is_drawn_from_the_file() {
+    let folder = Folder::new();
     folder
-        .run("animate phantom:storm,n=16,variable=u,times=2 --stream --times -o %d.png")
-        .assert_refused(2, &["--stream", "several"]);
+        .run("convert phantom:storm,n=130,variable=u,times=3 -o storm.svb")
+        .assert_done();
+    let look = "storm.svb --size 32x24 --force";
+    let window = "--window=-10,40";
+    let ran = folder.run(&format!("animate {look} --stream --times {window} -o %d.npy"));
+    ran.assert_done();
+    let said = ran.err.matches("each time is drawn from the file in").count();
+    assert_eq!(said, 1, "{}", ran.err);
+    // Where the memory is short nobody has to say it.
+    let ran = folder.run(&format!(
+        "animate {look} --times {window} --max-memory 8M -o short%d.npy"
+    ));
+    ran.assert_done();
+    assert!(ran.err.contains("drawn from the file"), "{}", ran.err);
+    let read = |name: &str| fs::read(folder.path(name)).expect(name);
+    for time in 0..3 {
+        folder
+            .run(&format!("render {look} --stream --time {time} {window} -o r.npy"))
+            .assert_done();
+        let wanted = read("r.npy");
+        for frame in [format!("{time}.npy"), format!("short{time}.npy")] {
+            assert!(read(&frame) == wanted, "{frame} is another picture");
+        }
+    }
+    assert!(read("0.npy") != read("2.npy"), "nothing moves");
+    // What nobody words is chosen for all times together.
+    let ran = folder.run(&format!("animate {look} --stream --times -o all%d.png"));
+    ran.assert_done();
+    assert!(ran.err.contains("for all 3 times together"), "{}", ran.err);
+    let keys = r#"{ "stratavox_keyframes": 1, "frames": 3, "keys": [{ "at": 0, "time": 0 }, { "at": 2, "time": 1 }] }"#;
+    fs::write(folder.path("keys.json"), keys).expect("a file");
+    folder
+        .run(&format!("animate {look} --stream --keyframes keys.json -o k%d.png"))
+        .assert_refused(2, &["frame 1", "0.5", "--stream"]);
 }

@@ -2,6 +2,7 @@
 
 use super::Host;
 use ash::vk;
+use stratavox::gpu::{Target, Use};
 
 pub struct HostImage<'h> {
     pub raw: vk::Image,
@@ -17,6 +18,18 @@ pub struct HostImage<'h> {
 impl<'h> HostImage<'h> {
     pub fn new(host: &'h Host, format: vk::Format, extent: [u32; 2]) -> Self {
         Self::of_samples(host, format, extent, vk::SampleCountFlags::TYPE_1)
+    }
+
+    /// What a renderer draws into: nothing is kept of it, and what is drawn can be fetched.
+    pub fn target(&self) -> Target {
+        Target {
+            image: self.raw,
+            view: self.view,
+            format: self.format,
+            extent: self.extent,
+            before: Use::Nothing.into(),
+            after: Use::TransferRead.into(),
+        }
     }
 
     /// With several samples it cannot be fetched.

@@ -9,21 +9,20 @@ use super::{
     ready::{self, Ready},
     shots::Shot,
     store::Store,
-    volumes::Volumes,
+    volumes::{Moment, Volumes},
 };
 use crate::{
     cli::{
         Error,
         flags::{Classification, SceneFlags},
         line::{Line, encoders},
-        memory::{DeviceRoom, Held, leaves_room},
+        memory::{DeviceMemory, DeviceRoom, Held, leaves_room},
         output,
         progress::Progress,
         renderer::{Device, Job, Renderer},
         shown::{Parts, Shown},
         timings::{Timings, ms_since},
     },
-    offscreen::Stream,
     picture::{EncodedPicture, LayerKind, Picture},
     transfer::{Classified, Window},
     volume::{Source, Volume},
@@ -66,18 +65,8 @@ pub struct Drawing<'a> {
 pub enum Content {
     /// One time, of everything that `render` draws.
     Still(Box<Shown>),
-    /// Several times of one number a voxel.
-    Times(Box<dyn Source>),
-}
-
-impl Content {
-    /// Where voxels come from, where they are not in memory.
-    pub fn stream(&self) -> Option<&Stream> {
-        match self {
-            Self::Still(shown) => shown.stream(),
-            Self::Times(_) => None,
-        }
-    }
+    /// Several times of one number a voxel; with the device's memory, drawn brick by brick from their file.
+    Times(Arc<dyn Source>, Option<DeviceMemory>),
 }
 
 /// Where pictures go.
@@ -113,17 +102,21 @@ impl Drawing<'_> {
                 saw(self.shots[0].time as u32, &volumes)?;
                 let mut ready = ready::of_still(self.shots, self.scene, shown)?;
                 let load_ms = ms_since(self.start);
-                let first = |_: &[Ready]| Ok(Arc::clone(&shown.volume));
+                let moment = Arc::new(Moment {
+                    volume: Arc::clone(&shown.volume),
+                    streamed: shown.stream().map(|stream| (stream.clone(), None)),
+                });
+                let first = |_: &[Ready]| Ok(Arc::clone(&moment));
                 self.choose_window(&mut ready, first, &parts, &mut devices)?;
-                let feed = Feed::still(&shown.volume, wanted.len());
+                let feed = Feed::still(&moment, wanted.len());
                 let line = self.line(devices.len())?;
                 let work = self.work(wanted, &ready, &parts, &feed, &line)?;
                 self.run(&work, sink, devices, load_ms, None)
             }
-            Content::Times(source) => {
+            Content::Times(source, bricks) => {
                 self.progress.stage("read", 0, 1);
                 let saw = |time, volume: &Volume| saw(time, &[volume]);
-                let mut volumes = Volumes::new(source.as_ref(), self.scene, self.progress, &saw);
+                let mut volumes = Volumes::new(source, *bricks, self.scene, self.progress, &saw);
                 let is_labels = source.header().is_labels;
                 let mut ready = ready::of_times(
                     self.shots,
@@ -137,7 +130,8 @@ impl Drawing<'_> {
                 let first = |ready: &[Ready]| volumes.at(ready[0].time);
                 self.choose_window(&mut ready, first, &parts, &mut devices)?;
                 let times = times_of(&ready, wanted);
-                let has_room = self.has_room_ahead(source.as_ref(), &devices)?;
+                let has_room =
+                    bricks.is_none() && self.has_room_ahead(source.as_ref(), &devices)?;
                 let (sender, frames) = sync_channel(0);
                 let (feed, ahead) = if has_room {
                     let ahead = Ahead {
@@ -161,7 +155,7 @@ impl Drawing<'_> {
     fn choose_window(
         &self,
         ready: &mut [Ready],
-        first: impl FnOnce(&[Ready]) -> Result<Arc<Volume>, Error>,
+        first: impl FnOnce(&[Ready]) -> Result<Arc<Moment>, Error>,
         parts: &Parts,
         devices: &mut Vec<Device>,
     ) -> Result<(), Error> {
@@ -170,10 +164,10 @@ impl Drawing<'_> {
         if !ready.iter().any(is_open) {
             return Ok(());
         }
-        let volume = first(ready)?;
+        let moment = first(ready)?;
         let job = Job {
-            volume: &volume,
-            stream: self.content.stream(),
+            volume: &moment.volume,
+            stream: moment.stream(),
             beside: parts.beside(),
             classification: &ready[0].classification,
             settings: &ready[0].settings,

@@ -4,6 +4,7 @@ use super::{
     draw::{Drawing, Drawn},
     feed::Feed,
     ready::Ready,
+    volumes::Moment,
 };
 use crate::{
     cli::{
@@ -80,11 +81,11 @@ impl Seen {
 
 impl Work<'_> {
     /// A job with the settings and colours of frame `number`.
-    pub fn job<'j>(&'j self, volume: &'j Volume, number: u32, layers: &'j [LayerKind]) -> Job<'j> {
+    pub fn job<'j>(&'j self, moment: &'j Moment, number: u32, layers: &'j [LayerKind]) -> Job<'j> {
         let ready = &self.ready[number as usize];
         Job {
-            volume,
-            stream: self.drawing.content.stream(),
+            volume: &moment.volume,
+            stream: moment.stream(),
             beside: self.parts.beside(),
             classification: &ready.classification,
             settings: &ready.settings,
@@ -113,11 +114,11 @@ impl Work<'_> {
         at: &mut usize,
     ) -> Result<(), Error> {
         let mut next = self.feed.next();
-        while let Some((place, volume)) = next {
+        while let Some((place, moment)) = next {
             *at = place;
-            let volume = volume?;
+            let moment = moment?;
             let camera = &self.drawing.shots[self.wanted[*at] as usize].camera;
-            let job = self.job(&volume, self.wanted[*at], self.drawing.layers);
+            let job = self.job(&moment, self.wanted[*at], self.drawing.layers);
             let mut renderer = Renderer::new(job, camera, device)?;
             seen.upload_ms += renderer.upload_ms;
             seen.prepare_ms += renderer.prepare_ms;
@@ -125,7 +126,7 @@ impl Work<'_> {
                 if !self.line.enter(*at) {
                     return Ok(());
                 }
-                let picture = self.draw_one(&mut renderer, &volume, *at, seen)?;
+                let picture = self.draw_one(&mut renderer, &moment.volume, *at, seen)?;
                 if pictures.send((*at, Ok(picture))).is_err() {
                     return Ok(());
                 }
@@ -138,13 +139,13 @@ impl Work<'_> {
                     break None;
                 }
                 match self.feed.next() {
-                    Some((place, Ok(same))) if Arc::ptr_eq(&same, &volume) => *at = place,
+                    Some((place, Ok(same))) if Arc::ptr_eq(&same, &moment) => *at = place,
                     other => break other,
                 }
             };
             seen.device_bytes = renderer.device_bytes();
             device = renderer.into_device();
-            drop(volume);
+            drop(moment);
             next = other.or_else(|| self.feed.next());
         }
         Ok(())

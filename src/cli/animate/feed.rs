@@ -3,11 +3,11 @@
 //! A thread reads the next time while the present one is drawn. Where there is no memory for both, it is read when
 //! the one before has gone.
 
-use super::{ready::Ready, volumes::Volumes};
-use crate::{
-    cli::{Error, line::Line},
-    volume::Volume,
+use super::{
+    ready::Ready,
+    volumes::{Moment, Volumes},
 };
+use crate::cli::{Error, line::Line};
 use std::sync::{
     Arc, Mutex, PoisonError,
     atomic::{AtomicUsize, Ordering},
@@ -15,14 +15,14 @@ use std::sync::{
 };
 
 /// The place of a frame among those to be drawn, and its volume.
-pub type Next = (usize, Result<Arc<Volume>, Error>);
+pub type Next = (usize, Result<Arc<Moment>, Error>);
 
 /// Where those who draw take their next frame.
 pub enum Feed<'a> {
     /// One volume for so many frames.
     Still {
         /// It.
-        volume: Arc<Volume>,
+        moment: Arc<Moment>,
         /// Frames that were taken.
         taken: AtomicUsize,
         /// Frames.
@@ -56,9 +56,9 @@ impl<'a> Feed<'a> {
     }
 
     /// Of one volume.
-    pub fn still(volume: &Arc<Volume>, count: usize) -> Self {
+    pub fn still(moment: &Arc<Moment>, count: usize) -> Self {
         Self::Still {
-            volume: Arc::clone(volume),
+            moment: Arc::clone(moment),
             taken: AtomicUsize::new(0),
             count,
         }
@@ -68,12 +68,12 @@ impl<'a> Feed<'a> {
     pub fn next(&self) -> Option<Next> {
         match self {
             Self::Still {
-                volume,
+                moment,
                 taken,
                 count,
             } => {
                 let at = taken.fetch_add(1, Ordering::Relaxed);
-                (at < *count).then(|| (at, Ok(Arc::clone(volume))))
+                (at < *count).then(|| (at, Ok(Arc::clone(moment))))
             }
             Self::Ahead(frames) => {
                 let frames = frames.lock().unwrap_or_else(PoisonError::into_inner);
@@ -113,7 +113,7 @@ impl Ahead<'_> {
     /// Reads one volume after the other, each kept as long as the next frame shows it too.
     pub fn read(mut self, line: &Line) {
         let _stops = line.stops_in_panic();
-        let mut last: Option<(f64, Arc<Volume>)> = None;
+        let mut last: Option<(f64, Arc<Moment>)> = None;
         for (at, &time) in self.times.iter().enumerate() {
             let volume = match last.take() {
                 Some((of, volume)) if of == time => Ok(volume),

@@ -33,7 +33,7 @@ use super::{
     render::bit_depth,
     renderer::Device,
     scene_file,
-    shown::{self, Shown},
+    shown::{self, Shown, wants_stream},
     signals::Gate,
     timings::Timings,
 };
@@ -48,6 +48,7 @@ use rate::Rate;
 use shots::{Film, Shot};
 use std::{
     path::{Path, PathBuf},
+    sync::Arc,
     time::Instant,
 };
 use store::{Store, Wishes};
@@ -226,14 +227,20 @@ impl Animate {
                 } else {
                     Held::Blend
                 };
-                let source = fitting(source, scene, device.memory()?, held)?;
-                Content::Times(source)
+                let settings = &shots[0].settings;
+                let is_streamed =
+                    is_whole && wants_stream(source.as_ref(), scene, settings, device)?;
+                let memory = device.memory()?;
+                match memory.filter(|_| is_streamed) {
+                    Some(memory) => Content::Times(Arc::from(source), Some(memory)),
+                    None => Content::Times(fitting(source, scene, memory, held)?.into(), None),
+                }
             }
         };
         // A volume that is reduced to fit has a grid of its own.
         let grid = match &content {
             Content::Still(shown) => shown.volume.grid(),
-            Content::Times(source) => shots::grid(scene, source.header())?,
+            Content::Times(source, _) => shots::grid(scene, source.header())?,
         };
         let shots = plan.film.shots(scene, *depth, header, &grid)?;
         let drawing = Drawing {
@@ -367,10 +374,16 @@ impl Animate {
 /// Refuses what changes one number a voxel where several are seen.
 fn check_several(scene: &SceneFlags, header: &Header, shots: &[Shot]) -> Result<(), Error> {
     let is_still = shots::still_time(shots).is_some();
-    if !is_still && scene.input.stream {
+    let is_between = |shot: &Shot| shot.time.fract() != 0.0;
+    if scene.input.stream
+        && let Some(number) = shots.iter().position(is_between)
+    {
+        let time = shots[number].time;
         return Err(Error::usage(
-            "--stream is for one time, and several are shown",
-            "--time N takes one time; --fit draws reduced volumes that fit into memory",
+            format!(
+                "--stream: frame {number} shows time {time}, and between times there are no bricks"
+            ),
+            "whole times: --times; --fit draws reduced volumes that fit into memory",
         ));
     }
     let several = shown::shows_several(scene, header)?;

@@ -3,7 +3,11 @@
 //! Between two times every voxel is mixed, `v = v0 + s (v1 - v0)`.
 
 use crate::{
-    cli::{Error, flags::SceneFlags, load, progress::Progress},
+    cli::{
+        Error, flags::SceneFlags, load, memory::DeviceMemory, progress::Progress,
+        shown::open_stream,
+    },
+    offscreen::Stream,
     transfer::{Quantity, ValueSummary},
     volume::{Pick, Problem, ReadError, Source, Volume, Voxels},
 };
@@ -15,13 +19,43 @@ const MAX_SAMPLES: usize = 1 << 22;
 /// Voxels that are taken one after the other: labels are known by what their neighbours are.
 const RUN: usize = 256;
 
+/// A volume at one time.
+pub struct Moment {
+    /// It; of a stream all but the voxels.
+    pub volume: Arc<Volume>,
+    /// Where voxels come from, where they are not in memory, and every n-th of them, unless others have looked at those.
+    pub streamed: Option<(Stream, Option<Volume>)>,
+}
+
+impl Moment {
+    /// Where voxels come from, where they are not in memory.
+    pub fn stream(&self) -> Option<&Stream> {
+        self.streamed.as_ref().map(|(stream, _)| stream)
+    }
+
+    fn in_memory(volume: Volume) -> Self {
+        Self {
+            volume: Arc::new(volume),
+            streamed: None,
+        }
+    }
+
+    /// A volume that shows which values there are.
+    fn looked_at(&self) -> &Volume {
+        let overview = self.streamed.as_ref().and_then(|(_, seen)| seen.as_ref());
+        overview.unwrap_or(&self.volume)
+    }
+}
+
 /// Reads what frames need, and keeps it as long as the next frame needs it too.
 pub struct Volumes<'a> {
-    source: &'a dyn Source,
+    source: &'a Arc<dyn Source>,
+    /// Of the device, where volumes are drawn brick by brick from their file.
+    bricks: Option<DeviceMemory>,
     scene: SceneFlags,
     progress: &'a Progress,
     first: Option<(Pick, DAffine3)>,
-    kept: Vec<(u32, Arc<Volume>)>,
+    kept: Vec<(u32, Arc<Moment>)>,
     /// Told of every volume that is read.
     saw: &'a (dyn Fn(u32, &Volume) -> Result<(), Error> + Sync),
 }
@@ -29,13 +63,15 @@ pub struct Volumes<'a> {
 impl<'a> Volumes<'a> {
     /// Of the words of `scene`, which name times only in `source`.
     pub fn new(
-        source: &'a dyn Source,
+        source: &'a Arc<dyn Source>,
+        bricks: Option<DeviceMemory>,
         scene: &SceneFlags,
         progress: &'a Progress,
         saw: &'a (dyn Fn(u32, &Volume) -> Result<(), Error> + Sync),
     ) -> Self {
         Self {
             source,
+            bricks,
             scene: scene.clone(),
             progress,
             first: None,
@@ -44,8 +80,8 @@ impl<'a> Volumes<'a> {
         }
     }
 
-    /// The volume at this time.
-    pub fn at(&mut self, time: f64) -> Result<Arc<Volume>, Error> {
+    /// The volume at this time; of streams at a whole one.
+    pub fn at(&mut self, time: f64) -> Result<Arc<Moment>, Error> {
         let [before, after] = [time.floor(), time.ceil()].map(|time| time as u32);
         self.kept
             .retain(|&(time, _)| time == before || time == after);
@@ -54,8 +90,8 @@ impl<'a> Volumes<'a> {
             return Ok(first);
         }
         let second = self.whole(after)?;
-        blend(&first, &second, time.fract())
-            .map(Arc::new)
+        blend(&first.volume, &second.volume, time.fract())
+            .map(|volume| Arc::new(Moment::in_memory(volume)))
             .map_err(|problem| {
                 Error::Read(ReadError {
                     path: self.source.path().to_owned(),
@@ -64,34 +100,67 @@ impl<'a> Volumes<'a> {
             })
     }
 
-    fn whole(&mut self, time: u32) -> Result<Arc<Volume>, Error> {
-        if let Some((_, volume)) = self.kept.iter().find(|kept| kept.0 == time) {
-            return Ok(Arc::clone(volume));
+    fn whole(&mut self, time: u32) -> Result<Arc<Moment>, Error> {
+        if let Some((_, moment)) = self.kept.iter().find(|kept| kept.0 == time) {
+            return Ok(Arc::clone(moment));
         }
-        let volume = match self.first {
+        let moment = match self.bricks {
+            Some(memory) => self.streamed(time, memory)?,
+            None => Moment::in_memory(self.read(time)?),
+        };
+        (self.saw)(time, moment.looked_at())?;
+        let moment = Arc::new(moment);
+        self.kept.push((time, Arc::clone(&moment)));
+        Ok(moment)
+    }
+
+    fn streamed(&mut self, time: u32, memory: DeviceMemory) -> Result<Moment, Error> {
+        self.scene.input.time = Some(time.to_string());
+        let (pick, note) = self.scene.input.pick(self.source.header())?;
+        let source = Arc::clone(self.source);
+        let (stream, _, stretched) = open_stream(source, pick, &self.scene, memory, self.progress)?;
+        let (overview, limits) = (stream.overview(), self.scene.input.limits());
+        let whole = overview.header().whole();
+        let seen = Volume::read(overview, Pick::default(), whole, &limits)?;
+        if self.first.is_none() {
+            let notes = self.source.header().notes.iter().chain(&note);
+            notes
+                .chain(&stretched)
+                .for_each(|note| self.progress.note(note));
+            self.progress.note(&format!(
+                "each time is drawn from the file in {} bricks",
+                stream.brick_count()
+            ));
+            self.first = Some((pick, stream.outline().world_from_voxel));
+        }
+        Ok(Moment {
+            volume: Arc::new(stream.outline().clone()),
+            streamed: Some((stream, Some(seen))),
+        })
+    }
+
+    fn read(&mut self, time: u32) -> Result<Volume, Error> {
+        Ok(match self.first {
             // What there is to say is said of the first.
             None => {
                 self.scene.input.time = Some(time.to_string());
                 let (pick, _) = self.scene.input.pick(self.source.header())?;
-                let volume = load::read(self.source, &self.scene, self.progress)?;
+                let volume = load::read(self.source.as_ref(), &self.scene, self.progress)?;
                 self.first = Some((pick, volume.world_from_voxel));
                 volume
             }
             Some((pick, world_from_voxel)) => {
                 let whole = self.source.header().whole();
                 let limits = self.scene.input.limits();
-                let volume = Volume::read(self.source, Pick { time, ..pick }, whole, &limits)?;
+                let pick = Pick { time, ..pick };
+                let volume = Volume::read(self.source.as_ref(), pick, whole, &limits)?;
                 Volume {
                     // Stretched as the first is.
                     world_from_voxel,
                     ..volume
                 }
             }
-        };
-        (self.saw)(time, &volume)?;
-        let volume = Arc::new(volume);
-        self.kept.push((time, Arc::clone(&volume)));
-        Ok(volume)
+        })
     }
 
     /// What the values of these times look like together, so that colours mean the same in all frames.
@@ -102,8 +171,9 @@ impl<'a> Volumes<'a> {
         let (mut diagonal, mut hounsfield, mut quantity) = (0.0, false, Quantity::Unknown);
         for (done, &time) in times.iter().enumerate() {
             self.progress.stage("look at all times", done, times.len());
-            let volume = self.at(time.into())?;
-            if volume.no_data_count() < volume.voxels.len() as u64 {
+            let moment = self.at(time.into())?;
+            let (volume, seen) = (&moment.volume, moment.looked_at());
+            if seen.no_data_count() < seen.voxels.len() as u64 {
                 let [low, high] = volume.value_range;
                 range = [range[0].min(low), range[1].max(high)];
             }
@@ -113,7 +183,7 @@ impl<'a> Volumes<'a> {
                 .length();
             hounsfield = volume.hounsfield;
             quantity = Quantity::of_unit(volume.unit.as_deref());
-            pool.extend(runs(volume.voxels.len(), per_time).map(|i| value(&volume, i)));
+            pool.extend(runs(seen.voxels.len(), per_time).map(|i| value(seen, i)));
         }
         if range[0] > range[1] {
             range = [0.0; 2];

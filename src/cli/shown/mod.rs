@@ -9,6 +9,7 @@ mod preclassified;
 mod streamed;
 
 pub use check::{check, shows_several};
+pub use streamed::{is_wanted as wants_stream, open as open_stream};
 
 use super::{
     Error,

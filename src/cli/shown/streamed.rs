@@ -4,18 +4,18 @@ use super::{Others, Plan, Shown, check::plan, has_beside};
 use crate::cli::Error;
 use crate::cli::exaggerate;
 use crate::cli::flags::{InputFlags, SceneFlags};
-use crate::cli::memory::{DeviceRoom, Held, for_bricks, is_too_large};
+use crate::cli::memory::{DeviceMemory, DeviceRoom, Held, for_bricks, is_too_large};
 use crate::cli::progress::Progress;
 use crate::format;
 use crate::offscreen::{Stream, StreamOptions};
 use crate::technique::{Settings, Technique};
-use crate::volume::Source;
+use crate::volume::{Pick, Source};
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 
 /// Whether the volume is drawn brick by brick: because a word says so, or because it is too large and can be.
-pub(super) fn is_wanted(
+pub fn is_wanted(
     source: &dyn Source,
     scene: &SceneFlags,
     settings: &Settings,
@@ -91,6 +91,34 @@ fn in_no_parts(source: &dyn Source, message: String, is_usage: bool) -> Error {
     }
 }
 
+/// Looks at all of one time of the source, and places it as high as it is drawn: so many times as it is, and what a person
+/// should know of that.
+pub fn open(
+    source: Arc<dyn Source>,
+    pick: Pick,
+    scene: &SceneFlags,
+    memory: DeviceMemory,
+    progress: &Progress,
+) -> Result<(Stream, f64, Option<String>), Error> {
+    let [device_bytes, piece_bytes] = for_bricks(scene, memory);
+    let options = StreamOptions {
+        piece_bytes,
+        device_bytes,
+        all_device_bytes: device_bytes,
+        ..StreamOptions::default()
+    };
+    let is_earth = source.header().is_earth;
+    let stream = Stream::open(source, pick, options, &mut |done, of| {
+        progress.stage("look", done, of);
+        ControlFlow::Continue(())
+    })?;
+    let stream = stream.expect("nobody ends it");
+    let grid = stream.outline().grid();
+    let (height_factor, note) = exaggerate::factor(scene, &grid, is_earth)?;
+    let placed = exaggerate::stretched(grid.world_from_voxel, height_factor);
+    Ok((stream.placed(placed), height_factor, note))
+}
+
 impl Shown {
     /// Looks at all of the source once, and takes from an overview how values are seen.
     pub(super) fn streamed(
@@ -107,27 +135,12 @@ impl Shown {
         let Some(memory) = device.memory()? else {
             return Self::of(source, scene, settings, device, progress);
         };
-        let [device_bytes, piece_bytes] = for_bricks(scene, memory);
-        let options = StreamOptions {
-            piece_bytes,
-            device_bytes,
-            all_device_bytes: device_bytes,
-            ..StreamOptions::default()
-        };
-        let is_earth = source.header().is_earth;
-        let stream = Stream::open(Arc::from(source), pick, options, &mut |done, of| {
-            progress.stage("look", done, of);
-            ControlFlow::Continue(())
-        })?;
-        let mut stream = stream.expect("nobody ends it");
+        let (stream, height_factor, _) = open(Arc::from(source), pick, scene, memory, progress)?;
         progress.note(&format!(
             "drawn from the file in {} bricks; what nobody words is chosen by every {}. voxel along each axis",
             stream.brick_count(),
             stream.overview().every()
         ));
-        let grid = stream.outline().grid();
-        let (height_factor, _) = exaggerate::factor(scene, &grid, is_earth)?;
-        stream = stream.placed(exaggerate::stretched(grid.world_from_voxel, height_factor));
         // An overview holds what was picked.
         let of_overview = SceneFlags {
             input: InputFlags {
