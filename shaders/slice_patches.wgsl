@@ -1,4 +1,5 @@
-// Which patches of a slicer's slices are drawn: one thread for each square of the picture and each batch of slices.
+// Which patches of a slicer's slices are drawn: one thread for each square of the picture and each batch of slices, and
+// one entry for a block of squares that are all drawn (patch_grid.wgsl).
 //
 // The rays of the four corners of a square, taken without making them unit vectors,
 //
@@ -41,6 +42,19 @@ struct Patches {
 @group(0) @binding(39) var<storage, read_write> draws: Draws;
 @group(0) @binding(40) var<storage, read_write> patches_listed: Patches;
 
+// Blocks of squares in a workgroup, side by side; a block has as many members as a batch has layers.
+const BLOCKS: u32 = 2u;
+const MEMBERS: u32 = BLOCK_SIDE * BLOCK_SIDE;
+// Set where a square lies in the picture.
+const PRESENT: u32 = BATCH_LAYERS;
+
+// The layers in which each square is drawn, a bit a layer.
+var<workgroup> layers_by_member: array<array<u32, MEMBERS>, BLOCKS>;
+// The squares that are drawn in each layer, a bit a member.
+var<workgroup> members_by_layer: array<array<u32, BATCH_LAYERS>, BLOCKS>;
+// Where the entries of each block begin.
+var<workgroup> begins: array<u32, BLOCKS>;
+
 struct CornerRay {
     world: Ray,
     voxel: Ray,
@@ -48,11 +62,59 @@ struct CornerRay {
 }
 
 @compute @workgroup_size(8, 4)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_id) own: vec3<u32>) {
     let grid = patch_grid();
-    if any(id.xy >= grid) {
-        return;
+    let block = own.x / BLOCK_SIDE;
+    let member = own.x % BLOCK_SIDE + BLOCK_SIDE * own.y;
+    var layers = 0u;
+    if all(id.xy < grid) {
+        layers = layers_of(id) | 1u << PRESENT;
     }
+    layers_by_member[block][member] = layers;
+    workgroupBarrier();
+    members_by_layer[block][member] = members_in(block, member);
+    let all_members = members_in(block, PRESENT);
+    workgroupBarrier();
+    if member == 0u {
+        var count = 0u;
+        for (var layer = 0u; layer < BATCH_LAYERS; layer++) {
+            count += entries_of(members_by_layer[block][layer], all_members);
+        }
+        begins[block] = id.z * batch_capacity() + atomicAdd(&draws.d[id.z].instances, count * LAYER_SLICES) / LAYER_SLICES;
+    }
+    workgroupBarrier();
+    // In the order of slices: a pixel is in one entry of each layer.
+    let square = id.x + grid.x * id.y;
+    var next = begins[block];
+    for (var layer = 0u; layer < BATCH_LAYERS; layer++) {
+        let drawn = members_by_layer[block][layer];
+        let entry = square * BATCH_LAYERS + layer;
+        let is_block = drawn == all_members;
+        if is_block && drawn != 0u && member == 0u {
+            patches_listed.d[next] = entry | BLOCK;
+        } else if !is_block && (drawn & (1u << member)) != 0u {
+            patches_listed.d[next + countOneBits(drawn & ((1u << member) - 1u))] = entry;
+        }
+        next += entries_of(drawn, all_members);
+    }
+}
+
+// The squares of a block that have a bit, a bit a member.
+fn members_in(block: u32, bit: u32) -> u32 {
+    var members = 0u;
+    for (var member = 0u; member < MEMBERS; member++) {
+        members |= ((layers_by_member[block][member] >> bit) & 1u) << member;
+    }
+    return members;
+}
+
+// How many entries a layer of a block takes.
+fn entries_of(drawn: u32, all_members: u32) -> u32 {
+    return select(countOneBits(drawn), min(drawn, 1u), drawn == all_members);
+}
+
+// The layers of a batch in which a square is drawn, a bit a layer.
+fn layers_of(id: vec3<u32>) -> u32 {
     var rays: array<CornerRay, 4>;
     var slopes = vec2(3.4e38, -3.4e38);
     for (var i = 0u; i < 4u; i++) {
@@ -86,18 +148,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
         }
         layers |= select(0u, 1u << layer, is_drawn);
     }
-    let count = countOneBits(layers);
-    if count == 0u {
-        return;
-    }
-    let before = atomicAdd(&draws.d[id.z].instances, count * LAYER_SLICES) / LAYER_SLICES;
-    let first = id.z * batch_capacity() + before;
-    let square = id.x + grid.x * id.y;
-    // In the order of slices.
-    for (var i = 0u; i < count; i++) {
-        patches_listed.d[first + i] = square * BATCH_LAYERS + firstTrailingBit(layers);
-        layers &= layers - 1u;
-    }
+    return layers;
 }
 
 // The ray at a corner of a square and a pixel around it.

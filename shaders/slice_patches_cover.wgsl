@@ -36,14 +36,30 @@ struct Vertex {
 fn main(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u32) -> Vertex {
     let batch = vertex / 6u;
     let entry = patches_listed.d[batch * batch_capacity() + instance / LAYER_SLICES];
-    let square = entry / BATCH_LAYERS;
+    let side = select(1u, BLOCK_SIDE, entry >= BLOCK);
+    let square = (entry & ~BLOCK) / BATCH_LAYERS;
     let layer = batch * BATCH_LAYERS + entry % BATCH_LAYERS;
     let nth = layer * LAYER_SLICES + instance % LAYER_SLICES;
-    let is_drawn = nth < frame.slice_count && opaque_since.d[square] >= opaque_since.batch;
-    var corners = CORNERS;
     let across = patch_grid().x;
-    let corner = vec2(square % across, square / across) + corners[vertex % 6u];
+    let first = vec2(square % across, square / across);
+    let is_drawn = nth < frame.slice_count && changes(first, side);
+    var corners = CORNERS;
+    let corner = first + side * corners[vertex % 6u];
     let ndc = 2.0 * vec2<f32>(corner * frame.patch_pixels) / vec2<f32>(frame.extent_pixels) - 1.0;
     // All six in one point: no fragment.
     return Vertex(vec4(select(vec2(-1.0), ndc, is_drawn), 0.5, 1.0), slice_of(nth));
+}
+
+// Whether a further slice can change anything in the squares of a block.
+fn changes(first: vec2<u32>, side: u32) -> bool {
+    let grid = patch_grid();
+    let end = min(first + side, grid);
+    for (var y = first.y; y < end.y; y++) {
+        for (var x = first.x; x < end.x; x++) {
+            if opaque_since.d[x + grid.x * y] >= opaque_since.batch {
+                return true;
+            }
+        }
+    }
+    return false;
 }

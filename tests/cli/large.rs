@@ -220,9 +220,14 @@ fn each_time_of_a_film_is_the_picture_that_is_drawn_from_the_file() {
         .assert_done();
     let look = "storm.svb --size 32x24 --force";
     let window = "--window=-10,40";
-    let ran = folder.run(&format!("animate {look} --stream --times {window} -o %d.npy"));
+    let ran = folder.run(&format!(
+        "animate {look} --stream --times {window} -o %d.npy"
+    ));
     ran.assert_done();
-    let said = ran.err.matches("each time is drawn from the file in").count();
+    let said = ran
+        .err
+        .matches("each time is drawn from the file in")
+        .count();
     assert_eq!(said, 1, "{}", ran.err);
     // Where the memory is short nobody has to say it.
     let ran = folder.run(&format!(
@@ -233,7 +238,9 @@ fn each_time_of_a_film_is_the_picture_that_is_drawn_from_the_file() {
     let read = |name: &str| fs::read(folder.path(name)).expect(name);
     for time in 0..3 {
         folder
-            .run(&format!("render {look} --stream --time {time} {window} -o r.npy"))
+            .run(&format!(
+                "render {look} --stream --time {time} {window} -o r.npy"
+            ))
             .assert_done();
         let wanted = read("r.npy");
         for frame in [format!("{time}.npy"), format!("short{time}.npy")] {
@@ -248,6 +255,8 @@ fn each_time_of_a_film_is_the_picture_that_is_drawn_from_the_file() {
     let keys = r#"{ "stratavox_keyframes": 1, "frames": 3, "keys": [{ "at": 0, "time": 0 }, { "at": 2, "time": 1 }] }"#;
     fs::write(folder.path("keys.json"), keys).expect("a file");
     folder
-        .run(&format!("animate {look} --stream --keyframes keys.json -o k%d.png"))
+        .run(&format!(
+            "animate {look} --stream --keyframes keys.json -o k%d.png"
+        ))
         .assert_refused(2, &["frame 1", "0.5", "--stream"]);
 }

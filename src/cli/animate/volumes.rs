@@ -118,7 +118,7 @@ impl<'a> Volumes<'a> {
         self.scene.input.time = Some(time.to_string());
         let (pick, note) = self.scene.input.pick(self.source.header())?;
         let source = Arc::clone(self.source);
-        let (stream, _, stretched) = open_stream(source, pick, &self.scene, memory, self.progress)?;
+        let (stream, stretched) = open_stream(source, pick, &self.scene, memory, self.progress)?;
         let (overview, limits) = (stream.overview(), self.scene.input.limits());
         let whole = overview.header().whole();
         let seen = Volume::read(overview, Pick::default(), whole, &limits)?;

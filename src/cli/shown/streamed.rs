@@ -91,15 +91,14 @@ fn in_no_parts(source: &dyn Source, message: String, is_usage: bool) -> Error {
     }
 }
 
-/// Looks at all of one time of the source, and places it as high as it is drawn: so many times as it is, and what a person
-/// should know of that.
+/// Looks at all of one time of the source, and places it as high as it is drawn; and what a person should know of that.
 pub fn open(
     source: Arc<dyn Source>,
     pick: Pick,
     scene: &SceneFlags,
     memory: DeviceMemory,
     progress: &Progress,
-) -> Result<(Stream, f64, Option<String>), Error> {
+) -> Result<(Stream, Option<String>), Error> {
     let [device_bytes, piece_bytes] = for_bricks(scene, memory);
     let options = StreamOptions {
         piece_bytes,
@@ -116,7 +115,7 @@ pub fn open(
     let grid = stream.outline().grid();
     let (height_factor, note) = exaggerate::factor(scene, &grid, is_earth)?;
     let placed = exaggerate::stretched(grid.world_from_voxel, height_factor);
-    Ok((stream.placed(placed), height_factor, note))
+    Ok((stream.placed(placed), note))
 }
 
 impl Shown {
@@ -135,7 +134,7 @@ impl Shown {
         let Some(memory) = device.memory()? else {
             return Self::of(source, scene, settings, device, progress);
         };
-        let (stream, height_factor, _) = open(Arc::from(source), pick, scene, memory, progress)?;
+        let (stream, _) = open(Arc::from(source), pick, scene, memory, progress)?;
         progress.note(&format!(
             "drawn from the file in {} bricks; what nobody words is chosen by every {}. voxel along each axis",
             stream.brick_count(),
