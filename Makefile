@@ -140,6 +140,9 @@ least: driver layers
 # A second driver, from Debian's chromium: unpacked, and not installed.
 SWIFTSHADER := target/swiftshader/usr/lib/chromium/vk_swiftshader_icd.json
 
+# The driver that Debian installs, and that one.
+BOTH := $(firstword $(foreach folder,$(ICD_FOLDERS),$(wildcard $(folder)/lvp_icd*.json))):$(CURDIR)/$(SWIFTSHADER)
+
 ON_SWIFTSHADER := VK_DRIVER_FILES=$(CURDIR)/$(SWIFTSHADER) VK_ICD_FILENAMES=$(CURDIR)/$(SWIFTSHADER)
 
 swiftshader:
@@ -161,7 +164,8 @@ second:
 	    && ask verify --part target/conformance/second.json \
 	    && $(ON_SWIFTSHADER) RUST_TEST_THREADS=1 $(TEST) --quiet --test gpu_run --test gpu_limits --test embed_flight \
 	        --test embed_pictures --test embed_stale --test embed_targets \
-	    && $(ON_SWIFTSHADER) RUST_TEST_THREADS=1 $(TEST) --quiet --test embed_levels -- level_
+	    && $(ON_SWIFTSHADER) RUST_TEST_THREADS=1 $(TEST) --quiet --test embed_levels -- level_ \
+	    && VK_DRIVER_FILES=$(BOTH) VK_ICD_FILENAMES=$(BOTH) $(TEST) --quiet --test cli -- two_drivers
 
 # Each run must be well, and each package whole; how they differ is told.
 conformance: driver swiftshader

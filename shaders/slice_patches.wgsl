@@ -25,8 +25,8 @@ const MAX_CELLS: i32 = 1024;
 
 // One draw without indices, as Vulkan reads it.
 struct Draw {
-    vertices: u32,
-    instances: atomic<u32>,
+    vertices: atomic<u32>,
+    instances: u32,
     first_vertex: u32,
     first_instance: u32,
 }
@@ -80,7 +80,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_
         for (var layer = 0u; layer < BATCH_LAYERS; layer++) {
             count += entries_of(members_by_layer[block][layer], all_members);
         }
-        begins[block] = id.z * batch_capacity() + atomicAdd(&draws.d[id.z].instances, count * LAYER_SLICES) / LAYER_SLICES;
+        let before = atomicAdd(&draws.d[id.z].vertices, count * ENTRY_VERTICES) / ENTRY_VERTICES;
+        begins[block] = id.z * batch_capacity() + before;
+    }
+    if all(id.xy == vec2(0u)) {
+        draws.d[id.z].first_vertex = id.z * batch_capacity() * ENTRY_VERTICES;
     }
     workgroupBarrier();
     // In the order of slices: a pixel is in one entry of each layer.

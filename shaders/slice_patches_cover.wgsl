@@ -1,7 +1,8 @@
-// The cover of slices where only some patches of them are drawn (slice_patches.wgsl): squares of the picture. Instance
-// i shows slice i mod LAYER_SLICES of the layer that entry i / LAYER_SLICES of its batch names; the first vertex says
-// which batch that is. Edges lie between pixels, half a pixel from the nearest centre: each fragment belongs to one
-// square, and it alone decides whether it has a sample.
+// The cover of slices where only some patches of them are drawn (slice_patches.wgsl): squares of the picture, six vertices a
+// slice. Vertex i shows slice i / 6 mod LAYER_SLICES of the layer that entry i / ENTRY_VERTICES of all batches names. An
+// instance of six vertices for each would fill few lanes of graphics cards; on processors it takes as long. Edges lie between
+// pixels, half a pixel from the nearest centre: each fragment belongs to one square, and it alone decides whether it has a
+// sample.
 
 #import patch_grid
 
@@ -33,13 +34,13 @@ struct Vertex {
 }
 
 @vertex
-fn main(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u32) -> Vertex {
-    let batch = vertex / 6u;
-    let entry = patches_listed.d[batch * batch_capacity() + instance / LAYER_SLICES];
+fn main(@builtin(vertex_index) vertex: u32) -> Vertex {
+    let batch = vertex / ENTRY_VERTICES / batch_capacity();
+    let entry = patches_listed.d[vertex / ENTRY_VERTICES];
     let side = select(1u, BLOCK_SIDE, entry >= BLOCK);
     let square = (entry & ~BLOCK) / BATCH_LAYERS;
     let layer = batch * BATCH_LAYERS + entry % BATCH_LAYERS;
-    let nth = layer * LAYER_SLICES + instance % LAYER_SLICES;
+    let nth = layer * LAYER_SLICES + vertex / 6u % LAYER_SLICES;
     let across = patch_grid().x;
     let first = vec2(square % across, square / across);
     let is_drawn = nth < frame.slice_count && changes(first, side);

@@ -120,7 +120,7 @@ fn parts_together_are_the_frame() {
                 // In a layout that parts leave behind them: the next one that named it would be heard.
                 let target = Target {
                     before: Use::TransferWrite.into(),
-                    ..target(&image)
+                    ..image.target()
                 };
                 // SAFETY: the image is the host's; `run` waits.
                 host.run(|cmd| unsafe { image.clear(cmd, [1.0; 4]) });
@@ -196,7 +196,7 @@ fn a_frame_that_is_given_up_leaves_the_target_as_it_is_said() {
         // Kept, so that what is left of it shows.
         let target = Target {
             before: Use::TransferWrite.into(),
-            ..target(&image)
+            ..image.target()
         };
         let count = renderer.begin_parts(&shot(&stage, 1)).unwrap();
         // SAFETY: in order; `run` waits. The image is in the layout that the documentation says.

@@ -11,6 +11,8 @@
 
 const LAYER_SLICES: u32 = 4u;
 const BATCH_LAYERS: u32 = 16u;
+// Two triangles a slice.
+const ENTRY_VERTICES: u32 = 6u * LAYER_SLICES;
 const BLOCK_SIDE: u32 = 4u;
 const BLOCK: u32 = 0x80000000u;
 

@@ -231,7 +231,7 @@ fn each_time_of_a_film_is_the_picture_that_is_drawn_from_the_file() {
     assert_eq!(said, 1, "{}", ran.err);
     // Where the memory is short nobody has to say it.
     let ran = folder.run(&format!(
-        "animate {look} --times {window} --max-memory 8M -o short%d.npy"
+        "animate {look} --times {window} --max-memory 3M -o short%d.npy"
     ));
     ran.assert_done();
     assert!(ran.err.contains("drawn from the file"), "{}", ran.err);
@@ -252,7 +252,7 @@ fn each_time_of_a_film_is_the_picture_that_is_drawn_from_the_file() {
     let ran = folder.run(&format!("animate {look} --stream --times -o all%d.png"));
     ran.assert_done();
     assert!(ran.err.contains("for all 3 times together"), "{}", ran.err);
-    let keys = r#"{ "stratavox_keyframes": 1, "frames": 3, "keys": [{ "at": 0, "time": 0 }, { "at": 2, "time": 1 }] }"#;
+    let keys = r#"{ "stratavox_keyframes": 1, "frames": 3, "keys": [{ "at": 0, "time": 0 }, { "at": 1, "time": 1 }] }"#;
     fs::write(folder.path("keys.json"), keys).expect("a file");
     folder
         .run(&format!(

@@ -80,6 +80,40 @@ fn two_devices_draw_what_one_draws() {
     assert!(pictures_of(&folder, "c") == pictures_of(&folder, "d"));
 }
 
+/// `make second` has two drivers, which see the hardware's filter differently.
+#[test]
+fn two_drivers_share_a_film_and_each_frame_is_that_of_one_of_them() {
+    let folder = Folder::new();
+    let there = folder.run("devices").out;
+    let drivers = ["llvmpipe", "SwiftShader"];
+    if !drivers.iter().all(|driver| there.contains(driver)) {
+        println!("skipped: {drivers:?} are not both here");
+        return;
+    }
+    let film = "animate phantom:head,n=64 --turntable 12 --size 96x96";
+    let of_one = drivers.map(|driver| {
+        let words = format!("{film} --device {driver} -o {driver}/%02d.png");
+        folder.run(&words).assert_done();
+        pictures_of(&folder, driver)
+    });
+    folder
+        .run(&format!(
+            "{film} --device llvmpipe --device SwiftShader -o both/%02d.png --timings t.json"
+        ))
+        .assert_done();
+    let both = pictures_of(&folder, "both");
+    assert_eq!(both.len(), 12);
+    for (name, picture) in &both {
+        let is_of_one = of_one.iter().any(|one| one[name] == *picture);
+        assert!(is_of_one, "{name} is of neither driver");
+    }
+    let timings = fs::read_to_string(folder.path("t.json")).expect("timings");
+    assert!(
+        drivers.iter().all(|driver| timings.contains(driver)),
+        "{timings}"
+    );
+}
+
 fn pictures_of(folder: &Folder, name: &str) -> BTreeMap<String, Vec<u8>> {
     let mut all = pictures(&folder.path(name));
     all.retain(|name, _| name.ends_with(".png"));

@@ -9,7 +9,7 @@ use crate::{
     },
     offscreen::Stream,
     transfer::{Quantity, ValueSummary},
-    volume::{Pick, Problem, ReadError, Source, Volume, Voxels},
+    volume::{Limits, Pick, Problem, ReadError, Source, Volume, Voxels},
 };
 use glam::DAffine3;
 use std::{collections::BTreeSet, sync::Arc};
@@ -119,9 +119,10 @@ impl<'a> Volumes<'a> {
         let (pick, note) = self.scene.input.pick(self.source.header())?;
         let source = Arc::clone(self.source);
         let (stream, stretched) = open_stream(source, pick, &self.scene, memory, self.progress)?;
-        let (overview, limits) = (stream.overview(), self.scene.input.limits());
+        // What is seen of it is small, whatever the memory for volumes.
+        let overview = stream.overview();
         let whole = overview.header().whole();
-        let seen = Volume::read(overview, Pick::default(), whole, &limits)?;
+        let seen = Volume::read(overview, Pick::default(), whole, &Limits::default())?;
         if self.first.is_none() {
             let notes = self.source.header().notes.iter().chain(&note);
             notes
