@@ -4,6 +4,8 @@ mod shared;
 
 #[path = "widgets/second.rs"]
 mod second;
+#[path = "widgets/weighed.rs"]
+mod weighed;
 
 use glam::{DAffine3, DVec3, dvec3};
 use shared::{
