@@ -13,6 +13,8 @@
 mod blue_noise;
 #[path = "shaders/both_sides.rs"]
 mod both_sides;
+#[path = "shaders/handed.rs"]
+mod handed;
 #[path = "shaders/opaque.rs"]
 mod opaque;
 #[path = "shaders/probes.rs"]
@@ -114,6 +116,9 @@ impl Book {
         if !file.starts_with("probe/") {
             both_sides::ask_both_sides(&mut module);
             opaque::hide_branches(&mut module);
+        }
+        if fills.get("parameters") == Some(&"handed") {
+            handed::hand_over(&mut module);
         }
         read_once::read_parameters_once(&mut module);
         // What was uniform is so still, which nobody can know any longer.

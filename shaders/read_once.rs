@@ -2,12 +2,12 @@
 //!
 //! llvmpipe reads a value of a uniform buffer by one instruction where all invocations are sure to be at work, and by
 //! thirty, one word for each of them, after the first branch. In compute passes what is asked for by name is copied to a
-//! variable of the invocation; what is found by a number that is known only then stays where it is. Fragments read few
-//! values, and few of these behind a branch: they were slower with it (`docs/performance.md`).
+//! variable of the invocation; what is found by a number that is known only then stays where it is. Fragments gain nothing
+//! by it, since there the invocations are never sure to be at work: `handed.rs` is for them.
 
 use naga::{
     AddressSpace, Arena, Block, EntryPoint, Expression, Function, GlobalVariable, Handle,
-    MemoryDecorations, Module, Range, ShaderStage, Span, Statement,
+    MemoryDecorations, Module, Range, ShaderStage, Span, Statement, Type,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -24,29 +24,39 @@ pub fn read_parameters_once(module: &mut Module) {
         .map(|(handle, variable)| (handle, variable.ty, variable.name.clone()))
         .collect();
     for (uniform, ty, name) in uniforms {
-        let copy = GlobalVariable {
-            name: name.map(|name| format!("{name}_read")),
-            space: AddressSpace::Private,
-            binding: None,
-            ty,
-            init: None,
-            memory_decorations: MemoryDecorations::empty(),
-        };
-        let copy = module.global_variables.append(copy, Span::UNDEFINED);
-        let entries = module
-            .entry_points
-            .iter_mut()
-            .map(|entry| &mut entry.function);
-        let functions = module.functions.iter_mut().map(|(_, function)| function);
-        let mut members = BTreeSet::new();
-        for function in functions.chain(entries) {
-            redirect(&mut function.expressions, uniform, copy, &mut members);
-        }
+        let (copy, members) = asked_of_a_copy(module, uniform, ty, name, |_| true);
         for entry in &mut module.entry_points {
             let start = copied(&mut entry.function, uniform, copy, &members);
             entry.function.body.splice(0..0, start);
         }
     }
+}
+
+/// A variable of the invocation that is asked in the place of a uniform buffer, and for which of its members: those that
+/// are `wanted` and asked for by name. Nothing is in it yet.
+pub fn asked_of_a_copy(
+    module: &mut Module,
+    uniform: Handle<GlobalVariable>,
+    ty: Handle<Type>,
+    name: Option<String>,
+    wanted: impl Fn(u32) -> bool,
+) -> (Handle<GlobalVariable>, BTreeSet<u32>) {
+    let copy = GlobalVariable {
+        name: name.map(|name| format!("{name}_read")),
+        space: AddressSpace::Private,
+        binding: None,
+        ty,
+        init: None,
+        memory_decorations: MemoryDecorations::empty(),
+    };
+    let copy = module.global_variables.append(copy, Span::UNDEFINED);
+    let entries = module.entry_points.iter_mut().map(|entry| &mut entry.function);
+    let functions = module.functions.iter_mut().map(|(_, function)| function);
+    let mut members = BTreeSet::new();
+    for function in functions.chain(entries) {
+        redirect(&mut function.expressions, uniform, copy, &mut members, &wanted);
+    }
+    (copy, members)
 }
 
 /// Lets what is asked for by name alone be asked of the copy, and notes it.
@@ -55,6 +65,7 @@ fn redirect(
     uniform: Handle<GlobalVariable>,
     copy: Handle<GlobalVariable>,
     members: &mut BTreeSet<u32>,
+    wanted: impl Fn(u32) -> bool,
 ) {
     let is_root = |handle: &Handle<Expression>| matches!(expressions[*handle], Expression::GlobalVariable(global) if global == uniform);
     // From the expression that names the buffer to all that is made of its place.
@@ -70,6 +81,7 @@ fn redirect(
                 if let Some(&root) = root_of.get(base) {
                     if is_root(base) {
                         named[root].1.insert(*index);
+                        named[root].2 &= wanted(*index);
                     }
                     root_of.insert(handle, root);
                 }

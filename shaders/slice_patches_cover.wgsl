@@ -5,6 +5,7 @@
 // sample.
 
 #import patch_grid
+#import vertex_{parameters}
 
 const CORNERS = array<vec2<u32>, 6>(
     vec2(0u, 0u),
@@ -28,11 +29,6 @@ struct OpaqueSince {
 @group(0) @binding(40) var<storage, read> patches_listed: Patches;
 @group(0) @binding(41) var<storage, read> opaque_since: OpaqueSince;
 
-struct Vertex {
-    @builtin(position) position: vec4<f32>,
-    @location(0) @interpolate(flat) slice: i32,
-}
-
 @vertex
 fn main(@builtin(vertex_index) vertex: u32) -> Vertex {
     let batch = vertex / ENTRY_VERTICES / batch_capacity();
@@ -48,7 +44,7 @@ fn main(@builtin(vertex_index) vertex: u32) -> Vertex {
     let corner = first + side * corners[vertex % 6u];
     let ndc = 2.0 * vec2<f32>(corner * frame.patch_pixels) / vec2<f32>(frame.extent_pixels) - 1.0;
     // All six in one point: no fragment.
-    return Vertex(vec4(select(vec2(-1.0), ndc, is_drawn), 0.5, 1.0), slice_of(nth));
+    return vertex_of(vec4(select(vec2(-1.0), ndc, is_drawn), 0.5, 1.0), slice_of(nth));
 }
 
 // Whether a further slice can change anything in the squares of a block.

@@ -2,6 +2,7 @@
 // enlarged domain.
 
 #import slice_order
+#import vertex_{parameters}
 
 const CORNERS = array<vec2<f32>, 6>(
     vec2(0.0, 0.0),
@@ -11,11 +12,6 @@ const CORNERS = array<vec2<f32>, 6>(
     vec2(1.0, 1.0),
     vec2(0.0, 1.0),
 );
-
-struct Vertex {
-    @builtin(position) position: vec4<f32>,
-    @location(0) @interpolate(flat) slice: i32,
-}
 
 @vertex
 fn main(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32) -> Vertex {
@@ -27,7 +23,7 @@ fn main(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u3
     let eye = vec4(frame.origin, 1.0) * frame.voxel_from_world;
     let height = 0.5 + (f32(slice) + frame.cover_offset) / frame.planes_per_slice;
     if abs(eye[axis] - height) < frame.cover_eye_reach {
-        return Vertex(vec4(2.0 * corners[index] - 1.0, frame.host_near, 1.0), slice);
+        return vertex_of(vec4(2.0 * corners[index] - 1.0, frame.host_near, 1.0), slice);
     }
     var part = vec3(0.0);
     part[(axis + 1u) % 3u] = corners[index].x;
@@ -35,5 +31,5 @@ fn main(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u3
     var voxel = mix(frame.cover_min, frame.cover_max, part);
     voxel[axis] = height;
     let world = vec4(voxel, 1.0) * frame.world_from_voxel;
-    return Vertex(vec4(world, 1.0) * frame.clip_from_world, slice);
+    return vertex_of(vec4(world, 1.0) * frame.clip_from_world, slice);
 }

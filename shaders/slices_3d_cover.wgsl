@@ -5,6 +5,7 @@
 // farthest one; the plane meets each path once. Twin: src/technique/slices_3d/cover.rs.
 
 #import frame
+#import vertex_{parameters}
 
 // Corner j of the box as steps along x, y, z from the nearest corner.
 const CORNERS = array<vec3<f32>, 8>(
@@ -31,11 +32,6 @@ const EDGES = array<array<vec2<u32>, 4>, 6>(
 // Four triangles of the hexagon.
 const FAN = array<u32, 12>(0u, 1u, 2u, 0u, 2u, 3u, 0u, 3u, 4u, 0u, 4u, 5u);
 
-struct Vertex {
-    @builtin(position) position: vec4<f32>,
-    @location(0) @interpolate(flat) plane: i32,
-}
-
 @vertex
 fn main(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u32) -> Vertex {
     let plane = frame.slice_first + i32(instance) * frame.slice_direction;
@@ -46,10 +42,10 @@ fn main(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u
         // Corners 0 to 3 of the hexagon; the others fall together with the last.
         let turn = min(fan[corner], 3u);
         let is_right = turn == 1u || turn == 2u;
-        return Vertex(vec4(select(-1.0, 1.0, is_right), select(-1.0, 1.0, turn >= 2u), frame.host_near, 1.0), plane);
+        return vertex_of(vec4(select(-1.0, 1.0, is_right), select(-1.0, 1.0, turn >= 2u), frame.host_near, 1.0), plane);
     }
     let world = plane_vertex(fan[corner], height);
-    return Vertex(vec4(world, 1.0) * frame.clip_from_world, plane);
+    return vertex_of(vec4(world, 1.0) * frame.clip_from_world, plane);
 }
 
 // Where plane forward . x = height meets the edges of vertex i. Heights rise along a path, so its first

@@ -16,6 +16,7 @@ const FETCHED: Slot = ("filter", &["nearest", "linear_fetch", "kernel"]);
 /// Several volumes are mixed by narrow filters.
 const NARROW: Slot = ("filter", &["nearest", "linear", "linear_fetch"]);
 const NARROW_FETCHED: Slot = ("filter", &["nearest", "linear_fetch"]);
+const LINEAR: Slot = ("filter", &["linear"]);
 const TABLE: Slot = ("transfer", &["table"]);
 /// What goes with corners: devices whose sampler is a program.
 const STORED: Slot = ("transfer", &["stored"]);
@@ -46,7 +47,11 @@ pub const SILENT: &[&str] = &[
     "march_stack_slab",
     "taps",
     "corners",
+    "asked",
 ];
+/// Who reads the parameters of slices: the fragments, or the vertices for them (`handed.rs`).
+const PARAMETERS: Slot = ("parameters", &["asked", "handed"]);
+const HANDED: Slot = ("parameters", &["handed"]);
 const TRANSFER: Slot = ("transfer", &["table", "points"]);
 const HOLES: Slot = ("holes", &["none", "mask"]);
 const LATTICE: Slot = ("lattice", &["ray", "planes"]);
@@ -75,7 +80,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "raycast",
-        &[LINE, MODE, ONE, RAY, CORNERS, HOLES, STORED, SHARED],
+        &[LINE, MODE, ONE, LATTICE, CORNERS, HOLES, STORED, SHARED],
     ),
     (
         "raycast",
@@ -139,7 +144,18 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         "projection",
         &[
             LINE,
-            ("mode", &["mip", "minip", "sum", "lmip", "attenuated_mip"]),
+            ("mode", &["mip", "minip", "sum"]),
+            ALONE,
+            LATTICE,
+            CORNERS,
+            HOLES,
+        ],
+    ),
+    (
+        "projection",
+        &[
+            LINE,
+            ("mode", &["lmip", "attenuated_mip"]),
             ALONE,
             RAY,
             CORNERS,
@@ -190,7 +206,17 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         "slices_3d",
         &[TESTED, BLEND, MIXED, NARROW_FETCHED, HOLES, POINTS],
     ),
+    (
+        "slices_3d",
+        &[TESTED, BLEND, ONE, CORNERS, HOLES, STORED, SHARED, HANDED],
+    ),
     ("slices_3d", &[NUMBER, ALONE, SIGHT, FILTER, HOLES]),
+    ("slices_3d", &[NUMBER, ALONE, SIGHT, CORNERS, HOLES, HANDED]),
+    (
+        "slices_3d",
+        &[TESTED, BLEND, ONE, LINEAR, HOLES, TABLE, TAPS, HANDED],
+    ),
+    ("slices_3d", &[NUMBER, ALONE, SIGHT, LINEAR, HOLES, HANDED]),
     (
         "slices_3d",
         &[
@@ -201,7 +227,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
             ("holes", &["none"]),
         ],
     ),
-    ("slices_3d_cover", &[]),
+    ("slices_3d_cover", &[PARAMETERS]),
     (
         "slices_2d",
         &[TESTED, BLEND, ONE, FILTER, HOLES, TABLE, TAPS],
@@ -218,6 +244,11 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ("slices_2d", &[NUMBER, ALONE, SIGHT, FILTER, HOLES]),
     (
         "slices_2d",
+        &[TESTED, BLEND, ONE, LINEAR, HOLES, TABLE, TAPS, HANDED],
+    ),
+    ("slices_2d", &[NUMBER, ALONE, SIGHT, LINEAR, HOLES, HANDED]),
+    (
+        "slices_2d",
         &[
             TESTED,
             ("blend", &["count"]),
@@ -226,7 +257,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
             ("holes", &["none"]),
         ],
     ),
-    ("slices_2d_cover", &[]),
+    ("slices_2d_cover", &[PARAMETERS]),
     (
         "raycast_slab",
         &[
@@ -319,7 +350,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ("macro_cells", &[("layout", &["box", "stack"])]),
     ("distance_map", &[]),
     ("slice_patches", &[("planes", &["view", "stack"])]),
-    ("slice_patches_cover", &[]),
+    ("slice_patches_cover", &[PARAMETERS]),
     ("opaque_patches", &[]),
 ];
 

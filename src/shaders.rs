@@ -23,8 +23,13 @@ pub static SHADERS: LazyLock<Vec<Shader>> =
 
 /// The variant of that name. A name that `build.rs` has no row for is our own mistake.
 pub fn shader(name: &str) -> &'static Shader {
+    find(name).unwrap_or_else(|| panic!("build.rs has no shader {name}"))
+}
+
+/// The same where it may be that there is none.
+pub(crate) fn find(name: &str) -> Option<&'static Shader> {
     let found = SHADERS.binary_search_by(|shader| shader.name.cmp(name));
-    &SHADERS[found.unwrap_or_else(|_| panic!("build.rs has no shader {name}"))]
+    found.ok().map(|index| &SHADERS[index])
 }
 
 /// The stage of an entry point.

@@ -107,7 +107,7 @@ impl Volume {
         }
         let is_raycast = settings.technique == Technique::Raycast;
         let is_one = all.bricks == 1;
-        if is_raycast && is_one && wants_corners(gpu, stored, dims, settings) {
+        if is_one && wants_corners(gpu, stored, dims, settings) {
             all.device_bytes += Corners::bytes_of(stored, dims).unwrap_or_default();
         }
         if is_raycast && settings.skip && !settings.preintegrated {

@@ -291,6 +291,12 @@ impl Gpu {
         self.identity().driver_id == vk::DriverId::MESA_LLVMPIPE
     }
 
+    /// Whether fragments were found to take long over each parameter that they ask for: llvmpipe reads it once for every
+    /// pixel (`shaders/handed.rs`).
+    pub fn has_slow_parameters(&self) -> bool {
+        self.has_slow_sampler()
+    }
+
     /// The limits that every size is compared with.
     pub fn limits(&self) -> &Caps {
         &self.limits

@@ -9,8 +9,9 @@
 //! All colours are premultiplied (Porter and Duff 1984); `algorithms.md` 1.6.
 
 use super::{Mode, Order, Sight, Take, Words};
-use crate::gpu::Blend;
+use crate::gpu::{Blend, Gpu};
 use crate::real::Real;
+use crate::shaders::{Shader, find, shader};
 use crate::transfer::opacity_over;
 
 /// One sample on a slice: its value (or, of several volumes, what they are together) and the world length that it
@@ -32,8 +33,27 @@ pub enum Drawn {
 }
 
 impl Drawn {
-    /// The fragment shader of a slicer.
-    pub(super) fn shader_name(self, slicer: &str, words: &Words, sight: Sight) -> String {
+    /// The vertex and the fragment shader of a slicer. Where there is a variant of both in which the vertices hand over the
+    /// parameters (`shaders/handed.rs`), drivers on which fragments are slow to ask for them have that one, and all drivers
+    /// where there is no other.
+    pub(super) fn shaders(
+        self,
+        gpu: &Gpu,
+        [cover, slicer]: [&str; 2],
+        words: &Words,
+        sight: Sight,
+    ) -> [&'static Shader; 2] {
+        let name = self.fragment_name(slicer, words, sight);
+        let handed = find(&format!("{name}.handed"));
+        match (handed, find(&name)) {
+            (Some(fragment), asked) if gpu.has_slow_parameters() || asked.is_none() => {
+                [shader(&format!("{cover}.handed")), fragment]
+            }
+            _ => [shader(cover), shader(&name)],
+        }
+    }
+
+    fn fragment_name(self, slicer: &str, words: &Words, sight: Sight) -> String {
         let Words {
             filter,
             holes,

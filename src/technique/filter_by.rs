@@ -6,7 +6,7 @@
 //! corners    the same, on devices that compute on the CPU, from four words beside the texture or in its place (`resident::Corners`)
 //! ```
 
-use super::{Filter, Keep, Lattice, Mix, Operator, Settings, Technique};
+use super::{Filter, Keep, Mix, Operator, Settings, Technique};
 
 /// A wish for one of them. Conformance pictures fetch, whatever is wished.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -23,13 +23,13 @@ pub enum FilterBy {
 }
 
 impl Settings {
-    /// Whether pictures of one volume read its [`Corners`](crate::resident::Corners), where it has them: rays on their
-    /// own lattice, linear.
+    /// Whether pictures of one volume read its [`Corners`](crate::resident::Corners), where it has them: those of rays and
+    /// of view-aligned slices, linear.
     pub fn reads_corners(&self, mix: Mix) -> bool {
         let is_point = !self.preintegrated && !self.conformance;
-        let is_ray = self.technique == Technique::Raycast && self.lattice != Lattice::Planes;
+        let has_such = self.technique != Technique::Slices2d && !self.is_half_angle();
         let is_wished = self.filter_by != FilterBy::Sampler;
-        mix.is_of_one() && is_ray && is_point && is_wished && self.filter == Filter::Linear
+        mix.is_of_one() && has_such && is_point && is_wished && self.filter == Filter::Linear
     }
 
     /// Whether they read nothing else of its values, so that it needs no texture: what fetches voxels one by one does.

@@ -55,9 +55,11 @@ impl PatchSlicer {
             Technique::Slices3d => ("slices_3d", "slice_patches.view"),
             Technique::Slices2d | Technique::Raycast => ("slices_2d", "slice_patches.stack"),
         };
+        let names = ["slice_patches_cover", name];
+        let [vertex, fragment] = drawn.shaders(gpu, names, words, Sight::Open);
         let desc = RasterDesc {
-            vertex: shader("slice_patches_cover"),
-            fragment: shader(&drawn.shader_name(name, words, Sight::Open)),
+            vertex,
+            fragment,
             target: format.into(),
             depth: DepthUse::Ignored,
             blend: operator(drawn, order),

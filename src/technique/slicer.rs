@@ -7,7 +7,6 @@ use crate::gpu::{
     Bindings, DepthUse, Error, Gpu, RasterDesc, RasterPipeline, Resource, TargetClass, Tile,
     set_area_of,
 };
-use crate::shaders::shader;
 use ash::vk;
 use std::ops::Range;
 use std::sync::Arc;
@@ -69,13 +68,14 @@ impl Slicer {
         sight: Sight,
     ) -> Result<Self, Error> {
         // Four triangles cover the six corners of a plane in a box, two a rectangle.
-        let (name, cover, vertices_per_slice) = match technique {
-            Technique::Slices3d => ("slices_3d", "slices_3d_cover", 12),
-            Technique::Slices2d | Technique::Raycast => ("slices_2d", "slices_2d_cover", 6),
+        let (names, vertices_per_slice) = match technique {
+            Technique::Slices3d => (["slices_3d_cover", "slices_3d"], 12),
+            Technique::Slices2d | Technique::Raycast => (["slices_2d_cover", "slices_2d"], 6),
         };
+        let [vertex, fragment] = drawn.shaders(gpu, names, words, sight);
         let desc = RasterDesc {
-            vertex: shader(cover),
-            fragment: shader(&drawn.shader_name(name, words, sight)),
+            vertex,
+            fragment,
             target,
             depth: match sight {
                 Sight::Tested => DepthUse::Tested,
