@@ -17,6 +17,8 @@ mod both_sides;
 mod handed;
 #[path = "shaders/opaque.rs"]
 mod opaque;
+#[path = "shaders/point_size.rs"]
+mod point_size;
 #[path = "shaders/probes.rs"]
 mod probes;
 #[path = "shaders/read_once.rs"]
@@ -117,6 +119,7 @@ impl Book {
             both_sides::ask_both_sides(&mut module);
             opaque::hide_branches(&mut module);
         }
+        point_size::name_point_size(&mut module);
         if fills.get("parameters") == Some(&"handed") {
             handed::hand_over(&mut module);
         }

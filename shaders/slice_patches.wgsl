@@ -17,7 +17,7 @@
 
 #import room_map
 #import patch_{planes}
-#import patch_grid
+#import patch_entry
 
 // More cells than these are not looked at: a patch so large is drawn. With BATCH_LAYERS times as many, and their rows, loops
 // take fewer turns than llvmpipe grants.
@@ -80,11 +80,11 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_
         for (var layer = 0u; layer < BATCH_LAYERS; layer++) {
             count += entries_of(members_by_layer[block][layer], all_members);
         }
-        let before = atomicAdd(&draws.d[id.z].vertices, count * ENTRY_VERTICES) / ENTRY_VERTICES;
+        let before = atomicAdd(&draws.d[id.z].vertices, count * entry_vertices()) / entry_vertices();
         begins[block] = id.z * batch_capacity() + before;
     }
     if all(id.xy == vec2(0u)) {
-        draws.d[id.z].first_vertex = id.z * batch_capacity() * ENTRY_VERTICES;
+        draws.d[id.z].first_vertex = id.z * batch_capacity() * entry_vertices();
     }
     workgroupBarrier();
     // In the order of slices: a pixel is in one entry of each layer.
@@ -93,7 +93,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_
     for (var layer = 0u; layer < BATCH_LAYERS; layer++) {
         let drawn = members_by_layer[block][layer];
         let entry = square * BATCH_LAYERS + layer;
-        let is_block = drawn == all_members;
+        let is_block = is_one_entry(drawn, all_members);
         if is_block && drawn != 0u && member == 0u {
             patches_listed.d[next] = entry | BLOCK;
         } else if !is_block && (drawn & (1u << member)) != 0u {
@@ -114,7 +114,11 @@ fn members_in(block: u32, bit: u32) -> u32 {
 
 // How many entries a layer of a block takes.
 fn entries_of(drawn: u32, all_members: u32) -> u32 {
-    return select(countOneBits(drawn), min(drawn, 1u), drawn == all_members);
+    return select(countOneBits(drawn), min(drawn, 1u), is_one_entry(drawn, all_members));
+}
+
+fn is_one_entry(drawn: u32, all_members: u32) -> bool {
+    return drawn == all_members && blocks_can_be_drawn();
 }
 
 // The layers of a batch in which a square is drawn, a bit a layer.

@@ -1,20 +1,10 @@
-// The cover of slices where only some patches of them are drawn (slice_patches.wgsl): squares of the picture, six vertices a
-// slice. Vertex i shows slice i / 6 mod LAYER_SLICES of the layer that entry i / ENTRY_VERTICES of all batches names. An
-// instance of six vertices for each would fill few lanes of graphics cards; on processors it takes as long. Edges lie between
-// pixels, half a pixel from the nearest centre: each fragment belongs to one square, and it alone decides whether it has a
-// sample.
+// The cover of slices where only some patches of them are drawn (slice_patches.wgsl): squares of the picture, two triangles
+// a slice or a point. Of v vertices a square vertex i shows slice i / v mod LAYER_SLICES of the layer that entry
+// i / (v LAYER_SLICES) of all batches names. An instance for each would fill few lanes of graphics cards; on processors it
+// takes as long. Each fragment belongs to one square, and it alone decides whether it has a sample.
 
-#import patch_grid
+#import patch_entry
 #import vertex_{parameters}
-
-const CORNERS = array<vec2<u32>, 6>(
-    vec2(0u, 0u),
-    vec2(1u, 0u),
-    vec2(1u, 1u),
-    vec2(0u, 0u),
-    vec2(1u, 1u),
-    vec2(0u, 1u),
-);
 
 struct Patches {
     d: array<u32>,
@@ -31,20 +21,20 @@ struct OpaqueSince {
 
 @vertex
 fn main(@builtin(vertex_index) vertex: u32) -> Vertex {
-    let batch = vertex / ENTRY_VERTICES / batch_capacity();
-    let entry = patches_listed.d[vertex / ENTRY_VERTICES];
+    let batch = vertex / entry_vertices() / batch_capacity();
+    let entry = patches_listed.d[vertex / entry_vertices()];
     let side = select(1u, BLOCK_SIDE, entry >= BLOCK);
     let square = (entry & ~BLOCK) / BATCH_LAYERS;
     let layer = batch * BATCH_LAYERS + entry % BATCH_LAYERS;
-    let nth = layer * LAYER_SLICES + vertex / 6u % LAYER_SLICES;
+    let nth = layer * LAYER_SLICES + vertex / SQUARE_VERTICES % LAYER_SLICES;
     let across = patch_grid().x;
     let first = vec2(square % across, square / across);
     let is_drawn = nth < frame.slice_count && changes(first, side);
-    var corners = CORNERS;
-    let corner = first + side * corners[vertex % 6u];
-    let ndc = 2.0 * vec2<f32>(corner * frame.patch_pixels) / vec2<f32>(frame.extent_pixels) - 1.0;
-    // All six in one point: no fragment.
-    return vertex_of(vec4(select(vec2(-1.0), ndc, is_drawn), 0.5, 1.0), slice_of(nth));
+    let pixels = side * frame.patch_pixels;
+    let ndc = square_vertex(vertex % SQUARE_VERTICES, first * frame.patch_pixels, pixels);
+    // All in one point that is out of sight: no fragment.
+    let place = vec4(select(vec2(-2.0), ndc, is_drawn), 0.5, 1.0);
+    return vertex_of(place, slice_of(nth), f32(pixels));
 }
 
 // Whether a further slice can change anything in the squares of a block.

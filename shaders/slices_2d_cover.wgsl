@@ -23,7 +23,7 @@ fn main(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u3
     let eye = vec4(frame.origin, 1.0) * frame.voxel_from_world;
     let height = 0.5 + (f32(slice) + frame.cover_offset) / frame.planes_per_slice;
     if abs(eye[axis] - height) < frame.cover_eye_reach {
-        return vertex_of(vec4(2.0 * corners[index] - 1.0, frame.host_near, 1.0), slice);
+        return vertex_of(vec4(2.0 * corners[index] - 1.0, frame.host_near, 1.0), slice, 1.0);
     }
     var part = vec3(0.0);
     part[(axis + 1u) % 3u] = corners[index].x;
@@ -31,5 +31,5 @@ fn main(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u3
     var voxel = mix(frame.cover_min, frame.cover_max, part);
     voxel[axis] = height;
     let world = vec4(voxel, 1.0) * frame.world_from_voxel;
-    return vertex_of(vec4(world, 1.0) * frame.clip_from_world, slice);
+    return vertex_of(vec4(world, 1.0) * frame.clip_from_world, slice, 1.0);
 }

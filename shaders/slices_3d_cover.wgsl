@@ -42,10 +42,10 @@ fn main(@builtin(vertex_index) corner: u32, @builtin(instance_index) instance: u
         // Corners 0 to 3 of the hexagon; the others fall together with the last.
         let turn = min(fan[corner], 3u);
         let is_right = turn == 1u || turn == 2u;
-        return vertex_of(vec4(select(-1.0, 1.0, is_right), select(-1.0, 1.0, turn >= 2u), frame.host_near, 1.0), plane);
+        return vertex_of(vec4(select(-1.0, 1.0, is_right), select(-1.0, 1.0, turn >= 2u), frame.host_near, 1.0), plane, 1.0);
     }
     let world = plane_vertex(fan[corner], height);
-    return vertex_of(vec4(world, 1.0) * frame.clip_from_world, plane);
+    return vertex_of(vec4(world, 1.0) * frame.clip_from_world, plane, 1.0);
 }
 
 // Where plane forward . x = height meets the edges of vertex i. Heights rise along a path, so its first

@@ -48,9 +48,12 @@ pub const SILENT: &[&str] = &[
     "taps",
     "corners",
     "asked",
+    "triangles",
 ];
 /// Who reads the parameters of slices: the fragments, or the vertices for them (`handed.rs`).
 const PARAMETERS: Slot = ("parameters", &["asked", "handed"]);
+/// What squares of patches are drawn as.
+const SQUARES: Slot = ("squares", &["triangles", "points"]);
 const HANDED: Slot = ("parameters", &["handed"]);
 const TRANSFER: Slot = ("transfer", &["table", "points"]);
 const HOLES: Slot = ("holes", &["none", "mask"]);
@@ -349,8 +352,8 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     ("macro_cells", &[("layout", &["box", "stack"])]),
     ("distance_map", &[]),
-    ("slice_patches", &[("planes", &["view", "stack"])]),
-    ("slice_patches_cover", &[PARAMETERS]),
+    ("slice_patches", &[("planes", &["view", "stack"]), SQUARES]),
+    ("slice_patches_cover", &[SQUARES, PARAMETERS]),
     ("opaque_patches", &[]),
 ];
 

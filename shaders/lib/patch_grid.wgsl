@@ -3,16 +3,14 @@
 //
 //     BATCH_LAYERS ceil(width / side) ceil(height / side)        entries, square * BATCH_LAYERS + layer
 //
-// Blocks of BLOCK_SIDE x BLOCK_SIDE squares that are all drawn in a layer are one entry of the first of them and BLOCK: what
-// two triangles share along a diagonal some drivers shade twice, and the larger they are the less that is.
+// Blocks of BLOCK_SIDE x BLOCK_SIDE squares that are all drawn in a layer are one entry of the first of them and BLOCK: the
+// fewer there are, the less is paid for each.
 // Twin of the constants and of the size: src/technique/patches.rs.
 
 #import slice_order
 
 const LAYER_SLICES: u32 = 4u;
 const BATCH_LAYERS: u32 = 16u;
-// Two triangles a slice.
-const ENTRY_VERTICES: u32 = 6u * LAYER_SLICES;
 const BLOCK_SIDE: u32 = 4u;
 const BLOCK: u32 = 0x80000000u;
 

@@ -21,9 +21,11 @@ struct Vertex {
     @location(13) @interpolate(flat) voxel_from_world: vec4<u32>,
     @location(14) @interpolate(flat) voxel_from_world_y: vec4<u32>,
     @location(15) @interpolate(flat) voxel_from_world_z: vec4<u32>,
+    // The size of a point, which WGSL has no word for (`shaders/point_size.rs`).
+    @location(31) point_pixels: f32,
 }
 
-fn vertex_of(position: vec4<f32>, slice: i32) -> Vertex {
+fn vertex_of(position: vec4<f32>, slice: i32, point_pixels: f32) -> Vertex {
     return Vertex(
         position,
         slice,
@@ -42,6 +44,7 @@ fn vertex_of(position: vec4<f32>, slice: i32) -> Vertex {
         bitcast<vec4<u32>>(frame.voxel_from_world[0]),
         bitcast<vec4<u32>>(frame.voxel_from_world[1]),
         bitcast<vec4<u32>>(frame.voxel_from_world[2]),
+        point_pixels,
     );
 }
 

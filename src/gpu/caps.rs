@@ -31,6 +31,8 @@ pub struct Caps {
     pub max_workgroup_count: [u32; 3],
     pub max_framebuffer: [u32; 2],
     pub max_viewport: [u32; 2],
+    /// The size of the largest point; 1 where `largePoints` is not enabled, which a host is not asked for.
+    pub max_point_pixels: u32,
     /// R32G32B32A32_SFLOAT targets can be blended into, where the device can; optional in Vulkan.
     pub float32_blend: bool,
     /// A dynamic offset is a multiple of it.
@@ -63,6 +65,7 @@ impl Caps {
         max_workgroup_count: [u32::MAX; 3],
         max_framebuffer: [u32::MAX; 2],
         max_viewport: [u32::MAX; 2],
+        max_point_pixels: u32::MAX,
         float32_blend: true,
         min_uniform_offset_alignment: 1,
         max_loop_turns: u32::MAX,
@@ -88,6 +91,7 @@ impl Caps {
         max_workgroup_count: [65_535; 3],
         max_framebuffer: [4096; 2],
         max_viewport: [4096; 2],
+        max_point_pixels: 1,
         float32_blend: false,
         min_uniform_offset_alignment: 256,
         max_loop_turns: u32::MAX,
@@ -107,9 +111,11 @@ impl Caps {
             .push_next(&mut properties11)
             .push_next(&mut properties12)
             .push_next(&mut properties13);
+        let mut features = vk::PhysicalDeviceFeatures2::default();
         // SAFETY: the caller's promise.
         let memory = unsafe {
             instance.get_physical_device_properties2(physical_device, &mut properties2);
+            instance.get_physical_device_features2(physical_device, &mut features);
             instance.get_physical_device_memory_properties(physical_device)
         };
         let limits = properties2.properties.limits;
@@ -131,6 +137,10 @@ impl Caps {
             max_workgroup_count: limits.max_compute_work_group_count,
             max_framebuffer: [limits.max_framebuffer_width, limits.max_framebuffer_height],
             max_viewport: limits.max_viewport_dimensions,
+            max_point_pixels: match features.features.large_points {
+                vk::TRUE => limits.point_size_range[1] as u32,
+                _ => 1,
+            },
             float32_blend: true,
             min_uniform_offset_alignment: limits.min_uniform_buffer_offset_alignment,
             max_loop_turns: match properties12.driver_id {
@@ -178,6 +188,7 @@ impl Caps {
             max_workgroup_count: least(self.max_workgroup_count, other.max_workgroup_count),
             max_framebuffer: least(self.max_framebuffer, other.max_framebuffer),
             max_viewport: least(self.max_viewport, other.max_viewport),
+            max_point_pixels: self.max_point_pixels.min(other.max_point_pixels),
             float32_blend: self.float32_blend && other.float32_blend,
             min_uniform_offset_alignment: self
                 .min_uniform_offset_alignment

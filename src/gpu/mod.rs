@@ -176,12 +176,15 @@ impl Gpu {
         report.require()?;
         let identity = report.identity;
         // SAFETY: as above; instance and device speak Vulkan 1.3, and there is such a family.
-        let (device, limits) = unsafe {
+        let (device, mut limits) = unsafe {
             (
                 ash::Device::load(instance.fp_v1_0(), host.device),
                 Caps::of(&instance, host.physical_device).clamped_to(&host.caps),
             )
         };
+        if own_device.is_none() {
+            limits.max_point_pixels = 1;
+        }
         let family = families[host.queue_family as usize];
         let allocator = Allocator::new(&AllocatorCreateDesc {
             instance: instance.clone(),
@@ -295,6 +298,13 @@ impl Gpu {
     /// pixel (`shaders/handed.rs`).
     pub fn has_slow_parameters(&self) -> bool {
         self.has_slow_sampler()
+    }
+
+    /// Whether squares of a picture are drawn as points of at most so many pixels, not as two triangles: llvmpipe shades
+    /// twice what these share (`shaders/lib/square_points.wgsl`).
+    pub(crate) fn draws_squares_as_points(&self, most_pixels: u32) -> bool {
+        let is_llvmpipe = self.identity().driver_id == vk::DriverId::MESA_LLVMPIPE;
+        is_llvmpipe && self.limits.max_point_pixels >= most_pixels
     }
 
     /// The limits that every size is compared with.

@@ -32,16 +32,17 @@ impl OwnDevice {
         let queue_family = devices::queue_family(&families).unwrap_or_default();
         // SAFETY: as above; `from` speaks Vulkan 1.3.
         let features = unsafe { devices::supported(instance.raw(), from.physical_device) };
+        // SAFETY: as above.
+        let supported = unsafe {
+            instance
+                .raw()
+                .get_physical_device_features(from.physical_device)
+        };
         let mut core = vk::PhysicalDeviceFeatures::default()
-            .robust_buffer_access(features.robust_buffer_access);
+            .robust_buffer_access(features.robust_buffer_access)
+            .large_points(supported.large_points == vk::TRUE);
         if mode == Some(ValidationMode::GpuAssisted) {
             // What the instrumented shaders need, where the device has it.
-            // SAFETY: as above.
-            let supported = unsafe {
-                instance
-                    .raw()
-                    .get_physical_device_features(from.physical_device)
-            };
             core.fragment_stores_and_atomics = supported.fragment_stores_and_atomics;
             core.vertex_pipeline_stores_and_atomics = supported.vertex_pipeline_stores_and_atomics;
             core.shader_int64 = supported.shader_int64;

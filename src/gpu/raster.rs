@@ -113,6 +113,20 @@ pub struct RasterPipeline {
 impl RasterPipeline {
     /// Compiles, after the formats were found to do what is asked of them.
     pub fn new(gpu: &Arc<Gpu>, desc: &RasterDesc<'_>) -> Result<Self, Error> {
+        Self::of(gpu, desc, vk::PrimitiveTopology::TRIANGLE_LIST)
+    }
+
+    /// The same for points in the place of triangles, whose vertices say how large they are: at most
+    /// [`super::Caps::max_point_pixels`].
+    pub fn of_points(gpu: &Arc<Gpu>, desc: &RasterDesc<'_>) -> Result<Self, Error> {
+        Self::of(gpu, desc, vk::PrimitiveTopology::POINT_LIST)
+    }
+
+    fn of(
+        gpu: &Arc<Gpu>,
+        desc: &RasterDesc<'_>,
+        topology: vk::PrimitiveTopology,
+    ) -> Result<Self, Error> {
         let name = desc.fragment.name;
         let doing = || format!("make raster pipeline `{name}`");
         if desc.vertex.stage != Stage::Vertex {
@@ -126,8 +140,7 @@ impl RasterPipeline {
         let (vertex, fragment) = (module(gpu, desc.vertex)?, module(gpu, desc.fragment)?);
         let stages = [stage(desc.vertex, &vertex), stage(desc.fragment, &fragment)];
         let vertex_input = vk::PipelineVertexInputStateCreateInfo::default();
-        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default()
-            .topology(vk::PrimitiveTopology::TRIANGLE_LIST);
+        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(topology);
         let viewport = vk::PipelineViewportStateCreateInfo::default()
             .viewport_count(1)
             .scissor_count(1);

@@ -65,6 +65,7 @@ pub unsafe fn set_area(gpu: &Gpu, cmd: vk::CommandBuffer, extent: [u32; 2]) {
 ///
 /// As [`set_area`].
 pub unsafe fn set_area_of(gpu: &Gpu, cmd: vk::CommandBuffer, extent: [u32; 2], tile: Tile) {
+    // The viewport may be larger than what is drawn into, the scissor not.
     let viewport = vk::Viewport {
         x: 0.0,
         y: 0.0,

@@ -14,9 +14,9 @@ use super::blend::{Drawn, operator};
 use super::{BATCH_SLICES, Inputs, Order, Patches, Sight, Technique, Words};
 use crate::gpu::{
     Bindings, ComputePipeline, DepthUse, Error, Gpu, Image, RasterDesc, RasterPipeline, Resource,
-    Use, buffer_barrier, set_area,
+    Tile, Use, buffer_barrier, set_area_of,
 };
-use crate::shaders::shader;
+use crate::shaders::{LARGEST_BLOCK, MOST_POINT_PIXELS, shader};
 use ash::vk;
 use std::ops::Range;
 use std::sync::Arc;
@@ -28,6 +28,8 @@ pub struct PatchSlicer {
     list: ComputePipeline,
     opaque: ComputePipeline,
     draw: RasterPipeline,
+    /// In the place of triangles.
+    has_points: bool,
 }
 
 /// What they read and write.
@@ -55,7 +57,10 @@ impl PatchSlicer {
             Technique::Slices3d => ("slices_3d", "slice_patches.view"),
             Technique::Slices2d | Technique::Raycast => ("slices_2d", "slice_patches.stack"),
         };
-        let names = ["slice_patches_cover", name];
+        let has_points = gpu.draws_squares_as_points(MOST_POINT_PIXELS)
+            && gpu.limits().max_viewport.iter().all(|n| n % LARGEST_BLOCK == 0);
+        let shape = if has_points { ".points" } else { "" };
+        let names = [&format!("slice_patches_cover{shape}"), name];
         let [vertex, fragment] = drawn.shaders(gpu, names, words, Sight::Open);
         let desc = RasterDesc {
             vertex,
@@ -66,9 +71,13 @@ impl PatchSlicer {
         };
         Ok(Self {
             gpu: Arc::clone(gpu),
-            list: ComputePipeline::new(gpu, shader(list))?,
+            list: ComputePipeline::new(gpu, shader(&format!("{list}{shape}")))?,
             opaque: ComputePipeline::new(gpu, shader("opaque_patches"))?,
-            draw: RasterPipeline::new(gpu, &desc)?,
+            draw: match has_points {
+                true => RasterPipeline::of_points(gpu, &desc)?,
+                false => RasterPipeline::new(gpu, &desc)?,
+            },
+            has_points,
         })
     }
 
@@ -174,10 +183,14 @@ impl PatchSlicer {
         patches: &Patches,
         slices: Range<u32>,
     ) {
+        let area = match self.has_points {
+            true => extent.map(|n| n.next_multiple_of(LARGEST_BLOCK)),
+            false => extent,
+        };
         let batches = slices.start / BATCH_SLICES..slices.end.div_ceil(BATCH_SLICES);
         // SAFETY: the caller's promises; the lists left the draws in `Use::DrawIndirect`.
         unsafe {
-            set_area(&self.gpu, cmd, extent);
+            set_area_of(&self.gpu, cmd, area, Tile::whole(extent));
             self.draw
                 .draw_indirect(cmd, &bindings.draw, &[offset], &patches.draws, batches);
         }

@@ -10,13 +10,15 @@
 use super::{Technique, View};
 use crate::gpu::{Buffer, Error, Gpu, Memory, Use, buffer_barrier};
 use crate::resident::Apron;
-use crate::shaders::{BATCH_LAYERS, LAYER_SLICES};
+use crate::shaders::{BATCH_LAYERS, BLOCK_SIDE, LARGEST_BLOCK, LAYER_SLICES, MOST_POINT_PIXELS};
 use ash::vk;
 use glam::DVec3;
 use std::sync::Arc;
 
 /// Slices whose patches share a list.
 pub const BATCH_SLICES: u32 = BATCH_LAYERS * LAYER_SLICES;
+
+const _: () = assert!(LARGEST_BLOCK == BLOCK_SIDE * MOST_POINT_PIXELS);
 
 /// Voxels along the side of a square, about: as macro cells, where the volume fills the picture.
 const SQUARE_VOXELS: u32 = 8;
@@ -69,6 +71,7 @@ impl View<'_> {
         let longest = |sides: &[u32]| sides.iter().copied().max().unwrap_or(1).max(1);
         let (pixels, voxels) = (longest(&self.extent_pixels), longest(&self.grid.dims));
         let wanted = u64::from(SQUARE_VOXELS) * u64::from(pixels) / u64::from(voxels);
+        let wanted = wanted.min(MOST_POINT_PIXELS.into());
         let mut side = LEAST_PIXELS;
         while u64::from(2 * side) <= wanted
             || self

@@ -1,0 +1,9 @@
+// How an entry of the lists of patches (patch_grid.wgsl) is drawn.
+
+#import patch_grid
+#import square_{squares}
+
+// Those of a square (or a block) on each slice of its layer.
+fn entry_vertices() -> u32 {
+    return SQUARE_VERTICES * LAYER_SLICES;
+}
