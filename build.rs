@@ -120,8 +120,8 @@ impl Book {
             opaque::hide_branches(&mut module);
         }
         point_size::name_point_size(&mut module);
-        if fills.get("parameters") == Some(&"handed") {
-            handed::hand_over(&mut module);
+        if let Some(&of @ ("planes" | "stack")) = fills.get("parameters") {
+            handed::hand_over(&mut module, of);
         }
         read_once::read_parameters_once(&mut module);
         // What was uniform is so still, which nobody can know any longer.

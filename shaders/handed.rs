@@ -18,33 +18,40 @@ use naga::{
     SwizzleComponent, Type, TypeInner, VectorSize,
 };
 
-/// Members of `Frame` that rows begin with, in the order of their locations.
-const ROWS: [&str; 13] = [
+/// Members of `Frame` that rows begin with, in the order of their locations: those of all slices, and after these what
+/// view-aligned ones want and what those of a stack do.
+const ROWS: [&str; 11] = [
     "origin",
     "origin_dx",
     "origin_dy",
     "direction",
     "direction_dx",
     "direction_dy",
-    "forward",
     "domain_min",
     "domain_max",
-    "dims",
     "brick_min",
     "brick_max",
     "voxel_from_world",
 ];
+const PLANES: [&str; 2] = ["forward", "dims"];
+const STACK: [&str; 2] = ["brick_origin", "brick_dims"];
+
 const ROW_BYTES: u32 = 16;
 
-/// Makes a fragment entry point take what it asks of the handed parameters from its inputs. Of a vertex entry point:
-/// checks that it hands over these rows in this order.
+/// Makes a fragment entry point take what it asks of the handed parameters from its inputs, and checks that a vertex entry
+/// point hands over these rows in this order. `of` are `planes` or a `stack`.
 ///
 /// # Panics
 /// Where it does not.
-pub fn hand_over(module: &mut Module) {
+pub fn hand_over(module: &mut Module, of: &str) {
+    let own = match of {
+        "planes" => PLANES,
+        _ => STACK,
+    };
+    let names = [&ROWS[..], &own].concat();
     match module.entry_points[0].stage {
-        ShaderStage::Fragment => take(module),
-        _ => check(module),
+        ShaderStage::Fragment => take(module, &names),
+        _ => check(module, &names),
     }
 }
 
@@ -62,8 +69,8 @@ fn frame_of(module: &Module) -> (Handle<GlobalVariable>, Handle<Type>, Vec<Struc
 }
 
 /// The rows that are handed over, counted from the first of the parameters, by location.
-fn rows_of(module: &Module, members: &[StructMember]) -> Vec<u32> {
-    let rows = ROWS.iter().flat_map(|name| {
+fn rows_of(module: &Module, names: &[&str], members: &[StructMember]) -> Vec<u32> {
+    let rows = names.iter().flat_map(|name| {
         let mut members = members.iter();
         let member = members
             .find(|member| member.name.as_deref() == Some(name))
@@ -75,9 +82,9 @@ fn rows_of(module: &Module, members: &[StructMember]) -> Vec<u32> {
     rows.collect()
 }
 
-fn take(module: &mut Module) {
+fn take(module: &mut Module, names: &[&str]) {
     let (uniform, ty, members) = frame_of(module);
-    let rows = rows_of(module, &members);
+    let rows = rows_of(module, names, &members);
     let bits = Type {
         name: None,
         inner: TypeInner::Vector {
@@ -174,30 +181,29 @@ fn append(function: &mut Function, expression: Expression) -> Handle<Expression>
     function.expressions.append(expression, Span::UNDEFINED)
 }
 
-/// The outputs after the slice, which have the names of what they begin with, against [`ROWS`].
-fn check(module: &Module) {
+/// The outputs after the slice have the names of what they begin with; the rows of a matrix after its first have others.
+fn check(module: &Module, names: &[&str]) {
     let (_, _, members) = frame_of(module);
-    let rows = rows_of(module, &members);
     let result = module.entry_points[0].function.result.as_ref();
     let result = result.expect("a vertex has a place");
-    let TypeInner::Struct { members: outputs, .. } = &module.types[result.ty].inner else {
+    let TypeInner::Struct {
+        members: outputs, ..
+    } = &module.types[result.ty].inner
+    else {
         panic!("a vertex is a struct")
     };
-    let mut locations = Vec::new();
-    for output in outputs {
-        let Some(Binding::Location { location, .. }) = output.binding else {
-            continue;
-        };
-        let name = output.name.as_deref().unwrap_or_default();
-        let row = members
+    for (location, row) in (1..).zip(rows_of(module, names, &members)) {
+        let is_there = |output: &&StructMember| matches!(output.binding, Some(Binding::Location { location: at, .. }) if at == location);
+        let output = outputs.iter().find(is_there);
+        let name = output.and_then(|output| output.name.as_deref());
+        let begins = |member: &&StructMember| member.offset / ROW_BYTES == row;
+        let wanted = members
             .iter()
-            .find(|member| member.name.as_deref() == Some(name))
-            .map(|member| member.offset / ROW_BYTES);
-        locations.push((location, row));
-    }
-    for (location, row) in (1..).zip(rows) {
-        let is_there = locations.contains(&(location, Some(row)))
-            || ROWS.len() < location as usize && locations.iter().any(|(at, _)| *at == location);
-        assert!(is_there, "location {location} is not row {row} of the parameters");
+            .find(begins)
+            .and_then(|member| member.name.as_deref());
+        assert!(
+            name.is_some() && (wanted.is_none() || name == wanted),
+            "location {location} is {name:?} and not {wanted:?}"
+        );
     }
 }

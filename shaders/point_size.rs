@@ -16,7 +16,13 @@ pub fn name_point_size(module: &mut Module) {
                 return None;
             };
             let is_size = |binding: &Option<Binding>| {
-                matches!(binding, Some(Binding::Location { location: LOCATION, .. }))
+                matches!(
+                    binding,
+                    Some(Binding::Location {
+                        location: LOCATION,
+                        ..
+                    })
+                )
             };
             let size = members.iter_mut().find(|member| is_size(&member.binding))?;
             size.binding = Some(Binding::BuiltIn(BuiltIn::PointSize));

@@ -50,11 +50,20 @@ pub fn asked_of_a_copy(
         memory_decorations: MemoryDecorations::empty(),
     };
     let copy = module.global_variables.append(copy, Span::UNDEFINED);
-    let entries = module.entry_points.iter_mut().map(|entry| &mut entry.function);
+    let entries = module
+        .entry_points
+        .iter_mut()
+        .map(|entry| &mut entry.function);
     let functions = module.functions.iter_mut().map(|(_, function)| function);
     let mut members = BTreeSet::new();
     for function in functions.chain(entries) {
-        redirect(&mut function.expressions, uniform, copy, &mut members, &wanted);
+        redirect(
+            &mut function.expressions,
+            uniform,
+            copy,
+            &mut members,
+            &wanted,
+        );
     }
     (copy, members)
 }

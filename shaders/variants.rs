@@ -51,10 +51,11 @@ pub const SILENT: &[&str] = &[
     "triangles",
 ];
 /// Who reads the parameters of slices: the fragments, or the vertices for them (`handed.rs`).
-const PARAMETERS: Slot = ("parameters", &["asked", "handed"]);
+const PARAMETERS: Slot = ("parameters", &["asked", "planes", "stack"]);
+const PLANES: Slot = ("parameters", &["planes"]);
+const STACKED: Slot = ("parameters", &["stack"]);
 /// What squares of patches are drawn as.
 const SQUARES: Slot = ("squares", &["triangles", "points"]);
-const HANDED: Slot = ("parameters", &["handed"]);
 const TRANSFER: Slot = ("transfer", &["table", "points"]);
 const HOLES: Slot = ("holes", &["none", "mask"]);
 const LATTICE: Slot = ("lattice", &["ray", "planes"]);
@@ -211,15 +212,15 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "slices_3d",
-        &[TESTED, BLEND, ONE, CORNERS, HOLES, STORED, SHARED, HANDED],
+        &[TESTED, BLEND, ONE, CORNERS, HOLES, STORED, SHARED, PLANES],
     ),
     ("slices_3d", &[NUMBER, ALONE, SIGHT, FILTER, HOLES]),
-    ("slices_3d", &[NUMBER, ALONE, SIGHT, CORNERS, HOLES, HANDED]),
+    ("slices_3d", &[NUMBER, ALONE, SIGHT, CORNERS, HOLES, PLANES]),
     (
         "slices_3d",
-        &[TESTED, BLEND, ONE, LINEAR, HOLES, TABLE, TAPS, HANDED],
+        &[TESTED, BLEND, ONE, LINEAR, HOLES, TABLE, TAPS, PLANES],
     ),
-    ("slices_3d", &[NUMBER, ALONE, SIGHT, LINEAR, HOLES, HANDED]),
+    ("slices_3d", &[NUMBER, ALONE, SIGHT, LINEAR, HOLES, PLANES]),
     (
         "slices_3d",
         &[
@@ -230,7 +231,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
             ("holes", &["none"]),
         ],
     ),
-    ("slices_3d_cover", &[PARAMETERS]),
+    ("slices_3d_cover", &[("parameters", &["asked", "planes"])]),
     (
         "slices_2d",
         &[TESTED, BLEND, ONE, FILTER, HOLES, TABLE, TAPS],
@@ -247,9 +248,9 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ("slices_2d", &[NUMBER, ALONE, SIGHT, FILTER, HOLES]),
     (
         "slices_2d",
-        &[TESTED, BLEND, ONE, LINEAR, HOLES, TABLE, TAPS, HANDED],
+        &[TESTED, BLEND, ONE, LINEAR, HOLES, TABLE, TAPS, STACKED],
     ),
-    ("slices_2d", &[NUMBER, ALONE, SIGHT, LINEAR, HOLES, HANDED]),
+    ("slices_2d", &[NUMBER, ALONE, SIGHT, LINEAR, HOLES, STACKED]),
     (
         "slices_2d",
         &[
@@ -260,7 +261,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
             ("holes", &["none"]),
         ],
     ),
-    ("slices_2d_cover", &[PARAMETERS]),
+    ("slices_2d_cover", &[("parameters", &["asked", "stack"])]),
     (
         "raycast_slab",
         &[

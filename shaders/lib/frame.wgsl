@@ -12,12 +12,12 @@ const MAX_LIGHTS: u32 = 4u;
 const MAX_LEVELS: u32 = 8u;
 
 struct Frame {
-    // Numbers that stand in the fourth lane of a row are those that slices ask for (`shaders/handed.rs`).
+    // Beside vectors stand the numbers that fragments of slices ask for (`shaders/handed.rs`).
     //
     // A pixel's ray: origin + x * origin_dx + y * origin_dy, and the same for its direction, which is
     // then made a unit vector. Pixel centres lie at +0.5.
     origin: vec3<f32>,
-    step_world: f32,
+    table_scale: f32,
     origin_dx: vec3<f32>,
     is_uneven: u32,
     origin_dy: vec3<f32>,
@@ -30,7 +30,7 @@ struct Frame {
     intercept: f32,
     // The camera's forward direction, or half way between it and the light's: normal of the planes.
     forward: vec3<f32>,
-    table_scale: f32,
+    step_world: f32,
     // The same as a covector of voxel space: which way each grid axis runs away from the eye.
     forward_voxel: vec3<f32>,
     // +1 for a maximum, -1 for a minimum, 0 for a sum.
@@ -41,18 +41,18 @@ struct Frame {
     domain_max: vec3<f32>,
     table_count: u32,
     cover_min: vec3<f32>,
-    reference_length: f32,
+    slice_first: i32,
     cover_max: vec3<f32>,
     codes_are_integers: u32,
     dims: vec3<f32>,
-    is_only_brick: u32,
+    reference_length: f32,
     // The brick of this recording: the samples that are its own, and where its texture lies in voxel space.
     brick_min: vec3<f32>,
-    slice_axis: u32,
+    is_only_brick: u32,
     brick_max: vec3<f32>,
     code_scale: f32,
     brick_origin: vec3<f32>,
-    slice_first: i32,
+    slice_axis: u32,
     brick_dims: vec3<f32>,
     slice_direction: i32,
     voxel_from_world: mat3x4<f32>,
@@ -69,6 +69,7 @@ struct Frame {
     // is seen from inside, the instances from slice_turn on start at the other end.
     slice_turn: u32,
     slice_first_after_turn: i32,
+    // Nothing lies before this recording.
     is_first_brick: u32,
     // Several volumes on one grid, one lane a channel; lane 0 of codes is that of the volume above.
     channel_count: u32,

@@ -44,10 +44,14 @@ impl Drawn {
         sight: Sight,
     ) -> [&'static Shader; 2] {
         let name = self.fragment_name(slicer, words, sight);
-        let handed = find(&format!("{name}.handed"));
+        let of = match slicer {
+            "slices_3d" => "planes",
+            _ => "stack",
+        };
+        let handed = find(&format!("{name}.{of}"));
         match (handed, find(&name)) {
             (Some(fragment), asked) if gpu.has_slow_parameters() || asked.is_none() => {
-                [shader(&format!("{cover}.handed")), fragment]
+                [shader(&format!("{cover}.{of}")), fragment]
             }
             _ => [shader(cover), shader(&name)],
         }

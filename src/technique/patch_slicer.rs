@@ -58,7 +58,11 @@ impl PatchSlicer {
             Technique::Slices2d | Technique::Raycast => ("slices_2d", "slice_patches.stack"),
         };
         let has_points = gpu.draws_squares_as_points(MOST_POINT_PIXELS)
-            && gpu.limits().max_viewport.iter().all(|n| n % LARGEST_BLOCK == 0);
+            && gpu
+                .limits()
+                .max_viewport
+                .iter()
+                .all(|n| n % LARGEST_BLOCK == 0);
         let shape = if has_points { ".points" } else { "" };
         let names = [&format!("slice_patches_cover{shape}"), name];
         let [vertex, fragment] = drawn.shaders(gpu, names, words, Sight::Open);
