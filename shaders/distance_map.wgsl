@@ -28,7 +28,9 @@ struct Seen {
     first: f32,
     scale: f32,
     count: u32,
-    // Or the first that is not alike.
+    contour_count: u32,
+    // Or the first that is not alike. Behind these, two words a contour: its value, and how far away a range shows it, as a
+    // multiple of how wide that is.
     next: array<u32>,
 }
 
@@ -93,10 +95,20 @@ fn main(@builtin(global_invocation_id) cell: vec3<u32>) {
     rooms_after.d[own] = nearest;
 }
 
-// Whether a table shows any of these values.
+// What f32 may lose on the way to a value, as a part of it.
+const NEAR_ROUNDING: f32 = 1e-5;
+
+// Whether a table shows any of these values, or a contour is near. Twin: src/transfer/seen.rs.
 fn is_seen(range: vec2<f32>) -> bool {
     let entries = entries_of(range);
-    return seen.next[entries.x] <= entries.y;
+    var is_shown = seen.next[entries.x] <= entries.y;
+    for (var i = 0u; i < seen.contour_count; i++) {
+        let value = bitcast<f32>(seen.next[seen.count + 2u * i]);
+        let reach = bitcast<f32>(seen.next[seen.count + 2u * i + 1u]);
+        let away = max(max(range.x - value, value - range.y), 0.0);
+        is_shown = is_shown || away <= reach * (range.y - range.x) + NEAR_ROUNDING * abs(value);
+    }
+    return is_shown;
 }
 
 fn is_alike(range: vec2<f32>) -> bool {

@@ -188,6 +188,30 @@ fn functions_of_gradients_are_drawn_the_same_whatever_is_left_out() {
     });
 }
 
+/// A contour reaches as far as the gradient takes it, and no farther than the values around a sample let it be steep.
+#[test]
+fn contours_are_left_out_where_no_value_comes_near_them() {
+    compare_many(balls, 13, 14, 0.7, |numbers, settings, function, volume| {
+        let [low, high] = volume.value_range;
+        function.opacity.clear();
+        let mut contour = || Widget {
+            srgb: None,
+            opacity: 0.8,
+            shape: Shape::Contour {
+                value: low + (0.15 + 0.8 * numbers.next()) * (high - low),
+                half_width: [0.3, 1.0, 2.5][numbers.below(3)],
+            },
+            second: None,
+        };
+        function.graded = Some(Graded {
+            steepest: Some(0.3 * (high - low)),
+            share: Vec::new(),
+            widgets: vec![contour(), contour()],
+        });
+        sliced(numbers, settings);
+    });
+}
+
 #[test]
 fn slabs_are_the_same_whatever_rays_leave_out() {
     compare_many(balls, 7, 14, 0.8, |_, settings, _, _| {

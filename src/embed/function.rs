@@ -58,7 +58,7 @@ impl Function {
                 false => GpuTransfer::new(gpu, function, length, settings.color_space),
             }
         });
-        let mut skippable = settings.skippable(mix, function, volume.value_range());
+        let mut skippable = settings.skippable(mix, function, volume.value_range(), None);
         let mut empty = None;
         match (volume.cells(), &skippable, emptying) {
             (Some(cells), Skippable::Unseen(seen), Some(pipeline)) => {

@@ -119,7 +119,7 @@ impl Corners {
         staging: &Buffer,
         first: u64,
     ) -> Result<(), Error> {
-        let (read, write) = (Use::ComputeRead, Use::TransferWrite);
+        let (read, write) = (Use::SampledOrRead, Use::TransferWrite);
         let mut offset = first;
         // SAFETY: the caller's promises; the two barriers put the copies between earlier and later uses.
         unsafe {

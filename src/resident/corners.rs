@@ -191,7 +191,7 @@ impl Corners {
     /// `cmd` is recording on their device, outside rendering; they live until it has run. Once is enough.
     pub unsafe fn record_upload(&self, gpu: &Gpu, cmd: vk::CommandBuffer) {
         // SAFETY: the caller's promises; the host has written all texels.
-        unsafe { image_barrier(gpu, cmd, &self.image, Use::HostWrite, Use::ComputeRead) };
+        unsafe { image_barrier(gpu, cmd, &self.image, Use::HostWrite, Use::SampledOrRead) };
     }
 }
 

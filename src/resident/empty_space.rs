@@ -10,7 +10,7 @@ use crate::gpu::{
     buffer_barrier, group_count, within,
 };
 use crate::shaders::{CellGrid, Pass, shader};
-use crate::transfer::{Alike, Seen};
+use crate::transfer::{Alike, Near, Seen};
 use ash::vk;
 use std::ops::Range;
 use std::sync::Arc;
@@ -52,15 +52,22 @@ struct Words<'a> {
     first: f32,
     scale: f32,
     next: &'a [u32],
+    contours: &'a [Near],
 }
 
 impl<'a> From<&'a Seen> for Words<'a> {
     fn from(seen: &'a Seen) -> Self {
-        let Seen { first, scale, next } = seen;
+        let Seen {
+            first,
+            scale,
+            next,
+            contours,
+        } = seen;
         Self {
             first: *first,
             scale: *scale,
             next,
+            contours,
         }
     }
 }
@@ -72,6 +79,7 @@ impl<'a> From<&'a Alike> for Words<'a> {
             first: *first,
             scale: *scale,
             next: end,
+            contours: &[],
         }
     }
 }
@@ -93,8 +101,12 @@ impl Mapping {
             seen.first.to_bits(),
             seen.scale.to_bits(),
             seen.next.len() as u32,
+            seen.contours.len() as u32,
         ];
         words.extend_from_slice(seen.next);
+        for Near { value, reach } in seen.contours {
+            words.extend([value, reach].map(|n| n.to_bits()));
+        }
         let bytes: &[u8] = bytemuck::cast_slice(&words);
         let length = bytes.len() as u64;
         let table = Buffer::new(gpu, length, storage, Memory::Upload, "seen values")?;

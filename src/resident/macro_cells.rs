@@ -32,6 +32,16 @@ pub struct Apron {
     pub is_mixed: bool,
 }
 
+impl Apron {
+    /// The same for cells that know of all voxels that central differences of samples are made of: one more on each side.
+    pub fn of_gradients(self) -> Self {
+        Self {
+            voxels: self.voxels + 1,
+            ..self
+        }
+    }
+}
+
 /// The ranges of a volume's macro cells. Made empty; [`MacroCells::record`] fills them.
 #[derive(Debug)]
 pub struct MacroCells {

@@ -1,7 +1,7 @@
 //! What need not be looked at: which pictures have something of that kind, and how a host hands it over.
 //!
 //! ```text
-//! settings.skippable(mix, function)              what can be left out of such a picture
+//! settings.skippable(mix, function, ..)          what can be left out of such a picture
 //!     MacroCells::new(gpu, volume, settings.apron())     once a volume
 //!     EmptySpace::new(gpu, &cells, &seen)                once a transfer function
 //! settings.skippable_in_all(functions)           the same of a mixture
@@ -9,9 +9,10 @@
 //! recording.skip(&skip), Inputs { skip, .. }     for each recording
 //! ```
 
-use super::{Filter, Mix, Mode, Recording, Settings, Technique};
+use super::{Filter, Keep, Mix, Mode, Operator, Order, Recording, Settings, Technique};
 use crate::resident::{Apron, EmptySpace, MacroCells};
 use crate::transfer::{Alike, Seen, TransferFunction};
+use crate::volume::Grid;
 
 /// What is known of where a recording need not look. The picture is the same to the bit.
 #[derive(Clone, Copy, Debug, Default)]
@@ -62,19 +63,25 @@ impl Settings {
     }
 
     /// What can be left out of pictures of one volume under `function`, whose values are in `value_range`. What colours
-    /// surfaces has no say.
+    /// surfaces has no say. With [`Self::slope`] contours are left out where no value comes near them, if cells know of all
+    /// voxels that gradients are made of ([`Apron::of_gradients`]); `None`: they are seen everywhere.
     pub fn skippable(
         &self,
         mix: Mix,
         function: Option<&TransferFunction>,
         value_range: [f64; 2],
+        slope: Option<f64>,
     ) -> Skippable {
+        let seen_in = |function: &TransferFunction| match slope {
+            Some(slope) => Seen::of_slope(function, slope),
+            None => Seen::new(function),
+        };
         let is_one = mix.is_of_one() || self.mode == Mode::Iso;
         if !self.skip || !is_one {
             return Skippable::Nothing;
         }
         if self.technique != Technique::Raycast {
-            return self.skippable_by_slices(function);
+            return self.skippable_by_slices(function, seen_in);
         }
         match (self.mode, function) {
             (Mode::Composite, Some(function)) if self.preintegrated => {
@@ -88,13 +95,28 @@ impl Settings {
             // By how much of it is over what has been met.
             (Mode::Lmip | Mode::AttenuatedMip, _) => Skippable::Exceeded,
             (Mode::Mip | Mode::Minip, _) if !self.per_mode.exact_maximum => Skippable::Exceeded,
-            (Mode::Composite | Mode::Mida, Some(function)) => unseen(Seen::new(function)),
+            (Mode::Composite | Mode::Mida, Some(function)) => unseen(seen_in(function)),
             _ => Skippable::Nothing,
         }
     }
 }
 
 impl Settings {
+    /// The largest gradient that these pictures may have, times the smallest spacing, as a multiple of how far the values
+    /// that it is made of lie apart: of central differences
+    ///
+    /// ```text
+    /// |gradient| <= sum over axes of |row of voxel_from_world| (high - low) / 2
+    /// ```
+    ///
+    /// `None` where gradients are made in another way, of which nothing is said.
+    pub fn slope(&self, grid: &Grid) -> Option<f64> {
+        let is_central = self.gradient_operator() == Operator::Central
+            && self.keep_gradients != Keep::Always;
+        let rows: f64 = grid.voxel_rows().iter().map(|row| row.length()).sum();
+        is_central.then(|| 0.5 * rows * grid.smallest_spacing())
+    }
+
     /// What rays leave out of pictures of several volumes, given the functions of those that have opacity, by their
     /// numbers.
     pub fn skippable_in_all(&self, functions: &[(usize, &TransferFunction)]) -> Skippable {
@@ -112,7 +134,7 @@ impl Settings {
     }
 }
 
-/// Where all is seen, looking for what is not would only cost rays; slices go on to look for what is hidden.
+/// Where all is seen, looking for what is not would only cost; slices from front to back go on to look for what is hidden.
 fn unseen(seen: Seen) -> Skippable {
     match seen.is_all() {
         true => Skippable::Nothing,
@@ -123,14 +145,24 @@ fn unseen(seen: Seen) -> Skippable {
 impl Settings {
     /// A blending unit goes on blending: only fragments that leave every colour as it is can be left out, and they are
     /// those of no opacity, 0 + (1 - 0) C and C + (1 - A) 0. Maxima have no such value: any may be the largest.
-    fn skippable_by_slices(&self, function: Option<&TransferFunction>) -> Skippable {
-        match (self.mode, function) {
-            _ if self.is_half_angle() => Skippable::Nothing,
-            (Mode::Composite, Some(function)) if self.preintegrated => {
-                Skippable::Unseen(Seen::between(function))
-            }
-            (Mode::Composite, Some(function)) => Skippable::Unseen(Seen::new(function)),
-            _ => Skippable::Nothing,
+    fn skippable_by_slices(
+        &self,
+        function: Option<&TransferFunction>,
+        seen_in: impl Fn(&TransferFunction) -> Seen,
+    ) -> Skippable {
+        let Some(function) = function else {
+            return Skippable::Nothing;
+        };
+        if self.mode != Mode::Composite || self.is_half_angle() {
+            return Skippable::Nothing;
+        }
+        let seen = match self.preintegrated {
+            true => Seen::between(function),
+            false => seen_in(function),
+        };
+        match self.order {
+            Order::BackToFront => unseen(seen),
+            Order::FrontToBack => Skippable::Unseen(seen),
         }
     }
 }

@@ -60,7 +60,7 @@ pub use materials::{Material, TooMuch};
 pub use points::{Points, classify_by_points};
 pub use preset::Preset;
 pub use quantity::Quantity;
-pub use seen::Seen;
+pub use seen::{Near, Seen};
 pub use slabs::{SlabCell, SlabTable, classify_slab};
 pub use summary::ValueSummary;
 pub use table::{MAX_ENTRIES, MIN_ENTRIES, Table, classify_by_table};

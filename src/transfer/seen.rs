@@ -7,8 +7,17 @@
 //!
 //! Cells are those of the function's [`super::Table`]; one counts as seen where the law has any opacity in it, ends
 //! included, so that neither the table nor the law itself shows what is called unseen.
+//!
+//! A contour around v of half-width r (in smallest spacings h, [`super::Graded`]) reaches r h |gradient| far. Where all
+//! values around a sample are in a range, its gradient is at most s (high - low) / h, s of the grid and of how gradients
+//! are made; so the contour is not seen there where
+//!
+//! ```text
+//! distance of v from [low, high] > r s (high - low)
+//! ```
 
 use super::table::Cut;
+use crate::shaders::NEAR_ROUNDING;
 use super::{Cells, Graded, Shape, TransferFunction, Widget};
 
 /// How many standard deviations away a bell of opacity 1 is no opacity in f32: 1 - exp(-6^2 / 2) is 1.
@@ -25,21 +34,45 @@ pub struct Seen {
     pub scale: f32,
     /// Of each cell, the next that is seen; the number of cells where there is none.
     pub next: Vec<u32>,
+    /// What is seen beside that, of ranges that come near.
+    pub contours: Vec<Near>,
+}
+
+/// A value that a range shows from so far away.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Near {
+    /// The value.
+    pub value: f32,
+    /// How far away, as a multiple of how wide the range is.
+    pub reach: f32,
+}
+
+impl Near {
+    fn is_shown_by(self, [low, high]: [f32; 2]) -> bool {
+        let away = (low - self.value).max(self.value - high).max(0.0);
+        away <= self.reach * (high - low) + NEAR_ROUNDING * self.value.abs()
+    }
 }
 
 impl Seen {
     /// Of the function's own opacities.
     pub fn new(function: &TransferFunction) -> Self {
-        Self::by(Cut::new(function), function)
+        Self::by(Cut::new(function), function, None)
+    }
+
+    /// The same where a gradient, times the smallest spacing, is at most `slope` times the width of the range of all values
+    /// that it is made of: contours are seen in ranges that come near their values.
+    pub fn of_slope(function: &TransferFunction, slope: f64) -> Self {
+        Self::by(Cut::new(function), function, Some(slope))
     }
 
     /// Of the means between two values: a range shows nothing where no value in it has opacity, whichever two ends
     /// there are.
     pub fn between(function: &TransferFunction) -> Self {
-        Self::by(Cut::for_slabs(function), function)
+        Self::by(Cut::for_slabs(function), function, None)
     }
 
-    fn by(cut: Cut, function: &TransferFunction) -> Self {
+    fn by(cut: Cut, function: &TransferFunction, slope: Option<f64>) -> Self {
         let Cut {
             first,
             width,
@@ -77,7 +110,12 @@ impl Seen {
         };
         let seen_cells = (0..count).filter(|&i| is_seen[i]);
         let of_values = seen_cells.map(|i| [end(i), end(i + 1)]);
-        Self::of_spans(of_values.chain(spans_of(graded)).collect())
+        let spans = of_values.chain(spans_of(graded, slope.is_some())).collect();
+        let contours = slope.map(|slope| contours_of(graded, slope));
+        Self {
+            contours: contours.unwrap_or_default(),
+            ..Self::of_spans(spans)
+        }
     }
 
     /// Of ranges of values, ends included.
@@ -120,7 +158,12 @@ impl Seen {
             }
             next[i] = nearest;
         }
-        Self { first, scale, next }
+        Self {
+            first,
+            scale,
+            next,
+            contours: Vec::new(),
+        }
     }
 
     /// Whether every value is seen, so that nothing can be left out.
@@ -134,14 +177,31 @@ impl Seen {
         let cell = |value: f32, more: f32| ((value - self.first) * self.scale).floor() + more;
         let from = cell(low, -1.0).clamp(0.0, last);
         let to = cell(high, 1.0).clamp(0.0, last);
-        self.next[from as usize] <= to as u32
+        let is_near = |contour: &Near| contour.is_shown_by([low, high]);
+        self.next[from as usize] <= to as u32 || self.contours.iter().any(is_near)
     }
 }
 
-/// The values that widgets of any opacity reach, whatever the gradient.
-fn spans_of(graded: &Graded) -> Vec<[f64; 2]> {
-    let seen = graded.widgets.iter().filter(|widget| widget.opacity > 0.0);
+/// The values that widgets of any opacity reach, whatever the gradient; without those of contours, if these are told apart.
+fn spans_of(graded: &Graded, has_contours: bool) -> Vec<[f64; 2]> {
+    let is_left = |widget: &&Widget| {
+        let is_contour = matches!(widget.shape, Shape::Contour { .. });
+        widget.opacity > 0.0 && !(has_contours && is_contour)
+    };
+    let seen = graded.widgets.iter().filter(is_left);
     seen.flat_map(spans_of_widget).collect()
+}
+
+fn contours_of(graded: &Graded, slope: f64) -> Vec<Near> {
+    let near = |widget: &Widget| match widget.shape {
+        Shape::Contour { value, half_width } if widget.opacity > 0.0 => Some(Near {
+            value: value as f32,
+            // A thousandth more than what is exact.
+            reach: (1.001 * slope * half_width.abs()) as f32,
+        }),
+        _ => None,
+    };
+    graded.widgets.iter().filter_map(near).collect()
 }
 
 fn spans_of_widget(widget: &Widget) -> Vec<[f64; 2]> {
@@ -251,6 +311,41 @@ mod tests {
         }
         // All values are the same.
         assert!(Seen::of_values(&[1.0], [1.0, 1.0]).shows([1.0, 1.0]));
+    }
+
+    #[test]
+    fn a_contour_is_seen_from_as_far_as_a_range_is_wide() {
+        let contour = |opacity| Widget {
+            srgb: None,
+            opacity,
+            shape: Shape::Contour {
+                value: 100.0,
+                half_width: 2.0,
+            },
+            second: None,
+        };
+        let of = |opacity| TransferFunction {
+            graded: Some(Graded {
+                widgets: vec![contour(opacity)],
+                ..Graded::default()
+            }),
+            ..function(&[], Interpolation::Linear)
+        };
+        let seen = Seen::of_slope(&of(0.5), 1.5);
+        for (range, is_shown) in [
+            ([0.0, 20.0], false),
+            ([0.0, 24.9], false),
+            ([0.0, 25.1], true),
+            ([120.0, 120.5], false),
+            ([90.0, 110.0], true),
+            ([100.0, 100.0], true),
+            ([130.0, 141.0], true),
+        ] {
+            assert_eq!(seen.shows(range), is_shown, "{range:?}");
+        }
+        // Nothing is known of the gradient, or the contour is not there.
+        assert!(Seen::new(&of(0.5)).shows([0.0, 20.0]));
+        assert!(!Seen::of_slope(&of(0.0), 1.5).shows([90.0, 110.0]));
     }
 
     #[test]

@@ -241,7 +241,10 @@ fn wanted(scene: &Scene) -> Option<(Skippable, Apron)> {
             let functions = opacities_of(scene).unwrap_or_default();
             scene.settings.skippable_in_all(&functions)
         }
-        (mix, _) => scene.settings.skippable(mix, scene.transfer, range),
+        (mix, _) => {
+            let slope = scene.settings.slope(&scene.volume.grid());
+            scene.settings.skippable(mix, scene.transfer, range, slope)
+        }
     };
     let alike = scene.alike().filter(|_| scene.settings.skip);
     let wanted = match (wanted, alike, scene.transfer) {
@@ -249,6 +252,10 @@ fn wanted(scene: &Scene) -> Option<(Skippable, Apron)> {
         (wanted, ..) => wanted,
     };
     let apron = scene.view(&scene.volume.grid(), [0.0; 2]).apron()?;
+    let apron = match &wanted {
+        Skippable::Unseen(seen) if !seen.contours.is_empty() => apron.of_gradients(),
+        _ => apron,
+    };
     (wanted != Skippable::Nothing).then_some((wanted, apron))
 }
 
