@@ -5,8 +5,10 @@ mod shared;
 
 use glam::{DAffine3, DVec3, dvec3};
 use shared::{
-    Comparison, Shot, compare, device, oblique_camera, projections, ramps, sheared_affine, waves,
+    Comparison, Shot, compare, device, device_with, oblique_camera, projections, ramps,
+    sheared_affine, waves,
 };
+use stratavox::gpu::Caps;
 use stratavox::offscreen::{Renderer, reference};
 use stratavox::picture::{LayerKind, Picture};
 use stratavox::resident::Corners;
@@ -267,6 +269,7 @@ fn fetches_are_those_of_the_twin_in_every_technique() {
     }
 }
 
+/// In one piece and in bricks, whose textures have other sizes and origins.
 #[test]
 fn the_sampler_is_there_for_who_asks_for_it() {
     let grid = Grid {
@@ -274,15 +277,12 @@ fn the_sampler_is_there_for_who_asks_for_it() {
         world_from_voxel: sheared_affine(),
     };
     let volume = volume_of(&grid, VoxelType::U16, false);
-    let mut renderer = Renderer::new(device(), &volume).unwrap();
-    let shot = shots(grid, Mode::Average)[0].with(|s| s.filter_by = FilterBy::Sampler);
+    let in_bricks = Caps {
+        max_image_dimension_3d: 13,
+        max_image_array_layers: 8,
+        ..Caps::UNLIMITED
+    };
     let transfer = ramps();
-    let scene = shot.scene(&volume, Some(&transfer));
-    let kinds = [LayerKind::Value];
-    let found = renderer.render(&scene, &kinds).unwrap().picture;
-    let wanted = reference::render::<f64>(&scene).unwrap();
-    let filtered = renderer.filtered(&shot.settings).unwrap();
-    assert_eq!((filtered.by, filtered.because), ("sampler", "asked for"));
     // Sub-texel positions of 4 bits at least (`subTexelPrecisionBits`): half a sixteenth along each axis of the steepest
     // step that there is.
     let steepest = 0.2 * 0.61 + 0.15 * 0.53 + 0.15 * 0.57;
@@ -293,6 +293,22 @@ fn the_sampler_is_there_for_who_asks_for_it() {
             .find(|layer| layer.kind == LayerKind::Value);
         layer.unwrap().values.clone()
     };
-    let (wanted, found) = (value(&wanted), value(&found));
-    Comparison::of(&wanted, &found).at_most(3.0 * steepest / 32.0, "by the sampler");
+    for caps in [Caps::UNLIMITED, in_bricks] {
+        let mut renderer = Renderer::new(device_with(caps), &volume).unwrap();
+        for technique in [Technique::Raycast, Technique::Slices3d, Technique::Slices2d] {
+            let shot = shots(grid, Mode::Average)[0].with(|settings| {
+                settings.filter_by = FilterBy::Sampler;
+                settings.technique = technique;
+            });
+            let scene = shot.scene(&volume, Some(&transfer));
+            let kinds = [LayerKind::Value];
+            let found = renderer.render(&scene, &kinds).unwrap().picture;
+            let wanted = reference::render::<f64>(&scene).unwrap();
+            let filtered = renderer.filtered(&shot.settings).unwrap();
+            assert_eq!((filtered.by, filtered.because), ("sampler", "asked for"));
+            let (wanted, found) = (value(&wanted), value(&found));
+            let what = format!("by the sampler, {technique}");
+            Comparison::of(&wanted, &found).at_most(3.0 * steepest / 32.0, &what);
+        }
+    }
 }

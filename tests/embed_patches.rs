@@ -38,7 +38,9 @@ fn patches_inside_the_hosts_rendering_are_the_picture_of_whole_slices() {
         let view = stage.view();
         let range = stage.volume.value_range;
         let mix = stratavox::technique::Mix::Alone;
-        let skippable = stage.settings.skippable(mix, Some(&stage.transfer), range, None);
+        let skippable = stage
+            .settings
+            .skippable(mix, Some(&stage.transfer), range, None);
         let Skippable::Unseen(seen) = skippable else {
             panic!("{skippable:?}");
         };

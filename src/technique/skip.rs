@@ -111,8 +111,8 @@ impl Settings {
     ///
     /// `None` where gradients are made in another way, of which nothing is said.
     pub fn slope(&self, grid: &Grid) -> Option<f64> {
-        let is_central = self.gradient_operator() == Operator::Central
-            && self.keep_gradients != Keep::Always;
+        let is_central =
+            self.gradient_operator() == Operator::Central && self.keep_gradients != Keep::Always;
         let rows: f64 = grid.voxel_rows().iter().map(|row| row.length()).sum();
         is_central.then(|| 0.5 * rows * grid.smallest_spacing())
     }

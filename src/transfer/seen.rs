@@ -17,8 +17,8 @@
 //! ```
 
 use super::table::Cut;
-use crate::shaders::NEAR_ROUNDING;
 use super::{Cells, Graded, Shape, TransferFunction, Widget};
+use crate::shaders::NEAR_ROUNDING;
 
 /// How many standard deviations away a bell of opacity 1 is no opacity in f32: 1 - exp(-6^2 / 2) is 1.
 const DEVIATIONS: f64 = 6.0;

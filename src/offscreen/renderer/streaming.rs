@@ -102,7 +102,9 @@ impl<'v> Renderer<'v> {
             // Slabs reach farther than bricks know of.
             return Skippable::Nothing;
         }
-        scene.settings.skippable(scene.mix(), scene.transfer, range, None)
+        scene
+            .settings
+            .skippable(scene.mix(), scene.transfer, range, None)
     }
 
     /// All that the picture shows of the stream, into the accumulation. Milliseconds on the device.
