@@ -2,7 +2,7 @@
 //!
 //! Every file directly under `shaders/` is one entry point called `main`. A line `#import name` stands
 //! for `shaders/lib/name.wgsl`, each file once. In a name, `{slot}` is replaced by each word that
-//! [`variants::ENTRIES`] gives for that slot: every combination of words becomes a variant of its own, because
+//! [`variants::ENTRIES`] gives for that slot, `{slot=word}` by that word where it gives none: every combination of words becomes a variant of its own, because
 //! naga writes no specialization constants.
 //!
 //! Written to `OUT_DIR`: `shaders.spv` (all words, one module after the other), `shaders.rs` (the
@@ -201,9 +201,7 @@ impl Source {
         let text = fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         for (number, line) in text.lines().enumerate() {
             if let Some(name) = line.strip_prefix("#import ") {
-                let filled = fills.iter().fold(name.to_owned(), |name, (slot, word)| {
-                    name.replace(&format!("{{{slot}}}"), word)
-                });
+                let filled = filled(name, fills);
                 self.append(
                     Path::new("shaders/lib").join(filled).with_extension("wgsl"),
                     fills,
@@ -226,6 +224,19 @@ impl Source {
             });
         panic!("{place}in variant {variant}\n{picture}");
     }
+}
+
+/// The name of an import with its slots filled. `{slot=word}` has that word where an entry has no such slot.
+fn filled(name: &str, fills: &BTreeMap<&str, &str>) -> String {
+    let mut parts = name.split('{');
+    let mut filled = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (slot, rest) = part.split_once('}').expect("a slot ends");
+        let (slot, word) = slot.split_once('=').unwrap_or((slot, ""));
+        filled += fills.get(slot).unwrap_or(&word);
+        filled += rest;
+    }
+    filled
 }
 
 fn spirv(module: &naga::Module, info: &naga::valid::ModuleInfo, file: &str) -> Vec<u32> {

@@ -48,10 +48,13 @@ pub const SILENT: &[&str] = &[
     "taps",
     "corners",
     "asked",
+    "cut",
     "triangles",
 ];
 /// Who reads the parameters of slices: the fragments, or the vertices for them (`handed.rs`).
 const PARAMETERS: Slot = ("parameters", &["asked", "planes", "stack"]);
+/// Whether clip planes cut the domain and rays have places of their own in their pixels, or neither.
+const CUTS: Slot = ("cuts", &["cut", "whole"]);
 const PLANES: Slot = ("parameters", &["planes"]);
 const STACKED: Slot = ("parameters", &["stack"]);
 /// What squares of patches are drawn as.
@@ -212,15 +215,23 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "slices_3d",
-        &[TESTED, BLEND, ONE, CORNERS, HOLES, STORED, SHARED, PLANES],
+        &[
+            TESTED, BLEND, ONE, CORNERS, HOLES, STORED, SHARED, PLANES, CUTS,
+        ],
     ),
     ("slices_3d", &[NUMBER, ALONE, SIGHT, FILTER, HOLES]),
-    ("slices_3d", &[NUMBER, ALONE, SIGHT, CORNERS, HOLES, PLANES]),
     (
         "slices_3d",
-        &[TESTED, BLEND, ONE, LINEAR, HOLES, TABLE, TAPS, PLANES],
+        &[NUMBER, ALONE, SIGHT, CORNERS, HOLES, PLANES, CUTS],
     ),
-    ("slices_3d", &[NUMBER, ALONE, SIGHT, LINEAR, HOLES, PLANES]),
+    (
+        "slices_3d",
+        &[TESTED, BLEND, ONE, LINEAR, HOLES, TABLE, TAPS, PLANES, CUTS],
+    ),
+    (
+        "slices_3d",
+        &[NUMBER, ALONE, SIGHT, LINEAR, HOLES, PLANES, CUTS],
+    ),
     (
         "slices_3d",
         &[
@@ -248,9 +259,14 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ("slices_2d", &[NUMBER, ALONE, SIGHT, FILTER, HOLES]),
     (
         "slices_2d",
-        &[TESTED, BLEND, ONE, LINEAR, HOLES, TABLE, TAPS, STACKED],
+        &[
+            TESTED, BLEND, ONE, LINEAR, HOLES, TABLE, TAPS, STACKED, CUTS,
+        ],
     ),
-    ("slices_2d", &[NUMBER, ALONE, SIGHT, LINEAR, HOLES, STACKED]),
+    (
+        "slices_2d",
+        &[NUMBER, ALONE, SIGHT, LINEAR, HOLES, STACKED, CUTS],
+    ),
     (
         "slices_2d",
         &[

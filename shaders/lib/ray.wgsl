@@ -4,7 +4,8 @@
 // Twin: src/ray.rs.
 
 #import frame
-#import in_pixel
+#import in_pixel_{cuts=cut}
+#import clipped_{cuts=cut}
 
 struct Ray {
     origin: vec3<f32>,
@@ -38,25 +39,11 @@ fn domain_interval(world: Ray, voxel: Ray) -> vec2<f32> {
     let at_max = (frame.domain_max - voxel.origin) / direction;
     let enter = min(at_min, at_max);
     let leave = max(at_min, at_max);
-    var interval = vec2(
+    let interval = vec2(
         max(max(enter.x, enter.y), max(enter.z, 0.0)),
         min(min(leave.x, leave.y), leave.z),
     );
-    for (var i = 0u; i < frame.clip_plane_count; i++) {
-        interval = clip_interval(interval, frame.clip_planes[i], world);
-    }
-    return interval;
-}
-
-// Keeps the part of the interval with dot(plane.xyz, point) >= plane.w.
-fn clip_interval(interval: vec2<f32>, plane: vec4<f32>, world: Ray) -> vec2<f32> {
-    let height = dot(plane.xyz, world.origin) - plane.w;
-    let slope = dot(plane.xyz, world.direction);
-    if abs(slope) < 1e-20 {
-        return select(vec2(interval.x, interval.x), interval, height >= 0.0);
-    }
-    let t = -height / slope;
-    return select(vec2(interval.x, min(interval.y, t)), vec2(max(interval.x, t), interval.y), slope > 0.0);
+    return clipped(interval, world.origin, world.direction);
 }
 
 // Where plane k of the view-aligned lattice meets the ray: forward . x = (k + 1/2) step.

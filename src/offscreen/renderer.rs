@@ -333,7 +333,7 @@ impl<'v> Renderer<'v> {
             let targets = self.targets.as_mut().expect("made above");
             targets.prepare_light_buffer(&gpu, extent)?;
         }
-        let words = Words::mixed(scene.settings, scene.mix(), &parts);
+        let words = Words::mixed(scene.settings, scene.mix(), &parts).of_whole(scene.settings);
         let functions = scene.transfers().into_iter().flatten();
         let points = functions.map(|f| f.color.len().max(f.opacity.len())).max();
         let graded = scene.transfer.and_then(|function| function.graded.as_ref());

@@ -48,7 +48,8 @@ impl Drawn {
             "slices_3d" => "planes",
             _ => "stack",
         };
-        let handed = find(&format!("{name}.{of}"));
+        let cuts = if words.is_whole { ".whole" } else { "" };
+        let handed = find(&format!("{name}.{of}{cuts}"));
         match (handed, find(&name)) {
             (Some(fragment), asked) if gpu.has_slow_parameters() || asked.is_none() => {
                 [shader(&format!("{cover}.{of}")), fragment]

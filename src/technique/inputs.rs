@@ -3,6 +3,7 @@
 
 use super::{
     Filter, FilterBy, Keep, Lattice, LightVolume, Mix, Mode, Operator, Part, Role, Settings, Skip,
+    Technique,
 };
 use crate::gpu::{Bindings, Error, Gpu, Image, Layout, ParameterRing, Resource};
 use crate::resident::{Brick, Corners, GpuTransfer, GpuVolume, TextureLayout};
@@ -136,6 +137,8 @@ pub struct Words {
     pub take: Take,
     /// Steps adapt to what is there.
     pub is_adaptive: bool,
+    /// No clip planes, and all rays at the same place of their pixels: [`Words::of_whole`].
+    pub is_whole: bool,
 }
 
 /// What a sample is: a point of a ray, or a piece of it.
@@ -214,6 +217,19 @@ impl Words {
                 None => "table",
             },
             is_adaptive: settings.adaptive_steps.is_some(),
+            is_whole: false,
+        }
+    }
+}
+
+impl Words {
+    /// Of slices the variant that knows nothing of clip planes and of rays with places of their own in their pixels, where
+    /// these settings have neither: for pictures of them alone.
+    pub(crate) fn of_whole(self, settings: &Settings) -> Self {
+        let is_of_slices = settings.technique != Technique::Raycast;
+        Self {
+            is_whole: is_of_slices && settings.clip_planes.is_empty() && !settings.uneven_rays,
+            ..self
         }
     }
 }

@@ -38,6 +38,7 @@ impl Raycast {
             mix,
             take,
             is_adaptive,
+            ..
         } = words;
         // Kernels, planes and exact control points have the general variant alone.
         let has_lean = of == Mode::Composite
