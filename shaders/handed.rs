@@ -9,7 +9,8 @@
 //! location 1 + i    16 bytes of the parameters, the i-th row of those that ROWS names
 //! ```
 //!
-//! Together they are the least that Vulkan allows for, 64 components. `shaders/lib/vertex_handed.wgsl` hands them over.
+//! Together they are the least that Vulkan allows for, 64 components. `shaders/lib/vertex_planes.wgsl` and
+//! `vertex_stack.wgsl` hand them over.
 
 use crate::read_once::asked_of_a_copy;
 use naga::{
@@ -192,8 +193,12 @@ fn check(module: &Module, names: &[&str]) {
     else {
         panic!("a vertex is a struct")
     };
+    let location_of = |output: &StructMember| match output.binding {
+        Some(Binding::Location { location, .. }) => Some(location),
+        _ => None,
+    };
     for (location, row) in (1..).zip(rows_of(module, names, &members)) {
-        let is_there = |output: &&StructMember| matches!(output.binding, Some(Binding::Location { location: at, .. }) if at == location);
+        let is_there = |output: &&StructMember| location_of(output) == Some(location);
         let output = outputs.iter().find(is_there);
         let name = output.and_then(|output| output.name.as_deref());
         let begins = |member: &&StructMember| member.offset / ROW_BYTES == row;

@@ -137,7 +137,7 @@ pub struct Words {
     pub take: Take,
     /// Steps adapt to what is there.
     pub is_adaptive: bool,
-    /// No clip planes, and all rays at the same place of their pixels: [`Words::of_whole`].
+    /// No clip planes, and all rays at the same place of their pixels: for slices of such pictures alone.
     pub is_whole: bool,
 }
 
