@@ -31,7 +31,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
-use variants::{ENTRIES, PROBES, SILENT, Slot};
+use variants::{ENTRIES, PROBES, SILENT, Slot, filled};
 
 fn main() {
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
@@ -224,19 +224,6 @@ impl Source {
             });
         panic!("{place}in variant {variant}\n{picture}");
     }
-}
-
-/// The name of an import with its slots filled. `{slot=word}` has that word where an entry has no such slot.
-fn filled(name: &str, fills: &BTreeMap<&str, &str>) -> String {
-    let mut parts = name.split('{');
-    let mut filled = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
-        let (slot, rest) = part.split_once('}').expect("a slot ends");
-        let (slot, word) = slot.split_once('=').unwrap_or((slot, ""));
-        filled += fills.get(slot).unwrap_or(&word);
-        filled += rest;
-    }
-    filled
 }
 
 fn spirv(module: &naga::Module, info: &naga::valid::ModuleInfo, file: &str) -> Vec<u32> {

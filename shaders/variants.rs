@@ -1,8 +1,23 @@
 //! Which shaders are compiled, and with what: every slot of an `#import` name and the words that fill it. Part of
 //! `build.rs`.
 
+use std::collections::BTreeMap;
+
 /// A slot of `#import` names and the words that fill it.
 pub type Slot = (&'static str, &'static [&'static str]);
+
+/// The name of an import with its slots filled. `{slot=word}` has that word where an entry has no such slot.
+pub fn filled(name: &str, fills: &BTreeMap<&str, &str>) -> String {
+    let mut parts = name.split('{');
+    let mut filled = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (slot, rest) = part.split_once('}').expect("a slot ends");
+        let (slot, word) = slot.split_once('=').unwrap_or((slot, ""));
+        filled += fills.get(slot).unwrap_or(&word);
+        filled += rest;
+    }
+    filled
+}
 
 /// A kernel is wider than linear, by fetches; a spline is a B-spline by the sampler.
 const FILTER: Slot = (

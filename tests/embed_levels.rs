@@ -9,6 +9,7 @@ use std::sync::Arc;
 use stratavox::embed::{Class, Error, QueueLock, Renderer, Shot, Submitter, Volume};
 use stratavox::gpu::Load;
 use stratavox::technique::{Mode, Order, Settings, Technique};
+use stratavox::volume::{self, Rescale, Voxels};
 
 /// What is drawn there is what was computed, to the bit.
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
@@ -191,6 +192,35 @@ fn level_c_draws_in_all_settings_what_offscreen_makes() {
             device.device_wait_idle().unwrap();
         }
         assert_same(&settings, &image.numbers(), &offscreen(&stage), "C");
+    }
+}
+
+/// Voxels that software devices have corners of, which rays and view-aligned slices read in both places.
+#[test]
+fn bytes_are_drawn_as_offscreen_too() {
+    let host = Host::new();
+    for technique in [Technique::Raycast, Technique::Slices3d, Technique::Slices2d] {
+        let mut stage = stage(&Settings {
+            technique,
+            ..Settings::default()
+        });
+        let Voxels::F32(values) = &stage.volume.voxels else {
+            unreachable!("made so")
+        };
+        let [low, high] = stage.volume.value_range.map(|v| v as f32);
+        let codes = values
+            .iter()
+            .map(|v| (255.0 * (v - low) / (high - low)) as u8);
+        let rescale = Rescale {
+            slope: f64::from(high - low) / 255.0,
+            intercept: low.into(),
+        };
+        let voxels = Voxels::U8(codes.collect());
+        let (dims, affine) = (stage.volume.dims, stage.volume.world_from_voxel);
+        stage.volume = volume::Volume::from_voxels(dims, affine, voxels, rescale, None).unwrap();
+        let mut renderer = renderer(&host, &stage);
+        let found = drawn(&host, &mut renderer, &stage);
+        assert_same(&stage.settings, &found, &offscreen(&stage), "bytes");
     }
 }
 

@@ -69,7 +69,8 @@ impl Volume {
             upload,
             updates: Arc::default(),
         };
-        if settings.technique == Technique::Raycast {
+        made.keep_corners(gpu, voxels, settings)?;
+        if settings.technique == Technique::Raycast && settings.skip && !settings.preintegrated {
             made.know_empty_space(gpu, voxels, settings)?;
         }
         Ok(made)
@@ -121,8 +122,8 @@ impl Volume {
         Ok(all)
     }
 
-    /// Corners and macro cells, for pictures that leave out what cannot be seen.
-    fn know_empty_space(
+    /// Corners, for pictures that read them.
+    fn keep_corners(
         &mut self,
         gpu: &Arc<Gpu>,
         voxels: &volume::Volume,
@@ -136,14 +137,23 @@ impl Volume {
         {
             copy.keep_corners(corners);
         }
-        if settings.skip && !settings.preintegrated {
-            let apron = settings.apron();
-            let cells = match gpu.is_cpu() && copy.spline().is_none() {
-                true => MacroCells::of_voxels(gpu, copy, apron, voxels)?,
-                false => MacroCells::new(gpu, copy, apron)?,
-            };
-            self.cells = Some((cells, apron));
-        }
+        Ok(())
+    }
+
+    /// Macro cells, for pictures that leave out what cannot be seen.
+    fn know_empty_space(
+        &mut self,
+        gpu: &Arc<Gpu>,
+        voxels: &volume::Volume,
+        settings: &Settings,
+    ) -> Result<(), Error> {
+        let copy = &self.copies[0];
+        let apron = settings.apron();
+        let cells = match gpu.is_cpu() && copy.spline().is_none() {
+            true => MacroCells::of_voxels(gpu, copy, apron, voxels)?,
+            false => MacroCells::new(gpu, copy, apron)?,
+        };
+        self.cells = Some((cells, apron));
         Ok(())
     }
 

@@ -114,7 +114,7 @@ pub const ANSWERS: &[(&str, Lie, &str)] = &[
     ),
     (
         "clip planes do not cut where a ray leaves",
-        Shader("lib/ray.wgsl", "min(interval.y, t)", "interval.y"),
+        Shader("lib/clipped_cut.wgsl", "min(interval.y, t)", "interval.y"),
         "slices_2d.over.composite.clipped.linear_fetch.f32.perspective",
     ),
     (

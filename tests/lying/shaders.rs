@@ -120,12 +120,7 @@ impl Source<'_> {
         for line in text.lines() {
             match line.strip_prefix("#import ") {
                 Some(name) => {
-                    let name = self
-                        .fills
-                        .iter()
-                        .fold(name.to_owned(), |name, (slot, word)| {
-                            name.replace(&format!("{{{slot}}}"), word)
-                        });
+                    let name = variants::filled(name, &self.fills);
                     self.append(Path::new("shaders/lib").join(name).with_extension("wgsl"));
                 }
                 None => {
