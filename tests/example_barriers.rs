@@ -84,6 +84,13 @@ fn rays_among_meshes() {
 
 #[test]
 fn slices_among_meshes() {
-    let unheard = [NEW_DEPTH, NEW_TARGET, SAME_DEPTH, SAME_TARGET, READ_BY_HOST];
+    let unheard = [
+        WRITTEN_BY_HOST,
+        NEW_DEPTH,
+        NEW_TARGET,
+        SAME_DEPTH,
+        SAME_TARGET,
+        READ_BY_HOST,
+    ];
     assert_each_is_missed("slices", &unheard);
 }
