@@ -9,15 +9,18 @@
 //
 // Of several volumes in one place D0 is 0 where any of their functions shows one of their values.
 //
-// For steps that adapt (looks_adaptive.wgsl) a fifth pass writes ALIKE for 0 where the function hardly changes over the
-// values of the cell, by a table of which values are alike in place of that of those that are seen.
+// For steps that adapt (looks_adaptive.wgsl) a fifth pass writes ROOM_ALIKE for 0 where the function hardly changes over
+// the values of the cell, by a table of which values are alike in place of that of those that are seen.
 //
-// Outside the grid is nothing. One thread a cell. Twin: none, but pictures with it and without are the same.
+// One thread a word, which has ROOMS_A_WORD cells along x: of D0 a bit each, set where matter is, so that D along x is
+// counted in bits; of the others a byte each. Outside the grid is nothing. Twin: none, but pictures with it and without are
+// the same.
 
 #import cell_grid
+#import room_word
 
+// Words of bits along x, and half of a word as it is.
 const REACH: u32 = 16u;
-const ALIKE: u32 = 0x40000000u;
 
 struct CellRanges {
     d: array<vec2<f32>>,
@@ -49,50 +52,90 @@ struct Pass {
 @group(0) @binding(34) var<storage, read_write> rooms_after: Rooms;
 @group(0) @binding(35) var<uniform> which: Pass;
 
-@compute @workgroup_size(8, 4, 2)
-fn main(@builtin(global_invocation_id) cell: vec3<u32>) {
-    if any(cell >= cell_grid.cells) {
+@compute @workgroup_size(4, 8, 2)
+fn main(@builtin(global_invocation_id) place: vec3<u32>) {
+    let words = vec3(words_along(cell_grid.cells), cell_grid.cells.yz);
+    if any(place >= words) {
         return;
     }
-    let own = cell_index(cell);
-    if which.number == 0u {
-        rooms_after.d[own] = select(REACH, 0u, is_seen(cell_ranges.d[own]));
-        return;
-    }
-    if which.number == 4u {
-        if is_seen(cell_ranges.d[own]) {
-            rooms_after.d[own] = 0u;
+    let own = room_word(cell_grid.first, cell_grid.cells, place);
+    switch which.number {
+        case 0u, 4u: {
+            let before = select(0u, rooms_after.d[own], which.number == 4u);
+            rooms_after.d[own] = before | cells_seen(place);
         }
-        return;
-    }
-    if which.number == 5u {
-        if rooms_after.d[own] == 0u && is_alike(cell_ranges.d[own]) {
-            rooms_after.d[own] = ALIKE;
+        case 1u: {
+            rooms_after.d[own] = packed(along_x(own, place.x, words.x));
         }
-        return;
+        case 5u: {
+            rooms_after.d[own] = packed(with_alike(place, rooms_in(rooms_after.d[own])));
+        }
+        default: {
+            let is_z = which.number == 3u;
+            let step = words.x * select(1u, words.y, is_z);
+            let axis = select(1u, 2u, is_z);
+            rooms_after.d[own] = packed(along(own, step, place[axis], words[axis]));
+        }
     }
-    let axis = which.number - 1u;
-    var step = 1u;
-    if axis > 0u {
-        step *= cell_grid.cells.x;
+}
+
+// A bit for each cell of a word in which something is seen.
+fn cells_seen(place: vec3<u32>) -> u32 {
+    var bits = 0u;
+    for (var i = 0u; i < ROOMS_A_WORD; i++) {
+        let x = ROOMS_A_WORD * place.x + i;
+        if x < cell_grid.cells.x {
+            let range = cell_ranges.d[cell_index(vec3(x, place.yz))];
+            bits |= u32(is_seen(range)) << i;
+        }
     }
-    if axis > 1u {
-        step *= cell_grid.cells.y;
+    return bits;
+}
+
+// Of bits, by how many cells lie between.
+fn along_x(own: u32, at: u32, count: u32) -> vec4<u32> {
+    var behind = rooms_before.d[own] << REACH;
+    var ahead = rooms_before.d[own];
+    for (var k = 1u; k <= REACH / ROOMS_A_WORD; k++) {
+        if k <= at {
+            behind |= rooms_before.d[own - k] << (REACH - k * ROOMS_A_WORD);
+        }
+        if at + k < count {
+            ahead |= rooms_before.d[own + k] << (k * ROOMS_A_WORD);
+        }
     }
-    let before = cell[axis];
-    let behind = cell_grid.cells[axis] - 1u - before;
-    let reach = max(before, behind);
-    // At most REACH.
-    var nearest = rooms_before.d[own];
-    for (var k = 1u; k <= reach && k < nearest; k++) {
-        if k <= before {
-            nearest = min(nearest, max(k, rooms_before.d[own - k * step]));
+    let cells = vec4(0u, 1u, 2u, 3u);
+    let to_behind = countLeadingZeros(vec4(behind) << (vec4(31u - REACH) - cells));
+    let to_ahead = countTrailingZeros(vec4(ahead) >> cells);
+    return min(min(to_behind, to_ahead), vec4(REACH));
+}
+
+// Of bytes, along an axis of `count` cells, words `step` apart.
+fn along(own: u32, step: u32, at: u32, count: u32) -> vec4<u32> {
+    var nearest = rooms_in(rooms_before.d[own]);
+    let behind = count - 1u - at;
+    let reach = max(at, behind);
+    for (var k = 1u; k <= reach && any(vec4(k) < nearest); k++) {
+        if k <= at {
+            nearest = min(nearest, max(vec4(k), rooms_in(rooms_before.d[own - k * step])));
         }
         if k <= behind {
-            nearest = min(nearest, max(k, rooms_before.d[own + k * step]));
+            nearest = min(nearest, max(vec4(k), rooms_in(rooms_before.d[own + k * step])));
         }
     }
-    rooms_after.d[own] = nearest;
+    return nearest;
+}
+
+fn with_alike(place: vec3<u32>, rooms: vec4<u32>) -> vec4<u32> {
+    var marked = rooms;
+    for (var i = 0u; i < ROOMS_A_WORD; i++) {
+        let x = ROOMS_A_WORD * place.x + i;
+        if x < cell_grid.cells.x && rooms[i] == 0u {
+            let range = cell_ranges.d[cell_index(vec3(x, place.yz))];
+            marked[i] = select(0u, ROOM_ALIKE, is_alike(range));
+        }
+    }
+    return marked;
 }
 
 // What f32 may lose on the way to a value, as a part of it.

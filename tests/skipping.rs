@@ -3,15 +3,12 @@
 mod shared;
 mod skipping_shared;
 
-use ash::vk;
 use glam::{DAffine3, DVec3, dvec3};
 use shared::{device, device_with, oblique_camera, projections, volume_of};
 use skipping_shared::{Numbers, balls, cameras, hills, samples_of_same_pictures};
-use std::sync::Arc;
 use stratavox::camera::{Camera, Projection};
-use stratavox::gpu::{self, Buffer, Caps, Headless, Memory, Use, buffer_barrier};
+use stratavox::gpu::Caps;
 use stratavox::offscreen::Renderer;
-use stratavox::resident::{GpuVolume, MacroCells, TextureLayout};
 use stratavox::scene::Scene;
 use stratavox::technique::{
     ClipPlane, CutFaces, Filter, Jitter, Lattice, Level, Mode, Settings, Shading,
@@ -166,82 +163,6 @@ fn of_a_ball_in_empty_space_few_samples_are_taken() {
     };
     let [skipped, whole] = samples_of_same_pictures(&mut renderer, &scene);
     assert!(skipped < whole / 20.0, "{skipped} of {whole}");
-}
-
-/// All numbers of a buffer of f32, once what is recorded by `record` has run.
-fn read_back(
-    device: &mut Headless,
-    ranges: &Buffer,
-    record: impl FnOnce(vk::CommandBuffer) -> Result<(), gpu::Error>,
-) -> Vec<f32> {
-    let gpu = Arc::clone(device.gpu());
-    let (bytes, usage) = (ranges.bytes(), vk::BufferUsageFlags::TRANSFER_DST);
-    let back = Buffer::new(&gpu, bytes, usage, Memory::Readback, "back").expect("a buffer");
-    let regions = [vk::BufferCopy::default().size(bytes)];
-    let copied = device.run(|cmd| {
-        record(cmd)?;
-        // SAFETY: recorded outside rendering, with barriers around; `run` waits, and both buffers live meanwhile.
-        unsafe {
-            buffer_barrier(&gpu, cmd, ranges, Use::ComputeWrite, Use::TransferRead);
-            gpu.device()
-                .cmd_copy_buffer(cmd, ranges.raw(), back.raw(), &regions);
-            buffer_barrier(&gpu, cmd, &back, Use::TransferWrite, Use::HostRead);
-        }
-        Ok::<_, gpu::Error>(())
-    });
-    copied.expect("copied");
-    let mut found = vec![0; bytes as usize];
-    back.read(0, &mut found).expect("read");
-    let number = |bytes: &[u8]| f32::from_le_bytes(bytes.try_into().expect("four"));
-    found.chunks_exact(4).map(number).collect()
-}
-
-#[test]
-fn ranges_of_cells_are_the_same_from_voxels_and_from_textures() {
-    let mut numbers = Numbers(23);
-    let apron = |filter| {
-        Settings {
-            filter,
-            ..Settings::default()
-        }
-        .apron()
-    };
-    for (as_bytes, filter) in [
-        (true, Filter::Linear),
-        (false, Filter::Linear),
-        (true, Filter::CatmullRom),
-    ] {
-        let volume = balls(&mut numbers, as_bytes);
-        for max_image_dimension_3d in [u32::MAX, 19] {
-            let mut device = device_with(Caps {
-                max_image_dimension_3d,
-                ..Caps::UNLIMITED
-            });
-            let gpu = Arc::clone(device.gpu());
-            let made = GpuVolume::new(&gpu, &volume, TextureLayout::Texture3d).expect("textures");
-            let staging = made.stage(&volume).expect("staged");
-            // SAFETY: recorded outside rendering; `run` waits, and all of it lives meanwhile.
-            let upload = |cmd| unsafe { made.record_upload_all(cmd, &staging) };
-            device.run(upload).expect("uploaded");
-            let by_host =
-                MacroCells::of_voxels(&gpu, &made, apron(filter), &volume).expect("cells");
-            let by_device = MacroCells::new(&gpu, &made, apron(filter)).expect("cells");
-            let [found, wanted] = [&by_host, &by_device].map(|cells| {
-                // SAFETY: as above; the volume has been uploaded.
-                let record = |cmd| unsafe { cells.record(cmd) };
-                read_back(&mut device, cells.ranges(), record)
-            });
-            assert!(found.len() > 2 * 60, "{} numbers", found.len());
-            let largest = wanted.iter().fold(0.0f32, |m, v| m.max(v.abs()));
-            for (found, wanted) in found.iter().zip(&wanted) {
-                // A product and a sum, rounded once or twice.
-                assert!(
-                    (found - wanted).abs() <= 2f32.powi(-22) * largest,
-                    "{found} {wanted}"
-                );
-            }
-        }
-    }
 }
 
 #[test]

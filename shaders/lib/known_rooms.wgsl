@@ -47,7 +47,7 @@ fn empty_around(pencil: Pencil, s: f32) -> vec2<f32> {
     let place = (pencil.origin + s * pencil.direction - frame.cells_origin) / size;
     let cell = vec3<i32>(clamp(place, vec3(0.0), vec3<f32>(last)));
     let room = room_of(cell);
-    if room == 0 || room == ROOM_ALIKE {
+    if room == 0 || room == i32(ROOM_ALIKE) {
         return vec2(ENDLESS, -ENDLESS);
     }
     let first_cell = cell + 1 - room;

@@ -54,7 +54,7 @@ fn after_nothing(walk: Walk, start: i32) -> i32 {
         }
         let cell = cell_of(walk, k);
         let room = room_of(cell);
-        if room == 0 || room == ROOM_ALIKE {
+        if room == 0 || room == i32(ROOM_ALIKE) {
             break;
         }
         k = after_room(walk, k, cell, room);
@@ -66,7 +66,7 @@ fn run_of(walk: Walk, k: i32) -> Run {
     // Where nothing is known, there are no cells: something stands in for them.
     let cell = max(cell_of(walk, k), vec3(0));
     let room = room_of(cell);
-    let leaves = after_room(walk, k, cell, select(room, 1, room == ROOM_ALIKE));
+    let leaves = after_room(walk, k, cell, select(room, 1, room == i32(ROOM_ALIKE)));
     return Run(k, select(k + 1, min(leaves, walk.end), walk.is_known && room != 0));
 }
 

@@ -9,7 +9,7 @@ use crate::gpu::{
     Bindings, Buffer, ComputePipeline, Error, Gpu, Memory, ParameterRing, Resource, Use,
     buffer_barrier, group_count, within,
 };
-use crate::shaders::{CellGrid, Pass, shader};
+use crate::shaders::{CellGrid, Pass, ROOMS_A_WORD, shader};
 use crate::transfer::{Alike, Near, Seen};
 use ash::vk;
 use std::ops::Range;
@@ -220,7 +220,7 @@ impl EmptySpace {
     }
 
     fn with(gpu: &Arc<Gpu>, cells: &MacroCells, mapping: Arc<Mapping>) -> Result<Self, Error> {
-        let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
+        let storage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_SRC;
         let rooms = || {
             Buffer::new(
                 gpu,
@@ -247,7 +247,7 @@ impl EmptySpace {
         })
     }
 
-    /// What techniques read: a u32 for each cell, in the order of [`MacroCells::ranges`]. 0: there may be matter.
+    /// What techniques read: a byte for each cell, in words (`shaders/lib/room_word.wgsl`). 0: there may be matter.
     pub fn rooms(&self) -> &Buffer {
         &self.rooms[1]
     }
@@ -271,7 +271,8 @@ impl EmptySpace {
     /// # Errors
     /// A grid larger than the device can dispatch.
     pub fn group_runs(&self) -> Result<[Range<u64>; PASSES as usize], Error> {
-        let groups = |grid: &CellGrid| Ok(group_count(self.mapping.pipeline.groups(grid.cells)?));
+        let groups =
+            |grid: &CellGrid| Ok(group_count(self.mapping.pipeline.groups(words_of(grid))?));
         let count = self.grids.iter().map(groups).sum::<Result<u64, Error>>()?;
         Ok(std::array::from_fn(|pass| {
             count * pass as u64..count * (pass as u64 + 1)
@@ -301,7 +302,7 @@ impl EmptySpace {
             let parity = pass as usize % 2;
             for (slot, grid) in (0..).zip(&self.grids) {
                 let offsets = [self.grid_ring.offset(slot)?, pass_ring.offset(pass)?];
-                let groups = pipeline.groups(grid.cells)?;
+                let groups = pipeline.groups(words_of(grid))?;
                 let run = within(&part, first, group_count(groups));
                 first += group_count(groups);
                 let others = self.others.iter().filter(|_| pass == 0 && !run.is_empty());
@@ -356,7 +357,7 @@ impl EmptySpace {
         part: &Range<u64>,
         end: u64,
     ) -> Result<(), Error> {
-        let groups = |grid: &CellGrid| mapping.pipeline.groups(grid.cells);
+        let groups = |grid: &CellGrid| mapping.pipeline.groups(words_of(grid));
         let counts = self.grids.iter().map(|grid| Ok(group_count(groups(grid)?)));
         let counts = counts.collect::<Result<Vec<u64>, Error>>()?;
         let mut first = end - counts.iter().sum::<u64>();
@@ -380,4 +381,10 @@ impl EmptySpace {
         }
         Ok(())
     }
+}
+
+/// Threads for the cells of a brick, one a word.
+fn words_of(grid: &CellGrid) -> [u32; 3] {
+    let [nx, ny, nz] = grid.cells;
+    [nx.div_ceil(ROOMS_A_WORD), ny, nz]
 }
