@@ -9,6 +9,8 @@
 //! table of modules with their bindings, a `#[repr(C)]` struct for each uniform, and the constants) and
 //! `blue_noise.bin` (the pattern of jittered rays).
 
+#[path = "shaders/among_few.rs"]
+mod among_few;
 #[path = "shaders/blue_noise.rs"]
 mod blue_noise;
 #[path = "shaders/both_sides.rs"]
@@ -123,6 +125,7 @@ impl Book {
         if let Some(&of @ ("planes" | "stack")) = fills.get("parameters") {
             handed::hand_over(&mut module, of);
         }
+        among_few::choose_among_few(&mut module);
         read_once::read_parameters_once(&mut module);
         // What was uniform is so still, which nobody can know any longer.
         let uniformity = ValidationFlags::CONTROL_FLOW_UNIFORMITY;
