@@ -137,11 +137,9 @@ impl Choice {
         });
         let mut value = None;
         for (k, right) in (0..).zip(numbers) {
-            let place = self
-                .path
-                .iter()
-                .chain([&k])
-                .fold(buffer, |base, &index| add(Expression::AccessIndex { base, index }));
+            let place = self.path.iter().chain([&k]).fold(buffer, |base, &index| {
+                add(Expression::AccessIndex { base, index })
+            });
             let element = add(Expression::Load { pointer: place });
             value = Some(match value {
                 None => element,
@@ -191,7 +189,9 @@ fn choose_in_block(
         match &mut statement {
             Statement::Emit(range) => {
                 let made: Vec<_> = range.clone().collect();
-                for run in made.chunk_by(|a, b| !choices.contains_key(a) && !choices.contains_key(b)) {
+                for run in
+                    made.chunk_by(|a, b| !choices.contains_key(a) && !choices.contains_key(b))
+                {
                     match choices.get(&run[0]) {
                         Some(choice) => block.append(&mut choice.chosen(expressions)),
                         None => {

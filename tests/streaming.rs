@@ -1,12 +1,12 @@
 //! A volume that is drawn brick by brick from its source is the same picture as one in memory.
 
 mod shared;
+mod streaming_shared;
 
-use shared::{device, oblique_camera, projections, ramps, sheared_affine, waves};
+use shared::{device, oblique_camera, projections, ramps, waves};
 use std::ops::ControlFlow;
-use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::Ordering;
 use stratavox::camera::{Camera, Projection};
 use stratavox::offscreen::{Renderer, Stream, StreamOptions};
 use stratavox::picture::{LayerKind, Picture};
@@ -14,87 +14,8 @@ use stratavox::scene::Scene;
 use stratavox::technique::{
     ClipPlane, Filter, Jitter, Lattice, Level, Mode, Settings, Shading, Technique,
 };
-use stratavox::volume::{
-    Format, Header, Pick, Piece, ReadError, Source, Volume, VoxelBox, VoxelType, Voxels,
-};
-
-/// Numbers in memory that are handed out in parts, and counted.
-struct Numbers {
-    header: Header,
-    numbers: Vec<f32>,
-    reads: AtomicUsize,
-    has_rows: bool,
-}
-
-impl Numbers {
-    fn of(dims: [u32; 3], fill: Option<f64>, field: impl Fn(glam::DVec3) -> f64) -> Self {
-        let volume = shared::volume_of(dims, sheared_affine(), field);
-        let Voxels::F32(numbers) = volume.voxels else {
-            unreachable!("fields are floats");
-        };
-        let header = Header {
-            fill,
-            ..Header::new(Format::Raw, dims, VoxelType::F32, sheared_affine())
-        };
-        Self {
-            header,
-            numbers,
-            reads: AtomicUsize::new(0),
-            has_rows: false,
-        }
-    }
-
-    /// The same, read row by row.
-    fn by_rows(self) -> Self {
-        Self {
-            has_rows: true,
-            ..self
-        }
-    }
-
-    fn in_memory(&self) -> Volume {
-        let whole = self.header.whole();
-        Volume::read(self, Pick::default(), whole, &Default::default()).expect("a volume")
-    }
-}
-
-impl Source for Numbers {
-    fn path(&self) -> &Path {
-        Path::new("numbers")
-    }
-
-    fn header(&self) -> &Header {
-        &self.header
-    }
-
-    fn reads_whole_rows(&self) -> bool {
-        self.has_rows
-    }
-
-    fn read(&self, _: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
-        self.reads.fetch_add(1, Ordering::Relaxed);
-        let [nx, ny, _] = self.header.dims.map(|n| n as usize);
-        let mut found = Vec::new();
-        for z in region.min[2]..region.max[2] {
-            for y in region.min[1]..region.max[1] {
-                let row = (z as usize * ny + y as usize) * nx;
-                let row = row + region.min[0] as usize..row + region.max[0] as usize;
-                found.extend_from_slice(&self.numbers[row]);
-            }
-        }
-        Ok(Voxels::F32(found).into())
-    }
-}
-
-fn go_on(_: usize, _: usize) -> ControlFlow<()> {
-    ControlFlow::Continue(())
-}
-
-fn open(source: &Arc<Numbers>, options: StreamOptions) -> Stream {
-    let source: Arc<dyn Source> = Arc::clone(source) as _;
-    let stream = Stream::open(source, Pick::default(), options, &mut go_on);
-    stream.expect("readable").expect("not ended")
-}
+use stratavox::volume::{Pick, Source, Volume};
+use streaming_shared::{Numbers, open};
 
 fn scene<'a>(
     volume: &'a Volume,

@@ -40,6 +40,13 @@ impl Apron {
             ..self
         }
     }
+
+    /// Whether cells that know of so much know enough for those that need `other`.
+    pub fn covers(self, other: Self) -> bool {
+        self.voxels >= other.voxels
+            && self.overshoot >= other.overshoot
+            && self.is_mixed >= other.is_mixed
+    }
 }
 
 /// The ranges of a volume's macro cells. Made empty; [`MacroCells::record`] fills them.

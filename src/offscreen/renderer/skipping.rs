@@ -234,7 +234,7 @@ fn corners_of(device: &mut Headless, volume: &Volume) -> Result<Option<Corners>,
 }
 
 /// What pictures of `scene` need not look at, and what cells must know for it.
-fn wanted(scene: &Scene) -> Option<(Skippable, Apron)> {
+pub(super) fn wanted(scene: &Scene) -> Option<(Skippable, Apron)> {
     let range = scene.volume.value_range;
     let wanted = match (scene.mix(), scene.beside) {
         (Mix::Channels, _) | (_, Beside::Colors([_, _, _])) if scene.settings.mode != Mode::Iso => {

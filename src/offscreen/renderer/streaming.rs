@@ -13,6 +13,7 @@ use crate::offscreen::Error;
 use crate::offscreen::stream::{Cache, Eye, Place, Stream};
 use crate::offscreen::submission::{self, Submission};
 use crate::offscreen::time_slices::Spent;
+use crate::resident::Apron;
 use crate::scene::Scene;
 use crate::technique::cost::{looks_of_picture, ms_of_looks};
 use crate::technique::{InPixel, Inputs, Mode, Part, Skippable, Technique, View};
@@ -82,29 +83,18 @@ impl<'v> Renderer<'v> {
 
     /// Brings in the brick that comes first, so that it is known how bricks lie on the device.
     pub(super) fn prepare_stream(&mut self, scene: &Scene) -> Result<(), Error> {
-        let skippable = self.skippable(scene);
         let Some(Streaming { stream, cache }) = &mut self.streaming else {
             return Ok(());
         };
         if cache.any().is_some() {
             return Ok(());
         }
-        let shown = shown(stream, scene, &skippable);
+        let (skippable, apron) = skippable(scene);
+        let way = (&skippable, apron);
+        let shown = shown(stream, scene, way);
         let first = shown.first().map_or(0, |shown| shown.brick);
         let voxels = stream.read(first)?;
-        let way = (&skippable, scene.settings.apron());
         cache.put(&mut self.device, stream, first, &voxels, way, &[])
-    }
-
-    fn skippable(&self, scene: &Scene) -> Skippable {
-        let range = scene.volume.value_range;
-        if scene.settings.preintegrated {
-            // Slabs reach farther than bricks know of.
-            return Skippable::Nothing;
-        }
-        scene
-            .settings
-            .skippable(scene.mix(), scene.transfer, range, None)
     }
 
     /// All that the picture shows of the stream, into the accumulation. Milliseconds on the device.
@@ -113,11 +103,12 @@ impl<'v> Renderer<'v> {
         scene: &Scene,
         in_pixel: InPixel,
     ) -> Result<Option<f64>, Error> {
-        let skippable = self.skippable(scene);
+        let (skippable, apron) = skippable(scene);
+        let way = (&skippable, apron);
         let mut streaming = self.streaming.take().expect("a stream is drawn");
         let [done, of] = self.passes_done;
         let span = self.slices.enter(done, of);
-        let outcome = self.gather_bricks(scene, in_pixel, &skippable, &mut streaming);
+        let outcome = self.gather_bricks(scene, in_pixel, way, &mut streaming);
         self.slices.leave(span);
         self.passes_done[0] += 1;
         self.streaming = Some(streaming);
@@ -128,12 +119,12 @@ impl<'v> Renderer<'v> {
         &mut self,
         scene: &Scene,
         in_pixel: InPixel,
-        skippable: &Skippable,
+        way: (&Skippable, Apron),
         streaming: &mut Streaming,
     ) -> Result<Option<f64>, Error> {
         let Streaming { stream, cache } = streaming;
         let stream: &Stream = stream;
-        let shown = shown(stream, scene, skippable);
+        let shown = shown(stream, scene, way);
         let grid = scene.volume.grid();
         let looks = looks_of_picture(&scene.view(&grid, in_pixel), 0, 1);
         let mut guess = Guess::new(self.device.gpu(), looks / shown.len().max(1) as f64);
@@ -191,7 +182,6 @@ impl<'v> Renderer<'v> {
                     tiles.push(Some(Tile::around(place.pixels, scene.extent_pixels)));
                     if !is_there {
                         let voxels = ahead.take(stream, brick)?;
-                        let way = (skippable, scene.settings.apron());
                         cache.put(&mut self.device, stream, brick, &voxels, way, &chunk)?;
                     }
                 }
@@ -204,7 +194,7 @@ impl<'v> Renderer<'v> {
                 let ends = [is_first, is_last];
                 let span = self.slices.enter_some(before..next, shown.len());
                 let expected_ms = guess.ms(chunk.len());
-                let what = (&mut *cache, skippable, expected_ms);
+                let what = (&mut *cache, way, expected_ms);
                 tiles.resize(chunk.len(), None);
                 let drawn = self.draw(scene, in_pixel, what, (&chunk, &tiles), ends);
                 self.slices.leave(span);
@@ -226,12 +216,11 @@ impl<'v> Renderer<'v> {
         &mut self,
         scene: &Scene,
         in_pixel: InPixel,
-        (cache, skippable, expected_ms): (&mut Cache, &Skippable, f64),
+        (cache, way, expected_ms): (&mut Cache, (&Skippable, Apron), f64),
         (chunk, tiles): (&[usize], &[Option<Tile>]),
         [is_first, is_last]: [bool; 2],
     ) -> Result<Spent, Error> {
-        let apron = scene.settings.apron();
-        cache.find_empty_space(&mut self.device, skippable, apron, chunk)?;
+        cache.find_empty_space(&mut self.device, way, chunk)?;
         let grid = scene.volume.grid();
         let view = scene.view(&grid, in_pixel);
         let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
@@ -240,7 +229,7 @@ impl<'v> Renderer<'v> {
             let there = cache.get(brick).expect("bricks of a chunk stay");
             let ends = [is_first && nth == 0, is_last && nth + 1 == chunk.len()];
             let mut recording = view.recording_of_brick(&there.volume, transfer, ends)?;
-            let skip = there.skip(skippable);
+            let skip = there.skip(way);
             recording.skip(skip);
             let inputs = Inputs {
                 ring: &self.ring,
@@ -371,12 +360,18 @@ impl Ahead {
     }
 }
 
+/// What a picture leaves out, and what is to be known of bricks for it. Their halos hold all that it may ask for: a voxel
+/// for the filter, and one for gradients or two for half a slab.
+fn skippable(scene: &Scene) -> (Skippable, Apron) {
+    let found = super::skipping::wanted(scene);
+    found.unwrap_or((Skippable::Nothing, scene.settings.apron()))
+}
+
 /// What a picture shows, from front to back.
-fn shown(stream: &Stream, scene: &Scene, skippable: &Skippable) -> Vec<Shown> {
+fn shown(stream: &Stream, scene: &Scene, (skippable, apron): (&Skippable, Apron)) -> Vec<Shown> {
     let grid = scene.volume.grid();
     let view: View = scene.view(&grid, InPixel::CENTER);
     let cells = stream.cells();
-    let apron = scene.settings.apron();
     let eye = Eye::new(&grid, scene.camera, scene.extent_pixels);
     let shown = |&brick: &usize| {
         let cell = &cells[brick];

@@ -32,13 +32,18 @@ pub struct Resident {
 }
 
 impl Resident {
-    /// What recordings are told of where not to look.
-    pub fn skip(&self, wanted: &Skippable) -> Skip<'_> {
-        match (wanted, &self.cells, &self.empty) {
-            (Skippable::Unseen(_), Some((_, cells)), Some(empty)) => Skip::Unseen(cells, empty),
-            (Skippable::Exceeded, Some((_, cells)), _) => Skip::Exceeded(cells),
+    /// What recordings are told of where not to look; nothing where the cells were made for a narrower filter.
+    pub fn skip(&self, (wanted, apron): (&Skippable, Apron)) -> Skip<'_> {
+        match (wanted, self.cells_for(apron), &self.empty) {
+            (Skippable::Unseen(_), Some(cells), Some(empty)) => Skip::Unseen(cells, empty),
+            (Skippable::Exceeded, Some(cells), _) => Skip::Exceeded(cells),
             _ => Skip::Nothing,
         }
+    }
+
+    fn cells_for(&self, apron: Apron) -> Option<&MacroCells> {
+        let cells = self.cells.as_ref().filter(|(of, _)| of.covers(apron));
+        cells.map(|(_, cells)| cells)
     }
 }
 
@@ -166,8 +171,7 @@ impl Cache {
     pub fn find_empty_space(
         &mut self,
         device: &mut Headless,
-        wanted: &Skippable,
-        apron: Apron,
+        (wanted, apron): (&Skippable, Apron),
         bricks: &[usize],
     ) -> Result<(), Error> {
         let Skippable::Unseen(seen) = wanted else {
@@ -184,17 +188,11 @@ impl Cache {
         }
         let mut made: Vec<(usize, EmptySpace, u64)> = Vec::new();
         for brick in bricks {
-            let Some(Resident {
-                cells: Some((of, cells)),
-                empty: None,
-                ..
-            }) = self.bricks.get(brick)
-            else {
+            let there = self.bricks.get(brick);
+            let there = there.filter(|there| there.empty.is_none());
+            let Some(cells) = there.and_then(|there| there.cells_for(apron)) else {
                 continue;
             };
-            if *of != apron {
-                continue;
-            }
             let newest = made.last().map(|(_, empty, _)| empty);
             let before = device.gpu().memory().used_bytes;
             let other = self.bricks.values().find_map(|there| there.empty.as_ref());
