@@ -9,7 +9,7 @@ use crate::gpu::{
 };
 use crate::technique::blend::clear_color;
 use crate::technique::slices_3d::half_angle::{HalfAngleSlices, Steps};
-use crate::technique::{self, InPixel, Recording, View};
+use crate::technique::{self, InPixel, Recording, Skip, View};
 use ash::vk;
 use std::ops::Range;
 
@@ -286,7 +286,10 @@ impl Renderer {
             view.check_depth_turns(words, functions, limit)?;
         }
         let mut slot = (frame * self.ring.slots() as usize / self.frames.len()) as u32;
-        let skip = self.function.skip(&self.volume);
+        let skip = match self.volume.knows_enough_for(&view) {
+            true => self.function.skip(&self.volume),
+            false => Skip::Nothing,
+        };
         let (class, center) = (&self.class, grid.center());
         let is_tested = self.pass.slicer.is_some() && !class.gathers();
         let mut write = |mut recording: Recording, is_tested: bool| -> Result<Part, Error> {

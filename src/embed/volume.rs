@@ -7,7 +7,7 @@ use super::upload::Upload;
 use crate::gpu::Gpu;
 use crate::resident::{Apron, Corners, GpuVolume, MacroCells, Texels, TextureLayout, VolumePlan};
 use crate::shaders::CELL_VOXELS;
-use crate::technique::{FilterBy, GradientSource, Keep, Mix, Settings, Technique};
+use crate::technique::{FilterBy, GradientSource, Keep, Mix, Settings, Technique, View};
 use crate::volume::{self, Coefficients, Grid, Rescale, VoxelType};
 use std::sync::Arc;
 
@@ -70,7 +70,7 @@ impl Volume {
             updates: Arc::default(),
         };
         made.keep_corners(gpu, voxels, settings)?;
-        if settings.technique == Technique::Raycast && settings.skip && !settings.preintegrated {
+        if settings.technique == Technique::Raycast && settings.skip {
             made.know_empty_space(gpu, voxels, settings)?;
         }
         Ok(made)
@@ -111,7 +111,7 @@ impl Volume {
         if is_one && wants_corners(gpu, stored, dims, settings) {
             all.device_bytes += Corners::bytes_of(stored, dims).unwrap_or_default();
         }
-        if is_raycast && settings.skip && !settings.preintegrated {
+        if is_raycast && settings.skip {
             let side = u64::from(CELL_VOXELS);
             let cells = dims
                 .map(|n| u64::from(n).div_ceil(side))
@@ -148,7 +148,7 @@ impl Volume {
         settings: &Settings,
     ) -> Result<(), Error> {
         let copy = &self.copies[0];
-        let apron = settings.apron();
+        let apron = cells_apron(settings);
         let cells = match gpu.is_cpu() && copy.spline().is_none() {
             true => MacroCells::of_voxels(gpu, copy, apron, voxels)?,
             false => MacroCells::new(gpu, copy, apron)?,
@@ -186,6 +186,12 @@ impl Volume {
         self.cells.as_ref().map(|(cells, _)| cells)
     }
 
+    /// Whether the cells know of all voxels that samples of `view` touch.
+    pub(super) fn knows_enough_for(&self, view: &View) -> bool {
+        let cells = self.cells.as_ref().zip(view.apron());
+        cells.is_some_and(|((_, known), wanted)| known.covers(wanted))
+    }
+
     /// As on devices that do not compute on the CPU, before the upload.
     #[cfg(test)]
     pub(super) fn find_cells_on_device(&mut self, gpu: &Arc<Gpu>) -> Result<(), Error> {
@@ -204,12 +210,22 @@ impl Volume {
             });
         }
         match &self.cells {
-            Some((_, apron)) if *apron != settings.apron() => Err(Error::OtherClass {
+            Some((_, apron)) if *apron != cells_apron(settings) => Err(Error::OtherClass {
                 made: "a volume for another filter".into(),
                 wanted: what(settings),
             }),
             _ => Ok(()),
         }
+    }
+}
+
+/// What cells are to know of. Slabs reach farther than the filter, and how far hangs on the camera too: where a voxel is not
+/// enough, nothing is left out of the picture.
+fn cells_apron(settings: &Settings) -> Apron {
+    let apron = settings.apron();
+    Apron {
+        voxels: apron.voxels + u32::from(settings.preintegrated),
+        ..apron
     }
 }
 
