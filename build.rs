@@ -2,8 +2,8 @@
 //!
 //! Every file directly under `shaders/` is one entry point called `main`. A line `#import name` stands
 //! for `shaders/lib/name.wgsl`, each file once. In a name, `{slot}` is replaced by each word that
-//! [`variants::ENTRIES`] gives for that slot, `{slot=word}` by that word where it gives none: every combination of words becomes a variant of its own, because
-//! naga writes no specialization constants.
+//! [`variants::ENTRIES`] gives for that slot, `{slot=word}` by that word where it gives none: every combination of
+//! words becomes a variant of its own, because naga writes no specialization constants.
 //!
 //! Written to `OUT_DIR`: `shaders.spv` (all words, one module after the other), `shaders.rs` (the
 //! table of modules with their bindings, a `#[repr(C)]` struct for each uniform, and the constants) and

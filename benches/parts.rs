@@ -1,7 +1,7 @@
 //! How long the pieces last in which a host may submit uploads, updates, what a function has empty, and frames.
 //!
-//! One piece a submission, from there until the device has done it: no submission is shorter than its longest piece, and
-//! `Pace` puts as many into one as take 100 ms. On volumes of noise in a ball, 16 bits a voxel.
+//! One piece a submission, from there until the device has done it: no submission is shorter than its longest piece,
+//! and `Pace` puts as many into one as take 100 ms. On volumes of noise in a ball, 16 bits a voxel.
 
 mod median;
 

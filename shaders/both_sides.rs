@@ -1,10 +1,10 @@
 //! Asks both sides of `&&` and `||` where the second costs nothing.
 //!
 //! naga makes a branch of each, so that the second side is asked only where the first leaves it open. Most second sides
-//! are a comparison: on devices that run both arms under a mask such a branch costs more than it spares. And SwiftShader
-//! takes, for each loop, as many steps as there are shortest ways through it (`Function::ExistsPath`, which marks a
-//! block when it leaves it and not when it comes to it): twice as many for each branch with arms of the same length
-//! (`docs/conformance.md`).
+//! are a comparison: on devices that run both arms under a mask such a branch costs more than it spares. And
+//! SwiftShader takes, for each loop, as many steps as there are shortest ways through it (`Function::ExistsPath`, which
+//! marks a block when it leaves it and not when it comes to it): twice as many for each branch with arms of the same
+//! length (`docs/conformance.md`).
 //!
 //! ```text
 //! var r; if a { r = b } else { r = false }    ->    r = select(false, b, a)

@@ -4,17 +4,17 @@
 //     D0 = 0 where the transfer function shows any value of the cell, else REACH
 //     D(x) = min over |k| < REACH of REACH and max(|k|, D before(x + k))        along x, then y, then z
 //
-// Farther than REACH counts as REACH: where nothing is for long, another leap costs a ray less than a longer search costs
-// the map, which is made anew for each transfer function.
+// Farther than REACH counts as REACH: where nothing is for long, another leap costs a ray less than a longer search
+// costs the map, which is made anew for each transfer function.
 //
 // Of several volumes in one place D0 is 0 where any of their functions shows one of their values.
 //
-// For steps that adapt (looks_adaptive.wgsl) a fifth pass writes ROOM_ALIKE for 0 where the function hardly changes over
-// the values of the cell, by a table of which values are alike in place of that of those that are seen.
+// For steps that adapt (looks_adaptive.wgsl) a fifth pass writes ROOM_ALIKE for 0 where the function hardly changes
+// over the values of the cell, by a table of which values are alike in place of that of those that are seen.
 //
 // One thread a word, which has ROOMS_A_WORD cells along x: of D0 a bit each, set where matter is, so that D along x is
-// counted in bits; of the others a byte each. Outside the grid is nothing. Twin: none, but pictures with it and without are
-// the same.
+// counted in bits; of the others a byte each. Outside the grid is nothing. Twin: none, but pictures with it and without
+// are the same.
 
 #import cell_grid
 #import room_word
@@ -32,8 +32,8 @@ struct Seen {
     scale: f32,
     count: u32,
     contour_count: u32,
-    // Or the first that is not alike. Behind these, two words a contour: its value, and how far away a range shows it, as a
-    // multiple of how wide that is.
+    // Or the first that is not alike. Behind these, two words a contour: its value, and how far away a range shows it,
+    // as a multiple of how wide that is.
     next: array<u32>,
 }
 
@@ -42,7 +42,8 @@ struct Rooms {
 }
 
 struct Pass {
-    // 0: what is seen. 1, 2, 3: along x, y, z. 4: what is seen of another volume too, after 0. 5: what is alike, after 3.
+    // 0: what is seen. 1, 2, 3: along x, y, z. 4: what is seen of another volume too, after 0. 5: what is alike, after
+    // 3.
     number: u32,
 }
 

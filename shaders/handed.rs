@@ -39,8 +39,8 @@ const STACK: [&str; 2] = ["brick_origin", "brick_dims"];
 
 const ROW_BYTES: u32 = 16;
 
-/// Makes a fragment entry point take what it asks of the handed parameters from its inputs, and checks that a vertex entry
-/// point hands over these rows in this order. `of` are `planes` or a `stack`.
+/// Makes a fragment entry point take what it asks of the handed parameters from its inputs, and checks that a vertex
+/// entry point hands over these rows in this order. `of` are `planes` or a `stack`.
 ///
 /// # Panics
 /// Where it does not.
@@ -182,7 +182,8 @@ fn append(function: &mut Function, expression: Expression) -> Handle<Expression>
     function.expressions.append(expression, Span::UNDEFINED)
 }
 
-/// The outputs after the slice have the names of what they begin with; the rows of a matrix after its first have others.
+/// The outputs after the slice have the names of what they begin with; the rows of a matrix after its first have
+/// others.
 fn check(module: &Module, names: &[&str]) {
     let (_, _, members) = frame_of(module);
     let result = module.entry_points[0].function.result.as_ref();

@@ -2,13 +2,13 @@
 //!
 //! lavapipe of Mesa 22 puts the values of a uniform buffer that branches hang on into the program before each dispatch
 //! and each draw (`lvp_inline_uniforms.c`), compiles that, and keeps what it compiled as long as the device lives. It
-//! means to stop where that makes the program less than half as long, but compares numbers that wrap around, and goes on
-//! for ever: milliseconds for each picture, a tenth of a second and a megabyte for each brick of a mixture. Later
+//! means to stop where that makes the program less than half as long, but compares numbers that wrap around, and goes
+//! on for ever: milliseconds for each picture, a tenth of a second and a megabyte for each brick of a mixture. Later
 //! versions do that to push constants alone.
 //!
-//! A branch counts as one of those as long as nothing but uniforms goes into its condition. So each is tied to something
-//! that is always so, which no driver can know of: that the invocation is not one of those that there never are. Each
-//! branch has a number k of its own, or what is asked inside of another would be known from that one.
+//! A branch counts as one of those as long as nothing but uniforms goes into its condition. So each is tied to
+//! something that is always so, which no driver can know of: that the invocation is not one of those that there never
+//! are. Each branch has a number k of its own, or what is asked inside of another would be known from that one.
 //!
 //! ```text
 //! here = the number of the invocation, or the bits of the place of the fragment

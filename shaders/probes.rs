@@ -1,4 +1,5 @@
-//! What shaders of probes have beyond the core: subgroups, push constants, and numbers that are none. Part of `build.rs`.
+//! What shaders of probes have beyond the core: subgroups, push constants, and numbers that are none. Part of
+//! `build.rs`.
 
 use naga::valid::Capabilities;
 use spirv::Capability;

@@ -6,8 +6,8 @@
 //
 // so where all of it lies on one side of an axis-aligned plane follows from linear inequalities in s, and where it may
 // be in a box is an interval. From its ends the pencil goes from cube to cube of empty macro cells, as each ray does in
-// empty_space.wgsl; what is left is handed on. A tile of which nothing is left gets what a ray finds in no volume, and is not
-// drawn. What is left out would have added nothing: the picture is the same to the bit (`sampling.md` 5).
+// empty_space.wgsl; what is left is handed on. A tile of which nothing is left gets what a ray finds in no volume, and
+// is not drawn. What is left out would have added nothing: the picture is the same to the bit (`sampling.md` 5).
 
 #import pencil
 #import known_{known}

@@ -1,9 +1,9 @@
 //! Reads the parameters of a picture once, where an entry point begins.
 //!
 //! llvmpipe reads a value of a uniform buffer by one instruction where all invocations are sure to be at work, and by
-//! thirty, one word for each of them, after the first branch. In compute passes what is asked for by name is copied to a
-//! variable of the invocation; what is found by a number that is known only then stays where it is. Fragments gain nothing
-//! by it, since there the invocations are never sure to be at work: `handed.rs` is for them.
+//! thirty, one word for each of them, after the first branch. In compute passes what is asked for by name is copied to
+//! a variable of the invocation; what is found by a number that is known only then stays where it is. Fragments gain
+//! nothing by it, since there the invocations are never sure to be at work: `handed.rs` is for them.
 
 use naga::{
     AddressSpace, Arena, Block, EntryPoint, Expression, Function, GlobalVariable, Handle,
@@ -32,8 +32,8 @@ pub fn read_parameters_once(module: &mut Module) {
     }
 }
 
-/// A variable of the invocation that is asked in the place of a uniform buffer, and for which of its members: those that
-/// are `wanted` and asked for by name. Nothing is in it yet.
+/// A variable of the invocation that is asked in the place of a uniform buffer, and for which of its members: those
+/// that are `wanted` and asked for by name. Nothing is in it yet.
 pub fn asked_of_a_copy(
     module: &mut Module,
     uniform: Handle<GlobalVariable>,

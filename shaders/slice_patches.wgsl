@@ -7,11 +7,11 @@
 //
 // are the corners of all rays of the square: on a view-aligned plane every sample lies in the quadrangle of the four,
 // because x is affine in the pixel; on a slice of a stack too, because x is projective in the pixel and its
-// denominator, the slope, has one sign. Between two planes each ray is a line. So all samples of a patch lie in the hull
-// of eight points, and in the box around them. A patch is left out where no macro cell may have matter that meets this
-// box and comes near the planes. The box is widened by a pixel, for places in it that rays go through, and by what f32
-// loses. Samples that are left out would have added nothing at all, and which patch a pixel belongs to is a matter of
-// whole numbers: the picture is the same to the bit (`sampling.md` 5).
+// denominator, the slope, has one sign. Between two planes each ray is a line. So all samples of a patch lie in the
+// hull of eight points, and in the box around them. A patch is left out where no macro cell may have matter that meets
+// this box and comes near the planes. The box is widened by a pixel, for places in it that rays go through, and by what
+// f32 loses. Samples that are left out would have added nothing at all, and which patch a pixel belongs to is a matter
+// of whole numbers: the picture is the same to the bit (`sampling.md` 5).
 //
 // Twin: none, but pictures with it and without are the same.
 
@@ -19,8 +19,8 @@
 #import patch_{planes}
 #import patch_entry
 
-// More cells than these are not looked at: a patch so large is drawn. With BATCH_LAYERS times as many, and their rows, loops
-// take fewer turns than llvmpipe grants.
+// More cells than these are not looked at: a patch so large is drawn. With BATCH_LAYERS times as many, and their rows,
+// loops take fewer turns than llvmpipe grants.
 const MAX_CELLS: i32 = 1024;
 
 // One draw without indices, as Vulkan reads it.

@@ -1,7 +1,7 @@
-// The cover of slices where only some patches of them are drawn (slice_patches.wgsl): squares of the picture, two triangles
-// a slice or a point. Of v vertices a square vertex i shows slice i / v mod LAYER_SLICES of the layer that entry
-// i / (v LAYER_SLICES) of all batches names. An instance for each would fill few lanes of graphics cards; on processors it
-// takes as long. Each fragment belongs to one square, and it alone decides whether it has a sample.
+// The cover of slices where only some patches of them are drawn (slice_patches.wgsl): squares of the picture, two
+// triangles a slice or a point. Of v vertices a square vertex i shows slice i / v mod LAYER_SLICES of the layer that
+// entry i / (v LAYER_SLICES) of all batches names. An instance for each would fill few lanes of graphics cards; on
+// processors it takes as long. Each fragment belongs to one square, and it alone decides whether it has a sample.
 
 #import patch_entry
 #import vertex_{parameters}

@@ -48,7 +48,8 @@ const STACK: Slot = ("lattice", &["stack"]);
 /// Slices that a host's depth buffer is tested against hide by themselves what lies behind it, others read it.
 const TESTED: Slot = ("sight", &["open"]);
 const SIGHT: Slot = ("sight", &["open", "host"]);
-/// How central differences are made. The words are left out of names: corners have their own way, and it is theirs alone.
+/// How central differences are made. The words are left out of names: corners have their own way, and it is theirs
+/// alone.
 const TAPS: Slot = ("slope", &["taps"]);
 const SHARED: Slot = ("slope", &["corners"]);
 /// Words that stand in no name.
@@ -389,8 +390,8 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ("opaque_patches", &[]),
 ];
 
-/// Formats whose storage images every device has (Vulkan specification, required format support), and that shaders may name
-/// without a feature.
+/// Formats whose storage images every device has (Vulkan specification, required format support), and that shaders may
+/// name without a feature.
 const STORAGE_FORMATS: &[&str] = &[
     "rgba8unorm",
     "rgba8snorm",

@@ -11,8 +11,9 @@
 //!                                                 along f
 //! ```
 //!
-//! A host's matrices give the picture's rectangle by its sides instead ([`Projection::Frustum`], [`Projection::Parallel`]):
-//! pixels need not be square then, and the eye need not look at the middle (`camera/matrices.rs`).
+//! A host's matrices give the picture's rectangle by its sides instead ([`Projection::Frustum`],
+//! [`Projection::Parallel`]): pixels need not be square then, and the eye need not look at the middle
+//! (`camera/matrices.rs`).
 //!
 //! The words of the command line for it stand in `camera/orbit.rs`.
 

@@ -1,5 +1,5 @@
-//! Steps that adapt: no channel is farther from the picture of all samples than was asked for, and where values look alike
-//! there are fewer samples.
+//! Steps that adapt: no channel is farther from the picture of all samples than was asked for, and where values look
+//! alike there are fewer samples.
 
 mod shared;
 mod skipping_shared;

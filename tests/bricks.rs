@@ -105,7 +105,8 @@ fn assert_same_picture(volume: &Volume, camera: &Camera, settings: Vec<Settings>
     let mut whole = Renderer::new(device(), volume).unwrap();
     let mut bricked = Renderer::new(device_with(small()), volume).unwrap();
     for settings in settings {
-        // What rays leave out hangs on the bricks: tests/skipping.rs has pictures of that. Here all samples are counted.
+        // What rays leave out hangs on the bricks: tests/skipping.rs has pictures of that. Here all samples are
+        // counted.
         let settings = Settings {
             skip: false,
             ..settings

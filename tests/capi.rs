@@ -1,7 +1,7 @@
 //! The interface for C: its header, its libraries, a host in C, and what careless hosts do.
 //!
-//! A compiler and the headers of Vulkan are wanted for most of it; where they are not installed, a test says that it was
-//! skipped. The libraries are built once, by the cargo that runs this, beside everything else in the target folder.
+//! A compiler and the headers of Vulkan are wanted for most of it; where they are not installed, a test says that it
+//! was skipped. The libraries are built once, by the cargo that runs this, beside everything else in the target folder.
 
 mod capi_layout;
 mod missing_barrier;

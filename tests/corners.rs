@@ -247,8 +247,8 @@ fn a_renderer_goes_from_what_reads_corners_alone_to_all_else_and_back() {
     }
 }
 
-/// Rays and view-aligned slices read corners in both pictures; where there are none, `fetch` has the weights of conformance pictures, which are
-/// the twin's.
+/// Rays and view-aligned slices read corners in both pictures; where there are none, `fetch` has the weights of
+/// conformance pictures, which are the twin's.
 #[test]
 fn fetches_are_those_of_the_twin_in_every_technique() {
     let grid = Grid {
@@ -283,8 +283,8 @@ fn the_sampler_is_there_for_who_asks_for_it() {
         ..Caps::UNLIMITED
     };
     let transfer = ramps();
-    // Sub-texel positions of 4 bits at least (`subTexelPrecisionBits`): half a sixteenth along each axis of the steepest
-    // step that there is.
+    // Sub-texel positions of 4 bits at least (`subTexelPrecisionBits`): half a sixteenth along each axis of the
+    // steepest step that there is.
     let steepest = 0.2 * 0.61 + 0.15 * 0.53 + 0.15 * 0.57;
     let value = |picture: &Picture| {
         let layer = picture

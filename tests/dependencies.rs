@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 use std::env;
 use std::process::Command;
 
-/// By name: versions are those of the lock file. Of these `bytemuck_derive`, `thiserror-impl`, `zerocopy-derive` and what
-/// they need run in the compiler alone, `crunchy` is for one target of graphics cards, `windows-link` for another system.
+/// By name: versions are those of the lock file. Of these `bytemuck_derive`, `thiserror-impl`, `zerocopy-derive` and
+/// what they need run in the compiler alone, `crunchy` is for one target of graphics cards, `windows-link` for another
+/// system.
 const EMBEDDER: [&str; 21] = [
     "ash",
     "bytemuck",

@@ -18,8 +18,8 @@ use stratavox::technique::{ClipPlane, Lattice, Level, Mode, Settings, Technique}
 
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
-/// What the twin sees through one pixel when the ray begins at the near plane and ends where the host's depth lies, both
-/// `moved` a little.
+/// What the twin sees through one pixel when the ray begins at the near plane and ends where the host's depth lies,
+/// both `moved` a little.
 fn twin(
     stage: &Stage,
     camera: &Camera,
@@ -100,11 +100,12 @@ fn stages() -> Vec<Stage> {
     [rays].into_iter().chain(sliced).collect()
 }
 
-/// As [`embed_shared::assert_close`] has it for f32 targets, of 60 slices; and where a ray ends, the sample there may come
-/// or go, or be cut a little elsewhere: each of them is right. The far end moves by 1e-5 of its length (the depth buffer's
-/// rounding near the far plane, and the twin's own arithmetic). The near end moves by that, and for slices by what a
-/// rasterizer may be off where it clips them at the near plane: corners lie on a grid of 2^-subPixelPrecisionBits of a pixel,
-/// and a slice that is seen no flatter than at 45 degrees to two axes goes back sqrt(2) as far as it goes aside.
+/// As [`embed_shared::assert_close`] has it for f32 targets, of 60 slices; and where a ray ends, the sample there may
+/// come or go, or be cut a little elsewhere: each of them is right. The far end moves by 1e-5 of its length (the depth
+/// buffer's rounding near the far plane, and the twin's own arithmetic). The near end moves by that, and for slices by
+/// what a rasterizer may be off where it clips them at the near plane: corners lie on a grid of
+/// 2^-subPixelPrecisionBits of a pixel, and a slice that is seen no flatter than at 45 degrees to two axes goes back
+/// sqrt(2) as far as it goes aside.
 const ALLOWED: f64 = 1e-4;
 const END_MOVED: f64 = 1e-5;
 

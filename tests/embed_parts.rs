@@ -15,7 +15,8 @@ const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 /// Three blocks across, two down, the last ones smaller.
 const EXTENT: [u32; 2] = [150, 90];
 
-/// Rays that composite and that project, slices into the target and into an image of ours, slices that eye and light see in turn.
+/// Rays that composite and that project, slices into the target and into an image of ours, slices that eye and light
+/// see in turn.
 fn ways() -> Vec<Settings> {
     let ways = [
         (Technique::Raycast, Mode::Composite),

@@ -1,5 +1,5 @@
-//! Uploads, updates and what a function finds empty, in pieces: to the bit what they are at once, and given up between two of
-//! them, or refused by the queue, they leave what can be drawn rightly later. And the order of updates.
+//! Uploads, updates and what a function finds empty, in pieces: to the bit what they are at once, and given up between
+//! two of them, or refused by the queue, they leave what can be drawn rightly later. And the order of updates.
 
 mod embed_shared;
 mod shared;

@@ -1,5 +1,5 @@
-//! Hosts leave out what cannot be seen of pre-integrated slabs, whose ends reach farther than the filter: the picture is the
-//! one of `offscreen::Renderer` that leaves out nothing.
+//! Hosts leave out what cannot be seen of pre-integrated slabs, whose ends reach farther than the filter: the picture
+//! is the one of `offscreen::Renderer` that leaves out nothing.
 
 mod embed_shared;
 mod shared;

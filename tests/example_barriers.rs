@@ -1,5 +1,6 @@
 //! Each barrier that is recorded in the examples of hosts, theirs and ours, is needed: without it the validation layer
-//! speaks, but for those that it cannot know of. Looked at only under `STRATAVOX_VALIDATION=sync`, and skipped elsewhere.
+//! speaks, but for those that it cannot know of. Looked at only under `STRATAVOX_VALIDATION=sync`, and skipped
+//! elsewhere.
 #![cfg(all(feature = "png", target_os = "linux"))]
 
 mod missing_barrier;

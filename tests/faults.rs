@@ -47,8 +47,8 @@ struct Swept {
     faults: u32,
 }
 
-/// Makes each call of `functions` that `draw` makes fail in turn. `spares` is true where some of what is made only saves
-/// time: without memory for it the picture is drawn all the same.
+/// Makes each call of `functions` that `draw` makes fail in turn. `spares` is true where some of what is made only
+/// saves time: without memory for it the picture is drawn all the same.
 fn sweep(tape: &Tape, functions: &[&'static str], spares: bool, draw: impl Fn() -> Drawn) -> Swept {
     tape.rewind(None);
     let wanted = draw().expect("nothing fails yet");

@@ -103,8 +103,8 @@ fn loops() -> u32 {
 /// What is lost in each loop is missed in each quarter of the loops; a map with holes becomes larger once, at a time of
 /// its own. So the quarter in which our heap grew most is left out, and the others together grow by no more than the
 /// slack: 24 bytes a loop would be 1296 in three quarters. As many files are open as before. The process as a whole, in
-/// which the driver's threads make heaps of their own when they first meet, grows by whole MiB in some quarter or other:
-/// in the two in which it grew least, by less than 1 MiB together.
+/// which the driver's threads make heaps of their own when they first meet, grows by whole MiB in some quarter or
+/// other: in the two in which it grew least, by less than 1 MiB together.
 #[track_caller]
 fn assert_no_growth(slack_bytes: i64, mut draw: impl FnMut()) {
     (0..25).for_each(|_| draw());

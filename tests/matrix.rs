@@ -123,8 +123,8 @@ fn is_drawn(renderer: &mut Renderer, [scene, of_twin]: [Scene; 2], feature: &Fea
     true
 }
 
-/// Of 418 x 4 rays through places like any other, with some 30 samples each, a few come within rounding (1e-6) of the face
-/// between two voxels along one of three axes: 0.3 in the mean, more than three in one picture of 4000.
+/// Of 418 x 4 rays through places like any other, with some 30 samples each, a few come within rounding (1e-6) of the
+/// face between two voxels along one of three axes: 0.3 in the mean, more than three in one picture of 4000.
 fn forgive_samples_on_faces(what: &str, single: &Picture, found: &mut Picture) {
     let pairs = found.pixels.iter_mut().zip(&single.pixels);
     let jumps = pairs.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| (a - b).abs() > 1e-5));
@@ -135,9 +135,9 @@ fn forgive_samples_on_faces(what: &str, single: &Picture, found: &mut Picture) {
     }
 }
 
-/// The cosine of light on a kept gradient is off by 2.4e-3 at most (`tests/light.rs`), for lamps of colours 1 and 0.6 at
-/// most of which half is diffuse by 2e-3. Weights of a sampler, which move a surface, are none of its business: where
-/// they make matter denser by more than 1e-3 a pixel does not count.
+/// The cosine of light on a kept gradient is off by 2.4e-3 at most (`tests/light.rs`), for lamps of colours 1 and 0.6
+/// at most of which half is diffuse by 2e-3. Weights of a sampler, which move a surface, are none of its business:
+/// where they make matter denser by more than 1e-3 a pixel does not count.
 fn assert_lit_alike(what: &str, wanted: &Picture, found: &Picture) {
     let mut worst = Worst::new(what);
     let pairs = wanted.pixels.iter().zip(&found.pixels);

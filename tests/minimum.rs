@@ -1,5 +1,5 @@
-//! Under the least that Vulkan allows the same pictures are drawn, by all techniques and in all modes; what cannot be is
-//! refused by the name of what lacks.
+//! Under the least that Vulkan allows the same pictures are drawn, by all techniques and in all modes; what cannot be
+//! is refused by the name of what lacks.
 
 mod shared;
 
@@ -137,8 +137,8 @@ fn what_is_beside_a_volume_is_drawn_the_same_or_its_buffers_are_counted() {
     assert_eq!(ways, BTreeMap::from([(SAME, 5), (FEWER_BUFFERS, 2)]));
 }
 
-/// Slices composite in batches of 16-bit floats: each of n blends rounds a premultiplied number below 1 to 11 bits, up or
-/// down as the driver likes, and what lies behind it is only made fainter.
+/// Slices composite in batches of 16-bit floats: each of n blends rounds a premultiplied number below 1 to 11 bits, up
+/// or down as the driver likes, and what lies behind it is only made fainter.
 #[test]
 fn slices_composite_or_say_what_lacks_where_floats_are_not_blended() {
     let cells = (&["one volume"][..], &MODES.map(|(mode, _)| mode)[..]);

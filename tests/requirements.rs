@@ -205,8 +205,8 @@ mod spirv {
     pub const UNIFORM_CONSTANT: u32 = 0;
     pub const SHADER: u32 = 1;
     pub const IMAGE_QUERY: u32 = 50;
-    /// Rgba32f, Rgba16f, R32f, Rgba8, Rgba8Snorm, Rgba32i, Rgba16i, Rgba8i, R32i, Rgba32ui, Rgba16ui, Rgba8ui, R32ui: those
-    /// whose storage images need no feature.
+    /// Rgba32f, Rgba16f, R32f, Rgba8, Rgba8Snorm, Rgba32i, Rgba16i, Rgba8i, R32i, Rgba32ui, Rgba16ui, Rgba8ui, R32ui:
+    /// those whose storage images need no feature.
     pub const FORMATS: [u32; 13] = [1, 2, 3, 4, 5, 21, 22, 23, 24, 30, 31, 32, 33];
 }
 

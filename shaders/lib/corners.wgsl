@@ -32,8 +32,8 @@ fn in_face(face: Face, weight: vec2<f32>) -> f32 {
     return lerp(lerp(face.low.x, face.low.y, weight.x), lerp(face.high.x, face.high.y, weight.x), weight.y);
 }
 
-// Texels lie in cubes of 4 x 4 x 4, z fastest inside of one, then x, and x fastest from one to the next: how many from one
-// row of cubes to the next along y, and along z.
+// Texels lie in cubes of 4 x 4 x 4, z fastest inside of one, then x, and x fastest from one to the next: how many from
+// one row of cubes to the next along y, and along z.
 struct GridOfTexels {
     row: u32,
     layer: u32,
@@ -45,7 +45,8 @@ fn grid_of_texels() -> GridOfTexels {
     return GridOfTexels(row, row * ((in_row_of_texels(last.y).x + 4u) >> 2u));
 }
 
-// A place along an axis: how far it lies in its texel, what it adds to where that is, and what the next voxel along y adds.
+// A place along an axis: how far it lies in its texel, what it adds to where that is, and what the next voxel along y
+// adds.
 struct Along {
     inside: u32,
     first: u32,

@@ -1,10 +1,11 @@
-// The tile that a workgroup draws (shaders/ray_tiles.wgsl), and which of its pixels an invocation has. Drivers on CPUs put
-// eight invocations that follow each other along x to work side by side: here they have a block of 4 x 2 pixels, whose
-// rays are nearer to one another than those of a row of eight.
+// The tile that a workgroup draws (shaders/ray_tiles.wgsl), and which of its pixels an invocation has. Drivers on CPUs
+// put eight invocations that follow each other along x to work side by side: here they have a block of 4 x 2 pixels,
+// whose rays are nearer to one another than those of a row of eight.
 
 #import ray_tile
 
-// The tile: across, down; and the part of its rays that counts, in world lengths: samples before and behind it show nothing.
+// The tile: across, down; and the part of its rays that counts, in world lengths: samples before and behind it show
+// nothing.
 @group(0) @binding(43) var ray_tiles: texture_2d<f32>;
 
 struct RayTile {

@@ -4,8 +4,8 @@
 //
 // Where the nearest cell with matter is `room` cells away, nothing is seen until the ray leaves the cube of cells that
 // are nearer. What is left out would have added nothing at all, and what comes next is a sample of the lattice: the
-// picture is the same to the bit (`sampling.md` 5). The apron of the cells has half a voxel to spare, more than f32 loses
-// on the way.
+// picture is the same to the bit (`sampling.md` 5). The apron of the cells has half a voxel to spare, more than f32
+// loses on the way.
 
 #import ray
 

@@ -8,9 +8,9 @@
 //
 //     g_k = (f(p + e_k) - f(p - e_k)) / 2
 //
-// or weights of the voxels around, `gradient_taps.wgsl`, or what was kept of either at the voxels. Taps outside the grid are those of its edge, a tap without
-// data makes it zero (`sampling.md` 2). Across the slices of a stack the taps lie in the slices beside.
-// Twin: src/technique/gradient.rs.
+// or weights of the voxels around, `gradient_taps.wgsl`, or what was kept of either at the voxels. Taps outside the
+// grid are those of its edge, a tap without data makes it zero (`sampling.md` 2). Across the slices of a stack the taps
+// lie in the slices beside. Twin: src/technique/gradient.rs.
 
 #import gradient_central
 #import gradient_taps

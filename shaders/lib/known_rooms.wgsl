@@ -7,7 +7,8 @@
 const LEAST_VOXELS: f32 = 2.0;
 
 fn known_part(pencil: Pencil, within: vec2<f32>) -> vec2<f32> {
-    // Cut faces are seen in empty space too, and surfaces that a ray meets between two bricks belong to the farther one.
+    // Cut faces are seen in empty space too, and surfaces that a ray meets between two bricks belong to the farther
+    // one.
     let is_known = frame.cells.x != 0u && frame.cut_faces == 0u && (frame.level_count == 0u || frame.is_only_brick != 0u);
     if !is_known || !(within.x < within.y) {
         return within;
@@ -39,8 +40,8 @@ fn known_part(pencil: Pencil, within: vec2<f32>) -> vec2<f32> {
     return left;
 }
 
-// Where the pencil lies in the cube of empty cells around its middle at s; nowhere where there is none. Cells end at the
-// grid, and so does what is not empty.
+// Where the pencil lies in the cube of empty cells around its middle at s; nowhere where there is none. Cells end at
+// the grid, and so does what is not empty.
 fn empty_around(pencil: Pencil, s: f32) -> vec2<f32> {
     let last = vec3<i32>(frame.cells) - 1;
     let size = f32(CELL_VOXELS);

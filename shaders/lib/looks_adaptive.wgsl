@@ -1,10 +1,11 @@
-// One sample for all of a run in a macro cell whose values look alike (shaders/distance_map.wgsl), with the opacity of all:
+// One sample for all of a run in a macro cell whose values look alike (shaders/distance_map.wgsl), with the opacity of
+// all:
 //
 //     1 - (1 - a)^m = 1 - exp(-sigma m h)
 //
-// It is that in the middle of the run, a sample of the lattice. Runs of four cells at once: as in looks_alone.wgsl no way to
-// memory hangs on the one before. What is empty is a run too, of which the one sample adds nothing.
-// Twin: src/technique/march.rs (`march_in_runs`).
+// It is that in the middle of the run, a sample of the lattice. Runs of four cells at once: as in looks_alone.wgsl no
+// way to memory hangs on the one before. What is empty is a run too, of which the one sample adds nothing. Twin:
+// src/technique/march.rs (`march_in_runs`).
 
 // From k up to `end` (excluded).
 struct Run {

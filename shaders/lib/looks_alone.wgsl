@@ -1,6 +1,6 @@
 // Four whole samples at once: where each lies and what is there hangs on none before it, so that their ways to memory
-// overlap. Written out, because compilers do not unroll so much. Samples that are cut short, and that of a cut face, come
-// before and behind in loops of their own: drivers on CPUs go through the body of a loop at least once.
+// overlap. Written out, because compilers do not unroll so much. Samples that are cut short, and that of a cut face,
+// come before and behind in loops of their own: drivers on CPUs go through the body of a loop at least once.
 
 const LOOKS_AT_ONCE: i32 = 4;
 

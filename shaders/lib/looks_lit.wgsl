@@ -1,6 +1,6 @@
-// Light is dear, and only what is seen has any: each ray goes on to its next sample that shows something, in a loop of its
-// own, and then those of all rays that are walked side by side are lit together. What lies between adds nothing and is
-// counted.
+// Light is dear, and only what is seen has any: each ray goes on to its next sample that shows something, in a loop of
+// its own, and then those of all rays that are walked side by side are lit together. What lies between adds nothing and
+// is counted.
 
 fn gathered(before: Accumulator, way: Way, start: i32) -> Accumulator {
     var so_far = before;
@@ -33,7 +33,8 @@ struct Met {
     shows: bool,
 }
 
-// Sample k, which shows nothing where there is no data and where its value is transparent. A cut face has its own colours.
+// Sample k, which shows nothing where there is no data and where its value is transparent. A cut face has its own
+// colours.
 fn met(way: Way, k: i32) -> Met {
     let segment = segment_at(way, k);
     let sample = sample_in(way, k, segment);

@@ -1,5 +1,5 @@
-// What a sample is made of where its opacity is weighed by how steep it is there, by central differences, and light falls
-// on it unhindered: of what material_graded.wgsl can do, what is wanted most of the time. Twin: that of
+// What a sample is made of where its opacity is weighed by how steep it is there, by central differences, and light
+// falls on it unhindered: of what material_graded.wgsl can do, what is wanted most of the time. Twin: that of
 // material_graded.wgsl.
 
 #import transfer_{transfer}

@@ -1,5 +1,5 @@
-// What colours a surface: another volume on the same grid, by a function of its own; the surface's own colour where that
-// volume has no data.
+// What colours a surface: another volume on the same grid, by a function of its own; the surface's own colour where
+// that volume has no data.
 
 #import channels
 #import transfer_points

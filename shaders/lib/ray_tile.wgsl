@@ -1,4 +1,5 @@
-// Tiles that are drawn by rays, one after the other in the rows of an image that has a texel for each tile of the picture.
+// Tiles that are drawn by rays, one after the other in the rows of an image that has a texel for each tile of the
+// picture.
 
 #import frame
 

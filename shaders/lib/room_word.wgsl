@@ -1,5 +1,5 @@
-// Rooms of macro cells lie in words, a byte each, lowest first: a word has neighbours along x, and the last of a row what is
-// left of it. A brick's words begin where its cells do, so that there are more words than are used.
+// Rooms of macro cells lie in words, a byte each, lowest first: a word has neighbours along x, and the last of a row
+// what is left of it. A brick's words begin where its cells do, so that there are more words than are used.
 
 const ROOMS_A_WORD: u32 = 4u;
 // In place of a distance: there is matter, and samples look alike.

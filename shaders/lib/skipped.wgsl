@@ -1,5 +1,5 @@
-// On to the next sample that may count, by what the mode says of the cells on the way (`empty_room`): a loop of its own, so
-// that rays that are walked side by side skip and sample together.
+// On to the next sample that may count, by what the mode says of the cells on the way (`empty_room`): a loop of its
+// own, so that rays that are walked side by side skip and sample together.
 
 #import empty_space
 

@@ -61,8 +61,8 @@ fn central_slope(place: Place) -> Slope {
     return Slope(0.5 * volume_coding().slope * slope, neighbours_are_valid(place));
 }
 
-// Four voxels of a row: where the first and the third begin a face, whether the second and the fourth are held there, and
-// how far the place lies from the second to the third.
+// Four voxels of a row: where the first and the third begin a face, whether the second and the fourth are held there,
+// and how far the place lies from the second to the third.
 struct Four {
     first: Along,
     third: Along,

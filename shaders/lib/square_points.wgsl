@@ -1,6 +1,6 @@
-// A square (or a block of them) as one point as large as it is, for drivers that shade twice what two triangles share: on
-// llvmpipe all that lies on a diagonal, which is a quarter of 16 x 16 pixels. A point whose middle is out of sight is not
-// drawn, and squares reach over the edge of the picture: the viewport is a multiple of the largest block
+// A square (or a block of them) as one point as large as it is, for drivers that shade twice what two triangles share:
+// on llvmpipe all that lies on a diagonal, which is a quarter of 16 x 16 pixels. A point whose middle is out of sight
+// is not drawn, and squares reach over the edge of the picture: the viewport is a multiple of the largest block
 // (src/technique/patch_slicer.rs).
 
 #import patch_grid

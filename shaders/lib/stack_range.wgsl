@@ -9,8 +9,8 @@ struct StackRange {
     count: i32,
 }
 
-// Planes i lie at the height 1/2 + i; one more at both ends against rounding, and none outside of those from `lowest` to
-// `highest`.
+// Planes i lie at the height 1/2 + i; one more at both ends against rounding, and none outside of those from `lowest`
+// to `highest`.
 fn stack_range(start: f32, slope: f32, interval: vec2<f32>, lowest: i32, highest: i32) -> StackRange {
     let heights = start + interval * slope - 0.5;
     let low = clamp(i32(floor(min(heights.x, heights.y))), lowest, highest);

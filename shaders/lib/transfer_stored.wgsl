@@ -1,4 +1,5 @@
-// As transfer_table.wgsl, from a storage image: devices whose sampler is a program read that without looking up mip levels.
+// As transfer_table.wgsl, from a storage image: devices whose sampler is a program read that without looking up mip
+// levels.
 
 #import frame
 

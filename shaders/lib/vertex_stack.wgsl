@@ -1,6 +1,6 @@
 // What the vertices of the slices of a stack hand over: which slice it is, and the parameters of rays and voxels, since
-// a driver on the processor takes long over those that fragments ask for. `shaders/handed.rs` lets fragments take them from
-// here.
+// a driver on the processor takes long over those that fragments ask for. `shaders/handed.rs` lets fragments take them
+// from here.
 
 #import frame
 

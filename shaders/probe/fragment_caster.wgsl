@@ -1,5 +1,5 @@
-// What slicers are measured against: one fragment a pixel walks along all planes of its ray, and composites from front to
-// back. The samples are those of view-aligned slices; nothing is left out, and no ray ends early.
+// What slicers are measured against: one fragment a pixel walks along all planes of its ray, and composites from front
+// to back. The samples are those of view-aligned slices; nothing is left out, and no ray ends early.
 
 #import ray
 #import lattice_planes

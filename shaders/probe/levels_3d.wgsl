@@ -1,4 +1,5 @@
-// What the device's sampler makes of places in a 3D texture of several levels: coordinates and a level in, first channels out.
+// What the device's sampler makes of places in a 3D texture of several levels: coordinates and a level in, first
+// channels out.
 
 struct Places {
     d: array<vec4<f32>>,

@@ -1,5 +1,5 @@
-// One step of a chain of dispatches: each number becomes what its left neighbour was, plus one. Without a barrier between
-// them a step reads what the step before has not written.
+// One step of a chain of dispatches: each number becomes what its left neighbour was, plus one. Without a barrier
+// between them a step reads what the step before has not written.
 
 struct Numbers {
     d: array<u32>,

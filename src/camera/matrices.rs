@@ -73,8 +73,8 @@ impl HostDepth {
 
 impl Camera {
     /// The camera of a host's matrices, and what its depth buffer says. Any projection that takes planes parallel to
-    /// the picture to such planes will do: off the middle, without a far plane, mirrored, in perspective with oblique near
-    /// planes.
+    /// the picture to such planes will do: off the middle, without a far plane, mirrored, in perspective with oblique
+    /// near planes.
     ///
     /// # Errors
     /// [`Error::NotRigid`] for a view matrix that is more than a turn (or a mirror) and a shift,

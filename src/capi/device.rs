@@ -277,8 +277,8 @@ pub unsafe extern "C" fn sv_device_memory(
     unsafe { guard(diagnostic, body) }
 }
 
-/// Takes no more memory from the driver than so many bytes from now on: what would is SV_E_LIMIT, before the driver is asked.
-/// 0: no budget. Threads: any.
+/// Takes no more memory from the driver than so many bytes from now on: what would is SV_E_LIMIT, before the driver is
+/// asked. 0: no budget. Threads: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sv_device_set_memory_budget(
     device: sv_device,
@@ -329,8 +329,8 @@ pub unsafe extern "C" fn sv_device_pipelines_made(
     unsafe { guard(diagnostic, body) }
 }
 
-/// What the driver has compiled so far, for sv_host_device of a later run. With `data` NULL, `bytes` is set to what there
-/// is; else as many bytes are written, where `bytes` says that there is room for them. Threads: any.
+/// What the driver has compiled so far, for sv_host_device of a later run. With `data` NULL, `bytes` is set to what
+/// there is; else as many bytes are written, where `bytes` says that there is room for them. Threads: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sv_device_pipeline_cache(
     device: sv_device,

@@ -7,7 +7,8 @@
 //! - gives a [`sv_status`] back, and writes a sentence where it fails (`status`);
 //! - never unwinds into C, and never uses a handle of something that is gone.
 //!
-//! What cannot be checked stands in `docs/c-interface.md`: pointers that lead nowhere, and Vulkan handles that are none.
+//! What cannot be checked stands in `docs/c-interface.md`: pointers that lead nowhere, and Vulkan handles that are
+//! none.
 
 #![allow(non_camel_case_types, reason = "the names are those of C")]
 #![allow(

@@ -36,9 +36,10 @@ unsafe impl Versioned for sv_pacing {
     const NAME: &'static str = "sv_pacing";
 }
 
-/// Begins a frame that is recorded in parts, and tells how many pieces it has: blocks of 64 x 64 pixels, smaller where those
-/// are thought to take long, slices of half-angle slicing, and what a new function has to be found empty. What else is recorded
-/// for the frame, another function, volume or size, and an update of the volume, ends it. Threads: one at a time for one renderer.
+/// Begins a frame that is recorded in parts, and tells how many pieces it has: blocks of 64 x 64 pixels, smaller where
+/// those are thought to take long, slices of half-angle slicing, and what a new function has to be found empty. What
+/// else is recorded for the frame, another function, volume or size, and an update of the volume, ends it. Threads: one
+/// at a time for one renderer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sv_renderer_begin_parts(
     renderer: sv_renderer,
@@ -61,10 +62,12 @@ pub unsafe extern "C" fn sv_renderer_begin_parts(
     unsafe { guard(diagnostic, body) }
 }
 
-/// Level B in parts: records the next `count` pieces, one at least, and tells how many are left. The same `target` each time.
+/// Level B in parts: records the next `count` pieces, one at least, and tells how many are left. The same `target` each
+/// time.
 ///
-/// Rays, and slices in other modes than composite, touch the target with the last part alone. Composites by slices draw each part
-/// into it, and leave it in its state `after`. As sv_renderer_record_into; parts are submitted in their order to one queue.
+/// Rays, and slices in other modes than composite, touch the target with the last part alone. Composites by slices draw
+/// each part into it, and leave it in its state `after`. As sv_renderer_record_into; parts are submitted in their order
+/// to one queue.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sv_renderer_record_part_into(
     renderer: sv_renderer,
@@ -92,10 +95,10 @@ pub unsafe extern "C" fn sv_renderer_record_part_into(
     unsafe { guard(diagnostic, body) }
 }
 
-/// Level C in parts: as sv_submitter_submit, in as many submissions as it takes for each to last no longer than `pacing`
-/// says (NULL: 100 ms). Between them it waits for the device, for the host's `waits` too. `is_done` is set to 0 where the host
-/// ended the frame: none of the signals will be reached then, and the target is as sv_renderer_record_part_into says.
-/// Threads: one at a time for one submitter and for one renderer.
+/// Level C in parts: as sv_submitter_submit, in as many submissions as it takes for each to last no longer than
+/// `pacing` says (NULL: 100 ms). Between them it waits for the device, for the host's `waits` too. `is_done` is set to
+/// 0 where the host ended the frame: none of the signals will be reached then, and the target is as
+/// sv_renderer_record_part_into says. Threads: one at a time for one submitter and for one renderer.
 #[unsafe(no_mangle)]
 #[allow(
     clippy::too_many_arguments,
@@ -139,9 +142,10 @@ pub unsafe extern "C" fn sv_submitter_submit_in_parts(
     unsafe { guard(diagnostic, body) }
 }
 
-/// sv_submitter_upload in as many submissions as it takes for each to last no longer than `pacing` says (NULL: 100 ms). Between
-/// them it waits for the device, for the host's `waits` too. `is_done` is set to 0 where the host ended it: none of the signals
-/// will be reached then, and the rest of the upload is still to be recorded. As sv_submitter_submit_in_parts.
+/// sv_submitter_upload in as many submissions as it takes for each to last no longer than `pacing` says (NULL: 100 ms).
+/// Between them it waits for the device, for the host's `waits` too. `is_done` is set to 0 where the host ended it:
+/// none of the signals will be reached then, and the rest of the upload is still to be recorded. As
+/// sv_submitter_submit_in_parts.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sv_submitter_upload_in_parts(
     submitter: sv_submitter,
@@ -176,8 +180,9 @@ pub unsafe extern "C" fn sv_submitter_upload_in_parts(
     unsafe { guard(diagnostic, body) }
 }
 
-/// sv_volume_record_update in submissions of the library's own, in parts. `is_done` is set to 0 where the host ended it: none of
-/// the signals will be reached then, and the rest of the update is still to be recorded. As sv_submitter_upload_in_parts.
+/// sv_volume_record_update in submissions of the library's own, in parts. `is_done` is set to 0 where the host ended
+/// it: none of the signals will be reached then, and the rest of the update is still to be recorded. As
+/// sv_submitter_upload_in_parts.
 #[unsafe(no_mangle)]
 #[allow(
     clippy::too_many_arguments,

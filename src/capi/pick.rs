@@ -26,8 +26,8 @@ pub struct sv_pick {
     pub distance: f64,
     /// The place in the world.
     pub position: [f64; 3],
-    /// The projected value, that of the surface, or of the sample that made a composite half opaque; of a map of labels the
-    /// label.
+    /// The projected value, that of the surface, or of the sample that made a composite half opaque; of a map of labels
+    /// the label.
     pub value: f64,
     /// Premultiplied colour and alpha.
     pub color: [f32; 4],

@@ -32,8 +32,8 @@ unsafe impl Versioned for sv_plan {
     const NAME: &'static str = "sv_plan";
 }
 
-/// What a volume will take: of `desc`, `dims`, `voxel_type`, `has_fill` (there will be holes) and `settings` count, and `voxels`
-/// may be NULL. Threads: any.
+/// What a volume will take: of `desc`, `dims`, `voxel_type`, `has_fill` (there will be holes) and `settings` count, and
+/// `voxels` may be NULL. Threads: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sv_volume_plan(
     device: sv_device,

@@ -107,8 +107,8 @@ pub unsafe extern "C" fn sv_renderer_create(
     unsafe { guard(diagnostic, body) }
 }
 
-/// Frames of another size, or with other depth images, from now on. Nothing waits; what frames in flight use is freed by
-/// sv_device_retire. Threads: one at a time for one renderer.
+/// Frames of another size, or with other depth images, from now on. Nothing waits; what frames in flight use is freed
+/// by sv_device_retire. Threads: one at a time for one renderer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sv_renderer_resize(
     renderer: sv_renderer,
@@ -130,8 +130,8 @@ pub unsafe extern "C" fn sv_renderer_resize(
     unsafe { guard(diagnostic, body) }
 }
 
-/// Another transfer function from the next recording on; 0 is the ramp of greys. It may be called each frame: nothing is
-/// compiled, nothing waits. Threads: one at a time for one renderer.
+/// Another transfer function from the next recording on; 0 is the ramp of greys. It may be called each frame: nothing
+/// is compiled, nothing waits. Threads: one at a time for one renderer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sv_renderer_set_function(
     renderer: sv_renderer,
@@ -168,8 +168,8 @@ pub unsafe extern "C" fn sv_renderer_set_settings(
     unsafe { guard(diagnostic, body) }
 }
 
-/// Another volume of the same size and kind from the next recording on: the next time of a series. It is uploaded, or its
-/// upload is recorded. Threads: one at a time for one renderer.
+/// Another volume of the same size and kind from the next recording on: the next time of a series. It is uploaded, or
+/// its upload is recorded. Threads: one at a time for one renderer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sv_renderer_set_volume(
     renderer: sv_renderer,

@@ -28,8 +28,8 @@ pub struct sv_requirement {
     pub is_met: u32,
 }
 
-/// All that is required and recommended, before there is a device. With `requirements` NULL, `count` is set to how many there
-/// are; else as many are written, where `count` says that there is room for them. Threads: any.
+/// All that is required and recommended, before there is a device. With `requirements` NULL, `count` is set to how many
+/// there are; else as many are written, where `count` says that there is room for them. Threads: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sv_requirements(
     requirements: *mut sv_requirement,
@@ -46,9 +46,9 @@ pub unsafe extern "C" fn sv_requirements(
     unsafe { guard(diagnostic, body) }
 }
 
-/// The same, and what a physical device has of it: `instance`, `physical_device` and `get_instance_proc_addr` of `host` are
-/// asked, and `device`, which may be NULL, is not. Where it is not NULL, `features` are those enabled; else those that the device
-/// supports count. A version that is too old is all that is told of a device. Threads: any.
+/// The same, and what a physical device has of it: `instance`, `physical_device` and `get_instance_proc_addr` of `host`
+/// are asked, and `device`, which may be NULL, is not. Where it is not NULL, `features` are those enabled; else those
+/// that the device supports count. A version that is too old is all that is told of a device. Threads: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sv_check_device(
     host: *const sv_host_device,

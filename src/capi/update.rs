@@ -45,9 +45,9 @@ impl Kind for Held {
     const NAME: &'static str = "sv_update";
 }
 
-/// Stages new voxels of a box of a volume that was uploaded: a copy of them, where the recording finds it. Their values lie
-/// in the volume's `value_range`; where it was made without holes they have none; filters that read coefficients of a
-/// spline are SV_E_UNSUPPORTED. Threads: any.
+/// Stages new voxels of a box of a volume that was uploaded: a copy of them, where the recording finds it. Their values
+/// lie in the volume's `value_range`; where it was made without holes they have none; filters that read coefficients of
+/// a spline are SV_E_UNSUPPORTED. Threads: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sv_volume_stage_update(
     volume: sv_volume,
@@ -97,13 +97,13 @@ pub unsafe extern "C" fn sv_volume_stage_update(
     unsafe { guard(diagnostic, body) }
 }
 
-/// Records an update between the frames that were recorded before, which show the old voxels, and those recorded later, which
-/// show the new ones. Updates of one volume are recorded as they were staged: SV_E_STATE where another comes first, or was
-/// destroyed, and this was staged after it. The handle of one that is recorded is used up; what it is staged in is freed by
-/// sv_device_retire, if sv_device_announce came before.
+/// Records an update between the frames that were recorded before, which show the old voxels, and those recorded later,
+/// which show the new ones. Updates of one volume are recorded as they were staged: SV_E_STATE where another comes
+/// first, or was destroyed, and this was staged after it. The handle of one that is recorded is used up; what it is
+/// staged in is freed by sv_device_retire, if sv_device_announce came before.
 ///
-/// `command_buffer` (`VkCommandBuffer`) is recording, outside rendering, and is submitted to the queue that draws the volume, in
-/// the order of recording. Threads: any, one at a time for one volume.
+/// `command_buffer` (`VkCommandBuffer`) is recording, outside rendering, and is submitted to the queue that draws the
+/// volume, in the order of recording. Threads: any, one at a time for one volume.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sv_volume_record_update(
     volume: sv_volume,
@@ -132,10 +132,10 @@ pub unsafe extern "C" fn sv_volume_record_update(
     unsafe { guard(diagnostic, body) }
 }
 
-/// Records the next `count` pieces of an update, one at least and none of them long, and tells how many are left. Where there are
-/// none, the handle is used up. Until then the volume is not drawn (SV_E_STATE); where the update is destroyed before, that lasts
-/// until another one is recorded that changes all of its voxels. As sv_volume_record_update, of all parts, which are submitted in
-/// their order.
+/// Records the next `count` pieces of an update, one at least and none of them long, and tells how many are left. Where
+/// there are none, the handle is used up. Until then the volume is not drawn (SV_E_STATE); where the update is
+/// destroyed before, that lasts until another one is recorded that changes all of its voxels. As
+/// sv_volume_record_update, of all parts, which are submitted in their order.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sv_volume_record_update_part(
     volume: sv_volume,
@@ -195,8 +195,8 @@ fn check(volume: &embed::Volume, staged: Option<&embed::Update>) -> Result<(), F
     }
 }
 
-/// Destroys the handle of an update that is not recorded: those that were staged after it will not be recorded any more, for
-/// they were staged from voxels that hold these. Threads: any.
+/// Destroys the handle of an update that is not recorded: those that were staged after it will not be recorded any
+/// more, for they were staged from voxels that hold these. Threads: any.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sv_update_destroy(
     update: sv_update,

@@ -33,8 +33,8 @@ pub struct sv_volume_desc {
     pub voxels: *const c_void,
     /// Bytes of them.
     pub voxel_bytes: u64,
-    /// Voxel space, in which voxel (i, j, k) covers [i, i + 1) and so on, to the world: columns of a matrix, the last row
-    /// of which is (0, 0, 0, 1). All zero: the two are the same.
+    /// Voxel space, in which voxel (i, j, k) covers [i, i + 1) and so on, to the world: columns of a matrix, the last
+    /// row of which is (0, 0, 0, 1). All zero: the two are the same.
     pub world_from_voxel: [f64; 16],
     /// 0 is 1.
     pub slope: f64,
@@ -44,7 +44,8 @@ pub struct sv_volume_desc {
     pub has_fill: u32,
     /// What stands where there is no data.
     pub fill: f64,
-    /// The settings of the renderers that will draw it, of which technique, filter, light and empty space count; or NULL.
+    /// The settings of the renderers that will draw it, of which technique, filter, light and empty space count; or
+    /// NULL.
     pub settings: *const sv_settings,
     /// Not 0: `value_range` holds all values that the volume has and will get by updates. 0: it is that of the voxels.
     pub has_value_range: u32,
@@ -204,8 +205,9 @@ pub unsafe extern "C" fn sv_volume_record_upload(
     unsafe { guard(diagnostic, body) }
 }
 
-/// Records the next `count` pieces of the upload, one at least and none of them long, and tells how many are left. Where there
-/// are none, the volume is uploaded. As sv_volume_record_upload, of all parts, which are submitted in their order.
+/// Records the next `count` pieces of the upload, one at least and none of them long, and tells how many are left.
+/// Where there are none, the volume is uploaded. As sv_volume_record_upload, of all parts, which are submitted in their
+/// order.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sv_volume_record_upload_part(
     volume: sv_volume,

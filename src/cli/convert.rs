@@ -42,8 +42,8 @@ use std::{
 pub struct Convert {
     #[command(flatten)]
     input: InputFlags,
-    /// The file: .nrrd, .mha, .nii, .nii.gz, .npy, or .svb of bricks and coarser levels, for volumes larger than the memory;
-    /// for a surface .ply, .stl or .glb
+    /// The file: .nrrd, .mha, .nii, .nii.gz, .npy, or .svb of bricks and coarser levels, for volumes larger than the
+    /// memory; for a surface .ply, .stl or .glb
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Keep this box of whole voxels

@@ -126,8 +126,8 @@ pub fn software_device_bytes(header: &Header, has_holes: bool) -> u64 {
     }
 }
 
-/// The sampler, where nobody asks for another way and corners take more than `--max-memory`. What happens to be free does
-/// not count: the same words draw the same picture.
+/// The sampler, where nobody asks for another way and corners take more than `--max-memory`. What happens to be free
+/// does not count: the same words draw the same picture.
 pub fn filter_by(input: &InputFlags, wanted: FilterBy, volumes: &[&Volume]) -> FilterBy {
     let bytes_of = |volume: &&Volume| {
         let stored = volume.voxels.voxel_type();

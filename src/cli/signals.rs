@@ -14,8 +14,8 @@ use std::{
 /// The exit code of a process that was asked to stop.
 pub const INTERRUPTED: u8 = 130;
 
-/// Held while a file is written: an interrupt waits for it. Holds the unfinished file that it removes or speaks of. Made as
-/// the program begins, it knows when that was.
+/// Held while a file is written: an interrupt waits for it. Holds the unfinished file that it removes or speaks of.
+/// Made as the program begins, it knows when that was.
 #[derive(Clone, Debug)]
 pub struct Gate {
     unfinished: Arc<Mutex<Option<Unfinished>>>,

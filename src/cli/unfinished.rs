@@ -5,8 +5,8 @@
 //! .X.svb.journal      {"stratavox_bricks":1,"version":"0.1.0","conversion":{...}}, then a line of each row of bricks
 //! ```
 //!
-//! A line is written behind its bricks, and nothing waits for the disk: what a loss of power has left of bricks is found by
-//! their checksums, which are compared before anybody goes on.
+//! A line is written behind its bricks, and nothing waits for the disk: what a loss of power has left of bricks is
+//! found by their checksums, which are compared before anybody goes on.
 
 use super::{Error, signals::Gate, stamp::difference};
 use crate::format::write::DoneBricks;

@@ -31,8 +31,8 @@ pub struct Branch {
     pub cases: usize,
     /// Of how many every number that was found is the same, bit for bit.
     pub same_numbers: usize,
-    /// The largest part of what is allowed that a number of A and of B takes, where both have the same verdict: a warning
-    /// measures by what is stricter.
+    /// The largest part of what is allowed that a number of A and of B takes, where both have the same verdict: a
+    /// warning measures by what is stricter.
     pub worst: [f64; 2],
 }
 

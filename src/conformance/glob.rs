@@ -1,4 +1,5 @@
-//! Patterns over the names of cases: `*` stands for any run of characters, `?` for one, `|` between patterns for either.
+//! Patterns over the names of cases: `*` stands for any run of characters, `?` for one, `|` between patterns for
+//! either.
 
 /// Whether `name` is one of those that `pattern` means.
 pub fn matches(pattern: &str, name: &str) -> bool {

@@ -1,5 +1,5 @@
-//! What a case asks of a device, looked up twice: as the library knows the device, and by a query of its own. Of what the
-//! library has no need, the query alone says.
+//! What a case asks of a device, looked up twice: as the library knows the device, and by a query of its own. Of what
+//! the library has no need, the query alone says.
 //!
 //! | library | query | said |
 //! |---|---|---|

@@ -37,9 +37,9 @@ pub struct HostDepthImage {
 }
 
 impl HostDepthImage {
-    /// A 2D view of its depth aspect; the layout that it is in when what [`super::Renderer::record`] records runs, visible
-    /// to sampled reads of the compute stage by rays, and of the fragment stage too by slices; its size, which is that of
-    /// the picture.
+    /// A 2D view of its depth aspect; the layout that it is in when what [`super::Renderer::record`] records runs,
+    /// visible to sampled reads of the compute stage by rays, and of the fragment stage too by slices; its size, which
+    /// is that of the picture.
     ///
     /// # Safety
     /// The view is one of the device of the renderers that get it, and lives until they have got others
@@ -143,8 +143,8 @@ impl Class {
         self.host_depth && (has_rays || self.gathers())
     }
 
-    /// Whether slices are gathered in an image of our own: numbers that are no colours yet, slabs that end at the host's
-    /// depth, which may lie between two slices, and slices that eye and light see in turn.
+    /// Whether slices are gathered in an image of our own: numbers that are no colours yet, slabs that end at the
+    /// host's depth, which may lie between two slices, and slices that eye and light see in turn.
     pub(super) fn gathers(&self) -> bool {
         let settings = &self.settings;
         let is_cut = settings.preintegrated && self.host_depth;

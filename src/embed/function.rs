@@ -91,8 +91,8 @@ impl Function {
         self.uploaded = then;
     }
 
-    /// Pieces that are left of what [`Function::record_part`] records, none of them long: the tables, which are small, come
-    /// with the first.
+    /// Pieces that are left of what [`Function::record_part`] records, none of them long: the tables, which are small,
+    /// come with the first.
     ///
     /// # Errors
     /// A grid larger than the device can dispatch.
@@ -123,14 +123,15 @@ impl Function {
         }
     }
 
-    /// Records the next pieces of what fills the objects, once, and what is empty once more after an update of the volume.
+    /// Records the next pieces of what fills the objects, once, and what is empty once more after an update of the
+    /// volume.
     ///
     /// # Errors
     /// As [`Function::left`].
     ///
     /// # Safety
-    /// `cmd` is recording, outside rendering, after the upload of the volume and its updates; parts are submitted in their
-    /// order.
+    /// `cmd` is recording, outside rendering, after the upload of the volume and its updates; parts are submitted in
+    /// their order.
     pub unsafe fn record_part(
         &mut self,
         cmd: vk::CommandBuffer,

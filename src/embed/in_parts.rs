@@ -14,8 +14,8 @@ use std::time::Instant;
 
 /// How long the parts of a frame, an upload or an update last, and who hears of them ([`Submitter::submit_in_parts`]).
 pub struct Pacing<'a> {
-    /// Milliseconds that a submission shall take: [`Pacing::TARGET_MS`] are far below the seconds after which systems take a
-    /// device for hung.
+    /// Milliseconds that a submission shall take: [`Pacing::TARGET_MS`] are far below the seconds after which systems
+    /// take a device for hung.
     pub target_ms: f64,
     /// Told after each part but the last how much is done, 0 to 1. [`ControlFlow::Break`] ends it.
     pub tell: &'a mut dyn FnMut(f64) -> ControlFlow<()>,
@@ -45,12 +45,13 @@ struct To<'a> {
 }
 
 impl Submitter {
-    /// [`Submitter::submit`] in as many submissions as it takes for each to last no longer than `pacing` says: the first
-    /// begins when all of `waits` are reached, the last reaches all of `signals`. Between them the CPU waits for the device, and
-    /// `pacing` is told how far the frame is and may end it. What is drawn is to the bit what [`Submitter::submit`] draws.
+    /// [`Submitter::submit`] in as many submissions as it takes for each to last no longer than `pacing` says: the
+    /// first begins when all of `waits` are reached, the last reaches all of `signals`. Between them the CPU waits for
+    /// the device, and `pacing` is told how far the frame is and may end it. What is drawn is to the bit what
+    /// [`Submitter::submit`] draws.
     ///
-    /// True: the last part is submitted. False: the frame was ended before; no signal will be reached, the renderer is free for
-    /// another frame, and the target is as [`Renderer::record_part_into`] says.
+    /// True: the last part is submitted. False: the frame was ended before; no signal will be reached, the renderer is
+    /// free for another frame, and the target is as [`Renderer::record_part_into`] says.
     ///
     /// # Errors
     /// As [`Submitter::submit`]; then, too, no signal will be reached.
@@ -98,11 +99,11 @@ impl Submitter {
         ended
     }
 
-    /// [`Volume::record_upload`] in submissions as [`Submitter::submit_in_parts`] makes them, with number `frame` of the
-    /// frames in flight.
+    /// [`Volume::record_upload`] in submissions as [`Submitter::submit_in_parts`] makes them, with number `frame` of
+    /// the frames in flight.
     ///
-    /// True: all of it is submitted. False: it was ended before; the volume is not drawn until the rest is recorded, in parts or
-    /// at once.
+    /// True: all of it is submitted. False: it was ended before; the volume is not drawn until the rest is recorded, in
+    /// parts or at once.
     ///
     /// # Errors
     /// As [`Volume::record_upload`], and as [`Submitter::submit`]; what was not submitted may be recorded again.
@@ -154,11 +155,11 @@ impl Submitter {
         ended
     }
 
-    /// [`Volume::record_update`] in submissions as [`Submitter::submit_in_parts`] makes them, with number `frame` of the
-    /// frames in flight.
+    /// [`Volume::record_update`] in submissions as [`Submitter::submit_in_parts`] makes them, with number `frame` of
+    /// the frames in flight.
     ///
-    /// True: all of it is submitted. False: it was ended before; the volume is not drawn until the rest of the update is
-    /// recorded, or another that changes all of its voxels.
+    /// True: all of it is submitted. False: it was ended before; the volume is not drawn until the rest of the update
+    /// is recorded, or another that changes all of its voxels.
     ///
     /// # Errors
     /// As [`Volume::record_update`], and as [`Submitter::submit`]; what was not submitted may be recorded again.

@@ -19,8 +19,8 @@
 //! against it in hardware, all else ends at its depth buffer, read as a texture. Its own depth a picture gives back by
 //! [`Renderer::draw_depth`] and [`Renderer::record_pick`] ([`Class::gives_depth`]).
 //!
-//! While it is drawn, a volume takes new voxels of a box ([`Volume::stage_update`], [`Volume::record_update`]). Frames, uploads
-//! and updates may be cut into parts that are submitted one by one and given up between two of them:
+//! While it is drawn, a volume takes new voxels of a box ([`Volume::stage_update`], [`Volume::record_update`]). Frames,
+//! uploads and updates may be cut into parts that are submitted one by one and given up between two of them:
 //!
 //! ```text
 //!             B, recorded                          C, submitted until the host says no

@@ -22,13 +22,14 @@ const SIDE: u32 = 64;
 const SMALLEST_SIDE: u32 = Tile::STEP;
 
 impl Renderer {
-    /// Begins a frame in parts: writes its parameters. How many pieces there are: blocks of 64 x 64 pixels, or of 32, 16 or 8
-    /// where larger ones are thought to take long, any first part of them spread over the picture; of half-angle slices each
-    /// slice, or bands of it; and before them what a new function, or an update of the volume, has to be found empty.
+    /// Begins a frame in parts: writes its parameters. How many pieces there are: blocks of 64 x 64 pixels, or of 32,
+    /// 16 or 8 where larger ones are thought to take long, any first part of them spread over the picture; of
+    /// half-angle slices each slice, or bands of it; and before them what a new function, or an update of the volume,
+    /// has to be found empty.
     ///
-    /// What else is recorded for the frame, another function, volume or size, and an update of the volume, ends it. As before
-    /// [`Renderer::record`], what was recorded for the frame before is done: its parameters are written over, and what is not
-    /// done draws with those.
+    /// What else is recorded for the frame, another function, volume or size, and an update of the volume, ends it. As
+    /// before [`Renderer::record`], what was recorded for the frame before is done: its parameters are written over,
+    /// and what is not done draws with those.
     ///
     /// # Errors
     /// As [`Renderer::record`].
@@ -62,17 +63,17 @@ impl Renderer {
 
     /// Level B, in parts: records the next `count` pieces, one at least, and says how many are left.
     ///
-    /// Rays, and slices in other modes than composite, touch the target with the last part alone: a frame that is given up
-    /// before has left it as it was, in its state `before`. Composites by slices draw each part with a block into it: after each
-    /// it is in its state `after`, cleared or kept as `load` says where no block is drawn yet.
+    /// Rays, and slices in other modes than composite, touch the target with the last part alone: a frame that is given
+    /// up before has left it as it was, in its state `before`. Composites by slices draw each part with a block into
+    /// it: after each it is in its state `after`, cleared or kept as `load` says where no block is drawn yet.
     ///
     /// # Errors
     /// [`Error::NotBegun`]; as [`Renderer::record_into`]; [`Error::NotEmbedded`] for composites by slices into a target
     /// that changes its queue family. Where the device fails, the frame is at an end.
     ///
     /// # Safety
-    /// - As [`Renderer::record_into`], of all parts of a frame: they are submitted in their order, to one queue, and with
-    ///   nothing else between them that uses the target;
+    /// - As [`Renderer::record_into`], of all parts of a frame: they are submitted in their order, to one queue, and
+    ///   with nothing else between them that uses the target;
     /// - the target is in the state that was said above.
     pub unsafe fn record_part_into(
         &mut self,
@@ -168,7 +169,8 @@ impl Renderer {
         }
     }
 
-    /// What is left of a frame in parts: pieces of the function, then those of the picture with what they are thought to take.
+    /// What is left of a frame in parts: pieces of the function, then those of the picture with what they are thought
+    /// to take.
     pub(super) fn left_of(&self, frame: u32) -> Result<[(u64, f64); 2], Error> {
         let function = self.function.left(&self.volume)?;
         let begun = self.frames.get(frame as usize);

@@ -8,26 +8,26 @@ use crate::volume::{Volume, sample::nearest};
 use ash::vk;
 use glam::DVec3;
 
-/// What the depth of a picture says of one pixel: where a composite has become half opaque, the first surface, the place
-/// of a maximum.
+/// What the depth of a picture says of one pixel: where a composite has become half opaque, the first surface, the
+/// place of a maximum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pick {
     /// World length from where the ray starts: the eye, or the near plane of parallel rays.
     pub distance: f64,
     /// The place in the world.
     pub position: DVec3,
-    /// What the volume has there, as the filter makes it: the projected value, that of the surface, or that of the sample
-    /// with which a composite became half opaque. Of a map of labels, which the nearest filter reads, it is the label.
-    /// `None` of [`Mode::Mida`], which keeps another number, and of slabs, which have two values.
+    /// What the volume has there, as the filter makes it: the projected value, that of the surface, or that of the
+    /// sample with which a composite became half opaque. Of a map of labels, which the nearest filter reads, it is the
+    /// label. `None` of [`Mode::Mida`], which keeps another number, and of slabs, which have two values.
     pub value: Option<f64>,
-    /// Premultiplied colour and alpha of the pixel. Projecting modes have none before they are classified, and rays that
-    /// look for the depth of slices end there.
+    /// Premultiplied colour and alpha of the pixel. Projecting modes have none before they are classified, and rays
+    /// that look for the depth of slices end there.
     pub color: Option<[f32; 4]>,
 }
 
 impl Pick {
-    /// The voxel of another `volume` there, on the CPU: the label of a map beside what is shown. `None` outside, and where
-    /// it has no data.
+    /// The voxel of another `volume` there, on the CPU: the label of a map beside what is shown. `None` outside, and
+    /// where it has no data.
     pub fn voxel_of(&self, volume: &Volume) -> Option<f64> {
         let voxel = volume
             .world_from_voxel

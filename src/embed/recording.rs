@@ -21,11 +21,12 @@ impl Renderer {
     /// A shot that the class is not for, a picture that cannot be made.
     ///
     /// # Safety
-    /// - `cmd` is recording on the device, outside rendering, for a queue of [`Gpu::queue_family`](crate::gpu::Gpu::queue_family), and is submitted in
-    ///   the order in which it was recorded, after the upload of the volume;
+    /// - `cmd` is recording on the device, outside rendering, for a queue of
+    ///   [`Gpu::queue_family`](crate::gpu::Gpu::queue_family), and is submitted in the order in which it was recorded,
+    ///   after the upload of the volume;
     /// - nothing unfinished was recorded with the shot's number of a frame in flight;
-    /// - the image of the host's depth is in the layout that was said, visible to sampled reads of compute shaders, and of
-    ///   fragment shaders where there are slices.
+    /// - the image of the host's depth is in the layout that was said, visible to sampled reads of compute shaders, and
+    ///   of fragment shaders where there are slices.
     pub unsafe fn record(&mut self, cmd: vk::CommandBuffer, shot: &Shot) -> Result<(), Error> {
         let (frame, made) = self.prepare(shot)?;
         let whole = [Tile::whole(self.extent)];
@@ -54,7 +55,8 @@ impl Renderer {
     /// Where nothing was recorded.
     ///
     /// # Safety
-    /// - `cmd` is recording inside rendering to a target of [`Class::target`](super::Class::target) and of the renderer's extent;
+    /// - `cmd` is recording inside rendering to a target of [`Class::target`](super::Class::target) and of the
+    ///   renderer's extent;
     /// - it runs after what [`Renderer::record`] recorded, on the same queue.
     pub unsafe fn draw(&self, cmd: vk::CommandBuffer, frame: u32) -> Result<(), Error> {
         self.gpu.check_alive("draw a frame")?;
@@ -64,13 +66,13 @@ impl Renderer {
         Ok(())
     }
 
-    /// Writes the depth of a picture into the depth attachment, where it is nearer than what is there: what the host draws
-    /// later, blended or not, is hidden by the volume. Of composites it is where they become half opaque, along rays or
-    /// from slice to slice.
+    /// Writes the depth of a picture into the depth attachment, where it is nearer than what is there: what the host
+    /// draws later, blended or not, is hidden by the volume. Of composites it is where they become half opaque, along
+    /// rays or from slice to slice.
     ///
     /// # Errors
-    /// [`Error::NoDepth`] without [`Class::gives_depth`](super::Class::gives_depth) and a depth attachment; where nothing
-    /// was recorded.
+    /// [`Error::NoDepth`] without [`Class::gives_depth`](super::Class::gives_depth) and a depth attachment; where
+    /// nothing was recorded.
     ///
     /// # Safety
     /// As [`Renderer::draw`]; depth may be written.

@@ -1,4 +1,5 @@
-//! New voxels of a box of a volume that is being drawn: the next step of a simulation, a brush, a part of a time series.
+//! New voxels of a box of a volume that is being drawn: the next step of a simulation, a brush, a part of a time
+//! series.
 //!
 //! ```text
 //! volume.update_reads(region)              which voxels are looked at: the box, and some around it on some devices
@@ -22,8 +23,8 @@ use ash::vk;
 /// Copies into images begin at multiples of so many bytes.
 const ALIGNMENT_BYTES: u64 = 16;
 
-/// New voxels of a box of a volume, staged: [`Volume::record_update`] brings them there. Dropped before it is recorded, it
-/// takes with it all that were staged after it: they were staged from voxels that hold these.
+/// New voxels of a box of a volume, staged: [`Volume::record_update`] brings them there. Dropped before it is recorded,
+/// it takes with it all that were staged after it: they were staged from voxels that hold these.
 #[derive(Debug)]
 pub struct Update {
     turn: Turn,
@@ -111,8 +112,8 @@ impl Volume {
     }
 
     /// Stages new voxels of `region`: `part` holds them, and what else [`Volume::update_reads`] names; all of the
-    /// changed volume does too. Beside the region its voxels are those that are there, and in holes they hold some valid
-    /// number.
+    /// changed volume does too. Beside the region its voxels are those that are there, and in holes they hold some
+    /// valid number.
     ///
     /// # Errors
     /// As [`Volume::update_reads`]; [`Error::Update`] for voxels of another type, of too small a box, with values
@@ -180,8 +181,8 @@ impl Volume {
     ///
     /// # Errors
     /// [`Error::NotUploaded`] before the volume was; [`Error::Update`] for an update of another volume;
-    /// [`Error::UpdateOrder`] where another comes first, or was given up; [`Error::HalfUpdated`] where one was given up of which
-    /// a part is there, and this one does not change all of its voxels. What is refused is dropped.
+    /// [`Error::UpdateOrder`] where another comes first, or was given up; [`Error::HalfUpdated`] where one was given up
+    /// of which a part is there, and this one does not change all of its voxels. What is refused is dropped.
     ///
     /// # Safety
     /// `cmd` is recording, outside rendering, after [`Gpu::announce`](crate::gpu::Gpu::announce) of its value, and is
@@ -197,9 +198,9 @@ impl Volume {
         Ok(())
     }
 
-    /// Records the next `count` pieces of an update, one at least, and says how many are left. Until there are none, the volume
-    /// is not drawn ([`Error::HalfUpdated`]); where the update is given up before, that lasts until another one is recorded
-    /// that changes all of its voxels.
+    /// Records the next `count` pieces of an update, one at least, and says how many are left. Until there are none,
+    /// the volume is not drawn ([`Error::HalfUpdated`]); where the update is given up before, that lasts until another
+    /// one is recorded that changes all of its voxels.
     ///
     /// # Errors
     /// As [`Volume::record_update`]; the update is what it was then.

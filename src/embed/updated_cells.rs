@@ -1,5 +1,5 @@
-//! Ranges of cells that the device finds after updates, as graphics cards do: read back, they are those of a new volume. A
-//! software driver is made to do as they do.
+//! Ranges of cells that the device finds after updates, as graphics cards do: read back, they are those of a new
+//! volume. A software driver is made to do as they do.
 
 use super::{Update, Volume};
 use crate::gpu::{

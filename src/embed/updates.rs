@@ -1,5 +1,5 @@
-//! In which order the updates of a volume come: they are recorded as they were staged, for each was staged from voxels that
-//! hold all before it.
+//! In which order the updates of a volume come: they are recorded as they were staged, for each was staged from voxels
+//! that hold all before it.
 //!
 //! ```text
 //! staged, in order     0  1  2  3

@@ -57,15 +57,15 @@ impl Volume {
     /// [`Error::Uploaded`] the second time, and where the device cannot dispatch so many cells.
     ///
     /// # Safety
-    /// `cmd` is recording, outside rendering, after [`Gpu::announce`] of its value, and is submitted before anything that
-    /// draws the volume: what is recorded and never submitted is not there, and nobody notices.
+    /// `cmd` is recording, outside rendering, after [`Gpu::announce`] of its value, and is submitted before anything
+    /// that draws the volume: what is recorded and never submitted is not there, and nobody notices.
     pub unsafe fn record_upload(&mut self, gpu: &Gpu, cmd: vk::CommandBuffer) -> Result<(), Error> {
         // SAFETY: the caller's promises.
         unsafe { self.record_upload_part(gpu, cmd, u64::MAX).map(drop) }
     }
 
-    /// Records the next `count` pieces of the upload, one at least, and says how many are left. The volume is there, and may
-    /// be drawn, after the last one.
+    /// Records the next `count` pieces of the upload, one at least, and says how many are left. The volume is there,
+    /// and may be drawn, after the last one.
     ///
     /// # Errors
     /// As [`Volume::record_upload`].

@@ -219,8 +219,8 @@ impl Volume {
     }
 }
 
-/// What cells are to know of. Slabs reach farther than the filter, and how far hangs on the camera too: where a voxel is not
-/// enough, nothing is left out of the picture.
+/// What cells are to know of. Slabs reach farther than the filter, and how far hangs on the camera too: where a voxel
+/// is not enough, nothing is left out of the picture.
 fn cells_apron(settings: &Settings) -> Apron {
     let apron = settings.apron();
     Apron {

@@ -63,8 +63,8 @@ impl FileSource {
 
     /// Hands every wanted number to `take`: bytes of which each `stride`th number is wanted, the first one first.
     ///
-    /// A call of the system takes as long as copying some kilobytes: rows that lie close are fetched together, with what
-    /// stands between them.
+    /// A call of the system takes as long as copying some kilobytes: rows that lie close are fetched together, with
+    /// what stands between them.
     fn read_rows(
         &self,
         stream: &mut Stream,

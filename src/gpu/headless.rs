@@ -197,7 +197,8 @@ impl Headless {
     ///
     /// # Errors
     ///
-    /// Those of `record`, and [`Error::Stopped`]: nothing is submitted then. After [`Error::DeviceLost`] every further run says the same.
+    /// Those of `record`, and [`Error::Stopped`]: nothing is submitted then. After [`Error::DeviceLost`] every further
+    /// run says the same.
     pub fn run<R>(
         &mut self,
         record: impl FnOnce(vk::CommandBuffer) -> Result<R, Error>,

@@ -288,20 +288,20 @@ impl Gpu {
         self.identity.kind == DeviceKind::Cpu
     }
 
-    /// Whether shaders that fetch and weigh voxels themselves were found to be faster than the driver's sampler: those of
-    /// llvmpipe are, by a half and more, and those of SwiftShader take twice as long (`docs/performance.md`).
+    /// Whether shaders that fetch and weigh voxels themselves were found to be faster than the driver's sampler: those
+    /// of llvmpipe are, by a half and more, and those of SwiftShader take twice as long (`docs/performance.md`).
     pub fn has_slow_sampler(&self) -> bool {
         self.identity().driver_id == vk::DriverId::MESA_LLVMPIPE
     }
 
-    /// Whether fragments were found to take long over each parameter that they ask for: llvmpipe reads it once for every
-    /// pixel (`shaders/handed.rs`).
+    /// Whether fragments were found to take long over each parameter that they ask for: llvmpipe reads it once for
+    /// every pixel (`shaders/handed.rs`).
     pub fn has_slow_parameters(&self) -> bool {
         self.has_slow_sampler()
     }
 
-    /// Whether squares of a picture are drawn as points of at most so many pixels, not as two triangles: llvmpipe shades
-    /// twice what these share (`shaders/lib/square_points.wgsl`).
+    /// Whether squares of a picture are drawn as points of at most so many pixels, not as two triangles: llvmpipe
+    /// shades twice what these share (`shaders/lib/square_points.wgsl`).
     pub(crate) fn draws_squares_as_points(&self, most_pixels: u32) -> bool {
         let is_llvmpipe = self.identity().driver_id == vk::DriverId::MESA_LLVMPIPE;
         is_llvmpipe && self.limits.max_point_pixels >= most_pixels

@@ -47,7 +47,8 @@ pub struct HostPass {
 
 impl HostPass {
     /// # Safety
-    /// The render pass is one of the device that pipelines are made on for it, has that subpass, and lives until they are made.
+    /// The render pass is one of the device that pipelines are made on for it, has that subpass, and lives until they
+    /// are made.
     pub unsafe fn new(raw: vk::RenderPass, subpass: u32) -> Self {
         Self { raw, subpass }
     }

@@ -1,5 +1,5 @@
-//! Noise filters on the device, a slab of slices at a time with as many more on both sides as the kernel reaches, and of a
-//! slab so many rows that no dispatch takes long: a driver on the CPU does some 10^8 looks in a tenth of a second.
+//! Noise filters on the device, a slab of slices at a time with as many more on both sides as the kernel reaches, and
+//! of a slab so many rows that no dispatch takes long: a driver on the CPU does some 10^8 looks in a tenth of a second.
 
 use crate::gpu::{
     Bindings, Buffer, ComputePipeline, Error, Headless, Memory, ParameterRing, Resource, Use,

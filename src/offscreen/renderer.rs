@@ -60,7 +60,8 @@ pub struct Rendered {
     pub gpu_ms: Option<f64>,
 }
 
-/// Renders pictures of one volume, or of several on one grid. What does not change from picture to picture stays on the device.
+/// Renders pictures of one volume, or of several on one grid. What does not change from picture to picture stays on the
+/// device.
 #[derive(Debug)]
 pub struct Renderer<'v> {
     volumes: Vec<&'v Volume>,

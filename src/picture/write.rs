@@ -135,7 +135,8 @@ impl EncodedPicture {
         }
     }
 
-    /// Writes all files, each whole or not at all; none gets its name before all are written. Only `force` replaces one.
+    /// Writes all files, each whole or not at all; none gets its name before all are written. Only `force` replaces
+    /// one.
     ///
     /// # Errors
     /// Where the system would not, or a file exists.

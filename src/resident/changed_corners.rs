@@ -102,8 +102,8 @@ impl Corners {
         changed
     }
 
-    /// Records a run of what [`Corners::changed`] gave, from byte `first` of `staging` on: between what reads them before
-    /// and what reads them later.
+    /// Records a run of what [`Corners::changed`] gave, from byte `first` of `staging` on: between what reads them
+    /// before and what reads them later.
     ///
     /// # Errors
     /// A staging buffer that is too small.

@@ -1,5 +1,5 @@
-//! The eight voxels around a sample in two texels or four, for devices that compute on the CPU: their sampler is a program
-//! that converts and weighs each voxel by itself, and takes twice as long (`docs/performance.md`).
+//! The eight voxels around a sample in two texels or four, for devices that compute on the CPU: their sampler is a
+//! program that converts and weighs each voxel by itself, and takes twice as long (`docs/performance.md`).
 //!
 //! ```text
 //! of 8 bits:   texel(i, j, z) = codes of (3 i .. 3 i + 3, 3 j .. 3 j + 3, z), a row in each of four words
@@ -7,11 +7,11 @@
 //! ```
 //!
 //! So the four corners of a face between voxel centres are in one texel of 8 bits, 16/9 bytes a voxel; of 16 bits that
-//! would be 16/3, and both ends of an edge along x are in one texel, 4 bytes a voxel. x first, lowest bits first; beyond
-//! the edge of the grid the outermost voxel stands. Texels lie in cubes of 4 x 4 x 4, z fastest inside of one, then x, so
-//! that a line of the cache is as deep as it is wide; from one cube to the next x is fastest, and sides are rounded up to
-//! whole cubes. They lie in a storage image: llvmpipe reads a storage buffer lane by lane, looks up the mip levels of a
-//! texture, and loads a texel of 16 bytes at once, where four gathers take longer.
+//! would be 16/3, and both ends of an edge along x are in one texel, 4 bytes a voxel. x first, lowest bits first;
+//! beyond the edge of the grid the outermost voxel stands. Texels lie in cubes of 4 x 4 x 4, z fastest inside of one,
+//! then x, so that a line of the cache is as deep as it is wide; from one cube to the next x is fastest, and sides are
+//! rounded up to whole cubes. They lie in a storage image: llvmpipe reads a storage buffer lane by lane, looks up the
+//! mip levels of a texture, and loads a texel of 16 bytes at once, where four gathers take longer.
 
 use super::{GpuVolume, TextureLayout};
 use crate::gpu::{Error, Gpu, Image, ImageDesc, ImageKind, Use, image_barrier};

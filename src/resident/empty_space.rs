@@ -327,7 +327,8 @@ impl EmptySpace {
                 };
             }
             if let Some((mapping, bindings)) = self.alike.as_ref().filter(|_| pass == PASSES - 1) {
-                // SAFETY: the caller's promises; each workgroup looks at what it has written itself, the barrier between.
+                // SAFETY: the caller's promises; each workgroup looks at what it has written itself, the barrier
+                // between.
                 unsafe { self.record_alike(cmd, mapping, bindings, &part, first)? };
             }
             // What ends a pass is recorded with its last workgroup.

@@ -33,7 +33,8 @@ pub struct Apron {
 }
 
 impl Apron {
-    /// The same for cells that know of all voxels that central differences of samples are made of: one more on each side.
+    /// The same for cells that know of all voxels that central differences of samples are made of: one more on each
+    /// side.
     pub fn of_gradients(self) -> Self {
         Self {
             voxels: self.voxels + 1,

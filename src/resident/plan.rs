@@ -25,8 +25,8 @@ impl VolumePlan {
     /// For a volume of so many voxels of a type; `has_holes`: some have no value.
     ///
     /// # Errors
-    /// Where not even a voxel fits, as [`GpuVolume::new`](super::GpuVolume::new); no voxels, and more than a tebi, which
-    /// nobody has and whose bricks would fill the memory.
+    /// Where not even a voxel fits, as [`GpuVolume::new`](super::GpuVolume::new); no voxels, and more than a tebi,
+    /// which nobody has and whose bricks would fill the memory.
     pub fn of(
         gpu: &Gpu,
         dims: [u32; 3],

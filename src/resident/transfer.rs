@@ -33,7 +33,8 @@ pub struct TransferLayout {
     pub slab_count: u32,
 }
 
-/// One transfer function, or several of which each has a table of its own. The points are there at once; [`GpuTransfer::record_upload`] fills the table.
+/// One transfer function, or several of which each has a table of its own. The points are there at once;
+/// [`GpuTransfer::record_upload`] fills the table.
 #[derive(Debug)]
 pub struct GpuTransfer {
     gpu: Arc<Gpu>,

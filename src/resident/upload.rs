@@ -39,7 +39,8 @@ impl GpuVolume {
         whole.flat_map(|slab| self.cut(slab, bytes)).collect()
     }
 
-    /// What each brick stores of `region`, in parts of so many bytes, for copies into a volume that was uploaded before.
+    /// What each brick stores of `region`, in parts of so many bytes, for copies into a volume that was uploaded
+    /// before.
     pub fn slabs_in(&self, region: VoxelBox, bytes: u64) -> impl Iterator<Item = Slab> {
         let numbered = self.bricks().iter().enumerate();
         let stored = numbered.filter_map(move |(brick, there)| {
@@ -247,9 +248,9 @@ impl GpuVolume {
         Ok(())
     }
 
-    /// Calls `write` with the first of the voxels of `held`, the stride between voxels and the place of each run of texels
-    /// of a region, of `texel_bytes` each. Goes through blocks: where texels lie along other axes than voxels, what one run brings
-    /// into the cache serves its neighbours.
+    /// Calls `write` with the first of the voxels of `held`, the stride between voxels and the place of each run of
+    /// texels of a region, of `texel_bytes` each. Goes through blocks: where texels lie along other axes than voxels,
+    /// what one run brings into the cache serves its neighbours.
     fn write_runs(
         &self,
         held: VoxelBox,

@@ -175,8 +175,8 @@ impl GpuVolume {
         Ok(made.swap_remove(0))
     }
 
-    /// Objects for the coefficients of a volume's spline, which `Filter::Quadratic` and `Filter::Cubic` read in place of
-    /// its voxels. Uploads then take [`Coefficients::volume`].
+    /// Objects for the coefficients of a volume's spline, which `Filter::Quadratic` and `Filter::Cubic` read in place
+    /// of its voxels. Uploads then take [`Coefficients::volume`].
     ///
     /// ```rust,no_run
     /// # use std::sync::Arc;
@@ -214,8 +214,8 @@ impl GpuVolume {
     }
 
     /// Objects for `values` and, beside them and cut into the same bricks, for what gradients are made of
-    /// ([`Settings::gradient_source_beside`](crate::technique::Settings::gradient_source_beside)). It has uploads of its
-    /// own: [`GpuVolume::gradient_source`].
+    /// ([`Settings::gradient_source_beside`](crate::technique::Settings::gradient_source_beside)). It has uploads of
+    /// its own: [`GpuVolume::gradient_source`].
     ///
     /// # Errors
     /// As [`GpuVolume::new`].
@@ -292,7 +292,8 @@ impl GpuVolume {
         plan.make_with(gpu, volume, &[cell], Some(corners))
     }
 
-    /// Objects for one brick of a volume that is not all there: `voxels` are those of `cell.stored`. Uploads take them too.
+    /// Objects for one brick of a volume that is not all there: `voxels` are those of `cell.stored`. Uploads take them
+    /// too.
     ///
     /// # Errors
     /// Where the device gives no memory, or the brick is over a limit.

@@ -33,9 +33,9 @@ pub enum Drawn {
 }
 
 impl Drawn {
-    /// The vertex and the fragment shader of a slicer. Where there is a variant of both in which the vertices hand over the
-    /// parameters (`shaders/handed.rs`), drivers on which fragments are slow to ask for them have that one, and all drivers
-    /// where there is no other.
+    /// The vertex and the fragment shader of a slicer. Where there is a variant of both in which the vertices hand over
+    /// the parameters (`shaders/handed.rs`), drivers on which fragments are slow to ask for them have that one, and all
+    /// drivers where there is no other.
     pub(super) fn shaders(
         self,
         gpu: &Gpu,

@@ -11,9 +11,9 @@ use super::{Filter, Keep, Mix, Operator, Settings, Technique};
 /// A wish for one of them. Conformance pictures fetch, whatever is wished.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum FilterBy {
-    /// Corners where there are any, else the sampler. Renderers of our own make corners for drivers that were found to be
-    /// faster with them ([`Gpu::has_slow_sampler`](crate::gpu::Gpu::has_slow_sampler)): it follows from driver, volume
-    /// and picture alone, so that the same picture always comes out the same (`docs/sampling-notes.md`).
+    /// Corners where there are any, else the sampler. Renderers of our own make corners for drivers that were found to
+    /// be faster with them ([`Gpu::has_slow_sampler`](crate::gpu::Gpu::has_slow_sampler)): it follows from driver,
+    /// volume and picture alone, so that the same picture always comes out the same (`docs/sampling-notes.md`).
     #[default]
     Auto,
     /// The sampler, where the device has one for the format.
@@ -23,8 +23,8 @@ pub enum FilterBy {
 }
 
 impl Settings {
-    /// Whether pictures of one volume read its [`Corners`](crate::resident::Corners), where it has them: those of rays and
-    /// of view-aligned slices, linear.
+    /// Whether pictures of one volume read its [`Corners`](crate::resident::Corners), where it has them: those of rays
+    /// and of view-aligned slices, linear.
     pub fn reads_corners(&self, mix: Mix) -> bool {
         let is_point = !self.preintegrated && !self.conformance;
         let has_such = self.technique != Technique::Slices2d && !self.is_half_angle();

@@ -223,8 +223,8 @@ impl Words {
 }
 
 impl Words {
-    /// Of slices the variant that knows nothing of clip planes and of rays with places of their own in their pixels, where
-    /// these settings have neither: for pictures of them alone.
+    /// Of slices the variant that knows nothing of clip planes and of rays with places of their own in their pixels,
+    /// where these settings have neither: for pictures of them alone.
     pub(crate) fn of_whole(self, settings: &Settings) -> Self {
         let is_of_slices = settings.technique != Technique::Raycast;
         Self {

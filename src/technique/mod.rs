@@ -223,8 +223,8 @@ pub struct Settings {
     /// Samples per smallest voxel spacing; positive. 2D stacks have one a slice.
     pub samples_per_voxel: f64,
     /// Composite by rays: where the transfer function hardly changes over the values of a macro cell, one sample stands
-    /// for all of a ray in it. No channel of the picture, premultiplied as it is blended, is farther than this from that
-    /// of all samples; over 0, at most 1.
+    /// for all of a ray in it. No channel of the picture, premultiplied as it is blended, is farther than this from
+    /// that of all samples; over 0, at most 1.
     pub adaptive_steps: Option<f64>,
     /// Rays per pixel is the square of this; at least 1.
     pub rays_per_side: u32,

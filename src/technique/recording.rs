@@ -275,8 +275,8 @@ impl View<'_> {
 
 impl Recording {
     /// Puts what is recorded behind what a host has drawn, which it reads from an image: rays, and slices with
-    /// [`Sight::Read`](super::Sight::Read), end where that says, and begin at the host's near plane. `center` is that of
-    /// the [grid](crate::volume::Grid::center), and the view's camera the one that came with `depth`
+    /// [`Sight::Read`](super::Sight::Read), end where that says, and begin at the host's near plane. `center` is that
+    /// of the [grid](crate::volume::Grid::center), and the view's camera the one that came with `depth`
     /// ([`Camera::from_matrices`](crate::camera::Camera::from_matrices)).
     pub fn behind(&mut self, depth: &HostDepth, center: DVec3) {
         self.in_depths_of(depth, center);

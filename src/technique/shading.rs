@@ -8,7 +8,8 @@
 //! L is a light's colour, l the way to it, v the way to the eye, n the gradient made a unit vector after
 //! interpolation; o and t what comes through from all around and from the light, 1 without occlusion and shadows
 //! ([`Lamps`]). Where the gradient over one voxel is under 1e-4 of the volume's range there is no surface and the
-//! colour stays, as far as light comes there: c (o a + (1 - a) sum of t L / sum of L), a = min(ambient, 1). Blinn, "Models of Light Reflection for Computer Synthesized Pictures", SIGGRAPH 1977.
+//! colour stays, as far as light comes there: c (o a + (1 - a) sum of t L / sum of L), a = min(ambient, 1). Blinn,
+//! "Models of Light Reflection for Computer Synthesized Pictures", SIGGRAPH 1977.
 
 use super::{Error, LightField, Shadows, View};
 use crate::color::decode_srgb;

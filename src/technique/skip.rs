@@ -63,8 +63,8 @@ impl Settings {
     }
 
     /// What can be left out of pictures of one volume under `function`, whose values are in `value_range`. What colours
-    /// surfaces has no say. With [`Self::slope`] contours are left out where no value comes near them, if cells know of all
-    /// voxels that gradients are made of ([`Apron::of_gradients`]); `None`: they are seen everywhere.
+    /// surfaces has no say. With [`Self::slope`] contours are left out where no value comes near them, if cells know of
+    /// all voxels that gradients are made of ([`Apron::of_gradients`]); `None`: they are seen everywhere.
     pub fn skippable(
         &self,
         mix: Mix,
@@ -102,8 +102,8 @@ impl Settings {
 }
 
 impl Settings {
-    /// The largest gradient that these pictures may have, times the smallest spacing, as a multiple of how far the values
-    /// that it is made of lie apart: of central differences
+    /// The largest gradient that these pictures may have, times the smallest spacing, as a multiple of how far the
+    /// values that it is made of lie apart: of central differences
     ///
     /// ```text
     /// |gradient| <= sum over axes of |row of voxel_from_world| (high - low) / 2
@@ -134,7 +134,8 @@ impl Settings {
     }
 }
 
-/// Where all is seen, looking for what is not would only cost; slices from front to back go on to look for what is hidden.
+/// Where all is seen, looking for what is not would only cost; slices from front to back go on to look for what is
+/// hidden.
 fn unseen(seen: Seen) -> Skippable {
     match seen.is_all() {
         true => Skippable::Nothing,

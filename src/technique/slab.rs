@@ -9,8 +9,8 @@
 //! Slicers draw covers in the middle of slabs: they are larger than the domain by as much, and those around the eye
 //! are the whole picture. Bricks hold as many voxels more.
 //!
-//! A segment between two ends of an isosurface's ray belongs to the brick of its far end and reaches a whole step out of
-//! it; filter and gradient must find their voxels from there. Bricks hold three voxels around their own.
+//! A segment between two ends of an isosurface's ray belongs to the brick of its far end and reaches a whole step out
+//! of it; filter and gradient must find their voxels from there. Bricks hold three voxels around their own.
 
 use super::slices_2d::{planes_per_slice, stack_axis};
 use super::{Error, Filter, Mode, Technique, View};

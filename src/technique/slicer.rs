@@ -18,8 +18,8 @@ pub enum Sight {
     Open,
     /// The depth attachment of the rendering, slice by slice.
     Tested,
-    /// What a host has drawn, read from an image ([`Slicer::bind_behind`]): of projections, which are drawn into an image
-    /// that has no depth attachment, and of slabs, which reach out of the slices that would be tested.
+    /// What a host has drawn, read from an image ([`Slicer::bind_behind`]): of projections, which are drawn into an
+    /// image that has no depth attachment, and of slabs, which reach out of the slices that would be tested.
     Read,
 }
 
@@ -98,8 +98,8 @@ impl Slicer {
         inputs.bind(&self.gpu, self.pipeline.layout(), &[])
     }
 
-    /// The same for [`Sight::Read`]: `host_depth` is the host's depth buffer, a texture as large as the picture, of which
-    /// [`super::Recording::behind`] tells the parameters.
+    /// The same for [`Sight::Read`]: `host_depth` is the host's depth buffer, a texture as large as the picture, of
+    /// which [`super::Recording::behind`] tells the parameters.
     ///
     /// # Errors
     /// Where an input is missing.

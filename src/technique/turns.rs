@@ -5,11 +5,11 @@
 //! turns of a sample = 3 + n (looks (1 + mask + filter) + weights + search + light)
 //! ```
 //!
-//! for n volumes: the sample itself, the search for it, what is left out on the way; with 7 looks where a gradient is made of differences, 28 more (with the turn that ends them) where
-//! there is a second derivative, two where there are slabs, and else one. A mask goes round
-//! for the layers and rows of the footprint, a kernel for those of its taps, a search for the halvings of the points,
-//! light for lamps and for the corners of a cell of the light volume. Clip planes are gone over once a ray, and once
-//! more for cut faces.
+//! for n volumes: the sample itself, the search for it, what is left out on the way; with 7 looks where a gradient is
+//! made of differences, 28 more (with the turn that ends them) where there is a second derivative, two where there are
+//! slabs, and else one. A mask goes round for the layers and rows of the footprint, a kernel for those of its taps, a
+//! search for the halvings of the points, light for lamps and for the corners of a cell of the light volume. Clip
+//! planes are gone over once a ray, and once more for cut faces.
 
 use super::{Error, Filter, Keep, Operator, Settings, Take, Technique, View, Words};
 

@@ -5,8 +5,8 @@
 //!                               max s - min s <= E/4 (min s + 1/L)            of extinction
 //! ```
 //!
-//! Samples that take colour and extinction from elsewhere in such a range leave every channel of the picture within E, with
-//! L the world length of the longest ray (`docs/sampling-notes.md` derives it). Cells are those of the function's
+//! Samples that take colour and extinction from elsewhere in such a range leave every channel of the picture within E,
+//! with L the world length of the longest ray (`docs/sampling-notes.md` derives it). Cells are those of the function's
 //! [`super::Table`]; a part of a range that is alike is alike, so that one number a cell tells all ranges.
 
 use super::table::Cut;
@@ -87,7 +87,8 @@ fn is_alike([low, high]: [Material; 2], tolerance: Tolerance) -> bool {
     (0..3).all(|c| apart(c) <= 0.5 * error) && apart(3) <= limit
 }
 
-/// The smallest and the largest of everything between two values. The law has its extremes at its points and at the ends.
+/// The smallest and the largest of everything between two values. The law has its extremes at its points and at the
+/// ends.
 fn extremes(
     function: &TransferFunction,
     reference_length: f64,

@@ -57,7 +57,8 @@ pub fn of_channel(
 
 /// The opacity of a volume of colours, over luma or alpha from 0 to 1. Its own colours are not used.
 pub fn of_colors(diagonal: f64, by_alpha: bool, window: Option<Window>) -> TransferFunction {
-    // Alpha says what is opaque; a table's cell at its very zero is not opaque either. Luma does not: black is nothing, and light matter is hardly more than dark.
+    // Alpha says what is opaque; a table's cell at its very zero is not opaque either. Luma does not: black is nothing,
+    // and light matter is hardly more than dark.
     let stops: &[(f64, f64)] = if by_alpha {
         &[(0.002, 0.0), (1.0, 0.5)]
     } else {

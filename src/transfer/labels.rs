@@ -95,8 +95,8 @@ impl LabelTable {
         })
     }
 
-    /// The same function of labels of which some are hidden and some dimmed, for a volume of labels shown alone: what is
-    /// dimmed has so much of its extinction, and of what its colour is more than grey.
+    /// The same function of labels of which some are hidden and some dimmed, for a volume of labels shown alone: what
+    /// is dimmed has so much of its extinction, and of what its colour is more than grey.
     pub fn cut(
         mut function: TransferFunction,
         is_shown: impl Fn(i64) -> bool,

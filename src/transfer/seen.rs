@@ -9,8 +9,8 @@
 //! included, so that neither the table nor the law itself shows what is called unseen.
 //!
 //! A contour around v of half-width r (in smallest spacings h, [`super::Graded`]) reaches r h |gradient| far. Where all
-//! values around a sample are in a range, its gradient is at most s (high - low) / h, s of the grid and of how gradients
-//! are made; so the contour is not seen there where
+//! values around a sample are in a range, its gradient is at most s (high - low) / h, s of the grid and of how
+//! gradients are made; so the contour is not seen there where
 //!
 //! ```text
 //! distance of v from [low, high] > r s (high - low)
@@ -60,8 +60,8 @@ impl Seen {
         Self::by(Cut::new(function), function, None)
     }
 
-    /// The same where a gradient, times the smallest spacing, is at most `slope` times the width of the range of all values
-    /// that it is made of: contours are seen in ranges that come near their values.
+    /// The same where a gradient, times the smallest spacing, is at most `slope` times the width of the range of all
+    /// values that it is made of: contours are seen in ranges that come near their values.
     pub fn of_slope(function: &TransferFunction, slope: f64) -> Self {
         Self::by(Cut::new(function), function, Some(slope))
     }
@@ -182,7 +182,8 @@ impl Seen {
     }
 }
 
-/// The values that widgets of any opacity reach, whatever the gradient; without those of contours, if these are told apart.
+/// The values that widgets of any opacity reach, whatever the gradient; without those of contours, if these are told
+/// apart.
 fn spans_of(graded: &Graded, has_contours: bool) -> Vec<[f64; 2]> {
     let is_left = |widget: &&Widget| {
         let is_contour = matches!(widget.shape, Shape::Contour { .. });

@@ -17,8 +17,8 @@
 //! whole cells between, the part of the last one. So values that are close lose no digits, and two values in one
 //! cell divide by nothing.
 //!
-//! The cells are those of [`super::Table`], and one more behind the last. Inside a cell the law is a line. Where it jumps
-//! there, a segment that ends in that cell misses a quarter of the jump over one cell at most; so the cells of a
+//! The cells are those of [`super::Table`], and one more behind the last. Inside a cell the law is a line. Where it
+//! jumps there, a segment that ends in that cell misses a quarter of the jump over one cell at most; so the cells of a
 //! function that jumps where no cell begins are as small as 2^16 of them allow.
 
 use super::table::Cut;

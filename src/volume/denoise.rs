@@ -8,14 +8,13 @@
 //! nlm         the same with g = exp(-D / 2 s^2),  D the mean of (f(y + k) - f(x + k))^2 over the 27 k around
 //! ```
 //!
-//! Tomasi and Manduchi, "Bilateral Filtering for Gray and Color Images", ICCV 1998. Buades, Coll and Morel, "A Non-local
-//! Algorithm for Image Denoising", CVPR 2005: y goes over the 7^3 voxels around, s is the deviation of the noise (as
-//! Coupe et al., IEEE TMI 27(4), 2008, choose the strength), and x itself weighs what the most alike of the others does.
-//! White noise of deviation 1 is left
-//! with (2 s sqrt pi)^(-3/2) by the Gaussian, 0.114 at s = 1.2 voxels. All of them work on stored numbers, the
-//! Gaussian as far as four deviations and the bilateral filter as far as two, and take the nearest voxel for those
-//! outside. No data stays no data; what is stored there, the nearest valid number, is seen by its neighbours. Thin
-//! bright things lose height as well.
+//! Tomasi and Manduchi, "Bilateral Filtering for Gray and Color Images", ICCV 1998. Buades, Coll and Morel, "A
+//! Non-local Algorithm for Image Denoising", CVPR 2005: y goes over the 7^3 voxels around, s is the deviation of the
+//! noise (as Coupe et al., IEEE TMI 27(4), 2008, choose the strength), and x itself weighs what the most alike of the
+//! others does. White noise of deviation 1 is left with (2 s sqrt pi)^(-3/2) by the Gaussian, 0.114 at s = 1.2 voxels.
+//! All of them work on stored numbers, the Gaussian as far as four deviations and the bilateral filter as far as two,
+//! and take the nearest voxel for those outside. No data stays no data; what is stored there, the nearest valid number,
+//! is seen by its neighbours. Thin bright things lose height as well.
 
 use super::{Rescale, Volume, Voxels};
 use crate::shaders::MAX_DENOISE_WEIGHTS;

@@ -21,19 +21,20 @@ pub trait Source: Send + Sync {
     /// and [`Piece::loss`] says what that cost.
     fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError>;
 
-    /// False where a part is found only by reading all that stands before it, as in a file that is compressed as a whole.
+    /// False where a part is found only by reading all that stands before it, as in a file that is compressed as a
+    /// whole.
     fn reads_parts(&self) -> bool {
         true
     }
 
-    /// True where a part of a row of voxels costs about what the whole row does, as in files of plain rows or of slices:
-    /// neighbours along x are read together then.
+    /// True where a part of a row of voxels costs about what the whole row does, as in files of plain rows or of
+    /// slices: neighbours along x are read together then.
     fn reads_whole_rows(&self) -> bool {
         false
     }
 
-    /// What the source knows of its bricks, with an overview of about `most_seen` voxels; `None` where somebody has to look
-    /// ([`Survey::of`]).
+    /// What the source knows of its bricks, with an overview of about `most_seen` voxels; `None` where somebody has to
+    /// look ([`Survey::of`]).
     ///
     /// # Errors
     /// What reading meets.

@@ -1,4 +1,5 @@
-//! One look at all voxels of a source, a piece at a time: what there is in each of many boxes, and every n-th voxel of all.
+//! One look at all voxels of a source, a piece at a time: what there is in each of many boxes, and every n-th voxel of
+//! all.
 //!
 //! ```text
 //! for each piece of boxes that fits into memory:
@@ -92,8 +93,8 @@ struct Found {
 }
 
 impl Survey {
-    /// Looks at `boxes`, each in one piece with its neighbours along x as long as `piece_bytes` hold them. The overview has
-    /// at most `most_seen` voxels. `tell` hears how many of the boxes are done, and may end the work.
+    /// Looks at `boxes`, each in one piece with its neighbours along x as long as `piece_bytes` hold them. The overview
+    /// has at most `most_seen` voxels. `tell` hears how many of the boxes are done, and may end the work.
     ///
     /// # Errors
     /// What the source meets; `None` where `tell` has ended it.

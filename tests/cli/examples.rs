@@ -3,7 +3,8 @@
 //!
 //! README says so in code blocks of `sh`. A comment at the end of a line is left out, `&&` runs one line after
 //! the other; what stands behind a pipe is another program and is left out. A line with a word of capitals (`INPUT`,
-//! `FILE`), `[` or words to choose from (`list|show`) shows a form, not an example. A block of `console` shows `$ ` lines with what they print below them.
+//! `FILE`), `[` or words to choose from (`list|show`) shows a form, not an example. A block of `console` shows `$ `
+//! lines with what they print below them.
 
 use crate::person::{Folder, Ran};
 use std::fs;

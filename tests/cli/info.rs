@@ -48,7 +48,8 @@ fn levels_and_what_corners_take_are_told() {
     let ran = folder.run("info a.svb");
     for line in [
         "levels       2, each next with half as many voxels along each axis: --level N\n",
-        // 121^3 voxels of one byte, of two on the device, or 44 x 44 x 124 texels of 16 bytes, of 3 x 3 new voxels each.
+        // 121^3 voxels of one byte, of two on the device, or 44 x 44 x 124 texels of 16 bytes, of 3 x 3 new voxels
+        // each.
         "to draw      1.7 MiB of memory, 3.4 MiB of the device's, 3.7 MiB by rays on llvmpipe\n",
     ] {
         assert!(ran.out.contains(line), "no {line:?} in {}", ran.out);

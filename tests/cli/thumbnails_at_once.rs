@@ -1,5 +1,5 @@
-//! Stages that run at once: pictures and films are those of one after the other, whoever is faster; an interrupt ends all
-//! stages; memory does not grow with the number of volumes.
+//! Stages that run at once: pictures and films are those of one after the other, whoever is faster; an interrupt ends
+//! all stages; memory does not grow with the number of volumes.
 
 use crate::person::Folder;
 use crate::thumbnails::{nrrd, pictures};

@@ -118,7 +118,8 @@ pub struct Found {
     pub pick: Option<Pick>,
 }
 
-/// What a host gets that draws the volume behind `drawn`; depth is given back where the mode has one, and a pixel picked.
+/// What a host gets that draws the volume behind `drawn`; depth is given back where the mode has one, and a pixel
+/// picked.
 pub fn draw(
     host: &Host,
     stage: &Stage,

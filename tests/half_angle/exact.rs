@@ -92,9 +92,9 @@ fn light_along_the_view_is_the_sum_of_a_power_series_and_converges_with_the_step
     }
 }
 
-/// Light across the view: exp(-sigma x) at the depth x. Slices lie d = sqrt(2) h apart along the light, and a sample has
-/// those before its own in the light, floor(x / d); a texel of width w beside it may have one more or less. Samples of the
-/// eye within w of the front and of the back of the box may see light that passes it by.
+/// Light across the view: exp(-sigma x) at the depth x. Slices lie d = sqrt(2) h apart along the light, and a sample
+/// has those before its own in the light, floor(x / d); a texel of width w beside it may have one more or less. Samples
+/// of the eye within w of the front and of the back of the box may see light that passes it by.
 #[test]
 fn light_across_the_view_falls_off_with_the_depth() {
     const PIXELS: u32 = 24;

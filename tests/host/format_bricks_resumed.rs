@@ -1,5 +1,5 @@
-//! Files of bricks whose writing was stopped: gone on with from any row, after any damage, they are byte for byte those of
-//! one run, and no reader takes them for whole before.
+//! Files of bricks whose writing was stopped: gone on with from any row, after any damage, they are byte for byte those
+//! of one run, and no reader takes them for whole before.
 #![cfg(feature = "files")]
 
 use crate::files;

@@ -1,5 +1,5 @@
-//! What needs no device: readers and writers of files, and arithmetic. One program, because linking fifty takes minutes.
-//! Those that measure memory are programs of their own.
+//! What needs no device: readers and writers of files, and arithmetic. One program, because linking fifty takes
+//! minutes. Those that measure memory are programs of their own.
 
 #[cfg(feature = "files")]
 #[path = "../shared/dicom.rs"]

@@ -137,7 +137,8 @@ fn a_voreen_function_stands_in_its_domain_and_jumps_where_a_key_is_split() {
 #[test]
 fn a_vapor_function_mixes_hues_by_the_shorter_way_and_scales_opacity() {
     let found = read("vapor.tf3");
-    // -20 to 80, opacity 1/2 at a quarter of the way and halved by the scale; hue 0.9 to 0.1 through red, saturation and value full.
+    // -20 to 80, opacity 1/2 at a quarter of the way and halved by the scale; hue 0.9 to 0.1 through red, saturation
+    // and value full.
     assert_at(&found, -20.0, [1.0, 0.0, 0.6, 0.0]);
     assert_at(&found, 5.0, [1.0, 0.0, 0.0, 0.25]);
     assert_at(&found, 30.0, [1.0, 0.6, 0.0, 1.0 / 3.0]);

@@ -1,4 +1,5 @@
-//! A Vulkan that lies: between the suite and the driver stand functions that change one thing, as a faulty driver would.
+//! A Vulkan that lies: between the suite and the driver stand functions that change one thing, as a faulty driver
+//! would.
 //!
 //! ```text
 //! Lie::State     what is recorded and made is changed on its way to the driver: blend factors, samplers, viewports, draws

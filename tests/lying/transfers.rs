@@ -107,8 +107,8 @@ unsafe extern "system" fn vkUpdateDescriptorSets(
     copies: u32,
     from: *const vk::CopyDescriptorSet<'static>,
 ) {
-    // SAFETY: as above; what is changed are copies that live until the call is done. A device that does not look at what
-    // is bound reads on where the memory does: the range ends inside of the allocation.
+    // SAFETY: as above; what is changed are copies that live until the call is done. A device that does not look at
+    // what is bound reads on where the memory does: the range ends inside of the allocation.
     unsafe {
         let mut infos = std::slice::from_raw_parts(infos, writes as usize).to_vec();
         let mut ranges = Vec::new();

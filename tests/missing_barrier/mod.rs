@@ -8,8 +8,8 @@ mod layer;
 
 use std::process::Command;
 
-/// A rendering that begins: layers of 2023 do not look at what dynamic rendering loads and clears. The barrier before one
-/// to a new image, before one that goes on with it, and the same of a depth attachment.
+/// A rendering that begins: layers of 2023 do not look at what dynamic rendering loads and clears. The barrier before
+/// one to a new image, before one that goes on with it, and the same of a depth attachment.
 pub const NEW_TARGET: &str = "image 0 to 2";
 pub const SAME_TARGET: &str = "image 2 to 2";
 pub const NEW_DEPTH: &str = "image 0 to 3";
@@ -19,7 +19,8 @@ pub const WRITTEN_BY_HOST: &str = "image 8 to 1";
 pub const READ_BY_HOST: &str = "memory 1000 to 2000";
 /// What is read is written by the next function, and there is none in a program of one.
 pub const NEXT_FUNCTION: &str = "buffer 200000000 to 700000000";
-/// A list of tiles, after it was drawn: of a brick or a part of the picture before, and there is none in a picture of one.
+/// A list of tiles, after it was drawn: of a brick or a part of the picture before, and there is none in a picture of
+/// one.
 pub const LIST_BEFORE: &str = "buffer 1 to 1000";
 /// The same of the images that rays fill.
 pub const PART_BEFORE: &str = "memory 700000000 to 700000000";

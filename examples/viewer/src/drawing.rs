@@ -114,8 +114,8 @@ impl Drawing {
             view: self.canvas.image.view(),
             format: self.canvas.image.format(),
             extent: self.canvas.extent,
-            // What it held is given up; but the frame before may still show it, or copy it for a screenshot, and drawing
-            // waits for that. Reads need no access, only the stage.
+            // What it held is given up; but the frame before may still show it, or copy it for a screenshot, and
+            // drawing waits for that. Reads need no access, only the stage.
             before: TargetState {
                 layout: vk::ImageLayout::UNDEFINED,
                 stage: vk::PipelineStageFlags2::FRAGMENT_SHADER

@@ -58,8 +58,8 @@ impl Frames {
         self.all.len() as u32
     }
 
-    /// Waits for the next frame in flight, takes an image of the window, and begins recording. `None` where the window has
-    /// another size by now.
+    /// Waits for the next frame in flight, takes an image of the window, and begins recording. `None` where the window
+    /// has another size by now.
     pub fn begin(&mut self, host: &Host, swapchain: &Swapchain) -> Result<Option<Begun>, Error> {
         let frame = &self.all[self.next];
         let fences = [frame.done];

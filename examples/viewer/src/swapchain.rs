@@ -25,8 +25,8 @@ pub struct Swapchain {
 pub struct Shown {
     pub image: vk::Image,
     pub view: vk::ImageView,
-    /// Signalled when it is drawn. It is presentation that waits, and nothing tells when that has ended but that the image
-    /// is given out again: so there is one for each image, and not for each frame in flight.
+    /// Signalled when it is drawn. It is presentation that waits, and nothing tells when that has ended but that the
+    /// image is given out again: so there is one for each image, and not for each frame in flight.
     pub drawn: vk::Semaphore,
 }
 

@@ -1,5 +1,6 @@
-//! Each barrier that the viewer records, its own and stratavox's, is needed: without it the validation layer speaks, but for
-//! those that it cannot know of. Looked at under `STRATAVOX_VALIDATION=sync`, and skipped elsewhere: it takes a run each.
+//! Each barrier that the viewer records, its own and stratavox's, is needed: without it the validation layer speaks,
+//! but for those that it cannot know of. Looked at under `STRATAVOX_VALIDATION=sync`, and skipped elsewhere: it takes a
+//! run each.
 #![cfg(target_os = "linux")]
 
 mod display;
@@ -11,8 +12,8 @@ use missing_barrier::*;
 use std::fs;
 use tempfile::TempDir;
 
-/// From a colour target to what the window shows: layers of 2023 do not look at what dynamic rendering stores, and presentation
-/// waits for a semaphore.
+/// From a colour target to what the window shows: layers of 2023 do not look at what dynamic rendering stores, and
+/// presentation waits for a semaphore.
 const SHOWN: &str = "image 2 to 1000001002";
 /// What the CPU reads: no layer sees that.
 const COPIED_TO_HOST: &str = "buffer 1000 to 2000";

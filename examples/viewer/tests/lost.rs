@@ -1,5 +1,5 @@
-//! What becomes of the viewer when its surface, its device or the size of its window is gone. `failing/layer.c` stands between
-//! it and the validation layer.
+//! What becomes of the viewer when its surface, its device or the size of its window is gone. `failing/layer.c` stands
+//! between it and the validation layer.
 #![cfg(target_os = "linux")]
 
 mod display;

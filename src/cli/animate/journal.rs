@@ -9,9 +9,9 @@
 //! {"frame":{"number":0,"files":[{"name":"0000.png","bytes":5123,"hash":"..."}]}}
 //! ```
 //!
-//! The file begins before the first frame: a frame without a journal is somebody else's. A line is on the disk before the next frame is written; a torn
-//! last line, as a kill leaves it, counts for nothing. Hashes are those of one build of the program: they find
-//! damage and change, not forgery.
+//! The file begins before the first frame: a frame without a journal is somebody else's. A line is on the disk before
+//! the next frame is written; a torn last line, as a kill leaves it, counts for nothing. Hashes are those of one build
+//! of the program: they find damage and change, not forgery.
 
 use crate::{
     cli::{

@@ -66,7 +66,8 @@ use target::{Frames, Target};
     { \"at\": 0, \"azimuth\": 0, \"zoom\": 1 }, { \"at\": 1, \"azimuth\": 360, \"zoom\": 2 } ] }\n  \
     Words of a key: azimuth, elevation, roll, zoom, fov, view_height, eye, target, up, window, tf, crop, clip, light, time")]
 pub struct Animate {
-    /// frames/%04d.png (or .exr, .npy), a film that ends in .apng, .gif, .y4m or .mp4, or - for Y4M on the standard output
+    /// frames/%04d.png (or .exr, .npy), a film that ends in .apng, .gif, .y4m or .mp4, or - for Y4M on the standard
+    /// output
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Turn the camera once around in so many frames

@@ -23,7 +23,8 @@ const RUN: usize = 256;
 pub struct Moment {
     /// It; of a stream all but the voxels.
     pub volume: Arc<Volume>,
-    /// Where voxels come from, where they are not in memory, and every n-th of them, unless others have looked at those.
+    /// Where voxels come from, where they are not in memory, and every n-th of them, unless others have looked at
+    /// those.
     pub streamed: Option<(Stream, Option<Volume>)>,
 }
 

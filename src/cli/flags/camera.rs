@@ -65,7 +65,8 @@ pub struct CameraFlags {
     #[arg(long, value_name = "H", value_parser = positive, help_heading = "Camera")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub view_height: Option<f64>,
-    /// Stretch heights, world z, by this; 1 for not at all [default: 1, more where a piece of the Earth is wide and flat]
+    /// Stretch heights, world z, by this; 1 for not at all [default: 1, more where a piece of the Earth is wide and
+    /// flat]
     #[arg(long, value_name = "F", value_parser = positive, help_heading = "Camera")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub exaggerate: Option<f64>,

@@ -15,7 +15,8 @@ const HEADING: &str = "Channels";
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ChannelFlags {
-    /// Draw this channel, counted from 0, together with others, in a colour (its name, or R:G:B from 0 to 1) and over a window of values; once for each channel
+    /// Draw this channel, counted from 0, together with others, in a colour (its name, or R:G:B from 0 to 1) and over a
+    /// window of values; once for each channel
     #[arg(
         long,
         value_name = "N[,color=NAME|R:G:B][,window=LO:HI]",

@@ -18,7 +18,8 @@ use std::path::PathBuf;
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ClassificationFlags {
-    /// A transfer function of ours: ct-bone, ct-soft-tissue, ct-lung, mri, microscopy, pet, boundaries, grey [default: by the values]
+    /// A transfer function of ours: ct-bone, ct-soft-tissue, ct-lung, mri, microscopy, pet, boundaries, grey [default:
+    /// by the values]
     #[arg(long, value_name = "NAME", value_parser = preset, conflicts_with = "tf", help_heading = "Colour")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub preset: Option<String>,

@@ -16,7 +16,8 @@ use std::{
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct InputFlags {
-    /// A volume file, a folder of slices, or phantom:NAME[,n=256][,type=u8|u16|f32] with NAME of sphere, gauss, marschner-lobb, head, fog, shells, storm, cells
+    /// A volume file, a folder of slices, or phantom:NAME[,n=256][,type=u8|u16|f32] with NAME of sphere, gauss,
+    /// marschner-lobb, head, fog, shells, storm, cells
     #[arg(value_name = "INPUT")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub path: Option<String>,
@@ -32,7 +33,8 @@ pub struct InputFlags {
     #[arg(long, value_name = "N|ISO", help_heading = "Input")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time: Option<String>,
-    /// One of several numbers of a voxel, counted from 0; the length of the vector that they are; or all, each in a colour of its own
+    /// One of several numbers of a voxel, counted from 0; the length of the vector that they are; or all, each in a
+    /// colour of its own
     #[arg(long, value_name = "N|magnitude|all", help_heading = "Input")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub component: Option<Component>,
@@ -40,7 +42,8 @@ pub struct InputFlags {
     #[arg(long, value_name = "UID", help_heading = "Input")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub series: Option<String>,
-    /// One of several resolutions of a file that has them: 0 the finest, each next with half as many voxels along each axis
+    /// One of several resolutions of a file that has them: 0 the finest, each next with half as many voxels along each
+    /// axis
     #[arg(long, value_name = "N", help_heading = "Input")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub level: Option<u32>,
@@ -56,8 +59,8 @@ pub struct InputFlags {
     #[arg(long, conflicts_with = "fit", help_heading = "Input")]
     #[serde(skip_serializing_if = "is_false")]
     pub stream: bool,
-    /// Device memory that the bricks of such a volume may take, such as 2G [default: half of what there is where that is
-    /// the memory of the processor, else 80 %]
+    /// Device memory that the bricks of such a volume may take, such as 2G [default: half of what there is where that
+    /// is the memory of the processor, else 80 %]
     #[arg(long, value_name = "SIZE", value_parser = memory::bytes_of_word, help_heading = "Input")]
     #[serde(skip)]
     pub device_memory: Option<u64>,

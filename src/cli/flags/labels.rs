@@ -25,7 +25,8 @@ pub struct LabelFlags {
     #[arg(long, value_name = "FILE", help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub labels: Option<PathBuf>,
-    /// Names, colours and opacities of labels: a transfer function file with a key `labels`, an ITK-SNAP description, a Slicer colour table, or lines `1 name`
+    /// Names, colours and opacities of labels: a transfer function file with a key `labels`, an ITK-SNAP description, a
+    /// Slicer colour table, or lines `1 name`
     #[arg(long, value_name = "FILE", help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub label_tf: Option<PathBuf>,

@@ -16,7 +16,8 @@ const HEADING: &str = "Light";
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LightFlags {
-    /// Colours as they are, or surfaces lit from both sides; presets are drawn without light [default: none, phong in --mode iso]
+    /// Colours as they are, or surfaces lit from both sides; presets are drawn without light [default: none, phong in
+    /// --mode iso]
     #[arg(long, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shading: Option<ShadingWord>,

@@ -89,13 +89,13 @@ pub struct SceneFlags {
     #[command(flatten)]
     pub picture: PictureFlags,
     /// Take noise out of the numbers first: gaussian[:SIGMA], median, bilateral[:SIGMA[:VALUE]], nlm[:VALUE]; SIGMA in
-    /// voxels [default: 1], VALUE what is no noise any more [default: twice the noise found], and of nlm, the slowest and
-    /// best of them, the deviation of the noise [default: that found]
+    /// voxels [default: 1], VALUE what is no noise any more [default: twice the noise found], and of nlm, the slowest
+    /// and best of them, the deviation of the noise [default: that found]
     #[arg(long, value_name = "FILTER")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub denoise: Option<DenoiseWord>,
-    /// A Vulkan device by name, index or UUID, `cpu` for a software one, or `reference` for no Vulkan at all; where many
-    /// pictures are drawn it may be said again, and they are shared out
+    /// A Vulkan device by name, index or UUID, `cpu` for a software one, or `reference` for no Vulkan at all; where
+    /// many pictures are drawn it may be said again, and they are shared out
     #[arg(long, value_name = "DEVICE")]
     #[serde(with = "devices", skip_serializing_if = "Vec::is_empty")]
     pub device: Vec<String>,

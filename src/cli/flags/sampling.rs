@@ -29,7 +29,8 @@ pub struct SamplingFlags {
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mode: Option<ModeWord>,
-    /// How a value between voxels is made [default: linear]; quadratic and cubic take more memory, and all but nearest and linear more time
+    /// How a value between voxels is made [default: linear]; quadratic and cubic take more memory, and all but nearest
+    /// and linear more time
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub filter: Option<FilterWord>,
@@ -58,8 +59,8 @@ pub struct SamplingFlags {
     #[arg(long)]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub smooth: bool,
-    /// Rays: steps begin elsewhere in each pixel, which turns bands into fine grain (blue noise); another number, another
-    /// pattern
+    /// Rays: steps begin elsewhere in each pixel, which turns bands into fine grain (blue noise); another number,
+    /// another pattern
     #[arg(long, value_name = "SEED", num_args = 0..=1, default_missing_value = "0", require_equals = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub jitter: Option<u32>,
@@ -71,8 +72,9 @@ pub struct SamplingFlags {
     #[arg(long, value_name = "F", value_parser = positive)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub samples_per_voxel: Option<f64>,
-    /// Rays in composite: one sample for all of a ray in a block of 8^3 voxels whose values look alike, so that no channel
-    /// of the picture is farther than this from that of all samples, from 0 to 1: 0.01 is 2.6 of 255 codes in linear light
+    /// Rays in composite: one sample for all of a ray in a block of 8^3 voxels whose values look alike, so that no
+    /// channel of the picture is farther than this from that of all samples, from 0 to 1: 0.01 is 2.6 of 255 codes in
+    /// linear light
     #[arg(long, value_name = "ERROR", value_parser = positive)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub adaptive_steps: Option<f64>,
@@ -80,8 +82,8 @@ pub struct SamplingFlags {
     #[arg(long, value_name = "N")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub aa: Option<u32>,
-    /// Send the rays of --aa through uneven places of the pixel, other ones in each pixel and each frame of a film: grain
-    /// in place of regular patterns where detail is finer than pixels
+    /// Send the rays of --aa through uneven places of the pixel, other ones in each pixel and each frame of a film:
+    /// grain in place of regular patterns where detail is finer than pixels
     #[arg(long)]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub aa_uneven: bool,

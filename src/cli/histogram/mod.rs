@@ -35,7 +35,8 @@ pub struct HistogramVerb {
     /// The figure: its ending says whether .png, .svg or .json
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// Values against gradient magnitudes: boundaries between materials are arches; the widgets of the function lie over them as lines
+    /// Values against gradient magnitudes: boundaries between materials are arches; the widgets of the function lie
+    /// over them as lines
     #[arg(long)]
     joint: bool,
     /// As many bins of values at most

@@ -19,8 +19,8 @@ impl DeviceRoom for Option<DeviceMemory> {
     }
 }
 
-/// True where what is held of a volume fits so often, and once more in memory while the next is read. The header is that
-/// of a source that fits.
+/// True where what is held of a volume fits so often, and once more in memory while the next is read. The header is
+/// that of a source that fits.
 pub fn leaves_room(
     header: &Header,
     scene: &SceneFlags,

@@ -54,8 +54,8 @@ pub struct Thumbnails {
     /// The folder of the pictures; it is made where there is none
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
-    /// Draw every volume from each of these sides, as --view has them, into NAME-SIDE.png; it is read and brought to the
-    /// device once
+    /// Draw every volume from each of these sides, as --view has them, into NAME-SIDE.png; it is read and brought to
+    /// the device once
     #[arg(long, value_name = "SIDE,SIDE...", value_delimiter = ',', help_heading = "Camera",
           conflicts_with_all = ["view", "azimuth", "elevation", "eye", "section"])]
     views: Vec<ViewWord>,

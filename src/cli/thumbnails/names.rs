@@ -1,7 +1,7 @@
 //! What the picture of each volume is called.
 //!
-//! A volume's name without its ending, and behind it that of a part and of a view; where two would be called the same, both keep their ending, and where that is
-//! not enough, the folder they lie in goes before it.
+//! A volume's name without its ending, and behind it that of a part and of a view; where two would be called the same,
+//! both keep their ending, and where that is not enough, the folder they lie in goes before it.
 
 use super::parts::Part;
 use crate::{

@@ -1,12 +1,12 @@
-//! What is left of light in matter that is the same all over a box, written a second time in f64: a path is one straight
-//! line, and its depth the length of it that lies in the box.
+//! What is left of light in matter that is the same all over a box, written a second time in f64: a path is one
+//! straight line, and its depth the length of it that lies in the box.
 //!
 //! ```text
 //! open = mean over paths w of exp(-s l)      l = length of { p + t w, start <= t <= end } in the box
 //! ```
 //!
-//! `open` is known at the corners of voxels and trilinear between. It is read a cell nearer to where light comes from, a
-//! cell being as long as the shortest spacing of voxels.
+//! `open` is known at the corners of voxels and trilinear between. It is read a cell nearer to where light comes from,
+//! a cell being as long as the shortest spacing of voxels.
 
 use super::Shot;
 use crate::technique::Shadows;

@@ -1,4 +1,5 @@
-//! What a mode shows of the samples of a ray (`sampling.md` 5 and 6, `algorithms.md` T11), written a second time in f64.
+//! What a mode shows of the samples of a ray (`sampling.md` 5 and 6, `algorithms.md` T11), written a second time in
+//! f64.
 //!
 //! ```text
 //! composite    C += T a c,  T *= 1 - a,  a = 1 - exp(-s d)

@@ -1,5 +1,5 @@
-//! A page for people: the summary first, then what is not well with its pictures, then every case. It needs no other file
-//! but the pictures beside it.
+//! A page for people: the summary first, then what is not well with its pictures, then every case. It needs no other
+//! file but the pictures beside it.
 
 use super::escaped;
 use crate::conformance::record::{Package, Record};

@@ -16,7 +16,8 @@ use crate::technique::{Filter, Level, Mode, Shading};
 use crate::volume::{Rescale, Volume, VoxelType, Voxels};
 use glam::{DVec3, dvec3};
 
-/// Where the twins in f32 and in f64 are farther apart, a sample has jumped over a border: nothing is known of the pixel.
+/// Where the twins in f32 and in f64 are farther apart, a sample has jumped over a border: nothing is known of the
+/// pixel.
 const JUMP: f64 = 2e-5;
 
 const LIKELY: &str =

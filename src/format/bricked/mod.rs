@@ -7,8 +7,8 @@
 //! ```
 //!
 //! All numbers are little-endian. Level 0 is the volume; a voxel of level k is the mean of 2^3 of level k - 1. A brick
-//! has `side` voxels of its own along each axis, the last ones fewer, and `halo` of its neighbours' on each side; low and
-//! high are its smallest and largest stored number, NaN where none is valid (`docs/formats.md`).
+//! has `side` voxels of its own along each axis, the last ones fewer, and `halo` of its neighbours' on each side; low
+//! and high are its smallest and largest stored number, NaN where none is valid (`docs/formats.md`).
 
 mod index;
 mod lines;

@@ -78,7 +78,8 @@ fn list_dimension(text: &str) -> Result<Option<i64>, Problem> {
     }
 }
 
-/// `count` files of `dimension` axes each make up the array; without a dimension, each is a slice along the slowest axis.
+/// `count` files of `dimension` axes each make up the array; without a dimension, each is a slice along the slowest
+/// axis.
 fn check_count(array: &Array, dimension: Option<i64>, count: u64) -> Result<(), Problem> {
     let axes = array.axes.len();
     let dimension = match dimension {

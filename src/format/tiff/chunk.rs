@@ -1,8 +1,8 @@
 //! One strip or tile: its bytes in the file to the bytes of its pixels.
 //!
-//! Deflate is inflated here, to its checksum. For LZW, PackBits, JPEG and predictors the chunk is wrapped as a TIFF of its own, one
-//! strip of gray samples, and the `tiff` crate decodes that: it sees sizes that were checked, in memory, and
-//! never follows an offset of the file.
+//! Deflate is inflated here, to its checksum. For LZW, PackBits, JPEG and predictors the chunk is wrapped as a TIFF of
+//! its own, one strip of gray samples, and the `tiff` crate decodes that: it sees sizes that were checked, in memory,
+//! and never follows an offset of the file.
 
 use super::TIFF;
 use super::ifd::{self, Directory, Reader};

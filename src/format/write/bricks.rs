@@ -1,4 +1,5 @@
-//! A file of bricks (`src/format/bricked`), level by level: each level is made of the one before it, which is read back.
+//! A file of bricks (`src/format/bricked`), level by level: each level is made of the one before it, which is read
+//! back.
 
 use super::layout::Layout;
 use super::numbers::{Bytes, Tally};

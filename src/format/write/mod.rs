@@ -180,9 +180,9 @@ pub fn write_volume(
     })
 }
 
-/// Writes a part of `source` as bricks to `out`, which ends where those that are `done` end. `note` hears a line of each
-/// row of bricks that is in the file: [`DoneBricks::read`] takes them back, and the file is that of one who was never
-/// stopped.
+/// Writes a part of `source` as bricks to `out`, which ends where those that are `done` end. `note` hears a line of
+/// each row of bricks that is in the file: [`DoneBricks::read`] takes them back, and the file is that of one who was
+/// never stopped.
 ///
 /// # Errors
 /// Those of [`write_volume`], and where the bricks that are done are not those of this volume.

@@ -4,8 +4,8 @@
 //! row HOLES LARGEST SUM COUNT CLAMPED NOT_FINITE ROUNDED [BEGINS BYTES CODING LOW HIGH CRC] ... end
 //! ```
 //!
-//! Floats are their bits, so that nothing is lost on the way. Lines count as far as the bricks that they speak of are in
-//! the file, compared by their checksums: whatever a kill or the loss of power leaves behind that is written again.
+//! Floats are their bits, so that nothing is lost on the way. Lines count as far as the bricks that they speak of are
+//! in the file, compared by their checksums: whatever a kill or the loss of power leaves behind that is written again.
 
 use super::Selection;
 use super::bricks::SIDE;
@@ -36,8 +36,8 @@ pub struct DoneBricks {
 }
 
 impl DoneBricks {
-    /// Those of the lines that were noted as `file` was written. Lines behind one that is torn, or whose bricks are not in
-    /// the file as they were written, count for nothing.
+    /// Those of the lines that were noted as `file` was written. Lines behind one that is torn, or whose bricks are not
+    /// in the file as they were written, count for nothing.
     ///
     /// # Errors
     /// Where the file cannot be read.

@@ -4,7 +4,8 @@
 //! for each component and time: slabs along z, the first one first -> numbers as they are in memory, little-endian
 //! ```
 //!
-//! Memory holds one slab, whatever the source holds; the disk holds all of it, uncompressed, until the source is dropped.
+//! Memory holds one slab, whatever the source holds; the disk holds all of it, uncompressed, until the source is
+//! dropped.
 
 use super::numbers::Bytes;
 use super::{Selection, WriteVolumeError};

@@ -42,9 +42,10 @@ pub struct Expected {
 }
 
 impl<'v> Renderer<'v> {
-    /// How long a submission shall take: 100 ms unless said, 200 ms where the device is the processor. Work on the device is cut into submissions that are
-    /// measured, so that none takes much longer, the first pictures of a kind carefully. The picture is the same
-    /// however it is cut: infinity is one submission, 0 the smallest parts that there are.
+    /// How long a submission shall take: 100 ms unless said, 200 ms where the device is the processor. Work on the
+    /// device is cut into submissions that are measured, so that none takes much longer, the first pictures of a kind
+    /// carefully. The picture is the same however it is cut: infinity is one submission, 0 the smallest parts that
+    /// there are.
     pub fn set_submission_ms(&mut self, target_ms: f64) {
         self.slices.target_ms = target_ms;
     }
@@ -55,8 +56,8 @@ impl<'v> Renderer<'v> {
     }
 
     /// From here on nothing is submitted while `stop` is true: what was asked for ends with
-    /// [`gpu::Error::Stopped`](crate::gpu::Error::Stopped) when the submission at work is done, within 250 ms. Once it is
-    /// false again pictures can be drawn as before.
+    /// [`gpu::Error::Stopped`](crate::gpu::Error::Stopped) when the submission at work is done, within 250 ms. Once it
+    /// is false again pictures can be drawn as before.
     pub fn stop_when(&mut self, stop: Arc<AtomicBool>) {
         self.device.stop_when(stop);
     }

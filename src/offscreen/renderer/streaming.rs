@@ -360,8 +360,8 @@ impl Ahead {
     }
 }
 
-/// What a picture leaves out, and what is to be known of bricks for it. Their halos hold all that it may ask for: a voxel
-/// for the filter, and one for gradients or two for half a slab.
+/// What a picture leaves out, and what is to be known of bricks for it. Their halos hold all that it may ask for: a
+/// voxel for the filter, and one for gradients or two for half a slab.
 fn skippable(scene: &Scene) -> (Skippable, Apron) {
     let found = super::skipping::wanted(scene);
     found.unwrap_or((Skippable::Nothing, scene.settings.apron()))

@@ -76,8 +76,8 @@ impl Default for StreamOptions {
 }
 
 impl Stream {
-    /// Looks at all of one time and component of a source. `tell` hears how many bricks are done of how many, and may end
-    /// the work.
+    /// Looks at all of one time and component of a source. `tell` hears how many bricks are done of how many, and may
+    /// end the work.
     ///
     /// # Errors
     /// What the source meets; `None` where `tell` has ended it.

@@ -48,7 +48,8 @@ impl Projection {
     }
 
     /// Binds inputs and the image that a recording fills, an R32G32B32A32_SFLOAT storage image:
-    /// (value, weight, depth or -1, samples). `tiles` has room for as many pixels, and is used by no unfinished recording.
+    /// (value, weight, depth or -1, samples). `tiles` has room for as many pixels, and is used by no unfinished
+    /// recording.
     ///
     /// # Errors
     /// Where an input is missing.

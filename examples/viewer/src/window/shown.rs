@@ -27,8 +27,8 @@ impl Window {
         let primitives = self.context.tessellate(shapes, per_point);
         let (cmd, frame) = (begun.cmd, begun.frame);
         let mut shots = Vec::new();
-        // SAFETY: the command buffer is recording outside rendering; its frame in flight is free, and everything that is
-        // used lives until it is done, because what is dropped waits for that.
+        // SAFETY: the command buffer is recording outside rendering; its frame in flight is free, and everything that
+        // is used lives until it is done, because what is dropped waits for that.
         unsafe {
             let painter = self.painter.as_mut().expect("made with the swapchain");
             painter.prepare(cmd, frame, textures_delta, &primitives, per_point, window)?;
@@ -46,8 +46,8 @@ impl Window {
             view: shown.view,
             format: swapchain.format,
             extent: window,
-            // What it showed is given up. The semaphore of its acquisition is waited for at this stage: so the change of
-            // layout, which begins here, waits for it too.
+            // What it showed is given up. The semaphore of its acquisition is waited for at this stage: so the change
+            // of layout, which begins here, waits for it too.
             before: TargetState {
                 layout: vk::ImageLayout::UNDEFINED,
                 stage: vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT,

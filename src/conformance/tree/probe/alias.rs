@@ -128,7 +128,8 @@ fn info(format: vk::Format, [width, height, depth]: [u32; 3]) -> vk::ImageCreate
 /// Brings texels to an image that was undefined, and back.
 ///
 /// # Safety
-/// `cmd` is recording on the device, outside rendering; what used its memory did so by copies; all live until it has run.
+/// `cmd` is recording on the device, outside rendering; what used its memory did so by copies; all live until it has
+/// run.
 unsafe fn there_and_back(
     gpu: &Gpu,
     cmd: vk::CommandBuffer,

@@ -1,4 +1,5 @@
-//! Codes of formats to numbers and back: every code of 8 and of 16 bits, floats with their infinities and what is no number.
+//! Codes of formats to numbers and back: every code of 8 and of 16 bits, floats with their infinities and what is no
+//! number.
 //!
 //! ```text
 //! UNORM of b bits    code / (2^b - 1), and round(that (2^b - 1)) is the code        SFLOAT    the number itself

@@ -1,4 +1,5 @@
-//! Differences between neighbouring pixels, along an edge too: pixels of a quad that no triangle covers are run for them.
+//! Differences between neighbouring pixels, along an edge too: pixels of a quad that no triangle covers are run for
+//! them.
 
 use super::kit;
 use crate::conformance::case::{Case, Stop};

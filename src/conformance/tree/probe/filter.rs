@@ -211,7 +211,8 @@ impl Of {
     }
 }
 
-/// The smallest and the largest legal result at a place in texels, of texels by index; of one layer, where there are such.
+/// The smallest and the largest legal result at a place in texels, of texels by index; of one layer, where there are
+/// such.
 pub fn legal(
     texel: &dyn Fn([i64; 3]) -> f64,
     place: [f64; 3],

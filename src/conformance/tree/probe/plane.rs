@@ -66,8 +66,8 @@ impl Triangle {
     }
 }
 
-/// Operations that make a number at a pixel of those at the corners: two differences, products and a sum for each of two
-/// slopes, a division by the area, and two products and sums for the place.
+/// Operations that make a number at a pixel of those at the corners: two differences, products and a sum for each of
+/// two slopes, a division by the area, and two products and sums for the place.
 pub const OPERATIONS: f64 = 14.0;
 
 /// How far corners may be from where they were asked for, along each axis, in pixels of a picture so wide: a step of

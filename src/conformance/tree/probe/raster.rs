@@ -1,4 +1,5 @@
-//! The rasterizer: which pixels a triangle covers. Slices are drawn by it, and may neither miss a pixel nor have it twice.
+//! The rasterizer: which pixels a triangle covers. Slices are drawn by it, and may neither miss a pixel nor have it
+//! twice.
 
 use super::kit::{self, Drawing};
 use crate::conformance::case::{Case, Stop};

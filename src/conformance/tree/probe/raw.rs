@@ -1,5 +1,5 @@
-//! Objects of Vulkan that the library has no need of and probes have: images of several levels and of depth, memory that
-//! several share, states of pipelines.
+//! Objects of Vulkan that the library has no need of and probes have: images of several levels and of depth, memory
+//! that several share, states of pipelines.
 
 use crate::conformance::case::Stop;
 use crate::gpu::owned::{Own, OwnMemory};

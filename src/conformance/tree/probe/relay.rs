@@ -332,7 +332,8 @@ impl Relay {
             _ => info.image_memory_barriers(&images),
         };
         order(&info);
-        // SAFETY: recorded outside rendering behind the dependency; the caller waits, and all that is bound lives meanwhile.
+        // SAFETY: recorded outside rendering behind the dependency; the caller waits, and all that is bound lives
+        // meanwhile.
         unsafe {
             match step % 3 {
                 0 => {

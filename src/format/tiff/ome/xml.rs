@@ -1,6 +1,7 @@
 //! OME-XML in the description of the first page, taken apart: the part of it that places pages.
 //!
-//! docs.openmicroscopy.org/ome-model, "OME-TIFF specification" and the schema of 2016-06. Documents with a DTD are refused.
+//! docs.openmicroscopy.org/ome-model, "OME-TIFF specification" and the schema of 2016-06. Documents with a DTD are
+//! refused.
 
 use super::super::TIFF;
 use super::super::length::unit;

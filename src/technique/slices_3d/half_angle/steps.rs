@@ -1,5 +1,5 @@
-//! Half-angle slices in steps, so that no submission takes long: of each slice first what the eye sees, then what the light
-//! sees, each in bands.
+//! Half-angle slices in steps, so that no submission takes long: of each slice first what the eye sees, then what the
+//! light sees, each in bands.
 
 use super::{HalfAngleBindings, HalfAngleSlicer, HalfAngleSlices};
 use crate::gpu::{Image, Tile};
