@@ -12,11 +12,13 @@ mod colors;
 mod denoise;
 pub mod field;
 mod grid;
+mod header;
 mod histogram;
 mod holes;
 mod joint;
 pub mod kernel;
 pub mod labels;
+mod limits;
 mod magnitude;
 mod part;
 pub mod phantom;
@@ -24,33 +26,36 @@ mod prefilter;
 #[cfg(feature = "files")]
 mod pyramid;
 mod read;
+mod read_error;
 mod reduce;
 mod regrid;
 pub mod sample;
 mod source;
 mod statistics;
 mod survey;
+mod voxel_box;
 mod voxels;
 
 pub use colors::{luma, read_all, read_colors};
 pub use denoise::{Denoise, MAX_SIGMA_VOXELS, Pass, noise_of, with_numbers};
 pub use grid::Grid;
+pub use header::{Channel, Format, Header, Meaning, Rescale, Series, Wanted};
 pub use histogram::Histogram;
 pub use joint::{JointHistogram, steepest_gradient};
+pub use limits::Limits;
 pub use magnitude::Magnitude;
 pub use part::VoxelPart;
 pub(crate) use part::part_of;
 pub use prefilter::{Coefficients, Spline};
 #[cfg(feature = "files")]
 pub(crate) use pyramid::{Difference, difference, halved, held};
+pub use read_error::{Problem, ReadError};
 pub use reduce::Reduced;
 pub use regrid::{is_same_grid, regridded};
-pub use source::{
-    Channel, Format, Header, Limits, Loss, Meaning, Pick, Piece, Problem, ReadError, Rescale,
-    Series, Source, VoxelBox, Wanted,
-};
+pub use source::{Loss, Pick, Piece, Source};
 pub use statistics::Statistics;
 pub use survey::{Overview, Survey, Surveyed};
+pub use voxel_box::VoxelBox;
 pub use voxels::{VoxelType, Voxels};
 
 use glam::DAffine3;

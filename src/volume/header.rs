@@ -1,0 +1,205 @@
+//! What a source says of itself before any voxel is read: `value = stored * slope + intercept` at
+//! `world = world_from_voxel voxel`.
+
+use super::{VoxelBox, VoxelType};
+use glam::DAffine3;
+
+/// What a source holds. Nothing in it can be wrong: dims are not zero, the affine can be inverted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Header {
+    /// The kind of file.
+    pub format: Format,
+    /// Voxels along x, y, z.
+    pub dims: [u32; 3],
+    /// Numbers per voxel.
+    pub components: u32,
+    /// Time steps.
+    pub times: u32,
+    /// The type in the file.
+    pub stored: VoxelType,
+    /// Voxel space (corner of the grid at 0, centres at +0.5) to world, RAS+ for medical files.
+    pub world_from_voxel: DAffine3,
+    /// Stored number to value.
+    pub rescale: Rescale,
+    /// The stored number that means "no data".
+    pub fill: Option<f64>,
+    /// True where the file says that values are Hounsfield units (or the format's way of saying so).
+    pub hounsfield: bool,
+    /// The unit of values as the file words it, `K` or `m s-1`; `None` where it is silent.
+    pub unit: Option<String>,
+    /// What the numbers of a voxel are to each other.
+    pub meaning: Meaning,
+    /// True where the file says that values are names of things: nothing lies between two of them.
+    pub is_labels: bool,
+    /// True where the world is a piece of the Earth in kilometres: x east, y north, z up.
+    pub is_earth: bool,
+    /// How many resolutions the source has; 1 where there is only this one.
+    pub levels: u32,
+    /// The moment of each time step, an ISO 8601 date or a number with its unit. Empty where the file does not say.
+    pub time_names: Vec<String>,
+    /// The DICOM series of a folder; the one this source reads comes first. Empty in other formats.
+    pub series: Vec<Series>,
+    /// Names of the variables in the file; the one this source reads comes first. Empty where the format has no names.
+    pub variables: Vec<String>,
+    /// What a person should know about how the file was understood, one sentence each.
+    pub notes: Vec<String>,
+}
+
+impl Header {
+    /// One scalar volume of one time, the stored numbers being the values, about which nothing else is known.
+    pub fn new(
+        format: Format,
+        dims: [u32; 3],
+        stored: VoxelType,
+        world_from_voxel: DAffine3,
+    ) -> Self {
+        Self {
+            format,
+            dims,
+            components: 1,
+            times: 1,
+            stored,
+            world_from_voxel,
+            rescale: Rescale::default(),
+            fill: None,
+            hounsfield: false,
+            unit: None,
+            meaning: Meaning::Numbers,
+            is_labels: false,
+            is_earth: false,
+            levels: 1,
+            time_names: Vec::new(),
+            series: Vec::new(),
+            variables: Vec::new(),
+            notes: Vec::new(),
+        }
+    }
+
+    /// Voxels of one time and component.
+    pub fn voxel_count(&self) -> u64 {
+        self.dims.iter().map(|&n| u64::from(n)).product()
+    }
+
+    /// The box of all voxels.
+    pub fn whole(&self) -> VoxelBox {
+        VoxelBox {
+            min: [0; 3],
+            max: self.dims,
+        }
+    }
+}
+
+/// What the components of a voxel are to each other.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Meaning {
+    /// One number, or several of which the file says nothing.
+    Numbers,
+    /// sRGB red, green and blue, full at the largest number of an integer type and at 1 for floats.
+    Rgb,
+    /// The same, and opacity, not premultiplied.
+    Rgba,
+    /// Coordinates of a vector: its length can be drawn.
+    Vector,
+    /// Things seen in the same place, such as the dyes of a microscope; one entry a component.
+    Channels(Vec<Channel>),
+}
+
+/// One of several things seen in the same place.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Channel {
+    /// Empty where the file has none.
+    pub name: String,
+    /// The sRGB colour, 0 to 1, that the file wants it shown in.
+    pub srgb: Option<[f32; 3]>,
+    /// The values from dark to bright, after rescale, that the file wants it shown with.
+    pub window: Option<[f64; 2]>,
+}
+
+/// A series of a DICOM folder.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Series {
+    /// Its instance UID.
+    pub uid: String,
+    /// What was imaged, as the file words it; may be empty.
+    pub description: String,
+    /// How many pictures it has.
+    pub pictures: usize,
+}
+
+/// Which volume of a file that holds several; `None` takes the only one.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Wanted {
+    /// The name of a variable, a data set's path, an array's name.
+    pub variable: Option<String>,
+    /// The UID of a DICOM series.
+    pub series: Option<String>,
+    /// One of several resolutions, 0 the finest.
+    pub level: Option<u32>,
+    /// True for the voxels as they stand in the file where those of a picture are others: a grid of uneven levels
+    /// is drawn from even ones between them.
+    pub as_stored: bool,
+}
+
+/// `value = stored * slope + intercept`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rescale {
+    /// Value per stored unit; finite and not zero.
+    pub slope: f64,
+    /// Value of stored zero; finite.
+    pub intercept: f64,
+}
+
+impl Default for Rescale {
+    fn default() -> Self {
+        Self {
+            slope: 1.0,
+            intercept: 0.0,
+        }
+    }
+}
+
+/// The kind of a source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum Format {
+    Nifti1,
+    Nifti2,
+    Nrrd,
+    MetaImage,
+    Raw,
+    Dicom,
+    Tiff,
+    Vti,
+    Vtk,
+    Npy,
+    Hdf5,
+    NetCdf,
+    Zarr,
+    Grib2,
+    Bricks,
+    Phantom,
+}
+
+impl Format {
+    /// The word of `info --json`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Nifti1 => "nifti1",
+            Self::Nifti2 => "nifti2",
+            Self::Nrrd => "nrrd",
+            Self::MetaImage => "metaimage",
+            Self::Raw => "raw",
+            Self::Dicom => "dicom",
+            Self::Tiff => "tiff",
+            Self::Vti => "vti",
+            Self::Vtk => "vtk",
+            Self::Npy => "npy",
+            Self::Hdf5 => "hdf5",
+            Self::NetCdf => "netcdf",
+            Self::Zarr => "zarr",
+            Self::Grib2 => "grib2",
+            Self::Bricks => "bricks",
+            Self::Phantom => "phantom",
+        }
+    }
+}
