@@ -69,7 +69,8 @@ endef
 
 # The reader of GRIB is off in what people install, because its decoder is young, and so is the interface for C, which
 # they do not need; their tests run like all others.
-TEST := $(CARGO) test --locked --features grib,capi
+# The viewer is built with the library's features of all tests: with its own the library would be built once more.
+TEST := $(CARGO) test --locked --workspace --features stratavox/grib,stratavox/capi
 
 # Tests of files and of arithmetic make no device: they run side by side, and the validation layer has nothing to
 # hear there.
@@ -89,7 +90,6 @@ test: driver layers display
 	$(CARGO) clippy --locked --all-targets --no-default-features -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --locked --no-deps --features capi
 	$(TEST) --no-run
-	$(VIEWER) --no-run
 	@echo "two groups of tests at a time; each is shown when it has ended"
 	@$(MAKE) --no-print-directory --jobs=2 --output-sync=target $(GROUPS)
 
@@ -115,8 +115,9 @@ without-device:
 least-of-all:
 	$(UNDER_LEAST) $(LEAST_OF_ALL)
 
-# A package of its own, with a window and a panel that nothing else builds.
-VIEWER := STRATAVOX_VALIDATION=sync RUST_TEST_THREADS=1 $(CARGO) test --locked --package stratavox-viewer
+# A package of its own, with a window and a panel that nothing else needs.
+VIEWER := STRATAVOX_VALIDATION=sync $(ON_DEVICE) --bin stratavox-viewer \
+    $(addprefix --test ,$(basename $(notdir $(wildcard examples/viewer/tests/*.rs))))
 
 viewer: driver layers display
 	$(VIEWER)

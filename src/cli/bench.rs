@@ -72,7 +72,8 @@ pub struct Bench {
     /// Write the times into a file
     #[arg(long, value_name = "FILE", help_heading = "Run")]
     json: Option<PathBuf>,
-    /// Pictures to take the median of, for each row of the table [default: 9, fewer where they take seconds]
+    /// Pictures to take the median of, for each row of the table [default: 9, fewer where they take seconds]; with
+    /// --cameras how often to go through the views [default: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = "Run")]
     repeat: Option<u32>,
     /// Say on stderr how far the work is
@@ -181,9 +182,11 @@ impl Bench {
         let mut renderer = Renderer::new(job, &cameras[0], device)?;
         // Pipelines are made on first use: that is not what is measured.
         renderer.draw(&cameras[0])?;
+        let rounds = self.repeat.unwrap_or(1) as usize;
+        let count = cameras.len().saturating_mul(rounds);
         let mut frames = Vec::new();
-        for (done, camera) in cameras.iter().enumerate() {
-            progress.stage("draw", done, cameras.len());
+        for (done, camera) in cameras.iter().cycle().take(count).enumerate() {
+            progress.stage("draw", done, count);
             frames.push(timed(&mut renderer, camera)?);
         }
         let stages = renderer.stages(&progress, gate, None);
@@ -201,9 +204,9 @@ impl Bench {
             stages,
         };
         say(&format!(
-            "{}: median of {} views {:.3} ms\n",
+            "{}: views {}, frames {count}, median {:.3} ms\n",
             timings.device,
-            timings.frames.len(),
+            cameras.len(),
             median_wall(&timings.frames),
         ))?;
         Ok(timings.json())

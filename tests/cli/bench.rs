@@ -177,3 +177,26 @@ fn rows_of_the_table_are_no_words_for_views() {
         assert!(ran.err.contains("--cameras"), "{ran:#?}");
     }
 }
+
+#[test]
+fn views_are_gone_through_as_often_as_asked() {
+    let folder = Folder::new();
+    folder.file(
+        "views.json",
+        r#"[{"eye":[0,50,0],"target":[0,0,0],"up":[0,0,1],"fov":30},
+            {"eye":[50,0,0],"target":[0,0,0],"up":[0,0,1],"fov":30}]"#,
+    );
+    for (words, frames) in [("", 2), ("--repeat 3", 6)] {
+        folder
+            .run(&format!(
+                "bench phantom:gauss,n=8 --size 8x8 {words} --cameras views.json --json t.json --force"
+            ))
+            .assert_done();
+        let times = json(&fs::read_to_string(folder.path("t.json")).expect("a file"));
+        assert_eq!(
+            times["frames"].as_array().map(Vec::len),
+            Some(frames),
+            "{times}"
+        );
+    }
+}

@@ -135,10 +135,16 @@ impl Shown {
             return Self::of(source, scene, settings, device, progress);
         };
         let (stream, _) = open(Arc::from(source), pick, scene, memory, progress)?;
+        let bricks = match stream.brick_count() {
+            1 => "one brick".to_owned(),
+            count => format!("{count} bricks"),
+        };
+        let seen = match stream.overview().every() {
+            1 => "all voxels".to_owned(),
+            every => format!("one voxel of {every} along each axis"),
+        };
         progress.note(&format!(
-            "drawn from the file in {} bricks; what nobody words is chosen by every {}. voxel along each axis",
-            stream.brick_count(),
-            stream.overview().every()
+            "drawn from the file in {bricks}; what no flag says is chosen from {seen}"
         ));
         // An overview holds what was picked.
         let of_overview = SceneFlags {
