@@ -69,7 +69,8 @@ pub const SILENT: &[&str] = &[
 ];
 /// Who reads the parameters of slices: the fragments, or the vertices for them (`handed.rs`).
 const PARAMETERS: Slot = ("parameters", &["asked", "planes", "stack"]);
-/// Whether clip planes cut the domain and rays have places of their own in their pixels, or neither.
+/// Whether clip planes cut the domain, cut faces are seen, rays have places of their own in their pixels or begin by a part
+/// of a step earlier: or nothing of it.
 const CUTS: Slot = ("cuts", &["cut", "whole"]);
 const PLANES: Slot = ("parameters", &["planes"]);
 const STACKED: Slot = ("parameters", &["stack"]);
@@ -103,7 +104,9 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "raycast",
-        &[LINE, MODE, ONE, LATTICE, CORNERS, HOLES, STORED, SHARED],
+        &[
+            LINE, MODE, ONE, LATTICE, CORNERS, HOLES, STORED, SHARED, CUTS,
+        ],
     ),
     (
         "raycast",
@@ -111,7 +114,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "raycast",
-        &[LINE, MODE, LEAN, RAY, CORNERS, HOLES, STORED, SHARED],
+        &[LINE, MODE, LEAN, RAY, CORNERS, HOLES, STORED, SHARED, CUTS],
     ),
     (
         "raycast",
@@ -119,7 +122,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "raycast",
-        &[LINE, MODE, ADAPTIVE, RAY, CORNERS, WHOLE, STORED],
+        &[LINE, MODE, ADAPTIVE, RAY, CORNERS, WHOLE, STORED, CUTS],
     ),
     (
         "raycast",
@@ -139,7 +142,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "raycast",
-        &[LINE, MIDA, ONE, RAY, CORNERS, HOLES, STORED, SHARED],
+        &[LINE, MIDA, ONE, RAY, CORNERS, HOLES, STORED, SHARED, CUTS],
     ),
     (
         "raycast",
@@ -148,7 +151,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ("isosurface", &[("paint", &["alone"]), FILTER, HOLES, TAPS]),
     (
         "isosurface",
-        &[("paint", &["alone"]), CORNERS, HOLES, SHARED],
+        &[("paint", &["alone"]), CORNERS, HOLES, SHARED, CUTS],
     ),
     ("isosurface", &[("paint", &["by"]), NARROW, HOLES, TAPS]),
     ("projection_cells", &[("mode", &["mip", "minip"]), HOLES]),
@@ -172,6 +175,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
             LATTICE,
             CORNERS,
             HOLES,
+            CUTS,
         ],
     ),
     (
@@ -183,6 +187,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
             RAY,
             CORNERS,
             HOLES,
+            CUTS,
         ],
     ),
     (

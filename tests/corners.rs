@@ -12,11 +12,19 @@ use stratavox::gpu::Caps;
 use stratavox::offscreen::{Renderer, reference};
 use stratavox::picture::{LayerKind, Picture};
 use stratavox::resident::Corners;
-use stratavox::technique::{FilterBy, Keep, Lattice, Level, Mode, Settings, Shading, Technique};
+use stratavox::technique::{
+    ClipPlane, FilterBy, Keep, Lattice, Level, Mode, Settings, Shading, Technique,
+};
 use stratavox::transfer::{ColorPoint, OpacityPoint, TransferFunction};
 use stratavox::volume::{Grid, Rescale, Volume, VoxelType, Voxels};
 
 const TYPES: [VoxelType; 4] = [VoxelType::U8, VoxelType::I8, VoxelType::U16, VoxelType::I16];
+
+const LEVEL: Level = Level {
+    value: 0.55,
+    srgb: [0.8; 3],
+    opacity: 1.0,
+};
 
 /// Values from 0 to 1 in all codes of `stored`.
 fn volume_of(grid: &Grid, stored: VoxelType, has_holes: bool) -> Volume {
@@ -138,12 +146,7 @@ fn surfaces_lie_where_those_of_the_twin_do() {
         let volume = volume_of(&grid, stored, false);
         let mut renderer = Renderer::new(device(), &volume).unwrap();
         for shot in shots(grid, Mode::Iso) {
-            let level = Level {
-                value: 0.55,
-                srgb: [0.8; 3],
-                opacity: 1.0,
-            };
-            let shot = shot.with(|settings| settings.per_mode.levels = vec![level]);
+            let shot = shot.with(|settings| settings.per_mode.levels = vec![LEVEL]);
             check_layer(&mut renderer, &volume, &shot, LayerKind::Depth);
         }
     }
@@ -311,4 +314,70 @@ fn the_sampler_is_there_for_who_asks_for_it() {
             Comparison::of(&wanted, &found).at_most(3.0 * steepest / 32.0, &what);
         }
     }
+}
+
+/// Pictures that nothing is cut from have programs of their own.
+#[test]
+fn a_plane_that_cuts_nothing_changes_no_bit() {
+    let grid = Grid {
+        dims: [23, 19, 17],
+        world_from_voxel: sheared_affine(),
+    };
+    let transfer = ramps();
+    let beyond = ClipPlane {
+        normal: DVec3::Z,
+        offset: -1e6,
+    };
+    for stored in [VoxelType::U8, VoxelType::I16] {
+        let volume = volume_of(&grid, stored, false);
+        let mut renderer = Renderer::new(device(), &volume).unwrap();
+        let modes = [
+            Mode::Composite,
+            Mode::Mida,
+            Mode::Iso,
+            Mode::Mip,
+            Mode::Minip,
+            Mode::Average,
+            Mode::Lmip,
+            Mode::AttenuatedMip,
+        ];
+        let by_rays = modes.map(|mode| (mode, Technique::Raycast, None));
+        let lit = Some(Shading::default());
+        let others = [
+            (Mode::Composite, Technique::Raycast, lit),
+            (Mode::Composite, Technique::Slices3d, None),
+            (Mode::Composite, Technique::Slices2d, None),
+        ];
+        for (mode, technique, shading) in by_rays.into_iter().chain(others) {
+            let layers: &[LayerKind] = match technique {
+                Technique::Raycast => &[LayerKind::Depth, LayerKind::Samples],
+                _ => &[],
+            };
+            for shot in shots(grid, mode) {
+                let whole = shot.with(|settings| {
+                    settings.technique = technique;
+                    settings.shading.clone_from(&shading);
+                    settings.per_mode.levels = vec![LEVEL];
+                });
+                let cut = whole.with(|settings| settings.clip_planes = vec![beyond]);
+                let [wanted, found] = [&whole, &cut].map(|shot| {
+                    let scene = shot.scene(&volume, Some(&transfer));
+                    renderer.render(&scene, layers).unwrap().picture
+                });
+                let what = what(&volume, &whole);
+                let seen = wanted.pixels.iter().filter(|pixel| pixel[3] > 0.0).count();
+                assert!(seen > 100, "{what}: only {seen} pixels are drawn");
+                assert!(wanted.pixels == found.pixels, "{what}: other pixels");
+                for (wanted, found) in wanted.layers.iter().zip(&found.layers) {
+                    let [wanted, found] = [wanted, found].map(|layer| bytes_of(&layer.values));
+                    assert!(wanted == found, "{what}: another layer");
+                }
+            }
+        }
+    }
+}
+
+/// No depth is not equal to itself.
+fn bytes_of(values: &[f32]) -> &[u8] {
+    bytemuck::cast_slice(values)
 }

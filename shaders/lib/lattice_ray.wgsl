@@ -3,7 +3,7 @@
 // pixel, and their first segment is cut short in the same way. Twin: src/lattice.rs.
 
 #import ray
-#import jitter
+#import start_{cuts=cut}
 
 struct Lattice {
     first: i32,
@@ -21,10 +21,7 @@ struct Segment {
 }
 
 fn lattice_of(world: Ray, interval: vec2<f32>, pixel: vec2<f32>) -> Lattice {
-    var start = interval.x;
-    if frame.is_jittered != 0u {
-        start += (jitter_of(pixel) - 1.0) * frame.step_world;
-    }
+    let start = start_of(interval, pixel);
     let full = floor((interval.y - start) / frame.step_world);
     return Lattice(0, i32(full) + 1, interval.x, interval.y, start);
 }

@@ -44,7 +44,8 @@ pub struct Passes {
     /// Counts the samples of a slicer, once that is wanted; the ray caster counts its own.
     count: OnceCell<Slicing>,
     settings: Settings,
-    resolve: Resolve,
+    /// Of modes that leave a value; others leave the picture itself.
+    resolve: Option<Resolve>,
 }
 
 /// Where samples are taken.
@@ -81,10 +82,15 @@ impl Passes {
             gather,
             count: OnceCell::new(),
             settings: settings.clone(),
-            resolve: if settings.per_mode.depth_cue == 0.0 {
-                Resolve::new(gpu, mode, Blend::Replace, ACCUMULATION_FORMAT)?
-            } else {
-                Resolve::cued(gpu, Blend::Replace, ACCUMULATION_FORMAT)?
+            resolve: match mode.is_projection() {
+                false => None,
+                true if settings.per_mode.depth_cue == 0.0 => Some(Resolve::new(
+                    gpu,
+                    mode,
+                    Blend::Replace,
+                    ACCUMULATION_FORMAT,
+                )?),
+                true => Some(Resolve::cued(gpu, Blend::Replace, ACCUMULATION_FORMAT)?),
             },
         })
     }
@@ -142,16 +148,20 @@ impl Passes {
         count.run(submission, into)
     }
 
-    /// The colour of what `gather` left to `picture`; leaves it in [`Use::ColorTarget`].
+    /// The colour of the values that `gather` left to `picture`, which it leaves in [`Use::ColorTarget`]; false where it
+    /// left the picture itself.
     pub fn resolve(
         &self,
         submission: Submission,
         ring: &ParameterRing,
         offset: u32,
         transfer: Option<&GpuTransfer>,
-    ) -> Result<Spent, Error> {
+    ) -> Result<bool, Error> {
+        let Some(resolve) = &self.resolve else {
+            return Ok(false);
+        };
         let targets = submission.targets;
-        let bindings = self.resolve.bind(ring, &targets.accumulation, transfer)?;
+        let bindings = resolve.bind(ring, &targets.accumulation, transfer)?;
         let picture = &targets.picture;
         let target = [(picture.view(), Load::Clear([0.0; 4]))];
         // SAFETY: recorded in order, with barriers between; `run` waits, and all that is bound lives meanwhile.
@@ -161,12 +171,12 @@ impl Passes {
             }
             for &tile in &drawn.tiles {
                 begin_rendering_of(gpu, cmd, &target, tile);
-                self.resolve
-                    .record_tile(cmd, &bindings, offset, targets.extent, tile);
+                resolve.record_tile(cmd, &bindings, offset, targets.extent, tile);
                 end_rendering(gpu, cmd);
             }
             Ok(())
-        })
+        })?;
+        Ok(true)
     }
 }
 

@@ -380,8 +380,11 @@ impl<'v> Renderer<'v> {
             is_drawing: false,
             resumes: false,
         };
-        passes.resolve(submission, &self.ring, offset, transfer)?;
-        Ok(targets.read(&mut self.device, &targets.picture, Use::ColorTarget)?)
+        let (image, used) = match passes.resolve(submission, &self.ring, offset, transfer)? {
+            true => (&targets.picture, Use::ColorTarget),
+            false => (&targets.accumulation, Use::FragmentSampled),
+        };
+        Ok(targets.read(&mut self.device, image, used)?)
     }
 }
 

@@ -20,7 +20,7 @@ pub struct Targets {
     pub accumulation: Image,
     /// What the ray caster leaves beside it; counts of slicers.
     pub layers: Image,
-    /// Resolved colour.
+    /// Resolved colour of what projects.
     pub picture: Image,
     /// Which tiles rays draw.
     pub tiles: RayTiles,
@@ -83,34 +83,16 @@ impl Targets {
         (made, *room)
     }
 
-    /// The same where more is done with the image as before.
-    pub fn look(
-        &self,
-        device: &mut Headless,
-        image: &Image,
-        before: Use,
-    ) -> Result<Vec<[f32; 4]>, Error> {
-        let pixels = self.read(device, image, before)?;
-        let gpu = Arc::clone(device.gpu());
-        // SAFETY: as in `read`.
-        device.run(|cmd| unsafe {
-            image_barrier(&gpu, cmd, image, Use::TransferRead, before);
-            Ok(())
-        })?;
-        Ok(pixels)
-    }
-
-    /// The pixels of one of the images, rows from the top. `before` is what was last done with it.
+    /// The pixels of one of the images, rows from the top. `used` is what was last done with it, and can be done again.
     pub fn read(
         &self,
         device: &mut Headless,
         image: &Image,
-        before: Use,
+        used: Use,
     ) -> Result<Vec<[f32; 4]>, Error> {
         let gpu = Arc::clone(device.gpu());
         let [width, height] = self.extent;
         let rows = (COPIED_BYTES / (16 * u64::from(width))).clamp(1, height.into()) as u32;
-        let mut before = before;
         for first in (0..height).step_by(rows as usize) {
             let region = Region {
                 origin: [0, first, 0],
@@ -119,10 +101,11 @@ impl Targets {
             let offset = 16 * u64::from(width) * u64::from(first);
             // SAFETY: recorded outside rendering; `run` waits, and `self` lives meanwhile.
             device.run(|cmd| unsafe {
-                image_barrier(&gpu, cmd, image, before, Use::TransferRead);
-                image_to_buffer(&gpu, cmd, image, region, &self.readback, offset)
+                image_barrier(&gpu, cmd, image, used, Use::TransferRead);
+                image_to_buffer(&gpu, cmd, image, region, &self.readback, offset)?;
+                image_barrier(&gpu, cmd, image, Use::TransferRead, used);
+                Ok(())
             })?;
-            before = Use::TransferRead;
         }
         let count = self.extent.map(|n| n as usize).iter().product();
         let mut pixels = vec![[0.0; 4]; count];

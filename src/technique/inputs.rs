@@ -3,11 +3,10 @@
 
 use super::{
     Filter, FilterBy, Keep, Lattice, LightVolume, Mix, Mode, Operator, Part, Role, Settings, Skip,
-    Technique,
 };
 use crate::gpu::{Bindings, Error, Gpu, Image, Layout, ParameterRing, Resource};
 use crate::resident::{Brick, Corners, GpuTransfer, GpuVolume, TextureLayout};
-use crate::shaders::MAX_CHANNELS;
+use crate::shaders::{MAX_CHANNELS, Shader, find, shader};
 use std::sync::Arc;
 
 /// What a technique reads.
@@ -137,7 +136,7 @@ pub struct Words {
     pub take: Take,
     /// Steps adapt to what is there.
     pub is_adaptive: bool,
-    /// No clip planes, and all rays at the same place of their pixels: for slices of such pictures alone.
+    /// No clip planes and no cut faces, and all rays begin at the same place of their pixels: for such pictures alone.
     pub is_whole: bool,
 }
 
@@ -223,14 +222,24 @@ impl Words {
 }
 
 impl Words {
-    /// Of slices the variant that knows nothing of clip planes and of rays with places of their own in their pixels,
-    /// where these settings have neither: for pictures of them alone.
+    /// The variant that knows nothing of clip planes, cut faces, jitter and rays with places of their own in their
+    /// pixels, where these settings have none of it: for pictures of them alone.
     pub(crate) fn of_whole(self, settings: &Settings) -> Self {
-        let is_of_slices = settings.technique != Technique::Raycast;
+        let is_cut = !settings.clip_planes.is_empty() || settings.cut_faces.is_some();
+        let is_uneven = settings.uneven_rays || settings.lattice == Lattice::Jitter;
         Self {
-            is_whole: is_of_slices && settings.clip_planes.is_empty() && !settings.uneven_rays,
+            is_whole: !is_cut && !is_uneven,
             ..self
         }
+    }
+
+    /// The shader of that name for such pictures: that of [`Self::is_whole`], where there is one.
+    pub(super) fn shader(&self, name: &str) -> &'static Shader {
+        let whole = self
+            .is_whole
+            .then(|| find(&format!("{name}.whole")))
+            .flatten();
+        whole.unwrap_or_else(|| shader(name))
     }
 }
 

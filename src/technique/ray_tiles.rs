@@ -12,7 +12,7 @@ use crate::gpu::{
     Bindings, Buffer, ComputePipeline, Error, Gpu, Groups, Image, ImageDesc, ImageKind, Memory,
     Resource, Tile, Use, buffer_barrier, image_barrier, memory_barrier,
 };
-use crate::shaders::shader;
+use crate::shaders::{Shader, shader};
 use ash::vk;
 use std::sync::Arc;
 
@@ -103,12 +103,12 @@ impl Nothing {
 }
 
 impl TilePass {
-    /// Compiles the shader `name` and the search for its tiles.
-    pub fn new(gpu: &Arc<Gpu>, name: &str, nothing: Nothing) -> Result<Self, Error> {
+    /// Compiles the shader of the rays and the search for its tiles.
+    pub fn new(gpu: &Arc<Gpu>, rays: &Shader, nothing: Nothing) -> Result<Self, Error> {
         Ok(Self {
             gpu: Arc::clone(gpu),
             search: ComputePipeline::new(gpu, shader(nothing.shader()))?,
-            rays: ComputePipeline::new(gpu, shader(name))?,
+            rays: ComputePipeline::new(gpu, rays)?,
         })
     }
 

@@ -278,7 +278,7 @@ impl<'v> Renderer<'v> {
         if !settings.skip {
             return Ok(());
         }
-        let pixels = targets.look(&mut self.device, image, Use::FragmentSampled)?;
+        let pixels = targets.read(&mut self.device, image, Use::FragmentSampled)?;
         let width = scene.extent_pixels[0] as usize;
         let has_ended = |[value, weight, transmittance, _]: [f32; 4], [low, high]: [f32; 2]| {
             match settings.mode {

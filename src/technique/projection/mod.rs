@@ -7,6 +7,7 @@ use super::inputs::mode_word;
 use super::ray_tiles::{Nothing, TilePass};
 use super::{Inputs, Mode, RayBindings, RayTiles, Words};
 use crate::gpu::{Error, Gpu, Image, Resource, Tile};
+use crate::shaders::{Shader, shader};
 use ash::vk;
 use std::sync::Arc;
 
@@ -29,7 +30,7 @@ impl Projection {
             ..
         } = words;
         let name = format!("projection.{}.{lattice}.{filter}.{holes}", mode_word(mode));
-        Self::of_shader(gpu, &name)
+        Self::of_shader(gpu, words.shader(&name))
     }
 
     /// The same for the exact extreme of the trilinear field, of [`Mode::Mip`] or [`Mode::Minip`].
@@ -38,12 +39,12 @@ impl Projection {
     /// Where the device refuses.
     pub fn exact(gpu: &Arc<Gpu>, mode: Mode, words: &Words) -> Result<Self, Error> {
         let name = format!("projection_cells.{}.{}", mode_word(mode), words.holes);
-        Self::of_shader(gpu, &name)
+        Self::of_shader(gpu, shader(&name))
     }
 
-    fn of_shader(gpu: &Arc<Gpu>, name: &str) -> Result<Self, Error> {
+    fn of_shader(gpu: &Arc<Gpu>, rays: &Shader) -> Result<Self, Error> {
         Ok(Self {
-            pass: TilePass::new(gpu, name, Nothing::BeyondProjection)?,
+            pass: TilePass::new(gpu, rays, Nothing::BeyondProjection)?,
         })
     }
 

@@ -68,7 +68,7 @@ impl Raycast {
             _ => Nothing::OfComposite,
         };
         Ok(Self {
-            pass: TilePass::new(gpu, &name, nothing)?,
+            pass: TilePass::new(gpu, words.shader(&name), nothing)?,
         })
     }
 
