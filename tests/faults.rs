@@ -18,7 +18,7 @@ use std::sync::Arc;
 use stratavox::gpu::{self, Features, Gpu};
 use stratavox::offscreen::Renderer;
 use stratavox::scene::Scene;
-use stratavox::technique::{Settings, Technique};
+use stratavox::technique::{Mode, Settings, Technique};
 
 type Drawn = Result<Vec<u8>, Box<dyn Error>>;
 
@@ -248,7 +248,9 @@ fn rendered(stage: &Stage, settings: &Settings) -> Drawn {
 fn a_device_of_our_own_tells_of_every_call_that_fails_and_goes_as_a_whole() {
     let tape = Tape::begin();
     let stage = Stage::new();
+    // Rays, and a resolve that draws.
     let settings = Settings {
+        mode: Mode::Mip,
         skip: false,
         ..Settings::default()
     };
