@@ -86,7 +86,9 @@ fn assert_same(
     };
     let (few, many) = (*few, *many);
     let blocks = u64::from(EXTENT[0].div_ceil(8) * EXTENT[1].div_ceil(8));
-    assert!(many >= few + 2 * (blocks - 1), "{what}: {few}, {many}");
+    // The pass of the technique, and where that leaves a value a resolve.
+    let passes = 1 + u64::from(settings.mode.is_projection());
+    assert!(many >= few + passes * (blocks - 1), "{what}: {few}, {many}");
     let first = whole.pixels[0];
     assert!(
         whole.pixels.iter().any(|&p| p != first),
