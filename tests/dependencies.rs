@@ -31,11 +31,11 @@ const EMBEDDER: [&str; 21] = [
     "zerocopy-derive",
 ];
 
-/// The packages of a tree, by name.
+/// The packages of a tree, by name. Cargo fetches those that no build on this target has wanted yet.
 fn tree(edges: &str, features: &str) -> BTreeSet<String> {
     let cargo = env::var("CARGO").unwrap_or("cargo".into());
     let told = Command::new(cargo)
-        .args(["tree", "--locked", "--offline", "--no-default-features"])
+        .args(["tree", "--locked", "--no-default-features"])
         .args(["--features", features, "--edges", edges])
         .args(["--target", "all", "--prefix", "none", "--format", "{p}"])
         .current_dir(env!("CARGO_MANIFEST_DIR"))
