@@ -793,10 +793,12 @@ typedef struct sv_renderer_desc {
     // Not 0: sv_renderer_draw_depth will be called, where `target` has a depth attachment (cameras are
     // SV_CAMERA_MATRICES then), and of slices sv_renderer_record_pick, for which rays need it not.
     uint32_t gives_depth;
-    // 0.
-    uint32_t reserved;
-    // With `has_host_depth`, but for composited slices without `gives_depth`, which are tested against the attachment:
-    // the host's depth, one image for all frames in flight or one for each.
+    // 0: slices are blended with each other in an image of floats, and the result once into the target. Not 0: one by one
+    // in the target, each rounded to its format, which is wrong in targets of few bits; composites from back to front
+    // alone, and not in parts.
+    uint32_t blends_slices_in_target;
+    // With `has_host_depth`: the host's depth, one image for all frames in flight or one for each. Slices that are
+    // blended in the target without `gives_depth` are tested against its attachment instead, and have none.
     const struct sv_depth_image *depth_images;
     // How many there are.
     uint64_t depth_image_count;

@@ -356,6 +356,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     ("resolve_cover", &[]),
     ("resolve_depth", &[("left", &["picture", "value"])]),
+    ("host_depth_copy", &[]),
     ("keep_gradients", &[("layout", &["box", "stack"])]),
     ("merge", &[("operator", &["over", "under", "add"])]),
     (

@@ -39,7 +39,7 @@
 //! use ash::vk;
 //! use std::sync::Arc;
 //! use stratavox::camera::{Camera, Nearer};
-//! use stratavox::embed::{Class, Error, Renderer, Shot, Volume};
+//! use stratavox::embed::{Class, Error, Renderer, Shot, SliceBlending, Volume};
 //! use stratavox::gpu::{Gpu, TargetClass};
 //! use stratavox::technique::Settings;
 //! use stratavox::transfer::TransferFunction;
@@ -56,7 +56,14 @@
 //!     let settings = Settings::default();
 //!     let mut volume = Volume::new(gpu, voxels, &settings)?;
 //!     unsafe { volume.record_upload(gpu, cmd)? };
-//!     let class = Class { settings, target, frames_in_flight: 2, host_depth: false, gives_depth: false };
+//!     let class = Class {
+//!         settings,
+//!         target,
+//!         frames_in_flight: 2,
+//!         host_depth: false,
+//!         gives_depth: false,
+//!         slice_blending: SliceBlending::Float,
+//!     };
 //!     Renderer::new(gpu, &Arc::new(volume), Some(function), class, extent, &[])
 //! }
 //!

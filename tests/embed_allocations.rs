@@ -79,11 +79,13 @@ fn assert_nothing_is_taken(host: &Host, settings: &Settings) {
         frames_in_flight: 2,
         host_depth: !is_half,
         gives_depth: has_depth,
+        slice_blending: Default::default(),
     };
     let outside = Class {
         target: FORMAT.into(),
         host_depth: false,
         gives_depth: false,
+        slice_blending: Default::default(),
         ..inside.clone()
     };
     let open = vec![1.0; (extent[0] * extent[1]) as usize];

@@ -75,6 +75,7 @@ fn level_a(missing: Option<usize>) -> Vec<String> {
         frames_in_flight: 1,
         host_depth: true,
         gives_depth: true,
+        slice_blending: Default::default(),
     };
     // SAFETY: the buffer outlives the renderer.
     let read = [unsafe { HostDepthImage::new(buffer.view, READ.2, extent) }];
@@ -128,6 +129,7 @@ fn level_b(missing: Option<usize>) -> Vec<String> {
         frames_in_flight: 1,
         host_depth: false,
         gives_depth: false,
+        slice_blending: Default::default(),
     };
     let (function, extent) = (Some(&stage.transfer), stage.extent);
     let mut renderer = Renderer::new(host.gpu(), &volume, function, class, extent, &[]).unwrap();

@@ -44,6 +44,7 @@ impl<'d> Drawn<'d> {
             host_depth: false,
             // For picks alone: the target has no depth.
             gives_depth: stage.settings.technique != Technique::Raycast,
+            slice_blending: Default::default(),
         };
         let function = Some(&stage.transfer);
         let usage = vk::BufferUsageFlags::TRANSFER_DST;

@@ -37,6 +37,7 @@ fn renderer(host: &Host, volume: &Arc<Volume>, stage: &Stage, frames: u64) -> Re
         host_depth: false,
         // The depth of slices has images and parameters of its own for each frame.
         gives_depth: stage.settings.technique != Technique::Raycast,
+        slice_blending: Default::default(),
     };
     let function = Some(&stage.transfer);
     Renderer::new(host.gpu(), volume, function, class, stage.extent, &[]).unwrap()

@@ -6,7 +6,7 @@ mod shared;
 use ash::vk;
 use embed_shared::{Host, HostImage, Stage, all_settings, offscreen};
 use std::sync::Arc;
-use stratavox::embed::{Class, Error, QueueLock, Renderer, Shot, Submitter, Volume};
+use stratavox::embed::{Class, Error, QueueLock, Renderer, Shot, SliceBlending, Submitter, Volume};
 use stratavox::gpu::Load;
 use stratavox::technique::{Mode, Order, Settings, Technique};
 use stratavox::volume::{self, Rescale, Voxels};
@@ -28,6 +28,7 @@ fn class(stage: &Stage) -> Class {
         frames_in_flight: 2,
         host_depth: false,
         gives_depth: false,
+        slice_blending: Default::default(),
     }
 }
 
@@ -401,6 +402,19 @@ fn what_cannot_be_drawn_so_is_refused_by_name() {
             with(&|c| {
                 c.settings.technique = Technique::Slices3d;
                 c.settings.order = Order::FrontToBack;
+                c.slice_blending = SliceBlending::InTarget;
+            }),
+        ),
+        (
+            "rays that blends slices in the target",
+            with(&|c| c.slice_blending = SliceBlending::InTarget),
+        ),
+        (
+            "a mode other than composite",
+            with(&|c| {
+                c.settings.technique = Technique::Slices2d;
+                c.settings.mode = Mode::Mip;
+                c.slice_blending = SliceBlending::InTarget;
             }),
         ),
         (

@@ -90,6 +90,7 @@ fn renderer(host: &Host, volume: &Arc<Volume>, settings: &Settings) -> Renderer 
         frames_in_flight: 2,
         host_depth: false,
         gives_depth: false,
+        slice_blending: Default::default(),
     };
     let function = Some(&shared::ramps()).cloned();
     Renderer::new(host.gpu(), volume, function.as_ref(), class, EXTENT, &[]).unwrap()

@@ -31,6 +31,7 @@ fn renderer(host: &Host, stage: &Stage, volume: &Arc<Volume>) -> Renderer {
         frames_in_flight: 1,
         host_depth: false,
         gives_depth: false,
+        slice_blending: Default::default(),
     };
     let function = Some(&stage.transfer);
     Renderer::new(host.gpu(), volume, function, class, stage.extent, &[]).unwrap()

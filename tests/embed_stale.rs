@@ -28,6 +28,7 @@ fn renderer(host: &Host, stage: &Stage) -> Renderer {
         frames_in_flight: FRAMES,
         host_depth: false,
         gives_depth: false,
+        slice_blending: Default::default(),
     };
     let (volume, function) = (uploaded(host, stage), Some(&stage.transfer));
     Renderer::new(host.gpu(), &volume, function, class, stage.extent, &[]).unwrap()

@@ -9,36 +9,50 @@ use glam::dcamera::rh::proj::vulkan;
 use glam::dcamera::rh::view::look_at_mat4;
 use std::sync::Arc;
 use stratavox::camera::{Camera, HostDepth, Nearer};
-use stratavox::embed::{Class, Renderer, Shot, Volume};
+use stratavox::embed::{Class, Renderer, Shot, SliceBlending, Volume};
 use stratavox::gpu::{DepthClass, HostPass, TargetClass};
 use stratavox::technique::{Settings, Technique};
 
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const DRAWN: [f32; 4] = [0.25, 0.0, 0.5, 1.0];
 
-fn stages() -> Vec<Stage> {
-    let techniques = [Technique::Raycast, Technique::Slices3d, Technique::Slices2d];
-    let stage = |technique| {
+/// What is drawn, and where slices are blended.
+fn stages() -> [(Stage, SliceBlending); 5] {
+    use SliceBlending::{Float, InTarget};
+    let all = [
+        (Technique::Raycast, Float),
+        (Technique::Slices3d, Float),
+        (Technique::Slices3d, InTarget),
+        (Technique::Slices2d, Float),
+        (Technique::Slices2d, InTarget),
+    ];
+    all.map(|(technique, blending)| {
         let mut stage = Stage::new(Settings {
             technique,
             ..Settings::default()
         });
         stage.settings.conformance = false;
-        stage
-    };
-    techniques.map(stage).into()
+        (stage, blending)
+    })
 }
 
-fn renderer(host: &Host, stage: &Stage, target: TargetClass) -> Renderer {
+/// Slices that are blended in a target with a depth attachment are tested against it.
+fn renderer(
+    host: &Host,
+    stage: &Stage,
+    target: TargetClass,
+    slice_blending: SliceBlending,
+) -> Renderer {
     let mut volume = Volume::new(host.gpu(), &stage.volume, &stage.settings).unwrap();
     // SAFETY: outside rendering; `run` waits.
     host.run(|cmd| unsafe { volume.record_upload(host.gpu(), cmd).unwrap() });
     let class = Class {
         settings: stage.settings.clone(),
-        host_depth: target.depth.is_some() && stage.settings.technique != Technique::Raycast,
+        host_depth: target.depth.is_some() && slice_blending == SliceBlending::InTarget,
         target,
         frames_in_flight: 1,
         gives_depth: false,
+        slice_blending,
     };
     let (volume, function) = (Arc::new(volume), Some(&stage.transfer));
     Renderer::new(host.gpu(), &volume, function, class, stage.extent, &[]).unwrap()
@@ -64,8 +78,8 @@ fn shot<'a>((camera, depth): &'a (Camera, HostDepth)) -> Shot<'a> {
 }
 
 /// One sample, dynamic rendering.
-fn plainly(host: &Host, stage: &Stage) -> Vec<[f64; 4]> {
-    let mut renderer = renderer(host, stage, FORMAT.into());
+fn plainly(host: &Host, stage: &Stage, blending: SliceBlending) -> Vec<[f64; 4]> {
+    let mut renderer = renderer(host, stage, FORMAT.into(), blending);
     let (eye, image) = (eye(stage), HostImage::new(host, FORMAT, stage.extent));
     // SAFETY: recorded in order; all of it lives until `run` has waited, here and below.
     host.run(|cmd| unsafe {
@@ -88,8 +102,8 @@ fn plainly(host: &Host, stage: &Stage) -> Vec<[f64; 4]> {
 #[test]
 fn a_render_pass_with_a_depth_attachment_shows_the_same() {
     let host = Host::new();
-    for stage in stages() {
-        let wanted = plainly(&host, &stage);
+    for (stage, blending) in stages() {
+        let wanted = plainly(&host, &stage, blending);
         let (eye, image) = (eye(&stage), HostImage::new(&host, FORMAT, stage.extent));
         let open = vec![1.0; wanted.len()];
         let depth = DepthImage::new(&host, stage.extent, &open, ATTACHED);
@@ -148,6 +162,7 @@ fn a_render_pass_with_a_depth_attachment_shows_the_same() {
                     pass: Some(HostPass::new(pass, 1)),
                     ..FORMAT.into()
                 },
+                blending,
             );
             host.run(|cmd| {
                 renderer.record(cmd, &shot(&eye)).unwrap();
@@ -179,8 +194,8 @@ fn a_render_pass_with_a_depth_attachment_shows_the_same() {
 fn four_samples_a_pixel_show_what_one_shows() {
     let host = Host::new();
     let samples = vk::SampleCountFlags::TYPE_4;
-    for stage in stages() {
-        let wanted = plainly(&host, &stage);
+    for (stage, blending) in stages() {
+        let wanted = plainly(&host, &stage, blending);
         let (eye, extent) = (eye(&stage), stage.extent);
         let image = HostImage::new(&host, FORMAT, extent);
         let several = HostImage::of_samples(&host, FORMAT, extent, samples);
@@ -191,6 +206,7 @@ fn four_samples_a_pixel_show_what_one_shows() {
                 samples,
                 ..FORMAT.into()
             },
+            blending,
         );
         let layout = vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL;
         let attachments = [vk::RenderingAttachmentInfo::default()

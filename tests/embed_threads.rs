@@ -59,6 +59,7 @@ impl<'h> Drawn<'h> {
             frames_in_flight: 1,
             host_depth: false,
             gives_depth: false,
+            slice_blending: Default::default(),
         };
         let volume = &volumes[number % 3];
         let function = Some(&stage.transfer);

@@ -158,6 +158,7 @@ fn class(settings: &Settings) -> Class {
         frames_in_flight: 2,
         host_depth: false,
         gives_depth: false,
+        slice_blending: Default::default(),
     }
 }
 

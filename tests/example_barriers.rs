@@ -89,7 +89,10 @@ fn slices_among_meshes() {
         WRITTEN_BY_HOST,
         NEW_DEPTH,
         NEW_TARGET,
-        SAME_DEPTH,
+        // The image that slices are gathered in.
+        NEW_TARGET,
+        // The copy of the host's depth.
+        NEW_DEPTH_COPY,
         SAME_TARGET,
         READ_BY_HOST,
     ];

@@ -63,8 +63,8 @@ pub enum DepthFor {
     Nothing,
     /// Tested and written.
     Rendering,
-    /// Read by compute shaders.
-    Rays,
+    /// Read by compute shaders (rays) and fragment shaders (slices).
+    Reading,
 }
 
 impl DepthFor {
@@ -77,8 +77,8 @@ impl DepthFor {
                 Access::DEPTH_STENCIL_ATTACHMENT_READ | Access::DEPTH_STENCIL_ATTACHMENT_WRITE,
                 Layout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
             ),
-            Self::Rays => (
-                Stage::COMPUTE_SHADER,
+            Self::Reading => (
+                Stage::COMPUTE_SHADER | Stage::FRAGMENT_SHADER,
                 Access::SHADER_SAMPLED_READ,
                 Layout::DEPTH_STENCIL_READ_ONLY_OPTIMAL,
             ),

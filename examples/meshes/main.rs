@@ -14,9 +14,9 @@ use host::{Corner, DEPTH_FORMAT, DepthFor, FORMAT, Host, QUEUE_FAMILY};
 use std::f64::consts::TAU;
 use std::{env, error::Error, path::Path, sync::Arc};
 use stratavox::camera::{Camera, Nearer};
-use stratavox::embed::{Class, HostDepthImage, Renderer, Shot, Volume};
+use stratavox::embed::{Class, HostDepthImage, Renderer, Shot, SliceBlending, Volume};
 use stratavox::gpu::{API_VERSION, Caps, DepthClass, Features, Gpu, HostDevice, TargetClass};
-use stratavox::technique::{Settings, Shading, Technique};
+use stratavox::technique::{Lattice, Settings, Shading, Technique};
 use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
 use stratavox::volume::{self, Limits, Pick, phantom};
 
@@ -64,6 +64,8 @@ unsafe fn film(
     let center = grid.center();
     let settings = Settings {
         technique,
+        // Rays take the samples of view-aligned slices, so that both draw the same picture.
+        lattice: Lattice::Planes,
         shading: Some(Shading::default()),
         ..Settings::default()
     };
@@ -86,12 +88,10 @@ unsafe fn film(
             frames_in_flight: 1,
             host_depth: true,
             gives_depth: false,
+            slice_blending: SliceBlending::Float,
         };
-        let layout = DepthFor::Rays.state().2;
-        let read = HostDepthImage::new(host.depth_view, layout, EXTENT);
-        // Slices are tested against the depth attachment; rays read it.
-        let reads = class.reads_host_depth();
-        let read = if reads { vec![read] } else { Vec::new() };
+        let layout = DepthFor::Reading.state().2;
+        let read = [HostDepthImage::new(host.depth_view, layout, EXTENT)];
         let (volume, function) = (Arc::new(volume), function());
         let mut renderer = Renderer::new(&gpu, &volume, Some(&function), class, EXTENT, &read)?;
 
@@ -114,16 +114,10 @@ unsafe fn film(
                 host.begin_rendering(cmd, Some(BACKGROUND));
                 host.draw(cmd, &corners);
                 host.device.cmd_end_rendering(cmd);
-                // Rays go as far as the meshes.
-                let between = match reads {
-                    true => DepthFor::Rays,
-                    false => DepthFor::Rendering,
-                };
-                host.depth_barrier(cmd, DepthFor::Rendering, between);
+                // The volume is seen as far as the meshes.
+                host.depth_barrier(cmd, DepthFor::Rendering, DepthFor::Reading);
                 renderer.record(cmd, &shot)?;
-                if reads {
-                    host.depth_barrier(cmd, between, DepthFor::Rendering);
-                }
+                host.depth_barrier(cmd, DepthFor::Reading, DepthFor::Rendering);
                 host.begin_rendering(cmd, None);
                 renderer.draw(cmd, 0)?;
                 host.finish(cmd);

@@ -183,8 +183,11 @@ struct Frame {
     patch_reach_planes: f32,
     // A host's depth of a point p of the world: dot(host_z, (p, 1)) / dot(host_w, (p, 1)). Its depth buffer ends rays
     // where has_host_depth is not 0; host_near is the depth of its near plane, which covers around the eye lie in.
+    // In a copy of it (host_depth_copy.wgsl) the larger depth is always the nearer one: where flips_host_depth is not 0,
+    // the copy has 1 - depth.
     has_host_depth: u32,
     host_near: f32,
+    flips_host_depth: u32,
     host_z: vec4<f32>,
     host_w: vec4<f32>,
 }

@@ -5,10 +5,10 @@ use super::function::{function, sv_function};
 use super::handles::{self, Kind};
 use super::images::{MOST_FRAMES, depth_images, sv_depth_image, sv_target_class, target_class};
 use super::settings::{settings, sv_settings};
-use super::status::{Failure, guard, number, reserved, sv_diagnostic, sv_status};
+use super::status::{Failure, guard, number, sv_diagnostic, sv_status};
 use super::structure::{self, Versioned};
 use super::volume::{self, sv_volume};
-use crate::embed::{self, Class};
+use crate::embed::{self, Class, SliceBlending};
 use crate::technique::Settings;
 use std::ffi::c_void;
 use std::sync::{Arc, Mutex};
@@ -43,10 +43,12 @@ pub struct sv_renderer_desc {
     /// Not 0: sv_renderer_draw_depth will be called, where `target` has a depth attachment (cameras are
     /// SV_CAMERA_MATRICES then), and of slices sv_renderer_record_pick, for which rays need it not.
     pub gives_depth: u32,
-    /// 0.
-    pub reserved: u32,
-    /// With `has_host_depth`, but for composited slices without `gives_depth`, which are tested against the attachment:
-    /// the host's depth, one image for all frames in flight or one for each.
+    /// 0: slices are blended with each other in an image of floats, and the result once into the target. Not 0: one by one
+    /// in the target, each rounded to its format, which is wrong in targets of few bits; composites from back to front
+    /// alone, and not in parts.
+    pub blends_slices_in_target: u32,
+    /// With `has_host_depth`: the host's depth, one image for all frames in flight or one for each. Slices that are
+    /// blended in the target without `gives_depth` are tested against its attachment instead, and have none.
     pub depth_images: *const sv_depth_image,
     /// How many there are.
     pub depth_image_count: u64,
@@ -229,13 +231,16 @@ unsafe fn made(device: &Device, desc: &sv_renderer_desc) -> Result<Inner, Failur
         let doing = "keep frames in flight";
         return Err(Failure::limit(doing, frames.into(), MOST_FRAMES.into()));
     }
-    reserved("sv_renderer_desc.reserved", desc.reserved)?;
     let class = Class {
         settings,
         target,
         frames_in_flight: frames,
         host_depth: desc.has_host_depth != 0,
         gives_depth: desc.gives_depth != 0,
+        slice_blending: match desc.blends_slices_in_target {
+            0 => SliceBlending::Float,
+            _ => SliceBlending::InTarget,
+        },
     };
     let extent = extent(device, [desc.width, desc.height])?;
     let gpu = &device.gpu;

@@ -3,7 +3,7 @@
 use super::Error;
 use crate::camera::{Camera, HostDepth};
 use crate::gpu::TargetClass;
-use crate::technique::{self, Mode, Order, Settings, Technique};
+use crate::technique::{self, Mode, Order, Settings, Sight, Technique};
 use ash::vk;
 
 /// What a renderer is made for: all that pipelines and images hang on.
@@ -15,14 +15,30 @@ pub struct Class {
     pub target: TargetClass,
     /// How many frames of the host may be unfinished at once.
     pub frames_in_flight: u32,
-    /// Whether what the host has drawn hides the volume: each [`Shot`] says its [`HostDepth`] then. Slices that are
-    /// composited one by one are tested against the attachment of `target`; all else reads the depth from images
-    /// ([`HostDepthImage`], [`Class::reads_host_depth`]).
+    /// Whether what the host has drawn hides the volume: each [`Shot`] says its [`HostDepth`] then. Its depth is read
+    /// from images ([`HostDepthImage`]); slices that are blended in the target are tested against the attachment of
+    /// `target` instead ([`Class::reads_host_depth`]).
     pub host_depth: bool,
     /// Whether depth is given back: by [`super::Renderer::draw_depth`], where `target` has a depth attachment, and of
     /// slices, for which rays have to look for it, by [`super::Renderer::record_pick`]. Pictures by rays can be picked
     /// from without.
     pub gives_depth: bool,
+    /// Where slices are blended with each other.
+    pub slice_blending: SliceBlending,
+}
+
+/// Where slices are blended with each other (`sampling.md` 5).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum SliceBlending {
+    /// In an image of the renderer's with four 32-bit floats a pixel, or in batches of 16-bit floats that are merged in
+    /// 32 bits where the device does not blend those; the result is blended once into the target, whatever its format.
+    #[default]
+    Float,
+    /// One by one in the target, as early slicers did: composites from back to front alone. **Wrong in targets of few
+    /// bits**: each slice is rounded to the target's format, so that 256 slices of opacity .001 give an opacity of .226
+    /// in 32-bit floats and of 0 in 8 bits. It needs no image of its own, and tests each sample of a multisampled
+    /// target against the host's depth. Not drawn in parts.
+    InTarget,
 }
 
 /// Frames in flight: more than any host has.
@@ -80,6 +96,7 @@ impl Class {
     pub(super) fn check(&self) -> Result<(), Error> {
         let settings = &self.settings;
         let is_sliced = settings.technique != Technique::Raycast;
+        let is_in_target = self.slice_blending == SliceBlending::InTarget;
         let refused = [
             (
                 settings.wants_light_volume(),
@@ -107,9 +124,29 @@ impl Class {
                 "draw each of `slices_2d::stack_shares`",
             ),
             (
-                is_sliced && settings.order == Order::FrontToBack,
-                "slicing from front to back",
-                "what a host has drawn lies behind: take `Order::BackToFront`",
+                is_in_target && !is_sliced,
+                "a picture by rays that blends slices in the target",
+                "take `SliceBlending::Float`",
+            ),
+            (
+                is_in_target && settings.mode != Mode::Composite,
+                "a mode other than composite by slices that are blended in the target",
+                "take `SliceBlending::Float`",
+            ),
+            (
+                is_in_target && settings.is_half_angle(),
+                "half-angle slicing that blends slices in the target",
+                "eye and light see its slices in turn: take `SliceBlending::Float`",
+            ),
+            (
+                is_in_target && settings.preintegrated && self.host_depth,
+                "pre-integrated slices in the target behind what a host has drawn",
+                "its depth may lie inside a slab: take `SliceBlending::Float`",
+            ),
+            (
+                is_in_target && settings.order == Order::FrontToBack,
+                "slicing from front to back in the target",
+                "what a host has drawn lies behind: take `Order::BackToFront` or `SliceBlending::Float`",
             ),
         ];
         for (is_wanted, what, hint) in refused {
@@ -123,7 +160,7 @@ impl Class {
             let mode = settings.mode;
             return Err(technique::Error::NotShaded { mode }.into());
         }
-        let is_tested = is_sliced && self.host_depth && !self.gathers();
+        let is_tested = is_in_target && self.host_depth;
         let is_written = !is_sliced && self.gives_depth;
         if (is_tested || is_written) && self.target.depth.is_none() {
             return Err(Error::HostDepth {
@@ -143,13 +180,22 @@ impl Class {
         self.host_depth && (has_rays || self.gathers())
     }
 
-    /// Whether slices are gathered in an image of our own: numbers that are no colours yet, slabs that end at the
-    /// host's depth, which may lie between two slices, and slices that eye and light see in turn.
+    /// Whether slices are gathered in an image of our own.
     pub(super) fn gathers(&self) -> bool {
+        let is_sliced = self.settings.technique != Technique::Raycast;
+        is_sliced && self.slice_blending == SliceBlending::Float
+    }
+
+    /// What hides samples of slices. Slabs, which reach out of the slices that would be tested, and projections read the
+    /// host's depth.
+    pub(super) fn sight(&self) -> Sight {
         let settings = &self.settings;
-        let is_cut = settings.preintegrated && self.host_depth;
-        let is_own = settings.mode != Mode::Composite || is_cut || settings.is_half_angle();
-        settings.technique != Technique::Raycast && is_own
+        let is_read = settings.mode != Mode::Composite || settings.preintegrated;
+        match (self.host_depth, is_read) {
+            (false, _) => Sight::Open,
+            (true, true) => Sight::Read,
+            (true, false) => Sight::Tested,
+        }
     }
 
     /// Whether [`super::Renderer::draw_depth`] may be called.

@@ -1,11 +1,12 @@
 //! What one frame in flight has to itself: images, descriptor sets, and what was recorded for it.
 
 use super::function::Function;
-use super::pass::Pass;
+use super::pass::{Pass, Slices};
 use super::{Error, HostDepthImage, Volume};
 use crate::camera::Camera;
 use crate::gpu::{Bindings, Blocks, Buffer, Gpu, Image, Memory, ParameterRing, Resource};
 use crate::resident::GpuVolume;
+use crate::technique::slice_gather::GatherImages;
 use crate::technique::slices_3d::half_angle::{
     HalfAngleBindings, Steps, light_buffer, light_extent,
 };
@@ -21,6 +22,8 @@ pub(super) const PICK_BYTES: u64 = 32;
 pub(super) struct Frame {
     /// What slices are gathered in, where they are not drawn into the host's target.
     pub gathered: Option<Image>,
+    /// What slices are drawn into beside that.
+    pub gather: Option<GatherImages>,
     /// What the light sees of half-angle slices.
     pub light: Option<Image>,
     /// What rays leave, the one with the depth last.
@@ -72,6 +75,8 @@ impl Cut {
 #[derive(Debug, Default)]
 pub(super) struct Sets {
     pub slices: Vec<Vec<Bindings>>,
+    /// Of what copies the host's depth for slices to be tested against.
+    pub host_depth: Option<Bindings>,
     /// Of half-angle slices, which have one brick of one copy.
     pub half_angle: Option<HalfAngleBindings>,
     pub rays: Vec<Vec<RayBindings>>,
@@ -132,11 +137,15 @@ impl Frame {
     pub fn new(bound: &Bound, extent: [u32; 2], recordings: usize) -> Result<Self, Error> {
         let (gpu, pass) = (bound.gpu, bound.pass);
         let image = |name: &str| accumulation(gpu, extent, name);
-        let is_sliced = pass.slicer.is_some() || pass.half_angle.is_some();
-        let is_gathered = is_sliced && pass.resolve.is_some();
+        let is_gathered =
+            matches!(pass.slices, Some(Slices::Gathered(_))) || pass.half_angle.is_some();
         let of_light = || light_buffer(gpu, light_extent(bound.volume.grid(), extent));
         let light = pass.half_angle.is_some().then(of_light).transpose()?;
         let gathered = is_gathered.then(|| image("slices")).transpose()?;
+        let gather = match (&pass.slices, &gathered) {
+            (Some(Slices::Gathered(slices)), Some(image)) => Some(slices.images(image)?),
+            _ => None,
+        };
         let of_rays = pass.rays.as_ref().map_or(0, |rays| rays.image_count());
         let left = ["rays", "beside rays"].into_iter().take(of_rays).map(image);
         let tiles = pass.rays.is_some().then(|| RayTiles::new(gpu, extent));
@@ -146,6 +155,7 @@ impl Frame {
         };
         let mut made = Self {
             gathered,
+            gather,
             light,
             left: left.collect::<Result<_, _>>()?,
             tiles: tiles.transpose()?,
@@ -165,13 +175,16 @@ impl Frame {
         let depth = bound.host_depth;
         let depth = depth.map(|image| Resource::Texture(image.view, image.layout));
         let mut sets = Sets::default();
-        if let Some(slicer) = &pass.slicer {
-            // What is drawn into the host's target is tested by the device, and reads nothing.
-            let depth = depth.filter(|_| self.gathered.is_some());
-            sets.slices = of_bricks(bound, |inputs| match depth {
-                Some(depth) => slicer.bind_behind(inputs, depth),
-                None => slicer.bind(inputs),
-            })?;
+        match &pass.slices {
+            Some(Slices::Gathered(slices)) => {
+                sets.slices = of_bricks(bound, |inputs| slices.bind(inputs, depth))?;
+                let depth = depth.map(|depth| slices.bind_host_depth(bound.ring, depth));
+                sets.host_depth = depth.transpose()?.flatten();
+            }
+            Some(Slices::InTarget(slicer)) => {
+                sets.slices = of_bricks(bound, |inputs| slicer.bind(inputs))?;
+            }
+            None => {}
         }
         if let (Some(slicer), Some(light)) = (&pass.half_angle, &self.light) {
             let inputs = inputs(bound, &bound.volume.copies()[0], 0);

@@ -74,7 +74,7 @@ impl Submitter {
         pacing: Pacing,
     ) -> Result<bool, Error> {
         let frame = shot.frame;
-        renderer.check_parts(target, load)?;
+        renderer.check_target(target, load)?;
         renderer.begin_parts(shot)?;
         let work = renderer.left_of(frame)?;
         let mut before = renderer.function.uploaded();

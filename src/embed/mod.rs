@@ -15,9 +15,8 @@
 //! [`Gpu::retire`](crate::gpu::Gpu::retire) when the device has done them, and gives a number of a frame in flight
 //! ([`Shot::frame`]) to no second frame before the first is done.
 //!
-//! What a host has drawn hides the volume behind it ([`Class::host_depth`]): slices that are composited are tested
-//! against it in hardware, all else ends at its depth buffer, read as a texture. Its own depth a picture gives back by
-//! [`Renderer::draw_depth`] and [`Renderer::record_pick`] ([`Class::gives_depth`]).
+//! What a host has drawn hides the volume behind it ([`Class::host_depth`]): its depth buffer is read as a texture. Its own
+//! depth a picture gives back by [`Renderer::draw_depth`] and [`Renderer::record_pick`] ([`Class::gives_depth`]).
 //!
 //! While it is drawn, a volume takes new voxels of a box ([`Volume::stage_update`], [`Volume::record_update`]). Frames,
 //! uploads and updates may be cut into parts that are submitted one by one and given up between two of them:
@@ -53,7 +52,7 @@ mod updates;
 mod upload;
 mod volume;
 
-pub use class::{Class, HostDepthImage, Shot};
+pub use class::{Class, HostDepthImage, Shot, SliceBlending};
 pub use error::Error;
 pub use in_parts::Pacing;
 pub use pick::Pick;

@@ -13,7 +13,7 @@ use super::frame::{Begun, Cut};
 use super::pieces::PIECE_MS;
 use super::recording::Share;
 use super::{Error, Renderer, Shot};
-use crate::gpu::{Blocks, Load, Target, TargetState, Tile, Use, begin_rendering, end_rendering};
+use crate::gpu::{Blocks, Load, Target, Tile, Use, begin_rendering, end_rendering};
 use crate::technique::cost::{looks_of_dearest_pixel, looks_of_picture, ms_of_looks};
 use ash::vk;
 
@@ -32,8 +32,14 @@ impl Renderer {
     /// and what is not done draws with those.
     ///
     /// # Errors
-    /// As [`Renderer::record`].
+    /// As [`Renderer::record`]; [`Error::NotEmbedded`] for slices that are blended in the target.
     pub fn begin_parts(&mut self, shot: &Shot) -> Result<u64, Error> {
+        if self.pass.resolve.is_none() {
+            return Err(Error::NotEmbedded {
+                what: "a composite by slices in parts that are blended in the target",
+                hint: "take `SliceBlending::Float`, or `record_into`",
+            });
+        }
         let (frame, recorded) = self.prepare(shot)?;
         let slices = recorded.picture.iter().map(|part| part.slices).sum();
         let view = self.view(shot);
@@ -63,13 +69,11 @@ impl Renderer {
 
     /// Level B, in parts: records the next `count` pieces, one at least, and says how many are left.
     ///
-    /// Rays, and slices in other modes than composite, touch the target with the last part alone: a frame that is given
-    /// up before has left it as it was, in its state `before`. Composites by slices draw each part with a block into
-    /// it: after each it is in its state `after`, cleared or kept as `load` says where no block is drawn yet.
+    /// The last part alone touches the target: a frame that is given up before has left it as it was, in its state
+    /// `before`.
     ///
     /// # Errors
-    /// [`Error::NotBegun`]; as [`Renderer::record_into`]; [`Error::NotEmbedded`] for composites by slices into a target
-    /// that changes its queue family. Where the device fails, the frame is at an end.
+    /// [`Error::NotBegun`]; as [`Renderer::record_into`]. Where the device fails, the frame is at an end.
     ///
     /// # Safety
     /// - As [`Renderer::record_into`], of all parts of a frame: they are submitted in their order, to one queue, and
@@ -85,7 +89,7 @@ impl Renderer {
     ) -> Result<u64, Error> {
         self.gpu.check_alive("record a part of a frame")?;
         let number = self.frame_number(frame)?;
-        self.check_parts(target, load)?;
+        self.check_target(target, load)?;
         self.volume.updates.check_whole()?;
         let begun = self.frames[number].begun.take();
         let is_current = |begun: &Begun| begun.after == self.volume.updates.done();
@@ -109,7 +113,6 @@ impl Renderer {
             is_last: part.end == all,
         };
         let recorded = &begun.recorded;
-        let is_drawn_at_once = self.pass.resolve.is_none();
         // SAFETY: the caller's promises.
         unsafe {
             let tiles = match &begun.cut {
@@ -120,36 +123,12 @@ impl Renderer {
                 Cut::Blocks(_) => self.gather(cmd, number, recorded, &tiles, share)?,
                 Cut::Steps(steps) => self.gather_steps(cmd, number, steps, part.clone()),
             }
-            if is_drawn_at_once || share.is_last {
-                let (again, load) = match is_drawn_at_once && !share.is_first {
-                    true => (true, Load::Keep),
-                    false => (false, load),
-                };
-                // A state that nobody waits for, as that of an image to be shown, orders no part after another: what is
-                // drawn into does.
-                let between = TargetState {
-                    stage: target.after.stage | vk::PipelineStageFlags2::COLOR_ATTACHMENT_OUTPUT,
-                    access: target.after.access | vk::AccessFlags2::COLOR_ATTACHMENT_WRITE,
-                    ..target.after
-                };
-                let arriving = Target {
-                    before: if again { between } else { target.before },
-                    ..*target
-                };
-                let leaving = Target {
-                    after: match is_drawn_at_once && !share.is_last {
-                        true => between,
-                        false => target.after,
-                    },
-                    ..*target
-                };
-                let whole = [Tile::whole(self.extent)];
-                let drawn: &[_] = if is_drawn_at_once { &tiles } else { &whole };
-                arriving.enter(&self.gpu, cmd, Use::ColorTarget);
+            if share.is_last {
+                target.enter(&self.gpu, cmd, Use::ColorTarget);
                 begin_rendering(&self.gpu, cmd, &[(target.view, load)], self.extent);
-                self.draw_tiles(cmd, &self.frames[number], recorded, drawn);
+                self.draw_picture(cmd, &self.frames[number], recorded);
                 end_rendering(&self.gpu, cmd);
-                leaving.leave(&self.gpu, cmd, Use::ColorTarget);
+                target.leave(&self.gpu, cmd, Use::ColorTarget);
             }
         }
         match share.is_last {
@@ -179,23 +158,6 @@ impl Renderer {
             (begun.cut.count() - begun.next, begun.expected_ms)
         });
         Ok([(function, PIECE_MS * function as f64), picture])
-    }
-
-    /// Refuses a target that parts cannot be drawn into.
-    pub(super) fn check_parts(&self, target: &Target, load: Load) -> Result<(), Error> {
-        self.check_target(target, load)?;
-        if self.pass.resolve.is_some() {
-            return Ok(());
-        }
-        let ours = [vk::QUEUE_FAMILY_IGNORED, self.gpu.queue_family()];
-        let families = [target.before.queue_family, target.after.queue_family];
-        match families.iter().all(|family| ours.contains(family)) {
-            true => Ok(()),
-            false => Err(Error::NotEmbedded {
-                what: "a composite by slices in parts into a target that changes its queue family",
-                hint: "each part draws into it: take rays, or `record_into`",
-            }),
-        }
     }
 }
 

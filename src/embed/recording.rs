@@ -1,21 +1,22 @@
 //! Levels A and B: what a renderer records.
 
 use super::frame::{Frame, Part, Recorded};
+use super::pass::Slices;
 use super::{Error, Renderer, Shot};
 use crate::camera::{Camera, HostDepth, Nearer};
 use crate::gpu::{
-    Load, Target, TargetClass, Tile, Use, begin_rendering, begin_rendering_of, end_rendering,
-    image_barrier,
+    Load, Target, TargetClass, Tile, Use, begin_rendering, end_rendering, image_barrier,
 };
-use crate::technique::blend::clear_color;
+use crate::technique::slice_gather::{BrickSlices, GatherInto, PicturePart};
 use crate::technique::slices_3d::half_angle::{HalfAngleSlices, Steps};
-use crate::technique::{self, InPixel, Recording, Skip, View};
+use crate::technique::{self, InPixel, Recording, Sight, Skip, View};
 use ash::vk;
 use std::ops::Range;
 
 impl Renderer {
     /// Records all of a frame that lies outside of the host's rendering: parameters, the upload of a new transfer
-    /// function, the compute pass of rays. Of slices in composite mode it is the parameters alone.
+    /// function, the compute pass of rays, or the slices in an image of the renderer's. Of slices that are blended in the
+    /// target ([`SliceBlending::InTarget`](super::SliceBlending::InTarget)) it is the parameters alone.
     ///
     /// # Errors
     /// A shot that the class is not for, a picture that cannot be made.
@@ -62,7 +63,7 @@ impl Renderer {
         self.gpu.check_alive("draw a frame")?;
         let (there, ..) = self.recorded(frame, "draw")?;
         // SAFETY: the caller's promises.
-        unsafe { self.draw_tiles(cmd, there, &there.recorded, &[Tile::whole(self.extent)]) };
+        unsafe { self.draw_picture(cmd, there, &there.recorded) };
         Ok(())
     }
 
@@ -84,7 +85,9 @@ impl Renderer {
                 what: format!("a renderer without `gives_depth` ({})", self.class.what()),
             });
         };
-        let offset = there.recorded.picture[0].offset;
+        // That of slices is of the rays that have looked for it.
+        let Recorded { picture, depth, .. } = &there.recorded;
+        let offset = depth.first().unwrap_or(&picture[0]).offset;
         // SAFETY: the caller's promises.
         unsafe { pass.record(cmd, bound, offset, self.extent) };
         Ok(())
@@ -188,31 +191,23 @@ impl Renderer {
         }
     }
 
-    /// Draws some tiles of a picture.
+    /// Draws a picture inside a rendering.
     ///
     /// # Safety
-    /// As [`Renderer::draw`]; resolved pictures have been gathered whole.
-    pub(super) unsafe fn draw_tiles(
+    /// As [`Renderer::draw`].
+    pub(super) unsafe fn draw_picture(
         &self,
         cmd: vk::CommandBuffer,
         there: &Frame,
         recorded: &Recorded,
-        tiles: &[Tile],
     ) {
-        let (extent, parts) = (self.extent, &recorded.picture);
         // SAFETY: the caller's promises; what is bound lives as long as the frame, and then until it is retired.
         unsafe {
             match (&self.pass.resolve, &there.sets.resolve) {
                 (Some(resolve), Some(bound)) => {
-                    for &tile in tiles {
-                        resolve.record_tile(cmd, bound, parts[0].offset, extent, tile);
-                    }
+                    resolve.record(cmd, bound, recorded.picture[0].offset, self.extent);
                 }
-                _ => {
-                    for &tile in tiles {
-                        self.draw_slices(cmd, there, recorded, tile);
-                    }
-                }
+                _ => self.draw_slices(cmd, there, recorded),
             }
         }
     }
@@ -282,7 +277,7 @@ impl Renderer {
         })?;
         let (words, functions) = (&self.words, self.function.turns);
         let limit = self.gpu.limits().max_loop_turns;
-        let finds_depth = self.pass.slicer.is_some() && self.pass.rays.is_some();
+        let finds_depth = self.pass.slices.is_some() && self.pass.rays.is_some();
         view.check_turns(words, 1, functions, limit)?;
         if finds_depth {
             view.check_depth_turns(words, functions, limit)?;
@@ -293,14 +288,20 @@ impl Renderer {
             false => Skip::Nothing,
         };
         let (class, center) = (&self.class, grid.center());
-        let is_tested = self.pass.slicer.is_some() && !class.gathers();
-        let mut write = |mut recording: Recording, is_tested: bool| -> Result<Part, Error> {
+        let sight = match self.pass.slices {
+            Some(_) => class.sight(),
+            None => Sight::Read,
+        };
+        let mut write = |mut recording: Recording, sight: Sight| -> Result<Part, Error> {
             recording.skip(skip);
-            match depth {
-                Some(depth) if class.host_depth && is_tested => recording.tested_in(&depth, center),
-                Some(depth) if class.host_depth => recording.behind(&depth, center),
-                Some(depth) => recording.in_depths_of(&depth, center),
-                None => {}
+            match (depth, sight) {
+                (Some(depth), _) if !class.host_depth => recording.in_depths_of(&depth, center),
+                (Some(depth), Sight::Tested) if class.gathers() => {
+                    recording.tested_in_copy(&depth, center);
+                }
+                (Some(depth), Sight::Tested) => recording.tested_in(&depth, center),
+                (Some(depth), Sight::Open | Sight::Read) => recording.behind(&depth, center),
+                (None, _) => {}
             }
             slot += 1;
             Ok(Part {
@@ -320,12 +321,12 @@ impl Renderer {
         picture.clear();
         of_slices.clear();
         view.each_recording(volume, transfer, order, |recording| {
-            picture.push(write(recording, is_tested)?);
+            picture.push(write(recording, sight)?);
             Ok::<_, Error>(())
         })?;
         if finds_depth {
             view.each_depth_recording(volume, transfer, order, |recording| {
-                of_slices.push(write(recording, false)?);
+                of_slices.push(write(recording, Sight::Read)?);
                 Ok::<_, Error>(())
             })?;
         }
@@ -334,22 +335,17 @@ impl Renderer {
     }
 
     /// # Safety
-    /// As [`Slicer::record_tile`](technique::Slicer::record_tile), for all bricks.
-    unsafe fn draw_slices(
-        &self,
-        cmd: vk::CommandBuffer,
-        there: &Frame,
-        recorded: &Recorded,
-        tile: Tile,
-    ) {
-        let (Some(slicer), Some((_, copy))) = (&self.pass.slicer, recorded.shot) else {
-            unreachable!("a picture without slices is resolved, and this one was described");
+    /// As [`Slicer::record`](technique::Slicer::record), for all bricks.
+    unsafe fn draw_slices(&self, cmd: vk::CommandBuffer, there: &Frame, recorded: &Recorded) {
+        let (Some(Slices::InTarget(slicer)), Some((_, copy))) = (&self.pass.slices, recorded.shot)
+        else {
+            unreachable!("what is not drawn in the target is resolved, and this was described");
         };
         for part in &recorded.picture {
             let bound = &there.sets.slices[copy][part.brick];
             let (extent, slices) = (self.extent, 0..part.slices);
             // SAFETY: the caller's promises.
-            unsafe { slicer.record_tile(cmd, bound, part.offset, extent, slices, tile) };
+            unsafe { slicer.record(cmd, bound, part.offset, extent, slices) };
         }
     }
 
@@ -427,20 +423,27 @@ impl Renderer {
             true => Use::Nothing,
             false => written,
         };
-        if let Some(image) = &there.gathered {
-            let clear = Load::Clear(clear_color(self.class.settings.mode));
+        if let (Some(Slices::Gathered(slices)), Some(image), Some(images)) =
+            (&self.pass.slices, &there.gathered, &there.gather)
+        {
+            let bricks = made.picture.iter().map(|part| BrickSlices {
+                bindings: &there.sets.slices[copy][part.brick],
+                offset: part.offset,
+                slices: part.slices,
+            });
+            let into = GatherInto {
+                accumulation: image,
+                images,
+                host_depth: there.sets.host_depth.as_ref(),
+                extent,
+            };
+            let part = PicturePart {
+                tiles,
+                is_first: share.is_first,
+                is_last: share.is_last,
+            };
             // SAFETY: the caller's promises.
-            unsafe {
-                image_barrier(gpu, cmd, image, before(Use::ColorTarget), Use::ColorTarget);
-                for &tile in tiles {
-                    begin_rendering_of(gpu, cmd, &[(image.view(), clear)], tile);
-                    self.draw_slices(cmd, there, made, tile);
-                    end_rendering(gpu, cmd);
-                }
-                if share.is_last {
-                    image_barrier(gpu, cmd, image, Use::ColorTarget, Use::FragmentSampled);
-                }
-            }
+            unsafe { slices.record(cmd, bricks, into, part)? };
         }
         let Some(rays) = &self.pass.rays else {
             return Ok(());
@@ -451,7 +454,7 @@ impl Renderer {
                 unsafe { image_barrier(gpu, cmd, image, before, after) };
             }
         };
-        let parts = match self.pass.slicer {
+        let parts = match self.pass.slices {
             Some(_) => &made.depth,
             None => &made.picture,
         };

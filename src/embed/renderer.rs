@@ -59,7 +59,7 @@ impl Renderer {
         let bricks = volume.copies().iter().map(|copy| copy.bricks().len()).max();
         let most_bricks = bricks.unwrap_or(1);
         // The depth of slices is looked for with parameters of its own, and the light has its own.
-        let is_twofold = pass.half_angle.is_some() || pass.slicer.is_some() && pass.rays.is_some();
+        let is_twofold = pass.half_angle.is_some() || pass.slices.is_some() && pass.rays.is_some();
         let walks = if is_twofold { 2 } else { 1 };
         let slots = (most_bricks as u32).saturating_mul(walks * class.frames_in_flight);
         let mut made = Self {

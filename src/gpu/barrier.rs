@@ -2,7 +2,7 @@
 //!
 //! One table gives the stage, the access and the layout of each word ([`Use::state`]).
 
-use super::{Buffer, Gpu, Image, image::WHOLE_COLOR};
+use super::{Buffer, Gpu, Image, image::WHOLE_COLOR, image::whole};
 use ash::vk::{self, AccessFlags2 as Access, ImageLayout as Layout, PipelineStageFlags2 as Stage};
 
 /// What a pass does with an image or a buffer.
@@ -28,6 +28,10 @@ pub enum Use {
     ComputeDone,
     /// A color target, blended or not.
     ColorTarget,
+    /// A depth attachment, tested and written.
+    DepthTarget,
+    /// As `before`: a depth attachment, whose content is given up.
+    DepthDone,
     /// The source of a copy.
     TransferRead,
     /// The destination of a copy, a fill or a clear.
@@ -78,6 +82,8 @@ impl Use {
                 COLOR,
                 Layout::COLOR_ATTACHMENT_OPTIMAL,
             ),
+            Self::DepthTarget => (DEPTH_TESTS, DEPTH, Layout::DEPTH_ATTACHMENT_OPTIMAL),
+            Self::DepthDone => (DEPTH_TESTS, DEPTH, Layout::UNDEFINED),
             Self::TransferRead => (
                 Stage::ALL_TRANSFER,
                 Access::TRANSFER_READ,
@@ -110,6 +116,12 @@ const STORAGE: Access = Access::from_raw(
 const COLOR: Access = Access::from_raw(
     Access::COLOR_ATTACHMENT_READ.as_raw() | Access::COLOR_ATTACHMENT_WRITE.as_raw(),
 );
+const DEPTH_TESTS: Stage =
+    Stage::from_raw(Stage::EARLY_FRAGMENT_TESTS.as_raw() | Stage::LATE_FRAGMENT_TESTS.as_raw());
+const DEPTH: Access = Access::from_raw(
+    Access::DEPTH_STENCIL_ATTACHMENT_READ.as_raw()
+        | Access::DEPTH_STENCIL_ATTACHMENT_WRITE.as_raw(),
+);
 const DRAW: Stage =
     Stage::from_raw(Stage::VERTEX_SHADER.as_raw() | Stage::FRAGMENT_SHADER.as_raw());
 
@@ -128,7 +140,7 @@ pub unsafe fn image_barrier(
 ) {
     let (before, after) = (TargetState::from(before), TargetState::from(after));
     // SAFETY: the caller's promises.
-    unsafe { transition(gpu, cmd, image.raw(), before, after) };
+    unsafe { transition(gpu, cmd, image.raw(), whole(image.format()), before, after) };
 }
 
 /// Orders two uses of all of a buffer.
@@ -225,7 +237,7 @@ impl Target {
     /// `cmd` is recording on `gpu`'s device, outside rendering; the target is in the state `before`.
     pub unsafe fn enter(&self, gpu: &Gpu, cmd: vk::CommandBuffer, first: Use) {
         // SAFETY: the caller's promises.
-        unsafe { transition(gpu, cmd, self.image, self.before, first.into()) };
+        unsafe { transition(gpu, cmd, self.image, WHOLE_COLOR, self.before, first.into()) };
     }
 
     /// From our last use of the target to how it must leave.
@@ -235,7 +247,7 @@ impl Target {
     /// `cmd` is recording on `gpu`'s device, outside rendering; `last` is what was last recorded for the target.
     pub unsafe fn leave(&self, gpu: &Gpu, cmd: vk::CommandBuffer, last: Use) {
         // SAFETY: the caller's promises.
-        unsafe { transition(gpu, cmd, self.image, last.into(), self.after) };
+        unsafe { transition(gpu, cmd, self.image, WHOLE_COLOR, last.into(), self.after) };
     }
 }
 
@@ -245,6 +257,7 @@ unsafe fn transition(
     gpu: &Gpu,
     cmd: vk::CommandBuffer,
     image: vk::Image,
+    range: vk::ImageSubresourceRange,
     before: TargetState,
     after: TargetState,
 ) {
@@ -263,7 +276,7 @@ unsafe fn transition(
         .src_queue_family_index(family(before))
         .dst_queue_family_index(family(after))
         .image(image)
-        .subresource_range(WHOLE_COLOR)];
+        .subresource_range(range)];
     let info = vk::DependencyInfo::default().image_memory_barriers(&barriers);
     // SAFETY: the caller's promises; synchronization2 was required of the device.
     gpu.record(|device| unsafe { device.cmd_pipeline_barrier2(cmd, &info) });

@@ -7,7 +7,8 @@ use ash::vk;
 const VIEWED: vk::ImageUsageFlags = vk::ImageUsageFlags::from_raw(
     vk::ImageUsageFlags::SAMPLED.as_raw()
         | vk::ImageUsageFlags::STORAGE.as_raw()
-        | vk::ImageUsageFlags::COLOR_ATTACHMENT.as_raw(),
+        | vk::ImageUsageFlags::COLOR_ATTACHMENT.as_raw()
+        | vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT.as_raw(),
 );
 
 impl Gpu {
@@ -72,7 +73,7 @@ impl Gpu {
         if !desc.usage.intersects(VIEWED) {
             return Err(Error::Argument {
                 doing: doing(),
-                wanted: "a usage that needs a view: sampled, storage or color".into(),
+                wanted: "a usage that needs a view: sampled, storage, color or depth".into(),
                 found: "none of them".into(),
             });
         }
@@ -95,7 +96,9 @@ impl Gpu {
                 limits.max_image_array_layers.into(),
             )?,
         }
-        if desc.usage.contains(vk::ImageUsageFlags::COLOR_ATTACHMENT) {
+        let attached =
+            vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
+        if desc.usage.intersects(attached) {
             within(
                 doing,
                 "maxFramebufferWidth",

@@ -58,7 +58,7 @@ impl FormatFeatures {
     }
 }
 
-/// Bytes of one texel; `None` for compressed, packed-plane, depth and other formats that we never make.
+/// Bytes of one texel; `None` for compressed, packed-plane and other formats that we never make.
 pub fn texel_bytes(format: vk::Format) -> Option<u32> {
     use vk::Format as F;
     Some(match format {
@@ -70,7 +70,7 @@ pub fn texel_bytes(format: vk::Format) -> Option<u32> {
         F::B8G8R8A8_UNORM | F::B8G8R8A8_SRGB => 4,
         F::A2B10G10R10_UNORM_PACK32 | F::B10G11R11_UFLOAT_PACK32 => 4,
         F::R16G16_UNORM | F::R16G16_SNORM | F::R16G16_SFLOAT => 4,
-        F::R32_UINT | F::R32_SINT | F::R32_SFLOAT => 4,
+        F::R32_UINT | F::R32_SINT | F::R32_SFLOAT | F::D32_SFLOAT => 4,
         F::R16G16B16A16_UNORM | F::R16G16B16A16_SNORM | F::R16G16B16A16_SFLOAT => 8,
         F::R16G16B16A16_UINT | F::R16G16B16A16_SINT => 8,
         F::R32G32_UINT | F::R32G32_SINT | F::R32G32_SFLOAT => 8,

@@ -51,7 +51,7 @@ pub struct ImageDesc<'a> {
     pub kind: ImageKind,
     /// Texels across and down, and the depth, layers, or 1.
     pub extent: [u32; 3],
-    /// A color format of [`super::texel_bytes`].
+    /// A color format of [`super::texel_bytes`], or [`super::DEPTH_FORMAT`].
     pub format: vk::Format,
     /// All that will be done with it.
     pub usage: vk::ImageUsageFlags,
@@ -173,7 +173,7 @@ impl Image {
             .image(raw.get())
             .view_type(desc.kind.view_type())
             .format(desc.format)
-            .subresource_range(WHOLE_COLOR);
+            .subresource_range(whole(desc.format));
         // SAFETY: the image has memory, and the view is of its own kind and format.
         let view = gpu.call(doing, |device| unsafe {
             device.create_image_view(&info, None)
@@ -219,6 +219,17 @@ impl Image {
     /// The name in errors and validation messages.
     pub fn name(&self) -> &str {
         &self.name
+    }
+}
+
+/// Depth attachments of ours: every device has this format or D24, and this one holds what any host's has.
+pub const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
+
+/// Every layer of the one level of an image of that format.
+pub(super) fn whole(format: vk::Format) -> vk::ImageSubresourceRange {
+    match format {
+        DEPTH_FORMAT => WHOLE_COLOR.aspect_mask(vk::ImageAspectFlags::DEPTH),
+        _ => WHOLE_COLOR,
     }
 }
 

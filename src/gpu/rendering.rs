@@ -40,11 +40,41 @@ pub unsafe fn begin_rendering_of<const N: usize>(
     targets: &[(vk::ImageView, Load); N],
     tile: Tile,
 ) {
+    // SAFETY: the caller's promises.
+    unsafe { begin_rendering_behind(gpu, cmd, targets, None, tile) };
+}
+
+/// The same with a depth attachment: its view and the depth that all of the tile has at first. What it holds afterwards
+/// is of no use.
+///
+/// # Safety
+///
+/// As [`begin_rendering_of`], also of that image, which is in [`super::Use::DepthTarget`].
+pub unsafe fn begin_rendering_behind<const N: usize>(
+    gpu: &Gpu,
+    cmd: vk::CommandBuffer,
+    targets: &[(vk::ImageView, Load); N],
+    depth: Option<(vk::ImageView, f32)>,
+    tile: Tile,
+) {
     let attachments = targets.map(|(view, load)| attachment(view, load));
     let info = vk::RenderingInfo::default()
         .render_area(area(tile))
         .layer_count(1)
         .color_attachments(&attachments);
+    let depth_attachment = depth.map(|(view, depth)| {
+        let depth_stencil = vk::ClearDepthStencilValue { depth, stencil: 0 };
+        vk::RenderingAttachmentInfo::default()
+            .image_view(view)
+            .image_layout(vk::ImageLayout::DEPTH_ATTACHMENT_OPTIMAL)
+            .load_op(vk::AttachmentLoadOp::CLEAR)
+            .store_op(vk::AttachmentStoreOp::DONT_CARE)
+            .clear_value(vk::ClearValue { depth_stencil })
+    });
+    let info = match &depth_attachment {
+        Some(attachment) => info.depth_attachment(attachment),
+        None => info,
+    };
     // SAFETY: the caller's promises; dynamicRendering was required of the device.
     gpu.record(|device| unsafe { device.cmd_begin_rendering(cmd, &info) });
 }

@@ -1,6 +1,6 @@
 //! A slicer's picture where only some patches of its slices are drawn ([`PatchSlicer`]).
 
-use super::slicing::{Slicing, batch_image};
+use super::slicing::Slicing;
 use super::submission::{Part, Submission};
 use super::time_slices::Spent;
 use crate::gpu::{
@@ -8,6 +8,7 @@ use crate::gpu::{
 };
 use crate::technique::blend::Drawn;
 use crate::technique::merge::Merge;
+use crate::technique::slice_gather::batch_image;
 use crate::technique::{BATCH_SLICES, Order, PatchBindings, PatchRoom, PatchSlicer, Patches};
 use ash::vk;
 use std::ops::Range;
@@ -29,13 +30,13 @@ type Bound<'a, 'p> = (&'a Part<'p>, PatchBindings);
 pub fn run(
     slicing: &Slicing,
     slicer: &PatchSlicer,
+    merge: Option<&Merge>,
     submission: Submission,
     into: &Image,
 ) -> Result<Spent, Error> {
     let (bricks, targets) = (submission.bricks, submission.targets);
     let (patches, room) = targets.patches();
     let extent = targets.extent;
-    let merge = slicing.merge();
     let batch = merge.map(|_| batch_image(slicing.gpu(), extent));
     let batch = batch.transpose()?;
     let patched = Patched {

@@ -3,14 +3,13 @@
 use super::patched;
 use super::submission::Submission;
 use super::time_slices::Spent;
-use crate::gpu::{
-    Bindings, Error, Gpu, Image, ImageDesc, ImageKind, Load, Use, begin_rendering_of, clear_image,
-    end_rendering, image_barrier,
+use crate::gpu::{Error, Gpu, Image};
+use crate::technique::blend::Drawn;
+use crate::technique::merge::Merge;
+use crate::technique::slice_gather::{
+    BrickSlices, GatherInto, PicturePart, SliceGather, blend_format, clear_of,
 };
-use crate::technique::blend::{Drawn, clear_color};
-use crate::technique::merge::{BATCH_FORMAT, MAX_BATCH_SLICES, Merge};
-use crate::technique::{ACCUMULATION_FORMAT, Mode, PatchSlicer, Settings, Slicer, Words};
-use ash::vk;
+use crate::technique::{PatchSlicer, Settings, Sight, Words};
 use std::sync::Arc;
 
 /// The pipelines of one slicer.
@@ -19,15 +18,13 @@ pub struct Slicing {
     gpu: Arc<Gpu>,
     drawn: Drawn,
     slicer: Slices,
-    /// Where f32 targets cannot be blended.
-    merge: Option<Merge>,
 }
 
 /// Which parts of slices are drawn.
 #[derive(Debug)]
 enum Slices {
-    Whole(Slicer),
-    Patches(Box<PatchSlicer>),
+    Whole(Box<SliceGather>),
+    Patches(Box<PatchSlicer>, Option<Merge>),
 }
 
 impl Slicing {
@@ -42,41 +39,34 @@ impl Slicing {
         words: &Words,
         is_patched: bool,
     ) -> Result<Self, Error> {
-        let order = settings.order;
-        let can_merge = matches!(drawn, Drawn::Picture(Mode::Composite) | Drawn::Count);
-        let is_merged = can_merge && !gpu.format_features(ACCUMULATION_FORMAT).blend;
-        let format = if is_merged {
-            BATCH_FORMAT
-        } else {
-            ACCUMULATION_FORMAT
-        };
-        let merge = || Merge::new(gpu, drawn, order);
-        let technique = settings.technique;
         let slicer = match is_patched {
             true => {
+                let (technique, order) = (settings.technique, settings.order);
+                let (format, is_merged) = blend_format(gpu, drawn);
                 let made = PatchSlicer::new(gpu, technique, drawn, order, words, format)?;
-                Slices::Patches(Box::new(made))
+                let merge = || Merge::new(gpu, drawn, order);
+                Slices::Patches(Box::new(made), is_merged.then(merge).transpose()?)
             }
-            false => Slices::Whole(Slicer::new(gpu, technique, drawn, order, words, format)?),
+            false => {
+                let made = SliceGather::new(gpu, settings, drawn, words, Sight::Open)?;
+                Slices::Whole(Box::new(made))
+            }
         };
         Ok(Self {
             gpu: Arc::clone(gpu),
             drawn,
             slicer,
-            merge: is_merged.then(merge).transpose()?,
         })
     }
 
-    /// Draws all slices into `into` and leaves it in [`Use::FragmentSampled`]. Milliseconds on the device.
+    /// Draws all slices into `into` and leaves it in [`Use::FragmentSampled`](crate::gpu::Use::FragmentSampled).
+    /// Milliseconds on the device.
     pub fn run(&self, submission: Submission, into: &Image) -> Result<Spent, Error> {
-        let slicer = match &self.slicer {
-            Slices::Whole(slicer) => slicer,
-            Slices::Patches(slicer) => return patched::run(self, slicer, submission, into),
-        };
-        let bound = submission.bind(|inputs| slicer.bind(inputs))?;
-        match &self.merge {
-            Some(merge) => self.run_in_batches(slicer, submission, &bound, into, merge),
-            None => self.run_at_once(slicer, submission, &bound, into),
+        match &self.slicer {
+            Slices::Whole(slices) => run_whole(slices, submission, into),
+            Slices::Patches(slicer, merge) => {
+                patched::run(self, slicer, merge.as_ref(), submission, into)
+            }
         }
     }
 
@@ -88,105 +78,34 @@ impl Slicing {
         self.drawn
     }
 
-    pub(super) fn merge(&self) -> Option<&Merge> {
-        self.merge.as_ref()
-    }
-
     /// What the target holds before the first slice.
     pub(super) fn clear(&self) -> [f32; 4] {
-        match self.drawn {
-            Drawn::Picture(mode) => clear_color(mode),
-            Drawn::Count => [0.0; 4],
-        }
-    }
-
-    fn run_at_once(
-        &self,
-        slicer: &Slicer,
-        submission: Submission,
-        bound: &[Bindings],
-        into: &Image,
-    ) -> Result<Spent, Error> {
-        let (bricks, extent) = (submission.bricks, submission.targets.extent);
-        let clear = self.clear();
-        // SAFETY: recorded in order, with barriers between; `run` waits, and all that is bound lives meanwhile.
-        submission.in_tiles(|cmd, gpu, drawn| unsafe {
-            if drawn.is_first {
-                image_barrier(gpu, cmd, into, Use::Nothing, Use::ColorTarget);
-            }
-            for &tile in &drawn.tiles {
-                begin_rendering_of(gpu, cmd, &[(into.view(), Load::Clear(clear))], tile);
-                for (brick, bindings) in bricks.iter().zip(bound) {
-                    let (offset, slices) = (brick.offset, 0..brick.slices);
-                    slicer.record_tile(cmd, bindings, offset, extent, slices, tile);
-                }
-                end_rendering(gpu, cmd);
-            }
-            if drawn.is_last {
-                image_barrier(gpu, cmd, into, Use::ColorTarget, Use::FragmentSampled);
-            }
-            Ok(())
-        })
-    }
-
-    fn run_in_batches(
-        &self,
-        slicer: &Slicer,
-        submission: Submission,
-        bound: &[Bindings],
-        into: &Image,
-        merge: &Merge,
-    ) -> Result<Spent, Error> {
-        let (bricks, extent) = (submission.bricks, submission.targets.extent);
-        let batch = batch_image(&self.gpu, extent)?;
-        let merged = merge.bind(&batch, into)?;
-        let batches = bricks.iter().zip(bound).flat_map(|(brick, bindings)| {
-            let firsts = (0..brick.slices).step_by(MAX_BATCH_SLICES as usize);
-            let range = |first: u32| first..(first + MAX_BATCH_SLICES).min(brick.slices);
-            firsts.map(move |first| (brick, bindings, range(first)))
-        });
-        // SAFETY: recorded in order, with barriers between; `run` waits, and all that is bound lives meanwhile.
-        submission.in_tiles(|cmd, gpu, drawn| unsafe {
-            let mut before = Use::ComputeWrite;
-            if drawn.is_first {
-                image_barrier(gpu, cmd, into, Use::Nothing, Use::TransferWrite);
-                clear_image(gpu, cmd, into, [0.0; 4]);
-                before = Use::TransferWrite;
-            }
-            let mut last = Use::Nothing;
-            for (brick, bindings, slices) in batches.clone() {
-                // What the merge before has read is overwritten only after it.
-                image_barrier(gpu, cmd, &batch, last, Use::ColorTarget);
-                last = Use::ComputeSampled;
-                for &tile in &drawn.tiles {
-                    let target = [(batch.view(), Load::Clear([0.0; 4]))];
-                    begin_rendering_of(gpu, cmd, &target, tile);
-                    let (offset, slices) = (brick.offset, slices.clone());
-                    slicer.record_tile(cmd, bindings, offset, extent, slices, tile);
-                    end_rendering(gpu, cmd);
-                }
-                image_barrier(gpu, cmd, &batch, Use::ColorTarget, Use::ComputeSampled);
-                image_barrier(gpu, cmd, into, before, Use::ComputeWrite);
-                for &tile in &drawn.tiles {
-                    merge.record_tile(cmd, &merged, extent, tile)?;
-                }
-                before = Use::ComputeWrite;
-            }
-            if drawn.is_last {
-                image_barrier(gpu, cmd, into, before, Use::FragmentSampled);
-            }
-            Ok(())
-        })
+        clear_of(self.drawn)
     }
 }
 
-pub(super) fn batch_image(gpu: &Arc<Gpu>, [width, height]: [u32; 2]) -> Result<Image, Error> {
-    let desc = ImageDesc {
-        kind: ImageKind::D2,
-        extent: [width, height, 1],
-        format: BATCH_FORMAT,
-        usage: vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::SAMPLED,
-        name: "batch of slices",
+fn run_whole(slices: &SliceGather, submission: Submission, into: &Image) -> Result<Spent, Error> {
+    let bound = submission.bind(|inputs| slices.bind(inputs, None))?;
+    let images = slices.images(into)?;
+    let into = GatherInto {
+        accumulation: into,
+        images: &images,
+        host_depth: None,
+        extent: submission.targets.extent,
     };
-    Image::new(gpu, &desc)
+    let bricks = submission.bricks.iter().zip(&bound);
+    let bricks = bricks.map(|(brick, bindings)| BrickSlices {
+        bindings,
+        offset: brick.offset,
+        slices: brick.slices,
+    });
+    // SAFETY: recorded in order; `run` waits, and all that is bound lives meanwhile.
+    submission.in_tiles(|cmd, _, drawn| unsafe {
+        let part = PicturePart {
+            tiles: &drawn.tiles,
+            is_first: drawn.is_first,
+            is_last: drawn.is_last,
+        };
+        slices.record(cmd, bricks.clone(), into, part)
+    })
 }

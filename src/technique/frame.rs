@@ -219,6 +219,7 @@ impl View<'_> {
             },
             has_host_depth: 0,
             host_near: 0.5,
+            flips_host_depth: 0,
             host_z: [0.0; 4],
             host_w: [0.0; 4],
         };

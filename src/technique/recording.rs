@@ -11,7 +11,7 @@ use super::slices_2d::{set_slices, stack_axis};
 use super::slices_3d::set_planes;
 use super::{Error, Order, Technique, View};
 use crate::blue_noise::BLUE_NOISE;
-use crate::camera::HostDepth;
+use crate::camera::{HostDepth, Nearer};
 use crate::gpu::{self, Gpu, ParameterRing};
 use crate::resident::{
     Cell, Coding, GpuTransfer, GpuVolume, TextureLayout, TransferLayout, sort_front_to_back,
@@ -289,6 +289,20 @@ impl Recording {
         self.in_depths_of(depth, center);
         self.frame.clip_from_world[2] = self.frame.host_z;
         self.frame.clip_from_world[3] = self.frame.host_w;
+    }
+
+    /// The same for a copy of the host's depth, in which the larger depth is the nearer one
+    /// ([`HostDepthCopy`](super::HostDepthCopy)).
+    pub fn tested_in_copy(&mut self, depth: &HostDepth, center: DVec3) {
+        let HostDepth { z, w, nearer } = *depth;
+        let is_flipped = nearer == Nearer::Smaller;
+        let copied = HostDepth {
+            z: if is_flipped { w - z } else { z },
+            w,
+            nearer: Nearer::Larger,
+        };
+        self.tested_in(&copied, center);
+        self.frame.flips_host_depth = is_flipped.into();
     }
 
     /// Tells what is recorded the depths of a host's clip space, in which a resolve writes depth.

@@ -134,7 +134,7 @@ static void renderers(void) {
     WITH(sv_renderer_desc, start, height, 1u << 20, SV_E_LIMIT);
     WITH(sv_renderer_desc, start, frames_in_flight, 65, SV_E_LIMIT);
     WITH(sv_renderer_desc, start, frames_in_flight, UINT32_MAX, SV_E_LIMIT);
-    WITH(sv_renderer_desc, start, reserved, 1, SV_E_ARGUMENT);
+    WITH(sv_renderer_desc, start, blends_slices_in_target, 1, SV_E_UNSUPPORTED);
     WITH(sv_renderer_desc, start, has_host_depth, 1, SV_E_ARGUMENT);
     WITH(sv_renderer_desc, start, gives_depth, 1, SV_E_ARGUMENT);
     WITH(sv_renderer_desc, start, depth_image_count, 1, SV_E_ARGUMENT);

@@ -144,6 +144,7 @@ pub fn draw(
         frames_in_flight: 1,
         host_depth: true,
         gives_depth,
+        slice_blending: Default::default(),
     };
     let reads = class.reads_host_depth();
     let state = if reads { READ } else { ATTACHED };

@@ -233,7 +233,7 @@ impl<'h> HostImage<'h> {
     }
 
     /// The numbers that a finished submission has fetched, (red, green, blue, alpha) as they are stored: 0 to
-    /// 255 for formats of 8 bits.
+    /// 255 for formats of 8 bits, 0 to 1023 (and an alpha of 0 to 3) for those of 10.
     pub fn numbers(&self) -> Vec<[f64; 4]> {
         let size = texel_bytes(self.format);
         let count = self.extent.iter().product::<u32>() as usize;
@@ -248,8 +248,22 @@ impl<'h> HostImage<'h> {
             device.unmap_memory(self.readback_memory);
         }
         let texel = |texel: &[u8]| match self.format {
-            vk::Format::R8G8B8A8_SRGB => [0, 1, 2, 3].map(|c| f64::from(texel[c])),
+            vk::Format::R8G8B8A8_SRGB | vk::Format::R8G8B8A8_UNORM => {
+                [0, 1, 2, 3].map(|c| f64::from(texel[c]))
+            }
             vk::Format::B8G8R8A8_UNORM => [2, 1, 0, 3].map(|c| f64::from(texel[c])),
+            vk::Format::A2B10G10R10_UNORM_PACK32 => {
+                let word = u32::from_le_bytes(texel.try_into().unwrap());
+                [0, 10, 20, 30].map(|bit| f64::from(word >> bit & 0x3ff))
+            }
+            // Without a sign: five bits of exponent with a bias of 15, and six or five of mantissa. No alpha: 1.
+            vk::Format::B10G11R11_UFLOAT_PACK32 => {
+                let word = u32::from_le_bytes(texel.try_into().unwrap());
+                let half = |bits: u32, to: u32| half::f16::from_bits((bits << to) as u16).to_f64();
+                let red = half(word & 0x7ff, 4);
+                let green = half(word >> 11 & 0x7ff, 4);
+                [red, green, half(word >> 22, 5), 1.0]
+            }
             vk::Format::R16G16B16A16_SFLOAT => [0, 1, 2, 3]
                 .map(|c| half::f16::from_le_bytes([texel[2 * c], texel[2 * c + 1]]).to_f64()),
             vk::Format::R32G32B32A32_SFLOAT => [0, 1, 2, 3]

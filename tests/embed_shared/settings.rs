@@ -24,6 +24,11 @@ pub fn all_settings() -> Vec<Settings> {
             ..Settings::default()
         })
     });
+    let front_to_back = [Technique::Slices3d, Technique::Slices2d].map(|technique| Settings {
+        technique,
+        order: Order::FrontToBack,
+        ..Settings::default()
+    });
     let filters = [
         stratavox::technique::Filter::Nearest,
         stratavox::technique::Filter::Cubic,
@@ -49,6 +54,7 @@ pub fn all_settings() -> Vec<Settings> {
     let all = rays
         .into_iter()
         .chain(slices)
+        .chain(front_to_back)
         .chain(filtered)
         .chain([slabs, in_light]);
     all.map(|mut settings| {

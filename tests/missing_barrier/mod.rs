@@ -9,11 +9,11 @@ mod layer;
 use std::process::Command;
 
 /// A rendering that begins: layers of 2023 do not look at what dynamic rendering loads and clears. The barrier before
-/// one to a new image, before one that goes on with it, and the same of a depth attachment.
+/// one to a new image, before one that goes on with it, and the first of a depth attachment, the host's and the renderer's.
 pub const NEW_TARGET: &str = "image 0 to 2";
 pub const SAME_TARGET: &str = "image 2 to 2";
+pub const NEW_DEPTH_COPY: &str = "image 0 to 1000241000";
 pub const NEW_DEPTH: &str = "image 0 to 3";
-pub const SAME_DEPTH: &str = "image 3 to 3";
 /// Memory that the CPU has written or will read: no layer sees what the CPU does.
 pub const WRITTEN_BY_HOST: &str = "image 8 to 1";
 pub const READ_BY_HOST: &str = "memory 1000 to 2000";

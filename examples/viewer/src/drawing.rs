@@ -63,6 +63,7 @@ impl Drawing {
             frames_in_flight,
             host_depth: false,
             gives_depth: false,
+            slice_blending: Default::default(),
         };
         let renderer = Renderer::new(gpu, &volume, look.function(), class, extent, &[])?;
         Ok(Self {
