@@ -1,6 +1,9 @@
 # make test    everything that must hold, on whatever Vulkan device is here (a software driver is installed
-#              by apt where there is none); the conformance suite in part on SwiftShader too, which is fetched by apt, and
-#              skipped by name where that cannot be
+#              by apt where there is none): a line for each group of tests, what was skipped, and how many passed
+# make test-more   what takes longer: the whole conformance baseline, also as on a device of Vulkan's least limits and on
+#              SwiftShader (fetched by apt; skipped by name where that cannot be), what draws once more without validation
+#              and under the least limits, many devices one after the other, other operating systems
+# make fresh   make test and make demo in a new clone without anything built or downloaded
 # make plain   what draws once more, without validation of synchronization
 # make least   the same under the least limits that Vulkan allows
 # make viewer  the tests of examples/viewer, in a window of a display without a screen (Xvfb is installed by apt where it is
@@ -15,7 +18,8 @@
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := test
-.PHONY: test plain least viewer-lint conformance swiftshader demo sheet gallery capi install header api bench driver layers display
+.PHONY: test test-more fresh lint build drawn-odd drawn-even command-line command-line-drawn without-device least-of-all \
+    second conformance-default conformance-least conformance-swiftshader plain least viewer-lint conformance swiftshader demo sheet gallery capi install header api bench driver layers display
 
 CARGO ?= cargo
 ROOT := $(if $(filter 0,$(shell id -u)),,sudo )
@@ -78,46 +82,69 @@ TESTS := $(basename $(notdir $(wildcard tests/*.rs))) $(filter-out cli,$(notdir 
 WITHOUT_DEVICE := $(filter host both_sides conformance_package dependencies public_api format_% mutations%,$(TESTS))
 WITH_DEVICE := $(filter-out $(WITHOUT_DEVICE),$(TESTS))
 ON_DEVICE := RUST_TEST_THREADS=1 $(TEST)
+# Of tests that pass too: some say what they have skipped.
+SHOWN := -- --show-output
 # $(call half,1) and $(call half,0): every other test.
 half = $(addprefix --test ,$(shell printf '%s\n' $(WITH_DEVICE) | awk 'NR % 2 == $(1)'))
 
 # One device at a time in a process; two processes, since small pictures keep one core busy, that of the driver's compiler.
-# What draws runs under the validation layer with synchronization in; `make plain` runs the same without that, as a
-# cross-check by hand.
+# What draws runs under the validation layer with synchronization in; `make test-more` runs the same without that. A group
+# that fails keeps no other from running; each ends with its counts, and the last lines say what was skipped (`.ci/group`).
 test: driver layers display
+	$(call in-groups,lint build,drawn-odd drawn-even command-line command-line-drawn without-device least-of-all viewer)
+
+# What takes longer.
+test-more: driver layers display
+	$(call in-groups,build,conformance-default conformance-least conformance-swiftshader second plain least soak-short \
+	    viewer-lint portable)
+
+# $(call in-groups,one after the other,two at a time)
+in-groups = @rm -rf target/groups; for group in $(1); do \
+	    .ci/group $$group $(MAKE) --no-print-directory $$group || true; done; \
+	$(MAKE) --no-print-directory --jobs=2 --keep-going $(addprefix group-,$(2)); \
+	.ci/group --summary $(1) $(2)
+
+group-%:
+	@.ci/group $* $(MAKE) --no-print-directory $*
+
+# README's two commands as on a new machine: no packages of Rust's in a cache, nothing built. To be run whenever
+# dependencies or the commands of the tests change.
+fresh:
+	@folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && git clone --quiet . "$$folder/stratavox" \
+	    && cd "$$folder/stratavox" && export CARGO_HOME="$$folder/cargo" STRATAVOX_DATA="$(VOLUMES)" \
+	    && unset CARGO_TARGET_DIR MESA_SHADER_CACHE_DIR XDG_CACHE_HOME && $(MAKE) test && $(MAKE) demo
+
+lint:
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --locked --all-targets --features capi -- -D warnings
 	$(CARGO) clippy --locked --all-targets --no-default-features -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --locked --no-deps --features capi
-	$(TEST) --no-run
-	@echo "two groups of tests at a time; each is shown when it has ended"
-	@$(MAKE) --no-print-directory --jobs=2 --output-sync=target $(GROUPS)
 
-GROUPS := drawn-odd drawn-even command-line command-line-drawn without-device least-of-all viewer second
-.PHONY: $(GROUPS)
+build:
+	$(TEST) --no-run
 
 drawn-odd:
-	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --lib --examples $(call half,1)
+	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast --lib --examples $(call half,1) $(SHOWN)
 
 drawn-even:
-	STRATAVOX_VALIDATION=sync $(ON_DEVICE) $(call half,0)
+	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast $(call half,0) $(SHOWN)
 
 command-line:
-	$(ON_DEVICE) --test cli
+	$(ON_DEVICE) --test cli $(SHOWN)
 
 command-line-drawn:
-	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --test cli -- bench:: conformance::a_run device:: mixed:: pictures::
+	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --test cli $(SHOWN) bench:: conformance::a_run device:: mixed:: pictures::
 
 without-device:
 	$(TEST) --doc
-	$(TEST) $(addprefix --test ,$(WITHOUT_DEVICE))
+	$(TEST) --no-fail-fast $(addprefix --test ,$(WITHOUT_DEVICE)) $(SHOWN)
 
 least-of-all:
-	$(UNDER_LEAST) $(LEAST_OF_ALL)
+	$(UNDER_LEAST) --no-fail-fast $(LEAST_OF_ALL) $(SHOWN)
 
 # A package of its own, with a window and a panel that nothing else needs.
-VIEWER := STRATAVOX_VALIDATION=sync $(ON_DEVICE) --bin stratavox-viewer \
-    $(addprefix --test ,$(basename $(notdir $(wildcard examples/viewer/tests/*.rs))))
+VIEWER := STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast --bin stratavox-viewer \
+    $(addprefix --test ,$(basename $(notdir $(wildcard examples/viewer/tests/*.rs)))) $(SHOWN)
 
 viewer: driver layers display
 	$(VIEWER)
@@ -126,7 +153,7 @@ viewer-lint:
 	$(CARGO) clippy --locked --package stratavox-viewer --all-targets -- -D warnings
 
 plain: driver layers
-	$(ON_DEVICE) --lib --examples $(addprefix --test ,$(WITH_DEVICE))
+	$(ON_DEVICE) --no-fail-fast --lib --examples $(addprefix --test ,$(WITH_DEVICE)) $(SHOWN)
 
 # Limits clamped to Vulkan's least: the same pictures (`tests/shared/limits.rs`). Not asked are tests whose subject is limits
 # of their own. `make test` asks LEAST_OF_ALL.
@@ -136,7 +163,8 @@ LEAST_OF_ALL := --test embed_pictures --test embed_levels --test embed_flight --
 UNDER_LEAST := STRATAVOX_LIMITS=least RUST_TEST_THREADS=1 $(TEST)
 
 least: driver layers
-	$(UNDER_LEAST) $(addprefix --test ,$(filter-out $(NOT_LEAST),$(WITH_DEVICE))) -- $(addprefix --skip ,$(WITH_MORE))
+	$(UNDER_LEAST) --no-fail-fast $(addprefix --test ,$(filter-out $(NOT_LEAST),$(WITH_DEVICE))) $(SHOWN) \
+	    $(addprefix --skip ,$(WITH_MORE))
 
 # A second driver, from Debian's chromium: unpacked, and not installed.
 SWIFTSHADER := target/swiftshader/usr/lib/chromium/vk_swiftshader_icd.json
@@ -151,22 +179,32 @@ swiftshader:
 	    && { apt-get download -qq chromium-common || { $(APT) update -qq && apt-get download -qq chromium-common; }; } \
 	    && dpkg -x chromium-common_*.deb . && rm -f chromium-common_*.deb && cd $(CURDIR) && [ -f $(SWIFTSHADER) ]; }
 
-# What it is asked in `make test`: all probes, and pictures of each technique and mode. `make conformance` asks all. The
-# program is that of the tests before: `cargo run` would build it once more. Of the library's own tests those of the device
-# layer cost a second there, and those of hosts, which compare each level with the offscreen picture to the bit, 30.
-SECOND := probe.*|*.linear_fetch.u16.perspective|twin.*.linear_fetch.perspective|twin.raycast.planes.composite.*|$\
-    relation.*.composite.orthographic
+# Whether the second driver is there, or a line that says why what is asked of it is skipped.
+with-second = if ! why=$$($(MAKE) --no-print-directory swiftshader 2>&1); then \
+	    echo "skipped: SwiftShader could not be fetched: $$why"; exit 0; fi
 
+# The library's own tests on it: those of the device layer, and those of hosts, which compare each level with the offscreen
+# picture.
 second:
-	@mkdir -p target/conformance; if ! why=$$($(MAKE) --no-print-directory swiftshader 2>&1); then \
-	    echo "the conformance suite on SwiftShader: skipped, the driver could not be fetched: $$why"; exit 0; fi; \
-	$(TEST) --quiet --no-run --test cli && ask() { $(ON_SWIFTSHADER) target/debug/stratavox conformance "$$@"; } \
-	    && ask --force --filter '$(SECOND)' --waivers docs/conformance-waivers.json --json target/conformance/second.json \
-	    && ask verify --part target/conformance/second.json \
-	    && $(ON_SWIFTSHADER) RUST_TEST_THREADS=1 $(TEST) --quiet --test gpu_run --test gpu_limits --test embed_flight \
-	        --test embed_pictures --test embed_stale --test embed_targets \
-	    && $(ON_SWIFTSHADER) RUST_TEST_THREADS=1 $(TEST) --quiet --test embed_levels -- level_ \
-	    && VK_DRIVER_FILES=$(BOTH) VK_ICD_FILENAMES=$(BOTH) $(TEST) --quiet --test cli -- two_drivers
+	@$(with-second); export $(ON_SWIFTSHADER); \
+	RUST_TEST_THREADS=1 $(TEST) --no-fail-fast --test gpu_run --test gpu_limits --test embed_flight --test embed_formats \
+	    --test embed_levels --test embed_pictures --test embed_stale --test embed_targets $(SHOWN) \
+	    && VK_DRIVER_FILES=$(BOTH) VK_ICD_FILENAMES=$(BOTH) $(TEST) --test cli $(SHOWN) two_drivers
+
+# $(call judged,name,arguments): the whole baseline by the program of the tests, whose package must be whole.
+judged = mkdir -p target/conformance && target/debug/stratavox conformance --force --jobs 1 \
+	    --waivers docs/conformance-waivers.json --json target/conformance/$(1).json $(2) \
+	    && target/debug/stratavox conformance verify target/conformance/$(1).json
+
+conformance-default:
+	$(call judged,default)
+
+# No more than Vulkan demands of every device: what cannot be drawn then is refused by name.
+conformance-least:
+	$(call judged,least,--limits vulkan-minimum)
+
+conformance-swiftshader:
+	@$(with-second); export $(ON_SWIFTSHADER); $(call judged,swiftshader)
 
 # Each run must be well, and each package whole; how they differ is told.
 conformance: driver swiftshader

@@ -51,7 +51,7 @@ pub struct ImageDesc<'a> {
     pub kind: ImageKind,
     /// Texels across and down, and the depth, layers, or 1.
     pub extent: [u32; 3],
-    /// A color format of [`super::texel_bytes`], or [`super::DEPTH_FORMAT`].
+    /// A color format of [`super::texel_bytes`], or `D32_SFLOAT`.
     pub format: vk::Format,
     /// All that will be done with it.
     pub usage: vk::ImageUsageFlags,

@@ -65,16 +65,17 @@ pub use format::{FormatFeatures, texel_bytes};
 pub use headless::{Headless, Options, Submissions};
 pub use host::{Features, HostDevice};
 pub use identity::{DeviceKind, Identity};
-pub use image::{DEPTH_FORMAT, Image, ImageDesc, ImageKind};
+pub(crate) use image::DEPTH_FORMAT;
+pub use image::{Image, ImageDesc, ImageKind};
 pub use layout::Layout;
 pub use memory::{HeapUse, MemoryUse};
 pub(crate) use pace::{Pace, TARGET_MS};
 pub use parameters::ParameterRing;
 pub use pipeline::ComputePipeline;
 pub use raster::{Blend, DepthClass, DepthUse, HostPass, RasterDesc, RasterPipeline, TargetClass};
+pub(crate) use rendering::begin_rendering_behind;
 pub use rendering::{
-    Load, begin_rendering, begin_rendering_behind, begin_rendering_of, end_rendering, set_area,
-    set_area_of,
+    Load, begin_rendering, begin_rendering_of, end_rendering, set_area, set_area_of,
 };
 pub use requirements::{Feature, Item, Limit, Need, REQUIREMENTS, Requirement};
 pub use sampler::Sampler;
