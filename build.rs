@@ -17,6 +17,8 @@ mod blue_noise;
 mod both_sides;
 #[path = "shaders/handed.rs"]
 mod handed;
+#[path = "shaders/no_contraction.rs"]
+mod no_contraction;
 #[path = "shaders/opaque.rs"]
 mod opaque;
 #[path = "shaders/point_size.rs"]
@@ -116,8 +118,7 @@ impl Book {
                 })
         };
         check(&module, ValidationFlags::all());
-        // A probe is to see what a device makes of it as it stands.
-        if !file.starts_with("probe/") {
+        if !is_probe(file) {
             both_sides::ask_both_sides(&mut module);
             opaque::hide_branches(&mut module);
         }
@@ -229,6 +230,11 @@ impl Source {
     }
 }
 
+/// Whether it is a shader of conformance, which is to see what a device makes of it as it stands.
+fn is_probe(file: &str) -> bool {
+    file.starts_with("probe/")
+}
+
 fn spirv(module: &naga::Module, info: &naga::valid::ModuleInfo, file: &str) -> Vec<u32> {
     use naga::back::spv;
     let options = spv::Options {
@@ -255,7 +261,11 @@ fn spirv(module: &naga::Module, info: &naga::valid::ModuleInfo, file: &str) -> V
         entry_point: "main".into(),
     };
     let words = spv::write_vec(module, info, &options, Some(&entry));
-    probes::finished(file, words.expect("a valid module can be written"))
+    let words = words.expect("a valid module can be written");
+    match is_probe(file) {
+        true => probes::finished(file, words),
+        false => no_contraction::forbid_contraction(&words),
+    }
 }
 
 fn stage(module: &naga::Module) -> String {

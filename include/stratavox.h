@@ -84,6 +84,8 @@ enum sv_feature
     SV_FEATURE_ROBUST_BUFFER_ACCESS = 8,
     // Of use, no more.
     SV_FEATURE_ROBUST_IMAGE_ACCESS = 16,
+    // `VK_KHR_portability_subset`, an extension: required where the device lists it.
+    SV_FEATURE_PORTABILITY_SUBSET = 32,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

@@ -14,6 +14,7 @@
 #import sample_graded
 #import transfer_{transfer}
 #import widgets
+#import norm
 #import second
 #import extinction
 
@@ -57,7 +58,7 @@ fn opacity_of(voxel: vec3<f32>) -> f32 {
         if wants_second() {
             second = second_derivative_at(place, gradient);
         }
-        material = classify_by_gradient(material, value, length(gradient), second);
+        material = classify_by_gradient(material, value, norm(gradient), second);
     }
     return opacity_over(material.extinction, light_grid.cell_length);
 }

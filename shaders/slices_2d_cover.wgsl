@@ -28,7 +28,7 @@ fn main(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u3
     var part = vec3(0.0);
     part[(axis + 1u) % 3u] = corners[index].x;
     part[(axis + 2u) % 3u] = corners[index].y;
-    var voxel = mix(frame.cover_min, frame.cover_max, part);
+    var voxel = select(frame.cover_min, frame.cover_max, part != vec3(0.0));
     voxel[axis] = height;
     let world = vec4(voxel, 1.0) * frame.world_from_voxel;
     return vertex_of(vec4(world, 1.0) * frame.clip_from_world, slice, 1.0);

@@ -60,7 +60,7 @@ fn plane_vertex(i: u32, height: f32) -> vec3<f32> {
         let part = (height - dot(frame.forward, a)) / max(rise, 1e-20);
         let is_own_edge = e == 0u && i % 2u == 1u;
         if part <= 1.0 && (part >= 0.0 || !is_own_edge) {
-            return mix(a, b, max(part, 0.0));
+            return a + max(part, 0.0) * (b - a);
         }
     }
     return box_corner(7u);
@@ -69,8 +69,8 @@ fn plane_vertex(i: u32, height: f32) -> vec3<f32> {
 // Corner j in world space, counted from the corner with the smallest forward . x.
 fn box_corner(j: u32) -> vec3<f32> {
     var corners = CORNERS;
-    let rises = vec3<f32>(frame.forward_voxel >= vec3(0.0));
-    let near = mix(frame.cover_max, frame.cover_min, rises);
-    let far = mix(frame.cover_min, frame.cover_max, rises);
-    return vec4(mix(near, far, corners[j]), 1.0) * frame.world_from_voxel;
+    let rises = frame.forward_voxel >= vec3(0.0);
+    let near = select(frame.cover_max, frame.cover_min, rises);
+    let far = select(frame.cover_min, frame.cover_max, rises);
+    return vec4(select(near, far, corners[j] != vec3(0.0)), 1.0) * frame.world_from_voxel;
 }

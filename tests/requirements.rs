@@ -21,6 +21,7 @@ fn features(needs: &[Need]) -> Features {
         timeline_semaphore: has(Feature::TimelineSemaphore),
         robust_buffer_access: has(Feature::RobustBufferAccess),
         robust_image_access: has(Feature::RobustImageAccess),
+        portability_subset: false,
     }
 }
 
@@ -100,6 +101,10 @@ fn without(item: Item, whole: HostDevice<'static>) -> Vec<(HostDevice<'static>, 
                 .collect();
         }
         Item::InstanceExtension(_) => host.debug_utils = false,
+        Item::PortabilitySubset => {
+            let parts = true;
+            return vec![(host, Lacking { parts, ..nothing })];
+        }
         Item::DeviceExtension(_) => {
             let nothing = Lacking {
                 device_extensions: true,

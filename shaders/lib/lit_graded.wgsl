@@ -5,6 +5,7 @@
 #import gradient
 #import widgets
 #import second
+#import norm
 #import shade
 #import light
 #import dimmed
@@ -21,7 +22,7 @@ fn lit_material_of(sample: Sample, light: f32) -> Classified {
         if wants_second() {
             second = second_derivative_at(sample.place, gradient);
         }
-        material = classify_by_gradient(material, sample.value, length(gradient), second);
+        material = classify_by_gradient(material, sample.value, norm(gradient), second);
     }
     var lit = plainly_lit(material.color);
     if !is_plain {

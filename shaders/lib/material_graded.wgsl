@@ -5,6 +5,7 @@
 #import gradient
 #import widgets
 #import second
+#import norm
 #import shade
 #import light
 
@@ -25,7 +26,7 @@ fn material_of(sample: Sample) -> Classified {
         if wants_second() {
             second = second_derivative_at(sample.place, gradient);
         }
-        material = classify_by_gradient(material, sample.value, length(gradient), second);
+        material = classify_by_gradient(material, sample.value, norm(gradient), second);
         if material.extinction == 0.0 {
             return material;
         }

@@ -1,6 +1,7 @@
 // All rays of a tile at once: see shaders/ray_tiles.wgsl.
 
 #import frame
+#import norm
 #import ray_tile
 
 // Every ray goes half a voxel and a part of its way beside where f32 says, at most.
@@ -30,11 +31,11 @@ fn pencil_of(middle: vec2<f32>) -> Pencil {
     let moved = half * frame.direction_dx;
     let across = half * frame.direction_dy;
     // A length is convex: it lies over its tangent plane, and is largest at a corner.
-    let there = length(direction);
+    let there = norm(direction);
     let least = there - (abs(dot(direction, moved)) + abs(dot(direction, across))) / there;
     let most = max(
-        max(length(direction + moved + across), length(direction + moved - across)),
-        max(length(direction - moved + across), length(direction - moved - across)),
+        max(norm(direction + moved + across), norm(direction + moved - across)),
+        max(norm(direction - moved + across), norm(direction - moved - across)),
     );
     return Pencil(
         o,

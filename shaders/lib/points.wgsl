@@ -49,5 +49,6 @@ fn between_points(value: f32, first: u32, count: u32, is_step: u32) -> vec4<f32>
         return left;
     }
     let right = points.d[low];
-    return mix(left, right, (value - left.x) / (right.x - left.x));
+    let part = (value - left.x) / (right.x - left.x);
+    return left + part * (right - left);
 }

@@ -4,6 +4,7 @@
 // Twin: src/ray.rs.
 
 #import frame
+#import norm
 #import in_pixel_{cuts=cut}
 #import clipped_{cuts=cut}
 
@@ -17,7 +18,7 @@ fn pixel_ray(pixel: vec2<f32>) -> Ray {
     let place = place_in_pixel(pixel);
     return Ray(
         frame.origin + place.x * frame.origin_dx + place.y * frame.origin_dy,
-        normalize(frame.direction + place.x * frame.direction_dx + place.y * frame.direction_dy),
+        direction_of(frame.direction + place.x * frame.direction_dx + place.y * frame.direction_dy),
     );
 }
 

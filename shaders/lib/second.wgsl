@@ -9,8 +9,10 @@
 //
 // which is a sum of weighted taps. A tap without data makes it zero. Twin: src/technique/second.rs.
 
+#import norm
+
 fn second_derivative_at(place: Place, gradient: vec3<f32>) -> f32 {
-    let magnitude = length(gradient);
+    let magnitude = norm(gradient);
     if magnitude == 0.0 {
         return 0.0;
     }

@@ -9,11 +9,12 @@
 // Who imports this also imports where that light is known: light or light_unhindered. Twin: src/technique/shading.rs.
 
 #import frame
+#import norm
 
 // At a position in voxel space.
 fn shade(color: vec3<f32>, gradient: vec3<f32>, ray_direction: vec3<f32>, voxel: vec3<f32>) -> vec3<f32> {
     let ambient_light = ambient_at(voxel, ray_direction);
-    let steepness = length(gradient);
+    let steepness = norm(gradient);
     let is_flat = !(steepness >= frame.flat_gradient) || steepness == 0.0;
     if is_flat && frame.has_shadows == 0u {
         return ambient_light * color;
@@ -28,7 +29,7 @@ fn shade(color: vec3<f32>, gradient: vec3<f32>, ray_direction: vec3<f32>, voxel:
         let towards_light = select(light.xyz, -ray_direction, light.w != 0.0);
         let halfway = towards_light - ray_direction;
         // Behind the surface and against the eye no halfway stands out.
-        let facing = abs(dot(normal, halfway)) / max(length(halfway), 1e-6);
+        let facing = abs(dot(normal, halfway)) / max(norm(halfway), 1e-6);
         let diffuse = frame.diffuse * abs(dot(normal, towards_light));
         let specular = frame.specular * pow(min(facing, 1.0), frame.shininess);
         let arriving = lamp_at(i, voxel) * frame.light_colors[i].xyz;

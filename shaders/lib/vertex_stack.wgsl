@@ -5,7 +5,7 @@
 #import frame
 
 struct Vertex {
-    @builtin(position) position: vec4<f32>,
+    @invariant @builtin(position) position: vec4<f32>,
     @location(0) @interpolate(flat) slice: i32,
     @location(1) @interpolate(flat) origin: vec4<u32>,
     @location(2) @interpolate(flat) origin_dx: vec4<u32>,

@@ -26,6 +26,8 @@ pub enum sv_feature {
     SV_FEATURE_ROBUST_BUFFER_ACCESS = 8,
     /// Of use, no more.
     SV_FEATURE_ROBUST_IMAGE_ACCESS = 16,
+    /// `VK_KHR_portability_subset`, an extension: required where the device lists it.
+    SV_FEATURE_PORTABILITY_SUBSET = 32,
 }
 
 /// Limits that are stricter than those of the device. 0 is no limit.
@@ -104,7 +106,7 @@ unsafe impl Versioned for sv_host_device {
 pub(super) fn features(bits: u32) -> Result<Features, Failure> {
     use sv_feature::*;
     let has = |feature: sv_feature| bits & feature as u32 != 0;
-    let known = (0..32).contains(&bits);
+    let known = (0..64).contains(&bits);
     number(
         "sv_host_device.features",
         "bits of sv_feature",
@@ -117,6 +119,7 @@ pub(super) fn features(bits: u32) -> Result<Features, Failure> {
         timeline_semaphore: has(SV_FEATURE_TIMELINE_SEMAPHORE),
         robust_buffer_access: has(SV_FEATURE_ROBUST_BUFFER_ACCESS),
         robust_image_access: has(SV_FEATURE_ROBUST_IMAGE_ACCESS),
+        portability_subset: has(SV_FEATURE_PORTABILITY_SUBSET),
     })
 }
 

@@ -8,7 +8,7 @@
 //! | lacks it | has it, and the limits of the run were lowered | not_supported, and that it was lowered |
 //! | otherwise | | internal_error: one of the two is wrong |
 
-use crate::gpu::{Feature, Gpu, Item, Limit};
+use crate::gpu::{Feature, Gpu, Item, Limit, portability_subset};
 use ash::vk;
 use serde::{Deserialize, Serialize};
 
@@ -21,6 +21,10 @@ pub enum Want {
     SpecialFloats,
     /// So many bytes of push constants, or more.
     PushConstants(u32),
+    /// `vkCreateEvent`, which devices with `VK_KHR_portability_subset` may lack.
+    Events,
+    /// Samplers with a level-of-detail bias, which such devices may lack too.
+    SamplerBias,
 }
 
 /// One need compared with a device.
@@ -64,6 +68,8 @@ impl Found {
             instance.get_physical_device_properties2(gpu.physical_device(), &mut properties);
         }
         let limits = properties.properties.limits;
+        // SAFETY: as above.
+        let subset = || unsafe { portability_subset(gpu.instance(), gpu.physical_device()) };
         let (name, wanted, device_says, has) = match want {
             Want::Subgroups(wanted) => {
                 let stages = properties11.subgroup_supported_stages;
@@ -93,6 +99,15 @@ impl Found {
                     found.to_string(),
                     found >= bytes,
                 )
+            }
+            Want::Events => {
+                let found = subset().is_none_or(|subset| subset.events == vk::TRUE);
+                ("events", "true".to_owned(), found.to_string(), found)
+            }
+            Want::SamplerBias => {
+                let found = subset().is_none_or(|subset| subset.sampler_mip_lod_bias == vk::TRUE);
+                let name = "samplerMipLodBias";
+                (name, "true".to_owned(), found.to_string(), found)
             }
         };
         Self {

@@ -1,8 +1,9 @@
 //! Devices against the list of requirements: those of this machine, and one that a host has.
 
 use super::{
-    API_VERSION, Caps, Error, Feature, Features, Gpu, Identity, Item, Need, REQUIREMENTS,
-    Requirement, Validation, identity::version_text, instance::Candidate, instance::OwnInstance,
+    API_VERSION, Caps, Error, Feature, Features, Gpu, Identity, Item, Need, PORTABILITY_SUBSET,
+    REQUIREMENTS, Requirement, Validation, identity::version_text, instance::Candidate,
+    instance::OwnInstance,
 };
 use ash::vk;
 use std::fmt;
@@ -300,6 +301,11 @@ impl There<'_> {
                 (words, found == wanted)
             }
             Item::InstanceExtension(_) => yes_or_no(self.asked.debug_utils, "enabled"),
+            Item::PortabilitySubset => match (&self.asked.features, self.supported) {
+                (_, supported) if !supported.portability_subset => ("not listed".into(), true),
+                (Some(enabled), _) => yes_or_no(enabled.portability_subset, "enabled"),
+                (None, _) => ("listed".into(), true),
+            },
             Item::DeviceExtension(name) => {
                 // SAFETY: the physical device is one of the instance's.
                 let has = unsafe { has_extension(self.instance, self.asked.physical_device, name) };
@@ -331,6 +337,8 @@ pub(super) unsafe fn supported(
         timeline_semaphore: features12.timeline_semaphore == vk::TRUE,
         robust_buffer_access: core.robust_buffer_access == vk::TRUE,
         robust_image_access: features13.robust_image_access == vk::TRUE,
+        // SAFETY: as above.
+        portability_subset: unsafe { has_extension(instance, physical_device, PORTABILITY_SUBSET) },
     }
 }
 

@@ -71,4 +71,6 @@ pub struct Features {
     pub timeline_semaphore: bool,
     pub robust_buffer_access: bool,
     pub robust_image_access: bool,
+    /// Not a feature but an extension, `VK_KHR_portability_subset`: a device that lists it must have it enabled.
+    pub portability_subset: bool,
 }

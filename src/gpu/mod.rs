@@ -40,6 +40,7 @@ pub(crate) mod owned;
 mod pace;
 mod parameters;
 pub(crate) mod pipeline;
+mod portability;
 mod raster;
 mod rendering;
 mod requirements;
@@ -72,6 +73,7 @@ pub use memory::{HeapUse, MemoryUse};
 pub(crate) use pace::{Pace, TARGET_MS};
 pub use parameters::ParameterRing;
 pub use pipeline::ComputePipeline;
+pub(crate) use portability::{PORTABILITY_SUBSET, portability_subset};
 pub use raster::{Blend, DepthClass, DepthUse, HostPass, RasterDesc, RasterPipeline, TargetClass};
 pub(crate) use rendering::begin_rendering_behind;
 pub use rendering::{

@@ -2,9 +2,9 @@
 
 use super::{
     Error, Features, ValidationMode, devices, error::Doing, instance::Candidate,
-    instance::OwnInstance,
+    instance::OwnInstance, portability_subset,
 };
-use ash::vk;
+use ash::{khr, vk};
 use std::fmt;
 
 /// A device that we made, destroyed when dropped. Everything made on it must be gone by then.
@@ -53,14 +53,24 @@ impl OwnDevice {
             .dynamic_rendering(features.dynamic_rendering)
             .synchronization2(features.synchronization2)
             .robust_image_access(features.robust_image_access);
+        // SAFETY: as above.
+        let mut subset = unsafe { portability_subset(instance.raw(), from.physical_device) };
+        let extensions: Vec<_> = subset
+            .iter()
+            .map(|_| khr::portability_subset::NAME.as_ptr())
+            .collect();
         let queues = [vk::DeviceQueueCreateInfo::default()
             .queue_family_index(queue_family)
             .queue_priorities(&[1.0])];
-        let info = vk::DeviceCreateInfo::default()
+        let mut info = vk::DeviceCreateInfo::default()
             .queue_create_infos(&queues)
+            .enabled_extension_names(&extensions)
             .enabled_features(&core)
             .push_next(&mut features12)
             .push_next(&mut features13);
+        if let Some(subset) = &mut subset {
+            info = info.push_next(subset);
+        }
         // SAFETY: only what the device supports is enabled.
         let device = unsafe {
             instance

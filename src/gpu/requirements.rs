@@ -2,9 +2,10 @@
 //!
 //! Required is what nothing can be drawn without; recommended, what makes more pictures possible, or the same faster.
 //! Names are those of the Vulkan specification. Of Vulkan 1.3 itself, what is not listed is not used: shaders declare
-//! the capabilities `Shader` and `ImageQuery` alone, and no device extension is ever enabled.
+//! the capabilities `Shader` and `ImageQuery` alone, and no device extension is enabled but
+//! `VK_KHR_portability_subset`, where a device lists it.
 
-use super::{API_VERSION, Caps, Features};
+use super::{API_VERSION, Caps, Features, PORTABILITY_SUBSET};
 use ash::vk;
 use std::fmt;
 
@@ -46,6 +47,8 @@ pub enum Item {
     Format(vk::Format, vk::FormatFeatureFlags),
     /// An extension, to be enabled when the instance is made.
     InstanceExtension(&'static str),
+    /// `VK_KHR_portability_subset`, to be enabled when the device is made, where the physical device lists it.
+    PortabilitySubset,
     /// An extension that the device has. It need not be enabled: the physical device alone is asked by it.
     DeviceExtension(&'static str),
 }
@@ -160,6 +163,10 @@ pub const REQUIREMENTS: &[Requirement] = &[
     required(
         format(vk::Format::R32_SFLOAT, &[SAMPLED, TO]),
         "voxels of every type, where their own format is not filtered",
+    ),
+    required(
+        Item::PortabilitySubset,
+        "a valid device where parts of Vulkan are missing, as with MoltenVK; no picture needs any of these parts",
     ),
     recommended(
         format(vk::Format::R32G32B32A32_SFLOAT, &[BLEND]),
@@ -308,6 +315,7 @@ impl fmt::Display for Item {
             Self::Feature(feature) => write!(f, "{}", feature.name()),
             Self::Limit(limit, _) => write!(f, "{}", limit.name()),
             Self::Format(format, _) => write!(f, "VK_FORMAT_{format:?}"),
+            Self::PortabilitySubset => write!(f, "{PORTABILITY_SUBSET}"),
             Self::InstanceExtension(name) | Self::DeviceExtension(name) => write!(f, "{name}"),
         }
     }
@@ -323,6 +331,7 @@ impl Item {
             Self::Queue(flags) => format!("{flags:?}"),
             Self::Timestamps => "1 or more".into(),
             Self::Feature(_) | Self::InstanceExtension(_) => "enabled".into(),
+            Self::PortabilitySubset => "enabled where the device lists it".into(),
             Self::DeviceExtension(_) => "supported".into(),
             Self::Limit(_, least) => format!("{least} or more"),
             Self::Format(_, features) => format!("{features:?}"),

@@ -120,10 +120,11 @@ impl OutputFile {
             },
         })?;
         // Without this the name may be lost with the power; where folders cannot be opened, it may.
-        #[cfg(unix)]
-        File::open(&self.folder)
-            .and_then(|folder| folder.sync_all())
-            .map_err(doing("cannot bring the folder to the disk"))?;
+        if cfg!(unix) {
+            File::open(&self.folder)
+                .and_then(|folder| folder.sync_all())
+                .map_err(doing("cannot bring the folder to the disk"))?;
+        }
         Ok(())
     }
 }

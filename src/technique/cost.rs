@@ -1,23 +1,35 @@
 //! What work will take, guessed before anything like it was measured: rather too much than too little.
 
 use super::{MAX_SAMPLES_PER_RAY, Mode, Settings, Technique, View};
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, TARGET_MS};
 use crate::resident::Cell;
 use glam::DVec3;
 
-/// A look-up of a voxel takes so long with all that is done with it. A driver on two cores took 10 to 20 ns
-/// (`docs/performance.md`); graphics cards that are twenty times slower than the fast ones keep inside a
-/// nanosecond.
-fn ms_per_look(gpu: &Gpu) -> f64 {
-    match gpu.is_cpu() {
-        true => 25e-6,
-        false => 1e-6,
-    }
-}
+/// What a look-up of a voxel takes on the processor, with all that is done with it: a driver on two cores took 10 to
+/// 20 ns (`docs/performance.md`).
+const MS_PER_LOOK_ON_PROCESSOR: f64 = 25e-6;
 
-/// What so many looks take.
+/// The same on the slowest device that is provided for: none was measured, 1 ns is taken for a usual one and 20 times as
+/// much for this one.
+const MS_PER_LOOK_ON_SLOWEST: f64 = 20e-6;
+
+/// No submission shall last longer.
+const LONGEST_MS: f64 = 250.0;
+
+/// What a look is expected to take on a device of which nothing is known, g. A first submission is cut so that it lasts
+/// `TARGET_MS` if g is right, or a quarter more where that is all (`Pace::next`): at most `1.25 * TARGET_MS / g` looks.
+/// On the slowest device these last `1.25 * TARGET_MS * slowest / g`, which is `LONGEST_MS` for this g, 10 ns. What
+/// follows is cut by measurement: a device of 1 ns a look has a first submission of 10 ms, and comes to 100 ms with
+/// the fifth.
+const MS_PER_LOOK_UNKNOWN: f64 = 1.25 * MS_PER_LOOK_ON_SLOWEST * TARGET_MS / LONGEST_MS;
+
+/// What so many looks are expected to take.
 pub fn ms_of_looks(gpu: &Gpu, looks: f64) -> f64 {
-    looks * ms_per_look(gpu)
+    looks
+        * match gpu.is_cpu() {
+            true => MS_PER_LOOK_ON_PROCESSOR,
+            false => MS_PER_LOOK_UNKNOWN,
+        }
 }
 
 /// Rays across and down that are looked at for a whole picture.
@@ -97,7 +109,41 @@ pub fn looks_of_cells<'a>(cells: impl IntoIterator<Item = &'a Cell>, each: f64) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gpu::Pace;
     use glam::dvec3;
+
+    /// The times of the submissions of so many looks on a device of which nothing is known.
+    fn submissions(looks: f64, ms_per_look: f64) -> Vec<f64> {
+        const UNITS: u64 = 1 << 16;
+        let mut pace = Pace::new(UNITS, looks * MS_PER_LOOK_UNKNOWN, TARGET_MS);
+        let mut times = Vec::new();
+        while let Some(units) = pace.next() {
+            let ms = looks / UNITS as f64 * (units.end - units.start) as f64 * ms_per_look;
+            times.push(ms);
+            pace.took(units, ms);
+        }
+        times
+    }
+
+    #[test]
+    fn no_submission_of_the_slowest_device_lasts_too_long_from_the_first_on() {
+        for looks in [1e3, 1e6, 1e7, 1.24e7, 1.26e7, 1e8, 1e9, 1e10, 1e11] {
+            for times_slower in [0.1, 1.0, 5.0, 10.0, 20.0] {
+                let times = submissions(looks, times_slower * 1e-6);
+                let longest = times.iter().copied().fold(0.0, f64::max);
+                assert!(longest <= LONGEST_MS, "{looks}, {times_slower}: {times:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_usual_device_has_three_submissions_more_at_most() {
+        for looks in [1e6, 1e8, 1e9, 1e10] {
+            let times = submissions(looks, 1e-6);
+            let fewest = (looks * 1e-6 / TARGET_MS).ceil() as usize;
+            assert!(times.len() <= fewest + 3, "{looks}: {times:?}");
+        }
+    }
 
     #[test]
     fn a_ray_is_as_long_in_a_box_as_it_lies_in_it() {

@@ -99,6 +99,12 @@ fallible! {
                 let extensions = std::slice::from_raw_parts_mut(out, *count as usize);
                 extensions.iter_mut().for_each(|one| one.extension_name = [0; 256]);
             }
+            // In the place of another, for the same reason.
+            if !out.is_null() && lacking().parts {
+                let name = ash::khr::portability_subset::NAME.to_bytes();
+                let to = (*out).extension_name.iter_mut();
+                to.zip(name.iter().chain(&[0])).for_each(|(to, from)| *to = *from as c_char);
+            }
         };
     vkGetPhysicalDeviceImageFormatProperties2(
         device: vk::PhysicalDevice, info: *const vk::PhysicalDeviceImageFormatInfo2<'_>,

@@ -34,6 +34,8 @@ pub struct Lacking {
     pub format: (vk::Format, vk::FormatFeatureFlags),
     pub timestamps: bool,
     pub device_extensions: bool,
+    /// It lists `VK_KHR_portability_subset`: parts of Vulkan may be missing.
+    pub parts: bool,
 }
 
 #[derive(Default)]

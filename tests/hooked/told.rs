@@ -28,6 +28,7 @@ pub const FEATURES: Features = Features {
     timeline_semaphore: false,
     robust_buffer_access: false,
     robust_image_access: false,
+    portability_subset: false,
 };
 
 fn options() -> Options {

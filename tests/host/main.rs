@@ -65,6 +65,7 @@ mod format_weather;
 mod format_zarr;
 mod format_zarr_ngff;
 mod isosurface;
+mod no_contraction;
 mod phantoms;
 mod picture_compare;
 mod picture_files;

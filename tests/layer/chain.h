@@ -1,5 +1,5 @@
 /* What layers of these tests have in common: a place between the loader and the next layer. A layer includes this once, and
- * gives functions of its own in place of the next layer's. */
+ * gives functions of its own in place of the next layer's. It may define BEFORE_DEVICE(info), for each device that is made. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,6 +41,9 @@ static VKAPI_ATTR VkResult VKAPI_CALL create_device(VkPhysicalDevice physical, c
         link = (VkLayerDeviceCreateInfo *)link->pNext;
     next_device_proc = link->u.pLayerInfo->pfnNextGetDeviceProcAddr;
     link->u.pLayerInfo = link->u.pLayerInfo->pNext;
+#ifdef BEFORE_DEVICE
+    BEFORE_DEVICE(info);
+#endif
     PFN_vkCreateDevice create = (PFN_vkCreateDevice)next_instance_proc(the_instance, "vkCreateDevice");
     return create(physical, info, alloc, device);
 }

@@ -257,7 +257,7 @@ pub const LIES: &[(&str, Lie, &str)] = &[
         "directions are not of length one",
         Shader(
             "lib/ray.wgsl",
-            "normalize(frame.direction + place.x * frame.direction_dx + place.y * frame.direction_dy)",
+            "direction_of(frame.direction + place.x * frame.direction_dx + place.y * frame.direction_dy)",
             "frame.direction + place.x * frame.direction_dx + place.y * frame.direction_dy",
         ),
         CASTER,
@@ -375,11 +375,7 @@ pub const LIES: &[(&str, Lie, &str)] = &[
     ),
     (
         "functions are steps",
-        Shader(
-            "lib/points.wgsl",
-            "mix(left, right, (value - left.x) / (right.x - left.x))",
-            "left",
-        ),
+        Shader("lib/points.wgsl", "left + part * (right - left)", "left"),
         CASTER,
     ),
     (

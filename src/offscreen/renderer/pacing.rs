@@ -91,11 +91,13 @@ impl<'v> Renderer<'v> {
             let range = known.looks / SIMILAR..=known.looks * SIMILAR;
             known.like == like && range.contains(&looks)
         };
+        let gpu = self.device.gpu();
         let seen = match self.skipped.skip() {
-            Skip::Unseen(..) => MOST_SEEN,
-            Skip::Nothing | Skip::Exceeded(_) => 1.0,
+            // Where nothing is known of the device either, one of the two is allowed for.
+            Skip::Unseen(..) if gpu.is_cpu() => MOST_SEEN,
+            _ => 1.0,
         };
-        let guess = seen * ms_of_looks(self.device.gpu(), looks);
+        let guess = seen * ms_of_looks(gpu, looks);
         let ms = match self.known.as_ref().filter(is_similar) {
             Some(known) => known.ms * looks / known.looks,
             None => guess,

@@ -10,6 +10,7 @@ use super::raw::{self, RawImage};
 use super::{kit, lod_implicit};
 use crate::conformance::case::{Case, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
+use crate::conformance::need::Want;
 use crate::conformance::stand::{Random, Stand};
 use crate::gpu::{Bindings, ComputePipeline, Gpu, Item, Resource, Sampler, Use};
 use crate::shaders::shader;
@@ -116,7 +117,11 @@ pub type Levels = Vec<Vec<f64>>;
 impl Of {
     fn case(self, name: String) -> Case {
         let seeded = name.clone();
-        Case::new(name, move |stand| self.measure(stand, &seeded)).needing(need())
+        let case = Case::new(name, move |stand| self.measure(stand, &seeded)).needing(need());
+        match self.bounds.bias == 0.0 {
+            true => case,
+            false => case.wanting(Want::SamplerBias),
+        }
     }
 
     fn measure(self, stand: &mut Stand, name: &str) -> Result<Measurement, Stop> {
