@@ -8,8 +8,8 @@ use crate::gpu::{
     end_rendering, image_barrier,
 };
 use crate::technique::blend::{Drawn, clear_color};
-use crate::technique::merge::{BATCH_FORMAT, MAX_BATCH_SLICES, Merge};
-use crate::technique::{ACCUMULATION_FORMAT, Mode, PatchSlicer, Settings, Slicer, Words};
+use crate::technique::merge::{BATCH_FORMAT, MAX_BATCH_SLICES, Merge, is_merged};
+use crate::technique::{ACCUMULATION_FORMAT, PatchSlicer, Settings, Slicer, Words};
 use ash::vk;
 use std::sync::Arc;
 
@@ -43,8 +43,7 @@ impl Slicing {
         is_patched: bool,
     ) -> Result<Self, Error> {
         let order = settings.order;
-        let can_merge = matches!(drawn, Drawn::Picture(Mode::Composite) | Drawn::Count);
-        let is_merged = can_merge && !gpu.format_features(ACCUMULATION_FORMAT).blend;
+        let is_merged = is_merged(gpu, drawn);
         let format = if is_merged {
             BATCH_FORMAT
         } else {

@@ -9,6 +9,10 @@
 //! x^y        exp2(y log2 x)         mix       x (1 - a) + y a, whose four roundings are not those of x + a (y - x)
 //! ```
 //!
+//! Blended in 16-bit floats, source, factor, product and sum are each such a number: 2^-10 of it, because it may be cut
+//! off (Vulkan specification, "Blending": "a precision and dynamic range no lower than that used to represent
+//! destination components"), and under 2^-14 all of it, because it may be flushed to zero.
+//!
 //! What a device contracts has a rounding less. Where an operation's result is a number of f32 and its operands are
 //! exact, so is it. A comparison or a `floor` whose outcome lies inside of the error sets a mark, and all numbers of
 //! the pixel that come after are infinitely uncertain: the answer hangs on rounding. A minimum and a maximum do not:
@@ -28,6 +32,9 @@ const EPS: f64 = 1.0 / (1u32 << 23) as f64;
 const LOG: f64 = 1.0 / (1u32 << 21) as f64;
 /// Smaller numbers may be flushed to zero.
 const LEAST: f64 = f32::MIN_POSITIVE as f64;
+/// The distance of 1 from the next 16-bit float, and the least one that has all its digits.
+const EPS_F16: f64 = 1.0 / 1024.0;
+const LEAST_F16: f64 = 1.0 / 16_384.0;
 
 thread_local! {
     static HANGS: Cell<bool> = const { Cell::new(false) };
@@ -35,13 +42,14 @@ thread_local! {
 
 /// A number and its uncertainty. `ROUNDED`: numbers that come as f32 are roundings of the true ones, which is what
 /// the parameters of a picture are to a closed form of the camera; else they are exact, as they are to a twin.
+/// `F16`: slices are blended in 16-bit floats, by batches.
 #[derive(Clone, Copy, Debug)]
-pub struct Tracked<const ROUNDED: bool> {
+pub struct Tracked<const ROUNDED: bool, const F16: bool> {
     value: f64,
     error: f64,
 }
 
-impl<const ROUNDED: bool> Tracked<ROUNDED> {
+impl<const ROUNDED: bool, const F16: bool> Tracked<ROUNDED, F16> {
     fn exact(value: f64) -> Self {
         Self::with(value, 0.0)
     }
@@ -79,6 +87,13 @@ impl<const ROUNDED: bool> Tracked<ROUNDED> {
             HANGS.set(true);
         }
         Self::exact(of(self.value))
+    }
+
+    /// A 16-bit float, for sure.
+    fn is_f16(self) -> bool {
+        const DIGITS: u64 = (1 << (f64::MANTISSA_DIGITS - 11)) - 1;
+        let has_digits = self.value.to_bits() & DIGITS == 0 && self.value.abs() >= LEAST_F16;
+        self.error == 0.0 && (self.value == 0.0 || has_digits)
     }
 
     /// How this stands to another, and the mark where that is not sure.
@@ -128,26 +143,26 @@ fn times(a: f64, b: f64) -> f64 {
     if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
 }
 
-impl<const R: bool> PartialEq for Tracked<R> {
+impl<const R: bool, const F16: bool> PartialEq for Tracked<R, F16> {
     fn eq(&self, other: &Self) -> bool {
         self.compare(other) == Some(Ordering::Equal)
     }
 }
 
-impl<const R: bool> PartialOrd for Tracked<R> {
+impl<const R: bool, const F16: bool> PartialOrd for Tracked<R, F16> {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         self.compare(other)
     }
 }
 
-impl<const R: bool> Neg for Tracked<R> {
+impl<const R: bool, const F16: bool> Neg for Tracked<R, F16> {
     type Output = Self;
     fn neg(self) -> Self {
         Self::with(-self.value, self.error)
     }
 }
 
-impl<const R: bool> Add for Tracked<R> {
+impl<const R: bool, const F16: bool> Add for Tracked<R, F16> {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         if other.is_exactly(0.0) {
@@ -160,14 +175,14 @@ impl<const R: bool> Add for Tracked<R> {
     }
 }
 
-impl<const R: bool> Sub for Tracked<R> {
+impl<const R: bool, const F16: bool> Sub for Tracked<R, F16> {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
         self + -other
     }
 }
 
-impl<const R: bool> Mul for Tracked<R> {
+impl<const R: bool, const F16: bool> Mul for Tracked<R, F16> {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
         if other.is_exactly(1.0) {
@@ -183,7 +198,7 @@ impl<const R: bool> Mul for Tracked<R> {
     }
 }
 
-impl<const R: bool> Div for Tracked<R> {
+impl<const R: bool, const F16: bool> Div for Tracked<R, F16> {
     type Output = Self;
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
@@ -197,7 +212,7 @@ impl<const R: bool> Div for Tracked<R> {
     }
 }
 
-impl<const R: bool> Real for Tracked<R> {
+impl<const R: bool, const F16: bool> Real for Tracked<R, F16> {
     fn from_f64(x: f64) -> Self {
         let stored = f64::from(x as f32);
         match stored == x {
@@ -332,6 +347,48 @@ impl<const R: bool> Real for Tracked<R> {
         Self::with(self.value, self.error.max(apart + other.error))
     }
 
+    const IS_MERGED: bool = F16;
+
+    fn in_target(self) -> Self {
+        if !F16 || self.is_f16() {
+            return self;
+        }
+        let (least, most) = (self.value.abs() - self.error, self.value.abs() + self.error);
+        let flushed = if least < LEAST_F16 {
+            most.min(LEAST_F16)
+        } else {
+            0.0
+        };
+        Self::with(self.value, self.error + EPS_F16 * most + flushed)
+    }
+
+    /// What the nearer is off by stands in both terms: one takes back of the other as much as is behind.
+    fn over(self, behind: Self) -> Self {
+        if behind.is_exactly(0.0) || self.is_exactly(0.0) {
+            return self + behind;
+        }
+        let left = (1.0 - self.value).abs();
+        let value = self.value + (1.0 - self.value) * behind.value;
+        let carried =
+            self.error * ((1.0 - behind.value).abs() + behind.error) + behind.error * left;
+        let product = (left + self.error) * (behind.value.abs() + behind.error);
+        let (eps, least) = if F16 {
+            (EPS_F16, LEAST_F16)
+        } else {
+            (EPS, LEAST)
+        };
+        // Of the factor, of the product, and of the sum of what these make of it.
+        let sum = self.value.abs() + self.error + product;
+        let rounded = eps * (2.0 * product + sum) * (1.0 + 2.0 * eps);
+        let low = (left - self.error) * (behind.value.abs() - behind.error);
+        let flushed = if low < least {
+            2.0 * product.min(least) + sum.min(least)
+        } else {
+            0.0
+        };
+        Self::with(value, carried + rounded + flushed)
+    }
+
     fn begin() {
         HANGS.set(false);
     }
@@ -345,7 +402,7 @@ impl<const R: bool> Real for Tracked<R> {
 mod tests {
     use super::*;
 
-    type Number = Tracked<false>;
+    type Number = Tracked<false, false>;
 
     #[test]
     fn what_f32_makes_of_a_sum_lies_inside_of_the_error() {
