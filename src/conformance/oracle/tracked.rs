@@ -401,6 +401,8 @@ impl<const R: bool, const F16: bool> Real for Tracked<R, F16> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::technique::Order;
+    use crate::technique::blend::blend_material;
 
     type Number = Tracked<false, false>;
 
@@ -426,6 +428,56 @@ mod tests {
             widest = widest.max(off / tracked.error);
         }
         assert!(widest > 0.01, "errors are no bounds but {widest} of them");
+    }
+
+    /// The 16-bit float next to zero from here, of as many digits however small.
+    fn cut_off(number: f32) -> f32 {
+        f32::from_bits(number.to_bits() & !0x1fff)
+    }
+
+    #[test]
+    fn what_cut_off_blends_make_of_many_slices_lies_inside_of_the_error() {
+        type Blended = Tracked<false, true>;
+        let mut state = 1u32;
+        let mut next = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as f32 / 16_777_216.0
+        };
+        let mut widest = 0.0f64;
+        for slices in [1, 8, 64] {
+            for order in [Order::BackToFront, Order::FrontToBack] {
+                Blended::begin();
+                let (mut cut, mut tracked) = ([0.0f32; 4], [Blended::from_f64(0.0); 4]);
+                for _ in 0..slices {
+                    let [r, g, b, extinction] = [next(), next(), next(), 0.2 * next()];
+                    let material = [r, g, b, extinction].map(Blended::from_f32);
+                    tracked = blend_material(order, tracked, material, Blended::from_f64(1.0));
+                    let opacity = cut_off(-(-extinction).exp_m1());
+                    let source = [r, g, b].map(|c| cut_off(opacity * c));
+                    let source = [source[0], source[1], source[2], opacity];
+                    let nearer = if order == Order::BackToFront {
+                        opacity
+                    } else {
+                        cut[3]
+                    };
+                    let left = cut_off(1.0 - nearer);
+                    cut = std::array::from_fn(|c| match order {
+                        Order::BackToFront => cut_off(source[c] + cut_off(left * cut[c])),
+                        Order::FrontToBack => cut_off(cut_off(left * source[c]) + cut[c]),
+                    });
+                }
+                for (cut, tracked) in cut.into_iter().zip(tracked) {
+                    let off = (f64::from(cut) - tracked.value).abs();
+                    assert!(
+                        off <= tracked.error,
+                        "{slices} {order:?}: {off}, {tracked:?}"
+                    );
+                    assert!(tracked.error < 0.1, "{slices} {order:?}: {tracked:?}");
+                    widest = widest.max(off / tracked.error);
+                }
+            }
+        }
+        assert!(widest > 0.3, "errors are no bounds but {widest} of them");
     }
 
     #[test]

@@ -8,7 +8,7 @@ use crate::conformance::measurement::{Bound, Measurement, Pictures};
 use crate::conformance::oracle::{Answer, Classes, Kind, Shot, answer};
 use crate::conformance::stand::Stand;
 use crate::picture::{LayerKind, Picture};
-use crate::technique::{Filter, Mode};
+use crate::technique::{Filter, Mode, Technique};
 use crate::volume::VoxelType;
 
 /// The product.
@@ -84,7 +84,15 @@ impl Of {
     }
 
     fn measure(self, stand: &mut Stand) -> Result<Measurement, Stop> {
-        let shot = ground::shot(self.placement, self.mode, self.filter, self.is_perspective);
+        let mut shot = ground::shot(self.placement, self.mode, self.filter, self.is_perspective);
+        let is_merged = stand.is_merged(&shot.settings)?;
+        if is_merged
+            && self.kind == Kind::Homogeneous
+            && shot.settings.technique == Technique::Slices3d
+        {
+            // More slices than a batch has.
+            shot.settings.samples_per_voxel = 3.0;
+        }
         let field = self.kind.field();
         let volume = field.volume(&shot, self.stored);
         let classes = Classes::RAMP;
@@ -98,7 +106,7 @@ impl Of {
         let found = stand.render(&scene, layers)?;
         // By points and fetches: the answer is allowed what a table and a sampler may be off by.
         let exact = shot.with(|settings| settings.conformance = true);
-        let of_blending = match stand.is_merged(scene.settings)? {
+        let of_blending = match is_merged {
             true => Some(errors::<true>(
                 stand,
                 &exact.scene(&volume, Some(&function)),
