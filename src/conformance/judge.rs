@@ -56,7 +56,9 @@ fn judged(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
             (record, pictures)
         }
         Ok(Err(stop)) => {
-            if let (Some(item), Ok(device)) = (stop.need(), stand.device()) {
+            if let Some(item) = stop.need()
+                && let Ok(device) = stand.device()
+            {
                 needs.push(Found::of(device.gpu(), item));
             }
             let of_stop = match &stop {

@@ -177,7 +177,7 @@ pub fn blend_material<R: Real>(
 }
 
 /// What batches before have left, after one more: twin of `shaders/merge.wgsl`.
-pub fn merge<R: Real>(order: Order, before: [R; 4], batch: [R; 4]) -> [R; 4] {
+pub(crate) fn merge<R: Real>(order: Order, before: [R; 4], batch: [R; 4]) -> [R; 4] {
     let one = R::from_f64(1.0);
     match order {
         Order::BackToFront => each(batch, before, |b, c| b + (one - batch[3]) * c),

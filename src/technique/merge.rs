@@ -16,7 +16,7 @@ pub const MAX_BATCH_SLICES: u32 = 64;
 pub const BATCH_FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
 
 /// Whether slices that are `drawn` for this are blended in batches on this device.
-pub fn is_merged(gpu: &Gpu, drawn: Drawn) -> bool {
+pub(crate) fn is_merged(gpu: &Gpu, drawn: Drawn) -> bool {
     let can_merge = matches!(drawn, Drawn::Picture(Mode::Composite) | Drawn::Count);
     can_merge && !gpu.format_features(ACCUMULATION_FORMAT).blend
 }
