@@ -63,6 +63,18 @@ pub trait Real:
     fn or(self, _other: Self) -> Self {
         self
     }
+    /// Whether slices are blended in a target that keeps less than this type does, and merged by batches
+    /// ([`technique::merge`](crate::technique::merge)).
+    const IS_MERGED: bool = false;
+    /// As the target that slices are blended in keeps it.
+    fn in_target(self) -> Self {
+        self
+    }
+    /// What a target whose alpha this is keeps of the alpha of both, it and one behind it.
+    fn over(self, behind: Self) -> Self {
+        let left = (Self::from_f64(1.0) - self).in_target();
+        ((left * behind).in_target() + self).in_target()
+    }
     /// A pixel begins: numbers that keep what has become of them forget it.
     fn begin() {}
     /// The same number at the end of its pixel, with what has become of it.

@@ -17,6 +17,7 @@ fn device() -> DeviceRecord {
         name: "a <device>".into(),
         kind: "cpu".into(),
         driver: "a driver".into(),
+        driver_id: 0,
         driver_info: "1.2.3".into(),
         driver_version: 1,
         vulkan: "1.3.0".into(),
@@ -111,6 +112,7 @@ fn what_a_device_lacks_is_named_in_a_package() {
         wanted: "enabled".into(),
         device_says: "not supported".into(),
         device_has: false,
+        library_says: "not supported".into(),
         library_has: false,
     };
     let package = whole(&list, |records| {

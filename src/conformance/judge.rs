@@ -32,7 +32,7 @@ pub fn judge(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
 
 fn judged(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
     let of = |verdict, reason| Record::unmeasured(&case.name, case.profile, verdict, reason);
-    let needs: Vec<Found> = match stand.wants_device().then(|| stand.device()) {
+    let mut needs: Vec<Found> = match stand.wants_device().then(|| stand.device()) {
         Some(Ok(device)) => {
             let gpu = device.gpu();
             let needs = case.needs.iter().map(|&item| Found::of(gpu, item));
@@ -56,14 +56,20 @@ fn judged(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
             (record, pictures)
         }
         Ok(Err(stop)) => {
-            let verdict = match &stop {
+            if let Some(item) = stop.need()
+                && let Ok(device) = stand.device()
+            {
+                needs.push(Found::of(device.gpu(), item));
+            }
+            let of_stop = match &stop {
                 Stop::Offscreen(offscreen::Error::Gpu(error)) => verdict_of(error),
                 Stop::Offscreen(_) | Stop::Suite(_) => Verdict::InternalError,
             };
+            let (verdict, reason) = lacking(&needs).unwrap_or((of_stop, stop.to_string()));
             if verdict == Verdict::DeviceLost {
                 stand.drop_device();
             }
-            (of(verdict, stop.to_string()), None)
+            (of(verdict, reason), None)
         }
         Err(panic) => {
             // What it held may be half done.
@@ -77,7 +83,7 @@ fn judged(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
     (Record { needs, ..record }, pictures)
 }
 
-/// A refusal that no need of the case has foretold is no verdict on the device.
+/// A refusal that is no need of the case is no verdict on the device.
 fn verdict_of(error: &gpu::Error) -> Verdict {
     match error {
         gpu::Error::OutOfMemory { .. } => Verdict::ResourceError,
@@ -99,13 +105,18 @@ fn lacking(needs: &[Found]) -> Option<(Verdict, String)> {
         return Some((Verdict::InternalError, reason));
     }
     let need = needs.iter().find(|need| !need.library_has)?;
-    let Found { name, wanted, .. } = need;
+    let Found {
+        name,
+        wanted,
+        library_says,
+        device_says,
+        ..
+    } = need;
     let reason = match need.device_has {
-        false => format!(
-            "{name}: wanted {wanted}, the device says {}",
-            need.device_says
+        false => format!("{name}: wanted {wanted}, the device says {device_says}"),
+        true => format!(
+            "{name}: wanted {wanted}, found {library_says}: lowered for this run, the device says {device_says}"
         ),
-        true => format!("{name}: wanted {wanted}, lowered for this run"),
     };
     Some((Verdict::NotSupported, reason))
 }

@@ -1,5 +1,6 @@
 //! What a case asks of a device, looked up twice: as the library knows the device, and by a query of its own. Of what
-//! the library has no need, the query alone says.
+//! the library has no need, the query alone says. How many storage buffers a case binds is known once it makes its
+//! programs ([`Stop::need`](super::case::Stop::need)).
 //!
 //! | library | query | said |
 //! |---|---|---|
@@ -38,6 +39,8 @@ pub struct Found {
     pub device_says: String,
     /// Whether the device has it.
     pub device_has: bool,
+    /// What the library knows of it: limits of the run are in it.
+    pub library_says: String,
     /// Whether the library takes it as there.
     pub library_has: bool,
 }
@@ -46,12 +49,14 @@ impl Found {
     /// Both ways of asking `gpu` for `item`.
     pub fn of(gpu: &Gpu, item: Item) -> Self {
         let (device_says, device_has) = asked(gpu, item);
+        let (library_says, library_has) = known(gpu, item);
         Self {
             name: item.to_string(),
             wanted: item.wanted(),
             device_says,
             device_has,
-            library_has: known(gpu, item),
+            library_says,
+            library_has,
         }
     }
 
@@ -113,6 +118,7 @@ impl Found {
         Self {
             name: name.to_owned(),
             wanted,
+            library_says: device_says.clone(),
             device_says,
             device_has: has,
             library_has: has,
@@ -121,23 +127,47 @@ impl Found {
 }
 
 /// As the library has it: limits of the run are in it.
-fn known(gpu: &Gpu, item: Item) -> bool {
+fn known(gpu: &Gpu, item: Item) -> (String, bool) {
     match item {
-        Item::Feature(feature) => feature.is_in(&gpu.features()),
-        Item::Limit(limit, least) => limit.of(gpu.limits()) >= least,
-        Item::Format(format, wanted) => {
-            let has = gpu.format_features(format);
-            let of = |flag: vk::FormatFeatureFlags, has: bool| !wanted.contains(flag) || has;
-            use vk::FormatFeatureFlags as Flags;
-            of(Flags::SAMPLED_IMAGE, has.sampled)
-                && of(Flags::SAMPLED_IMAGE_FILTER_LINEAR, has.linear)
-                && of(Flags::STORAGE_IMAGE, has.storage)
-                && of(Flags::COLOR_ATTACHMENT, has.color)
-                && of(Flags::COLOR_ATTACHMENT_BLEND, has.blend)
-                && of(Flags::DEPTH_STENCIL_ATTACHMENT, has.depth)
+        Item::Feature(feature) => supported(feature.is_in(&gpu.features())),
+        Item::Limit(limit, least) => {
+            let found = limit.of(gpu.limits());
+            (found.to_string(), found >= least)
         }
-        _ => true,
+        Item::Format(format, wanted) => {
+            use vk::FormatFeatureFlags as Flags;
+            let has = gpu.format_features(format);
+            let known = [
+                (Flags::SAMPLED_IMAGE, has.sampled),
+                (Flags::SAMPLED_IMAGE_FILTER_LINEAR, has.linear),
+                (Flags::STORAGE_IMAGE, has.storage),
+                (Flags::COLOR_ATTACHMENT, has.color),
+                (Flags::COLOR_ATTACHMENT_BLEND, has.blend),
+                (Flags::DEPTH_STENCIL_ATTACHMENT, has.depth),
+            ];
+            let lacking = known.into_iter().filter(|(_, has)| !has);
+            let lacking = lacking.fold(Flags::empty(), |all, (flag, _)| all | flag);
+            // Of others the library does not ask.
+            features(wanted & !lacking, wanted)
+        }
+        _ => ("not asked".to_owned(), true),
     }
+}
+
+fn supported(has: bool) -> (String, bool) {
+    let says = if has { "supported" } else { "not supported" };
+    (says.to_owned(), has)
+}
+
+/// What of `wanted` is `found`.
+fn features(found: vk::FormatFeatureFlags, wanted: vk::FormatFeatureFlags) -> (String, bool) {
+    let there = found & wanted;
+    let says = if there.is_empty() {
+        "nothing of it".to_owned()
+    } else {
+        format!("{there:?}")
+    };
+    (says, there == wanted)
 }
 
 /// By queries of Vulkan alone.
@@ -150,8 +180,7 @@ fn asked(gpu: &Gpu, item: Item) -> (String, bool) {
             unsafe {
                 instance.get_physical_device_format_properties2(device, format, &mut found);
             }
-            let found = found.format_properties.optimal_tiling_features;
-            (format!("{:?}", found & wanted), found.contains(wanted))
+            features(found.format_properties.optimal_tiling_features, wanted)
         }
         Item::Limit(limit, least) => {
             // SAFETY: as above.
@@ -188,8 +217,7 @@ fn asked(gpu: &Gpu, item: Item) -> (String, bool) {
                     Feature::RobustBufferAccess => core,
                     Feature::RobustImageAccess => features13.robust_image_access,
                 };
-            let says = if has { "supported" } else { "not supported" };
-            (says.to_owned(), has)
+            supported(has)
         }
         _ => ("not asked".to_owned(), true),
     }

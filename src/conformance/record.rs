@@ -99,6 +99,8 @@ pub struct DeviceRecord {
     pub kind: String,
     /// The driver's name.
     pub driver: String,
+    /// The number of its `VkDriverId`.
+    pub driver_id: u32,
     /// The driver's version in its own words.
     pub driver_info: String,
     /// The driver's version as a number.
@@ -145,6 +147,7 @@ impl DeviceRecord {
             name: identity.name.clone(),
             kind: identity.kind.name().to_owned(),
             driver: identity.driver_name.clone(),
+            driver_id: identity.driver_id.as_raw() as u32,
             driver_info: identity.driver_info.clone(),
             driver_version: identity.driver_version,
             vulkan: format!("{major}.{minor}.{patch}"),

@@ -5,7 +5,8 @@ use crate::gpu::{self, Caps, Headless};
 use crate::offscreen::Renderer;
 use crate::picture::{LayerKind, Picture};
 use crate::scene::Scene;
-use crate::technique;
+use crate::technique::blend::Drawn;
+use crate::technique::{self, Settings, Technique, merge};
 
 type Make = Box<dyn FnMut(Lower) -> Result<Headless, gpu::Error>>;
 
@@ -61,6 +62,18 @@ impl Stand {
             Some(_) => Ok(f32::MANTISSA_DIGITS - 1),
             None => Ok(self.device()?.gpu().limits().subtexel_bits),
         }
+    }
+
+    /// Whether slices of such a picture are blended in 16-bit floats, and merged by batches.
+    ///
+    /// # Errors
+    /// Where there is no device and should be.
+    pub fn is_merged(&mut self, settings: &Settings) -> Result<bool, gpu::Error> {
+        if self.draw.is_some() || settings.technique == Technique::Raycast {
+            return Ok(false);
+        }
+        let drawn = Drawn::Picture(settings.mode);
+        Ok(merge::is_merged(self.device()?.gpu(), drawn))
     }
 
     /// The device.

@@ -145,7 +145,7 @@ fn ask(
         }
         Answer::Nonsense(line) => {
             alive.kill();
-            let reason = format!("the worker said {line:?}, which is no record");
+            let reason = format!("the worker said {line:?}, which is no record of this case");
             Ok(of(Verdict::InternalError, reason))
         }
     }
@@ -158,14 +158,15 @@ enum Answer {
     Nonsense(String),
 }
 
-/// The last lines that it wrote for people.
+/// The last lines that it or its driver wrote for people.
 const LAST_LINES: usize = 6;
 
 struct Worker {
     child: Child,
     /// Closed to let it end.
     names: Option<ChildStdin>,
-    lines: Receiver<String>,
+    /// A line of the worker's, or the text that is none.
+    lines: Receiver<Result<Line, String>>,
     last_lines: Arc<Mutex<VecDeque<String>>>,
 }
 
@@ -181,16 +182,21 @@ impl Worker {
         let out = child.stdout.take().expect("piped above");
         let err = child.stderr.take().expect("piped above");
         let (send, lines) = channel();
+        let last_lines = Arc::new(Mutex::new(VecDeque::new()));
+        let kept = Arc::clone(&last_lines);
         thread::spawn(move || {
-            for line in BufReader::new(out).lines().map_while(Result::ok) {
-                if send.send(line).is_err() {
+            for line in lines_of(out) {
+                let (printed, said) = Line::unframed(&line);
+                if said.is_none() || !printed.is_empty() {
+                    keep_last(&kept, printed);
+                }
+                if said.is_some_and(|said| send.send(said).is_err()) {
                     break;
                 }
             }
         });
-        let last_lines = Arc::new(Mutex::new(VecDeque::new()));
         let kept = Arc::clone(&last_lines);
-        thread::spawn(move || keep_last(err, &kept));
+        thread::spawn(move || lines_of(err).for_each(|line| keep_last(&kept, &line)));
         Ok(Self {
             child,
             names,
@@ -220,12 +226,13 @@ impl Worker {
                 Err(RecvTimeoutError::Timeout) => return Answer::Late,
                 Err(RecvTimeoutError::Disconnected) => return Answer::Gone,
             };
-            match serde_json::from_str(&line) {
+            match line {
                 Ok(Line::Device(found)) => {
                     device.get_or_insert(found);
                 }
                 Ok(Line::Record(record)) if record.name == name => return Answer::Record(record),
-                Ok(Line::Record(_)) | Err(_) => return Answer::Nonsense(line),
+                Ok(Line::Record(record)) => return Answer::Nonsense(record.name),
+                Err(text) => return Answer::Nonsense(text),
             }
         }
     }
@@ -265,14 +272,17 @@ impl Drop for Worker {
     }
 }
 
-fn keep_last(err: impl Read, kept: &Mutex<VecDeque<String>>) {
-    for line in BufReader::new(err).lines().map_while(Result::ok) {
-        let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
-        if kept.len() == LAST_LINES {
-            kept.pop_front();
-        }
-        kept.push_back(line);
+/// Drivers print any bytes.
+fn lines_of(pipe: impl Read) -> impl Iterator<Item = Vec<u8>> {
+    BufReader::new(pipe).split(b'\n').map_while(Result::ok)
+}
+
+fn keep_last(kept: &Mutex<VecDeque<String>>, line: &[u8]) {
+    let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+    if kept.len() == LAST_LINES {
+        kept.pop_front();
     }
+    kept.push_back(String::from_utf8_lossy(line).into_owned());
 }
 
 fn how(status: ExitStatus) -> String {

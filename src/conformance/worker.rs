@@ -1,9 +1,10 @@
-//! The process in which cases run: names come in, a line each, and records go out, a line of JSON each.
+//! The process in which cases run: names come in, a line each, and records go out as JSON, each between a record
+//! separator and the end of its line (RFC 7464). Whatever else comes out was printed by the driver.
 //!
 //! ```text
 //! in   raycast.ray.mip.ramp.linear.u8.orthographic
-//! out  {"device":{...}}                once, before the first record
-//! out  {"record":{...}}
+//! out  RS {"device":{...}}             once, before the first record
+//! out  RS {"record":{...}}
 //! ```
 
 use super::case::Case;
@@ -26,6 +27,36 @@ pub enum Line {
     Device(DeviceRecord),
     /// What is said of the case that was asked for.
     Record(Box<Record>),
+}
+
+/// No text of a driver has it, and JSON holds it escaped.
+const RECORD_SEPARATOR: u8 = 0x1e;
+
+impl Line {
+    /// With the separator before it and the end of a line behind it.
+    ///
+    /// # Errors
+    /// None but a mistake of ours.
+    pub fn framed(&self) -> io::Result<Vec<u8>> {
+        let mut bytes = vec![RECORD_SEPARATOR];
+        serde_json::to_writer(&mut bytes, self)?;
+        bytes.push(b'\n');
+        Ok(bytes)
+    }
+
+    /// What a driver printed in a line of output, and what the worker said behind it: `None` where that is nothing, an
+    /// error with the text where it is no line of ours.
+    pub fn unframed(line: &[u8]) -> (&[u8], Option<Result<Self, String>>) {
+        let Some(place) = line.iter().rposition(|&byte| byte == RECORD_SEPARATOR) else {
+            return (line, None);
+        };
+        let (printed, framed) = (&line[..place], &line[place + 1..]);
+        let text = || String::from_utf8_lossy(framed).into_owned();
+        (
+            printed,
+            Some(serde_json::from_slice(framed).map_err(|_| text())),
+        )
+    }
 }
 
 /// What a worker does in place of the case that it is asked for: so that the supervisor can be seen to survive it.
@@ -121,14 +152,14 @@ fn suffer(trouble: Trouble) {
         Trouble::Hang => loop {
             std::thread::park();
         },
-        Trouble::Babble => println!("no record"),
+        Trouble::Babble => println!("{}no record", char::from(RECORD_SEPARATOR)),
         Trouble::LoseDevice | Trouble::Flake | Trouble::Fail => {}
     }
 }
 
+/// At once: a thread of a driver may be printing.
 fn say(out: &mut impl Write, line: &Line) -> io::Result<()> {
-    serde_json::to_writer(&mut *out, line)?;
-    out.write_all(b"\n")?;
+    out.write_all(&line.framed()?)?;
     out.flush()
 }
 
@@ -157,4 +188,30 @@ fn written(folder: &Path, name: &str, pictures: &Pictures) -> io::Result<Vec<Str
         names.push(file);
     }
     Ok(names)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::conformance::case::Profile;
+
+    #[test]
+    fn what_a_driver_prints_before_an_answer_is_no_part_of_it() {
+        let record = Record::unmeasured("a", Profile::Full, Verdict::Fail, "\u{1e}\n".into());
+        let framed = Line::Record(Box::new(record)).framed().unwrap();
+        let (end, line) = framed.split_last().unwrap();
+        assert_eq!(*end, b'\n');
+        for printed in [&b""[..], b"loading \xff ... ", b"{\"record\": \x1e"] {
+            let all = [printed, line].concat();
+            let (found, said) = Line::unframed(&all);
+            assert_eq!(found, printed);
+            let Some(Ok(Line::Record(record))) = said else {
+                panic!("{said:?}");
+            };
+            assert_eq!(record.reason, "\u{1e}\n");
+        }
+        assert!(Line::unframed(b"{\"record\": {}}").1.is_none());
+        let (_, said) = Line::unframed(b"\x1eno record");
+        assert_eq!(said.unwrap().unwrap_err(), "no record");
+    }
 }

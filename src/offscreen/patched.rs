@@ -7,7 +7,7 @@ use crate::gpu::{
     Error, Gpu, Image, Load, Use, begin_rendering, clear_image, end_rendering, image_barrier,
 };
 use crate::technique::blend::Drawn;
-use crate::technique::merge::Merge;
+use crate::technique::merge::{MAX_BATCH_SLICES, Merge};
 use crate::technique::slice_gather::batch_image;
 use crate::technique::{BATCH_SLICES, Order, PatchBindings, PatchRoom, PatchSlicer, Patches};
 use ash::vk;
@@ -90,6 +90,9 @@ struct Step<'a, 'p> {
     slices: Range<u32>,
     is_first: bool,
 }
+
+// The same batches as of whole slices, and so the same picture.
+const _: () = assert!(BATCH_SLICES == MAX_BATCH_SLICES);
 
 /// Slices from back to front, of which nothing is asked between them, that are drawn at once.
 const UNORDERED_SLICES: u32 = 4 * BATCH_SLICES;

@@ -14,9 +14,10 @@ use crate::real::{Real, scale};
 use crate::resolve::reference::{light_at, premultiplied};
 use crate::scene::{Beside, Scene, positions_in_pixel};
 use crate::shaders::Frame;
-use crate::technique::blend::{Fragment, blend, blend_material, clear_color};
+use crate::technique::blend::{Fragment, blend, blend_material, clear_color, merge};
 use crate::technique::composite::Composite;
 use crate::technique::faces::{FACE_LENGTH, cut_face, on_face};
+use crate::technique::merge::MAX_BATCH_SLICES;
 use crate::technique::mixture::color_of;
 use crate::technique::shading::shade;
 use crate::technique::{
@@ -422,16 +423,29 @@ impl<'a, R: Real> Walk<'a, R> {
         fragment: impl Fn(u32) -> Option<Option<Fragment<R, V>>>,
         blend: impl Fn([R; 4], Fragment<R, V>) -> [R; 4],
     ) -> Gathered<R> {
-        let mut target = clear_color(self.scene.settings.mode).map(R::from_f32);
+        let settings = self.scene.settings;
+        let clear = clear_color(settings.mode).map(R::from_f32);
         let mut samples = 0;
-        for fragment in (0..self.slices).filter_map(fragment) {
-            samples += 1;
-            if let Some(fragment) = fragment {
-                target = blend(target, fragment);
+        let mut blended = |slices: std::ops::Range<u32>| {
+            let mut target = clear;
+            for fragment in slices.filter_map(&fragment) {
+                samples += 1;
+                if let Some(fragment) = fragment {
+                    target = blend(target, fragment);
+                }
             }
-        }
+            target
+        };
+        let at_once = if R::IS_MERGED {
+            MAX_BATCH_SLICES
+        } else {
+            self.slices.max(1)
+        };
+        let batches = (0..self.slices).step_by(at_once as usize);
+        let batches = batches.map(|first| blended(first..(first + at_once).min(self.slices)));
+        let merged = batches.reduce(|before, batch| merge(settings.order, before, batch));
         Gathered {
-            accumulation: target,
+            accumulation: merged.unwrap_or(clear),
             depth: None,
             level: None,
             light: R::from_f64(1.0),

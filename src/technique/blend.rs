@@ -155,10 +155,33 @@ pub fn blend_material<R: Real>(
 ) -> [R; 4] {
     let one = R::from_f64(1.0);
     let opacity = opacity_over(extinction, length);
-    let source = [opacity * r, opacity * g, opacity * b, opacity];
+    let source = [opacity * r, opacity * g, opacity * b, opacity].map(R::in_target);
+    let opacity = match order {
+        Order::BackToFront => source[3],
+        Order::FrontToBack => target[3],
+    };
+    let left = (one - opacity).in_target();
+    let [r, g, b, _] = match order {
+        Order::BackToFront => each(source, target, |s, c| {
+            (s + (left * c).in_target()).in_target()
+        }),
+        Order::FrontToBack => each(source, target, |s, c| {
+            ((left * s).in_target() + c).in_target()
+        }),
+    };
+    let alpha = match order {
+        Order::BackToFront => source[3].over(target[3]),
+        Order::FrontToBack => target[3].over(source[3]),
+    };
+    [r, g, b, alpha]
+}
+
+/// What batches before have left, after one more: twin of `shaders/merge.wgsl`.
+pub(crate) fn merge<R: Real>(order: Order, before: [R; 4], batch: [R; 4]) -> [R; 4] {
+    let one = R::from_f64(1.0);
     match order {
-        Order::BackToFront => each(source, target, |s, c| s + (one - opacity) * c),
-        Order::FrontToBack => each(source, target, |s, c| (one - target[3]) * s + c),
+        Order::BackToFront => each(batch, before, |b, c| b + (one - batch[3]) * c),
+        Order::FrontToBack => each(batch, before, |b, c| c + (one - before[3]) * b),
     }
 }
 

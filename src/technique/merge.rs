@@ -1,8 +1,8 @@
 //! Slicing on a device that does not blend R32G32B32A32_SFLOAT (`sampling.md` 5): batches of slices are blended
 //! in R16G16B16A16_SFLOAT, which every device blends, and merged in f32 by a compute pass.
 
-use super::Order;
 use super::blend::Drawn;
+use super::{ACCUMULATION_FORMAT, Mode, Order};
 use crate::gpu::{Bindings, Blend, ComputePipeline, Error, Gpu, Image, Resource, Tile};
 use crate::shaders::shader;
 use ash::vk;
@@ -14,6 +14,13 @@ pub const MAX_BATCH_SLICES: u32 = 64;
 
 /// The format of a batch.
 pub const BATCH_FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
+
+/// Whether slices that are `drawn` for this are blended in batches on this device: only compositing and counting can be,
+/// for a maximum or a sum of 16-bit floats is not that of the values.
+pub(crate) fn is_merged(gpu: &Gpu, drawn: Drawn) -> bool {
+    let can_merge = matches!(drawn, Drawn::Picture(Mode::Composite) | Drawn::Count);
+    can_merge && !gpu.format_features(ACCUMULATION_FORMAT).blend
+}
 
 /// The compute pass that lays a batch onto what earlier ones have left.
 #[derive(Debug)]

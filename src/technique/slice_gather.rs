@@ -10,8 +10,8 @@
 
 use super::blend::{Drawn, clear_color};
 use super::host_depth_copy::{FARTHEST, HostDepthCopy};
-use super::merge::{BATCH_FORMAT, MAX_BATCH_SLICES, Merge};
-use super::{ACCUMULATION_FORMAT, Inputs, Mode, Settings, Sight, Slicer, Words};
+use super::merge::{BATCH_FORMAT, MAX_BATCH_SLICES, Merge, is_merged};
+use super::{ACCUMULATION_FORMAT, Inputs, Settings, Sight, Slicer, Words};
 use crate::gpu::{
     Bindings, Error, Gpu, Image, ImageDesc, ImageKind, Load, ParameterRing, Resource, Tile, Use,
     begin_rendering_behind, clear_image, end_rendering, image_barrier,
@@ -20,11 +20,9 @@ use ash::vk;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The format that slices are blended in, and whether batches of them have to be merged: only compositing and counting
-/// can be, for a maximum or a sum of 16-bit floats is not that of the values.
+/// The format that slices are blended in, and whether batches of them have to be merged.
 pub fn blend_format(gpu: &Gpu, drawn: Drawn) -> (vk::Format, bool) {
-    let can_merge = matches!(drawn, Drawn::Picture(Mode::Composite) | Drawn::Count);
-    match can_merge && !gpu.format_features(ACCUMULATION_FORMAT).blend {
+    match is_merged(gpu, drawn) {
         true => (BATCH_FORMAT, true),
         false => (ACCUMULATION_FORMAT, false),
     }

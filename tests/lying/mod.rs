@@ -20,7 +20,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 pub use answers::ANSWERS;
 pub use states::State;
-pub use table::LIES;
+pub use table::{CLAMPED_LIES, LIES};
 pub use table_probes::PROBE_LIES;
 
 /// The real function of that name, called.

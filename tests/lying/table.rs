@@ -515,3 +515,45 @@ pub const LIES: &[(&str, Lie, &str)] = &[
         "probe.store.rgba32_sfloat",
     ),
 ];
+
+/// The same on a device of the least limits, which blends slices in 16-bit floats.
+pub const CLAMPED_LIES: &[(&str, Lie, &str)] = &[
+    (
+        "a batch does not hide those behind it",
+        Shader("lib/merge_over.wgsl", "(1.0 - batch.w) * before", "before"),
+        "slices_3d.over.composite.homogeneous.linear_fetch.u16.perspective",
+    ),
+    (
+        "a batch is not hidden by those before it",
+        Shader("lib/merge_under.wgsl", "(1.0 - before.w) * batch", "batch"),
+        "slices_3d.under.composite.homogeneous.linear_fetch.u16.perspective",
+    ),
+    (
+        "over keeps all of the target",
+        Changed(State::Factor(Factor::ONE_MINUS_SRC_ALPHA, Factor::ONE)),
+        PLANES,
+    ),
+    (
+        "under blends by the source's alpha",
+        Changed(State::Factor(
+            Factor::ONE_MINUS_DST_ALPHA,
+            Factor::ONE_MINUS_SRC_ALPHA,
+        )),
+        UNDER,
+    ),
+    ("nothing is blended", Changed(State::NoBlending), STACK),
+    (
+        "matter is a tenth denser",
+        Shader(
+            "lib/opacity.wgsl",
+            "1.0 - exp(-depth)",
+            "1.0 - exp(-1.1 * depth)",
+        ),
+        STACK,
+    ),
+    (
+        "stacks have samples of length one",
+        Shader("slices_2d.wgsl", "1.0 / abs(slope)", "1.0"),
+        STACK,
+    ),
+];

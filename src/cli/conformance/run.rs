@@ -48,9 +48,9 @@ pub struct Run {
     /// Workers at a time, each with a device of its own [default: one for each core, 8 at most]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZero<usize>>,
-    /// Known problems of drivers
+    /// Known problems of drivers; may be given several times
     #[arg(long, value_name = "FILE.json")]
-    waivers: Option<PathBuf>,
+    waivers: Vec<PathBuf>,
     /// Run as if the device had no more than this
     #[arg(long, value_enum, default_value_t)]
     limits: LimitsWord,
@@ -161,7 +161,7 @@ impl Run {
     fn judge(&self, all: &[Case], chosen: &[&Case], gate: &Gate) -> Result<(), Error> {
         let begun = Instant::now();
         let files: Vec<PathBuf> = self.json.iter().chain(&self.junit).cloned().collect();
-        output::check(&files, self.waivers.as_slice(), self.force)?;
+        output::check(&files, &self.waivers, self.force)?;
         let waivers = self.read_waivers()?;
         self.prepare_folder()?;
         // A device that is not there is no verdict on a device.
@@ -200,15 +200,16 @@ impl Run {
     }
 
     fn read_waivers(&self) -> Result<Waivers, Error> {
-        let Some(path) = &self.waivers else {
-            return Ok(Waivers::default());
-        };
-        let wrong = |problem: String| Error::Input {
-            path: path.clone(),
-            problem,
-        };
-        let text = std::fs::read_to_string(path).map_err(|cause| wrong(cause.to_string()))?;
-        Waivers::read(&text).map_err(wrong)
+        let mut waivers = Waivers::default();
+        for path in &self.waivers {
+            let wrong = |problem: String| Error::Input {
+                path: path.clone(),
+                problem,
+            };
+            let text = std::fs::read_to_string(path).map_err(|cause| wrong(cause.to_string()))?;
+            waivers.read(&text).map_err(wrong)?;
+        }
+        Ok(waivers)
     }
 
     /// The folder of the page: made where it is not there, and empty unless forced.

@@ -17,6 +17,8 @@
 //! The twins that are written for [`Real`] run with it as they are. [`Real::to_f32`] gives the error, rounded up: a
 //! picture of these numbers is a picture of what is allowed.
 
+mod blended;
+
 use crate::real::Real;
 use std::cell::Cell;
 use std::cmp::Ordering;
@@ -35,13 +37,14 @@ thread_local! {
 
 /// A number and its uncertainty. `ROUNDED`: numbers that come as f32 are roundings of the true ones, which is what
 /// the parameters of a picture are to a closed form of the camera; else they are exact, as they are to a twin.
+/// `F16`: slices are blended in 16-bit floats, by batches.
 #[derive(Clone, Copy, Debug)]
-pub struct Tracked<const ROUNDED: bool> {
+pub struct Tracked<const ROUNDED: bool, const F16: bool> {
     value: f64,
     error: f64,
 }
 
-impl<const ROUNDED: bool> Tracked<ROUNDED> {
+impl<const ROUNDED: bool, const F16: bool> Tracked<ROUNDED, F16> {
     fn exact(value: f64) -> Self {
         Self::with(value, 0.0)
     }
@@ -128,26 +131,26 @@ fn times(a: f64, b: f64) -> f64 {
     if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
 }
 
-impl<const R: bool> PartialEq for Tracked<R> {
+impl<const R: bool, const F16: bool> PartialEq for Tracked<R, F16> {
     fn eq(&self, other: &Self) -> bool {
         self.compare(other) == Some(Ordering::Equal)
     }
 }
 
-impl<const R: bool> PartialOrd for Tracked<R> {
+impl<const R: bool, const F16: bool> PartialOrd for Tracked<R, F16> {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         self.compare(other)
     }
 }
 
-impl<const R: bool> Neg for Tracked<R> {
+impl<const R: bool, const F16: bool> Neg for Tracked<R, F16> {
     type Output = Self;
     fn neg(self) -> Self {
         Self::with(-self.value, self.error)
     }
 }
 
-impl<const R: bool> Add for Tracked<R> {
+impl<const R: bool, const F16: bool> Add for Tracked<R, F16> {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         if other.is_exactly(0.0) {
@@ -160,14 +163,14 @@ impl<const R: bool> Add for Tracked<R> {
     }
 }
 
-impl<const R: bool> Sub for Tracked<R> {
+impl<const R: bool, const F16: bool> Sub for Tracked<R, F16> {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
         self + -other
     }
 }
 
-impl<const R: bool> Mul for Tracked<R> {
+impl<const R: bool, const F16: bool> Mul for Tracked<R, F16> {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
         if other.is_exactly(1.0) {
@@ -183,7 +186,7 @@ impl<const R: bool> Mul for Tracked<R> {
     }
 }
 
-impl<const R: bool> Div for Tracked<R> {
+impl<const R: bool, const F16: bool> Div for Tracked<R, F16> {
     type Output = Self;
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
@@ -197,7 +200,7 @@ impl<const R: bool> Div for Tracked<R> {
     }
 }
 
-impl<const R: bool> Real for Tracked<R> {
+impl<const R: bool, const F16: bool> Real for Tracked<R, F16> {
     fn from_f64(x: f64) -> Self {
         let stored = f64::from(x as f32);
         match stored == x {
@@ -332,6 +335,16 @@ impl<const R: bool> Real for Tracked<R> {
         Self::with(self.value, self.error.max(apart + other.error))
     }
 
+    const IS_MERGED: bool = F16;
+
+    fn in_target(self) -> Self {
+        self.kept()
+    }
+
+    fn over(self, behind: Self) -> Self {
+        self.blended_over(behind)
+    }
+
     fn begin() {
         HANGS.set(false);
     }
@@ -345,7 +358,7 @@ impl<const R: bool> Real for Tracked<R> {
 mod tests {
     use super::*;
 
-    type Number = Tracked<false>;
+    type Number = Tracked<false, false>;
 
     #[test]
     fn what_f32_makes_of_a_sum_lies_inside_of_the_error() {

@@ -8,13 +8,13 @@ use crate::conformance::stand::Stand;
 use crate::offscreen::reference;
 use crate::picture::{LayerKind, Picture};
 use crate::scene::Scene;
-use crate::technique;
+use crate::technique::{self, Settings};
 
 /// What a model leaves over, of f64 and of nothing else.
 const OF_F64: f64 = 1e-9;
 
 /// Of a channel that may be off by so much of all light nothing is known.
-const WIDEST: f32 = 0.1;
+pub const WIDEST: f32 = 0.1;
 
 /// How the bounds of running errors are made.
 pub const DERIVATION: &str = "Running error analysis: the twin of the shaders runs once over this scene with numbers that carry how far any \
@@ -24,11 +24,30 @@ instructions). Errors of operands go through each operation at their worst, none
 of what it stands for. allowed = that error of this channel of this pixel, a worst case. Where a comparison or a floor could turn \
 out otherwise the pixel hangs on rounding, and where the bound of a channel is a tenth of all light it says nothing: both are left out.";
 
+/// The same where slices are blended in 16-bit floats.
+pub const DERIVATION_F16: &str = "Slices are blended in 16-bit floats, by batches of 64, which are merged in 32 bits: source, factor, \
+product and sum of each blend are numbers of 11 significant bits, each off by 2^-10 of itself because it may be cut off (Vulkan \
+specification, Blending: a precision no lower than that of the target), and by all of itself under 2^-14. An error goes on through \
+each blend as any other, so it grows with the number of slices as the operator lets it. ";
+
 /// How far any device may be from the true picture of a scene: errors in place of numbers, infinite where the answer
 /// hangs on rounding. `ROUNDED` as in [`Tracked`].
-pub fn errors<const ROUNDED: bool>(scene: &Scene) -> Result<Picture, Stop> {
+pub fn errors<const ROUNDED: bool>(stand: &mut Stand, scene: &Scene) -> Result<Picture, Stop> {
     let wrong = |error: technique::Error| Stop::Suite(error.to_string());
-    reference::render::<Tracked<ROUNDED>>(scene).map_err(wrong)
+    let errors = match stand.is_merged(scene.settings)? {
+        true => reference::render::<Tracked<ROUNDED, true>>(scene),
+        false => reference::render::<Tracked<ROUNDED, false>>(scene),
+    };
+    errors.map_err(wrong)
+}
+
+/// What [`errors`] are derived from.
+pub fn derivation(stand: &mut Stand, settings: &Settings) -> Result<String, Stop> {
+    let of_blending = match stand.is_merged(settings)? {
+        true => DERIVATION_F16,
+        false => "",
+    };
+    Ok(format!("{of_blending}{DERIVATION}"))
 }
 
 /// What `picture` has of a layer.
@@ -45,8 +64,8 @@ pub fn measure(
     layers: &[LayerKind],
     of: impl Fn(&Chord) -> Seen,
 ) -> Result<Measurement, Stop> {
-    let allowed = errors::<true>(scene)?;
-    let bound = Bound::new("running-error", DERIVATION);
+    let allowed = errors::<true>(stand, scene)?;
+    let bound = Bound::new("running-error", derivation(stand, scene.settings)?);
     compare(stand, shot, scene, layers, (bound, Some(&allowed)), of)
 }
 

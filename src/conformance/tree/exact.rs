@@ -1,13 +1,14 @@
 //! Pictures of fields whose answer is known in closed form (A1, A2, A5 and their like): every placement, mode, filter,
 //! type and projection.
 
+use super::drawn::{DERIVATION_F16, WIDEST, errors};
 use super::ground::{self, FILTERS, MODES, PLACEMENTS, PROJECTIONS, Placement, TYPES};
 use crate::conformance::case::{Case, Profile, Stop};
 use crate::conformance::measurement::{Bound, Measurement, Pictures};
 use crate::conformance::oracle::{Answer, Classes, Kind, Shot, answer};
 use crate::conformance::stand::Stand;
-use crate::picture::LayerKind;
-use crate::technique::{Filter, Mode};
+use crate::picture::{LayerKind, Picture};
+use crate::technique::{Filter, Mode, Technique};
 use crate::volume::VoxelType;
 
 /// The product.
@@ -78,12 +79,20 @@ impl Of {
 
     fn case(self, name: String) -> Case {
         let mut case = Case::new(name, move |stand| self.measure(stand));
-        case.needs = ground::needs(self.placement, self.stored, self.filter.1);
+        case.needs = ground::needs(self.placement, self.mode, self.stored, self.filter.1);
         case
     }
 
     fn measure(self, stand: &mut Stand) -> Result<Measurement, Stop> {
-        let shot = ground::shot(self.placement, self.mode, self.filter, self.is_perspective);
+        let mut shot = ground::shot(self.placement, self.mode, self.filter, self.is_perspective);
+        let is_merged = stand.is_merged(&shot.settings)?;
+        if is_merged
+            && self.kind == Kind::Homogeneous
+            && shot.settings.technique == Technique::Slices3d
+        {
+            // More slices than a batch has.
+            shot.settings.samples_per_voxel = 3.0;
+        }
         let field = self.kind.field();
         let volume = field.volume(&shot, self.stored);
         let classes = Classes::RAMP;
@@ -95,31 +104,63 @@ impl Of {
         };
         let bits = stand.subtexel_bits()?;
         let found = stand.render(&scene, layers)?;
-        let values = found.layers.first().map(|layer| layer.values.as_slice());
-        Ok(compare(&shot, values, &found.pixels, bits, |chord| {
+        // By points and fetches: the answer is allowed what a table and a sampler may be off by.
+        let exact = shot.with(|settings| settings.conformance = true);
+        let of_blending = match is_merged {
+            true => Some(errors::<true>(
+                stand,
+                &exact.scene(&volume, Some(&function)),
+            )?),
+            false => None,
+        };
+        Ok(compare(&shot, &found, of_blending, bits, |chord| {
             answer(&shot, chord, &field, &classes, bits)
         }))
     }
 }
 
+/// What 16-bit floats add to the bounds.
+const BLENDED: &str = "The running error of the picture is added: each operation of the shaders as Vulkan's precision rules let it be, \
+and the blends. To its parts in 16-bit floats belong numbers that are off by the bound below; what that changes in up to 256 blends \
+of four roundings of 2^-10 each is no more than the bound itself, which therefore counts twice. ";
+
 fn compare(
     shot: &Shot,
-    values: Option<&[f32]>,
-    pixels: &[[f32; 4]],
+    found: &Picture,
+    of_blending: Option<Picture>,
     bits: u32,
     of: impl Fn(&crate::conformance::oracle::Chord) -> Option<Answer>,
 ) -> Measurement {
-    let bound = Bound::new("f32-ray", crate::conformance::oracle::DERIVATION)
-        .with("subTexelPrecisionBits", bits.into());
+    let values = found.layers.first().map(|layer| layer.values.as_slice());
+    let pixels = &found.pixels;
+    let derivation = crate::conformance::oracle::DERIVATION;
+    let bound = match &of_blending {
+        Some(_) => Bound::new(
+            "f16-slices",
+            format!("{DERIVATION_F16}{BLENDED}{derivation}"),
+        ),
+        None => Bound::new("f32-ray", derivation),
+    };
+    let bound = bound.with("subTexelPrecisionBits", bits.into());
     let mut measurement = Measurement::new(bound, 1000);
     let mut expected = Vec::new();
+    let mut widest = 0.0f64;
     for (i, pixel) in shot.pixels().enumerate() {
         let at = |what: &str| format!("{what} of pixel {pixel:?}");
         let wanted = match shot.chord(pixel) {
             Some(chord) => of(&chord),
             None => Some(Answer::NOTHING),
         };
-        let Some(wanted) = wanted else {
+        let allowed = |wanted: &Answer| match &of_blending {
+            Some(errors) => {
+                errors.pixels[i].map(|error| f64::from(error) + 2.0 * wanted.pixel_allowed)
+            }
+            None => [wanted.pixel_allowed; 4],
+        };
+        let says_something = |wanted: &Answer| {
+            of_blending.is_none() || allowed(wanted).iter().all(|&error| error < WIDEST.into())
+        };
+        let Some(wanted) = wanted.filter(says_something) else {
             measurement.leave_out(4 + usize::from(values.is_some()));
             expected.push(pixels[i]);
             continue;
@@ -132,13 +173,18 @@ fn compare(
         for c in 0..4 {
             let found = pixels[i][c].into();
             let channel = ["red", "green", "blue", "alpha"][c];
-            measurement.take(|| at(channel), wanted.pixel[c], found, wanted.pixel_allowed);
+            let allowed = allowed(&wanted)[c];
+            widest = widest.max(allowed);
+            measurement.take(|| at(channel), wanted.pixel[c], found, allowed);
         }
+    }
+    if of_blending.is_some() {
+        measurement.bound.inputs.insert("widest".into(), widest);
     }
     measurement.pictures = Some(Pictures {
         width: shot.extent[0],
         expected,
-        found: pixels.to_vec(),
+        found: pixels.clone(),
     });
     measurement
 }

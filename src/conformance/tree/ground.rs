@@ -191,10 +191,11 @@ pub fn hides_maxima(placement: Placement, mode: Mode, filter: Filter) -> bool {
     filter == Filter::CatmullRom && is_by_samples
 }
 
-/// What a picture asks of a device beyond what all need.
-pub fn needs(placement: Placement, stored: VoxelType, by_sampler: bool) -> Vec<Item> {
+/// What a picture asks of a device beyond what all need. Every device blends 16-bit floats, in which slices are
+/// composited where it does not blend those of 32 bits.
+pub fn needs(placement: Placement, mode: Mode, stored: VoxelType, by_sampler: bool) -> Vec<Item> {
     let mut needs = Vec::new();
-    if placement.is_slicer() {
+    if placement.is_slicer() && mode != Mode::Composite {
         needs.push(blended_floats());
     }
     if by_sampler {

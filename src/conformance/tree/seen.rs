@@ -147,7 +147,7 @@ pub fn cases() -> Vec<Case> {
             let mut case = Case::new(name, move |stand| {
                 draw(stand, placement, mode, look, filter, is_perspective)
             });
-            case.needs = ground::needs(placement, VoxelType::F32, false);
+            case.needs = ground::needs(placement, mode, VoxelType::F32, false);
             case.profile = profile(placement, mode, look, filter, is_perspective);
             cases.push(case);
         }

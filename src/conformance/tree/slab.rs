@@ -49,7 +49,7 @@ pub fn cases() -> Vec<Case> {
                     let mut case = Case::new(name, move |stand| {
                         draw(stand, placement, function, samples, is_perspective)
                     });
-                    case.needs = ground::needs(placement, VoxelType::F32, false);
+                    case.needs = ground::needs(placement, Mode::Composite, VoxelType::F32, false);
                     let is_first = placement.order == Order::BackToFront;
                     let is_in = is_first && (steps == "slabs") == is_perspective;
                     case.profile = if is_in {

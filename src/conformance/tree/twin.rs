@@ -61,7 +61,7 @@ pub fn cases() -> Vec<Case> {
                 let mut case = Case::new(name, move |stand| {
                     measure(stand, placement, mode, filter, look, is_perspective)
                 });
-                case.needs = ground::needs(placement, VoxelType::F32, false);
+                case.needs = ground::needs(placement, mode, VoxelType::F32, false);
                 let is_common = matches!(filter, Filter::Linear | Filter::Cubic);
                 case.profile = match is_common && is_perspective {
                     true => Profile::Baseline,
@@ -161,13 +161,14 @@ fn measure(
     // The last steps of a search are decided inside of any error, and where they end is as good as anywhere near.
     let worst_case = match mode {
         Mode::Iso => None,
-        _ => Some(drawn::errors::<false>(&scene)?),
+        _ => Some(drawn::errors::<false>(stand, &scene)?),
     };
+    let is_merged = stand.is_merged(scene.settings)?;
     let (id, derivation) = match &worst_case {
-        Some(_) => (
-            "running-error",
-            format!("{} {DERIVATION}", drawn::DERIVATION),
-        ),
+        Some(_) => {
+            let of_errors = drawn::derivation(stand, scene.settings)?;
+            ("running-error", format!("{of_errors} {DERIVATION}"))
+        }
         None => ("likely", DERIVATION.to_owned()),
     };
     let bound = Bound::new(id, derivation)
@@ -175,11 +176,13 @@ fn measure(
         .with("N", segments)
         .with("likely", allowed);
     let mut measurement = Measurement::new(bound, 1000);
+    let mut widest = 0.0f64;
     for (i, pixel) in shot.pixels().enumerate() {
         let errors = worst_case
             .as_ref()
             .map(|errors| errors.pixels[i].map(f64::from));
-        let is_sure = errors.is_none_or(|errors| errors.iter().all(|error| error.is_finite()));
+        let most = drawn::WIDEST.into();
+        let is_sure = errors.is_none_or(|errors| errors.iter().all(|&error| error < most));
         if jumps(i) || !is_sure {
             measurement.leave_out(4);
             continue;
@@ -192,12 +195,19 @@ fn measure(
                 Some(errors) => {
                     // The picture of the f64 twin is kept in f32.
                     let kept = double.abs() / f64::from(1u32 << 24);
+                    widest = widest.max(errors[c] + kept);
                     measurement.take(at, double, found, errors[c] + kept);
-                    measurement.prefer(LIKELY, at, single, found, allowed);
+                    // Of 16-bit floats f32 knows nothing.
+                    if !is_merged {
+                        measurement.prefer(LIKELY, at, single, found, allowed);
+                    }
                 }
                 None => measurement.take(at, single, found, allowed),
             }
         }
+    }
+    if is_merged {
+        measurement.bound.inputs.insert("widest".into(), widest);
     }
     let drawn = single.pixels.iter().filter(|pixel| pixel[3] > 0.01).count();
     measurement.hold(|| "pixels that are drawn".into(), drawn > 40);

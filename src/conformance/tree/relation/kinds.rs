@@ -75,6 +75,11 @@ impl Kind {
         }
     }
 
+    /// Whether a picture of bricks stands in it.
+    pub fn is_of_bricks(self) -> bool {
+        matches!(self, Self::InBricks | Self::LitInBricks)
+    }
+
     /// Whether no bit may differ.
     pub fn is_exact(self) -> bool {
         matches!(

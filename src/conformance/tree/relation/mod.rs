@@ -53,7 +53,11 @@ pub fn cases() -> Vec<Case> {
                     let mut case = Case::new(name, move |stand| {
                         pair::measure(stand, kind, placement, mode, is_perspective)
                     });
-                    case.needs = ground::needs(placement, VoxelType::F32, false);
+                    case.needs = ground::needs(placement, mode, VoxelType::F32, false);
+                    if kind.is_of_bricks() && placement.is_slicer() {
+                        // Batches end where bricks do: in 16-bit floats that is another picture.
+                        case.needs = vec![ground::blended_floats()];
+                    }
                     case.profile = profile(kind, placement, mode, is_perspective);
                     cases.push(case);
                 }

@@ -1,6 +1,6 @@
 //! The pictures of a relation, and how far they are apart.
 
-use super::super::drawn::{DERIVATION, errors, layer};
+use super::super::drawn::{WIDEST, derivation, errors, layer};
 use super::super::ground::{self, Placement};
 use super::Kind;
 use crate::camera::Projection;
@@ -42,7 +42,7 @@ impl Sight {
         let wide = |pixels: Vec<[f32; 4]>| pixels.iter().map(|p| p.map(f64::from)).collect();
         Ok(Rough {
             pixels: wide(self.picture(stand, &[])?.pixels),
-            off: wide(errors::<true>(&scene)?.pixels),
+            off: wide(errors::<true>(stand, &scene)?.pixels),
         })
     }
 
@@ -114,7 +114,14 @@ pub fn measure(
         true => same_bits(stand, kind, &sight)?,
         false => roundings(stand, kind, &sight)?,
     };
-    Ok(compare(kind, &sight.shot, first, second))
+    let bound = match kind.is_exact() {
+        true => Bound::new(
+            "same-bytes",
+            "the same operations on the same numbers, or on numbers times a power of two: no bit differs",
+        ),
+        false => both_running_errors(stand, &sight.shot)?,
+    };
+    Ok(compare(kind, &sight.shot, bound, first, second))
 }
 
 fn same_bits(stand: &mut Stand, kind: Kind, sight: &Sight) -> Result<(Rough, Rough), Stop> {
@@ -305,30 +312,36 @@ fn roundings(stand: &mut Stand, kind: Kind, sight: &Sight) -> Result<(Rough, Rou
     Ok((first.rough(stand)?, other.rough(stand)?))
 }
 
-fn compare(kind: Kind, shot: &Shot, first: Rough, second: Rough) -> Measurement {
-    let bound = match kind.is_exact() {
-        true => Bound::new(
-            "same-bytes",
-            "the same operations on the same numbers, or on numbers times a power of two: no bit differs",
-        ),
-        false => Bound::new("both-running-errors", format!("{BOTH}{DERIVATION}")),
-    };
+fn both_running_errors(stand: &mut Stand, shot: &Shot) -> Result<Bound, Stop> {
+    let of_each = derivation(stand, &shot.settings)?;
+    Ok(Bound::new(
+        "both-running-errors",
+        format!("{BOTH}{of_each}"),
+    ))
+}
+
+fn compare(kind: Kind, shot: &Shot, bound: Bound, first: Rough, second: Rough) -> Measurement {
     let mut measurement = Measurement::new(bound, 1000);
+    let mut widest = 0.0f64;
     for (i, pixel) in shot.pixels().enumerate() {
         let allowed: [f64; 4] = std::array::from_fn(|c| first.off[i][c] + second.off[i][c]);
         // Where a ray meets an end of the domain at a sample, either may have it.
         let hangs = !kind.is_exact() && shot.chord(pixel).is_some_and(|chord| chord.hangs);
-        if hangs || !allowed.iter().all(|error| error.is_finite()) {
+        if hangs || !allowed.iter().all(|&error| error < WIDEST.into()) {
             measurement.leave_out(4);
             continue;
         }
         for (c, allowed) in allowed.into_iter().enumerate() {
+            widest = widest.max(allowed);
             let at = || format!("channel {c} of pixel {pixel:?}");
             measurement.take(at, first.pixels[i][c], second.pixels[i][c], allowed);
         }
     }
     let drawn = second.pixels.iter().filter(|pixel| pixel[3] > 0.01).count();
     measurement.hold(|| "pixels that are drawn".into(), drawn > 100);
+    if !kind.is_exact() {
+        measurement.bound.inputs.insert("widest".into(), widest);
+    }
     let narrow = |rough: Rough| rough.pixels.iter().map(|p| p.map(|n| n as f32)).collect();
     measurement.pictures = Some(Pictures {
         width: shot.extent[0],
@@ -356,7 +369,10 @@ fn summed(stand: &mut Stand, sight: &Sight) -> Result<Measurement, Stop> {
         let numbers = Numbers::of(shot, field);
         let scene = shot.scene(&numbers.volume, Some(&function));
         let value = LayerKind::Value;
-        let pictures = [stand.render(&scene, &[value])?, errors::<true>(&scene)?];
+        let pictures = [
+            stand.render(&scene, &[value])?,
+            errors::<true>(stand, &scene)?,
+        ];
         let missing = || Stop::Suite("no values".into());
         let mut numbers = Vec::new();
         for picture in &pictures {
@@ -364,7 +380,7 @@ fn summed(stand: &mut Stand, sight: &Sight) -> Result<Measurement, Stop> {
         }
         found.push(numbers);
     }
-    let bound = Bound::new("both-running-errors", format!("{BOTH}{DERIVATION}"));
+    let bound = both_running_errors(stand, shot)?;
     let mut measurement = Measurement::new(bound, 200);
     for (i, pixel) in shot.pixels().enumerate() {
         let [a, b, sum] = [0, 1, 2].map(|k: usize| f64::from(found[k][0][i]));
