@@ -50,11 +50,33 @@ fn main() {
             book.add(file, slots, &words);
         }
     }
+    say_packaged_commit();
     fs::write(out.join("shaders.spv"), &book.spirv).expect("OUT_DIR can be written");
     fs::write(out.join("shaders.rs"), book.rust()).expect("OUT_DIR can be written");
     let ranks = blue_noise::ranks().into_iter().flat_map(u32::to_le_bytes);
     let ranks: Vec<u8> = ranks.collect();
     fs::write(out.join("blue_noise.bin"), ranks).expect("OUT_DIR can be written");
+}
+
+/// A package of cargo's says which commit it was made of: the program says so too. In a repository there is no such
+/// file, and nothing here runs again for a new commit: there `STRATAVOX_COMMIT` says it (`src/main.rs`).
+fn say_packaged_commit() {
+    const FILE: &str = ".cargo_vcs_info.json";
+    let Ok(text) = fs::read_to_string(FILE) else {
+        return;
+    };
+    println!("cargo:rerun-if-changed={FILE}");
+    let commit = text
+        .split("\"sha1\"")
+        .nth(1)
+        .and_then(|rest| rest.split('"').nth(1));
+    let dirty = match text.contains("\"dirty\": true") {
+        true => "-dirty",
+        false => "",
+    };
+    if let Some(commit) = commit {
+        println!("cargo:rustc-env=STRATAVOX_PACKAGED_COMMIT={commit}{dirty}");
+    }
 }
 
 /// Every way to take one word from each slot.

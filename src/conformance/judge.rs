@@ -14,6 +14,9 @@ use std::time::Instant;
 /// Of the numbers of a case at most so many parts may hang on rounding: else it says nothing.
 const MOST_LEFT_OUT: f64 = 0.1;
 
+/// The widest allowance for a channel of a picture that proves something: half a code of 255.
+const WIDEST_ALLOWANCE: f64 = 0.5 / 255.0;
+
 /// Runs `case` and judges it; the pictures are those that were compared, where it has drawn any.
 pub fn judge(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
     let start = Instant::now();
@@ -55,10 +58,18 @@ fn judged(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
             let (record, pictures) = measured(case, measurement);
             (record, pictures)
         }
+        Ok(Err(Stop::Lacking(found))) => {
+            let reason = Stop::Lacking(found.clone()).to_string();
+            let record = Record {
+                needs: needs.into_iter().chain([*found]).collect(),
+                ..of(Verdict::NotSupported, reason)
+            };
+            return (record, None);
+        }
         Ok(Err(stop)) => {
             let verdict = match &stop {
                 Stop::Offscreen(offscreen::Error::Gpu(error)) => verdict_of(error),
-                Stop::Offscreen(_) | Stop::Suite(_) => Verdict::InternalError,
+                Stop::Offscreen(_) | Stop::Lacking(_) | Stop::Suite(_) => Verdict::InternalError,
             };
             if verdict == Verdict::DeviceLost {
                 stand.drop_device();
@@ -152,6 +163,7 @@ fn measured(case: &Case, measurement: Measurement) -> (Record, Option<Pictures>)
         left_out,
         found_sha256,
         worst: (worst.allowed > 0.0 || worst.ratio > 0.0).then_some(worst),
+        weak_bound: bound.inputs.get("widest").is_some_and(|&widest| widest > WIDEST_ALLOWANCE),
         bound: Some(bound),
         ..Record::unmeasured(&case.name, case.profile, verdict, reason)
     };

@@ -63,32 +63,23 @@ impl Trouble {
     }
 }
 
-/// Answers until the names end. `pictures` is where those of failures are put; `trouble` names cases and what happens
-/// at them.
-///
-/// # Errors
-/// Where a line cannot be read or written.
-pub fn serve(
-    cases: &[Case],
-    stand: &mut Stand,
-    pictures: Option<&Path>,
-    trouble: Option<(&str, Trouble)>,
-) -> io::Result<()> {
-    let mut out = io::stdout().lock();
-    let mut is_introduced = false;
-    for name in io::stdin().lock().lines() {
-        let name = name?;
-        let wanted = name.strip_prefix("again ").unwrap_or(&name);
-        let is_first = wanted == name;
-        let Some(case) = cases.iter().find(|case| case.name == wanted) else {
-            return Err(io::Error::other(format!("there is no case {wanted}")));
-        };
-        if !is_introduced && let Ok(device) = stand.device() {
-            say(&mut out, &Line::Device(DeviceRecord::of(device.gpu())))?;
-            is_introduced = true;
-        }
-        let trouble = trouble.filter(|(pattern, _)| super::glob::matches(pattern, wanted));
-        let trouble = trouble.map(|(_, trouble)| trouble);
+/// How cases are run and answered.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Answers<'a> {
+    /// Where the pictures of failures are put.
+    pub pictures: Option<&'a Path>,
+    /// A pattern over names, and what happens at these cases.
+    pub trouble: Option<(&'a str, Trouble)>,
+}
+
+impl Answers<'_> {
+    /// Runs `case`, which ran before where `is_again` is true.
+    ///
+    /// # Errors
+    /// Where pictures cannot be written.
+    pub fn to(&self, case: &Case, is_again: bool, stand: &mut Stand) -> io::Result<Record> {
+        let is_meant = |(pattern, _): &(&str, Trouble)| super::glob::matches(pattern, &case.name);
+        let trouble = self.trouble.filter(is_meant).map(|(_, trouble)| trouble);
         if let Some(trouble) = trouble {
             suffer(trouble);
         }
@@ -98,7 +89,7 @@ pub fn serve(
                 record.verdict = Verdict::DeviceLost;
                 record.reason = "asked for".to_owned();
             }
-            Some(Trouble::Flake) if !is_first => {}
+            Some(Trouble::Flake) if is_again => {}
             Some(Trouble::Flake | Trouble::Fail) => {
                 record.verdict = Verdict::Fail;
                 record.reason = "asked for".to_owned();
@@ -106,9 +97,32 @@ pub fn serve(
             _ => {}
         }
         let shown = found.filter(|_| record.verdict == Verdict::Fail);
-        if let Some((folder, found)) = pictures.zip(shown) {
-            record.pictures = written(folder, wanted, &found)?;
+        if let Some((folder, found)) = self.pictures.zip(shown) {
+            record.pictures = written(folder, &case.name, &found)?;
         }
+        Ok(record)
+    }
+}
+
+/// Answers until the names end.
+///
+/// # Errors
+/// Where a line cannot be read or written.
+pub fn serve(cases: &[Case], stand: &mut Stand, answers: &Answers) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    let mut is_introduced = false;
+    for name in io::stdin().lock().lines() {
+        let name = name?;
+        let wanted = name.strip_prefix("again ").unwrap_or(&name);
+        let is_again = wanted != name;
+        let Some(case) = cases.iter().find(|case| case.name == wanted) else {
+            return Err(io::Error::other(format!("there is no case {wanted}")));
+        };
+        if !is_introduced && let Ok(device) = stand.device() {
+            say(&mut out, &Line::Device(DeviceRecord::of(device.gpu())))?;
+            is_introduced = true;
+        }
+        let record = answers.to(case, is_again, stand)?;
         say(&mut out, &Line::Record(Box::new(record)))?;
     }
     Ok(())

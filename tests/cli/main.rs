@@ -11,6 +11,7 @@ mod animate_stops;
 mod bench;
 mod classified;
 mod conformance;
+mod conformance_runs;
 mod convert;
 mod convert_refused;
 mod convert_stops;

@@ -10,8 +10,10 @@ pub enum ProfileWord {
     /// What any device of Vulkan 1.3 must pass
     #[default]
     Baseline,
-    /// All there is
+    /// All but what takes a gibibyte of memory or more
     Full,
+    /// All there is
+    Large,
 }
 
 impl From<ProfileWord> for Profile {
@@ -19,6 +21,7 @@ impl From<ProfileWord> for Profile {
         match word {
             ProfileWord::Baseline => Self::Baseline,
             ProfileWord::Full => Self::Full,
+            ProfileWord::Large => Self::Large,
         }
     }
 }
