@@ -117,10 +117,7 @@ fn a_whole_package_has_nothing_to_complain_of_and_each_change_is_named() {
         changed(|p| p.asked.selection.exclude = vec!["probe.math.exp".into()]),
         "a part of the profile",
     );
-    named(
-        changed(|p| p.asked.selection.shard = [0, 0]),
-        "part 0 of 0",
-    );
+    named(changed(|p| p.asked.selection.shard = [0, 0]), "part 0 of 0");
     named(
         changed(|p| p.asked.limits = "vulkan-minimum".into()),
         "lowered",

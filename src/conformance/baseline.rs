@@ -17,11 +17,15 @@ impl Baseline {
         let then = &package.asked;
         if then.seed != asked.seed {
             let (found, wanted) = (then.seed, asked.seed);
-            return Err(format!("seed: wanted {wanted} as of this run, found {found}"));
+            return Err(format!(
+                "seed: wanted {wanted} as of this run, found {found}"
+            ));
         }
         if then.limits != asked.limits {
             let (found, wanted) = (&then.limits, &asked.limits);
-            return Err(format!("limits: wanted {wanted} as of this run, found {found}"));
+            return Err(format!(
+                "limits: wanted {wanted} as of this run, found {found}"
+            ));
         }
         let verdict = |record: &Record| match (record.verdict, record.baseline) {
             (Verdict::ExpectedFailure, Some(verdict)) => verdict,
@@ -98,7 +102,12 @@ mod tests {
             (Fail, Crash, Crash, Some(Change::OtherFailure)),
             (Crash, QualityWarning, QualityWarning, Some(Change::Fixed)),
             (Fail, Waived, Waived, None),
-            (Pass, NotSupported, NotSupported, Some(Change::NoLongerSupported)),
+            (
+                Pass,
+                NotSupported,
+                NotSupported,
+                Some(Change::NoLongerSupported),
+            ),
             (NotSupported, Pass, Pass, None),
         ] {
             let baseline = Baseline([("a".to_owned(), then)].into());

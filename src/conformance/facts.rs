@@ -93,10 +93,7 @@ fn limits(gpu: &Gpu) -> BTreeMap<String, u64> {
         ("subgroupSize", properties11.subgroup_size.into()),
         (
             "subgroupSupportedOperations",
-            properties11
-                .subgroup_supported_operations
-                .as_raw()
-                .into(),
+            properties11.subgroup_supported_operations.as_raw().into(),
         ),
     ];
     let mut limits: BTreeMap<String, u64> = named.map(|(name, n)| (name.to_owned(), n)).into();

@@ -14,8 +14,10 @@ use std::time::Instant;
 /// Of the numbers of a case at most so many parts may hang on rounding: else it says nothing.
 const MOST_LEFT_OUT: f64 = 0.1;
 
-/// The widest allowance for a channel of a picture that proves something: half a code of 255.
-const WIDEST_ALLOWANCE: f64 = 0.5 / 255.0;
+/// Of a channel of a picture that may be off by more than half a code of 255 little is known.
+pub const WIDE_ALLOWANCE: f64 = 0.5 / 255.0;
+/// Where this part of the channels or more is allowed that much, a pass proves little.
+const MOST_WIDE: f64 = 0.1;
 
 /// Runs `case` and judges it; the pictures are those that were compared, where it has drawn any.
 pub fn judge(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
@@ -163,7 +165,7 @@ fn measured(case: &Case, measurement: Measurement) -> (Record, Option<Pictures>)
         left_out,
         found_sha256,
         worst: (worst.allowed > 0.0 || worst.ratio > 0.0).then_some(worst),
-        weak_bound: bound.inputs.get("widest").is_some_and(|&widest| widest > WIDEST_ALLOWANCE),
+        weak_bound: bound.inputs.get("wide_share").is_some_and(|&share| share > MOST_WIDE),
         bound: Some(bound),
         ..Record::unmeasured(&case.name, case.profile, verdict, reason)
     };

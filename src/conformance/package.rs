@@ -122,7 +122,10 @@ impl Package {
                 ));
             }
             if record.command.is_empty() {
-                complain(format!("{}: no command line that runs it again", record.name));
+                complain(format!(
+                    "{}: no command line that runs it again",
+                    record.name
+                ));
             }
             let named = record.needs.iter().any(|need| !need.library_has);
             if record.verdict == Verdict::NotSupported && !named {

@@ -55,11 +55,7 @@ impl Selection {
             false => in_order(&self.caselist, &mut left),
         };
         let [part, parts] = self.shard.map(|n| n as usize);
-        ordered
-            .into_iter()
-            .skip(part - 1)
-            .step_by(parts)
-            .collect()
+        ordered.into_iter().skip(part - 1).step_by(parts).collect()
     }
 }
 
@@ -95,11 +91,7 @@ pub fn lines(text: &str) -> Vec<(usize, &str)> {
 }
 
 /// Of `lines` those that mean no case of the profile: the number of each, and what is wrong with it.
-pub fn unmatched(
-    lines: &[(usize, &str)],
-    list: &[Case],
-    profile: Profile,
-) -> Vec<(usize, String)> {
+pub fn unmatched(lines: &[(usize, &str)], list: &[Case], profile: Profile) -> Vec<(usize, String)> {
     let is_of = |case: &&Case| case.profile <= profile;
     let problem = |&(number, line): &(usize, &str)| {
         let mut meant = list.iter().filter(|case| matches(line, &case.name));

@@ -35,7 +35,10 @@ fn case<'p>(package: &'p Value, name: &str) -> &'p Value {
 #[test]
 fn a_case_list_is_run_in_its_order_without_what_is_excluded() {
     let folder = Folder::new();
-    folder.file("list", "# of mine\nprobe.math.sqrt\n\nprobe.math.ex*  # exp, exp2\nprobe.math.sqrt\n");
+    folder.file(
+        "list",
+        "# of mine\nprobe.math.sqrt\n\nprobe.math.ex*  # exp, exp2\nprobe.math.sqrt\n",
+    );
     folder.file("not", "probe.math.exp2\nno.such.case\n");
     let (ran, first) = run(&folder, "--caselist list --exclude not");
     ran.assert_done();
@@ -62,7 +65,8 @@ fn a_case_list_is_run_in_its_order_without_what_is_excluded() {
 #[test]
 fn a_record_says_the_command_that_runs_it_again() {
     let folder = Folder::new();
-    let words = format!("--filter {EXP} --seed 7 --limits vulkan-minimum --device cpu --timeout 50");
+    let words =
+        format!("--filter {EXP} --seed 7 --limits vulkan-minimum --device cpu --timeout 50");
     let (ran, first) = run(&folder, &words);
     ran.assert_done();
     let command = case(&first, EXP)["command"].as_str().expect("a command");
@@ -73,10 +77,14 @@ fn a_record_says_the_command_that_runs_it_again() {
     let words = command.strip_prefix("stratavox conformance").expect("ours");
     let (ran, again) = run(&folder, words);
     ran.assert_done();
-    assert_eq!(case(&first, EXP)["found_sha256"], case(&again, EXP)["found_sha256"]);
+    assert_eq!(
+        case(&first, EXP)["found_sha256"],
+        case(&again, EXP)["found_sha256"]
+    );
     let (ran, _) = run(&folder, &format!("--filter {EXP} --fault {EXP}=fail"));
     assert!(
-        ran.err.contains("again: stratavox conformance --filter probe.math.exp --seed 1"),
+        ran.err
+            .contains("again: stratavox conformance --filter probe.math.exp --seed 1"),
         "{ran:#?}"
     );
 }
@@ -85,7 +93,9 @@ fn a_record_says_the_command_that_runs_it_again() {
 fn in_process_there_is_no_worker_and_the_numbers_are_the_same() {
     let folder = Folder::new();
     let filter = format!("--filter {EXP}|{SQRT} --json b.json");
-    folder.run(&format!("conformance {filter} --in-process")).assert_done();
+    folder
+        .run(&format!("conformance {filter} --in-process"))
+        .assert_done();
     let alone = package(&folder, "b.json");
     let (_, worked) = run(&folder, &format!("--filter {EXP}|{SQRT}"));
     for name in [EXP, SQRT] {
@@ -110,7 +120,10 @@ fn repeated_cases_that_say_other_things_fail_and_stop_on_fail_ends_the_run() {
     let (ran, good) = run(&folder, &format!("--filter {EXP}|{SQRT} --repeat 3"));
     ran.assert_done();
     assert_eq!(good["asked"]["repeat"], 3);
-    let (ran, flaky) = run(&folder, &format!("{filter} --repeat 3 --stop-on-fail --fault {SQRT}=flake"));
+    let (ran, flaky) = run(
+        &folder,
+        &format!("{filter} --repeat 3 --stop-on-fail --fault {SQRT}=flake"),
+    );
     assert_eq!(ran.code, 1, "{ran:#?}");
     let record = case(&flaky, SQRT);
     assert_eq!(record["runs"], serde_json::json!(["fail", "pass", "pass"]));
@@ -129,12 +142,19 @@ fn repeated_cases_that_say_other_things_fail_and_stop_on_fail_ends_the_run() {
 #[test]
 fn a_test_log_and_junit_say_each_verdict_by_its_name() {
     let folder = Folder::new();
-    let words = format!("conformance --filter {EXP}|{SQRT} --qpa a.qpa --junit a.xml --fault {SQRT}=abort");
+    let words =
+        format!("conformance --filter {EXP}|{SQRT} --qpa a.qpa --junit a.xml --fault {SQRT}=abort");
     let ran = folder.run(&words);
     assert_eq!(ran.code, 1, "{ran:#?}");
     let log = std::fs::read_to_string(folder.path("a.qpa")).expect("a.qpa");
-    let crashed = log.split("#beginTestCaseResult probe.math.sqrt\n").nth(1).expect("the case");
-    assert!(crashed.contains("<Result StatusCode=\"Crash\">ended by signal 6"), "{log}");
+    let crashed = log
+        .split("#beginTestCaseResult probe.math.sqrt\n")
+        .nth(1)
+        .expect("the case");
+    assert!(
+        crashed.contains("<Result StatusCode=\"Crash\">ended by signal 6"),
+        "{log}"
+    );
     assert!(log.contains("CasePath=\"probe.math.exp\" CaseType=\"SelfValidate\""));
     let xml = std::fs::read_to_string(folder.path("a.xml")).expect("a.xml");
     for verdict in ["pass", "crash"] {
@@ -160,10 +180,16 @@ fn failures_of_the_baseline_are_expected_and_others_are_regressions() {
     assert_eq!(case(&same, EXP)["baseline"], "fail");
     // Nobody is told that a device which fails is well.
     let ran = folder.run("conformance verify --part a.json");
-    assert!(ran.code == 1 && ran.out.contains("expected_failure"), "{ran:#?}");
+    assert!(
+        ran.code == 1 && ran.out.contains("expected_failure"),
+        "{ran:#?}"
+    );
     // It is a baseline itself.
     std::fs::copy(folder.path("a.json"), folder.path("same.json")).expect("copied");
-    let (ran, _) = run(&folder, &format!("{filter} --baseline same.json --fault {EXP}=fail"));
+    let (ran, _) = run(
+        &folder,
+        &format!("{filter} --baseline same.json --fault {EXP}=fail"),
+    );
     ran.assert_done();
 
     let (ran, worse) = run(&folder, &format!("{beside} --fault *=fail"));
@@ -171,7 +197,10 @@ fn failures_of_the_baseline_are_expected_and_others_are_regressions() {
     assert_eq!(case(&worse, SQRT)["verdict"], "fail");
     assert!(ran.out.contains("regression: probe.math.sqrt"), "{ran:#?}");
     let (ran, _) = run(&folder, &format!("{beside} --fault {EXP}=abort"));
-    assert!(ran.code == 1 && ran.out.contains("other failure: probe.math.exp"), "{ran:#?}");
+    assert!(
+        ran.code == 1 && ran.out.contains("other failure: probe.math.exp"),
+        "{ran:#?}"
+    );
     let (ran, _) = run(&folder, &beside);
     ran.assert_done();
     assert!(ran.out.contains("fixed: probe.math.exp"), "{ran:#?}");
@@ -194,8 +223,17 @@ fn a_package_says_what_it_was_made_by_and_of_which_device() {
     let device = &package["device"];
     assert_eq!(device["features"]["synchronization2"], true);
     assert_eq!(device["extensions_enabled"], serde_json::json!([]));
-    assert!(device["extensions_available"].as_array().is_some_and(|all| !all.is_empty()));
-    for limit in ["maxPushConstantsSize", "mipmapPrecisionBits", "memoryHeaps[0].size", "maxFramebufferWidth"] {
+    assert!(
+        device["extensions_available"]
+            .as_array()
+            .is_some_and(|all| !all.is_empty())
+    );
+    for limit in [
+        "maxPushConstantsSize",
+        "mipmapPrecisionBits",
+        "memoryHeaps[0].size",
+        "maxFramebufferWidth",
+    ] {
         assert!(device["limits"][limit].is_u64(), "{limit}: {device}");
     }
 }

@@ -1,10 +1,6 @@
 //! Words that choose cases, and the files that they name.
 
-use super::super::{
-    Error,
-    output::say_aside,
-    small_file::parsed,
-};
+use super::super::{Error, output::say_aside, small_file::parsed};
 use super::words::{ProfileWord, shard};
 use crate::conformance::case::Case;
 use crate::conformance::selection::{Selection, lines, unmatched};
@@ -63,7 +59,10 @@ impl Cases {
         let exclude = self.exclude.as_deref().map(read).transpose()?;
         if let (Some(path), Some(text)) = (&self.exclude, &exclude) {
             for (number, problem) in unmatched(&lines(text), list, profile) {
-                say_aside(&format!("note: {}, line {number}: {problem}", path.display()));
+                say_aside(&format!(
+                    "note: {}, line {number}: {problem}",
+                    path.display()
+                ));
             }
         }
         let bare = |text: Option<String>| {

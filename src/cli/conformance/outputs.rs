@@ -50,7 +50,8 @@ impl Outputs {
 
     /// Each file whole or not at all.
     pub fn write(&self, package: &Package, gate: &Gate) -> Result<(), Error> {
-        let write = |path: &Path, text: String| write_whole(path, text.as_bytes(), self.force, gate);
+        let write =
+            |path: &Path, text: String| write_whole(path, text.as_bytes(), self.force, gate);
         if let Some(path) = &self.json {
             let text = serde_json::to_string_pretty(package).map_err(|cause| Error::Output {
                 path: path.clone(),

@@ -132,7 +132,11 @@ impl Run {
             return say(&names.collect::<String>());
         }
         let begun = Instant::now();
-        let inputs = self.cases.inputs().chain(&self.waivers).chain(&self.baseline);
+        let inputs = self
+            .cases
+            .inputs()
+            .chain(&self.waivers)
+            .chain(&self.baseline);
         let inputs: Vec<PathBuf> = inputs.cloned().collect();
         self.outputs.check(&inputs)?;
         let asked = self.asked(&selection);

@@ -30,16 +30,23 @@ pub fn tell(package: &Package) -> Result<(), Error> {
         }
         if let (Some(change), Some(then)) = (Change::of(record), record.baseline) {
             let (change, now) = (change.word(), record.verdict);
-            text.push_str(&format!("  {change}: {name}: {now}, {then} in the baseline\n"));
+            text.push_str(&format!(
+                "  {change}: {name}: {now}, {then} in the baseline\n"
+            ));
         }
     }
     if package.is_partial {
         text.push_str("  the run ended before all of its cases had run\n");
     }
     say(&text)?;
-    let bad = package.cases.iter().filter(|record| record.verdict.fails_run());
+    let bad = package
+        .cases
+        .iter()
+        .filter(|record| record.verdict.fails_run());
     match bad.count() {
         0 => Ok(()),
-        bad => Err(Error::Differs(format!("{bad} of {count} cases are not well"))),
+        bad => Err(Error::Differs(format!(
+            "{bad} of {count} cases are not well"
+        ))),
     }
 }

@@ -63,7 +63,10 @@ fn summary(page: &mut String, package: &Package) {
     }
     let _ = writeln!(page, "</table>");
     if package.is_partial {
-        let _ = writeln!(page, "<p class=\"bad\">The run ended before all of its cases had run.</p>");
+        let _ = writeln!(
+            page,
+            "<p class=\"bad\">The run ended before all of its cases had run.</p>"
+        );
     }
     let weak = package.cases.iter().filter(|record| record.weak_bound);
     let weak = weak.count();
@@ -97,10 +100,19 @@ fn device(page: &mut String, package: &Package) {
     let mut rows = vec![
         ("suite", package.suite.clone()),
         ("commit", package.build.commit.clone()),
-        ("SHA-256 of Cargo.lock", package.build.cargo_lock_sha256.clone()),
+        (
+            "SHA-256 of Cargo.lock",
+            package.build.cargo_lock_sha256.clone(),
+        ),
         ("profile", selection.profile.word().to_owned()),
-        ("cases", format!("{}, part {part} of {parts}", selection.filter)),
-        ("lines of the case list", selection.caselist.len().to_string()),
+        (
+            "cases",
+            format!("{}, part {part} of {parts}", selection.filter),
+        ),
+        (
+            "lines of the case list",
+            selection.caselist.len().to_string(),
+        ),
         ("lines of exclusions", selection.exclude.len().to_string()),
         ("runs of each case", asked.repeat.to_string()),
         ("seed", asked.seed.to_string()),
@@ -116,7 +128,11 @@ fn device(page: &mut String, package: &Package) {
         ));
         rows.push(("Vulkan", device.vulkan.clone()));
         for (name, is_enabled) in &device.features {
-            let is = if *is_enabled { "enabled" } else { "not enabled" };
+            let is = if *is_enabled {
+                "enabled"
+            } else {
+                "not enabled"
+            };
             rows.push((name, is.to_owned()));
         }
         rows.push(("extensions enabled", device.extensions_enabled.join(" ")));

@@ -49,7 +49,10 @@ fn case(text: &mut String, record: &Record) {
         escaped(name),
         1e-3 * record.ms
     );
-    let mut properties = vec![("verdict", record.verdict.word()), ("command", &record.command)];
+    let mut properties = vec![
+        ("verdict", record.verdict.word()),
+        ("command", &record.command),
+    ];
     properties.extend(record.baseline.map(|verdict| ("baseline", verdict.word())));
     properties.extend(record.weak_bound.then_some(("weak_bound", "true")));
     let _ = write!(text, "<properties>");

@@ -45,7 +45,9 @@ fn measure(stand: &mut Stand) -> Result<Measurement, Stop> {
     let staging = Buffer::new(&gpu, PLACE_BYTES, from, Memory::Upload, "staging")?;
     staging.write(0, bytes)?;
     device.run(|cmd| {
-        let copy = [vk::BufferCopy::default().dst_offset(COPIED).size(PLACE_BYTES)];
+        let copy = [vk::BufferCopy::default()
+            .dst_offset(COPIED)
+            .size(PLACE_BYTES)];
         // SAFETY: recorded outside rendering, with barriers between; `run` waits, and both live meanwhile.
         unsafe {
             gpu.device()
@@ -134,7 +136,11 @@ unsafe fn barrier(gpu: &Gpu, cmd: vk::CommandBuffer, before: Use, after: Use) {
 const SHADED_BYTES: u64 = BUFFER_BYTES - SHADED;
 
 /// Each word of a place becomes its complement; what the shader has read there, and how many words it has bound.
-fn replace(device: &mut Headless, gpu: &Arc<Gpu>, large: vk::Buffer) -> Result<Vec<[u32; 2]>, Stop> {
+fn replace(
+    device: &mut Headless,
+    gpu: &Arc<Gpu>,
+    large: vk::Buffer,
+) -> Result<Vec<[u32; 2]>, Stop> {
     let numbers: Vec<u32> = (0..WORDS as u32).collect();
     let places = kit::buffer(gpu, &numbers, "places")?;
     let found = kit::zeros::<[u32; 2]>(gpu, WORDS, "found")?;

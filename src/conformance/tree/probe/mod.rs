@@ -24,9 +24,9 @@ mod raster;
 mod raw;
 mod relay;
 mod robust;
+mod sparse;
 mod special;
 mod store;
-mod sparse;
 mod subgroup;
 mod timeline;
 
