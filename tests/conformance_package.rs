@@ -40,6 +40,7 @@ fn whole(list: &[Case], change: impl FnOnce(&mut Vec<Record>)) -> Package {
         limits: "device".into(),
         repeat: 1,
         in_process: false,
+        stress: None,
     };
     let build = Build {
         commit: "0123456789".into(),

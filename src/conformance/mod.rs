@@ -13,6 +13,7 @@
 pub mod baseline;
 pub mod case;
 pub mod difference;
+pub mod dump;
 mod facts;
 pub mod glob;
 pub mod in_process;
@@ -26,6 +27,7 @@ pub mod repeat;
 pub mod report;
 pub mod selection;
 pub mod stand;
+pub mod stress;
 pub mod supervisor;
 pub mod tree;
 pub mod verdict;

@@ -147,6 +147,18 @@ pub struct Asked {
     pub repeat: u32,
     /// Whether cases ran in the process of the supervisor.
     pub in_process: bool,
+    /// On how many queues and threads they ran at once, after each had run alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stress: Option<Stress>,
+}
+
+/// Threads that run cases at once on one device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Stress {
+    /// Queues that they share: as many as the device has of those that were asked for.
+    pub queues: u32,
+    /// How many there are.
+    pub threads: u32,
 }
 
 /// What the program was built from.

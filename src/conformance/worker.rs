@@ -7,6 +7,7 @@
 //! ```
 
 use super::case::Case;
+use super::dump::dumped;
 use super::judge::judge;
 use super::measurement::Pictures;
 use super::record::{DeviceRecord, Record};
@@ -16,7 +17,7 @@ use crate::picture::compare::{Comparison, Image};
 use crate::picture::{ColorSpace, Picture, WriteOptions, write_picture};
 use serde::{Deserialize, Serialize};
 use std::io::{self, BufRead, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A line of a worker.
 #[derive(Debug, Serialize, Deserialize)]
@@ -68,6 +69,8 @@ impl Trouble {
 pub struct Answers<'a> {
     /// Where the pictures of failures are put.
     pub pictures: Option<&'a Path>,
+    /// Where folders with all that passes between host and device are put, one a case.
+    pub dumps: Option<&'a Path>,
     /// A pattern over names, and what happens at these cases.
     pub trouble: Option<(&'a str, Trouble)>,
 }
@@ -83,7 +86,11 @@ impl Answers<'_> {
         if let Some(trouble) = trouble {
             suffer(trouble);
         }
-        let (mut record, found) = judge(case, stand);
+        let mut judged = || judge(case, stand);
+        let (mut record, found) = match self.dumps {
+            Some(dumps) if !is_again => dumped(dumps, &case.name, judged)?,
+            _ => judged(),
+        };
         match trouble {
             Some(Trouble::LoseDevice) => {
                 record.verdict = Verdict::DeviceLost;
@@ -98,7 +105,10 @@ impl Answers<'_> {
         }
         let shown = found.filter(|_| record.verdict == Verdict::Fail);
         if let Some((folder, found)) = self.pictures.zip(shown) {
-            record.pictures = written(folder, &case.name, &found)?;
+            let path = |what: &str| folder.join(format!("{}.{what}.png", case.name));
+            let paths = picture_files(&found, path)?;
+            let names = paths.iter().filter_map(|path| path.file_name());
+            record.pictures = names.map(|name| name.to_string_lossy().into_owned()).collect();
         }
         Ok(record)
     }
@@ -146,8 +156,11 @@ fn say(out: &mut impl Write, line: &Line) -> io::Result<()> {
     out.flush()
 }
 
-/// Expected, found and where they differ, as files; their names.
-fn written(folder: &Path, name: &str, pictures: &Pictures) -> io::Result<Vec<String>> {
+/// Expected, found and where they differ, as files at the paths that `path` gives for these words.
+///
+/// # Errors
+/// Where one cannot be written.
+pub fn picture_files(pictures: &Pictures, path: impl Fn(&str) -> PathBuf) -> io::Result<Vec<PathBuf>> {
     let of = |pixels: &[[f32; 4]]| Picture {
         width: pictures.width,
         height: (pixels.len() as u32) / pictures.width,
@@ -164,11 +177,11 @@ fn written(folder: &Path, name: &str, pictures: &Pictures) -> io::Result<Vec<Str
         force: true,
         ..WriteOptions::default()
     };
-    let mut names = Vec::new();
+    let mut paths = Vec::new();
     for (what, picture) in all {
-        let file = format!("{name}.{what}.png");
-        write_picture(&picture, &folder.join(&file), options).map_err(io::Error::other)?;
-        names.push(file);
+        let path = path(what);
+        write_picture(&picture, &path, options).map_err(io::Error::other)?;
+        paths.push(path);
     }
-    Ok(names)
+    Ok(paths)
 }

@@ -41,9 +41,12 @@ mod pace;
 mod parameters;
 pub(crate) mod pipeline;
 mod raster;
+#[cfg(feature = "conformance")]
+pub(crate) mod recorder;
 mod rendering;
 mod requirements;
 mod sampler;
+mod shared_device;
 mod tile;
 mod timer;
 mod validation;
@@ -77,6 +80,8 @@ pub use rendering::{
 };
 pub use requirements::{Feature, Item, Limit, Need, REQUIREMENTS, Requirement};
 pub use sampler::Sampler;
+#[cfg(feature = "conformance")]
+pub(crate) use shared_device::SharedDevice;
 pub use tile::Tile;
 pub(crate) use tile::{Groups, boxes, group_count, within};
 pub use timer::Timer;

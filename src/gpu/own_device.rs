@@ -11,17 +11,19 @@ use std::fmt;
 pub(super) struct OwnDevice {
     pub device: ash::Device,
     pub queue_family: u32,
+    pub queue_count: u32,
     pub features: Features,
     // Last: fields are dropped in this order, after the device was destroyed.
     pub instance: OwnInstance,
 }
 
 impl OwnDevice {
-    /// `from` has everything that is required.
+    /// `from` has everything that is required; of `queues` there will be as many as it has.
     pub fn new(
         instance: OwnInstance,
         from: &Candidate,
         mode: Option<ValidationMode>,
+        queues: u32,
     ) -> Result<Self, Error> {
         // SAFETY: the device was listed by this instance, here and below.
         let families = unsafe {
@@ -53,9 +55,12 @@ impl OwnDevice {
             .dynamic_rendering(features.dynamic_rendering)
             .synchronization2(features.synchronization2)
             .robust_image_access(features.robust_image_access);
+        let there = families.get(queue_family as usize);
+        let queue_count = there.map_or(1, |family| family.queue_count.min(queues).max(1));
+        let priorities = vec![1.0; queue_count as usize];
         let queues = [vk::DeviceQueueCreateInfo::default()
             .queue_family_index(queue_family)
-            .queue_priorities(&[1.0])];
+            .queue_priorities(&priorities)];
         let info = vk::DeviceCreateInfo::default()
             .queue_create_infos(&queues)
             .enabled_features(&core)
@@ -71,6 +76,7 @@ impl OwnDevice {
         Ok(Self {
             device,
             queue_family,
+            queue_count,
             features,
             instance,
         })

@@ -5,6 +5,8 @@ use super::super::{
     output::{self, write_whole},
     signals::Gate,
 };
+use crate::conformance::case::Case;
+use crate::conformance::dump::folder_of;
 use crate::conformance::record::Package;
 use crate::conformance::report::{html, junit, qpa};
 use clap::Args;
@@ -25,6 +27,9 @@ pub struct Outputs {
     /// Write a page with the pictures of what failed into a folder
     #[arg(long, value_name = "DIR")]
     html: Option<PathBuf>,
+    /// Write shaders, parameters, buffers and pictures of each case into a folder of its own in this one
+    #[arg(long, value_name = "DIR")]
+    dump: Option<PathBuf>,
     /// Replace files that exist
     #[arg(long)]
     force: bool,
@@ -36,11 +41,25 @@ impl Outputs {
         self.html.as_deref()
     }
 
-    /// Refuses what cannot be written, before the work; makes the folder of the page.
-    pub fn check(&self, inputs: &[PathBuf]) -> Result<(), Error> {
+    /// The folder of dumps.
+    pub fn dumps(&self) -> Option<&Path> {
+        self.dump.as_deref()
+    }
+
+    /// Refuses what cannot be written, before the work; makes the folders of the page and of the dumps.
+    pub fn check(&self, inputs: &[PathBuf], chosen: &[&Case]) -> Result<(), Error> {
         let files = self.json.iter().chain(&self.junit).chain(&self.qpa);
         let files: Vec<PathBuf> = files.cloned().collect();
         output::check(&files, inputs, self.force)?;
+        if let Some(dumps) = &self.dump {
+            std::fs::create_dir_all(dumps).map_err(|cause| Error::output(dumps, &cause))?;
+            let folders = chosen.iter().map(|case| folder_of(dumps, &case.name));
+            let found = folders.into_iter().find(|folder| folder.exists());
+            if let Some(path) = found.filter(|_| !self.force) {
+                let (problem, hint) = ("it exists".to_owned(), Some("--force replaces it"));
+                return Err(Error::Output { path, problem, hint });
+            }
+        }
         let Some(folder) = &self.html else {
             return Ok(());
         };

@@ -1,29 +1,36 @@
 //! A run: cases chosen, run by workers or in this process, and written down.
 
-use super::super::{Error, Source, output::say, signals::Gate, small_file::parsed};
+use super::super::{
+    Error, Source,
+    output::{say, say_aside},
+    signals::Gate,
+    small_file::parsed,
+};
 use super::cases::Cases;
 use super::check::read;
 use super::hearing::{Hearing, quoted};
 use super::outputs::Outputs;
 use super::summary::tell;
-use super::words::LimitsWord;
+use super::words::{self, LimitsWord};
 use crate::conformance::baseline::Baseline;
 use crate::conformance::case::Case;
 use crate::conformance::in_process;
 use crate::conformance::measurement::hex;
-use crate::conformance::record::{Asked, Build, DeviceRecord, Package};
+use crate::conformance::record::{Asked, Build, DeviceRecord, Package, Stress};
 use crate::conformance::selection::Selection;
 use crate::conformance::stand::Stand;
+use crate::conformance::stress;
 use crate::conformance::supervisor::{self, Plan};
 use crate::conformance::tree::cases;
 use crate::conformance::waiver::Waivers;
 use crate::conformance::worker::{self, Answers, Trouble};
-use crate::gpu::{DeviceChoice, Headless, Options};
+use crate::gpu::{DeviceChoice, Headless, Options, SharedDevice};
 use clap::Args;
 use sha2::{Digest, Sha256};
 use std::ffi::OsString;
 use std::num::NonZero;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -50,6 +57,10 @@ pub struct Run {
     /// Run cases in this process, for debuggers: what crashes or hangs is the end of the run
     #[arg(long, conflicts_with_all = ["jobs", "timeout"])]
     in_process: bool,
+    /// Run cases alone, and then on so many threads at once, on so many queues of one device, in this process
+    #[arg(long, value_name = "QUEUES,THREADS", value_parser = words::stress)]
+    #[arg(conflicts_with_all = ["jobs", "timeout", "repeat", "dump"])]
+    stress: Option<Stress>,
     /// Seconds that one case may take
     #[arg(long, value_name = "SECONDS", default_value_t = SECONDS, value_parser = seconds)]
     timeout: f64,
@@ -138,10 +149,13 @@ impl Run {
             .chain(&self.waivers)
             .chain(&self.baseline);
         let inputs: Vec<PathBuf> = inputs.cloned().collect();
-        self.outputs.check(&inputs)?;
-        let asked = self.asked(&selection);
+        self.outputs.check(&inputs, &chosen)?;
+        let mut asked = self.asked(&selection);
         let hearing = self.hearing(&asked, chosen.len())?;
-        let outcome = self.ask(&chosen, &hearing)?;
+        let outcome = match self.stress {
+            Some(wanted) => self.stress(wanted, &mut asked, &chosen, &hearing)?,
+            None => self.ask(&chosen, &hearing)?,
+        };
         let seconds = begun.elapsed().as_secs_f64();
         let (device, records) = (outcome.device, outcome.records);
         let package = Package::new(&all, build(source), asked, device, records, seconds);
@@ -164,6 +178,7 @@ impl Run {
         let fault = self.fault.as_ref();
         Answers {
             pictures: self.pictures.as_deref().or(self.outputs.pictures()),
+            dumps: self.outputs.dumps(),
             trouble: fault.map(|fault| (fault.pattern.as_str(), fault.trouble)),
         }
     }
@@ -180,7 +195,8 @@ impl Run {
             seed: self.seed,
             limits: self.limits.word().to_owned(),
             repeat: self.repeat.get(),
-            in_process: self.in_process,
+            in_process: self.in_process || self.stress.is_some(),
+            stress: self.stress,
         }
     }
 
@@ -233,6 +249,9 @@ impl Run {
         if self.timeout != SECONDS {
             words.push_str(&format!(" --timeout {}", self.timeout));
         }
+        if let Some(Stress { queues, threads }) = self.stress {
+            words.push_str(&format!(" --stress {queues},{threads}"));
+        }
         if self.repeat != NonZero::<u32>::MIN {
             words.push_str(&format!(" --repeat {}", self.repeat));
         }
@@ -256,6 +275,44 @@ impl Run {
         supervisor::run(&plan, chosen, heard).map_err(|cause| Error::output("a worker", &cause))
     }
 
+    /// On one device for all threads. `asked` learns how many queues it has.
+    fn stress(
+        &self,
+        wanted: Stress,
+        asked: &mut Asked,
+        chosen: &[&Case],
+        hearing: &Hearing,
+    ) -> Result<supervisor::Outcome, Error> {
+        let options = Options::default();
+        let device = SharedDevice::new(&self.choice(), options.validation, wanted.queues)?;
+        let device = Arc::new(device);
+        let found = Stress {
+            queues: device.queues() as u32,
+            threads: wanted.threads,
+        };
+        asked.stress = Some(found);
+        if found.queues < wanted.queues {
+            say_aside(&format!(
+                "note: this device has {} queues of this family, and not {}: threads take turns at submitting",
+                found.queues, wanted.queues
+            ));
+        }
+        let (seed, caps) = (self.seed, self.limits.caps());
+        let stand = |number: usize| {
+            let device = Arc::clone(&device);
+            Stand::new(seed, move |lower| {
+                let options = Options {
+                    caps: lower(caps),
+                    ..Options::default()
+                };
+                device.headless(number, &options)
+            })
+        };
+        let heard = |done, record: &mut _| hearing.hear(done, record);
+        stress::run(&self.answers(), found, stand, chosen, heard)
+            .map_err(|cause| Error::output("what the threads have found", &cause))
+    }
+
     fn words(&self) -> Vec<OsString> {
         let mut words: Vec<OsString> = ["conformance", "--worker"].map(OsString::from).into();
         let mut add = |name: &str, value: OsString| words.extend([OsString::from(name), value]);
@@ -266,6 +323,9 @@ impl Run {
         }
         if let Some(folder) = self.outputs.pictures() {
             add("--pictures", folder.into());
+        }
+        if let Some(folder) = self.outputs.dumps() {
+            add("--dump", folder.into());
         }
         if let Some(fault) = &self.fault {
             add("--fault", (&fault.text).into());
