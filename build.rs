@@ -190,7 +190,9 @@ fn fail<T>(
 ) -> T {
     let place = location
         .and_then(|l| source.lines.get(l.line_number as usize - 1))
-        .map_or_else(String::new, |(path, line)| format!("shaders/{path}:{line}: "));
+        .map_or_else(String::new, |(path, line)| {
+            format!("shaders/{path}:{line}: ")
+        });
     panic!("{place}in variant {variant}\n{picture}");
 }
 

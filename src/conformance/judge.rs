@@ -165,7 +165,10 @@ fn measured(case: &Case, measurement: Measurement) -> (Record, Option<Pictures>)
         left_out,
         found_sha256,
         worst: (worst.allowed > 0.0 || worst.ratio > 0.0).then_some(worst),
-        weak_bound: bound.inputs.get("wide_share").is_some_and(|&share| share > MOST_WIDE),
+        weak_bound: bound
+            .inputs
+            .get("wide_share")
+            .is_some_and(|&share| share > MOST_WIDE),
         bound: Some(bound),
         ..Record::unmeasured(&case.name, case.profile, verdict, reason)
     };

@@ -39,7 +39,8 @@ pub struct Record {
     /// Where the allowances come from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bound: Option<Bound>,
-    /// Its widest allowance for a channel of a picture is more than half a code of 255: that it passes proves little.
+    /// More than a tenth of the channels of its picture may be off by more than half a code of 255: that it passes
+    /// proves little.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub weak_bound: bool,
     /// Verdicts of all runs, where they were not the same.

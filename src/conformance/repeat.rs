@@ -7,7 +7,7 @@ use std::num::NonZero;
 /// The record of a case that `ask` runs `times` times; it is told whether the case ran before.
 ///
 /// The first run that is not well stands for all, else the first. Where verdicts differ the record holds all of them.
-/// Where the verdicts are the same and the numbers that were found are not, a good one becomes `fail`: the same commands
+/// Where verdicts are the same and the numbers that were found are not, a good one becomes `fail`: the same commands
 /// on the same state have the same result (Vulkan specification, Invariance, Repeatability).
 ///
 /// # Errors

@@ -1,7 +1,7 @@
 //! Which cases a run is of, and in which order.
 //!
 //! ```text
-//! the list -> those of the profile, that the filter means and no exclusion does -> the order of the case list -> a shard
+//! the list -> of the profile, meant by the filter and by no exclusion -> in the order of the case list -> a shard
 //! ```
 
 use super::case::{Case, Profile};

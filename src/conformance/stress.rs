@@ -94,7 +94,10 @@ fn compare(record: &mut Record, number: usize, found: &Record) {
     if record.runs.is_empty() {
         record.runs.push(alone);
         let why = match found.verdict == alone {
-            true => format!("it found {}, alone {}", found.found_sha256, record.found_sha256),
+            true => format!(
+                "it found {}, alone {}",
+                found.found_sha256, record.found_sha256
+            ),
             false => format!("it says {}, alone {alone}: {}", found.verdict, found.reason),
         };
         record.reason = format!("under stress, thread {number}: {why}");

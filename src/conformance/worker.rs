@@ -108,7 +108,9 @@ impl Answers<'_> {
             let path = |what: &str| folder.join(format!("{}.{what}.png", case.name));
             let paths = picture_files(&found, path)?;
             let names = paths.iter().filter_map(|path| path.file_name());
-            record.pictures = names.map(|name| name.to_string_lossy().into_owned()).collect();
+            record.pictures = names
+                .map(|name| name.to_string_lossy().into_owned())
+                .collect();
         }
         Ok(record)
     }
@@ -160,7 +162,10 @@ fn say(out: &mut impl Write, line: &Line) -> io::Result<()> {
 ///
 /// # Errors
 /// Where one cannot be written.
-pub fn picture_files(pictures: &Pictures, path: impl Fn(&str) -> PathBuf) -> io::Result<Vec<PathBuf>> {
+pub fn picture_files(
+    pictures: &Pictures,
+    path: impl Fn(&str) -> PathBuf,
+) -> io::Result<Vec<PathBuf>> {
     let of = |pixels: &[[f32; 4]]| Picture {
         width: pictures.width,
         height: (pixels.len() as u32) / pictures.width,

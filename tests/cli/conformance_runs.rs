@@ -6,6 +6,7 @@ use serde_json::Value;
 
 const EXP: &str = "probe.math.exp";
 const SQRT: &str = "probe.math.sqrt";
+const DRAWN: &str = "raycast.ray.mip.ramp.nearest.f32.orthographic";
 
 fn package(folder: &Folder, name: &str) -> Value {
     let text = std::fs::read_to_string(folder.path(name)).expect(name);
@@ -236,4 +237,124 @@ fn a_package_says_what_it_was_made_by_and_of_which_device() {
     ] {
         assert!(device["limits"][limit].is_u64(), "{limit}: {device}");
     }
+}
+
+#[test]
+fn a_dump_has_shaders_with_their_text_buffers_and_pictures() {
+    let folder = Folder::new();
+    let words = format!("conformance --filter {EXP}|{DRAWN} --dump d");
+    folder.run(&words).assert_done();
+    let read =
+        |path: &str| std::fs::read(folder.path(path)).unwrap_or_else(|e| panic!("{path}: {e}"));
+    let text = |path: &str| String::from_utf8(read(path)).expect("text");
+    assert!(read(&format!("d/{EXP}/probe_math.spv")).starts_with(&0x0723_0203u32.to_le_bytes()));
+    assert!(text(&format!("d/{EXP}/probe_math.wgsl")).contains("fn main("));
+    let commands = text(&format!("d/{EXP}/commands.txt"));
+    for wanted in [
+        "load probe/math",
+        "dispatch probe/math: [",
+        "write `",
+        "read `",
+        "submitted",
+    ] {
+        assert!(commands.contains(wanted), "{wanted}: {commands}");
+    }
+    let record: Value = serde_json::from_str(&text(&format!("d/{EXP}/record.json"))).expect("JSON");
+    assert_eq!(record["name"], EXP);
+    // Each file that the list names is there, and as long as it says.
+    let files = commands
+        .lines()
+        .filter_map(|line| line.split_once(" bytes from byte "));
+    let mut count = 0;
+    for (before, after) in files {
+        let bytes: usize = before
+            .rsplit(' ')
+            .next()
+            .and_then(|n| n.parse().ok())
+            .expect("a number");
+        let name = after.split(", ").nth(1).expect("a name");
+        assert_eq!(read(&format!("d/{EXP}/{name}")).len(), bytes, "{name}");
+        count += 1;
+    }
+    assert!(count >= 2, "{commands}");
+    for picture in ["expected", "found", "difference"] {
+        assert!(read(&format!("d/{DRAWN}/{picture}.npy")).starts_with(b"\x93NUMPY"));
+    }
+    let left = std::fs::read_dir(folder.path("d")).expect("d").count();
+    assert_eq!(left, 2);
+    folder
+        .run(&words)
+        .assert_refused(4, &["probe.math.exp", "it exists"]);
+    folder
+        .run(&format!("{words} --force --in-process"))
+        .assert_done();
+}
+
+#[test]
+fn under_stress_each_thread_finds_what_one_has_found_alone() {
+    let folder = Folder::new();
+    let words = format!("--filter {EXP}|{DRAWN} --stress 2,3");
+    let ran = folder.run(&format!("conformance {words} --json b.json"));
+    ran.assert_done();
+    let together = package(&folder, "b.json");
+    assert_eq!(together["asked"]["stress"]["threads"], 3);
+    let queues = together["asked"]["stress"]["queues"]
+        .as_u64()
+        .expect("a number");
+    assert_eq!(ran.err.contains("take turns"), queues < 2, "{ran:#?}");
+    let (_, alone) = run(&folder, &format!("--filter {EXP}|{DRAWN}"));
+    for name in [EXP, DRAWN] {
+        let [a, b] = [&alone, &together].map(|package| &case(package, name)["found_sha256"]);
+        assert_eq!(a, b, "{name}");
+    }
+    let ran = folder.run(&format!(
+        "conformance {words} --json c.json --fault {EXP}=flake"
+    ));
+    assert_eq!(ran.code, 1, "{ran:#?}");
+    let other = package(&folder, "c.json");
+    let record = case(&other, EXP);
+    assert_eq!(
+        record["runs"],
+        serde_json::json!(["fail", "pass", "pass", "pass"])
+    );
+    assert!(
+        record["reason"]
+            .as_str()
+            .is_some_and(|text| text.contains("under stress, thread 0"))
+    );
+    let ran = folder.run(&format!("conformance --filter {EXP} --stress 2"));
+    assert!(
+        ran.code == 2 && ran.err.contains("QUEUES,THREADS"),
+        "{ran:#?}"
+    );
+}
+
+#[test]
+fn what_is_too_large_for_a_device_is_not_supported_by_the_name_of_the_limit() {
+    let folder = Folder::new();
+    let [image, buffer] = [
+        "probe.limits.large_image_3d.depth",
+        "probe.limits.buffer_beyond_4_gib",
+    ];
+    let (ran, package) = run(
+        &folder,
+        &format!("--profile large --filter {image}|{buffer}"),
+    );
+    ran.assert_done();
+    assert_eq!(case(&package, image)["verdict"], "pass");
+    let record = case(&package, buffer);
+    if record["verdict"] != "pass" {
+        assert_eq!(record["verdict"], "not_supported", "{record}");
+        let needs = record["needs"].as_array().expect("needs");
+        assert!(
+            needs
+                .iter()
+                .any(|need| need["device_has"] == false && need["name"].is_string())
+        );
+    }
+    let command = case(&package, image)["command"]
+        .as_str()
+        .expect("a command");
+    assert!(command.contains("--profile full"), "{command}");
+    folder.run("conformance verify --part a.json").assert_done();
 }

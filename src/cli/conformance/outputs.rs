@@ -57,7 +57,11 @@ impl Outputs {
             let found = folders.into_iter().find(|folder| folder.exists());
             if let Some(path) = found.filter(|_| !self.force) {
                 let (problem, hint) = ("it exists".to_owned(), Some("--force replaces it"));
-                return Err(Error::Output { path, problem, hint });
+                return Err(Error::Output {
+                    path,
+                    problem,
+                    hint,
+                });
             }
         }
         let Some(folder) = &self.html else {

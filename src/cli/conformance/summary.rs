@@ -20,7 +20,7 @@ pub fn tell(package: &Package) -> Result<(), Error> {
     let weak = weak.count();
     if weak > 0 {
         text.push_str(&format!(
-            "  {weak} of them have a weak bound (wider than half a code of 255) and prove little\n"
+            "  {weak} of them prove little: a tenth of their channels may be off by half a code of 255 or more\n"
         ));
     }
     for record in &package.cases {

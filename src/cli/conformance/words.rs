@@ -64,7 +64,9 @@ pub fn stress(text: &str) -> Result<Stress, String> {
             threads: number(threads)?,
         })
     });
-    found.ok_or_else(|| format!("wanted QUEUES,THREADS from 1 to {MOST}, such as 2,8, found {text:?}"))
+    found.ok_or_else(|| {
+        format!("wanted QUEUES,THREADS from 1 to {MOST}, such as 2,8, found {text:?}")
+    })
 }
 
 /// `I/N`.

@@ -110,7 +110,8 @@ impl Files {
                     self.write(&format!("{name}.wgsl"), text.as_bytes())?;
                 }
                 let slots = shader.bindings.iter();
-                let slots = slots.map(|slot| format!("{} {:?} {}", slot.binding, slot.kind, slot.name));
+                let slots =
+                    slots.map(|slot| format!("{} {:?} {}", slot.binding, slot.kind, slot.name));
                 let slots: Vec<String> = slots.collect();
                 format!("load {} ({})", shader.name, slots.join(", "))
             }
@@ -157,7 +158,9 @@ impl Files {
         let name = format!("{n:04}.{}.{verb}.bin", file_name(buffer));
         self.write(&name, bytes)?;
         let count = bytes.len();
-        Ok(format!("{verb} `{buffer}`: {count} bytes from byte {offset}, {name}"))
+        Ok(format!(
+            "{verb} `{buffer}`: {count} bytes from byte {offset}, {name}"
+        ))
     }
 }
 

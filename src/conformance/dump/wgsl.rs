@@ -38,7 +38,11 @@ mod tests {
             assert!(text.contains("fn main("), "{}", shader.name);
             assert!(!text.contains("#import"), "{}", shader.name);
             for slot in shader.bindings {
-                assert!(text.contains(&format!(" {}:", slot.name)), "{}", shader.name);
+                assert!(
+                    text.contains(&format!(" {}:", slot.name)),
+                    "{}",
+                    shader.name
+                );
             }
         }
     }

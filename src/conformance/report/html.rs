@@ -73,8 +73,8 @@ fn summary(page: &mut String, package: &Package) {
     if weak > 0 {
         let _ = writeln!(
             page,
-            "<p>{weak} cases have a weak bound: they allow a channel to be off by more than half a code of 255, \
-             so that they prove little.</p>"
+            "<p>{weak} cases prove little: more than a tenth of their channels may be off by more than half a code of \
+             255.</p>"
         );
     }
     for record in &package.cases {

@@ -20,6 +20,12 @@ pub fn lacking(error: gpu::Error) -> Stop {
 /// Refuses to take so many bytes where memory is short: a quarter more than that has to be free, in the largest heap of
 /// the device, and of the machine where the device has no memory of its own.
 pub fn memory(gpu: &Gpu, bytes: u64) -> Result<(), Stop> {
+    // What a driver pads an image by is known once it is made.
+    let padded = bytes + bytes / 16;
+    let allowed = gpu.limits().max_allocation_bytes;
+    if padded > allowed {
+        return Err(less("maxMemoryAllocationSize", padded, allowed));
+    }
     let wanted = bytes + bytes / 4;
     let heaps = gpu.memory().heaps;
     let free = heaps
