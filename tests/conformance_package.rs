@@ -1,11 +1,12 @@
 //! Packages are looked through as ones that somebody handed in, and two are compared. No device is asked.
 #![cfg(feature = "conformance")]
 
+use serde_json::Value;
 use stratavox::conformance::case::{Case, Profile};
 use stratavox::conformance::difference::Difference;
 use stratavox::conformance::measurement::{Bound, Measurement, Worst};
 use stratavox::conformance::need::Found;
-use stratavox::conformance::record::{Asked, Build, DeviceRecord, Package, Record};
+use stratavox::conformance::record::{Asked, Build, DeviceRecord, Package, Record, Stress};
 use stratavox::conformance::report::{html, junit, qpa};
 use stratavox::conformance::selection::Selection;
 use stratavox::conformance::tree::cases;
@@ -267,4 +268,77 @@ fn the_hash_is_of_what_was_found_in_its_order() {
     }
     let none = Measurement::new(Bound::default(), 1);
     assert_eq!(none.found_sha256(), "");
+}
+
+/// Where `value` is not what `schema` says, as far as names of fields go.
+fn unlike(root: &Value, schema: &Value, value: &Value, at: &str, found: &mut Vec<String>) {
+    if let Some(name) = schema["$ref"].as_str() {
+        let schema = &root["$defs"][name.rsplit('/').next().expect("a name")];
+        return unlike(root, schema, value, at, found);
+    }
+    match value {
+        Value::Object(fields) => {
+            for name in schema["required"].as_array().into_iter().flatten() {
+                let name = name.as_str().expect("a name");
+                if !fields.contains_key(name) {
+                    found.push(format!("{at}: no {name}"));
+                }
+            }
+            for (name, value) in fields {
+                match (&schema["properties"][name], &schema["additionalProperties"]) {
+                    (Value::Null, Value::Bool(false)) => found.push(format!("{at}: {name}")),
+                    (Value::Null, other) => unlike(root, other, value, name, found),
+                    (schema, _) => unlike(root, schema, value, name, found),
+                }
+            }
+        }
+        Value::Array(items) => {
+            for value in items {
+                unlike(root, &schema["items"], value, at, found);
+            }
+        }
+        Value::String(word) => {
+            let words = schema["enum"].as_array();
+            if words.is_some_and(|words| !words.iter().any(|one| one == word)) {
+                found.push(format!("{at}: {word}"));
+            }
+        }
+        _ => {}
+    }
+}
+
+#[test]
+fn the_schema_names_all_that_a_package_has() {
+    let list = cases();
+    let mut package = whole(&list, |records| {
+        let record = &mut records[0];
+        record.verdict = Verdict::ExpectedFailure;
+        record.reason = "a reason".into();
+        record.baseline = Some(Verdict::Fail);
+        record.weak_bound = true;
+        record.unexpected_pass = true;
+        record.runs = vec![Verdict::Fail, Verdict::Pass];
+        record.worst = Some(Worst::default());
+        record.bound = Some(Bound::default());
+        record.found_sha256 = "0".repeat(64);
+        record.pictures = vec!["a.png".into()];
+        record.validation_messages = vec!["a message".into()];
+        records.pop();
+    });
+    let stress = Stress {
+        queues: 1,
+        threads: 2,
+    };
+    package.asked.stress = Some(stress);
+    package.asked.selection.caselist = vec!["*".into()];
+    package.asked.selection.exclude = vec!["a".into()];
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/conformance-schema.json");
+    let schema = std::fs::read_to_string(page).expect("the schema");
+    let schema: Value = serde_json::from_str(&schema).expect("JSON");
+    let mut found = Vec::new();
+    let value = serde_json::to_value(&package).expect("JSON");
+    unlike(&schema, &schema, &value, "package", &mut found);
+    assert_eq!(found, [""; 0]);
+    let number = &schema["properties"]["stratavox_conformance"]["const"];
+    assert_eq!(number, package.stratavox_conformance);
 }
