@@ -283,8 +283,8 @@ pub fn widget_shape(word: &str) -> Shape {
     }
 }
 
-/// Six cells along y, the axis that the eye looks along most: whole ones.
+/// Four cells along y, the axis that the eye looks along most: whole ones.
 pub fn thin([low, high]: [DVec3; 2]) -> [DVec3; 2] {
-    let [from, to] = [7.0, 13.0];
+    let [from, to] = [8.0, 12.0];
     [dvec3(low.x, from, low.z), dvec3(high.x, to, high.z)]
 }

@@ -164,14 +164,10 @@ fn is_hidden(placement: Placement, mode: Mode, look: Look, filter: Filter) -> bo
 }
 
 /// Where rays through the whole grid may be off by so much that a pass would prove little: these looks are asked of a part
-/// of it that rays are in for less long.
-fn is_thin(placement: Placement, look: Look, filter: Filter) -> bool {
-    match look {
-        Look::Waves => filter == Filter::CubicSmooth,
-        Look::Lit => placement.order == Order::FrontToBack,
-        Look::Lamps | Look::Shadows | Look::SoftShadows => true,
-        look => matches!(look.word(), "contour" | "triangle"),
-    }
+/// of it that rays are in for less long. What a single sample is off by shows as much there, and less is allowed.
+fn is_thin(placement: Placement, look: Look) -> bool {
+    let is_under = placement.order == Order::FrontToBack;
+    matches!(look, Look::Lamps | Look::Shadows | Look::SoftShadows) || look == Look::Lit && is_under
 }
 
 /// The baseline has each look in each technique, and the filters where something hangs on them.
@@ -212,7 +208,7 @@ fn draw(
     let shot = shot.with(|settings| {
         let whole = settings.crop;
         set(settings, look);
-        if is_thin(placement, look, filter) {
+        if is_thin(placement, look) {
             settings.crop = settings.crop.or(whole).map(ground::thin);
         }
     });

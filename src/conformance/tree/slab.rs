@@ -19,10 +19,9 @@ use crate::volume::VoxelType;
 
 const COLOR: [f64; 3] = [0.9, 0.2, 0.6];
 
-/// Ramps, and a spike that is far thinner than what a step passes. What a table of integrals is rounded by grows with them:
-/// denser ramps would be allowed to be off by several codes of 255.
+/// Ramps, and a spike that is far thinner than what a step passes.
 const FUNCTIONS: [(&str, &[(f64, f64)]); 2] = [
-    ("ramps", &[(0.2, 0.0025), (0.6, 0.02), (0.9, 0.05)]),
+    ("ramps", &[(0.2, 0.02), (0.6, 0.15), (0.9, 0.4)]),
     (
         "spike",
         &[(0.2, 0.02), (0.5, 0.02), (0.505, 0.9), (0.51, 0.02)],
