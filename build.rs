@@ -7,7 +7,7 @@
 //!
 //! Written to `OUT_DIR`: `shaders.spv` (all words, one module after the other), `shaders.rs` (the
 //! table of modules with their bindings, a `#[repr(C)]` struct for each uniform, and the constants) and
-//! `blue_noise.bin` (the pattern of jittered rays).
+//! `blue_noise.bin` (the pattern of jittered rays); with the feature `conformance` `wgsl.rs` too (the texts of all files).
 
 #[path = "shaders/among_few.rs"]
 mod among_few;
