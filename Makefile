@@ -108,7 +108,7 @@ command-line:
 	$(ON_DEVICE) --test cli
 
 command-line-drawn:
-	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --test cli -- bench:: conformance::a_run device:: mixed:: pictures::
+	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --test cli -- bench:: conformance::a_run conformance_runs::under_stress device:: mixed:: pictures::
 
 without-device:
 	$(TEST) --doc

@@ -207,6 +207,12 @@ impl Headless {
         Ok(result)
     }
 
+    /// Runs `work` with the queue, to which nobody submits meanwhile.
+    #[cfg(feature = "conformance")]
+    pub(crate) fn on_queue<R>(&self, work: impl FnOnce(vk::Queue) -> R) -> R {
+        work(*self.queue.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
     /// Destroys what was dropped since the last run, and not only with the next one.
     pub fn tidy(&mut self) {
         // What was submitted to a lost device may still run.

@@ -6,12 +6,14 @@ use super::{
 };
 use ash::vk;
 use std::fmt;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// A device that we made, destroyed when dropped. Everything made on it must be gone by then.
 pub(super) struct OwnDevice {
     pub device: ash::Device,
     pub queue_family: u32,
-    pub queue_count: u32,
+    /// Those that were asked for. Whoever holds one may submit to it.
+    pub queues: Vec<Arc<Mutex<vk::Queue>>>,
     pub features: Features,
     // Last: fields are dropped in this order, after the device was destroyed.
     pub instance: OwnInstance,
@@ -73,13 +75,30 @@ impl OwnDevice {
                 .create_device(from.physical_device, &info, None)
         }
         .doing(|| format!("make a device of {}", from.title()))?;
+        let queue = |index| {
+            // SAFETY: the device was made with so many queues of this family.
+            Arc::new(Mutex::new(unsafe {
+                device.get_device_queue(queue_family, index)
+            }))
+        };
         Ok(Self {
+            queues: (0..queue_count).map(queue).collect(),
             device,
             queue_family,
-            queue_count,
             features,
             instance,
         })
+    }
+
+    /// Waits until nothing runs on the device, and lets nobody submit meanwhile.
+    pub fn wait_idle(&self) {
+        let queues = self.queues.iter();
+        let _held: Vec<_> = queues
+            .map(|queue| queue.lock().unwrap_or_else(PoisonError::into_inner))
+            .collect();
+        // SAFETY: the device is ours, and all of its queues are held.
+        // A lost device has nothing left to finish, and destroying stays legal.
+        let _ = unsafe { self.device.device_wait_idle() };
     }
 }
 

@@ -1,20 +1,16 @@
 //! A device of our own and its queues, for one thread or for several with a [`Headless`] each.
 
 use super::{
-    API_VERSION, DeviceChoice, Error, Gpu, Headless, HostDevice, Options, Validation,
-    ValidationMode, cache, instance::Candidate, instance::OwnInstance, own_device::OwnDevice,
-    validation::Messages,
+    API_VERSION, DeviceChoice, Error, Gpu, Headless, HostDevice, Options, ValidationMode, cache,
+    instance::Candidate, instance::OwnInstance, own_device::OwnDevice, validation::Messages,
 };
-use ash::vk;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 /// A device and the queues that were asked for, as far as it has so many.
 #[derive(Debug)]
 pub struct SharedDevice {
     own: Arc<OwnDevice>,
     from: Candidate,
-    /// Whoever holds one may submit to it.
-    queues: Vec<Arc<Mutex<vk::Queue>>>,
     messages: Option<Arc<Messages>>,
 }
 
@@ -24,7 +20,11 @@ impl SharedDevice {
     /// # Errors
     /// As [`Headless::new`].
     #[cfg(feature = "conformance")]
-    pub fn new(choice: &DeviceChoice, validation: Validation, queues: u32) -> Result<Self, Error> {
+    pub fn new(
+        choice: &DeviceChoice,
+        validation: super::Validation,
+        queues: u32,
+    ) -> Result<Self, Error> {
         let mode = validation.mode()?;
         Self::of(OwnInstance::new(mode)?, mode, choice, queues)
     }
@@ -39,15 +39,8 @@ impl SharedDevice {
         let is_usable = |device: &Candidate| instance.report(device).is_usable();
         let from = choice.pick(instance.devices()?, is_usable)?;
         instance.report(&from).require()?;
-        let own = OwnDevice::new(instance, &from, mode, queues)?;
-        let queue = |index| {
-            // SAFETY: the device was made with so many queues of this family.
-            let queue = unsafe { own.device.get_device_queue(own.queue_family, index) };
-            Arc::new(Mutex::new(queue))
-        };
         Ok(Self {
-            queues: (0..own.queue_count).map(queue).collect(),
-            own: Arc::new(own),
+            own: Arc::new(OwnDevice::new(instance, &from, mode, queues)?),
             from,
             messages,
         })
@@ -56,7 +49,7 @@ impl SharedDevice {
     /// How many queues there are.
     #[cfg(feature = "conformance")]
     pub fn queues(&self) -> usize {
-        self.queues.len()
+        self.own.queues.len()
     }
 
     /// What the `user`th of its users, from 0, works with: a queue, which it has for itself where there are as many as
@@ -81,8 +74,8 @@ impl SharedDevice {
             pipeline_cache: &pipeline_cache,
         };
         // SAFETY: the handles are our own and live in `own`, of which the `Gpu` has a share.
-        let gpu = unsafe { Gpu::new(host, Some(Box::new(Arc::clone(own))))? };
-        let queue = Arc::clone(&self.queues[user % self.queues.len()]);
+        let gpu = unsafe { Gpu::new(host, Some(Arc::clone(own)))? };
+        let queue = Arc::clone(&own.queues[user % own.queues.len()]);
         Headless::on(gpu, queue, cache_file, self.messages.clone())
     }
 }
