@@ -29,6 +29,8 @@ APT := $(ROOT)env DEBIAN_FRONTEND=noninteractive apt-get
 export MESA_SHADER_CACHE_DIR ?= $(CURDIR)/target/mesa-shader-cache
 export XDG_CACHE_HOME ?= $(CURDIR)/target/cache
 export DATA
+# Packages of `stratavox conformance` say what the program was built from. Cargo links the program anew where it changes.
+export STRATAVOX_COMMIT ?= $(shell git describe --always --dirty --exclude='*' --abbrev=40 2>/dev/null)
 
 # A Vulkan driver is a manifest in one of the loader's folders; the loader is libvulkan.so.1.
 ICD_FOLDERS := /usr/share/vulkan/icd.d /etc/vulkan/icd.d /usr/local/share/vulkan/icd.d $(HOME)/.local/share/vulkan/icd.d
@@ -133,7 +135,8 @@ command-line:
 	$(ON_DEVICE) --test cli $(SHOWN)
 
 command-line-drawn:
-	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --test cli $(SHOWN) bench:: conformance::a_run device:: mixed:: pictures::
+	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --test cli $(SHOWN) bench:: conformance::a_run conformance_runs::under_stress \
+	    device:: mixed:: pictures::
 
 without-device:
 	$(TEST) --doc

@@ -7,7 +7,7 @@
 //!
 //! Written to `OUT_DIR`: `shaders.spv` (all words, one module after the other), `shaders.rs` (the
 //! table of modules with their bindings, a `#[repr(C)]` struct for each uniform, and the constants) and
-//! `blue_noise.bin` (the pattern of jittered rays).
+//! `blue_noise.bin` (the pattern of jittered rays); with the feature `conformance` `wgsl.rs` too (the texts of all files).
 
 #[path = "shaders/among_few.rs"]
 mod among_few;
@@ -15,6 +15,8 @@ mod among_few;
 mod blue_noise;
 #[path = "shaders/both_sides.rs"]
 mod both_sides;
+#[path = "shaders/compose.rs"]
+mod compose;
 #[path = "shaders/handed.rs"]
 mod handed;
 #[path = "shaders/no_contraction.rs"]
@@ -30,12 +32,13 @@ mod read_once;
 #[path = "shaders/variants.rs"]
 mod variants;
 
+use compose::{Source, combinations};
 use naga::valid::{ValidationFlags, Validator};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
-use variants::{ENTRIES, PROBES, SILENT, Slot, filled};
+use variants::{ENTRIES, PROBES, Slot};
 
 fn main() {
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
@@ -44,7 +47,10 @@ fn main() {
     let mut book = Book::default();
     println!("cargo:rerun-if-env-changed=CARGO_FEATURE_CONFORMANCE");
     let probes = match env::var_os("CARGO_FEATURE_CONFORMANCE") {
-        Some(_) => PROBES,
+        Some(_) => {
+            fs::write(out.join("wgsl.rs"), texts()).expect("OUT_DIR can be written");
+            PROBES
+        }
         None => &[],
     };
     for (file, slots) in ENTRIES.iter().chain(probes) {
@@ -52,6 +58,7 @@ fn main() {
             book.add(file, slots, &words);
         }
     }
+    say_packaged_commit();
     fs::write(out.join("shaders.spv"), &book.spirv).expect("OUT_DIR can be written");
     fs::write(out.join("shaders.rs"), book.rust()).expect("OUT_DIR can be written");
     let ranks = blue_noise::ranks().into_iter().flat_map(u32::to_le_bytes);
@@ -59,15 +66,25 @@ fn main() {
     fs::write(out.join("blue_noise.bin"), ranks).expect("OUT_DIR can be written");
 }
 
-/// Every way to take one word from each slot.
-fn combinations(slots: &[Slot]) -> Vec<Vec<&'static str>> {
-    slots.iter().fold(vec![Vec::new()], |sets, (_, words)| {
-        let extended = |set: &Vec<&'static str>| {
-            let set = set.clone();
-            words.iter().map(move |word| [&set[..], &[*word]].concat())
-        };
-        sets.iter().flat_map(extended).collect()
-    })
+/// A package of cargo's says which commit it was made of: the program says so too. In a repository there is no such
+/// file, and nothing here runs again for a new commit: there `STRATAVOX_COMMIT` says it (`src/main.rs`).
+fn say_packaged_commit() {
+    const FILE: &str = ".cargo_vcs_info.json";
+    let Ok(text) = fs::read_to_string(FILE) else {
+        return;
+    };
+    println!("cargo:rerun-if-changed={FILE}");
+    let commit = text
+        .split("\"sha1\"")
+        .nth(1)
+        .and_then(|rest| rest.split('"').nth(1));
+    let dirty = match text.contains("\"dirty\": true") {
+        true => "-dirty",
+        false => "",
+    };
+    if let Some(commit) = commit {
+        println!("cargo:rustc-env=STRATAVOX_PACKAGED_COMMIT={commit}{dirty}");
+    }
 }
 
 /// What has been compiled so far.
@@ -83,38 +100,20 @@ struct Book {
 
 impl Book {
     fn add(&mut self, file: &str, slots: &[Slot], words: &[&str]) {
-        let named = words.iter().copied().filter(|word| !SILENT.contains(word));
-        let name = [file]
-            .into_iter()
-            .chain(named)
-            .collect::<Vec<_>>()
-            .join(".");
-        let fills: BTreeMap<_, _> = slots
-            .iter()
-            .map(|slot| slot.0)
-            .zip(words.iter().copied())
-            .collect();
-        let source = Source::read(
-            Path::new("shaders").join(file).with_extension("wgsl"),
-            &fills,
-        );
+        let name = compose::name(file, words);
+        let fills = compose::fills(slots, words);
+        let source = Source::read(file, &fills, &read);
         let mut module = naga::front::wgsl::parse_str(&source.text).unwrap_or_else(|e| {
-            source.fail(
-                &name,
-                e.location(&source.text),
-                &e.emit_to_string(&source.text),
-            )
+            let picture = e.emit_to_string(&source.text);
+            fail(&source, &name, e.location(&source.text), &picture)
         });
         // No capability beyond the core, but for probes: a shader that needs more is a build error.
         let check = |module: &naga::Module, flags| {
             Validator::new(flags, probes::capabilities(file))
                 .validate(module)
                 .unwrap_or_else(|e| {
-                    source.fail(
-                        &name,
-                        e.location(&source.text),
-                        &e.emit_to_string(&source.text),
-                    )
+                    let picture = e.emit_to_string(&source.text);
+                    fail(&source, &name, e.location(&source.text), &picture)
                 })
         };
         check(&module, ValidationFlags::all());
@@ -177,57 +176,47 @@ impl Book {
     }
 }
 
-/// One entry file with its imports, and where each of its lines came from.
-struct Source {
-    text: String,
-    lines: Vec<(PathBuf, usize)>,
+/// The text of a file under `shaders`.
+fn read(path: &str) -> String {
+    let path = Path::new("shaders").join(path);
+    fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
-impl Source {
-    fn read(path: PathBuf, fills: &BTreeMap<&str, &str>) -> Self {
-        let mut source = Self {
-            text: String::new(),
-            lines: Vec::new(),
-        };
-        source.append(path, fills, &mut BTreeSet::new());
-        source
-    }
+/// Stops the build with naga's picture and the place in the file that a person edits.
+fn fail<T>(
+    source: &Source,
+    variant: &str,
+    location: Option<naga::SourceLocation>,
+    picture: &str,
+) -> T {
+    let place = location
+        .and_then(|l| source.lines.get(l.line_number as usize - 1))
+        .map_or_else(String::new, |(path, line)| {
+            format!("shaders/{path}:{line}: ")
+        });
+    panic!("{place}in variant {variant}\n{picture}");
+}
 
-    fn append(
-        &mut self,
-        path: PathBuf,
-        fills: &BTreeMap<&str, &str>,
-        seen: &mut BTreeSet<PathBuf>,
-    ) {
-        if !seen.insert(path.clone()) {
-            return;
-        }
-        let text = fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
-        for (number, line) in text.lines().enumerate() {
-            if let Some(name) = line.strip_prefix("#import ") {
-                let filled = filled(name, fills);
-                self.append(
-                    Path::new("shaders/lib").join(filled).with_extension("wgsl"),
-                    fills,
-                    seen,
-                );
-            } else {
-                self.text.push_str(line);
-                self.text.push('\n');
-                self.lines.push((path.clone(), number + 1));
-            }
+/// The texts of all files, for dumps of conformance cases: where each lies, under `shaders`, and what stands in it.
+fn texts() -> String {
+    let mut text = "/// The files of all shaders.\nconst FILES: &[(&str, &str)] = &[\n".to_owned();
+    for folder in ["", "lib/", "probe/"] {
+        let found = fs::read_dir(Path::new("shaders").join(folder)).expect("a folder of shaders");
+        let mut names: Vec<String> = found
+            .map(|entry| entry.expect("a file").file_name().to_string_lossy().into())
+            .filter(|name: &String| name.ends_with(".wgsl"))
+            .collect();
+        names.sort();
+        for name in names {
+            let path = format!("{folder}{name}");
+            writeln!(
+                text,
+                "    ({path:?}, include_str!(concat!(env!(\"CARGO_MANIFEST_DIR\"), \"/shaders/{path}\"))),"
+            )
+            .unwrap();
         }
     }
-
-    /// Stops the build with naga's picture and the place in the file that a person edits.
-    fn fail<T>(&self, variant: &str, location: Option<naga::SourceLocation>, picture: &str) -> T {
-        let place = location
-            .and_then(|l| self.lines.get(l.line_number as usize - 1))
-            .map_or_else(String::new, |(path, line)| {
-                format!("{}:{line}: ", path.display())
-            });
-        panic!("{place}in variant {variant}\n{picture}");
-    }
+    text + "];\n"
 }
 
 /// Whether it is a shader of conformance, which is to see what a device makes of it as it stands.

@@ -433,6 +433,8 @@ pub const PROBES: &[(&str, &[Slot])] = &[
     ("probe/push", &[("bytes", &["128", "256"])]),
     ("probe/many", &[]),
     ("probe/spots", &[]),
+    ("probe/places_3d", &[]),
+    ("probe/places_array", &[]),
     ("probe/beyond_read", &[]),
     ("probe/beyond_write", &[]),
     ("probe/beyond_atomic", &[]),

@@ -1,14 +1,14 @@
 //! Packages are looked through as ones that somebody handed in, and two are compared. No device is asked.
 #![cfg(feature = "conformance")]
 
-use std::collections::BTreeMap;
+use serde_json::Value;
 use stratavox::conformance::case::{Case, Profile};
 use stratavox::conformance::difference::Difference;
 use stratavox::conformance::measurement::{Bound, Measurement, Worst};
 use stratavox::conformance::need::Found;
-use stratavox::conformance::record::{Asked, DeviceRecord, Package, Record};
-use stratavox::conformance::report::{html, junit};
-use stratavox::conformance::supervisor::chosen;
+use stratavox::conformance::record::{Asked, Build, DeviceRecord, Package, Record, Stress};
+use stratavox::conformance::report::{html, junit, qpa};
+use stratavox::conformance::selection::Selection;
 use stratavox::conformance::tree::cases;
 use stratavox::conformance::verdict::Verdict;
 
@@ -24,24 +24,31 @@ fn device() -> DeviceRecord {
         vendor_id: 1,
         device_id: 2,
         uuid: "00".into(),
-        limits: BTreeMap::new(),
+        ..DeviceRecord::default()
     }
 }
 
 fn whole(list: &[Case], change: impl FnOnce(&mut Vec<Record>)) -> Package {
-    let all = chosen(list, Profile::Baseline, "*", [1, 1]).into_iter();
-    let passed =
-        |case: &Case| Record::unmeasured(&case.name, case.profile, Verdict::Pass, String::new());
+    let all = Selection::all(Profile::Baseline).of(list).into_iter();
+    let passed = |case: &Case| Record {
+        command: format!("stratavox conformance --filter {} --seed 1", case.name),
+        ..Record::unmeasured(&case.name, case.profile, Verdict::Pass, String::new())
+    };
     let mut records = all.map(passed).collect();
     change(&mut records);
     let asked = Asked {
-        profile: Profile::Baseline,
-        filter: "*".into(),
-        shard: [1, 1],
+        selection: Selection::all(Profile::Baseline),
         seed: 1,
         limits: "device".into(),
+        repeat: 1,
+        in_process: false,
+        stress: None,
     };
-    Package::new(list, asked, Some(device()), records, 1.0)
+    let build = Build {
+        commit: "0123456789".into(),
+        cargo_lock_sha256: "0".repeat(64),
+    };
+    Package::new(list, build, asked, Some(device()), records, 1.0)
 }
 
 /// As it comes out of a file.
@@ -61,7 +68,20 @@ fn a_whole_package_has_nothing_to_complain_of_and_each_change_is_named() {
             "{word}: {complaints:?}"
         );
     };
-    named(whole(&list, |records| drop(records.pop())), "is missing");
+    named(
+        whole(&list, |records| drop(records.pop())),
+        "the run ended before all",
+    );
+    named(
+        whole(&list, |records| records[0].command.clear()),
+        "no command line",
+    );
+    named(
+        whole(&list, |records| {
+            records[0].verdict = Verdict::ExpectedFailure
+        }),
+        "expected_failure",
+    );
     named(
         whole(&list, |records| records.push(records[0].clone())),
         "stands 2 times",
@@ -91,8 +111,16 @@ fn a_whole_package_has_nothing_to_complain_of_and_each_change_is_named() {
     named(changed(|p| p.suite = "0.0.0".into()), "made by suite");
     named(changed(|p| p.list_sha256.clear()), "list of cases");
     named(changed(|p| p.device = None), "no device");
-    named(changed(|p| p.asked.shard = [1, 2]), "a part of the profile");
-    named(changed(|p| p.asked.shard = [0, 0]), "part 0 of 0");
+    named(changed(|p| drop(p.cases.pop())), "is missing");
+    named(
+        changed(|p| p.asked.selection.shard = [1, 2]),
+        "a part of the profile",
+    );
+    named(
+        changed(|p| p.asked.selection.exclude = vec!["probe.math.exp".into()]),
+        "a part of the profile",
+    );
+    named(changed(|p| p.asked.selection.shard = [0, 0]), "part 0 of 0");
     named(
         changed(|p| p.asked.limits = "vulkan-minimum".into()),
         "lowered",
@@ -165,6 +193,34 @@ fn names_of_devices_and_reasons_cannot_break_a_report() {
 }
 
 #[test]
+fn a_test_log_has_a_document_a_case_and_nothing_in_it_looks_like_a_line_of_the_log() {
+    let list = cases();
+    let package = whole(&list, |records| {
+        records[0].verdict = Verdict::Fail;
+        records[0].reason = "a < b\n#endTestCaseResult".into();
+        records[1].verdict = Verdict::Waived;
+        records[2].verdict = Verdict::ExpectedFailure;
+        records[2].baseline = Some(Verdict::Crash);
+    });
+    let log = qpa(&package);
+    assert!(log.starts_with("#sessionInfo releaseName stratavox-"));
+    assert!(log.contains("#sessionInfo releaseId 0x01234567\n"));
+    assert!(log.trim_end().ends_with("#endSession"));
+    let of = |mark: &str| log.lines().filter(|line| line.starts_with(mark)).count();
+    for mark in ["#beginTestCaseResult ", "#endTestCaseResult"] {
+        assert_eq!(of(mark), package.cases.len(), "{mark}");
+    }
+    let status = |case: &Record| {
+        let begin = format!("#beginTestCaseResult {}\n", case.name);
+        let document = log.split(&begin).nth(1).expect("the case");
+        let status = document.split("StatusCode=\"").nth(1).expect("a result");
+        status.split('"').next().expect("a word").to_owned()
+    };
+    let found: Vec<String> = package.cases[..4].iter().map(status).collect();
+    assert_eq!(found, ["Fail", "Waiver", "Crash", "Pass"]);
+}
+
+#[test]
 fn branches_of_two_packages_count_the_same_numbers_and_the_worst() {
     let list = cases();
     let with = |ratio: f64, hash: &str| {
@@ -214,4 +270,77 @@ fn the_hash_is_of_what_was_found_in_its_order() {
     }
     let none = Measurement::new(Bound::default(), 1);
     assert_eq!(none.found_sha256(), "");
+}
+
+/// Where `value` is not what `schema` says, as far as names of fields go.
+fn unlike(root: &Value, schema: &Value, value: &Value, at: &str, found: &mut Vec<String>) {
+    if let Some(name) = schema["$ref"].as_str() {
+        let schema = &root["$defs"][name.rsplit('/').next().expect("a name")];
+        return unlike(root, schema, value, at, found);
+    }
+    match value {
+        Value::Object(fields) => {
+            for name in schema["required"].as_array().into_iter().flatten() {
+                let name = name.as_str().expect("a name");
+                if !fields.contains_key(name) {
+                    found.push(format!("{at}: no {name}"));
+                }
+            }
+            for (name, value) in fields {
+                match (&schema["properties"][name], &schema["additionalProperties"]) {
+                    (Value::Null, Value::Bool(false)) => found.push(format!("{at}: {name}")),
+                    (Value::Null, other) => unlike(root, other, value, name, found),
+                    (schema, _) => unlike(root, schema, value, name, found),
+                }
+            }
+        }
+        Value::Array(items) => {
+            for value in items {
+                unlike(root, &schema["items"], value, at, found);
+            }
+        }
+        Value::String(word) => {
+            let words = schema["enum"].as_array();
+            if words.is_some_and(|words| !words.iter().any(|one| one == word)) {
+                found.push(format!("{at}: {word}"));
+            }
+        }
+        _ => {}
+    }
+}
+
+#[test]
+fn the_schema_names_all_that_a_package_has() {
+    let list = cases();
+    let mut package = whole(&list, |records| {
+        let record = &mut records[0];
+        record.verdict = Verdict::ExpectedFailure;
+        record.reason = "a reason".into();
+        record.baseline = Some(Verdict::Fail);
+        record.weak_bound = true;
+        record.unexpected_pass = true;
+        record.runs = vec![Verdict::Fail, Verdict::Pass];
+        record.worst = Some(Worst::default());
+        record.bound = Some(Bound::default());
+        record.found_sha256 = "0".repeat(64);
+        record.pictures = vec!["a.png".into()];
+        record.validation_messages = vec!["a message".into()];
+        records.pop();
+    });
+    let stress = Stress {
+        queues: 1,
+        threads: 2,
+    };
+    package.asked.stress = Some(stress);
+    package.asked.selection.caselist = vec!["*".into()];
+    package.asked.selection.exclude = vec!["a".into()];
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/conformance-schema.json");
+    let schema = std::fs::read_to_string(page).expect("the schema");
+    let schema: Value = serde_json::from_str(&schema).expect("JSON");
+    let mut found = Vec::new();
+    let value = serde_json::to_value(&package).expect("JSON");
+    unlike(&schema, &schema, &value, "package", &mut found);
+    assert_eq!(found, [""; 0]);
+    let number = &schema["properties"]["stratavox_conformance"]["const"];
+    assert_eq!(number, package.stratavox_conformance);
 }

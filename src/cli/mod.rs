@@ -78,15 +78,24 @@ enum Verb {
     Conformance(Box<conformance::Conformance>),
 }
 
+/// What the program was built from.
+#[derive(Clone, Copy, Debug)]
+pub struct Source {
+    /// The commit, where the build was told: as of `git describe --always --dirty --abbrev=40`.
+    pub commit: Option<&'static str>,
+    /// The text of `Cargo.lock`.
+    pub cargo_lock: &'static str,
+}
+
 /// Runs the program with these words (the first is its own name) and gives its exit code.
 ///
 /// Installs a panic hook and signal handlers: it is for a process of its own.
-pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
+pub fn run(words: impl IntoIterator<Item = OsString>, source: Source) -> u8 {
     let gate = Gate::default();
     let words: Vec<OsString> = words.into_iter().collect();
     guarded(move || {
         signals::install(&gate);
-        match obey(words, &gate) {
+        match obey(words, source, &gate) {
             Ok(()) => 0,
             Err(error) => {
                 // Where stderr is closed the exit code has to do.
@@ -97,7 +106,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     })
 }
 
-fn obey(words: Vec<OsString>, gate: &Gate) -> Result<(), Error> {
+fn obey(words: Vec<OsString>, source: Source, gate: &Gate) -> Result<(), Error> {
     let words = match Words::try_parse_from(words) {
         Ok(words) => words,
         // Help and version are answers, not errors.
@@ -118,7 +127,7 @@ fn obey(words: Vec<OsString>, gate: &Gate) -> Result<(), Error> {
         Verb::Preset(preset) => preset.run(gate),
         Verb::Completions(completions) => completions.run(Words::command()),
         Verb::Man(man) => man.run(Words::command(), gate),
-        Verb::Conformance(conformance) => conformance.run(gate),
+        Verb::Conformance(conformance) => conformance.run(source, gate),
     }
 }
 

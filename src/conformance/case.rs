@@ -1,7 +1,7 @@
 //! A case: a name in the tree, what it asks of a device, and what it does there.
 
 use super::measurement::Measurement;
-use super::need::Want;
+use super::need::{Found, Want};
 use super::stand::Stand;
 use crate::gpu::{self, Item, Limit};
 use crate::offscreen;
@@ -14,8 +14,10 @@ use std::fmt;
 pub enum Profile {
     /// Any device of Vulkan 1.3: minutes on two cores.
     Baseline,
-    /// All there is.
+    /// All but what takes a gibibyte of memory or more.
     Full,
+    /// All there is.
+    Large,
 }
 
 impl Profile {
@@ -24,6 +26,7 @@ impl Profile {
         match self {
             Self::Baseline => "baseline",
             Self::Full => "full",
+            Self::Large => "large",
         }
     }
 }
@@ -34,6 +37,9 @@ pub enum Stop {
     /// The device or the library refused.
     #[error(transparent)]
     Offscreen(#[from] offscreen::Error),
+    /// The device has less of something than this case wants of it, which is known when its sizes are.
+    #[error("{}: wanted {}, the device says {}", .0.name, .0.wanted, .0.device_says)]
+    Lacking(Box<Found>),
     /// The suite did not do its work.
     #[error("{0}")]
     Suite(String),

@@ -14,6 +14,11 @@ use std::time::Instant;
 /// Of the numbers of a case at most so many parts may hang on rounding: else it says nothing.
 const MOST_LEFT_OUT: f64 = 0.1;
 
+/// Of a channel of a picture that may be off by more than half a code of 255 little is known.
+pub const WIDE_ALLOWANCE: f64 = 0.5 / 255.0;
+/// Where this part of the channels or more is allowed that much, a pass proves little.
+const MOST_WIDE: f64 = 0.1;
+
 /// Runs `case` and judges it; the pictures are those that were compared, where it has drawn any.
 pub fn judge(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
     let start = Instant::now();
@@ -55,6 +60,14 @@ fn judged(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
             let (record, pictures) = measured(case, measurement);
             (record, pictures)
         }
+        Ok(Err(Stop::Lacking(found))) => {
+            let reason = Stop::Lacking(found.clone()).to_string();
+            let record = Record {
+                needs: needs.into_iter().chain([*found]).collect(),
+                ..of(Verdict::NotSupported, reason)
+            };
+            return (record, None);
+        }
         Ok(Err(stop)) => {
             if let Some(item) = stop.need()
                 && let Ok(device) = stand.device()
@@ -63,7 +76,7 @@ fn judged(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
             }
             let of_stop = match &stop {
                 Stop::Offscreen(offscreen::Error::Gpu(error)) => verdict_of(error),
-                Stop::Offscreen(_) | Stop::Suite(_) => Verdict::InternalError,
+                Stop::Offscreen(_) | Stop::Lacking(_) | Stop::Suite(_) => Verdict::InternalError,
             };
             let (verdict, reason) = lacking(&needs).unwrap_or((of_stop, stop.to_string()));
             if verdict == Verdict::DeviceLost {
@@ -163,6 +176,10 @@ fn measured(case: &Case, measurement: Measurement) -> (Record, Option<Pictures>)
         left_out,
         found_sha256,
         worst: (worst.allowed > 0.0 || worst.ratio > 0.0).then_some(worst),
+        weak_bound: bound
+            .inputs
+            .get("wide_share")
+            .is_some_and(|&share| share > MOST_WIDE),
         bound: Some(bound),
         ..Record::unmeasured(&case.name, case.profile, verdict, reason)
     };

@@ -175,7 +175,7 @@ impl Measurement {
 }
 
 /// As hashes stand in records.
-pub(super) fn hex(bytes: &[u8]) -> String {
+pub(crate) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 

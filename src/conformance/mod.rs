@@ -10,17 +10,24 @@
 //! A bound is derived and never fitted: its derivation is text in the record, and what was measured stands beside it.
 //! `docs/conformance.md` has the words.
 
+pub mod baseline;
 pub mod case;
 pub mod difference;
+pub mod dump;
+mod facts;
 pub mod glob;
+pub mod in_process;
 pub mod judge;
 pub mod measurement;
 pub mod need;
 pub mod oracle;
 pub mod package;
 pub mod record;
+pub mod repeat;
 pub mod report;
+pub mod selection;
 pub mod stand;
+pub mod stress;
 pub mod supervisor;
 pub mod tree;
 pub mod verdict;
@@ -28,4 +35,4 @@ pub mod waiver;
 pub mod worker;
 
 /// The version of the layout of packages.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;

@@ -3,29 +3,33 @@
 use super::SCHEMA;
 use super::case::{Case, Profile};
 use super::measurement::hex;
-use super::record::{Asked, DeviceRecord, Package, Record};
-use super::supervisor::chosen;
+use super::record::{Asked, Build, DeviceRecord, Package, Record};
+use super::selection::Selection;
 use super::verdict::Verdict;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 
 impl Package {
-    /// Of the records of what was asked for, in the order of the list.
+    /// Of the records of what was asked for, in that order.
     pub fn new(
         list: &[Case],
+        build: Build,
         asked: Asked,
         device: Option<DeviceRecord>,
         records: Vec<Record>,
         seconds: f64,
     ) -> Self {
+        let is_partial = records.len() < asked.selection.of(list).len();
         let mut package = Self {
             stratavox_conformance: SCHEMA,
             suite: env!("CARGO_PKG_VERSION").to_owned(),
-            list_sha256: list_sha256(list, asked.profile),
+            build,
+            list_sha256: list_sha256(list, asked.selection.profile),
             content_sha256: String::new(),
             asked,
             device,
             summary: summary_of(&records),
+            is_partial,
             seconds,
             cases: records,
         };
@@ -52,9 +56,9 @@ impl Package {
     /// What is wrong with a package that claims to be a whole run of its profile; nothing where it is one and is good.
     pub fn complaints(&self, list: &[Case]) -> Vec<String> {
         let mut complaints = self.complaints_of_part(list);
-        if self.asked.shard != [1, 1] || self.asked.filter != "*" {
-            complaints
-                .push("it is a part of the profile: a filter or a shard was asked for".to_owned());
+        if self.asked.selection.is_part() {
+            let asked = "a filter, a case list, an exclusion or a shard was asked for";
+            complaints.push(format!("it is a part of the profile: {asked}"));
         }
         complaints
     }
@@ -71,7 +75,7 @@ impl Package {
             let own = env!("CARGO_PKG_VERSION");
             complain(format!("made by suite {}, this is {own}", self.suite));
         }
-        if self.list_sha256 != list_sha256(list, self.asked.profile) {
+        if self.list_sha256 != list_sha256(list, self.asked.selection.profile) {
             complain("its list of cases is not that of this suite".to_owned());
         }
         if self.content_sha256 != self.content() {
@@ -86,17 +90,15 @@ impl Package {
         if self.asked.limits != "device" {
             complain(format!("limits were lowered: {}", self.asked.limits));
         }
-        let [part, parts] = self.asked.shard;
+        let [part, parts] = self.asked.selection.shard;
         if part == 0 || part > parts {
             complain(format!("part {part} of {parts}"));
             return complaints;
         }
-        let wanted = chosen(
-            list,
-            self.asked.profile,
-            &self.asked.filter,
-            self.asked.shard,
-        );
+        if self.is_partial {
+            complain("the run ended before all of its cases had run".to_owned());
+        }
+        let wanted = self.asked.selection.of(list);
         let mut found: BTreeMap<&str, usize> = BTreeMap::new();
         for record in &self.cases {
             *found.entry(&record.name).or_default() += 1;
@@ -105,6 +107,7 @@ impl Package {
             match found.remove(case.name.as_str()) {
                 Some(1) => {}
                 Some(n) => complain(format!("{} stands {n} times", case.name)),
+                None if self.is_partial => {}
                 None => complain(format!("{} is missing", case.name)),
             }
         }
@@ -116,6 +119,12 @@ impl Package {
                 complain(format!(
                     "{}: {}, {}",
                     record.name, record.verdict, record.reason
+                ));
+            }
+            if record.command.is_empty() {
+                complain(format!(
+                    "{}: no command line that runs it again",
+                    record.name
                 ));
             }
             let named = record.needs.iter().any(|need| !need.library_has);
@@ -140,7 +149,7 @@ fn summary_of(records: &[Record]) -> BTreeMap<Verdict, usize> {
 
 fn list_sha256(list: &[Case], profile: Profile) -> String {
     let mut hash = Sha256::new();
-    for case in chosen(list, profile, "*", [1, 1]) {
+    for case in Selection::all(profile).of(list) {
         hash.update(case.name.as_bytes());
         hash.update(b"\n");
     }

@@ -3,8 +3,8 @@
 use super::case::Profile;
 use super::measurement::{Bound, Worst};
 use super::need::Found;
+use super::selection::Selection;
 use super::verdict::Verdict;
-use crate::gpu::Gpu;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -15,6 +15,9 @@ pub struct Record {
     pub name: String,
     /// What is said of it.
     pub verdict: Verdict,
+    /// The command line that runs it again.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub command: String,
     /// Why, where that is not `pass`.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub reason: String,
@@ -36,12 +39,19 @@ pub struct Record {
     /// Where the allowances come from.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bound: Option<Bound>,
-    /// Verdicts of all runs, where there was more than one.
+    /// More than a tenth of the channels of its picture may be off by more than half a code of 255: that it passes
+    /// proves little.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub weak_bound: bool,
+    /// Verdicts of all runs, where they were not the same.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub runs: Vec<Verdict>,
     /// What a waiver stands for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub waived: Option<Waived>,
+    /// Its verdict in the baseline, where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub baseline: Option<Verdict>,
     /// A waiver names it, and it passed.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub unexpected_pass: bool,
@@ -72,6 +82,7 @@ impl Record {
         Self {
             name: name.to_owned(),
             verdict,
+            command: String::new(),
             reason,
             profile,
             needs: Vec::new(),
@@ -80,8 +91,10 @@ impl Record {
             found_sha256: String::new(),
             worst: None,
             bound: None,
+            weak_bound: false,
             runs: Vec::new(),
             waived: None,
+            baseline: None,
             unexpected_pass: false,
             pictures: Vec::new(),
             validation_messages: Vec::new(),
@@ -91,7 +104,7 @@ impl Record {
 }
 
 /// Which device was asked.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DeviceRecord {
     /// The device's name.
     pub name: String,
@@ -113,65 +126,51 @@ pub struct DeviceRecord {
     pub device_id: u32,
     /// Names the device.
     pub uuid: String,
-    /// Limits that bounds and needs depend on, as the run had them.
+    /// Limits that bounds, needs and the library depend on, as the run had them.
     pub limits: BTreeMap<String, u64>,
-}
-
-impl DeviceRecord {
-    /// Of a device in use.
-    pub fn of(gpu: &Gpu) -> Self {
-        let identity = gpu.identity();
-        let limits = gpu.limits();
-        let hex = |bytes: &[u8]| bytes.iter().map(|b| format!("{b:02x}")).collect();
-        let [major, minor, patch] = identity.api_version;
-        let [x, y, z] = limits.max_workgroup_count;
-        let named: [(&str, u64); 10] = [
-            ("subTexelPrecisionBits", limits.subtexel_bits.into()),
-            ("maxImageDimension2D", limits.max_image_dimension_2d.into()),
-            ("maxImageDimension3D", limits.max_image_dimension_3d.into()),
-            ("maxImageArrayLayers", limits.max_image_array_layers.into()),
-            (
-                "maxStorageBufferRange",
-                limits.max_storage_buffer_range.into(),
-            ),
-            (
-                "maxComputeWorkGroupInvocations",
-                limits.max_workgroup_invocations.into(),
-            ),
-            ("maxComputeWorkGroupCount[0]", x.into()),
-            ("maxComputeWorkGroupCount[1]", y.into()),
-            ("maxComputeWorkGroupCount[2]", z.into()),
-            ("maxMemoryAllocationSize", limits.max_allocation_bytes),
-        ];
-        Self {
-            name: identity.name.clone(),
-            kind: identity.kind.name().to_owned(),
-            driver: identity.driver_name.clone(),
-            driver_id: identity.driver_id.as_raw() as u32,
-            driver_info: identity.driver_info.clone(),
-            driver_version: identity.driver_version,
-            vulkan: format!("{major}.{minor}.{patch}"),
-            vendor_id: identity.vendor_id,
-            device_id: identity.device_id,
-            uuid: hex(&identity.uuid),
-            limits: named.map(|(name, n)| (name.to_owned(), n)).into(),
-        }
-    }
+    /// Features that the library asks for, and whether they are enabled.
+    pub features: BTreeMap<String, bool>,
+    /// Extensions of the device that are enabled.
+    pub extensions_enabled: Vec<String>,
+    /// Extensions that the device has.
+    pub extensions_available: Vec<String>,
 }
 
 /// What was asked for.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Asked {
-    /// Which cases.
-    pub profile: Profile,
-    /// A pattern over their names.
-    pub filter: String,
-    /// Part I of N, from 1.
-    pub shard: [u32; 2],
+    /// Which cases, in which order.
+    #[serde(flatten)]
+    pub selection: Selection,
     /// What is random follows from it.
     pub seed: u64,
     /// Limits that were lowered: a word, or `device`.
     pub limits: String,
+    /// How often each case ran.
+    pub repeat: u32,
+    /// Whether cases ran in the process of the supervisor.
+    pub in_process: bool,
+    /// On how many queues and threads they ran at once, after each had run alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stress: Option<Stress>,
+}
+
+/// Threads that run cases at once on one device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Stress {
+    /// Queues that they share: as many as the device has of those that were asked for.
+    pub queues: u32,
+    /// How many there are.
+    pub threads: u32,
+}
+
+/// What the program was built from.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Build {
+    /// The commit, with `-dirty` behind it where files were changed since; `unknown` where the build was not told.
+    pub commit: String,
+    /// SHA-256 of the `Cargo.lock` beside the source.
+    pub cargo_lock_sha256: String,
 }
 
 /// A whole run, as it lies in a file.
@@ -181,6 +180,8 @@ pub struct Package {
     pub stratavox_conformance: u32,
     /// The version of the suite.
     pub suite: String,
+    /// What the suite was built from.
+    pub build: Build,
     /// SHA-256 of the names of all cases of the profile: which list this is a run of.
     pub list_sha256: String,
     /// SHA-256 of all that stands here, but for times and for this.
@@ -191,8 +192,11 @@ pub struct Package {
     pub device: Option<DeviceRecord>,
     /// How many cases have which verdict.
     pub summary: BTreeMap<Verdict, usize>,
+    /// The run ended before all cases had run that were asked for.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_partial: bool,
     /// Seconds of all of it.
     pub seconds: f64,
-    /// In the order of the list.
+    /// In the order in which they were asked for.
     pub cases: Vec<Record>,
 }

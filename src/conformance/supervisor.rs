@@ -10,14 +10,16 @@
 //!
 //! Several workers take from one list, each the next name. Which of them took which leaves no trace in a record.
 
-use super::case::{Case, Profile};
+use super::case::Case;
 use super::record::{DeviceRecord, Record};
+use super::repeat::repeated;
 use super::verdict::Verdict;
 use super::worker::Line;
 use std::collections::VecDeque;
 use std::ffi::OsString;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::num::NonZero;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -37,6 +39,8 @@ pub struct Plan {
     pub time_per_case: Duration,
     /// How many workers there are at a time.
     pub jobs: NonZero<usize>,
+    /// How often each case runs.
+    pub repeat: NonZero<u32>,
 }
 
 /// What became of all cases.
@@ -44,18 +48,18 @@ pub struct Plan {
 pub struct Outcome {
     /// As a worker saw it.
     pub device: Option<DeviceRecord>,
-    /// One for each case, in their order.
+    /// One for each case that ran, in their order.
     pub records: Vec<Record>,
 }
 
-/// Runs `cases`; `heard` is called after each with how many are done.
+/// Runs `cases`; `heard` is called after each with how many are done. Where it breaks off, no further case begins.
 ///
 /// # Errors
 /// Where a worker cannot be started.
 pub fn run(
     plan: &Plan,
     cases: &[&Case],
-    heard: impl FnMut(usize, &Record) + Send,
+    heard: impl FnMut(usize, &mut Record) -> ControlFlow<()> + Send,
 ) -> io::Result<Outcome> {
     let next = AtomicUsize::new(0);
     // Records by the place of their case, and who wants to hear of them.
@@ -67,10 +71,13 @@ pub fn run(
             let Some(case) = cases.get(place) else {
                 return Ok(device);
             };
-            let record = settled(plan, &mut worker, &mut device, case)
-                .inspect_err(|_| next.store(cases.len(), Ordering::Relaxed))?;
+            let end = || next.store(cases.len(), Ordering::Relaxed);
+            let mut record =
+                settled(plan, &mut worker, &mut device, case).inspect_err(|_| end())?;
             let (records, heard) = &mut *done.lock().unwrap_or_else(PoisonError::into_inner);
-            heard(records.len() + 1, &record);
+            if heard(records.len() + 1, &mut record).is_break() {
+                end();
+            }
             records.push((place, record));
         }
     };
@@ -101,8 +108,10 @@ fn settled(
     device: &mut Option<DeviceRecord>,
     case: &Case,
 ) -> io::Result<Record> {
-    let mut record = ask(plan, worker, device, case, false)?;
-    if !record.verdict.is_good() {
+    let mut record = repeated(plan.repeat, |is_again| {
+        ask(plan, worker, device, case, is_again)
+    })?;
+    if !record.verdict.is_good() && record.runs.is_empty() {
         // Of its own: nothing of an earlier case is in it.
         let again = ask(plan, &mut None, device, case, true)?;
         if again.verdict != record.verdict {
@@ -294,20 +303,4 @@ fn how(status: ExitStatus) -> String {
         Some(code) => format!("ended with exit code {code}"),
         None => "ended".to_owned(),
     }
-}
-
-/// The cases of a profile whose names a pattern means, and of those part `shard[0]` of `shard[1]`, counted from 1.
-pub fn chosen<'c>(
-    cases: &'c [Case],
-    profile: Profile,
-    pattern: &str,
-    shard: [u32; 2],
-) -> Vec<&'c Case> {
-    let of_profile = cases.iter().filter(|case| case.profile <= profile);
-    let meant = of_profile.filter(|case| super::glob::matches(pattern, &case.name));
-    let part = |(nth, case): (usize, &'c Case)| {
-        let is_mine = nth as u64 % u64::from(shard[1]) == u64::from(shard[0]) - 1;
-        is_mine.then_some(case)
-    };
-    meant.enumerate().filter_map(part).collect()
 }

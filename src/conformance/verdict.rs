@@ -1,4 +1,4 @@
-//! What is said of a case: the words of Khronos' own suites, and `waived`.
+//! What is said of a case: the words of Khronos' own suites, `waived` and `expected_failure`.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -27,15 +27,18 @@ pub enum Verdict {
     DeviceLost,
     /// Known: a waiver names it.
     Waived,
+    /// It fails as it did in the baseline.
+    ExpectedFailure,
 }
 
 impl Verdict {
     /// All of them, in the order of summaries.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Pass,
         Self::QualityWarning,
         Self::NotSupported,
         Self::Waived,
+        Self::ExpectedFailure,
         Self::Fail,
         Self::ResourceError,
         Self::InternalError,
@@ -57,6 +60,7 @@ impl Verdict {
             Self::Crash => "crash",
             Self::DeviceLost => "device_lost",
             Self::Waived => "waived",
+            Self::ExpectedFailure => "expected_failure",
         }
     }
 
@@ -66,6 +70,11 @@ impl Verdict {
             self,
             Self::Pass | Self::QualityWarning | Self::NotSupported | Self::Waived
         )
+    }
+
+    /// Whether a run in which it occurs has failed: an expected failure is not good, and no news.
+    pub fn fails_run(self) -> bool {
+        !self.is_good() && self != Self::ExpectedFailure
     }
 }
 

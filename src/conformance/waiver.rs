@@ -252,6 +252,9 @@ mod tests {
             device_id: 0xc0de,
             uuid: String::new(),
             limits: Default::default(),
+            features: Default::default(),
+            extensions_enabled: Vec::new(),
+            extensions_available: Vec::new(),
         }
     }
 

@@ -8,6 +8,7 @@
 //! ```
 
 use super::case::Case;
+use super::dump::dumped;
 use super::judge::judge;
 use super::measurement::Pictures;
 use super::record::{DeviceRecord, Record};
@@ -17,7 +18,7 @@ use crate::picture::compare::{Comparison, Image};
 use crate::picture::{ColorSpace, Picture, WriteOptions, write_picture};
 use serde::{Deserialize, Serialize};
 use std::io::{self, BufRead, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A line of a worker.
 #[derive(Debug, Serialize, Deserialize)]
@@ -94,42 +95,39 @@ impl Trouble {
     }
 }
 
-/// Answers until the names end. `pictures` is where those of failures are put; `trouble` names cases and what happens
-/// at them.
-///
-/// # Errors
-/// Where a line cannot be read or written.
-pub fn serve(
-    cases: &[Case],
-    stand: &mut Stand,
-    pictures: Option<&Path>,
-    trouble: Option<(&str, Trouble)>,
-) -> io::Result<()> {
-    let mut out = io::stdout().lock();
-    let mut is_introduced = false;
-    for name in io::stdin().lock().lines() {
-        let name = name?;
-        let wanted = name.strip_prefix("again ").unwrap_or(&name);
-        let is_first = wanted == name;
-        let Some(case) = cases.iter().find(|case| case.name == wanted) else {
-            return Err(io::Error::other(format!("there is no case {wanted}")));
-        };
-        if !is_introduced && let Ok(device) = stand.device() {
-            say(&mut out, &Line::Device(DeviceRecord::of(device.gpu())))?;
-            is_introduced = true;
-        }
-        let trouble = trouble.filter(|(pattern, _)| super::glob::matches(pattern, wanted));
-        let trouble = trouble.map(|(_, trouble)| trouble);
+/// How cases are run and answered.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Answers<'a> {
+    /// Where the pictures of failures are put.
+    pub pictures: Option<&'a Path>,
+    /// Where folders with all that passes between host and device are put, one a case.
+    pub dumps: Option<&'a Path>,
+    /// A pattern over names, and what happens at these cases.
+    pub trouble: Option<(&'a str, Trouble)>,
+}
+
+impl Answers<'_> {
+    /// Runs `case`, which ran before where `is_again` is true.
+    ///
+    /// # Errors
+    /// Where pictures cannot be written.
+    pub fn to(&self, case: &Case, is_again: bool, stand: &mut Stand) -> io::Result<Record> {
+        let is_meant = |(pattern, _): &(&str, Trouble)| super::glob::matches(pattern, &case.name);
+        let trouble = self.trouble.filter(is_meant).map(|(_, trouble)| trouble);
         if let Some(trouble) = trouble {
             suffer(trouble);
         }
-        let (mut record, found) = judge(case, stand);
+        let mut judged = || judge(case, stand);
+        let (mut record, found) = match self.dumps {
+            Some(dumps) if !is_again => dumped(dumps, &case.name, judged)?,
+            _ => judged(),
+        };
         match trouble {
             Some(Trouble::LoseDevice) => {
                 record.verdict = Verdict::DeviceLost;
                 record.reason = "asked for".to_owned();
             }
-            Some(Trouble::Flake) if !is_first => {}
+            Some(Trouble::Flake) if is_again => {}
             Some(Trouble::Flake | Trouble::Fail) => {
                 record.verdict = Verdict::Fail;
                 record.reason = "asked for".to_owned();
@@ -137,9 +135,37 @@ pub fn serve(
             _ => {}
         }
         let shown = found.filter(|_| record.verdict == Verdict::Fail);
-        if let Some((folder, found)) = pictures.zip(shown) {
-            record.pictures = written(folder, wanted, &found)?;
+        if let Some((folder, found)) = self.pictures.zip(shown) {
+            let path = |what: &str| folder.join(format!("{}.{what}.png", case.name));
+            let paths = picture_files(&found, path)?;
+            let names = paths.iter().filter_map(|path| path.file_name());
+            record.pictures = names
+                .map(|name| name.to_string_lossy().into_owned())
+                .collect();
         }
+        Ok(record)
+    }
+}
+
+/// Answers until the names end.
+///
+/// # Errors
+/// Where a line cannot be read or written.
+pub fn serve(cases: &[Case], stand: &mut Stand, answers: &Answers) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    let mut is_introduced = false;
+    for name in io::stdin().lock().lines() {
+        let name = name?;
+        let wanted = name.strip_prefix("again ").unwrap_or(&name);
+        let is_again = wanted != name;
+        let Some(case) = cases.iter().find(|case| case.name == wanted) else {
+            return Err(io::Error::other(format!("there is no case {wanted}")));
+        };
+        if !is_introduced && let Ok(device) = stand.device() {
+            say(&mut out, &Line::Device(DeviceRecord::of(device.gpu())))?;
+            is_introduced = true;
+        }
+        let record = answers.to(case, is_again, stand)?;
         say(&mut out, &Line::Record(Box::new(record)))?;
     }
     Ok(())
@@ -163,8 +189,14 @@ fn say(out: &mut impl Write, line: &Line) -> io::Result<()> {
     out.flush()
 }
 
-/// Expected, found and where they differ, as files; their names.
-fn written(folder: &Path, name: &str, pictures: &Pictures) -> io::Result<Vec<String>> {
+/// Expected, found and where they differ, as files at the paths that `path` gives for these words.
+///
+/// # Errors
+/// Where one cannot be written.
+pub fn picture_files(
+    pictures: &Pictures,
+    path: impl Fn(&str) -> PathBuf,
+) -> io::Result<Vec<PathBuf>> {
     let of = |pixels: &[[f32; 4]]| Picture {
         width: pictures.width,
         height: (pixels.len() as u32) / pictures.width,
@@ -181,13 +213,13 @@ fn written(folder: &Path, name: &str, pictures: &Pictures) -> io::Result<Vec<Str
         force: true,
         ..WriteOptions::default()
     };
-    let mut names = Vec::new();
+    let mut paths = Vec::new();
     for (what, picture) in all {
-        let file = format!("{name}.{what}.png");
-        write_picture(&picture, &folder.join(&file), options).map_err(io::Error::other)?;
-        names.push(file);
+        let path = path(what);
+        write_picture(&picture, &path, options).map_err(io::Error::other)?;
+        paths.push(path);
     }
-    Ok(names)
+    Ok(paths)
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! A buffer and its memory.
 
+#[cfg(feature = "conformance")]
+use super::recorder;
 use super::{Error, Gpu, owned::Own, owned::OwnMemory};
 use ash::vk;
 use gpu_allocator::{
@@ -126,7 +128,14 @@ impl Buffer {
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
         // SAFETY: `mapped` starts `count` mapped bytes; the lock keeps other host accesses away.
-        write(unsafe { std::slice::from_raw_parts_mut(mapped, count) });
+        let bytes = unsafe { std::slice::from_raw_parts_mut(mapped, count) };
+        write(bytes);
+        #[cfg(feature = "conformance")]
+        recorder::note(recorder::Event::Written {
+            buffer: &self.name,
+            offset,
+            bytes,
+        });
         Ok(())
     }
 
@@ -139,6 +148,12 @@ impl Buffer {
             .unwrap_or_else(PoisonError::into_inner);
         // SAFETY: as in `write_with`.
         unsafe { std::ptr::copy_nonoverlapping(mapped, data.as_mut_ptr(), data.len()) };
+        #[cfg(feature = "conformance")]
+        recorder::note(recorder::Event::Read {
+            buffer: &self.name,
+            offset,
+            bytes: data,
+        });
         Ok(())
     }
 

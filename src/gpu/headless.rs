@@ -1,15 +1,14 @@
 //! A device of our own, for the tool and the tests: the only place that makes one, submits and waits.
 
 use super::{
-    API_VERSION, Caps, DeviceChoice, Error, Gpu, HostDevice, Message, PipelineCache, Validation,
-    ValidationMode, cache, instance::Candidate, instance::OwnInstance, own_device::OwnDevice,
-    owned::Own, validation::Messages,
+    Caps, DeviceChoice, Error, Gpu, Message, PipelineCache, Validation, ValidationMode, cache,
+    instance::OwnInstance, owned::Own, shared_device::SharedDevice, validation::Messages,
 };
 use ash::vk;
 use std::{
     path::PathBuf,
     sync::{
-        Arc,
+        Arc, Mutex, PoisonError,
         atomic::{AtomicBool, Ordering},
     },
     time::Instant,
@@ -54,7 +53,8 @@ pub struct Headless {
     pool: Own<vk::CommandPool>,
     cmd: vk::CommandBuffer,
     done: Own<vk::Fence>,
-    queue: vk::Queue,
+    /// Held while something is submitted: others may have the same one.
+    queue: Arc<Mutex<vk::Queue>>,
     /// The newest value that was submitted.
     submitted: u64,
     submissions: Submissions,
@@ -107,32 +107,12 @@ impl Headless {
         choice: &DeviceChoice,
         options: &Options,
     ) -> Result<Self, Error> {
-        let messages = instance.messages().cloned();
-        let is_usable = |device: &Candidate| instance.report(device).is_usable();
-        let device = choice.pick(instance.devices()?, is_usable)?;
-        instance.report(&device).require()?;
-        let cache_file = options.pipeline_cache.file(&device.identity);
-        let pipeline_cache = cache_file.as_deref().map(cache::load).unwrap_or_default();
-        let own = OwnDevice::new(instance, &device, mode)?;
-        let host = HostDevice {
-            get_instance_proc_addr: own.instance.entry().static_fn().get_instance_proc_addr,
-            instance: own.instance.raw().handle(),
-            physical_device: device.physical_device,
-            device: own.device.handle(),
-            queue_family: own.queue_family,
-            api_version: API_VERSION,
-            features: own.features,
-            debug_utils: messages.is_some(),
-            caps: options.caps,
-            pipeline_cache: &pipeline_cache,
-        };
-        // SAFETY: the handles are our own and live in `own`, which goes with the `Gpu`.
-        let gpu = unsafe { Gpu::new(host, Some(Box::new(own)))? };
-        Self::on(gpu, cache_file, messages)
+        SharedDevice::of(instance, mode, choice, 1)?.headless(0, options)
     }
 
-    fn on(
+    pub(super) fn on(
         gpu: Arc<Gpu>,
+        queue: Arc<Mutex<vk::Queue>>,
         cache_file: Option<PathBuf>,
         messages: Option<Arc<Messages>>,
     ) -> Result<Self, Error> {
@@ -160,8 +140,6 @@ impl Headless {
             |device| unsafe { device.create_fence(&info, None) },
         )?;
         let done = Own::new(&gpu, done);
-        // SAFETY: as above; the device was made with one queue of this family.
-        let queue = unsafe { gpu.device().get_device_queue(gpu.queue_family(), 0) };
         gpu.name(done.get(), "headless submission");
         Ok(Self {
             pool,
@@ -222,9 +200,17 @@ impl Headless {
             Ok(result)
         });
         let result = result?;
+        #[cfg(feature = "conformance")]
+        super::recorder::note(super::recorder::Event::Submitted);
         // SAFETY: the submission that signals `value` has ended.
         unsafe { self.gpu.retire(value) };
         Ok(result)
+    }
+
+    /// Runs `work` with the queue, to which nobody submits meanwhile.
+    #[cfg(feature = "conformance")]
+    pub(crate) fn on_queue<R>(&self, work: impl FnOnce(vk::Queue) -> R) -> R {
+        work(*self.queue.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// Destroys what was dropped since the last run, and not only with the next one.
@@ -302,15 +288,17 @@ impl Headless {
         let (commands, fences) = ([self.cmd], [self.done.get()]);
         let submit = vk::SubmitInfo::default().command_buffers(&commands);
         let start = Instant::now();
+        let queue = self.queue.lock().unwrap_or_else(PoisonError::into_inner);
         gpu.call(
             || "submit".into(),
-            // SAFETY: the recording has ended; the queue is ours, and `&mut self` makes us its only user. The last
-            // submission was waited for, so nothing uses the fence.
+            // SAFETY: the recording has ended; who holds the queue is its only user. The last submission was waited
+            // for, so nothing uses the fence.
             |device| unsafe {
                 device.reset_fences(&fences)?;
-                device.queue_submit(self.queue, &[submit], fences[0])
+                device.queue_submit(*queue, &[submit], fences[0])
             },
         )?;
+        drop(queue);
         self.submitted = value;
         // SAFETY: the fence is ours. A driver that hangs is found by its watchdog, which makes this call fail.
         let waited = gpu.call(

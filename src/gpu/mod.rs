@@ -42,9 +42,12 @@ mod parameters;
 pub(crate) mod pipeline;
 mod portability;
 mod raster;
+#[cfg(feature = "conformance")]
+pub(crate) mod recorder;
 mod rendering;
 mod requirements;
 mod sampler;
+mod shared_device;
 mod tile;
 mod timer;
 mod validation;
@@ -81,6 +84,8 @@ pub use rendering::{
 };
 pub use requirements::{Feature, Item, Limit, Need, REQUIREMENTS, Requirement};
 pub use sampler::Sampler;
+#[cfg(feature = "conformance")]
+pub(crate) use shared_device::SharedDevice;
 pub use tile::Tile;
 pub(crate) use tile::{Groups, boxes, group_count, within};
 pub use timer::Timer;
@@ -92,9 +97,9 @@ use gpu_allocator::{
     vulkan::{Allocator, AllocatorCreateDesc},
 };
 use identity::version_text;
+use own_device::OwnDevice;
 use owned::Store;
 use std::{
-    any::Any,
     collections::BTreeMap,
     ffi::CString,
     fmt,
@@ -129,7 +134,7 @@ pub struct Gpu {
     tells_heaps: OnceLock<bool>,
     store: Mutex<Store>,
     /// A device of our own; last, because fields are dropped in this order.
-    own_device: Option<Box<dyn Any + Send + Sync>>,
+    own_device: Option<Arc<OwnDevice>>,
 }
 
 impl Gpu {
@@ -154,7 +159,7 @@ impl Gpu {
     /// As [`Gpu::from_host`], where `own_device` may be what keeps the handles alive.
     unsafe fn new(
         host: HostDevice<'_>,
-        own_device: Option<Box<dyn Any + Send + Sync>>,
+        own_device: Option<Arc<OwnDevice>>,
     ) -> Result<Arc<Self>, Error> {
         if host.api_version < API_VERSION {
             return Err(too_old("the host's instance", host.api_version));
@@ -379,9 +384,8 @@ impl Drop for Gpu {
         // SAFETY: the host promised that its device has finished; on our own we wait for it. No owner is left,
         // each holds an Arc of us. The cache may be null.
         unsafe {
-            if self.own_device.is_some() {
-                // A lost device has nothing left to finish, and destroying stays legal.
-                let _ = self.device.device_wait_idle();
+            if let Some(own) = &self.own_device {
+                own.wait_idle();
             }
             self.device
                 .destroy_pipeline_cache(self.pipeline_cache, None);

@@ -6,22 +6,26 @@ use super::{
 };
 use ash::{khr, vk};
 use std::fmt;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// A device that we made, destroyed when dropped. Everything made on it must be gone by then.
 pub(super) struct OwnDevice {
     pub device: ash::Device,
     pub queue_family: u32,
+    /// Those that were asked for. Whoever holds one may submit to it.
+    pub queues: Vec<Arc<Mutex<vk::Queue>>>,
     pub features: Features,
     // Last: fields are dropped in this order, after the device was destroyed.
     pub instance: OwnInstance,
 }
 
 impl OwnDevice {
-    /// `from` has everything that is required.
+    /// `from` has everything that is required; of `queues` there will be as many as it has.
     pub fn new(
         instance: OwnInstance,
         from: &Candidate,
         mode: Option<ValidationMode>,
+        queues: u32,
     ) -> Result<Self, Error> {
         // SAFETY: the device was listed by this instance, here and below.
         let families = unsafe {
@@ -59,9 +63,12 @@ impl OwnDevice {
             .iter()
             .map(|_| khr::portability_subset::NAME.as_ptr())
             .collect();
+        let there = families.get(queue_family as usize);
+        let queue_count = there.map_or(1, |family| family.queue_count.min(queues).max(1));
+        let priorities = vec![1.0; queue_count as usize];
         let queues = [vk::DeviceQueueCreateInfo::default()
             .queue_family_index(queue_family)
-            .queue_priorities(&[1.0])];
+            .queue_priorities(&priorities)];
         let mut info = vk::DeviceCreateInfo::default()
             .queue_create_infos(&queues)
             .enabled_extension_names(&extensions)
@@ -78,12 +85,30 @@ impl OwnDevice {
                 .create_device(from.physical_device, &info, None)
         }
         .doing(|| format!("make a device of {}", from.title()))?;
+        let queue = |index| {
+            // SAFETY: the device was made with so many queues of this family.
+            Arc::new(Mutex::new(unsafe {
+                device.get_device_queue(queue_family, index)
+            }))
+        };
         Ok(Self {
+            queues: (0..queue_count).map(queue).collect(),
             device,
             queue_family,
             features,
             instance,
         })
+    }
+
+    /// Waits until nothing runs on the device, and lets nobody submit meanwhile.
+    pub fn wait_idle(&self) {
+        let queues = self.queues.iter();
+        let _held: Vec<_> = queues
+            .map(|queue| queue.lock().unwrap_or_else(PoisonError::into_inner))
+            .collect();
+        // SAFETY: the device is ours, and all of its queues are held.
+        // A lost device has nothing left to finish, and destroying stays legal.
+        let _ = unsafe { self.device.device_wait_idle() };
     }
 }
 

@@ -1,5 +1,7 @@
 //! A compute pipeline, and what every pipeline shares.
 
+#[cfg(feature = "conformance")]
+use super::recorder;
 use super::{
     Bindings, Buffer, Error, Gpu, Groups, Layout, Tile, boxes, error::within, layout::stage_flag,
     owned::Own,
@@ -190,6 +192,12 @@ impl ComputePipeline {
             device.cmd_bind_pipeline(cmd, point, self.raw());
             device.cmd_bind_descriptor_sets(cmd, point, self.layout.raw(), 0, &sets, offsets);
             for Groups { base, count } in boxes {
+                #[cfg(feature = "conformance")]
+                recorder::note(recorder::Event::Dispatch {
+                    shader: self.layout.name(),
+                    base,
+                    groups: count,
+                });
                 let ([x, y, z], [nx, ny, nz]) = (base, count);
                 // Validation layers of 2023 look for hazards at `vkCmdDispatch` alone.
                 match base {
@@ -216,6 +224,11 @@ impl ComputePipeline {
     ) {
         let point = vk::PipelineBindPoint::COMPUTE;
         let sets = [bindings.raw()];
+        #[cfg(feature = "conformance")]
+        recorder::note(recorder::Event::DispatchIndirect {
+            shader: self.layout.name(),
+            buffer: groups.name(),
+        });
         // SAFETY: the caller's promises are all that these calls ask.
         self.raw.gpu().record(|device| unsafe {
             device.cmd_bind_pipeline(cmd, point, self.raw());
@@ -244,6 +257,8 @@ pub(crate) fn module(gpu: &Arc<Gpu>, shader: &Shader) -> Result<Own<vk::ShaderMo
         |device| unsafe { device.create_shader_module(&info, None) },
     )?;
     gpu.name(raw, shader.name);
+    #[cfg(feature = "conformance")]
+    recorder::note(recorder::Event::Shader(shader));
     Ok(Own::new(gpu, raw))
 }
 

@@ -1,5 +1,7 @@
 //! A raster pipeline for dynamic rendering or a render pass: triangles, no vertex buffers, no culling.
 
+#[cfg(feature = "conformance")]
+use super::recorder;
 use super::{
     Bindings, Buffer, Error, Gpu, Layout, owned::Own, pipeline::first, pipeline::module,
     pipeline::stage, pipeline::wrong_stage,
@@ -215,6 +217,12 @@ impl RasterPipeline {
     ) {
         let point = vk::PipelineBindPoint::GRAPHICS;
         let sets = [bindings.raw()];
+        #[cfg(feature = "conformance")]
+        recorder::note(recorder::Event::Draw {
+            shader: self.layout.name(),
+            vertices,
+            instances: [instances.start, instances.end],
+        });
         // SAFETY: the caller's promises are all that these calls ask.
         self.raw.gpu().record(|device| unsafe {
             device.cmd_bind_pipeline(cmd, point, self.raw());
@@ -241,6 +249,11 @@ impl RasterPipeline {
         let point = vk::PipelineBindPoint::GRAPHICS;
         let sets = [bindings.raw()];
         let bytes = size_of::<vk::DrawIndirectCommand>() as u64;
+        #[cfg(feature = "conformance")]
+        recorder::note(recorder::Event::DrawIndirect {
+            shader: self.layout.name(),
+            buffer: draws.name(),
+        });
         // SAFETY: the caller's promises. One draw a call: more are a feature.
         self.raw.gpu().record(|device| unsafe {
             device.cmd_bind_pipeline(cmd, point, self.raw());

@@ -52,7 +52,6 @@ pub use error::Error;
 pub use filter_by::FilterBy;
 pub use frame::View;
 pub use gradient_filter::{GradientFilter, GradientSource, Keep, Operator};
-pub(crate) use host_depth_copy::HostDepthCopy;
 pub use in_pixel::InPixel;
 pub use inputs::{Inputs, Take, Words};
 pub use light_field::LightField;

@@ -292,7 +292,7 @@ impl Recording {
     }
 
     /// The same for a copy of the host's depth, in which the larger depth is the nearer one
-    /// ([`HostDepthCopy`](super::HostDepthCopy)).
+    /// (`host_depth_copy.rs`).
     pub(crate) fn tested_in_copy(&mut self, depth: &HostDepth, center: DVec3) {
         let HostDepth { z, w, nearer } = *depth;
         let is_flipped = nearer == Nearer::Smaller;

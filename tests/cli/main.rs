@@ -12,6 +12,7 @@ mod bench;
 mod classified;
 mod conformance;
 mod conformance_clamped;
+mod conformance_runs;
 mod convert;
 mod convert_refused;
 mod convert_stops;

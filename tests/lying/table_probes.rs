@@ -318,6 +318,24 @@ pub const PROBE_LIES: &[(&str, Lie, &str)] = &[
         "probe.limits.storage_buffer",
     ),
     (
+        "places in large images have 11 bits",
+        Shader(
+            "probe/places_3d.wgsl",
+            "vec3<i32>(places.d[id.x].xyz)",
+            "vec3<i32>(places.d[id.x].xyz & vec3(2047u))",
+        ),
+        "probe.limits.large_image_3d.depth",
+    ),
+    (
+        "numbers of layers have 10 bits",
+        Shader(
+            "probe/places_array.wgsl",
+            "place.z, 0)",
+            "place.z & 1023, 0)",
+        ),
+        "probe.limits.large_image_2d_array.layers",
+    ),
+    (
         "a part of many workgroups is not run",
         Changed(State::LastGroupDropped(2)),
         "probe.compute.dispatch.many",

@@ -20,7 +20,7 @@ pub fn verify(path: &Path, is_part: bool) -> Result<(), Error> {
             "{}: {} cases of profile {} on {}, nothing is wrong with it\n",
             path.display(),
             package.cases.len(),
-            asked.profile.word(),
+            asked.selection.profile.word(),
             visible(device)
         ));
     }
@@ -50,7 +50,8 @@ pub fn diff(a: &Path, b: &Path) -> Result<(), Error> {
     }
 }
 
-fn read(path: &Path) -> Result<Package, Error> {
+/// A package that `--json` has written.
+pub fn read(path: &Path) -> Result<Package, Error> {
     let wrong = |problem: String| Error::Input {
         path: path.to_owned(),
         problem,

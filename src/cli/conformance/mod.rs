@@ -1,10 +1,14 @@
 //! `stratavox conformance`: whether a device tells the truth.
 
+mod cases;
 mod check;
+mod hearing;
+mod outputs;
 mod run;
+mod summary;
 mod words;
 
-use super::{Error, signals::Gate};
+use super::{Error, Source, signals::Gate};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
@@ -15,6 +19,7 @@ use std::path::PathBuf;
     stratavox conformance --filter 'probe.math.*' --json math.json --junit math.xml --html math\n  \
     stratavox conformance diff FILE OTHER\n  \
     stratavox conformance --profile full --json FILE\n  \
+    stratavox conformance --filter probe.math.exp --in-process --repeat 10\n  \
     stratavox conformance verify FILE")]
 pub struct Conformance {
     #[command(subcommand)]
@@ -50,9 +55,9 @@ enum Verb {
 
 impl Conformance {
     /// Runs, verifies or compares.
-    pub fn run(self, gate: &Gate) -> Result<(), Error> {
+    pub fn run(self, source: Source, gate: &Gate) -> Result<(), Error> {
         match self.verb {
-            None => self.run.run(gate),
+            None => self.run.run(source, gate),
             Some(Verb::Verify { part, package }) => check::verify(&package, part),
             Some(Verb::Diff { a, b }) => check::diff(&a, &b),
         }

@@ -1,28 +1,41 @@
-//! A run: cases chosen, handed to workers, and written down.
+//! A run: cases chosen, run by workers or in this process, and written down.
 
 use super::super::{
-    Error,
-    output::{self, say, say_aside, write_whole},
+    Error, Source,
+    output::{say, say_aside},
     signals::Gate,
+    small_file::parsed,
 };
-use super::words::{LimitsWord, ProfileWord, shard};
+use super::cases::Cases;
+use super::check::read;
+use super::hearing::{Hearing, quoted};
+use super::outputs::Outputs;
+use super::summary::tell;
+use super::words::{self, LimitsWord};
+use crate::conformance::baseline::Baseline;
 use crate::conformance::case::Case;
-use crate::conformance::record::{Asked, Package, Record};
-use crate::conformance::report::{html, junit};
+use crate::conformance::in_process;
+use crate::conformance::measurement::hex;
+use crate::conformance::record::{Asked, Build, DeviceRecord, Package, Stress};
+use crate::conformance::selection::Selection;
 use crate::conformance::stand::Stand;
-use crate::conformance::supervisor::{self, Plan, chosen};
+use crate::conformance::stress;
+use crate::conformance::supervisor::{self, Plan};
 use crate::conformance::tree::cases;
-use crate::conformance::verdict::Verdict;
-use crate::conformance::waiver::{Waivers, today};
-use crate::conformance::worker::{self, Trouble};
-use crate::gpu::{DeviceChoice, Headless, Options};
+use crate::conformance::waiver::Waivers;
+use crate::conformance::worker::{self, Answers, Trouble};
+use crate::gpu::{DeviceChoice, Headless, Options, SharedDevice};
 use clap::Args;
+use sha2::{Digest, Sha256};
 use std::ffi::OsString;
-use std::io::{IsTerminal, Write};
 use std::num::NonZero;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
+
+/// What one case may take, where no word says it.
+const SECONDS: f64 = 60.0;
 
 /// What to ask, of what, and where to write it.
 #[derive(Args, Debug)]
@@ -30,20 +43,26 @@ pub struct Run {
     /// Which device: a name, an index, a UUID or `cpu` [default: the first that can draw]
     #[arg(long, value_name = "D")]
     device: Option<String>,
-    /// Cases by name: * for any characters, ? for one, | between patterns
-    #[arg(long, value_name = "GLOB", default_value = "*")]
-    filter: String,
-    /// Which list
-    #[arg(long, value_enum, default_value_t)]
-    profile: ProfileWord,
-    /// One part of the list: 2/4 is the second of four
-    #[arg(long, value_name = "I/N", value_parser = shard, default_value = "1/1")]
-    shard: [u32; 2],
+    #[command(flatten)]
+    cases: Cases,
     /// What is random follows from it
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
+    /// Runs of each case: other verdicts or other numbers among them are a failure
+    #[arg(long, value_name = "N", default_value_t = NonZero::<u32>::MIN)]
+    repeat: NonZero<u32>,
+    /// End with the first case that is not well
+    #[arg(long)]
+    stop_on_fail: bool,
+    /// Run cases in this process, for debuggers: what crashes or hangs is the end of the run
+    #[arg(long, conflicts_with_all = ["jobs", "timeout"])]
+    in_process: bool,
+    /// Run cases alone, and then on so many threads at once, on so many queues of one device, in this process
+    #[arg(long, value_name = "QUEUES,THREADS", value_parser = words::stress)]
+    #[arg(conflicts_with_all = ["jobs", "timeout", "repeat", "dump"])]
+    stress: Option<Stress>,
     /// Seconds that one case may take
-    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", default_value_t = SECONDS, value_parser = seconds)]
     timeout: f64,
     /// Workers at a time, each with a device of its own [default: one for each core, 8 at most]
     #[arg(long, value_name = "N")]
@@ -51,24 +70,17 @@ pub struct Run {
     /// Known problems of drivers; may be given several times
     #[arg(long, value_name = "FILE.json")]
     waivers: Vec<PathBuf>,
+    /// What `--json` has written of an earlier run: failures that are the same are expected
+    #[arg(long, value_name = "FILE.json")]
+    baseline: Option<PathBuf>,
     /// Run as if the device had no more than this
     #[arg(long, value_enum, default_value_t)]
     limits: LimitsWord,
-    /// Write all records
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
-    /// Write the verdicts for a server of continuous integration
-    #[arg(long, value_name = "FILE")]
-    junit: Option<PathBuf>,
-    /// Write a page with the pictures of what failed into a folder
-    #[arg(long, value_name = "DIR")]
-    html: Option<PathBuf>,
+    #[command(flatten)]
+    outputs: Outputs,
     /// Say the names of the cases and run none
     #[arg(long)]
     list: bool,
-    /// Replace files that exist
-    #[arg(long)]
-    force: bool,
     /// Be a worker: names come in, records go out
     #[arg(long, hide = true)]
     worker: bool,
@@ -115,41 +127,60 @@ fn seconds(text: &str) -> Result<f64, String> {
 
 impl Run {
     /// Exit code 1 where a case is not well.
-    pub fn run(self, gate: &Gate) -> Result<(), Error> {
+    pub fn run(self, source: Source, gate: &Gate) -> Result<(), Error> {
         let all = cases();
         if self.worker {
-            return self.serve(&all);
+            return worker::serve(&all, &mut self.stand(), &self.answers())
+                .map_err(|cause| Error::output("the pipe to the supervisor", &cause));
         }
-        let chosen = chosen(&all, self.profile.into(), &self.filter, self.shard);
+        let selection = self.cases.selection(&all)?;
+        let chosen = selection.of(&all);
         if chosen.is_empty() {
-            return Err(Error::usage(
-                format!(
-                    "--filter {}: no case of this profile and shard has such a name",
-                    self.filter
-                ),
-                "`stratavox conformance --list` says their names",
-            ));
+            return Err(self.cases.none_left());
         }
         if self.list {
             let names = chosen.iter().map(|case| format!("{}\n", case.name));
             return say(&names.collect::<String>());
         }
-        self.judge(&all, &chosen, gate)
+        let begun = Instant::now();
+        let inputs = self
+            .cases
+            .inputs()
+            .chain(&self.waivers)
+            .chain(&self.baseline);
+        let inputs: Vec<PathBuf> = inputs.cloned().collect();
+        self.outputs.check(&inputs, &chosen)?;
+        let mut asked = self.asked(&selection);
+        let hearing = self.hearing(&asked, chosen.len())?;
+        let outcome = match self.stress {
+            Some(wanted) => self.stress(wanted, &mut asked, &chosen, &hearing)?,
+            None => self.ask(&chosen, &hearing)?,
+        };
+        let seconds = begun.elapsed().as_secs_f64();
+        let (device, records) = (outcome.device, outcome.records);
+        let package = Package::new(&all, build(source), asked, device, records, seconds);
+        self.outputs.write(&package, gate)?;
+        tell(&package)
     }
 
-    fn serve(&self, all: &[Case]) -> Result<(), Error> {
+    fn stand(&self) -> Stand {
         let (choice, caps) = (self.choice(), self.limits.caps());
-        let mut stand = Stand::new(self.seed, move |lower| {
+        Stand::new(self.seed, move |lower| {
             let options = Options {
                 caps: lower(caps),
                 ..Options::default()
             };
             Headless::new(&choice, &options)
-        });
+        })
+    }
+
+    fn answers(&self) -> Answers<'_> {
         let fault = self.fault.as_ref();
-        let fault = fault.map(|fault| (fault.pattern.as_str(), fault.trouble));
-        worker::serve(all, &mut stand, self.pictures.as_deref(), fault)
-            .map_err(|cause| Error::output("the pipe to the supervisor", &cause))
+        Answers {
+            pictures: self.pictures.as_deref().or(self.outputs.pictures()),
+            dumps: self.outputs.dumps(),
+            trouble: fault.map(|fault| (fault.pattern.as_str(), fault.trouble)),
+        }
     }
 
     fn choice(&self) -> DeviceChoice {
@@ -158,68 +189,129 @@ impl Run {
             .map_or(DeviceChoice::Default, DeviceChoice::from)
     }
 
-    fn judge(&self, all: &[Case], chosen: &[&Case], gate: &Gate) -> Result<(), Error> {
-        let begun = Instant::now();
-        let files: Vec<PathBuf> = self.json.iter().chain(&self.junit).cloned().collect();
-        output::check(&files, &self.waivers, self.force)?;
+    fn asked(&self, selection: &Selection) -> Asked {
+        Asked {
+            selection: selection.clone(),
+            seed: self.seed,
+            limits: self.limits.word().to_owned(),
+            repeat: self.repeat.get(),
+            in_process: self.in_process || self.stress.is_some(),
+            stress: self.stress,
+        }
+    }
+
+    fn hearing(&self, asked: &Asked, cases: usize) -> Result<Hearing, Error> {
+        let wrong = |path: &PathBuf, problem| Error::Input {
+            path: path.clone(),
+            problem,
+        };
+        let baseline = |path: &PathBuf| {
+            Baseline::of(&read(path)?, asked).map_err(|problem| wrong(path, problem))
+        };
+        let baseline = self.baseline.as_ref().map(baseline).transpose()?;
         let waivers = self.read_waivers()?;
-        self.prepare_folder()?;
         // A device that is not there is no verdict on a device.
         let options = Options {
             caps: self.limits.caps(),
             ..Options::default()
         };
-        drop(Headless::new(&self.choice(), &options)?);
+        let device = DeviceRecord::of(Headless::new(&self.choice(), &options)?.gpu());
+        Ok(Hearing {
+            again: self.again(),
+            waivers,
+            baseline,
+            device,
+            stops_on_fail: self.stop_on_fail,
+            cases,
+        })
+    }
+
+    fn read_waivers(&self) -> Result<Waivers, Error> {
+        const MOST_BYTES: u64 = 32 << 20;
+        let mut waivers = Waivers::default();
+        for path in &self.waivers {
+            parsed(path, "a file of waivers", MOST_BYTES, |bytes| {
+                let text = std::str::from_utf8(bytes).map_err(|_| "it is not UTF-8".to_owned())?;
+                waivers.read(text)
+            })?;
+        }
+        Ok(waivers)
+    }
+
+    /// The words behind `--filter NAME` that run a case as it ran in this run.
+    fn again(&self) -> String {
+        let mut words = format!(" --seed {}", self.seed);
+        if let Some(device) = &self.device {
+            words.push_str(&format!(" --device {}", quoted(device)));
+        }
+        if self.limits != LimitsWord::Device {
+            words.push_str(&format!(" --limits {}", self.limits.word()));
+        }
+        if self.timeout != SECONDS {
+            words.push_str(&format!(" --timeout {}", self.timeout));
+        }
+        if let Some(Stress { queues, threads }) = self.stress {
+            words.push_str(&format!(" --stress {queues},{threads}"));
+        }
+        if self.repeat != NonZero::<u32>::MIN {
+            words.push_str(&format!(" --repeat {}", self.repeat));
+        }
+        words
+    }
+
+    fn ask(&self, chosen: &[&Case], hearing: &Hearing) -> Result<supervisor::Outcome, Error> {
+        let heard = |done, record: &mut _| hearing.hear(done, record);
+        if self.in_process {
+            let (answers, mut stand) = (self.answers(), self.stand());
+            return in_process::run(&answers, &mut stand, chosen, self.repeat, heard)
+                .map_err(|cause| Error::output("the pictures of a failure", &cause));
+        }
         let plan = Plan {
             program: std::env::current_exe().map_err(|cause| Error::output("a worker", &cause))?,
             words: self.words(),
             time_per_case: Duration::from_secs_f64(self.timeout),
             jobs: self.jobs.unwrap_or_else(jobs),
+            repeat: self.repeat,
         };
-        let progress = Progress::new(chosen.len());
-        let outcome = supervisor::run(&plan, chosen, |done, record| progress.heard(done, record));
-        let outcome = outcome.map_err(|cause| Error::output("a worker", &cause))?;
-        let mut records = outcome.records;
-        if let Some(device) = &outcome.device {
-            let today = today();
-            records
-                .iter_mut()
-                .for_each(|record| waivers.apply(record, device, today));
-        }
-        let asked = Asked {
-            profile: self.profile.into(),
-            filter: self.filter.clone(),
-            shard: self.shard,
-            seed: self.seed,
-            limits: self.limits.word().to_owned(),
-        };
-        let seconds = begun.elapsed().as_secs_f64();
-        let package = Package::new(all, asked, outcome.device, records, seconds);
-        self.write(&package, gate)?;
-        tell(&package)
+        supervisor::run(&plan, chosen, heard).map_err(|cause| Error::output("a worker", &cause))
     }
 
-    fn read_waivers(&self) -> Result<Waivers, Error> {
-        let mut waivers = Waivers::default();
-        for path in &self.waivers {
-            let wrong = |problem: String| Error::Input {
-                path: path.clone(),
-                problem,
-            };
-            let text = std::fs::read_to_string(path).map_err(|cause| wrong(cause.to_string()))?;
-            waivers.read(&text).map_err(wrong)?;
-        }
-        Ok(waivers)
-    }
-
-    /// The folder of the page: made where it is not there, and empty unless forced.
-    fn prepare_folder(&self) -> Result<(), Error> {
-        let Some(folder) = &self.html else {
-            return Ok(());
+    /// On one device for all threads. `asked` learns how many queues it has.
+    fn stress(
+        &self,
+        wanted: Stress,
+        asked: &mut Asked,
+        chosen: &[&Case],
+        hearing: &Hearing,
+    ) -> Result<supervisor::Outcome, Error> {
+        let options = Options::default();
+        let device = SharedDevice::new(&self.choice(), options.validation, wanted.queues)?;
+        let device = Arc::new(device);
+        let found = Stress {
+            queues: device.queues() as u32,
+            threads: wanted.threads,
         };
-        std::fs::create_dir_all(folder).map_err(|cause| Error::output(folder, &cause))?;
-        let page = folder.join("index.html");
-        output::check(&[page], &[], self.force)
+        asked.stress = Some(found);
+        if found.queues < wanted.queues {
+            say_aside(&format!(
+                "note: this device has {} queues of this family, and not {}: threads take turns at submitting",
+                found.queues, wanted.queues
+            ));
+        }
+        let (seed, caps) = (self.seed, self.limits.caps());
+        let stand = |number: usize| {
+            let device = Arc::clone(&device);
+            Stand::new(seed, move |lower| {
+                let options = Options {
+                    caps: lower(caps),
+                    ..Options::default()
+                };
+                device.headless(number, &options)
+            })
+        };
+        let heard = |done, record: &mut _| hearing.hear(done, record);
+        stress::run(&self.answers(), found, stand, chosen, heard)
+            .map_err(|cause| Error::output("what the threads have found", &cause))
     }
 
     fn words(&self) -> Vec<OsString> {
@@ -230,93 +322,22 @@ impl Run {
         if let Some(device) = &self.device {
             add("--device", device.into());
         }
-        if let Some(folder) = &self.html {
+        if let Some(folder) = self.outputs.pictures() {
             add("--pictures", folder.into());
+        }
+        if let Some(folder) = self.outputs.dumps() {
+            add("--dump", folder.into());
         }
         if let Some(fault) = &self.fault {
             add("--fault", (&fault.text).into());
         }
         words
     }
-
-    fn write(&self, package: &Package, gate: &Gate) -> Result<(), Error> {
-        if let Some(path) = &self.json {
-            let text = serde_json::to_string_pretty(package).map_err(|cause| Error::Output {
-                path: path.clone(),
-                problem: cause.to_string(),
-                hint: None,
-            })?;
-            write_whole(path, format!("{text}\n").as_bytes(), self.force, gate)?;
-        }
-        if let Some(path) = &self.junit {
-            write_whole(path, junit(package).as_bytes(), self.force, gate)?;
-        }
-        if let Some(folder) = &self.html {
-            let page = folder.join("index.html");
-            write_whole(&page, html(package).as_bytes(), self.force, gate)?;
-        }
-        Ok(())
-    }
 }
 
-/// The summary, and exit code 1 where a case is not well.
-fn tell(package: &Package) -> Result<(), Error> {
-    let device = package.device.as_ref();
-    let name = device.map_or("no device", |device| &device.name);
-    let mut text = format!(
-        "{name}: {} cases in {:.1} s\n",
-        package.cases.len(),
-        package.seconds
-    );
-    for verdict in Verdict::ALL {
-        if let Some(count) = package.summary.get(&verdict) {
-            text.push_str(&format!("  {verdict:<16} {count}\n"));
-        }
-    }
-    for record in package.cases.iter().filter(|record| record.unexpected_pass) {
-        text.push_str(&format!(
-            "  {} passes, and a waiver says it does not\n",
-            record.name
-        ));
-    }
-    say(&text)?;
-    let bad = package
-        .cases
-        .iter()
-        .filter(|record| !record.verdict.is_good())
-        .count();
-    match bad {
-        0 => Ok(()),
-        _ => Err(Error::Differs(format!(
-            "{bad} of {} cases are not well",
-            package.cases.len()
-        ))),
-    }
-}
-
-/// Lines on stderr: what is not well, and on a terminal how far the work is.
-struct Progress {
-    of: usize,
-    is_shown: bool,
-}
-
-impl Progress {
-    fn new(of: usize) -> Self {
-        let is_shown = std::io::stderr().is_terminal();
-        Self { of, is_shown }
-    }
-
-    fn heard(&self, done: usize, record: &Record) {
-        if !record.verdict.is_good() {
-            say_aside(&format!(
-                "{}: {}: {}",
-                record.verdict, record.name, record.reason
-            ));
-        }
-        if self.is_shown {
-            let end = if done == self.of { "\n" } else { "" };
-            let mut err = std::io::stderr();
-            let _ = write!(err, "\r{done} of {} cases{end}", self.of);
-        }
+fn build(source: Source) -> Build {
+    Build {
+        commit: source.commit.unwrap_or("unknown").to_owned(),
+        cargo_lock_sha256: hex(&Sha256::digest(source.cargo_lock)),
     }
 }

@@ -1,6 +1,7 @@
 //! Words of `conformance` that are more than a number or a name.
 
 use crate::conformance::case::Profile;
+use crate::conformance::record::Stress;
 use crate::gpu::Caps;
 use clap::ValueEnum;
 
@@ -10,8 +11,10 @@ pub enum ProfileWord {
     /// What any device of Vulkan 1.3 must pass
     #[default]
     Baseline,
-    /// All there is
+    /// All but what takes a gibibyte of memory or more
     Full,
+    /// All there is
+    Large,
 }
 
 impl From<ProfileWord> for Profile {
@@ -19,6 +22,7 @@ impl From<ProfileWord> for Profile {
         match word {
             ProfileWord::Baseline => Self::Baseline,
             ProfileWord::Full => Self::Full,
+            ProfileWord::Large => Self::Large,
         }
     }
 }
@@ -47,6 +51,22 @@ impl LimitsWord {
             Self::VulkanMinimum => "vulkan-minimum",
         }
     }
+}
+
+/// `QUEUES,THREADS`.
+pub fn stress(text: &str) -> Result<Stress, String> {
+    const MOST: u32 = 256;
+    let number = |text: &str| text.parse().ok().filter(|n| (1..=MOST).contains(n));
+    let found = text.split_once(',');
+    let found = found.and_then(|(queues, threads)| {
+        Some(Stress {
+            queues: number(queues)?,
+            threads: number(threads)?,
+        })
+    });
+    found.ok_or_else(|| {
+        format!("wanted QUEUES,THREADS from 1 to {MOST}, such as 2,8, found {text:?}")
+    })
 }
 
 /// `I/N`.

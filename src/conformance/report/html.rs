@@ -2,6 +2,7 @@
 //! file but the pictures beside it.
 
 use super::escaped;
+use crate::conformance::baseline::Change;
 use crate::conformance::record::{Package, Record};
 use crate::conformance::verdict::Verdict;
 use std::fmt::Write;
@@ -22,7 +23,7 @@ pub fn html(package: &Package) -> String {
     let bad: Vec<_> = package
         .cases
         .iter()
-        .filter(|r| !r.verdict.is_good())
+        .filter(|r| r.verdict.fails_run())
         .collect();
     if !bad.is_empty() {
         let _ = writeln!(page, "<h2>Not well</h2>");
@@ -35,6 +36,8 @@ pub fn html(package: &Package) -> String {
         Verdict::QualityWarning,
     );
     section(&mut page, package, "Known, and waived", Verdict::Waived);
+    let expected = Verdict::ExpectedFailure;
+    section(&mut page, package, "Failed in the baseline too", expected);
     section(&mut page, package, "Not supported", Verdict::NotSupported);
     all(&mut page, package);
     page.push_str("</html>\n");
@@ -59,6 +62,27 @@ fn summary(page: &mut String, package: &Package) {
         }
     }
     let _ = writeln!(page, "</table>");
+    if package.is_partial {
+        let _ = writeln!(
+            page,
+            "<p class=\"bad\">The run ended before all of its cases had run.</p>"
+        );
+    }
+    let weak = package.cases.iter().filter(|record| record.weak_bound);
+    let weak = weak.count();
+    if weak > 0 {
+        let _ = writeln!(
+            page,
+            "<p>{weak} cases prove little: more than a tenth of their channels may be off by more than half a code of \
+             255.</p>"
+        );
+    }
+    for record in &package.cases {
+        if let Some(change) = Change::of(record) {
+            let (name, change) = (escaped(&record.name), change.word());
+            let _ = writeln!(page, "<p>{name}: {change} since the baseline.</p>");
+        }
+    }
     let known = package.cases.iter().filter(|record| record.unexpected_pass);
     for record in known {
         let name = escaped(&record.name);
@@ -71,11 +95,26 @@ fn summary(page: &mut String, package: &Package) {
 
 fn device(page: &mut String, package: &Package) {
     let asked = &package.asked;
-    let [part, parts] = asked.shard;
+    let selection = &asked.selection;
+    let [part, parts] = selection.shard;
     let mut rows = vec![
         ("suite", package.suite.clone()),
-        ("profile", asked.profile.word().to_owned()),
-        ("cases", format!("{}, part {part} of {parts}", asked.filter)),
+        ("commit", package.build.commit.clone()),
+        (
+            "SHA-256 of Cargo.lock",
+            package.build.cargo_lock_sha256.clone(),
+        ),
+        ("profile", selection.profile.word().to_owned()),
+        (
+            "cases",
+            format!("{}, part {part} of {parts}", selection.filter),
+        ),
+        (
+            "lines of the case list",
+            selection.caselist.len().to_string(),
+        ),
+        ("lines of exclusions", selection.exclude.len().to_string()),
+        ("runs of each case", asked.repeat.to_string()),
         ("seed", asked.seed.to_string()),
         ("limits", asked.limits.clone()),
         ("time", format!("{:.1} s", package.seconds)),
@@ -88,6 +127,17 @@ fn device(page: &mut String, package: &Package) {
             format!("{} {}", device.driver, device.driver_info),
         ));
         rows.push(("Vulkan", device.vulkan.clone()));
+        for (name, is_enabled) in &device.features {
+            let is = if *is_enabled {
+                "enabled"
+            } else {
+                "not enabled"
+            };
+            rows.push((name, is.to_owned()));
+        }
+        rows.push(("extensions enabled", device.extensions_enabled.join(" ")));
+        let available = device.extensions_available.join(" ");
+        rows.push(("extensions available", available));
         for (name, number) in &device.limits {
             rows.push((name, number.to_string()));
         }
@@ -120,6 +170,7 @@ fn told(page: &mut String, record: &Record) {
         record.verdict,
         escaped(&record.reason)
     );
+    let _ = writeln!(page, "<p><code>{}</code></p>", escaped(&record.command));
     if let Some(waived) = &record.waived {
         let _ = writeln!(
             page,
@@ -168,7 +219,7 @@ fn told(page: &mut String, record: &Record) {
 fn all(page: &mut String, package: &Package) {
     let _ = writeln!(
         page,
-        "<h2>All cases</h2><details><summary>{} cases</summary><table><tr><th>case<th>verdict<th>of what is allowed<th>numbers",
+        "<h2>All cases</h2><details><summary>{} cases</summary><table><tr><th>case<th>verdict<th>of what is allowed<th>numbers<th>bound",
         package.cases.len()
     );
     for record in &package.cases {
@@ -180,10 +231,11 @@ fn all(page: &mut String, package: &Package) {
         let ratio = record.worst.as_ref().map_or(0.0, |worst| worst.ratio);
         let _ = writeln!(
             page,
-            "<tr><td><code>{}</code><td class=\"{class}\">{}<td>{ratio:.3}<td>{}",
+            "<tr><td><code>{}</code><td class=\"{class}\">{}<td>{ratio:.3}<td>{}<td>{}",
             escaped(&record.name),
             record.verdict,
-            record.checked
+            record.checked,
+            if record.weak_bound { "weak" } else { "" }
         );
     }
     let _ = writeln!(page, "</table></details>");

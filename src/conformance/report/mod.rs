@@ -2,9 +2,11 @@
 
 mod html;
 mod junit;
+mod qpa;
 
 pub use html::html;
 pub use junit::junit;
+pub use qpa::qpa;
 
 /// Text inside of XML and HTML. What XML has no place for becomes a question mark.
 fn escaped(text: &str) -> String {

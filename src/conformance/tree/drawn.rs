@@ -2,6 +2,7 @@
 //! off by.
 
 use crate::conformance::case::Stop;
+use crate::conformance::judge::WIDE_ALLOWANCE;
 use crate::conformance::measurement::{Bound, Measurement, Pictures};
 use crate::conformance::oracle::{Chord, Seen, Shot, Tracked};
 use crate::conformance::stand::Stand;
@@ -93,6 +94,8 @@ fn compare(
     let mut measurement = Measurement::new(bound, 1000);
     let mut expected = Vec::with_capacity(found.pixels.len());
     let mut widest = 0.0f64;
+    // Channels of pixels that a ray reaches, and those of them whose allowance is wide.
+    let (mut reached, mut wide) = (0, 0);
     for (i, pixel) in shot.pixels().enumerate() {
         let chord = shot.chord(pixel);
         let hangs = chord.as_ref().is_some_and(|chord| chord.hangs);
@@ -103,6 +106,7 @@ fn compare(
             expected.push(found.pixels[i]);
             continue;
         }
+        let is_reached = chord.is_some();
         let wanted = chord.map_or(Seen::NOTHING, |chord| of(&chord));
         expected.push(wanted.pixel.map(|n| n as f32));
         for c in 0..4 {
@@ -111,6 +115,8 @@ fn compare(
             let at = || format!("{channel} of pixel {pixel:?}");
             measurement.take(at, wanted.pixel[c], found.pixels[i][c].into(), error);
             widest = widest.max(error);
+            reached += usize::from(is_reached);
+            wide += usize::from(is_reached && error > WIDE_ALLOWANCE);
         }
         for &kind in layers {
             let number = match kind {
@@ -133,9 +139,10 @@ fn compare(
             measurement.take(at, number, found[i].into(), error);
         }
     }
-    // What a channel of the picture may be off by at most.
+    // What a channel of the picture may be off by at most, and how many of them by more than proves anything.
     let inputs = &mut measurement.bound.inputs;
     inputs.insert("widest".into(), widest);
+    inputs.insert("wide_share".into(), wide as f64 / reached.max(1) as f64);
     let drawn = found.pixels.iter().filter(|pixel| pixel[3] > 0.01).count();
     measurement.hold(|| "pixels that are drawn".into(), drawn > 40);
     measurement.pictures = Some(Pictures {

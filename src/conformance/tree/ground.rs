@@ -5,7 +5,7 @@ use crate::camera::{Camera, Projection};
 use crate::conformance::oracle::Shot;
 use crate::gpu::Item;
 use crate::technique::{Filter, FilterBy, Lattice, Mode, Order, Settings, Technique};
-use crate::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
+use crate::transfer::{ColorPoint, Interpolation, OpacityPoint, Shape, TransferFunction};
 use crate::volume::{Grid, VoxelType};
 use ash::vk;
 use glam::{DAffine3, DMat3, DVec3, dvec3};
@@ -252,4 +252,40 @@ pub fn ramps() -> TransferFunction {
         interpolation: Interpolation::Linear,
         graded: None,
     }
+}
+
+/// The shape of the widget of that name.
+pub fn widget_shape(word: &str) -> Shape {
+    let point = |value, opacity| OpacityPoint { value, opacity };
+    match word {
+        "contour" => Shape::Contour {
+            value: 0.6,
+            half_width: 1.5,
+        },
+        "triangle" => Shape::Triangle {
+            value: 0.5,
+            half_width: 0.3,
+            threshold: 0.1,
+            top: 1.2,
+        },
+        "rectangle" => Shape::Rectangle {
+            values: [0.4, 0.7],
+            gradients: [0.2, 0.6],
+        },
+        "gaussian" => Shape::Gaussian {
+            value: 0.5,
+            gradient: 0.4,
+            sigma_value: 0.2,
+            sigma_gradient: 0.3,
+        },
+        _ => Shape::Region {
+            points: vec![point(0.1, 0.1), point(0.5, 0.8), point(0.95, 0.3)],
+        },
+    }
+}
+
+/// Four cells along y, the axis that the eye looks along most: whole ones.
+pub fn thin([low, high]: [DVec3; 2]) -> [DVec3; 2] {
+    let [from, to] = [8.0, 12.0];
+    [dvec3(low.x, from, low.z), dvec3(high.x, to, high.z)]
 }

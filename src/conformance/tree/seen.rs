@@ -15,7 +15,7 @@ use crate::technique::{
     AmbientOcclusion, ClipPlane, Filter, Lattice, Light, Mode, Order, Role, Settings, Shading,
     Shadows, Technique,
 };
-use crate::transfer::{Graded, OpacityPoint, Shape, TransferFunction, Widget};
+use crate::transfer::{Graded, OpacityPoint, TransferFunction, Widget};
 use crate::volume::VoxelType;
 use glam::{DVec3, dvec3};
 
@@ -163,6 +163,13 @@ fn is_hidden(placement: Placement, mode: Mode, look: Look, filter: Filter) -> bo
     ground::hides_maxima(placement, mode, filter) || is_under && (is_steep || is_coarse)
 }
 
+/// Where rays through the whole grid may be off by so much that a pass would prove little: these looks are asked of a part
+/// of it that rays are in for less long. What a single sample is off by shows as much there, and less is allowed.
+fn is_thin(placement: Placement, look: Look) -> bool {
+    let is_under = placement.order == Order::FrontToBack;
+    matches!(look, Look::Lamps | Look::Shadows | Look::SoftShadows) || look == Look::Lit && is_under
+}
+
 /// The baseline has each look in each technique, and the filters where something hangs on them.
 fn profile(
     placement: Placement,
@@ -198,7 +205,13 @@ fn draw(
     is_perspective: bool,
 ) -> Result<Measurement, Stop> {
     let shot = ground::shot(placement, mode, (filter, false), is_perspective);
-    let shot = shot.with(|settings| set(settings, look));
+    let shot = shot.with(|settings| {
+        let whole = settings.crop;
+        set(settings, look);
+        if is_thin(placement, look) {
+            settings.crop = settings.crop.or(whole).map(ground::thin);
+        }
+    });
     let parts = parts(&shot, look);
     let beside: Vec<Channel> = parts[1..]
         .iter()
@@ -348,7 +361,7 @@ fn parts(shot: &Shot, look: Look) -> Vec<Part> {
                 srgb: (i % 2 == 0).then_some([0.9, 0.6, 0.3]),
                 opacity: 0.7,
                 second: None,
-                shape: shape(i),
+                shape: ground::widget_shape(WIDGETS[i]),
             };
             let graded = Graded {
                 steepest: Some(0.3),
@@ -362,35 +375,6 @@ fn parts(shot: &Shot, look: Look) -> Vec<Part> {
             vec![part(function, Role::Numbers, &ground::waves)]
         }
         _ => vec![part(function.clone(), Role::Numbers, &ground::waves)],
-    }
-}
-
-fn shape(i: usize) -> Shape {
-    let point = |value, opacity| OpacityPoint { value, opacity };
-    match WIDGETS[i] {
-        "contour" => Shape::Contour {
-            value: 0.6,
-            half_width: 1.5,
-        },
-        "triangle" => Shape::Triangle {
-            value: 0.5,
-            half_width: 0.3,
-            threshold: 0.1,
-            top: 1.2,
-        },
-        "rectangle" => Shape::Rectangle {
-            values: [0.4, 0.7],
-            gradients: [0.2, 0.6],
-        },
-        "gaussian" => Shape::Gaussian {
-            value: 0.5,
-            gradient: 0.4,
-            sigma_value: 0.2,
-            sigma_gradient: 0.3,
-        },
-        _ => Shape::Region {
-            points: vec![point(0.1, 0.1), point(0.5, 0.8), point(0.95, 0.3)],
-        },
     }
 }
 

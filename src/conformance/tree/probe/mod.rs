@@ -2,6 +2,7 @@
 //! compute, subgroups, memory, order.
 
 mod alias;
+mod beyond;
 mod blend;
 mod compute;
 mod convert;
@@ -9,6 +10,7 @@ mod depth;
 mod depth_draw;
 mod derivative;
 mod filter;
+mod fits;
 mod interpolate;
 mod kit;
 mod large;
@@ -22,6 +24,7 @@ mod raster;
 mod raw;
 mod relay;
 mod robust;
+mod sparse;
 mod special;
 mod store;
 mod subgroup;
@@ -51,5 +54,7 @@ pub fn cases() -> Vec<Case> {
     cases.extend(robust::cases());
     cases.extend(limits::cases());
     cases.extend(large::cases());
+    cases.extend(sparse::cases());
+    cases.extend(beyond::cases());
     cases
 }

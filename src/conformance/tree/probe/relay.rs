@@ -169,13 +169,14 @@ fn by_submissions(device: &mut Headless, gpu: &Arc<Gpu>, relay: &Relay) -> Resul
             .signal_semaphore_infos(&points[step + 1])
     };
     let submissions: Vec<_> = (0..STEPS).map(submission).collect();
-    // SAFETY: the one queue of a device of ours; it is waited for before anything goes.
-    unsafe {
-        let queue = raw.get_device_queue(gpu.queue_family(), 0);
-        let done = raw.queue_submit2(queue, &submissions, vk::Fence::null());
-        done.and_then(|()| raw.queue_wait_idle(queue))
-            .map_err(refused("submit"))?;
-    }
+    let done = device.on_queue(|queue| {
+        // SAFETY: nobody else has the queue, and it is waited for before anything goes.
+        unsafe {
+            let done = raw.queue_submit2(queue, &submissions, vk::Fence::null());
+            done.and_then(|()| raw.queue_wait_idle(queue))
+        }
+    });
+    done.map_err(refused("submit"))?;
     // What was copied comes to the host.
     device.run(|_| Ok(()))?;
     Ok(())

@@ -5,7 +5,7 @@ use crate::conformance::case::{Case, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
 use crate::conformance::stand::Stand;
 use crate::gpu::owned::Own;
-use crate::gpu::{Feature, Gpu, Item};
+use crate::gpu::{Feature, Gpu, Headless, Item};
 use ash::vk;
 use std::sync::Arc;
 
@@ -37,11 +37,12 @@ fn made(gpu: &Arc<Gpu>, value: u64) -> Result<Own<vk::Semaphore>, Stop> {
 }
 
 fn timeline(stand: &mut Stand) -> Result<Measurement, Stop> {
-    let gpu = Arc::clone(stand.device()?.gpu());
+    let device = stand.device()?;
+    let gpu = Arc::clone(device.gpu());
     let semaphore = made(&gpu, 5)?;
-    let asked = ask_timeline(&gpu, semaphore.get());
-    // SAFETY: the one queue of a device of ours; what was submitted goes before the semaphore does.
-    let _ = unsafe { gpu.device().device_wait_idle() };
+    let asked = ask_timeline(device, semaphore.get());
+    // SAFETY: nobody else has the queue; what was submitted goes before the semaphore does.
+    let _ = device.on_queue(|queue| unsafe { gpu.device().queue_wait_idle(queue) });
     asked
 }
 
@@ -99,9 +100,9 @@ fn climb(
     Ok(())
 }
 
-fn ask_timeline(gpu: &Gpu, semaphore: vk::Semaphore) -> Result<Measurement, Stop> {
+fn ask_timeline(headless: &Headless, semaphore: vk::Semaphore) -> Result<Measurement, Stop> {
     const SECONDS: u64 = 10_000_000_000;
-    let device = gpu.device();
+    let device = headless.gpu().device();
     let mut measurement = Measurement::new(Bound::new("timeline", TIMELINE), 8);
     let semaphores = [semaphore];
     let counter = || {
@@ -142,11 +143,10 @@ fn ask_timeline(gpu: &Gpu, semaphore: vk::Semaphore) -> Result<Measurement, Stop
     let submit = [vk::SubmitInfo2::default()
         .wait_semaphore_infos(&waits)
         .signal_semaphore_infos(&signals)];
-    // SAFETY: the one queue of a device of ours, which nobody else uses meanwhile; synchronization2 is required.
-    let submitted = unsafe {
-        let queue = device.get_device_queue(gpu.queue_family(), 0);
-        device.queue_submit2(queue, &submit, vk::Fence::null())
-    };
+    let submitted = headless.on_queue(|queue| {
+        // SAFETY: nobody else has the queue; synchronization2 is required.
+        unsafe { device.queue_submit2(queue, &submit, vk::Fence::null()) }
+    });
     submitted.map_err(refused("submit"))?;
     measurement.hold(
         || "what waits for 8 has not signalled 9".into(),
