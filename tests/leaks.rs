@@ -135,11 +135,16 @@ fn loops() -> u32 {
 /// bytes a loop is more.
 const ROOM_BYTES: i64 = 16 << 10;
 
+/// Maps and vectors of which one moment may find no allocation, and another one each. A leak of one a loop is more in any
+/// run.
+const ROOM_ALLOCATIONS: i64 = 4;
+
 /// How much the process may grow over all of a run. In 10 000 loops a leak of 210 bytes a loop is more.
 const RESIDENT_BYTES: i64 = 2 << 20;
 
-/// Draws so often, and compares the end with the beginning: as many allocations on our heap, as many bytes but for
-/// [`ROOM_BYTES`], as many open files, and no more than [`RESIDENT_BYTES`] of the process.
+/// Draws so often, and compares the end with the beginning: as many allocations on our heap but for
+/// [`ROOM_ALLOCATIONS`], as many bytes but for [`ROOM_BYTES`], as many open files, and no more than [`RESIDENT_BYTES`] of
+/// the process.
 #[track_caller]
 fn assert_no_growth(mut draw: impl FnMut()) {
     (0..25).for_each(|_| draw());
@@ -167,8 +172,8 @@ fn assert_no_growth(mut draw: impl FnMut()) {
         before.open_files,
         after.open_files,
     );
-    assert_eq!(
-        after.allocations, before.allocations,
+    assert!(
+        after.allocations - before.allocations <= ROOM_ALLOCATIONS,
         "allocations: {seen:#?}"
     );
     assert!(after.bytes - before.bytes <= ROOM_BYTES, "heap: {seen:#?}");
