@@ -291,11 +291,14 @@ bench: driver
 
 # make soak      devices and renderers made, drawn with and destroyed LOOPS times: memory of ours, of the process, open files
 # make portable  what the compiler says of Windows, macOS and Android; a target that rustup cannot install is skipped by name
-.PHONY: soak portable
+.PHONY: soak soak-short portable
 LOOPS ?= 10000
 
 soak: driver
 	STRATAVOX_LOOPS=$(LOOPS) $(ON_DEVICE) --test leaks -- --nocapture take_no_more_memory
+
+soak-short:
+	@$(MAKE) --no-print-directory soak LOOPS=400
 
 # No cross compiler for C is wanted: of what is checked nothing is C.
 TARGETS ?= x86_64-pc-windows-gnu aarch64-apple-darwin aarch64-linux-android
@@ -303,7 +306,7 @@ TARGETS ?= x86_64-pc-windows-gnu aarch64-apple-darwin aarch64-linux-android
 portable:
 	@set -e; for target in $(TARGETS); do \
 	    if ! why=$$(rustup target add $$target 2>&1); then \
-	        echo "portability, $$target: skipped, the target could not be installed: $$(tail -1 <<< "$$why")"; continue; fi; \
+	        echo "skipped: $$target, for which rustup installs no library: $$(tail -1 <<< "$$why")"; continue; fi; \
 	    for features in "" "--no-default-features --features capi"; do \
 	        echo "portability, $$target: cargo check $$features"; \
 	        RUSTFLAGS="-D warnings" $(CARGO) check --locked --package stratavox --quiet --target $$target $$features; \

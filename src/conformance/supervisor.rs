@@ -237,7 +237,7 @@ impl Worker {
             };
             match line {
                 Ok(Line::Device(found)) => {
-                    device.get_or_insert(found);
+                    device.get_or_insert(*found);
                 }
                 Ok(Line::Record(record)) if record.name == name => return Answer::Record(record),
                 Ok(Line::Record(record)) => return Answer::Nonsense(record.name),
