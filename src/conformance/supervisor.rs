@@ -231,7 +231,7 @@ impl Worker {
             };
             match serde_json::from_str(&line) {
                 Ok(Line::Device(found)) => {
-                    device.get_or_insert(found);
+                    device.get_or_insert(*found);
                 }
                 Ok(Line::Record(record)) if record.name == name => return Answer::Record(record),
                 Ok(Line::Record(_)) | Err(_) => return Answer::Nonsense(line),

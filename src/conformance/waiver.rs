@@ -170,7 +170,7 @@ mod tests {
             vendor_id: 0,
             device_id: 0,
             uuid: String::new(),
-            limits: Default::default(),
+            ..DeviceRecord::default()
         }
     }
 

@@ -24,7 +24,7 @@ use std::path::{Path, PathBuf};
 #[serde(rename_all = "snake_case")]
 pub enum Line {
     /// The device that cases run on.
-    Device(DeviceRecord),
+    Device(Box<DeviceRecord>),
     /// What is said of the case that was asked for.
     Record(Box<Record>),
 }
@@ -131,7 +131,8 @@ pub fn serve(cases: &[Case], stand: &mut Stand, answers: &Answers) -> io::Result
             return Err(io::Error::other(format!("there is no case {wanted}")));
         };
         if !is_introduced && let Ok(device) = stand.device() {
-            say(&mut out, &Line::Device(DeviceRecord::of(device.gpu())))?;
+            let device = DeviceRecord::of(device.gpu());
+            say(&mut out, &Line::Device(Box::new(device)))?;
             is_introduced = true;
         }
         let record = answers.to(case, is_again, stand)?;
