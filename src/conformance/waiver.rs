@@ -251,10 +251,7 @@ mod tests {
             vendor_id: 0x1ae0,
             device_id: 0xc0de,
             uuid: String::new(),
-            limits: Default::default(),
-            features: Default::default(),
-            extensions_enabled: Vec::new(),
-            extensions_available: Vec::new(),
+            ..DeviceRecord::default()
         }
     }
 

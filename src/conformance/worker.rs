@@ -162,7 +162,8 @@ pub fn serve(cases: &[Case], stand: &mut Stand, answers: &Answers) -> io::Result
             return Err(io::Error::other(format!("there is no case {wanted}")));
         };
         if !is_introduced && let Ok(device) = stand.device() {
-            say(&mut out, &Line::Device(Box::new(DeviceRecord::of(device.gpu()))))?;
+            let device = DeviceRecord::of(device.gpu());
+            say(&mut out, &Line::Device(Box::new(device)))?;
             is_introduced = true;
         }
         let record = answers.to(case, is_again, stand)?;
