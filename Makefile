@@ -18,7 +18,7 @@
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := test
-.PHONY: test test-more fresh lint build drawn-odd drawn-even command-line command-line-drawn without-device least-of-all \
+.PHONY: test test-more fresh lint build drawn-odd drawn-even command-line command-line-drawn without-device longer viewer-barriers \
     second conformance-default conformance-least conformance-swiftshader plain least viewer-lint conformance swiftshader demo sheet gallery capi install header api bench driver layers display
 
 CARGO ?= cargo
@@ -82,7 +82,10 @@ TEST := $(CARGO) test --locked --workspace --features stratavox/grib,stratavox/c
 # hear there.
 TESTS := $(basename $(notdir $(wildcard tests/*.rs))) $(filter-out cli,$(notdir $(patsubst %/main.rs,%,$(wildcard tests/*/main.rs))))
 WITHOUT_DEVICE := $(filter host both_sides conformance_package dependencies public_api format_% mutations%,$(TESTS))
-WITH_DEVICE := $(filter-out $(WITHOUT_DEVICE),$(TESTS))
+# What takes long is in the second tier: the suite judged by injected faults and by references, memory over many devices, each
+# barrier taken away.
+LONGER := conformance_lies conformance_reference leaks example_barriers
+WITH_DEVICE := $(filter-out $(WITHOUT_DEVICE) $(LONGER),$(TESTS))
 ON_DEVICE := RUST_TEST_THREADS=1 $(TEST)
 # Of tests that pass too: some say what they have skipped.
 SHOWN := -- --show-output
@@ -93,12 +96,12 @@ half = $(addprefix --test ,$(shell printf '%s\n' $(WITH_DEVICE) | awk 'NR % 2 ==
 # What draws runs under the validation layer with synchronization in; `make test-more` runs the same without that. A group
 # that fails keeps no other from running; each ends with its counts, and the last lines say what was skipped (`.ci/group`).
 test: driver layers display
-	$(call in-groups,lint build,drawn-odd drawn-even command-line command-line-drawn without-device least-of-all viewer)
+	$(call in-groups,lint build,drawn-odd drawn-even command-line command-line-drawn without-device viewer)
 
 # What takes longer.
 test-more: driver layers display
-	$(call in-groups,build,conformance-default conformance-least conformance-swiftshader second plain least soak-short \
-	    viewer-lint portable)
+	$(call in-groups,build,conformance-default conformance-least conformance-swiftshader second plain least longer \
+	    viewer-barriers soak-short viewer-lint portable)
 
 # $(call in-groups,one after the other,two at a time)
 in-groups = @rm -rf target/groups; for group in $(1); do \
@@ -128,6 +131,9 @@ build:
 drawn-odd:
 	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast --lib --examples $(call half,1) $(SHOWN)
 
+longer:
+	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast $(addprefix --test ,$(LONGER)) $(SHOWN)
+
 drawn-even:
 	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast $(call half,0) $(SHOWN)
 
@@ -142,15 +148,13 @@ without-device:
 	$(TEST) --doc
 	$(TEST) --no-fail-fast $(addprefix --test ,$(WITHOUT_DEVICE)) $(SHOWN)
 
-least-of-all:
-	$(UNDER_LEAST) --no-fail-fast $(LEAST_OF_ALL) $(SHOWN)
-
 # A package of its own, with a window and a panel that nothing else needs.
-VIEWER := STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast --bin stratavox-viewer \
-    $(addprefix --test ,$(basename $(notdir $(wildcard examples/viewer/tests/*.rs)))) $(SHOWN)
-
 viewer: driver layers display
-	$(VIEWER)
+	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast --bin stratavox-viewer --test lost --test window $(SHOWN)
+
+# Each of its barriers taken away.
+viewer-barriers: driver layers display
+	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --test barriers $(SHOWN)
 
 viewer-lint:
 	$(CARGO) clippy --locked --package stratavox-viewer --all-targets -- -D warnings
@@ -159,10 +163,9 @@ plain: driver layers
 	$(ON_DEVICE) --no-fail-fast --lib --examples $(addprefix --test ,$(WITH_DEVICE)) $(SHOWN)
 
 # Limits clamped to Vulkan's least: the same pictures (`tests/shared/limits.rs`). Not asked are tests whose subject is limits
-# of their own. `make test` asks LEAST_OF_ALL.
+# of their own.
 NOT_LEAST := gpu_% requirements minimum float_blend conformance_% matrix capi codes both_sides %_example example_%
 WITH_MORE := fetches_are_those_of_the_twin_in_every_technique words_folded_over_many_rows_have_the_values_of_the_twin
-LEAST_OF_ALL := --test embed_pictures --test embed_levels --test embed_flight --test exact_shapes
 UNDER_LEAST := STRATAVOX_LIMITS=least RUST_TEST_THREADS=1 $(TEST)
 
 least: driver layers
