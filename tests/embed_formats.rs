@@ -5,13 +5,14 @@ mod embed_shared;
 mod shared;
 
 use ash::vk;
-use embed_shared::{Host, HostImage, Stage, offscreen};
+use embed_shared::{Host, HostImage, Stage, offscreen, offscreen_with};
+use shared::device_with;
 use std::sync::Arc;
 use stratavox::color::encode_srgb;
 use stratavox::embed::{Class, QueueLock, Renderer, Shot, SliceBlending, Submitter, Volume};
-use stratavox::gpu::Load;
+use stratavox::gpu::{Caps, Load};
 use stratavox::picture::ColorSpace;
-use stratavox::technique::{Mode, Settings, Technique};
+use stratavox::technique::{Mode, Order, Settings, Technique};
 
 const TECHNIQUES: [Technique; 3] = [Technique::Raycast, Technique::Slices3d, Technique::Slices2d];
 
@@ -205,6 +206,52 @@ fn each_technique_at_each_level_draws_the_offscreen_picture_into_each_format() {
                     );
                 }
             }
+        }
+    }
+}
+
+/// Batches of 16-bit floats, merged in 32 bits, where the device does not blend 32: to the bit what offscreen gathers there,
+/// and in parts the same.
+#[test]
+fn where_32_bit_floats_are_not_blended_slices_are_gathered_in_batches() {
+    let caps = Caps {
+        float32_blend: false,
+        ..Caps::UNLIMITED
+    };
+    let host = Host::with_caps(caps);
+    let format = vk::Format::R16G16B16A16_SFLOAT;
+    for technique in [Technique::Slices3d, Technique::Slices2d] {
+        for order in [Order::BackToFront, Order::FrontToBack] {
+            let mut stage = stage(technique, Mode::Composite, ColorSpace::Linear);
+            stage.settings.order = order;
+            // More than one batch of 64.
+            stage.settings.samples_per_voxel = 4.0;
+            let wanted = offscreen_with(&stage, device_with(caps));
+            let mut renderer = renderer(&host, &stage, format, SliceBlending::Float);
+            let image = HostImage::new(&host, format, stage.extent);
+            drawn(&host, &mut renderer, &stage, &image, 'B');
+            let whole = image.numbers();
+            for (found, wanted) in whole.iter().zip(&wanted) {
+                for c in 0..4 {
+                    let (stored, allowed) = Stored::Floats([10; 4]).of(c, wanted[c]);
+                    let off = (found[c] - stored).abs();
+                    assert!(off <= allowed, "{technique} {order:?}: {off} of {allowed}");
+                }
+            }
+            let parts = HostImage::new(&host, format, stage.extent);
+            let mut left = renderer.begin_parts(&shot(&stage, 0)).unwrap();
+            while left > 0 {
+                // SAFETY: one part a submission, in order; `run` waits.
+                host.run(|cmd| unsafe {
+                    let (target, load) = (parts.target(), Load::Clear([0.0; 4]));
+                    left = renderer.record_part_into(cmd, 0, 1, &target, load).unwrap();
+                });
+            }
+            // SAFETY: the target is as it was said to leave.
+            host.run(|cmd| unsafe {
+                parts.copy_from(cmd, vk::ImageLayout::TRANSFER_SRC_OPTIMAL);
+            });
+            assert!(parts.numbers() == whole, "{technique} {order:?} in parts");
         }
     }
 }

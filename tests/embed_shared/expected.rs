@@ -4,6 +4,7 @@ use super::{HostImage, Stage};
 use crate::shared::device;
 use ash::vk;
 use stratavox::color::encode_srgb;
+use stratavox::gpu::Headless;
 use stratavox::offscreen::Renderer;
 use stratavox::scene::Scene;
 
@@ -21,6 +22,11 @@ fn arithmetic() -> f64 {
 
 /// The offscreen picture, in the numbers of [`HostImage::numbers`]: what hosts draw too, to the bit.
 pub fn offscreen(stage: &Stage) -> Vec<[f64; 4]> {
+    offscreen_with(stage, device())
+}
+
+/// The same on another device.
+pub fn offscreen_with(stage: &Stage, device: Headless) -> Vec<[f64; 4]> {
     let scene = Scene {
         volume: &stage.volume,
         transfer: Some(&stage.transfer),
@@ -29,7 +35,7 @@ pub fn offscreen(stage: &Stage) -> Vec<[f64; 4]> {
         extent_pixels: stage.extent,
         settings: &stage.settings,
     };
-    let mut renderer = Renderer::new(device(), &stage.volume).unwrap();
+    let mut renderer = Renderer::new(device, &stage.volume).unwrap();
     let rendered = renderer.render(&scene, &[]).unwrap();
     let pixels = rendered.picture.pixels;
     let seen = pixels.iter().filter(|pixel| pixel[3] > 0.1).count();

@@ -12,7 +12,7 @@ mod scene;
 mod settings;
 
 pub use depth::{ATTACHED, DepthImage, READ};
-pub use expected::{assert_close, offscreen, over};
+pub use expected::{assert_close, offscreen, offscreen_with, over};
 pub use eyes::{Eye, Found, depths, draw, eyes, spheres};
 pub use image::HostImage;
 pub use pace::Pace;
