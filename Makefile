@@ -197,17 +197,19 @@ second:
 	    --test embed_levels --test embed_pictures --test embed_stale --test embed_targets $(SHOWN) \
 	    && VK_DRIVER_FILES=$(BOTH) VK_ICD_FILENAMES=$(BOTH) $(TEST) --test cli $(SHOWN) two_drivers
 
-# $(call judged,name,arguments): the whole baseline by the program of the tests, whose package must be whole.
+# $(call judged,name,arguments of the run,arguments of verify): the whole baseline by the program of the tests, whose package
+# must be well.
 judged = mkdir -p target/conformance && target/debug/stratavox conformance --force --jobs 1 \
 	    --waivers docs/conformance-waivers.json --json target/conformance/$(1).json $(2) \
-	    && target/debug/stratavox conformance verify target/conformance/$(1).json
+	    && target/debug/stratavox conformance verify $(3) target/conformance/$(1).json
 
 conformance-default:
 	$(call judged,default)
 
-# No more than Vulkan demands of every device: what cannot be drawn then is refused by name.
+# No more than Vulkan demands of every device: what cannot be drawn then is refused by name. `verify` takes lowered limits for
+# a part of a run.
 conformance-least:
-	$(call judged,least,--limits vulkan-minimum)
+	$(call judged,least,--limits vulkan-minimum,--part)
 
 conformance-swiftshader:
 	@$(with-second); export $(ON_SWIFTSHADER); $(call judged,swiftshader)
