@@ -1,9 +1,10 @@
-# make test    everything that must hold, on whatever Vulkan device is here (a software driver is installed
+# make test    what must hold after each change, on whatever Vulkan device is here (a software driver is installed
 #              by apt where there is none): a line for each group of tests, what was skipped, and how many passed
 # make test-more   what takes longer: the whole conformance baseline, also as on a device of Vulkan's least limits and on
-#              SwiftShader (fetched by apt; skipped by name where that cannot be), what draws once more without validation
-#              and under the least limits, many devices one after the other, other operating systems
-# make fresh   make test and make demo in a new clone without anything built or downloaded
+#              SwiftShader (fetched by apt; skipped by name where that cannot be); the suite judged by injected faults and by
+#              the CPU reference; what draws once more without validation and under the least limits; each barrier of the
+#              examples taken away; many devices one after the other; other operating systems
+# make fresh   README's two commands, make test and make demo in a new clone without anything built or downloaded
 # make plain   what draws once more, without validation of synchronization
 # make least   the same under the least limits that Vulkan allows
 # make viewer  the tests of examples/viewer, in a window of a display without a screen (Xvfb is installed by apt where it is
@@ -112,12 +113,15 @@ in-groups = @rm -rf target/groups; for group in $(1); do \
 group-%:
 	@.ci/group $* $(MAKE) --no-print-directory $*
 
-# README's two commands as on a new machine: no packages of Rust's in a cache, nothing built. To be run whenever
+# README's first commands as on a new machine: no packages of Rust's in a cache, nothing built. To be run whenever
 # dependencies or the commands of the tests change.
 fresh:
 	@folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && git clone --quiet . "$$folder/stratavox" \
 	    && cd "$$folder/stratavox" && export CARGO_HOME="$$folder/cargo" STRATAVOX_DATA="$(VOLUMES)" \
-	    && unset CARGO_TARGET_DIR MESA_SHADER_CACHE_DIR XDG_CACHE_HOME && $(MAKE) test && $(MAKE) demo
+	    && unset CARGO_TARGET_DIR MESA_SHADER_CACHE_DIR XDG_CACHE_HOME \
+	    && $(MAKE) driver && $(CARGO) install --locked --path . --root "$$folder/installed" \
+	    && "$$folder/installed/bin/stratavox" render phantom:head -o "$$folder/head.png" \
+	    && $(MAKE) test && $(MAKE) demo
 
 lint:
 	$(CARGO) fmt --all --check
