@@ -169,7 +169,9 @@ plain: driver layers
 # Limits clamped to Vulkan's least: the same pictures (`tests/shared/limits.rs`). Not asked are tests whose subject is limits
 # of their own.
 NOT_LEAST := gpu_% requirements minimum float_blend conformance_% matrix capi codes both_sides %_example example_%
-WITH_MORE := fetches_are_those_of_the_twin_in_every_technique words_folded_over_many_rows_have_the_values_of_the_twin
+# Images larger than the least device allows; a volume longer than its 256 texels, which is to lie in one texture.
+WITH_MORE := fetches_are_those_of_the_twin_in_every_technique words_folded_over_many_rows_have_the_values_of_the_twin \
+    rooms_are_distances_to_the_nearest_cell_with_matter
 UNDER_LEAST := STRATAVOX_LIMITS=least RUST_TEST_THREADS=1 $(TEST)
 
 least: driver layers
