@@ -17,6 +17,7 @@ mod input;
 mod labels;
 mod levels;
 mod light;
+mod look;
 mod modes;
 mod numbers;
 mod occlusion;
@@ -41,6 +42,7 @@ pub use input::{InputFlags, relative};
 pub use labels::LabelFlags;
 pub use levels::LevelFlags;
 pub use light::LightFlags;
+pub use look::Look;
 pub use modes::ModeFlags;
 pub use numbers::{Background, Numbers, Size, finite, positive};
 pub use opacity::OpacityFlags;
@@ -64,6 +66,11 @@ pub struct SceneFlags {
     /// The version of a scene file.
     #[arg(skip)]
     pub stratavox_scene: u32,
+    /// Which defaults hold: auto fits, lights and classifies by what the volume is; plain computes what the flags say
+    /// and nothing else [default: auto]
+    #[arg(long)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub look: Option<Look>,
     #[command(flatten)]
     pub input: InputFlags,
     #[command(flatten)]

@@ -1,0 +1,31 @@
+//! `--look`: which defaults hold where no flag says otherwise.
+
+use super::SceneFlags;
+use clap::ValueEnum;
+use serde::{Deserialize, Serialize};
+
+/// Every word of `--look`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Look {
+    /// Fitted to what is visible, lit where light helps, classified by meaning, on an opaque background
+    Auto,
+    /// The whole box at zoom 1, without light, one sample a voxel, transparent
+    Plain,
+}
+
+impl SceneFlags {
+    /// True under `--look auto`. Nothing said is `plain`: a verb whose default is `auto` says so first, by
+    /// [`Self::default_to_auto`].
+    pub fn is_auto(&self) -> bool {
+        self.look == Some(Look::Auto)
+    }
+
+    /// `auto` unless a flag or a scene file says otherwise; pictures for conformance are `plain`.
+    pub fn default_to_auto(&mut self) {
+        self.look.get_or_insert(match self.sampling.conformance {
+            true => Look::Plain,
+            false => Look::Auto,
+        });
+    }
+}
