@@ -20,7 +20,7 @@ const GRID: fn() -> Grid = || Grid {
 };
 
 fn lights() -> Vec<Light> {
-    let light = |towards, srgb| Light { towards, srgb };
+    let light = |towards, srgb| Light::of_world(towards, srgb);
     vec![
         light(dvec3(1.0, -2.0, 0.7), [1.0, 0.9, 0.8]),
         light(dvec3(-0.3, 0.2, 3.0), [0.2, 0.3, 0.6]),
@@ -262,10 +262,7 @@ fn with_holes() -> Volume {
 /// The colour of a surface in f64, written a second time: `sampling.md` 7 word by word.
 fn phong(shading: &Shading, color: DVec3, normal: DVec3, to_eye: DVec3) -> DVec3 {
     let mut lit = shading.ambient * color;
-    let headlight = Light {
-        towards: to_eye,
-        srgb: [1.0; 3],
-    };
+    let headlight = Light::of_world(to_eye, [1.0; 3]);
     let lights = if shading.lights.is_empty() {
         &[headlight][..]
     } else {

@@ -45,7 +45,7 @@ fn occlusion(radius_world: f64) -> Settings {
 
 fn lamp(towards: DVec3) -> Light {
     let srgb = [1.0; 3];
-    Light { towards, srgb }
+    Light::of_world(towards, srgb)
 }
 
 fn shadows(lights: &[DVec3], light_size_degrees: f64) -> Settings {
@@ -270,7 +270,7 @@ const GRID: fn() -> Grid = || Grid {
 };
 
 fn lights() -> Vec<Light> {
-    let light = |towards, srgb| Light { towards, srgb };
+    let light = |towards, srgb| Light::of_world(towards, srgb);
     vec![
         light(dvec3(1.0, -2.0, 0.7), [1.0, 0.9, 0.8]),
         light(dvec3(-0.3, 0.2, 3.0), [0.2, 0.3, 0.6]),

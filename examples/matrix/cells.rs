@@ -272,7 +272,7 @@ pub const FEATURES: &[Feature] = &[
 ];
 
 fn lights() -> Shading {
-    let light = |towards, srgb| Light { towards, srgb };
+    let light = |towards, srgb| Light::of_world(towards, srgb);
     Shading {
         ambient: 0.2,
         diffuse: 0.5,

@@ -104,7 +104,7 @@ fn cosines(
     pixels: u32,
     lights: [DVec3; 3],
 ) -> Result<Vec<DVec3>, Box<dyn Error>> {
-    let light = |(towards, srgb)| Light { towards, srgb };
+    let light = |(towards, srgb)| Light::of_world(towards, srgb);
     let colors = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let shading = Shading {
         ambient: 0.0,

@@ -142,6 +142,8 @@ struct Frame {
     diffuse: f32,
     specular: f32,
     shininess: f32,
+    // Value per world length at which half of the light is that on a surface.
+    half_gradient: f32,
     // Which kernel, where the filter is one: see kernel.wgsl.
     kernel: u32,
     // World length of the shortest side of a voxel.

@@ -4,7 +4,8 @@
 //
 // with L the light's colour, l the way to it, v the way to the eye; o and t what comes through from all around and
 // from the light, 1 without occlusion and shadows (light.wgsl). Where the gradient is flat there is no surface and the
-// colour stays, as far as light comes there: c (o a + (1 - a) sum of t L / sum of L), a = min(ambient, 1).
+// colour stays, as far as light comes there: c (o a + (1 - a) sum of t L / sum of L), a = min(ambient, 1). The two are
+// mixed by the gradient's magnitude g: w surface + (1 - w) flat, w = g / (g + half_gradient).
 // Blinn, "Models of Light Reflection for Computer Synthesized Pictures", SIGGRAPH 1977.
 // Who imports this also imports where that light is known: light or light_unhindered. Twin: src/technique/shading.rs.
 
@@ -37,11 +38,14 @@ fn shade(color: vec3<f32>, gradient: vec3<f32>, ray_direction: vec3<f32>, voxel:
         all += frame.light_colors[i].xyz;
         there += arriving;
     }
-    if is_flat {
+    var even = ambient_light * color;
+    if frame.has_shadows != 0u {
         // A colour that no light has is missing nothing.
         let shares = select(vec3(1.0), there / max(all, vec3(1e-6)), all > vec3(1e-6));
         let ambient = min(frame.ambient, 1.0);
-        return color * (ambient * ambient_light + (1.0 - ambient) * shares);
+        even = color * (ambient * ambient_light + (1.0 - ambient) * shares);
     }
-    return lit;
+    // Where the half gradient is 0 this is 1 whatever a division is rounded to.
+    let surface = select(1.0 - frame.half_gradient / (steepness + frame.half_gradient), 0.0, is_flat);
+    return (1.0 - surface) * even + surface * lit;
 }

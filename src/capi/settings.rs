@@ -289,10 +289,10 @@ fn shading(c: &sv_settings, lights: &[sv_light]) -> Result<Shading, Failure> {
     let light = |light: &sv_light| {
         let mut channels = light.srgb.iter();
         channels.try_for_each(|&channel| share("sv_light.srgb", channel))?;
-        Ok(Light {
-            towards: direction("sv_light.towards", light.towards)?,
-            srgb: light.srgb,
-        })
+        Ok(Light::of_world(
+            direction("sv_light.towards", light.towards)?,
+            light.srgb,
+        ))
     };
     Ok(Shading {
         ambient,

@@ -190,6 +190,7 @@ impl View<'_> {
             diffuse: 0.0,
             specular: 0.0,
             shininess: 0.0,
+            half_gradient: 0.0,
             smallest_spacing: self.grid.smallest_spacing() as f32,
             gradient_operator: self.settings.gradient_operator().number(),
             gradient_scale: coding.scale,
@@ -225,7 +226,8 @@ impl View<'_> {
         };
         self.set_light(&mut fields);
         if let Some(shading) = &self.settings.shading {
-            set_shading(shading, self.settings.color_space, &mut fields)?;
+            let camera = self.camera.frame();
+            set_shading(shading, &camera, self.settings.color_space, &mut fields)?;
         }
         Ok(fields)
     }

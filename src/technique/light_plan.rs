@@ -145,7 +145,7 @@ impl View<'_> {
                 .flat_map(|s| &s.lights)
                 .collect::<Vec<_>>()
             {
-                let way = light.towards.try_normalize().ok_or(Error::NoWayToLight)?;
+                let way = light.way(&self.camera.frame())?;
                 bundles.push((towards(way, light_size_degrees), [0.0, f64::INFINITY]));
             }
         }

@@ -64,7 +64,7 @@ pub use per_mode::{DEFAULT_ATTENUATION, Level, PerMode};
 pub use ray_pass::RayPass;
 pub use ray_tiles::{RayBindings, RayTiles};
 pub use recording::{Recording, parameter_ring};
-pub use shading::{Light, Shading};
+pub use shading::{Light, LightSpace, Shading};
 pub use skip::{Skip, Skippable};
 pub(crate) use slice_gather::SliceGather;
 pub use slicer::{Sight, Slicer};

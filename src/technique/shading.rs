@@ -3,15 +3,18 @@
 //!
 //! ```text
 //! c (o ambient + diffuse sum of t L |n.l|) + specular sum of t L |n.h|^shininess        h = (l + v) / |l + v|
+//! w surface + (1 - w) flat                                                              w = g / (g + g0)
 //! ```
 //!
 //! L is a light's colour, l the way to it, v the way to the eye, n the gradient made a unit vector after
 //! interpolation; o and t what comes through from all around and from the light, 1 without occlusion and shadows
 //! ([`Lamps`]). Where the gradient over one voxel is under 1e-4 of the volume's range there is no surface and the
-//! colour stays, as far as light comes there: c (o a + (1 - a) sum of t L / sum of L), a = min(ambient, 1). Blinn,
+//! colour stays, as far as light comes there: c (o a + (1 - a) sum of t L / sum of L), a = min(ambient, 1). With a
+//! half gradient g0 the two are mixed by the gradient's magnitude g, so that noise does not sparkle. Blinn,
 //! "Models of Light Reflection for Computer Synthesized Pictures", SIGGRAPH 1977.
 
 use super::{Error, LightField, Shadows, View};
+use crate::camera;
 use crate::color::decode_srgb;
 use crate::picture::ColorSpace;
 use crate::real::{Real, add, dot, scale, sub};
@@ -29,6 +32,9 @@ pub struct Shading {
     pub specular: f64,
     /// How sharply it mirrors; positive.
     pub shininess: f64,
+    /// The gradient magnitude, in values per world length, at which half of the light is that on a surface; from 0. At
+    /// smaller gradients matter is lit evenly, so that noise does not sparkle; 0 lights all gradients as surfaces.
+    pub half_gradient: f64,
     /// At most [`MAX_LIGHTS`]; none stands for a white headlight, which shines along the ray of each pixel.
     pub lights: Vec<Light>,
     /// What keeps them from samples.
@@ -41,10 +47,45 @@ pub struct Shading {
 /// A light that is infinitely far away.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// The way to it, in world space, of any length but zero.
+    /// The way to it, of any length but zero.
     pub towards: DVec3,
+    /// What `towards` is given in.
+    pub space: LightSpace,
     /// sRGB numbers from 0 to 1.
     pub srgb: [f64; 3],
+}
+
+/// The axes that the way to a light is given in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LightSpace {
+    /// Those of the world: the light stays beside the volume.
+    #[default]
+    World,
+    /// Right, up and towards the eye: the light moves with the camera.
+    Camera,
+}
+
+impl Light {
+    /// A light beside the volume.
+    pub fn of_world(towards: DVec3, srgb: [f64; 3]) -> Self {
+        Self {
+            towards,
+            srgb,
+            space: LightSpace::World,
+        }
+    }
+
+    /// The unit vector to the light in world space, for a camera with these axes.
+    pub(super) fn way(&self, camera: &camera::Frame) -> Result<DVec3, Error> {
+        let towards = match self.space {
+            LightSpace::World => self.towards,
+            LightSpace::Camera => {
+                self.towards.x * camera.right + self.towards.y * camera.up
+                    - self.towards.z * camera.forward
+            }
+        };
+        towards.try_normalize().ok_or(Error::NoWayToLight)
+    }
 }
 
 impl Default for Shading {
@@ -54,6 +95,7 @@ impl Default for Shading {
             diffuse: 0.7,
             specular: 0.2,
             shininess: 10.0,
+            half_gradient: 0.0,
             lights: Vec::new(),
             shadows: Shadows::Off,
             has_surfaces: true,
@@ -88,6 +130,7 @@ impl View<'_> {
 /// Fills the parameters of light.
 pub(super) fn set_shading(
     shading: &Shading,
+    camera: &camera::Frame,
     space: ColorSpace,
     fields: &mut FrameFields,
 ) -> Result<(), Error> {
@@ -99,6 +142,7 @@ pub(super) fn set_shading(
     fields.diffuse = shading.diffuse as f32;
     fields.specular = shading.specular as f32;
     fields.shininess = shading.shininess as f32;
+    fields.half_gradient = shading.half_gradient as f32;
     if shading.lights.is_empty() {
         fields.light_count = 1;
         fields.light_directions[0] = [0.0, 0.0, 0.0, 1.0];
@@ -107,7 +151,7 @@ pub(super) fn set_shading(
         fields.light_count = wanted as u32;
     }
     for (i, light) in shading.lights.iter().enumerate() {
-        let towards = light.towards.try_normalize().ok_or(Error::NoWayToLight)?;
+        let towards = light.way(camera)?;
         let shown = |c: f64| match space {
             ColorSpace::Linear => decode_srgb(c),
             ColorSpace::Display => c,
@@ -181,7 +225,11 @@ pub fn shade<R: Real>(frame: &Frame, color: [R; 3], gradient: [R; 3], lamps: &La
             |c: usize| through * R::from_f32(light_color[c]) * (diffuse * color[c] + specular);
         lit = add(lit, [added(0), added(1), added(2)]);
     }
-    lit
+    // Where the half gradient is 0 this is 1 whatever a division is rounded to.
+    let half = R::from_f32(frame.half_gradient);
+    let surface = R::from_f64(1.0) - half / (steepness + half);
+    let even = scale(lit_inside(frame, color, lamps), R::from_f64(1.0) - surface);
+    add(even, scale(lit, surface))
 }
 
 /// Where there is no surface.

@@ -43,10 +43,7 @@ fn half_angle() -> Settings {
 
 /// One light, on matter as it is.
 fn plain(towards: DVec3) -> Option<Shading> {
-    let light = Light {
-        towards,
-        srgb: [1.0; 3],
-    };
+    let light = Light::of_world(towards, [1.0; 3]);
     Some(Shading {
         lights: vec![light],
         shadows: Shadows::HalfAngle,

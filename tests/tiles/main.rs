@@ -281,10 +281,7 @@ fn so_are_pictures_that_need_light_volumes_kept_gradients_and_macro_cells_of_coe
         shadows: Shadows::Volume {
             light_size_degrees: 3.0,
         },
-        lights: vec![Light {
-            towards: dvec3(1.0, -2.0, 0.7),
-            srgb: [1.0, 0.9, 0.8],
-        }],
+        lights: vec![Light::of_world(dvec3(1.0, -2.0, 0.7), [1.0, 0.9, 0.8])],
         ..Shading::default()
     };
     let bricks = Caps {
@@ -327,10 +324,7 @@ fn so_are_half_angle_slices() {
         order: Order::FrontToBack,
         shading: Some(Shading {
             shadows: Shadows::HalfAngle,
-            lights: vec![Light {
-                towards: dvec3(1.0, -2.0, 0.7),
-                srgb: [1.0, 0.9, 0.8],
-            }],
+            lights: vec![Light::of_world(dvec3(1.0, -2.0, 0.7), [1.0, 0.9, 0.8])],
             ..Shading::plain()
         }),
         ..Settings::default()

@@ -106,7 +106,7 @@ impl Tracks {
         }
         let srgb = shading.lights.first().map_or([1.0; 3], |light| light.srgb);
         let towards = towards.into();
-        shading.lights = vec![Light { towards, srgb }];
+        shading.lights = vec![Light::of_world(towards, srgb)];
         Ok(())
     }
 

@@ -3,7 +3,7 @@
 use super::{Error, Numbers, finite, occlusion::OcclusionWord, shadows::ShadowsWord};
 use crate::{
     shaders::MAX_LIGHTS,
-    technique::{AmbientOcclusion, Light, Mode, Shading, Shadows},
+    technique::{AmbientOcclusion, Light, LightSpace, Mode, Shading, Shadows},
 };
 use clap::{Args, ValueEnum};
 use glam::DVec3;
@@ -25,10 +25,16 @@ pub struct LightFlags {
     #[arg(long, value_name = "A,D,S,N", allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub material: Option<Numbers<4>>,
-    /// A light in this direction of the world, of a colour in sRGB numbers (repeatable) [default: from the eye, white]
-    #[arg(long, value_name = "X,Y,Z[,R,G,B]", allow_hyphen_values = true, help_heading = HEADING)]
+    /// A light in this direction of the world, or of the camera (right, up, towards the eye), of a colour in sRGB numbers
+    /// (repeatable) [default: from the eye, white]
+    #[arg(long, value_name = "[camera:]X,Y,Z[,R,G,B]", allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub light: Vec<LightWord>,
+    /// Light gradients under G, in values per world length, less as a surface and more evenly: half and half at G, so that
+    /// noise does not sparkle [default: 0]
+    #[arg(long, value_name = "G", value_parser = finite, help_heading = HEADING)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub half_gradient: Option<f64>,
     /// Darkness where matter within RADIUS (world length) keeps light from all around away; of the ambient part with
     /// --shading phong, of the whole colour without [default radius: a twentieth of the diagonal of the volume]
     #[arg(long, value_name = "STRENGTH[,RADIUS]", allow_hyphen_values = true, help_heading = HEADING)]
@@ -54,7 +60,7 @@ pub enum ShadingWord {
     Phong,
 }
 
-/// `X,Y,Z` or `X,Y,Z,R,G,B`: the way to a light, and its colour.
+/// `X,Y,Z` or `X,Y,Z,R,G,B`, after `camera:` where the axes are the camera's: the way to a light, and its colour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct LightWord(Light);
@@ -63,13 +69,17 @@ impl FromStr for LightWord {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
+        let (space, text) = match text.strip_prefix(CAMERA) {
+            Some(rest) => (LightSpace::Camera, rest),
+            None => (LightSpace::World, text),
+        };
         let (towards, srgb) = match text.matches(',').count() {
             2 => (Numbers::<3>::from_str(text)?.0, [1.0; 3]),
             5 => {
                 let [x, y, z, r, g, b] = Numbers::<6>::from_str(text)?.0;
                 ([x, y, z], [r, g, b])
             }
-            _ => return Err("wanted X,Y,Z or X,Y,Z,R,G,B".to_owned()),
+            _ => return Err("wanted X,Y,Z or X,Y,Z,R,G,B, after camera: or not".to_owned()),
         };
         let towards = DVec3::from_array(towards);
         if towards.try_normalize().is_none() {
@@ -78,18 +88,43 @@ impl FromStr for LightWord {
         if !srgb.iter().all(|c| (0.0..=1.0).contains(c)) {
             return Err("wanted a colour of numbers from 0 to 1".to_owned());
         }
-        Ok(Self(Light { towards, srgb }))
+        Ok(Self(Light {
+            towards,
+            srgb,
+            space,
+        }))
     }
 }
 
 impl fmt::Display for LightWord {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Light { towards, srgb } = self.0;
+        let Light {
+            towards,
+            srgb,
+            space,
+        } = self.0;
+        if space == LightSpace::Camera {
+            f.write_str(CAMERA)?;
+        }
         Numbers(towards.to_array()).fmt(f)?;
         if srgb != [1.0; 3] {
             write!(f, ",{}", Numbers(srgb))?;
         }
         Ok(())
+    }
+}
+
+/// Before a direction in the axes of the camera.
+const CAMERA: &str = "camera:";
+
+impl LightWord {
+    /// A white light in this direction of the camera: right, up, towards the eye.
+    pub fn of_camera(towards: DVec3) -> Self {
+        Self(Light {
+            towards,
+            srgb: [1.0; 3],
+            space: LightSpace::Camera,
+        })
     }
 }
 
@@ -150,6 +185,7 @@ impl LightFlags {
             lights: self.light.iter().map(|word| word.0).collect(),
             shadows: self.shadows()?,
             has_surfaces,
+            half_gradient: self.half_gradient()?,
             ..Shading::default()
         };
         if let Some(Numbers(material)) = self.material {
@@ -173,6 +209,16 @@ impl LightFlags {
             };
         }
         Ok(Some(shading))
+    }
+
+    fn half_gradient(&self) -> Result<f64, Error> {
+        match self.half_gradient.unwrap_or(0.0) {
+            gradient if gradient >= 0.0 && gradient.is_finite() => Ok(gradient),
+            gradient => Err(Error::usage(
+                format!("--half-gradient {gradient}: wanted a number from 0"),
+                "--half-gradient 0 lights all gradients as surfaces",
+            )),
+        }
     }
 
     fn shadows(&self) -> Result<Shadows, Error> {
@@ -216,6 +262,9 @@ impl LightFlags {
         }
         if is_dark && !self.light.is_empty() {
             notes.push("--light has no effect without --shading phong");
+        }
+        if is_dark && self.half_gradient.is_some() {
+            notes.push("--half-gradient has no effect without --shading phong");
         }
         if self.shadows == Some(ShadowsWord::Volume) && (is_dark || self.light.is_empty()) {
             notes.push(
@@ -295,7 +344,7 @@ mod tests {
 
     #[test]
     fn a_light_comes_back_from_its_own_text() {
-        for text in ["0.5,-1,2", "0,0,1,0.25,0.5,1"] {
+        for text in ["0.5,-1,2", "0,0,1,0.25,0.5,1", "camera:-0.5,1,2"] {
             let light: LightWord = text.parse().expect("a light");
             assert_eq!(light.to_string(), text);
         }

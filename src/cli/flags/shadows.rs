@@ -51,10 +51,7 @@ mod tests {
     #[test]
     fn half_angle_slices_are_refused_by_name_where_they_are_not() {
         let in_light = |lights| {
-            let light = Light {
-                towards: glam::DVec3::X,
-                srgb: [1.0; 3],
-            };
+            let light = Light::of_world(glam::DVec3::X, [1.0; 3]);
             Settings {
                 technique: Technique::Slices3d,
                 shading: Some(Shading {

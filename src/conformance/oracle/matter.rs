@@ -12,9 +12,9 @@
 use super::Shot;
 use super::light::Open;
 use super::voxels::{Numbers, stack_of};
-use crate::technique::{Filter, Light, Role, Shading};
+use crate::technique::{Filter, Light, LightSpace, Role, Shading};
 use crate::transfer::{Shape, TransferFunction, Widget};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// One of the volumes that are seen together.
 #[derive(Clone, Debug)]
@@ -185,23 +185,31 @@ impl<'a> Matter<'a> {
             return color;
         }
         let (normal, to_eye) = (gradient.normalize(), -along);
-        let headlight = [Light {
-            towards: to_eye,
-            srgb: [1.0; 3],
-        }];
+        let headlight = [Light::of_world(to_eye, [1.0; 3])];
+        let camera = self.shot.camera.frame();
         let lights = match shading.lights.is_empty() {
             true => &headlight[..],
             false => &shading.lights,
         };
         let mut lit = shading.ambient * self.ambient(place, along) * color;
         for (i, light) in lights.iter().enumerate() {
-            let to_light = light.towards.normalize();
+            let to_light = match light.space {
+                LightSpace::World => light.towards,
+                LightSpace::Camera => {
+                    DMat3::from_cols(camera.right, camera.up, -camera.forward) * light.towards
+                }
+            };
+            let to_light = to_light.normalize();
             let halfway = (to_light + to_eye).normalize();
             let diffuse = shading.diffuse * normal.dot(to_light).abs();
             let specular = shading.specular * normal.dot(halfway).abs().powf(shading.shininess);
             let left = self.open.map_or(1.0, |open| open.lamp(i, place, to_light));
             lit += left * DVec3::from_array(light.srgb) * (diffuse * color + specular);
         }
-        lit
+        if shading.half_gradient == 0.0 {
+            return lit;
+        }
+        let steepness = gradient.length();
+        (shading.half_gradient * color + steepness * lit) / (shading.half_gradient + steepness)
     }
 }

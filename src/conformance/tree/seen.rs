@@ -264,7 +264,7 @@ fn set(settings: &mut Settings, look: Look) {
     settings.per_mode.attenuation = 4.0;
     settings.per_mode.mida_gamma = -0.25;
     settings.per_mode.exact_maximum = look == Look::Exact;
-    let light = |towards, srgb| Light { towards, srgb };
+    let light = |towards, srgb| Light::of_world(towards, srgb);
     let shadows = |light_size_degrees| Shadows::Volume { light_size_degrees };
     match look {
         Look::Lit => settings.shading = Some(Shading::default()),

@@ -47,10 +47,7 @@ fn draw(stand: &mut Stand, towards: DVec3, per_voxel: u32) -> Result<Measurement
         dims: [SIDE; 3],
         world_from_voxel: DAffine3::IDENTITY,
     };
-    let light = Light {
-        towards,
-        srgb: [1.0; 3],
-    };
+    let light = Light::of_world(towards, [1.0; 3]);
     let shading = Shading {
         lights: vec![light],
         shadows: Shadows::HalfAngle,

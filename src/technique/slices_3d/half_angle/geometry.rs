@@ -66,7 +66,7 @@ impl View<'_> {
         let forward = self.rays().forward;
         let mut lights = self.settings.shading.iter().flat_map(|s| &s.lights);
         let light = match lights.next() {
-            Some(light) => -light.towards.try_normalize().ok_or(Error::NoWayToLight)?,
+            Some(light) => -light.way(&self.camera.frame())?,
             None => forward,
         };
         let (half, order) = if forward.dot(light) >= 0.0 {
