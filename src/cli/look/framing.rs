@@ -13,10 +13,11 @@ use crate::cli::flags::{Depth, FrameWord, Numbers, SceneFlags};
 use crate::cli::shown::Shown;
 use crate::picture::Picture;
 use crate::technique::{Mode, Settings};
+use crate::volume::Grid;
 use glam::DVec3;
 
 /// Part of the smaller room that is filled.
-const SHARE: f64 = 0.9;
+pub const SHARE: f64 = 0.9;
 /// A pixel is visible where less than this of what lies behind comes through.
 const MOST_TRANSMITTANCE: f32 = 0.97;
 /// Pixels of the longer side of a small frame.
@@ -70,8 +71,8 @@ impl<'a> Framing<'a> {
         extent_pixels: [u32; 2],
         skip: bool,
     ) -> Self {
-        let lit = with_light(scene, shown, made_for);
-        let sided = with_side(&lit, shown);
+        let lit = with_light(scene, shown.seen(), made_for);
+        let sided = with_side(&lit, &shown.subject(), shown.has_named_axes());
         let is_open = sided.camera == lit.camera && !scene.camera.names_a_side();
         Self {
             chose_samples: lit.sampling.samples_per_voxel != scene.sampling.samples_per_voxel,
@@ -123,25 +124,6 @@ impl<'a> Framing<'a> {
         let camera = &self.scene.camera;
         let word = camera.framed(self.scene.is_auto());
         word.filter(|_| self.scene.section.section.is_none())
-    }
-
-    /// The corners of the grid box, or of what `--crop` leaves of it.
-    fn corners(&self, settings: &Settings) -> Vec<DVec3> {
-        let grid = self.shown.volume.grid();
-        let whole = [DVec3::ZERO, grid.far_corner()];
-        let [low, high] = match settings.crop {
-            Some([low, high]) => [
-                low.clamp(whole[0], whole[1]),
-                high.clamp(whole[0], whole[1]),
-            ],
-            None => whole,
-        };
-        let corner = |k: usize| {
-            let side = |axis: usize| if k >> axis & 1 == 0 { low } else { high };
-            grid.world_from_voxel
-                .transform_point3(DVec3::new(side(0).x, side(1).y, side(2).z))
-        };
-        (0..8).map(corner).collect()
     }
 }
 
@@ -208,7 +190,7 @@ impl Framing<'_> {
     fn boxed(&self, mut scene: SceneFlags) -> Result<View, Error> {
         scene.camera.zoom = None;
         let view = self.view_of(scene)?;
-        let corners = self.corners(&view.settings);
+        let corners = corners(&self.shown.volume.grid(), view.settings.crop);
         let camera = view
             .camera
             .fitted_to_points(&corners, self.extent_pixels, SHARE);
@@ -279,4 +261,19 @@ pub fn small_of(extent: [u32; 2], most: u32) -> [u32; 2] {
         (side as u32).max(1)
     };
     extent.map(side)
+}
+
+/// The corners of the grid box, or of what `--crop` leaves of it, in the world.
+pub fn corners(grid: &Grid, crop: Option<[DVec3; 2]>) -> Vec<DVec3> {
+    let whole = [DVec3::ZERO, grid.far_corner()];
+    let [low, high] = match crop {
+        Some(crop) => crop.map(|corner| corner.clamp(whole[0], whole[1])),
+        None => whole,
+    };
+    let corner = |k: usize| {
+        let side = |axis: usize| if k >> axis & 1 == 0 { low } else { high };
+        let voxel = DVec3::new(side(0).x, side(1).y, side(2).z);
+        grid.world_from_voxel.transform_point3(voxel)
+    };
+    (0..8).map(corner).collect()
 }

@@ -12,10 +12,9 @@ use crate::cli::flags::{
     Background, Classification, Depth, LightWord, ModeWord, Numbers, SceneFlags, ShadingWord,
     summary,
 };
-use crate::cli::shown::{Shown, check};
-use crate::scene::Beside;
+use crate::cli::shown::check;
 use crate::transfer::{Kind, Preset};
-use crate::volume::noise_of;
+use crate::volume::{Volume, noise_of};
 use glam::DVec3;
 
 /// What pictures are made for.
@@ -27,6 +26,17 @@ pub struct Use {
     pub is_opaque: bool,
     /// How exactly they are kept.
     pub depth: Depth,
+}
+
+/// What light and samples are chosen by.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<'a> {
+    /// Of a stream every n-th voxel.
+    pub volume: &'a Volume,
+    /// How its values are seen.
+    pub classification: &'a Classification,
+    /// Nothing is seen together with it.
+    pub is_alone: bool,
 }
 
 /// Material of lit pictures: ambient, diffuse and specular part, and shininess.
@@ -42,7 +52,7 @@ const STILL_SAMPLES: f64 = 2.0;
 const LIT_PRESETS: [Preset; 3] = [Preset::CtBone, Preset::CtSoftTissue, Preset::Mri];
 
 /// The scene with light, samples and background where no flag says them.
-pub fn with_light(scene: &SceneFlags, shown: &Shown, made_for: Use) -> SceneFlags {
+pub fn with_light(scene: &SceneFlags, seen: Seen, made_for: Use) -> SceneFlags {
     let mut chosen = scene.clone();
     if !scene.is_auto() {
         return chosen;
@@ -54,7 +64,7 @@ pub fn with_light(scene: &SceneFlags, shown: &Shown, made_for: Use) -> SceneFlag
     if !may_choose(scene) {
         return chosen;
     }
-    let lit = lit(&chosen, shown);
+    let lit = lit(&chosen, seen);
     let is_drawable = |scene: &SceneFlags| {
         let settings = scene.settings(made_for.depth);
         settings.is_ok_and(|settings| check(scene, &settings).is_ok())
@@ -82,15 +92,14 @@ fn may_choose(scene: &SceneFlags) -> bool {
 }
 
 /// The lit scene, where light shows a shape.
-fn lit(scene: &SceneFlags, shown: &Shown) -> Option<SceneFlags> {
-    let is_alone = matches!(shown.parts().beside(), Beside::Nothing);
+fn lit(scene: &SceneFlags, seen: Seen) -> Option<SceneFlags> {
     let light = &scene.light;
-    if !is_alone || light.shading == Some(ShadingWord::None) || light.shadows.is_some() {
+    if !seen.is_alone || light.shading == Some(ShadingWord::None) || light.shadows.is_some() {
         return None;
     }
-    let volume = shown.looked_at();
+    let volume = seen.volume;
     let is_named = scene.classification.preset.is_some();
-    let Classification::Function(function) = &shown.classification else {
+    let Classification::Function(function) = seen.classification else {
         return None;
     };
     let has_shape = || {

@@ -13,10 +13,11 @@ mod prepared;
 mod side;
 mod work;
 
-pub use framing::{Framing, View};
+pub use framing::{Framing, SHARE, View, box_of, corners, small_of, visible_in};
 pub use freeze::frozen;
-pub use light::Use;
+pub use light::{Seen, Use, with_light};
 pub use prepared::{Views, prepared};
+pub use side::with_side;
 
 /// What lies behind pictures that people look at: sRGB, opaque.
 pub const BACKGROUND: [f64; 4] = [24.0 / 255.0, 24.0 / 255.0, 28.0 / 255.0, 1.0];

@@ -11,8 +11,7 @@
 
 use super::framing::{Small, View, small_of};
 use crate::cli::Error;
-use crate::cli::flags::{SceneFlags, ViewWord};
-use crate::cli::shown::Shown;
+use crate::cli::flags::{SceneFlags, Subject, ViewWord};
 use crate::color::encode_srgb;
 use crate::picture::{ColorSpace, Picture};
 
@@ -34,12 +33,11 @@ const PIXELS: u32 = 64;
 const BINS: usize = 64;
 
 /// The scene looking at the face of a thin slab. Pieces of the Earth are thin, and seen from the south.
-pub fn with_side(scene: &SceneFlags, shown: &Shown) -> SceneFlags {
+pub fn with_side(scene: &SceneFlags, subject: &Subject, has_named_axes: bool) -> SceneFlags {
     let mut sided = scene.clone();
     if !scene.is_auto() || scene.section.section.is_some() || scene.camera.names_a_side() {
         return sided;
     }
-    let subject = shown.subject();
     if subject.is_earth {
         return sided;
     }
@@ -50,7 +48,7 @@ pub fn with_side(scene: &SceneFlags, shown: &Shown) -> SceneFlags {
     let view = match (0..3).find(|&axis| is_thin(axis)) {
         Some(0) => ViewWord::Left,
         Some(1) => ViewWord::Anterior,
-        Some(_) if shown.has_named_axes() => ViewWord::Inferior,
+        Some(_) if has_named_axes => ViewWord::Inferior,
         Some(_) => ViewWord::Superior,
         None => return sided,
     };

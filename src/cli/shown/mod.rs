@@ -16,6 +16,7 @@ use super::{
     flags::{Classification, ClassificationFlags, Plan, SceneFlags, Subject, summary},
     labels,
     load::{load_from, open},
+    look::Seen,
     memory::{self, DeviceRoom, Held, fitting},
     progress::Progress,
 };
@@ -238,6 +239,15 @@ impl Shown {
     /// True where the file says how its axes lie, in a patient or on the Earth.
     pub fn has_named_axes(&self) -> bool {
         self.is_patient || self.is_earth
+    }
+
+    /// What the look of a picture is chosen by.
+    pub fn seen(&self) -> Seen<'_> {
+        Seen {
+            volume: self.looked_at(),
+            classification: &self.classification,
+            is_alone: matches!(self.parts().beside(), Beside::Nothing),
+        }
     }
 
     /// What a camera is turned to.
