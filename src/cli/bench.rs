@@ -162,7 +162,7 @@ impl Bench {
         progress.device(&device.name()?);
         progress.stage("read", 0, 1);
         let start = Instant::now();
-        let shown = Shown::read(scene, &settings, &device, &progress)?;
+        let shown = Shown::read(&mut scene.clone(), &settings, &device, &progress)?;
         let settings = filtered(settings, scene, &shown);
         let parts = shown.parts();
         let load_ms = ms_since(start);

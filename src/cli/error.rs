@@ -30,6 +30,9 @@ pub enum Error {
     /// The words are no command; the text says so at length and in colours of its own.
     #[error("{0}")]
     Words(String),
+    /// Another program that was started ended with this code, and has said why.
+    #[error("exit code {0}")]
+    Other(u8),
     /// The words cannot be followed.
     #[error("{message}")]
     Usage {
@@ -193,6 +196,7 @@ impl Error {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Differs(_) => 1,
+            Self::Other(code) => *code,
             Self::Words(_)
             | Self::Usage { .. }
             | Self::NotBuilt(_)
@@ -245,6 +249,7 @@ impl Error {
                 "`stratavox devices` says what is here; --device reference draws without Vulkan",
             ),
             Self::Words(_)
+            | Self::Other(_)
             | Self::Differs(_)
             | Self::ReadPicture(_)
             | Self::Input { .. }
@@ -255,8 +260,10 @@ impl Error {
     /// The lines for a person: what happened, what caused it, what to do. Nothing that came from a file or
     /// a name can steer the terminal.
     pub fn lines(&self) -> String {
-        if let Self::Words(text) = self {
-            return text.clone();
+        match self {
+            Self::Words(text) => return text.clone(),
+            Self::Other(_) => return String::new(),
+            _ => {}
         }
         let mut lines = format!("stratavox: {}\n", visible(&self.to_string()));
         let mut last = self.to_string();

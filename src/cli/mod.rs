@@ -40,10 +40,12 @@ mod shown;
 mod signals;
 mod small_file;
 mod stamp;
+mod stdin;
 mod surface;
 mod thumbnails;
 mod timings;
 mod unfinished;
+mod view;
 
 pub use bug::guarded;
 pub use error::Error;
@@ -51,6 +53,7 @@ pub use error::Error;
 use clap::{CommandFactory, Parser, Subcommand};
 use signals::Gate;
 use std::ffi::OsString;
+use std::path::Path;
 
 /// Volume rendering on Vulkan: texture slicing, ray casting, maximum intensity projection
 #[derive(Debug, Parser)]
@@ -76,6 +79,7 @@ enum Verb {
     Preset(preset::PresetVerb),
     Completions(manuals::Completions),
     Man(manuals::Man),
+    View(view::View),
     Conformance(Box<conformance::Conformance>),
 }
 
@@ -96,7 +100,9 @@ pub fn run(words: impl IntoIterator<Item = OsString>, source: Source) -> u8 {
     let words: Vec<OsString> = words.into_iter().collect();
     guarded(move || {
         signals::install(&gate);
-        match obey(words, source, &gate) {
+        let done = obey(with_verb(words), source, &gate);
+        stdin::discard();
+        match done {
             Ok(()) => 0,
             Err(error) => {
                 // Where stderr is closed the exit code has to do.
@@ -107,12 +113,34 @@ pub fn run(words: impl IntoIterator<Item = OsString>, source: Source) -> u8 {
     })
 }
 
+/// `stratavox scan.nii.gz` is `stratavox render scan.nii.gz`. A verb wins over a file of its name.
+fn with_verb(mut words: Vec<OsString>) -> Vec<OsString> {
+    let Some(first) = words.get(1) else {
+        return words;
+    };
+    let is_verb = |name: &str| {
+        let command = Words::command();
+        name == "help"
+            || command
+                .get_subcommands()
+                .any(|verb| verb.get_name() == name)
+    };
+    let text = first.to_string_lossy();
+    let is_input = text == stdin::STANDARD
+        || text.starts_with(flags::PHANTOM)
+        || !text.starts_with('-') && Path::new(first).exists();
+    if is_input && !is_verb(&text) {
+        words.insert(1, "render".into());
+    }
+    words
+}
+
 fn obey(words: Vec<OsString>, source: Source, gate: &Gate) -> Result<(), Error> {
     let words = match Words::try_parse_from(words) {
         Ok(words) => words,
         // Help and version are answers, not errors.
         Err(answer) if !answer.use_stderr() => return output::say(&answer.render().to_string()),
-        Err(error) => return Err(Error::Words(error.render().to_string())),
+        Err(error) => return Err(Error::Words(with_hint(&error))),
     };
     match words.verb {
         Verb::Render(render) => render.run(gate),
@@ -128,8 +156,28 @@ fn obey(words: Vec<OsString>, source: Source, gate: &Gate) -> Result<(), Error> 
         Verb::Preset(preset) => preset.run(gate),
         Verb::Completions(completions) => completions.run(Words::command()),
         Verb::Man(man) => man.run(Words::command(), gate),
+        Verb::View(view) => view.run(),
         Verb::Conformance(conformance) => conformance.run(source, gate),
     }
+}
+
+/// What clap says of words that it cannot follow, with a hint as all other errors have it.
+fn with_hint(error: &clap::Error) -> String {
+    let text = error.render().to_string();
+    // Its own last line names help without saying of which verb.
+    let end = text.find("\nFor more information").unwrap_or(text.len());
+    let verb = std::env::args_os().nth(1).filter(|word| {
+        let word = word.to_string_lossy();
+        let command = Words::command();
+        command
+            .get_subcommands()
+            .any(|verb| verb.get_name() == word)
+    });
+    let verb = verb.map_or_else(String::new, |verb| format!("{} ", verb.to_string_lossy()));
+    format!(
+        "{}\n  hint: `stratavox {verb}--help` shows examples and lists every flag\n",
+        text[..end].trim_end()
+    )
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::{
     Error,
-    flags::{Depth, SceneFlags},
+    flags::{Depth, InputFlags, PHANTOM, SceneFlags},
     load::open,
     look::{Framing, Use, View, Views, frozen, prepared},
     output::{self, write_whole},
@@ -12,11 +12,16 @@ use super::{
     scene_file,
     shown::Shown,
     signals::Gate,
+    stdin::STANDARD,
     timings::{FrameTime, Timings, ms_since, peak_rss_bytes},
 };
-use crate::picture::{BitDepth, LayerKind, PictureFormat, WriteOptions, write_picture};
+use crate::format;
+use crate::picture::{
+    BitDepth, EncodedPicture, LayerKind, PictureFormat, WriteOptions, write_picture,
+};
 use clap::Args;
 use std::{
+    io::IsTerminal,
     path::{Path, PathBuf},
     time::Instant,
 };
@@ -34,9 +39,10 @@ use std::{
     stratavox render phantom:head,n=64 --labels ball.nrrd --label-show 128-255 -o ball.png\n  \
     stratavox render phantom:head,n=64 --labels ball.nrrd --label-dim 0-127:0.05 -o dimmed.png")]
 pub struct Render {
-    /// The picture: its ending says whether .png, .exr or .npy
+    /// The picture: its ending says whether .png, .exr or .npy; - writes a PNG to the standard output [default: the
+    /// name of INPUT with .png, in this folder]
     #[arg(short, long, value_name = "FILE")]
-    output: PathBuf,
+    output: Option<PathBuf>,
     #[command(flatten)]
     scene: SceneFlags,
     /// Flags from a file; those of the command line win
@@ -113,8 +119,22 @@ impl Render {
 
     /// One picture.
     fn draw(mut self, gate: &Gate) -> Result<(), Error> {
-        let scene = self.whole_scene()?;
-        let format = picture_format(&self.output)?;
+        let mut scene = self.whole_scene()?;
+        let output = match &self.output {
+            Some(output) => output.clone(),
+            None => default_output(&scene.input, self.force),
+        };
+        let is_stdout = output == Path::new(STANDARD);
+        let format = match is_stdout {
+            true => PictureFormat::Png,
+            false => picture_format(&output)?,
+        };
+        if is_stdout && std::io::stdout().is_terminal() {
+            return Err(Error::usage(
+                "-o -: the standard output is a terminal, and a PNG is no text",
+                "-o FILE.png, or send it on: -o - | program",
+            ));
+        }
         let layers = scene.picture.layers();
         if format == PictureFormat::Png && !layers.is_empty() {
             return Err(Error::usage(
@@ -130,7 +150,7 @@ impl Render {
         let extent_pixels = scene.picture.extent_pixels()?;
         scene.classification.check()?;
         let inputs = scene_file::inputs(&scene, self.scene_file.as_deref());
-        output::check(&self.outputs(format, &layers), &inputs, self.force)?;
+        output::check(&self.outputs(&output, format, &layers), &inputs, self.force)?;
 
         let progress = Progress::new(self.progress);
         for note in scene.idle() {
@@ -140,7 +160,7 @@ impl Render {
         let device = Device::begin(scene.one_device()?);
         progress.stage("read", 0, 1);
         let start = Instant::now();
-        let shown = Shown::read(&scene, &settings, &device, &progress);
+        let shown = Shown::read(&mut scene, &settings, &device, &progress);
         // Without a device nothing else that is wrong matters.
         device.wait()?;
         let shown = shown?;
@@ -196,7 +216,17 @@ impl Render {
             bit_depth: self.bit_depth,
             force: self.force,
         };
-        gate.whole(|| write_picture(&picture, &self.output, options))?;
+        if is_stdout {
+            let encoded = EncodedPicture::new(&picture, Path::new("picture.png"), options)?;
+            for (_, bytes) in encoded.into_files() {
+                output::write_out(&bytes)?;
+            }
+        } else {
+            gate.whole(|| write_picture(&picture, &output, options))?;
+        }
+        if self.output.is_none() {
+            progress.note(&format!("drawn into {}", output.display()));
+        }
         let stages = renderer.stages(&progress, gate, Some(ms_since(start)));
         if let Some(path) = &self.save_scene {
             let text = scene_file::text(&frozen(view, &shown), path);
@@ -232,19 +262,40 @@ impl Render {
         Ok(scene)
     }
 
-    fn outputs(&self, format: PictureFormat, layers: &[LayerKind]) -> Vec<PathBuf> {
-        let mut outputs = vec![self.output.clone()];
+    fn outputs(&self, output: &Path, format: PictureFormat, layers: &[LayerKind]) -> Vec<PathBuf> {
+        let mut outputs = match output == Path::new(STANDARD) {
+            true => Vec::new(),
+            false => vec![output.to_owned()],
+        };
         if format == PictureFormat::Npy {
             let name = |layer: &LayerKind| format!("{}.npy", layer.name());
             outputs.extend(
                 layers
                     .iter()
-                    .map(|layer| self.output.with_extension(name(layer))),
+                    .map(|layer| output.with_extension(name(layer))),
             );
         }
         outputs.extend(self.save_scene.iter().chain(&self.timings).cloned());
         outputs
     }
+}
+
+/// `NAME.png` in this folder for `NAME.nii.gz`; the first of `NAME-2.png`, `NAME-3.png` that is not there, unless
+/// `force` replaces it.
+fn default_output(input: &InputFlags, force: bool) -> PathBuf {
+    let path = input.path.as_deref().unwrap_or_default();
+    let name = match path.strip_prefix(PHANTOM) {
+        Some(words) => words.split(',').next().unwrap_or(words),
+        None if path == STANDARD => "volume",
+        None => format::stem(Path::new(path.trim_end_matches('/'))),
+    };
+    let free = (1..).map(|n| match n {
+        1 => PathBuf::from(format!("{name}.png")),
+        n => PathBuf::from(format!("{name}-{n}.png")),
+    });
+    let is_free = |path: &PathBuf| force || path.symlink_metadata().is_err();
+    let mut free = free.filter(is_free);
+    free.next().expect("names do not end")
 }
 
 fn picture_format(path: &Path) -> Result<PictureFormat, Error> {

@@ -123,6 +123,7 @@ fn draw(
     progress: &Progress,
 ) -> Result<Picture, Error> {
     let settings = scene.settings(Depth::Eight)?;
+    let scene = &mut scene.clone();
     let shown = Shown::read(scene, &settings, device, progress)?;
     let made_for = Use {
         is_film: false,

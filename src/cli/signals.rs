@@ -96,6 +96,7 @@ pub fn install(gate: &Gate) {
             Some(Unfinished::Kept(hint)) => say_aside(hint),
             None => {}
         }
+        super::stdin::discard();
         exit_now(INTERRUPTED)
     });
     ignore_file_size_signal();

@@ -135,6 +135,11 @@ impl EncodedPicture {
         }
     }
 
+    /// The bytes of each file, with its path.
+    pub fn into_files(self) -> Vec<(PathBuf, Vec<u8>)> {
+        self.files
+    }
+
     /// Writes all files, each whole or not at all; none gets its name before all are written. Only `force` replaces
     /// one.
     ///

@@ -5,13 +5,7 @@
 //! camera moves           the sphere around what is visible, seen along x and along y, fills it
 //! ```
 
-use super::{
-    Plan,
-    draw::Content,
-    keeps_transparency, ready,
-    shots::Shot,
-    volumes::Volumes,
-};
+use super::{Plan, draw::Content, keeps_transparency, ready, shots::Shot, volumes::Volumes};
 use crate::{
     camera::{BoundingSphere, Camera, PixelBox, Projection},
     cli::{

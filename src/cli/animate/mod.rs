@@ -114,6 +114,9 @@ pub struct Animate {
     no_skip: bool,
 }
 
+/// Frames of the turntable that a film is where nothing says what it shows: 5 degrees each.
+const TURN_FRAMES: u32 = 72;
+
 /// Everything that was checked before the first voxel is read.
 struct Plan {
     scene: SceneFlags,
@@ -130,7 +133,8 @@ struct Plan {
 impl Animate {
     /// Draws and writes.
     pub fn run(mut self, gate: &Gate) -> Result<(), Error> {
-        let (plan, source) = self.plan()?;
+        let progress = Progress::new(self.progress);
+        let (plan, source) = self.plan(&progress)?;
         let mut outputs: Vec<PathBuf> = self
             .save_scene
             .iter()
@@ -142,8 +146,6 @@ impl Animate {
         }
         output::check(&outputs, &plan.inputs, self.force)?;
         let store = self.store(&plan, gate)?;
-
-        let progress = Progress::new(self.progress);
         for note in plan.scene.idle() {
             progress.note(note);
         }
@@ -261,7 +263,7 @@ impl Animate {
     }
 
     /// All that the words say, checked as far as it can be without a voxel.
-    fn plan(&mut self) -> Result<(Plan, Box<dyn Source>), Error> {
+    fn plan(&mut self, progress: &Progress) -> Result<(Plan, Box<dyn Source>), Error> {
         self.scene.classification.inline_file()?;
         let mut scene = match &self.scene_file {
             Some(path) => scene_file::overlay(scene_file::read(path)?, &self.scene),
@@ -275,6 +277,13 @@ impl Animate {
             .keyframes
             .as_deref()
             .map(|path| keyframes::read(path, self.fps));
+        let is_still = self.turntable.is_none() && !self.times && self.keyframes.is_none();
+        if is_still && scene.is_auto() {
+            self.turntable = Some(TURN_FRAMES);
+            progress.note(&format!(
+                "a turntable of {TURN_FRAMES} frames; --turntable N, --times and --keyframes FILE make other films"
+            ));
+        }
         let film = Film {
             turntable: self.turntable,
             times: self.times,
@@ -290,6 +299,7 @@ impl Animate {
             _ => Depth::Eight,
         };
         let source = load::open(&scene.input, &shown::limits(&scene))?;
+        scene.take_first_variable(source.header(), progress);
         let header = source.header();
         let mut shots = film.shots(&scene, depth, header, &shots::grid(&scene, header)?)?;
         for shot in &mut shots {

@@ -100,7 +100,7 @@ pub fn measured(bench: &Bench, scene: &SceneFlags) -> Result<String, Error> {
         let base = of_mode(&base, mode.mode());
         // What is shown depends on the mode: channels are read for each.
         let here = Device::find(scene.one_device()?)?;
-        let shown = Shown::read(&scene, &base, &here, &progress)?;
+        let shown = Shown::read(&mut scene.clone(), &base, &here, &progress)?;
         if probes
             .last()
             .is_none_or(|last: &Probed| last.volume != **input)

@@ -152,7 +152,7 @@ impl CameraFlags {
 
     fn orbit(&self, subject: &Subject) -> Orbit {
         let side = match (self.view, self.azimuth, self.elevation) {
-            (Some(view), _, _) => view.view().orbit(),
+            (Some(view), _, _) => view.view(subject.is_earth).orbit(),
             (None, None, None) => subject.side(),
             (None, azimuth, elevation) => Orbit {
                 azimuth_degrees: azimuth.unwrap_or(0.0),
@@ -283,6 +283,14 @@ pub enum ViewWord {
     Right,
     Superior,
     Inferior,
+    /// The anterior side; of a piece of the Earth the south
+    Front,
+    /// The other side than front
+    Back,
+    /// Superior
+    Top,
+    /// Inferior
+    Bottom,
 }
 
 impl ViewWord {
@@ -295,17 +303,24 @@ impl ViewWord {
             Self::Right => "right",
             Self::Superior => "superior",
             Self::Inferior => "inferior",
+            Self::Front => "front",
+            Self::Back => "back",
+            Self::Top => "top",
+            Self::Bottom => "bottom",
         }
     }
 
-    fn view(self) -> View {
+    fn view(self, is_earth: bool) -> View {
         match self {
-            Self::Anterior => View::Anterior,
-            Self::Posterior => View::Posterior,
+            // On a map the north is away.
+            Self::Front if is_earth => View::Posterior,
+            Self::Back if is_earth => View::Anterior,
+            Self::Anterior | Self::Front => View::Anterior,
+            Self::Posterior | Self::Back => View::Posterior,
             Self::Left => View::Left,
             Self::Right => View::Right,
-            Self::Superior => View::Superior,
-            Self::Inferior => View::Inferior,
+            Self::Superior | Self::Top => View::Superior,
+            Self::Inferior | Self::Bottom => View::Inferior,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Which volume: the words, and the source they name.
 
 use super::{super::memory, Component, Error};
+use crate::cli::stdin::{self, STANDARD};
 use crate::{
     format,
     volume::{Header, Limits, Magnitude, Pick, Series, Source, Wanted, phantom},
@@ -16,7 +17,7 @@ use std::{
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct InputFlags {
-    /// A volume file, a folder of slices, or phantom:NAME[,n=256][,type=u8|u16|f32] with NAME of sphere, gauss,
+    /// A volume file, a folder of slices, - for a file on the standard input, or phantom:NAME[,n=256][,type=u8|u16|f32] with NAME of sphere, gauss,
     /// marschner-lobb, head, fog, shells, storm, cells
     #[arg(value_name = "INPUT")]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -79,14 +80,14 @@ fn is_false(flag: &bool) -> bool {
 }
 
 /// How a built-in volume begins.
-pub(super) const PHANTOM: &str = "phantom:";
+pub const PHANTOM: &str = "phantom:";
 
 impl InputFlags {
     /// The file, where the input is one.
     pub fn file(&self) -> Option<&Path> {
         self.path
             .as_deref()
-            .filter(|path| !path.starts_with(PHANTOM))
+            .filter(|path| !path.starts_with(PHANTOM) && *path != STANDARD)
             .map(Path::new)
     }
 
@@ -105,6 +106,20 @@ impl InputFlags {
             },
             ..limits
         }
+    }
+
+    /// Takes the first variable of `source` that can be drawn, where the words name none of several: the readers put it
+    /// first. Gives the note that names the others.
+    pub fn take_first_variable(&mut self, header: &Header) -> Option<String> {
+        let [first, others @ ..] = &header.variables[..] else {
+            return None;
+        };
+        self.check_one_variable(header).err()?;
+        self.variable = Some(first.clone());
+        Some(format!(
+            "drawn is {first}; --variable takes another: {}",
+            others.join(", ")
+        ))
     }
 
     /// Opens what the words name, as it is drawn; reads its header alone.
@@ -143,7 +158,11 @@ impl InputFlags {
             self.check_series(source.header())?;
             return Ok(source);
         }
-        let path = Path::new(path);
+        let spooled = match path {
+            STANDARD => Some(stdin::file(limits.max_bytes)?),
+            _ => None,
+        };
+        let path = spooled.as_deref().unwrap_or(Path::new(path));
         let source = match &self.raw {
             Some(layout) => {
                 let layout = format::raw::RawSpec::parse(layout).map_err(|problem| {

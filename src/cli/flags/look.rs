@@ -1,6 +1,8 @@
 //! `--look`: which defaults hold where no flag says otherwise.
 
 use super::SceneFlags;
+use crate::cli::progress::Progress;
+use crate::volume::Header;
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +21,15 @@ impl SceneFlags {
     /// [`Self::default_to_auto`].
     pub fn is_auto(&self) -> bool {
         self.look == Some(Look::Auto)
+    }
+
+    /// Takes the first of several variables, and says so, where the look may choose and no flag does.
+    pub fn take_first_variable(&mut self, header: &Header, progress: &Progress) {
+        if self.is_auto()
+            && let Some(note) = self.input.take_first_variable(header)
+        {
+            progress.note(&note);
+        }
     }
 
     /// `auto` unless a flag or a scene file says otherwise; pictures for conformance are `plain`.

@@ -38,7 +38,7 @@ pub use denoise::DenoiseWord;
 pub use gradient_filter::GradientFlags;
 pub use gradients::{boundaries_of, refuse_gradients_in};
 pub use inlined::{Inlined, function_in};
-pub use input::{InputFlags, relative};
+pub use input::{InputFlags, PHANTOM, relative};
 pub use labels::LabelFlags;
 pub use levels::LevelFlags;
 pub use light::{LightFlags, LightWord, ShadingWord};

@@ -38,11 +38,16 @@ impl TechniqueWord {
 #[serde(rename_all = "kebab-case")]
 #[allow(missing_docs, reason = "the names say it")]
 pub enum ModeWord {
+    /// Colours and opacities blended from the eye on
     #[default]
     Composite,
+    /// The maximum along each ray (maximum intensity projection)
     Mip,
+    /// The minimum along each ray
     Minip,
+    /// The mean along each ray
     Average,
+    /// The integral along each ray, value times world length
     Xray,
     /// The first local maximum over a threshold
     Lmip,

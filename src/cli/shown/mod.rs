@@ -73,15 +73,17 @@ pub struct Other {
 }
 
 impl Shown {
-    /// Reads what the words name, for a picture of these settings.
+    /// Reads what the words name, for a picture of these settings. Under `--look auto` the first of several variables is
+    /// taken, and `scene` says so afterwards.
     pub fn read(
-        scene: &SceneFlags,
+        scene: &mut SceneFlags,
         settings: &Settings,
         device: &dyn DeviceRoom,
         progress: &Progress,
     ) -> Result<Self, Error> {
         check(scene, settings)?;
         let source = open(&scene.input, &limits(scene))?;
+        scene.take_first_variable(source.header(), progress);
         let shown = Self::of_source(source, scene, settings, device, progress)?;
         Ok(shown.at_level(scene))
     }

@@ -1,0 +1,54 @@
+//! The volume on the standard input, `-`, as a file in which readers can seek.
+
+use super::{Error, output::say_aside};
+use crate::cli::flags::with_causes;
+use std::io::{self, IsTerminal, Read};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use tempfile::NamedTempFile;
+
+/// The standard input in the place of a volume, and the standard output in the place of a picture.
+pub const STANDARD: &str = "-";
+
+static SPOOLED: Mutex<Option<NamedTempFile>> = Mutex::new(None);
+
+/// The file that holds what the standard input gave, of at most `max_bytes`. It is read once.
+pub fn file(max_bytes: u64) -> Result<PathBuf, Error> {
+    let mut spooled = SPOOLED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(file) = &*spooled {
+        return Ok(file.path().to_owned());
+    }
+    if io::stdin().is_terminal() {
+        return Err(Error::usage(
+            "-: the standard input is a terminal, wanted a volume",
+            "cat scan.nii.gz | stratavox render - -o scan.png",
+        ));
+    }
+    let read = |cause: io::Error| Error::Input {
+        path: Path::new("the standard input").to_owned(),
+        problem: with_causes(&cause),
+    };
+    let mut file = tempfile::Builder::new()
+        .prefix("stratavox-")
+        .tempfile()
+        .map_err(|cause| Error::output(&std::env::temp_dir(), &cause))?;
+    let mut input = io::stdin().lock().take(max_bytes.saturating_add(1));
+    let bytes = io::copy(&mut input, &mut file).map_err(read)?;
+    if bytes > max_bytes {
+        return Err(Error::Limit(format!(
+            "the standard input has more than the {max_bytes} bytes that are allowed"
+        )));
+    }
+    say_aside(&format!("read {bytes} bytes from the standard input"));
+    let path = file.path().to_owned();
+    *spooled = Some(file);
+    Ok(path)
+}
+
+/// Removes the file, when the program ends.
+pub fn discard() {
+    // A thread that is just reading holds the lock, and its file is nobody's yet.
+    if let Ok(mut spooled) = SPOOLED.try_lock() {
+        spooled.take();
+    }
+}
