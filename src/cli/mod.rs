@@ -19,6 +19,7 @@ mod error;
 mod exaggerate;
 mod figure;
 mod flags;
+mod help;
 mod histogram;
 mod info;
 mod labels;
@@ -50,7 +51,7 @@ mod view;
 pub use bug::guarded;
 pub use error::Error;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use signals::Gate;
 use std::ffi::OsString;
 use std::path::Path;
@@ -136,7 +137,8 @@ fn with_verb(mut words: Vec<OsString>) -> Vec<OsString> {
 }
 
 fn obey(words: Vec<OsString>, source: Source, gate: &Gate) -> Result<(), Error> {
-    let words = match Words::try_parse_from(words) {
+    let matches = help::command().try_get_matches_from(words);
+    let words = match matches.and_then(|matches| Words::from_arg_matches(&matches)) {
         Ok(words) => words,
         // Help and version are answers, not errors.
         Err(answer) if !answer.use_stderr() => return output::say(&answer.render().to_string()),
@@ -154,8 +156,8 @@ fn obey(words: Vec<OsString>, source: Source, gate: &Gate) -> Result<(), Error> 
         Verb::Sheet(sheet) => sheet.run(gate),
         Verb::Histogram(histogram) => histogram.run(gate),
         Verb::Preset(preset) => preset.run(gate),
-        Verb::Completions(completions) => completions.run(Words::command()),
-        Verb::Man(man) => man.run(Words::command(), gate),
+        Verb::Completions(completions) => completions.run(help::command()),
+        Verb::Man(man) => man.run(help::command(), gate),
         Verb::View(view) => view.run(),
         Verb::Conformance(conformance) => conformance.run(source, gate),
     }

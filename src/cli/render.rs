@@ -28,10 +28,16 @@ use std::{
 
 /// Draw a volume into a picture
 #[derive(Args, Clone, Debug)]
-#[command(after_help = "Examples:\n  \
-    stratavox render phantom:head -o head.png\n  \
+#[command(help_template = "{about}\n\n{usage-heading} {usage}\n\n\
+    Examples:\n  \
+    stratavox phantom:head\n  \
+    stratavox render phantom:head --preset ct-bone --view left --size 800x800 -o bone.png\n  \
+    stratavox render phantom:head --section axial --window -100,300 -o axial.png\n  \
+    stratavox render phantom:head --mode mip --aov value,depth -o mip.exr\n\n\
+    {all-args}{after-help}")]
+#[command(after_help = "More examples:\n  \
     stratavox render phantom:head --technique slices-3d --view left --background 0,0,0 -o left.png\n  \
-    stratavox render phantom:head --mode mip --aov value,depth -o mip.exr\n  \
+    cat scan.nii.gz | stratavox render - -o - | display\n  \
     stratavox render phantom:storm,n=64 --variable w --mode iso --iso-color-by vapor -o w.png\n  \
     stratavox render phantom:cells --channel 0,color=cyan --channel 1,color=1:0.3:0 -o cells.png\n  \
     stratavox render phantom:storm --variable temperature --opacity-variable cloud -o storm.png\n  \
