@@ -64,7 +64,6 @@ fn what_is_not_read_is_refused_by_its_name() {
         (259, Short(6), "compression 6 (JPEG of the old kind)"),
         (259, Short(34712), "(JPEG 2000)"),
         (259, Short(34925), "(LZMA)"),
-        (259, Short(50000), "(Zstandard)"),
         (259, Short(50001), "(WebP)"),
         (259, Short(50002), "(JPEG XL)"),
         (258, Short(12), "12 bits per sample (unsigned)"),

@@ -65,6 +65,8 @@ mod vtk;
 pub mod write;
 #[cfg(feature = "zarr")]
 mod zarr;
+#[cfg(any(feature = "netcdf", feature = "tiff", feature = "zarr"))]
+mod zstd;
 
 #[cfg(not(feature = "dicom"))]
 use absent::dicom;
@@ -168,7 +170,7 @@ const READERS: &[Reader] = &[
     Reader {
         recognizes: npy::recognizes,
         endings: &["npy"],
-        open: |path, _, limits| Ok(Box::new(npy::open(path, limits)?)),
+        open: |path, _, limits| npy::open(path, limits),
     },
     Reader {
         recognizes: netcdf::recognizes,

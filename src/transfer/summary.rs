@@ -56,8 +56,7 @@ impl ValueSummary {
         hounsfield: bool,
         value: impl Fn(usize) -> Option<f64>,
     ) -> Self {
-        // Odd, so that no power-of-two row length makes all samples lie in few columns.
-        let stride = (count / MAX_SAMPLES).max(1) | 1;
+        let stride = Self::stride(count);
         let sampled = || (0..count).step_by(stride);
         let [low, high] = range;
         let integers = sampled().all(|i| value(i).is_none_or(|v| v.fract() == 0.0));
@@ -92,6 +91,12 @@ impl ValueSummary {
             quantity: Quantity::Unknown,
             diagonal,
         }
+    }
+
+    /// From one of `count` voxels that are looked at to the next; of each, the one behind it may be looked at too.
+    pub(crate) fn stride(count: usize) -> usize {
+        // Odd, so that no power-of-two row length makes all samples lie in few columns.
+        (count / MAX_SAMPLES).max(1) | 1
     }
 
     /// The same of values that measure `quantity`.

@@ -54,6 +54,8 @@ pub use reduce::Reduced;
 pub use regrid::{is_same_grid, regridded};
 pub use source::{Loss, Pick, Piece, Source};
 pub use statistics::Statistics;
+#[cfg(feature = "cli")]
+pub(crate) use statistics::slices_of_slab;
 pub use survey::{Overview, Survey, Surveyed};
 pub use voxel_box::VoxelBox;
 pub use voxels::{VoxelType, Voxels};

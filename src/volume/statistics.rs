@@ -5,8 +5,8 @@
 use super::histogram::{Bins, Histogram};
 use super::read::check_memory;
 use super::voxels::{Stored, with_numbers};
-use super::{Limits, Loss, Pick, Piece, ReadError, Source, VoxelBox, Voxels};
-use std::ops::Range;
+use super::{Header, Limits, Loss, Pick, ReadError, Source, Voxels};
+use std::ops::{ControlFlow, Range};
 
 /// Smallest, largest and mean value, and how many voxels count.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,7 +30,7 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// Of all times and some components of `source`. Reads it twice, unless one read gives all of it.
+    /// Of all times and some components of `source`. Reads it twice, slab by slab, unless one slab is all of it.
     ///
     /// # Errors
     /// Where what has to be read at once needs more memory than `limits` allow, and whatever the source meets.
@@ -40,36 +40,45 @@ impl Statistics {
         limits: &Limits,
     ) -> Result<Self, ReadError> {
         let header = source.header();
-        let regions = regions(source, limits.max_bytes);
-        check_memory(header, regions[0], limits).map_err(|problem| ReadError {
-            path: source.path().to_owned(),
-            problem,
+        let slices = slices_of_slab(header, limits.max_bytes);
+        let first = header.whole().slabs(slices).next();
+        check_memory(header, first.unwrap_or(header.whole()), limits).map_err(|problem| {
+            ReadError {
+                path: source.path().to_owned(),
+                problem,
+            }
         })?;
-        let picks: Vec<(Pick, VoxelBox)> = (0..header.times)
+        let picks: Vec<Pick> = (0..header.times)
             .flat_map(|time| {
                 components
                     .clone()
                     .map(move |component| Pick { time, component })
             })
-            .flat_map(|pick| regions.iter().map(move |&region| (pick, region)))
             .collect();
+        let is_one_slab = picks.len() == 1 && slices >= header.dims[2];
         let mut tally = Tally::default();
         let mut kept = None;
-        for &(pick, region) in &picks {
-            let Piece { voxels, loss } = source.read(pick, region)?;
-            tally.add(&voxels, header.fill);
-            tally.loss = tally.loss.and(loss);
-            kept = (picks.len() == 1).then_some(voxels);
+        for &pick in &picks {
+            source.read_slabs(pick, header.whole(), slices, &mut |_, piece| {
+                tally.add(&piece.voxels, header.fill);
+                tally.loss = tally.loss.and(piece.loss);
+                kept = is_one_slab.then_some(piece.voxels);
+                ControlFlow::Continue(())
+            })?;
         }
         if tally.valid == 0 {
             return Ok(tally.statistics_without_values());
         }
         let is_float = header.stored.is_float();
         let mut bins = Bins::over([tally.min, tally.max], is_float, Histogram::MAX_BINS);
-        for &(pick, region) in &picks {
-            match kept.take() {
-                Some(voxels) => bins.add(&voxels, header.fill),
-                None => bins.add(&source.read(pick, region)?.voxels, header.fill),
+        if let Some(voxels) = kept.take() {
+            bins.add(&voxels, header.fill);
+        } else {
+            for &pick in &picks {
+                source.read_slabs(pick, header.whole(), slices, &mut |_, piece| {
+                    bins.add(&piece.voxels, header.fill);
+                    ControlFlow::Continue(())
+                })?;
             }
         }
         let rescale = header.rescale;
@@ -88,21 +97,12 @@ impl Statistics {
     }
 }
 
-/// What is read at once: a large volume in slabs, where its source has parts.
-fn regions(source: &dyn Source, max_bytes: u64) -> Vec<VoxelBox> {
-    const SLAB_BYTES: u64 = 256 << 20;
-    let whole = source.header().whole();
-    let [x, y, z] = whole.max;
-    let slice_bytes = u64::from(x) * u64::from(y) * source.header().stored.bytes() as u64;
-    let slices = (SLAB_BYTES.min(max_bytes) / slice_bytes.max(1)).clamp(1, z.into()) as u32;
-    if !source.reads_parts() || slices == z {
-        return vec![whole];
-    }
-    let slab = |first: u32| VoxelBox {
-        min: [0, 0, first],
-        max: [x, y, first.saturating_add(slices).min(z)],
-    };
-    (0..z).step_by(slices as usize).map(slab).collect()
+/// Slices along z that are read at once of a volume whatever its size.
+pub(crate) fn slices_of_slab(header: &Header, max_bytes: u64) -> u32 {
+    const SLAB_BYTES: u64 = 128 << 20;
+    let [x, y, z] = header.dims;
+    let slice_bytes = u64::from(x) * u64::from(y) * header.stored.bytes() as u64;
+    (SLAB_BYTES.min(max_bytes) / slice_bytes.max(1)).clamp(1, z.into()) as u32
 }
 
 /// The first pass: stored numbers.

@@ -3,12 +3,13 @@
 use super::person::Folder;
 use serde_json::Value;
 use std::fs::{self, File};
+use std::io::Write;
 
 const SIDE: u64 = 320;
 
 /// 64 MiB of zeros that take no room on the disk, with one voxel that is not zero.
 fn large(folder: &Folder) {
-    use std::io::{Seek, SeekFrom, Write};
+    use std::io::{Seek, SeekFrom};
     let mut file = File::create(folder.path("large.raw")).expect("a file");
     file.set_len(SIDE * SIDE * SIDE * 2).expect("a length");
     file.seek(SeekFrom::Start(SIDE * SIDE * SIDE))
@@ -94,6 +95,81 @@ fn files_of_strangers_get_tight_limits() {
     folder
         .run(words)
         .assert_refused(6, &["b.raw", "1073741824"]);
+}
+
+/// A header and so many zeros, packed: a file a thousand times smaller than its volume.
+fn zeros(folder: &Folder, name: &str, header: &[u8], bytes: u64, at_front: bool) {
+    let file = File::create(folder.path(name)).expect("a file");
+    let mut out = std::io::BufWriter::new(file);
+    if !at_front {
+        out.write_all(header).expect("a header");
+    }
+    let mut packed = flate2::write::GzEncoder::new(out, flate2::Compression::fast());
+    if at_front {
+        packed.write_all(header).expect("a header");
+    }
+    let plain = [0; 1 << 16];
+    let mut left = bytes;
+    while left > 0 {
+        let now = left.min(plain.len() as u64);
+        packed.write_all(&plain[..now as usize]).expect("zeros");
+        left -= now;
+    }
+    packed.finish().expect("compressed");
+}
+
+/// Peak memory of `info`, in bytes, as the shell's limit of the address space allows it: more is refused by the system.
+#[cfg(target_os = "linux")]
+fn info_below(folder: &Folder, file: &str, limit_kib: u64) {
+    let program = env!("CARGO_BIN_EXE_stratavox");
+    let ran = std::process::Command::new("sh")
+        .arg("-c")
+        .arg(format!(
+            "ulimit -v {limit_kib} && exec {program} info {file} --json"
+        ))
+        .current_dir(folder.path("."))
+        .output()
+        .expect("a shell");
+    let err = String::from_utf8_lossy(&ran.stderr);
+    assert!(ran.status.success(), "{file}: {:?} {err}", ran.status);
+    let report: Value = serde_json::from_slice(&ran.stdout).expect("JSON");
+    assert_eq!((&report["min"], &report["max"]), (&0.0.into(), &0.0.into()));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn info_takes_half_a_gigabyte_whatever_the_volume() {
+    let folder = Folder::new();
+    // 1.1 GB each; STRATAVOX_INFO_GB=12 is the long run.
+    let gigabytes =
+        std::env::var("STRATAVOX_INFO_GB").map_or(1, |word| word.parse().expect("a number"));
+    let slices = 512 * gigabytes;
+    let bytes = 1024 * 1024 * 2 * slices;
+    let nrrd = format!(
+        "NRRD0004\ntype: ushort\ndimension: 3\nsizes: 1024 1024 {slices}\nencoding: gzip\nendian: little\n\n"
+    );
+    zeros(&folder, "a.nrrd", nrrd.as_bytes(), bytes, false);
+    let mut nifti = vec![0; 352];
+    for (at, number) in [(0, 348_i32), (76, 0)] {
+        nifti[at..at + 4].copy_from_slice(&number.to_le_bytes());
+    }
+    for (k, size) in [3, 1024, 1024, slices as i16].into_iter().enumerate() {
+        nifti[40 + 2 * k..42 + 2 * k].copy_from_slice(&size.to_le_bytes());
+        nifti[76 + 4 * k..80 + 4 * k].copy_from_slice(&1_f32.to_le_bytes());
+    }
+    nifti[70..74].copy_from_slice(&[4, 0, 16, 0]);
+    nifti[108..112].copy_from_slice(&352_f32.to_le_bytes());
+    nifti[344..348].copy_from_slice(b"n+1\0");
+    zeros(&folder, "a.nii.gz", &nifti, bytes, true);
+    let raw = File::create(folder.path("a.raw")).expect("a file");
+    raw.set_len(bytes).expect("a length");
+    for file in [
+        "a.nrrd".to_owned(),
+        "a.nii.gz".to_owned(),
+        format!("a.raw --raw 1024x1024x{slices},u16"),
+    ] {
+        info_below(&folder, &file, 512 << 10);
+    }
 }
 
 #[test]

@@ -57,6 +57,39 @@ fn every_data_set_gives_the_numbers_that_h5py_reads() {
 }
 
 #[test]
+fn chunks_of_zstandard_are_read_and_damage_in_them_is_an_error() {
+    let wanted: Vec<Option<f64>> = (0..60).map(|n| Some(f64::from(n))).collect();
+    for (file, name) in [
+        ("hdf5/zstd.h5", "plain"),
+        ("hdf5/zstd.h5", "shuffled"),
+        ("hdf5/zstd.h5", "checked"),
+        ("netcdf/zstd.nc", "a"),
+    ] {
+        let source = open(file, Some(name)).unwrap_or_else(|e| panic!("{name}: {}", message(&e)));
+        assert_eq!(source.header().dims, [5, 4, 3], "{name}");
+        assert_eq!(values(source.as_ref(), Pick::default()), wanted, "{name}");
+    }
+    // The first frame of the file belongs to `plain`: its magic number, then a byte within.
+    let whole = std::fs::read(fixtures::path("hdf5/zstd.h5")).unwrap();
+    let magic = [0x28, 0xb5, 0x2f, 0xfd];
+    let frame = whole.windows(4).position(|bytes| bytes == magic).unwrap();
+    let folder = Folder::new();
+    for at in [frame, frame + 4] {
+        let mut bytes = whole.clone();
+        bytes[at] ^= 0x3f;
+        let path = folder.write("a.h5", &bytes);
+        let wanted = Wanted {
+            variable: Some("plain".to_owned()),
+            ..Wanted::default()
+        };
+        let source = stratavox::format::open(&path, &wanted, &Limits::default()).unwrap();
+        let whole = source.header().whole();
+        let error = source.read(Pick::default(), whole).expect_err("damage");
+        assert!(message(&error).contains("Zstandard"), "{}", message(&error));
+    }
+}
+
+#[test]
 fn axes_run_t_z_y_x_c() {
     let header = |name| open("hdf5/kinds.h5", Some(name)).unwrap().header().clone();
     let vector = header("axes/vector");

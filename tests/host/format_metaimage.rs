@@ -249,3 +249,24 @@ fn the_real_metaimages_are_what_their_manifest_says() {
         assert_eq!(entries.len(), 4, "files compared");
     }
 }
+
+#[test]
+fn a_negative_spacing_is_a_note() {
+    let folder = Folder::new();
+    let text = header("MET_UCHAR");
+    for (spacing, words) in [
+        ("1 2 3", None),
+        (
+            "1 -2 3",
+            Some("the spacing along y is negative, -2: the axis is taken to run the other way"),
+        ),
+    ] {
+        let text = text.replace("1 2 3", spacing);
+        let (header, _) = folder.read("a.mha", attached(&text, &[0; 6])).unwrap();
+        let notes = header.notes.join("\n");
+        match words {
+            Some(words) => assert!(notes.contains(words), "{notes}"),
+            None => assert!(!notes.contains("spacing"), "{notes}"),
+        }
+    }
+}

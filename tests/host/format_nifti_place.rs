@@ -243,3 +243,79 @@ fn real_files_have_the_numbers_and_places_of_the_manifest() {
         assert_eq!(entries.len(), 6);
     }
 }
+
+#[test]
+fn a_header_that_was_repaired_is_a_note() {
+    let folder = Folder::new();
+    let voxels = [0; 12];
+    let notes = |file: &Nifti| {
+        let (header, _) = folder.read("a.nii", file.with(&voxels)).unwrap();
+        header.notes.join("\n")
+    };
+    let good = Nifti {
+        sform_code: 1,
+        srow: [
+            [1.0, 0.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0, 0.0],
+            [0.0, 0.0, 1.0, 0.0],
+        ],
+        ..Nifti::new(4, 16)
+    };
+    assert_eq!(notes(&good), "");
+    let sizes = |x: f64| [1.0, x, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0];
+    for (what, file, words) in [
+        (
+            "NaN beside an sform",
+            Nifti {
+                pixdim: sizes(f64::NAN),
+                ..good.clone()
+            },
+            "voxels of NaN x 1 x 1, which cannot be: the sform counts",
+        ),
+        (
+            "0 beside an sform",
+            Nifti {
+                pixdim: sizes(0.0),
+                ..good.clone()
+            },
+            "voxels of 0 x 1 x 1, which cannot be: the sform counts",
+        ),
+        (
+            "0 without one",
+            Nifti {
+                pixdim: sizes(0.0),
+                ..Nifti::new(4, 16)
+            },
+            "voxels of 0 x 1 x 1 are taken as 1 x 1 x 1",
+        ),
+        (
+            "a slope",
+            Nifti {
+                scl_slope: f64::INFINITY,
+                ..good.clone()
+            },
+            "scl_slope is inf: values are taken as they are stored",
+        ),
+        (
+            "an offset",
+            Nifti {
+                vox_offset: 348.0,
+                ..good.clone()
+            },
+            "vox_offset is 348, inside the header: 352 is taken",
+        ),
+        (
+            "qfac",
+            Nifti {
+                pixdim: [f64::NAN, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
+                sform_code: 0,
+                qform_code: 1,
+                ..good.clone()
+            },
+            "qfac, pixdim[0], is NaN: 1 is taken",
+        ),
+    ] {
+        let found = notes(&file);
+        assert!(found.contains(words), "{what}: {found}");
+    }
+}

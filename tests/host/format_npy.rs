@@ -75,11 +75,12 @@ fn every_type_order_and_shape_holds_what_numpy_reads() {
 #[test]
 fn the_notes_say_how_axes_were_taken() {
     for (name, words) in [
-        ("u2-be.npy", "C order: its axes are taken as [z, y, x]"),
+        ("u2-be.npy", "the axes of the array are taken as [z, y, x]"),
         (
-            "fortran.npy",
-            "Fortran order: its axes are taken as [x, y, z]",
+            "fortran-i2-be.npy",
+            "the axes of the array are taken as [z, y, x]",
         ),
+        ("fortran-i2-be.npy", "the array is in Fortran order"),
         ("times.npy", "[t, z, y, x]"),
         ("channels.npy", "[t, c, z, y, x]"),
         ("picture.npy", "[y, x, color]"),
@@ -88,6 +89,32 @@ fn the_notes_say_how_axes_were_taken() {
         let source = open(name);
         let notes = source.header().notes.join("\n");
         assert!(notes.contains(words), "{name}: {notes}");
+    }
+}
+
+#[test]
+fn the_order_of_memory_changes_nothing_but_a_note() {
+    for name in ["i2-be", "plane", "times", "channels", "picture", "colors"] {
+        let [c, fortran] =
+            [format!("{name}.npy"), format!("fortran-{name}.npy")].map(|name| open(&name));
+        let (header, other) = (c.header(), fortran.header());
+        let mut without_note = other.clone();
+        without_note.notes.retain(|note| !note.contains("Fortran"));
+        assert_eq!(*header, without_note, "{name}");
+        assert_eq!(header.notes.len() + 1, other.notes.len(), "{name}");
+        for time in 0..header.times {
+            for component in 0..header.components {
+                let pick = Pick { time, component };
+                let read = |source: &dyn Source| source.read(pick, header.whole()).unwrap();
+                let bytes = |source: &dyn Source| source.read_bytes(pick, header.whole()).unwrap();
+                assert_eq!(read(c.as_ref()), read(fortran.as_ref()), "{name} {pick:?}");
+                assert_eq!(
+                    bytes(c.as_ref()),
+                    bytes(fortran.as_ref()),
+                    "{name} {pick:?}"
+                );
+            }
+        }
     }
 }
 
@@ -196,7 +223,7 @@ fn a_header_that_lies_is_refused_before_anything_is_allocated() {
 fn an_array_cut_anywhere_is_an_error() {
     let folder = Folder::new();
     let mut cuts = 0;
-    for name in ["u2-be.npy", "v3.npy", "colors.npy", "fortran.npy"] {
+    for name in ["u2-be.npy", "v3.npy", "colors.npy", "fortran-i2-be.npy"] {
         let whole = bytes(name);
         folder.read("a.npy", &whole).unwrap();
         for cut in 0..whole.len() {

@@ -2,6 +2,8 @@
 
 mod place;
 mod text;
+mod values;
+mod watched;
 
 use super::{
     Error,
@@ -9,15 +11,13 @@ use super::{
     histogram::unit,
     memory::{RenderBytes, software_device_bytes},
     output::{say, say_aside},
+    progress::{Progress, ProgressWord},
 };
-use crate::{
-    transfer::{Kind, Quantity, ValueSummary},
-    volume::{Grid, Header, Meaning, Pick, ReadError, Source, Statistics},
-};
+use crate::volume::{Grid, Header, Limits, Meaning, Pick, Problem, ReadError, Source, Statistics};
 use clap::Args;
 use glam::DVec3;
 use serde::Serialize;
-use std::ops::Range;
+use watched::Watched;
 
 /// Say what a volume holds
 #[derive(Args, Debug)]
@@ -28,6 +28,9 @@ pub struct Info {
     /// As JSON
     #[arg(long)]
     json: bool,
+    /// Say on stderr how far the work is
+    #[arg(long, value_enum, default_value_t)]
+    progress: ProgressWord,
 }
 
 /// The JSON, key by key; lengths in world units, values after rescale.
@@ -85,14 +88,34 @@ impl Info {
     /// Reads all of the input and prints what it is like.
     pub fn run(self) -> Result<(), Error> {
         let limits = self.input.limits();
+        let progress = Progress::new(self.progress);
         let source = self.input.open_as_stored(&limits)?;
-        let header = source.header();
+        if self.input.untrusted {
+            check_size(source.as_ref(), &limits)?;
+        }
+        // Statistics read everything twice, and what the values look like the first time once more.
+        let times = 2 * u64::from(source.header().times) + 1;
+        let all = source.header().voxel_count().saturating_mul(times);
+        let source = Watched::new(source, &progress, all);
+        let header = source.header().clone();
+        let header = &header;
         self.input.time(header)?;
         if self.input.time.is_some() {
             say_aside("--time has no effect on info, its numbers are those of all times");
         }
         let components = self.input.components(header)?;
-        let statistics = Statistics::of(source.as_ref(), components.clone(), &limits)?;
+        let statistics = Statistics::of(&source, components.clone(), &limits)?;
+        // Where one number a voxel is drawn; JSON says nothing of it.
+        let kind = match components.len() == 1 && statistics.valid_count > 0 && !self.json {
+            true => {
+                let component = components.start;
+                values::kind(&source, Pick { time: 0, component }, &limits)?
+            }
+            false => None,
+        };
+        // What follows is said without a line of progress beside it.
+        drop(source);
+        drop(progress);
         let mut report = report(header, &statistics);
         if header.is_earth {
             // Uneven levels are drawn from even ones, of which there are more.
@@ -109,7 +132,6 @@ impl Info {
             let json = serde_json::to_string_pretty(&report).expect("numbers as JSON");
             say(&format!("{json}\n"))
         } else {
-            let kind = kind(source.as_ref(), &components, &statistics)?;
             let page = text::Page {
                 report: &report,
                 header,
@@ -122,48 +144,21 @@ impl Info {
     }
 }
 
-/// What the values of the first time look like, where one number a voxel is drawn.
-fn kind(
-    source: &dyn Source,
-    components: &Range<u32>,
-    statistics: &Statistics,
-) -> Result<Option<Kind>, ReadError> {
+/// The values of a volume of more bytes are not read where a stranger's file says so.
+fn check_size(source: &dyn Source, limits: &Limits) -> Result<(), ReadError> {
     let header = source.header();
-    if components.len() != 1 || statistics.valid_count == 0 {
-        return Ok(None);
+    let wanted_bytes = RenderBytes::of(header, false).host;
+    if wanted_bytes <= limits.max_bytes {
+        return Ok(());
     }
-    let pick = Pick {
-        time: 0,
-        component: components.start,
-    };
-    let voxels = source.read(pick, header.whole())?.voxels;
-    // As numbers were rounded on their way here, so is the fill.
-    let fill = header.fill.map(|fill| fill as f32);
-    let value = |i: usize| {
-        let stored = voxels.stored(i);
-        let is_valid = stored.is_finite() && Some(stored) != fill;
-        is_valid.then(|| f64::from(stored) * header.rescale.slope + header.rescale.intercept)
-    };
-    let values = (0..voxels.len()).filter_map(value);
-    let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
-        [low.min(value), high.max(value)]
-    });
-    if range[0] > range[1] {
-        return Ok(None);
-    }
-    let [x, y, z] = header.dims.map(f64::from);
-    let diagonal = header
-        .world_from_voxel
-        .transform_vector3(DVec3::new(x, y, z));
-    let summary = ValueSummary::of(
-        voxels.len(),
-        range,
-        diagonal.length(),
-        header.hounsfield,
-        value,
-    )
-    .measuring(Quantity::of_unit(header.unit.as_deref()));
-    Ok(Some(Kind::of(&summary)))
+    Err(ReadError {
+        path: source.path().to_owned(),
+        problem: Problem::Limit {
+            what: "the volume".to_owned(),
+            wanted_bytes,
+            limit_bytes: limits.max_bytes,
+        },
+    })
 }
 
 fn meaning(header: &Header) -> (&'static str, Vec<ChannelReport>) {

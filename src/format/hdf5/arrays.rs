@@ -6,12 +6,13 @@ use crate::format::convert::{Builder, Endian, to_u64};
 use crate::format::fence::fenced;
 use crate::format::place::open_regular;
 use crate::format::problem::{escape, invalid, unsupported};
+use crate::format::zstd;
 use crate::volume::{Limits, Piece, Problem, VoxelType};
 use hdf5_reader::error::{ByteOrder, Error};
 use hdf5_reader::group::Group;
 use hdf5_reader::{
-    Attribute, Dataset, Datatype, FileStorage, H5Type, Hdf5File, OpenOptions, SliceInfo,
-    SliceInfoElem,
+    Attribute, Dataset, Datatype, FileStorage, FilterRegistry, H5Type, Hdf5File, OpenOptions,
+    SliceInfo, SliceInfoElem,
 };
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -27,6 +28,9 @@ pub(crate) struct Hdf5 {
 /// Groups below each other, and data sets, beyond which no file is looked through.
 const MAX_DEPTH: usize = 32;
 const MAX_OBJECTS: usize = 10_000;
+
+/// A chunk has fewer bytes than that by the definition of the format.
+const MAX_CHUNK_BYTES: usize = u32::MAX as usize;
 
 /// Chunks that are kept decoded.
 const CACHE_BYTES: u64 = 64 << 20;
@@ -44,7 +48,8 @@ impl Hdf5 {
                 .with_chunk_cache_bytes(bytes(CACHE_BYTES.min(limits.max_bytes)))
                 .with_max_chunk_bytes(bytes(limits.max_bytes))
                 .with_max_read_bytes(bytes(limits.max_bytes))
-                .with_max_object_header_bytes(limits.max_header_bytes);
+                .with_max_object_header_bytes(limits.max_header_bytes)
+                .with_filter_registry(filters(limits));
             Hdf5File::from_storage_with_options(Arc::new(storage), options)
                 .map_err(|error| problem_of(HDF5, "superblock", &error))
         })?;
@@ -300,6 +305,22 @@ pub(crate) fn problem_of(format: &'static str, what: &str, error: &Error) -> Pro
     }
 }
 
+/// The filters of the library, and Zstandard, registered as 32015.
+pub(crate) fn filters(limits: &Limits) -> FilterRegistry {
+    let most = usize::try_from(limits.max_bytes).unwrap_or(usize::MAX);
+    let mut filters = FilterRegistry::new();
+    filters.register(
+        32015,
+        Box::new(move |_, bytes, _| {
+            // The library bounds a chunk by its shape; a filter of ours does not get to know that.
+            let most = most.min(MAX_CHUNK_BYTES);
+            zstd::decode(bytes, most)
+                .map_err(|cause| Error::FilterError(format!("Zstandard: {cause}")))
+        }),
+    );
+    filters
+}
+
 /// The name of a filter that is known by its number, portal.hdfgroup.org, registered filter plug-ins.
 fn filter(name: &str) -> String {
     let known = [
@@ -308,7 +329,6 @@ fn filter(name: &str) -> String {
         ("32004", "LZ4"),
         ("32008", "bitshuffle"),
         ("32013", "ZFP"),
-        ("32015", "Zstandard"),
         ("32026", "Blosc2"),
     ];
     let known = known.iter().find(|(number, _)| name.contains(number));

@@ -22,7 +22,7 @@ use crate::volume::{
     Format, Header, Limits, Meaning, Problem, ReadError, Source, VoxelType, Wanted,
 };
 use arrays::Hdf5;
-pub(super) use arrays::problem_of;
+pub(super) use arrays::{filters, problem_of};
 use std::path::Path;
 use std::sync::Arc;
 

@@ -180,6 +180,13 @@ fn affine(fields: &Fields, dimension: usize, notes: &mut Vec<String>) -> Result<
             vec![1.0; dimension]
         }
     };
+    for (step, axis) in spacing.iter().zip(["x", "y", "z"]) {
+        if *step < 0.0 {
+            notes.push(format!(
+                "the spacing along {axis} is negative, {step}: the axis is taken to run the other way"
+            ));
+        }
+    }
     let offset = fields.numbers(
         &["Position", "Offset", "Origin", "ImagePosition"],
         dimension,

@@ -9,7 +9,7 @@ mod length;
 use super::cf::{self, Arrays, Attributes, Dimension, Kind, Value, Variable};
 use super::convert::{Builder, Endian};
 use super::fence::fenced;
-use super::hdf5::problem_of as hdf5_problem;
+use super::hdf5::{filters, problem_of as hdf5_problem};
 use super::place::open_regular;
 use super::problem::{at, escape, invalid, unsupported};
 use crate::volume::{Format, Limits, Piece, Problem, ReadError, Source, VoxelType, Wanted};
@@ -61,6 +61,7 @@ impl NetCdf {
             max_chunk_bytes: bytes(limits.max_bytes),
             max_read_bytes: bytes(limits.max_bytes),
             max_object_header_bytes: limits.max_header_bytes,
+            filter_registry: Some(filters(limits)),
             ..NcOpenOptions::default()
         };
         fenced(NETCDF, "header", || {

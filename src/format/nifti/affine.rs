@@ -31,17 +31,23 @@ pub(super) fn affine(fields: &Fields, notes: &mut Vec<String>) -> Result<DAffine
     if fields.sform_code > 0 {
         let column = |k: usize| DVec3::from_array(fields.srow.map(|row| at(&row, k)));
         if let Some(affine) = scaled([column(0), column(1), column(2)], column(3)) {
+            let [_, x, y, z, ..] = fields.pixdim;
+            if ![x, y, z].iter().all(|&size| is_length(size)) {
+                notes.push(format!(
+                    "pixdim gives voxels of {x} x {y} x {z}, which cannot be: the sform counts"
+                ));
+            }
             return Ok(affine);
         }
         notes.push("the sform spans no volume and is not used".to_owned());
     }
     let sizes = voxel_sizes(fields, notes);
     if fields.qform_code > 0 {
-        let qfac = if at(&fields.pixdim, 0) < 0.0 {
-            -1.0
-        } else {
-            1.0
-        };
+        let given = at(&fields.pixdim, 0);
+        let qfac = if given < 0.0 { -1.0 } else { 1.0 };
+        if !given.is_finite() {
+            notes.push(format!("qfac, pixdim[0], is {given}: {qfac} is taken"));
+        }
         let steps =
             rotation(fields.quatern) * DMat3::from_diagonal(sizes * DVec3::new(1.0, 1.0, qfac));
         let columns = [steps.x_axis, steps.y_axis, steps.z_axis];
@@ -90,13 +96,7 @@ fn unit(fields: &Fields) -> (f64, Option<String>) {
 /// The lengths of the sides of a voxel: no signs, and 1 where the file gives none.
 fn voxel_sizes(fields: &Fields, notes: &mut Vec<String>) -> DVec3 {
     let given = [1, 2, 3].map(|k| at(&fields.pixdim, k));
-    let sizes = given.map(|size| {
-        if size.is_finite() && size != 0.0 {
-            size.abs()
-        } else {
-            1.0
-        }
-    });
+    let sizes = given.map(|size| if is_length(size) { size.abs() } else { 1.0 });
     if sizes != given {
         notes.push(format!(
             "voxels of {} x {} x {} are taken as {} x {} x {}",
@@ -104,6 +104,11 @@ fn voxel_sizes(fields: &Fields, notes: &mut Vec<String>) -> DVec3 {
         ));
     }
     DVec3::from_array(sizes)
+}
+
+/// True for what the length of a side may be; a sign does not matter.
+fn is_length(size: f64) -> bool {
+    size.is_finite() && size != 0.0
 }
 
 /// The rotation of a unit quaternion a + bi + cj + dk with a = sqrt(1 - b^2 - c^2 - d^2).

@@ -31,12 +31,13 @@ pub(super) fn open(path: &Path, limits: &Limits) -> Result<FileSource, ReadError
     let fields = Fields::read(&header_path).map_err(at(&header_path))?;
     let number = Number::of(fields.datatype).map_err(at(&header_path))?;
     let array = Array::of(&fields, &number).map_err(at(&header_path))?;
-    let header = header(&fields, &number, &array).map_err(at(&header_path))?;
+    let mut header = header(&fields, &number, &array).map_err(at(&header_path))?;
     let image_path = match fields.is_single_file {
         true => header_path.clone(),
         false => files::image_of(&header_path)?,
     };
-    let (encoding, start) = start(&fields, &image_path).map_err(at(&image_path))?;
+    let (encoding, start) =
+        start(&fields, &image_path, &mut header.notes).map_err(at(&image_path))?;
     let promise = Promise {
         format: NIFTI,
         stored: number.stored,
@@ -193,6 +194,11 @@ fn meaning(fields: &Fields, number: &Number, array: &Array) -> Meaning {
 /// A slope of 0 means that there is none, and so does one that is no number; colors have none.
 fn rescale(fields: &Fields, number: &Number, notes: &mut Vec<String>) -> Rescale {
     let slope = fields.scl_slope;
+    if slope.is_infinite() {
+        notes.push(format!(
+            "scl_slope is {slope}: values are taken as they are stored"
+        ));
+    }
     if number.channels > 1 || slope == 0.0 || !slope.is_finite() {
         return Rescale::default();
     }
@@ -207,7 +213,11 @@ fn rescale(fields: &Fields, number: &Number, notes: &mut Vec<String>) -> Rescale
 }
 
 /// How the voxels are written and where they begin.
-fn start(fields: &Fields, image_path: &Path) -> Result<(Encoding, Start), Problem> {
+fn start(
+    fields: &Fields,
+    image_path: &Path,
+    notes: &mut Vec<String>,
+) -> Result<(Encoding, Start), Problem> {
     let wrong = |wanted: String| {
         let found = fields.vox_offset.to_string();
         invalid(NIFTI, "vox_offset", wanted, &found)
@@ -219,7 +229,16 @@ fn start(fields: &Fields, image_path: &Path) -> Result<(Encoding, Start), Proble
     let offset = match (fields.is_single_file, fields.version) {
         (false, _) => offset,
         // The definition of version 1: less than 352 means 352.
-        (true, Version::One) => offset.max(earliest),
+        (true, Version::One) if offset < earliest => {
+            // 0 says that the voxels follow the header.
+            if offset > 0 {
+                notes.push(format!(
+                    "vox_offset is {offset}, inside the header: {earliest} is taken"
+                ));
+            }
+            earliest
+        }
+        (true, Version::One) => offset,
         (true, Version::Two) if offset == 0 => earliest,
         (true, Version::Two) if offset < earliest => {
             return Err(wrong(format!("0 or at least {earliest}")));

@@ -6,10 +6,11 @@
 //! 93 'NUMPY' major minor length(u16 | u32, little-endian) {'descr': '<f4', 'fortran_order': False, 'shape': (z, y, x), }
 //! ```
 //!
-//! An array has no names for its axes, so their order in memory gives them: the fastest is x. With C order that
-//! is [y, x], [z, y, x], [t, z, y, x] and [t, c, z, y, x], with Fortran order the same from the other end. Bytes
-//! whose fastest axis has 3 or 4 entries, in arrays of three axes and more, are colours.
+//! An array has no names for its axes, so their number gives them: [y, x], [z, y, x], [t, z, y, x] or
+//! [t, c, z, y, x]. Bytes whose last axis has 3 or 4 entries, in arrays of three axes and more, are colours. Whether
+//! an array is in C or in Fortran order says only how it lies in memory.
 
+mod fortran;
 mod literal;
 
 use super::convert::{Endian, to_u64};
@@ -20,7 +21,8 @@ use super::geometry::world_from_voxel;
 use super::place::{first_bytes, open_regular};
 use super::problem::{at, escape, invalid, missing, unsupported};
 use super::select::{Axis, Role};
-use crate::volume::{Format, Header, Limits, Meaning, Problem, ReadError, VoxelType};
+use crate::volume::{Format, Header, Limits, Meaning, Problem, ReadError, Source, VoxelType};
+use fortran::FortranSource;
 use glam::DVec3;
 use literal::Literal;
 use std::path::Path;
@@ -36,7 +38,7 @@ pub(super) fn recognizes(first: &[u8]) -> bool {
 }
 
 /// Opens an array.
-pub(super) fn open(path: &Path, limits: &Limits) -> Result<FileSource, ReadError> {
+pub(super) fn open(path: &Path, limits: &Limits) -> Result<Box<dyn Source>, ReadError> {
     let (text, data_begins) = text(path, limits.max_header_bytes).map_err(at(path))?;
     let literal = literal::parse(&text).map_err(at(path))?;
     let kind = Kind::of(&literal).map_err(at(path))?;
@@ -58,7 +60,11 @@ pub(super) fn open(path: &Path, limits: &Limits) -> Result<FileSource, ReadError
         }],
     };
     let data = Data::find(promise, path)?;
-    Ok(FileSource::new(path, header, data, limits))
+    let file = FileSource::new(path, header, data, limits);
+    Ok(match literal.fortran_order {
+        true => Box::new(FortranSource::new(file, limits.max_bytes)),
+        false => Box::new(file),
+    })
 }
 
 /// The literal, and where the numbers begin.
@@ -154,13 +160,17 @@ impl Kind {
     }
 }
 
-/// The stored array, fastest axis first.
+/// The stored array.
 struct Array {
+    /// As they lie in memory, the fastest first.
     axes: Vec<Axis>,
+    /// The first space axis in memory first.
     dims: [u32; 3],
     components: u32,
     times: u32,
     is_color: bool,
+    /// As a person writes them: `z, y, x`.
+    words: String,
 }
 
 impl Array {
@@ -172,23 +182,29 @@ impl Array {
             .map(|&n| u32::try_from(n).ok().filter(|&n| n > 0))
             .collect::<Option<Vec<u32>>>()
             .ok_or_else(|| wrong("sizes from 1 to 2^32 - 1"))?;
-        if !literal.fortran_order {
-            sizes.reverse();
-        }
         let is_color = stored == VoxelType::U8
             && literal.descr.ends_with("u1")
             && sizes.len() >= 3
-            && matches!(sizes.first(), Some(3 | 4));
-        use Role::{Component, Space, Time};
-        let roles: &[Role] = match (is_color, sizes.len()) {
-            (false, 2) => &[Space(0), Space(1)],
-            (false, 3) => &[Space(0), Space(1), Space(2)],
-            (false, 4) => &[Space(0), Space(1), Space(2), Time],
-            (false, 5) => &[Space(0), Space(1), Space(2), Component, Time],
-            (true, 3) => &[Component, Space(0), Space(1)],
-            (true, 4) => &[Component, Space(0), Space(1), Space(2)],
-            (true, 5) => &[Component, Space(0), Space(1), Space(2), Time],
+            && matches!(sizes.last(), Some(3 | 4));
+        let mut names = match (is_color, sizes.len()) {
+            (false, 2) => vec!["y", "x"],
+            (false, 3) => vec!["z", "y", "x"],
+            (false, 4) => vec!["t", "z", "y", "x"],
+            (false, 5) => vec!["t", "c", "z", "y", "x"],
+            (true, 3) => vec!["y", "x", "color"],
+            (true, 4) => vec!["z", "y", "x", "color"],
+            (true, 5) => vec!["t", "z", "y", "x", "color"],
             _ => return Err(wrong("2 to 5 axes")),
+        };
+        let words = names.join(", ");
+        // Space is [z, y, x] in both orders, and x, y, z from the fastest on in one, z, y, x in the other.
+        let space = match literal.fortran_order {
+            true => ["z", "y", "x"],
+            false => {
+                sizes.reverse();
+                names.reverse();
+                ["x", "y", "z"]
+            }
         };
         let mut array = Self {
             axes: Vec::new(),
@@ -196,12 +212,18 @@ impl Array {
             components: 1,
             times: 1,
             is_color,
+            words,
         };
-        for (&role, &size) in roles.iter().zip(&sizes) {
+        for (name, size) in names.into_iter().zip(sizes) {
+            let role = match name {
+                "t" => Role::Time,
+                "c" | "color" => Role::Component,
+                _ => Role::Space(space.iter().position(|&axis| axis == name).unwrap_or(0)),
+            };
             match role {
-                Component => array.components = size,
-                Time => array.times = size,
-                Space(k) => {
+                Role::Component => array.components = size,
+                Role::Time => array.times = size,
+                Role::Space(k) => {
                     if let Some(dim) = array.dims.get_mut(k) {
                         *dim = size;
                     }
@@ -214,39 +236,21 @@ impl Array {
         }
         Ok(array)
     }
-
-    /// The axes as a person writes them: `[z, y, x]`.
-    fn words(&self, fortran_order: bool) -> String {
-        let mut words: Vec<&str> = self
-            .axes
-            .iter()
-            .map(|axis| match axis.role {
-                Role::Component if self.is_color => "color",
-                Role::Component => "c",
-                Role::Time => "t",
-                Role::Space(0) => "x",
-                Role::Space(1) => "y",
-                Role::Space(_) => "z",
-            })
-            .collect();
-        if !fortran_order {
-            words.reverse();
-        }
-        words.join(", ")
-    }
 }
 
 fn header(array: &Array, kind: Kind, fortran_order: bool) -> Result<Header, Problem> {
     let world_from_voxel = world_from_voxel(DVec3::AXES, DVec3::splat(0.5))
         .ok_or_else(|| invalid(NPY, "shape", "steps that span a volume", ""))?;
-    let order = if fortran_order { "Fortran" } else { "C" };
     let mut notes = vec![
-        format!(
-            "the array is in {order} order: its axes are taken as [{}]",
-            array.words(fortran_order)
-        ),
+        format!("the axes of the array are taken as [{}]", array.words),
         "the file gives no spacing: 1 is taken".to_owned(),
     ];
+    if fortran_order {
+        notes.push(
+            "the array is in Fortran order, which no longer exchanges its axes: until now the first was taken as x"
+                .to_owned(),
+        );
+    }
     if kind.is_bool {
         notes.push("booleans are read as 0 and 1".to_owned());
     }

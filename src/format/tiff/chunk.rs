@@ -1,6 +1,6 @@
 //! One strip or tile: its bytes in the file to the bytes of its pixels.
 //!
-//! Deflate is inflated here, to its checksum. For LZW, PackBits, JPEG and predictors the chunk is wrapped as a TIFF of
+//! Deflate is inflated here, to its checksum, and so is Zstandard. For LZW, PackBits, JPEG and predictors the chunk is wrapped as a TIFF of
 //! its own, one strip of gray samples, and the `tiff` crate decodes that: it sees sizes that were checked, in memory,
 //! and never follows an offset of the file.
 
@@ -12,6 +12,7 @@ use crate::fence::fenced;
 use crate::format::convert::{Endian, to_u64};
 use crate::format::decode::Encoding;
 use crate::format::problem::{escape, invalid, unsupported};
+use crate::format::zstd;
 use crate::volume::{Problem, VoxelType};
 use std::io::{Cursor, Read};
 
@@ -23,6 +24,7 @@ pub(super) enum Compression {
     Deflate,
     PackBits,
     Jpeg,
+    Zstd,
 }
 
 impl Compression {
@@ -34,6 +36,7 @@ impl Compression {
             7 => return Ok(Self::Jpeg),
             8 | 32946 => return Ok(Self::Deflate),
             32773 => return Ok(Self::PackBits),
+            34926 | 50000 => return Ok(Self::Zstd),
             2 => "CCITT Huffman",
             3 => "CCITT fax group 3",
             4 => "CCITT fax group 4",
@@ -48,7 +51,6 @@ impl Compression {
             34887 => "LERC",
             34892 => "lossy JPEG of DNG",
             34925 => "LZMA",
-            34926 | 50000 => "Zstandard",
             34927 | 50001 => "WebP",
             34933 => "PNG",
             34934 => "JPEG XR",
@@ -69,11 +71,12 @@ impl Compression {
             Self::Deflate => "deflate",
             Self::PackBits => "packbits",
             Self::Jpeg => "jpeg",
+            Self::Zstd => "zstd",
         }
     }
 
     pub(super) fn has_predictor(self) -> bool {
-        matches!(self, Self::Lzw | Self::Deflate)
+        matches!(self, Self::Lzw | Self::Deflate | Self::Zstd)
     }
 
     /// The most bytes that `encoded_bytes` can hold.
@@ -86,6 +89,7 @@ impl Compression {
             Self::PackBits => encoded_bytes.saturating_mul(64),
             // A progressive scan may end 32 767 blocks of 64 samples with one code.
             Self::Jpeg => encoded_bytes.saturating_mul(1 << 21),
+            Self::Zstd => zstd::most_bytes(encoded_bytes),
         }
     }
 }
@@ -138,13 +142,23 @@ pub(super) fn pixels(reader: &mut Reader, page: &Page, index: usize) -> Result<P
             if wanted_bytes.saturating_add(rest) > room {
                 return Err(damaged(&"the stream goes on behind the pixels", decoded));
             }
-            if page.predictor == 1 {
-                plain.drain(..begins);
-                return Ok(Pixels {
-                    bytes: plain,
-                    endian: reader.endian,
-                });
-            }
+        }
+        Compression::Zstd => {
+            let encoded = reader.bytes(offset, encoded_bytes, page.chunk_word())?;
+            // The last strip may be written in full.
+            let room = page.chunk_bytes(page.chunk_height);
+            let most = usize::try_from(room).unwrap_or(usize::MAX);
+            let damaged = |cause: &str, decoded: usize| Problem::Damaged {
+                format: TIFF,
+                encoding: "zstd",
+                decoded_bytes: to_u64(decoded),
+                cause: escape(cause),
+            };
+            let decoded = zstd::decode(&encoded, most).map_err(|cause| damaged(&cause, 0))?;
+            let pixels = decoded.get(..wanted);
+            let pixels = pixels.ok_or_else(|| damaged("the stream ends early", decoded.len()))?;
+            plain = wrapping();
+            plain.extend(pixels);
         }
         Compression::Lzw | Compression::PackBits | Compression::Jpeg => {
             plain.extend(wrapping());
@@ -154,6 +168,14 @@ pub(super) fn pixels(reader: &mut Reader, page: &Page, index: usize) -> Result<P
                 jpeg::check(found, page, rows)?;
             }
         }
+    }
+    let is_plain = matches!(page.compression, Compression::Deflate | Compression::Zstd);
+    if is_plain && page.predictor == 1 {
+        plain.drain(..wrapping().len());
+        return Ok(Pixels {
+            bytes: plain,
+            endian: reader.endian,
+        });
     }
     let wrapped = wrap(plain, reader.endian, page, rows)?;
     let bytes = decode(wrapped, page, wanted)?;
@@ -199,7 +221,7 @@ fn wrap(mut bytes: Vec<u8>, endian: Endian, page: &Page, rows: u32) -> Result<Ve
         Compression::Lzw => 5,
         Compression::Jpeg => 7,
         Compression::PackBits => 32773,
-        Compression::None | Compression::Deflate => 1,
+        Compression::None | Compression::Deflate | Compression::Zstd => 1,
     };
     const SHORT: u16 = 3;
     const LONG: u16 = 4;

@@ -1,11 +1,10 @@
 //! Codecs of bytes, undone: what comes out has exactly the wanted length, and memory follows what came out.
 
 use super::blosc;
-use crate::fence::fenced;
 use crate::format::convert::{Endian, to_u64};
 use crate::format::decode::Encoding;
+use crate::format::zstd;
 use crate::volume::VoxelType;
-use ruzstd::decoding::StreamingDecoder;
 use std::io::{Cursor, Read};
 
 /// One codec of bytes, or a filter of numbers that keeps their count.
@@ -144,63 +143,14 @@ pub(super) fn inflate(bytes: &[u8], length: Length) -> Result<Vec<u8>, Damage> {
     expand(Encoding::Gzip, bytes.to_vec(), length)
 }
 
-/// All that `input` gives, growing with what comes; a byte more than wanted is an error.
-fn collect(mut input: impl Read, length: Length) -> Result<Vec<u8>, Damage> {
-    const FIRST_BYTES: usize = 1 << 16;
-    let mut out = Vec::new();
-    let most = length.most();
-    while out.len() < most {
-        let room = most
-            .saturating_sub(out.len())
-            .min(out.len().max(FIRST_BYTES));
-        out.try_reserve_exact(room)
-            .map_err(|_| format!("no memory for {most} bytes"))?;
-        let took = input.by_ref().take(to_u64(room)).read_to_end(&mut out);
-        if took.map_err(|error| error.to_string())? == 0 {
-            break;
-        }
-    }
-    // Asked for even where all came: what ends a stream, its checksum, is looked at only then.
-    let mut one_more = [0];
-    match input
-        .read(&mut one_more)
-        .map_err(|error| error.to_string())?
-    {
-        0 => length.check(out.len()).map(|()| out),
-        _ => Err(format!("more than {most} bytes come out")),
-    }
+fn collect(input: impl Read, length: Length) -> Result<Vec<u8>, Damage> {
+    let out = zstd::collect(input, length.most())?;
+    length.check(out.len()).map(|()| out)
 }
 
-/// One frame of Zstandard, RFC 8878; its checksum is compared where it has one.
 pub(super) fn zstd(bytes: &[u8], length: Length) -> Result<Vec<u8>, Damage> {
-    // A window is reserved as a frame's header asks for it: no more than the chunk may have, and no more than so
-    // many bytes can stand for (a block of 128 kB that repeats one byte takes four).
-    const LEAST_WINDOW_BYTES: u64 = 8 << 20;
-    const MOST_EXPANSION: u64 = 1 << 15;
-    let plausible = to_u64(bytes.len()).saturating_mul(MOST_EXPANSION);
-    let window = to_u64(length.most())
-        .saturating_mul(2)
-        .min(plausible)
-        .max(LEAST_WINDOW_BYTES);
-    let decoded = fenced(|| {
-        let mut source = bytes;
-        let stream = StreamingDecoder::new_with_max_window_size(&mut source, window);
-        let mut stream = stream.map_err(|error| error.to_string())?;
-        let out = collect(&mut stream, length)?;
-        let frame = stream.into_frame_decoder();
-        let (promised, found) = (
-            frame.get_checksum_from_data(),
-            frame.get_calculated_checksum(),
-        );
-        if promised.is_some() && promised != found {
-            return Err("the checksum is not that of the bytes".to_owned());
-        }
-        match source.is_empty() {
-            true => Ok(out),
-            false => Err(format!("{} bytes follow its end", source.len())),
-        }
-    });
-    decoded.unwrap_or_else(Err)
+    let out = zstd::decode(bytes, length.most())?;
+    length.check(out.len()).map(|()| out)
 }
 
 /// A block of LZ4 with its length in front, as numcodecs writes it.
