@@ -17,9 +17,11 @@
 //!
 //! The words of the command line for it stand in `camera/orbit.rs`.
 
+mod fit;
 mod matrices;
 mod orbit;
 
+pub use fit::PixelBox;
 pub use matrices::{HostDepth, Nearer};
 pub use orbit::{BoundingSphere, Lens, Orbit, View, fitted_view_height, up_for};
 

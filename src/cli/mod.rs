@@ -24,6 +24,7 @@ mod info;
 mod labels;
 mod line;
 mod load;
+mod look;
 mod manuals;
 mod memory;
 mod output;

@@ -4,10 +4,11 @@ use super::{
     Error,
     flags::{Depth, SceneFlags},
     load::open,
+    look::{Framing, Use, View, Views, frozen, prepared},
     output::{self, write_whole},
     progress::{Progress, ProgressWord},
     reasons::why_empty,
-    renderer::{Device, Job, Renderer},
+    renderer::Device,
     scene_file,
     shown::Shown,
     signals::Gate,
@@ -125,8 +126,7 @@ impl Render {
             (PictureFormat::Png, BitDepth::Eight) => Depth::Eight,
             _ => Depth::More,
         };
-        let mut settings = scene.settings(depth)?;
-        settings.skip = !self.no_skip;
+        let settings = scene.settings(depth)?;
         let extent_pixels = scene.picture.extent_pixels()?;
         scene.classification.check()?;
         let inputs = scene_file::inputs(&scene, self.scene_file.as_deref());
@@ -150,28 +150,31 @@ impl Render {
             classification,
             ..
         } = &shown;
-        let camera = shown.camera(&scene, extent_pixels, &mut settings)?;
         let load_ms = ms_since(start);
 
         progress.stage("prepare", 0, 1);
         let parts = shown.parts();
-        let job = Job {
-            volume,
-            classification,
-            stream: shown.stream(),
-            beside: parts.beside(),
-            settings: &settings,
-            extent_pixels,
-            layers: &layers,
+        let made_for = Use {
+            is_film: false,
+            is_opaque: format == PictureFormat::Png,
+            depth,
         };
-        let mut renderer = Renderer::new(job, &camera, device)?;
+        let framing = Framing::new(&scene, &shown, made_for, extent_pixels, !self.no_skip);
+        let views = Views::default();
+        let (mut renderer, view) = prepared(&framing, &parts, &layers, device, &views)?;
+        for note in &view.notes {
+            progress.note(note);
+        }
+        let View {
+            camera, settings, ..
+        } = view;
         renderer.watch(|part| progress.part(part));
         let mut frames = Vec::new();
         let mut last = None;
         for done in 0..self.repeat {
             progress.stage("draw", done as usize, self.repeat as usize);
             let start = Instant::now();
-            let frame = renderer.draw(&camera)?;
+            let frame = renderer.draw(camera)?;
             frames.push(FrameTime {
                 gpu_ms: frame.gpu_ms,
                 wall_ms: ms_since(start),
@@ -181,10 +184,10 @@ impl Render {
         let mut picture = last.expect("at least one picture is drawn");
         let start = Instant::now();
         let reasoned = parts.only(classification);
-        if let Some(reason) = why_empty(&picture, volume, reasoned, &camera, &settings) {
+        if let Some(reason) = why_empty(&picture, volume, reasoned, camera, settings) {
             progress.note(&format!("the picture is empty: {reason}"));
         }
-        if let Some(background) = scene.picture.background() {
+        if let Some(background) = view.scene.picture.background() {
             picture.over_background(background);
         }
 
@@ -196,7 +199,7 @@ impl Render {
         gate.whole(|| write_picture(&picture, &self.output, options))?;
         let stages = renderer.stages(&progress, gate, Some(ms_since(start)));
         if let Some(path) = &self.save_scene {
-            let text = scene_file::text(&scene, path);
+            let text = scene_file::text(&frozen(view, &shown), path);
             write_whole(path, text.as_bytes(), self.force, gate)?;
         }
         if let Some(path) = &self.timings {
@@ -208,7 +211,7 @@ impl Render {
                 prepare_ms: renderer.prepare_ms,
                 first_frame_ms: frames.first().map_or(0.0, |frame| frame.wall_ms),
                 frames,
-                samples: renderer.samples(&camera)?,
+                samples: renderer.samples(camera)?,
                 peak_rss_bytes: peak_rss_bytes(),
                 device_bytes: renderer.device_bytes(),
                 stages,
@@ -221,10 +224,12 @@ impl Render {
     /// The flags laid over those of `--scene`.
     fn whole_scene(&mut self) -> Result<SceneFlags, Error> {
         self.scene.classification.inline_file()?;
-        match &self.scene_file {
-            Some(path) => Ok(scene_file::overlay(scene_file::read(path)?, &self.scene)),
-            None => Ok(self.scene.clone()),
-        }
+        let mut scene = match &self.scene_file {
+            Some(path) => scene_file::overlay(scene_file::read(path)?, &self.scene),
+            None => self.scene.clone(),
+        };
+        scene.default_to_auto();
+        Ok(scene)
     }
 
     fn outputs(&self, format: PictureFormat, layers: &[LayerKind]) -> Vec<PathBuf> {

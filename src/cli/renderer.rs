@@ -294,6 +294,24 @@ impl<'a> Renderer<'a> {
         Ok(counts.map(|&count| count as u64).sum())
     }
 
+    /// A picture of other settings and of other pixels, without layers.
+    pub fn draw_other(
+        &mut self,
+        camera: &Camera,
+        settings: &Settings,
+        extent_pixels: [u32; 2],
+    ) -> Result<Picture, Error> {
+        let scene = Scene {
+            settings,
+            extent_pixels,
+            ..self.job.scene(camera)
+        };
+        match &mut self.on_device {
+            Some(renderer) => Ok(renderer.render(&scene, &[])?.picture),
+            None => Ok(reference::render::<f32>(&scene).map_err(offscreen::Error::Technique)?),
+        }
+    }
+
     fn draw_with(&mut self, camera: &Camera, layers: &[LayerKind]) -> Result<Frame, Error> {
         let scene = self.job.scene(camera);
         if let Some(renderer) = &mut self.on_device {

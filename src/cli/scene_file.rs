@@ -1,7 +1,7 @@
 //! `--scene` and `--save-scene`: the flags of a picture in one JSON file.
 //!
 //! ```json
-//! { "stratavox_scene": 1,
+//! { "stratavox_scene": 2,
 //!   "input": { "path": "phantom:head" },
 //!   "sampling": { "technique": "slices-3d", "samples_per_voxel": 2.0 },
 //!   "classification": { "preset": "ct-bone" },
@@ -16,13 +16,14 @@
 
 use super::{
     Error,
-    flags::{SceneFlags, relative},
+    flags::{Look, SceneFlags, relative},
     small_file,
 };
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-const VERSION: u32 = 1;
+/// Version 1 knew no look: its files are drawn plain.
+const VERSION: u32 = 2;
 /// The largest file that is read; a transfer function inside has its own limit of the same size.
 const MAX_FILE_BYTES: u64 = 4 << 20;
 
@@ -102,7 +103,7 @@ fn parse(text: &[u8]) -> Result<SceneFlags, String> {
     let value: Value = serde_json::from_slice(text).map_err(|e| format!("not JSON: {e}"))?;
     match value.get("stratavox_scene") {
         None => return Err("no scene: it has no key `stratavox_scene`".to_owned()),
-        Some(version) if version == VERSION => {}
+        Some(version) if *version == 1 || *version == VERSION => {}
         Some(version) => {
             return Err(format!(
                 "scene version {version}: this program knows {VERSION}"
@@ -110,7 +111,11 @@ fn parse(text: &[u8]) -> Result<SceneFlags, String> {
         }
     }
     // From the text again: only so are keys that stand twice found.
-    serde_json::from_slice(text).map_err(|e| e.to_string())
+    let mut scene: SceneFlags = serde_json::from_slice(text).map_err(|e| e.to_string())?;
+    if scene.stratavox_scene == 1 {
+        scene.look.get_or_insert(Look::Plain);
+    }
+    Ok(scene)
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -167,7 +172,7 @@ mod tests {
         let text = text(&scene, Path::new("scene.json"));
         let back = parse(text.as_bytes()).expect("a scene");
         let wanted = SceneFlags {
-            stratavox_scene: 1,
+            stratavox_scene: 2,
             ..scene
         };
         assert_eq!(back, wanted, "{text}");
@@ -206,7 +211,7 @@ mod tests {
                 r#"{"stratavox_scene":1,"camera":{},"camera":{}}"#,
                 "duplicate",
             ),
-            (r#"{"stratavox_scene":2}"#, "version 2"),
+            (r#"{"stratavox_scene":3}"#, "version 3"),
             (r#"{"camera":{}}"#, "stratavox_scene"),
             ("{", "not JSON"),
         ] {

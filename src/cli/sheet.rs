@@ -5,9 +5,10 @@ use super::{
     error::visible,
     figure::{Anchor, Color, Figure, Mark, SCALE, png},
     flags::{Depth, InputFlags, SceneFlags, Size},
+    look::{self, Framing, Use, Views, prepared},
     output::{self, say},
     progress::{Progress, ProgressWord},
-    renderer::{Device, Job, Renderer},
+    renderer::Device,
     shown::Shown,
     signals::Gate,
 };
@@ -106,10 +107,12 @@ fn scene_of(words: &str) -> SceneFlags {
         path = rest;
     }
     input.path = Some(path.to_owned());
-    SceneFlags {
+    let mut scene = SceneFlags {
         input,
         ..SceneFlags::default()
-    }
+    };
+    scene.default_to_auto();
+    scene
 }
 
 fn draw(
@@ -119,33 +122,22 @@ fn draw(
     device_word: &Option<String>,
     progress: &Progress,
 ) -> Result<Picture, Error> {
-    let mut settings = scene.settings(Depth::Eight)?;
+    let settings = scene.settings(Depth::Eight)?;
     let shown = Shown::read(scene, &settings, device, progress)?;
-    settings.per_mode = shown.per_mode.clone();
-    if let Some(filter) = shown.filter {
-        settings.filter = filter;
-    }
-    let camera = scene.camera.camera(&shown.subject(), extent_pixels)?;
-    let parts = shown.parts();
-    let job = Job {
-        volume: &shown.volume,
-        classification: &shown.classification,
-        stream: shown.stream(),
-        beside: parts.beside(),
-        settings: &settings,
-        extent_pixels,
-        layers: &[],
+    let made_for = Use {
+        is_film: false,
+        is_opaque: true,
+        depth: Depth::Eight,
     };
+    let framing = Framing::new(scene, &shown, made_for, extent_pixels, true);
+    let (parts, views) = (shown.parts(), Views::default());
     // A device that a picture failed on is not used for the next.
     let here = std::mem::replace(device, Device::find(Some("reference"))?);
-    let drawn = Renderer::new(job, &camera, here).and_then(|mut renderer| {
-        let whole = renderer.draw(&camera)?.picture;
-        let mut closer = scene.camera.clone();
-        closer.zoom = Some(zoom_to(&whole));
-        let camera = closer.camera(&shown.subject(), extent_pixels)?;
-        let mut picture = renderer.draw(&camera)?.picture;
-        let [r, g, b, _] = BACKGROUND.map(|code| f64::from(code) / 255.0);
-        picture.over_background([r, g, b, 1.0]);
+    let drawn = prepared(&framing, &parts, &[], here, &views).and_then(|(mut renderer, view)| {
+        let mut picture = renderer.draw(&view.camera)?.picture;
+        if let Some(background) = view.scene.picture.background() {
+            picture.over_background(background);
+        }
         Ok((picture, renderer.into_device()))
     });
     match drawn {
@@ -157,27 +149,6 @@ fn draw(
             *device = Device::find(device_word.as_deref())?;
             Err(error)
         }
-    }
-}
-
-/// The zoom at which what is seen just fills the picture: bounding spheres are mostly empty.
-fn zoom_to(picture: &Picture) -> f64 {
-    const VISIBLE: f32 = 1.0 / 64.0;
-    const FILLED: f64 = 0.94;
-    let [width, height] = [picture.width, picture.height].map(f64::from);
-    let mut reach = 0.0_f64;
-    for (at, pixel) in (0_u32..).zip(&picture.pixels) {
-        if pixel[3] < VISIBLE {
-            continue;
-        }
-        let [x, y] = [at % picture.width, at / picture.width].map(|n| f64::from(n) + 0.5);
-        let [x, y] = [x / width, y / height].map(|part| (2.0 * part - 1.0).abs());
-        reach = reach.max(x).max(y);
-    }
-    if reach == 0.0 {
-        1.0
-    } else {
-        (FILLED / reach).max(1.0)
     }
 }
 
@@ -208,7 +179,7 @@ impl Tiles {
         let mut figure = Figure::new([right, bottom], "volumes".to_owned());
         figure.marks.push(Mark::Area {
             points: vec![[0.0, 0.0], [right, 0.0], [right, bottom], [0.0, bottom]],
-            fill: BACKGROUND,
+            fill: background(),
         });
         Ok(Self {
             columns,
@@ -257,8 +228,10 @@ impl Tiles {
     }
 }
 
-/// Behind and between the small pictures.
-const BACKGROUND: Color = [24, 24, 28, 255];
+/// Between the small pictures lies what is behind them.
+fn background() -> Color {
+    look::BACKGROUND.map(|share| (share * 255.0).round() as u8)
+}
 
 /// Words on it.
 const NAMES: Color = [196, 200, 208, 255];

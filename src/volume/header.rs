@@ -31,6 +31,8 @@ pub struct Header {
     pub meaning: Meaning,
     /// True where the file says that values are names of things: nothing lies between two of them.
     pub is_labels: bool,
+    /// True where the file says how the axes lie in a patient: world x right, y anterior, z superior.
+    pub is_patient: bool,
     /// True where the world is a piece of the Earth in kilometres: x east, y north, z up.
     pub is_earth: bool,
     /// How many resolutions the source has; 1 where there is only this one.
@@ -66,6 +68,7 @@ impl Header {
             unit: None,
             meaning: Meaning::Numbers,
             is_labels: false,
+            is_patient: false,
             is_earth: false,
             levels: 1,
             time_names: Vec::new(),

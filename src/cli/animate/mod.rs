@@ -9,6 +9,7 @@ mod draw;
 mod drawer;
 mod feed;
 mod film;
+mod framing;
 mod functions;
 mod identity;
 mod journal;
@@ -243,6 +244,8 @@ impl Animate {
             Content::Still(shown) => shown.volume.grid(),
             Content::Times(source, _) => shots::grid(scene, source.header())?,
         };
+        let mut devices = devices;
+        let scene = &framing::framed(plan, &content, &grid, &mut devices, progress)?;
         let shots = plan.film.shots(scene, *depth, header, &grid)?;
         let drawing = Drawing {
             scene,
@@ -250,7 +253,7 @@ impl Animate {
             layers: &plan.layers,
             content: &content,
             start,
-            background: self.background(plan, progress),
+            background: self.background(plan, scene, progress),
             progress,
             wants_timings: self.timings.is_some(),
         };
@@ -260,10 +263,11 @@ impl Animate {
     /// All that the words say, checked as far as it can be without a voxel.
     fn plan(&mut self) -> Result<(Plan, Box<dyn Source>), Error> {
         self.scene.classification.inline_file()?;
-        let scene = match &self.scene_file {
+        let mut scene = match &self.scene_file {
             Some(path) => scene_file::overlay(scene_file::read(path)?, &self.scene),
             None => self.scene.clone(),
         };
+        scene.default_to_auto();
         let target = Target::new(&self.output)?;
         let layers = scene.picture.layers();
         self.check_target(&target, &layers)?;
@@ -360,8 +364,8 @@ impl Animate {
     }
 
     /// What lies behind every frame. Films without transparency have black there.
-    fn background(&self, plan: &Plan, progress: &Progress) -> Vec<[f64; 4]> {
-        let mut layers: Vec<_> = plan.scene.picture.background().into_iter().collect();
+    fn background(&self, plan: &Plan, scene: &SceneFlags, progress: &Progress) -> Vec<[f64; 4]> {
+        let mut layers: Vec<_> = scene.picture.background().into_iter().collect();
         if !keeps_transparency(&plan.target) {
             if layers.first().is_none_or(|color| color[3] < 1.0) {
                 progress.note("this kind of film has no transparency: black lies behind");

@@ -53,6 +53,7 @@ impl Tracks {
         weaker.give_way_to(&stronger);
         CameraFlags {
             projection: weaker.projection,
+            frame: weaker.frame,
             exaggerate: weaker.exaggerate,
             view: weaker.view,
             azimuth: stronger.azimuth.or(weaker.azimuth),

@@ -42,7 +42,7 @@ impl Moment {
     }
 
     /// A volume that shows which values there are.
-    fn looked_at(&self) -> &Volume {
+    pub fn looked_at(&self) -> &Volume {
         let overview = self.streamed.as_ref().and_then(|(_, seen)| seen.as_ref());
         overview.unwrap_or(&self.volume)
     }

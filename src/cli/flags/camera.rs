@@ -18,7 +18,12 @@ pub struct CameraFlags {
     #[arg(long, value_name = "DEG", value_parser = positive, help_heading = "Camera")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fov: Option<f64>,
-    /// 1: the bounding sphere fits; more is nearer [default: 1]
+    /// What fills the picture: what is visible of the volume, or its whole box [default: visible; with --zoom alone, the
+    /// bounding sphere]
+    #[arg(long, value_name = "WHAT", conflicts_with_all = ["eye", "target", "view_height"], help_heading = "Camera")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frame: Option<FrameWord>,
+    /// 1: the bounding sphere fits, or what --frame says; more is nearer [default: 1]
     #[arg(long, value_name = "F", value_parser = positive, help_heading = "Camera")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub zoom: Option<f64>,
@@ -113,12 +118,28 @@ impl CameraFlags {
         Ok(camera)
     }
 
-    /// True where a word says how rays spread or where they start.
-    pub fn places_the_eye(&self) -> bool {
+    /// What the camera is to be fitted to, if to anything: what a word says; what is visible, where `is_auto` and no
+    /// word says how near or where.
+    pub fn framed(&self, is_auto: bool) -> Option<FrameWord> {
+        let places = self.eye.is_some() || self.target.is_some() || self.view_height.is_some();
+        match self.frame {
+            Some(word) if !places => Some(word),
+            None if is_auto && !places && self.zoom.is_none() => Some(FrameWord::Visible),
+            _ => None,
+        }
+    }
+
+    /// True where a word says from which side the volume is seen.
+    pub fn names_a_side(&self) -> bool {
         self.eye.is_some()
             || self.view.is_some()
             || self.azimuth.is_some()
             || self.elevation.is_some()
+    }
+
+    /// True where a word says how rays spread or where they start.
+    pub fn places_the_eye(&self) -> bool {
+        self.names_a_side()
             || self.projection == Some(ProjectionWord::Perspective)
             || self.fov.is_some()
     }
@@ -195,6 +216,13 @@ impl CameraFlags {
         if stronger.eye.is_some() {
             self.roll = None;
         }
+        if stronger.eye.is_some() || stronger.target.is_some() || stronger.view_height.is_some() {
+            self.frame = None;
+        }
+        if stronger.frame.is_some() {
+            (self.eye, self.target, self.view_height) = (None, None, None);
+            self.zoom = None;
+        }
         if stronger.roll.is_some() {
             self.eye = None;
         }
@@ -232,6 +260,16 @@ pub enum ProjectionWord {
     #[default]
     Perspective,
     Orthographic,
+}
+
+/// Every word of `--frame`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FrameWord {
+    /// Pixels that let less than 97 % of the light behind them through
+    Visible,
+    /// The grid box, or what --crop leaves of it
+    Box,
 }
 
 /// Every word of `--view`.

@@ -32,7 +32,7 @@ mod values;
 mod window;
 mod words;
 
-pub use camera::{CameraFlags, ProjectionWord, ViewWord};
+pub use camera::{CameraFlags, FrameWord, ProjectionWord, ViewWord};
 pub use channels::{ChannelFlags, ChannelWord, Plan};
 pub use classification::{Classification, ClassificationFlags};
 pub use component::Component;
@@ -43,7 +43,7 @@ pub use inlined::{Inlined, function_in};
 pub use input::{InputFlags, relative};
 pub use labels::LabelFlags;
 pub use levels::LevelFlags;
-pub use light::LightFlags;
+pub use light::{LightFlags, LightWord, ShadingWord};
 pub use look::Look;
 pub use modes::ModeFlags;
 pub use numbers::{Background, Numbers, Size, finite, positive};
@@ -54,7 +54,7 @@ pub use section::SectionFlags;
 pub use subject::Subject;
 pub use values::{preset, summary, with_causes};
 pub use window::WindowWord;
-pub use words::{ModeWord, TechniqueWord};
+pub use words::{FilterWord, ModeWord, TechniqueWord};
 
 use super::Error;
 use crate::technique::Settings;

@@ -202,6 +202,11 @@ impl SamplingFlags {
         Ok(planes)
     }
 
+    /// True where samples lie at steps that --samples-per-voxel sets: not on the slices of plain 2D stacks.
+    pub fn has_steps(&self) -> bool {
+        self.smooth || self.technique != Some(TechniqueWord::Slices2d)
+    }
+
     /// True where a word says what is classified.
     pub fn says_how(&self) -> bool {
         self.preintegrated || self.preclassified || self.postclassified

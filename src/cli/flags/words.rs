@@ -101,6 +101,14 @@ impl FilterWord {
         )
     }
 
+    /// The word for this filter.
+    pub fn of(filter: Filter) -> Self {
+        let word = Self::value_variants()
+            .iter()
+            .find(|word| word.filter() == filter);
+        *word.expect("every filter has a word")
+    }
+
     /// What it stands for.
     pub fn filter(self) -> Filter {
         match self {

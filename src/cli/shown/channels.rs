@@ -72,6 +72,7 @@ impl Reader<'_> {
         Ok(Shown {
             volume: Arc::new(first.volume),
             is_earth: header.is_earth,
+            is_patient: false,
             classification: Classification::Function(first.function),
             per_mode: self.scene.modes.alone(),
             filter: None,

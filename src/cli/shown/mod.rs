@@ -16,6 +16,7 @@ use super::{
     flags::{Classification, ClassificationFlags, Plan, SceneFlags, Subject, summary},
     labels,
     load::{load_from, open},
+    look::Seen,
     memory::{self, DeviceRoom, Held, fitting},
     progress::Progress,
 };
@@ -36,6 +37,8 @@ pub struct Shown {
     /// The volume; red of colours, the first of channels.
     pub volume: Arc<Volume>,
     is_earth: bool,
+    /// Whether the file says how the axes lie in a patient.
+    is_patient: bool,
     /// How its values are seen.
     pub classification: Classification,
     /// What the mode wants to know of the values.
@@ -127,6 +130,7 @@ impl Shown {
         progress: &Progress,
     ) -> Result<Self, Error> {
         check(scene, settings)?;
+        let is_patient = source.header().is_patient;
         let (plan, note) = plan(scene, source.header())?;
         if scene.opacity.are_given() && plan != Plan::One {
             return Err(Error::usage(
@@ -180,6 +184,7 @@ impl Shown {
             Plan::Channels(words) => reader.channels(source, &words)?,
             Plan::Colors => reader.colors(source)?,
         };
+        shown.is_patient = is_patient;
         if scene.sampling.preclassified {
             return preclassified::classified(shown, settings.color_space);
         }
@@ -229,6 +234,20 @@ impl Shown {
             others.push(map);
         }
         Ok(shown)
+    }
+
+    /// True where the file says how its axes lie, in a patient or on the Earth.
+    pub fn has_named_axes(&self) -> bool {
+        self.is_patient || self.is_earth
+    }
+
+    /// What the look of a picture is chosen by.
+    pub fn seen(&self) -> Seen<'_> {
+        Seen {
+            volume: self.looked_at(),
+            classification: &self.classification,
+            is_alone: matches!(self.parts().beside(), Beside::Nothing),
+        }
     }
 
     /// What a camera is turned to.
@@ -359,6 +378,7 @@ impl Reader<'_> {
             return Ok(Shown {
                 volume: Arc::new(volume),
                 is_earth,
+                is_patient: false,
                 classification: Classification::Function(function),
                 per_mode: PerMode::default(),
                 filter: Some(Filter::Nearest),
@@ -400,6 +420,7 @@ impl Reader<'_> {
         Ok(Shown {
             volume: Arc::new(volume),
             is_earth,
+            is_patient: false,
             classification,
             per_mode,
             filter: found_labels.then_some(Filter::Nearest),

@@ -134,6 +134,7 @@ impl Shown {
         let Some(memory) = device.memory()? else {
             return Self::of(source, scene, settings, device, progress);
         };
+        let is_patient = source.header().is_patient;
         let (stream, _) = open(Arc::from(source), pick, scene, memory, progress)?;
         let bricks = match stream.brick_count() {
             1 => "one brick".to_owned(),
@@ -163,6 +164,7 @@ impl Shown {
             volume: Arc::new(stream.outline().clone()),
             stream: Some(stream),
             overview: Some(shown.volume),
+            is_patient,
             ..shown
         })
     }

@@ -2,20 +2,21 @@
 
 use super::{
     Became, Row,
-    item::Item,
+    item::{Item, Wanted},
     parts::Part,
     room::{Room, Share},
 };
 use crate::{
     cli::{
         Error,
-        flags::{SceneFlags, ViewWord},
+        flags::{Depth, SceneFlags, ViewWord},
         line::{Line, encoders},
         load,
+        look::{Framing, Use, View, Views, prepared},
         memory::{DeviceMemory, DeviceRoom, Held, needed_bytes},
         progress::Progress,
         reasons::why_empty,
-        renderer::{Device, Job, Renderer},
+        renderer::Device,
         shown::Shown,
         signals::Gate,
     },
@@ -23,6 +24,7 @@ use crate::{
     technique::Settings,
 };
 use std::{
+    cell::OnceCell,
     panic::resume_unwind,
     path::Path,
     sync::{
@@ -40,6 +42,8 @@ pub struct Batch<'a> {
     pub scene: &'a SceneFlags,
     /// What they say is computed.
     pub settings: &'a Settings,
+    /// How exactly pictures are kept.
+    pub depth: Depth,
     /// Pixels across and down.
     pub extent_pixels: [u32; 2],
     /// The volumes.
@@ -204,34 +208,43 @@ impl Batch<'_> {
         device: Device,
     ) -> Result<(Drawn<Picture>, Device), Error> {
         let Read { shown, scene, .. } = read;
-        let mut settings = self.settings.clone();
-        let mut cameras = Vec::new();
-        for (at, wanted) in item.missing() {
+        let made_for = Use {
+            is_film: false,
+            is_opaque: true,
+            depth: self.depth,
+        };
+        let framing = |wanted: &Wanted| {
             let mut scene = scene.clone();
             if let Some(view) = wanted.view {
                 scene.camera.view = Some(view);
             }
-            // Views change no settings: --section, which would, goes with none.
-            let camera = shown.camera(&scene, self.extent_pixels, &mut settings)?;
-            cameras.push((at, wanted, camera));
-        }
-        let parts = shown.parts();
-        let job = Job {
-            volume: &shown.volume,
-            stream: shown.stream(),
-            classification: &shown.classification,
-            beside: parts.beside(),
-            settings: &settings,
-            extent_pixels: self.extent_pixels,
-            layers: &[],
+            let skip = self.settings.skip;
+            Framing::new(&scene, shown, made_for, self.extent_pixels, skip)
         };
-        let (_, _, first) = cameras.first().expect("who is read has a picture to come");
-        let mut renderer = Renderer::new(job, first, device)?;
+        let missing: Vec<_> = item.missing().collect();
+        let views: Vec<_> = missing.iter().map(|_| OnceCell::new()).collect();
+        let parts = shown.parts();
         let reasoned = parts.only(&shown.classification);
+        let first = Views::default();
+        let (_, wanted) = missing.first().expect("who is read has a picture to come");
+        let (mut renderer, _) = prepared(&framing(wanted), &parts, &[], device, &first)?;
         let mut shots = Vec::new();
-        for (at, wanted, camera) in &cameras {
-            let picture = renderer.draw(camera)?.picture;
-            let reason = why_empty(&picture, &shown.volume, reasoned, camera, &settings);
+        for ((at, wanted), view) in missing.iter().zip(&views) {
+            let fitted = framing(wanted).fit(&mut |camera, settings, extent_pixels| {
+                renderer.draw_other(camera, settings, extent_pixels)
+            })?;
+            let View {
+                camera,
+                settings,
+                scene,
+                ..
+            } = view.get_or_init(|| fitted);
+            renderer.change(&shown.classification, settings);
+            let mut picture = renderer.draw(camera)?.picture;
+            let reason = why_empty(&picture, &shown.volume, reasoned, camera, settings);
+            if let Some(background) = scene.picture.background() {
+                picture.over_background(background);
+            }
             let view = wanted.view.map(|view| format!("--view {}: ", view.name()));
             let view = view.unwrap_or_default();
             let note = reason.map(|reason| format!("{view}the picture is empty: {reason}"));
@@ -247,10 +260,7 @@ impl Batch<'_> {
 
     fn encoded(&self, item: &Item, noted: Noted<Drawn<Picture>>) -> Noted<Drawn<EncodedPicture>> {
         let encoded = |shot: Shot<Picture>| {
-            let mut picture = shot.picture;
-            if let Some(background) = self.scene.picture.background() {
-                picture.over_background(background);
-            }
+            let picture = shot.picture;
             let path = self.folder.join(&item.pictures[shot.at].picture);
             Ok(Shot {
                 at: shot.at,

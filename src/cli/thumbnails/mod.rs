@@ -146,6 +146,7 @@ impl Thumbnails {
         let batch = Batch {
             scene: &scene,
             settings: &settings,
+            depth,
             extent_pixels: scene.picture.extent_pixels()?,
             items: &items,
             folder: &self.output,
@@ -222,6 +223,7 @@ impl Thumbnails {
             }
             scene.camera.leave_the_side();
         }
+        scene.default_to_auto();
         scene.picture.size.get_or_insert(SIZE);
         scene.input.fit = true;
         // Asked for once: what is free while other volumes are there says nothing of how far one must shrink.

@@ -200,6 +200,7 @@ impl Index {
         line("hounsfield", yes(header.hounsfield));
         line("labels", yes(header.is_labels));
         line("earth", yes(header.is_earth));
+        line("patient", yes(header.is_patient));
         line("holes", yes(self.has_holes));
         for level in &self.levels {
             line(
@@ -309,6 +310,8 @@ impl Index {
         header.hounsfield = lines.yes("hounsfield")?;
         header.is_labels = lines.yes("labels")?;
         header.is_earth = lines.yes("earth")?;
+        // Files of before do not have the line.
+        header.is_patient = lines.values.contains_key("patient") && lines.yes("patient")?;
         let mut index = Self {
             side: lines.positive("side")?,
             halo: lines.positive("halo")?,

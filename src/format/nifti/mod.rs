@@ -167,6 +167,7 @@ fn header(fields: &Fields, number: &Number, array: &Array) -> Result<Header, Pro
         components: array.components,
         times: array.times,
         rescale: rescale(fields, number, &mut notes),
+        is_patient: fields.sform_code > 0 || fields.qform_code > 0,
         meaning: meaning(fields, number, array),
         is_labels: fields.intent_code == LABEL && array.components == 1,
         notes,

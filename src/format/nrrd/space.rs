@@ -53,6 +53,19 @@ pub(super) fn affine(
     })
 }
 
+/// True where the file says where right, anterior and superior are.
+pub(super) fn is_anatomical(fields: &Fields) -> bool {
+    fields.get("space").is_some_and(|space| {
+        let space = words_of(space);
+        !space.starts_with("scanner") && !space.starts_with("3d")
+    })
+}
+
+/// A space without what may be written in several ways.
+fn words_of(space: &str) -> String {
+    space.replace(['-', ' '], "").to_ascii_lowercase()
+}
+
 /// What multiplies coordinates of the file's space to make RAS+ ones.
 fn ras_from_space(fields: &Fields, notes: &mut Vec<String>) -> Result<DVec3, Problem> {
     let Some(space) = fields.get("space") else {
@@ -63,7 +76,7 @@ fn ras_from_space(fields: &Fields, notes: &mut Vec<String>) -> Result<DVec3, Pro
         let wanted = "`space` or `space dimension`, not both";
         return Err(invalid(NRRD, "space", wanted, space));
     }
-    let words = space.replace(['-', ' '], "").to_ascii_lowercase();
+    let words = words_of(space);
     let words = words.strip_suffix("time").unwrap_or(&words);
     let handed = |turned: &str| {
         format!(

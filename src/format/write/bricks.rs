@@ -98,6 +98,7 @@ pub(super) fn write(
     header.hounsfield = layout.is_hounsfield;
     header.is_labels = layout.is_labels;
     header.is_earth = from.is_earth;
+    header.is_patient = from.is_patient;
     let index = Index {
         header,
         side: SIDE,
