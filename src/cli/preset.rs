@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     transfer::{
-        Classified, Graded, Preset, Scale, Shape, TransferFunction, ValueSummary, Window,
+        Classified, Colormap, Graded, Preset, Scale, Shape, TransferFunction, ValueSummary, Window,
         import_transfer_function, transfer_function_to_json,
     },
     volume::Volume,
@@ -37,7 +37,7 @@ enum What {
     Import(Import),
 }
 
-/// Name all presets
+/// Name all presets, and all colour maps
 #[derive(Args, Debug)]
 #[command(after_help = "Example:\n  stratavox preset list")]
 struct List {
@@ -115,7 +115,12 @@ impl List {
             ));
         }
         let line = |preset: Preset| format!("{:<16} {}\n", preset.name(), preset.description());
-        say(&Preset::ALL.map(line).concat())
+        let maps = Colormap::all().map(|map| format!("{:<16} {}\n", map.name(), map.description()));
+        let maps: String = maps.collect();
+        say(&format!(
+            "{}\nColour maps, for --colormap:\n{maps}",
+            Preset::ALL.map(line).concat()
+        ))
     }
 }
 

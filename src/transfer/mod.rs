@@ -13,6 +13,7 @@ mod alike;
 mod automatic;
 mod boundaries;
 mod channel;
+mod colormap;
 #[cfg(feature = "json")]
 mod field;
 #[cfg(feature = "json")]
@@ -44,6 +45,7 @@ pub use alike::{Alike, Tolerance};
 pub use automatic::{Kind, automatic};
 pub use boundaries::{JointCounts, boundaries};
 pub use channel::{CHANNEL_COLORS, of_channel, of_colors};
+pub use colormap::{COLORMAP_COLORS, Colormap};
 #[cfg(feature = "json")]
 pub use file::{
     FileError, FileProblem, MAX_FILE_BYTES, MAX_POINTS, read_transfer_function,

@@ -1,6 +1,6 @@
 //! What the values of a volume look like as a whole: enough to choose a transfer function by.
 
-use super::Quantity;
+use super::{Quantity, Window};
 
 /// Bins of the largest histogram.
 const MAX_BINS: usize = 4096;
@@ -118,6 +118,29 @@ impl ValueSummary {
             below += count;
         }
         self.range[1]
+    }
+
+    /// Where most values lie that are no background: from the value that a share of 0.005 of them lies below to the one
+    /// that as many lie above.
+    ///
+    /// Background is what lies within a fiftieth of the range (from quantile 0.001 to 0.999) of the fullest bin of the
+    /// dark class, where that is three voxels in ten or more.
+    pub fn most(&self) -> Window {
+        let [low, high] = [self.quantile(0.001), self.quantile(0.999)];
+        let mode = self.mode_below(self.threshold(low, high));
+        let near = 0.02 * (high - low);
+        let [below, not_above] = [mode - near, mode + near].map(|value| self.share_below(value));
+        // The share of all voxels that holds this share of those outside of the background.
+        let at = |share: f64| {
+            let (background, before) = match not_above - below >= 0.3 {
+                true => (not_above - below, below),
+                false => (0.0, 0.0),
+            };
+            let foreground = share * (1.0 - background);
+            let is_behind = foreground > before;
+            self.quantile(foreground + if is_behind { background } else { 0.0 })
+        };
+        Window::new(at(0.005), at(0.995)).unwrap_or(Window::of_range(self.range))
     }
 
     /// The share of voxels below `value`, 0 to 1.

@@ -84,7 +84,8 @@ pub fn of_times(
                 "say it in the file: \"steepest\": 300",
             ));
         }
-        let window = shot.classification.window()?;
+        let flags = shot.classification.with_window_of(mode, &mut summary)?;
+        let window = flags.window()?;
         let (per_mode, note) = scene.modes.per_mode(
             mode,
             window,

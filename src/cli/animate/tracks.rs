@@ -4,7 +4,7 @@ use super::{functions::mixed, track::Track};
 use crate::{
     cli::{
         Error,
-        flags::{CameraFlags, ClassificationFlags, Numbers, SamplingFlags},
+        flags::{CameraFlags, ClassificationFlags, Numbers, SamplingFlags, WindowWord},
     },
     technique::{Light, Shading},
     transfer::{TransferFunction, transfer_function_to_json},
@@ -127,7 +127,7 @@ impl Tracks {
             flags.transfer_function_of_fractions = None;
         }
         if let Some(window) = self.window.at(u) {
-            flags.window = Some(Numbers(window));
+            flags.window = Some(WindowWord::Values(window));
         }
         flags
     }

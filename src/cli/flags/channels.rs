@@ -1,6 +1,6 @@
 //! Several numbers a voxel that are drawn together, each in a colour of its own: the words.
 
-use super::{Component, Error, InputFlags};
+use super::{Component, Error, InputFlags, color::rgb};
 use crate::{
     shaders::MAX_CHANNELS,
     volume::{Header, Meaning},
@@ -15,11 +15,11 @@ const HEADING: &str = "Channels";
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ChannelFlags {
-    /// Draw this channel, counted from 0, together with others, in a colour (its name, or R:G:B from 0 to 1) and over a
+    /// Draw this channel, counted from 0, together with others, in a colour (name, #hex, or R:G:B from 0 to 1) and over a
     /// window of values; once for each channel
     #[arg(
         long,
-        value_name = "N[,color=NAME|R:G:B][,window=LO:HI]",
+        value_name = "N[,color=COLOR][,window=LO:HI]",
         conflicts_with = "channels",
         help_heading = HEADING
     )]
@@ -144,19 +144,6 @@ fn check(words: &[ChannelWord], header: &Header, room: usize) -> Result<(), Erro
     Ok(())
 }
 
-/// Names of colours, sRGB.
-const COLORS: [(&str, [f64; 3]); 9] = [
-    ("red", [1.0, 0.0, 0.0]),
-    ("green", [0.0, 1.0, 0.0]),
-    ("blue", [0.0, 0.0, 1.0]),
-    ("cyan", [0.0, 1.0, 1.0]),
-    ("magenta", [1.0, 0.0, 1.0]),
-    ("yellow", [1.0, 1.0, 0.0]),
-    ("orange", [1.0, 0.5, 0.0]),
-    ("white", [1.0, 1.0, 1.0]),
-    ("grey", [0.5, 0.5, 0.5]),
-];
-
 impl FromStr for ChannelWord {
     type Err = String;
 
@@ -169,7 +156,7 @@ impl FromStr for ChannelWord {
         let mut word = word_of(index);
         for part in parts {
             match part.split_once('=') {
-                Some(("color", color)) if word.srgb.is_none() => word.srgb = Some(color_of(color)?),
+                Some(("color", color)) if word.srgb.is_none() => word.srgb = Some(rgb(color)?),
                 Some(("window", window)) if word.window.is_none() => {
                     word.window = Some(window_of(window)?);
                 }
@@ -182,21 +169,6 @@ impl FromStr for ChannelWord {
         }
         Ok(word)
     }
-}
-
-/// A colour by its name or as `R:G:B`, sRGB.
-pub(super) fn color_of(text: &str) -> Result<[f64; 3], String> {
-    if let Some(&(_, srgb)) = COLORS.iter().find(|(name, _)| *name == text) {
-        return Ok(srgb);
-    }
-    let numbers: Option<Vec<f64>> = text.split(':').map(|n| n.parse().ok()).collect();
-    let numbers = numbers.filter(|all| all.iter().all(|n| (0.0..=1.0).contains(n)));
-    numbers
-        .and_then(|all| <[f64; 3]>::try_from(all).ok())
-        .ok_or_else(|| {
-            let names = COLORS.map(|(name, _)| name).join(", ");
-            format!("no colour {text:?}: wanted R:G:B from 0 to 1, or one of {names}")
-        })
 }
 
 fn window_of(text: &str) -> Result<[f64; 2], String> {

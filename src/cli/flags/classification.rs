@@ -1,7 +1,8 @@
 //! Value to colour and opacity: flags to a transfer function, once the volume is known.
 
 use super::{
-    Error, Inlined, Numbers, boundaries_of, function_in, preset, refuse_gradients_in, summary,
+    Error, Inlined, WindowWord, boundaries_of, function_in, preset, refuse_gradients_in, summary,
+    values::colormap,
 };
 use crate::{
     technique::Mode,
@@ -51,15 +52,22 @@ pub struct ClassificationFlags {
     #[arg(skip)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub transfer_function_of_fractions: Option<bool>,
-    /// The values that the function is spread over (xray: of the integral)
+    /// A colour map in the place of the colours of --tf, --preset or the values, which keep their opacity: viridis,
+    /// magma, inferno, plasma, cividis, turbo, batlow, roma, vik, coolwarm, grey, wind, hot-iron, pet; over --window
+    /// if given, else over the values that had those colours
+    #[arg(long, value_name = "NAME[,reverse]", value_parser = colormap, conflicts_with = "color_tf", help_heading = "Colour")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub colormap: Option<String>,
+    /// The values that the function is spread over (xray: of the integral): from LO to HI, all (full), or most (auto:
+    /// without a background, if there is one, and without the least and the largest half per cent)
     #[arg(
         long,
-        value_name = "LO,HI",
+        value_name = "LO,HI|auto|full",
         allow_hyphen_values = true,
         help_heading = "Colour"
     )]
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub window: Option<Numbers<2>>,
+    pub window: Option<WindowWord>,
 }
 
 /// How values become colour.
@@ -104,9 +112,11 @@ impl ClassificationFlags {
             self.transfer_function_of_fractions = None;
             self.color_function = None;
             self.opacity_function = None;
+            self.colormap = None;
         }
-        if stronger.color_function.is_some() {
+        if stronger.color_function.is_some() || stronger.colormap.is_some() {
             self.color_function = None;
+            self.colormap = None;
         }
         if stronger.opacity_function.is_some() {
             self.opacity_function = None;
@@ -116,6 +126,7 @@ impl ClassificationFlags {
     /// What can be said wrong without a volume.
     pub fn check(&self) -> Result<(), Error> {
         self.window()?;
+        self.map()?;
         self.function_of_file()?;
         if self
             .part(&self.color_function)?
@@ -152,11 +163,12 @@ impl ClassificationFlags {
 
     /// The function for this volume and what `mode` classifies.
     pub fn classification(&self, volume: &Volume, mode: Mode) -> Result<Classification, Error> {
-        let found = match self.boundaries(volume, mode)? {
+        let flags = self.with_window_of(mode, || Ok(summary(volume)))?;
+        let found = match flags.boundaries(volume, mode)? {
             Some(function) => Classification::Function(
-                self.with_parts(function, || Ok(Window::of_range(volume.value_range)))?,
+                flags.with_parts(function, || Ok(Window::of_range(volume.value_range)))?,
             ),
-            None => self.classification_of(mode, || Ok(summary(volume)))?,
+            None => flags.classification_of(mode, || Ok(summary(volume)))?,
         };
         Ok(match found {
             Classification::Function(function) => {
@@ -209,7 +221,10 @@ impl ClassificationFlags {
         if let Some(opacity) = placed(&self.opacity_function)? {
             function = function.with_opacity_of(&opacity);
         }
-        Ok(function)
+        Ok(match self.map()? {
+            Some(map) => function.with_colormap(map, self.window()?),
+            None => function,
+        })
     }
 
     /// The same for values that look like `summary`, which is asked for where it decides anything.
@@ -218,6 +233,10 @@ impl ClassificationFlags {
         mode: Mode,
         mut summary: impl FnMut() -> Result<ValueSummary, Error>,
     ) -> Result<Classification, Error> {
+        if matches!(self.window, Some(WindowWord::Auto | WindowWord::Full)) {
+            let flags = self.with_window_of(mode, &mut summary)?;
+            return flags.classification_of(mode, summary);
+        }
         let window = self.window()?;
         let classified = if mode.is_projection() {
             Classified::Projection
@@ -245,6 +264,12 @@ impl ClassificationFlags {
             },
             // The range of the volume says nothing about that of integrals.
             (None, None | Some(Preset::Grey)) if mode == Mode::Xray && window.is_none() => {
+                if self.colormap.is_some() {
+                    return Err(Error::usage(
+                        "--colormap in --mode xray: the range of the integrals is not known",
+                        "--window LO,HI says it",
+                    ));
+                }
                 return Ok(Classification::RangeOfPicture);
             }
             (None, Some(Preset::Grey)) if let Some(window) = window => window.grey(classified),
@@ -264,26 +289,19 @@ impl ClassificationFlags {
 
     /// `found` where words named it: a preset, a file or a window.
     pub fn named<'a>(&self, found: &'a Classification) -> Option<&'a TransferFunction> {
-        let is_named =
-            self.preset.is_some() || self.transfer_function.is_some() || self.window.is_some();
+        let is_named = self.preset.is_some()
+            || self.transfer_function.is_some()
+            || self.window.is_some()
+            || self.colormap.is_some();
         match found {
             Classification::Function(function) if is_named => Some(function),
             _ => None,
         }
     }
 
-    /// The window of `--window`.
+    /// The window of `--window LO,HI`.
     pub fn window(&self) -> Result<Option<Window>, Error> {
-        let Some(Numbers([low, high])) = self.window else {
-            return Ok(None);
-        };
-        let window = Window::new(low, high).ok_or_else(|| {
-            Error::usage(
-                format!("--window {low},{high}: wanted a low value and a higher one"),
-                "--window -200,300",
-            )
-        })?;
-        Ok(Some(window))
+        self.window.map_or(Ok(None), WindowWord::window)
     }
 
     /// The function of `--tf`, or that of a scene.
@@ -345,7 +363,7 @@ mod tests {
     fn the_window_of_an_xray_comes_from_its_picture_unless_it_is_given() {
         let mut flags = ClassificationFlags::default();
         assert_eq!(of(&flags, Mode::Xray), Classification::RangeOfPicture);
-        flags.window = Some(Numbers([1.0, 9.0]));
+        flags.window = Some(WindowWord::Values([1.0, 9.0]));
         let wanted = Window::of_range([1.0, 9.0]).grey(Classified::Projection);
         assert_eq!(of(&flags, Mode::Xray), Classification::Function(wanted));
     }
@@ -353,7 +371,7 @@ mod tests {
     #[test]
     fn a_window_upside_down_is_a_usage_error() {
         let flags = ClassificationFlags {
-            window: Some(Numbers([5.0, 5.0])),
+            window: Some(WindowWord::Values([5.0, 5.0])),
             ..ClassificationFlags::default()
         };
         let error = flags.check().expect_err("refused");
@@ -381,7 +399,7 @@ mod tests {
     fn a_stronger_preset_takes_the_place_of_a_function() {
         let mut weak = ClassificationFlags {
             transfer_function: Some(serde_json::json!({})),
-            window: Some(Numbers([0.0, 1.0])),
+            window: Some(WindowWord::Values([0.0, 1.0])),
             ..ClassificationFlags::default()
         };
         let strong = ClassificationFlags {

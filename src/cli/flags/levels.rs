@@ -1,6 +1,6 @@
 //! Surfaces: which values, in which colours.
 
-use super::{Error, channels::color_of};
+use super::{Error, color::ColorWord};
 use crate::{
     cli::readable::short,
     picture::ColorSpace,
@@ -13,7 +13,6 @@ use crate::{
 };
 use clap::Args;
 use serde::{Deserialize, Serialize};
-use std::{fmt, str::FromStr};
 
 /// The flags, none of them filled in.
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -23,8 +22,8 @@ pub struct LevelFlags {
     #[arg(long, value_name = "VALUE,...", value_delimiter = ',', value_parser = super::finite, allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub iso: Vec<f64>,
-    /// iso: the colour of each value [default: by --tf, --preset or --window, else light ones]
-    #[arg(long, value_name = "NAME|R:G:B,...", value_delimiter = ',', help_heading = HEADING)]
+    /// iso: the colour of each value, a name, #hex or R:G:B [default: by --tf, --preset or --window, else light ones]
+    #[arg(long, value_name = "COLOR,...", value_delimiter = ',', help_heading = HEADING)]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub iso_color: Vec<ColorWord>,
     /// iso: the opacity of each value, 0 to 1 [default: 1 for the last, 0.25 for those before it]
@@ -42,40 +41,6 @@ const HEADING: &str = "Modes";
 
 /// What a surface takes of the light of those that are named after it.
 const THIN: f64 = 0.25;
-
-/// `R:G:B` or a name; sRGB.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
-pub struct ColorWord([f64; 3]);
-
-impl FromStr for ColorWord {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        color_of(text).map(Self)
-    }
-}
-
-impl fmt::Display for ColorWord {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [r, g, b] = self.0;
-        write!(f, "{r}:{g}:{b}")
-    }
-}
-
-impl TryFrom<String> for ColorWord {
-    type Error = String;
-
-    fn try_from(text: String) -> Result<Self, String> {
-        text.parse()
-    }
-}
-
-impl From<ColorWord> for String {
-    fn from(color: ColorWord) -> Self {
-        color.to_string()
-    }
-}
 
 impl LevelFlags {
     /// What can be said wrong before a voxel is read.

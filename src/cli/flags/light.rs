@@ -1,6 +1,6 @@
 //! Light on what is composited: flags to [`Shading`].
 
-use super::{Error, Numbers, finite, occlusion::OcclusionWord, shadows::ShadowsWord};
+use super::{Error, Numbers, color::rgb, finite, occlusion::OcclusionWord, shadows::ShadowsWord};
 use crate::{
     shaders::MAX_LIGHTS,
     technique::{AmbientOcclusion, Light, LightSpace, Mode, Shading, Shadows},
@@ -60,7 +60,7 @@ pub enum ShadingWord {
     Phong,
 }
 
-/// `X,Y,Z` or `X,Y,Z,R,G,B`, after `camera:` where the axes are the camera's: the way to a light, and its colour.
+/// `X,Y,Z`, `X,Y,Z,R,G,B` or `X,Y,Z,COLOR`, after `camera:` where the axes are the camera's: the way to a light, and its colour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct LightWord(Light);
@@ -79,7 +79,15 @@ impl FromStr for LightWord {
                 let [x, y, z, r, g, b] = Numbers::<6>::from_str(text)?.0;
                 ([x, y, z], [r, g, b])
             }
-            _ => return Err("wanted X,Y,Z or X,Y,Z,R,G,B, after camera: or not".to_owned()),
+            3 => {
+                let (way, color) = text.rsplit_once(',').expect("three commas");
+                (Numbers::<3>::from_str(way)?.0, rgb(color)?)
+            }
+            _ => {
+                return Err(
+                    "wanted X,Y,Z, X,Y,Z,R,G,B or X,Y,Z,COLOR, after camera: or not".to_owned(),
+                );
+            }
         };
         let towards = DVec3::from_array(towards);
         if towards.try_normalize().is_none() {

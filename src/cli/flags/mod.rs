@@ -6,6 +6,7 @@
 mod camera;
 mod channels;
 mod classification;
+mod color;
 mod component;
 mod cuts;
 mod denoise;
@@ -28,6 +29,7 @@ mod section;
 mod shadows;
 mod subject;
 mod values;
+mod window;
 mod words;
 
 pub use camera::{CameraFlags, FrameWord, ProjectionWord, ViewWord};
@@ -51,6 +53,7 @@ pub use sampling::{Depth, SamplingFlags};
 pub use section::SectionFlags;
 pub use subject::Subject;
 pub use values::{preset, summary, with_causes};
+pub use window::WindowWord;
 pub use words::{FilterWord, ModeWord, TechniqueWord};
 
 use super::Error;

@@ -1,5 +1,6 @@
 //! Numbers as they are written on the command line and, in the same way, in a scene file.
 
+use super::color::rgba;
 use serde::{Deserialize, Serialize};
 use std::{fmt, str::FromStr};
 
@@ -79,7 +80,7 @@ impl From<Size> for String {
     }
 }
 
-/// `R,G,B`, `R,G,B,A` or `none`, in sRGB numbers.
+/// `R,G,B`, `R,G,B,A` in sRGB numbers, another word for a colour ([`rgba`]), or `none`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum Background {
@@ -101,7 +102,8 @@ impl FromStr for Background {
                 let [r, g, b] = Numbers::<3>::from_str(text)?.0;
                 [r, g, b, 1.0]
             }
-            _ => Numbers::<4>::from_str(text)?.0,
+            3 => Numbers::<4>::from_str(text)?.0,
+            _ => rgba(text)?,
         };
         if color.iter().all(|c| (0.0..=1.0).contains(c)) {
             Ok(Self::Color(color))
@@ -202,8 +204,9 @@ mod tests {
             "0,0.5,1".parse(),
             Ok(Background::Color([0.0, 0.5, 1.0, 1.0]))
         );
+        assert_eq!("white".parse(), Ok(Background::Color([1.0; 4])));
         assert_eq!("0,0,0,0".parse(), Ok(Background::Color([0.0; 4])));
-        for text in ["1,1", "2,0,0", "0,0,0,0,0", "white"] {
+        for text in ["1,1", "2,0,0", "0,0,0,0,0", "puce", "#0000"] {
             assert!(text.parse::<Background>().is_err(), "{text}");
         }
     }

@@ -13,8 +13,8 @@ pub struct PictureFlags {
     #[arg(long, value_name = "WxH", help_heading = "Picture")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub size: Option<Size>,
-    /// What lies behind, in sRGB numbers from 0 to 1 [default: none]
-    #[arg(long, value_name = "R,G,B[,A]|none", help_heading = "Picture")]
+    /// What lies behind: a colour by name, #hex or sRGB numbers from 0 to 1 [default: none]
+    #[arg(long, value_name = "COLOR|none", help_heading = "Picture")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub background: Option<Background>,
     /// Layers beside the colours, for .exr and .npy

@@ -1,7 +1,7 @@
 //! What flags of colour ask of names and of volumes.
 
 use crate::{
-    transfer::{Preset, Quantity, ValueSummary},
+    transfer::{Colormap, Preset, Quantity, ValueSummary},
     volume::{Volume, Voxels},
 };
 use glam::DVec3;
@@ -27,6 +27,11 @@ pub fn preset(name: &str) -> Result<String, String> {
             names.join(", ")
         ))
     }
+}
+
+/// A word of `--colormap` that is right.
+pub fn colormap(text: &str) -> Result<String, String> {
+    text.parse().map(|map: Colormap| map.to_string())
 }
 
 /// What the values of a volume look like as a whole. Looks at millions of voxels, so each type has a loop of its own.

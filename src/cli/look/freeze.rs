@@ -1,7 +1,7 @@
 //! A scene of which nothing is left to choose: what a scene file keeps.
 
 use super::View;
-use crate::cli::flags::{Classification, FilterWord, Look, Numbers, SceneFlags, ShadingWord};
+use crate::cli::flags::{Classification, FilterWord, Look, SceneFlags, ShadingWord, WindowWord};
 use crate::cli::shown::Shown;
 use crate::scene::Beside;
 use crate::transfer::transfer_function_to_json;
@@ -22,7 +22,7 @@ pub fn frozen(view: &View, shown: &Shown) -> SceneFlags {
     if is_chosen && mode.is_projection() {
         let [low, high] = shown.looked_at().value_range;
         if low < high {
-            chosen.window.get_or_insert(Numbers([low, high]));
+            chosen.window.get_or_insert(WindowWord::Values([low, high]));
         }
     } else if is_chosen && !function.is_graded() {
         let text = transfer_function_to_json(function);
@@ -31,6 +31,7 @@ pub fn frozen(view: &View, shown: &Shown) -> SceneFlags {
         // It lies where the window has put it.
         chosen.window = None;
         (chosen.color_function, chosen.opacity_function) = (None, None);
+        chosen.colormap = None;
         if let Some(filter) = shown.filter {
             scene.sampling.filter.get_or_insert(FilterWord::of(filter));
         }

@@ -59,6 +59,7 @@ pub fn check(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
     }
     let ClassificationFlags {
         preset,
+        colormap,
         window,
         color_function,
         opacity_function,
@@ -70,6 +71,7 @@ pub fn check(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
         ("--tf", scene.classification.function_of_file()?.is_some()),
         ("--color-tf", color_function.is_some()),
         ("--opacity-tf", opacity_function.is_some()),
+        ("--colormap", colormap.is_some()),
         ("--window", window.is_some()),
     ];
     match one_function.into_iter().find(|(_, is_given)| *is_given) {

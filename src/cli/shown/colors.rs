@@ -24,6 +24,12 @@ impl Reader<'_> {
                 "take one of them: --component 0",
             ));
         }
+        if let Some(map) = &flags.colormap {
+            return Err(Error::usage(
+                format!("--colormap {map} colours numbers, and this volume has its own colours"),
+                "take one of them: --component 0",
+            ));
+        }
         let by_alpha = source.header().components == 4;
         let source = self.fitted(source, source_count(by_alpha))?;
         let (time, _) = self.scene.input.time(source.header())?;

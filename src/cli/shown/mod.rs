@@ -403,6 +403,7 @@ impl Reader<'_> {
             Some(word) => (&none, vec![self.paint(word, &volume.grid())?]),
             None => (flags, Vec::new()),
         };
+        let flags = &flags.with_window_of(self.mode, || Ok(summary(&volume)))?;
         let classification = flags.classification(&volume, self.mode)?;
         let (per_mode, note) = modes.per_mode(
             self.mode,
@@ -490,7 +491,9 @@ pub fn limits(scene: &SceneFlags) -> Limits {
 /// True where no word says how values are seen.
 fn says_nothing(flags: &ClassificationFlags) -> Result<bool, Error> {
     let of_file = flags.function_of_file()?;
-    let of_parts = flags.color_function.is_some() || flags.opacity_function.is_some();
+    let of_parts = flags.color_function.is_some()
+        || flags.opacity_function.is_some()
+        || flags.colormap.is_some();
     Ok(flags.preset.is_none() && of_file.is_none() && !of_parts && flags.window.is_none())
 }
 

@@ -2,7 +2,7 @@
 
 use super::super::{
     Error, exaggerate,
-    flags::{Classification, ClassificationFlags, Component, InputFlags},
+    flags::{Classification, ClassificationFlags, Component, InputFlags, Numbers, WindowWord},
     load::{denoise, open, say_what_was_lost},
     memory::{Held, fitting},
     timings::Loaded,
@@ -121,7 +121,11 @@ impl Reader<'_> {
         let flags = ClassificationFlags {
             transfer_function: file.map(|file| file.transfer_function.clone()),
             transfer_function_of_fractions: file.map(|file| file.of_fractions),
-            window: self.scene.opacity.opacity_window,
+            window: self
+                .scene
+                .opacity
+                .opacity_window
+                .map(|Numbers(ends)| WindowWord::Values(ends)),
             ..ClassificationFlags::default()
         };
         let Classification::Function(function) = flags.classification(volume, Mode::Composite)?
