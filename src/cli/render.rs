@@ -2,7 +2,8 @@
 
 use super::{
     Error,
-    flags::{Depth, SceneFlags},
+    annotate::{Annotation, Seen},
+    flags::{Classification, Depth, SceneFlags},
     load::open,
     output::{self, write_whole},
     progress::{Progress, ProgressWord},
@@ -129,8 +130,14 @@ impl Render {
         settings.skip = !self.no_skip;
         let extent_pixels = scene.picture.extent_pixels()?;
         scene.classification.check()?;
+        scene.annotate.check()?;
         let inputs = scene_file::inputs(&scene, self.scene_file.as_deref());
-        output::check(&self.outputs(format, &layers), &inputs, self.force)?;
+        let is_annotated = scene.annotate.annotate.is_some();
+        output::check(
+            &self.outputs(format, &layers, is_annotated),
+            &inputs,
+            self.force,
+        )?;
 
         let progress = Progress::new(self.progress);
         for note in scene.idle() {
@@ -184,8 +191,28 @@ impl Render {
         if let Some(reason) = why_empty(&picture, volume, reasoned, &camera, &settings) {
             progress.note(&format!("the picture is empty: {reason}"));
         }
+        let annotation = Annotation::of(&scene, &shown.header, settings.mode)?;
+        let behind = annotation.as_ref().and_then(|a| a.transmittance(&picture));
         if let Some(background) = scene.picture.background() {
             picture.over_background(background);
+        }
+        if let Some(annotation) = &annotation {
+            annotation.note().iter().for_each(|note| progress.note(note));
+            let has_own_range = *classification == Classification::RangeOfPicture;
+            let projected = (annotation.has_bar() && has_own_range)
+                .then(|| renderer.projected_range(&camera))
+                .transpose()?;
+            let seen = Seen {
+                camera: &camera,
+                settings: &settings,
+                classification,
+                beside: parts.beside(),
+                grid: volume.grid(),
+                height_factor: shown.height_factor,
+                time: f64::from(scene.input.time(&shown.header)?.0),
+                projected,
+            };
+            annotation.put(&mut picture, behind.as_deref(), &seen, format)?;
         }
 
         progress.stage("write", 0, 1);
@@ -227,13 +254,20 @@ impl Render {
         }
     }
 
-    fn outputs(&self, format: PictureFormat, layers: &[LayerKind]) -> Vec<PathBuf> {
+    fn outputs(
+        &self,
+        format: PictureFormat,
+        layers: &[LayerKind],
+        is_annotated: bool,
+    ) -> Vec<PathBuf> {
         let mut outputs = vec![self.output.clone()];
         if format == PictureFormat::Npy {
             let name = |layer: &LayerKind| format!("{}.npy", layer.name());
+            let annotation = is_annotated.then_some(LayerKind::Annotation);
             outputs.extend(
                 layers
                     .iter()
+                    .chain(&annotation)
                     .map(|layer| self.output.with_extension(name(layer))),
             );
         }

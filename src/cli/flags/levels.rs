@@ -46,7 +46,7 @@ const THIN: f64 = 0.25;
 /// `R:G:B` or a name; sRGB.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
-pub struct ColorWord([f64; 3]);
+pub struct ColorWord(pub [f64; 3]);
 
 impl FromStr for ColorWord {
     type Err = String;

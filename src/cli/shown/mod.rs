@@ -35,7 +35,8 @@ use std::sync::Arc;
 pub struct Shown {
     /// The volume; red of colours, the first of channels.
     pub volume: Arc<Volume>,
-    is_earth: bool,
+    /// What its file says of it.
+    pub header: Header,
     /// How its values are seen.
     pub classification: Classification,
     /// What the mode wants to know of the values.
@@ -43,7 +44,7 @@ pub struct Shown {
     /// Where the values themselves ask for one.
     pub filter: Option<Filter>,
     /// How much higher than it is the volume is drawn.
-    height_factor: f64,
+    pub height_factor: f64,
     others: Others,
     /// Where the voxels come from, brick by brick; the volume is its outline then.
     stream: Option<Stream>,
@@ -233,7 +234,7 @@ impl Shown {
 
     /// What a camera is turned to.
     pub fn subject(&self) -> Subject {
-        Subject::new(&self.volume.grid(), self.is_earth)
+        Subject::new(&self.volume.grid(), self.header.is_earth)
     }
 
     /// Who looks, and in `settings` what is known now that there are voxels.
@@ -329,11 +330,8 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn one(&self, source: Box<dyn Source>) -> Result<Shown, Error> {
-        let Header {
-            is_labels,
-            is_earth,
-            ..
-        } = *source.header();
+        let header = source.header().clone();
+        let is_labels = header.is_labels;
         let (volume, height_factor) = load_from(source, self.scene, self.device, self.progress)?;
         let flags = &ClassificationFlags {
             // That of other numbers says nothing of these.
@@ -358,7 +356,7 @@ impl Reader<'_> {
         {
             return Ok(Shown {
                 volume: Arc::new(volume),
-                is_earth,
+                header,
                 classification: Classification::Function(function),
                 per_mode: PerMode::default(),
                 filter: Some(Filter::Nearest),
@@ -398,7 +396,7 @@ impl Reader<'_> {
         }
         Ok(Shown {
             volume: Arc::new(volume),
-            is_earth,
+            header,
             classification,
             per_mode,
             filter: found_labels.then_some(Filter::Nearest),

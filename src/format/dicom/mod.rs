@@ -208,6 +208,10 @@ fn open_group(
             Meaning::Numbers
         },
         is_labels: quantity.is_labels,
+        is_patient: pictures
+            .first()
+            .is_some_and(|picture| picture.directions.is_some()),
+        length_metres: Some(1e-3),
         time_names: stack.time_names,
         series,
         notes,

@@ -140,6 +140,10 @@ fn header(
         },
         // Values of eight bits cannot be Hounsfield units, whatever the modality.
         hounsfield: fields.get("Modality") == Some("MET_MOD_CT") && stored.bytes() > 1,
+        is_patient: fields
+            .get("AnatomicalOrientation")
+            .is_some_and(|axes| axes.chars().all(|axis| "RLAPSI".contains(axis))),
+        length_metres: Some(1e-3),
         notes,
         ..Header::new(Format::MetaImage, array.dims, stored, world_from_voxel)
     })
