@@ -3,7 +3,7 @@
 use super::{
     Error,
     annotate::{Annotation, Seen},
-    flags::{Classification, Depth, SceneFlags},
+    flags::{Depth, SceneFlags},
     load::open,
     output::{self, write_whole},
     progress::{Progress, ProgressWord},
@@ -197,11 +197,10 @@ impl Render {
             picture.over_background(background);
         }
         if let Some(annotation) = &annotation {
-            annotation.note().iter().for_each(|note| progress.note(note));
-            let has_own_range = *classification == Classification::RangeOfPicture;
-            let projected = (annotation.has_bar() && has_own_range)
-                .then(|| renderer.projected_range(&camera))
-                .transpose()?;
+            annotation
+                .note()
+                .iter()
+                .for_each(|note| progress.note(note));
             let seen = Seen {
                 camera: &camera,
                 settings: &settings,
@@ -210,7 +209,7 @@ impl Render {
                 grid: volume.grid(),
                 height_factor: shown.height_factor,
                 time: f64::from(scene.input.time(&shown.header)?.0),
-                projected,
+                projected: annotation.projected(classification, &mut renderer, &camera)?,
             };
             annotation.put(&mut picture, behind.as_deref(), &seen, format)?;
         }

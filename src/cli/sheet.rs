@@ -2,16 +2,17 @@
 
 use super::{
     Error,
+    annotate::{Annotation, Seen},
     error::visible,
     figure::{Anchor, Color, Figure, Mark, SCALE, png},
-    flags::{Depth, InputFlags, SceneFlags, Size},
+    flags::{AnnotateFlags, Depth, InputFlags, SceneFlags, Size},
     output::{self, say},
     progress::{Progress, ProgressWord},
     renderer::{Device, Job, Renderer},
     shown::Shown,
     signals::Gate,
 };
-use crate::picture::Picture;
+use crate::picture::{Picture, PictureFormat};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -34,6 +35,8 @@ pub struct Sheet {
     /// Small pictures in a row [default: as many as make the sheet about as wide as it is high]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     columns: Option<u32>,
+    #[command(flatten)]
+    annotate: AnnotateFlags,
     /// A Vulkan device, as for `render`
     #[arg(long, value_name = "DEVICE")]
     device: Option<String>,
@@ -49,7 +52,12 @@ impl Sheet {
     /// Draws one after the other and writes the sheet. An input that cannot be drawn leaves its place empty,
     /// and the first such error is that of the whole.
     pub fn run(self, gate: &Gate) -> Result<(), Error> {
-        let scenes: Vec<SceneFlags> = self.inputs.iter().map(|words| scene_of(words)).collect();
+        self.annotate.check()?;
+        let scene = |words: &String| SceneFlags {
+            annotate: self.annotate.clone(),
+            ..scene_of(words)
+        };
+        let scenes: Vec<SceneFlags> = self.inputs.iter().map(scene).collect();
         let files: Vec<PathBuf> = scenes
             .iter()
             .filter_map(|scene| scene.input.file().map(PathBuf::from))
@@ -144,8 +152,28 @@ fn draw(
         closer.zoom = Some(zoom_to(&whole));
         let camera = closer.camera(&shown.subject(), extent_pixels)?;
         let mut picture = renderer.draw(&camera)?.picture;
+        let annotation = Annotation::of(scene, &shown.header, settings.mode)?;
+        let behind = annotation.as_ref().and_then(|a| a.transmittance(&picture));
         let [r, g, b, _] = BACKGROUND.map(|code| f64::from(code) / 255.0);
         picture.over_background([r, g, b, 1.0]);
+        if let Some(annotation) = &annotation {
+            annotation
+                .note()
+                .iter()
+                .for_each(|note| progress.note(note));
+            let classification = &shown.classification;
+            let seen = Seen {
+                camera: &camera,
+                settings: &settings,
+                classification,
+                beside: parts.beside(),
+                grid: shown.volume.grid(),
+                height_factor: shown.height_factor,
+                time: f64::from(scene.input.time(&shown.header)?.0),
+                projected: annotation.projected(classification, &mut renderer, &camera)?,
+            };
+            annotation.put(&mut picture, behind.as_deref(), &seen, PictureFormat::Png)?;
+        }
         Ok((picture, renderer.into_device()))
     });
     match drawn {

@@ -3,10 +3,10 @@
 //! The reader is the `exr` crate's. It trusts sizes in the header, so these are checked first: layout of the
 //! header as in "OpenEXR File Layout" (openexr.com).
 
-use super::{LayerKind, Picture};
 use super::compare::{Image, Numbers};
 use super::read::PictureProblem;
 use super::write::OutputProblem;
+use super::{LayerKind, Picture};
 use ::exr::prelude::*;
 use std::io::Cursor;
 

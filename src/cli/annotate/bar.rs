@@ -39,9 +39,11 @@ impl Bar<'_> {
     pub fn range(&self) -> Option<[f64; 2]> {
         let color = self.function.color.iter().map(|point| point.value);
         let opacity = self.function.opacity.iter().map(|point| point.value);
-        let range = color.chain(opacity).fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| {
-            [a.min(v), b.max(v)]
-        });
+        let range = color
+            .chain(opacity)
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| {
+                [a.min(v), b.max(v)]
+            });
         (!self.function.color.is_empty() && range[0] < range[1]).then_some(range)
     }
 
@@ -85,7 +87,13 @@ impl Bar<'_> {
             let y = top - 0.8 * em - line * at as f64;
             sheet.text_on_ground([right, y], text, 1.0, Anchor::End);
         }
-        let frame = [[left, top], [left + across, top], [left + across, top + tall], [left, top + tall], [left, top]];
+        let frame = [
+            [left, top],
+            [left + across, top],
+            [left + across, top + tall],
+            [left, top + tall],
+            [left, top],
+        ];
         sheet.line(frame.to_vec(), sheet.thin(), ink);
         sheet.figure.marks.push(Mark::Cells {
             at: [left, top],
@@ -98,11 +106,25 @@ impl Bar<'_> {
             let y = place(*value);
             let end = left + across;
             sheet.line(vec![[end, y], [end + 0.3 * em, y]], sheet.thin(), ink);
-            sheet.text([end + 0.6 * em, y + 0.35 * em], text, 1.0, Anchor::Start, ink);
+            sheet.text(
+                [end + 0.6 * em, y + 0.35 * em],
+                text,
+                1.0,
+                Anchor::Start,
+                ink,
+            );
         }
-        for &level in self.levels.iter().filter(|level| (low..=high).contains(*level)) {
+        for &level in self
+            .levels
+            .iter()
+            .filter(|level| (low..=high).contains(*level))
+        {
             let y = place(level);
-            sheet.line(vec![[left - 0.3 * em, y], [left + across, y]], 1.5 * sheet.thin(), ink);
+            sheet.line(
+                vec![[left - 0.3 * em, y], [left + across, y]],
+                1.5 * sheet.thin(),
+                ink,
+            );
         }
         let words = caption.iter().map(|text| sheet.width(text, 1.0));
         let widest = words.fold(0.0, f64::max);
@@ -112,7 +134,8 @@ impl Bar<'_> {
     /// What the values are, with power and unit.
     fn caption_lines(&self, sheet: &Sheet, unit: Option<String>, exponent: i32) -> Vec<String> {
         let parts: Vec<String> = units::power(exponent).into_iter().chain(unit).collect();
-        let unit = parts.join(" ");
+        // Not to be parted.
+        let unit = parts.join(" ").replace(' ', "\u{a0}");
         let words = match (self.caption, unit.as_str()) {
             (caption, "") => caption.to_owned(),
             ("", unit) => unit.to_owned(),
@@ -154,7 +177,8 @@ impl Bar<'_> {
 
     fn alpha(&self, value: f64) -> f64 {
         let opacity = self.function.opacity(value).clamp(0.0, 1.0);
-        self.depth.map_or(1.0, |depth| 1.0 - (1.0 - opacity).powf(depth))
+        self.depth
+            .map_or(1.0, |depth| 1.0 - (1.0 - opacity).powf(depth))
     }
 }
 
@@ -181,7 +205,13 @@ pub fn legend(sheet: &mut Sheet, entries: &[([f64; 3], String)]) -> Option<f64> 
             colors: vec![srgb.map(|c| (255.0 * c.clamp(0.0, 1.0)).round() as u8)],
         });
         let text = sheet.shortened(text, 1.0, words);
-        sheet.text([left + 1.5 * em, y + 0.85 * em], &text, 1.0, Anchor::Start, ink);
+        sheet.text(
+            [left + 1.5 * em, y + 0.85 * em],
+            &text,
+            1.0,
+            Anchor::Start,
+            ink,
+        );
     }
     (!entries.is_empty()).then_some(left)
 }

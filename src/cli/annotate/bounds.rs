@@ -18,7 +18,10 @@ struct Edge {
 
 fn edges(grid: &Grid, projector: &Projector) -> Vec<Edge> {
     let far = grid.far_corner();
-    let corner = |sides: [f64; 3]| grid.world_from_voxel.transform_point3(DVec3::from(sides) * far);
+    let corner = |sides: [f64; 3]| {
+        grid.world_from_voxel
+            .transform_point3(DVec3::from(sides) * far)
+    };
     let middle = grid.center();
     // Whether the face at one end of an axis looks at the eye.
     let is_facing = |axis: usize, side: f64| {
@@ -63,15 +66,27 @@ pub fn draw(sheet: &mut Sheet, projector: &Projector, grid: &Grid, is_behind: bo
 }
 
 /// Draws numbers and units along three edges.
-pub fn ticks(sheet: &mut Sheet, projector: &Projector, grid: &Grid, facts: &Facts, height_factor: f64) {
+pub fn ticks(
+    sheet: &mut Sheet,
+    projector: &Projector,
+    grid: &Grid,
+    facts: &Facts,
+    height_factor: f64,
+) {
     let em = sheet.em;
     let center = projector.point(grid.center());
     let edges = edges(grid, projector);
+    let upright = |axis: usize| {
+        let column = grid.world_from_voxel.matrix3.col(axis).normalize();
+        column.dot(projector.frame.up).abs()
+    };
+    let most_upright = (0..3).max_by(|&a, &b| upright(a).total_cmp(&upright(b)));
     for axis in 0..3 {
-        let seen = edges.iter().filter(|edge| edge.axis == axis && edge.facing == 1);
+        let seen = edges
+            .iter()
+            .filter(|edge| edge.axis == axis && edge.facing == 1);
         let seen = seen.filter_map(|edge| Some((edge, projector.line(edge.ends)?)));
-        let steepness = |line: &[[f64; 2]; 2]| (line[1][1] - line[0][1]).abs() - (line[1][0] - line[0][0]).abs();
-        let order = |line: &[[f64; 2]; 2]| match steepness(line) > 0.0 {
+        let order = |line: &[[f64; 2]; 2]| match most_upright == Some(axis) {
             true => line[0][0] + line[1][0],
             false => -(line[0][1] + line[1][1]),
         };
@@ -93,9 +108,17 @@ pub fn ticks(sheet: &mut Sheet, projector: &Projector, grid: &Grid, facts: &Fact
         let most = (pixels / (4.0 * em)) as usize;
         let found = units::ticks([range[0].min(range[1]), range[0].max(range[1])], most);
         // Away from the middle of the box.
-        let across = [(line[1][1] - line[0][1]) / pixels, (line[0][0] - line[1][0]) / pixels];
-        let middle = [0.5 * (line[0][0] + line[1][0]), 0.5 * (line[0][1] + line[1][1])];
-        let side = (0..2).map(|i| across[i] * (middle[i] - center[i])).sum::<f64>();
+        let across = [
+            (line[1][1] - line[0][1]) / pixels,
+            (line[0][0] - line[1][0]) / pixels,
+        ];
+        let middle = [
+            0.5 * (line[0][0] + line[1][0]),
+            0.5 * (line[0][1] + line[1][1]),
+        ];
+        let side = (0..2)
+            .map(|i| across[i] * (middle[i] - center[i]))
+            .sum::<f64>();
         let away = across.map(|x| x * if side < 0.0 { -1.0 } else { 1.0 });
         let anchor = match away[0] {
             x if x > 0.4 => Anchor::Start,
@@ -114,11 +137,20 @@ pub fn ticks(sheet: &mut Sheet, projector: &Projector, grid: &Grid, facts: &Fact
             let [x, y] = at(0.9);
             sheet.text([x, y + 0.3 * em], &text, 0.9, anchor, ink);
         }
-        let [name, unit] = [axis_name(world, facts), length_unit(facts).unwrap_or("")];
-        let parts: Vec<String> = units::power(found.exponent).into_iter().collect();
-        let words = [vec![name.to_owned()], parts, vec![unit.to_owned()]].concat().join(" ");
+        let unit = length_unit(facts).map(str::to_owned);
+        let parts: Vec<String> = units::power(found.exponent)
+            .into_iter()
+            .chain(unit)
+            .collect();
+        let words = match parts.is_empty() {
+            true => axis_name(world, facts).to_owned(),
+            false => format!("{} ({})", axis_name(world, facts), parts.join(" ")),
+        };
         let off = 1.9 + widest * away[0].abs();
-        let at = [middle[0] + off * em * away[0], middle[1] + (off * away[1] + 0.3) * em];
+        let at = [
+            middle[0] + off * em * away[0],
+            middle[1] + (off * away[1] + 0.3) * em,
+        ];
         sheet.text_on_ground(at, words.trim(), 0.9, anchor);
     }
 }
@@ -134,8 +166,14 @@ fn axis_name(world: Option<usize>, facts: &Facts) -> &'static str {
 /// Of the world.
 fn length_unit(facts: &Facts) -> Option<&'static str> {
     let metres = facts.length_metres?;
-    [(1e3, "km"), (1.0, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm")]
-        .into_iter()
-        .find(|(unit, _)| (metres / unit - 1.0).abs() < 1e-9)
-        .map(|(_, name)| name)
+    [
+        (1e3, "km"),
+        (1.0, "m"),
+        (1e-3, "mm"),
+        (1e-6, "µm"),
+        (1e-9, "nm"),
+    ]
+    .into_iter()
+    .find(|(unit, _)| (metres / unit - 1.0).abs() < 1e-9)
+    .map(|(_, name)| name)
 }

@@ -2,11 +2,11 @@
 
 use crate::{
     cli::{
+        Error,
         figure::letter_lacking,
         flags::{InputFlags, SceneFlags},
         histogram::unit,
         load::open,
-        Error,
     },
     technique::Mode,
     volume::{Format, Header, Meaning},
@@ -43,7 +43,9 @@ impl Facts {
     /// Of a header, and of the words that chose in its file.
     pub fn of(scene: &SceneFlags, header: &Header, mode: Mode) -> Result<Self, Error> {
         let channels = match &header.meaning {
-            Meaning::Channels(channels) => channels.iter().map(|c| c.name.clone()).collect(),
+            Meaning::Channels(channels) if header.format != Format::Dicom => {
+                channels.iter().map(|c| c.name.clone()).collect()
+            }
             _ => Vec::new(),
         };
         let paint = match scene.modes.paint(mode) {
@@ -68,7 +70,10 @@ impl Facts {
     /// Words of the file that have letters which are drawn as boxes.
     pub fn letters_lacking(&self) -> Option<char> {
         let words = [&self.caption, &self.source];
-        let words = words.into_iter().chain(&self.time_names).chain(&self.channels);
+        let words = words
+            .into_iter()
+            .chain(&self.time_names)
+            .chain(&self.channels);
         words.into_iter().find_map(|text| letter_lacking(text))
     }
 }
@@ -104,5 +109,52 @@ fn source(input: &InputFlags, header: &Header) -> String {
     match header.variables.first() {
         Some(variable) => format!("{name}, {variable}"),
         None => name,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::volume::{Channel, Series, VoxelType};
+    use glam::DAffine3;
+
+    #[test]
+    fn nothing_private_of_a_dicom_file_is_known() {
+        let private = || "DOE^JOHN 1970-01-01".to_owned();
+        let header = Header {
+            unit: Some("HU".to_owned()),
+            long_name: Some(private()),
+            variables: vec![private()],
+            notes: vec![private()],
+            meaning: Meaning::Channels(vec![Channel {
+                name: private(),
+                ..Channel::default()
+            }]),
+            series: vec![Series {
+                uid: private(),
+                description: private(),
+                pictures: 1,
+            }],
+            ..Header::new(Format::Dicom, [2; 3], VoxelType::I16, DAffine3::IDENTITY)
+        };
+        let mut scene = SceneFlags::default();
+        scene.input.path = Some("DOE^JOHN.dcm".to_owned());
+        let facts = Facts::of(&scene, &header, Mode::Composite).expect("facts");
+        let known = format!("{facts:?}");
+        assert!(!known.contains("DOE") && !known.contains("1970"), "{known}");
+        assert_eq!(
+            (facts.unit.as_deref(), facts.source.as_str()),
+            (Some("HU"), "DICOM")
+        );
+        // The same words of another format are written.
+        let header = Header {
+            format: Format::Nrrd,
+            ..header
+        };
+        let facts = Facts::of(&scene, &header, Mode::Composite).expect("facts");
+        assert!(
+            facts.caption.contains("DOE") && facts.source.contains("DOE"),
+            "{facts:?}"
+        );
     }
 }

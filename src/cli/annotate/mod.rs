@@ -20,6 +20,7 @@ use super::{
     Error,
     figure::{Anchor, linear_pixels},
     flags::{Classification, Marks, ScaleWord, SceneFlags},
+    renderer::Renderer,
 };
 use crate::{
     camera::Camera,
@@ -86,12 +87,22 @@ impl Annotation {
     /// What a person should know of it.
     pub fn note(&self) -> Option<String> {
         let letter = self.facts.letters_lacking()?;
-        Some(format!("--annotate: no letter {letter:?}, words of the file have boxes for such letters"))
+        Some(format!(
+            "--annotate: no letter {letter:?}, words of the file have boxes for such letters"
+        ))
     }
 
-    /// Whether colours are shown, of which a picture may have a range of its own.
-    pub fn has_bar(&self) -> bool {
-        self.marks.bar
+    /// The range of what the mode projects, where the bar needs that of the picture.
+    pub fn projected(
+        &self,
+        classification: &Classification,
+        renderer: &mut Renderer,
+        camera: &Camera,
+    ) -> Result<Option<[f64; 2]>, Error> {
+        let is_wanted = self.marks.bar && *classification == Classification::RangeOfPicture;
+        is_wanted
+            .then(|| renderer.projected_range(camera))
+            .transpose()
     }
 
     /// What a picture without its background lets through, where marks lie behind the volume.
@@ -142,7 +153,13 @@ impl Annotation {
             bounds::draw(&mut front, &projector, &seen.grid, false);
         }
         if self.marks.ticks {
-            bounds::ticks(&mut front, &projector, &seen.grid, &self.facts, seen.height_factor);
+            bounds::ticks(
+                &mut front,
+                &projector,
+                &seen.grid,
+                &self.facts,
+                seen.height_factor,
+            );
         }
         self.words(&mut front, &projector, seen)?;
         let mut pixels = linear_pixels(&front.figure);
@@ -193,7 +210,9 @@ impl Annotation {
     /// The bar, or patches of colour; where it begins.
     fn colors(&self, sheet: &mut Sheet, seen: &Seen) -> Result<Option<f64>, Error> {
         let facts = &self.facts;
-        let Seen { settings, beside, .. } = *seen;
+        let Seen {
+            settings, beside, ..
+        } = *seen;
         let others = match beside {
             Beside::Channels(channels) => channels,
             _ => &[],
@@ -231,7 +250,8 @@ impl Annotation {
             }
             (Classification::RangeOfPicture, _) => return Ok(None),
         };
-        let integral = (settings.mode == Mode::Xray).then(|| facts.unit.clone().unwrap_or_default());
+        let integral =
+            (settings.mode == Mode::Xray).then(|| facts.unit.clone().unwrap_or_default());
         let integral = integral.map(|unit| format!("{unit} × length"));
         let bar = Bar {
             function,
@@ -283,7 +303,9 @@ impl Annotation {
     fn level(&self, value: f64) -> String {
         let (unit, factor) = units::scaled(self.facts.unit.as_deref(), value.abs());
         let number = units::signed(&super::readable::short(value * factor));
-        format!("{number} {}", unit.unwrap_or_default()).trim().to_owned()
+        format!("{number} {}", unit.unwrap_or_default())
+            .trim()
+            .to_owned()
     }
 
     /// The last colour of each channel, and its name.
@@ -298,12 +320,17 @@ impl Annotation {
         };
         let others = others.iter().filter(|other| other.role == Role::Numbers);
         let functions = std::iter::once(first).chain(others.map(|other| other.transfer));
-        let colors = functions.flatten().filter_map(|f| f.color.last().map(|point| point.srgb));
+        let colors = functions
+            .flatten()
+            .filter_map(|f| f.color.last().map(|point| point.srgb));
         let name = |at: usize| match self.facts.channels.get(at) {
             Some(name) if !name.is_empty() => name.clone(),
             _ => format!("channel {at}"),
         };
-        colors.enumerate().map(|(at, srgb)| (srgb, name(at))).collect()
+        colors
+            .enumerate()
+            .map(|(at, srgb)| (srgb, name(at)))
+            .collect()
     }
 }
 

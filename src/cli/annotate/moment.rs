@@ -61,7 +61,11 @@ fn seconds(iso: &str) -> Option<f64> {
         return None;
     }
     let mut parts = clock.split(':').map(|part| part.parse::<f64>().ok());
-    let [hour, minute, second] = [parts.next()??, parts.next()??, parts.next().unwrap_or(Some(0.0))?];
+    let [hour, minute, second] = [
+        parts.next()??,
+        parts.next()??,
+        parts.next().unwrap_or(Some(0.0))?,
+    ];
     // Days from the civil date: years begin in March, leap days are their last.
     let year = if month <= 2 { year - 1 } else { year };
     let (era, of_era) = (year.div_euclid(400), year.rem_euclid(400));
@@ -80,11 +84,19 @@ fn date(moment: f64, has_seconds: bool) -> String {
     let of_year = of_era - (365 * of_400 + of_400 / 4 - of_400 / 100);
     let from_march = (5 * of_year + 2) / 153;
     let day = of_year - (153 * from_march + 2) / 5 + 1;
-    let month = if from_march < 10 { from_march + 3 } else { from_march - 9 };
+    let month = if from_march < 10 {
+        from_march + 3
+    } else {
+        from_march - 9
+    };
     let year = era * 400 + of_400 + i64::from(month <= 2);
     let [hour, minute, second] = [clock / 3600, clock / 60 % 60, clock % 60];
     let text = format!("{year:04}-{month:02}-{day:02} {hour:02}:{minute:02}");
-    if has_seconds { format!("{text}:{second:02}") } else { text }
+    if has_seconds {
+        format!("{text}:{second:02}")
+    } else {
+        text
+    }
 }
 
 /// `+6 h`, `+1 h 30 min`, `+45 s`.
@@ -146,17 +158,30 @@ mod tests {
 
     #[test]
     fn dates_are_written_to_the_minute_with_what_has_passed() {
-        let known = facts(&["2005-02-28T21:00:00", "2005-03-01T00:00:00", "2005-03-04T00:00:00"], 3);
+        let known = facts(
+            &[
+                "2005-02-28T21:00:00",
+                "2005-03-01T00:00:00",
+                "2005-03-04T00:00:00",
+            ],
+            3,
+        );
         let at = |time| words(&known, time).expect("a time");
         assert_eq!(at(0.0), "2005-02-28 21:00 UTC  +0 h");
         assert_eq!(at(1.0), "2005-03-01 00:00 UTC  +3 h");
         assert_eq!(at(0.1), "2005-02-28 21:18 UTC  +18 min");
         assert_eq!(at(2.0), "2005-03-04 00:00 UTC  +3 d 3 h");
         // 29 February is there in 2000 and not in 1900.
-        for (iso, wanted) in [("2000-02-29T12:30:00", "2000-02-29 12:30"), ("1900-03-01T00:00:00", "1900-03-01 00:00")] {
+        for (iso, wanted) in [
+            ("2000-02-29T12:30:00", "2000-02-29 12:30"),
+            ("1900-03-01T00:00:00", "1900-03-01 00:00"),
+        ] {
             assert_eq!(date(seconds(iso).expect("a date"), false), wanted);
         }
-        assert_eq!(date(seconds("1970-01-01T00:01:00").expect("a date"), false), "1970-01-01 00:01");
+        assert_eq!(
+            date(seconds("1970-01-01T00:01:00").expect("a date"), false),
+            "1970-01-01 00:01"
+        );
     }
 
     #[test]

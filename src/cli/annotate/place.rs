@@ -109,8 +109,15 @@ pub fn triad(sheet: &mut Sheet, projector: &Projector, names: [&str; 3], bottom:
         }
         sheet.line(stroke, 1.2 * sheet.thin(), ink);
         // An axis along the line of sight has its letter beside the origin.
-        let away = if seen > 0.15 { along.map(|x| x / seen) } else { [-0.7, 0.7] };
-        let at = [tip[0] + 0.8 * em * away[0], tip[1] + 0.8 * em * away[1] + 0.35 * em];
+        let away = if seen > 0.15 {
+            along.map(|x| x / seen)
+        } else {
+            [-0.7, 0.7]
+        };
+        let at = [
+            tip[0] + 0.8 * em * away[0],
+            tip[1] + 0.8 * em * away[1] + 0.35 * em,
+        ];
         sheet.text(at, names[k], 1.0, Anchor::Middle, ink);
     }
 }

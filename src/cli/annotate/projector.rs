@@ -79,7 +79,11 @@ impl Projector {
         }
         let cut = |point: DVec3, depth: f64, other: DVec3, other_depth: f64| {
             let t = ((least - depth) / (other_depth - depth)).clamp(0.0, 1.0);
-            if depth < least { point.lerp(other, t) } else { point }
+            if depth < least {
+                point.lerp(other, t)
+            } else {
+                point
+            }
         };
         let ends = [cut(from, near, to, far), cut(to, far, from, near)];
         Some(ends.map(|end| self.point(end)))

@@ -112,7 +112,9 @@ impl<'a> Sheet<'a> {
             Anchor::End => -width,
         };
         for line in lines {
-            let points = line.into_iter().map(|[x, y]| [at[0] + shift + x, at[1] + y]);
+            let points = line
+                .into_iter()
+                .map(|[x, y]| [at[0] + shift + x, at[1] + y]);
             self.figure.marks.push(Mark::Line {
                 points: points.collect(),
                 color: ink.halo,
@@ -165,7 +167,7 @@ impl<'a> Sheet<'a> {
     /// Words in lines of a width, no more than `most` of them.
     pub fn wrapped(&self, text: &str, ems: f64, width: f64, most: usize) -> Vec<String> {
         let mut lines: Vec<String> = Vec::new();
-        for word in text.split_whitespace() {
+        for word in text.split(' ').filter(|word| !word.is_empty()) {
             let longer = lines.last().map(|line| format!("{line} {word}"));
             match longer {
                 Some(line) if self.width(&line, ems) <= width || lines.len() == most => {
@@ -182,4 +184,54 @@ impl<'a> Sheet<'a> {
 /// Of linear light (IEC 61966-2-1).
 fn luminance([r, g, b]: [f64; 3]) -> f64 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::figure::linear_pixels;
+
+    #[test]
+    fn words_have_a_contrast_of_4_and_a_half_on_every_ground() {
+        let greys = [0.0, 0.2, 0.5, 1.0].map(|grey| [grey as f32; 3]);
+        for ground in greys.into_iter().chain([[1.0, 0.0, 0.0]]) {
+            let [r, g, b] = ground;
+            let mut picture = Picture {
+                width: 120,
+                height: 40,
+                pixels: vec![[r, g, b, 1.0]; 4800],
+                color_space: ColorSpace::Linear,
+                layers: Vec::new(),
+            };
+            let mut sheet = Sheet::new(&picture, 16.0, None);
+            sheet.text_on_ground([10.0, 28.0], "HU −1000", 1.0, Anchor::Start);
+            let over = linear_pixels(&sheet.figure);
+            picture.lay_over(&over);
+            let light = |pixel: &[f32; 4]| luminance([0, 1, 2].map(|k| f64::from(pixel[k])));
+            let under = luminance(ground.map(f64::from));
+            let contrast = |a: f64| (a.max(under) + 0.05) / (a.min(under) + 0.05);
+            let best = picture.pixels.iter().map(|p| contrast(light(p)));
+            let best = best.fold(0.0, f64::max);
+            assert!(best >= 4.5, "{ground:?}: {best}");
+        }
+    }
+
+    #[test]
+    fn long_words_are_broken_and_cut() {
+        let picture = Picture {
+            width: 4,
+            height: 4,
+            pixels: vec![[0.0; 4]; 16],
+            color_space: ColorSpace::Linear,
+            layers: Vec::new(),
+        };
+        let sheet = Sheet::new(&picture, 10.0, None);
+        let lines = sheet.wrapped("Water vapor mixing ratio", 1.0, 80.0, 2);
+        assert_eq!(lines.len(), 2);
+        assert!(
+            lines.iter().all(|line| sheet.width(line, 1.0) <= 80.0),
+            "{lines:?}"
+        );
+        assert!(sheet.shortened("Wasserdampf", 1.0, 40.0).ends_with('…'));
+    }
 }

@@ -48,7 +48,10 @@ pub fn signed(text: &str) -> String {
 /// tenth are in g/kg.
 pub fn scaled(unit: Option<&str>, largest: f64) -> (Option<String>, f64) {
     let compact = unit.unwrap_or("").replace(' ', "");
-    let is_share = matches!(compact.as_str(), "kgkg-1" | "kg/kg" | "kgkg**-1" | "kgkg^-1");
+    let is_share = matches!(
+        compact.as_str(),
+        "kgkg-1" | "kg/kg" | "kgkg**-1" | "kgkg^-1"
+    );
     if is_share && largest < 0.1 {
         return (Some("g kg⁻¹".to_owned()), 1e3);
     }
@@ -73,7 +76,9 @@ pub fn ticks(range: [f64; 2], most: usize) -> Ticks {
 pub fn log_ticks([low, high]: [f64; 2], most: usize) -> Vec<(f64, String)> {
     let powers = low.log10().floor() as i32..=high.log10().ceil() as i32;
     let of = |factors: &[f64]| -> Vec<f64> {
-        let all = powers.clone().flat_map(|power| factors.iter().map(move |f| f * 10_f64.powi(power)));
+        let all = powers
+            .clone()
+            .flat_map(|power| factors.iter().map(move |f| f * 10_f64.powi(power)));
         let inside = low * (1.0 - 1e-9)..=high * (1.0 + 1e-9);
         all.filter(|value| inside.contains(value)).collect()
     };
@@ -93,7 +98,11 @@ pub fn log_ticks([low, high]: [f64; 2], most: usize) -> Vec<(f64, String)> {
             }
         }
     };
-    found.into_iter().step_by(every.max(1)).map(|value| (value, text(value))).collect()
+    found
+        .into_iter()
+        .step_by(every.max(1))
+        .map(|value| (value, text(value)))
+        .collect()
 }
 
 /// A length of 1, 2 or 5 times a power of ten, no longer than `most` metres, and how it is written. Without metres
@@ -108,7 +117,13 @@ pub fn round_length(most: f64, metres: Option<f64>) -> (f64, String) {
     };
     // Round in the unit that is written: a kilometre is not 1 2 5 of other units.
     let most = most * metres;
-    let units = [(1e3, "km"), (1.0, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm")];
+    let units = [
+        (1e3, "km"),
+        (1.0, "m"),
+        (1e-3, "mm"),
+        (1e-6, "µm"),
+        (1e-9, "nm"),
+    ];
     let (unit, name) = units
         .into_iter()
         .find(|(unit, _)| most >= *unit)
@@ -143,7 +158,10 @@ mod tests {
         }
         assert_eq!((printed("1"), power(0)), (None, None));
         assert_eq!(power(-6).as_deref(), Some("×10⁻⁶"));
-        assert_eq!(scaled(Some("kg kg-1"), 0.02), (Some("g kg⁻¹".to_owned()), 1e3));
+        assert_eq!(
+            scaled(Some("kg kg-1"), 0.02),
+            (Some("g kg⁻¹".to_owned()), 1e3)
+        );
         assert_eq!(scaled(Some("kg kg-1"), 0.2).1, 1.0);
     }
 

@@ -180,8 +180,16 @@ mod tests {
     #[test]
     fn a_mark_lies_over_its_letter_and_a_raised_digit_above_the_line() {
         for (made, base) in [('č', 'c'), ('Ž', 'Z'), ('é', 'e'), ('ü', 'u')] {
-            let height = |glyph: Glyph| glyph.1.into_iter().flatten().map(|p| p[1]).fold(0.0, f64::max);
-            let [over, under] = [composed(made), letter(base)].map(|glyph| height(glyph.expect("a letter")));
+            let height = |glyph: Glyph| {
+                glyph
+                    .1
+                    .into_iter()
+                    .flatten()
+                    .map(|p| p[1])
+                    .fold(0.0, f64::max)
+            };
+            let [over, under] =
+                [composed(made), letter(base)].map(|glyph| height(glyph.expect("a letter")));
             assert!(over > under + 1.0, "{made}: {over} over {under}");
         }
         let (_, strokes) = composed('⁶').expect("a digit");

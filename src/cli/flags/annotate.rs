@@ -34,7 +34,10 @@ pub struct AnnotateFlags {
 impl AnnotateFlags {
     /// What can be said wrong before a voxel is read.
     pub fn check(&self) -> Result<(), Error> {
-        let title = self.annotate.as_ref().and_then(|marks| marks.title.as_ref());
+        let title = self
+            .annotate
+            .as_ref()
+            .and_then(|marks| marks.title.as_ref());
         match title.and_then(|title| letter_lacking(title)) {
             Some(letter) => Err(Error::usage(
                 format!("--annotate title: no letter '{}'", letter.escape_debug()),
@@ -196,7 +199,10 @@ mod tests {
         assert_eq!(marks.title.as_deref(), Some("Wind, 850 hPa"));
         assert_eq!(marks.to_string().parse(), Ok(marks));
         let problem = "bar,foo".parse::<Marks>().expect_err("no mark");
-        assert!(problem.contains("\"foo\"") && problem.contains("orientation"), "{problem}");
+        assert!(
+            problem.contains("\"foo\"") && problem.contains("orientation"),
+            "{problem}"
+        );
     }
 
     #[test]
@@ -208,6 +214,11 @@ mod tests {
         of("Škoda → 5 µm ≤ α").check().expect("letters");
         let error = of("Жук").check().expect_err("refused");
         assert_eq!(error.exit_code(), 2);
-        assert!(error.to_string().contains("--annotate title: no letter 'Ж'"), "{error}");
+        assert!(
+            error
+                .to_string()
+                .contains("--annotate title: no letter 'Ж'"),
+            "{error}"
+        );
     }
 }

@@ -9,6 +9,7 @@ use super::{
 use crate::{
     cli::{
         Error,
+        annotate::{Annotation, Seen},
         flags::{SceneFlags, ViewWord},
         line::{Line, encoders},
         load,
@@ -19,7 +20,7 @@ use crate::{
         shown::Shown,
         signals::Gate,
     },
-    picture::{EncodedPicture, Picture, WriteOptions},
+    picture::{EncodedPicture, Picture, PictureFormat, WriteOptions},
     technique::Settings,
 };
 use std::{
@@ -228,17 +229,37 @@ impl Batch<'_> {
         let (_, _, first) = cameras.first().expect("who is read has a picture to come");
         let mut renderer = Renderer::new(job, first, device)?;
         let reasoned = parts.only(&shown.classification);
+        let annotation = Annotation::of(scene, &shown.header, settings.mode)?;
+        let annotation_note = annotation.as_ref().and_then(Annotation::note);
         let mut shots = Vec::new();
         for (at, wanted, camera) in &cameras {
-            let picture = renderer.draw(camera)?.picture;
+            let mut picture = renderer.draw(camera)?.picture;
             let reason = why_empty(&picture, &shown.volume, reasoned, camera, &settings);
             let view = wanted.view.map(|view| format!("--view {}: ", view.name()));
             let view = view.unwrap_or_default();
             let note = reason.map(|reason| format!("{view}the picture is empty: {reason}"));
+            let behind = annotation.as_ref().and_then(|a| a.transmittance(&picture));
+            if let Some(background) = scene.picture.background() {
+                picture.over_background(background);
+            }
+            if let Some(annotation) = &annotation {
+                let classification = &shown.classification;
+                let seen = Seen {
+                    camera,
+                    settings: &settings,
+                    classification,
+                    beside: parts.beside(),
+                    grid: shown.volume.grid(),
+                    height_factor: shown.height_factor,
+                    time: f64::from(scene.input.time(&shown.header)?.0),
+                    projected: annotation.projected(classification, &mut renderer, camera)?,
+                };
+                annotation.put(&mut picture, behind.as_deref(), &seen, PictureFormat::Png)?;
+            }
             shots.push(Shot {
                 at: *at,
                 picture,
-                notes: note.into_iter().collect(),
+                notes: note.into_iter().chain(annotation_note.clone()).collect(),
             });
         }
         let dims = shown.volume.dims;
@@ -247,14 +268,10 @@ impl Batch<'_> {
 
     fn encoded(&self, item: &Item, noted: Noted<Drawn<Picture>>) -> Noted<Drawn<EncodedPicture>> {
         let encoded = |shot: Shot<Picture>| {
-            let mut picture = shot.picture;
-            if let Some(background) = self.scene.picture.background() {
-                picture.over_background(background);
-            }
             let path = self.folder.join(&item.pictures[shot.at].picture);
             Ok(Shot {
                 at: shot.at,
-                picture: EncodedPicture::new(&picture, &path, self.options)?,
+                picture: EncodedPicture::new(&shot.picture, &path, self.options)?,
                 notes: shot.notes,
             })
         };
