@@ -8,6 +8,7 @@
 //! first voxel is read: words, outputs that exist, folders that do not.
 
 mod animate;
+mod annotate;
 mod bench;
 mod bug;
 mod cameras_file;

@@ -2,6 +2,7 @@
 
 use super::{
     Error,
+    annotate::{Annotation, Seen},
     flags::{Depth, InputFlags, PHANTOM, SceneFlags},
     load::open,
     look::{Framing, Use, View, Views, frozen, prepared},
@@ -155,8 +156,14 @@ impl Render {
         let settings = scene.settings(depth)?;
         let extent_pixels = scene.picture.extent_pixels()?;
         scene.classification.check()?;
+        scene.annotate.check()?;
         let inputs = scene_file::inputs(&scene, self.scene_file.as_deref());
-        output::check(&self.outputs(&output, format, &layers), &inputs, self.force)?;
+        let is_annotated = scene.annotate.annotate.is_some();
+        output::check(
+            &self.outputs(&output, format, &layers, is_annotated),
+            &inputs,
+            self.force,
+        )?;
 
         let progress = Progress::new(self.progress);
         for note in scene.idle() {
@@ -213,8 +220,27 @@ impl Render {
         if let Some(reason) = why_empty(&picture, volume, reasoned, camera, settings) {
             progress.note(&format!("the picture is empty: {reason}"));
         }
+        let annotation = Annotation::of(&scene, &shown.header, settings.mode)?;
+        let behind = annotation.as_ref().and_then(|a| a.transmittance(&picture));
         if let Some(background) = view.scene.picture.background() {
             picture.over_background(background);
+        }
+        if let Some(annotation) = &annotation {
+            annotation
+                .note()
+                .iter()
+                .for_each(|note| progress.note(note));
+            let seen = Seen {
+                camera,
+                settings,
+                classification,
+                beside: parts.beside(),
+                grid: volume.grid(),
+                height_factor: shown.height_factor,
+                time: f64::from(scene.input.time(&shown.header)?.0),
+                projected: annotation.projected(classification, &mut renderer, camera)?,
+            };
+            annotation.put(&mut picture, behind.as_deref(), &seen, format)?;
         }
 
         progress.stage("write", 0, 1);
@@ -268,16 +294,24 @@ impl Render {
         Ok(scene)
     }
 
-    fn outputs(&self, output: &Path, format: PictureFormat, layers: &[LayerKind]) -> Vec<PathBuf> {
+    fn outputs(
+        &self,
+        output: &Path,
+        format: PictureFormat,
+        layers: &[LayerKind],
+        is_annotated: bool,
+    ) -> Vec<PathBuf> {
         let mut outputs = match output == Path::new(STANDARD) {
             true => Vec::new(),
             false => vec![output.to_owned()],
         };
         if format == PictureFormat::Npy {
             let name = |layer: &LayerKind| format!("{}.npy", layer.name());
+            let annotation = is_annotated.then_some(LayerKind::Annotation);
             outputs.extend(
                 layers
                     .iter()
+                    .chain(&annotation)
                     .map(|layer| output.with_extension(name(layer))),
             );
         }

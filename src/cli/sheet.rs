@@ -2,9 +2,10 @@
 
 use super::{
     Error,
+    annotate::{Annotation, Seen},
     error::visible,
     figure::{Anchor, Color, Figure, Mark, SCALE, png},
-    flags::{Depth, InputFlags, SceneFlags, Size},
+    flags::{AnnotateFlags, Depth, InputFlags, SceneFlags, Size},
     look::{self, Framing, Use, Views, prepared},
     output::{self, say},
     progress::{Progress, ProgressWord},
@@ -12,7 +13,7 @@ use super::{
     shown::Shown,
     signals::Gate,
 };
-use crate::picture::Picture;
+use crate::picture::{Picture, PictureFormat};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -35,6 +36,8 @@ pub struct Sheet {
     /// Small pictures in a row [default: as many as make the sheet about as wide as it is high]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     columns: Option<u32>,
+    #[command(flatten)]
+    annotate: AnnotateFlags,
     /// A Vulkan device, as for `render`
     #[arg(long, value_name = "DEVICE")]
     device: Option<String>,
@@ -50,7 +53,12 @@ impl Sheet {
     /// Draws one after the other and writes the sheet. An input that cannot be drawn leaves its place empty,
     /// and the first such error is that of the whole.
     pub fn run(self, gate: &Gate) -> Result<(), Error> {
-        let scenes: Vec<SceneFlags> = self.inputs.iter().map(|words| scene_of(words)).collect();
+        self.annotate.check()?;
+        let scene = |words: &String| SceneFlags {
+            annotate: self.annotate.clone(),
+            ..scene_of(words)
+        };
+        let scenes: Vec<SceneFlags> = self.inputs.iter().map(scene).collect();
         let files: Vec<PathBuf> = scenes
             .iter()
             .filter_map(|scene| scene.input.file().map(PathBuf::from))
@@ -136,8 +144,28 @@ fn draw(
     let here = std::mem::replace(device, Device::find(Some("reference"))?);
     let drawn = prepared(&framing, &parts, &[], here, &views).and_then(|(mut renderer, view)| {
         let mut picture = renderer.draw(&view.camera)?.picture;
+        let annotation = Annotation::of(scene, &shown.header, settings.mode)?;
+        let behind = annotation.as_ref().and_then(|a| a.transmittance(&picture));
         if let Some(background) = view.scene.picture.background() {
             picture.over_background(background);
+        }
+        if let Some(annotation) = &annotation {
+            annotation
+                .note()
+                .iter()
+                .for_each(|note| progress.note(note));
+            let classification = &shown.classification;
+            let seen = Seen {
+                camera: &view.camera,
+                settings: &view.settings,
+                classification,
+                beside: parts.beside(),
+                grid: shown.volume.grid(),
+                height_factor: shown.height_factor,
+                time: f64::from(scene.input.time(&shown.header)?.0),
+                projected: annotation.projected(classification, &mut renderer, &view.camera)?,
+            };
+            annotation.put(&mut picture, behind.as_deref(), &seen, PictureFormat::Png)?;
         }
         Ok((picture, renderer.into_device()))
     });

@@ -21,6 +21,7 @@ pub fn check_layers(scene: &Scene, wanted: &[LayerKind]) -> Result<(), Error> {
             LayerKind::Position => technique == Technique::Raycast && mode.has_depth(),
             LayerKind::Transmittance => !mode.is_projection(),
             LayerKind::Samples => true,
+            LayerKind::Annotation => false,
             LayerKind::Label => technique == Technique::Raycast && mode.has_depth() && !is_sum,
         };
         if !is_there {

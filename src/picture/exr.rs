@@ -3,10 +3,10 @@
 //! The reader is the `exr` crate's. It trusts sizes in the header, so these are checked first: layout of the
 //! header as in "OpenEXR File Layout" (openexr.com).
 
-use super::Picture;
 use super::compare::{Image, Numbers};
 use super::read::PictureProblem;
 use super::write::OutputProblem;
+use super::{LayerKind, Picture};
 use ::exr::prelude::*;
 use std::io::Cursor;
 
@@ -29,7 +29,11 @@ pub(super) fn encode(picture: &Picture) -> std::result::Result<Vec<u8>, OutputPr
             channels.push(channel(name, layer.values.clone()));
             continue;
         }
-        for (k, axis) in ["X", "Y", "Z"].into_iter().enumerate().take(numbers) {
+        let parts = match layer.kind {
+            LayerKind::Annotation => ["R", "G", "B", "A"],
+            _ => ["X", "Y", "Z", "W"],
+        };
+        for (k, axis) in parts.into_iter().enumerate().take(numbers) {
             let along = layer.values.iter().skip(k).step_by(numbers);
             channels.push(channel(&format!("{name}.{axis}"), along.copied().collect()));
         }

@@ -69,10 +69,12 @@ pub enum LayerKind {
     Position,
     /// The label at the first hit.
     Label,
+    /// Marks that lie over the picture: linear light times opacity, and opacity. No renderer makes it.
+    Annotation,
 }
 
 impl LayerKind {
-    /// All of them, in the order of `--aov`'s help.
+    /// All that renderers make, in the order of `--aov`'s help.
     pub const ALL: [Self; 6] = [
         Self::Value,
         Self::Depth,
@@ -91,6 +93,7 @@ impl LayerKind {
             Self::Samples => "samples",
             Self::Position => "position",
             Self::Label => "label",
+            Self::Annotation => "annotation",
         }
     }
 
@@ -98,6 +101,7 @@ impl LayerKind {
     pub fn numbers(self) -> usize {
         match self {
             Self::Position => 3,
+            Self::Annotation => 4,
             _ => 1,
         }
     }

@@ -27,14 +27,18 @@ pub struct Header {
     pub hounsfield: bool,
     /// The unit of values as the file words it, `K` or `m s-1`; `None` where it is silent.
     pub unit: Option<String>,
+    /// What the values are, in the file's words: `Water vapor mixing ratio`.
+    pub long_name: Option<String>,
     /// What the numbers of a voxel are to each other.
     pub meaning: Meaning,
     /// True where the file says that values are names of things: nothing lies between two of them.
     pub is_labels: bool,
-    /// True where the file says how the axes lie in a patient: world x right, y anterior, z superior.
-    pub is_patient: bool,
     /// True where the world is a piece of the Earth in kilometres: x east, y north, z up.
     pub is_earth: bool,
+    /// True where the file says how its axes lie in a patient: x right, y anterior, z superior.
+    pub is_patient: bool,
+    /// Metres of one unit of the world; `None` where the file is silent.
+    pub length_metres: Option<f64>,
     /// How many resolutions the source has; 1 where there is only this one.
     pub levels: u32,
     /// The moment of each time step, an ISO 8601 date or a number with its unit. Empty where the file does not say.
@@ -66,10 +70,12 @@ impl Header {
             fill: None,
             hounsfield: false,
             unit: None,
+            long_name: None,
             meaning: Meaning::Numbers,
             is_labels: false,
-            is_patient: false,
             is_earth: false,
+            is_patient: false,
+            length_metres: None,
             levels: 1,
             time_names: Vec::new(),
             series: Vec::new(),

@@ -215,6 +215,20 @@ fn every_transfer_function_of_the_docs_draws_something() {
 }
 
 #[test]
+fn every_command_of_the_pages_of_annotation_and_of_recipes_runs() {
+    for page in ["docs/annotation.md", "docs/recipes.md"] {
+        let path = format!("{}/{page}", env!("CARGO_MANIFEST_DIR"));
+        let text = fs::read_to_string(path).expect("the page");
+        let examples = of_markdown(&text, page);
+        let folder = Folder::new();
+        for example in &examples {
+            example.check(&folder);
+        }
+        assert!(examples.len() >= 4, "{page}: {examples:#?}");
+    }
+}
+
+#[test]
 fn examples_are_told_from_forms_and_comments() {
     let text = "```sh\ncargo build\nstratavox info phantom:fog   # what\nstratavox info INPUT\n\
         stratavox render a -o OUT.png|.exr\n```\nstratavox not this\n```console\n$ stratavox preset list\na\nb\n```\n";

@@ -8,6 +8,7 @@ mod animate_films;
 mod animate_mixed;
 #[cfg(unix)]
 mod animate_stops;
+mod annotate;
 mod bench;
 mod classified;
 mod conformance;

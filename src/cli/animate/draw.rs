@@ -14,6 +14,7 @@ use super::{
 use crate::{
     cli::{
         Error,
+        annotate::{Annotation, Seen as SeenFrame},
         flags::{Classification, SceneFlags},
         line::{Line, encoders},
         memory::{DeviceMemory, DeviceRoom, Held, leaves_room},
@@ -23,9 +24,9 @@ use crate::{
         shown::{Parts, Shown},
         timings::{Timings, ms_since},
     },
-    picture::{EncodedPicture, LayerKind, Picture},
+    picture::{EncodedPicture, LayerKind, Picture, PictureFormat},
     transfer::{Classified, Window},
-    volume::{Source, Volume},
+    volume::{Grid, Source, Volume},
 };
 use std::{
     collections::BTreeSet,
@@ -53,6 +54,12 @@ pub struct Drawing<'a> {
     pub content: &'a Content,
     /// Colours behind the picture, the nearest first.
     pub background: Vec<[f64; 4]>,
+    /// What is drawn over every frame.
+    pub annotation: Option<Annotation>,
+    /// As which files keep it.
+    pub format: PictureFormat,
+    /// Where voxels are drawn, and how much higher than they are.
+    pub placed: (Grid, f64),
     /// When reading began.
     pub start: Instant,
     /// Who hears how far it is.
@@ -268,7 +275,7 @@ impl Drawing<'_> {
             };
             let drawers: Vec<_> = devices.into_iter().map(draw).collect();
             drop(sender);
-            let encode = |at, drawn: Drawn| self.encoded(sink, work.wanted[at], drawn?);
+            let encode = |at, drawn: Drawn| self.encoded(sink, work, work.wanted[at], drawn?);
             let mut put = self.put(sink, work.wanted);
             let threads = encoders(work.extent_pixels);
             let written = work
@@ -285,9 +292,32 @@ impl Drawing<'_> {
         })
     }
 
-    fn encoded(&self, sink: &Sink, number: u32, mut picture: Picture) -> Result<Encoded, Error> {
+    fn encoded(
+        &self,
+        sink: &Sink,
+        work: &Work,
+        number: u32,
+        mut picture: Picture,
+    ) -> Result<Encoded, Error> {
+        let annotation = self.annotation.as_ref();
+        let behind = annotation.and_then(|annotation| annotation.transmittance(&picture));
         for &color in &self.background {
             picture.over_background(color);
+        }
+        if let Some(annotation) = annotation {
+            let ready = &work.ready[number as usize];
+            let seen = SeenFrame {
+                camera: &self.shots[number as usize].camera,
+                settings: &ready.settings,
+                classification: &ready.classification,
+                beside: work.parts.beside(),
+                grid: self.placed.0,
+                height_factor: self.placed.1,
+                time: ready.time,
+                // All frames have one function.
+                projected: None,
+            };
+            annotation.put(&mut picture, behind.as_deref(), &seen, self.format)?;
         }
         match sink {
             Sink::Store(store) => store.encode(number, &picture).map(Encoded::Files),

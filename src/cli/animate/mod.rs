@@ -26,6 +26,8 @@ mod volumes;
 
 use super::{
     Error,
+    annotate::Annotation,
+    exaggerate,
     flags::{Depth, SceneFlags},
     load,
     memory::{DeviceRoom, Held, fitting},
@@ -40,7 +42,7 @@ use super::{
 };
 use crate::{
     picture::{BitDepth, LayerKind, PictureFormat, WriteOptions},
-    volume::{Header, Source},
+    volume::{Grid, Header, Source},
 };
 use clap::Args;
 use draw::{Content, Drawing, Sink};
@@ -242,18 +244,35 @@ impl Animate {
             }
         };
         // A volume that is reduced to fit has a grid of its own.
-        let grid = match &content {
-            Content::Still(shown) => shown.volume.grid(),
-            Content::Times(source, _) => shots::grid(scene, source.header())?,
+        let (grid, height_factor) = match &content {
+            Content::Still(shown) => (shown.volume.grid(), shown.height_factor),
+            Content::Times(source, _) => {
+                let header = source.header();
+                let stored = Grid {
+                    dims: header.dims,
+                    world_from_voxel: header.world_from_voxel,
+                };
+                let (factor, _) = exaggerate::factor(scene, &stored, header.is_earth)?;
+                (shots::grid(scene, header)?, factor)
+            }
         };
         let mut devices = devices;
         let scene = &framing::framed(plan, &content, &grid, &mut devices, progress)?;
+        let annotation = Annotation::of(scene, header, shots[0].settings.mode)?;
+        let note = annotation.as_ref().and_then(Annotation::note);
+        note.iter().for_each(|note| progress.note(note));
         let shots = plan.film.shots(scene, *depth, header, &grid)?;
         let drawing = Drawing {
             scene,
             shots: &shots,
             layers: &plan.layers,
             content: &content,
+            annotation,
+            format: match &plan.target {
+                Target::Frames(frames) => frames.format,
+                Target::Film { .. } | Target::Stream => PictureFormat::Png,
+            },
+            placed: (grid, height_factor),
             start,
             background: self.background(plan, scene, progress),
             progress,
@@ -270,6 +289,7 @@ impl Animate {
             None => self.scene.clone(),
         };
         scene.default_to_auto();
+        scene.annotate.check()?;
         let target = Target::new(&self.output)?;
         let layers = scene.picture.layers();
         self.check_target(&target, &layers)?;
@@ -360,10 +380,13 @@ impl Animate {
             store::clear(&frames)?;
         }
         let film = identity::of_film(plan, &frames, self.bit_depth)?;
+        let annotation = plan.scene.annotate.annotate.is_some();
+        let annotation = annotation.then_some(LayerKind::Annotation);
+        let layers: Vec<_> = plan.layers.iter().copied().chain(annotation).collect();
         let wishes = Wishes {
             resume: self.resume,
             force: self.force,
-            layers: &plan.layers,
+            layers: &layers,
             inputs: &plan.inputs,
         };
         let options = WriteOptions {

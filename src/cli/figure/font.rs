@@ -4,7 +4,7 @@
 //! baseline at y = 3, lower-case letters up to 9 and capitals to 12. A stroke that begins with `~` is the
 //! quadratic B-spline of its points (Chaikin 1974), closed where its first point is its last.
 
-use super::Point;
+use super::{Point, letters::composed};
 
 /// Of one unit of the grid, in em.
 const UNIT: f64 = 0.078;
@@ -128,6 +128,30 @@ const LETTERS: &[(char, f64, &str)] = &[
 /// What stands for a letter that is not here.
 const UNKNOWN: (char, f64, &str) = ('\u{fffd}', 5., "0c03535c0c");
 
+/// The first letter of a text that no strokes are known of.
+pub fn letter_lacking(text: &str) -> Option<char> {
+    text.chars()
+        .find(|&c| !c.is_whitespace() && glyph(c).is_none())
+}
+
+/// Width in units and strokes of a letter.
+fn glyph(c: char) -> Option<Glyph> {
+    letter(c).or_else(|| composed(c))
+}
+
+/// Of one that stands in the table.
+pub(super) fn letter(c: char) -> Option<Glyph> {
+    let found = LETTERS.iter().find(|&&(letter, ..)| letter == c);
+    found.copied().map(drawn)
+}
+
+fn drawn((_, width, strokes): (char, f64, &str)) -> Glyph {
+    (width, strokes.split('/').map(points).collect())
+}
+
+/// Width and strokes, in units.
+pub(super) type Glyph = (f64, Vec<Vec<Point>>);
+
 /// The lines of a text that begins at the origin, y down, and how wide it is.
 pub fn strokes(text: &str, size: f64) -> (Vec<Vec<Point>>, f64) {
     let unit = UNIT * size;
@@ -138,20 +162,17 @@ pub fn strokes(text: &str, size: f64) -> (Vec<Vec<Point>>, f64) {
             x += BLANK + GAP;
             continue;
         }
-        let &(_, width, strokes) = LETTERS
-            .iter()
-            .find(|&&(letter, ..)| letter == c)
-            .unwrap_or(&UNKNOWN);
-        for stroke in strokes.split('/') {
+        let (width, strokes) = glyph(c).unwrap_or_else(|| drawn(UNKNOWN));
+        for stroke in strokes {
             let place = |[px, py]: Point| [unit * (x + px), unit * (BASELINE - py)];
-            lines.push(points(stroke).into_iter().map(place).collect());
+            lines.push(stroke.into_iter().map(place).collect());
         }
         x += width + GAP;
     }
     (lines, unit * (x - GAP).max(0.0))
 }
 
-fn points(stroke: &str) -> Vec<Point> {
+pub(super) fn points(stroke: &str) -> Vec<Point> {
     let digits = stroke.trim_start_matches('~').chars();
     let digits: Vec<f64> = digits
         .filter_map(|c| c.to_digit(16).map(f64::from))

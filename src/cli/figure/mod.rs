@@ -3,11 +3,16 @@
 
 mod axis;
 mod font;
+mod letters;
 mod raster;
 mod svg;
 
 pub use axis::{Ticks, log_ticks};
-pub use raster::{SCALE, png};
+pub use font::{letter_lacking, strokes};
+pub use raster::{SCALE, linear_pixels, png};
+
+/// The thickness of letters, in em.
+pub const LETTER_WIDTH: f64 = raster::LETTER_WIDTH;
 pub use svg::svg;
 
 /// A point of a figure: x to the right, y down.

@@ -2,6 +2,7 @@
 //! from its centre, words as the lines of [`super::font`].
 
 use super::{Anchor, Color, Figure, Mark, Point, font};
+use crate::color::decode_srgb;
 use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 
 /// Pixels across a unit of a figure.
@@ -9,11 +10,11 @@ pub const SCALE: f64 = 1.5;
 /// Lines of samples in the height of a pixel.
 const SUBLINES: usize = 4;
 /// The thickness of letters, in em.
-const LETTER_WIDTH: f64 = 0.09;
+pub(super) const LETTER_WIDTH: f64 = 0.09;
 
 /// The bytes of a PNG file.
 pub fn png(figure: &Figure) -> Vec<u8> {
-    let canvas = Canvas::of(figure);
+    let canvas = Canvas::of(figure, SCALE, [255_u8; 3]);
     let extent = [canvas.width, canvas.height].map(|n| n as u32);
     encode_rgb(extent, canvas.pixels.as_flattened())
 }
@@ -27,19 +28,53 @@ pub fn encode_rgb([width, height]: [u32; 2], rgb: &[u8]) -> Vec<u8> {
     bytes
 }
 
-struct Canvas {
-    width: usize,
-    height: usize,
-    pixels: Vec<[u8; 3]>,
+/// The marks of a figure whose units are pixels, without a ground: linear light, premultiplied, rows from the top.
+pub fn linear_pixels(figure: &Figure) -> Vec<[f32; 4]> {
+    Canvas::of(figure, 1.0, [0.0_f32; 4]).pixels
 }
 
-impl Canvas {
-    fn of(figure: &Figure) -> Self {
-        let [width, height] = figure.size.map(|length| (SCALE * length).ceil() as usize);
+/// A pixel that marks are drawn over.
+trait Pixel: Copy {
+    /// Covers a share of it with an sRGB colour.
+    fn cover(&mut self, srgb: [u8; 3], share: f64);
+}
+
+/// An opaque sRGB colour, mixed as it stands.
+impl Pixel for [u8; 3] {
+    fn cover(&mut self, srgb: [u8; 3], share: f64) {
+        for (below, over) in self.iter_mut().zip(srgb) {
+            let mixed = f64::from(*below) + share * (f64::from(over) - f64::from(*below));
+            *below = mixed.round() as u8;
+        }
+    }
+}
+
+/// Linear light, premultiplied.
+impl Pixel for [f32; 4] {
+    fn cover(&mut self, [r, g, b]: [u8; 3], share: f64) {
+        let [r, g, b] = [r, g, b].map(|code| decode_srgb(f64::from(code) / 255.0));
+        for (below, over) in self.iter_mut().zip([r, g, b, 1.0]) {
+            *below = (f64::from(*below) * (1.0 - share) + share * over) as f32;
+        }
+    }
+}
+
+struct Canvas<P> {
+    width: usize,
+    height: usize,
+    /// Pixels across a unit of the figure.
+    scale: f64,
+    pixels: Vec<P>,
+}
+
+impl<P: Pixel> Canvas<P> {
+    fn of(figure: &Figure, scale: f64, ground: P) -> Self {
+        let [width, height] = figure.size.map(|length| (scale * length).ceil() as usize);
         let mut canvas = Self {
             width,
             height,
-            pixels: vec![[255; 3]; width * height],
+            scale,
+            pixels: vec![ground; width * height],
         };
         for mark in &figure.marks {
             canvas.draw(mark);
@@ -49,12 +84,12 @@ impl Canvas {
 
     fn draw(&mut self, mark: &Mark) {
         match mark {
-            Mark::Area { points, fill } => self.area(&scaled(points), *fill),
+            Mark::Area { points, fill } => self.area(&self.scaled(points), *fill),
             Mark::Line {
                 points,
                 color,
                 width,
-            } => self.lines(&[scaled(points)], *color, SCALE * width),
+            } => self.lines(&[self.scaled(points)], *color, self.scale * width),
             Mark::Text {
                 at,
                 text,
@@ -78,10 +113,10 @@ impl Canvas {
                 };
                 let lines = lines.into_iter().map(|line| {
                     let line: Vec<Point> = line.into_iter().map(place).collect();
-                    scaled(&line)
+                    self.scaled(&line)
                 });
                 let lines: Vec<_> = lines.collect();
-                self.lines(&lines, *color, SCALE * LETTER_WIDTH * size);
+                self.lines(&lines, *color, self.scale * LETTER_WIDTH * size);
             }
             Mark::Cells {
                 at,
@@ -163,8 +198,8 @@ impl Canvas {
 
     fn cells(&mut self, at: Point, size: [f64; 2], columns: usize, colors: &[[u8; 3]]) {
         let rows = colors.len().checked_div(columns).unwrap_or(0);
-        let corner = at.map(|x| (SCALE * x).round());
-        let [width, height] = size.map(|length| (SCALE * length).round());
+        let corner = at.map(|x| (self.scale * x).round());
+        let [width, height] = size.map(|length| (self.scale * length).round());
         if rows == 0 || !(width >= 1.0 && height >= 1.0) {
             return;
         }
@@ -201,16 +236,12 @@ impl Canvas {
             return;
         }
         let share = cover.min(1.0) * f64::from(a) / 255.0;
-        let pixel = &mut self.pixels[y * self.width + x];
-        for (below, over) in pixel.iter_mut().zip([r, g, b]) {
-            let mixed = f64::from(*below) + share * (f64::from(over) - f64::from(*below));
-            *below = mixed.round() as u8;
-        }
+        self.pixels[y * self.width + x].cover([r, g, b], share);
     }
-}
 
-fn scaled(points: &[Point]) -> Vec<Point> {
-    points.iter().map(|p| p.map(|x| SCALE * x)).collect()
+    fn scaled(&self, points: &[Point]) -> Vec<Point> {
+        points.iter().map(|p| p.map(|x| self.scale * x)).collect()
+    }
 }
 
 /// Where the outline of a polygon crosses a height.
@@ -238,7 +269,7 @@ mod tests {
     use super::*;
 
     fn ink(figure: &Figure) -> f64 {
-        let canvas = Canvas::of(figure);
+        let canvas = Canvas::of(figure, SCALE, [255_u8; 3]);
         let dark = |pixel: &[u8; 3]| 1.0 - f64::from(pixel[0]) / 255.0;
         canvas.pixels.iter().map(dark).sum::<f64>() / (SCALE * SCALE)
     }

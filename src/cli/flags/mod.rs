@@ -3,6 +3,7 @@
 //! A flag that was not given is `None` here, so that flags can be laid over a scene; what is missing is
 //! filled in where a struct is turned into what the library takes.
 
+mod annotate;
 mod camera;
 mod channels;
 mod classification;
@@ -32,6 +33,7 @@ mod values;
 mod window;
 mod words;
 
+pub use annotate::{AnnotateFlags, Marks, ScaleWord};
 pub use camera::{CameraFlags, FrameWord, ProjectionWord, ViewWord};
 pub use channels::{ChannelFlags, ChannelWord, Plan};
 pub use classification::{Classification, ClassificationFlags};
@@ -98,6 +100,8 @@ pub struct SceneFlags {
     pub section: SectionFlags,
     #[command(flatten)]
     pub picture: PictureFlags,
+    #[command(flatten)]
+    pub annotate: AnnotateFlags,
     /// Take noise out of the numbers first: gaussian[:SIGMA], median, bilateral[:SIGMA[:VALUE]], nlm[:VALUE]; SIGMA in
     /// voxels [default: 1], VALUE what is no noise any more [default: twice the noise found], and of nlm, the slowest
     /// and best of them, the deviation of the noise [default: that found]
@@ -168,6 +172,7 @@ impl SceneFlags {
             self.light.idle(mode),
             self.gradient.idle(self.may_have_gradients()),
             self.camera.idle(),
+            self.annotate.idle(),
         ];
         let mut notes = topics.concat();
         if self.light.is_half_angle() && self.sampling.order.is_some() {

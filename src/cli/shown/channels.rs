@@ -71,8 +71,7 @@ impl Reader<'_> {
         let first = made.remove(0);
         Ok(Shown {
             volume: Arc::new(first.volume),
-            is_earth: header.is_earth,
-            is_patient: false,
+            header: header.clone(),
             classification: Classification::Function(first.function),
             per_mode: self.scene.modes.alone(),
             filter: None,

@@ -10,7 +10,7 @@ use super::{Other, Others, Reader, Shown};
 use crate::{
     technique::{Mode, Role},
     transfer::{Classified, Window, of_colors},
-    volume::{Source, Volume, read_colors},
+    volume::{Header, Source, Volume, read_colors},
 };
 use std::sync::Arc;
 
@@ -42,8 +42,8 @@ impl Reader<'_> {
         }
         let window = flags.window()?;
         if self.mode.is_projection() {
-            let is_earth = source.header().is_earth;
-            return self.projected_colors(volumes, window, is_earth, height_factor);
+            let header = source.header().clone();
+            return self.projected_colors(volumes, window, header, height_factor);
         }
         let function = match (flags.function_of_file()?, window) {
             (Some(function), Some(window)) => function.spread_over(window),
@@ -58,8 +58,7 @@ impl Reader<'_> {
         let red = volumes.remove(0);
         Ok(Shown {
             volume: Arc::new(red),
-            is_earth: source.header().is_earth,
-            is_patient: false,
+            header: source.header().clone(),
             classification: Classification::Function(function),
             per_mode: self.scene.modes.alone(),
             filter: None,
@@ -75,7 +74,7 @@ impl Reader<'_> {
         &self,
         volumes: Vec<Volume>,
         window: Option<Window>,
-        is_earth: bool,
+        header: Header,
         height_factor: f64,
     ) -> Result<Shown, Error> {
         if self.mode == Mode::Xray {
@@ -100,8 +99,7 @@ impl Reader<'_> {
         let first = made.remove(0);
         Ok(Shown {
             volume: Arc::new(first.volume),
-            is_earth,
-            is_patient: false,
+            header,
             classification: Classification::Function(first.function),
             per_mode: self.scene.modes.alone(),
             filter: None,

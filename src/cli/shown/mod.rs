@@ -36,9 +36,8 @@ use std::sync::Arc;
 pub struct Shown {
     /// The volume; red of colours, the first of channels.
     pub volume: Arc<Volume>,
-    is_earth: bool,
-    /// Whether the file says how the axes lie in a patient.
-    is_patient: bool,
+    /// What its file says of it.
+    pub header: Header,
     /// How its values are seen.
     pub classification: Classification,
     /// What the mode wants to know of the values.
@@ -46,7 +45,7 @@ pub struct Shown {
     /// Where the values themselves ask for one.
     pub filter: Option<Filter>,
     /// How much higher than it is the volume is drawn.
-    height_factor: f64,
+    pub height_factor: f64,
     others: Others,
     /// Where the voxels come from, brick by brick; the volume is its outline then.
     stream: Option<Stream>,
@@ -132,7 +131,6 @@ impl Shown {
         progress: &Progress,
     ) -> Result<Self, Error> {
         check(scene, settings)?;
-        let is_patient = source.header().is_patient;
         let (plan, note) = plan(scene, source.header())?;
         if scene.opacity.are_given() && plan != Plan::One {
             return Err(Error::usage(
@@ -186,7 +184,6 @@ impl Shown {
             Plan::Channels(words) => reader.channels(source, &words)?,
             Plan::Colors => reader.colors(source)?,
         };
-        shown.is_patient = is_patient;
         if scene.sampling.preclassified {
             return preclassified::classified(shown, settings.color_space);
         }
@@ -240,7 +237,7 @@ impl Shown {
 
     /// True where the file says how its axes lie, in a patient or on the Earth.
     pub fn has_named_axes(&self) -> bool {
-        self.is_patient || self.is_earth
+        self.header.is_patient || self.header.is_earth
     }
 
     /// What the look of a picture is chosen by.
@@ -254,7 +251,7 @@ impl Shown {
 
     /// What a camera is turned to.
     pub fn subject(&self) -> Subject {
-        Subject::new(&self.volume.grid(), self.is_earth)
+        Subject::new(&self.volume.grid(), self.header.is_earth)
     }
 
     /// Who looks, and in `settings` what is known now that there are voxels.
@@ -350,11 +347,8 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn one(&self, source: Box<dyn Source>) -> Result<Shown, Error> {
-        let Header {
-            is_labels,
-            is_earth,
-            ..
-        } = *source.header();
+        let header = source.header().clone();
+        let is_labels = header.is_labels;
         let (volume, height_factor) = load_from(source, self.scene, self.device, self.progress)?;
         let flags = &ClassificationFlags {
             // That of other numbers says nothing of these.
@@ -379,8 +373,7 @@ impl Reader<'_> {
         {
             return Ok(Shown {
                 volume: Arc::new(volume),
-                is_earth,
-                is_patient: false,
+                header,
                 classification: Classification::Function(function),
                 per_mode: PerMode::default(),
                 filter: Some(Filter::Nearest),
@@ -421,8 +414,7 @@ impl Reader<'_> {
         }
         Ok(Shown {
             volume: Arc::new(volume),
-            is_earth,
-            is_patient: false,
+            header,
             classification,
             per_mode,
             filter: found_labels.then_some(Filter::Nearest),

@@ -134,7 +134,7 @@ impl Shown {
         let Some(memory) = device.memory()? else {
             return Self::of(source, scene, settings, device, progress);
         };
-        let is_patient = source.header().is_patient;
+        let header = source.header().clone();
         let (stream, _) = open(Arc::from(source), pick, scene, memory, progress)?;
         let bricks = match stream.brick_count() {
             1 => "one brick".to_owned(),
@@ -161,10 +161,10 @@ impl Shown {
             unreachable!("one number a voxel is no colour");
         };
         Ok(Self {
+            header,
             volume: Arc::new(stream.outline().clone()),
             stream: Some(stream),
             overview: Some(shown.volume),
-            is_patient,
             ..shown
         })
     }

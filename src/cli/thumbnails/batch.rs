@@ -9,6 +9,7 @@ use super::{
 use crate::{
     cli::{
         Error,
+        annotate::{Annotation, Seen},
         flags::{Depth, SceneFlags, ViewWord},
         line::{Line, encoders},
         load,
@@ -20,7 +21,7 @@ use crate::{
         shown::Shown,
         signals::Gate,
     },
-    picture::{EncodedPicture, Picture, WriteOptions},
+    picture::{EncodedPicture, Picture, PictureFormat, WriteOptions},
     technique::Settings,
 };
 use std::{
@@ -225,6 +226,8 @@ impl Batch<'_> {
         let views: Vec<_> = missing.iter().map(|_| OnceCell::new()).collect();
         let parts = shown.parts();
         let reasoned = parts.only(&shown.classification);
+        let annotation = Annotation::of(scene, &shown.header, self.settings.mode)?;
+        let annotation_note = annotation.as_ref().and_then(Annotation::note);
         let first = Views::default();
         let (_, wanted) = missing.first().expect("who is read has a picture to come");
         let (mut renderer, _) = prepared(&framing(wanted), &parts, &[], device, &first)?;
@@ -242,16 +245,31 @@ impl Batch<'_> {
             renderer.change(&shown.classification, settings);
             let mut picture = renderer.draw(camera)?.picture;
             let reason = why_empty(&picture, &shown.volume, reasoned, camera, settings);
-            if let Some(background) = scene.picture.background() {
-                picture.over_background(background);
-            }
             let view = wanted.view.map(|view| format!("--view {}: ", view.name()));
             let view = view.unwrap_or_default();
             let note = reason.map(|reason| format!("{view}the picture is empty: {reason}"));
+            let behind = annotation.as_ref().and_then(|a| a.transmittance(&picture));
+            if let Some(background) = scene.picture.background() {
+                picture.over_background(background);
+            }
+            if let Some(annotation) = &annotation {
+                let classification = &shown.classification;
+                let seen = Seen {
+                    camera,
+                    settings,
+                    classification,
+                    beside: parts.beside(),
+                    grid: shown.volume.grid(),
+                    height_factor: shown.height_factor,
+                    time: f64::from(scene.input.time(&shown.header)?.0),
+                    projected: annotation.projected(classification, &mut renderer, camera)?,
+                };
+                annotation.put(&mut picture, behind.as_deref(), &seen, PictureFormat::Png)?;
+            }
             shots.push(Shot {
                 at: *at,
                 picture,
-                notes: note.into_iter().collect(),
+                notes: note.into_iter().chain(annotation_note.clone()).collect(),
             });
         }
         let dims = shown.volume.dims;
@@ -260,11 +278,10 @@ impl Batch<'_> {
 
     fn encoded(&self, item: &Item, noted: Noted<Drawn<Picture>>) -> Noted<Drawn<EncodedPicture>> {
         let encoded = |shot: Shot<Picture>| {
-            let picture = shot.picture;
             let path = self.folder.join(&item.pictures[shot.at].picture);
             Ok(Shot {
                 at: shot.at,
-                picture: EncodedPicture::new(&picture, &path, self.options)?,
+                picture: EncodedPicture::new(&shot.picture, &path, self.options)?,
                 notes: shot.notes,
             })
         };

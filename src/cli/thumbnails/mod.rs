@@ -101,6 +101,7 @@ impl Thumbnails {
         let mut settings = scene.settings(depth)?;
         settings.skip = !self.no_skip;
         scene.classification.check()?;
+        scene.annotate.check()?;
         shown::check(&scene, &settings)?;
         let inputs = Inputs::find(&self.inputs, &scene.input, self.recursive)?;
         let left_alone = inputs.left_alone;

@@ -200,7 +200,16 @@ impl Index {
         line("hounsfield", yes(header.hounsfield));
         line("labels", yes(header.is_labels));
         line("earth", yes(header.is_earth));
-        line("patient", yes(header.is_patient));
+        // Files of older versions have none of these lines.
+        if let Some(name) = &header.long_name {
+            line("long_name", name);
+        }
+        if header.is_patient {
+            line("patient", yes(true));
+        }
+        if let Some(metres) = header.length_metres {
+            line("length_metres", &words(&[metres]));
+        }
         line("holes", yes(self.has_holes));
         for level in &self.levels {
             line(
@@ -310,8 +319,12 @@ impl Index {
         header.hounsfield = lines.yes("hounsfield")?;
         header.is_labels = lines.yes("labels")?;
         header.is_earth = lines.yes("earth")?;
-        // Files of before do not have the line.
+        header.long_name = lines.values.remove("long_name");
         header.is_patient = lines.values.contains_key("patient") && lines.yes("patient")?;
+        header.length_metres = match lines.values.contains_key("length_metres") {
+            true => Some(lines.numbers::<1>("length_metres", "a number of metres")?[0]),
+            false => None,
+        };
         let mut index = Self {
             side: lines.positive("side")?,
             halo: lines.positive("halo")?,

@@ -81,6 +81,9 @@ pub(super) fn grid(
         rescale: values.rescale,
         fill: values.missing.fill,
         unit: values.unit,
+        long_name: long_name(&choice.variable),
+        // Kilometres.
+        length_metres: header.is_earth.then_some(1e3),
         is_labels: values.is_labels,
         time_names: time_names(arrays.as_ref(), choice),
         variables: choice.names.clone(),
@@ -97,6 +100,12 @@ pub(super) fn grid(
         max_bytes: limits.max_bytes,
     };
     grid.new_checked(file_bytes)
+}
+
+/// What the variable is, as CF words it, or WRF.
+fn long_name(variable: &Variable) -> Option<String> {
+    let text = |name| variable.attributes.text(name).map(str::to_owned);
+    text("long_name").or_else(|| text("description"))
 }
 
 /// Points along the axis of a role; 1 where there is none.

@@ -201,7 +201,6 @@ fn open_group(
             _ => None,
         },
         hounsfield: quantity.hounsfield,
-        is_patient: true,
         unit: quantity.unit,
         meaning: if is_color {
             Meaning::Rgb
@@ -209,6 +208,10 @@ fn open_group(
             Meaning::Numbers
         },
         is_labels: quantity.is_labels,
+        is_patient: pictures
+            .first()
+            .is_some_and(|picture| picture.directions.is_some()),
+        length_metres: Some(1e-3),
         time_names: stack.time_names,
         series,
         notes,

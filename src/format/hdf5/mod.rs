@@ -103,6 +103,8 @@ fn grid(file: Hdf5, file_bytes: u64, wanted: &Wanted, limits: &Limits) -> Result
         times: size(Role::Time)?,
         meaning: meaning(&variable, stored, components),
         unit: unit.map(str::to_owned),
+        long_name: variable.attributes.text("long_name").map(str::to_owned),
+        length_metres: variable.attributes.numbers("element_size_um").map(|_| 1e-3),
         variables: names,
         notes,
         ..Header::new(Format::Hdf5, dims, stored, world_from_voxel)

@@ -139,9 +139,11 @@ fn header(
             intercept: intercept.unwrap_or(0.0),
         },
         // Values of eight bits cannot be Hounsfield units, whatever the modality.
-        // The format fixes the space, and writers that know nothing of a patient leave the word out.
-        is_patient: fields.get("AnatomicalOrientation").is_some(),
         hounsfield: fields.get("Modality") == Some("MET_MOD_CT") && stored.bytes() > 1,
+        is_patient: fields
+            .get("AnatomicalOrientation")
+            .is_some_and(|axes| axes.chars().all(|axis| "RLAPSI".contains(axis))),
+        length_metres: Some(1e-3),
         notes,
         ..Header::new(Format::MetaImage, array.dims, stored, world_from_voxel)
     })

@@ -20,8 +20,12 @@ use crate::format::problem::invalid;
 use crate::volume::Problem;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
-/// Voxel space to world; what a person should know about it goes to `notes`.
-pub(super) fn affine(fields: &Fields, notes: &mut Vec<String>) -> Result<DAffine3, Problem> {
+/// Voxel space to world, and whether the file says how it lies in a patient; what a person should know about it goes
+/// to `notes`.
+pub(super) fn affine(
+    fields: &Fields,
+    notes: &mut Vec<String>,
+) -> Result<(DAffine3, bool), Problem> {
     let (millimetres, unit_note) = unit(fields);
     notes.extend(unit_note);
     let scaled = |columns: [DVec3; 3], first_center: DVec3| {
@@ -37,7 +41,7 @@ pub(super) fn affine(fields: &Fields, notes: &mut Vec<String>) -> Result<DAffine
                     "pixdim gives voxels of {x} x {y} x {z}, which cannot be: the sform counts"
                 ));
             }
-            return Ok(affine);
+            return Ok((affine, true));
         }
         notes.push("the sform spans no volume and is not used".to_owned());
     }
@@ -52,7 +56,7 @@ pub(super) fn affine(fields: &Fields, notes: &mut Vec<String>) -> Result<DAffine
             rotation(fields.quatern) * DMat3::from_diagonal(sizes * DVec3::new(1.0, 1.0, qfac));
         let columns = [steps.x_axis, steps.y_axis, steps.z_axis];
         if let Some(affine) = scaled(columns, DVec3::from_array(fields.qoffset)) {
-            return Ok(affine);
+            return Ok((affine, true));
         }
         notes.push("the qform spans no volume and is not used".to_owned());
     }
@@ -64,6 +68,7 @@ pub(super) fn affine(fields: &Fields, notes: &mut Vec<String>) -> Result<DAffine
         [columns.x_axis, columns.y_axis, columns.z_axis],
         DVec3::ZERO,
     )
+    .map(|affine| (affine, false))
     .ok_or_else(|| {
         let found = format!("{} {} {}", sizes.x, sizes.y, sizes.z);
         invalid(NIFTI, "pixdim", "lengths that span a volume", &found)

@@ -152,7 +152,7 @@ impl Array {
 
 fn header(fields: &Fields, number: &Number, array: &Array) -> Result<Header, Problem> {
     let mut notes = Vec::new();
-    let world_from_voxel = affine::affine(fields, &mut notes)?;
+    let (world_from_voxel, is_patient) = affine::affine(fields, &mut notes)?;
     if fields.bitpix != number.bits() {
         notes.push(format!(
             "bitpix is {}, the datatype has {} bits and counts",
@@ -168,9 +168,10 @@ fn header(fields: &Fields, number: &Number, array: &Array) -> Result<Header, Pro
         components: array.components,
         times: array.times,
         rescale: rescale(fields, number, &mut notes),
-        is_patient: fields.sform_code > 0 || fields.qform_code > 0,
         meaning: meaning(fields, number, array),
         is_labels: fields.intent_code == LABEL && array.components == 1,
+        is_patient,
+        length_metres: Some(1e-3),
         notes,
         ..Header::new(format, array.dims, number.stored, world_from_voxel)
     })

@@ -69,8 +69,9 @@ fn header(fields: &Fields, array: &Array, stored: VoxelType) -> Result<Header, P
         components: array.components,
         times: array.times,
         meaning: array.meaning.clone(),
-        is_patient: space::is_anatomical(fields),
         hounsfield: is_hounsfield || may_be_hounsfield,
+        is_patient: space::is_patient(fields),
+        length_metres: space::length_metres(fields),
         notes,
         ..Header::new(Format::Nrrd, array.dims, stored, world_from_voxel)
     })

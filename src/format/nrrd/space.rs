@@ -252,6 +252,31 @@ fn along_axes(
     Ok((steps, first))
 }
 
+/// True where the space has anatomical directions.
+pub(super) fn is_patient(fields: &Fields) -> bool {
+    let space = fields.get("space").unwrap_or("").to_ascii_lowercase();
+    ["right", "left", "ras", "las", "lps"]
+        .iter()
+        .any(|side| space.starts_with(side))
+}
+
+/// Metres of a unit of the world: an anatomical space without units is in millimetres.
+pub(super) fn length_metres(fields: &Fields) -> Option<f64> {
+    let Some(units) = fields.get("space units") else {
+        return is_patient(fields).then_some(1e-3);
+    };
+    let mut units = units.split_ascii_whitespace();
+    let first = units.next()?;
+    let metres = match first.trim_matches('"') {
+        "m" => 1.0,
+        "mm" => 1e-3,
+        "um" | "\u{b5}m" | "\u{3bc}m" | "microns" => 1e-6,
+        "nm" => 1e-9,
+        _ => return None,
+    };
+    units.all(|unit| unit == first).then_some(metres)
+}
+
 fn note_units(fields: &Fields, notes: &mut Vec<String>) {
     if let Some(units) = fields.get("space units")
         && !units.split_ascii_whitespace().all(|unit| unit == "\"mm\"")

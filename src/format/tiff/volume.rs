@@ -153,6 +153,11 @@ impl Parts {
             times: self.times,
             rescale: self.rescale(look),
             meaning,
+            length_metres: self
+                .spacing
+                .unit
+                .and_then(super::length::unit)
+                .map(|(metres, _)| metres),
             time_names: self.time_names.clone(),
             variables: self.variables.iter().map(|name| clean(name)).collect(),
             notes,

@@ -290,6 +290,7 @@ fn header(
             &found,
         )
     })?;
+    let length_metres = unit.as_deref().and_then(metres);
     if let Some(unit) = unit {
         notes.push(format!("lengths are in {}", escape(&unit)));
     }
@@ -311,6 +312,7 @@ fn header(
         times: sizes.times,
         components: sizes.components,
         meaning,
+        length_metres,
         is_labels: image.is_label,
         time_names,
         notes,

@@ -123,6 +123,10 @@ struct Design {
     whole_slope: bool,
     default_type: VoxelType,
     hounsfield: bool,
+    /// The world is that of a patient.
+    is_patient: bool,
+    /// Metres of a unit of the world.
+    length_metres: Option<f64>,
 }
 
 impl Design {
@@ -134,6 +138,8 @@ impl Design {
             whole_slope: false,
             default_type: VoxelType::F32,
             hounsfield: false,
+            is_patient: false,
+            length_metres: Some(1e-3),
         }
     }
 }
@@ -164,6 +170,7 @@ fn build(text: &str) -> Result<Phantom, Problem> {
         }
         "marschner-lobb" => {
             design = Design::cube(1.0);
+            design.length_metres = None;
             Box::new(|_| Box::new(MarschnerLobb::default()))
         }
         "fog" => {
@@ -196,6 +203,7 @@ fn build(text: &str) -> Result<Phantom, Problem> {
             variables.extend(others.map(|other| other.name().to_string()));
             (design.min, design.max) = (storm::MIN, storm::MAX);
             design.value_range = variable.value_range();
+            design.length_metres = Some(1e3);
             Box::new(move |pick| Box::new(storm::Storm::new(variable, pick.time, times)))
         }
         "cells" => {
@@ -209,6 +217,7 @@ fn build(text: &str) -> Result<Phantom, Problem> {
                 whole_slope: true,
                 default_type: VoxelType::U16,
                 hounsfield: true,
+                is_patient: true,
                 ..Design::cube(head::HALF_SIDE)
             };
             Box::new(move |_| Box::new(head::Head::new(2.0 * head::HALF_SIDE / f64::from(n))))
@@ -235,6 +244,8 @@ fn build(text: &str) -> Result<Phantom, Problem> {
         times,
         rescale: rescale(&design, stored),
         hounsfield: design.hounsfield,
+        is_patient: design.is_patient,
+        length_metres: design.length_metres,
         variables,
         ..Header::new(Format::Phantom, dims, stored, world_from_voxel)
     };

@@ -1,0 +1,160 @@
+//! What is known of a volume and may be written on its picture. Nothing of a DICOM file but units and times.
+
+use crate::{
+    cli::{
+        Error,
+        figure::letter_lacking,
+        flags::{InputFlags, SceneFlags},
+        histogram::unit,
+        load::open,
+    },
+    technique::Mode,
+    volume::{Format, Header, Meaning},
+};
+
+/// Of the volume that is drawn, or of what colours it.
+#[derive(Clone, Debug, Default)]
+pub struct Facts {
+    /// What the values are; empty where the file does not say.
+    pub caption: String,
+    /// Of the values, as the file has it.
+    pub unit: Option<String>,
+    /// How many times there are.
+    pub times: u32,
+    /// The moment of each, or none.
+    pub time_names: Vec<String>,
+    /// x right, y anterior, z superior.
+    pub is_patient: bool,
+    /// x east, y north, z up.
+    pub is_earth: bool,
+    /// Metres of a unit of the world.
+    pub length_metres: Option<f64>,
+    /// Names of channels; empty where there are none.
+    pub channels: Vec<String>,
+    /// A voxel is a colour.
+    pub is_color: bool,
+    /// File and variable.
+    pub source: String,
+    /// Of the variable that colours surfaces: what it is, and its unit.
+    pub paint: Option<(String, Option<String>)>,
+}
+
+impl Facts {
+    /// Of a header, and of the words that chose in its file.
+    pub fn of(scene: &SceneFlags, header: &Header, mode: Mode) -> Result<Self, Error> {
+        let channels = match &header.meaning {
+            Meaning::Channels(channels) if header.format != Format::Dicom => {
+                channels.iter().map(|c| c.name.clone()).collect()
+            }
+            _ => Vec::new(),
+        };
+        let paint = match scene.modes.paint(mode) {
+            Some(word) => Some(paint(scene, word)?),
+            None => None,
+        };
+        Ok(Self {
+            caption: caption(header),
+            unit: unit(header),
+            times: header.times,
+            time_names: header.time_names.clone(),
+            is_patient: header.is_patient,
+            is_earth: header.is_earth,
+            length_metres: header.length_metres,
+            channels,
+            is_color: matches!(header.meaning, Meaning::Rgb | Meaning::Rgba),
+            source: source(&scene.input, header),
+            paint,
+        })
+    }
+
+    /// Words of the file that have letters which are drawn as boxes.
+    pub fn letters_lacking(&self) -> Option<char> {
+        let words = [&self.caption, &self.source];
+        let words = words
+            .into_iter()
+            .chain(&self.time_names)
+            .chain(&self.channels);
+        words.into_iter().find_map(|text| letter_lacking(text))
+    }
+}
+
+fn caption(header: &Header) -> String {
+    if header.format == Format::Dicom {
+        return String::new();
+    }
+    let name = header.long_name.as_ref().or(header.variables.first());
+    name.map_or(String::new(), |name| name.trim().to_owned())
+}
+
+/// Of what colours surfaces, another variable of the file or another number of its voxels.
+fn paint(scene: &SceneFlags, word: &str) -> Result<(String, Option<String>), Error> {
+    if word.parse::<u32>().is_ok() {
+        return Ok((format!("component {word}"), None));
+    }
+    let mut input = scene.input.clone();
+    input.variable = Some(word.to_owned());
+    let source = open(&input, &input.limits())?;
+    let header = source.header();
+    Ok((caption(header), unit(header)))
+}
+
+fn source(input: &InputFlags, header: &Header) -> String {
+    // The name of a file may be that of a patient.
+    if header.format == Format::Dicom {
+        return "DICOM".to_owned();
+    }
+    let file = input.file().and_then(std::path::Path::file_name);
+    let file = file.map(|name| name.to_string_lossy().into_owned());
+    let name = file.or(input.path.clone()).unwrap_or_default();
+    match header.variables.first() {
+        Some(variable) => format!("{name}, {variable}"),
+        None => name,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::volume::{Channel, Series, VoxelType};
+    use glam::DAffine3;
+
+    #[test]
+    fn nothing_private_of_a_dicom_file_is_known() {
+        let private = || "DOE^JOHN 1970-01-01".to_owned();
+        let header = Header {
+            unit: Some("HU".to_owned()),
+            long_name: Some(private()),
+            variables: vec![private()],
+            notes: vec![private()],
+            meaning: Meaning::Channels(vec![Channel {
+                name: private(),
+                ..Channel::default()
+            }]),
+            series: vec![Series {
+                uid: private(),
+                description: private(),
+                pictures: 1,
+            }],
+            ..Header::new(Format::Dicom, [2; 3], VoxelType::I16, DAffine3::IDENTITY)
+        };
+        let mut scene = SceneFlags::default();
+        scene.input.path = Some("DOE^JOHN.dcm".to_owned());
+        let facts = Facts::of(&scene, &header, Mode::Composite).expect("facts");
+        let known = format!("{facts:?}");
+        assert!(!known.contains("DOE") && !known.contains("1970"), "{known}");
+        assert_eq!(
+            (facts.unit.as_deref(), facts.source.as_str()),
+            (Some("HU"), "DICOM")
+        );
+        // The same words of another format are written.
+        let header = Header {
+            format: Format::Nrrd,
+            ..header
+        };
+        let facts = Facts::of(&scene, &header, Mode::Composite).expect("facts");
+        assert!(
+            facts.caption.contains("DOE") && facts.source.contains("DOE"),
+            "{facts:?}"
+        );
+    }
+}

@@ -1,0 +1,354 @@
+//! `--annotate`: words and marks over a picture, one figure of its size, without a ground.
+//!
+//! ```text
+//! top left       title, time            right          colour bar, or patches of colour with names
+//! bottom left    arrows, scale bar      bottom right   source           edges   letters of a patient's sides
+//! ```
+//!
+//! PNG and films get it laid over, float files as a layer of its own.
+
+mod bar;
+mod bounds;
+mod facts;
+mod moment;
+mod place;
+mod projector;
+mod sheet;
+mod units;
+
+use super::{
+    Error,
+    figure::{Anchor, linear_pixels},
+    flags::{Classification, Marks, ScaleWord, SceneFlags},
+    renderer::Renderer,
+};
+use crate::{
+    camera::Camera,
+    picture::{Layer, LayerKind, Picture, PictureFormat},
+    scene::Beside,
+    technique::{Mode, Role, Settings},
+    transfer::{Classified, TransferFunction, Window},
+    volume::{Grid, Header},
+};
+use bar::{Bar, legend};
+use facts::Facts;
+use projector::Projector;
+use sheet::Sheet;
+
+/// What is drawn over the pictures of a volume.
+#[derive(Clone, Debug)]
+pub struct Annotation {
+    marks: Marks,
+    size: Option<f64>,
+    color: Option<[f64; 3]>,
+    is_log: bool,
+    facts: Facts,
+}
+
+/// What a picture shows.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<'a> {
+    /// Who looks.
+    pub camera: &'a Camera,
+    /// What was computed.
+    pub settings: &'a Settings,
+    /// How values are seen.
+    pub classification: &'a Classification,
+    /// What the volume is seen together with.
+    pub beside: Beside<'a>,
+    /// Where voxels are drawn.
+    pub grid: Grid,
+    /// How much higher than it is the volume is drawn.
+    pub height_factor: f64,
+    /// The time, counted from 0.
+    pub time: f64,
+    /// The range of what the mode projects, where colours are of it.
+    pub projected: Option<[f64; 2]>,
+}
+
+impl Annotation {
+    /// Of the flags, and of what the volume's file says; `None` where none is asked for.
+    pub fn of(scene: &SceneFlags, header: &Header, mode: Mode) -> Result<Option<Self>, Error> {
+        let flags = &scene.annotate;
+        let Some(marks) = &flags.annotate else {
+            return Ok(None);
+        };
+        flags.check()?;
+        let color = flags.annotate_color.and_then(|word| word.0);
+        Ok(Some(Self {
+            marks: marks.clone(),
+            size: flags.annotate_size,
+            color: color.map(|color| color.0),
+            is_log: flags.colormap_scale == Some(ScaleWord::Log),
+            facts: Facts::of(scene, header, mode)?,
+        }))
+    }
+
+    /// What a person should know of it.
+    pub fn note(&self) -> Option<String> {
+        let letter = self.facts.letters_lacking()?;
+        Some(format!(
+            "--annotate: no letter {letter:?}, words of the file have boxes for such letters"
+        ))
+    }
+
+    /// The range of what the mode projects, where the bar needs that of the picture.
+    pub fn projected(
+        &self,
+        classification: &Classification,
+        renderer: &mut Renderer,
+        camera: &Camera,
+    ) -> Result<Option<[f64; 2]>, Error> {
+        let is_wanted = self.marks.bar && *classification == Classification::RangeOfPicture;
+        is_wanted
+            .then(|| renderer.projected_range(camera))
+            .transpose()
+    }
+
+    /// What a picture without its background lets through, where marks lie behind the volume.
+    pub fn transmittance(&self, picture: &Picture) -> Option<Vec<f32>> {
+        let is_wanted = self.marks.bounds || self.marks.ticks;
+        is_wanted.then(|| picture.pixels.iter().map(|pixel| 1.0 - pixel[3]).collect())
+    }
+
+    /// Draws over a picture that has its background, or adds a layer, as its file will have it.
+    pub fn put(
+        &self,
+        picture: &mut Picture,
+        transmittance: Option<&[f32]>,
+        seen: &Seen,
+        format: PictureFormat,
+    ) -> Result<(), Error> {
+        let pixels = self.pixels(picture, transmittance, seen)?;
+        match format {
+            PictureFormat::Png => picture.lay_over(&pixels),
+            PictureFormat::Exr | PictureFormat::Npy => picture.layers.push(Layer {
+                kind: LayerKind::Annotation,
+                values: pixels.into_flattened(),
+            }),
+        }
+        Ok(())
+    }
+
+    /// Linear light, premultiplied.
+    fn pixels(
+        &self,
+        picture: &Picture,
+        transmittance: Option<&[f32]>,
+        seen: &Seen,
+    ) -> Result<Vec<[f32; 4]>, Error> {
+        let height = f64::from(picture.height);
+        let em = self.size.unwrap_or((height / 40.0).max(11.0));
+        let sheet = || Sheet::new(picture, em, self.color);
+        let mut front = sheet();
+        let projector = Projector::new(seen.camera, front.size());
+        let mut behind = Vec::new();
+        if let Some(transmittance) = transmittance {
+            let mut back = sheet();
+            bounds::draw(&mut back, &projector, &seen.grid, true);
+            behind = linear_pixels(&back.figure);
+            for (pixel, through) in behind.iter_mut().zip(transmittance) {
+                *pixel = pixel.map(|number| number * through.clamp(0.0, 1.0));
+            }
+            bounds::draw(&mut front, &projector, &seen.grid, false);
+        }
+        if self.marks.ticks {
+            bounds::ticks(
+                &mut front,
+                &projector,
+                &seen.grid,
+                &self.facts,
+                seen.height_factor,
+            );
+        }
+        self.words(&mut front, &projector, seen)?;
+        let mut pixels = linear_pixels(&front.figure);
+        for (over, under) in pixels.iter_mut().zip(behind) {
+            let left = 1.0 - over[3];
+            *over = std::array::from_fn(|k| over[k] + left * under[k]);
+        }
+        Ok(pixels)
+    }
+
+    fn words(&self, sheet: &mut Sheet, projector: &Projector, seen: &Seen) -> Result<(), Error> {
+        let ([width, height], em) = (sheet.size(), sheet.em);
+        let mut right = width;
+        if self.marks.bar
+            && let Some(left) = self.colors(sheet, seen)?
+        {
+            right = left;
+        }
+        let mut baseline = 1.6 * em;
+        if let Some(title) = &self.marks.title {
+            let title = sheet.shortened(title, 1.3, width - 2.0 * em);
+            sheet.text_on_ground([em, baseline + 0.2 * em], &title, 1.3, Anchor::Start);
+            baseline += 1.8 * em;
+        }
+        if self.marks.time
+            && let Some(text) = moment::words(&self.facts, seen.time)
+        {
+            moment::draw(sheet, [em, baseline], &text);
+        }
+        let mut bottom = height - em;
+        if self.marks.scale {
+            bottom = place::scale(sheet, projector, &self.facts, seen.height_factor);
+        }
+        let has_letters = self.marks.orientation && self.facts.is_patient;
+        if has_letters {
+            place::sides(sheet, projector, right);
+        }
+        if self.marks.axes || self.marks.orientation && !has_letters {
+            place::triad(sheet, projector, place::axis_names(&self.facts), bottom);
+        }
+        if self.marks.source {
+            let text = sheet.shortened(&self.facts.source, 0.9, 0.6 * width);
+            sheet.text_on_ground([width - em, height - em], &text, 0.9, Anchor::End);
+        }
+        Ok(())
+    }
+
+    /// The bar, or patches of colour; where it begins.
+    fn colors(&self, sheet: &mut Sheet, seen: &Seen) -> Result<Option<f64>, Error> {
+        let facts = &self.facts;
+        let Seen {
+            settings, beside, ..
+        } = *seen;
+        let others = match beside {
+            Beside::Channels(channels) => channels,
+            _ => &[],
+        };
+        if settings.mode == Mode::Iso {
+            if let ([channel], Some((caption, unit))) = (others, &facts.paint)
+                && let Some(function) = channel.transfer
+            {
+                let left = Bar {
+                    function,
+                    depth: None,
+                    caption,
+                    unit: unit.as_deref(),
+                    is_log: self.is_log,
+                    levels: Vec::new(),
+                }
+                .draw(sheet)?;
+                self.levels_below(sheet, seen);
+                return Ok(left);
+            }
+            return self.surfaces(sheet, seen);
+        }
+        if matches!(beside, Beside::Colors(_)) || facts.is_color && !others.is_empty() {
+            return Ok(None);
+        }
+        if others.iter().any(|other| other.role == Role::Numbers) {
+            return Ok(legend(sheet, &self.channels(seen)));
+        }
+        let of_picture;
+        let function = match (seen.classification, seen.projected) {
+            (Classification::Function(function), _) => function,
+            (Classification::RangeOfPicture, Some(range)) if range[0] <= range[1] => {
+                of_picture = Window::of_range(range).grey(Classified::Projection);
+                &of_picture
+            }
+            (Classification::RangeOfPicture, _) => return Ok(None),
+        };
+        let integral =
+            (settings.mode == Mode::Xray).then(|| facts.unit.clone().unwrap_or_default());
+        let integral = integral.map(|unit| format!("{unit} × length"));
+        let bar = Bar {
+            function,
+            depth: depth_of(function, seen),
+            caption: &facts.caption,
+            unit: integral.as_deref().or(facts.unit.as_deref()),
+            is_log: self.is_log,
+            levels: Vec::new(),
+        };
+        bar.draw(sheet)
+    }
+
+    /// Marks on the bar where surfaces have the colours of a function, else a patch for each.
+    fn surfaces(&self, sheet: &mut Sheet, seen: &Seen) -> Result<Option<f64>, Error> {
+        let levels = &seen.settings.per_mode.levels;
+        if let Classification::Function(function) = seen.classification {
+            let is_of_function = levels.iter().all(|level| {
+                let found = function.srgb(level.value);
+                (0..3).all(|k| (found[k] - level.srgb[k]).abs() < 1e-3)
+            });
+            if is_of_function && !levels.is_empty() {
+                let bar = Bar {
+                    function,
+                    depth: None,
+                    caption: &self.facts.caption,
+                    unit: self.facts.unit.as_deref(),
+                    is_log: self.is_log,
+                    levels: levels.iter().map(|level| level.value).collect(),
+                };
+                return bar.draw(sheet);
+            }
+        }
+        let entry = |level: &crate::technique::Level| (level.srgb, self.level(level.value));
+        let entries: Vec<_> = levels.iter().map(entry).collect();
+        Ok(legend(sheet, &entries))
+    }
+
+    /// A line for each surface of another variable, in the lower right.
+    fn levels_below(&self, sheet: &mut Sheet, seen: &Seen) {
+        let ([width, height], em) = (sheet.size(), sheet.em);
+        for (at, level) in seen.settings.per_mode.levels.iter().enumerate() {
+            let text = format!("{} {}", self.facts.caption, self.level(level.value));
+            let text = sheet.shortened(text.trim(), 1.0, 0.5 * width);
+            let y = height - (2.6 + 1.4 * at as f64) * em;
+            sheet.text_on_ground([width - em, y], &text, 1.0, Anchor::End);
+        }
+    }
+
+    fn level(&self, value: f64) -> String {
+        let (unit, factor) = units::scaled(self.facts.unit.as_deref(), value.abs());
+        let number = units::signed(&super::readable::short(value * factor));
+        format!("{number} {}", unit.unwrap_or_default())
+            .trim()
+            .to_owned()
+    }
+
+    /// The last colour of each channel, and its name.
+    fn channels(&self, seen: &Seen) -> Vec<([f64; 3], String)> {
+        let first = match seen.classification {
+            Classification::Function(function) => Some(function),
+            Classification::RangeOfPicture => None,
+        };
+        let others = match seen.beside {
+            Beside::Channels(channels) => channels,
+            _ => &[],
+        };
+        let others = others.iter().filter(|other| other.role == Role::Numbers);
+        let functions = std::iter::once(first).chain(others.map(|other| other.transfer));
+        let colors = functions
+            .flatten()
+            .filter_map(|f| f.color.last().map(|point| point.srgb));
+        let name = |at: usize| match self.facts.channels.get(at) {
+            Some(name) if !name.is_empty() => name.clone(),
+            _ => format!("channel {at}"),
+        };
+        colors
+            .enumerate()
+            .map(|(at, srgb)| (srgb, name(at)))
+            .collect()
+    }
+}
+
+/// How many reference lengths of the function an eighth of the box's diagonal is; `None` where something else says how
+/// opaque a value is.
+fn depth_of(function: &TransferFunction, seen: &Seen) -> Option<f64> {
+    let is_other = match seen.beside {
+        Beside::Channels(channels) => channels.iter().any(|other| other.role == Role::Opacity),
+        _ => false,
+    };
+    if function.is_graded() || is_other || function.opacity.is_empty() {
+        return None;
+    }
+    if seen.settings.mode.is_projection() {
+        return Some(1.0);
+    }
+    let per = function
+        .reference_length
+        .unwrap_or_else(|| seen.grid.smallest_spacing());
+    Some(seen.grid.diagonal() / (8.0 * per))
+}
