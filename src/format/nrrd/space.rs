@@ -53,14 +53,6 @@ pub(super) fn affine(
     })
 }
 
-/// True where the file says where right, anterior and superior are.
-pub(super) fn is_anatomical(fields: &Fields) -> bool {
-    fields.get("space").is_some_and(|space| {
-        let space = words_of(space);
-        !space.starts_with("scanner") && !space.starts_with("3d")
-    })
-}
-
 /// A space without what may be written in several ways.
 fn words_of(space: &str) -> String {
     space.replace(['-', ' '], "").to_ascii_lowercase()
