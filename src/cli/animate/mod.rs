@@ -26,7 +26,7 @@ mod volumes;
 
 use super::{
     Error,
-    flags::{Depth, SceneFlags},
+    flags::{Depth, SceneFlags, context},
     load,
     memory::{DeviceRoom, Held, fitting},
     output::{self, write_whole},
@@ -291,6 +291,7 @@ impl Animate {
         };
         let source = load::open(&scene.input, &shown::limits(&scene))?;
         let header = source.header();
+        scene.classification.context = scene.is_auto().then(|| context(header));
         let mut shots = film.shots(&scene, depth, header, &shots::grid(&scene, header)?)?;
         for shot in &mut shots {
             shot.settings.skip = !self.no_skip;

@@ -73,6 +73,7 @@ impl Reader<'_> {
             volume: Arc::new(first.volume),
             is_earth: header.is_earth,
             is_patient: false,
+            context: None,
             classification: Classification::Function(first.function),
             per_mode: self.scene.modes.alone(),
             filter: None,

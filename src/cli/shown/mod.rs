@@ -13,7 +13,7 @@ pub use streamed::{is_wanted as wants_stream, open as open_stream};
 
 use super::{
     Error,
-    flags::{Classification, ClassificationFlags, Plan, SceneFlags, Subject, summary},
+    flags::{Classification, ClassificationFlags, Plan, SceneFlags, Subject, context, summary},
     labels,
     load::{load_from, open},
     look::Seen,
@@ -25,7 +25,7 @@ use crate::{
     offscreen::Stream,
     scene::{Beside, Channel},
     technique::{Filter, FilterBy, Mode, PerMode, Role, Settings},
-    transfer::{Classified, LabelTable, TransferFunction},
+    transfer::{Classified, Context, LabelTable, TransferFunction},
     volume::{Header, Limits, Source, Volume, labels::labels_of},
 };
 use check::{has_beside, plan};
@@ -37,6 +37,8 @@ pub struct Shown {
     /// The volume; red of colours, the first of channels.
     pub volume: Arc<Volume>,
     is_earth: bool,
+    /// What the file says of its values, under `--look auto`.
+    context: Option<Context>,
     /// Whether the file says how the axes lie in a patient.
     is_patient: bool,
     /// How its values are seen.
@@ -131,6 +133,7 @@ impl Shown {
     ) -> Result<Self, Error> {
         check(scene, settings)?;
         let is_patient = source.header().is_patient;
+        let said = scene.is_auto().then(|| context(source.header()));
         let (plan, note) = plan(scene, source.header())?;
         if scene.opacity.are_given() && plan != Plan::One {
             return Err(Error::usage(
@@ -185,6 +188,7 @@ impl Shown {
             Plan::Colors => reader.colors(source)?,
         };
         shown.is_patient = is_patient;
+        shown.context = said;
         if scene.sampling.preclassified {
             return preclassified::classified(shown, settings.color_space);
         }
@@ -245,6 +249,7 @@ impl Shown {
     pub fn seen(&self) -> Seen<'_> {
         Seen {
             volume: self.looked_at(),
+            context: self.context.as_ref(),
             classification: &self.classification,
             is_alone: matches!(self.parts().beside(), Beside::Nothing),
         }
@@ -353,6 +358,7 @@ impl Reader<'_> {
             is_earth,
             ..
         } = *source.header();
+        let context = self.scene.is_auto().then(|| context(source.header()));
         let (volume, height_factor) = load_from(source, self.scene, self.device, self.progress)?;
         let flags = &ClassificationFlags {
             // That of other numbers says nothing of these.
@@ -360,6 +366,7 @@ impl Reader<'_> {
                 true => None,
                 false => self.scene.classification.opacity_function.clone(),
             },
+            context,
             ..self.scene.classification.clone()
         };
         let words = &self.scene.labels;
@@ -379,6 +386,7 @@ impl Reader<'_> {
                 volume: Arc::new(volume),
                 is_earth,
                 is_patient: false,
+                context: None,
                 classification: Classification::Function(function),
                 per_mode: PerMode::default(),
                 filter: Some(Filter::Nearest),
@@ -421,6 +429,7 @@ impl Reader<'_> {
             volume: Arc::new(volume),
             is_earth,
             is_patient: false,
+            context: None,
             classification,
             per_mode,
             filter: found_labels.then_some(Filter::Nearest),

@@ -81,6 +81,8 @@ pub(super) fn grid(
         rescale: values.rescale,
         fill: values.missing.fill,
         unit: values.unit,
+        standard_name: text_of(choice, "standard_name"),
+        long_name: text_of(choice, "long_name"),
         is_labels: values.is_labels,
         time_names: time_names(arrays.as_ref(), choice),
         variables: choice.names.clone(),
@@ -97,6 +99,11 @@ pub(super) fn grid(
         max_bytes: limits.max_bytes,
     };
     grid.new_checked(file_bytes)
+}
+
+/// An attribute of the variable.
+fn text_of(choice: &Choice, name: &str) -> Option<String> {
+    choice.variable.attributes.text(name).map(str::to_owned)
 }
 
 /// Points along the axis of a role; 1 where there is none.

@@ -141,6 +141,11 @@ fn header(
         // Values of eight bits cannot be Hounsfield units, whatever the modality.
         // The format fixes the space, and writers that know nothing of a patient leave the word out.
         is_patient: fields.get("AnatomicalOrientation").is_some(),
+        modality: fields
+            .get("Modality")
+            .and_then(|word| word.strip_prefix("MET_MOD_"))
+            .filter(|word| matches!(*word, "CT" | "MR"))
+            .map(str::to_owned),
         hounsfield: fields.get("Modality") == Some("MET_MOD_CT") && stored.bytes() > 1,
         notes,
         ..Header::new(Format::MetaImage, array.dims, stored, world_from_voxel)

@@ -312,6 +312,7 @@ fn header(
         components: sizes.components,
         meaning,
         is_labels: image.is_label,
+        modality: Some("GM".to_owned()),
         time_names,
         notes,
         ..Header::new(Format::Zarr, sizes.dims, array.stored, affine)
