@@ -214,7 +214,8 @@ impl Progress {
     pub fn note(&self, text: &str) {
         match &self.told {
             Told::Line(line) => line.suspend(|| say_aside(text)),
-            Told::Silent | Told::Json => say_aside(text),
+            Told::Json => say_json(&serde_json::json!({ "note": text })),
+            Told::Silent => say_aside(text),
             Told::Kept(notes) => {
                 let mut notes = notes.lock().unwrap_or_else(PoisonError::into_inner);
                 notes.push(text.to_owned());

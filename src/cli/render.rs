@@ -36,7 +36,7 @@ use std::{
     stratavox render phantom:head --section axial --window -100,300 -o axial.png\n  \
     stratavox render phantom:head --mode mip --aov value,depth -o mip.exr\n\n\
     {all-args}{after-help}")]
-#[command(after_help = "More examples:\n  \
+#[command(after_help = "Examples of other flags:\n  \
     stratavox render phantom:head --technique slices-3d --view left --background 0,0,0 -o left.png\n  \
     cat scan.nii.gz | stratavox render - -o - | display\n  \
     stratavox render phantom:storm,n=64 --variable w --mode iso --iso-color-by vapor -o w.png\n  \

@@ -9,7 +9,7 @@ use std::process::Command;
 
 /// Look at a volume in a window, with the program stratavox-viewer
 #[derive(Args, Debug)]
-#[command(after_help = "Example:\n  stratavox view scan.nii.gz\n\n\
+#[command(after_help = "Example:\n  stratavox view FILE\n\n\
     The viewer is looked for beside this program, then in PATH.")]
 pub struct View {
     /// What the viewer takes: a volume, and flags; `stratavox view --help` of the viewer is `stratavox-viewer --help`

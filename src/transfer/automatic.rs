@@ -154,8 +154,13 @@ fn field(summary: &ValueSummary) -> TransferFunction {
     spread(summary, FIELD, |t| window.at(t))
 }
 
+/// What CT is, where `offset` is added to Hounsfield units.
+pub(super) fn offset_ct(summary: &ValueSummary, offset: f64) -> TransferFunction {
+    spread(summary, CT, |value| value + offset)
+}
+
 /// The same length on both sides of zero, so that colours can be compared.
-fn signed(summary: &ValueSummary) -> TransferFunction {
+pub(super) fn signed(summary: &ValueSummary) -> TransferFunction {
     let reach = summary
         .quantile(0.005)
         .abs()
@@ -165,7 +170,7 @@ fn signed(summary: &ValueSummary) -> TransferFunction {
 }
 
 /// One colour a label; the background, 0 or else the label of most voxels, is transparent.
-fn categorical(summary: &ValueSummary) -> TransferFunction {
+pub(super) fn categorical(summary: &ValueSummary) -> TransferFunction {
     let labels = summary.labels.as_deref().unwrap_or_default();
     let most = labels.iter().max_by_key(|&&(_, count)| count);
     let background = if labels.iter().any(|&(label, _)| label == 0) {

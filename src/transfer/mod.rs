@@ -12,6 +12,7 @@
 mod alike;
 mod automatic;
 mod boundaries;
+mod by_meaning;
 mod channel;
 mod colormap;
 #[cfg(feature = "json")]
@@ -30,6 +31,7 @@ mod labels;
 mod law;
 mod levels;
 mod materials;
+mod meaning;
 mod parts;
 mod points;
 mod preset;
@@ -44,6 +46,7 @@ mod window;
 pub use alike::{Alike, Tolerance};
 pub use automatic::{Kind, automatic};
 pub use boundaries::{JointCounts, boundaries};
+pub use by_meaning::{Choice, Context, automatic_in};
 pub use channel::{CHANNEL_COLORS, of_channel, of_colors};
 pub use colormap::{COLORMAP_COLORS, Colormap};
 #[cfg(feature = "json")]
@@ -59,6 +62,7 @@ pub use labels::{Label, LabelTable};
 pub use law::{Absorption, MAX_OPACITY, extinction, opacity_over};
 pub use levels::{SURFACE_COLORS, Surface, surfaces};
 pub use materials::{Material, TooMuch};
+pub use meaning::{MEANINGS, Meaning, Scale as MeaningScale};
 pub use points::{Points, classify_by_points};
 pub use preset::Preset;
 pub use quantity::Quantity;

@@ -27,8 +27,12 @@ pub struct Header {
     pub hounsfield: bool,
     /// The unit of values as the file words it, `K` or `m s-1`; `None` where it is silent.
     pub unit: Option<String>,
+    /// The CF standard name of the variable; `None` where there is none.
+    pub standard_name: Option<String>,
     /// What the values are, in the file's words: `Water vapor mixing ratio`.
     pub long_name: Option<String>,
+    /// How the picture was taken, by the codes of DICOM PS3.3 C.7.3.1.1.1: `CT`, `MR`, `PT`, `GM` (microscopy).
+    pub modality: Option<String>,
     /// What the numbers of a voxel are to each other.
     pub meaning: Meaning,
     /// True where the file says that values are names of things: nothing lies between two of them.
@@ -70,7 +74,9 @@ impl Header {
             fill: None,
             hounsfield: false,
             unit: None,
+            standard_name: None,
             long_name: None,
+            modality: (format == Format::Tiff).then(|| "GM".to_owned()),
             meaning: Meaning::Numbers,
             is_labels: false,
             is_earth: false,

@@ -11,7 +11,9 @@ const SMALL: &str = "--size 24x18 --device reference";
 fn assert_frame_is(folder: &Folder, frame: &str, words: &str) {
     let picture = format!("wanted_{frame}");
     folder
-        .run(&format!("render {words} -o {picture} {SMALL} --force"))
+        .run(&format!(
+            "render --look plain {words} -o {picture} {SMALL} --force"
+        ))
         .assert_done();
     let read = |name: &str| fs::read(folder.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
     assert!(
@@ -25,7 +27,7 @@ fn frame_k_of_a_turn_is_the_picture_from_azimuth_k() {
     let folder = Folder::new();
     folder
         .run(&format!(
-            "animate phantom:head,n=16 --turntable 5 -o %d.png {SMALL}"
+            "animate --look plain phantom:head,n=16 --turntable 5 -o %d.png {SMALL}"
         ))
         .assert_done();
     for (k, azimuth) in [(0, 60), (1, 132), (2, 204), (3, 276), (4, 348)] {
@@ -35,12 +37,12 @@ fn frame_k_of_a_turn_is_the_picture_from_azimuth_k() {
     // Views and rolls turn too; arrays of floats with their layers.
     folder
         .run(&format!(
-            "animate phantom:head,n=16 --mode mip --view left --roll 7 --turntable 4 --aov value -o f/%02d.npy {SMALL}"
+            "animate --look plain phantom:head,n=16 --mode mip --view left --roll 7 --turntable 4 --aov value -o f/%02d.npy {SMALL}"
         ))
         .assert_done();
     folder
         .run(&format!(
-            "render phantom:head,n=16 --mode mip --azimuth 450 --elevation 0 --roll 7 --aov value -o a.npy {SMALL}"
+            "render --look plain phantom:head,n=16 --mode mip --azimuth 450 --elevation 0 --roll 7 --aov value -o a.npy {SMALL}"
         ))
         .assert_done();
     for (frame, wanted) in [("f/03.npy", "a.npy"), ("f/03.value.npy", "a.value.npy")] {
@@ -55,7 +57,7 @@ fn every_time_is_the_picture_of_that_time_under_one_window() {
     let storm = "phantom:storm,n=16,variable=u,times=3 --mode mip";
     folder
         .run(&format!(
-            "animate {storm} --window -20,30 --times -o %d.png {SMALL}"
+            "animate --look plain {storm} --window -20,30 --times -o %d.png {SMALL}"
         ))
         .assert_done();
     for k in 0..3 {
@@ -63,7 +65,9 @@ fn every_time_is_the_picture_of_that_time_under_one_window() {
         assert_frame_is(&folder, &format!("{k}.png"), &words);
     }
     // Without a window it is the range of all times: that of any one of them is narrower.
-    let ran = folder.run(&format!("animate {storm} --times -o all%d.png {SMALL}"));
+    let ran = folder.run(&format!(
+        "animate --look plain {storm} --times -o all%d.png {SMALL}"
+    ));
     ran.assert_done();
     assert!(ran.err.contains("chosen for all 3 times"), "{ran:?}");
     let info = folder.run("info phantom:storm,n=16,variable=u,times=3 --json");
@@ -105,7 +109,7 @@ fn between_two_times_lies_the_volume_between() {
     let words = "--mode mip --window 0,16 --view left";
     folder
         .run(&format!(
-            "animate two.nrrd {words} --keyframes k.json -o %d.png {SMALL}"
+            "animate --look plain two.nrrd {words} --keyframes k.json -o %d.png {SMALL}"
         ))
         .assert_done();
     for (k, begin) in [1.0, 2.0, 3.0, 4.0, 5.0].into_iter().enumerate() {
@@ -116,7 +120,7 @@ fn between_two_times_lies_the_volume_between() {
     // A turn while time runs: as many frames as times show each of them.
     folder
         .run(&format!(
-            "animate two.nrrd --mode mip --window 0,16 --times --turntable 2 -o t%d.png {SMALL}"
+            "animate --look plain two.nrrd --mode mip --window 0,16 --times --turntable 2 -o t%d.png {SMALL}"
         ))
         .assert_done();
     assert_frame_is(
@@ -152,7 +156,7 @@ fn keyframes_move_everything_that_a_flag_can_say() {
     );
     folder
         .run(&format!(
-            "animate phantom:head,n=16 --keyframes k.json -o %d.png {SMALL}"
+            "animate --look plain phantom:head,n=16 --keyframes k.json -o %d.png {SMALL}"
         ))
         .assert_done();
     for (frame, words) in [
@@ -179,7 +183,7 @@ fn keyframes_move_everything_that_a_flag_can_say() {
     );
     folder
         .run(&format!(
-            "animate phantom:head,n=16 --mode mip --keyframes eye.json --fps 6 -o e%d.png {SMALL}"
+            "animate --look plain phantom:head,n=16 --mode mip --keyframes eye.json --fps 6 -o e%d.png {SMALL}"
         ))
         .assert_done();
     let words = "phantom:head,n=16 --mode mip --eye 600,200,100 --target 0,0,100 --up 0,0.5,1 --window 50,600";
@@ -194,7 +198,9 @@ fn keyframes_move_everything_that_a_flag_can_say() {
 fn an_xray_has_the_window_of_its_first_frame() {
     let folder = Folder::new();
     let xray = "phantom:fog,n=8 --mode xray --elevation 0";
-    let ran = folder.run(&format!("animate {xray} --turntable 4 -o %d.png {SMALL}"));
+    let ran = folder.run(&format!(
+        "animate --look plain {xray} --turntable 4 -o %d.png {SMALL}"
+    ));
     ran.assert_done();
     let window = ran
         .err
@@ -321,13 +327,13 @@ fn a_film_that_cannot_be_is_refused_before_anything_is_written() {
             &["2.png", "exists"],
         ),
     ] {
-        let ran = folder.run(&format!("animate {words} {SMALL}"));
+        let ran = folder.run(&format!("animate --look plain {words} {SMALL}"));
         ran.assert_refused(code, said);
         assert_eq!(folder.names(), before, "{words}");
     }
     // Nothing is behind the folders of PATH.
     let mut command = folder.command(&format!(
-        "animate phantom:head,n=8 --turntable 3 -o a.mp4 {SMALL}"
+        "animate --look plain phantom:head,n=8 --turntable 3 -o a.mp4 {SMALL}"
     ));
     let output = command.env("PATH", "").output().expect("the program runs");
     let err = String::from_utf8_lossy(&output.stderr);
@@ -340,7 +346,7 @@ fn a_film_that_cannot_be_is_refused_before_anything_is_written() {
 fn progress_counts_frames_and_says_how_long_it_will_take() {
     let folder = Folder::new();
     let ran = folder.run(&format!(
-        "animate phantom:fog,n=8 --turntable 3 -o %d.png --progress json {SMALL}"
+        "animate --look plain phantom:fog,n=8 --turntable 3 -o %d.png --progress json {SMALL}"
     ));
     ran.assert_done();
     let lines = ran
@@ -365,7 +371,7 @@ fn grain_changes_from_frame_to_frame_and_nothing_else_does() {
         r#"{"stratavox_keyframes":1,"frames":2,"keys":[{"at":0,"zoom":1}]}"#,
     )
     .expect("a file");
-    let film = "animate phantom:head,n=16 --keyframes still.json";
+    let film = "animate --look plain phantom:head,n=16 --keyframes still.json";
     folder
         .run(&format!("{film} --jitter=5 -o g%d.png {SMALL}"))
         .assert_done();
@@ -389,7 +395,7 @@ fn a_light_moves_from_key_to_key() {
     let lit = "phantom:head,n=16 --shading phong";
     folder
         .run(&format!(
-            "animate {lit} --light 0,0,1,1,0.5,0 --keyframes light.json -o %d.png {SMALL}"
+            "animate --look plain {lit} --light 0,0,1,1,0.5,0 --keyframes light.json -o %d.png {SMALL}"
         ))
         .assert_done();
     for (frame, light) in [("0.png", "1,0,0"), ("1.png", "1,-1,0"), ("2.png", "0,-1,0")] {
@@ -403,7 +409,7 @@ fn a_light_moves_from_key_to_key() {
         ),
     ] {
         let run = folder.run(&format!(
-            "animate {words} --keyframes light.json -o f%d.png {SMALL}"
+            "animate --look plain {words} --keyframes light.json -o f%d.png {SMALL}"
         ));
         run.assert_refused(2, &["frame 0 of the keyframes", wanted]);
     }
@@ -413,7 +419,7 @@ fn a_light_moves_from_key_to_key() {
     )
     .expect("a file");
     let run = folder.run(&format!(
-        "animate {lit} --keyframes light.json -o g%d.png {SMALL}"
+        "animate --look plain {lit} --keyframes light.json -o g%d.png {SMALL}"
     ));
     run.assert_refused(2, &["frame 1 of the keyframes", "opposite sides"]);
     assert!(!folder.path("g0.png").exists(), "a frame of no film");

@@ -24,7 +24,9 @@ fn png_codes(path: &Path) -> Vec<u8> {
 /// The frames of the same film as a sequence.
 fn sequence(folder: &Folder, words: &str) -> Vec<Vec<u8>> {
     folder
-        .run(&format!("animate {words} -o seq/%d.png {SMALL}"))
+        .run(&format!(
+            "animate --look plain {words} -o seq/%d.png {SMALL}"
+        ))
         .assert_done();
     let frames = (0..FRAMES).map(|k| png_codes(&folder.path(&format!("seq/{k}.png"))));
     frames.collect()
@@ -37,7 +39,9 @@ fn an_apng_holds_the_frames_exactly_and_plays_for_ever() {
         let words = format!("phantom:head,n=16 --bit-depth {bits}");
         let frames = sequence(&folder, &words);
         folder
-            .run(&format!("animate {words} --fps 12.5 -o film.apng {SMALL}"))
+            .run(&format!(
+                "animate --look plain {words} --fps 12.5 -o film.apng {SMALL}"
+            ))
             .assert_done();
         assert_eq!(folder.names(), ["film.apng", "seq"]);
         let file = fs::File::open(folder.path("film.apng")).expect("a film");
@@ -84,7 +88,9 @@ fn a_gif_of_few_colours_is_exact() {
     let words = format!("phantom:head,n=16 --mode mip {BLACK}");
     let frames = sequence(&folder, &words);
     folder
-        .run(&format!("animate {words} --fps 30 -o film.gif {SMALL}"))
+        .run(&format!(
+            "animate --look plain {words} --fps 30 -o film.gif {SMALL}"
+        ))
         .assert_done();
     let found = gif_frames(&folder.path("film.gif"));
     assert_eq!(found.len(), FRAMES);
@@ -102,7 +108,7 @@ fn a_gif_of_many_colours_is_near_and_has_one_palette() {
     let words = format!("phantom:head,n=32 --zoom 2.5 {BLACK}");
     let frames = sequence(&folder, &words);
     folder
-        .run(&format!("animate {words} -o film.gif {SMALL}"))
+        .run(&format!("animate --look plain {words} -o film.gif {SMALL}"))
         .assert_done();
     let found = gif_frames(&folder.path("film.gif"));
     let distinct = |frames: &[&[u8]]| {
@@ -163,12 +169,16 @@ fn a_y4m_holds_every_pixel_in_a_file_and_through_a_pipe() {
     let frames = sequence(&folder, &format!("phantom:head,n=16 {BLACK}"));
     // Black is behind a Y4M without a word.
     folder
-        .run(&format!("animate phantom:head,n=16 -o film.y4m {SMALL}"))
+        .run(&format!(
+            "animate --look plain phantom:head,n=16 -o film.y4m {SMALL}"
+        ))
         .assert_done();
     let file = fs::read(folder.path("film.y4m")).expect("a film");
     assert_y4m_is(&file, &frames);
     let piped = folder
-        .command(&format!("animate phantom:head,n=16 -o - {SMALL}"))
+        .command(&format!(
+            "animate --look plain phantom:head,n=16 -o - {SMALL}"
+        ))
         .output()
         .expect("the program runs");
     assert!(piped.status.success(), "{piped:?}");
@@ -179,7 +189,7 @@ fn a_y4m_holds_every_pixel_in_a_file_and_through_a_pipe() {
 fn a_closed_pipe_is_exit_code_4() {
     let folder = Folder::new();
     let mut child = folder
-        .command("animate phantom:fog,n=8 --turntable 400 --size 64x48 --device reference -o -")
+        .command("animate --look plain phantom:fog,n=8 --turntable 400 --size 64x48 --device reference -o -")
         .stdout(std::process::Stdio::piped())
         .stderr(std::process::Stdio::piped())
         .spawn()
@@ -199,7 +209,9 @@ fn an_mp4_has_all_frames_where_ffmpeg_is_installed() {
         return;
     }
     folder
-        .run(&format!("animate phantom:head,n=16 -o film.mp4 {SMALL}"))
+        .run(&format!(
+            "animate --look plain phantom:head,n=16 -o film.mp4 {SMALL}"
+        ))
         .assert_done();
     assert_eq!(folder.names(), ["film.mp4"]);
     let words = "-v error -count_frames -show_entries stream=nb_read_frames,width,height -of csv=p=0 film.mp4";

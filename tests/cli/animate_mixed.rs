@@ -9,7 +9,9 @@ const SMALL: &str = "--size 24x18 --device reference";
 #[track_caller]
 fn assert_frame_is(folder: &Folder, frame: &str, words: &str) {
     folder
-        .run(&format!("render {words} -o wanted.png {SMALL} --force"))
+        .run(&format!(
+            "render --look plain {words} -o wanted.png {SMALL} --force"
+        ))
         .assert_done();
     let read = |name: &str| fs::read(folder.path(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
     assert!(
@@ -47,7 +49,7 @@ fn a_turn_of_channels_is_the_picture_of_all_of_them_from_each_side() {
     ] {
         folder
             .run(&format!(
-                "animate {words} --turntable 3 -o {name}%d.png {SMALL}"
+                "animate --look plain {words} --turntable 3 -o {name}%d.png {SMALL}"
             ))
             .assert_done();
         for (k, azimuth) in [(0, 60), (2, 300)] {
@@ -83,7 +85,7 @@ fn keyframes_move_camera_and_planes_around_colours_and_labels() {
     ] {
         folder
             .run(&format!(
-                "animate {words} --keyframes k.json -o {name}%d.png {SMALL}"
+                "animate --look plain {words} --keyframes k.json -o {name}%d.png {SMALL}"
             ))
             .assert_done();
         let words = format!("{words} --azimuth 45 --zoom 2 --clip 1,0,0,2");
@@ -132,7 +134,7 @@ fn what_several_numbers_cannot_do_in_a_film_is_refused_by_name() {
             &["--labels", "--mode composite"],
         ),
     ] {
-        let ran = folder.run(&format!("animate {words} -o a.gif {SMALL}"));
+        let ran = folder.run(&format!("animate --look plain {words} -o a.gif {SMALL}"));
         ran.assert_refused(2, said);
         assert_eq!(folder.names(), before, "{words}");
     }
@@ -143,7 +145,8 @@ fn a_stopped_film_does_not_go_on_with_other_labels() {
     let folder = Folder::new();
     nrrd(&folder, "v.nrrd", "", "", 1);
     labels(&folder, "l.nrrd", |i| u8::from(i % 6 >= 3));
-    let words = format!("animate v.nrrd --labels l.nrrd --turntable 2 -o %d.png {SMALL}");
+    let words =
+        format!("animate --look plain v.nrrd --labels l.nrrd --turntable 2 -o %d.png {SMALL}");
     folder.run(&words).assert_done();
     labels(&folder, "l.nrrd", |i| u8::from(i % 6 >= 4));
     fs::remove_file(folder.path("1.png")).expect("a frame");
@@ -160,7 +163,7 @@ fn between_two_times_three_volumes_have_to_fit() {
     // Room for one volume and for two, of floats all of them, and not for three: nine tenths of it may be taken.
     let one = info["render_bytes"]["host"].as_u64().expect("a number");
     let words = format!(
-        "animate {storm} --mode mip --window -20,30 --times --max-memory {} {SMALL}",
+        "animate --look plain {storm} --mode mip --window -20,30 --times --max-memory {} {SMALL}",
         5 * one / 2
     );
     folder

@@ -19,10 +19,12 @@ fn float_files_have_a_layer_of_their_own_and_the_picture_stays() {
     let folder = Folder::new();
     let all = "--annotate bar,scale,orientation,box,ticks,axes,source,title=Head --size 160x120";
     folder
-        .run(&format!("render {HEAD} --size 160x120 -o plain.npy"))
+        .run(&format!(
+            "render --look plain {HEAD} --size 160x120 -o plain.npy"
+        ))
         .assert_done();
     folder
-        .run(&format!("render {HEAD} {all} -o a.npy"))
+        .run(&format!("render --look plain {HEAD} {all} -o a.npy"))
         .assert_done();
     let read = |name: &str| fs::read(folder.path(name)).expect("a file");
     assert!(read("plain.npy") == read("a.npy"), "the picture is another");
@@ -35,7 +37,7 @@ fn float_files_have_a_layer_of_their_own_and_the_picture_stays() {
     // A layer is premultiplied: no colour is above its opacity.
     assert!(layer.iter().all(|p| p.iter().all(|&c| c <= p[3] + 1e-6)));
     folder
-        .run(&format!("render {HEAD} {all} -o a.exr"))
+        .run(&format!("render --look plain {HEAD} {all} -o a.exr"))
         .assert_done();
     let bytes = read("a.exr");
     for name in ["annotation.R", "annotation.A"] {
@@ -51,7 +53,7 @@ fn the_bar_has_the_colours_of_the_picture() {
     let folder = Folder::new();
     folder
         .run(&format!(
-            "render {HEAD} --size 320x240 --annotate bar -o a.npy"
+            "render --look plain {HEAD} --size 320x240 --annotate bar -o a.npy"
         ))
         .assert_done();
     let layer = pixels(&folder, "a.annotation.npy", [320, 240]);
@@ -96,13 +98,13 @@ fn frames_and_thumbnails_are_the_pictures_that_render_draws() {
         "--mode mip --window 0,4 --device reference --size 128x96 --annotate bar,time,scale,box";
     folder
         .run(&format!(
-            "animate phantom:storm,n=16,variable=cloud,times=3 --times {words} -o f%02d.png"
+            "animate --look plain phantom:storm,n=16,variable=cloud,times=3 --times {words} -o f%02d.png"
         ))
         .assert_done();
     for time in 0..3 {
         folder
             .run(&format!(
-                "render phantom:storm,n=16,variable=cloud,times=3 --variable cloud --time {time} {words} -o r{time}.png"
+                "render --look plain phantom:storm,n=16,variable=cloud,times=3 --variable cloud --time {time} {words} -o r{time}.png"
             ))
             .assert_done();
         let [frame, still] = [format!("f{time:02}.png"), format!("r{time}.png")]
@@ -111,11 +113,13 @@ fn frames_and_thumbnails_are_the_pictures_that_render_draws() {
     }
     let words = "--device reference --annotate";
     folder
-        .run(&format!("thumbnails phantom:head,n=16 {words} -o small"))
+        .run(&format!(
+            "thumbnails --look plain phantom:head,n=16 {words} -o small"
+        ))
         .assert_done();
     folder
         .run(&format!(
-            "render phantom:head,n=16 --size 256x256 {words} -o one.png"
+            "render --look plain phantom:head,n=16 --size 256x256 {words} -o one.png"
         ))
         .assert_done();
     let [small] = &fs::read_dir(folder.path("small"))
@@ -133,7 +137,7 @@ fn frames_and_thumbnails_are_the_pictures_that_render_draws() {
 #[test]
 fn a_film_that_goes_on_wants_the_same_marks() {
     let folder = Folder::new();
-    let film = "animate phantom:fog,n=8 --turntable 2 --device reference --size 32x24 -o f%d.png";
+    let film = "animate --look plain phantom:fog,n=8 --turntable 2 --device reference --size 32x24 -o f%d.png";
     folder
         .run(&format!("{film} --annotate scale"))
         .assert_done();
@@ -149,7 +153,7 @@ fn a_scene_keeps_the_marks_and_a_sheet_has_them() {
     let folder = Folder::new();
     folder
         .run(&format!(
-            "render {HEAD} --size 64x48 --annotate title=Škoda,scale --annotate-size 12 --annotate-color 1:0:0 \
+            "render --look plain {HEAD} --size 64x48 --annotate title=Škoda,scale --annotate-size 12 --annotate-color 1:0:0 \
              --save-scene s.json -o a.png"
         ))
         .assert_done();
@@ -182,7 +186,9 @@ fn words_that_cannot_be_drawn_are_refused() {
             "--colormap-scale log: wanted values above 0, found -1000",
         ),
     ] {
-        let ran = folder.run(&format!("render {HEAD} --size 16x16 -o a.png {words}"));
+        let ran = folder.run(&format!(
+            "render --look plain {HEAD} --size 16x16 -o a.png {words}"
+        ));
         assert_eq!(ran.code, 2, "{words}: {}", ran.err);
         assert!(ran.err.contains(said), "{words}: {}", ran.err);
         assert!(!folder.path("a.png").exists(), "{words}");

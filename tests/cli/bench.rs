@@ -101,7 +101,7 @@ fn samples_are_those_that_a_picture_takes() {
     };
     folder
         .run(&format!(
-            "render {words} --projection orthographic -o a.png --timings r.json"
+            "render --look plain {words} --projection orthographic -o a.png --timings r.json"
         ))
         .assert_done();
     let timings = json(&fs::read_to_string(folder.path("r.json")).expect("a file"));

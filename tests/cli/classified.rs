@@ -15,7 +15,7 @@ fn a_file_asks_for_slabs_and_flags_win() {
     let asking = SHELL.replace("1, \"color\"", "1, \"preintegrated\": true, \"color\"");
     folder.file("asking.json", asking);
     let draw = |words: &str| {
-        let ran = folder.run(&format!("render {words} -o a.npy --force"));
+        let ran = folder.run(&format!("render --look plain {words} -o a.npy --force"));
         ran.assert_done();
         fs::read(folder.path("a.npy")).expect("a picture")
     };
@@ -41,7 +41,9 @@ fn a_file_asks_for_slabs_and_flags_win() {
         "bad.json",
         SHELL.replace("1, \"color\"", "1, \"preintegrated\": 1, \"color\""),
     );
-    let ran = folder.run(&format!("render {HEAD} --tf bad.json -o x.npy"));
+    let ran = folder.run(&format!(
+        "render --look plain {HEAD} --tf bad.json -o x.npy"
+    ));
     ran.assert_refused(
         3,
         &["bad.json", "`preintegrated`", "true or false", "found 1"],
@@ -63,10 +65,14 @@ fn what_cannot_be_classified_before_it_is_interpolated_says_so() {
         ("--preintegrated", "--preintegrated"),
         ("--technique slices-2d --smooth", "--smooth"),
     ] {
-        let ran = folder.run(&format!("render {HEAD} -o x.npy --preclassified {words}"));
+        let ran = folder.run(&format!(
+            "render --look plain {HEAD} -o x.npy --preclassified {words}"
+        ));
         ran.assert_refused(2, &[said]);
     }
     let cells = "phantom:cells,n=8 --size 16x16 --device reference";
-    let ran = folder.run(&format!("render {cells} -o x.npy --preclassified"));
+    let ran = folder.run(&format!(
+        "render --look plain {cells} -o x.npy --preclassified"
+    ));
     ran.assert_refused(2, &["--component 0"]);
 }

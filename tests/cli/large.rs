@@ -29,7 +29,7 @@ fn ball(folder: &Folder) {
 
 fn words(more: &str) -> String {
     format!(
-        "render ball.raw --raw {SIDE}x{SIDE}x{SIDE},u16 --preset grey --window 1000,9000 --zoom 6 --size 64x64 --force {more}"
+        "render --look plain ball.raw --raw {SIDE}x{SIDE}x{SIDE},u16 --preset grey --window 1000,9000 --zoom 6 --size 64x64 --force {more}"
     )
 }
 
@@ -92,10 +92,14 @@ fn bricks_on_the_disk_have_levels_and_are_refined() {
     let look = "--preset grey --window 1000,9000 --zoom 6 --size 64x64 --force";
     folder.run(&words("--stream -o raw.npy")).assert_done();
     folder
-        .run(&format!("render ball.svb --stream {look} -o svb.npy"))
+        .run(&format!(
+            "render --look plain ball.svb --stream {look} -o svb.npy"
+        ))
         .assert_done();
     assert_eq!(apart(&folder, "raw.npy", "svb.npy")[0], 0.0);
-    let ran = folder.run(&format!("render ball.svb --level 2 {look} -o coarse.npy"));
+    let ran = folder.run(&format!(
+        "render --look plain ball.svb --level 2 {look} -o coarse.npy"
+    ));
     ran.assert_done();
     assert!(ran.err.contains("level 2 of 2"), "{}", ran.err);
     // Opacities are for the same length.
@@ -105,7 +109,7 @@ fn bricks_on_the_disk_have_levels_and_are_refined() {
         "{apart_2} of {largest}"
     );
     let ran = folder.run(&format!(
-        "render ball.svb --refine --stream {look} -o fine.npy"
+        "render --look plain ball.svb --refine --stream {look} -o fine.npy"
     ));
     ran.assert_done();
     let told: Vec<_> = ["level 2 of 2", "level 1 of 2"]
@@ -115,7 +119,9 @@ fn bricks_on_the_disk_have_levels_and_are_refined() {
     assert!(told[0].is_some() && told[0] < told[1], "{}", ran.err);
     assert_eq!(apart(&folder, "svb.npy", "fine.npy")[0], 0.0);
     folder
-        .run(&format!("render ball.svb --level 3 {look} -o no.npy"))
+        .run(&format!(
+            "render --look plain ball.svb --level 3 {look} -o no.npy"
+        ))
         .assert_refused(3, &["level", "0 to 2"]);
     folder
         .run(&words("--refine -o no.npy"))
@@ -140,11 +146,11 @@ fn what_is_not_drawn_in_bricks_is_refused_by_name() {
         .run("convert phantom:sphere,n=16 -o a.nii.gz")
         .assert_done();
     folder
-        .run("render a.nii.gz --stream -o a.png")
+        .run("render --look plain a.nii.gz --stream -o a.png")
         .assert_refused(2, &["compressed as a whole", "convert a.nii.gz -o a.svb"]);
     // 16^3 floats are 16 KiB, and as much again on the device.
     folder
-        .run("render a.nii.gz --max-memory 20K -o a.png")
+        .run("render --look plain a.nii.gz --max-memory 20K -o a.png")
         .assert_refused(6, &["no memory", "convert a.nii.gz -o a.svb", "--fit"]);
 }
 
@@ -157,13 +163,15 @@ fn what_is_compressed_as_a_whole_is_decoded_once_and_becomes_bricks() {
     make(&format!("head.npy -o wanted.svb {crop}"));
     let look = "--stream --size 64x64 --force";
     folder
-        .run(&format!("render wanted.svb {look} -o wanted.npy"))
+        .run(&format!(
+            "render --look plain wanted.svb {look} -o wanted.npy"
+        ))
         .assert_done();
     for packed in ["head.nii.gz", "head.nrrd"] {
         make(&format!("head.npy -o {packed}"));
         make(&format!("{packed} -o head.svb {crop}"));
         folder
-            .run(&format!("render head.svb {look} -o found.npy"))
+            .run(&format!("render --look plain head.svb {look} -o found.npy"))
             .assert_done();
         let [apart, largest] = apart(&folder, "wanted.npy", "found.npy");
         assert!(
@@ -183,7 +191,9 @@ fn frames_of_a_film_are_the_pictures_that_are_drawn_from_the_file() {
         .run("convert phantom:head,n=130 -o head.svb --type i16")
         .assert_done();
     let look = "head.svb --size 32x24 --force";
-    let ran = folder.run(&format!("animate {look} --stream --turntable 3 -o %d.npy"));
+    let ran = folder.run(&format!(
+        "animate --look plain {look} --stream --turntable 3 -o %d.npy"
+    ));
     ran.assert_done();
     // One look for all frames: bricks that are there stay.
     assert_eq!(ran.err.matches("in 8 bricks").count(), 1, "{}", ran.err);
@@ -192,7 +202,7 @@ fn frames_of_a_film_are_the_pictures_that_are_drawn_from_the_file() {
     fs::write(folder.path("keys.json"), keys).expect("a file");
     // Where the memory is short nobody has to say it.
     let ran = folder.run(&format!(
-        "animate {look} --mode mip --keyframes keys.json --max-memory 8M -o k%d.npy"
+        "animate --look plain {look} --mode mip --keyframes keys.json --max-memory 8M -o k%d.npy"
     ));
     ran.assert_done();
     assert!(ran.err.contains("in 8 bricks"), "{}", ran.err);
@@ -202,7 +212,9 @@ fn frames_of_a_film_are_the_pictures_that_are_drawn_from_the_file() {
         ("k1.npy", "--mode mip --window=-400,500 --azimuth 200"),
     ] {
         folder
-            .run(&format!("render {look} --stream {words} -o r.npy"))
+            .run(&format!(
+                "render --look plain {look} --stream {words} -o r.npy"
+            ))
             .assert_done();
         let read = |name: &str| fs::read(folder.path(name)).expect(name);
         assert!(
@@ -221,7 +233,7 @@ fn each_time_of_a_film_is_the_picture_that_is_drawn_from_the_file() {
     let look = "storm.svb --size 32x24 --force";
     let window = "--window=-10,40";
     let ran = folder.run(&format!(
-        "animate {look} --stream --times {window} -o %d.npy"
+        "animate --look plain {look} --stream --times {window} -o %d.npy"
     ));
     ran.assert_done();
     let said = ran
@@ -231,7 +243,7 @@ fn each_time_of_a_film_is_the_picture_that_is_drawn_from_the_file() {
     assert_eq!(said, 1, "{}", ran.err);
     // Where the memory is short nobody has to say it.
     let ran = folder.run(&format!(
-        "animate {look} --times {window} --max-memory 3M -o short%d.npy"
+        "animate --look plain {look} --times {window} --max-memory 3M -o short%d.npy"
     ));
     ran.assert_done();
     assert!(ran.err.contains("drawn from the file"), "{}", ran.err);
@@ -239,7 +251,7 @@ fn each_time_of_a_film_is_the_picture_that_is_drawn_from_the_file() {
     for time in 0..3 {
         folder
             .run(&format!(
-                "render {look} --stream --time {time} {window} -o r.npy"
+                "render --look plain {look} --stream --time {time} {window} -o r.npy"
             ))
             .assert_done();
         let wanted = read("r.npy");
@@ -249,14 +261,16 @@ fn each_time_of_a_film_is_the_picture_that_is_drawn_from_the_file() {
     }
     assert!(read("0.npy") != read("2.npy"), "nothing moves");
     // What nobody words is chosen for all times together.
-    let ran = folder.run(&format!("animate {look} --stream --times -o all%d.png"));
+    let ran = folder.run(&format!(
+        "animate --look plain {look} --stream --times -o all%d.png"
+    ));
     ran.assert_done();
     assert!(ran.err.contains("for all 3 times together"), "{}", ran.err);
     let keys = r#"{ "stratavox_keyframes": 1, "frames": 3, "keys": [{ "at": 0, "time": 0 }, { "at": 1, "time": 1 }] }"#;
     fs::write(folder.path("keys.json"), keys).expect("a file");
     folder
         .run(&format!(
-            "animate {look} --stream --keyframes keys.json -o k%d.png"
+            "animate --look plain {look} --stream --keyframes keys.json -o k%d.png"
         ))
         .assert_refused(2, &["frame 1", "0.5", "--stream"]);
 }

@@ -43,7 +43,9 @@ fn read_npy(bytes: &[u8]) -> Picture {
 
 /// What these words draw, and what is said meanwhile.
 fn picture(folder: &Folder, words: &str) -> (Picture, String) {
-    let ran = folder.run(&format!("render {words} -o p.npy --force {SMALL}"));
+    let ran = folder.run(&format!(
+        "render --look plain {words} -o p.npy --force {SMALL}"
+    ));
     ran.assert_done();
     let bytes = fs::read(folder.path("p.npy")).expect("a file");
     (read_npy(&bytes), ran.err)
@@ -206,7 +208,7 @@ fn labels_are_dimmed_by_words_and_by_their_file() {
     assert!(opacity(&faint) < opacity(&full) && opacity(&faint) > 0.0);
     assert_eq!(drawn(&alone("--label-hide 1")), 0);
     folder
-        .run("render v.nrrd --label-dim 7 --preset grey -o x.png --device reference")
+        .run("render --look plain v.nrrd --label-dim 7 --preset grey -o x.png --device reference")
         .assert_refused(2, &["--label-dim", "--labels FILE"]);
 }
 
@@ -224,7 +226,9 @@ fn a_label_map_on_another_grid_is_brought_over_and_one_elsewhere_is_refused() {
         .replace("(0,0,1)\n", "(0,0,1)\nspace origin: (500,0,0)\n");
     folder.file("far.nrrd", far);
     folder
-        .run(&format!("render v.nrrd -o a.png --labels far.nrrd {SMALL}"))
+        .run(&format!(
+            "render --look plain v.nrrd -o a.png --labels far.nrrd {SMALL}"
+        ))
         .assert_refused(3, &["far.nrrd", "do not overlap"]);
     assert!(!folder.path("a.png").exists());
 }
@@ -254,7 +258,7 @@ fn a_scene_keeps_channels_and_labels() {
     ] {
         folder
             .run(&format!(
-                "render {words} -o a.npy --force --save-scene s.json {SMALL}"
+                "render --look plain {words} -o a.npy --force --save-scene s.json {SMALL}"
             ))
             .assert_done();
         folder
@@ -324,7 +328,7 @@ fn words_that_do_not_go_together_are_refused_by_name() {
         ("v.nrrd --labels v.nrrd --label-tf bad.txt", 3, &["line 1"]),
         ("v.nrrd --labels none.nrrd", 3, &["none.nrrd"]),
     ] {
-        let words = format!("render {words} -o a.npy {SMALL}");
+        let words = format!("render --look plain {words} -o a.npy {SMALL}");
         folder.run(&words).assert_refused(code, said);
         assert!(!folder.path("a.npy").exists(), "{words}");
     }

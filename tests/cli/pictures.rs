@@ -179,7 +179,9 @@ fn an_empty_picture_is_written_and_its_reason_said() {
         );
         assert_begins(&folder.path(&format!("{at}.png")), b"\x89PNG");
     }
-    let ran = folder.run(&format!("render phantom:gauss,n=8 -o full.png {SMALL}"));
+    let ran = folder.run(&format!(
+        "render phantom:gauss,n=8 --look plain -o full.png {SMALL}"
+    ));
     ran.assert_done();
     assert!(ran.err.is_empty(), "{ran:#?}");
 }

@@ -42,7 +42,8 @@ fn the_list_names_every_word_of_the_flag() {
         assert!(names.contains(&name), "{names:?}");
     }
     for name in &names {
-        let words = format!("render phantom:gauss,n=8 -o {name}.png --preset {name} {SMALL}");
+        let words =
+            format!("render --look plain phantom:gauss,n=8 -o {name}.png --preset {name} {SMALL}");
         folder.run(&words).assert_done();
         folder.run(&format!("preset show {name}")).assert_done();
     }
@@ -57,7 +58,7 @@ fn what_show_prints_for_a_volume_draws_the_same_picture_as_the_preset() {
         let shown = folder.run(&format!("preset show {name} phantom:head,n=16 --json"));
         shown.assert_done();
         folder.file("tf.json", &shown.out);
-        let words = format!("render phantom:head,n=16 {SMALL} --force");
+        let words = format!("render --look plain phantom:head,n=16 {SMALL} --force");
         folder
             .run(&format!("{words} --preset {name} -o a.npy"))
             .assert_done();
@@ -85,7 +86,7 @@ fn an_imported_function_is_the_same_behind_tf() {
         ));
         ran.assert_done();
         assert!(ran.err.contains(" is a"), "{ran:#?}");
-        let words = format!("render phantom:gauss,n=16 {SMALL} --force --window 0,1");
+        let words = format!("render --look plain phantom:gauss,n=16 {SMALL} --force --window 0,1");
         folder
             .run(&format!("{words} --tf {name} -o a.npy"))
             .assert_done();
@@ -109,7 +110,7 @@ fn what_is_left_out_is_said_on_stderr_by_import_and_by_render() {
     );
     assert_eq!(json(&ran.out)["reference_length"], 0.75, "{ran:#?}");
     let ran = folder.run(&format!(
-        "render phantom:head,n=8 -o a.png --tf slicer.vp.json {SMALL}"
+        "render --look plain phantom:head,n=8 -o a.png --tf slicer.vp.json {SMALL}"
     ));
     ran.assert_done();
     assert!(ran.err.contains("not taken over: the light"), "{ran:#?}");
@@ -131,7 +132,7 @@ fn fractions_are_spread_over_the_window_or_else_over_the_range_of_the_volume() {
     assert!(ran.err.contains("--window"), "{ran:#?}");
     // gauss, n=8 goes from its smallest to its largest value.
     let info = json(&folder.run("info phantom:gauss,n=8 --json").out);
-    let words = format!("render phantom:gauss,n=8 --tf inviwo.itf {SMALL}");
+    let words = format!("render --look plain phantom:gauss,n=8 --tf inviwo.itf {SMALL}");
     folder
         .run(&format!("{words} -o a.npy --save-scene s.json"))
         .assert_done();
@@ -173,7 +174,7 @@ fn one_of_several_is_chosen_by_name_and_wrong_files_exit_3() {
     folder.file("tf.txt", "0 1\n2 x\n");
     folder
         .run(&format!(
-            "render phantom:fog,n=8 -o a.png --tf tf.txt {SMALL}"
+            "render --look plain phantom:fog,n=8 -o a.png --tf tf.txt {SMALL}"
         ))
         .assert_refused(3, &["tf.txt", "line 2"]);
     folder

@@ -37,7 +37,7 @@ fn a_file_of_several_variables_asks_for_one_by_name() {
         ("netcdf/wrf.nc", ["PHB, PH, T, W, U, V", "--variable"]),
         ("hdf5/latest.h5", ["a, g/b", "--variable"]),
     ] {
-        let ran = folder.run(&format!("render {} {DRAW}", fixture(file)));
+        let ran = folder.run(&format!("render {} --look plain {DRAW}", fixture(file)));
         ran.assert_refused(2, &words);
     }
     let drawn = format!(
@@ -82,7 +82,7 @@ fn the_earth_is_seen_from_the_south_unless_a_word_says_otherwise() {
     let folder = Folder::new();
     let file = format!("{} --variable t", fixture("netcdf/classic.nc"));
     let draw = |words: &str| {
-        let ran = folder.run(&format!("render {file} {words} {DRAW}"));
+        let ran = folder.run(&format!("render {file} --look plain {words} {DRAW}"));
         ran.assert_done();
         std::fs::read(folder.path("a.npy")).expect("a picture")
     };
@@ -94,7 +94,7 @@ fn the_earth_is_seen_from_the_south_unless_a_word_says_otherwise() {
     let line = "seen from    azimuth -60, elevation 25 degrees";
     assert!(info.out.contains(line), "{}", info.out);
     let small = "--size 24x16 --device reference";
-    let film = format!("animate {file} --time 0 --turntable 2 -o f%d.npy {small}");
+    let film = format!("animate {file} --look plain --time 0 --turntable 2 -o f%d.npy {small}");
     folder.run(&film).assert_done();
     let frame = |name: &str| std::fs::read(folder.path(name)).expect("a frame");
     assert!(frame("f0.npy") == by_default);

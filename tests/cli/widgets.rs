@@ -21,12 +21,15 @@ fn colour_and_opacity_of_two_files_draw_what_one_file_of_both_draws() {
     folder.file("color.json", tf(color, "[[0,1]]"));
     folder.file("opacity.json", tf("[[0,0,1,0]]", opacity));
     folder.file("both.json", tf(color, opacity));
-    let words = format!("render {HEAD} --color-tf color.json --opacity-tf opacity.json");
+    let words =
+        format!("render --look plain {HEAD} --color-tf color.json --opacity-tf opacity.json");
     folder
         .run(&format!("{words} -o two.npy --save-scene scene.json"))
         .assert_done();
     folder
-        .run(&format!("render {HEAD} --tf both.json -o one.npy"))
+        .run(&format!(
+            "render --look plain {HEAD} --tf both.json -o one.npy"
+        ))
         .assert_done();
     folder
         .run("render --scene scene.json -o scene.npy --device reference")
@@ -36,7 +39,7 @@ fn colour_and_opacity_of_two_files_draw_what_one_file_of_both_draws() {
     assert_eq!(bytes("two.npy"), bytes("scene.npy"));
     folder
         .run(&format!(
-            "render {HEAD} --preset ct-bone --color-tf color.json -o preset.npy"
+            "render --look plain {HEAD} --preset ct-bone --color-tf color.json -o preset.npy"
         ))
         .assert_done();
     assert_ne!(bytes("preset.npy"), bytes("one.npy"));
@@ -48,7 +51,7 @@ fn widgets_are_drawn_shown_and_carried_in_scenes() {
     folder.file("tf.json", CONTOURS);
     folder
         .run(&format!(
-            "render {HEAD} --tf tf.json -o a.npy --save-scene scene.json"
+            "render --look plain {HEAD} --tf tf.json -o a.npy --save-scene scene.json"
         ))
         .assert_done();
     folder
@@ -71,19 +74,20 @@ fn what_cannot_draw_widgets_says_so() {
         ("--tf tf.json --labels labels.nrrd", "--labels"),
     ] {
         folder
-            .run(&format!("render {HEAD} -o x.npy {words}"))
+            .run(&format!("render --look plain {HEAD} -o x.npy {words}"))
             .assert_refused(2, &[said]);
     }
     folder.file("bad.json", CONTOURS.replace("400", "\"bone\""));
     folder
-        .run(&format!("render {HEAD} -o x.npy --tf bad.json"))
+        .run(&format!(
+            "render --look plain {HEAD} -o x.npy --tf bad.json"
+        ))
         .assert_refused(3, &["bad.json", "widgets[1].value", "\"bone\""]);
     let keys = format!(
         r#"{{"stratavox_keyframes": 1, "frames": 2, "keys": [{{"at": 0, "tf": {CONTOURS}}}, {{"at": 1}}]}}"#
     );
     folder.file("keys.json", keys);
-    let film =
-        "animate phantom:head,n=8 --size 8x8 --device reference --keyframes keys.json -o film.apng";
+    let film = "animate --look plain phantom:head,n=8 --size 8x8 --device reference --keyframes keys.json -o film.apng";
     let refused = folder.run(film);
     assert!(
         refused.err.contains("keys[0].tf: widgets"),

@@ -48,7 +48,6 @@ fn a_word_that_cannot_be_is_a_usage_error() {
     let folder = Folder::new();
     for (words, name) in [
         ("paint", "paint"),
-        ("render phantom:fog", "--output"),
         ("render -o a.png", "INPUT"),
         ("render phantom:fog -o a.jpg", "a.jpg"),
         ("render phantom:fog -o a.png --size 0x3", "--size"),
@@ -148,7 +147,7 @@ fn help_and_version_are_answers_on_standard_output() {
 #[test]
 fn several_variables_are_an_error_that_lists_them() {
     let folder = Folder::new();
-    let words = "render phantom:storm,n=8 -o a.png --size 8x8 --device reference";
+    let words = "render phantom:storm,n=8 --look plain -o a.png --size 8x8 --device reference";
     let refused = folder.run(words);
     refused.assert_refused(2, &["several variables", "--variable"]);
     let listed = refused

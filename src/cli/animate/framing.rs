@@ -161,6 +161,7 @@ fn choose(
             progress.stage("prepare", 0, 1);
             let seen = Seen {
                 volume: moment.looked_at(),
+                context: scene.classification.context.as_ref(),
                 classification: &ready[0].classification,
                 is_alone: true,
             };

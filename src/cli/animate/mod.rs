@@ -28,7 +28,7 @@ use super::{
     Error,
     annotate::Annotation,
     exaggerate,
-    flags::{Depth, SceneFlags},
+    flags::{Depth, SceneFlags, context},
     load,
     memory::{DeviceRoom, Held, fitting},
     output::{self, write_whole},
@@ -321,6 +321,7 @@ impl Animate {
         let source = load::open(&scene.input, &shown::limits(&scene))?;
         scene.take_first_variable(source.header(), progress);
         let header = source.header();
+        scene.classification.context = scene.is_auto().then(|| context(header));
         let mut shots = film.shots(&scene, depth, header, &shots::grid(&scene, header)?)?;
         for shot in &mut shots {
             shot.settings.skip = !self.no_skip;

@@ -7,7 +7,8 @@ use super::{
 use crate::{
     technique::Mode,
     transfer::{
-        Classified, Interpolation, Preset, TransferFunction, ValueSummary, Window, automatic,
+        Classified, Context, Interpolation, Preset, TransferFunction, ValueSummary, Window,
+        automatic, automatic_in,
     },
     volume::{Volume, steepest_gradient},
 };
@@ -36,6 +37,10 @@ pub struct ClassificationFlags {
     #[arg(long, value_name = "FILE", help_heading = "Colour")]
     #[serde(skip)]
     pub opacity_tf: Option<PathBuf>,
+    /// What the file says of its values, under `--look auto`; `None`: the values alone decide.
+    #[arg(skip)]
+    #[serde(skip)]
+    pub context: Option<Context>,
     /// What stood in the file of --color-tf.
     #[arg(skip)]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -276,7 +281,10 @@ impl ClassificationFlags {
             (None, Some(preset)) => preset.function(&summary()?, classified, window),
             (None, None) => match window.filter(|_| classified == Classified::Projection) {
                 Some(window) => window.grey(classified),
-                None => automatic(&summary()?, classified, window),
+                None => match &self.context {
+                    Some(context) => automatic_in(context, &summary()?, classified, window),
+                    None => automatic(&summary()?, classified, window),
+                },
             },
         };
         let range = || Ok(Window::of_range(summary()?.range));

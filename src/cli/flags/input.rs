@@ -79,6 +79,9 @@ fn is_false(flag: &bool) -> bool {
     !flag
 }
 
+/// Variables of weather models that say where the levels lie: geopotential of WRF, its base state and perturbation.
+const PLACES: [&str; 2] = ["PH", "PHB"];
+
 /// How a built-in volume begins.
 pub const PHANTOM: &str = "phantom:";
 
@@ -111,15 +114,19 @@ impl InputFlags {
     /// Takes the first variable of `source` that can be drawn, where the words name none of several: the readers put it
     /// first. Gives the note that names the others.
     pub fn take_first_variable(&mut self, header: &Header) -> Option<String> {
-        let [first, others @ ..] = &header.variables[..] else {
-            return None;
-        };
         self.check_one_variable(header).err()?;
-        self.variable = Some(first.clone());
-        Some(format!(
+        let is_place = |name: &&String| PLACES.contains(&name.as_str());
+        let names = &header.variables;
+        let first = names.iter().find(|name| !is_place(name));
+        let first = first.or(names.first())?;
+        let others: Vec<_> = names.iter().filter(|&name| name != first).collect();
+        let others: Vec<_> = others.into_iter().map(String::as_str).collect();
+        let note = format!(
             "drawn is {first}; --variable takes another: {}",
             others.join(", ")
-        ))
+        );
+        self.variable = Some(first.clone());
+        Some(note)
     }
 
     /// Opens what the words name, as it is drawn; reads its header alone.

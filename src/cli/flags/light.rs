@@ -85,7 +85,7 @@ impl FromStr for LightWord {
             }
             _ => {
                 return Err(
-                    "wanted X,Y,Z, X,Y,Z,R,G,B or X,Y,Z,COLOR, after camera: or not".to_owned(),
+                    "wanted X,Y,Z or X,Y,Z,R,G,B or X,Y,Z,COLOR, after camera: or not".to_owned(),
                 );
             }
         };
@@ -336,6 +336,7 @@ mod tests {
             ("0,0,0", "a direction"),
             ("1,0,0,2,0,0", "from 0 to 1"),
             ("1,0,up", "a number"),
+            ("1,0,0,puce", "no colour \"puce\""),
         ] {
             let problem = text.parse::<LightWord>().expect_err("refused");
             assert!(problem.contains(wanted), "{text}: {problem}");

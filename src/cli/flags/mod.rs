@@ -54,7 +54,7 @@ pub use picture::PictureFlags;
 pub use sampling::{Depth, SamplingFlags};
 pub use section::SectionFlags;
 pub use subject::Subject;
-pub use values::{preset, summary, with_causes};
+pub use values::{context, preset, summary, with_causes};
 pub use window::WindowWord;
 pub use words::{FilterWord, ModeWord, TechniqueWord};
 

@@ -1,8 +1,8 @@
 //! What flags of colour ask of names and of volumes.
 
 use crate::{
-    transfer::{Colormap, Preset, Quantity, ValueSummary},
-    volume::{Volume, Voxels},
+    transfer::{Colormap, Context, Preset, Quantity, ValueSummary},
+    volume::{Header, Volume, VoxelType, Voxels},
 };
 use glam::DVec3;
 
@@ -32,6 +32,20 @@ pub fn preset(name: &str) -> Result<String, String> {
 /// A word of `--colormap` that is right.
 pub fn colormap(text: &str) -> Result<String, String> {
     text.parse().map(|map: Colormap| map.to_string())
+}
+
+/// What the file says of its values, beside the values.
+pub fn context(header: &Header) -> Context {
+    Context {
+        unit: header.unit.clone(),
+        standard_name: header.standard_name.clone(),
+        modality: header.modality.clone(),
+        is_patient: header.is_patient,
+        is_integer: !matches!(
+            header.stored,
+            VoxelType::F16 | VoxelType::F32 | VoxelType::F64
+        ),
+    }
 }
 
 /// What the values of a volume look like as a whole. Looks at millions of voxels, so each type has a loop of its own.

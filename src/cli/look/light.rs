@@ -13,7 +13,7 @@ use crate::cli::flags::{
     summary,
 };
 use crate::cli::shown::check;
-use crate::transfer::{Kind, Preset};
+use crate::transfer::{Context, Kind, Preset};
 use crate::volume::{Volume, noise_of};
 use glam::DVec3;
 
@@ -33,6 +33,8 @@ pub struct Use {
 pub struct Seen<'a> {
     /// Of a stream every n-th voxel.
     pub volume: &'a Volume,
+    /// What its file says of the values.
+    pub context: Option<&'a Context>,
     /// How its values are seen.
     pub classification: &'a Classification,
     /// Nothing is seen together with it.
@@ -103,7 +105,11 @@ fn lit(scene: &SceneFlags, seen: Seen) -> Option<SceneFlags> {
         return None;
     };
     let has_shape = || {
-        let kind = Kind::of(&summary(volume));
+        let summary = summary(volume);
+        let kind = match seen.context {
+            Some(context) => context.choice(&summary).kind,
+            None => Kind::of(&summary),
+        };
         matches!(kind, Kind::Ct | Kind::Tissue | Kind::Labels)
     };
     if function.is_graded() || !is_named && !has_shape() {

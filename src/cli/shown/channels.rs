@@ -72,6 +72,7 @@ impl Reader<'_> {
         Ok(Shown {
             volume: Arc::new(first.volume),
             header: header.clone(),
+            context: None,
             classification: Classification::Function(first.function),
             per_mode: self.scene.modes.alone(),
             filter: None,

@@ -59,6 +59,7 @@ impl Reader<'_> {
         Ok(Shown {
             volume: Arc::new(red),
             header: source.header().clone(),
+            context: None,
             classification: Classification::Function(function),
             per_mode: self.scene.modes.alone(),
             filter: None,
@@ -100,6 +101,7 @@ impl Reader<'_> {
         Ok(Shown {
             volume: Arc::new(first.volume),
             header,
+            context: None,
             classification: Classification::Function(first.function),
             per_mode: self.scene.modes.alone(),
             filter: None,

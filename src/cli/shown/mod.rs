@@ -13,7 +13,7 @@ pub use streamed::{is_wanted as wants_stream, open as open_stream};
 
 use super::{
     Error,
-    flags::{Classification, ClassificationFlags, Plan, SceneFlags, Subject, summary},
+    flags::{Classification, ClassificationFlags, Plan, SceneFlags, Subject, context, summary},
     labels,
     load::{load_from, open},
     look::Seen,
@@ -25,7 +25,7 @@ use crate::{
     offscreen::Stream,
     scene::{Beside, Channel},
     technique::{Filter, FilterBy, Mode, PerMode, Role, Settings},
-    transfer::{Classified, LabelTable, TransferFunction},
+    transfer::{Classified, Context, LabelTable, TransferFunction},
     volume::{Header, Limits, Source, Volume, labels::labels_of},
 };
 use check::{has_beside, plan};
@@ -38,6 +38,8 @@ pub struct Shown {
     pub volume: Arc<Volume>,
     /// What its file says of it.
     pub header: Header,
+    /// What the file says of its values, under `--look auto`.
+    context: Option<Context>,
     /// How its values are seen.
     pub classification: Classification,
     /// What the mode wants to know of the values.
@@ -131,6 +133,7 @@ impl Shown {
         progress: &Progress,
     ) -> Result<Self, Error> {
         check(scene, settings)?;
+        let said = scene.is_auto().then(|| context(source.header()));
         let (plan, note) = plan(scene, source.header())?;
         if scene.opacity.are_given() && plan != Plan::One {
             return Err(Error::usage(
@@ -184,6 +187,7 @@ impl Shown {
             Plan::Channels(words) => reader.channels(source, &words)?,
             Plan::Colors => reader.colors(source)?,
         };
+        shown.context = said;
         if scene.sampling.preclassified {
             return preclassified::classified(shown, settings.color_space);
         }
@@ -244,6 +248,7 @@ impl Shown {
     pub fn seen(&self) -> Seen<'_> {
         Seen {
             volume: self.looked_at(),
+            context: self.context.as_ref(),
             classification: &self.classification,
             is_alone: matches!(self.parts().beside(), Beside::Nothing),
         }
@@ -349,6 +354,7 @@ impl Reader<'_> {
     fn one(&self, source: Box<dyn Source>) -> Result<Shown, Error> {
         let header = source.header().clone();
         let is_labels = header.is_labels;
+        let context = self.scene.is_auto().then(|| context(&header));
         let (volume, height_factor) = load_from(source, self.scene, self.device, self.progress)?;
         let flags = &ClassificationFlags {
             // That of other numbers says nothing of these.
@@ -356,6 +362,7 @@ impl Reader<'_> {
                 true => None,
                 false => self.scene.classification.opacity_function.clone(),
             },
+            context,
             ..self.scene.classification.clone()
         };
         let words = &self.scene.labels;
@@ -374,6 +381,7 @@ impl Reader<'_> {
             return Ok(Shown {
                 volume: Arc::new(volume),
                 header,
+                context: None,
                 classification: Classification::Function(function),
                 per_mode: PerMode::default(),
                 filter: Some(Filter::Nearest),
@@ -415,6 +423,7 @@ impl Reader<'_> {
         Ok(Shown {
             volume: Arc::new(volume),
             header,
+            context: None,
             classification,
             per_mode,
             filter: found_labels.then_some(Filter::Nearest),

@@ -2,7 +2,7 @@
 
 use super::{Other, Reader};
 use crate::cli::Error;
-use crate::cli::flags::{Classification, Component};
+use crate::cli::flags::{Classification, Component, context};
 use crate::cli::load::{load_from, open};
 use crate::technique::{Mode, Role};
 use crate::transfer::{Classified, Window};
@@ -18,6 +18,7 @@ impl Reader<'_> {
             Err(_) => scene.input.variable = Some(word.to_owned()),
         }
         let source = open(&scene.input, &scene.input.limits())?;
+        scene.classification.context = scene.is_auto().then(|| context(source.header()));
         let (volume, _) = load_from(source, &scene, self.device, self.progress)?;
         let volume = if is_same_grid(&volume.grid(), grid) {
             Volume {

@@ -81,7 +81,9 @@ pub(super) fn grid(
         rescale: values.rescale,
         fill: values.missing.fill,
         unit: values.unit,
-        long_name: long_name(&choice.variable),
+        standard_name: text_of(choice, "standard_name"),
+        // WRF words it `description`.
+        long_name: text_of(choice, "long_name").or_else(|| text_of(choice, "description")),
         // Kilometres.
         length_metres: header.is_earth.then_some(1e3),
         is_labels: values.is_labels,
@@ -102,10 +104,9 @@ pub(super) fn grid(
     grid.new_checked(file_bytes)
 }
 
-/// What the variable is, as CF words it, or WRF.
-fn long_name(variable: &Variable) -> Option<String> {
-    let text = |name| variable.attributes.text(name).map(str::to_owned);
-    text("long_name").or_else(|| text("description"))
+/// An attribute of the variable.
+fn text_of(choice: &Choice, name: &str) -> Option<String> {
+    choice.variable.attributes.text(name).map(str::to_owned)
 }
 
 /// Points along the axis of a role; 1 where there is none.

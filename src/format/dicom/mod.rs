@@ -201,6 +201,7 @@ fn open_group(
             _ => None,
         },
         hounsfield: quantity.hounsfield,
+        modality: quantity.modality,
         unit: quantity.unit,
         meaning: if is_color {
             Meaning::Rgb

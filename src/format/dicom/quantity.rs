@@ -13,6 +13,8 @@ pub(super) struct Quantity {
     /// As the file words it: `HU`, `BQML`, `GY`.
     pub unit: Option<String>,
     pub hounsfield: bool,
+    /// How the picture was taken: `CT`, `MR`, `PT`.
+    pub modality: Option<String>,
     /// A segmentation: numbers are names.
     pub is_labels: bool,
 }
@@ -57,6 +59,7 @@ impl Quantity {
         Ok(Self {
             unit,
             hounsfield,
+            modality: set.text(MODALITY).map(|word| escape(&word)),
             is_labels,
         })
     }

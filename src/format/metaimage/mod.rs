@@ -138,6 +138,11 @@ fn header(
             slope: slope.unwrap_or(1.0),
             intercept: intercept.unwrap_or(0.0),
         },
+        modality: fields
+            .get("Modality")
+            .and_then(|word| word.strip_prefix("MET_MOD_"))
+            .filter(|word| matches!(*word, "CT" | "MR"))
+            .map(str::to_owned),
         // Values of eight bits cannot be Hounsfield units, whatever the modality.
         hounsfield: fields.get("Modality") == Some("MET_MOD_CT") && stored.bytes() > 1,
         is_patient: fields

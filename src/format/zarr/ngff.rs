@@ -314,6 +314,7 @@ fn header(
         meaning,
         length_metres,
         is_labels: image.is_label,
+        modality: Some("GM".to_owned()),
         time_names,
         notes,
         ..Header::new(Format::Zarr, sizes.dims, array.stored, affine)
