@@ -17,16 +17,16 @@ fn pixels(folder: &Folder, name: &str, [width, height]: [usize; 2]) -> Vec<[f32;
 #[test]
 fn float_files_have_a_layer_of_their_own_and_the_picture_stays() {
     let folder = Folder::new();
-    let all = "--annotate bar,scale,orientation,box,ticks,axes,source,title=Head --size 160x120";
+    let all = "--annotate bar,scale,orientation,box,ticks,axes,source,title=Head --size 320x240";
     folder
-        .run(&format!("render {HEAD} --size 160x120 -o plain.npy"))
+        .run(&format!("render {HEAD} --size 320x240 -o plain.npy"))
         .assert_done();
     folder
         .run(&format!("render {HEAD} {all} -o a.npy"))
         .assert_done();
     let read = |name: &str| fs::read(folder.path(name)).expect("a file");
     assert!(read("plain.npy") == read("a.npy"), "the picture is another");
-    let layer = pixels(&folder, "a.annotation.npy", [160, 120]);
+    let layer = pixels(&folder, "a.annotation.npy", [320, 240]);
     let covered = layer.iter().filter(|pixel| pixel[3] > 0.5).count();
     assert!(
         (400..8000).contains(&covered),
@@ -102,7 +102,7 @@ fn frames_and_thumbnails_are_the_pictures_that_render_draws() {
     for time in 0..3 {
         folder
             .run(&format!(
-                "render phantom:storm,n=16,variable=cloud,times=3 --variable cloud --time {time} {words} -o r{time}.png"
+                "render phantom:storm,n=16,variable=cloud,times=3 --time {time} {words} -o r{time}.png"
             ))
             .assert_done();
         let [frame, still] = [format!("f{time:02}.png"), format!("r{time}.png")]
