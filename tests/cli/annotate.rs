@@ -17,18 +17,16 @@ fn pixels(folder: &Folder, name: &str, [width, height]: [usize; 2]) -> Vec<[f32;
 #[test]
 fn float_files_have_a_layer_of_their_own_and_the_picture_stays() {
     let folder = Folder::new();
-    let all = "--annotate bar,scale,orientation,box,ticks,axes,source,title=Head --size 160x120";
+    let all = "--annotate bar,scale,orientation,box,ticks,axes,source,title=Head --size 320x240";
     folder
-        .run(&format!(
-            "render --look plain {HEAD} --size 160x120 -o plain.npy"
-        ))
+        .run(&format!("render --look plain {HEAD} --size 320x240 -o plain.npy"))
         .assert_done();
     folder
         .run(&format!("render --look plain {HEAD} {all} -o a.npy"))
         .assert_done();
     let read = |name: &str| fs::read(folder.path(name)).expect("a file");
     assert!(read("plain.npy") == read("a.npy"), "the picture is another");
-    let layer = pixels(&folder, "a.annotation.npy", [160, 120]);
+    let layer = pixels(&folder, "a.annotation.npy", [320, 240]);
     let covered = layer.iter().filter(|pixel| pixel[3] > 0.5).count();
     assert!(
         (400..8000).contains(&covered),
@@ -104,7 +102,7 @@ fn frames_and_thumbnails_are_the_pictures_that_render_draws() {
     for time in 0..3 {
         folder
             .run(&format!(
-                "render --look plain phantom:storm,n=16,variable=cloud,times=3 --variable cloud --time {time} {words} -o r{time}.png"
+                "render --look plain phantom:storm,n=16,variable=cloud,times=3 --time {time} {words} -o r{time}.png"
             ))
             .assert_done();
         let [frame, still] = [format!("f{time:02}.png"), format!("r{time}.png")]
@@ -113,9 +111,7 @@ fn frames_and_thumbnails_are_the_pictures_that_render_draws() {
     }
     let words = "--device reference --annotate";
     folder
-        .run(&format!(
-            "thumbnails --look plain phantom:head,n=16 {words} -o small"
-        ))
+        .run(&format!("thumbnails --look plain phantom:head,n=16 {words} -o small"))
         .assert_done();
     folder
         .run(&format!(
@@ -186,9 +182,7 @@ fn words_that_cannot_be_drawn_are_refused() {
             "--colormap-scale log: wanted values above 0, found -1000",
         ),
     ] {
-        let ran = folder.run(&format!(
-            "render --look plain {HEAD} --size 16x16 -o a.png {words}"
-        ));
+        let ran = folder.run(&format!("render --look plain {HEAD} --size 16x16 -o a.png {words}"));
         assert_eq!(ran.code, 2, "{words}: {}", ran.err);
         assert!(ran.err.contains(said), "{words}: {}", ran.err);
         assert!(!folder.path("a.png").exists(), "{words}");

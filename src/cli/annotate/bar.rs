@@ -78,7 +78,7 @@ impl Bar<'_> {
         let numbers = widths.fold(0.0, f64::max);
         let right = width - em;
         let across = em.round().max(6.0);
-        let left = (right - numbers - 0.6 * em - across).round();
+        let left = (right - numbers - 0.75 * em - across).round();
         let caption = self.caption_lines(sheet, unit, exponent);
         let line = 1.3 * em;
         let top = (0.5 * (height - tall) + 0.5 * line * caption.len() as f64).round();
@@ -86,6 +86,20 @@ impl Bar<'_> {
         for (at, text) in caption.iter().rev().enumerate() {
             let y = top - 0.8 * em - line * at as f64;
             sheet.text_on_ground([right, y], text, 1.0, Anchor::End);
+        }
+        let place = |value: f64| top + tall * (1.0 - self.fraction([low, high], value));
+        for (value, text) in &ticks {
+            let y = place(*value);
+            let end = left + across;
+            // Under the frame and joined to it: apart from it a tick were a minus.
+            sheet.line(vec![[end, y], [end + 0.22 * em, y]], sheet.thin(), ink);
+            sheet.text(
+                [end + 0.75 * em, y + 0.35 * em],
+                text,
+                1.0,
+                Anchor::Start,
+                ink,
+            );
         }
         let frame = [
             [left, top],
@@ -101,19 +115,6 @@ impl Bar<'_> {
             columns: across as usize,
             colors: self.cells([low, high], across as usize, tall as usize),
         });
-        let place = |value: f64| top + tall * (1.0 - self.fraction([low, high], value));
-        for (value, text) in &ticks {
-            let y = place(*value);
-            let end = left + across;
-            sheet.line(vec![[end, y], [end + 0.3 * em, y]], sheet.thin(), ink);
-            sheet.text(
-                [end + 0.6 * em, y + 0.35 * em],
-                text,
-                1.0,
-                Anchor::Start,
-                ink,
-            );
-        }
         for &level in self
             .levels
             .iter()
@@ -126,9 +127,7 @@ impl Bar<'_> {
                 ink,
             );
         }
-        let words = caption.iter().map(|text| sheet.width(text, 1.0));
-        let widest = words.fold(0.0, f64::max);
-        Ok(Some(left.min(right - widest.min(right - left))))
+        Ok(Some(left))
     }
 
     /// What the values are, with power and unit.

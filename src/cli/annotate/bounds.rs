@@ -129,8 +129,9 @@ pub fn ticks(
         for (value, text) in &found.at {
             let t = (value - range[0]) / (range[1] - range[0]);
             let [x, y] = projector.point(edge.ends[0] + t * along);
-            let ink = sheet.ink([x - em, y - em], [x + em, y + em]);
             let at = |length: f64| [x + length * em * away[0], y + length * em * away[1]];
+            let [under_x, under_y] = at(1.4);
+            let ink = sheet.ink([under_x - em, under_y - em], [under_x + em, under_y + em]);
             sheet.line(vec![[x, y], at(0.4)], sheet.thin(), ink);
             let text = units::signed(text);
             widest = widest.max(sheet.width(&text, 0.9) / em);
@@ -147,8 +148,16 @@ pub fn ticks(
             false => format!("{} ({})", axis_name(world, facts), parts.join(" ")),
         };
         let off = 1.9 + widest * away[0].abs();
+        // Inside the picture, whatever the edge.
+        let width = sheet.width(words.trim(), 0.9) + 0.5 * em;
+        let [left, right] = match anchor {
+            Anchor::Start => [0.5 * em, width],
+            Anchor::Middle => [0.5 * width, 0.5 * width],
+            Anchor::End => [width, 0.5 * em],
+        };
+        let end = (sheet.size()[0] - right).max(left);
         let at = [
-            middle[0] + off * em * away[0],
+            (middle[0] + off * em * away[0]).clamp(left, end),
             middle[1] + (off * away[1] + 0.3) * em,
         ];
         sheet.text_on_ground(at, words.trim(), 0.9, anchor);
