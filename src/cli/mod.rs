@@ -43,6 +43,7 @@ mod surface;
 mod thumbnails;
 mod timings;
 mod unfinished;
+mod untrusted;
 
 pub use bug::guarded;
 pub use error::Error;
@@ -76,6 +77,9 @@ enum Verb {
     Completions(manuals::Completions),
     Man(manuals::Man),
     Conformance(Box<conformance::Conformance>),
+    #[cfg(target_os = "linux")]
+    #[command(hide = true)]
+    ReadUntrusted(untrusted::ReadUntrusted),
 }
 
 /// What the program was built from.
@@ -128,6 +132,8 @@ fn obey(words: Vec<OsString>, source: Source, gate: &Gate) -> Result<(), Error> 
         Verb::Completions(completions) => completions.run(Words::command()),
         Verb::Man(man) => man.run(Words::command(), gate),
         Verb::Conformance(conformance) => conformance.run(source, gate),
+        #[cfg(target_os = "linux")]
+        Verb::ReadUntrusted(reader) => reader.run(),
     }
 }
 

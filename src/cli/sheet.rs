@@ -40,6 +40,9 @@ pub struct Sheet {
     /// Say on stderr how far the work is
     #[arg(long, value_enum, default_value_t)]
     progress: ProgressWord,
+    /// As for `render`
+    #[arg(long)]
+    untrusted: bool,
     /// Replace a file that exists
     #[arg(long)]
     force: bool,
@@ -49,7 +52,10 @@ impl Sheet {
     /// Draws one after the other and writes the sheet. An input that cannot be drawn leaves its place empty,
     /// and the first such error is that of the whole.
     pub fn run(self, gate: &Gate) -> Result<(), Error> {
-        let scenes: Vec<SceneFlags> = self.inputs.iter().map(|words| scene_of(words)).collect();
+        let mut scenes: Vec<SceneFlags> = self.inputs.iter().map(|words| scene_of(words)).collect();
+        for scene in &mut scenes {
+            scene.input.untrusted = self.untrusted;
+        }
         let files: Vec<PathBuf> = scenes
             .iter()
             .filter_map(|scene| scene.input.file().map(PathBuf::from))

@@ -37,6 +37,7 @@ mod sheet;
 mod thumbnail_views;
 mod thumbnails;
 mod thumbnails_at_once;
+mod untrusted;
 mod weather;
 mod widgets;
 mod words;
