@@ -109,7 +109,7 @@ pub struct Opened {
     hounsfield: bool,
     unit: Option<String>,
     meaning: u8,
-    channels: Vec<(String, Option<[u32; 3]>, Option<[u64; 2]>)>,
+    channels: Vec<ChannelBits>,
     is_labels: bool,
     is_earth: bool,
     levels: u32,
@@ -118,6 +118,9 @@ pub struct Opened {
     variables: Vec<String>,
     notes: Vec<String>,
 }
+
+/// Name, colour and window of a channel.
+type ChannelBits = (String, Option<[u32; 3]>, Option<[u64; 2]>);
 
 const FORMATS: [Format; 16] = [
     Format::Nifti1,
