@@ -205,6 +205,17 @@ impl Error {
                 problem: Problem::Limit { .. },
                 ..
             }) => 6,
+            // The reader of a file of strangers took more than it may.
+            Self::Read(ReadError {
+                problem: Problem::Io { cause, .. },
+                ..
+            }) if matches!(
+                cause.kind(),
+                io::ErrorKind::TimedOut | io::ErrorKind::OutOfMemory
+            ) =>
+            {
+                6
+            }
             Self::Read(_) | Self::ReadPicture(_) | Self::Input { .. } => 3,
             Self::WritePicture(_) | Self::Output { .. } => 4,
             Self::Device(gpu::Error::Limit { .. } | gpu::Error::OutOfMemory { .. }) => 6,

@@ -2,7 +2,7 @@
 
 use super::{
     Error, exaggerate, flags::SceneFlags, load::say_what_was_lost, progress::Progress,
-    shown::Other, timings::Loaded,
+    shown::Other, timings::Loaded, untrusted,
 };
 use crate::{
     format,
@@ -36,7 +36,10 @@ pub fn read(
     };
     let table = flags.table()?;
     let limits = scene.input.limits();
-    let source = format::open(path, &Wanted::default(), &limits)?;
+    let source = match scene.input.untrusted {
+        true => untrusted::open(path, None, &Wanted::default(), &limits)?,
+        false => format::open(path, &Wanted::default(), &limits)?,
+    };
     let header = source.header();
     if header.components != 1 || header.times != 1 {
         return Err(refused(

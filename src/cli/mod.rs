@@ -47,6 +47,7 @@ mod surface;
 mod thumbnails;
 mod timings;
 mod unfinished;
+mod untrusted;
 mod view;
 
 pub use bug::guarded;
@@ -83,6 +84,9 @@ enum Verb {
     Man(manuals::Man),
     View(view::View),
     Conformance(Box<conformance::Conformance>),
+    #[cfg(target_os = "linux")]
+    #[command(hide = true)]
+    ReadUntrusted(untrusted::ReadUntrusted),
 }
 
 /// What the program was built from.
@@ -161,6 +165,8 @@ fn obey(words: Vec<OsString>, source: Source, gate: &Gate) -> Result<(), Error> 
         Verb::Man(man) => man.run(help::command(), gate),
         Verb::View(view) => view.run(),
         Verb::Conformance(conformance) => conformance.run(source, gate),
+        #[cfg(target_os = "linux")]
+        Verb::ReadUntrusted(reader) => reader.run(),
     }
 }
 

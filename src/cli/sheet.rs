@@ -44,6 +44,9 @@ pub struct Sheet {
     /// Say on stderr how far the work is
     #[arg(long, value_enum, default_value_t)]
     progress: ProgressWord,
+    /// As for `render`
+    #[arg(long)]
+    untrusted: bool,
     /// Replace a file that exists
     #[arg(long)]
     force: bool,
@@ -54,9 +57,11 @@ impl Sheet {
     /// and the first such error is that of the whole.
     pub fn run(self, gate: &Gate) -> Result<(), Error> {
         self.annotate.check()?;
-        let scene = |words: &String| SceneFlags {
-            annotate: self.annotate.clone(),
-            ..scene_of(words)
+        let scene = |words: &String| {
+            let mut scene = scene_of(words);
+            scene.annotate = self.annotate.clone();
+            scene.input.untrusted = self.untrusted;
+            scene
         };
         let scenes: Vec<SceneFlags> = self.inputs.iter().map(scene).collect();
         let files: Vec<PathBuf> = scenes

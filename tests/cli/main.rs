@@ -39,6 +39,7 @@ mod sheet;
 mod thumbnail_views;
 mod thumbnails;
 mod thumbnails_at_once;
+mod untrusted;
 mod weather;
 mod widgets;
 mod words;

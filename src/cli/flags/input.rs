@@ -1,6 +1,9 @@
 //! Which volume: the words, and the source they name.
 
-use super::{super::memory, Component, Error};
+use super::{
+    super::{memory, untrusted},
+    Component, Error,
+};
 use crate::cli::stdin::{self, STANDARD};
 use crate::{
     format,
@@ -65,7 +68,8 @@ pub struct InputFlags {
     #[arg(long, value_name = "SIZE", value_parser = memory::bytes_of_word, help_heading = "Input")]
     #[serde(skip)]
     pub device_memory: Option<u64>,
-    /// Tight limits for files of strangers: 1 GiB, small headers, no second file that a header names
+    /// For files of strangers: read in a process of its own with limits of memory and time; 1 GiB, small headers, no
+    /// second file that a header names
     #[arg(long, help_heading = "Input")]
     #[serde(skip)]
     pub untrusted: bool,
@@ -178,7 +182,10 @@ impl InputFlags {
                         "--raw 256x256x109,i16,0.9x0.9x1.5,le",
                     )
                 })?;
-                format::raw::open(path, &layout, limits)?
+                match self.untrusted {
+                    true => untrusted::open(path, self.raw.as_deref(), &Wanted::default(), limits)?,
+                    false => format::raw::open(path, &layout, limits)?,
+                }
             }
             None => {
                 let wanted = Wanted {
@@ -187,7 +194,10 @@ impl InputFlags {
                     level: self.level,
                     as_stored,
                 };
-                format::open(path, &wanted, limits)?
+                match self.untrusted {
+                    true => untrusted::open(path, None, &wanted, limits)?,
+                    false => format::open(path, &wanted, limits)?,
+                }
             }
         };
         self.check_series(source.header())?;

@@ -1,0 +1,38 @@
+//! `--untrusted`: a volume is read by another process of this program, which the system holds to limits of memory,
+//! processor time and open files, and to writing no file.
+//!
+//! ```text
+//! this process -- what to open, what to read --> reader
+//!              <-- header, voxels, or an error --
+//! ```
+//!
+//! A reader that the system ended is an error of the file like any other.
+
+#[cfg(target_os = "linux")]
+mod child;
+#[cfg(target_os = "linux")]
+mod parent;
+#[cfg(target_os = "linux")]
+mod wire;
+
+#[cfg(target_os = "linux")]
+pub use child::ReadUntrusted;
+#[cfg(target_os = "linux")]
+pub use parent::open;
+
+/// Limits of processes are Linux's here.
+#[cfg(not(target_os = "linux"))]
+pub fn open(
+    path: &std::path::Path,
+    _: Option<&str>,
+    _: &crate::volume::Wanted,
+    _: &crate::volume::Limits,
+) -> Result<Box<dyn crate::volume::Source>, crate::volume::ReadError> {
+    Err(crate::volume::ReadError {
+        path: path.to_owned(),
+        problem: crate::volume::Problem::Unsupported {
+            format: "--untrusted",
+            what: "a reader with limits of its own on this system".to_owned(),
+        },
+    })
+}
