@@ -211,9 +211,9 @@ mod tests {
         let near = |center: f64, i: usize| center + offset + (i % 41) as f64 - 20.0;
         let values: Vec<_> = (0..2000)
             .map(|i| match i % 20 {
-                0..10 => near(-1000.0, i / 20),
-                10..19 => near(40.0, i / 20),
-                _ => near(900.0, i / 20),
+                0..10 => near(-1000.0, 7 * i),
+                10..19 => near(40.0, 7 * i),
+                _ => near(900.0, 7 * i),
             })
             .collect();
         summary(&values)
