@@ -137,7 +137,7 @@ pub fn automatic_in(
 /// negative value is enough.
 fn has_ct_offset(summary: &ValueSummary, is_ct: bool) -> bool {
     let [low, high] = summary.range;
-    if !summary.integers || low < -100.0 || high > 4096.0 || high < 1500.0 {
+    if !summary.integers || low < -100.0 || !(1500.0..=4096.0).contains(&high) {
         return false;
     }
     let share = |from: f64, to: f64| summary.share_below(to) - summary.share_below(from);
