@@ -60,7 +60,8 @@ impl Context {
         }
         let modality = self.modality.as_deref();
         // Hounsfield units have air at -1000; the same numbers without negative ones are stored with an offset.
-        if has_ct_offset(summary, modality == Some("CT")) {
+        let is_ct = modality == Some("CT");
+        if (is_ct || self.is_integer) && has_ct_offset(summary, is_ct) {
             return Choice {
                 offset: CT_OFFSET,
                 ..of(Kind::Ct)
@@ -221,7 +222,10 @@ mod tests {
 
     #[test]
     fn hounsfield_units_are_known_with_and_without_an_offset() {
-        let context = Context::default();
+        let context = Context {
+            is_integer: true,
+            ..Context::default()
+        };
         for offset in [0.0, 1024.0] {
             let choice = context.choice(&ct(offset));
             assert_eq!((choice.kind, choice.offset), (Kind::Ct, offset));
