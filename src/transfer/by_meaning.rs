@@ -41,6 +41,8 @@ const CT_OFFSET: f64 = 1024.0;
 const FIELD_DEPTH: f64 = 1.5;
 /// How steeply opacity grows with the distance to the median.
 const FIELD_POWER: f64 = 3.0;
+/// Kelvins that nothing in the air or the sea is colder than.
+const COLDEST: f64 = 100.0;
 /// Control points of a field's opacity.
 const FIELD_POINTS: usize = 64;
 
@@ -58,7 +60,8 @@ impl Context {
         }
         let modality = self.modality.as_deref();
         // Hounsfield units have air at -1000; the same numbers without negative ones are stored with an offset.
-        if has_ct_offset(summary, modality == Some("CT")) {
+        let is_ct = modality == Some("CT");
+        if (is_ct || self.is_integer) && has_ct_offset(summary, is_ct) {
             return Choice {
                 offset: CT_OFFSET,
                 ..of(Kind::Ct)
@@ -70,7 +73,10 @@ impl Context {
         if modality == Some("GM") {
             return of(Kind::Sparse);
         }
-        if let Some(meaning) = Meaning::of(self.standard_name.as_deref(), self.unit.as_deref()) {
+        let meaning = Meaning::of(self.standard_name.as_deref(), self.unit.as_deref());
+        // Numbers in kelvins that are near 0 are differences, such as WRF's T, and no temperatures.
+        let is_difference = |word: &str| word == "K" && summary.range[0] < COLDEST;
+        if let Some(meaning) = meaning.filter(|meaning| !is_difference(meaning.word)) {
             let both_sides = summary.range[0] < 0.0 && summary.range[1] > 0.0;
             return match meaning.scale {
                 Scale::AboutZero if both_sides => of(Kind::Signed),
@@ -87,7 +93,7 @@ impl Context {
         };
         let colormap = match by_values {
             Kind::Field => Some("viridis"),
-            Kind::Tissue if !is_tissue => Some("batlow"),
+            Kind::Tissue if !is_tissue => Some("cividis"),
             _ => None,
         };
         Choice {
@@ -132,7 +138,7 @@ pub fn automatic_in(
 /// negative value is enough.
 fn has_ct_offset(summary: &ValueSummary, is_ct: bool) -> bool {
     let [low, high] = summary.range;
-    if !summary.integers || low < -100.0 || high > 4096.0 || high < 1500.0 {
+    if !summary.integers || low < -100.0 || !(1500.0..=4096.0).contains(&high) {
         return false;
     }
     let share = |from: f64, to: f64| summary.share_below(to) - summary.share_below(from);
@@ -188,5 +194,106 @@ fn field(summary: &ValueSummary) -> TransferFunction {
         reference_length: reference_length(summary),
         interpolation: Interpolation::Linear,
         graded: None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn summary(values: &[f64]) -> ValueSummary {
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        ValueSummary::of(values.len(), [low, high], 1.0, false, |i| Some(values[i]))
+    }
+
+    /// Air, tissue and bone in Hounsfield units plus `offset`, every value another one.
+    fn ct(offset: f64) -> ValueSummary {
+        let near = |center: f64, i: usize| center + offset + (i % 41) as f64 - 20.0;
+        let values: Vec<_> = (0..2000)
+            .map(|i| match i % 20 {
+                0..10 => near(-1000.0, 7 * i),
+                10..19 => near(40.0, 7 * i),
+                _ => near(900.0, 7 * i),
+            })
+            .collect();
+        summary(&values)
+    }
+
+    #[test]
+    fn hounsfield_units_are_known_with_and_without_an_offset() {
+        let context = Context {
+            is_integer: true,
+            ..Context::default()
+        };
+        for offset in [0.0, 1024.0] {
+            let choice = context.choice(&ct(offset));
+            assert_eq!((choice.kind, choice.offset), (Kind::Ct, offset));
+        }
+        let function = |offset| {
+            let summary = ct(offset);
+            automatic_in(&context, &summary, Classified::Samples, None)
+        };
+        let [plain, moved] = [0.0, 1024.0].map(function);
+        for (a, b) in plain.opacity.iter().zip(&moved.opacity) {
+            assert_eq!((a.value + 1024.0, a.opacity), (b.value, b.opacity));
+        }
+    }
+
+    #[test]
+    fn what_the_file_says_wins_over_what_values_look_like() {
+        // Three parts dark, one part bright: an object before a background.
+        let values: Vec<_> = (0..4000)
+            .map(|i| f64::from(i % 4 / 3 * (100 + i / 4 % 97)))
+            .collect();
+        let object = summary(&values);
+        let of = |context: Context| {
+            let choice = context.choice(&object);
+            (choice.kind, choice.colormap.map(Colormap::name))
+        };
+        let patient = Context {
+            is_patient: true,
+            is_integer: true,
+            ..Context::default()
+        };
+        assert_eq!(of(patient.clone()), (Kind::Tissue, None));
+        assert_eq!(
+            of(Context {
+                is_integer: false,
+                ..patient
+            }),
+            (Kind::Tissue, Some("cividis"))
+        );
+        let modality = |word: &str| Context {
+            modality: Some(word.to_owned()),
+            ..Context::default()
+        };
+        assert_eq!(of(modality("MR")), (Kind::Tissue, None));
+        assert_eq!(of(modality("GM")), (Kind::Sparse, None));
+        let unit = |word: &str| Context {
+            unit: Some(word.to_owned()),
+            ..Context::default()
+        };
+        assert_eq!(of(unit("kg kg-1")), (Kind::Field, Some("viridis")));
+        assert_eq!(of(unit("m s-1")), (Kind::Field, Some("wind")));
+        // No air is at 0 K.
+        assert_eq!(of(unit("K")), (Kind::Tissue, Some("cividis")));
+    }
+
+    #[test]
+    fn a_field_is_transparent_at_its_median_and_as_deep_as_it_says() {
+        let values: Vec<_> = (0..4096).map(|i| f64::from(i).sqrt()).collect();
+        let summary = summary(&values);
+        let function = field(&summary);
+        let middle = summary.quantile(0.5);
+        assert!(
+            function.opacity(middle) < 1e-6,
+            "{}",
+            function.opacity(middle)
+        );
+        // The mean over the voxels of the depth of 256 lengths.
+        let depth = |&value: &f64| -256.0 * (1.0 - function.opacity(value)).ln();
+        let mean = values.iter().map(depth).sum::<f64>() / values.len() as f64;
+        assert!((mean - FIELD_DEPTH).abs() < 0.05 * FIELD_DEPTH, "{mean}");
     }
 }
