@@ -19,7 +19,9 @@ fn float_files_have_a_layer_of_their_own_and_the_picture_stays() {
     let folder = Folder::new();
     let all = "--annotate bar,scale,orientation,box,ticks,axes,source,title=Head --size 320x240";
     folder
-        .run(&format!("render --look plain {HEAD} --size 320x240 -o plain.npy"))
+        .run(&format!(
+            "render --look plain {HEAD} --size 320x240 -o plain.npy"
+        ))
         .assert_done();
     folder
         .run(&format!("render --look plain {HEAD} {all} -o a.npy"))
@@ -111,7 +113,9 @@ fn frames_and_thumbnails_are_the_pictures_that_render_draws() {
     }
     let words = "--device reference --annotate";
     folder
-        .run(&format!("thumbnails --look plain phantom:head,n=16 {words} -o small"))
+        .run(&format!(
+            "thumbnails --look plain phantom:head,n=16 {words} -o small"
+        ))
         .assert_done();
     folder
         .run(&format!(
@@ -182,7 +186,9 @@ fn words_that_cannot_be_drawn_are_refused() {
             "--colormap-scale log: wanted values above 0, found -1000",
         ),
     ] {
-        let ran = folder.run(&format!("render --look plain {HEAD} --size 16x16 -o a.png {words}"));
+        let ran = folder.run(&format!(
+            "render --look plain {HEAD} --size 16x16 -o a.png {words}"
+        ));
         assert_eq!(ran.code, 2, "{words}: {}", ran.err);
         assert!(ran.err.contains(said), "{words}: {}", ran.err);
         assert!(!folder.path("a.png").exists(), "{words}");
