@@ -37,6 +37,8 @@ fn layers_of(shot: &Shot) -> Vec<LayerKind> {
         LayerKind::Position => shot.settings.technique == Technique::Raycast && mode.has_depth(),
         // Waves are no labels.
         LayerKind::Label => false,
+        // Marks over a picture are the command line's.
+        LayerKind::Annotation => false,
         LayerKind::Samples => true,
     })
     .collect()

@@ -126,7 +126,7 @@ fn timings_have_a_frame_for_each_repeat() {
 fn progress_as_json_is_one_object_a_line() {
     let folder = Folder::new();
     let ran = folder.run(&format!(
-        "render phantom:fog,n=8 -o a.png --progress json --repeat 2 {SMALL}"
+        "render phantom:fog,n=8 --look plain -o a.png --progress json --repeat 2 {SMALL}"
     ));
     ran.assert_done();
     let stages: Vec<String> = ran

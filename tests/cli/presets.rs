@@ -29,6 +29,8 @@ fn the_list_names_every_word_of_the_flag() {
     let names: Vec<&str> = list
         .out
         .lines()
+        // Maps follow an empty line.
+        .take_while(|line| !line.is_empty())
         .filter_map(|line| line.split_whitespace().next())
         .collect();
     for name in [

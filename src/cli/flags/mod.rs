@@ -37,6 +37,7 @@ pub use annotate::{AnnotateFlags, Marks, ScaleWord};
 pub use camera::{CameraFlags, FrameWord, ProjectionWord, ViewWord};
 pub use channels::{ChannelFlags, ChannelWord, Plan};
 pub use classification::{Classification, ClassificationFlags};
+pub use color::ColorWord;
 pub use component::Component;
 pub use denoise::DenoiseWord;
 pub use gradient_filter::GradientFlags;

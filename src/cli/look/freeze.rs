@@ -1,9 +1,12 @@
 //! A scene of which nothing is left to choose: what a scene file keeps.
 
 use super::View;
-use crate::cli::flags::{Classification, FilterWord, Look, SceneFlags, ShadingWord, WindowWord};
+use crate::cli::flags::{
+    Classification, ColorWord, FilterWord, Look, SceneFlags, ShadingWord, WindowWord,
+};
 use crate::cli::shown::Shown;
 use crate::scene::Beside;
+use crate::technique::{Level, Mode};
 use crate::transfer::transfer_function_to_json;
 
 /// The flags of a picture that was drawn, with the function that the program chose. Of several volumes in one picture
@@ -19,7 +22,10 @@ pub fn frozen(view: &View, shown: &Shown) -> SceneFlags {
     let Classification::Function(function) = &shown.classification else {
         return scene;
     };
-    if is_chosen && mode.is_projection() {
+    if mode == Mode::Iso {
+        // Surfaces stand by themselves, whatever the function.
+        keep_levels(&mut scene, &view.settings.per_mode.levels);
+    } else if is_chosen && mode.is_projection() {
         let [low, high] = shown.looked_at().value_range;
         if low < high {
             chosen.window.get_or_insert(WindowWord::Values([low, high]));
@@ -42,4 +48,18 @@ pub fn frozen(view: &View, shown: &Shown) -> SceneFlags {
     scene.sampling.samples_per_voxel.get_or_insert(1.0);
     scene.look = Some(Look::Plain);
     scene
+}
+
+/// The surfaces that were drawn, where the flags name none.
+fn keep_levels(scene: &mut SceneFlags, levels: &[Level]) {
+    let flags = &mut scene.modes.levels;
+    if !flags.iso.is_empty() {
+        return;
+    }
+    flags.iso = levels.iter().map(|level| level.value).collect();
+    if flags.iso_color_by.is_none() {
+        let colors = levels.iter().map(|level| ColorWord(level.srgb));
+        flags.iso_color = colors.collect();
+    }
+    flags.iso_opacity = levels.iter().map(|level| level.opacity).collect();
 }
