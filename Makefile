@@ -10,6 +10,7 @@
 # make viewer  the tests of examples/viewer, in a window of a display without a screen (Xvfb is installed by apt where it is
 #              missing); make viewer-lint what clippy says of it
 # make demo    the built-in head with each technique, and with DATA=path a file of yours, into target/demo
+# make pictures README's pictures
 # make gallery six real volumes by the classic techniques, into docs/gallery
 # make conformance   whether the drivers here tell the truth, SwiftShader beside them, into target/conformance
 # make capi    the libraries for C, into target/release; make install PREFIX=/usr/local puts them, the header and a
@@ -20,7 +21,7 @@
 SHELL := /bin/bash
 .DEFAULT_GOAL := test
 .PHONY: test test-more fresh lint build drawn-odd drawn-even command-line command-line-drawn without-device longer viewer-barriers \
-    second conformance-default conformance-least conformance-swiftshader plain least viewer-lint conformance swiftshader demo sheet gallery capi install header api bench driver layers display
+    second conformance-default conformance-least conformance-swiftshader plain least viewer-lint conformance swiftshader demo pictures sheet gallery capi install header api bench driver layers display
 
 CARGO ?= cargo
 ROOT := $(if $(filter 0,$(shell id -u)),,sudo )
@@ -245,6 +246,12 @@ demo: driver
 	    draw "$$input" --mode mip -o $$name-mip.png; \
 	done; \
 	echo "the pictures:"; ls -1 $(CURDIR)/target/demo/*.png
+
+# README's pictures, by the commands below them.
+pictures: driver
+	$(CARGO) build --locked --release
+	cd docs && ../target/release/stratavox render phantom:head --size 480x360 --force -o head.png
+	cd docs && ../target/release/stratavox render phantom:head --mode mip --size 480x360 --force -o head-mip.png
 
 # The real volumes that the tests read, each drawn without a flag, into docs/sheet.png.
 VOLUMES ?= $(or $(STRATAVOX_DATA),$(abspath ../shared/data))

@@ -31,7 +31,7 @@ pub fn file(max_bytes: u64) -> Result<PathBuf, Error> {
     let mut file = tempfile::Builder::new()
         .prefix("stratavox-")
         .tempfile()
-        .map_err(|cause| Error::output(&std::env::temp_dir(), &cause))?;
+        .map_err(|cause| Error::output(std::env::temp_dir(), &cause))?;
     let mut input = io::stdin().lock().take(max_bytes.saturating_add(1));
     let bytes = io::copy(&mut input, &mut file).map_err(read)?;
     if bytes > max_bytes {
