@@ -4,12 +4,16 @@ use super::View;
 use crate::cli::flags::{Classification, FilterWord, Look, SceneFlags, ShadingWord, WindowWord};
 use crate::cli::shown::Shown;
 use crate::scene::Beside;
+use crate::technique::Mode;
 use crate::transfer::transfer_function_to_json;
 
 /// The flags of a picture that was drawn, with the function that the program chose. Of several volumes in one picture
 /// the functions follow from the values again.
 pub fn frozen(view: &View, shown: &Shown) -> SceneFlags {
     let mut scene = view.scene.clone();
+    if scene.is_auto() && view.settings.mode == Mode::Composite {
+        scene.input.keep_all.get_or_insert(false);
+    }
     if !matches!(shown.parts().beside(), Beside::Nothing) {
         return scene;
     }
