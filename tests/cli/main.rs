@@ -25,6 +25,7 @@ mod info;
 #[cfg(unix)]
 mod interrupt;
 mod large;
+mod left_out;
 mod look;
 mod manuals;
 mod memory;

@@ -55,6 +55,18 @@ pub struct InputFlags {
     #[arg(long, help_heading = "Input")]
     #[serde(skip_serializing_if = "is_false")]
     pub fit: bool,
+    /// Draw thin components of CT that touch faces of the box, such as a table, which composites leave out under
+    /// `--look auto`; false leaves them out under plain too
+    #[arg(
+        long,
+        value_name = "true|false",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "true",
+        help_heading = "Input"
+    )]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub keep_all: Option<bool>,
     /// Memory that the volume may take, such as 512M or 16G [default: 90 % of what is free]
     #[arg(long, value_name = "SIZE", value_parser = memory::bytes_of_word, help_heading = "Input")]
     #[serde(skip)]

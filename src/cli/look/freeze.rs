@@ -13,6 +13,9 @@ use crate::transfer::transfer_function_to_json;
 /// the functions follow from the values again.
 pub fn frozen(view: &View, shown: &Shown) -> SceneFlags {
     let mut scene = view.scene.clone();
+    if scene.is_auto() && view.settings.mode == Mode::Composite {
+        scene.input.keep_all.get_or_insert(false);
+    }
     if !matches!(shown.parts().beside(), Beside::Nothing) {
         return scene;
     }

@@ -6,6 +6,7 @@
 //!
 //! A flag that is given stays. Nothing here asks a clock: the same inputs give the same flags.
 
+mod components;
 mod framing;
 mod freeze;
 mod light;
@@ -13,6 +14,7 @@ mod prepared;
 mod side;
 mod work;
 
+pub use components::leave_out;
 pub use framing::{Framing, SHARE, View, box_of, corners, small_of, visible_in};
 pub use freeze::frozen;
 pub use light::{Seen, Use, with_light};

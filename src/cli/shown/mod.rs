@@ -16,7 +16,7 @@ use super::{
     flags::{Classification, ClassificationFlags, Plan, SceneFlags, Subject, context, summary},
     labels,
     load::{load_from, open},
-    look::Seen,
+    look::{Seen, leave_out},
     memory::{self, DeviceRoom, Held, fitting},
     progress::Progress,
 };
@@ -355,7 +355,11 @@ impl Reader<'_> {
         let header = source.header().clone();
         let is_labels = header.is_labels;
         let context = self.scene.is_auto().then(|| context(&header));
-        let (volume, height_factor) = load_from(source, self.scene, self.device, self.progress)?;
+        let (mut volume, height_factor) =
+            load_from(source, self.scene, self.device, self.progress)?;
+        if let Some(note) = leave_out(&mut volume, &header, self.scene, self.mode) {
+            self.progress.note(&note);
+        }
         let flags = &ClassificationFlags {
             // That of other numbers says nothing of these.
             opacity_function: match self.scene.opacity.are_given() {
