@@ -276,7 +276,7 @@ fn netcdf() -> usize {
         "a.nc",
         fixture("netcdf/packed.nc"),
         0..512,
-        &[4],
+        &[2, 4],
         false,
     );
     swept.end(2000)
@@ -363,8 +363,8 @@ fn others() -> usize {
         &mut swept,
         "a.h5",
         fixture("hdf5/earliest.h5"),
-        0..512,
-        &[2, 8],
+        0..768,
+        &[1, 2, 4, 8],
         false,
     );
     cases += swept.end(2000);
