@@ -137,6 +137,7 @@ drawn-odd:
 	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast --lib --examples $(call half,1) $(SHOWN)
 
 longer:
+	STRATAVOX_SWEEP=long $(TEST) --test format_cuts $(SHOWN)
 	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast $(addprefix --test ,$(LONGER)) $(SHOWN)
 
 drawn-even:

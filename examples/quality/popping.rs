@@ -19,13 +19,13 @@ use stratavox::volume::Volume;
 
 const N: u32 = 64;
 const CENTER: f64 = 32.0;
-const EXTENT: [u32; 2] = [96, 96];
+pub const EXTENT: [u32; 2] = [96, 96];
 const STEP_DEGREES: f64 = 0.5;
 
-struct Scene {
-    name: &'static str,
-    volume: Volume,
-    transfer: TransferFunction,
+pub struct Scene {
+    pub name: &'static str,
+    pub volume: Volume,
+    pub transfer: TransferFunction,
     /// J by the 2D analogue: one sample a voxel, one slice more, 8 a voxel, pre-integrated, view-aligned.
     published: [f64; 5],
 }
@@ -77,11 +77,7 @@ pub fn print() -> Result<(), Box<dyn Error>> {
     );
     for scene in &scenes {
         let mut studio = Studio::new(&scene.volume, scene.transfer.clone(), EXTENT)?;
-        let reference = Settings {
-            samples_per_voxel: 8.0,
-            ..Settings::default()
-        };
-        let reference = film(&mut studio, &reference)?;
+        let reference = film(&mut studio, &reference())?;
         print!("| {} |", scene.name);
         for settings in [
             stack(false, None),
@@ -97,8 +93,16 @@ pub fn print() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// What K is measured against: rays, 8 samples a voxel.
+pub fn reference() -> Settings {
+    Settings {
+        samples_per_voxel: 8.0,
+        ..Settings::default()
+    }
+}
+
 /// 2D stacks, classic, or smooth with so many samples a voxel.
-fn stack(preintegrated: bool, smooth_samples: Option<f64>) -> Settings {
+pub fn stack(preintegrated: bool, smooth_samples: Option<f64>) -> Settings {
     Settings {
         technique: Technique::Slices2d,
         preintegrated,
@@ -138,7 +142,10 @@ fn print_jump(published: Option<f64>, a: &[[f64; 2]], b: &[[f64; 2]]) {
 }
 
 /// Seven degrees and a half to both sides of the switch.
-fn film(studio: &mut Studio, settings: &Settings) -> Result<Vec<Vec<[f64; 2]>>, Box<dyn Error>> {
+pub fn film(
+    studio: &mut Studio,
+    settings: &Settings,
+) -> Result<Vec<Vec<[f64; 2]>>, Box<dyn Error>> {
     let angles = (0..=14).map(|i| 45.0 + STEP_DEGREES * (f64::from(i) - 7.5));
     angles
         .map(|angle| studio.picture(&camera(angle), settings.clone()))
@@ -146,7 +153,7 @@ fn film(studio: &mut Studio, settings: &Settings) -> Result<Vec<Vec<[f64; 2]>>, 
 }
 
 /// K of a film: the switch is in its middle.
-fn excess(found: &[Vec<[f64; 2]>], reference: &[Vec<[f64; 2]>]) -> f64 {
+pub fn excess(found: &[Vec<[f64; 2]>], reference: &[Vec<[f64; 2]>]) -> f64 {
     let change = |i: usize| {
         let pixels = 0..found[0].len();
         let of_film = |film: &[Vec<[f64; 2]>], p: usize| film[i + 1][p][0] - film[i][p][0];
@@ -164,7 +171,7 @@ fn excess(found: &[Vec<[f64; 2]>], reference: &[Vec<[f64; 2]>]) -> f64 {
     change(switch) / median
 }
 
-fn scenes() -> Result<Vec<Scene>, Box<dyn Error>> {
+pub fn scenes() -> Result<Vec<Scene>, Box<dyn Error>> {
     let cube = |field: &dyn Fn(DVec3) -> f64| volume_of([N; 3], |p| field(p - CENTER));
     let tent = |v: f64, at: f64, half: f64| (1.0 - (v - at).abs() / half).max(0.0);
     let radius = |p: DVec3| (p + dvec3(3.65, -1.55, 0.8)).length();

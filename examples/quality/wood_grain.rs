@@ -7,62 +7,94 @@ use glam::{DVec3, dvec3};
 use std::error::Error;
 use stratavox::camera::{Camera, Projection};
 use stratavox::technique::{Jitter, Lattice, Settings};
+use stratavox::transfer::TransferFunction;
+use stratavox::volume::Volume;
 
 const DIMS: [u32; 3] = [44, 4, 92];
 const RAYS: u32 = 400;
 
-pub fn print() -> Result<(), Box<dyn Error>> {
+/// The shell, seen along the cylinder's radius.
+pub struct Scene {
+    pub volume: Volume,
+    pub transfer: TransferFunction,
+    pub camera: Camera,
+}
+
+pub fn scene() -> Result<Scene, Box<dyn Error>> {
     let axis = dvec3(2.0, 2.0, 46.0);
     let volume = volume_of(DIMS, |p| dvec3(p.x - axis.x, 0.0, p.z - axis.z).length())?;
     let shell = |v: f64| 1.2 * (1.0 - (v - 30.0).abs() / 0.4).max(0.0);
-    let transfer = transfer_of([28.0, 32.0], shell, |_| 1.0);
     let target = dvec3(axis.x + 19.0, axis.y, axis.z);
-    let camera = Camera {
-        eye: target - 100.0 * DVec3::Z,
-        target,
-        up: DVec3::Y,
-        projection: Projection::Orthographic {
-            view_height: 38.0 / f64::from(RAYS),
+    Ok(Scene {
+        volume,
+        transfer: transfer_of([28.0, 32.0], shell, |_| 1.0),
+        camera: Camera {
+            eye: target - 100.0 * DVec3::Z,
+            target,
+            up: DVec3::Y,
+            projection: Projection::Orthographic {
+                view_height: 38.0 / f64::from(RAYS),
+            },
+            zoom: 1.0,
         },
-        zoom: 1.0,
-    };
-    let mut studio = Studio::new(&volume, transfer, [RAYS, 1])?;
-    let fine = Settings {
-        samples_per_voxel: 64.0,
-        ..Settings::default()
-    };
-    let reference = studio.picture_of_twin(&camera, fine)?;
-    let mut picture = |samples_per_voxel, preintegrated, lattice, frame| {
-        let settings = Settings {
-            samples_per_voxel,
-            preintegrated,
-            lattice,
-            jitter: Jitter { seed: 0, frame },
+    })
+}
+
+impl Scene {
+    pub fn studio(&self) -> Result<Studio<'_>, Box<dyn Error>> {
+        Studio::new(&self.volume, self.transfer.clone(), [RAYS, 1])
+    }
+
+    /// By the CPU, in f64, 64 samples a voxel.
+    pub fn reference(&self, studio: &Studio) -> Result<Vec<[f64; 2]>, Box<dyn Error>> {
+        let fine = Settings {
+            samples_per_voxel: 64.0,
             ..Settings::default()
         };
-        studio.picture(&camera, settings)
-    };
-    let rms = |found: &[[f64; 2]]| {
-        let squares = found
-            .iter()
-            .zip(&reference)
-            .map(|(a, b)| (a[1] - b[1]).powi(2));
-        (squares.sum::<f64>() / reference.len() as f64).sqrt()
-    };
+        studio.picture_of_twin(&self.camera, fine)
+    }
+}
+
+/// The root of the mean square of what alpha is off.
+pub fn rms(found: &[[f64; 2]], reference: &[[f64; 2]]) -> f64 {
+    let squares = found
+        .iter()
+        .zip(reference)
+        .map(|(a, b)| (a[1] - b[1]).powi(2));
+    (squares.sum::<f64>() / reference.len() as f64).sqrt()
+}
+
+/// Rays with so many samples a voxel.
+pub fn rays(samples_per_voxel: f64, preintegrated: bool) -> Settings {
+    Settings {
+        samples_per_voxel,
+        preintegrated,
+        ..Settings::default()
+    }
+}
+
+pub fn print() -> Result<(), Box<dyn Error>> {
+    let scene = scene()?;
+    let mut studio = scene.studio()?;
+    let reference = scene.reference(&studio)?;
+    let rms = |found: &[[f64; 2]]| rms(found, &reference);
+    let mut picture = |settings| studio.picture(&scene.camera, settings);
     println!("\n### Wood-grain: RMS error of alpha\n");
     println!("| way | step in voxels | published | measured |\n|---|---|---|---|");
     let published = [(1.0, ".234"), (2.0, ".021"), (4.0, ".010"), (8.0, ".0023")];
     for (samples, published) in published {
-        let found = rms(&picture(samples, false, Lattice::Ray, 0)?);
+        let found = rms(&picture(rays(samples, false))?);
         println!("| samples | {} | {published} | {found:.5} |", 1.0 / samples);
     }
     for (frames, published) in [(1, ".154"), (4, ""), (16, ""), (64, ".051")] {
         let mut mean = vec![[0.0; 2]; reference.len()];
         for frame in 0..frames {
-            for (mean, found) in mean
-                .iter_mut()
-                .zip(picture(1.0, false, Lattice::Jitter, frame)?)
-            {
+            let jittered = Settings {
+                lattice: Lattice::Jitter,
+                jitter: Jitter { seed: 0, frame },
+                ..rays(1.0, false)
+            };
+            for (mean, found) in mean.iter_mut().zip(picture(jittered)?) {
                 mean[1] += found[1] / f64::from(frames);
             }
         }
@@ -72,7 +104,7 @@ pub fn print() -> Result<(), Box<dyn Error>> {
         );
     }
     for (samples, published) in [(0.5, ".0047"), (1.0, ".0011"), (2.0, ".0003")] {
-        let found = rms(&picture(samples, true, Lattice::Ray, 0)?);
+        let found = rms(&picture(rays(samples, true))?);
         println!(
             "| pre-integrated | {} | {published} | {found:.5} |",
             1.0 / samples
