@@ -145,6 +145,7 @@ mod tests {
         assert_eq!(letters(DVec3::NEG_Z), "I");
         assert_eq!(letters(turned(19.0)), "R");
         assert_eq!(letters(turned(21.0)), "RA");
-        assert_eq!(letters(turned(-70.5)), "PR");
+        assert_eq!(letters(turned(-71.0)), "P");
+        assert_eq!(letters(turned(-69.0)), "PR");
     }
 }
