@@ -11,6 +11,7 @@
 #              missing); make viewer-lint what clippy says of it
 # make demo    the built-in head with each technique, and with DATA=path a file of yours, into target/demo
 # make pictures README's pictures
+# make first-pictures   the volumes of make sheet and the phantoms, drawn without a flag and measured, into docs/first-pictures.md
 # make gallery six real volumes by the classic techniques, into docs/gallery
 # make conformance   whether the drivers here tell the truth, SwiftShader beside them, into target/conformance
 # make capi    the libraries for C, into target/release; make install PREFIX=/usr/local puts them, the header and a
@@ -21,7 +22,7 @@
 SHELL := /bin/bash
 .DEFAULT_GOAL := test
 .PHONY: test test-more fresh lint build drawn-odd drawn-even command-line command-line-drawn without-device longer viewer-barriers \
-    second conformance-default conformance-least conformance-swiftshader plain least viewer-lint conformance swiftshader demo pictures sheet gallery capi install header api bench driver layers display
+    second conformance-default conformance-least conformance-swiftshader plain least viewer-lint conformance swiftshader demo pictures sheet first-pictures gallery capi install header api bench driver layers display
 
 CARGO ?= cargo
 ROOT := $(if $(filter 0,$(shell id -u)),,sudo )
@@ -256,19 +257,28 @@ pictures: driver
 
 # The real volumes that the tests read, each drawn without a flag, into docs/sheet.png.
 VOLUMES ?= $(or $(STRATAVOX_DATA),$(abspath ../shared/data))
-SHEET ?= ct-cranium/cranium.nrrd ct-headsq/quarter.nhdr ct-walnut/walnut.mhd ct-torso/torso-2x.mha ct-teapot/teapot.nrrd \
-    dicom-ct-head dicom-ct-torso dicom-pet vti-headsq/headsq.vti \
+SHEET ?= ct-cranium/cranium.nrrd ct-cranium/cranium-label.nrrd ct-headsq/quarter.nhdr vti-headsq/headsq.vti \
+    vti-headsq/headsq-inline.vti ct-walnut/walnut.mhd ct-torso/torso-2x.mha ct-teapot/teapot.nrrd \
+    dicom-ct-head dicom-ct-torso dicom-pet \
     mri-ch2/ch2.nii.gz mri-ch2/aal.nii.gz mri-mni152/mni152-t1.nii.gz mri-avg152-be/avg152T1_RL_nifti.nii.gz \
     mri-flair-oblique/FLAIR.nrrd fmri-4d/example4d.nii.gz asl-4d/mpld_asl.nii.gz mri-small/HeadMRVolume.mhd \
-    mri-brainsmall/brainsmall.nhdr label-frog/frogtissue.mhd nucleon/nucleon.nrrd flow-aneurysm/sense_10.h5,variable=volume_0 \
+    mri-brainsmall/brainsmall.nhdr label-frog/frogtissue.mhd nucleon/nucleon.nrrd flow-aneurysm/sense_10.h5,variable=volume_0 flow-aneurysm/sense_10.h5,variable=volume_1 \
     tiff-nuclei/img3d.tif tiff-nuclei/mask3d.tif tiff-beads/Bead_Image1_crop.tif seismic-f3/f3.nrrd \
-    met-wrf/wrf_ci.nc,variable=QVAPOR met-wrf/wrf_ci.nc,variable=W met-ifs-ml/forecast_ml.nc,variable=u \
-    met-ifs-ml/forecast_ml.nc,variable=q met-era5-zarr/era5-members.zarr,variable=t[number=0]
+    met-wrf/wrf_ci.nc,variable=T met-wrf/wrf_ci.nc,variable=QVAPOR met-wrf/wrf_ci.nc,variable=W \
+    met-wrf/wrf_ci.nc,variable=QCLOUD met-ifs-ml/forecast_ml.nc,variable=t met-ifs-ml/forecast_ml.nc,variable=q met-era5-zarr/era5-members.zarr,variable=t[number=0]
 
 sheet: driver
 	@[ -d "$(VOLUMES)" ] || { echo "VOLUMES=folder names the volumes" >&2; exit 1; }
 	$(CARGO) build --locked --release
 	cd "$(VOLUMES)" && $(CURDIR)/target/release/stratavox sheet --force --columns 6 -o $(CURDIR)/docs/sheet.png $(SHEET)
+
+# What people see first, measured.
+PHANTOMS := $(addprefix phantom:,sphere gauss marschner-lobb head fog shells storm cells)
+first-pictures: driver
+	@[ -d "$(VOLUMES)" ] || { echo "VOLUMES=folder names the volumes" >&2; exit 1; }
+	$(CARGO) build --locked --release --bins --example first_pictures
+	target/release/examples/first_pictures target/release/stratavox docs/first-pictures.md $$(git rev-parse --short HEAD) \
+	    $(addprefix $(VOLUMES)/,$(SHEET)) $(PHANTOMS)
 
 gallery: driver
 	@[ -d "$(VOLUMES)" ] || { echo "VOLUMES=folder names the volumes" >&2; exit 1; }
