@@ -21,7 +21,7 @@
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := test
-.PHONY: test test-more fresh lint build drawn-odd drawn-even command-line command-line-drawn without-device longer viewer-barriers \
+.PHONY: test test-more fresh lint build drawn-exact drawn-embedded command-line command-line-drawn without-device longer viewer-barriers \
     second conformance-default conformance-least conformance-swiftshader plain least viewer-lint conformance swiftshader demo pictures sheet first-pictures gallery capi install header api bench driver layers display
 
 CARGO ?= cargo
@@ -81,29 +81,23 @@ endef
 # The viewer is built with the library's features of all tests: with its own the library would be built once more.
 TEST := $(CARGO) test --locked --workspace --features stratavox/grib,stratavox/capi
 
-# Tests of files and of arithmetic make no device: they run side by side, and the validation layer has nothing to
-# hear there.
-TESTS := $(basename $(notdir $(wildcard tests/*.rs))) $(filter-out cli,$(notdir $(patsubst %/main.rs,%,$(wildcard tests/*/main.rs))))
-WITHOUT_DEVICE := $(filter host both_sides conformance_package dependencies public_api format_% mutations%,$(TESTS))
+# What draws. `host` makes no device: its tests run side by side, and the validation layer has nothing to hear there.
+WITH_DEVICE := exact relations matrix embed embed_allocations gpu faults capi examples
 # What takes long is in the second tier: the suite judged by injected faults and by references, memory over many devices, each
-# barrier taken away.
-LONGER := conformance_lies conformance_reference leaks example_barriers
-WITH_DEVICE := $(filter-out $(WITHOUT_DEVICE) $(LONGER),$(TESTS))
+# barrier of the examples taken away.
+BARRIERS := example_barriers::
 ON_DEVICE := RUST_TEST_THREADS=1 $(TEST)
 # Of tests that pass too: some say what they have skipped.
 SHOWN := -- --show-output
-# $(call half,1) and $(call half,0): every other test.
-half = $(addprefix --test ,$(shell printf '%s\n' $(WITH_DEVICE) | awk 'NR % 2 == $(1)'))
-
 # One device at a time in a process; two processes, since small pictures keep one core busy, that of the driver's compiler.
 # What draws runs under the validation layer with synchronization in; `make test-more` runs the same without that. A group
 # that fails keeps no other from running; each ends with its counts, and the last lines say what was skipped (`.ci/group`).
 test: driver layers display
-	$(call in-groups,lint build,drawn-odd drawn-even command-line command-line-drawn without-device viewer)
+	$(call in-groups,lint build,drawn-exact drawn-embedded command-line command-line-drawn without-device viewer)
 
 # What takes longer.
 test-more: driver layers display
-	$(call in-groups,build,conformance-default conformance-least conformance-swiftshader second plain least longer \
+	$(call in-groups,build,conformance-default conformance-least conformance-swiftshader second least longer \
 	    viewer-barriers soak-short viewer-lint portable)
 
 # $(call in-groups,one after the other,two at a time)
@@ -134,15 +128,17 @@ lint:
 build:
 	$(TEST) --no-run
 
-drawn-odd:
-	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast --lib --examples $(call half,1) $(SHOWN)
+drawn-exact:
+	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast --lib --examples --test exact $(SHOWN)
+
+drawn-embedded:
+	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast $(addprefix --test ,$(filter-out exact,$(WITH_DEVICE))) $(SHOWN) \
+	    --skip $(BARRIERS)
 
 longer:
-	STRATAVOX_SWEEP=long $(TEST) --test format_cuts $(SHOWN)
-	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast $(addprefix --test ,$(LONGER)) $(SHOWN)
-
-drawn-even:
-	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast $(call half,0) $(SHOWN)
+	STRATAVOX_SWEEP=long $(TEST) --test host $(SHOWN) format_cuts::
+	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast --test conformance --test leaks $(SHOWN)
+	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --test examples $(SHOWN) $(BARRIERS)
 
 command-line:
 	$(ON_DEVICE) --test cli $(SHOWN)
@@ -153,7 +149,7 @@ command-line-drawn:
 
 without-device:
 	$(TEST) --doc
-	$(TEST) --no-fail-fast $(addprefix --test ,$(WITHOUT_DEVICE)) $(SHOWN)
+	$(TEST) --no-fail-fast --test host $(SHOWN)
 
 # A package of its own, with a window and a panel that nothing else needs.
 viewer: driver layers display
@@ -167,19 +163,21 @@ viewer-lint:
 	$(CARGO) clippy --locked --package stratavox-viewer --all-targets -- -D warnings
 
 plain: driver layers
-	$(ON_DEVICE) --no-fail-fast --lib --examples $(addprefix --test ,$(WITH_DEVICE)) $(SHOWN)
+	$(ON_DEVICE) --no-fail-fast --lib --examples $(addprefix --test ,$(WITH_DEVICE)) $(SHOWN) --skip $(BARRIERS)
 
-# Limits clamped to Vulkan's least: the same pictures (`tests/shared/limits.rs`). Not asked are tests whose subject is limits
-# of their own.
-NOT_LEAST := gpu_% requirements minimum float_blend conformance_% matrix capi codes both_sides %_example example_%
+# Limits clamped to Vulkan's least: the same pictures (`tests/shared/limits.rs`). Tests whose subject is limits of their own
+# run without that.
+NOT_LEAST := gpu matrix capi examples
 # Images larger than the least device allows; a volume longer than its 256 texels, which is to lie in one texture.
-WITH_MORE := fetches_are_those_of_the_twin_in_every_technique words_folded_over_many_rows_have_the_values_of_the_twin \
+WITH_MORE := codes:: fetches_are_those_of_the_twin_in_every_technique words_folded_over_many_rows_have_the_values_of_the_twin \
     rooms_are_distances_to_the_nearest_cell_with_matter
 UNDER_LEAST := STRATAVOX_LIMITS=least RUST_TEST_THREADS=1 $(TEST)
 
 least: driver layers
 	$(UNDER_LEAST) --no-fail-fast $(addprefix --test ,$(filter-out $(NOT_LEAST),$(WITH_DEVICE))) $(SHOWN) \
 	    $(addprefix --skip ,$(WITH_MORE))
+	$(ON_DEVICE) --no-fail-fast --lib --examples $(addprefix --test ,$(NOT_LEAST)) $(SHOWN) --skip $(BARRIERS)
+	$(ON_DEVICE) --test exact $(SHOWN) codes::
 
 # A second driver, from Debian's chromium: unpacked, and not installed.
 SWIFTSHADER := target/swiftshader/usr/lib/chromium/vk_swiftshader_icd.json
@@ -202,8 +200,8 @@ with-second = if ! why=$$($(MAKE) --no-print-directory swiftshader 2>&1); then \
 # picture.
 second:
 	@$(with-second); export $(ON_SWIFTSHADER); \
-	RUST_TEST_THREADS=1 $(TEST) --no-fail-fast --test gpu_run --test gpu_limits --test embed_flight --test embed_formats \
-	    --test embed_levels --test embed_pictures --test embed_stale --test embed_targets $(SHOWN) \
+	RUST_TEST_THREADS=1 $(TEST) --no-fail-fast --test gpu --test embed $(SHOWN) \
+	    run:: limits:: flight:: formats:: levels:: pictures:: stale:: targets:: \
 	    && VK_DRIVER_FILES=$(BOTH) VK_ICD_FILENAMES=$(BOTH) $(TEST) --test cli $(SHOWN) two_drivers
 
 # $(call judged,name,arguments): the whole baseline by the program of the tests.
@@ -312,7 +310,7 @@ header:
 	cbindgen --quiet --config include/cbindgen.toml --output include/stratavox.h .
 
 api:
-	$(CARGO) test --locked --no-default-features --test public_api -- --ignored
+	$(CARGO) test --locked --no-default-features --test host -- --ignored public_api::
 
 bench: driver
 	$(CARGO) build --locked --release
