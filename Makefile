@@ -5,7 +5,7 @@
 #              the CPU reference; what draws once more without validation and under the least limits; each barrier of the
 #              examples taken away; many devices one after the other; other operating systems
 # make fresh   README's two commands, make test and make demo in a new clone without anything built or downloaded
-# make plain   what draws once more, without validation of synchronization
+# make plain   what draws once more, without validation
 # make least   the same under the least limits that Vulkan allows
 # make viewer  the tests of examples/viewer, in a window of a display without a screen (Xvfb is installed by apt where it is
 #              missing); make viewer-lint what clippy says of it

@@ -426,7 +426,7 @@ fn each_of_these_modes_is_drawn_as_its_twin_computes_it() {
         for mode in [Mode::Lmip, Mode::AttenuatedMip, Mode::Mida] {
             for (nth, shot) in shots(GRID(), mode).into_iter().enumerate() {
                 let shot = shot.with(|settings| {
-                    // All samples are counted; tests/skipping_beside.rs compares with pictures that leave some out.
+                    // All samples are counted; tests/relations/skipping_beside.rs compares with pictures that leave some out.
                     settings.skip = false;
                     settings.filter =
                         [Filter::Linear, Filter::Nearest][usize::from(with_holes != (nth == 0))];

@@ -51,7 +51,7 @@ fn check(
     what: &str,
 ) {
     let kinds = layers_of(shot);
-    // All samples are counted; tests/skipping.rs compares with pictures that leave some out.
+    // All samples are counted; tests/relations/skipping.rs compares with pictures that leave some out.
     let shot = &shot.with(|s| s.skip = false);
     let scene = shot.scene(volume, Some(transfer));
     let found = renderer.render(&scene, &kinds).unwrap().picture;

@@ -133,7 +133,7 @@ fn forgive_samples_on_faces(what: &str, single: &Picture, found: &mut Picture) {
     }
 }
 
-/// The cosine of light on a kept gradient is off by 2.4e-3 at most (`tests/light.rs`), for lamps of colours 1 and 0.6
+/// The cosine of light on a kept gradient is off by 2.4e-3 at most (`tests/exact/light.rs`), for lamps of colours 1 and 0.6
 /// at most of which half is diffuse by 2e-3. Weights of a sampler, which move a surface, are none of its business:
 /// where they make matter denser by more than 1e-3 a pixel does not count.
 fn assert_lit_alike(what: &str, wanted: &Picture, found: &Picture) {
