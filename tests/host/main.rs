@@ -101,6 +101,7 @@ mod mutations;
 #[cfg(feature = "dicom")]
 mod mutations_dicom;
 mod no_contraction;
+#[cfg(feature = "phantoms")]
 mod phantoms;
 mod picture_compare;
 mod picture_files;
@@ -116,6 +117,7 @@ mod transfer_widgets;
 mod volume_filters;
 mod volume_joint;
 mod volume_mixtures;
+#[cfg(feature = "phantoms")]
 mod volume_read;
 mod volume_reduce;
 mod volume_sample;
