@@ -5,12 +5,13 @@
 #              the CPU reference; what draws once more without validation and under the least limits; each barrier of the
 #              examples taken away; many devices one after the other; other operating systems
 # make fresh   README's two commands, make test and make demo in a new clone without anything built or downloaded
-# make plain   what draws once more, without validation of synchronization
+# make plain   what draws once more, without validation
 # make least   the same under the least limits that Vulkan allows
 # make viewer  the tests of examples/viewer, in a window of a display without a screen (Xvfb is installed by apt where it is
 #              missing); make viewer-lint what clippy says of it
 # make demo    the built-in head with each technique, and with DATA=path a file of yours, into target/demo
 # make pictures README's pictures
+# make first-pictures   the volumes of make sheet and the phantoms, drawn without a flag and measured, into docs/first-pictures.md
 # make gallery six real volumes by the classic techniques, into docs/gallery
 # make conformance   whether the drivers here tell the truth, SwiftShader beside them, into target/conformance
 # make capi    the libraries for C, into target/release; make install PREFIX=/usr/local puts them, the header and a
@@ -20,8 +21,8 @@
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := test
-.PHONY: test test-more fresh lint build drawn-odd drawn-even command-line command-line-drawn without-device longer viewer-barriers \
-    second conformance-default conformance-least conformance-swiftshader plain least viewer-lint conformance swiftshader demo pictures sheet gallery capi install header api bench driver layers display
+.PHONY: test test-more fresh lint build drawn-exact drawn-embedded command-line command-line-drawn without-device longer viewer-barriers \
+    second conformance-default conformance-least conformance-swiftshader plain least viewer-lint conformance swiftshader demo pictures sheet first-pictures gallery capi install header api bench driver layers display
 
 CARGO ?= cargo
 ROOT := $(if $(filter 0,$(shell id -u)),,sudo )
@@ -80,29 +81,23 @@ endef
 # The viewer is built with the library's features of all tests: with its own the library would be built once more.
 TEST := $(CARGO) test --locked --workspace --features stratavox/grib,stratavox/capi
 
-# Tests of files and of arithmetic make no device: they run side by side, and the validation layer has nothing to
-# hear there.
-TESTS := $(basename $(notdir $(wildcard tests/*.rs))) $(filter-out cli,$(notdir $(patsubst %/main.rs,%,$(wildcard tests/*/main.rs))))
-WITHOUT_DEVICE := $(filter host both_sides conformance_package dependencies public_api format_% mutations%,$(TESTS))
+# What draws. `host` makes no device: its tests run side by side, and the validation layer has nothing to hear there.
+WITH_DEVICE := exact relations matrix embed embed_allocations gpu faults capi examples
 # What takes long is in the second tier: the suite judged by injected faults and by references, memory over many devices, each
-# barrier taken away.
-LONGER := conformance_lies conformance_reference leaks example_barriers
-WITH_DEVICE := $(filter-out $(WITHOUT_DEVICE) $(LONGER),$(TESTS))
+# barrier of the examples taken away.
+BARRIERS := example_barriers::
 ON_DEVICE := RUST_TEST_THREADS=1 $(TEST)
 # Of tests that pass too: some say what they have skipped.
 SHOWN := -- --show-output
-# $(call half,1) and $(call half,0): every other test.
-half = $(addprefix --test ,$(shell printf '%s\n' $(WITH_DEVICE) | awk 'NR % 2 == $(1)'))
-
 # One device at a time in a process; two processes, since small pictures keep one core busy, that of the driver's compiler.
 # What draws runs under the validation layer with synchronization in; `make test-more` runs the same without that. A group
 # that fails keeps no other from running; each ends with its counts, and the last lines say what was skipped (`.ci/group`).
 test: driver layers display
-	$(call in-groups,lint build,drawn-odd drawn-even command-line command-line-drawn without-device viewer)
+	$(call in-groups,lint build,drawn-exact drawn-embedded command-line command-line-drawn without-device viewer)
 
 # What takes longer.
 test-more: driver layers display
-	$(call in-groups,build,conformance-default conformance-least conformance-swiftshader second plain least longer \
+	$(call in-groups,build,conformance-default conformance-least conformance-swiftshader second least longer \
 	    viewer-barriers soak-short viewer-lint portable)
 
 # $(call in-groups,one after the other,two at a time)
@@ -133,15 +128,17 @@ lint:
 build:
 	$(TEST) --no-run
 
-drawn-odd:
-	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast --lib --examples $(call half,1) $(SHOWN)
+drawn-exact:
+	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast --lib --examples --test exact $(SHOWN)
+
+drawn-embedded:
+	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast $(addprefix --test ,$(filter-out exact,$(WITH_DEVICE))) $(SHOWN) \
+	    --skip $(BARRIERS)
 
 longer:
-	STRATAVOX_SWEEP=long $(TEST) --test format_cuts $(SHOWN)
-	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast $(addprefix --test ,$(LONGER)) $(SHOWN)
-
-drawn-even:
-	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast $(call half,0) $(SHOWN)
+	STRATAVOX_SWEEP=long $(TEST) --test host $(SHOWN) format_cuts::
+	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --no-fail-fast --test conformance --test leaks $(SHOWN)
+	STRATAVOX_VALIDATION=sync $(ON_DEVICE) --test examples $(SHOWN) $(BARRIERS)
 
 command-line:
 	$(ON_DEVICE) --test cli $(SHOWN)
@@ -152,7 +149,7 @@ command-line-drawn:
 
 without-device:
 	$(TEST) --doc
-	$(TEST) --no-fail-fast $(addprefix --test ,$(WITHOUT_DEVICE)) $(SHOWN)
+	$(TEST) --no-fail-fast --test host $(SHOWN)
 
 # A package of its own, with a window and a panel that nothing else needs.
 viewer: driver layers display
@@ -166,19 +163,21 @@ viewer-lint:
 	$(CARGO) clippy --locked --package stratavox-viewer --all-targets -- -D warnings
 
 plain: driver layers
-	$(ON_DEVICE) --no-fail-fast --lib --examples $(addprefix --test ,$(WITH_DEVICE)) $(SHOWN)
+	$(ON_DEVICE) --no-fail-fast --lib --examples $(addprefix --test ,$(WITH_DEVICE)) $(SHOWN) --skip $(BARRIERS)
 
-# Limits clamped to Vulkan's least: the same pictures (`tests/shared/limits.rs`). Not asked are tests whose subject is limits
-# of their own.
-NOT_LEAST := gpu_% requirements minimum float_blend conformance_% matrix capi codes both_sides %_example example_%
+# Limits clamped to Vulkan's least: the same pictures (`tests/shared/limits.rs`). Tests whose subject is limits of their own
+# run without that.
+NOT_LEAST := gpu matrix capi examples
 # Images larger than the least device allows; a volume longer than its 256 texels, which is to lie in one texture.
-WITH_MORE := fetches_are_those_of_the_twin_in_every_technique words_folded_over_many_rows_have_the_values_of_the_twin \
+WITH_MORE := codes:: fetches_are_those_of_the_twin_in_every_technique words_folded_over_many_rows_have_the_values_of_the_twin \
     rooms_are_distances_to_the_nearest_cell_with_matter
 UNDER_LEAST := STRATAVOX_LIMITS=least RUST_TEST_THREADS=1 $(TEST)
 
 least: driver layers
 	$(UNDER_LEAST) --no-fail-fast $(addprefix --test ,$(filter-out $(NOT_LEAST),$(WITH_DEVICE))) $(SHOWN) \
 	    $(addprefix --skip ,$(WITH_MORE))
+	$(ON_DEVICE) --no-fail-fast --lib --examples $(addprefix --test ,$(NOT_LEAST)) $(SHOWN) --skip $(BARRIERS)
+	$(ON_DEVICE) --test exact $(SHOWN) codes::
 
 # A second driver, from Debian's chromium: unpacked, and not installed.
 SWIFTSHADER := target/swiftshader/usr/lib/chromium/vk_swiftshader_icd.json
@@ -201,8 +200,8 @@ with-second = if ! why=$$($(MAKE) --no-print-directory swiftshader 2>&1); then \
 # picture.
 second:
 	@$(with-second); export $(ON_SWIFTSHADER); \
-	RUST_TEST_THREADS=1 $(TEST) --no-fail-fast --test gpu_run --test gpu_limits --test embed_flight --test embed_formats \
-	    --test embed_levels --test embed_pictures --test embed_stale --test embed_targets $(SHOWN) \
+	RUST_TEST_THREADS=1 $(TEST) --no-fail-fast --test gpu --test embed $(SHOWN) \
+	    run:: limits:: flight:: formats:: levels:: pictures:: stale:: targets:: \
 	    && VK_DRIVER_FILES=$(BOTH) VK_ICD_FILENAMES=$(BOTH) $(TEST) --test cli $(SHOWN) two_drivers
 
 # $(call judged,name,arguments): the whole baseline by the program of the tests.
@@ -256,19 +255,28 @@ pictures: driver
 
 # The real volumes that the tests read, each drawn without a flag, into docs/sheet.png.
 VOLUMES ?= $(or $(STRATAVOX_DATA),$(abspath ../shared/data))
-SHEET ?= ct-cranium/cranium.nrrd ct-headsq/quarter.nhdr ct-walnut/walnut.mhd ct-torso/torso-2x.mha ct-teapot/teapot.nrrd \
-    dicom-ct-head dicom-ct-torso dicom-pet vti-headsq/headsq.vti \
+SHEET ?= ct-cranium/cranium.nrrd ct-cranium/cranium-label.nrrd ct-headsq/quarter.nhdr vti-headsq/headsq.vti \
+    vti-headsq/headsq-inline.vti ct-walnut/walnut.mhd ct-torso/torso-2x.mha ct-teapot/teapot.nrrd \
+    dicom-ct-head dicom-ct-torso dicom-pet \
     mri-ch2/ch2.nii.gz mri-ch2/aal.nii.gz mri-mni152/mni152-t1.nii.gz mri-avg152-be/avg152T1_RL_nifti.nii.gz \
     mri-flair-oblique/FLAIR.nrrd fmri-4d/example4d.nii.gz asl-4d/mpld_asl.nii.gz mri-small/HeadMRVolume.mhd \
-    mri-brainsmall/brainsmall.nhdr label-frog/frogtissue.mhd nucleon/nucleon.nrrd flow-aneurysm/sense_10.h5,variable=volume_0 \
+    mri-brainsmall/brainsmall.nhdr label-frog/frogtissue.mhd nucleon/nucleon.nrrd flow-aneurysm/sense_10.h5,variable=volume_0 flow-aneurysm/sense_10.h5,variable=volume_1 \
     tiff-nuclei/img3d.tif tiff-nuclei/mask3d.tif tiff-beads/Bead_Image1_crop.tif seismic-f3/f3.nrrd \
-    met-wrf/wrf_ci.nc,variable=QVAPOR met-wrf/wrf_ci.nc,variable=W met-ifs-ml/forecast_ml.nc,variable=u \
-    met-ifs-ml/forecast_ml.nc,variable=q met-era5-zarr/era5-members.zarr,variable=t[number=0]
+    met-wrf/wrf_ci.nc,variable=T met-wrf/wrf_ci.nc,variable=QVAPOR met-wrf/wrf_ci.nc,variable=W \
+    met-wrf/wrf_ci.nc,variable=QCLOUD met-ifs-ml/forecast_ml.nc,variable=t met-ifs-ml/forecast_ml.nc,variable=q met-era5-zarr/era5-members.zarr,variable=t[number=0]
 
 sheet: driver
 	@[ -d "$(VOLUMES)" ] || { echo "VOLUMES=folder names the volumes" >&2; exit 1; }
 	$(CARGO) build --locked --release
 	cd "$(VOLUMES)" && $(CURDIR)/target/release/stratavox sheet --force --columns 6 -o $(CURDIR)/docs/sheet.png $(SHEET)
+
+# What people see first, measured.
+PHANTOMS := $(addprefix phantom:,sphere gauss marschner-lobb head fog shells storm cells)
+first-pictures: driver
+	@[ -d "$(VOLUMES)" ] || { echo "VOLUMES=folder names the volumes" >&2; exit 1; }
+	$(CARGO) build --locked --release --bins --example first_pictures
+	target/release/examples/first_pictures target/release/stratavox docs/first-pictures.md $$(git rev-parse --short HEAD) \
+	    $(addprefix $(VOLUMES)/,$(SHEET)) $(PHANTOMS)
 
 gallery: driver
 	@[ -d "$(VOLUMES)" ] || { echo "VOLUMES=folder names the volumes" >&2; exit 1; }
@@ -302,7 +310,7 @@ header:
 	cbindgen --quiet --config include/cbindgen.toml --output include/stratavox.h .
 
 api:
-	$(CARGO) test --locked --no-default-features --test public_api -- --ignored
+	$(CARGO) test --locked --no-default-features --test host -- --ignored public_api::
 
 bench: driver
 	$(CARGO) build --locked --release

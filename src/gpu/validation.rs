@@ -1,7 +1,7 @@
 //! The Khronos validation layer, one mode a run, and the messages it has.
 //!
 //! `STRATAVOX_VALIDATION` is `core`, `sync`, `gpu` or `best`. Nobody's silence is trusted:
-//! `tests/gpu_validation.rs` makes one mistake for each mode and wants it reported.
+//! `tests/gpu/validation.rs` makes one mistake for each mode and wants it reported.
 
 use super::Error;
 use ash::vk;

@@ -23,6 +23,7 @@ pub mod labels;
 mod limits;
 mod magnitude;
 mod part;
+#[cfg(feature = "phantoms")]
 pub mod phantom;
 mod prefilter;
 #[cfg(feature = "files")]

@@ -329,26 +329,6 @@ fn npy_says_its_shape_and_that_it_keeps_no_place() {
 }
 
 #[test]
-fn the_examples_of_the_help_run() {
-    let folder = Folder::new();
-    let help = folder.run("convert --help");
-    help.assert_done();
-    let examples: Vec<&str> = help
-        .out
-        .lines()
-        .filter_map(|line| line.trim().strip_prefix("stratavox convert "))
-        .collect();
-    assert_eq!(examples.len(), 5, "{}", help.out);
-    for words in examples {
-        folder.run(&format!("convert {words}")).assert_done();
-    }
-    let info: Value =
-        serde_json::from_str(&folder.run("info bone.nii.gz --json").out).expect("JSON");
-    assert_eq!(info["dims"], serde_json::json!([256, 256, 256]));
-    assert_eq!(info["type"], "u8");
-}
-
-#[test]
 fn a_surface_is_written_by_the_ending_of_its_file_and_only_of_a_value() {
     let folder = Folder::new();
     for (name, first) in [

@@ -1,5 +1,4 @@
-//! What needs no device: readers and writers of files, and arithmetic. One program, because linking fifty takes
-//! minutes. Those that measure memory are programs of their own.
+//! What needs no device: readers and writers of files, and arithmetic.
 
 #[cfg(feature = "files")]
 #[path = "../shared/dicom.rs"]
@@ -14,11 +13,20 @@ mod files;
 #[path = "../shared/fixtures.rs"]
 mod fixtures;
 #[cfg(feature = "files")]
+#[path = "../shared/memory.rs"]
+mod memory;
+#[cfg(feature = "files")]
+#[path = "../shared/mutate.rs"]
+mod mutate;
+#[cfg(feature = "files")]
 #[path = "../shared/nifti.rs"]
 mod nifti;
 #[cfg(all(feature = "png", feature = "exr"))]
 #[path = "../picture_shared/mod.rs"]
 mod picture_shared;
+#[cfg(feature = "files")]
+#[path = "../shared/survive.rs"]
+mod survive;
 #[cfg(feature = "files")]
 #[path = "../shared/tiff.rs"]
 mod tiff;
@@ -34,15 +42,32 @@ mod vtk;
 #[path = "../shared/zarr.rs"]
 mod zarr;
 
+mod both_sides;
 mod cf_wrf;
+#[cfg(feature = "conformance")]
+mod conformance_package;
+mod dependencies;
 mod floors;
 mod format_bricks;
 mod format_bricks_resumed;
+#[cfg(all(feature = "files", feature = "netcdf", feature = "grib"))]
+mod format_cuts;
 mod format_dicom;
 mod format_dicom_fixtures;
 mod format_dicom_places;
+#[cfg(feature = "dicom")]
+mod format_dicom_refused;
 mod format_dicom_values;
 mod format_escapes;
+#[cfg(all(
+    feature = "files",
+    feature = "json",
+    feature = "netcdf",
+    feature = "grib"
+))]
+mod format_fields;
+#[cfg(feature = "files")]
+mod format_grib;
 mod format_hdf5;
 mod format_hostile;
 mod format_meaning;
@@ -58,19 +83,31 @@ mod format_nrrd_meaning;
 mod format_nrrd_refused;
 mod format_raw;
 mod format_tiff;
+#[cfg(feature = "tiff")]
+mod format_tiff_refused;
 mod format_vti;
 mod format_vti_refused;
 mod format_vtk;
 mod format_weather;
 mod format_zarr;
+#[cfg(feature = "zarr")]
+mod format_zarr_mutations;
 mod format_zarr_ngff;
+#[cfg(feature = "zarr")]
+mod format_zarr_refused;
 mod isosurface;
+#[cfg(feature = "files")]
+mod mutations;
+#[cfg(feature = "dicom")]
+mod mutations_dicom;
 mod no_contraction;
+#[cfg(feature = "phantoms")]
 mod phantoms;
 mod picture_compare;
 mod picture_files;
 mod picture_hostile;
 mod picture_output;
+mod public_api;
 mod transfer_choice;
 mod transfer_file;
 mod transfer_import;
@@ -80,7 +117,12 @@ mod transfer_widgets;
 mod volume_filters;
 mod volume_joint;
 mod volume_mixtures;
+#[cfg(feature = "phantoms")]
 mod volume_read;
 mod volume_reduce;
 mod volume_sample;
 mod volume_statistics;
+
+#[cfg(feature = "files")]
+#[global_allocator]
+static MEMORY: memory::Counting = memory::Counting;

@@ -1,0 +1,37 @@
+//! Pictures against exact answers: closed forms, and the CPU reference that says what each shader computes.
+
+#[path = "../embed_shared/mod.rs"]
+mod embed_shared;
+#[path = "../shared/mod.rs"]
+mod shared;
+#[path = "../skipping_shared/mod.rs"]
+mod skipping_shared;
+
+mod adaptive_steps;
+mod codes;
+mod corners;
+mod cover;
+mod cuts;
+mod denoise;
+mod emission;
+mod extremes;
+mod fast_path;
+mod filters;
+mod formats;
+mod gradient;
+mod half_angle;
+mod light;
+mod long_rays;
+mod maximum;
+mod mixtures;
+mod modes_along_rays;
+mod mutants;
+mod occlusion;
+mod quality;
+mod shapes;
+mod slabs;
+mod slabs_twins;
+mod smooth_stacks;
+mod surfaces;
+mod twins;
+mod widgets;

@@ -1,0 +1,22 @@
+//! Pictures against each other: what may not change one, and how it changes with its scene.
+
+#[path = "../shared/mod.rs"]
+mod shared;
+#[path = "../skipping_shared/mod.rs"]
+mod skipping_shared;
+#[path = "../streaming_shared/mod.rs"]
+mod streaming_shared;
+
+mod blending;
+mod bricks;
+mod domain;
+mod lattice;
+mod macro_cells;
+mod projection;
+mod skipping;
+mod skipping_beside;
+mod skipping_slices;
+mod streaming;
+mod streaming_skipped;
+mod symmetry;
+mod tiles;
