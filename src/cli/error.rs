@@ -19,7 +19,7 @@ use crate::{
     technique,
     volume::{Problem, ReadError},
 };
-use std::{error::Error as Cause, fmt::Write, io, path::PathBuf};
+use std::{borrow::Cow, error::Error as Cause, fmt::Write, io, path::PathBuf};
 
 /// Why a command did not do what it was asked.
 #[derive(Debug, thiserror::Error)]
@@ -39,7 +39,7 @@ pub enum Error {
         /// What is wrong with them.
         message: String,
         /// What to write instead.
-        hint: &'static str,
+        hint: Cow<'static, str>,
     },
     /// A word that will be understood one day.
     #[error("{0} is not built yet")]
@@ -160,10 +160,10 @@ impl From<offscreen::Error> for Error {
 
 impl Error {
     /// A usage error with a hint.
-    pub fn usage(message: impl Into<String>, hint: &'static str) -> Self {
+    pub fn usage(message: impl Into<String>, hint: impl Into<Cow<'static, str>>) -> Self {
         Self::Usage {
             message: message.into(),
-            hint,
+            hint: hint.into(),
         }
     }
 
@@ -229,7 +229,8 @@ impl Error {
     pub fn hint(&self) -> Option<&str> {
         match self {
             Self::NotInParts { hint, .. } => Some(hint),
-            Self::Usage { hint, .. } | Self::TooMany { hint, .. } => Some(hint),
+            Self::Usage { hint, .. } => Some(hint),
+            Self::TooMany { hint, .. } => Some(hint),
             Self::NotBuilt(_) => Some("`stratavox help` lists what is there"),
             Self::Output { hint, .. } => *hint,
             Self::Read(ReadError { problem, .. }) => match problem {

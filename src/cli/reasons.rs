@@ -1,6 +1,6 @@
 //! Why a picture is empty: nobody is left alone with a blank one.
 
-use super::flags::Classification;
+use super::{flags::Classification, readable::short};
 use crate::{
     camera::Camera,
     picture::Picture,
@@ -17,24 +17,39 @@ pub fn why_empty(
     classification: &Classification,
     camera: &Camera,
     settings: &Settings,
-) -> Option<&'static str> {
+) -> Option<String> {
     if picture.pixels.iter().any(|pixel| pixel[3] != 0.0) {
         return None;
     }
     let validity = volume.validity.as_deref().unwrap_or(&[1]);
     if !validity.is_empty() && validity.iter().all(|&valid| valid == 0) {
-        return Some("all voxels of the volume hold no data");
+        return Some("all voxels of the volume hold no data".to_owned());
     }
     let seen = seen(volume, camera, settings, [picture.width, picture.height]);
+    let [low, high] = volume.value_range.map(short);
+    let unit = volume.unit.as_ref().map(|unit| format!(" {unit}"));
+    let values = format!(
+        "values run from {low} to {high}{}",
+        unit.unwrap_or_default()
+    );
     Some(match (seen, classification) {
-        (Seen::Nothing, _) => "the camera sees no volume",
-        (Seen::Clipped, _) => "everything that the camera sees is cut away by --crop or --clip",
+        (Seen::Nothing, _) => "the camera sees no volume".to_owned(),
+        (Seen::Clipped, _) => {
+            "everything that the camera sees is cut away by --crop or --clip".to_owned()
+        }
+        (Seen::Volume, _) if settings.mode == Mode::Iso => {
+            let levels = settings.per_mode.levels.iter();
+            let levels: Vec<String> = levels.map(|level| short(level.value)).collect();
+            format!("no ray meets the level {}; {values}", levels.join(" or "))
+        }
         (Seen::Volume, Classification::Function(function))
             if covers_nothing(settings, function, volume) =>
         {
-            "the transfer function covers no value of this volume"
+            format!("the transfer function covers no value of this volume; {values}")
         }
-        (Seen::Volume, _) => "no sample of a ray meets a value that the transfer function covers",
+        (Seen::Volume, _) => {
+            "no sample of a ray meets a value that the transfer function covers".to_owned()
+        }
     })
 }
 
@@ -187,7 +202,7 @@ mod tests {
         }
     }
 
-    fn reason(case: &Case) -> &'static str {
+    fn reason(case: &Case) -> String {
         let picture = Picture {
             width: 4,
             height: 4,
@@ -205,7 +220,7 @@ mod tests {
             &case.camera,
             &case.settings,
         )
-        .unwrap_or("")
+        .unwrap_or_default()
     }
 
     #[test]

@@ -443,10 +443,10 @@ fn check_layers(job: &Job) -> Result<(), Error> {
             }
             _ => continue,
         };
-        return Err(Error::Usage {
-            message: format!("--aov {} needs {missing}", layer.name()),
-            hint: "without --aov the picture itself can be drawn",
-        });
+        return Err(Error::usage(
+            format!("--aov {} needs {missing}", layer.name()),
+            "without --aov the picture itself can be drawn",
+        ));
     }
     Ok(())
 }

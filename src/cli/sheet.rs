@@ -204,10 +204,13 @@ impl Tiles {
             f64::from(count.div_ceil(columns)) * height + gap,
         ];
         if pixels.iter().any(|&side| side > MAX_SIDE_PIXELS) {
-            return Err(Error::Limit(format!(
-                "a sheet of {}x{} pixels: a side has at most {MAX_SIDE_PIXELS}",
-                pixels[0], pixels[1]
-            )));
+            return Err(Error::TooMany {
+                message: format!(
+                    "a sheet of {}x{} pixels: a side has at most {MAX_SIDE_PIXELS}",
+                    pixels[0], pixels[1]
+                ),
+                hint: "a smaller --size, or fewer volumes",
+            });
         }
         let [right, bottom] = pixels.map(|side| side / SCALE);
         let mut figure = Figure::new([right, bottom], "volumes".to_owned());

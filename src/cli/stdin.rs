@@ -35,9 +35,12 @@ pub fn file(max_bytes: u64) -> Result<PathBuf, Error> {
     let mut input = io::stdin().lock().take(max_bytes.saturating_add(1));
     let bytes = io::copy(&mut input, &mut file).map_err(read)?;
     if bytes > max_bytes {
-        return Err(Error::Limit(format!(
-            "the standard input has more than the {max_bytes} bytes that are allowed"
-        )));
+        return Err(Error::TooMany {
+            message: format!(
+                "the standard input has more than the {max_bytes} bytes that are allowed"
+            ),
+            hint: "--max-memory 16G allows more, where --untrusted does not forbid it",
+        });
     }
     say_aside(&format!("read {bytes} bytes from the standard input"));
     let path = file.path().to_owned();

@@ -42,8 +42,9 @@ impl Surface {
         progress.stage("read", 0, 1);
         let volume = Volume::read(source.as_ref(), pick, source.header().whole(), &limits)?;
         progress.stage("surface", 0, 1);
-        let mesh = isosurface(&volume, self.level, self.border).ok_or_else(|| {
-            Error::Limit("the surface has more than 2^32 corners: --crop a part".to_owned())
+        let mesh = isosurface(&volume, self.level, self.border).ok_or_else(|| Error::TooMany {
+            message: "the surface has more than 2^32 corners".to_owned(),
+            hint: "--crop takes a part of the volume",
         })?;
         if mesh.triangles.is_empty() {
             let [low, high] = volume.value_range;

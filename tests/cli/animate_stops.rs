@@ -106,6 +106,55 @@ fn killed_and_resumed(kills: u32, output: &str, of: impl Fn(&Folder) -> BTreeMap
     assert!(in_between > 0, "none of {kills} kills hit the middle");
 }
 
+#[cfg(debug_assertions)]
+const SMALL_FILM: &str = "animate phantom:fog,n=8 --turntable 24 --size 16x12 --device reference";
+
+/// Stops the film `output` after each number of frames from 1 to 20, goes on with it, and compares.
+#[cfg(debug_assertions)]
+fn stopped_after_each_frame(output: &str) {
+    let whole = Folder::new();
+    whole
+        .run(&format!("{SMALL_FILM} -o {output}"))
+        .assert_done();
+    let frames_of = |folder: &Folder| {
+        let hidden = fs::read_dir(folder.path("."))
+            .expect("a folder")
+            .map(|entry| entry.expect("an entry").path())
+            .find(|path| path.is_dir());
+        contents(&hidden.expect("a folder of frames"))
+    };
+    let wanted = |folder: &Folder| match output.contains('/') {
+        true => contents(&folder.path("frames")),
+        false => contents_of_files(&folder.path(".")),
+    };
+    for frames in 1..=20 {
+        let folder = Folder::new();
+        let mut command = folder.command(&format!("{SMALL_FILM} -o {output}"));
+        command.env("STRATAVOX_STOP_AFTER_FRAMES", frames.to_string());
+        let ended = command.output().expect("the program runs");
+        assert_eq!(ended.status.code(), None, "frame {frames}: {ended:?}");
+        // Another thread may have written its frame, which is not in the journal yet.
+        let there = frames_of(&folder).len();
+        assert!(
+            (frames..24).contains(&there),
+            "{there} frames after {frames}"
+        );
+        assert!(output.contains('/') || !folder.path(output).exists());
+        let ran = folder.run(&format!("{SMALL_FILM} -o {output} --resume"));
+        ran.assert_done();
+        assert!(wanted(&folder) == wanted(&whole), "stopped after {frames}");
+    }
+    println!("{output}: stopped after each of 20 frames, resumed to the same bytes");
+}
+
+#[cfg(debug_assertions)]
+#[test]
+fn a_film_stopped_after_any_frame_goes_on_to_the_same_bytes() {
+    for output in ["frames/%04d.png", "film.gif"] {
+        stopped_after_each_frame(output);
+    }
+}
+
 #[test]
 fn a_sequence_killed_at_20_moments_goes_on_to_the_same_bytes() {
     killed_and_resumed(20, "frames/%04d.png", |folder| {

@@ -29,6 +29,7 @@ mod left_out;
 mod look;
 mod manuals;
 mod memory;
+mod messages;
 mod mixed;
 mod opacity;
 mod person;

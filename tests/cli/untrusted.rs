@@ -136,3 +136,52 @@ fn a_reader_that_loops_or_eats_memory_is_stopped() {
     }
     assert_eq!(folder.names(), ["a.npy"]);
 }
+
+/// True where the kernel has Landlock: it gives the version of the interface, and an error where there is none.
+fn has_landlock() -> bool {
+    const VERSION: libc::c_ulong = 1;
+    let nothing = std::ptr::null::<libc::c_void>();
+    // SAFETY: with this flag the call takes no pointer and no length, and changes nothing.
+    let version = unsafe { libc::syscall(libc::SYS_landlock_create_ruleset, nothing, 0, VERSION) };
+    version > 0
+}
+
+#[test]
+fn a_reader_opens_nothing_but_its_input_and_that_for_reading() {
+    let folder = Folder::new();
+    std::fs::copy(fixture("npy/i2-be.npy"), folder.path("a.npy")).expect("a copy");
+    let plain = folder.run("info a.npy --untrusted");
+    plain.assert_done();
+    if !has_landlock() {
+        println!("skipped: this kernel has no Landlock");
+        return;
+    }
+    for fault in ["read", "write"] {
+        let mut command = folder.command("info a.npy --untrusted");
+        let output = command.env("STRATAVOX_READER_FAULT", fault).output();
+        let output = output.expect("a run");
+        // A reader that gets at the file ends at once.
+        let err = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{fault}: {err}");
+        assert_eq!(String::from_utf8_lossy(&output.stdout), plain.out);
+    }
+}
+
+#[test]
+fn folders_are_read_by_a_reader_that_opens_nothing_else() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("slices")).expect("a folder");
+    for name in ["rle_i16.dcm", "implicit_i16.dcm"] {
+        let to = folder.path("slices").join(name);
+        std::fs::copy(fixture("dicom").join(name), to).expect("a copy");
+    }
+    for words in ["info slices", "info nowhere", "info slices/rle_i16.dcm"] {
+        let plain = folder.run(words);
+        let other = folder.run(&format!("{words} --untrusted"));
+        assert_eq!(
+            (plain.code, &plain.out, &plain.err),
+            (other.code, &other.out, &other.err),
+            "{words}"
+        );
+    }
+}

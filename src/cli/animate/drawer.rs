@@ -51,7 +51,7 @@ pub struct Seen {
     /// Frames by their place, and what they took.
     pub frames: Vec<(usize, FrameTime)>,
     /// Frames that show nothing, and why.
-    pub empty: Vec<(u32, &'static str)>,
+    pub empty: Vec<(u32, String)>,
     /// Samples of the last frame, on the device that drew it.
     pub samples: Option<u64>,
     /// The most memory of the process by then.

@@ -64,9 +64,10 @@ impl Film {
             }
         };
         if count > MAX_FRAMES {
-            return Err(Error::Limit(format!(
-                "{count} frames: a film has at most {MAX_FRAMES}"
-            )));
+            return Err(Error::TooMany {
+                message: format!("{count} frames: a film has at most {MAX_FRAMES}"),
+                hint: "fewer frames, in several films",
+            });
         }
         Ok(count)
     }

@@ -2,7 +2,7 @@
 
 use super::{
     super::{memory, untrusted},
-    Component, Error,
+    Component, Error, time,
 };
 use crate::cli::stdin::{self, STANDARD};
 use crate::{
@@ -321,14 +321,7 @@ impl InputFlags {
             });
             return Ok((0, note));
         };
-        match word.parse::<u32>() {
-            Ok(time) if time < times => Ok((time, None)),
-            Ok(time) => Err(Error::usage(
-                format!("--time {time}: the input has {times}, counted from 0"),
-                "--time 0",
-            )),
-            Err(_) => time_by_name(word, header).map(|time| (time, None)),
-        }
+        Ok((time::chosen(word, header)?, None))
     }
 
     /// The same words with a file's path from the folder of a scene file, as text.
@@ -361,24 +354,6 @@ pub fn relative(path: &Path, folder: &Path) -> PathBuf {
     let absolute = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let (path, folder) = (absolute(path), absolute(folder));
     path.strip_prefix(&folder).unwrap_or(&path).to_owned()
-}
-
-/// The first time whose name begins with `word`, so that a day or an hour is enough.
-fn time_by_name(word: &str, header: &Header) -> Result<u32, Error> {
-    let plain = |text: &str| text.replace(' ', "T").trim_end_matches('Z').to_owned();
-    let wanted = plain(word);
-    let found = header
-        .time_names
-        .iter()
-        .position(|name| plain(name).starts_with(&wanted));
-    found.map(|time| time as u32).ok_or_else(|| {
-        let there = match header.time_names.as_slice() {
-            [] => "its times have no dates, wanted a number counted from 0".to_owned(),
-            [first, .., last] => format!("there are {first} to {last}"),
-            [only] => format!("there is {only}"),
-        };
-        Error::usage(format!("--time {word}: {there}"), "--time 0")
-    })
 }
 
 /// The series, each with what is known of it.

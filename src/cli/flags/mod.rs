@@ -29,6 +29,7 @@ mod sampling;
 mod section;
 mod shadows;
 mod subject;
+mod time;
 mod values;
 mod window;
 mod words;
@@ -124,6 +125,14 @@ impl SceneFlags {
 
     /// The same with other words of sampling.
     pub fn settings_of(&self, sampling: &SamplingFlags, depth: Depth) -> Result<Settings, Error> {
+        self.settings_in(sampling, depth).map_err(|error| {
+            self.section.named_in(error, sampling, |sampling| {
+                self.settings_in(sampling, depth).is_ok()
+            })
+        })
+    }
+
+    fn settings_in(&self, sampling: &SamplingFlags, depth: Depth) -> Result<Settings, Error> {
         let settings = self.section.settings(sampling, depth)?;
         let settings = Settings {
             shading: self.light.shading(settings.mode)?,

@@ -115,7 +115,7 @@ impl ModeFlags {
         }
         let word = mode_name(mode);
         Err(Error::usage(
-            format!("--mode {word} shows one number a voxel, and several are drawn"),
+            format!("--mode {word} shows one number a voxel, and several channels are drawn"),
             "take one of them: --component 0",
         ))
     }

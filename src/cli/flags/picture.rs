@@ -36,10 +36,13 @@ impl PictureFlags {
     pub fn extent_pixels(&self) -> Result<[u32; 2], Error> {
         let Size(extent) = self.size.unwrap_or(Size([1024, 768]));
         if extent.iter().any(|&side| side > MAX_SIDE_PIXELS) {
-            return Err(Error::Limit(format!(
-                "--size {}x{}: a side has at most {MAX_SIDE_PIXELS} pixels",
-                extent[0], extent[1]
-            )));
+            return Err(Error::TooMany {
+                message: format!(
+                    "--size {}x{}: a side has at most {MAX_SIDE_PIXELS} pixels",
+                    extent[0], extent[1]
+                ),
+                hint: "--size 3840x2160 fills a large screen, --size 10000x7000 a page at 600 dots per inch",
+            });
         }
         Ok(extent)
     }

@@ -10,7 +10,7 @@
 //! the ray holds one sample a ray, at its middle: on the plane itself.
 
 use super::{
-    CameraFlags, Depth, Error, Numbers, SamplingFlags, Subject, camera::refused, positive,
+    CameraFlags, Depth, Error, ModeWord, Numbers, SamplingFlags, Subject, camera::refused, positive,
 };
 use crate::{
     camera::{Camera, Frame, Projection, up_for},
@@ -70,6 +70,30 @@ impl SectionFlags {
             ));
         }
         Ok(settings)
+    }
+
+    /// The error, naming `--section` where that chose the mode that is to blame: where `is_right` of the same words
+    /// with `--mode composite`.
+    pub fn named_in(
+        &self,
+        error: Error,
+        sampling: &SamplingFlags,
+        is_right: impl FnOnce(&SamplingFlags) -> bool,
+    ) -> Error {
+        let composite = SamplingFlags {
+            mode: Some(ModeWord::Composite),
+            ..sampling.clone()
+        };
+        match error {
+            Error::Usage { message, .. }
+                if self.section.is_some() && sampling.mode.is_none() && is_right(&composite) =>
+            {
+                let message =
+                    format!("--section draws --mode average unless a mode is given: {message}");
+                Error::usage(message, "add --mode composite, or leave out --section")
+            }
+            error => error,
+        }
     }
 
     /// The camera on this subject; a cut adds its two clip planes to `settings`.

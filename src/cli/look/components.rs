@@ -65,13 +65,18 @@ pub fn leave_out(
     let [low, high] = volume.value_range;
     let air = (AIR + choice.offset).clamp(low, high);
     fill(volume, &parts, air);
+    let all = &components.all;
     let said: Vec<_> = thin
         .iter()
         .map(|&component| {
-            let Component { voxels, bounds, .. } = components.all[component];
+            let Component { voxels, bounds, .. } = all[component];
+            let larger = all.iter().filter(|other| other.voxels > voxels).count();
             format!(
-                "{component} of {voxels} voxels, {:?} to {:?}",
-                bounds.min, bounds.max
+                "number {} of {} by size, {voxels} voxels, {:?} to {:?}",
+                larger + 1,
+                all.len(),
+                bounds.min,
+                bounds.max
             )
         })
         .collect();

@@ -29,6 +29,22 @@ pub(super) fn has_beside(scene: &SceneFlags) -> bool {
 
 /// What can be said wrong before anything is opened.
 pub fn check(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
+    check_in(scene, settings).map_err(|error| {
+        scene.section.named_in(error, &scene.sampling, |_| {
+            let mode = Mode::Composite;
+            check_in(
+                scene,
+                &Settings {
+                    mode,
+                    ..settings.clone()
+                },
+            )
+            .is_ok()
+        })
+    })
+}
+
+fn check_in(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
     let mode = settings.mode;
     scene.modes.check(settings)?;
     if scene.labels.labels.is_some() && mode != Mode::Composite {

@@ -165,6 +165,9 @@ impl Shown {
         if let Some(note) = note {
             progress.note(&note);
         }
+        if plan != Plan::One {
+            scene.modes.check_several(settings.mode)?;
+        }
         // Surfaces that another variable colours are lit as they are.
         let is_painted = plan == Plan::One && scene.modes.paint(settings.mode).is_some();
         if settings.shading.is_some() && !is_alone && !is_painted {
@@ -179,9 +182,6 @@ impl Shown {
             device,
             progress,
         };
-        if plan != Plan::One {
-            scene.modes.check_several(settings.mode)?;
-        }
         let mut shown = match plan {
             Plan::One => reader.one(source)?,
             Plan::Channels(words) => reader.channels(source, &words)?,

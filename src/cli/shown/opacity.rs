@@ -165,7 +165,7 @@ impl Error {
             });
         Self::Usage {
             message,
-            hint: found.map_or(hint, |(_, of_opacity)| of_opacity),
+            hint: found.map_or(hint, |(_, of_opacity)| of_opacity.into()),
         }
     }
 }

@@ -230,12 +230,16 @@ impl Batch<'_> {
         let annotation_note = annotation.as_ref().and_then(Annotation::note);
         let first = Views::default();
         let (_, wanted) = missing.first().expect("who is read has a picture to come");
-        let (mut renderer, _) = prepared(&framing(wanted), &parts, &[], device, &first)?;
+        let (mut renderer, fitted) = prepared(&framing(wanted), &parts, &[], device, &first)?;
+        let mut fitted = Some(fitted.clone());
         let mut shots = Vec::new();
         for ((at, wanted), view) in missing.iter().zip(&views) {
-            let fitted = framing(wanted).fit(&mut |camera, settings, extent_pixels| {
-                renderer.draw_other(camera, settings, extent_pixels)
-            })?;
+            let fitted = match fitted.take() {
+                Some(first) => first,
+                None => framing(wanted).fit(&mut |camera, settings, extent_pixels| {
+                    renderer.draw_other(camera, settings, extent_pixels)
+                })?,
+            };
             let View {
                 camera,
                 settings,

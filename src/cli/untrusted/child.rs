@@ -1,5 +1,6 @@
 //! The process that reads: limits first, then what it is asked for, until nobody asks.
 
+use super::sandbox::restrict_to;
 use super::wire::{Answer, Asking, Opened, Opening, What, failed, put, put_piece, take};
 use crate::{
     cli::Error,
@@ -9,9 +10,11 @@ use crate::{
 use clap::Args;
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use std::{
+    fs::File,
     io::{self, BufReader, Read, Write},
     ops::ControlFlow,
     path::Path,
+    process::abort,
     time::Duration,
 };
 
@@ -19,7 +22,7 @@ use std::{
 #[derive(Args, Debug)]
 #[command(after_help = "Example:\n  stratavox render scan.nii.gz --untrusted -o scan.png")]
 pub struct ReadUntrusted {
-    /// What a test has it do as it begins: loop or allocate
+    /// What a test has it do as it begins: loop, allocate, read or write
     #[arg(long, hide = true)]
     fault: Option<String>,
 }
@@ -54,8 +57,9 @@ impl ReadUntrusted {
         limit(Resource::Fsize, 0)?;
         limit(Resource::Core, 0)?;
         allow_time(if self.fault.is_some() { 1 } else { SECONDS })?;
-        self.misbehave();
         let path = Path::new(&opening.path);
+        restrict_to(path)?;
+        self.misbehave(path);
         let opened = match &opening.raw {
             Some(layout) => {
                 let layout = format::raw::RawSpec::parse(layout);
@@ -81,7 +85,7 @@ impl ReadUntrusted {
     }
 
     /// What a damaged reader would do.
-    fn misbehave(&self) {
+    fn misbehave(&self, input: &Path) {
         match self.fault.as_deref() {
             Some("loop") => loop {
                 std::hint::spin_loop();
@@ -93,6 +97,8 @@ impl ReadUntrusted {
                     all.push(std::hint::black_box(Vec::<u8>::with_capacity(64 << 20)));
                 }
             }
+            Some("read") if std::env::current_exe().and_then(File::open).is_ok() => abort(),
+            Some("write") if File::options().append(true).open(input).is_ok() => abort(),
             _ => {}
         }
     }

@@ -1,5 +1,5 @@
 //! `--untrusted`: a volume is read by another process of this program, which the system holds to limits of memory,
-//! processor time and open files, and to writing no file.
+//! processor time and open files, to writing no file, and to opening none but its input.
 //!
 //! ```text
 //! this process -- what to open, what to read --> reader
@@ -12,6 +12,8 @@
 mod child;
 #[cfg(target_os = "linux")]
 mod parent;
+#[cfg(target_os = "linux")]
+mod sandbox;
 #[cfg(target_os = "linux")]
 mod wire;
 

@@ -17,7 +17,7 @@ use std::{
     sync::{Mutex, MutexGuard, PoisonError},
 };
 
-/// What a reader of a test does wrong: `loop` or `allocate`.
+/// What a reader of a test does wrong: `loop`, `allocate`, `read` another file, or `write` to its own.
 const FAULT: &str = "STRATAVOX_READER_FAULT";
 
 /// Opens a file, as raw voxels of a layout where one is given, in a process of its own.

@@ -3,6 +3,7 @@
 use super::DICOM;
 use super::dataset::{Elements, PixelPlace, Stream};
 use super::fields::DataSet;
+use super::inflated::Inflated;
 use super::layout::Layout;
 use super::syntax::Syntax;
 use super::tags::*;
@@ -10,9 +11,8 @@ use crate::format::convert::to_u64;
 use crate::format::place;
 use crate::format::problem::{at, escape, io, missing};
 use crate::volume::{Limits, Problem, ReadError};
-use flate2::read::DeflateDecoder;
 use std::fs::File;
-use std::io::{BufReader, Cursor, Read, Seek, SeekFrom};
+use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 /// Where the letters `DICM` stand.
@@ -145,13 +145,15 @@ fn scan_file(path: &Path, limits: &Limits) -> Result<Found, Problem> {
             Err(problem) => return Err(problem),
         };
     }
-    let mut stream: Box<dyn Stream> = Box::new(stream);
     let mut position = start;
-    if syntax.is_deflated {
-        let inflated = inflate(&mut stream, limits)?;
-        (position, length) = (0, to_u64(inflated.len()));
-        stream = Box::new(Cursor::new(inflated));
-    }
+    let mut stream: Box<dyn Stream> = match syntax.is_deflated {
+        true => {
+            let inflated = Inflated::new(stream.into_inner(), start, limits)?;
+            (position, length) = (0, inflated.length());
+            Box::new(inflated)
+        }
+        false => Box::new(stream),
+    };
     let elements = Elements::new(
         &mut stream,
         position,
@@ -254,31 +256,6 @@ fn open_file(path: &Path) -> Result<(BufReader<File>, u64), Problem> {
     Ok((BufReader::new(file), metadata.len()))
 }
 
-/// The data set of a deflated file, at most as long as a volume may be.
-fn inflate(stream: &mut dyn Stream, limits: &Limits) -> Result<Vec<u8>, Problem> {
-    let most = limits
-        .max_bytes
-        .saturating_add(to_u64(limits.max_header_bytes));
-    let mut inflated = Vec::new();
-    DeflateDecoder::new(stream)
-        .take(most.saturating_add(1))
-        .read_to_end(&mut inflated)
-        .map_err(|cause| Problem::Damaged {
-            format: DICOM,
-            encoding: "deflate",
-            decoded_bytes: 0,
-            cause: cause.to_string(),
-        })?;
-    if to_u64(inflated.len()) > most {
-        return Err(Problem::Limit {
-            what: "the inflated data set".to_owned(),
-            wanted_bytes: to_u64(inflated.len()),
-            limit_bytes: most,
-        });
-    }
-    Ok(inflated)
-}
-
 impl PictureFile {
     /// The bytes that `place` speaks of: the file, or the inflated data set.
     pub(super) fn open(&self, limits: &Limits) -> Result<Box<dyn Stream>, ReadError> {
@@ -286,13 +263,11 @@ impl PictureFile {
     }
 
     fn open_stream(&self, limits: &Limits) -> Result<Box<dyn Stream>, Problem> {
-        let (mut stream, _) = open_file(&self.path)?;
+        let (stream, _) = open_file(&self.path)?;
         if !self.syntax.is_deflated {
             return Ok(Box::new(stream));
         }
-        stream
-            .seek(SeekFrom::Start(self.start))
-            .map_err(io("looking for the data set"))?;
-        Ok(Box::new(Cursor::new(inflate(&mut stream, limits)?)))
+        let inflated = Inflated::new(stream.into_inner(), self.start, limits)?;
+        Ok(Box::new(inflated))
     }
 }

@@ -25,6 +25,7 @@ mod fence;
 mod fields;
 mod file;
 mod fragments;
+mod inflated;
 mod jpeg;
 mod jpeg2000;
 mod layout;

@@ -1,18 +1,18 @@
 //! An open HDF5 file as [`Arrays`].
 
 use super::HDF5;
+use super::chunks::{ChunkBytes, filter_name, filters};
 use crate::format::cf::{Arrays, Attributes, Dimension, Kind, Value, Variable};
 use crate::format::convert::{Builder, Endian, to_u64};
 use crate::format::fence::fenced;
 use crate::format::place::open_regular;
 use crate::format::problem::{escape, invalid, unsupported};
-use crate::format::zstd;
 use crate::volume::{Limits, Piece, Problem, VoxelType};
 use hdf5_reader::error::{ByteOrder, Error};
 use hdf5_reader::group::Group;
 use hdf5_reader::{
-    Attribute, Dataset, Datatype, FileStorage, FilterRegistry, H5Type, Hdf5File, OpenOptions,
-    SliceInfo, SliceInfoElem,
+    Attribute, Dataset, Datatype, FileStorage, H5Type, Hdf5File, OpenOptions, SliceInfo,
+    SliceInfoElem,
 };
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -23,14 +23,13 @@ pub(crate) struct Hdf5 {
     file: Hdf5File,
     variables: Vec<Variable>,
     attributes: Attributes,
+    /// Of the data sets that were read.
+    pub(in crate::format) chunk_bytes: ChunkBytes,
 }
 
 /// Groups below each other, and data sets, beyond which no file is looked through.
 const MAX_DEPTH: usize = 32;
 const MAX_OBJECTS: usize = 10_000;
-
-/// A chunk has fewer bytes than that by the definition of the format.
-const MAX_CHUNK_BYTES: usize = u32::MAX as usize;
 
 /// Chunks that are kept decoded.
 const CACHE_BYTES: u64 = 64 << 20;
@@ -41,6 +40,7 @@ impl Hdf5 {
         let (file, metadata) = open_regular(path)?;
         let file_bytes = metadata.len();
         let bytes = |bytes: u64| usize::try_from(bytes).unwrap_or(usize::MAX);
+        let chunk_bytes = ChunkBytes::default();
         let file = fenced(HDF5, "superblock", || {
             let storage = FileStorage::from_file(file)
                 .map_err(|error| problem_of(HDF5, "superblock", &error))?;
@@ -49,7 +49,7 @@ impl Hdf5 {
                 .with_max_chunk_bytes(bytes(limits.max_bytes))
                 .with_max_read_bytes(bytes(limits.max_bytes))
                 .with_max_object_header_bytes(limits.max_header_bytes)
-                .with_filter_registry(filters(limits));
+                .with_filter_registry(filters(&chunk_bytes));
             Hdf5File::from_storage_with_options(Arc::new(storage), options)
                 .map_err(|error| problem_of(HDF5, "superblock", &error))
         })?;
@@ -68,6 +68,7 @@ impl Hdf5 {
             file,
             variables: Vec::new(),
             attributes: Attributes::default(),
+            chunk_bytes,
         };
         Ok((hdf5, file_bytes))
     }
@@ -135,9 +136,16 @@ impl Hdf5 {
         &self.variables
     }
 
-    fn dataset(&self, variable: &Variable) -> Result<Dataset, Problem> {
-        let found = self.file.dataset(&variable.name);
-        found.map_err(|error| problem_of(HDF5, &variable.name, &error))
+    /// A data set whose chunks may be read. `format` is the word of errors.
+    pub(in crate::format) fn dataset(
+        &self,
+        format: &'static str,
+        name: &str,
+    ) -> Result<Dataset, Problem> {
+        let found = self.file.dataset(name);
+        let dataset = found.map_err(|error| problem_of(format, name, &error))?;
+        self.chunk_bytes.admit(&dataset, format, name)?;
+        Ok(dataset)
     }
 }
 
@@ -289,7 +297,7 @@ pub(crate) fn problem_of(format: &'static str, what: &str, error: &Error) -> Pro
             doing: "reading the file",
             cause: std::io::Error::new(cause.kind(), cause.to_string()),
         },
-        Error::UnsupportedFilter(name) => unsupported(format, filter(name)),
+        Error::UnsupportedFilter(name) => unsupported(format, filter_name(name)),
         Error::UnsupportedEncoding(what) => unsupported(format, escape(what)),
         Error::UnsupportedDatatypeClass(class) => {
             unsupported(format, format!("a type of class {class}"))
@@ -302,39 +310,6 @@ pub(crate) fn problem_of(format: &'static str, what: &str, error: &Error) -> Pro
             unsupported(format, "a data set whose numbers are in another file")
         }
         other => invalid(format, what, "bytes that are in order", &other.to_string()),
-    }
-}
-
-/// The filters of the library, and Zstandard, registered as 32015.
-pub(crate) fn filters(limits: &Limits) -> FilterRegistry {
-    let most = usize::try_from(limits.max_bytes).unwrap_or(usize::MAX);
-    let mut filters = FilterRegistry::new();
-    filters.register(
-        32015,
-        Box::new(move |_, bytes, _| {
-            // The library bounds a chunk by its shape; a filter of ours does not get to know that.
-            let most = most.min(MAX_CHUNK_BYTES);
-            zstd::decode(bytes, most)
-                .map_err(|cause| Error::FilterError(format!("Zstandard: {cause}")))
-        }),
-    );
-    filters
-}
-
-/// The name of a filter that is known by its number, portal.hdfgroup.org, registered filter plug-ins.
-fn filter(name: &str) -> String {
-    let known = [
-        ("32000", "LZF"),
-        ("32001", "Blosc"),
-        ("32004", "LZ4"),
-        ("32008", "bitshuffle"),
-        ("32013", "ZFP"),
-        ("32026", "Blosc2"),
-    ];
-    let known = known.iter().find(|(number, _)| name.contains(number));
-    match known {
-        Some((number, word)) => format!("the filter {number}, {word},"),
-        None => format!("the filter {}", escape(name)),
     }
 }
 
@@ -374,7 +349,7 @@ impl Arrays for Hdf5 {
                 .collect(),
         };
         fenced(HDF5, name, || {
-            let dataset = self.dataset(variable)?;
+            let dataset = self.dataset(HDF5, name)?;
             macro_rules! read {
                 ($number:ty) => {{
                     let found = dataset.read_slice::<$number>(&selection);

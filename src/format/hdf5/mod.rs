@@ -14,6 +14,7 @@
 //! handed on to that reader.
 
 mod arrays;
+mod chunks;
 mod place;
 
 use super::cf::{Grid, Kind, Missing, Role, Variable};
@@ -21,8 +22,8 @@ use super::problem::{at, escape, invalid, unsupported};
 use crate::volume::{
     Format, Header, Limits, Meaning, Problem, ReadError, Source, VoxelType, Wanted,
 };
-use arrays::Hdf5;
-pub(super) use arrays::{filters, problem_of};
+pub(super) use arrays::{Hdf5, problem_of};
+pub(super) use chunks::filters;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -50,8 +51,7 @@ pub(super) fn open(
 ) -> Result<Box<dyn Source>, ReadError> {
     let (file, file_bytes) = Hdf5::open(path, limits).map_err(at(path))?;
     if file.is_netcdf().map_err(at(path))? {
-        drop(file);
-        return super::netcdf::open(path, wanted, limits);
+        return super::netcdf::open_hdf5(path, file, wanted, limits);
     }
     let file = file.listed(limits).map_err(at(path))?;
     let grid = grid(file, file_bytes, wanted, limits).map_err(at(path))?;

@@ -9,7 +9,7 @@ mod length;
 use super::cf::{self, Arrays, Attributes, Dimension, Kind, Value, Variable};
 use super::convert::{Builder, Endian};
 use super::fence::fenced;
-use super::hdf5::{filters, problem_of as hdf5_problem};
+use super::hdf5::{Hdf5, filters, problem_of as hdf5_problem};
 use super::place::open_regular;
 use super::problem::{at, escape, invalid, unsupported};
 use crate::volume::{Format, Limits, Piece, Problem, ReadError, Source, VoxelType, Wanted};
@@ -28,13 +28,32 @@ pub(super) fn recognizes(first: &[u8]) -> bool {
     matches!(first, [b'C', b'D', b'F', 1 | 2 | 5, ..])
 }
 
-/// Opens a variable of a file.
+/// Opens a variable of a file of the classic formats.
 pub(super) fn open(
     path: &Path,
     wanted: &Wanted,
     limits: &Limits,
 ) -> Result<Box<dyn Source>, ReadError> {
-    let (file, file_bytes) = NetCdf::open(path, limits).map_err(at(path))?;
+    opened(path, None, wanted, limits)
+}
+
+/// Opens a variable of a NetCDF-4 file.
+pub(super) fn open_hdf5(
+    path: &Path,
+    hdf5: Hdf5,
+    wanted: &Wanted,
+    limits: &Limits,
+) -> Result<Box<dyn Source>, ReadError> {
+    opened(path, Some(hdf5), wanted, limits)
+}
+
+fn opened(
+    path: &Path,
+    hdf5: Option<Hdf5>,
+    wanted: &Wanted,
+    limits: &Limits,
+) -> Result<Box<dyn Source>, ReadError> {
+    let (file, file_bytes) = NetCdf::open(path, hdf5, limits).map_err(at(path))?;
     cf::open(Arc::new(file), file_bytes, Format::NetCdf, wanted, limits)
 }
 
@@ -42,6 +61,8 @@ pub(super) fn open(
 struct NetCdf {
     path: PathBuf,
     file: NcFile,
+    /// The same file without the meaning of NetCDF, where it has chunks.
+    hdf5: Option<Hdf5>,
     variables: Vec<Variable>,
     attributes: Attributes,
 }
@@ -53,7 +74,7 @@ const CACHE_BYTES: u64 = 64 << 20;
 const MAX_SMALL: u64 = 1 << 24;
 
 impl NetCdf {
-    fn open(path: &Path, limits: &Limits) -> Result<(Self, u64), Problem> {
+    fn open(path: &Path, hdf5: Option<Hdf5>, limits: &Limits) -> Result<(Self, u64), Problem> {
         let (file, metadata) = open_regular(path)?;
         let bytes = |bytes: u64| usize::try_from(bytes).unwrap_or(usize::MAX);
         let options = NcOpenOptions {
@@ -61,7 +82,7 @@ impl NetCdf {
             max_chunk_bytes: bytes(limits.max_bytes),
             max_read_bytes: bytes(limits.max_bytes),
             max_object_header_bytes: limits.max_header_bytes,
-            filter_registry: Some(filters(limits)),
+            filter_registry: hdf5.as_ref().map(|hdf5| filters(&hdf5.chunk_bytes)),
             ..NcOpenOptions::default()
         };
         fenced(NETCDF, "header", || {
@@ -81,9 +102,18 @@ impl NetCdf {
                 variables,
                 attributes,
                 file,
+                hdf5,
             };
             Ok((open, metadata.len()))
         })
+    }
+
+    /// Refuses a variable whose chunks cannot be, before one is read.
+    fn check_chunks(&self, name: &str) -> Result<(), Problem> {
+        match &self.hdf5 {
+            Some(hdf5) => hdf5.dataset(NETCDF, name).map(drop),
+            None => Ok(()),
+        }
     }
 }
 
@@ -216,6 +246,7 @@ impl Arrays for NetCdf {
             return Err(unsupported(NETCDF, "a variable that holds no numbers"));
         };
         fenced(NETCDF, name, || {
+            self.check_chunks(name)?;
             macro_rules! read {
                 ($number:ty) => {{
                     let found = self.file.read_variable_slice::<$number>(name, &selection);
@@ -246,6 +277,7 @@ impl Arrays for NetCdf {
         check_small(variable)?;
         let name = variable.name.as_str();
         fenced(NETCDF, name, || {
+            self.check_chunks(name)?;
             let found = self.file.read_variable_as_f64(name);
             let array = found.map_err(|error| problem_of(name, &error))?;
             Ok(array.iter().copied().collect())
@@ -256,6 +288,7 @@ impl Arrays for NetCdf {
         check_small(variable)?;
         let name = variable.name.as_str();
         fenced(NETCDF, name, || {
+            self.check_chunks(name)?;
             let found = self.file.read_variable_as_strings(name);
             found.map_err(|error| problem_of(name, &error))
         })
