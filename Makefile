@@ -149,7 +149,7 @@ command-line-drawn:
 
 without-device:
 	$(TEST) --doc
-	$(TEST) --no-fail-fast --test host $(SHOWN)
+	$(TEST) --no-fail-fast --test host --test bombs $(SHOWN)
 
 # A package of its own, with a window and a panel that nothing else needs.
 viewer: driver layers display

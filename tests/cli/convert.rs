@@ -1,7 +1,6 @@
 //! A volume in another format is the same volume: numbers, place, meaning. What gets lost is said.
 
 use crate::person::{Folder, assert_begins};
-use serde_json::Value;
 use std::path::Path;
 use stratavox::{
     format,
