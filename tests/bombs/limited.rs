@@ -20,6 +20,10 @@ pub struct Ended {
 }
 
 /// Runs the program in `folder` with words separated by spaces.
+#[expect(
+    clippy::zombie_processes,
+    reason = "`wait` waits for it, and gives what it took"
+)]
 pub fn run(folder: &Path, words: &str, address_space_kib: u64) -> Ended {
     let program = env!("CARGO_BIN_EXE_stratavox");
     let errors = tempfile::NamedTempFile::new().expect("a file");

@@ -81,13 +81,12 @@ fn hdf5(bombs: &mut Bombs) {
     );
     // Sides of a chunk, and the bytes of its numbers, in the layout message.
     let chunks = words(&[2, 2, 3, 2]);
-    let lying = replaced(
-        plain.clone(),
-        &chunks,
-        &words(&[0x7fff_ffff, 0x7fff_ffff, 3]),
-    );
-    bombs.folder.write("chunks.h5", lying);
-    bombs.run("chunks.h5", "info chunks.h5 --variable plain", "");
+    for (name, side) in [("chunks.h5", 0x7fff_ffff), ("chunk.h5", 1024)] {
+        let lying = replaced(plain.clone(), &chunks, &words(&[side, side, side]));
+        bombs.folder.write(name, with_chunk(lying, 3, &zstd()));
+        let command = format!("info {name} --variable plain");
+        bombs.run(name, &command, "chunks of at most");
+    }
     let sides: Vec<u8> = [3_u64, 4, 5].iter().flat_map(|n| n.to_le_bytes()).collect();
     let many: Vec<u8> = [1_u64 << 40; 3]
         .iter()

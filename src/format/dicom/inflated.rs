@@ -106,7 +106,9 @@ mod tests {
 
     #[test]
     fn any_place_has_the_bytes_of_the_data_set() {
-        let bytes: Vec<u8> = (0..100_000_u32).map(|k| (k * k / 7) as u8).collect();
+        let bytes: Vec<u8> = (0..100_000_u32)
+            .map(|k| (k.wrapping_mul(k) / 7) as u8)
+            .collect();
         let file = deflated(&bytes, 132);
         let mut inflated = Inflated::new(file, 132, &Limits::default()).expect("a data set");
         assert_eq!(inflated.length(), to_u64(bytes.len()));
