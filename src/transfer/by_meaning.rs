@@ -37,13 +37,17 @@ pub struct Choice {
 
 /// Hounsfield units plus this are never negative, and in wide use.
 const CT_OFFSET: f64 = 1024.0;
-/// The optical depth of a field along half of the diagonal, in the mean.
-const FIELD_DEPTH: f64 = 1.5;
-/// How steeply opacity grows with the distance to the median.
-const FIELD_POWER: f64 = 3.0;
+/// Levels of a field that are drawn as sheets.
+const SHEETS: usize = 8;
+/// Half the width of a sheet, as a part of the window.
+const SHEET: f64 = 0.015;
+/// The optical depth of all sheets along half of the diagonal, in the mean.
+const FIELD_DEPTH: f64 = 4.0;
+/// The most that a sheet hides of what lies 1/512 of the diagonal behind it.
+const MOST_OPACITY: f64 = 0.6;
 /// Kelvins that nothing in the air or the sea is colder than.
 const COLDEST: f64 = 100.0;
-/// Control points of a field's opacity.
+/// Control points of a field's colours.
 const FIELD_POINTS: usize = 64;
 
 impl Context {
@@ -103,7 +107,7 @@ impl Context {
     }
 }
 
-/// [`automatic`] for values of which `context` says something: fields by the distance to the median, matter that is
+/// [`automatic`] for values of which `context` says something: fields as sheets of equal value, matter that is
 /// nobody's tissue in colours of no meaning.
 pub fn automatic_in(
     context: &Context,
@@ -151,50 +155,60 @@ fn has_ct_offset(summary: &ValueSummary, is_ct: bool) -> bool {
     is_ct || air > 0.05 && tissue > 0.05 && air.min(tissue) > 2.0 * gap && air + tissue > 0.5
 }
 
-/// Opacity grows with the distance to the median, the third power of it, so that what most of the box is made of does
-/// not hide what is rare; the mean optical depth over half the diagonal is [`FIELD_DEPTH`].
+/// Thin sheets of eight values, so that neither the faces of the box nor what most of it is made of hide the inside. Each
+/// sheet has the same share of the mean optical depth [`FIELD_DEPTH`]: values that are rare are the more opaque, up to
+/// [`MOST_OPACITY`].
 fn field(summary: &ValueSummary) -> TransferFunction {
-    let window = Window::new(summary.quantile(0.01), summary.quantile(0.99))
+    let window = Window::new(summary.quantile(0.005), summary.quantile(0.995))
         .unwrap_or(Window::of_range(summary.range));
-    let middle = summary.quantile(0.5).clamp(window.low(), window.high());
-    let reach = (window.high() - middle).max(middle - window.low());
-    let weight = |value: f64| ((value - middle).abs() / reach).min(1.0).powf(FIELD_POWER);
-    let bins = summary.histogram.len() as f64;
-    let [first, end] = summary.edges;
-    let (total, count) =
-        summary
-            .histogram
-            .iter()
-            .enumerate()
-            .fold((0.0, 0.0), |(total, count), (bin, &voxels)| {
-                let value = first + (bin as f64 + 0.5) / bins * (end - first);
-                let voxels = voxels as f64;
-                (total + voxels * weight(value), count + voxels)
-            });
-    // Opacities are for 1/512 of the diagonal; half of it is 256 such lengths.
-    let depth = if total > 0.0 {
-        FIELD_DEPTH / 256.0 * count / total
-    } else {
-        0.0
+    let half_width = SHEET * (window.high() - window.low());
+    let sheet = |k: usize| {
+        let value = window.at((k as f64 + 0.5) / SHEETS as f64);
+        let mean = mean_of_tent(summary, value, half_width);
+        // Opacities are for 1/512 of the diagonal; half of it is 256 such lengths.
+        let depth = FIELD_DEPTH / SHEETS as f64 / 256.0 / mean.max(f64::MIN_POSITIVE);
+        let opacity = (1.0 - (-depth).exp()).min(MOST_OPACITY);
+        [
+            (value - half_width, 0.0),
+            (value, opacity),
+            (value + half_width, 0.0),
+        ]
     };
-    let points = || (0..FIELD_POINTS).map(|i| window.at(i as f64 / (FIELD_POINTS - 1) as f64));
+    let points = (0..FIELD_POINTS).map(|i| window.at(i as f64 / (FIELD_POINTS - 1) as f64));
     TransferFunction {
-        color: points()
+        color: points
             .map(|value| ColorPoint {
                 value,
                 srgb: [0.0; 3],
             })
             .collect(),
-        opacity: points()
-            .map(|value| OpacityPoint {
-                value,
-                opacity: 1.0 - (-depth * weight(value)).exp(),
-            })
+        opacity: (0..SHEETS)
+            .flat_map(sheet)
+            .map(|(value, opacity)| OpacityPoint { value, opacity })
             .collect(),
         reference_length: reference_length(summary),
         interpolation: Interpolation::Linear,
         graded: None,
     }
+}
+
+/// The mean over all voxels of a tent of height 1, where the values of a bin are spread evenly over it.
+fn mean_of_tent(summary: &ValueSummary, center: f64, half_width: f64) -> f64 {
+    // The integral of the tent up to `value`, in half widths.
+    let integral = |value: f64| match ((value - center) / half_width).clamp(-1.0, 1.0) {
+        u if u < 0.0 => 0.5 * (1.0 + u).powi(2),
+        u => 1.0 - 0.5 * (1.0 - u).powi(2),
+    };
+    let [first, end] = summary.edges;
+    let bin_width = (end - first) / summary.histogram.len() as f64;
+    let (mut total, mut count) = (0.0, 0.0);
+    for (bin, &voxels) in summary.histogram.iter().enumerate() {
+        let low = first + bin as f64 * bin_width;
+        let inside = integral(low + bin_width) - integral(low);
+        total += voxels as f64 * inside * half_width / bin_width;
+        count += voxels as f64;
+    }
+    total / f64::max(count, 1.0)
 }
 
 #[cfg(test)]
@@ -281,17 +295,20 @@ mod tests {
     }
 
     #[test]
-    fn a_field_is_transparent_at_its_median_and_as_deep_as_it_says() {
-        let values: Vec<_> = (0..4096).map(|i| f64::from(i).sqrt()).collect();
+    fn a_field_is_sheets_that_together_are_as_deep_as_it_says() {
+        let values: Vec<_> = (0..1 << 16).map(|i| f64::from(i).sqrt()).collect();
         let summary = summary(&values);
         let function = field(&summary);
-        let middle = summary.quantile(0.5);
-        assert!(
-            function.opacity(middle) < 1e-6,
-            "{}",
-            function.opacity(middle)
-        );
-        // The mean over the voxels of the depth of 256 lengths.
+        let [low, high] = [0.005, 0.995].map(|share| summary.quantile(share));
+        let at = |t: f64| function.opacity(low + t * (high - low));
+        // The lower of two values is the rarer one.
+        for k in 0..SHEETS {
+            let middle = (k as f64 + 0.5) / SHEETS as f64;
+            assert!(at(middle) > 0.0);
+            assert!(at(middle + 0.5 / SHEETS as f64) == 0.0);
+            assert!(k == 0 || at(middle) < at(middle - 1.0 / SHEETS as f64));
+        }
+        // Opacity is linear between points, and so is depth nearly where it is small.
         let depth = |&value: &f64| -256.0 * (1.0 - function.opacity(value)).ln();
         let mean = values.iter().map(depth).sum::<f64>() / values.len() as f64;
         assert!((mean - FIELD_DEPTH).abs() < 0.05 * FIELD_DEPTH, "{mean}");
