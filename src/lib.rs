@@ -10,7 +10,7 @@
 //! | 0 | [`shaders`], [`real`], [`ray`], [`blue_noise`], [`lattice`], [`color`], `fence` | arithmetic shared with the shaders, free of Vulkan |
 //! | 1 | [`gpu`], [`volume`], [`transfer`], [`camera`], [`picture`], [`mesh`] | Vulkan objects, or data; never both |
 //! | 2 | [`resident`], [`isosurface`], `format` | data put on a device; a surface in a volume; bytes of files turned into a [`volume::Source`] |
-//! | 3 | [`technique`], [`resolve`] | `new`, `bind`, `record`, and the CPU twins |
+//! | 3 | [`technique`], [`resolve`], [`look`] | `new`, `bind`, `record`, and the CPU twins; what suits a volume |
 //! | 4 | [`embed`] | a volume in a host's frames |
 //! | 5 | [`scene`], [`offscreen`] | a scene to a [`picture::Picture`]; the only place that waits |
 //! | 6 | `conformance` | cases with exact answers, and verdicts on devices |
@@ -182,6 +182,7 @@ pub mod format;
 pub mod gpu;
 pub mod isosurface;
 pub mod lattice;
+pub mod look;
 pub mod mesh;
 pub mod offscreen;
 pub mod picture;

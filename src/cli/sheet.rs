@@ -6,7 +6,7 @@ use super::{
     error::visible,
     figure::{Anchor, Color, Figure, Mark, SCALE, png},
     flags::{AnnotateFlags, Depth, InputFlags, SceneFlags, Size},
-    look::{self, Framing, Use, Views, prepared},
+    look::{Framing, Use, Views, prepared},
     output::{self, say},
     progress::{Progress, ProgressWord},
     renderer::Device,
@@ -267,7 +267,7 @@ impl Tiles {
 
 /// Between the small pictures lies what is behind them.
 fn background() -> Color {
-    look::BACKGROUND.map(|share| (share * 255.0).round() as u8)
+    crate::look::BACKGROUND.map(|share| (share * 255.0).round() as u8)
 }
 
 /// Words on it.

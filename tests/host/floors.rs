@@ -14,7 +14,7 @@ const FLOORS: &[&[&str]] = &[
     &["gpu", "volume", "transfer", "camera", "picture", "mesh"],
     &["resident", "isosurface", "format"],
     &["technique"],
-    &["resolve"],
+    &["resolve", "look"],
     &["embed"],
     &["scene"],
     &["offscreen"],

@@ -10,14 +10,15 @@ use crate::{
     camera::{BoundingSphere, Camera, PixelBox, Projection},
     cli::{
         Error,
-        flags::{Classification, Depth, FrameWord, Numbers, SceneFlags, Subject},
-        look::{SHARE, Seen, Use, box_of, corners, small_of, visible_in, with_light, with_side},
+        flags::{Classification, Depth, FrameWord, Numbers, SceneFlags},
+        look::{Seen, Use, with_light, with_side},
         progress::Progress,
         renderer::{Device, Job, Renderer},
     },
+    look::{SHARE, box_of, corners, frames_the_box, small_of, visible_in},
     picture::PictureFormat,
     scene::Beside,
-    technique::{Mode, Settings},
+    technique::Settings,
     volume::{Grid, Volume},
 };
 use glam::DVec3;
@@ -55,7 +56,7 @@ pub fn framed(
     scene.camera.zoom = None;
     let shots = plan.film.shots(&scene, plan.depth, &plan.header, grid)?;
     let first = &shots[0];
-    if first.settings.mode == Mode::Xray || first.settings.crop.is_some() {
+    if frames_the_box(first.settings.mode, first.settings.crop.is_some()) {
         word = FrameWord::Box;
     }
     let moves = shots.iter().any(|shot| shot.camera != first.camera);
@@ -140,8 +141,12 @@ fn choose(
         depth: plan.depth,
     };
     let header = &plan.header;
-    let subject = Subject::new(grid, header.is_earth);
-    let scene = with_side(&plan.scene, &subject, header.is_patient || header.is_earth);
+    let scene = with_side(
+        &plan.scene,
+        grid,
+        header.is_earth,
+        header.is_patient || header.is_earth,
+    );
     Ok(match content {
         Content::Still(shown) => (
             with_light(&scene, shown.seen(), made_for),

@@ -5,6 +5,7 @@ use super::{
     Component, Error, time,
 };
 use crate::cli::stdin::{self, STANDARD};
+use crate::look::first_variable;
 use crate::{
     format,
     volume::{Header, Limits, Magnitude, Pick, Series, Source, Wanted, phantom},
@@ -95,9 +96,6 @@ fn is_false(flag: &bool) -> bool {
     !flag
 }
 
-/// Variables of weather models that say where the levels lie: geopotential of WRF, its base state and perturbation.
-const PLACES: [&str; 2] = ["PH", "PHB"];
-
 /// How a built-in volume begins.
 pub const PHANTOM: &str = "phantom:";
 
@@ -131,10 +129,8 @@ impl InputFlags {
     /// first. Gives the note that names the others.
     pub fn take_first_variable(&mut self, header: &Header) -> Option<String> {
         self.check_one_variable(header).err()?;
-        let is_place = |name: &&String| PLACES.contains(&name.as_str());
         let names = &header.variables;
-        let first = names.iter().find(|name| !is_place(name));
-        let first = first.or(names.first())?;
+        let first = first_variable(names)?;
         let others: Vec<_> = names.iter().filter(|&name| name != first).collect();
         let others: Vec<_> = others.into_iter().map(String::as_str).collect();
         let note = format!(

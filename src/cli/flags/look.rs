@@ -2,6 +2,7 @@
 
 use super::SceneFlags;
 use crate::cli::progress::Progress;
+use crate::technique::Mode;
 use crate::volume::Header;
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
@@ -30,6 +31,13 @@ impl SceneFlags {
         {
             progress.note(&note);
         }
+    }
+
+    /// True where thin components of CT are drawn: always but in plain composites of [`Look::Auto`].
+    pub fn keeps_all(&self, mode: Mode) -> bool {
+        let is_composite = mode == Mode::Composite && self.section.section.is_none();
+        let keeps = self.input.keep_all.unwrap_or(!self.is_auto());
+        keeps || !is_composite || !self.picture.aov.is_empty()
     }
 
     /// `auto` unless a flag or a scene file says otherwise; pictures for conformance are `plain`.

@@ -34,6 +34,7 @@ mod values;
 mod window;
 mod words;
 
+pub use crate::look::{context, summary};
 pub use annotate::{AnnotateFlags, Marks, ScaleWord};
 pub use camera::{CameraFlags, FrameWord, ProjectionWord, ViewWord};
 pub use channels::{ChannelFlags, ChannelWord, Plan};
@@ -56,7 +57,7 @@ pub use picture::PictureFlags;
 pub use sampling::{Depth, SamplingFlags};
 pub use section::SectionFlags;
 pub use subject::Subject;
-pub use values::{context, preset, summary, with_causes};
+pub use values::{preset, with_causes};
 pub use window::WindowWord;
 pub use words::{FilterWord, ModeWord, TechniqueWord};
 

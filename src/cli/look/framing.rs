@@ -5,29 +5,17 @@
 //! ```
 
 use super::light::{Use, with_light};
-use super::side::{best_side, with_side};
-use super::work::{MOST_SAMPLES, samples};
-use crate::camera::{Camera, PixelBox};
+use super::side::{turn_to_best, with_side};
+use crate::camera::Camera;
 use crate::cli::Error;
 use crate::cli::flags::{Depth, FrameWord, Numbers, SceneFlags};
 use crate::cli::shown::Shown;
+use crate::look::{
+    MOST_SAMPLES, SHARE, SMALL_PIXELS, corners, fit_to_visible, frames_the_box, samples, small_of,
+    visible_in,
+};
 use crate::picture::Picture;
-use crate::technique::{Mode, Settings};
-use crate::volume::Grid;
-use glam::DVec3;
-
-/// Part of the smaller room that is filled.
-pub const SHARE: f64 = 0.9;
-/// A pixel is visible where less than this of what lies behind comes through.
-const MOST_TRANSMITTANCE: f32 = 0.97;
-/// Pixels of the longer side of a small frame.
-const SMALL_PIXELS: u32 = 160;
-/// Small frames until the fit is given up as it is. Two are enough but in steep perspective.
-const ROUNDS: usize = 4;
-/// How far from [`SHARE`] the larger side of what is visible may be.
-const NEAR: f64 = 0.02;
-/// How far what is visible may be from the middle, in parts of the picture's side.
-const CENTERED: f64 = 0.01;
+use crate::technique::Settings;
 
 /// Everything about a picture that a renderer wants to know.
 #[derive(Clone, Debug)]
@@ -72,7 +60,8 @@ impl<'a> Framing<'a> {
         skip: bool,
     ) -> Self {
         let lit = with_light(scene, shown.seen(), made_for);
-        let sided = with_side(&lit, &shown.subject(), shown.has_named_axes());
+        let (grid, is_earth) = (shown.volume.grid(), shown.header.is_earth);
+        let sided = with_side(&lit, &grid, is_earth, shown.has_named_axes());
         let is_open = sided.camera == lit.camera && !scene.camera.names_a_side();
         Self {
             chose_samples: lit.sampling.samples_per_voxel != scene.sampling.samples_per_voxel,
@@ -133,9 +122,9 @@ impl Framing<'_> {
         let mut notes = Vec::new();
         let mut scene = self.scene.clone();
         if self.may_choose_side && self.word().is_some() {
-            best_side(
+            turn_to_best(
                 &mut scene,
-                |scene| self.boxed(scene.clone()),
+                |scene| self.boxed(scene),
                 self.extent_pixels,
                 draw,
             )?;
@@ -147,9 +136,11 @@ impl Framing<'_> {
             let boxed = self.boxed(scene.clone())?;
             let (mut camera, mode) = (boxed.camera, view.settings.mode);
             let is_cropped = view.settings.crop.is_some();
-            let is_box = word == FrameWord::Box || mode == Mode::Xray || is_cropped;
+            let is_box = word == FrameWord::Box || frames_the_box(mode, is_cropped);
             if !is_box {
-                visible = visible_fit(&mut camera, small, &view.settings, draw)?;
+                visible = fit_to_visible(&mut camera, self.extent_pixels, |camera, small| {
+                    draw(camera, &view.settings, small)
+                })?;
             }
             let said = match (&visible, is_cropped, is_box) {
                 (Some(_), ..) => "what is visible",
@@ -203,77 +194,4 @@ fn short(number: f64) -> f64 {
     format!("{number:.5e}")
         .parse()
         .expect("a number that was just written")
-}
-
-/// The camera fitted to visible pixels; which pixels of the last small frame are, `None` where none is.
-fn visible_fit(
-    camera: &mut Camera,
-    small: [u32; 2],
-    settings: &Settings,
-    draw: &mut Small,
-) -> Result<Option<Vec<bool>>, Error> {
-    let mut found = None;
-    for _ in 0..ROUNDS {
-        let visible = visible_in(&draw(camera, settings, small)?);
-        let Some(part) = box_of(&visible, small[0]) else {
-            break;
-        };
-        found = Some(visible);
-        if is_fitted(&part, small) {
-            break;
-        }
-        *camera = camera.fitted(&part, small, SHARE);
-    }
-    Ok(found)
-}
-
-fn is_fitted(part: &PixelBox, small: [u32; 2]) -> bool {
-    let side = |k: usize| f64::from(small[k]);
-    let filled = [0, 1].map(|k| part.size()[k] / side(k));
-    let filled = filled[0].max(filled[1]);
-    let off = |k: usize| (0.5 * (part.min[k] + part.max[k]) / side(k) - 0.5).abs();
-    (filled - SHARE).abs() <= NEAR && off(0).max(off(1)) <= CENTERED
-}
-
-/// Which pixels let less than [`MOST_TRANSMITTANCE`] through.
-pub fn visible_in(picture: &Picture) -> Vec<bool> {
-    let is_visible = |pixel: &[f32; 4]| 1.0 - pixel[3] < MOST_TRANSMITTANCE;
-    picture.pixels.iter().map(is_visible).collect()
-}
-
-/// The box of pixels that are visible, whole pixels.
-pub fn box_of(visible: &[bool], width: u32) -> Option<PixelBox> {
-    let pixels = (0_u32..)
-        .zip(visible)
-        .filter(|(_, is_visible)| **is_visible);
-    let corners = pixels.flat_map(|(at, _)| {
-        let [x, y] = [at % width, at / width].map(f64::from);
-        [[x, y], [x + 1.0, y + 1.0]]
-    });
-    PixelBox::around(corners)
-}
-
-/// A picture of the same shape with so many pixels on the longer side, or the picture itself.
-pub fn small_of(extent: [u32; 2], most: u32) -> [u32; 2] {
-    let longer = extent[0].max(extent[1]);
-    let side = |side: u32| {
-        let side = u64::from(side) * u64::from(most.min(longer)) / u64::from(longer);
-        (side as u32).max(1)
-    };
-    extent.map(side)
-}
-
-/// The corners of the grid box, or of what `--crop` leaves of it, in the world.
-pub fn corners(grid: &Grid, crop: Option<[DVec3; 2]>) -> Vec<DVec3> {
-    let whole = [DVec3::ZERO, grid.far_corner()];
-    let [low, high] = match crop {
-        Some(crop) => crop.map(|corner| corner.clamp(whole[0], whole[1])),
-        None => whole,
-    };
-    let corner = |k: usize| {
-        let side = |axis: usize| if k >> axis & 1 == 0 { low } else { high };
-        let voxel = DVec3::new(side(0).x, side(1).y, side(2).z);
-        grid.world_from_voxel.transform_point3(voxel)
-    };
-    (0..8).map(corner).collect()
 }

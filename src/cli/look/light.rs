@@ -1,21 +1,14 @@
 //! Light, samples and background of `--look auto`.
 //!
-//! ```text
-//! light        camera:-0.5,0.6,1    ambient .35, diffuse .65, specular .2, shininess 20
-//! g0           sqrt(3/2) sigma / h: the root mean square of the gradient that noise of deviation sigma makes, by central
-//!              differences over voxels of the side h
-//! samples      2 a voxel in stills, 1 in films
-//! ```
+//! Two samples a voxel in stills, one in films.
 
-use super::BACKGROUND;
 use crate::cli::flags::{
     Background, Classification, Depth, LightWord, ModeWord, Numbers, SceneFlags, ShadingWord,
-    summary,
 };
 use crate::cli::shown::check;
+use crate::look::{BACKGROUND, LIGHT, MATERIAL, STILL_SAMPLES, half_gradient, is_lit, summary};
 use crate::transfer::{Context, Kind, Preset};
-use crate::volume::{Volume, noise_of};
-use glam::DVec3;
+use crate::volume::Volume;
 
 /// What pictures are made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,15 +33,6 @@ pub struct Seen<'a> {
     /// Nothing is seen together with it.
     pub is_alone: bool,
 }
-
-/// Material of lit pictures: ambient, diffuse and specular part, and shininess.
-const MATERIAL: [f64; 4] = [0.35, 0.65, 0.2, 20.0];
-
-/// Where the light stands, in the axes of the camera: left, above, and behind it.
-const LIGHT: DVec3 = DVec3::new(-0.5, 0.6, 1.0);
-
-/// Samples for each voxel along a ray of a still: wood-grain of one sample a voxel is seen in smooth matter.
-const STILL_SAMPLES: f64 = 2.0;
 
 /// Presets that are made for lit surfaces.
 const LIT_PRESETS: [Preset; 3] = [Preset::CtBone, Preset::CtSoftTissue, Preset::Mri];
@@ -110,7 +94,7 @@ fn lit(scene: &SceneFlags, seen: Seen) -> Option<SceneFlags> {
             Some(context) => context.choice(&summary).kind,
             None => Kind::of(&summary),
         };
-        matches!(kind, Kind::Ct | Kind::Tissue | Kind::Labels)
+        is_lit(kind)
     };
     if function.is_graded() || !is_named && !has_shape() {
         return None;
@@ -122,7 +106,8 @@ fn lit(scene: &SceneFlags, seen: Seen) -> Option<SceneFlags> {
     if light.light.is_empty() {
         light.light.push(LightWord::of_camera(LIGHT));
     }
-    let noise_gradient = 1.5_f64.sqrt() * noise_of(volume) / volume.grid().smallest_spacing();
-    light.half_gradient.get_or_insert(noise_gradient);
+    light
+        .half_gradient
+        .get_or_insert_with(|| half_gradient(volume));
     Some(lit)
 }

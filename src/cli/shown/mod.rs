@@ -16,12 +16,13 @@ use super::{
     flags::{Classification, ClassificationFlags, Plan, SceneFlags, Subject, context, summary},
     labels,
     load::{load_from, open},
-    look::{Seen, leave_out},
+    look::Seen,
     memory::{self, DeviceRoom, Held, fitting},
     progress::Progress,
 };
 use crate::{
     camera::Camera,
+    look::leave_out,
     offscreen::Stream,
     scene::{Beside, Channel},
     technique::{Filter, FilterBy, Mode, PerMode, Role, Settings},
@@ -357,8 +358,10 @@ impl Reader<'_> {
         let context = self.scene.is_auto().then(|| context(&header));
         let (mut volume, height_factor) =
             load_from(source, self.scene, self.device, self.progress)?;
-        if let Some(note) = leave_out(&mut volume, &header, self.scene, self.mode) {
-            self.progress.note(&note);
+        let keeps_all = self.scene.keeps_all(self.mode) || volume.is_outline();
+        if !keeps_all && let Some(note) = leave_out(&mut volume, &header) {
+            self.progress
+                .note(&format!("{note}; --keep-all draws them"));
         }
         let flags = &ClassificationFlags {
             // That of other numbers says nothing of these.

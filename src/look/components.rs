@@ -1,4 +1,4 @@
-//! Tables, head holders and container walls, which `--look auto` leaves out of composites of CT.
+//! Tables, head holders and container walls, which are left out of composites of CT.
 //!
 //! ```text
 //! matter     over -300 HU; components of it share faces, and the largest of them stays
@@ -7,8 +7,7 @@
 //! faint      -700 to -300 HU: goes with the component that is nearest through faint voxels; ties stay
 //! ```
 
-use crate::cli::flags::{SceneFlags, context, summary};
-use crate::technique::Mode;
+use super::values::{context, summary};
 use crate::transfer::Kind;
 use crate::volume::{Component, Components, Header, Volume, VoxelBox, Voxels};
 use half::f16;
@@ -31,18 +30,9 @@ enum Part {
     LeftOut,
 }
 
-/// Makes air of thin components at faces of the box, and gives the note that says so.
-pub fn leave_out(
-    volume: &mut Volume,
-    header: &Header,
-    scene: &SceneFlags,
-    mode: Mode,
-) -> Option<String> {
-    let is_wanted = !scene.input.keep_all.unwrap_or(!scene.is_auto());
-    let is_composite = mode == Mode::Composite && scene.section.section.is_none();
-    if !is_wanted || !is_composite || !scene.picture.aov.is_empty() || volume.is_outline() {
-        return None;
-    }
+/// Makes air of thin components of CT at faces of the box: tables, head holders and container walls. Gives the note that
+/// says which; `None` of values of another kind, or where nothing is left out.
+pub fn leave_out(volume: &mut Volume, header: &Header) -> Option<String> {
     let choice = context(header).choice(&summary(volume));
     if choice.kind != Kind::Ct {
         return None;
@@ -81,7 +71,7 @@ pub fn leave_out(
         })
         .collect();
     Some(format!(
-        "left out are thin components at faces of the box: {}; --keep-all draws them",
+        "left out are thin components at faces of the box: {}",
         said.join("; ")
     ))
 }

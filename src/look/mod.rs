@@ -1,0 +1,30 @@
+//! How a picture looks where nobody says how: the frame, the light and the side that suit a volume, and what of it is
+//! left out.
+//!
+//! ```text
+//! values   what a file says of its values, and what they look like     light   where there is light, and which
+//! side     the face of a slab, or the best of six sides                frame   a camera fitted to what is visible
+//! work     samples of a picture                                        components   thin matter of CT at faces
+//! ```
+//!
+//! `stratavox render --look auto` and the viewer choose by these functions. Nothing here asks a clock: the same inputs give
+//! the same choice.
+
+mod components;
+mod frame;
+mod light;
+mod side;
+mod values;
+mod work;
+
+pub use components::leave_out;
+pub use frame::{
+    SHARE, SMALL_PIXELS, box_of, corners, fit_to_visible, frames_the_box, small_of, visible_in,
+};
+pub use light::{LIGHT, MATERIAL, STILL_SAMPLES, half_gradient, is_lit, light};
+pub use side::{SIDES, best_side, face};
+pub use values::{context, first_variable, summary};
+pub use work::{MOST_SAMPLES, samples};
+
+/// What lies behind pictures that people look at: sRGB and opacity, `#18181c`.
+pub const BACKGROUND: [f64; 4] = [24.0 / 255.0, 24.0 / 255.0, 28.0 / 255.0, 1.0];
