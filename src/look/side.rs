@@ -2,14 +2,14 @@
 //!
 //! ```text
 //! thin slab    its face: one extent under a third of each other one
-//! else         the side of six whose small picture has the highest entropy of luminance, if it has a tenth more than the
-//!              usual side:   H = - sum of p_i log2 p_i   over 64 bins of all pixels
+//! else         the side of six whose picture has the highest entropy of luminance, if it has a twentieth more than the
+//!              usual side:   H = - sum of p_i log2 p_i   over 64 bins of the frame that what is visible fills
 //! ```
 //!
 //! Entropy as a measure of views: Vázquez, Feixas, Sbert, Heidrich, "Viewpoint Selection Using Viewpoint Entropy", VMV
 //! 2001; Bordoloi, Shen, "View Selection for Volume Rendering", IEEE Visualization 2005.
 
-use super::frame::small_of;
+use super::frame::{SHARE, box_of, small_of, visible_in};
 use crate::camera::View;
 use crate::color::encode_srgb;
 use crate::picture::{ColorSpace, Picture};
@@ -27,9 +27,9 @@ pub const SIDES: [[f64; 2]; 6] = [
     [60.0, -75.0],
 ];
 /// Another side has so much more to show than the usual one.
-const BETTER: f64 = 1.1;
+const BETTER: f64 = 1.05;
 /// Pixels of the longer side of the small pictures.
-const PIXELS: u32 = 64;
+const PIXELS: u32 = 96;
 const BINS: usize = 64;
 
 /// The side that shows the face of a thin slab, one of whose extents in the world is under a third of each other one;
@@ -50,7 +50,7 @@ pub fn face(grid: &Grid, has_named_axes: bool) -> Option<View> {
     }
 }
 
-/// The side of [`SIDES`] whose small picture has a tenth more entropy than the usual one, and the most; `None` where no
+/// The side of [`SIDES`] whose small picture has a twentieth more entropy than the usual one, and the most; `None` where no
 /// other is so much better. `draw` gives the picture from a side with so many pixels, over black, fitted to the box.
 ///
 /// # Errors
@@ -71,21 +71,34 @@ pub fn best_side<E>(
     Ok(best.1)
 }
 
-/// Bits of luminance that a pixel has to tell, over black.
+/// Bits of luminance that a pixel has to tell, over black, in a frame that is fitted to what is visible; 0 where nothing
+/// is visible.
 fn entropy(picture: &Picture) -> f64 {
-    let mut counts = [0_u32; BINS];
-    for [r, g, b, _] in &picture.pixels {
+    let Some(part) = box_of(&visible_in(picture), picture.width) else {
+        return 0.0;
+    };
+    let mut counts = [0.0; BINS];
+    for (at, [r, g, b, _]) in (0_u32..).zip(&picture.pixels) {
+        let place = [at % picture.width, at / picture.width].map(f64::from);
+        if (0..2).any(|k| place[k] < part.min[k] || place[k] >= part.max[k]) {
+            continue;
+        }
         let shown = |c: f32| match picture.color_space {
             ColorSpace::Linear => encode_srgb(f64::from(c)),
             ColorSpace::Display => f64::from(c),
         };
         let luminance = 0.2126 * shown(*r) + 0.7152 * shown(*g) + 0.0722 * shown(*b);
-        counts[((luminance * BINS as f64) as usize).min(BINS - 1)] += 1;
+        counts[((luminance * BINS as f64) as usize).min(BINS - 1)] += 1.0;
     }
-    let all = picture.pixels.len() as f64;
-    let bits = |&count: &u32| {
-        let share = f64::from(count) / all;
-        if count == 0 {
+    // The frame around the box is black.
+    let size = [picture.width, picture.height].map(f64::from);
+    let filled = [0, 1].map(|k| part.size()[k] / size[k]);
+    let scale = filled[0].max(filled[1]) / SHARE;
+    let all = scale * scale * size[0] * size[1];
+    counts[0] += all - part.size()[0] * part.size()[1];
+    let bits = |&count: &f64| {
+        let share = count / all;
+        if count == 0.0 {
             0.0
         } else {
             -share * share.log2()
@@ -99,16 +112,38 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_even_picture_tells_nothing_and_two_halves_one_bit() {
+    fn pictures_tell_the_bits_of_a_frame_that_they_fill() {
         let picture = |pixels: Vec<[f32; 4]>| Picture {
-            width: pixels.len() as u32,
-            height: 1,
+            width: 10,
+            height: pixels.len() as u32 / 10,
             pixels,
             color_space: ColorSpace::Linear,
             layers: Vec::new(),
         };
-        assert_eq!(entropy(&picture(vec![[0.5; 4]; 8])), 0.0);
-        let halves = [vec![[0.0; 4]; 4], vec![[1.0; 4]; 4]].concat();
-        assert_eq!(entropy(&picture(halves)), 1.0);
+        let black = [0.0, 0.0, 0.0, 1.0];
+        let bits = |share: f64| -share * share.log2();
+        // Grey fills .9 by .9 of the frame, and black the rest.
+        let grey = SHARE * SHARE;
+        let found = entropy(&picture(vec![[0.5; 4]; 100]));
+        assert!(
+            (found - bits(grey) - bits(1.0 - grey)).abs() < 1e-9,
+            "{found}"
+        );
+        let halves = [vec![black; 50], vec![[1.0; 4]; 50]].concat();
+        let found = entropy(&picture(halves));
+        let white = 0.5 * grey;
+        assert!(
+            (found - bits(white) - bits(1.0 - white)).abs() < 1e-9,
+            "{found}"
+        );
+        // How far away it is does not count.
+        let small = |x: usize, y: usize| (2..7).contains(&x) && (1..6).contains(&y);
+        let pixels = (0..100).map(|i| [if small(i % 10, i / 10) { 0.5 } else { 0.0 }; 4]);
+        let found = entropy(&picture(pixels.collect()));
+        assert!(
+            (found - bits(grey) - bits(1.0 - grey)).abs() < 1e-9,
+            "{found}"
+        );
+        assert_eq!(entropy(&picture(vec![[0.0; 4]; 100])), 0.0);
     }
 }

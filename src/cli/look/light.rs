@@ -58,6 +58,11 @@ pub fn with_light(scene: &SceneFlags, seen: Seen, made_for: Use) -> SceneFlags {
     if let Some(lit) = lit.filter(is_drawable) {
         chosen = lit;
     }
+    let mut slabs = chosen.clone();
+    slabs.sampling.preintegrated = true;
+    if may_choose_slabs(&chosen) && is_sheets(&chosen, seen) && is_drawable(&slabs) {
+        return slabs;
+    }
     let sampling = &mut chosen.sampling;
     let is_plain = !sampling.preintegrated && sampling.adaptive_steps.is_none();
     if !made_for.is_film && is_plain && sampling.has_steps() {
@@ -75,6 +80,21 @@ fn may_choose(scene: &SceneFlags) -> bool {
         && scene.section.section.is_none()
         && classification.transfer_function.is_none()
         && preset.is_none_or(|preset| LIT_PRESETS.contains(&preset))
+}
+
+/// True where no flag says how samples are taken.
+fn may_choose_slabs(scene: &SceneFlags) -> bool {
+    let sampling = &scene.sampling;
+    let is_open = sampling.samples_per_voxel.is_none() && sampling.adaptive_steps.is_none();
+    is_open && !sampling.says_how() && scene.classification.preset.is_none()
+}
+
+/// True for fields, whose function is thinner than samples lie apart.
+fn is_sheets(scene: &SceneFlags, seen: Seen) -> bool {
+    let is_function = matches!(seen.classification, Classification::Function(_));
+    let kind = |context: &Context| context.choice(&summary(seen.volume)).kind;
+    let is_unlit = scene.light.shading.is_none();
+    is_unlit && is_function && seen.is_alone && seen.context.map(kind) == Some(Kind::Field)
 }
 
 /// The lit scene, where light shows a shape.
