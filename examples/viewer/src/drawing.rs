@@ -99,7 +99,7 @@ impl Drawing {
         }
     }
 
-    /// Records the picture. The image is in [`Use::FragmentSampled`] afterwards.
+    /// Records the picture, before `behind` (linear light) or what suits the mode. The image is in [`Use::FragmentSampled`] afterwards.
     ///
     /// # Safety
     /// As [`Renderer::record_into`].
@@ -108,6 +108,7 @@ impl Drawing {
         cmd: vk::CommandBuffer,
         frame: u32,
         camera: &Camera,
+        behind: Option<[f32; 4]>,
         timer: Option<&Timer>,
     ) -> Result<(), Error> {
         let target = Target {
@@ -137,7 +138,8 @@ impl Drawing {
             if let Some(timer) = timer {
                 timer.start(cmd);
             }
-            let load = Load::Clear(background(self.renderer.class().settings.mode));
+            let usual = background(self.renderer.class().settings.mode);
+            let load = Load::Clear(behind.unwrap_or(usual));
             self.renderer.record_into(cmd, &shot, &target, load)?;
             if let Some(timer) = timer {
                 timer.stop(cmd);

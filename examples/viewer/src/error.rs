@@ -19,6 +19,8 @@ pub enum Error {
     Write(#[from] stratavox::picture::OutputError),
     #[error(transparent)]
     Drawing(#[from] stratavox::embed::Error),
+    #[error("no small frame to fit the eye by: {0}")]
+    Fit(#[from] stratavox::offscreen::Error),
     #[error("{0}")]
     Window(String),
     #[error("no device that can draw and show: {0}")]
@@ -57,6 +59,7 @@ impl Error {
                 ..
             } => 6,
             Self::Drawing(_)
+            | Self::Fit(_)
             | Self::Window(_)
             | Self::NoDevice(_)
             | Self::DeviceLost(_)

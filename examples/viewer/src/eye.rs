@@ -23,6 +23,8 @@ pub struct Eye {
     grid: Grid,
     bounds: BoundingSphere,
     side: Orbit,
+    /// The side that small pictures choose is not chosen yet.
+    pub may_choose_side: bool,
     /// False until the zoom is that of [`Eye::fit`], or a hand's.
     is_fitted: bool,
     pub orbit: Orbit,
@@ -40,6 +42,7 @@ impl Eye {
             grid,
             bounds,
             side,
+            may_choose_side: false,
             is_fitted: false,
             orbit: side,
             zoom: 1.0,
@@ -72,6 +75,26 @@ impl Eye {
             (x / half_width).max(y / half_height)
         });
         self.zoom = FIT / reach.fold(f64::MIN_POSITIVE, f64::max);
+        self.is_fitted = true;
+    }
+
+    /// True until it is fitted, and after [`Eye::reset`].
+    pub fn is_to_be_fitted(&self) -> bool {
+        !self.is_fitted
+    }
+
+    /// The same, beginning at another side.
+    pub fn from_side(&self, side: Orbit) -> Self {
+        Self {
+            side,
+            orbit: side,
+            ..self.clone()
+        }
+    }
+
+    /// Fitted as `camera` is, which looks from the same side.
+    pub fn take(&mut self, camera: &Camera) {
+        (self.target, self.zoom) = (camera.target, camera.zoom);
         self.is_fitted = true;
     }
 

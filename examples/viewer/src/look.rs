@@ -2,10 +2,12 @@
 
 use crate::error::Error;
 use crate::subject::Subject;
+use stratavox::color::decode_srgb;
+use stratavox::look::{BACKGROUND, STILL_SAMPLES, is_lit, light};
 use stratavox::technique::{Filter, Level, Mode, PerMode, Settings, Shading, Technique};
 use stratavox::transfer::{
-    Classified, Interpolation, JointCounts, Preset, TransferFunction, Window, automatic,
-    boundaries, surfaces,
+    Classified, Context, Interpolation, JointCounts, Preset, TransferFunction, Window, automatic,
+    automatic_in, boundaries, surfaces,
 };
 use stratavox::volume::{JointHistogram, Rescale, Volume, steepest_gradient};
 
@@ -39,7 +41,13 @@ pub struct Look {
     pub mode: Mode,
     pub filter: Filter,
     pub is_lit: bool,
+    /// Of lit matter; surfaces have the usual one.
+    light: Shading,
     pub samples_per_voxel: f64,
+    /// A hand moves a picture that is slow: one sample a voxel is enough.
+    pub is_moving: bool,
+    /// Behind the volume, linear light; `None` is what suits the mode.
+    pub background: Option<[f32; 4]>,
     /// Of modes that classify samples.
     pub samples: TransferFunction,
     /// Of modes that project one value a ray.
@@ -65,7 +73,9 @@ impl Look {
     /// What suits the values.
     pub fn new(subject: &Subject) -> Self {
         let summary = &subject.summary;
-        let samples = automatic(summary, Classified::Samples, None);
+        let samples = usual_function(subject);
+        let is_auto = subject.context.is_some();
+        let kind = |context: &Context| context.choice(summary).kind;
         let level = |surface: stratavox::transfer::Surface| Level {
             value: surface.value,
             srgb: surface.srgb,
@@ -81,8 +91,21 @@ impl Look {
                 Interpolation::Step => Filter::Nearest,
                 Interpolation::Linear => Filter::Linear,
             },
-            is_lit: false,
-            samples_per_voxel: 1.0,
+            is_lit: subject
+                .context
+                .as_ref()
+                .is_some_and(|context| is_lit(kind(context))),
+            light: match is_auto {
+                true => light(&subject.voxels),
+                false => Shading::default(),
+            },
+            samples_per_voxel: if is_auto { STILL_SAMPLES } else { 1.0 },
+            is_moving: false,
+            background: is_auto.then(|| {
+                let [r, g, b, opacity] = BACKGROUND;
+                let [r, g, b] = [r, g, b].map(|code| decode_srgb(code) as f32);
+                [r, g, b, opacity as f32]
+            }),
             samples,
             projection: automatic(summary, Classified::Projection, None),
             integral: None,
@@ -103,9 +126,15 @@ impl Look {
             technique: self.technique,
             mode: self.mode,
             filter: self.filter,
-            samples_per_voxel: self.samples_per_voxel,
+            samples_per_voxel: match self.is_moving {
+                true => self.samples_per_voxel.min(1.0),
+                false => self.samples_per_voxel,
+            },
             termination: TERMINATION,
-            shading: (is_surface || can_be_lit && self.is_lit).then(Shading::default),
+            shading: match is_surface {
+                true => Some(Shading::default()),
+                false => (can_be_lit && self.is_lit).then(|| self.light.clone()),
+            },
             per_mode: self.per_mode.clone(),
             ..Settings::default()
         }
@@ -145,7 +174,7 @@ impl Look {
         let summary = &subject.summary;
         self.preset = preset;
         self.samples = match preset {
-            None => automatic(summary, Classified::Samples, None),
+            None => usual_function(subject),
             Some(Preset::Boundaries) => of_boundaries(&subject.voxels)
                 .unwrap_or_else(|| Preset::Boundaries.function(summary, Classified::Samples, None)),
             Some(preset) => preset.function(summary, Classified::Samples, None),
@@ -174,6 +203,15 @@ impl Look {
     pub fn check(&self) -> Result<(), Error> {
         let checked = self.settings().check();
         checked.map_err(|error| Error::Drawing(error.into()))
+    }
+}
+
+/// What suits the values: under `--look auto` by what the file says of them too.
+fn usual_function(subject: &Subject) -> TransferFunction {
+    let (summary, classified) = (&subject.summary, Classified::Samples);
+    match &subject.context {
+        Some(context) => automatic_in(context, summary, classified, None),
+        None => automatic(summary, classified, None),
     }
 }
 

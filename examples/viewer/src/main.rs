@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! words      the command line                    subject    the volume, and what its values look like
-//! app        winit: events in, frames out        look, eye  how it is shown, and from where
+//! app        winit: events in, frames out        look, eye  how it is shown, and from where (fit: at first)
 //! host       instance, device, queue             view       all of that, and what a person is told
 //! swapchain  images of the window                panel      egui: what is laid out and what a hand does
 //! frames     frames in flight, fences            curve      the transfer function under the hand
@@ -19,6 +19,7 @@ mod curve;
 mod drawing;
 mod error;
 mod eye;
+mod fit;
 mod frames;
 mod host;
 mod keys;

@@ -97,7 +97,7 @@ impl Drop for Reader {
 
 fn read(gpu: &Arc<Gpu>, source: &dyn Source, way: Way, wish: Wish) -> Result<Read, Error> {
     let Wish { time, settings } = wish;
-    let voxels = way.read(source, time)?;
+    let (voxels, _) = way.read(source, time)?;
     let textures = embed::Volume::new(gpu, &voxels, &settings)?;
     Ok(Read {
         time,

@@ -1,13 +1,14 @@
 //! What is looked at: an open source, one volume of it in memory, and what its values look like as a whole.
 
 use crate::error::Error;
-use crate::words::Words;
+use crate::words::{LookWord, Words};
 use glam::{DAffine3, DVec3};
 use std::path::Path;
 use std::sync::Arc;
-use stratavox::camera::Orbit;
+use stratavox::camera::{Orbit, View};
 use stratavox::format;
-use stratavox::transfer::{LabelTable, Quantity, ValueSummary};
+use stratavox::look::{context, face, first_variable, leave_out, summary};
+use stratavox::transfer::{Context, LabelTable, ValueSummary};
 use stratavox::volume::{
     Grid, Header, Histogram, Limits, Magnitude, Meaning, Pick, Rescale, Source, Volume, Voxels,
     Wanted, luma, phantom, read_colors,
@@ -23,6 +24,8 @@ pub struct Subject {
     pub voxels: Arc<Volume>,
     pub time: u32,
     pub summary: ValueSummary,
+    /// What the file says of the values, under `--look auto`.
+    pub context: Option<Context>,
     pub histogram: Histogram,
     /// How a voxel is made one number, and how much higher than it is the volume is drawn.
     pub way: Way,
@@ -36,11 +39,15 @@ pub struct Way {
     /// Colours are drawn by their luma: a host's frame has one number a voxel.
     pub is_luma: bool,
     pub height_factor: f64,
+    /// Thin components of CT are air.
+    pub leaves_out: bool,
 }
 
 impl Subject {
-    /// What the words name. Of several variables the first is taken where none is named: the panel has the others.
+    /// What the words name. Of several variables the first is taken where none is named, under `--look auto` the first
+    /// that is no coordinate: the panel has the others.
     pub fn open(words: &Words) -> Result<Self, Error> {
+        let is_auto = words.look == LookWord::Auto;
         let limits = Limits::default();
         let wanted = Wanted {
             variable: words.variable.clone(),
@@ -60,6 +67,19 @@ impl Subject {
             false => format::open(Path::new(&words.input), &wanted, &limits)?,
         };
         let header = source.header();
+        let names = &header.variables;
+        if let Some(first) = first_variable(names)
+            && is_auto
+            && words.variable.is_none()
+            && !words.input.contains(",variable=")
+            && Some(first) != names.first()
+        {
+            let variable = Some(first.clone());
+            return Self::open(&Words {
+                variable,
+                ..words.clone()
+            });
+        }
         check(words, header)?;
         let is_color = matches!(header.meaning, Meaning::Rgb | Meaning::Rgba);
         let is_vector = header.meaning == Meaning::Vector && header.components > 1;
@@ -82,17 +102,22 @@ impl Subject {
                 true => height_factor(&grid),
                 false => 1.0,
             },
+            leaves_out: is_auto && !words.keep_all,
         };
-        let voxels = way.read(source.as_ref(), words.time)?;
+        let (voxels, note) = way.read(source.as_ref(), words.time)?;
+        if let Some(note) = note {
+            println!("{note}; --keep-all draws them");
+        }
         Ok(Self {
             name: name(words, header),
             summary: summary(&voxels),
             histogram: Histogram::of(&voxels, BINS),
             voxels: Arc::new(voxels),
             time: words.time,
-            source,
             way,
+            context: is_auto.then(|| context(source.header())),
             names: names(words)?,
+            source,
         })
     }
 
@@ -106,9 +131,25 @@ impl Subject {
         self.source.header()
     }
 
+    /// The face of a slab under `--look auto`. Pieces of the Earth are thin, and seen from the south.
+    fn face(&self) -> Option<View> {
+        let may_choose = self.context.is_some() && !self.header().is_earth;
+        may_choose.then(|| face(&self.voxels.grid(), self.header().is_patient))?
+    }
+
+    /// Whether small pictures choose the side: nothing says how the axes lie, and it is no slab.
+    pub fn has_open_side(&self) -> bool {
+        let header = self.header();
+        let has_named_axes = header.is_patient || header.is_earth;
+        self.context.is_some() && !has_named_axes && self.face().is_none()
+    }
+
     /// From where it is seen at first, as `stratavox render` has it: three sides of a box are seen, and of a piece of
     /// the Earth the south, with east on the right.
     pub fn side(&self) -> Orbit {
+        if let Some(face) = self.face() {
+            return face.orbit();
+        }
         let [azimuth_degrees, elevation_degrees] = match self.header().is_earth {
             true => [-60.0, 25.0],
             false => [60.0, 15.0],
@@ -122,8 +163,8 @@ impl Subject {
 }
 
 impl Way {
-    /// One time of the source.
-    pub fn read(&self, source: &dyn Source, time: u32) -> Result<Volume, Error> {
+    /// One time of the source, and the note that says what of it was left out.
+    pub fn read(&self, source: &dyn Source, time: u32) -> Result<(Volume, Option<String>), Error> {
         let limits = Limits::default();
         let pick = Pick {
             time,
@@ -135,7 +176,11 @@ impl Way {
         };
         let stretch = DAffine3::from_scale(DVec3::new(1.0, 1.0, self.height_factor));
         volume.world_from_voxel = stretch * volume.world_from_voxel;
-        Ok(volume)
+        let note = match self.leaves_out && !self.is_luma {
+            true => leave_out(&mut volume, source.header()),
+            false => None,
+        };
+        Ok((volume, note))
     }
 }
 
@@ -212,21 +257,4 @@ fn luma_of(colors: &[Volume]) -> Result<Volume, Error> {
     let place = first.world_from_voxel;
     Volume::from_voxels(first.dims, place, voxels, Rescale::default(), None)
         .map_err(|problem| Error::Words(problem.to_string()))
-}
-
-/// What the values look like as a whole.
-fn summary(volume: &Volume) -> ValueSummary {
-    let diagonal = volume.grid().diagonal();
-    let Rescale { slope, intercept } = volume.rescale;
-    ValueSummary::of(
-        volume.voxels.len(),
-        volume.value_range,
-        diagonal,
-        volume.hounsfield,
-        |i| {
-            let is_valid = volume.validity.as_ref().is_none_or(|valid| valid[i] != 0);
-            is_valid.then(|| f64::from(volume.voxels.stored(i)) * slope + intercept)
-        },
-    )
-    .measuring(Quantity::of_unit(volume.unit.as_deref()))
 }

@@ -68,7 +68,10 @@ impl View {
     pub fn new(subject: Subject, has_panel: bool) -> Self {
         Self {
             look: Look::new(&subject),
-            eye: Eye::new(subject.voxels.grid(), subject.side()),
+            eye: Eye {
+                may_choose_side: subject.has_open_side(),
+                ..Eye::new(subject.voxels.grid(), subject.side())
+            },
             wanted_time: subject.time,
             subject,
             curve: Curve::default(),

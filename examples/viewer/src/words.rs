@@ -32,6 +32,13 @@ pub struct Words {
     /// What labels are called: a file that `stratavox render --label-tf` takes
     #[arg(long, value_name = "FILE")]
     pub label_tf: Option<PathBuf>,
+    /// What is seen at first: `auto` as `stratavox render` chooses it, `plain` the whole box without light, in colours by
+    /// what the values look like
+    #[arg(long, default_value = "auto")]
+    pub look: LookWord,
+    /// Draw tables and head holders of CT too, which --look auto leaves out
+    #[arg(long)]
+    pub keep_all: bool,
     /// A device by a part of its name
     #[arg(long, value_name = "NAME")]
     pub device: Option<String>,
@@ -57,6 +64,15 @@ pub struct Words {
     /// STRATAVOX_VALIDATION says]
     #[arg(long)]
     pub validation: Option<Layer>,
+}
+
+/// Which choices hold at first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LookWord {
+    /// Fitted to what is visible, lit where light helps, classified by meaning
+    Auto,
+    /// The whole box, without light
+    Plain,
 }
 
 /// How frames reach the screen.

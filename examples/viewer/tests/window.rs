@@ -12,7 +12,7 @@ use stratavox::offscreen::Renderer;
 use stratavox::picture::{WriteOptions, read_image, write_picture};
 use stratavox::scene::{Beside, Scene};
 use stratavox::technique::{Settings, Technique};
-use stratavox::transfer::{Classified, ValueSummary, automatic};
+use stratavox::transfer::{Classified, ValueSummary, automatic, automatic_in};
 use stratavox::volume::{Limits, Pick, Volume, phantom};
 use tempfile::TempDir;
 
@@ -135,7 +135,7 @@ fn the_window_shows_what_the_offscreen_renderer_draws() {
         let lines = format!("{key}\nframes 20\nreport\npicture p.png\nwindow w.png\n");
         let report = display.play(
             folder.path(),
-            &[spec, "--bare", "--size", "212x160"],
+            &[spec, "--look", "plain", "--bare", "--size", "212x160"],
             &lines,
         );
         assert_eq!(report.numbers("picture", 0), [0.0, 0.0, 212.0, 160.0]);
@@ -492,4 +492,95 @@ fn every_mode_and_filter_is_drawn_or_refused_by_name() {
         report.0
     );
     assert!(report.0.contains("message"), "{}", report.0);
+}
+
+/// The box of pixels that are not the background, in parts of the picture's sides: low and high.
+fn seen_box([width, height]: [u32; 2], pixels: &[[f32; 4]]) -> [[f64; 2]; 2] {
+    let behind = pixels[0];
+    let mut seen = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    for (at, pixel) in (0_u32..).zip(pixels) {
+        if codes_apart(&[*pixel], &[behind]) > 3.0 {
+            let side = [width, height].map(f64::from);
+            let [x, y] = [at % width, at / width].map(f64::from);
+            for (k, start) in [x, y].into_iter().enumerate() {
+                seen[0][k] = seen[0][k].min(start / side[k]);
+                seen[1][k] = seen[1][k].max((start + 1.0) / side[k]);
+            }
+        }
+    }
+    seen
+}
+
+#[test]
+fn the_first_picture_is_fitted_to_what_is_visible_and_lit_as_the_command_line_does_it() {
+    let Some(display) = Display::new() else {
+        return;
+    };
+    let folder = TempDir::new().unwrap();
+    let spec = "phantom:head,n=48";
+    let extent = [320, 240];
+    let words = [spec, "--bare", "--size", "320x240"];
+    let lines =
+        "frames 2\nreport\npicture first.png\nkey Plus\nkey ArrowLeft\nkey R\npicture again.png\n";
+    let report = display.play(folder.path(), &words, lines);
+    let (size, first) = pixels(&folder.path().join("first.png"));
+    assert_eq!(size, extent);
+    // #18181c.
+    let behind = [24.0, 24.0, 28.0].map(|code| stratavox::color::decode_srgb(code / 255.0));
+    for (found, wanted) in first[0].iter().zip(behind) {
+        assert!((f64::from(*found) - wanted).abs() < 1e-6, "{:?}", first[0]);
+    }
+    let [low, high] = seen_box(size, &first);
+    let filled = (high[0] - low[0]).max(high[1] - low[1]);
+    assert!((0.85..=0.95).contains(&filled), "{low:?} {high:?}");
+    let off = [0, 1].map(|k| (0.5 * (low[k] + high[k]) - 0.5).abs());
+    assert!(off[0].max(off[1]) <= 0.05, "{low:?} {high:?}");
+    let (_, again) = pixels(&folder.path().join("again.png"));
+    assert!(again == first, "the first view comes back");
+
+    // The picture of the same camera, function and light, drawn apart from the window: the numbers are the same.
+    let source = phantom::open(spec, &Limits::default()).unwrap();
+    let volume = read(spec);
+    let context = stratavox::look::context(source.header());
+    let summary = stratavox::look::summary(&volume);
+    let function = automatic_in(&context, &summary, Classified::Samples, None);
+    let settings = Settings {
+        termination: 1.0 / 8192.0,
+        samples_per_voxel: 2.0,
+        shading: Some(stratavox::look::light(&volume)),
+        ..Settings::default()
+    };
+    let camera = report.camera(&volume, extent);
+    let scene = Scene {
+        volume: &volume,
+        transfer: Some(&function),
+        beside: Beside::Nothing,
+        camera: &camera,
+        extent_pixels: extent,
+        settings: &settings,
+    };
+    let device = Headless::new(&DeviceChoice::default(), &Options::default()).unwrap();
+    let mut renderer = Renderer::new(device, &volume).unwrap();
+    let mut wanted = renderer.render(&scene, &[]).unwrap().picture;
+    for pixel in &mut wanted.pixels {
+        let left = 1.0 - pixel[3];
+        for c in 0..3 {
+            pixel[c] += left * behind[c] as f32;
+        }
+        pixel[3] = 1.0;
+    }
+    let path = folder.path().join("wanted.png");
+    write_picture(&wanted, &path, WriteOptions::default()).unwrap();
+    let (_, wanted) = pixels(&path);
+    let apart = codes_apart(&wanted, &first);
+    // The device blends in the same numbers; a rounding to 8 bits may go the other way.
+    assert!(apart < 1.5, "{apart} codes apart");
+
+    // The plain look is the whole box without light.
+    let plain = [&words[..], &["--look", "plain"]].concat();
+    display.play(folder.path(), &plain, "picture plain.png\n");
+    let (_, plain) = pixels(&folder.path().join("plain.png"));
+    let [low, high] = seen_box(size, &plain);
+    let filled = (high[0] - low[0]).max(high[1] - low[1]);
+    assert!(filled < 0.85, "{low:?} {high:?}");
 }

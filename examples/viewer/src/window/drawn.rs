@@ -12,10 +12,12 @@
 use super::{Drawn, REST, SLOW_MS, Window};
 use crate::drawing::Drawing;
 use crate::error::Error;
+use crate::fit::{Small, fit};
 use crate::frames::Begun;
 use crate::look::Change;
 use ash::vk;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use stratavox::technique::Settings;
 
 impl Window {
@@ -30,8 +32,9 @@ impl Window {
     ) -> Result<(), Error> {
         let (cmd, frame) = (begun.cmd, begun.frame);
         self.view.status.extent = place;
-        self.view.eye.fit(place);
+        self.fit_eye(place);
         let parts = self.parts();
+        self.view.look.is_moving = parts > 1;
         let extent = place.map(|side| side.div_ceil(parts));
         // SAFETY: the caller's promise.
         unsafe {
@@ -60,7 +63,7 @@ impl Window {
         let camera = camera.map_err(|error| Error::Drawing(error.into()))?;
         let timer = self.timers[frame as usize].as_ref();
         // SAFETY: the caller's promise.
-        unsafe { drawing.record(cmd, frame, &camera, timer)? };
+        unsafe { drawing.record(cmd, frame, &camera, self.view.look.background, timer)? };
         self.timed[frame as usize] = Some(parts);
         self.drawn = Some(now);
         if let Some(at) = self.view.to_pick.take() {
@@ -79,6 +82,25 @@ impl Window {
             }
         }
         Ok(())
+    }
+
+    /// Fits the eye at first and after a reset: to what is visible, under `--look auto`, else to the box.
+    fn fit_eye(&mut self, place: [u32; 2]) {
+        let view = &mut self.view;
+        if view.subject.context.is_some() && view.eye.is_to_be_fitted() {
+            let small = Small {
+                device: view.status.device.clone(),
+                layer: self.words.validation,
+            };
+            match fit(view, place, &small) {
+                Ok(messages) => {
+                    self.host.messages().fetch_add(messages, Ordering::Relaxed);
+                }
+                // The box is what is left.
+                Err(error) => view.message = Some(error.to_string()),
+            }
+        }
+        view.eye.fit(place);
     }
 
     /// In how many parts the sides of the picture are shrunk while a hand moves it. A script sees all pixels.
