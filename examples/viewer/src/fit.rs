@@ -28,10 +28,8 @@ pub fn fit(view: &mut View, extent: [u32; 2], small: &Small) -> Result<usize, Er
     let settings = look.settings();
     let corners = corners(&volume.grid(), None);
     let boxed = |eye: &Eye| {
-        let eye = Eye {
-            zoom: 1.0,
-            ..eye.clone()
-        };
+        let mut eye = eye.clone();
+        eye.zoom = 1.0;
         let camera = eye.camera(extent);
         camera.map(|camera| camera.fitted_to_points(&corners, extent, SHARE))
     };

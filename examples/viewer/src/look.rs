@@ -6,8 +6,8 @@ use stratavox::color::decode_srgb;
 use stratavox::look::{BACKGROUND, STILL_SAMPLES, is_lit, light};
 use stratavox::technique::{Filter, Level, Mode, PerMode, Settings, Shading, Technique};
 use stratavox::transfer::{
-    Classified, Context, Interpolation, JointCounts, Preset, TransferFunction, Window, automatic,
-    automatic_in, boundaries, surfaces,
+    Classified, Context, Interpolation, JointCounts, Kind, Preset, TransferFunction, Window,
+    automatic, automatic_in, boundaries, surfaces,
 };
 use stratavox::volume::{JointHistogram, Rescale, Volume, steepest_gradient};
 
@@ -44,6 +44,8 @@ pub struct Look {
     /// Of lit matter; surfaces have the usual one.
     light: Shading,
     pub samples_per_voxel: f64,
+    /// The function is thinner than samples lie apart: fields, under `--look auto`.
+    is_layered: bool,
     /// A hand moves a picture that is slow: one sample a voxel is enough.
     pub is_moving: bool,
     /// Behind the volume, linear light; `None` is what suits the mode.
@@ -100,6 +102,10 @@ impl Look {
                 false => Shading::default(),
             },
             samples_per_voxel: if is_auto { STILL_SAMPLES } else { 1.0 },
+            is_layered: subject
+                .context
+                .as_ref()
+                .is_some_and(|context| kind(context) == Kind::Field),
             is_moving: false,
             background: is_auto.then(|| {
                 let [r, g, b, opacity] = BACKGROUND;
@@ -122,11 +128,18 @@ impl Look {
     pub fn settings(&self) -> Settings {
         let is_surface = self.mode == Mode::Iso;
         let can_be_lit = matches!(self.mode, Mode::Composite | Mode::Mida);
+        let can_be_slabs = self.mode == Mode::Composite
+            && !self.is_lit
+            && matches!(self.filter, Filter::Linear | Filter::Nearest)
+            && self.technique != Technique::Slices2d
+            && !self.samples.is_graded();
+        let preintegrated = self.is_layered && can_be_slabs;
         Settings {
             technique: self.technique,
             mode: self.mode,
             filter: self.filter,
-            samples_per_voxel: match self.is_moving {
+            preintegrated,
+            samples_per_voxel: match self.is_moving || preintegrated {
                 true => self.samples_per_voxel.min(1.0),
                 false => self.samples_per_voxel,
             },
@@ -187,8 +200,9 @@ impl Look {
         let kind = |look: &Self| {
             let function = look.function();
             let is_graded = function.is_some_and(TransferFunction::is_graded);
-            let is_lit = look.settings().shading.is_some();
-            (look.technique, look.mode, look.filter, is_lit, is_graded)
+            let settings = look.settings();
+            let pipelines = (settings.shading.is_some(), settings.preintegrated);
+            (look.technique, look.mode, look.filter, pipelines, is_graded)
         };
         if kind(self) != kind(drawn) {
             return Change::Kind;

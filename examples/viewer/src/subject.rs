@@ -67,12 +67,12 @@ impl Subject {
             false => format::open(Path::new(&words.input), &wanted, &limits)?,
         };
         let header = source.header();
-        let names = &header.variables;
-        if let Some(first) = first_variable(names)
+        let variables = &header.variables;
+        if let Some(first) = first_variable(variables)
             && is_auto
             && words.variable.is_none()
             && !words.input.contains(",variable=")
-            && Some(first) != names.first()
+            && Some(first) != variables.first()
         {
             let variable = Some(first.clone());
             return Self::open(&Words {

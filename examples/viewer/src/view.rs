@@ -66,12 +66,11 @@ pub struct Status {
 
 impl View {
     pub fn new(subject: Subject, has_panel: bool) -> Self {
+        let mut eye = Eye::new(subject.voxels.grid(), subject.side());
+        eye.may_choose_side = subject.has_open_side();
         Self {
             look: Look::new(&subject),
-            eye: Eye {
-                may_choose_side: subject.has_open_side(),
-                ..Eye::new(subject.voxels.grid(), subject.side())
-            },
+            eye,
             wanted_time: subject.time,
             subject,
             curve: Curve::default(),
