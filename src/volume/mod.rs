@@ -9,7 +9,6 @@
 //! Knows nothing of Vulkan.
 
 mod colors;
-#[cfg(feature = "cli")]
 mod components;
 mod denoise;
 pub mod field;
@@ -40,7 +39,6 @@ mod voxel_box;
 mod voxels;
 
 pub use colors::{luma, read_all, read_colors};
-#[cfg(feature = "cli")]
 pub(crate) use components::{Component, Components};
 pub use denoise::{Denoise, MAX_SIGMA_VOXELS, Pass, noise_of, with_numbers};
 pub use grid::Grid;

@@ -1,7 +1,7 @@
 //! What the build makes of `&&` and `||`: no branch where the second side costs nothing, and a branch where it does.
 
 #[path = "../../shaders/both_sides.rs"]
-mod both_sides;
+mod pass;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Block, Module, Statement};
@@ -46,7 +46,7 @@ fn branches(block: &Block) -> usize {
 fn counts(question: &str) -> [usize; 2] {
     let mut module = module(question);
     let before = branches(&module.entry_points[0].function.body);
-    both_sides::ask_both_sides(&mut module);
+    pass::ask_both_sides(&mut module);
     Validator::new(ValidationFlags::all(), Capabilities::empty())
         .validate(&module)
         .unwrap_or_else(|e| panic!("{question}: {e:?}"));

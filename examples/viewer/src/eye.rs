@@ -23,7 +23,7 @@ pub struct Eye {
     grid: Grid,
     bounds: BoundingSphere,
     side: Orbit,
-    /// The side that small pictures choose is not chosen yet.
+    /// Small pictures choose the side, each time that it is fitted.
     pub may_choose_side: bool,
     /// False until the zoom is that of [`Eye::fit`], or a hand's.
     is_fitted: bool,

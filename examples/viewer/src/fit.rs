@@ -9,7 +9,7 @@ use crate::view::View;
 use crate::words::Layer;
 use stratavox::camera::{Camera, Orbit};
 use stratavox::gpu::{DeviceChoice, Headless, Options, Validation, ValidationMode};
-use stratavox::look::{SHARE, best_side, corners, fit_to_visible, frames_the_box};
+use stratavox::look::{SHARE, SIDES, best_side, corners, fit_to_visible, frames_the_box};
 use stratavox::offscreen::Renderer;
 use stratavox::picture::Picture;
 use stratavox::scene::{Beside, Scene};
@@ -66,8 +66,7 @@ pub fn fit(view: &mut View, extent: [u32; 2], small: &Small) -> Result<usize, Er
         let best = best_side(extent, |side, small| {
             draw(&boxed(&turned(&eye, side)).map_err(camera_error)?, small)
         })?;
-        eye = best.map_or(eye.clone(), |side| turned(&eye, side));
-        eye.may_choose_side = false;
+        eye = turned(&eye, best.unwrap_or(SIDES[0]));
     }
     let mut camera = boxed(&eye).map_err(camera_error)?;
     if !frames_the_box(look.mode, false) {

@@ -82,10 +82,11 @@ fn may_choose(scene: &SceneFlags) -> bool {
         && preset.is_none_or(|preset| LIT_PRESETS.contains(&preset))
 }
 
-/// True where no flag says how samples are taken.
+/// True where no flag says how samples are taken; one that has no effect says nothing.
 fn may_choose_slabs(scene: &SceneFlags) -> bool {
     let sampling = &scene.sampling;
-    let is_open = sampling.samples_per_voxel.is_none() && sampling.adaptive_steps.is_none();
+    let has_samples = sampling.has_steps() && sampling.samples_per_voxel.is_some();
+    let is_open = !has_samples && sampling.adaptive_steps.is_none();
     is_open && !sampling.says_how() && scene.classification.preset.is_none()
 }
 
