@@ -1,9 +1,6 @@
 //! The example of a host draws what it says.
 
-#[path = "../../examples/embed.rs"]
-#[allow(dead_code, reason = "its `main` is not called")]
-mod example;
-
+use crate::embed_example as example;
 use stratavox::picture::read_image;
 
 #[test]

@@ -2,15 +2,8 @@
 //! speaks, but for those that it cannot know of. Looked at only under `STRATAVOX_VALIDATION=sync`, and skipped
 //! elsewhere.
 
-#[path = "../../examples/embed.rs"]
-#[allow(dead_code, reason = "its `main` is not called")]
-mod embed;
-
-#[path = "../../examples/meshes/main.rs"]
-#[allow(dead_code, reason = "its `main` is not called")]
-mod meshes;
-
 use crate::missing_barrier::*;
+use crate::{embed_example, meshes_example};
 use std::env;
 use std::process::Command;
 use stratavox::gpu::{Validation, ValidationMode};
@@ -24,9 +17,9 @@ const ONE: &str = "STRATAVOX_EXAMPLE";
 fn example() {
     let folder = tempfile::tempdir().unwrap();
     match env::var(ONE).as_deref() {
-        Ok("embed") => embed::run(&folder.path().join("sphere.png")).unwrap(),
-        Ok("rays") => meshes::run(folder.path(), Technique::Raycast, 1).unwrap(),
-        Ok("slices") => meshes::run(folder.path(), Technique::Slices3d, 1).unwrap(),
+        Ok("embed") => embed_example::run(&folder.path().join("sphere.png")).unwrap(),
+        Ok("rays") => meshes_example::run(folder.path(), Technique::Raycast, 1).unwrap(),
+        Ok("slices") => meshes_example::run(folder.path(), Technique::Slices3d, 1).unwrap(),
         _ => println!("skipped: the other tests run it"),
     }
 }

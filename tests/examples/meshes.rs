@@ -1,9 +1,6 @@
 //! The volume among a host's meshes: rays and slices on one lattice show the same, behind and before the meshes.
 
-#[path = "../../examples/meshes/main.rs"]
-#[allow(dead_code, reason = "its `main` is not called")]
-mod example;
-
+use crate::meshes_example as example;
 use stratavox::color::encode_srgb;
 use stratavox::picture::read_image;
 use stratavox::technique::Technique;

@@ -1,13 +1,9 @@
 //! The matrix of `docs/matrix.md`: every cell is drawn by the device as by its twin, or refused by both with the same
 //! reason, and the page says which.
 
-#[path = "../../examples/matrix/cells.rs"]
-mod cells;
-#[path = "../../examples/matrix/page.rs"]
-mod page;
-
+use crate::cells::{DENOISE, FEATURES, FILTERS, Feature, MODES, Matter, Seen, settings};
+use crate::page;
 use crate::shared::{Worst, compare, device, device_with};
-use cells::{DENOISE, FEATURES, FILTERS, Feature, MODES, Matter, Seen, settings};
 use std::error::Error;
 use stratavox::gpu::Caps;
 use stratavox::offscreen::{self, Renderer, reference};

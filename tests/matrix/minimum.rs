@@ -1,12 +1,8 @@
 //! Under the least that Vulkan allows the same pictures are drawn, by all techniques and in all modes; what cannot be
 //! is refused by the name of what lacks.
 
-#[allow(dead_code, reason = "not all that the page shows is drawn here")]
-#[path = "../../examples/matrix/cells.rs"]
-mod cells;
-
+use crate::cells::{FEATURES, Feature, MODES, Matter, TECHNIQUES, settings};
 use crate::shared::{device, device_with};
-use cells::{FEATURES, Feature, MODES, Matter, TECHNIQUES, settings};
 use std::collections::BTreeMap;
 use stratavox::gpu::{self, Caps};
 use stratavox::offscreen::{Error, Renderer};
