@@ -84,7 +84,7 @@ impl Eye {
     }
 
     /// The same, beginning at another side.
-    pub fn from_side(&self, side: Orbit) -> Self {
+    pub fn with_side(&self, side: Orbit) -> Self {
         Self {
             side,
             orbit: side,

@@ -57,7 +57,7 @@ pub fn fit(view: &mut View, extent: [u32; 2], small: &Small) -> Result<usize, Er
     let mut eye = view.eye.clone();
     if eye.may_choose_side {
         let turned = |eye: &Eye, [azimuth_degrees, elevation_degrees]: [f64; 2]| {
-            eye.from_side(Orbit {
+            eye.with_side(Orbit {
                 azimuth_degrees,
                 elevation_degrees,
                 roll_degrees: 0.0,
