@@ -7,6 +7,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 use stratavox::camera::{Camera, Lens, Orbit};
+use stratavox::color::decode_srgb;
 use stratavox::gpu::{DeviceChoice, Headless, Options};
 use stratavox::offscreen::Renderer;
 use stratavox::picture::{WriteOptions, read_image, write_picture};
@@ -565,7 +566,7 @@ fn the_first_picture_is_fitted_to_what_is_visible_and_lit_as_the_command_line_do
     for pixel in &mut wanted.pixels {
         let left = 1.0 - pixel[3];
         for c in 0..3 {
-            pixel[c] += left * behind[c] as f32;
+            pixel[c] += left * decode_srgb(behind[c]) as f32;
         }
         pixel[3] = 1.0;
     }
