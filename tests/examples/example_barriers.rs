@@ -35,7 +35,7 @@ fn assert_each_is_missed(name: &str, unheard: &[&str]) {
     let program = || {
         let mut command = Command::new(env::current_exe().unwrap());
         command
-            .args(["--exact", "example", "--nocapture"])
+            .args(["--exact", "example_barriers::example", "--nocapture"])
             .env(ONE, name);
         command.env_remove("STRATAVOX_VALIDATION");
         command
