@@ -45,6 +45,13 @@ const SHEET: f64 = 0.015;
 const FIELD_DEPTH: f64 = 4.0;
 /// The most that a sheet hides of what lies 1/512 of the diagonal behind it.
 const MOST_OPACITY: f64 = 0.6;
+/// Opacities of matter of no known kind at the stops of tissue: its dark hull is transparent enough to show bright parts
+/// inside.
+const MATTER: [f64; 6] = [0.0, 0.01, 0.03, 0.1, 0.3, 0.6];
+/// Share of the voxels of a signed field that are transparent at most.
+const QUIET: f64 = 0.8;
+/// Where a signed field begins to be opaque at the least, as a share of its reach.
+const LEAST_QUIET: f64 = 0.02;
 /// Kelvins that nothing in the air or the sea is colder than.
 const COLDEST: f64 = 100.0;
 /// Control points of a field's colours.
@@ -122,10 +129,11 @@ pub fn automatic_in(
     let function = match choice.kind {
         Kind::Labels => categorical(summary),
         Kind::Ct => offset_ct(summary, choice.offset),
+        Kind::Tissue if choice.colormap.is_some() => matter(summary),
         Kind::Tissue => tissue(summary),
         Kind::Sparse => sparse(summary),
         Kind::Uptake => uptake(summary),
-        Kind::Signed => signed(summary),
+        Kind::Signed => departures(summary),
         Kind::Field => field(summary),
     };
     let function = match choice.colormap {
@@ -153,6 +161,51 @@ fn has_ct_offset(summary: &ValueSummary, is_ct: bool) -> bool {
     );
     // Each of the peaks is twice what lies between them, and together they are most of the volume.
     is_ct || air > 0.05 && tissue > 0.05 && air.min(tissue) > 2.0 * gap && air + tissue > 0.5
+}
+
+/// What tissue is, with the opacities of [`MATTER`].
+fn matter(summary: &ValueSummary) -> TransferFunction {
+    let mut function = tissue(summary);
+    for (point, opacity) in function.opacity.iter_mut().zip(MATTER) {
+        point.opacity = opacity;
+    }
+    function
+}
+
+/// What [`signed`] is, but opaque from the magnitude on that a share [`QUIET`] of the voxels lies below, where that is
+/// less: a few strong values leave weak ones visible.
+fn departures(summary: &ValueSummary) -> TransferFunction {
+    let mut function = signed(summary);
+    let reach = function.opacity.last().map_or(0.0, |point| point.value);
+    let quiet = magnitude_quantile(summary, QUIET).max(LEAST_QUIET * reach);
+    let nearer = |value: &mut f64| {
+        if value.abs() < 0.5 * reach {
+            *value = value.clamp(-quiet, quiet);
+        }
+    };
+    function.color.iter_mut().for_each(|p| nearer(&mut p.value));
+    function
+        .opacity
+        .iter_mut()
+        .for_each(|p| nearer(&mut p.value));
+    function
+}
+
+/// The magnitude that a share `q` of the voxels lies below.
+fn magnitude_quantile(summary: &ValueSummary, q: f64) -> f64 {
+    let [low, high] = summary.range;
+    let (mut under, mut over) = (0.0, low.abs().max(high.abs()));
+    // Each step halves the interval: 64 are more than a double has bits.
+    for _ in 0..64 {
+        let middle = 0.5 * (under + over);
+        let share = summary.share_below(middle) - summary.share_below(-middle);
+        if share < q {
+            under = middle;
+        } else {
+            over = middle;
+        }
+    }
+    over
 }
 
 /// Thin sheets of eight values, so that neither the faces of the box nor what most of it is made of hide the inside. Each
@@ -292,6 +345,60 @@ mod tests {
         assert_eq!(of(unit("m s-1")), (Kind::Field, Some("wind")));
         // No air is at 0 K.
         assert_eq!(of(unit("K")), (Kind::Tissue, Some("cividis")));
+    }
+
+    #[test]
+    fn matter_of_no_known_kind_shows_what_is_inside() {
+        // A dark background, a hull of 60 and a core of 200.
+        let values: Vec<_> = (0..4000)
+            .map(|i| match i % 20 {
+                0..12 => f64::from(i % 7),
+                12..18 => 50.0 + f64::from(i % 23),
+                _ => 190.0 + f64::from(i % 21),
+            })
+            .collect();
+        let summary = summary(&values);
+        let function = |is_patient| {
+            let context = Context {
+                is_patient,
+                is_integer: true,
+                ..Context::default()
+            };
+            assert_eq!(context.choice(&summary).kind, Kind::Tissue);
+            automatic_in(&context, &summary, Classified::Samples, None)
+        };
+        let [tissue, matter] = [true, false].map(function);
+        assert!(matter.opacity(60.0) < 0.4 * tissue.opacity(60.0));
+        assert!(matter.opacity(200.0) > 0.5 * tissue.opacity(200.0));
+    }
+
+    #[test]
+    fn a_few_strong_values_of_a_signed_field_leave_weak_ones_visible() {
+        // Nineteen voxels in twenty have up to a tenth of the magnitude of the twentieth.
+        let values: Vec<_> = (0..4000)
+            .map(|i: i32| {
+                let weak = f64::from(i % 201 - 100) / 100.0;
+                if i % 20 == 0 { 10.0 * weak } else { weak }
+            })
+            .collect();
+        let summary = summary(&values);
+        let function = departures(&summary);
+        let quiet = magnitude_quantile(&summary, QUIET);
+        let below = values.iter().filter(|value| value.abs() < quiet).count();
+        assert!((below as f64 / 4000.0 - QUIET).abs() < 0.01);
+        assert_eq!(signed(&summary).opacity(1.2 * quiet), 0.0);
+        for sign in [-1.0, 1.0] {
+            assert_eq!(function.opacity(sign * 0.9 * quiet), 0.0);
+            assert!(function.opacity(sign * 1.2 * quiet) > 0.0);
+            assert_eq!(
+                function.opacity(sign * 9.0),
+                signed(&summary).opacity(sign * 9.0)
+            );
+        }
+        // Values that are spread evenly keep their quiet part.
+        let even: Vec<_> = (-1000..=1000).map(f64::from).collect();
+        let even = super::tests::summary(&even);
+        assert_eq!(departures(&even), signed(&even));
     }
 
     #[test]
