@@ -142,18 +142,40 @@ const ROOM_ALLOCATIONS: i64 = 4;
 /// How much the process may grow over all of a run. In 10 000 loops a leak of 210 bytes a loop is more.
 const RESIDENT_BYTES: i64 = 2 << 20;
 
+/// Runs that may exceed [`RESIDENT_BYTES`] before the last one: a thread of the driver makes a heap of its own at a time of
+/// its choice, once. What each loop loses exceeds it in every run.
+const SPARE_RUNS: u32 = 1;
+
 /// Draws so often, and compares the end with the beginning: as many allocations on our heap but for
 /// [`ROOM_ALLOCATIONS`], as many bytes but for [`ROOM_BYTES`], as many open files, and no more than [`RESIDENT_BYTES`] of
-/// the process.
+/// the process, in one of [`SPARE_RUNS`] + 1 runs.
 #[track_caller]
 fn assert_no_growth(mut draw: impl FnMut()) {
     (0..25).for_each(|_| draw());
-    // What is printed is kept on our heap: at the end.
-    let mut seen = [Footprint::now(); 5];
-    for quarter in &mut seen[1..] {
-        (0..loops() / 4).for_each(|_| draw());
-        *quarter = Footprint::now();
+    for spare in (0..=SPARE_RUNS).rev() {
+        // What is printed is kept on our heap: at the end.
+        let mut seen = [Footprint::now(); 5];
+        for quarter in &mut seen[1..] {
+            (0..loops() / 4).for_each(|_| draw());
+            *quarter = Footprint::now();
+        }
+        let [before, .., after] = seen;
+        print_growth(&seen);
+        assert!(
+            after.allocations - before.allocations <= ROOM_ALLOCATIONS,
+            "allocations: {seen:#?}"
+        );
+        assert!(after.bytes - before.bytes <= ROOM_BYTES, "heap: {seen:#?}");
+        assert_eq!(after.open_files, before.open_files, "files: {seen:#?}");
+        let grown = after.resident_bytes - before.resident_bytes;
+        if grown <= RESIDENT_BYTES {
+            return;
+        }
+        assert!(spare > 0, "{grown} bytes more: {seen:#?}");
     }
+}
+
+fn print_growth(seen: &[Footprint; 5]) {
     let [before, .., after] = seen;
     let kib = |bytes: i64| bytes / 1024;
     let grown = seen.windows(2);
@@ -172,14 +194,6 @@ fn assert_no_growth(mut draw: impl FnMut()) {
         before.open_files,
         after.open_files,
     );
-    assert!(
-        after.allocations - before.allocations <= ROOM_ALLOCATIONS,
-        "allocations: {seen:#?}"
-    );
-    assert!(after.bytes - before.bytes <= ROOM_BYTES, "heap: {seen:#?}");
-    assert_eq!(after.open_files, before.open_files, "files: {seen:#?}");
-    let grown = after.resident_bytes - before.resident_bytes;
-    assert!(grown <= RESIDENT_BYTES, "{grown} bytes more: {seen:#?}");
 }
 
 /// The heap is that of the whole process.
