@@ -3,9 +3,10 @@
 //! ```text
 //! light        right, up and towards the eye -0.5, 0.6, 1     ambient .35, diffuse .65, specular .2, shininess 20
 //! g0           sqrt(3/2) sigma / h: the root mean square of the gradient that noise of deviation sigma makes, by central
-//!              differences over voxels of the side h
+//!              differences over voxels of the side h; of labels .01 / h: neighbours of two labels differ by 1 at least
 //! ```
 
+use super::values::summary;
 use crate::technique::{Light, LightSpace, Shading};
 use crate::transfer::Kind;
 use crate::volume::{Volume, noise_of};
@@ -25,9 +26,17 @@ pub fn is_lit(kind: Kind) -> bool {
     matches!(kind, Kind::Ct | Kind::Tissue | Kind::Labels)
 }
 
+/// The half gradient of labels, in labels per voxel: their numbers have no noise, and a gradient of 1/2, the least between
+/// two labels, has the weight .98.
+const OF_LABELS: f64 = 0.01;
+
 /// The half gradient that noise of a volume asks for, in values per world length.
 pub fn half_gradient(volume: &Volume) -> f64 {
-    1.5_f64.sqrt() * noise_of(volume) / volume.grid().smallest_spacing()
+    let per_voxel = match summary(volume).labels {
+        Some(_) => OF_LABELS,
+        None => 1.5_f64.sqrt() * noise_of(volume),
+    };
+    per_voxel / volume.grid().smallest_spacing()
 }
 
 /// [`LIGHT`] on [`MATERIAL`], with the [`half_gradient`] of a volume.

@@ -48,6 +48,8 @@ const MOST_OPACITY: f64 = 0.6;
 /// Opacities of matter of no known kind at the stops of tissue: its dark hull is transparent enough to show bright parts
 /// inside.
 const MATTER: [f64; 6] = [0.0, 0.01, 0.03, 0.1, 0.3, 0.6];
+/// Opacity of a label: its surface is lit, and a label close behind it is seen faintly.
+const LABEL: f64 = 0.15;
 /// Share of the voxels of a signed field that are transparent at most.
 const QUIET: f64 = 0.8;
 /// Where a signed field begins to be opaque at the least, as a share of its reach.
@@ -127,7 +129,7 @@ pub fn automatic_in(
     }
     let choice = context.choice(summary);
     let function = match choice.kind {
-        Kind::Labels => categorical(summary),
+        Kind::Labels => labels(summary),
         Kind::Ct => offset_ct(summary, choice.offset),
         Kind::Tissue if choice.colormap.is_some() => matter(summary),
         Kind::Tissue => tissue(summary),
@@ -161,6 +163,17 @@ fn has_ct_offset(summary: &ValueSummary, is_ct: bool) -> bool {
     );
     // Each of the peaks is twice what lies between them, and together they are most of the volume.
     is_ct || air > 0.05 && tissue > 0.05 && air.min(tissue) > 2.0 * gap && air + tissue > 0.5
+}
+
+/// What [`categorical`] is, with the opacity [`LABEL`].
+fn labels(summary: &ValueSummary) -> TransferFunction {
+    let mut function = categorical(summary);
+    for point in &mut function.opacity {
+        if point.opacity > 0.0 {
+            point.opacity = LABEL;
+        }
+    }
+    function
 }
 
 /// What tissue is, with the opacities of [`MATTER`].
