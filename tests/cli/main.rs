@@ -5,6 +5,7 @@ mod animate;
 #[cfg(target_os = "linux")]
 mod animate_faults;
 mod animate_films;
+mod animate_look;
 mod animate_mixed;
 #[cfg(unix)]
 mod animate_stops;
