@@ -28,6 +28,7 @@ mod interrupt;
 mod large;
 mod left_out;
 mod look;
+mod look_frame;
 mod manuals;
 mod memory;
 mod messages;
