@@ -3,9 +3,9 @@
 use super::{
     Error,
     annotate::{Annotation, Seen},
-    flags::{Depth, InputFlags, PHANTOM, SceneFlags},
+    flags::{Classification, Depth, InputFlags, PHANTOM, SceneFlags},
     load::open,
-    look::{Framing, Use, View, Views, frozen, prepared},
+    look::{Chosen, Framing, Use, View, Views, prepared},
     output::{self, write_whole},
     progress::{Progress, ProgressWord},
     reasons::why_empty,
@@ -166,9 +166,6 @@ impl Render {
         )?;
 
         let progress = Progress::new(self.progress);
-        for note in scene.idle() {
-            progress.note(note);
-        }
         progress.stage("prepare", 0, 1);
         let device = Device::begin(scene.one_device()?);
         progress.stage("read", 0, 1);
@@ -195,7 +192,9 @@ impl Render {
         let framing = Framing::new(&scene, &shown, made_for, extent_pixels, !self.no_skip);
         let views = Views::default();
         let (mut renderer, view) = prepared(&framing, &parts, &layers, device, &views)?;
-        for note in &view.notes {
+        // Of the scene with its look: a light that is given falls on what the look lights.
+        let idle = view.scene.idle().into_iter();
+        for note in idle.chain(view.notes.iter().map(String::as_str)) {
             progress.note(note);
         }
         let View {
@@ -261,7 +260,12 @@ impl Render {
         }
         let stages = renderer.stages(&progress, gate, Some(ms_since(start)));
         if let Some(path) = &self.save_scene {
-            let text = scene_file::text(&frozen(view, &shown), path);
+            let integrals = match classification {
+                Classification::RangeOfPicture => Some(renderer.projected_range(camera)?),
+                Classification::Function(_) => None,
+            };
+            let chosen = Chosen::of_picture(view, &shown, parts.beside(), integrals);
+            let text = scene_file::text(&chosen.frozen(&view.scene), path);
             write_whole(path, text.as_bytes(), self.force, gate)?;
         }
         if let Some(path) = &self.timings {

@@ -80,7 +80,11 @@ impl Sheet {
             let words = &self.inputs[at];
             sheet.name(at as u32, short_name(words));
             match draw(scene, self.tile.0, &mut device, &self.device, &progress) {
-                Ok(picture) => sheet.put(at as u32, &picture),
+                Ok((picture, notes)) => {
+                    sheet.put(at as u32, &picture);
+                    let notes = notes.iter().map(|note| format!("{words}: {note}"));
+                    notes.for_each(|note| progress.note(&note));
+                }
                 Err(error) => {
                     progress.note(&format!("{words} is left out: {error}"));
                     first_error.get_or_insert(error);
@@ -134,7 +138,7 @@ fn draw(
     device: &mut Device,
     device_word: &Option<String>,
     progress: &Progress,
-) -> Result<Picture, Error> {
+) -> Result<(Picture, Vec<String>), Error> {
     let settings = scene.settings(Depth::Eight)?;
     let scene = &mut scene.clone();
     let shown = Shown::read(scene, &settings, device, progress)?;
@@ -172,12 +176,12 @@ fn draw(
             };
             annotation.put(&mut picture, behind.as_deref(), &seen, PictureFormat::Png)?;
         }
-        Ok((picture, renderer.into_device()))
+        Ok(((picture, view.notes.clone()), renderer.into_device()))
     });
     match drawn {
-        Ok((picture, free)) => {
+        Ok((drawn, free)) => {
             *device = free;
-            Ok(picture)
+            Ok(drawn)
         }
         Err(error) => {
             *device = Device::find(device_word.as_deref())?;

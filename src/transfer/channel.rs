@@ -30,7 +30,7 @@ pub fn of_channel(
     classified: Classified,
     window: Option<Window>,
 ) -> TransferFunction {
-    let window = window.unwrap_or_else(|| signal(summary, 0.6));
+    let window = window.unwrap_or_else(|| window_of_channel(summary));
     if classified == Classified::Projection {
         let mut function = window.grey(classified);
         function.color[1].srgb = srgb;
@@ -53,6 +53,11 @@ pub fn of_channel(
         interpolation: Interpolation::Linear,
         graded: None,
     }
+}
+
+/// The window of a channel that neither a person nor its file gives one: its signal without the background.
+pub(crate) fn window_of_channel(summary: &ValueSummary) -> Window {
+    signal(summary, 0.6)
 }
 
 /// The opacity of a volume of colours, over luma or alpha from 0 to 1. Its own colours are not used.

@@ -6,14 +6,15 @@ use std::fs;
 use std::io::Write;
 use std::process::Stdio;
 
-fn picture(folder: &Folder, name: &str) -> RgbaImage {
+/// The picture of this name.
+pub fn picture(folder: &Folder, name: &str) -> RgbaImage {
     image::open(folder.path(name))
         .expect("a picture")
         .to_rgba8()
 }
 
 /// The box of pixels that differ from the background by over two codes: left, top, right, bottom.
-fn box_of(picture: &RgbaImage) -> [f64; 4] {
+pub fn box_of(picture: &RgbaImage) -> [f64; 4] {
     let background = [24_i32, 24, 28];
     let mut found = [f64::INFINITY, f64::INFINITY, 0.0, 0.0];
     for (x, y, pixel) in picture.enumerate_pixels() {
@@ -89,12 +90,40 @@ fn a_scene_keeps_all_that_was_chosen() {
     folder
         .run("convert phantom:head,n=40 -o head.nrrd")
         .assert_done();
+    folder
+        .run("convert phantom:sphere,n=40 -o ball.nrrd --type u8 --window 0,1")
+        .assert_done();
+    let head = "NRRD0004\ntype: uint8\nencoding: raw\n";
+    let cube = |voxel: fn(usize) -> Vec<u8>| (0..12 * 12 * 12).flat_map(voxel).collect::<Vec<u8>>();
+    let rgb =
+        format!("{head}dimension: 4\nsizes: 3 12 12 12\nkinds: RGB-color domain domain domain\n\n");
+    let colors = cube(|i| vec![(i % 12 * 20) as u8, (i / 12 % 12 * 20) as u8, 90]);
+    folder.file("rgb.nrrd", [rgb.into_bytes(), colors].concat());
+    let names = format!("{head}dimension: 3\nsizes: 12 12 12\n\n");
+    let labels = cube(|i| vec![(i / 576) as u8]);
+    folder.file("names.nrrd", [names.into_bytes(), labels].concat());
     for (name, words) in [
         ("head", "head.nrrd"),
         ("mip", "phantom:head,n=40 --mode mip"),
         ("preset", "phantom:head,n=40 --preset ct-bone"),
         ("labels", "phantom:head,n=40 --preset grey --zoom 1.5"),
         ("iso", "phantom:head,n=40 --mode iso"),
+        ("xray", "head.nrrd --mode xray"),
+        ("cells", "phantom:cells,n=24"),
+        ("cells-mip", "phantom:cells,n=24 --mode mip"),
+        ("over", "phantom:head,n=40 --labels ball.nrrd"),
+        (
+            "opaque",
+            "phantom:storm,n=24 --variable temperature --opacity-variable cloud",
+        ),
+        (
+            "painted",
+            "phantom:storm,n=24 --variable w --mode iso --iso-color-by vapor",
+        ),
+        ("rgb", "rgb.nrrd"),
+        ("rgb-mip", "rgb.nrrd --mode mip"),
+        ("names", "names.nrrd --label-hide 2"),
+        ("classified", "head.nrrd --preclassified"),
     ] {
         let ran = folder.run(&format!(
             "render {words} --size 80x60 -o {name}.png --save-scene {name}.json"
@@ -106,6 +135,20 @@ fn a_scene_keeps_all_that_was_chosen() {
         let [first, again] = [name.to_owned(), format!("{name}-again")]
             .map(|name| fs::read(folder.path(&format!("{name}.png"))).expect("a picture"));
         assert!(first == again, "{name}");
+        let text = fs::read_to_string(folder.path(&format!("{name}.json"))).expect("a scene");
+        assert!(text.contains(r#""look": "plain""#), "{name}: {text}");
+        let words: &[&str] = match name {
+            "xray" | "mip" | "rgb-mip" => &["window"],
+            "cells" | "cells-mip" => &["0,color=", "1,color=", ",window="],
+            "opaque" => &["transfer_function", "opacity_function"],
+            "painted" => &["transfer_function", "iso_opacity"],
+            "iso" => &["iso_color"],
+            "preset" | "labels" => &["preset"],
+            _ => &["transfer_function"],
+        };
+        for word in words {
+            assert!(text.contains(word), "{name}, {word}: {text}");
+        }
     }
     let text = fs::read_to_string(folder.path("head.json")).expect("a scene");
     for key in [

@@ -5,6 +5,7 @@ mod animate;
 #[cfg(target_os = "linux")]
 mod animate_faults;
 mod animate_films;
+mod animate_look;
 mod animate_mixed;
 #[cfg(unix)]
 mod animate_stops;
@@ -27,6 +28,7 @@ mod interrupt;
 mod large;
 mod left_out;
 mod look;
+mod look_frame;
 mod manuals;
 mod memory;
 mod messages;

@@ -91,3 +91,31 @@ fn a_time_that_is_not_there_is_answered_with_those_that_are() {
     ));
     ran.assert_refused(2, &["1999-01-01", "--time 0 to --time 7"]);
 }
+
+#[test]
+fn light_that_the_look_turns_on_is_not_called_idle() {
+    let folder = Folder::new();
+    for flag in [
+        "--light 1,0,0",
+        "--material 0.3,0.6,0.1,10",
+        "--half-gradient 5",
+    ] {
+        let words = format!("phantom:head,n=16 {flag} {SMALL}");
+        let said = |verb: &str, more: &str, output: &str| {
+            let ran = folder.run(&format!("{verb} {words} {more} --force -o {output}"));
+            ran.assert_done();
+            ran.err.contains("has no effect without --shading phong")
+        };
+        for (verb, more, output) in [
+            ("render", "", "a.png"),
+            ("thumbnails", "", "small"),
+            ("animate", "--turntable 2", "%d.png"),
+        ] {
+            assert!(!said(verb, more, output), "{verb} {flag}");
+            let dark = format!("{more} --shading none");
+            assert!(said(verb, &dark, output), "{verb} {flag}");
+            let plain = format!("{more} --look plain");
+            assert!(said(verb, &plain, output), "{verb} {flag}");
+        }
+    }
+}

@@ -5,9 +5,10 @@ use super::{
     drawer::{Seen, Work},
     feed::{Ahead, Feed, times_of},
     film::y4m,
+    kept::Kept,
     rate::Rate,
     ready::{self, Ready},
-    shots::Shot,
+    shots::{Film, Shot},
     store::Store,
     volumes::{Moment, Volumes},
 };
@@ -66,6 +67,10 @@ pub struct Drawing<'a> {
     pub progress: &'a Progress,
     /// Samples are counted at the end.
     pub wants_timings: bool,
+    /// Which frames there are.
+    pub film: &'a Film,
+    /// What a scene keeps of what is chosen.
+    pub kept: &'a Kept,
 }
 
 /// What the frames show.
@@ -107,7 +112,9 @@ impl Drawing<'_> {
                 let parts = shown.parts();
                 let volumes = [vec![shown.looked_at()], parts.beside().volumes()].concat();
                 saw(self.shots[0].time as u32, &volumes)?;
-                let mut ready = ready::of_still(self.shots, self.scene, shown)?;
+                let all = self.kept.with_own(self.shots, self.film, self.scene);
+                let mut ready = ready::of_still(&all, self.scene, shown)?;
+                self.kept.take(&mut ready, self.shots.len());
                 let load_ms = ms_since(self.start);
                 let moment = Arc::new(Moment {
                     volume: Arc::clone(&shown.volume),
@@ -125,13 +132,10 @@ impl Drawing<'_> {
                 let saw = |time, volume: &Volume| saw(time, &[volume]);
                 let mut volumes = Volumes::new(source, *bricks, self.scene, self.progress, &saw);
                 let is_labels = source.header().is_labels;
-                let mut ready = ready::of_times(
-                    self.shots,
-                    self.scene,
-                    is_labels,
-                    &mut volumes,
-                    self.progress,
-                )?;
+                let all = self.kept.with_own(self.shots, self.film, self.scene);
+                let mut ready =
+                    ready::of_times(&all, self.scene, is_labels, &mut volumes, self.progress)?;
+                self.kept.take(&mut ready, self.shots.len());
                 let load_ms = ms_since(self.start);
                 let parts = Parts::Channels(Vec::new());
                 let first = |ready: &[Ready]| volumes.at(ready[0].time);
@@ -189,6 +193,7 @@ impl Drawing<'_> {
         for ready in ready.iter_mut() {
             ready.classification = Classification::Function(function.clone());
         }
+        let _ = self.kept.window.set(range);
         let window = format!("{},{}", range[0], range[1]);
         self.progress.note(&format!(
             "all frames have the window of the first: {window}"

@@ -1,41 +1,42 @@
 //! The camera of a film fitted to what is visible in its frames, as `--target` and `--zoom`.
 //!
 //! ```text
-//! camera stands still    the union of what is visible at up to 16 times fills the frame
+//! camera stands still    the union of what is visible in all frames fills the frame
 //! camera moves           the sphere around what is visible, seen along x and along y, fills it
 //! ```
 
-use super::{Plan, draw::Content, keeps_transparency, ready, shots::Shot, volumes::Volumes};
+use super::{
+    Plan,
+    draw::Content,
+    keeps_transparency,
+    ready::{self, Ready},
+    shots::Shot,
+    sphere::{along_axes, around, around_corners, sphere_of},
+    union::Union,
+    volumes::Volumes,
+};
 use crate::{
-    camera::{BoundingSphere, Camera, PixelBox, Projection},
+    camera::{Camera, PixelBox},
     cli::{
         Error,
-        flags::{Classification, Depth, FrameWord, Numbers, SceneFlags},
-        look::{Seen, Use, with_light, with_side},
+        flags::{Depth, FrameWord, Numbers, SceneFlags},
+        look::{Seen, Use, short, side_words, with_light, with_side},
         progress::Progress,
-        renderer::{Device, Job, Renderer},
+        renderer::Device,
     },
-    look::{SHARE, box_of, corners, frames_the_box, small_of, visible_in},
+    look::{SHARE, corners, frames_the_box, small_of},
     picture::PictureFormat,
-    scene::Beside,
-    technique::Settings,
+    technique::{Jitter, Settings},
     volume::{Grid, Volume},
 };
 use glam::DVec3;
 
-/// Times that are looked at, evenly spread.
-const MAX_TIMES: usize = 16;
 /// Pixels of the longer side of small frames.
-const SMALL_PIXELS: u32 = 128;
-
-/// What a small frame is made with.
-struct Look<'a> {
-    classification: &'a Classification,
-    beside: Beside<'a>,
-    settings: &'a Settings,
-    cameras: &'a [Camera],
-    extent_pixels: [u32; 2],
-}
+const SMALL_PIXELS: u32 = 64;
+/// How often all frames are looked at: once more from nearer where what is visible was small.
+const ROUNDS: usize = 2;
+/// It is small where it fills less of the frame: pixels of small frames would count too much.
+const COARSE: f64 = 0.5;
 
 /// The scene of a film with the light, the background and the camera of its look.
 pub fn framed(
@@ -45,93 +46,72 @@ pub fn framed(
     devices: &mut Vec<Device>,
     progress: &Progress,
 ) -> Result<SceneFlags, Error> {
-    let scene = &plan.scene;
-    let Some(mut word) = scene.camera.framed(scene.is_auto()) else {
-        return choose(plan, content, grid, progress).map(|(scene, _)| scene);
-    };
-    let (mut scene, classification) = choose(plan, content, grid, progress)?;
-    if scene.section.section.is_some() {
+    let is_auto = plan.scene.is_auto();
+    let word = plan.scene.camera.framed(is_auto);
+    // Words that are given win over the look, in a key as in a flag; a section shows its whole plane.
+    let is_open = !plan.film.places_the_camera() && plan.scene.section.section.is_none();
+    let word = word.filter(|_| is_open);
+    if !is_auto && word.is_none() {
+        return Ok(plan.scene.clone());
+    }
+    let header = &plan.header;
+    let has_named_axes = header.is_patient || header.is_earth;
+    let sided = with_side(&plan.scene, grid, header.is_earth, has_named_axes);
+    let (mut scene, known) = lit(plan, content, grid, sided, progress)?;
+    let Some(word) = word else {
         return Ok(scene);
-    }
+    };
     scene.camera.zoom = None;
-    let shots = plan.film.shots(&scene, plan.depth, &plan.header, grid)?;
-    let first = &shots[0];
-    if frames_the_box(first.settings.mode, first.settings.crop.is_some()) {
-        word = FrameWord::Box;
-    }
-    let moves = shots.iter().any(|shot| shot.camera != first.camera);
-    let corners = corners(grid, first.settings.crop);
+    let shots = plan.film.shots(&scene, plan.depth, header, grid)?;
+    let ready = match (content, known) {
+        (Content::Times(..), Some(known)) => known,
+        (Content::Times(..), None) => of_times(content, &shots, &scene)?,
+        (Content::Still(shown), _) => ready::of_still(&shots, &scene, shown)?,
+    };
     let extent_pixels = scene.picture.extent_pixels()?;
-    let small = match moves {
-        true => [SMALL_PIXELS; 2],
-        false => small_of(extent_pixels, SMALL_PIXELS),
+    let film = Fit {
+        moves: shots.iter().any(|shot| shot.camera != shots[0].camera),
+        camera: shots[0].camera,
+        corners: corners(grid, cropped(&shots)),
+        extent_pixels,
     };
-    let bounds = BoundingSphere::of_grid(&grid.world_from_voxel, grid.dims);
-    let cameras = match moves {
-        true => along_axes(&bounds).to_vec(),
-        false => vec![first.camera.fitted_to_points(&corners, small, SHARE)],
+    let first = &shots[0].settings;
+    let is_box = word == FrameWord::Box || frames_the_box(first.mode, first.crop.is_some());
+    let mut visible = None;
+    if !is_box {
+        let ready = seen_alone(ready, &shots);
+        let union = Union::new(&scene, content, &ready);
+        visible =
+            film.to_visible(|cameras, small| union.seen(cameras, small, devices, progress))?;
+    }
+    let what = match (&visible, first.crop, is_box) {
+        (Some(_), ..) => "what is visible in any frame",
+        (None, Some(_), _) => "the cropped box of all frames",
+        (None, None, true) => "the box",
+        (None, None, false) => "the box, because nothing is visible",
     };
-    let settings = match content {
-        Content::Still(shown) => Settings {
-            per_mode: shown.per_mode.clone(),
-            filter: match scene.sampling.filter {
-                Some(_) => first.settings.filter,
-                None => shown.filter.unwrap_or(first.settings.filter),
-            },
-            ..first.settings.clone()
-        },
-        Content::Times(..) => first.settings.clone(),
-    };
-    let parts = match content {
-        Content::Still(shown) => Some(shown.parts()),
-        Content::Times(..) => None,
-    };
-    let look = Look {
-        classification: &classification,
-        beside: parts
-            .as_ref()
-            .map_or(Beside::Nothing, |parts| parts.beside()),
-        settings: &settings,
-        cameras: &cameras,
-        extent_pixels: small,
-    };
-    let seen = match word {
-        FrameWord::Box => vec![None; cameras.len()],
-        FrameWord::Visible => visible(plan, content, &shots, &look, devices, progress)?,
-    };
-    let fitted = match (
-        moves,
-        seen.iter().copied().collect::<Option<Vec<PixelBox>>>(),
-    ) {
-        (false, Some(parts)) => cameras[0].fitted(&parts[0], small, SHARE),
-        (false, None) => cameras[0],
-        (true, Some(parts)) => {
-            let sphere = sphere_of(&cameras, [parts[0], parts[1]], small);
-            around(&first.camera, &sphere, extent_pixels)
-        }
-        (true, None) => around(&first.camera, &bounds, extent_pixels),
-    };
+    let fitted = visible.unwrap_or_else(|| film.to_box());
     let nearer = plan.scene.camera.zoom.unwrap_or(1.0);
-    scene.camera.frame = None;
-    scene.camera.target = Some(Numbers(fitted.target.to_array()));
-    scene.camera.zoom = Some(fitted.zoom * nearer);
+    let target = Numbers(fitted.target.to_array().map(short));
+    let zoom = short(fitted.zoom * nearer);
+    let flags = &mut scene.camera;
+    flags.frame = None;
+    (flags.target, flags.zoom) = (Some(target), Some(zoom));
+    let side = side_words(&scene.camera, &plan.scene.camera);
     progress.note(&format!(
-        "framed to {} of all frames",
-        match word {
-            FrameWord::Visible => "what is visible",
-            FrameWord::Box => "the box",
-        }
+        "framed to {what}: {side}--target {target} --zoom {zoom}"
     ));
     Ok(scene)
 }
 
-/// The scene with light and background, and how values are seen in its first frame.
-fn choose(
+/// The scene with light and background, and frames of several times, where those were asked for.
+fn lit(
     plan: &Plan,
     content: &Content,
     grid: &Grid,
+    scene: SceneFlags,
     progress: &Progress,
-) -> Result<(SceneFlags, Classification), Error> {
+) -> Result<(SceneFlags, Option<Vec<Ready>>), Error> {
     let made_for = Use {
         is_film: true,
         is_opaque: match &plan.target {
@@ -140,28 +120,15 @@ fn choose(
         },
         depth: plan.depth,
     };
-    let header = &plan.header;
-    let scene = with_side(
-        &plan.scene,
-        grid,
-        header.is_earth,
-        header.is_patient || header.is_earth,
-    );
     Ok(match content {
-        Content::Still(shown) => (
-            with_light(&scene, shown.seen(), made_for),
-            shown.classification.clone(),
-        ),
+        Content::Still(shown) => (with_light(&scene, shown.seen(), made_for), None),
+        Content::Times(..) if !scene.is_auto() => (scene, None),
         Content::Times(source, bricks) => {
-            if !scene.is_auto() {
-                return Ok((scene, Classification::RangeOfPicture));
-            }
-            let shots = plan.film.shots(&scene, plan.depth, header, grid)?;
+            let shots = plan.film.shots(&scene, plan.depth, &plan.header, grid)?;
+            let ready = of_times(content, &shots, &scene)?;
             let quiet = Progress::of_part();
             let unseen = |_, _: &Volume| Ok(());
             let mut volumes = Volumes::new(source, *bricks, &scene, &quiet, &unseen);
-            let labels = source.header().is_labels;
-            let ready = ready::of_times(&shots[..], &scene, labels, &mut volumes, &quiet)?;
             let moment = volumes.at(ready[0].time)?;
             progress.stage("prepare", 0, 1);
             let seen = Seen {
@@ -170,147 +137,114 @@ fn choose(
                 classification: &ready[0].classification,
                 is_alone: true,
             };
-            let lit = with_light(&scene, seen, made_for);
-            (lit, ready[0].classification.clone())
+            (with_light(&scene, seen, made_for), Some(ready))
         }
     })
 }
 
-/// What each camera sees at all times together.
-fn visible(
-    plan: &Plan,
-    content: &Content,
-    shots: &[Shot],
-    look: &Look,
-    devices: &mut Vec<Device>,
-    progress: &Progress,
-) -> Result<Vec<Option<PixelBox>>, Error> {
-    let mut seen = vec![None; look.cameras.len()];
-    let mut draw = |volume: &Volume| -> Result<(), Error> {
-        let job = Job {
-            volume,
-            classification: look.classification,
-            stream: None,
-            beside: look.beside,
-            settings: look.settings,
-            extent_pixels: look.extent_pixels,
-            layers: &[],
-        };
-        let mut renderer = Renderer::new(job, &look.cameras[0], devices.remove(0))?;
-        for (camera, seen) in look.cameras.iter().zip(&mut seen) {
-            let found = visible_in(&renderer.draw(camera)?.picture);
-            let found = box_of(&found, look.extent_pixels[0]);
-            *seen = match (*seen, found) {
-                (Some(a), Some(b)) => Some(PixelBox::union(a, b)),
-                (a, b) => a.or(b),
-            };
-        }
-        devices.insert(0, renderer.into_device());
-        Ok(())
+/// How frames of several times are seen, without a word to anybody.
+fn of_times(content: &Content, shots: &[Shot], scene: &SceneFlags) -> Result<Vec<Ready>, Error> {
+    let Content::Times(source, bricks) = content else {
+        unreachable!("of several times");
     };
-    match content {
-        Content::Still(shown) => draw(shown.looked_at())?,
-        Content::Times(source, bricks) => {
-            let quiet = Progress::of_part();
-            let unseen = |_, _: &Volume| Ok(());
-            let mut volumes = Volumes::new(source, *bricks, &plan.scene, &quiet, &unseen);
-            let mut times: Vec<u32> = shots.iter().map(|shot| shot.time as u32).collect();
-            times.dedup();
-            let count = times.len().min(MAX_TIMES);
-            for k in 0..count {
-                progress.stage("prepare", k, count);
-                let at = k * (times.len() - 1) / (count.max(2) - 1);
-                let moment = volumes.at(f64::from(times[at]))?;
-                draw(moment.looked_at())?;
+    let quiet = Progress::of_part();
+    let unseen = |_, _: &Volume| Ok(());
+    let mut volumes = Volumes::new(source, *bricks, scene, &quiet, &unseen);
+    let is_labels = source.header().is_labels;
+    ready::of_times(shots, scene, is_labels, &mut volumes, &quiet)
+}
+
+/// The frames of `shots` without light and grain, which change no opacity: those that differ in nothing else look alike.
+fn seen_alone(ready: Vec<Ready>, shots: &[Shot]) -> Vec<Ready> {
+    let dark = |(ready, shot): (Ready, &Shot)| Ready {
+        settings: Settings {
+            per_mode: ready.settings.per_mode,
+            filter: ready.settings.filter,
+            shading: None,
+            ambient_occlusion: None,
+            jitter: Jitter::default(),
+            ..shot.settings.clone()
+        },
+        ..ready
+    };
+    ready.into_iter().zip(shots).map(dark).collect()
+}
+
+/// The box around what `--crop` leaves in any frame.
+fn cropped(shots: &[Shot]) -> Option<[DVec3; 2]> {
+    let crops = shots.iter().filter_map(|shot| shot.settings.crop);
+    crops.reduce(|[low, high], [a, b]| [low.min(a), high.max(b)])
+}
+
+/// What a camera is fitted to.
+struct Fit {
+    /// The camera changes from frame to frame.
+    moves: bool,
+    /// That of the first frame, without a zoom.
+    camera: Camera,
+    /// Of the box, or of what is left of it.
+    corners: Vec<DVec3>,
+    extent_pixels: [u32; 2],
+}
+
+/// What cameras see in any frame, of so many pixels.
+type SeenBy<'a> = dyn FnMut(&[Camera], [u32; 2]) -> Result<Vec<Option<PixelBox>>, Error> + 'a;
+
+impl Fit {
+    /// All of the box in every frame.
+    fn to_box(&self) -> Camera {
+        match self.moves {
+            true => around(
+                &self.camera,
+                &around_corners(&self.corners),
+                self.extent_pixels,
+            ),
+            false => self
+                .camera
+                .fitted_to_points(&self.corners, self.extent_pixels, SHARE),
+        }
+    }
+
+    /// What is visible in any frame; `None` where nothing is.
+    fn to_visible(
+        &self,
+        mut seen: impl FnMut(&[Camera], [u32; 2]) -> Result<Vec<Option<PixelBox>>, Error>,
+    ) -> Result<Option<Camera>, Error> {
+        match self.moves {
+            true => self.to_sphere(&mut seen),
+            false => self.to_union(&mut seen),
+        }
+    }
+
+    fn to_union(&self, seen: &mut SeenBy) -> Result<Option<Camera>, Error> {
+        let small = small_of(self.extent_pixels, SMALL_PIXELS);
+        let mut camera = self.to_box();
+        for _ in 0..ROUNDS {
+            let Some(part) = seen(&[camera], small)?[0] else {
+                return Ok(None);
+            };
+            camera = camera.fitted(&part, small, SHARE);
+            let filled = |k: usize| part.size()[k] / f64::from(small[k]);
+            if filled(0).max(filled(1)) >= COARSE {
+                break;
             }
         }
+        Ok(Some(camera))
     }
-    Ok(seen)
-}
 
-/// Orthographic cameras that see all of a sphere along -x and along -y.
-fn along_axes(bounds: &BoundingSphere) -> [Camera; 2] {
-    [DVec3::X, DVec3::Y].map(|side| Camera {
-        eye: bounds.center + 2.0 * bounds.radius * side,
-        target: bounds.center,
-        up: DVec3::Z,
-        projection: Projection::Orthographic {
-            view_height: 2.0 * bounds.radius,
-        },
-        zoom: 1.0,
-    })
-}
-
-/// The sphere around the box of what two such cameras see.
-fn sphere_of(cameras: &[Camera], parts: [PixelBox; 2], extent_pixels: [u32; 2]) -> BoundingSphere {
-    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for (k, (camera, part)) in cameras.iter().zip(parts).enumerate() {
-        let rays = camera.rays(extent_pixels);
-        for [x, y] in [part.min, part.max] {
-            let (point, _) = rays.at(x, y);
-            // A camera along x says nothing of x.
-            let across = 1 - k;
-            low[across] = low[across].min(point[across]);
-            high[across] = high[across].max(point[across]);
-            low.z = low.z.min(point.z);
-            high.z = high.z.max(point.z);
+    fn to_sphere(&self, seen: &mut SeenBy) -> Result<Option<Camera>, Error> {
+        let small = [SMALL_PIXELS; 2];
+        let mut bounds = around_corners(&self.corners);
+        for _ in 0..ROUNDS {
+            let cameras = along_axes(&bounds);
+            let [Some(a), Some(b)] = seen(&cameras, small)?[..] else {
+                return Ok(None);
+            };
+            let before = std::mem::replace(&mut bounds, sphere_of(&cameras, [a, b], small));
+            if bounds.radius >= COARSE * before.radius {
+                break;
+            }
         }
-    }
-    BoundingSphere {
-        center: 0.5 * (low + high),
-        radius: 0.5 * low.distance(high),
-    }
-}
-
-/// The camera turned to the middle of a sphere that just fits its picture.
-fn around(camera: &Camera, sphere: &BoundingSphere, extent_pixels: [u32; 2]) -> Camera {
-    let shift = sphere.center - camera.target;
-    let moved = Camera {
-        eye: camera.eye + shift,
-        target: sphere.center,
-        ..*camera
-    };
-    let frame = moved.frame();
-    let distance = moved.eye.distance(moved.target);
-    // Rays graze the sphere nearer than its middle.
-    let radius = match moved.projection.is_perspective() {
-        true => sphere.radius / (1.0 - (sphere.radius / distance).powi(2)).max(1e-6).sqrt(),
-        false => sphere.radius,
-    };
-    let ends = [frame.right, -frame.right, frame.up, -frame.up];
-    let points = ends.map(|end| sphere.center + radius * end);
-    let fitted = moved.fitted_to_points(&points, extent_pixels, 1.0);
-    Camera {
-        zoom: fitted.zoom,
-        ..moved
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn two_views_of_a_box_give_the_sphere_around_it() {
-        let bounds = BoundingSphere {
-            center: DVec3::new(1.0, 2.0, 3.0),
-            radius: 16.0,
-        };
-        let cameras = along_axes(&bounds);
-        let (low, high) = (DVec3::new(-4.0, 0.0, 1.0), DVec3::new(2.0, 8.0, 7.0));
-        let extent = [320, 320];
-        let part = |camera: &Camera| {
-            let points = [low, high].map(|p| camera.project(p, extent).expect("in front"));
-            PixelBox::around(points).expect("points")
-        };
-        let sphere = sphere_of(&cameras, [part(&cameras[0]), part(&cameras[1])], extent);
-        assert!(
-            (sphere.center - 0.5 * (low + high)).length() < 1e-9,
-            "{sphere:?}"
-        );
-        assert!(
-            (sphere.radius - 0.5 * low.distance(high)).abs() < 1e-9,
-            "{sphere:?}"
-        );
+        Ok(Some(around(&self.camera, &bounds, self.extent_pixels)))
     }
 }

@@ -5,6 +5,7 @@
 //!     -> draw (one device, one volume after another) -> store -> film, where one file is asked for
 //! ```
 
+mod check;
 mod draw;
 mod drawer;
 mod feed;
@@ -13,15 +14,18 @@ mod framing;
 mod functions;
 mod identity;
 mod journal;
+mod kept;
 mod keyframes;
 mod keys;
 mod rate;
 mod ready;
 mod shots;
+mod sphere;
 mod store;
 mod target;
 mod track;
 mod tracks;
+mod union;
 mod volumes;
 
 use super::{
@@ -47,6 +51,7 @@ use crate::{
 use clap::Args;
 use draw::{Content, Drawing, Sink};
 use film::{FilmFormat, Reel};
+use kept::Kept;
 use rate::Rate;
 use shots::{Film, Shot};
 use std::{
@@ -148,9 +153,6 @@ impl Animate {
         }
         output::check(&outputs, &plan.inputs, self.force)?;
         let store = self.store(&plan, gate)?;
-        for note in plan.scene.idle() {
-            progress.note(note);
-        }
         if self.repeat.is_some() {
             progress.note("--repeat has no effect on a film");
         }
@@ -161,16 +163,18 @@ impl Animate {
         let is_done = store
             .as_ref()
             .is_some_and(|store| store.missing().is_empty());
-        let drawn = if is_done {
+        if is_done {
             progress.note("all frames are there already");
-            Ok(Timings::default())
-        } else {
-            self.draw(&plan, source, &sink, &progress)
+        }
+        // A scene keeps what is chosen only now.
+        let drawn = match is_done && self.save_scene.is_none() {
+            true => Ok((Timings::default(), None)),
+            false => self.draw(&plan, source, &sink, &progress),
         };
         if let (Err(_), Some(store), Target::Film { .. }) = (&drawn, &store, &plan.target) {
             store.say_what_is_kept(&progress);
         }
-        let timings = drawn?;
+        let (timings, frozen) = drawn?;
         if let (Some(store), Target::Film { path, format }) = (&store, &plan.target) {
             let reel = Reel {
                 frames: store.frames(),
@@ -183,8 +187,8 @@ impl Animate {
             film::write(*format, &reel, self.force, gate)?;
             store.remove()?;
         }
-        if let Some(path) = &self.save_scene {
-            let text = scene_file::text(&plan.scene, path);
+        if let (Some(path), Some(frozen)) = (&self.save_scene, &frozen) {
+            let text = scene_file::text(frozen, path);
             write_whole(path, text.as_bytes(), self.force, gate)?;
         }
         if let Some(path) = &self.timings {
@@ -199,7 +203,7 @@ impl Animate {
         source: Box<dyn Source>,
         sink: &Sink,
         progress: &Progress,
-    ) -> Result<Timings, Error> {
+    ) -> Result<(Timings, Option<SceneFlags>), Error> {
         progress.stage("prepare", 0, 1);
         let words = plan.scene.devices().into_iter();
         let devices = words.map(Device::find).collect::<Result<Vec<_>, _>>()?;
@@ -258,10 +262,17 @@ impl Animate {
         };
         let mut devices = devices;
         let scene = &framing::framed(plan, &content, &grid, &mut devices, progress)?;
+        for note in scene.idle() {
+            progress.note(note);
+        }
         let annotation = Annotation::of(scene, header, shots[0].settings.mode)?;
         let note = annotation.as_ref().and_then(Annotation::note);
         note.iter().for_each(|note| progress.note(note));
-        let shots = plan.film.shots(scene, *depth, header, &grid)?;
+        let mut shots = plan.film.shots(scene, *depth, header, &grid)?;
+        for shot in &mut shots {
+            shot.settings.skip = !self.no_skip;
+        }
+        let kept = Kept::new(self.save_scene.is_some());
         let drawing = Drawing {
             scene,
             shots: &shots,
@@ -277,8 +288,15 @@ impl Animate {
             background: self.background(plan, scene, progress),
             progress,
             wants_timings: self.timings.is_some(),
+            film: &plan.film,
+            kept: &kept,
         };
-        drawing.draw(sink, devices)
+        let timings = drawing.draw(sink, devices)?;
+        let frozen = self
+            .save_scene
+            .is_some()
+            .then(|| kept.frozen(scene, &content, &shots, &plan.film, height_factor));
+        Ok((timings, frozen))
     }
 
     /// All that the words say, checked as far as it can be without a voxel.
@@ -327,7 +345,8 @@ impl Animate {
             shot.settings.skip = !self.no_skip;
         }
         shown::check(&scene, &shots[0].settings)?;
-        check_several(&scene, header, &shots)?;
+        check::several(&scene, header, &shots)?;
+        check::frame(&scene, &film)?;
         let plan = Plan {
             scene,
             target,
@@ -408,38 +427,6 @@ impl Animate {
         }
         layers
     }
-}
-
-/// Refuses what changes one number a voxel where several are seen.
-fn check_several(scene: &SceneFlags, header: &Header, shots: &[Shot]) -> Result<(), Error> {
-    let is_still = shots::still_time(shots).is_some();
-    let is_between = |shot: &Shot| shot.time.fract() != 0.0;
-    if scene.input.stream
-        && let Some(number) = shots.iter().position(is_between)
-    {
-        let time = shots[number].time;
-        return Err(Error::usage(
-            format!(
-                "--stream: frame {number} shows time {time}, and between times there are no bricks"
-            ),
-            "whole times: --times; --fit draws reduced volumes that fit into memory",
-        ));
-    }
-    let several = shown::shows_several(scene, header)?;
-    if !is_still && (several || scene.labels.label_tf.is_some()) {
-        return Err(Error::usage(
-            "several times are shown of one number a voxel, without colours, several channels, --labels and --label-tf",
-            "--time N takes one time, --component N one number",
-        ));
-    }
-    let is_same = |shot: &Shot| shot.classification == scene.classification;
-    if several && !shots.iter().all(is_same) {
-        return Err(Error::usage(
-            "`window` and `tf` of keyframes are for one number a voxel, and several are drawn",
-            "say it of each for the whole film: --channel 0,color=cyan,window=0:100",
-        ));
-    }
-    Ok(())
 }
 
 fn keeps_transparency(target: &Target) -> bool {

@@ -9,6 +9,7 @@
 //! ```
 
 use super::keyframes::{Keyframes, MAX_FRAMES, place_of_frame};
+use super::tracks::Tracks;
 use crate::{
     camera::Camera,
     cli::{
@@ -77,9 +78,28 @@ impl Film {
         self.times || self.keys_change_time()
     }
 
+    /// True where keys say where the camera stands or how near it is: no look fits it then.
+    pub fn places_the_camera(&self) -> bool {
+        self.some_track(Tracks::places_the_camera)
+    }
+
+    /// True where keys say over which values functions are spread.
+    pub fn changes_window(&self) -> bool {
+        self.some_track(|tracks| !tracks.window.is_empty())
+    }
+
+    /// True where keys say how values are seen.
+    pub fn changes_function(&self) -> bool {
+        self.some_track(|tracks| !tracks.functions.is_empty())
+    }
+
     fn keys_change_time(&self) -> bool {
+        self.some_track(|tracks| !tracks.time.is_empty())
+    }
+
+    fn some_track(&self, has: impl Fn(&Tracks) -> bool) -> bool {
         let keyframes = self.keyframes.as_ref();
-        keyframes.is_some_and(|film| !film.tracks.time.is_empty())
+        keyframes.is_some_and(|film| has(&film.tracks))
     }
 
     /// All frames of `scene`, checked, of a volume of this header that is drawn on `grid`.

@@ -35,6 +35,15 @@ pub struct Tracks {
 }
 
 impl Tracks {
+    /// True where a key has a word that says where the camera stands or how near it is.
+    pub fn places_the_camera(&self) -> bool {
+        let is_open = self.eye.is_empty()
+            && self.target.is_empty()
+            && self.ln_zoom.is_empty()
+            && self.ln_view_height.is_empty();
+        !is_open
+    }
+
     /// `flags` as they are at `u`.
     pub fn camera(&self, flags: &CameraFlags, u: f64) -> CameraFlags {
         let stronger = CameraFlags {

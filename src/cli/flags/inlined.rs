@@ -32,9 +32,7 @@ impl Inlined {
         for piece in &imported.left_out {
             say_aside(&format!("{}: not taken over: {piece}", path.display()));
         }
-        let text = transfer_function_to_json(&imported.function);
-        let mut transfer_function: serde_json::Value =
-            serde_json::from_str(&text).expect("what we have just written as JSON");
+        let mut transfer_function = inlined(&imported.function).transfer_function;
         if imported.preintegrated {
             transfer_function["preintegrated"] = true.into();
         }
@@ -42,6 +40,15 @@ impl Inlined {
             transfer_function,
             of_fractions: imported.scale == Scale::Fractions,
         })
+    }
+}
+
+/// The function as flags carry it.
+pub fn inlined(function: &TransferFunction) -> Inlined {
+    let text = transfer_function_to_json(function);
+    Inlined {
+        transfer_function: serde_json::from_str(&text).expect("what we have just written as JSON"),
+        of_fractions: false,
     }
 }
 

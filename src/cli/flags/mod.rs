@@ -44,7 +44,7 @@ pub use component::Component;
 pub use denoise::DenoiseWord;
 pub use gradient_filter::GradientFlags;
 pub use gradients::{boundaries_of, refuse_gradients_in};
-pub use inlined::{Inlined, function_in};
+pub use inlined::{Inlined, function_in, inlined};
 pub use input::{InputFlags, PHANTOM, relative};
 pub use labels::LabelFlags;
 pub use levels::LevelFlags;
@@ -188,6 +188,9 @@ impl SceneFlags {
         let mut notes = topics.concat();
         if self.light.is_half_angle() && self.sampling.order.is_some() {
             notes.push("--order has no effect on half-angle slices, they come from the light");
+        }
+        if self.camera.frame.is_some() && self.section.section.is_some() {
+            notes.push("--frame has no effect with --section, which shows all of its plane");
         }
         notes
     }

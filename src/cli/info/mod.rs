@@ -106,10 +106,10 @@ impl Info {
         let components = self.input.components(header)?;
         let statistics = Statistics::of(&source, components.clone(), &limits)?;
         // Where one number a voxel is drawn; JSON says nothing of it.
-        let kind = match components.len() == 1 && statistics.valid_count > 0 && !self.json {
+        let choice = match components.len() == 1 && statistics.valid_count > 0 && !self.json {
             true => {
                 let component = components.start;
-                values::kind(&source, Pick { time: 0, component }, &limits)?
+                values::choice(&source, Pick { time: 0, component }, &limits)?
             }
             false => None,
         };
@@ -137,7 +137,7 @@ impl Info {
                 header,
                 input: &self.input,
                 statistics: &statistics,
-                kind,
+                choice,
             };
             say(&page.text(&limits))
         }

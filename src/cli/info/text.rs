@@ -4,11 +4,12 @@ use super::{RenderBytes, Report, place};
 use crate::{
     cli::{
         error::visible,
-        flags::{CameraFlags, InputFlags, Subject},
+        flags::{InputFlags, Subject},
         histogram::length_unit,
         readable::{bytes, grouped, short},
     },
-    transfer::Kind,
+    look::face,
+    transfer::Choice,
     volume::{Grid, Header, Limits, Statistics},
 };
 use std::fmt::Write;
@@ -19,7 +20,15 @@ pub struct Page<'a> {
     pub header: &'a Header,
     pub input: &'a InputFlags,
     pub statistics: &'a Statistics,
-    pub kind: Option<Kind>,
+    pub choice: Option<Choice>,
+}
+
+/// Where a camera stands.
+struct Side {
+    /// Azimuth and elevation.
+    degrees: [f64; 2],
+    /// Small pictures may show that another side has more to tell.
+    is_open: bool,
 }
 
 /// Of the line of bars.
@@ -197,13 +206,23 @@ impl Page<'_> {
     }
 
     fn drawing(&self, lines: &mut Lines) {
-        if let Some(kind) = self.kind {
-            lines.say("drawn as", kind.sentence());
+        if let Some(Choice { kind, colormap, .. }) = self.choice {
+            let colors = colormap.map(|map| format!(", in the colours of {}", map.name()));
+            let sentence = kind.sentence();
+            lines.say(
+                "drawn as",
+                format!("{sentence}{}", colors.unwrap_or_default()),
+            );
         }
-        if let Some([azimuth, elevation]) = self.view() {
-            let degrees = format!("azimuth {azimuth}, elevation {elevation} degrees");
-            lines.say("seen from", degrees);
-        }
+        let Side { degrees, is_open } = self.side();
+        let [azimuth, elevation] = degrees;
+        // Only pictures show which of them it is.
+        let others = match is_open {
+            true => ", or another of six sides that shows more",
+            false => "",
+        };
+        let degrees = format!("azimuth {azimuth}, elevation {elevation} degrees{others}");
+        lines.say("seen from", degrees);
         let RenderBytes { host, device } = self.report.render_bytes;
         let on_cpu = match self.report.software_device_bytes {
             same if same == device => String::new(),
@@ -216,17 +235,24 @@ impl Page<'_> {
         );
     }
 
-    /// Where the camera stands without a flag, in degrees.
-    fn view(&self) -> Option<[f64; 2]> {
+    /// Where the camera stands without a flag.
+    fn side(&self) -> Side {
+        let header = self.header;
         let grid = Grid {
-            dims: self.header.dims,
-            world_from_voxel: self.header.world_from_voxel,
+            dims: header.dims,
+            world_from_voxel: header.world_from_voxel,
         };
-        let subject = Subject::new(&grid, self.header.is_earth);
-        let camera = CameraFlags::default().camera(&subject, [4, 3]).ok()?;
-        let way = (camera.eye - camera.target).normalize();
-        let angles = [way.y.atan2(way.x), way.z.clamp(-1.0, 1.0).asin()];
-        Some(angles.map(|angle| angle.to_degrees().round()))
+        let has_named_axes = header.is_patient || header.is_earth;
+        // Pieces of the Earth are thin, and seen from the south.
+        let face = face(&grid, has_named_axes).filter(|_| !header.is_earth);
+        let side = match face {
+            Some(view) => view.orbit(),
+            None => Subject::new(&grid, header.is_earth).side(),
+        };
+        Side {
+            degrees: [side.azimuth_degrees, side.elevation_degrees],
+            is_open: face.is_none() && !has_named_axes,
+        }
     }
 
     /// The others in the file, each with what its own header says.

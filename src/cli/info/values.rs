@@ -1,14 +1,19 @@
 //! What the values of a volume look like, from slabs of it: no more than the voxels that are looked at stay.
 
 use crate::{
-    transfer::{Kind, Quantity, ValueSummary},
+    look::context,
+    transfer::{Choice, Quantity, ValueSummary},
     volume::{Header, Limits, Pick, ReadError, Source, Voxels, slices_of_slab},
 };
 use glam::DVec3;
 use std::ops::ControlFlow;
 
-/// What the values of one time and component look like; `None` where there are none.
-pub fn kind(source: &dyn Source, pick: Pick, limits: &Limits) -> Result<Option<Kind>, ReadError> {
+/// What the values of one time and component are taken for under `--look auto`; `None` where there are none.
+pub fn choice(
+    source: &dyn Source,
+    pick: Pick,
+    limits: &Limits,
+) -> Result<Option<Choice>, ReadError> {
     let header = source.header();
     let count = header.voxel_count() as usize;
     let mut seen = Seen::new(header, count);
@@ -29,7 +34,7 @@ pub fn kind(source: &dyn Source, pick: Pick, limits: &Limits) -> Result<Option<K
         seen.value(i)
     })
     .measuring(Quantity::of_unit(header.unit.as_deref()));
-    Ok(Some(Kind::of(&summary)))
+    Ok(Some(context(header).choice(&summary)))
 }
 
 /// The range of all values, and those that a summary looks at.

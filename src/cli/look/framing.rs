@@ -5,10 +5,10 @@
 //! ```
 
 use super::light::{Use, with_light};
-use super::side::{turn_to_best, with_side};
+use super::side::{side_words, turn_to_best, with_side};
 use crate::camera::Camera;
 use crate::cli::Error;
-use crate::cli::flags::{Depth, FrameWord, Numbers, SceneFlags};
+use crate::cli::flags::{CameraFlags, Depth, FrameWord, Numbers, SceneFlags};
 use crate::cli::shown::Shown;
 use crate::look::{
     MOST_SAMPLES, SHARE, SMALL_PIXELS, corners, fit_to_visible, frames_the_box, samples, small_of,
@@ -35,6 +35,8 @@ pub struct View {
 pub struct Framing<'a> {
     /// The flags, with light and samples.
     scene: SceneFlags,
+    /// Those of the camera as they were given.
+    given: CameraFlags,
     /// Whether the number of samples is the program's choice.
     chose_samples: bool,
     /// Whether the side to look from is.
@@ -67,6 +69,7 @@ impl<'a> Framing<'a> {
             chose_samples: lit.sampling.samples_per_voxel != scene.sampling.samples_per_voxel,
             may_choose_side: scene.is_auto() && is_open && !shown.has_named_axes(),
             scene: sided,
+            given: scene.camera.clone(),
             shown,
             extent_pixels,
             depth: made_for.depth,
@@ -154,7 +157,10 @@ impl Framing<'_> {
             let flags = &mut scene.camera;
             flags.frame = None;
             (flags.target, flags.zoom) = (Some(target), Some(zoom));
-            notes.push(format!("framed to {said}: --target {target} --zoom {zoom}"));
+            let side = side_words(flags, &self.given);
+            notes.push(format!(
+                "framed to {said}: {side}--target {target} --zoom {zoom}"
+            ));
             view = self.view_of(scene.clone())?;
         }
         if self.chose_samples && view.settings.samples_per_voxel > 1.0 {
@@ -190,7 +196,7 @@ impl Framing<'_> {
 }
 
 /// Six digits: more than pixels show, and few enough to be read.
-fn short(number: f64) -> f64 {
+pub fn short(number: f64) -> f64 {
     format!("{number:.5e}")
         .parse()
         .expect("a number that was just written")

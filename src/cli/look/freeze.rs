@@ -2,55 +2,170 @@
 
 use super::View;
 use crate::cli::flags::{
-    Classification, ColorWord, FilterWord, Look, SceneFlags, ShadingWord, WindowWord,
+    ChannelWord, Classification, ColorWord, FilterWord, Look, SceneFlags, ShadingWord, WindowWord,
+    inlined,
 };
 use crate::cli::shown::Shown;
-use crate::scene::Beside;
-use crate::technique::{Level, Mode};
-use crate::transfer::transfer_function_to_json;
+use crate::scene::{Beside, Channel};
+use crate::technique::{Filter, Level, Mode, Role};
+use crate::transfer::{ColorPoint, TransferFunction};
 
-/// The flags of a picture that was drawn, with the function that the program chose. Of several volumes in one picture
-/// the functions follow from the values again.
-pub fn frozen(view: &View, shown: &Shown) -> SceneFlags {
-    let mut scene = view.scene.clone();
-    if scene.is_auto() && view.settings.mode == Mode::Composite {
-        scene.input.keep_all.get_or_insert(false);
-    }
-    if !matches!(shown.parts().beside(), Beside::Nothing) {
-        return scene;
-    }
-    let mode = view.settings.mode;
-    let chosen = &mut scene.classification;
-    let is_chosen = chosen.preset.is_none() && chosen.transfer_function.is_none();
-    let Classification::Function(function) = &shown.classification else {
-        return scene;
-    };
-    if mode == Mode::Iso {
-        // Surfaces stand by themselves, whatever the function.
-        keep_levels(&mut scene, &view.settings.per_mode.levels);
-    } else if is_chosen && mode.is_projection() {
-        let [low, high] = shown.looked_at().value_range;
-        if low < high {
-            chosen.window.get_or_insert(WindowWord::Values([low, high]));
+/// What a picture or a film was drawn with, where no flag said it.
+#[derive(Clone, Copy, Debug)]
+pub struct Chosen<'a> {
+    /// What was done with samples.
+    pub mode: Mode,
+    /// How values are seen; `None` where keys say it.
+    pub function: Option<&'a TransferFunction>,
+    /// What is seen together with the volume.
+    pub beside: Beside<'a>,
+    /// Channels with their colours and windows, where several are drawn.
+    pub channels: &'a [ChannelWord],
+    /// The window of a projection; `None` where keys or nothing says it.
+    pub window: Option<[f64; 2]>,
+    /// Surfaces of `--mode iso`.
+    pub levels: &'a [Level],
+    /// Where the values themselves ask for one.
+    pub filter: Option<Filter>,
+    /// `--colormap`, `--color-tf` and `--opacity-tf` are laid over the function later, by the windows of keys.
+    pub is_base: bool,
+    /// How much higher than they are heights are drawn.
+    pub height_factor: f64,
+}
+
+impl<'a> Chosen<'a> {
+    /// Of a picture of `shown`, which has these others beside it; `integrals` is the range of an X-ray that found its
+    /// own window.
+    pub fn of_picture(
+        view: &'a View,
+        shown: &'a Shown,
+        beside: Beside<'a>,
+        integrals: Option<[f64; 2]>,
+    ) -> Self {
+        let function = match &shown.classification {
+            Classification::Function(function) => Some(function),
+            Classification::RangeOfPicture => None,
+        };
+        Self {
+            mode: view.settings.mode,
+            function,
+            beside,
+            channels: shown.channels(),
+            window: integrals.or(match beside {
+                Beside::Nothing => function.map(|_| shown.looked_at().value_range),
+                // Colours that are projected one by one.
+                _ => function.and_then(ends_of),
+            }),
+            levels: &view.settings.per_mode.levels,
+            filter: shown.filter,
+            is_base: false,
+            height_factor: shown.height_factor,
         }
-    } else if is_chosen && !function.is_graded() {
-        let text = transfer_function_to_json(function);
-        chosen.transfer_function =
-            Some(serde_json::from_str(&text).expect("what we have just written as JSON"));
-        // It lies where the window has put it.
-        chosen.window = None;
-        (chosen.color_function, chosen.opacity_function) = (None, None);
-        chosen.colormap = None;
-        if let Some(filter) = shown.filter {
+    }
+
+    /// The scene in plain flags: drawn again it is the same picture, whatever later versions choose.
+    pub fn frozen(&self, scene: &SceneFlags) -> SceneFlags {
+        let mut scene = scene.clone();
+        if scene.is_auto() && self.mode == Mode::Composite {
+            scene.input.keep_all.get_or_insert(false);
+        }
+        if let (Some(filter), true) = (self.filter, self.function.is_some()) {
             scene.sampling.filter.get_or_insert(FilterWord::of(filter));
         }
+        self.keep_colors(&mut scene);
+        if scene.light.shading.is_none() && !scene.light.is_lit(self.mode) {
+            scene.light.shading = Some(ShadingWord::None);
+        }
+        scene.sampling.samples_per_voxel.get_or_insert(1.0);
+        if self.height_factor != 1.0 {
+            scene.camera.exaggerate.get_or_insert(self.height_factor);
+        }
+        scene.look = Some(Look::Plain);
+        scene
     }
-    if scene.light.shading.is_none() && !scene.light.is_lit(mode) {
-        scene.light.shading = Some(ShadingWord::None);
+
+    /// How values are seen, where the flags do not say it.
+    fn keep_colors(&self, scene: &mut SceneFlags) {
+        if !self.channels.is_empty() {
+            scene.channels.channels.clear();
+            scene.channels.channel = self.channels.to_vec();
+            return;
+        }
+        let chosen = &scene.classification;
+        let is_chosen = chosen.preset.is_none() && chosen.transfer_function.is_none();
+        if self.mode == Mode::Iso {
+            // Surfaces stand by themselves, whatever the function, but where another variable colours them.
+            keep_levels(scene, self.levels);
+            if let (Some(paint), true) = (self.beside_as(Role::Numbers), is_chosen) {
+                self.keep_function(scene, paint);
+            }
+            return;
+        }
+        if let (Some(opaque), None) = (
+            self.beside_as(Role::Opacity),
+            &scene.classification.opacity_function,
+        ) {
+            scene.classification.opacity_function = Some(inlined(opaque));
+            scene.opacity.opacity_window = None;
+        }
+        if !is_chosen {
+            return;
+        }
+        if self.mode.is_projection() {
+            if let Some([low, high]) = self.window.filter(|[low, high]| low < high) {
+                let window = WindowWord::Values([low, high]);
+                scene.classification.window.get_or_insert(window);
+            }
+        } else if let Some(function) = self.function {
+            self.keep_function(scene, function);
+        }
     }
-    scene.sampling.samples_per_voxel.get_or_insert(1.0);
-    scene.look = Some(Look::Plain);
-    scene
+
+    /// The function in the place of the words that made it.
+    fn keep_function(&self, scene: &mut SceneFlags, function: &TransferFunction) {
+        if function.is_graded() {
+            return;
+        }
+        let mut function = function.clone();
+        if function.color.is_empty() {
+            // Colours are those of the voxels; a file of a function has some.
+            function.color.push(ColorPoint {
+                value: 0.0,
+                srgb: [1.0; 3],
+            });
+        }
+        let chosen = &mut scene.classification;
+        chosen.transfer_function = Some(inlined(&function).transfer_function);
+        if self.is_base {
+            return;
+        }
+        // It lies where the window has put it.
+        chosen.window = None;
+        chosen.colormap = None;
+        chosen.color_function = None;
+        if !scene.opacity.are_given() {
+            chosen.opacity_function = None;
+        }
+        if scene.labels.labels.is_none() {
+            // Labels that are the volume itself have their colours now.
+            scene.labels = Default::default();
+        }
+    }
+
+    /// The function of what lies beside the volume in this role.
+    fn beside_as(&self, role: Role) -> Option<&'a TransferFunction> {
+        let Beside::Channels(channels) = self.beside else {
+            return None;
+        };
+        let of_role = |channel: &&Channel<'a>| channel.role == role;
+        channels.iter().find(of_role)?.transfer
+    }
+}
+
+/// The values of the first and the last point of colour.
+pub fn ends_of(function: &TransferFunction) -> Option<[f64; 2]> {
+    let (first, last) = (function.color.first()?, function.color.last()?);
+    Some([first.value, last.value])
 }
 
 /// The surfaces that were drawn, where the flags name none.

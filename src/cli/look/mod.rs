@@ -12,8 +12,8 @@ mod light;
 mod prepared;
 mod side;
 
-pub use framing::{Framing, View};
-pub use freeze::frozen;
+pub use framing::{Framing, View, short};
+pub use freeze::{Chosen, ends_of};
 pub use light::{Seen, Use, with_light};
 pub use prepared::{Views, prepared};
-pub use side::with_side;
+pub use side::{side_words, with_side};

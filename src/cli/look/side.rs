@@ -2,7 +2,7 @@
 
 use super::framing::{Small, View};
 use crate::cli::Error;
-use crate::cli::flags::{SceneFlags, ViewWord};
+use crate::cli::flags::{CameraFlags, SceneFlags, ViewWord};
 use crate::look::{best_side, face};
 use crate::{camera, volume::Grid};
 
@@ -29,6 +29,21 @@ pub fn with_side(
         });
     }
     sided
+}
+
+/// The flags of the side that `chosen` has and `given` has not, each with a space behind it.
+pub fn side_words(chosen: &CameraFlags, given: &CameraFlags) -> String {
+    let mut words = String::new();
+    if let (Some(view), None) = (chosen.view, given.view) {
+        words += &format!("--view {} ", view.name());
+    }
+    if let (Some(azimuth), None) = (chosen.azimuth, given.azimuth) {
+        words += &format!("--azimuth {azimuth} ");
+    }
+    if let (Some(elevation), None) = (chosen.elevation, given.elevation) {
+        words += &format!("--elevation {elevation} ");
+    }
+    words
 }
 
 /// Turns the scene to the best of six sides; `boxed` fits a camera to the box.

@@ -6,7 +6,7 @@ use crate::cli::Error;
 use crate::cli::flags::{ChannelWord, Classification, summary};
 use crate::cli::load::{denoise, say_what_was_lost, stretch};
 use crate::technique::{Mode, Role};
-use crate::transfer::{CHANNEL_COLORS, Window, of_channel};
+use crate::transfer::{CHANNEL_COLORS, Window, of_channel, window_of_channel};
 use crate::volume::{Meaning, Source, read_all};
 use std::sync::Arc;
 
@@ -38,6 +38,7 @@ impl Reader<'_> {
         let is_color = matches!(header.meaning, Meaning::Rgb | Meaning::Rgba);
         let mut made = Vec::new();
         let mut said = Vec::new();
+        let mut drawn = Vec::new();
         for (nth, (word, volume)) in words.iter().zip(volumes).enumerate() {
             let of_file = known.get(word.index as usize);
             let own = primaries.get(word.index as usize).filter(|_| is_color);
@@ -48,7 +49,14 @@ impl Reader<'_> {
             let srgb = srgb.unwrap_or(CHANNEL_COLORS[nth % CHANNEL_COLORS.len()]);
             let window = word.window.or(of_file.and_then(|channel| channel.window));
             let window = window.and_then(|[low, high]| Window::new(low, high));
-            let function = of_channel(&summary(&volume), srgb, classified(self.mode), window);
+            let summary = summary(&volume);
+            let window = window.unwrap_or_else(|| window_of_channel(&summary));
+            let function = of_channel(&summary, srgb, classified(self.mode), Some(window));
+            drawn.push(ChannelWord {
+                index: word.index,
+                srgb: Some(srgb),
+                window: Some([window.low(), window.high()]),
+            });
             let name = of_file.map_or("", |channel| channel.name.as_str());
             let name = match name {
                 "" => format!("channel {}", word.index),
@@ -78,6 +86,7 @@ impl Reader<'_> {
             filter: None,
             height_factor,
             others: Others::Channels(made),
+            channels: drawn,
             stream: None,
             overview: None,
         })

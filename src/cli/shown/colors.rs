@@ -65,6 +65,7 @@ impl Reader<'_> {
             filter: None,
             height_factor,
             others: Others::Colors(volumes),
+            channels: Vec::new(),
             stream: None,
             overview: None,
         })
@@ -107,6 +108,7 @@ impl Reader<'_> {
             filter: None,
             height_factor,
             others: Others::Channels(made),
+            channels: Vec::new(),
             stream: None,
             overview: None,
         })

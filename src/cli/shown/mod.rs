@@ -13,7 +13,10 @@ pub use streamed::{is_wanted as wants_stream, open as open_stream};
 
 use super::{
     Error,
-    flags::{Classification, ClassificationFlags, Plan, SceneFlags, Subject, context, summary},
+    flags::{
+        ChannelWord, Classification, ClassificationFlags, Plan, SceneFlags, Subject, context,
+        summary,
+    },
     labels,
     load::{load_from, open},
     look::Seen,
@@ -50,6 +53,8 @@ pub struct Shown {
     /// How much higher than it is the volume is drawn.
     pub height_factor: f64,
     others: Others,
+    /// Of several channels, what each is drawn with.
+    channels: Vec<ChannelWord>,
     /// Where the voxels come from, brick by brick; the volume is its outline then.
     stream: Option<Stream>,
     /// Of a stream every n-th voxel.
@@ -123,6 +128,11 @@ impl Shown {
     /// A volume that shows which values there are: of a stream every n-th voxel.
     pub fn looked_at(&self) -> &Volume {
         self.overview.as_ref().unwrap_or(&self.volume)
+    }
+
+    /// The words of several channels with all that was chosen; none of one number a voxel.
+    pub fn channels(&self) -> &[ChannelWord] {
+        &self.channels
     }
 
     /// The same of a source that is open already, from memory.
@@ -394,6 +404,7 @@ impl Reader<'_> {
                 filter: Some(Filter::Nearest),
                 height_factor,
                 others: Others::Channels(Vec::new()),
+                channels: Vec::new(),
                 stream: None,
                 overview: None,
             });
@@ -436,6 +447,7 @@ impl Reader<'_> {
             filter: found_labels.then_some(Filter::Nearest),
             height_factor,
             others: Others::Channels(others),
+            channels: Vec::new(),
             stream: None,
             overview: None,
         })

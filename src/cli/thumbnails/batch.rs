@@ -244,14 +244,18 @@ impl Batch<'_> {
                 camera,
                 settings,
                 scene,
-                ..
+                notes: framed,
             } = view.get_or_init(|| fitted);
             renderer.change(&shown.classification, settings);
             let mut picture = renderer.draw(camera)?.picture;
             let reason = why_empty(&picture, &shown.volume, reasoned, camera, settings);
             let view = wanted.view.map(|view| format!("--view {}: ", view.name()));
             let view = view.unwrap_or_default();
-            let note = reason.map(|reason| format!("{view}the picture is empty: {reason}"));
+            let empty = reason.map(|reason| format!("the picture is empty: {reason}"));
+            let of_view = empty.iter().chain(framed);
+            let notes = of_view.map(|note| format!("{view}{note}"));
+            let idle = scene.idle().into_iter().map(str::to_owned);
+            let notes = idle.chain(notes).chain(annotation_note.clone());
             let behind = annotation.as_ref().and_then(|a| a.transmittance(&picture));
             if let Some(background) = scene.picture.background() {
                 picture.over_background(background);
@@ -273,7 +277,7 @@ impl Batch<'_> {
             shots.push(Shot {
                 at: *at,
                 picture,
-                notes: note.into_iter().chain(annotation_note.clone()).collect(),
+                notes: notes.collect(),
             });
         }
         let dims = shown.volume.dims;

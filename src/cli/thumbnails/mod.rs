@@ -124,9 +124,6 @@ impl Thumbnails {
         let wanted: Vec<Wanted> = wanted.collect();
 
         let progress = Progress::new(self.progress);
-        for note in scene.idle() {
-            progress.note(note);
-        }
         if left_alone > 0 {
             progress.note(&format!(
                 "{left_alone} files and folders that are no volume are left alone"

@@ -1,0 +1,50 @@
+//! Words of a film that go against each other.
+
+use super::shots::{self, Film, Shot};
+use crate::{
+    cli::{Error, flags::SceneFlags, shown},
+    volume::Header,
+};
+
+/// Refuses a fit where keys say where the camera stands.
+pub fn frame(scene: &SceneFlags, film: &Film) -> Result<(), Error> {
+    if scene.camera.frame.is_some() && film.places_the_camera() {
+        return Err(Error::usage(
+            "--frame fits the camera to the volume, and a key says `eye`, `target`, `zoom` or `view_height`",
+            "leave out --frame, or these words of the keys",
+        ));
+    }
+    Ok(())
+}
+
+/// Refuses what changes one number a voxel where several are seen.
+pub fn several(scene: &SceneFlags, header: &Header, shots: &[Shot]) -> Result<(), Error> {
+    let is_still = shots::still_time(shots).is_some();
+    let is_between = |shot: &Shot| shot.time.fract() != 0.0;
+    if scene.input.stream
+        && let Some(number) = shots.iter().position(is_between)
+    {
+        let time = shots[number].time;
+        return Err(Error::usage(
+            format!(
+                "--stream: frame {number} shows time {time}, and between times there are no bricks"
+            ),
+            "whole times: --times; --fit draws reduced volumes that fit into memory",
+        ));
+    }
+    let several = shown::shows_several(scene, header)?;
+    if !is_still && (several || scene.labels.label_tf.is_some()) {
+        return Err(Error::usage(
+            "several times are shown of one number a voxel, without colours, several channels, --labels and --label-tf",
+            "--time N takes one time, --component N one number",
+        ));
+    }
+    let is_same = |shot: &Shot| shot.classification == scene.classification;
+    if several && !shots.iter().all(is_same) {
+        return Err(Error::usage(
+            "`window` and `tf` of keyframes are for one number a voxel, and several are drawn",
+            "say it of each for the whole film: --channel 0,color=cyan,window=0:100",
+        ));
+    }
+    Ok(())
+}

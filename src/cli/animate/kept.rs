@@ -1,0 +1,136 @@
+//! What a film was drawn with, for its scene: chosen once for all frames, beside what keys say.
+
+use super::{
+    draw::Content,
+    ready::Ready,
+    shots::{Film, Shot},
+};
+use crate::{
+    cli::{
+        flags::{Classification, ClassificationFlags, SceneFlags},
+        look::{Chosen, ends_of},
+        shown::Parts,
+    },
+    technique::{Filter, Settings},
+};
+use std::sync::OnceLock;
+
+/// What is found while a film is drawn.
+#[derive(Default)]
+pub struct Kept {
+    /// Whether a scene is asked for at all.
+    is_wanted: bool,
+    /// A frame as the flags alone say it.
+    chosen: OnceLock<Ready>,
+    /// The window of integrals that the first frame has found.
+    pub window: OnceLock<[f64; 2]>,
+}
+
+impl Kept {
+    /// Of a film whose scene is wanted or not.
+    pub fn new(is_wanted: bool) -> Self {
+        Self {
+            is_wanted,
+            ..Self::default()
+        }
+    }
+
+    /// The shots, and behind them one as the flags alone say it, where its function is to be kept.
+    pub fn with_own(&self, shots: &[Shot], film: &Film, scene: &SceneFlags) -> Vec<Shot> {
+        let mut all = shots.to_vec();
+        if let (true, Some(classification)) = (self.is_wanted, own(film, scene, &shots[0].settings))
+        {
+            all.push(Shot {
+                classification,
+                ..shots[0].clone()
+            });
+        }
+        all
+    }
+
+    /// Takes that one from behind the `count` frames of the film.
+    pub fn take(&self, ready: &mut Vec<Ready>, count: usize) {
+        if ready.len() > count
+            && let Some(own) = ready.pop()
+        {
+            let _ = self.chosen.set(own);
+        }
+    }
+
+    /// `scene` in plain flags, of a film of these shots.
+    pub fn frozen(
+        &self,
+        scene: &SceneFlags,
+        content: &Content,
+        shots: &[Shot],
+        film: &Film,
+        height_factor: f64,
+    ) -> SceneFlags {
+        let own = self.chosen.get();
+        let settings = own.map_or(&shots[0].settings, |own| &own.settings);
+        let changed = |filter: &Filter| {
+            scene.sampling.filter.is_none() && *filter != shots[0].settings.filter
+        };
+        let filter = Some(settings.filter).filter(changed);
+        // Between two labels there is none: which times are shown hangs on whether the values are found to be labels.
+        let is_between = shots.iter().any(|shot| shot.time.fract() != 0.0);
+        let function = match own.map(|own| &own.classification) {
+            Some(Classification::Function(function)) if filter.is_none() || !is_between => {
+                Some(function)
+            }
+            _ => None,
+        };
+        let parts = match content {
+            Content::Still(shown) => shown.parts(),
+            Content::Times(..) => Parts::Channels(Vec::new()),
+        };
+        let levels = match content {
+            Content::Still(shown) => &shown.per_mode.levels,
+            Content::Times(..) => &settings.per_mode.levels,
+        };
+        let window = match film.changes_window() {
+            true => None,
+            false => self.window.get().copied().or(function.and_then(ends_of)),
+        };
+        let chosen = Chosen {
+            mode: shots[0].settings.mode,
+            function,
+            beside: parts.beside(),
+            channels: match content {
+                Content::Still(shown) => shown.channels(),
+                Content::Times(..) => &[],
+            },
+            window,
+            levels,
+            filter,
+            is_base: film.changes_window(),
+            height_factor,
+        };
+        chosen.frozen(scene)
+    }
+}
+
+/// The words of the flags whose function a scene is to keep; `None` where keys say the function. What is laid over it by
+/// the window of each key stays out of it, and so do the colours of a projection, whose ends are its window.
+fn own(film: &Film, scene: &SceneFlags, settings: &Settings) -> Option<ClassificationFlags> {
+    if film.changes_function() {
+        return None;
+    }
+    let flags = scene.classification.clone();
+    let base = ClassificationFlags {
+        colormap: None,
+        color_function: None,
+        opacity_function: None,
+        ..flags.clone()
+    };
+    Some(
+        match (film.changes_window(), settings.mode.is_projection()) {
+            (true, _) => ClassificationFlags {
+                window: None,
+                ..base
+            },
+            (false, true) => base,
+            (false, false) => flags,
+        },
+    )
+}
