@@ -125,6 +125,16 @@ impl Look {
         }
     }
 
+    /// Behind the volume, linear light: by itself a blue so dark that everything stands out against it. A projection
+    /// begins with the black of its lowest value, and its box is not to be seen.
+    pub fn backdrop(&self) -> [f32; 4] {
+        let usual = match self.mode.is_projection() {
+            true => [0.0, 0.0, 0.0, 1.0],
+            false => [0.008, 0.011, 0.016, 1.0],
+        };
+        self.background.unwrap_or(usual)
+    }
+
     pub fn settings(&self) -> Settings {
         let is_surface = self.mode == Mode::Iso;
         let can_be_lit = matches!(self.mode, Mode::Composite | Mode::Mida);

@@ -26,7 +26,7 @@ mod volumes;
 
 use super::{
     Error,
-    annotate::Annotation,
+    annotation::annotation,
     exaggerate,
     flags::{Depth, SceneFlags, context},
     load,
@@ -41,6 +41,7 @@ use super::{
     timings::Timings,
 };
 use crate::{
+    annotate::Annotation,
     picture::{BitDepth, LayerKind, PictureFormat, WriteOptions},
     volume::{Grid, Header, Source},
 };
@@ -258,7 +259,7 @@ impl Animate {
         };
         let mut devices = devices;
         let scene = &framing::framed(plan, &content, &grid, &mut devices, progress)?;
-        let annotation = Annotation::of(scene, header, shots[0].settings.mode)?;
+        let annotation = annotation(scene, header, shots[0].settings.mode)?;
         let note = annotation.as_ref().and_then(Annotation::note);
         note.iter().for_each(|note| progress.note(note));
         let shots = plan.film.shots(scene, *depth, header, &grid)?;

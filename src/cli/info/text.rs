@@ -6,8 +6,9 @@ use crate::{
         error::visible,
         flags::{CameraFlags, InputFlags, Subject},
         histogram::length_unit,
-        readable::{bytes, grouped, short},
+        readable::{bytes, grouped},
     },
+    figure::short,
     transfer::Kind,
     volume::{Grid, Header, Limits, Statistics},
 };
