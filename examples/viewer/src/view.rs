@@ -135,7 +135,7 @@ impl View {
             Command::NextFilter { is_back } => {
                 self.look.filter = next(&FILTERS, self.look.filter, is_back);
             }
-            Command::Light => self.look.is_lit = !self.look.is_lit,
+            Command::Light => self.look.light_by_hand = Some(!self.look.wants_light()),
             Command::Marks => self.has_marks = !self.has_marks,
             Command::Projection => self.eye.is_parallel = !self.eye.is_parallel,
             Command::View(side) => self.eye.orbit = side.orbit(),
