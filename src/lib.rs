@@ -8,11 +8,11 @@
 //! | floor | modules | what they know |
 //! |---|---|---|
 //! | 0 | [`shaders`], [`real`], [`ray`], [`blue_noise`], [`lattice`], [`color`], `fence` | arithmetic shared with the shaders, free of Vulkan |
-//! | 1 | [`gpu`], [`volume`], [`transfer`], [`camera`], [`picture`], [`mesh`] | Vulkan objects, or data; never both |
+//! | 1 | [`gpu`], [`volume`], [`transfer`], [`camera`], [`picture`], [`mesh`], `figure` | Vulkan objects, or data; never both |
 //! | 2 | [`resident`], [`isosurface`], `format` | data put on a device; a surface in a volume; bytes of files turned into a [`volume::Source`] |
 //! | 3 | [`technique`], [`resolve`], [`look`] | `new`, `bind`, `record`, and the CPU twins; what suits a volume |
 //! | 4 | [`embed`] | a volume in a host's frames |
-//! | 5 | [`scene`], [`offscreen`] | a scene to a [`picture::Picture`]; the only place that waits |
+//! | 5 | [`scene`], [`offscreen`], `annotate` | a scene to a [`picture::Picture`], the only place that waits; words and marks over it |
 //! | 6 | `conformance` | cases with exact answers, and verdicts on devices |
 //! | 7 | `cli` | words to scenes, errors to exit codes |
 //! | 7 | `capi` | what [`embed`] does, for C |
@@ -165,6 +165,8 @@
 //! `shaders/lib/mode_*.wgsl` says what a sample adds, `shaders/resolve.wgsl` makes it a colour, and
 //! [`offscreen::Renderer::render`] (or a host) puts the passes in order.
 
+#[cfg(feature = "png")]
+pub mod annotate;
 pub mod blue_noise;
 pub mod camera;
 #[cfg(feature = "capi")]
@@ -177,6 +179,16 @@ pub mod conformance;
 pub mod embed;
 #[cfg(feature = "files")]
 mod fence;
+#[cfg(feature = "png")]
+#[cfg_attr(
+    not(feature = "cli"),
+    allow(
+        dead_code,
+        unused_imports,
+        reason = "the program writes figures into files too"
+    )
+)]
+mod figure;
 #[cfg(feature = "files")]
 pub mod format;
 pub mod gpu;

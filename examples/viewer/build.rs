@@ -1,4 +1,4 @@
-//! The two shader files of the window, from WGSL to SPIR-V: `shaders/NAME.wgsl` has the entry points `vertex` and
+//! The three shader files of the window, from WGSL to SPIR-V: `shaders/NAME.wgsl` has the entry points `vertex` and
 //! `fragment`, each becomes `NAME.vertex.spv` and `NAME.fragment.spv` with an entry point `main`.
 
 use naga::back::spv;
@@ -6,7 +6,7 @@ use std::{env, fs, path::Path};
 
 fn main() {
     let out = env::var("OUT_DIR").expect("cargo says it");
-    for name in ["picture", "panel"] {
+    for name in ["picture", "panel", "marks"] {
         let path = format!("shaders/{name}.wgsl");
         println!("cargo::rerun-if-changed={path}");
         let text = fs::read_to_string(&path).expect("a shader beside build.rs");

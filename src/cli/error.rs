@@ -14,7 +14,7 @@
 
 use super::signals::INTERRUPTED;
 use crate::{
-    gpu, offscreen,
+    annotate, gpu, offscreen,
     picture::{OutputError, PictureError},
     technique,
     volume::{Problem, ReadError},
@@ -98,6 +98,18 @@ pub enum Error {
         /// True where a word asked for what this file has not.
         is_usage: bool,
     },
+}
+
+impl From<annotate::Error> for Error {
+    fn from(error: annotate::Error) -> Self {
+        let hint = match error {
+            annotate::Error::NoLetter(_) => {
+                "letters are those of Latin, Greek small letters, digits and signs"
+            }
+            annotate::Error::NoLogarithm(_) => "--colormap-scale linear, or a --window above 0",
+        };
+        Self::usage(error.to_string(), hint)
+    }
 }
 
 impl From<offscreen::Error> for Error {

@@ -8,7 +8,7 @@
 //! first voxel is read: words, outputs that exist, folders that do not.
 
 mod animate;
-mod annotate;
+mod annotation;
 mod bench;
 mod bug;
 mod cameras_file;
@@ -18,7 +18,6 @@ mod convert;
 mod devices;
 mod error;
 mod exaggerate;
-mod figure;
 mod flags;
 mod help;
 mod histogram;

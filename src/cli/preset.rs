@@ -5,10 +5,10 @@ use super::{
     error::visible,
     flags::{InputFlags, Numbers, boundaries_of, preset, summary, with_causes},
     output::{self, say, say_aside, write_whole},
-    readable::short,
     signals::Gate,
 };
 use crate::{
+    figure::short,
     transfer::{
         Classified, Colormap, Graded, Preset, Scale, Shape, TransferFunction, ValueSummary, Window,
         import_transfer_function, transfer_function_to_json,

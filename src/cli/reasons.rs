@@ -1,8 +1,9 @@
 //! Why a picture is empty: nobody is left alone with a blank one.
 
-use super::{flags::Classification, readable::short};
+use super::flags::Classification;
 use crate::{
     camera::Camera,
+    figure::short,
     picture::Picture,
     technique::{Mode, Settings},
     transfer::{Absorption, Points, TransferFunction, classify_by_points},

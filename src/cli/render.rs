@@ -2,7 +2,7 @@
 
 use super::{
     Error,
-    annotate::{Annotation, Seen},
+    annotation::{annotation, projected},
     flags::{Classification, Depth, InputFlags, PHANTOM, SceneFlags},
     load::open,
     look::{Chosen, Framing, Use, View, Views, prepared},
@@ -16,6 +16,7 @@ use super::{
     stdin::STANDARD,
     timings::{FrameTime, Timings, ms_since, peak_rss_bytes},
 };
+use crate::annotate::Seen;
 use crate::format;
 use crate::picture::{
     BitDepth, EncodedPicture, LayerKind, PictureFormat, WriteOptions, write_picture,
@@ -219,7 +220,7 @@ impl Render {
         if let Some(reason) = why_empty(&picture, volume, reasoned, camera, settings) {
             progress.note(&format!("the picture is empty: {reason}"));
         }
-        let annotation = Annotation::of(&scene, &shown.header, settings.mode)?;
+        let annotation = annotation(&scene, &shown.header, settings.mode)?;
         let behind = annotation.as_ref().and_then(|a| a.transmittance(&picture));
         if let Some(background) = view.scene.picture.background() {
             picture.over_background(background);
@@ -232,12 +233,12 @@ impl Render {
             let seen = Seen {
                 camera,
                 settings,
-                classification,
+                function: classification.function(),
                 beside: parts.beside(),
                 grid: volume.grid(),
                 height_factor: shown.height_factor,
                 time: f64::from(scene.input.time(&shown.header)?.0),
-                projected: annotation.projected(classification, &mut renderer, camera)?,
+                projected: projected(annotation, classification, &mut renderer, camera)?,
             };
             annotation.put(&mut picture, behind.as_deref(), &seen, format)?;
         }

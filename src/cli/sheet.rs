@@ -2,9 +2,8 @@
 
 use super::{
     Error,
-    annotate::{Annotation, Seen},
+    annotation::{annotation, projected},
     error::visible,
-    figure::{Anchor, Color, Figure, Mark, SCALE, png},
     flags::{AnnotateFlags, Depth, InputFlags, SceneFlags, Size},
     look::{Framing, Use, Views, prepared},
     output::{self, say},
@@ -13,6 +12,8 @@ use super::{
     shown::Shown,
     signals::Gate,
 };
+use crate::annotate::Seen;
+use crate::figure::{Anchor, Color, Figure, Mark, SCALE, png};
 use crate::picture::{Picture, PictureFormat};
 use clap::Args;
 use std::path::PathBuf;
@@ -153,7 +154,7 @@ fn draw(
     let here = std::mem::replace(device, Device::find(Some("reference"))?);
     let drawn = prepared(&framing, &parts, &[], here, &views).and_then(|(mut renderer, view)| {
         let mut picture = renderer.draw(&view.camera)?.picture;
-        let annotation = Annotation::of(scene, &shown.header, settings.mode)?;
+        let annotation = annotation(scene, &shown.header, settings.mode)?;
         let behind = annotation.as_ref().and_then(|a| a.transmittance(&picture));
         if let Some(background) = view.scene.picture.background() {
             picture.over_background(background);
@@ -167,12 +168,12 @@ fn draw(
             let seen = Seen {
                 camera: &view.camera,
                 settings: &view.settings,
-                classification,
+                function: classification.function(),
                 beside: parts.beside(),
                 grid: shown.volume.grid(),
                 height_factor: shown.height_factor,
                 time: f64::from(scene.input.time(&shown.header)?.0),
-                projected: annotation.projected(classification, &mut renderer, &view.camera)?,
+                projected: projected(annotation, classification, &mut renderer, &view.camera)?,
             };
             annotation.put(&mut picture, behind.as_deref(), &seen, PictureFormat::Png)?;
         }

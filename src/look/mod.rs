@@ -21,7 +21,7 @@ pub use components::leave_out;
 pub use frame::{
     SHARE, SMALL_PIXELS, box_of, corners, fit_to_visible, frames_the_box, small_of, visible_in,
 };
-pub use light::{LIGHT, MATERIAL, STILL_SAMPLES, half_gradient, is_lit, light};
+pub use light::{LIGHT, MATERIAL, Origin, STILL_SAMPLES, half_gradient, is_lit, light, may_choose};
 pub use side::{SIDES, best_side, face};
 pub use values::{context, first_variable, summary};
 pub use work::{MOST_SAMPLES, samples};

@@ -1,6 +1,11 @@
 //! The program as a person meets it: words, exit codes, files.
 #![cfg(feature = "cli")]
 
+#[path = "../shared/dicom.rs"]
+mod dicom;
+#[path = "../shared/files.rs"]
+mod files;
+
 mod animate;
 #[cfg(target_os = "linux")]
 mod animate_faults;
@@ -10,6 +15,7 @@ mod animate_mixed;
 #[cfg(unix)]
 mod animate_stops;
 mod annotate;
+mod annotate_private;
 mod bench;
 mod classified;
 mod conformance;

@@ -8,7 +8,9 @@ use glam::{DAffine3, DVec3, dvec3};
 use stratavox::gpu::Caps;
 use stratavox::offscreen::{Renderer, reference};
 use stratavox::picture::{ColorSpace, Picture};
-use stratavox::technique::{Filter, GradientFilter, Keep, Light, Mode, Settings, Shading};
+use stratavox::technique::{
+    Filter, GradientFilter, Keep, Light, LightSpace, Mode, Settings, Shading,
+};
 use stratavox::transfer::{ColorPoint, TransferFunction};
 use stratavox::volume::{Grid, Volume};
 
@@ -38,6 +40,21 @@ fn shadings() -> [Shading; 2] {
     [Shading::default(), lit]
 }
 
+/// Lights that move with the camera, on matter that is lit evenly where gradients are small; `waves` rises by 0.15 a
+/// voxel at most.
+fn steady() -> Shading {
+    let [_, lights] = shadings();
+    let lights = lights.lights.into_iter().map(|light| Light {
+        space: LightSpace::Camera,
+        ..light
+    });
+    Shading {
+        half_gradient: 0.1,
+        lights: lights.collect(),
+        ..shadings()[1].clone()
+    }
+}
+
 /// In every placement and projection, each technique with each kind of filter, in turns.
 fn assert_drawn_as_computed(volume: &Volume, what: &str) {
     let mut renderer = Renderer::new(device(), volume).unwrap();
@@ -52,6 +69,33 @@ fn assert_drawn_as_computed(volume: &Volume, what: &str) {
         let dark = shot.with(|settings| settings.filter = *filter);
         let lit = dark.with(|settings| settings.shading = Some(shading.clone()));
         assert_changes(&mut renderer, volume, &dark, &lit, what);
+    }
+}
+
+/// Each technique once, with both projections among them.
+fn assert_steady_light_drawn_as_computed(volume: &Volume, what: &str) {
+    let mut renderer = Renderer::new(device(), volume).unwrap();
+    let shots = oblique_shots(GRID(), Mode::Composite);
+    for k in [0, 8, 5] {
+        let dark = shots[k].with(|settings| settings.filter = Filter::Linear);
+        let lit = dark.with(|settings| settings.shading = Some(steady()));
+        assert_changes(&mut renderer, volume, &dark, &lit, what);
+        // It is another light than that of the world, and than that of all gradients.
+        for change in [
+            |shading: &mut Shading| shading.half_gradient = 0.0,
+            |shading: &mut Shading| {
+                for light in &mut shading.lights {
+                    light.space = LightSpace::World;
+                }
+            },
+        ] {
+            let other = dark.with(|settings| {
+                let mut shading = steady();
+                change(&mut shading);
+                settings.shading = Some(shading);
+            });
+            assert_changes(&mut renderer, volume, &other, &lit, what);
+        }
     }
 }
 
@@ -243,6 +287,12 @@ fn every_gradient_filter_is_dark_where_a_voxel_with_a_weight_has_no_data() {
 fn every_technique_and_filter_lights_what_its_twin_lights() {
     let volume = volume_of(GRID().dims, sheared_affine(), waves);
     assert_drawn_as_computed(&volume, "whole");
+}
+
+#[test]
+fn each_technique_draws_light_of_the_camera_with_a_half_gradient_as_its_twin() {
+    let volume = volume_of(GRID().dims, sheared_affine(), waves);
+    assert_steady_light_drawn_as_computed(&volume, "whole");
 }
 
 #[test]

@@ -11,13 +11,15 @@ const FLOORS: &[&[&str]] = &[
     &["shaders", "real", "fence"],
     &["ray", "color", "blue_noise"],
     &["lattice"],
-    &["gpu", "volume", "transfer", "camera", "picture", "mesh"],
+    &[
+        "gpu", "volume", "transfer", "camera", "picture", "mesh", "figure",
+    ],
     &["resident", "isosurface", "format"],
     &["technique"],
     &["resolve", "look"],
     &["embed"],
     &["scene"],
-    &["offscreen"],
+    &["offscreen", "annotate"],
     &["conformance"],
     &["cli", "capi"],
 ];
@@ -36,9 +38,11 @@ const FREE_OF_VULKAN: &[&str] = &[
     "camera",
     "picture",
     "mesh",
+    "figure",
     "isosurface",
     "format",
     "scene",
+    "annotate",
 ];
 
 fn floor_of(module: &str) -> usize {

@@ -23,12 +23,21 @@ pub fn run(words: Words) -> Result<(), Error> {
         (None, Some(path)) => Some([Step::Frame, Step::Frame, Step::Window(path.clone())].into()),
         (None, None) => None,
     };
+    if let Some(marks) = &words.annotate {
+        marks
+            .check()
+            .map_err(|error| Error::Words(error.to_string()))?;
+    }
     let subject = Subject::open(&words)?;
+    let view = View::new(subject, !words.bare, words.annotate.as_ref());
+    if let (true, Some(note)) = (view.has_marks, view.annotation.note()) {
+        println!("{note}");
+    }
     let no_display = |cause| Error::Window(format!("no display to open a window on: {cause}"));
     let events = EventLoop::new().map_err(no_display)?;
     let mut app = App {
         proxy: events.create_proxy(),
-        view: Some(View::new(subject, !words.bare)),
+        view: Some(view),
         steps,
         words,
         window: None,

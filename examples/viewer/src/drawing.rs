@@ -3,6 +3,7 @@
 
 use crate::error::Error;
 use crate::look::Look;
+use crate::marks::{Layers, Marker};
 use crate::painter::Painter;
 use ash::vk;
 use std::sync::Arc;
@@ -11,18 +12,8 @@ use stratavox::embed::{Class, Renderer, Shot, Volume};
 use stratavox::gpu::{
     Bindings, Gpu, Image, ImageDesc, ImageKind, Load, Target, TargetState, Timer, Use,
 };
-use stratavox::technique::Mode;
 use stratavox::transfer::TransferFunction;
 use stratavox::volume;
-
-/// Behind the volume, linear light: a blue so dark that everything stands out against it. A projection begins with the
-/// black of its lowest value, and its box is not to be seen.
-fn background(mode: Mode) -> [f32; 4] {
-    match mode.is_projection() {
-        true => [0.0, 0.0, 0.0, 1.0],
-        false => [0.008, 0.011, 0.016, 1.0],
-    }
-}
 
 pub struct Drawing {
     gpu: Arc<Gpu>,
@@ -99,7 +90,8 @@ impl Drawing {
         }
     }
 
-    /// Records the picture, before `behind` (linear light) or what suits the mode. The image is in [`Use::FragmentSampled`] afterwards.
+    /// Records the picture, before `behind` (linear light), with marks. The image is in [`Use::FragmentSampled`]
+    /// afterwards.
     ///
     /// # Safety
     /// As [`Renderer::record_into`].
@@ -108,10 +100,11 @@ impl Drawing {
         cmd: vk::CommandBuffer,
         frame: u32,
         camera: &Camera,
-        behind: Option<[f32; 4]>,
+        behind: [f32; 4],
+        marks: Option<(&Marker, &Layers)>,
         timer: Option<&Timer>,
     ) -> Result<(), Error> {
-        let target = Target {
+        let mut target = Target {
             image: self.canvas.image.raw(),
             view: self.canvas.image.view(),
             format: self.canvas.image.format(),
@@ -138,9 +131,21 @@ impl Drawing {
             if let Some(timer) = timer {
                 timer.start(cmd);
             }
-            let usual = background(self.renderer.class().settings.mode);
-            let load = Load::Clear(behind.unwrap_or(usual));
+            let mut load = Load::Clear(behind);
+            if let Some((marker, layers)) = marks {
+                if let Some(layer) = &layers.behind {
+                    target.enter(&self.gpu, cmd, Use::ColorTarget);
+                    marker.draw(cmd, layer, &self.canvas, load);
+                    (target.before, load) = (Use::ColorTarget.into(), Load::Keep);
+                }
+                target.after = Use::ColorTarget.into();
+            }
             self.renderer.record_into(cmd, &shot, &target, load)?;
+            if let Some((marker, layers)) = marks {
+                marker.draw(cmd, &layers.front, &self.canvas, Load::Keep);
+                target.after = Use::FragmentSampled.into();
+                target.leave(&self.gpu, cmd, Use::ColorTarget);
+            }
             if let Some(timer) = timer {
                 timer.stop(cmd);
             }

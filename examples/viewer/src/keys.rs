@@ -11,6 +11,7 @@ pub enum Command {
     NextFilter { is_back: bool },
     Projection,
     Light,
+    Marks,
     View(View),
     Turn([f64; 2]),
     Zoom(f64),
@@ -99,6 +100,13 @@ pub const KEYS: &[Row] = &[
         "next filter, with shift the one before",
     ),
     row(Key::L, Command::Light, None, "L", "light on surfaces"),
+    row(
+        Key::A,
+        Command::Marks,
+        None,
+        "A",
+        "colour bar, scale and letters",
+    ),
     row(
         Key::O,
         Command::Projection,

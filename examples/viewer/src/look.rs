@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::subject::Subject;
 use stratavox::color::decode_srgb;
-use stratavox::look::{BACKGROUND, STILL_SAMPLES, is_lit, light};
+use stratavox::look::{BACKGROUND, Origin, STILL_SAMPLES, is_lit, light, may_choose};
 use stratavox::technique::{Filter, Level, Mode, PerMode, Settings, Shading, Technique};
 use stratavox::transfer::{
     Classified, Context, Interpolation, JointCounts, Kind, Preset, TransferFunction, Window,
@@ -40,12 +40,14 @@ pub struct Look {
     pub technique: Technique,
     pub mode: Mode,
     pub filter: Filter,
-    pub is_lit: bool,
+    /// What a hand says of light; `None`: what suits mode and function.
+    pub light_by_hand: Option<bool>,
     /// Of lit matter; surfaces have the usual one.
     light: Shading,
-    pub samples_per_voxel: f64,
-    /// The function is thinner than samples lie apart: fields, under `--look auto`.
-    is_layered: bool,
+    /// What a hand says; `None`: what suits mode and function.
+    pub samples_by_hand: Option<f64>,
+    /// What the values are, under `--look auto`.
+    kind: Option<Kind>,
     /// A hand moves a picture that is slow: one sample a voxel is enough.
     pub is_moving: bool,
     /// Behind the volume, linear light; `None` is what suits the mode.
@@ -93,19 +95,13 @@ impl Look {
                 Interpolation::Step => Filter::Nearest,
                 Interpolation::Linear => Filter::Linear,
             },
-            is_lit: subject
-                .context
-                .as_ref()
-                .is_some_and(|context| is_lit(kind(context))),
+            light_by_hand: None,
             light: match is_auto {
                 true => light(&subject.voxels),
                 false => Shading::default(),
             },
-            samples_per_voxel: if is_auto { STILL_SAMPLES } else { 1.0 },
-            is_layered: subject
-                .context
-                .as_ref()
-                .is_some_and(|context| kind(context) == Kind::Field),
+            samples_by_hand: None,
+            kind: subject.context.as_ref().map(kind),
             is_moving: false,
             background: is_auto.then(|| {
                 let [r, g, b, opacity] = BACKGROUND;
@@ -125,28 +121,64 @@ impl Look {
         }
     }
 
+    /// Behind the volume, linear light: by itself a blue so dark that everything stands out against it. A projection
+    /// begins with the black of its lowest value, and its box is not to be seen.
+    pub fn backdrop(&self) -> [f32; 4] {
+        let usual = match self.mode.is_projection() {
+            true => [0.0, 0.0, 0.0, 1.0],
+            false => [0.008, 0.011, 0.016, 1.0],
+        };
+        self.background.unwrap_or(usual)
+    }
+
+    fn origin(&self) -> Origin {
+        self.preset.map_or(Origin::Automatic, Origin::Preset)
+    }
+
+    /// Whether light says something of the mode.
+    pub fn can_be_lit(&self) -> bool {
+        matches!(self.mode, Mode::Composite | Mode::Mida)
+    }
+
+    /// What a hand says of light, else what `stratavox render` chooses.
+    pub fn wants_light(&self) -> bool {
+        let is_chosen =
+            |kind| !self.samples.is_graded() && is_lit(self.mode, self.origin(), || kind);
+        self.light_by_hand
+            .unwrap_or_else(|| self.kind.is_some_and(is_chosen))
+    }
+
+    /// The same of samples along a ray.
+    pub fn samples_per_voxel(&self) -> f64 {
+        let is_chosen = self.kind.is_some() && may_choose(self.mode, self.origin());
+        let usual = if is_chosen { STILL_SAMPLES } else { 1.0 };
+        self.samples_by_hand.unwrap_or(usual)
+    }
+
     pub fn settings(&self) -> Settings {
         let is_surface = self.mode == Mode::Iso;
-        let can_be_lit = matches!(self.mode, Mode::Composite | Mode::Mida);
+        let is_lit = self.can_be_lit() && self.wants_light();
         let can_be_slabs = self.mode == Mode::Composite
-            && !self.is_lit
+            && !is_lit
             && matches!(self.filter, Filter::Linear | Filter::Nearest)
             && self.technique != Technique::Slices2d
             && !self.samples.is_graded();
-        let preintegrated = self.is_layered && can_be_slabs;
+        // A function that is thinner than samples lie apart.
+        let is_layered = self.kind == Some(Kind::Field) && self.preset.is_none();
+        let preintegrated = is_layered && self.samples_by_hand.is_none() && can_be_slabs;
         Settings {
             technique: self.technique,
             mode: self.mode,
             filter: self.filter,
             preintegrated,
             samples_per_voxel: match self.is_moving || preintegrated {
-                true => self.samples_per_voxel.min(1.0),
-                false => self.samples_per_voxel,
+                true => self.samples_per_voxel().min(1.0),
+                false => self.samples_per_voxel(),
             },
             termination: TERMINATION,
             shading: match is_surface {
                 true => Some(Shading::default()),
-                false => (can_be_lit && self.is_lit).then(|| self.light.clone()),
+                false => is_lit.then(|| self.light.clone()),
             },
             per_mode: self.per_mode.clone(),
             ..Settings::default()
@@ -273,4 +305,71 @@ fn integrals(voxels: &Volume) -> [f64; 2] {
     each.fold([0.0, 0.0], |[low, high]: [f64; 2], sum| {
         [low.min(sum), high.max(sum)]
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::words::Words;
+    use clap::Parser;
+
+    fn open(words: &[&str]) -> Subject {
+        let all = ["viewer"].iter().chain(words);
+        Subject::open(&Words::parse_from(all)).expect("a phantom")
+    }
+
+    #[test]
+    fn light_and_samples_are_chosen_where_the_command_line_chooses_them() {
+        let subject = open(&["phantom:head,n=16"]);
+        let chosen = |look: &Look| {
+            let settings = look.settings();
+            (settings.shading.is_some(), settings.samples_per_voxel)
+        };
+        let mut look = Look::new(&subject);
+        assert_eq!(chosen(&look), (true, 2.0));
+        for (preset, wanted) in [
+            (Some(Preset::Grey), (false, 1.0)),
+            (Some(Preset::CtBone), (true, 2.0)),
+            (None, (true, 2.0)),
+        ] {
+            look.set_preset(preset, &subject);
+            assert_eq!(chosen(&look), wanted, "{preset:?}");
+        }
+        for mode in [Mode::Mida, Mode::Mip, Mode::Xray] {
+            look.set_mode(mode, &subject.voxels);
+            assert_eq!(chosen(&look), (false, 1.0), "{mode}");
+        }
+        // What a hand says holds in every mode that light says something of.
+        (look.light_by_hand, look.samples_by_hand) = (Some(true), Some(3.0));
+        look.set_mode(Mode::Mida, &subject.voxels);
+        assert_eq!(chosen(&look), (true, 3.0));
+        look.set_mode(Mode::Composite, &subject.voxels);
+        look.light_by_hand = Some(false);
+        assert_eq!(chosen(&look), (false, 3.0));
+        let plain = Look::new(&open(&["phantom:head,n=16", "--look", "plain"]));
+        assert_eq!(chosen(&plain), (false, 1.0));
+    }
+
+    #[test]
+    fn fields_are_layers_until_a_preset_or_a_hand_says_otherwise() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("field.nrrd");
+        let head = b"NRRD0004\ntype: float\ndimension: 3\nsizes: 12 12 12\nencoding: raw\nendian: little\n\n";
+        let value =
+            |i: usize| (i % 12) as f32 + 0.37 * (i / 12 % 12) as f32 + 0.1 * (i / 144) as f32;
+        let values = (0..12_usize.pow(3)).flat_map(|i| value(i).to_le_bytes());
+        std::fs::write(
+            &path,
+            head.iter().copied().chain(values).collect::<Vec<_>>(),
+        )
+        .expect("a file");
+        let subject = open(&[path.to_str().expect("plain names")]);
+        let mut look = Look::new(&subject);
+        assert!(look.settings().preintegrated);
+        look.samples_by_hand = Some(2.0);
+        assert!(!look.settings().preintegrated);
+        look.samples_by_hand = None;
+        look.set_preset(Some(Preset::Grey), &subject);
+        assert!(!look.settings().preintegrated);
+    }
 }

@@ -8,6 +8,7 @@
 //! frames     frames in flight, fences            curve      the transfer function under the hand
 //! drawing    stratavox, into an image of ours    reader     times of a series, on another thread
 //! painter    that image and egui's triangles     script     a hand for tests;  shot  pictures into files
+//! marks      words and scales in the picture
 //! ```
 //!
 //! A frame, in `window/mod.rs`: egui lays it out; what it changed goes to the renderer (`set_function`, `set_settings`,
@@ -24,6 +25,7 @@ mod frames;
 mod host;
 mod keys;
 mod look;
+mod marks;
 mod painter;
 mod panel;
 mod reader;

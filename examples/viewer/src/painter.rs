@@ -349,7 +349,7 @@ pub fn pixels(rect: Rect, pixels_per_point: f32, extent: [u32; 2]) -> vk::Rect2D
 }
 
 /// SPIR-V lives as long as the program.
-fn words(bytes: &'static [u8]) -> &'static [u32] {
+pub fn words(bytes: &'static [u8]) -> &'static [u32] {
     let words = bytes
         .chunks_exact(4)
         .map(|word| u32::from_ne_bytes([word[0], word[1], word[2], word[3]]));

@@ -21,6 +21,8 @@ pub struct Subject {
     pub source: Arc<dyn Source>,
     /// The name in the title of the window.
     pub name: String,
+    /// The name of the file, or the phantom.
+    pub file: String,
     pub voxels: Arc<Volume>,
     pub time: u32,
     pub summary: ValueSummary,
@@ -110,6 +112,7 @@ impl Subject {
         }
         Ok(Self {
             name: name(words, header),
+            file: file(words),
             summary: summary(&voxels),
             histogram: Histogram::of(&voxels, BINS),
             voxels: Arc::new(voxels),
@@ -219,15 +222,18 @@ fn check(words: &Words, header: &Header) -> Result<(), Error> {
     }
 }
 
-fn name(words: &Words, header: &Header) -> String {
+/// The last name of a path, or a phantom's word.
+fn file(words: &Words) -> String {
     let input = words.input.trim_end_matches('/');
-    let file = match input.strip_prefix("phantom:") {
-        Some(phantom) => phantom.to_owned(),
-        None => {
-            let name = Path::new(input).file_name();
-            name.map_or(input.to_owned(), |name| name.to_string_lossy().into_owned())
-        }
-    };
+    match Path::new(input).file_name() {
+        Some(name) if !input.starts_with("phantom:") => name.to_string_lossy().into_owned(),
+        _ => input.to_owned(),
+    }
+}
+
+fn name(words: &Words, header: &Header) -> String {
+    let file = file(words);
+    let file = file.strip_prefix("phantom:").unwrap_or(&file).to_owned();
     match header.variables.first() {
         Some(variable) if header.variables.len() > 1 => format!("{file}: {variable}"),
         _ => file,

@@ -9,6 +9,7 @@ use crate::subject::Subject;
 use egui::{Pos2, Rect};
 use glam::DVec3;
 use std::collections::VecDeque;
+use stratavox::annotate::{Annotation, Facts, Marks};
 
 pub struct View {
     pub subject: Subject,
@@ -17,6 +18,9 @@ pub struct View {
     pub curve: Curve,
     pub has_panel: bool,
     pub has_help: bool,
+    /// The marks of `annotation` are drawn.
+    pub has_marks: bool,
+    pub annotation: Annotation,
     pub is_playing: bool,
     /// The time that the slider stands at; `subject.time` is the one that is drawn.
     pub wanted_time: u32,
@@ -65,9 +69,18 @@ pub struct Status {
 }
 
 impl View {
-    pub fn new(subject: Subject, has_panel: bool) -> Self {
+    /// With the marks of `annotate`, or the usual ones, which a key shows.
+    pub fn new(subject: Subject, has_panel: bool, annotate: Option<&Marks>) -> Self {
         let mut eye = Eye::new(subject.voxels.grid(), subject.side());
         eye.may_choose_side = subject.has_open_side();
+        let usual = || Marks::USUAL.parse().expect("words of a list");
+        let annotation = Annotation {
+            marks: annotate.cloned().unwrap_or_else(usual),
+            size: None,
+            color: None,
+            is_log: false,
+            facts: Facts::of(subject.header(), &subject.file),
+        };
         Self {
             look: Look::new(&subject),
             eye,
@@ -76,6 +89,8 @@ impl View {
             curve: Curve::default(),
             has_panel,
             has_help: false,
+            has_marks: annotate.is_some(),
+            annotation,
             is_playing: false,
             picture: Rect::ZERO,
             held: None,
@@ -96,7 +111,8 @@ impl View {
             status,
             commands,
             picture: self.picture,
-            ..Self::new(subject, self.has_panel)
+            has_marks: self.has_marks,
+            ..Self::new(subject, self.has_panel, Some(&self.annotation.marks))
         };
     }
 
@@ -119,7 +135,8 @@ impl View {
             Command::NextFilter { is_back } => {
                 self.look.filter = next(&FILTERS, self.look.filter, is_back);
             }
-            Command::Light => self.look.is_lit = !self.look.is_lit,
+            Command::Light => self.look.light_by_hand = Some(!self.look.wants_light()),
+            Command::Marks => self.has_marks = !self.has_marks,
             Command::Projection => self.eye.is_parallel = !self.eye.is_parallel,
             Command::View(side) => self.eye.orbit = side.orbit(),
             Command::Turn([right, down]) => self.eye.turn(right, down),

@@ -2,6 +2,7 @@
 
 use clap::{Parser, ValueEnum};
 use std::path::PathBuf;
+use stratavox::annotate::Marks;
 
 /// A window on a volume: turn it, move it, change its colours, look what lies where
 #[derive(Clone, Debug, Parser)]
@@ -9,7 +10,7 @@ use std::path::PathBuf;
 #[command(after_help = "H in the window shows the keys.\n\nExamples:\n  \
     stratavox-viewer scan.nii.gz\n  \
     stratavox-viewer wrfout.nc --variable QVAPOR\n  \
-    stratavox-viewer phantom:storm --screenshot storm.png")]
+    stratavox-viewer phantom:storm --annotate --screenshot storm.png")]
 pub struct Words {
     /// A volume file, a folder of slices, or phantom:NAME[,n=256]
     #[arg(value_name = "INPUT", default_value = "phantom:head")]
@@ -39,6 +40,10 @@ pub struct Words {
     /// Draw tables and head holders of CT too, which --look auto leaves out
     #[arg(long)]
     pub keep_all: bool,
+    /// Draw over the picture: bar, time, orientation, scale, title=TEXT, box, ticks, axes, source; without a list the
+    /// first four. A in the window hides and shows them
+    #[arg(long, value_name = "LIST", num_args = 0..=1, default_missing_value = Marks::USUAL)]
+    pub annotate: Option<Marks>,
     /// A device by a part of its name
     #[arg(long, value_name = "NAME")]
     pub device: Option<String>,

@@ -6,11 +6,12 @@ use display::{Display, skipped, texts};
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
+use stratavox::annotate::{Annotation, Facts, Seen};
 use stratavox::camera::{Camera, Lens, Orbit};
 use stratavox::color::decode_srgb;
 use stratavox::gpu::{DeviceChoice, Headless, Options};
 use stratavox::offscreen::Renderer;
-use stratavox::picture::{WriteOptions, read_image, write_picture};
+use stratavox::picture::{Picture, WriteOptions, read_image, write_picture};
 use stratavox::scene::{Beside, Scene};
 use stratavox::technique::{Settings, Technique};
 use stratavox::transfer::{Classified, ValueSummary, automatic, automatic_in};
@@ -584,4 +585,115 @@ fn the_first_picture_is_fitted_to_what_is_visible_and_lit_as_the_command_line_do
     let [low, high] = seen_box(size, &plain);
     let filled = (high[0] - low[0]).max(high[1] - low[1]);
     assert!(filled < 0.85, "{low:?} {high:?}");
+}
+
+#[test]
+fn marks_are_laid_over_the_picture_and_their_box_shows_through_the_volume() {
+    let Some(display) = Display::new() else {
+        return;
+    };
+    let folder = TempDir::new().unwrap();
+    let spec = "phantom:head,n=40";
+    let list = "bar,orientation,scale,box,source,title=Head";
+    let extent = [320, 240];
+    let words = [spec, "--look", "plain", "--bare", "--size", "320x240"];
+    let marked = [&words[..], &["--annotate", list]].concat();
+    let lines = "frames 2\nreport\npicture with.png\nwindow w.png\nkey A\npicture without.png\n\
+                 key A\npicture again.png\n";
+    let report = display.play(folder.path(), &marked, lines);
+    let drawn = |name: &str| pixels(&folder.path().join(name)).1;
+    assert!(
+        drawn("with.png") == drawn("again.png"),
+        "the key shows what it hid"
+    );
+    display.play(folder.path(), &words, "picture plain.png\n");
+    assert!(
+        drawn("without.png") == drawn("plain.png"),
+        "hidden marks leave a trace"
+    );
+
+    // The same marks, laid by hand: edges behind the volume under it, all others over the picture.
+    let source = phantom::open(spec, &Limits::default()).unwrap();
+    let volume = read(spec);
+    let summary = stratavox::look::summary(&volume);
+    let function = automatic(&summary, Classified::Samples, None);
+    let settings = Settings {
+        termination: 1.0 / 8192.0,
+        ..Settings::default()
+    };
+    let camera = report.camera(&volume, extent);
+    let scene = Scene {
+        volume: &volume,
+        transfer: Some(&function),
+        beside: Beside::Nothing,
+        camera: &camera,
+        extent_pixels: extent,
+        settings: &settings,
+    };
+    let device = Headless::new(&DeviceChoice::default(), &Options::default()).unwrap();
+    let mut renderer = Renderer::new(device, &volume).unwrap();
+    let mut wanted = renderer.render(&scene, &[]).unwrap().picture;
+    let background = Picture {
+        pixels: vec![[0.008, 0.011, 0.016, 1.0]; wanted.pixels.len()],
+        ..wanted.clone()
+    };
+    let annotation = Annotation {
+        marks: list.parse().unwrap(),
+        size: None,
+        color: None,
+        is_log: false,
+        facts: Facts::of(source.header(), spec),
+    };
+    let seen = Seen {
+        camera: &camera,
+        settings: &settings,
+        function: Some(&function),
+        beside: Beside::Nothing,
+        grid: volume.grid(),
+        height_factor: 1.0,
+        time: 0.0,
+        projected: None,
+    };
+    let marks = annotation.draw(&background, &seen).unwrap();
+    let over = |over: [f32; 4], under: [f32; 4]| {
+        std::array::from_fn(|k| over[k] + (1.0 - over[3]) * under[k])
+    };
+    let layers = marks.behind.iter().zip(&marks.front);
+    let grounds = background.pixels.iter().zip(layers);
+    for (pixel, (ground, (behind, front))) in wanted.pixels.iter_mut().zip(grounds) {
+        *pixel = over(*front, over(*pixel, over(*behind, *ground)));
+    }
+    let path = folder.path().join("wanted.png");
+    write_picture(&wanted, &path, WriteOptions::default()).unwrap();
+    let wanted = pixels(&path).1;
+    let inked = marks.front.iter().filter(|pixel| pixel[3] > 0.9).count();
+    assert!(inked > 500, "{inked} pixels of marks");
+    let plain = drawn("plain.png");
+    let hidden = wanted.iter().zip(&plain).zip(&marks.front);
+    let hidden = hidden
+        .filter(|((a, b), front)| front[3] == 0.0 && a != b)
+        .count();
+    assert!(hidden > 50, "{hidden} pixels of edges behind the volume");
+    let apart = codes_apart(&wanted, &drawn("with.png"));
+    assert!(apart < 1.5, "{apart} codes apart");
+    // A sampler's weights have 8 bits: of a white neighbour 1/256 may be there, in black 12.92 x 255 / 256 codes.
+    let apart = codes_apart(&wanted, &drawn("w.png"));
+    assert!(apart < 12.87 + 1.5, "the window is {apart} codes off");
+
+    let shot = [&marked[..], &["--screenshot", "shot.png"]].concat();
+    let output = display.heard(folder.path()).args(shot).output().unwrap();
+    assert!(output.status.success(), "{}", texts(&output));
+    assert!(
+        drawn("shot.png") == drawn("w.png"),
+        "a screenshot has the marks"
+    );
+
+    let wrong = [spec, "--annotate", "title=Жук"];
+    let output = display.heard(folder.path()).args(wrong).output().unwrap();
+    assert_eq!(output.status.code(), Some(2), "{}", texts(&output));
+    assert!(
+        texts(&output).contains("no letter 'Ж'"),
+        "{}",
+        texts(&output)
+    );
 }

@@ -13,9 +13,9 @@ use super::{
     volumes::{Moment, Volumes},
 };
 use crate::{
+    annotate::{Annotation, Seen as SeenFrame},
     cli::{
         Error,
-        annotate::{Annotation, Seen as SeenFrame},
         flags::{Classification, SceneFlags},
         line::{Line, encoders},
         memory::{DeviceMemory, DeviceRoom, Held, leaves_room},
@@ -314,7 +314,7 @@ impl Drawing<'_> {
             let seen = SeenFrame {
                 camera: &self.shots[number as usize].camera,
                 settings: &ready.settings,
-                classification: &ready.classification,
+                function: ready.classification.function(),
                 beside: work.parts.beside(),
                 grid: self.placed.0,
                 height_factor: self.placed.1,

@@ -30,7 +30,7 @@ mod volumes;
 
 use super::{
     Error,
-    annotate::Annotation,
+    annotation::annotation,
     exaggerate,
     flags::{Depth, SceneFlags, context},
     load,
@@ -45,6 +45,7 @@ use super::{
     timings::Timings,
 };
 use crate::{
+    annotate::Annotation,
     picture::{BitDepth, LayerKind, PictureFormat, WriteOptions},
     volume::{Grid, Header, Source},
 };
@@ -265,7 +266,7 @@ impl Animate {
         for note in scene.idle() {
             progress.note(note);
         }
-        let annotation = Annotation::of(scene, header, shots[0].settings.mode)?;
+        let annotation = annotation(scene, header, shots[0].settings.mode)?;
         let note = annotation.as_ref().and_then(Annotation::note);
         note.iter().for_each(|note| progress.note(note));
         let mut shots = plan.film.shots(scene, *depth, header, &grid)?;

@@ -84,6 +84,16 @@ pub enum Classification {
     RangeOfPicture,
 }
 
+impl Classification {
+    /// The function, where it is known before the picture is.
+    pub fn function(&self) -> Option<&TransferFunction> {
+        match self {
+            Self::Function(function) => Some(function),
+            Self::RangeOfPicture => None,
+        }
+    }
+}
+
 impl ClassificationFlags {
     /// True where a function is asked for by name or file, which may be one of gradients.
     pub fn names_a_function(&self) -> bool {

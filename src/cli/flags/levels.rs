@@ -2,7 +2,7 @@
 
 use super::{Error, color::ColorWord};
 use crate::{
-    cli::readable::short,
+    figure::short,
     picture::ColorSpace,
     shaders::MAX_LEVELS,
     technique::Level,

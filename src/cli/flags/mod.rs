@@ -35,7 +35,7 @@ mod window;
 mod words;
 
 pub use crate::look::{context, summary};
-pub use annotate::{AnnotateFlags, Marks, ScaleWord};
+pub use annotate::{AnnotateFlags, ScaleWord};
 pub use camera::{CameraFlags, FrameWord, ProjectionWord, ViewWord};
 pub use channels::{ChannelFlags, ChannelWord, Plan};
 pub use classification::{Classification, ClassificationFlags};

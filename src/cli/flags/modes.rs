@@ -2,7 +2,7 @@
 
 use super::{Error, LevelFlags, finite};
 use crate::{
-    cli::readable::short,
+    figure::short,
     technique::{DEFAULT_ATTENUATION, Filter, Lattice, Mode, PerMode, Settings, Technique},
     transfer::{TransferFunction, ValueSummary, Window},
 };

@@ -3,7 +3,7 @@
 use super::outlines::{self, Axes, Outline};
 use super::{Counted, NAME_SIZE, Plot, TICK_SIZE, color, function_json};
 use crate::{
-    cli::figure::{Anchor, FAINT, Figure, INK, Mark, Ticks, log_ticks},
+    figure::{Anchor, FAINT, Figure, INK, Mark, Ticks, log_ticks},
     transfer::TransferFunction,
     volume::JointHistogram,
 };

@@ -7,13 +7,14 @@ mod single;
 use super::{
     Error,
     error::visible,
-    figure::{self, Anchor, Color, Figure, INK, Ticks},
     flags::{Classification, ClassificationFlags, InputFlags},
     load,
     output::{self, say_aside, write_whole},
     signals::Gate,
 };
 use crate::{
+    annotate::unit,
+    figure::{self, Anchor, Color, Figure, INK, Ticks},
     technique::Mode,
     transfer::TransferFunction,
     volume::{Format, Header, Pick, Volume},
@@ -174,12 +175,6 @@ impl Counted {
             "no_data": self.volume.no_data_count(),
         })
     }
-}
-
-/// The unit of values, Hounsfield's where the header knows it otherwise.
-pub fn unit(header: &Header) -> Option<String> {
-    let hounsfield = header.hounsfield.then(|| "HU".to_owned());
-    header.unit.clone().or(hounsfield)
 }
 
 /// The unit of lengths in the world, where the format has one.

@@ -10,7 +10,7 @@
 
 use super::{Plot, color};
 use crate::{
-    cli::figure::{Figure, INK, Mark, Point},
+    figure::{Figure, INK, Mark, Point},
     transfer::{Graded, Shape, TransferFunction, Widget},
 };
 use serde_json::{Value, json};

@@ -2,9 +2,9 @@
 
 use super::{Counted, NAME_SIZE, Plot, TICK_SIZE, color, function_json, shortened};
 use crate::{
-    cli::figure::{Anchor, Color, FAINT, Figure, GRID, INK, Mark, Point, Ticks, log_ticks},
-    cli::readable::short,
     color::ColorSpace,
+    figure::short,
+    figure::{Anchor, Color, FAINT, Figure, GRID, INK, Mark, Point, Ticks, log_ticks},
     transfer::{Absorption, Interpolation, Points, TransferFunction, classify_by_points},
     volume::Histogram,
 };

@@ -8,11 +8,11 @@ mod watched;
 use super::{
     Error,
     flags::InputFlags,
-    histogram::unit,
     memory::{RenderBytes, software_device_bytes},
     output::{say, say_aside},
     progress::{Progress, ProgressWord},
 };
+use crate::annotate::unit;
 use crate::volume::{Grid, Header, Limits, Meaning, Pick, Problem, ReadError, Source, Statistics};
 use clap::Args;
 use glam::DVec3;

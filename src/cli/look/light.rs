@@ -6,7 +6,10 @@ use crate::cli::flags::{
     Background, Classification, Depth, LightWord, ModeWord, Numbers, SceneFlags, ShadingWord,
 };
 use crate::cli::shown::check;
-use crate::look::{BACKGROUND, LIGHT, MATERIAL, STILL_SAMPLES, half_gradient, is_lit, summary};
+use crate::look::{
+    BACKGROUND, LIGHT, MATERIAL, Origin, STILL_SAMPLES, half_gradient, is_lit, may_choose, summary,
+};
+use crate::technique::Mode;
 use crate::transfer::{Context, Kind, Preset};
 use crate::volume::Volume;
 
@@ -34,9 +37,6 @@ pub struct Seen<'a> {
     pub is_alone: bool,
 }
 
-/// Presets that are made for lit surfaces.
-const LIT_PRESETS: [Preset; 3] = [Preset::CtBone, Preset::CtSoftTissue, Preset::Mri];
-
 /// The scene with light, samples and background where no flag says them.
 pub fn with_light(scene: &SceneFlags, seen: Seen, made_for: Use) -> SceneFlags {
     let mut chosen = scene.clone();
@@ -47,10 +47,10 @@ pub fn with_light(scene: &SceneFlags, seen: Seen, made_for: Use) -> SceneFlags {
         let background = Background::Color(BACKGROUND);
         chosen.picture.background.get_or_insert(background);
     }
-    if !may_choose(scene) {
+    let Some(mode) = mode(scene).filter(|&mode| may_choose(mode, origin(scene))) else {
         return chosen;
-    }
-    let lit = lit(&chosen, seen);
+    };
+    let lit = lit(&chosen, mode, seen);
     let is_drawable = |scene: &SceneFlags| {
         let settings = scene.settings(made_for.depth);
         settings.is_ok_and(|settings| check(scene, &settings).is_ok())
@@ -71,15 +71,20 @@ pub fn with_light(scene: &SceneFlags, seen: Seen, made_for: Use) -> SceneFlags {
     chosen
 }
 
-/// True for composites whose function the program has chosen, or is made for light.
-fn may_choose(scene: &SceneFlags) -> bool {
-    let is_composite = matches!(scene.sampling.mode, None | Some(ModeWord::Composite));
+/// The mode, where the picture is one of the volume.
+fn mode(scene: &SceneFlags) -> Option<Mode> {
+    let word = scene.sampling.mode.unwrap_or(ModeWord::Composite);
+    scene.section.section.is_none().then(|| word.mode())
+}
+
+fn origin(scene: &SceneFlags) -> Origin {
     let classification = &scene.classification;
     let preset = classification.preset.as_deref().and_then(Preset::from_name);
-    is_composite
-        && scene.section.section.is_none()
-        && classification.transfer_function.is_none()
-        && preset.is_none_or(|preset| LIT_PRESETS.contains(&preset))
+    match (&classification.transfer_function, preset) {
+        (Some(_), _) => Origin::Given,
+        (None, Some(preset)) => Origin::Preset(preset),
+        (None, None) => Origin::Automatic,
+    }
 }
 
 /// True where no flag says how samples are taken; one that has no effect says nothing.
@@ -99,25 +104,23 @@ fn is_sheets(scene: &SceneFlags, seen: Seen) -> bool {
 }
 
 /// The lit scene, where light shows a shape.
-fn lit(scene: &SceneFlags, seen: Seen) -> Option<SceneFlags> {
+fn lit(scene: &SceneFlags, mode: Mode, seen: Seen) -> Option<SceneFlags> {
     let light = &scene.light;
     if !seen.is_alone || light.shading == Some(ShadingWord::None) || light.shadows.is_some() {
         return None;
     }
     let volume = seen.volume;
-    let is_named = scene.classification.preset.is_some();
     let Classification::Function(function) = seen.classification else {
         return None;
     };
-    let has_shape = || {
+    let kind = || {
         let summary = summary(volume);
-        let kind = match seen.context {
+        match seen.context {
             Some(context) => context.choice(&summary).kind,
             None => Kind::of(&summary),
-        };
-        is_lit(kind)
+        }
     };
-    if function.is_graded() || !is_named && !has_shape() {
+    if function.is_graded() || !is_lit(mode, origin(scene), kind) {
         return None;
     }
     let mut lit = scene.clone();

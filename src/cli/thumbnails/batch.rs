@@ -7,9 +7,10 @@ use super::{
     room::{Room, Share},
 };
 use crate::{
+    annotate::{Annotation, Seen},
     cli::{
         Error,
-        annotate::{Annotation, Seen},
+        annotation::{annotation, projected},
         flags::{Depth, SceneFlags, ViewWord},
         line::{Line, encoders},
         load,
@@ -226,7 +227,7 @@ impl Batch<'_> {
         let views: Vec<_> = missing.iter().map(|_| OnceCell::new()).collect();
         let parts = shown.parts();
         let reasoned = parts.only(&shown.classification);
-        let annotation = Annotation::of(scene, &shown.header, self.settings.mode)?;
+        let annotation = annotation(scene, &shown.header, self.settings.mode)?;
         let annotation_note = annotation.as_ref().and_then(Annotation::note);
         let first = Views::default();
         let (_, wanted) = missing.first().expect("who is read has a picture to come");
@@ -265,12 +266,12 @@ impl Batch<'_> {
                 let seen = Seen {
                     camera,
                     settings,
-                    classification,
+                    function: classification.function(),
                     beside: parts.beside(),
                     grid: shown.volume.grid(),
                     height_factor: shown.height_factor,
                     time: f64::from(scene.input.time(&shown.header)?.0),
-                    projected: annotation.projected(classification, &mut renderer, camera)?,
+                    projected: projected(annotation, classification, &mut renderer, camera)?,
                 };
                 annotation.put(&mut picture, behind.as_deref(), &seen, PictureFormat::Png)?;
             }

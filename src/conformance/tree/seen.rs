@@ -12,8 +12,8 @@ use crate::conformance::stand::Stand;
 use crate::picture::LayerKind;
 use crate::scene::{Beside, Channel};
 use crate::technique::{
-    AmbientOcclusion, ClipPlane, Filter, Lattice, Light, Mode, Order, Role, Settings, Shading,
-    Shadows, Technique,
+    AmbientOcclusion, ClipPlane, Filter, Lattice, Light, LightSpace, Mode, Order, Role, Settings,
+    Shading, Shadows, Technique,
 };
 use crate::transfer::{Graded, OpacityPoint, TransferFunction, Widget};
 use crate::volume::VoxelType;
@@ -42,6 +42,8 @@ enum Look {
     Lit,
     /// Three lights.
     Lamps,
+    /// Three lights that move with the camera, on gradients of which small ones are no surface.
+    SteadyLamps,
     /// An emitter over value and gradient.
     Widget(usize),
     /// Three lights, each as far as matter lets it through.
@@ -75,6 +77,7 @@ impl Look {
             Self::MarschnerLobb => "marschner_lobb",
             Self::Lit => "headlight",
             Self::Lamps => "lamps",
+            Self::SteadyLamps => "steady_lamps",
             Self::Shadows => "shadows",
             Self::SoftShadows => "soft_shadows",
             Self::Occluded => "occluded",
@@ -121,6 +124,7 @@ pub fn cases() -> Vec<Case> {
     for mode in [MODES[1], MODES[2]] {
         all.push((rays, mode, Look::Exact, linear));
     }
+    all.push((rays, MODES[0], Look::SteadyLamps, linear));
     for mode in [
         ("lmip", Mode::Lmip),
         ("attenuated_mip", Mode::AttenuatedMip),
@@ -167,7 +171,11 @@ fn is_hidden(placement: Placement, mode: Mode, look: Look, filter: Filter) -> bo
 /// of it that rays are in for less long. What a single sample is off by shows as much there, and less is allowed.
 fn is_thin(placement: Placement, look: Look) -> bool {
     let is_under = placement.order == Order::FrontToBack;
-    matches!(look, Look::Lamps | Look::Shadows | Look::SoftShadows) || look == Look::Lit && is_under
+    let is_of_lamps = matches!(
+        look,
+        Look::Lamps | Look::SteadyLamps | Look::Shadows | Look::SoftShadows
+    );
+    is_of_lamps || look == Look::Lit && is_under
 }
 
 /// The baseline has each look in each technique, and the filters where something hangs on them.
@@ -264,16 +272,23 @@ fn set(settings: &mut Settings, look: Look) {
     settings.per_mode.attenuation = 4.0;
     settings.per_mode.mida_gamma = -0.25;
     settings.per_mode.exact_maximum = look == Look::Exact;
-    let light = |towards, srgb| Light::of_world(towards, srgb);
+    let light = |towards, srgb| Light {
+        space: match look {
+            Look::SteadyLamps => LightSpace::Camera,
+            _ => LightSpace::World,
+        },
+        ..Light::of_world(towards, srgb)
+    };
     let shadows = |light_size_degrees| Shadows::Volume { light_size_degrees };
     match look {
         Look::Lit => settings.shading = Some(Shading::default()),
-        Look::Lamps | Look::Shadows | Look::SoftShadows => {
+        Look::Lamps | Look::SteadyLamps | Look::Shadows | Look::SoftShadows => {
             settings.shading = Some(Shading {
                 ambient: 0.2,
                 diffuse: 0.5,
                 specular: 0.4,
                 shininess: 23.0,
+                half_gradient: if look == Look::SteadyLamps { 0.1 } else { 0.0 },
                 lights: vec![
                     light(dvec3(1.0, -2.0, 0.7), [1.0, 0.9, 0.8]),
                     light(dvec3(-0.3, 0.2, 3.0), [0.2, 0.3, 0.6]),

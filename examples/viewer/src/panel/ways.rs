@@ -50,18 +50,26 @@ pub fn ways(ui: &mut Ui, view: &mut View) {
             ui.end_row();
             ui.label("Samples")
                 .on_hover_text("along a ray, for each smallest spacing of voxels");
-            let samples = Slider::new(&mut view.look.samples_per_voxel, 0.25..=4.0)
+            let mut per_voxel = view.look.samples_per_voxel();
+            let samples = Slider::new(&mut per_voxel, 0.25..=4.0)
                 .logarithmic(true)
                 .max_decimals(2)
                 .suffix(" a voxel");
             let response = ui.add_enabled(view.look.technique != Technique::Slices2d, samples);
             view.is_moving |= response.dragged();
+            if response.changed() {
+                view.look.samples_by_hand = Some(per_voxel);
+            }
             ui.end_row();
         });
     ui.horizontal(|ui| {
         ui.checkbox(&mut view.eye.is_parallel, "Parallel");
-        let can_be_lit = matches!(view.look.mode, Mode::Composite | Mode::Mida);
-        ui.add_enabled_ui(can_be_lit, |ui| ui.checkbox(&mut view.look.is_lit, "Light"));
+        let mut is_lit = view.look.wants_light();
+        let can_be_lit = view.look.can_be_lit();
+        let light = ui.add_enabled(can_be_lit, egui::Checkbox::new(&mut is_lit, "Light"));
+        if light.changed() {
+            view.look.light_by_hand = Some(is_lit);
+        }
         if ui.button("Reset view").clicked() {
             view.eye.reset();
         }

@@ -15,6 +15,7 @@ use crate::error::Error;
 use crate::fit::{Small, fit};
 use crate::frames::Begun;
 use crate::look::Change;
+use crate::marks::{self, Marker};
 use ash::vk;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -54,6 +55,7 @@ impl Window {
             look: self.view.look.clone(),
             eye: self.view.eye.clone(),
             time: self.view.subject.time,
+            has_marks: self.view.has_marks,
             extent,
         };
         if self.drawn.as_ref() == Some(&now) && self.view.to_pick.is_none() {
@@ -61,9 +63,25 @@ impl Window {
         }
         let camera = self.view.eye.camera(extent);
         let camera = camera.map_err(|error| Error::Drawing(error.into()))?;
+        let format = drawing.canvas.image.format();
         let timer = self.timers[frame as usize].as_ref();
         // SAFETY: the caller's promise.
-        unsafe { drawing.record(cmd, frame, &camera, self.view.look.background, timer)? };
+        unsafe {
+            let marks = match self.view.has_marks {
+                true => {
+                    let marker = match &mut self.marker {
+                        Some(marker) => marker,
+                        none => none.insert(Marker::new(self.host.gpu(), format)?),
+                    };
+                    let drawn = marks::drawn(&self.view, &camera, extent, parts)?;
+                    Some((&*marker, marker.lay(cmd, &drawn, extent)?))
+                }
+                false => None,
+            };
+            let marks = marks.as_ref().map(|(marker, layers)| (*marker, layers));
+            let behind = self.view.look.backdrop();
+            drawing.record(cmd, frame, &camera, behind, marks, timer)?;
+        }
         self.timed[frame as usize] = Some(parts);
         self.drawn = Some(now);
         if let Some(at) = self.view.to_pick.take() {

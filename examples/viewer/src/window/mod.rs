@@ -20,6 +20,7 @@ use crate::frames::Frames;
 use crate::host::Host;
 use crate::keys::Command;
 use crate::look::Look;
+use crate::marks::Marker;
 use crate::painter::Painter;
 use crate::panel;
 use crate::reader::{Read, Reader};
@@ -54,6 +55,8 @@ pub struct Window {
     arrived: Option<Read>,
     reader: Reader,
     painter: Option<Painter>,
+    /// Where marks were shown once.
+    marker: Option<Marker>,
     /// Around the volume, for each frame in flight, and in how many parts its picture was shrunk.
     timers: Vec<Option<Timer>>,
     timed: Vec<Option<u32>>,
@@ -81,6 +84,7 @@ struct Drawn {
     look: Look,
     eye: Eye,
     time: u32,
+    has_marks: bool,
     extent: [u32; 2],
 }
 
@@ -139,6 +143,7 @@ impl Window {
             drawing: None,
             arrived: None,
             painter: None,
+            marker: None,
             asked: None,
             saves: Vec::new(),
             last_move: None,
@@ -339,6 +344,7 @@ impl Window {
             look: self.view.look.clone(),
             eye: self.view.eye.clone(),
             time: self.view.subject.time,
+            has_marks: self.view.has_marks,
             extent: drawn.extent,
         };
         self.drawn.as_ref().is_none_or(|drawn| now(drawn) != *drawn)

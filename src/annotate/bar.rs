@@ -3,13 +3,10 @@
 //! Opacity is that of an eighth of the box's diagonal full of the value, `1 - (1 - a)^(D / 8 d0)` for an opacity `a`
 //! per length `d0`; in modes that classify one value a ray it is `a`. Below it lies a check of two greys.
 
-use super::{sheet::Sheet, units};
+use super::{Error, sheet::Sheet, units};
 use crate::{
-    cli::{
-        Error,
-        figure::{Anchor, Mark},
-    },
     color::{decode_srgb, encode_srgb},
+    figure::{Anchor, Mark},
     transfer::TransferFunction,
 };
 
@@ -53,10 +50,7 @@ impl Bar<'_> {
             return Ok(None);
         };
         if self.is_log && low <= 0.0 {
-            return Err(Error::usage(
-                format!("--colormap-scale log: wanted values above 0, found {low}"),
-                "--colormap-scale linear, or a --window above 0",
-            ));
+            return Err(Error::NoLogarithm(low));
         }
         let [width, height] = sheet.size();
         let em = sheet.em;

@@ -7,7 +7,7 @@ mod letters;
 mod raster;
 mod svg;
 
-pub use axis::{Ticks, log_ticks};
+pub use axis::{Ticks, log_ticks, short};
 pub use font::{letter_lacking, strokes};
 pub use raster::{SCALE, linear_pixels, png};
 

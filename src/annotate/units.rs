@@ -1,6 +1,6 @@
 //! Numbers and units as they are written in a picture.
 
-use crate::cli::figure::Ticks;
+use crate::figure::Ticks;
 
 /// A unit as it is printed: `m s-1` is `m s⁻¹`; `None` for one that is no word.
 pub fn printed(unit: &str) -> Option<String> {
@@ -179,6 +179,20 @@ mod tests {
             for most in 3..=7 {
                 let count = ticks(range, most).at.len();
                 assert!((3..=7).contains(&count), "{range:?}, {most}: {count}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_scale_takes_half_of_its_room_where_a_round_length_does() {
+        // Rooms of 1 to 10 units, in steps of a fortieth of a decade.
+        for room in (0..40).map(|i| 10_f64.powf(f64::from(i) / 40.0) * (1.0 + 1e-12)) {
+            for metres in [None, Some(1e-3), Some(1.0), Some(1e3)] {
+                let part = round_length(room, metres).0 / room;
+                let fits = [1.0, 2.0, 5.0].map(|length| length / room);
+                let has_half = fits.iter().any(|part| (0.5..=1.0).contains(part));
+                let least = if has_half { 0.5 } else { 0.4 };
+                assert!((least..=1.0).contains(&part), "{room} {metres:?}: {part}");
             }
         }
     }

@@ -10,39 +10,53 @@
 mod bar;
 mod bounds;
 mod facts;
+mod marks;
 mod moment;
 mod place;
 mod projector;
 mod sheet;
 mod units;
 
-use super::{
-    Error,
-    figure::{Anchor, linear_pixels},
-    flags::{Classification, Marks, ScaleWord, SceneFlags},
-    renderer::Renderer,
-};
+pub use facts::{Facts, caption, unit};
+pub use marks::Marks;
+
 use crate::{
     camera::Camera,
+    figure::{Anchor, linear_pixels, short},
     picture::{Layer, LayerKind, Picture, PictureFormat},
     scene::Beside,
     technique::{Mode, Role, Settings},
     transfer::{Classified, TransferFunction, Window},
-    volume::{Grid, Header},
+    volume::Grid,
 };
 use bar::{Bar, legend};
-use facts::Facts;
 use projector::Projector;
 use sheet::Sheet;
+
+/// Why marks cannot be drawn.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// Of a title.
+    #[error("--annotate title: no letter '{}'", .0.escape_debug())]
+    NoLetter(char),
+    /// Values that have no logarithm are to be spread by it.
+    #[error("--colormap-scale log: wanted values above 0, found {0}")]
+    NoLogarithm(f64),
+}
 
 /// What is drawn over the pictures of a volume.
 #[derive(Clone, Debug)]
 pub struct Annotation {
-    marks: Marks,
-    size: Option<f64>,
-    color: Option<[f64; 3]>,
-    is_log: bool,
-    facts: Facts,
+    /// Which marks.
+    pub marks: Marks,
+    /// Pixels of an em; `None`: a fortieth of the picture's height, at least 11.
+    pub size: Option<f64>,
+    /// Of words and lines, sRGB; `None`: black or white, by what lies under them.
+    pub color: Option<[f64; 3]>,
+    /// The bar's values are spread by their logarithms.
+    pub is_log: bool,
+    /// What is known of the volume.
+    pub facts: Facts,
 }
 
 /// What a picture shows.
@@ -52,8 +66,8 @@ pub struct Seen<'a> {
     pub camera: &'a Camera,
     /// What was computed.
     pub settings: &'a Settings,
-    /// How values are seen.
-    pub classification: &'a Classification,
+    /// How values are seen; `None`: grey over the range that is `projected`, or surfaces of colours of their own.
+    pub function: Option<&'a TransferFunction>,
     /// What the volume is seen together with.
     pub beside: Beside<'a>,
     /// Where voxels are drawn.
@@ -66,24 +80,16 @@ pub struct Seen<'a> {
     pub projected: Option<[f64; 2]>,
 }
 
-impl Annotation {
-    /// Of the flags, and of what the volume's file says; `None` where none is asked for.
-    pub fn of(scene: &SceneFlags, header: &Header, mode: Mode) -> Result<Option<Self>, Error> {
-        let flags = &scene.annotate;
-        let Some(marks) = &flags.annotate else {
-            return Ok(None);
-        };
-        flags.check()?;
-        let color = flags.annotate_color.and_then(|word| word.0);
-        Ok(Some(Self {
-            marks: marks.clone(),
-            size: flags.annotate_size,
-            color: color.map(|color| color.0),
-            is_log: flags.colormap_scale == Some(ScaleWord::Log),
-            facts: Facts::of(scene, header, mode)?,
-        }))
-    }
+/// Marks as pixels of a picture: linear light, premultiplied.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drawn {
+    /// What lies behind the volume; empty where nothing does.
+    pub behind: Vec<[f32; 4]>,
+    /// What lies over the picture.
+    pub front: Vec<[f32; 4]>,
+}
 
+impl Annotation {
     /// What a person should know of it.
     pub fn note(&self) -> Option<String> {
         let letter = self.facts.letters_lacking()?;
@@ -92,22 +98,9 @@ impl Annotation {
         ))
     }
 
-    /// The range of what the mode projects, where the bar needs that of the picture.
-    pub fn projected(
-        &self,
-        classification: &Classification,
-        renderer: &mut Renderer,
-        camera: &Camera,
-    ) -> Result<Option<[f64; 2]>, Error> {
-        let is_wanted = self.marks.bar && *classification == Classification::RangeOfPicture;
-        is_wanted
-            .then(|| renderer.projected_range(camera))
-            .transpose()
-    }
-
     /// What a picture without its background lets through, where marks lie behind the volume.
     pub fn transmittance(&self, picture: &Picture) -> Option<Vec<f32>> {
-        let is_wanted = self.marks.bounds || self.marks.ticks;
+        let is_wanted = self.marks.has_box();
         is_wanted.then(|| picture.pixels.iter().map(|pixel| 1.0 - pixel[3]).collect())
     }
 
@@ -137,19 +130,31 @@ impl Annotation {
         transmittance: Option<&[f32]>,
         seen: &Seen,
     ) -> Result<Vec<[f32; 4]>, Error> {
-        let height = f64::from(picture.height);
-        let em = self.size.unwrap_or((height / 40.0).max(11.0));
+        let Drawn { behind, mut front } = self.draw(picture, seen)?;
+        let behind = behind.iter().zip(transmittance.unwrap_or_default());
+        for (over, (under, through)) in front.iter_mut().zip(behind) {
+            let left = (1.0 - over[3]) * through.clamp(0.0, 1.0);
+            *over = std::array::from_fn(|k| over[k] + left * under[k]);
+        }
+        Ok(front)
+    }
+
+    /// Pixels of an em in a picture of so many rows.
+    pub fn em(&self, height: u32) -> f64 {
+        self.size.unwrap_or((f64::from(height) / 40.0).max(11.0))
+    }
+
+    /// The marks over a picture that has its background, and those that lie behind the volume.
+    pub fn draw(&self, picture: &Picture, seen: &Seen) -> Result<Drawn, Error> {
+        let em = self.em(picture.height);
         let sheet = || Sheet::new(picture, em, self.color);
         let mut front = sheet();
         let projector = Projector::new(seen.camera, front.size());
         let mut behind = Vec::new();
-        if let Some(transmittance) = transmittance {
+        if self.marks.has_box() {
             let mut back = sheet();
             bounds::draw(&mut back, &projector, &seen.grid, true);
             behind = linear_pixels(&back.figure);
-            for (pixel, through) in behind.iter_mut().zip(transmittance) {
-                *pixel = pixel.map(|number| number * through.clamp(0.0, 1.0));
-            }
             bounds::draw(&mut front, &projector, &seen.grid, false);
         }
         if self.marks.ticks {
@@ -162,12 +167,10 @@ impl Annotation {
             );
         }
         self.words(&mut front, &projector, seen)?;
-        let mut pixels = linear_pixels(&front.figure);
-        for (over, under) in pixels.iter_mut().zip(behind) {
-            let left = 1.0 - over[3];
-            *over = std::array::from_fn(|k| over[k] + left * under[k]);
-        }
-        Ok(pixels)
+        Ok(Drawn {
+            behind,
+            front: linear_pixels(&front.figure),
+        })
     }
 
     fn words(&self, sheet: &mut Sheet, projector: &Projector, seen: &Seen) -> Result<(), Error> {
@@ -242,13 +245,13 @@ impl Annotation {
             return Ok(legend(sheet, &self.channels(seen)));
         }
         let of_picture;
-        let function = match (seen.classification, seen.projected) {
-            (Classification::Function(function), _) => function,
-            (Classification::RangeOfPicture, Some(range)) if range[0] <= range[1] => {
+        let function = match (seen.function, seen.projected) {
+            (Some(function), _) => function,
+            (None, Some(range)) if range[0] <= range[1] => {
                 of_picture = Window::of_range(range).grey(Classified::Projection);
                 &of_picture
             }
-            (Classification::RangeOfPicture, _) => return Ok(None),
+            (None, _) => return Ok(None),
         };
         let integral =
             (settings.mode == Mode::Xray).then(|| facts.unit.clone().unwrap_or_default());
@@ -267,7 +270,7 @@ impl Annotation {
     /// Marks on the bar where surfaces have the colours of a function, else a patch for each.
     fn surfaces(&self, sheet: &mut Sheet, seen: &Seen) -> Result<Option<f64>, Error> {
         let levels = &seen.settings.per_mode.levels;
-        if let Classification::Function(function) = seen.classification {
+        if let Some(function) = seen.function {
             let is_of_function = levels.iter().all(|level| {
                 let found = function.srgb(level.value);
                 (0..3).all(|k| (found[k] - level.srgb[k]).abs() < 1e-3)
@@ -302,7 +305,7 @@ impl Annotation {
 
     fn level(&self, value: f64) -> String {
         let (unit, factor) = units::scaled(self.facts.unit.as_deref(), value.abs());
-        let number = units::signed(&super::readable::short(value * factor));
+        let number = units::signed(&short(value * factor));
         format!("{number} {}", unit.unwrap_or_default())
             .trim()
             .to_owned()
@@ -310,16 +313,12 @@ impl Annotation {
 
     /// The last colour of each channel, and its name.
     fn channels(&self, seen: &Seen) -> Vec<([f64; 3], String)> {
-        let first = match seen.classification {
-            Classification::Function(function) => Some(function),
-            Classification::RangeOfPicture => None,
-        };
         let others = match seen.beside {
             Beside::Channels(channels) => channels,
             _ => &[],
         };
         let others = others.iter().filter(|other| other.role == Role::Numbers);
-        let functions = std::iter::once(first).chain(others.map(|other| other.transfer));
+        let functions = std::iter::once(seen.function).chain(others.map(|other| other.transfer));
         let colors = functions
             .flatten()
             .filter_map(|f| f.color.last().map(|point| point.srgb));

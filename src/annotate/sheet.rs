@@ -1,8 +1,8 @@
 //! The ground that marks are drawn on: which ink is read there, and words and lines with a halo.
 
 use crate::{
-    cli::figure::{Anchor, Color, Figure, LETTER_WIDTH, Mark, Point, strokes},
     color::decode_srgb,
+    figure::{Anchor, Color, Figure, LETTER_WIDTH, Mark, Point, strokes},
     picture::{ColorSpace, Picture},
 };
 
@@ -189,7 +189,7 @@ fn luminance([r, g, b]: [f64; 3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::figure::linear_pixels;
+    use crate::figure::linear_pixels;
 
     #[test]
     fn words_have_a_contrast_of_4_and_a_half_on_every_ground() {

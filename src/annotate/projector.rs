@@ -2,7 +2,7 @@
 
 use crate::{
     camera::{Camera, Frame},
-    cli::figure::Point,
+    figure::Point,
 };
 use glam::DVec3;
 

@@ -5,7 +5,7 @@
 //! the leftmost: what is chosen hangs on the camera alone.
 
 use super::{facts::Facts, projector::Projector, sheet::Sheet, units};
-use crate::{cli::figure::Anchor, volume::Grid};
+use crate::{figure::Anchor, volume::Grid};
 use glam::DVec3;
 
 /// An edge of the box.

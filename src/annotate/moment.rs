@@ -4,7 +4,7 @@
 //! where the file's dates have seconds. Dates are counted by the Gregorian calendar.
 
 use super::{facts::Facts, sheet::Sheet};
-use crate::cli::figure::Anchor;
+use crate::figure::Anchor;
 
 /// What is written of time `time`, counted from 0; `None` where nothing is known.
 pub fn words(facts: &Facts, time: f64) -> Option<String> {

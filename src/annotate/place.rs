@@ -1,10 +1,11 @@
 //! How the volume lies: bars of length, letters of a patient's sides, three arrows along the axes of the world.
 
 use super::{facts::Facts, projector::Projector, sheet::Sheet, units};
-use crate::cli::figure::{Anchor, Point};
+use crate::figure::{Anchor, Point};
 use glam::DVec3;
 
-/// A scale bar is no longer than this share of the picture's width.
+/// A scale bar is no longer than this share of the picture's width. It is longer than half of that, where one of 1, 2 and
+/// 5 times a power of ten is; between 2 and 5 there is none, and two fifths are the least.
 const WIDEST: f64 = 0.3;
 /// A second letter stands where a side is so many degrees away from the first.
 const OBLIQUE_DEGREES: f64 = 20.0;

@@ -1,14 +1,7 @@
 //! What is known of a volume and may be written on its picture. Nothing of a DICOM file but units and times.
 
 use crate::{
-    cli::{
-        Error,
-        figure::letter_lacking,
-        flags::{InputFlags, SceneFlags},
-        histogram::unit,
-        load::open,
-    },
-    technique::Mode,
+    figure::letter_lacking,
     volume::{Format, Header, Meaning},
 };
 
@@ -40,19 +33,15 @@ pub struct Facts {
 }
 
 impl Facts {
-    /// Of a header, and of the words that chose in its file.
-    pub fn of(scene: &SceneFlags, header: &Header, mode: Mode) -> Result<Self, Error> {
+    /// Of a header, and of the name of its file; nothing colours surfaces.
+    pub fn of(header: &Header, name: &str) -> Self {
         let channels = match &header.meaning {
             Meaning::Channels(channels) if header.format != Format::Dicom => {
                 channels.iter().map(|c| c.name.clone()).collect()
             }
             _ => Vec::new(),
         };
-        let paint = match scene.modes.paint(mode) {
-            Some(word) => Some(paint(scene, word)?),
-            None => None,
-        };
-        Ok(Self {
+        Self {
             caption: caption(header),
             unit: unit(header),
             times: header.times,
@@ -62,9 +51,9 @@ impl Facts {
             length_metres: header.length_metres,
             channels,
             is_color: matches!(header.meaning, Meaning::Rgb | Meaning::Rgba),
-            source: source(&scene.input, header),
-            paint,
-        })
+            source: source(name, header),
+            paint: None,
+        }
     }
 
     /// Words of the file that have letters which are drawn as boxes.
@@ -78,7 +67,14 @@ impl Facts {
     }
 }
 
-fn caption(header: &Header) -> String {
+/// The unit of values, Hounsfield's where the header knows it otherwise.
+pub fn unit(header: &Header) -> Option<String> {
+    let hounsfield = header.hounsfield.then(|| "HU".to_owned());
+    header.unit.clone().or(hounsfield)
+}
+
+/// What the values are; of a DICOM file nothing.
+pub fn caption(header: &Header) -> String {
     if header.format == Format::Dicom {
         return String::new();
     }
@@ -86,29 +82,14 @@ fn caption(header: &Header) -> String {
     name.map_or(String::new(), |name| name.trim().to_owned())
 }
 
-/// Of what colours surfaces, another variable of the file or another number of its voxels.
-fn paint(scene: &SceneFlags, word: &str) -> Result<(String, Option<String>), Error> {
-    if word.parse::<u32>().is_ok() {
-        return Ok((format!("component {word}"), None));
-    }
-    let mut input = scene.input.clone();
-    input.variable = Some(word.to_owned());
-    let source = open(&input, &input.limits())?;
-    let header = source.header();
-    Ok((caption(header), unit(header)))
-}
-
-fn source(input: &InputFlags, header: &Header) -> String {
+fn source(name: &str, header: &Header) -> String {
     // The name of a file may be that of a patient.
     if header.format == Format::Dicom {
         return "DICOM".to_owned();
     }
-    let file = input.file().and_then(std::path::Path::file_name);
-    let file = file.map(|name| name.to_string_lossy().into_owned());
-    let name = file.or(input.path.clone()).unwrap_or_default();
     match header.variables.first() {
         Some(variable) => format!("{name}, {variable}"),
-        None => name,
+        None => name.to_owned(),
     }
 }
 
@@ -137,9 +118,7 @@ mod tests {
             }],
             ..Header::new(Format::Dicom, [2; 3], VoxelType::I16, DAffine3::IDENTITY)
         };
-        let mut scene = SceneFlags::default();
-        scene.input.path = Some("DOE^JOHN.dcm".to_owned());
-        let facts = Facts::of(&scene, &header, Mode::Composite).expect("facts");
+        let facts = Facts::of(&header, "DOE^JOHN.dcm");
         let known = format!("{facts:?}");
         assert!(!known.contains("DOE") && !known.contains("1970"), "{known}");
         assert_eq!(
@@ -151,7 +130,7 @@ mod tests {
             format: Format::Nrrd,
             ..header
         };
-        let facts = Facts::of(&scene, &header, Mode::Composite).expect("facts");
+        let facts = Facts::of(&header, "DOE^JOHN.nrrd");
         assert!(
             facts.caption.contains("DOE") && facts.source.contains("DOE"),
             "{facts:?}"

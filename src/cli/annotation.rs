@@ -1,0 +1,70 @@
+//! From the flags of `--annotate` and what the volume's file says to what is drawn over its pictures.
+
+use super::{
+    Error,
+    flags::{Classification, ScaleWord, SceneFlags},
+    load::open,
+    renderer::Renderer,
+};
+use crate::{
+    annotate::{Annotation, Facts, caption, unit},
+    camera::Camera,
+    technique::Mode,
+    volume::Header,
+};
+
+/// Of the flags, and of what the volume's file says; `None` where none is asked for.
+pub fn annotation(
+    scene: &SceneFlags,
+    header: &Header,
+    mode: Mode,
+) -> Result<Option<Annotation>, Error> {
+    let flags = &scene.annotate;
+    let Some(marks) = &flags.annotate else {
+        return Ok(None);
+    };
+    flags.check()?;
+    let input = &scene.input;
+    let file = input.file().and_then(std::path::Path::file_name);
+    let file = file.map(|name| name.to_string_lossy().into_owned());
+    let name = file.or(input.path.clone()).unwrap_or_default();
+    let mut facts = Facts::of(header, &name);
+    if let Some(word) = scene.modes.paint(mode) {
+        facts.paint = Some(paint(scene, word)?);
+    }
+    Ok(Some(Annotation {
+        marks: marks.clone(),
+        size: flags.annotate_size,
+        color: flags
+            .annotate_color
+            .and_then(|word| word.0)
+            .map(|color| color.0),
+        is_log: flags.colormap_scale == Some(ScaleWord::Log),
+        facts,
+    }))
+}
+
+/// Of what colours surfaces, another variable of the file or another number of its voxels.
+fn paint(scene: &SceneFlags, word: &str) -> Result<(String, Option<String>), Error> {
+    if word.parse::<u32>().is_ok() {
+        return Ok((format!("component {word}"), None));
+    }
+    let mut input = scene.input.clone();
+    input.variable = Some(word.to_owned());
+    let source = open(&input, &input.limits())?;
+    let header = source.header();
+    Ok((caption(header), unit(header)))
+}
+
+/// The range of what the mode projects, where the bar needs that of the picture.
+pub fn projected(
+    annotation: &Annotation,
+    classification: &Classification,
+    renderer: &mut Renderer,
+    camera: &Camera,
+) -> Result<Option<[f64; 2]>, Error> {
+    let is_wanted = annotation.marks.bar && *classification == Classification::RangeOfPicture;
+    is_wanted
+        .then(|| renderer.projected_range(camera))
+        .transpose()
+}
