@@ -48,8 +48,8 @@ const MOST_OPACITY: f64 = 0.6;
 /// Opacities of matter of no known kind at the stops of tissue: its dark hull is transparent enough to show bright parts
 /// inside.
 const MATTER: [f64; 6] = [0.0, 0.01, 0.03, 0.1, 0.3, 0.6];
-/// Opacity of a label: its surface is lit, and a label close behind it is seen faintly.
-const LABEL: f64 = 0.15;
+/// Opacity of a label per 1/512 of the diagonal, where light shows its surface: a label close behind it is seen faintly.
+pub const LIT_LABEL_OPACITY: f64 = 0.15;
 /// Share of the voxels of a signed field that are transparent at most.
 const QUIET: f64 = 0.8;
 /// Where a signed field begins to be opaque at the least, as a share of its reach.
@@ -165,12 +165,12 @@ fn has_ct_offset(summary: &ValueSummary, is_ct: bool) -> bool {
     is_ct || air > 0.05 && tissue > 0.05 && air.min(tissue) > 2.0 * gap && air + tissue > 0.5
 }
 
-/// What [`categorical`] is, with the opacity [`LABEL`].
+/// What [`categorical`] is, with the opacity [`LIT_LABEL_OPACITY`].
 fn labels(summary: &ValueSummary) -> TransferFunction {
     let mut function = categorical(summary);
     for point in &mut function.opacity {
         if point.opacity > 0.0 {
-            point.opacity = LABEL;
+            point.opacity = LIT_LABEL_OPACITY;
         }
     }
     function

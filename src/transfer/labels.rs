@@ -34,6 +34,8 @@ pub struct LabelTable {
     pub dimmed: Vec<i64>,
     /// What is left of the opacity and of the colour of these, 0 to 1.
     pub dim: Option<f64>,
+    /// Of labels whose opacity is not said, per 1/512 of the diagonal, 0 to 1; .05 where this is `None`.
+    pub opacity: Option<f64>,
     /// The function that was stated, in the place of labels.
     function: Option<TransferFunction>,
 }
@@ -119,17 +121,18 @@ impl LabelTable {
         function
     }
 
-    /// What the labels that are `present` look like; `diagonal` is the world length of the grid's diagonal.
+    /// What the labels that are `present` look like, with [`Self::opacity`] where no label has one; `diagonal` is the world length of the grid's diagonal.
     pub fn function(&self, present: impl Iterator<Item = i64>, diagonal: f64) -> TransferFunction {
+        let opacity = self.opacity.unwrap_or(OPACITY);
         let looks = |label: i64| match (&self.function, self.labels.get(&label)) {
             (Some(function), _) => (function.srgb(label as f64), function.opacity(label as f64)),
             (None, Some(known)) => (
                 known.srgb.unwrap_or_else(|| label_color(label)),
                 known
                     .opacity
-                    .unwrap_or(if label == 0 { 0.0 } else { OPACITY }),
+                    .unwrap_or(if label == 0 { 0.0 } else { opacity }),
             ),
-            (None, None) if self.labels.is_empty() && label != 0 => (label_color(label), OPACITY),
+            (None, None) if self.labels.is_empty() && label != 0 => (label_color(label), opacity),
             (None, None) => ([0.0; 3], 0.0),
         };
         // A label rules the values that round to it.
@@ -224,6 +227,7 @@ fn from_json(text: &str) -> Result<LabelTable, FileProblem> {
         hides,
         dimmed,
         dim,
+        opacity: None,
         function: None,
     })
 }

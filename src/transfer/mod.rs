@@ -46,7 +46,7 @@ mod window;
 pub use alike::{Alike, Tolerance};
 pub use automatic::{Kind, automatic};
 pub use boundaries::{JointCounts, boundaries};
-pub use by_meaning::{Choice, Context, automatic_in};
+pub use by_meaning::{Choice, Context, LIT_LABEL_OPACITY, automatic_in};
 pub(crate) use channel::window_of_channel;
 pub use channel::{CHANNEL_COLORS, of_channel, of_colors};
 pub use colormap::{COLORMAP_COLORS, Colormap};

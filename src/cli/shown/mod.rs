@@ -29,7 +29,7 @@ use crate::{
     offscreen::Stream,
     scene::{Beside, Channel},
     technique::{Filter, FilterBy, Mode, PerMode, Role, Settings},
-    transfer::{Classified, Context, LabelTable, TransferFunction},
+    transfer::{Classified, Context, LIT_LABEL_OPACITY, LabelTable, TransferFunction},
     volume::{Header, Limits, Source, Volume, labels::labels_of},
 };
 use check::{has_beside, plan};
@@ -459,7 +459,10 @@ impl Reader<'_> {
         let present = labels_of(volume);
         Ok(match (table, present) {
             (table, Some(present)) => {
-                let table = table.unwrap_or_else(LabelTable::default);
+                let mut table = table.unwrap_or_else(LabelTable::default);
+                if self.scene.is_auto() {
+                    table.opacity.get_or_insert(LIT_LABEL_OPACITY);
+                }
                 let function = table.function(present.into_keys(), labels::diagonal(volume));
                 let words = &self.scene.labels;
                 Some(LabelTable::cut(
