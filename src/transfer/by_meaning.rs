@@ -362,11 +362,11 @@ mod tests {
 
     #[test]
     fn matter_of_no_known_kind_shows_what_is_inside() {
-        // A dark background, a hull of 60 and a core of 200.
+        // A dark background, a hull of 110 and a core of 200.
         let values: Vec<_> = (0..4000)
             .map(|i| match i % 20 {
                 0..12 => f64::from(i % 7),
-                12..18 => 50.0 + f64::from(i % 23),
+                12..18 => 99.0 + f64::from(i % 23),
                 _ => 190.0 + f64::from(i % 21),
             })
             .collect();
@@ -381,8 +381,13 @@ mod tests {
             automatic_in(&context, &summary, Classified::Samples, None)
         };
         let [tissue, matter] = [true, false].map(function);
-        assert!(matter.opacity(60.0) < 0.4 * tissue.opacity(60.0));
-        assert!(matter.opacity(200.0) > 0.5 * tissue.opacity(200.0));
+        let at = |value: f64| [&tissue, &matter].map(|function| function.opacity(value));
+        let ([hull_of_tissue, hull], [core_of_tissue, core]) = (at(110.0), at(200.0));
+        assert!(
+            0.0 < hull && hull < 0.5 * hull_of_tissue,
+            "{hull} {hull_of_tissue}"
+        );
+        assert!(core > 0.7 * core_of_tissue, "{core} {core_of_tissue}");
     }
 
     #[test]
