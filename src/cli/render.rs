@@ -265,7 +265,9 @@ impl Render {
                 Classification::RangeOfPicture => Some(renderer.projected_range(camera)?),
                 Classification::Function(_) => None,
             };
-            let chosen = Chosen::of_picture(view, &shown, parts.beside(), integrals);
+            let base = shown.base(&scene, settings.mode)?;
+            let beside = parts.beside();
+            let chosen = Chosen::of_picture(view, &shown, beside, integrals, base.as_ref());
             let text = scene_file::text(&chosen.frozen(&view.scene), path);
             write_whole(path, text.as_bytes(), self.force, gate)?;
         }

@@ -222,6 +222,11 @@ fn a_scene_of_a_film_keeps_all_that_was_chosen() {
         ("mip", "head.nrrd --mode mip", "--turntable 3"),
         ("xray", "head.nrrd --mode xray", "--turntable 3"),
         ("iso", "head.nrrd --mode iso", "--turntable 3"),
+        (
+            "mida",
+            "head.nrrd --mode mida --window auto",
+            "--turntable 3",
+        ),
         ("window", "head.nrrd", "--keyframes k.json"),
         ("cells", "phantom:cells,n=16", "--turntable 3"),
         ("times", storm, "--times"),

@@ -129,3 +129,63 @@ fn a_name_in_a_file_cannot_steer_the_terminal() {
         );
     }
 }
+
+#[test]
+fn what_is_drawn_and_from_where_is_that_of_the_look() {
+    let folder = Folder::new();
+    let volume = |name: &str, z: usize, space: &str, voxel: fn(usize) -> u16| {
+        let mut bytes = format!(
+            "NRRD0004\ntype: ushort\ndimension: 3\nsizes: 24 24 {z}\n{space}encoding: raw\nendian: little\n\n"
+        )
+        .into_bytes();
+        bytes.extend((0..24 * 24 * z).flat_map(|i| voxel(i).to_le_bytes()));
+        folder.file(name, bytes);
+        let ran = folder.run(&format!("info {name}"));
+        ran.assert_done();
+        ran.out
+    };
+    // Hounsfield units and 1024: air, tissue and a little bone, with noise so that they are no labels.
+    let ct = |i: usize| {
+        let noise = (i * 7919 % 61) as u16;
+        match i % 24 {
+            0..12 => noise,
+            12..22 => 1040 + noise,
+            _ => 1900 + noise,
+        }
+    };
+    let said = volume("ct.nrrd", 24, "", ct);
+    let drawn = "drawn as     the values are Hounsfield units: bone, and faint skin\n";
+    assert!(said.contains(drawn), "{said}");
+    let six =
+        "seen from    azimuth 60, elevation 15 degrees, or another of six sides that shows more\n";
+    assert!(said.contains(six), "{said}");
+    let ras = "space: right-anterior-superior\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n";
+    let said = volume("patient.nrrd", 24, ras, ct);
+    let usual = "seen from    azimuth 60, elevation 15 degrees\n";
+    assert!(said.contains(usual), "{said}");
+    // A slab: as `render` says it, --view superior or inferior.
+    for (name, space, side) in [("slab.nrrd", "", 90), ("axial.nrrd", ras, -90)] {
+        let said = volume(name, 4, space, ct);
+        let line = said.lines().find(|line| line.starts_with("seen from"));
+        let line = line.expect("a side");
+        assert!(
+            line.ends_with(&format!(", elevation {side} degrees")),
+            "{said}"
+        );
+        let view = if side > 0 { "superior" } else { "inferior" };
+        let ran = folder.run(&format!("render {name} --size 16x16 --force -o a.png"));
+        assert!(ran.err.contains(&format!("--view {view} ")), "{ran:?}");
+    }
+    // Matter that is nobody's tissue has other colours than tissue.
+    let matter = |i: usize| {
+        let noise = (i * 7919 % 13) as u16;
+        if i % 24 < 12 { noise } else { 150 + noise }
+    };
+    let said = volume("matter.nrrd", 24, "", matter);
+    assert!(
+        said.contains("dark background, in the colours of cividis\n"),
+        "{said}"
+    );
+    let said = volume("tissue.nrrd", 24, ras, matter);
+    assert!(said.contains("dark background\n"), "{said}");
+}

@@ -124,6 +124,11 @@ fn a_scene_keeps_all_that_was_chosen() {
         ("rgb-mip", "rgb.nrrd --mode mip"),
         ("names", "names.nrrd --label-hide 2"),
         ("classified", "head.nrrd --preclassified"),
+        ("mida", "head.nrrd --mode mida --window auto"),
+        (
+            "mip-auto",
+            "head.nrrd --mode mip --window auto --colormap viridis",
+        ),
     ] {
         let ran = folder.run(&format!(
             "render {words} --size 80x60 -o {name}.png --save-scene {name}.json"
@@ -139,16 +144,19 @@ fn a_scene_keeps_all_that_was_chosen() {
         assert!(text.contains(r#""look": "plain""#), "{name}: {text}");
         let words: &[&str] = match name {
             "xray" | "mip" | "rgb-mip" => &["window"],
+            "mida" => &["window", "transfer_function"],
             "cells" | "cells-mip" => &["0,color=", "1,color=", ",window="],
             "opaque" => &["transfer_function", "opacity_function"],
             "painted" => &["transfer_function", "iso_opacity"],
             "iso" => &["iso_color"],
             "preset" | "labels" => &["preset"],
+            "mip-auto" => &["window", "viridis"],
             _ => &["transfer_function"],
         };
         for word in words {
             assert!(text.contains(word), "{name}, {word}: {text}");
         }
+        assert!(!text.contains(r#""auto""#), "{name}: {text}");
     }
     let text = fs::read_to_string(folder.path("head.json")).expect("a scene");
     for key in [

@@ -8,7 +8,7 @@ use super::{
 use crate::{
     cli::{
         flags::{Classification, ClassificationFlags, SceneFlags},
-        look::{Chosen, ends_of},
+        look::{Chosen, base_of, ends_of, without_parts},
         shown::Parts,
     },
     technique::{Filter, Settings},
@@ -22,6 +22,8 @@ pub struct Kept {
     is_wanted: bool,
     /// A frame as the flags alone say it.
     chosen: OnceLock<Ready>,
+    /// Between which values the first frame compares maxima.
+    unit_values: OnceLock<[f64; 2]>,
     /// The window of integrals that the first frame has found.
     pub window: OnceLock<[f64; 2]>,
 }
@@ -54,6 +56,8 @@ impl Kept {
             && let Some(own) = ready.pop()
         {
             let _ = self.chosen.set(own);
+            let per_mode = &ready[0].settings.per_mode;
+            let _ = self.unit_values.set(per_mode.unit_values);
         }
     }
 
@@ -84,16 +88,20 @@ impl Kept {
             Content::Still(shown) => shown.parts(),
             Content::Times(..) => Parts::Channels(Vec::new()),
         };
-        let levels = match content {
-            Content::Still(shown) => &shown.per_mode.levels,
-            Content::Times(..) => &settings.per_mode.levels,
+        // Those of the own frame lack the window of the flags.
+        let per_mode = match content {
+            Content::Still(shown) => &shown.per_mode,
+            Content::Times(..) => &settings.per_mode,
         };
-        let window = match film.changes_window() {
-            true => None,
-            false => self.window.get().copied().or(function.and_then(ends_of)),
+        let mode = shots[0].settings.mode;
+        let is_mida = base_of(&scene.classification, mode).is_some();
+        let window = match (film.changes_window(), is_mida) {
+            (true, _) => None,
+            (false, true) => self.unit_values.get().copied(),
+            (false, false) => self.window.get().copied().or(function.and_then(ends_of)),
         };
         let chosen = Chosen {
-            mode: shots[0].settings.mode,
+            mode,
             function,
             beside: parts.beside(),
             channels: match content {
@@ -101,9 +109,9 @@ impl Kept {
                 Content::Times(..) => &[],
             },
             window,
-            levels,
+            levels: &per_mode.levels,
             filter,
-            is_base: film.changes_window(),
+            is_base: film.changes_window() || is_mida,
             height_factor,
         };
         chosen.frozen(scene)
@@ -113,24 +121,19 @@ impl Kept {
 /// The words of the flags whose function a scene is to keep; `None` where keys say the function. What is laid over it by
 /// the window of each key stays out of it, and so do the colours of a projection, whose ends are its window.
 fn own(film: &Film, scene: &SceneFlags, settings: &Settings) -> Option<ClassificationFlags> {
+    let flags = &scene.classification;
     if film.changes_function() {
         return None;
     }
-    let flags = scene.classification.clone();
-    let base = ClassificationFlags {
-        colormap: None,
-        color_function: None,
-        opacity_function: None,
-        ..flags.clone()
-    };
-    Some(
-        match (film.changes_window(), settings.mode.is_projection()) {
-            (true, _) => ClassificationFlags {
-                window: None,
-                ..base
-            },
-            (false, true) => base,
-            (false, false) => flags,
+    if film.changes_window() {
+        return Some(without_parts(flags));
+    }
+    let own = match settings.mode.is_projection() {
+        true => ClassificationFlags {
+            window: flags.window,
+            ..without_parts(flags)
         },
-    )
+        false => base_of(flags, settings.mode).unwrap_or_else(|| flags.clone()),
+    };
+    Some(own)
 }

@@ -2,8 +2,8 @@
 
 use super::View;
 use crate::cli::flags::{
-    ChannelWord, Classification, ColorWord, FilterWord, Look, SceneFlags, ShadingWord, WindowWord,
-    inlined,
+    ChannelWord, Classification, ClassificationFlags, ColorWord, FilterWord, Look, SceneFlags,
+    ShadingWord, WindowWord, inlined,
 };
 use crate::cli::shown::Shown;
 use crate::scene::{Beside, Channel};
@@ -21,44 +21,45 @@ pub struct Chosen<'a> {
     pub beside: Beside<'a>,
     /// Channels with their colours and windows, where several are drawn.
     pub channels: &'a [ChannelWord],
-    /// The window of a projection; `None` where keys or nothing says it.
+    /// The window of a projection, or of MIDA where one is said; `None` where keys or nothing says it.
     pub window: Option<[f64; 2]>,
     /// Surfaces of `--mode iso`.
     pub levels: &'a [Level],
     /// Where the values themselves ask for one.
     pub filter: Option<Filter>,
-    /// `--colormap`, `--color-tf` and `--opacity-tf` are laid over the function later, by the windows of keys.
+    /// The function is not yet spread over its window, nor laid under `--colormap`, `--color-tf` and `--opacity-tf`.
     pub is_base: bool,
     /// How much higher than they are heights are drawn.
     pub height_factor: f64,
 }
 
 impl<'a> Chosen<'a> {
-    /// Of a picture of `shown`, which has these others beside it; `integrals` is the range of an X-ray that found its
-    /// own window.
+    /// Of a picture of `shown`, which has these others beside it. `integrals` is the range of an X-ray that found its own
+    /// window, `base` the function of [`base_of`], where there is one.
     pub fn of_picture(
         view: &'a View,
         shown: &'a Shown,
         beside: Beside<'a>,
         integrals: Option<[f64; 2]>,
+        base: Option<&'a Classification>,
     ) -> Self {
-        let function = match &shown.classification {
+        let function = match base.unwrap_or(&shown.classification) {
             Classification::Function(function) => Some(function),
             Classification::RangeOfPicture => None,
         };
+        let per_mode = &view.settings.per_mode;
         Self {
             mode: view.settings.mode,
             function,
             beside,
             channels: shown.channels(),
-            window: integrals.or(match beside {
-                Beside::Nothing => function.map(|_| shown.looked_at().value_range),
-                // Colours that are projected one by one.
-                _ => function.and_then(ends_of),
-            }),
-            levels: &view.settings.per_mode.levels,
+            window: match base {
+                Some(_) => Some(per_mode.unit_values),
+                None => integrals.or(function.and_then(ends_of)),
+            },
+            levels: &per_mode.levels,
             filter: shown.filter,
-            is_base: false,
+            is_base: base.is_some(),
             height_factor: shown.height_factor,
         }
     }
@@ -111,12 +112,14 @@ impl<'a> Chosen<'a> {
         if !is_chosen {
             return;
         }
-        if self.mode.is_projection() {
-            if let Some([low, high]) = self.window.filter(|[low, high]| low < high) {
-                let window = WindowWord::Values([low, high]);
-                scene.classification.window.get_or_insert(window);
+        if self.mode.is_projection() || self.is_base {
+            let window = self.window.filter(|[low, high]| low < high);
+            let is_said = matches!(scene.classification.window, Some(WindowWord::Values(_)));
+            if let (Some(ends), false) = (window, is_said) {
+                scene.classification.window = Some(WindowWord::Values(ends));
             }
-        } else if let Some(function) = self.function {
+        }
+        if let (false, Some(function)) = (self.mode.is_projection(), self.function) {
             self.keep_function(scene, function);
         }
     }
@@ -162,9 +165,28 @@ impl<'a> Chosen<'a> {
     }
 }
 
-/// The values of the first and the last point of colour.
+/// The words whose function stands for the chosen one, where a window says more than where that lies: MIDA compares
+/// maxima over it. The window is spread over this function when the scene is drawn.
+pub fn base_of(flags: &ClassificationFlags, mode: Mode) -> Option<ClassificationFlags> {
+    let is_chosen = flags.preset.is_none() && flags.transfer_function.is_none();
+    let is_base = mode == Mode::Mida && flags.window.is_some() && is_chosen;
+    is_base.then(|| without_parts(flags))
+}
+
+/// The words without a window, and without what is laid over a function.
+pub fn without_parts(flags: &ClassificationFlags) -> ClassificationFlags {
+    ClassificationFlags {
+        window: None,
+        colormap: None,
+        color_function: None,
+        opacity_function: None,
+        ..flags.clone()
+    }
+}
+
+/// The values of the first and the last point of opacity: of a projection the ends of its window.
 pub fn ends_of(function: &TransferFunction) -> Option<[f64; 2]> {
-    let (first, last) = (function.color.first()?, function.color.last()?);
+    let (first, last) = (function.opacity.first()?, function.opacity.last()?);
     Some([first.value, last.value])
 }
 

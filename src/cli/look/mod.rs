@@ -13,7 +13,7 @@ mod prepared;
 mod side;
 
 pub use framing::{Framing, View, short};
-pub use freeze::{Chosen, ends_of};
+pub use freeze::{Chosen, base_of, ends_of, without_parts};
 pub use light::{Seen, Use, with_light};
 pub use prepared::{Views, prepared};
 pub use side::{side_words, with_side};

@@ -19,7 +19,7 @@ use super::{
     },
     labels,
     load::{load_from, open},
-    look::Seen,
+    look::{Seen, base_of},
     memory::{self, DeviceRoom, Held, fitting},
     progress::Progress,
 };
@@ -128,6 +128,16 @@ impl Shown {
     /// A volume that shows which values there are: of a stream every n-th voxel.
     pub fn looked_at(&self) -> &Volume {
         self.overview.as_ref().unwrap_or(&self.volume)
+    }
+
+    /// The function that a window of the words is spread over, where a scene has to keep both.
+    pub fn base(&self, scene: &SceneFlags, mode: Mode) -> Result<Option<Classification>, Error> {
+        let flags = ClassificationFlags {
+            context: self.context.clone(),
+            ..scene.classification.clone()
+        };
+        let base = base_of(&flags, mode).map(|base| base.classification(self.looked_at(), mode));
+        base.transpose()
     }
 
     /// The words of several channels with all that was chosen; none of one number a voxel.

@@ -86,6 +86,8 @@ struct Shot<P> {
     at: usize,
     picture: P,
     notes: Vec<String>,
+    /// What the camera was fitted to.
+    framed: Vec<String>,
 }
 
 type Volumes<'a> = Mutex<Option<Receiver<(usize, Noted<Read<'a>>)>>>;
@@ -252,11 +254,10 @@ impl Batch<'_> {
             let reason = why_empty(&picture, &shown.volume, reasoned, camera, settings);
             let view = wanted.view.map(|view| format!("--view {}: ", view.name()));
             let view = view.unwrap_or_default();
-            let empty = reason.map(|reason| format!("the picture is empty: {reason}"));
-            let of_view = empty.iter().chain(framed);
-            let notes = of_view.map(|note| format!("{view}{note}"));
+            let empty = reason.map(|reason| format!("{view}the picture is empty: {reason}"));
             let idle = scene.idle().into_iter().map(str::to_owned);
-            let notes = idle.chain(notes).chain(annotation_note.clone());
+            let notes = idle.chain(empty).chain(annotation_note.clone());
+            let framed = framed.iter().map(|note| format!("{view}{note}"));
             let behind = annotation.as_ref().and_then(|a| a.transmittance(&picture));
             if let Some(background) = scene.picture.background() {
                 picture.over_background(background);
@@ -279,6 +280,7 @@ impl Batch<'_> {
                 at: *at,
                 picture,
                 notes: notes.collect(),
+                framed: framed.collect(),
             });
         }
         let dims = shown.volume.dims;
@@ -292,6 +294,7 @@ impl Batch<'_> {
                 at: shot.at,
                 picture: EncodedPicture::new(&shot.picture, &path, self.options)?,
                 notes: shot.notes,
+                framed: shot.framed,
             })
         };
         let outcome = noted.outcome.and_then(|Drawn { shots, dims }| {
@@ -314,6 +317,7 @@ impl Batch<'_> {
             Ok(Drawn { shots, dims }) => {
                 for ((_, row), shot) in missing.zip(shots) {
                     row.notes = [noted.notes.clone(), shot.notes].concat();
+                    row.framed = shot.framed;
                     let written = self.gate.whole(|| shot.picture.write(self.options.force));
                     let written = written.map_err(Error::from);
                     self.became(row, written.as_ref().map(|()| dims));

@@ -37,6 +37,8 @@ pub struct Row {
     pub error: Option<String>,
     /// What a person should know about it.
     pub notes: Vec<String>,
+    /// What the camera was fitted to, and by which flags.
+    pub framed: Vec<String>,
 }
 
 impl Row {
@@ -96,18 +98,21 @@ impl Index {
     }
 }
 
-/// Notes in the order in which they came, each once, with the volumes that it is about.
+/// Notes in the order in which they came, each once, with the volumes that it is about; how each was framed comes last, so
+/// that it leaves the page to what is unusual.
 pub fn notes_of(rows: &[Row]) -> Vec<String> {
     const MOST: usize = 20;
     let mut all: Vec<(&str, Vec<&Row>)> = Vec::new();
-    for row in rows {
-        for note in &row.notes {
-            match all.iter_mut().find(|(known, _)| known == note) {
-                // Said of the volume, whatever it is seen from.
-                Some((_, about)) if about.iter().any(|known| known.is_of_same_volume(row)) => {}
-                Some((_, about)) => about.push(row),
-                None => all.push((note, vec![row])),
-            }
+    let said = |notes: fn(&Row) -> &[String]| {
+        rows.iter()
+            .flat_map(move |row| notes(row).iter().map(move |note| (row, note)))
+    };
+    for (row, note) in said(|row| &row.notes).chain(said(|row| &row.framed)) {
+        match all.iter_mut().find(|(known, _)| known == note) {
+            // Said of the volume, whatever it is seen from.
+            Some((_, about)) if about.iter().any(|known| known.is_of_same_volume(row)) => {}
+            Some((_, about)) => about.push(row),
+            None => all.push((note, vec![row])),
         }
     }
     let left_out = all.len().saturating_sub(MOST);
@@ -139,6 +144,11 @@ mod tests {
         assert_eq!(notes_of(&rows), ["2 volumes: a", "2: b", "4: c"]);
         let views = [row(1, &["a"]), row(1, &["a"]), row(1, &["b"])];
         assert_eq!(notes_of(&views), ["1: a", "1: b"]);
+        let framed = Row {
+            framed: vec!["f".to_owned()],
+            ..row(1, &[])
+        };
+        assert_eq!(notes_of(&[framed, row(2, &["b"])]), ["2: b", "1: f"]);
         let rows: Vec<Row> = (0..50).map(|k| row(k, &[&format!("note {k}")])).collect();
         let notes = notes_of(&rows);
         assert!(
