@@ -100,9 +100,9 @@ pub fn ticks(
         let along = edge.ends[1] - edge.ends[0];
         // Coordinates where the edge goes along an axis of the world, else lengths from its first end.
         let world = (0..3).find(|&k| along.normalize()[k].abs() > 1.0 - 1e-6);
-        let stretch = if world == Some(2) { height_factor } else { 1.0 };
+        let measure = Measure::of(world, facts, height_factor);
         let range = match world {
-            Some(k) => [edge.ends[0][k] / stretch, edge.ends[1][k] / stretch],
+            Some(k) => [0, 1].map(|end| edge.ends[end][k] / measure.length),
             None => [0.0, along.length()],
         };
         let most = (pixels / (4.0 * em)) as usize;
@@ -138,14 +138,14 @@ pub fn ticks(
             let [x, y] = at(0.9);
             sheet.text([x, y + 0.3 * em], &text, 0.9, anchor, ink);
         }
-        let unit = length_unit(facts).map(str::to_owned);
+        let unit = measure.unit.map(str::to_owned);
         let parts: Vec<String> = units::power(found.exponent)
             .into_iter()
             .chain(unit)
             .collect();
         let words = match parts.is_empty() {
-            true => axis_name(world, facts).to_owned(),
-            false => format!("{} ({})", axis_name(world, facts), parts.join(" ")),
+            true => measure.name.to_owned(),
+            false => format!("{} ({})", measure.name, parts.join(" ")),
         };
         let off = 1.9 + widest * away[0].abs();
         // Inside the picture, whatever the edge.
@@ -164,12 +164,39 @@ pub fn ticks(
     }
 }
 
-fn axis_name(world: Option<usize>, facts: &Facts) -> &'static str {
-    let names = match facts.is_earth {
-        true => ["east", "north", "height"],
-        false => ["x", "y", "z"],
-    };
-    world.map_or("", |k| names[k])
+/// What coordinates along an edge are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Measure {
+    name: &'static str,
+    unit: Option<&'static str>,
+    /// The unit's length in the world as it is drawn.
+    length: f64,
+}
+
+impl Measure {
+    /// Along an axis of the world, or none. On the Earth degrees where points are given by them.
+    fn of(world: Option<usize>, facts: &Facts, height_factor: f64) -> Self {
+        let lengths = |name, length| Self {
+            name,
+            unit: length_unit(facts),
+            length,
+        };
+        let Some(k) = world else {
+            return lengths("", 1.0);
+        };
+        if let (true, Some(Some(length))) = (facts.is_earth, facts.degree_lengths.get(k)) {
+            return Self {
+                name: ["longitude", "latitude"][k],
+                unit: Some("°"),
+                length: *length,
+            };
+        }
+        let names = match facts.is_earth {
+            true => ["east", "north", "height"],
+            false => ["x", "y", "z"],
+        };
+        lengths(names[k], if k == 2 { height_factor } else { 1.0 })
+    }
 }
 
 /// Of the world.
@@ -185,4 +212,32 @@ fn length_unit(facts: &Facts) -> Option<&'static str> {
     .into_iter()
     .find(|(unit, _)| (metres / unit - 1.0).abs() < 1e-9)
     .map(|(_, name)| name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coordinates_are_degrees_where_the_file_gives_them_and_heights_as_they_are() {
+        let mut facts = Facts {
+            is_earth: true,
+            length_metres: Some(1e3),
+            degree_lengths: [Some(70.0), Some(111.2)],
+            ..Facts::default()
+        };
+        let of = |facts: &Facts, world| {
+            let Measure { name, unit, length } = Measure::of(world, facts, 20.0);
+            (name, unit.unwrap_or_default(), length)
+        };
+        assert_eq!(of(&facts, Some(0)), ("longitude", "°", 70.0));
+        assert_eq!(of(&facts, Some(1)), ("latitude", "°", 111.2));
+        assert_eq!(of(&facts, Some(2)), ("height", "km", 20.0));
+        assert_eq!(of(&facts, None), ("", "km", 1.0));
+        // The map of a weather model.
+        facts.degree_lengths = [None; 2];
+        assert_eq!(of(&facts, Some(0)), ("east", "km", 1.0));
+        facts.is_earth = false;
+        assert_eq!(of(&facts, Some(1)), ("y", "km", 1.0));
+    }
 }

@@ -20,6 +20,8 @@ pub struct Facts {
     pub is_patient: bool,
     /// x east, y north, z up.
     pub is_earth: bool,
+    /// World units of a degree of longitude along x and of latitude along y.
+    pub degree_lengths: [Option<f64>; 2],
     /// Metres of a unit of the world.
     pub length_metres: Option<f64>,
     /// Names of channels; empty where there are none.
@@ -48,6 +50,7 @@ impl Facts {
             time_names: header.time_names.clone(),
             is_patient: header.is_patient,
             is_earth: header.is_earth,
+            degree_lengths: header.degree_lengths,
             length_metres: header.length_metres,
             channels,
             is_color: matches!(header.meaning, Meaning::Rgb | Meaning::Rgba),

@@ -5,13 +5,13 @@ use super::{
     Classified, ColorPoint, Interpolation, OpacityPoint, TransferFunction, ValueSummary, Window,
 };
 
-/// Colours of channels of which nothing is said: cyan and magenta, yellow and green are far apart for the eye, and
-/// two of them together give a third that neither is.
+/// Colours of channels of which nothing is said: cyan, orange, violet and yellow are far apart for eyes without red or
+/// green cones too, and two of them together give a third that neither is.
 pub const CHANNEL_COLORS: [[f64; 3]; 4] = [
     [0.0, 0.85, 1.0],
-    [1.0, 0.15, 0.85],
-    [1.0, 0.8, 0.0],
-    [0.3, 1.0, 0.3],
+    [1.0, 0.4, 0.1],
+    [0.5, 0.3, 1.0],
+    [1.0, 1.0, 0.3],
 ];
 
 /// Fraction of the window, share of the colour, opacity per 1/512 of the diagonal.

@@ -39,6 +39,9 @@ pub struct Header {
     pub is_labels: bool,
     /// True where the world is a piece of the Earth in kilometres: x east, y north, z up.
     pub is_earth: bool,
+    /// World units of a degree of longitude along x and of latitude along y, both counted from 0; `None` where points along
+    /// that axis have no such coordinate of their own.
+    pub degree_lengths: [Option<f64>; 2],
     /// True where the file says how its axes lie in a patient: x right, y anterior, z superior.
     pub is_patient: bool,
     /// Metres of one unit of the world; `None` where the file is silent.
@@ -80,6 +83,7 @@ impl Header {
             meaning: Meaning::Numbers,
             is_labels: false,
             is_earth: false,
+            degree_lengths: [None; 2],
             is_patient: false,
             length_metres: None,
             levels: 1,

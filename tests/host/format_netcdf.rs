@@ -138,6 +138,10 @@ fn north_is_north_and_up_is_up_in_kilometres_of_the_earth() {
     let header = source.header();
     assert!(header.is_earth);
     let east = degree * 50.5_f64.to_radians().cos();
+    let lengths = header.degree_lengths;
+    let [along_x, along_y] = lengths.map(|length| length.expect("degrees along both"));
+    assert!((along_x / east - 1.0).abs() < 1e-12, "{along_x} km");
+    assert!((along_y / degree - 1.0).abs() < 1e-12, "{along_y} km");
     assert_near(center(header, [0.0; 3]), [5.0 * east, 50.0 * degree, 0.010]);
     assert_near(
         center(header, [3.0, 1.0, 2.0]),
@@ -172,6 +176,7 @@ fn a_bent_grid_lies_flat_with_the_steps_of_its_middle() {
     assert!(header.is_earth);
     let notes = header.notes.join("; ");
     assert!(notes.contains("the grid is drawn flat"), "{notes}");
+    assert_eq!(header.degree_lengths, [None; 2]);
     let step = center(header, [1.0, 1.0, 0.0]) - center(header, [0.0; 3]);
     // A great circle cuts the corner of the circle of latitude by one part in a million here.
     let east = 0.25 * degree * 59_f64.to_radians().cos();

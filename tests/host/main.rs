@@ -44,6 +44,7 @@ mod zarr;
 
 mod both_sides;
 mod cf_wrf;
+mod colour_blind;
 #[cfg(feature = "conformance")]
 mod conformance_package;
 mod dependencies;

@@ -117,6 +117,7 @@ pub struct Opened {
     channels: Vec<ChannelBits>,
     is_labels: bool,
     is_earth: bool,
+    degree_lengths: [Option<u64>; 2],
     levels: u32,
     time_names: Vec<String>,
     series: Vec<(String, String, usize)>,
@@ -205,6 +206,7 @@ impl Opened {
                 .collect(),
             is_labels: header.is_labels,
             is_earth: header.is_earth,
+            degree_lengths: header.degree_lengths.map(|length| length.map(f64::to_bits)),
             levels: header.levels,
             time_names: header.time_names.clone(),
             series: header
@@ -262,6 +264,7 @@ impl Opened {
             },
             is_labels: self.is_labels,
             is_earth: self.is_earth,
+            degree_lengths: self.degree_lengths.map(|length| length.map(f64::from_bits)),
             levels: self.levels,
             time_names: self.time_names,
             series: series
@@ -514,6 +517,7 @@ mod tests {
             ]),
             is_labels: true,
             is_earth: true,
+            degree_lengths: [Some(71.3), None],
             levels: 4,
             time_names: vec!["now".to_owned()],
             series: vec![Series {

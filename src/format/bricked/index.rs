@@ -210,6 +210,10 @@ impl Index {
         if let Some(metres) = header.length_metres {
             line("length_metres", &words(&[metres]));
         }
+        if header.degree_lengths != [None; 2] {
+            let lengths = header.degree_lengths.map(|length| length.unwrap_or(0.0));
+            line("degree_lengths", &words(&lengths));
+        }
         line("holes", yes(self.has_holes));
         for level in &self.levels {
             line(
@@ -325,6 +329,11 @@ impl Index {
             true => Some(lines.numbers::<1>("length_metres", "a number of metres")?[0]),
             false => None,
         };
+        if lines.values.contains_key("degree_lengths") {
+            let wanted = "two lengths, 0 where there is none";
+            let lengths = lines.numbers::<2>("degree_lengths", wanted)?;
+            header.degree_lengths = lengths.map(|length| (length > 0.0).then_some(length));
+        }
         let mut index = Self {
             side: lines.positive("side")?,
             halo: lines.positive("halo")?,

@@ -43,6 +43,7 @@ fn open_checked(
     let place = placed(arrays.as_ref(), &choice, dims, &mut notes)?;
     let mut header = Header::new(format, dims, VoxelType::F32, place.world_from_voxel);
     header.is_earth = place.is_earth;
+    header.degree_lengths = place.degrees;
     header.notes = notes;
     header.notes.extend(place.notes);
     let even = place.uneven.iter().all(Option::is_none);

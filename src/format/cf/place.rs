@@ -28,6 +28,8 @@ pub(super) struct Place {
     pub uneven: [Option<Vec<f64>>; 3],
     /// True where the world is kilometres on the Earth.
     pub is_earth: bool,
+    /// Kilometres of a degree along x and y, where points there are given in degrees.
+    pub degrees: [Option<f64>; 2],
     pub notes: Vec<String>,
 }
 
@@ -39,12 +41,13 @@ pub(super) fn place(dims: [u32; 3], coordinates: &[Option<Coordinate>; 3]) -> Op
         || y.is_some_and(is_of_earth)
         || z.is_some_and(|z| matches!(z.measure, Measure::Pressure(_) | Measure::Geopotential));
     let mut notes = Vec::new();
-    let points = if is_earth {
-        on_earth(dims, x, y, z, &mut notes)
-    } else {
-        as_they_stand(dims, coordinates, &mut notes)
-    };
-    from_points(dims, points, is_earth, notes)
+    if !is_earth {
+        let points = as_they_stand(dims, coordinates, &mut notes);
+        return from_points(dims, points, false, notes);
+    }
+    let (points, degrees) = on_earth(dims, x, y, z, &mut notes);
+    let spanned = from_points(dims, points, true, notes)?;
+    Some(Place { degrees, ..spanned })
 }
 
 /// The place of points that are given for each axis, in world units.
@@ -82,6 +85,7 @@ pub(super) fn from_points(
         world_from_voxel,
         uneven,
         is_earth,
+        degrees: [None; 2],
         notes,
     })
 }
@@ -92,7 +96,7 @@ fn on_earth(
     y: Option<&Coordinate>,
     z: Option<&Coordinate>,
     notes: &mut Vec<String>,
-) -> [Vec<f64>; 3] {
+) -> ([Vec<f64>; 3], [Option<f64>; 2]) {
     let degrees = |c: Option<&Coordinate>| c.is_some_and(|c| c.measure == Measure::Degrees);
     let middle = match y {
         Some(y) if degrees(Some(y)) => {
@@ -125,7 +129,12 @@ fn on_earth(
                 .collect::<Vec<_>>(),
         )
     };
-    let east = horizontal(x, middle.to_radians().cos());
+    let cosine = middle.to_radians().cos();
+    let lengths = [
+        degrees(x).then_some(per_degree * cosine),
+        degrees(y).then_some(per_degree),
+    ];
+    let east = horizontal(x, cosine);
     let north = horizontal(y, 1.0);
     // A horizontal axis without coordinates has the step of the other one.
     let step_of = |points: &Option<Vec<f64>>| {
@@ -144,7 +153,7 @@ fn on_earth(
     let east = east.unwrap_or_else(|| evenly(nx, other));
     let north = north.unwrap_or_else(|| evenly(ny, other));
     let width = extent(&east).max(extent(&north));
-    [east, north, heights(nz, z, width, notes)]
+    ([east, north, heights(nz, z, width, notes)], lengths)
 }
 
 /// Heights in km; levels that are only numbers are spread over a part of `width`.
