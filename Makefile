@@ -76,10 +76,9 @@ if [ -n "$$wanted" ]; then \
 fi
 endef
 
-# The reader of GRIB is off in what people install, because its decoder is young, and so is the interface for C, which
-# they do not need; their tests run like all others.
+# The interface for C is off in what people install, who do not need it; its tests run like all others.
 # The viewer is built with the library's features of all tests: with its own the library would be built once more.
-TEST := $(CARGO) test --locked --workspace --features stratavox/grib,stratavox/capi
+TEST := $(CARGO) test --locked --workspace --features stratavox/capi
 
 # What draws. `host` makes no device: its tests run side by side, and the validation layer has nothing to hear there.
 WITH_DEVICE := exact relations matrix embed embed_allocations gpu faults capi examples

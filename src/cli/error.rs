@@ -158,6 +158,9 @@ impl From<offscreen::Error> for Error {
                 "docs/matrix.md shows which technique, mode, filter and feature go together",
             ),
             offscreen::Error::NoLayer { .. } => Self::NotBuilt(error.to_string()),
+            offscreen::Error::NoNormals => {
+                Self::usage(error.to_string(), "--component 0 takes one number a voxel")
+            }
             offscreen::Error::NoLabels => {
                 Self::usage(error.to_string(), "--labels FILE lays a map over INPUT")
             }

@@ -20,6 +20,21 @@ pub fn open(input: &InputFlags, limits: &Limits) -> Result<Box<dyn Source>, Erro
     Ok(source)
 }
 
+/// The same of a scene, whose look may take the first of several variables that is no coordinate; it is said.
+pub fn open_first(
+    scene: &mut SceneFlags,
+    limits: &Limits,
+    progress: &Progress,
+) -> Result<Box<dyn Source>, Error> {
+    let source = open(&scene.input, limits)?;
+    scene.take_first_variable(source.header(), progress);
+    // Where no word names one the source is of the first in the file.
+    match (&scene.input.variable, source.header().variables.first()) {
+        (Some(taken), Some(opened)) if taken != opened => open(&scene.input, limits),
+        _ => Ok(source),
+    }
+}
+
 /// The one volume of `source` that the words pick, and how much higher than it is it will be drawn.
 pub fn load_from(
     source: Box<dyn Source>,

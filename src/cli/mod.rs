@@ -22,6 +22,7 @@ mod flags;
 mod help;
 mod histogram;
 mod info;
+mod inputs;
 mod labels;
 mod line;
 mod load;
@@ -60,7 +61,12 @@ use std::path::Path;
 /// Volume rendering on Vulkan: texture slicing, ray casting, maximum intensity projection
 #[derive(Debug, Parser)]
 #[command(version, arg_required_else_help = true, max_term_width = 100)]
-#[command(after_help = "Example:\n  stratavox render phantom:head -o head.png")]
+#[command(
+    override_usage = "stratavox FILE [OPTIONS], as render draws it, or stratavox <COMMAND> [OPTIONS]"
+)]
+#[command(
+    after_help = "Examples:\n  stratavox phantom:head\n  stratavox render phantom:head -o left.png --view left"
+)]
 struct Words {
     #[command(subcommand)]
     verb: Verb,
@@ -84,7 +90,7 @@ enum Verb {
     View(view::View),
     Conformance(Box<conformance::Conformance>),
     #[cfg(target_os = "linux")]
-    #[command(hide = true)]
+    #[command(hide = true, name = untrusted::VERB)]
     ReadUntrusted(untrusted::ReadUntrusted),
 }
 
@@ -131,9 +137,11 @@ fn with_verb(mut words: Vec<OsString>) -> Vec<OsString> {
                 .any(|verb| verb.get_name() == name)
     };
     let text = first.to_string_lossy();
+    // What looks like a path and is not there is a missing file, no verb that is spelt wrongly.
+    let is_path = || text.contains(['.', '/', '\\']) || Path::new(first).exists();
     let is_input = text == stdin::STANDARD
         || text.starts_with(flags::PHANTOM)
-        || !text.starts_with('-') && Path::new(first).exists();
+        || !text.starts_with('-') && is_path();
     if is_input && !is_verb(&text) {
         words.insert(1, "render".into());
     }

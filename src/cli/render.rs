@@ -327,14 +327,28 @@ impl Render {
     }
 }
 
+/// The name of a picture whose volume has none.
+const NAMELESS: &str = "volume";
+
+/// The name of a file without its ending; of `.` and `..` that of the folder which they are.
+fn name_of(path: &Path) -> String {
+    let whole = match path.file_name() {
+        Some(_) => path.to_owned(),
+        None => path.canonicalize().unwrap_or_default(),
+    };
+    let name = format::stem(&whole);
+    let name = if name.is_empty() { NAMELESS } else { name };
+    name.to_owned()
+}
+
 /// `NAME.png` in this folder for `NAME.nii.gz`; the first of `NAME-2.png`, `NAME-3.png` that is not there, unless
 /// `force` replaces it.
 fn default_output(input: &InputFlags, force: bool) -> PathBuf {
     let path = input.path.as_deref().unwrap_or_default();
     let name = match path.strip_prefix(PHANTOM) {
-        Some(words) => words.split(',').next().unwrap_or(words),
-        None if path == STANDARD => "volume",
-        None => format::stem(Path::new(path.trim_end_matches('/'))),
+        Some(words) => words.split(',').next().unwrap_or(words).to_owned(),
+        None if path == STANDARD => NAMELESS.to_owned(),
+        None => name_of(Path::new(path)),
     };
     let free = (1..).map(|n| match n {
         1 => PathBuf::from(format!("{name}.png")),

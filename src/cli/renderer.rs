@@ -15,7 +15,7 @@ use crate::{
     offscreen::{self, Ceilings, Kept, Stream, reference},
     picture::{LayerKind, Picture},
     scene::{Beside, Scene},
-    technique::{Filter, Role, Settings, Technique},
+    technique::{Filter, Mode, Role, Settings, Technique},
     volume::{Denoise, Volume, labels::labels_of},
 };
 use std::panic::resume_unwind;
@@ -420,17 +420,22 @@ fn check_layers(job: &Job) -> Result<(), Error> {
     let Settings {
         technique, mode, ..
     } = *job.settings;
-    let is_sum = !matches!(job.beside, Beside::Nothing) && mode.is_projection();
+    let is_of_one = matches!(job.beside, Beside::Nothing);
+    let is_sum = !is_of_one && mode.is_projection();
     for layer in job.layers {
         let missing = match layer {
-            LayerKind::Value | LayerKind::Depth | LayerKind::Position | LayerKind::Label
+            LayerKind::Value
+            | LayerKind::Depth
+            | LayerKind::Position
+            | LayerKind::Normal
+            | LayerKind::Label
                 if is_sum =>
             {
                 "one number a voxel: --component 0"
             }
             LayerKind::Value if !mode.has_value() => "a mode with one value, such as --mode mip",
             LayerKind::Transmittance if mode.is_projection() => "--mode composite",
-            LayerKind::Depth | LayerKind::Position | LayerKind::Label
+            LayerKind::Depth | LayerKind::Position | LayerKind::Normal | LayerKind::Label
                 if technique != Technique::Raycast =>
             {
                 "--technique raycast"
@@ -438,7 +443,11 @@ fn check_layers(job: &Job) -> Result<(), Error> {
             LayerKind::Label if !has_labels(job) => {
                 "labels: --labels FILE, or a volume of labels with --filter nearest"
             }
-            LayerKind::Position | LayerKind::Label if !mode.has_depth() => {
+            LayerKind::Normal if job.stream.is_some() => "the voxels in memory: no --stream",
+            LayerKind::Normal if !is_of_one && mode != Mode::Iso => {
+                "one number a voxel: --component 0"
+            }
+            LayerKind::Position | LayerKind::Normal | LayerKind::Label if !mode.has_depth() => {
                 "a mode with a depth, such as --mode mip"
             }
             _ => continue,

@@ -4,7 +4,8 @@ use super::{
     Error,
     annotation::{annotation, projected},
     error::visible,
-    flags::{AnnotateFlags, Depth, InputFlags, SceneFlags, Size},
+    flags::{AnnotateFlags, Depth, InputFlags, Look, SceneFlags, Size},
+    inputs::Inputs,
     look::{Framing, Use, Views, prepared},
     output::{self, say},
     progress::{Progress, ProgressWord},
@@ -14,6 +15,7 @@ use super::{
 };
 use crate::annotate::Seen;
 use crate::figure::{Anchor, Color, Figure, Mark, SCALE, png};
+use crate::look::BACKGROUND;
 use crate::picture::{Picture, PictureFormat};
 use clap::Args;
 use std::path::PathBuf;
@@ -22,10 +24,12 @@ use std::path::PathBuf;
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:\n  \
     stratavox sheet phantom:head phantom:shells phantom:fog -o sheet.png\n  \
-    stratavox sheet phantom:head phantom:storm,variable=cloud --columns 2 --tile 160x120 -o two.png\n\n\
+    stratavox sheet phantom:head phantom:storm,variable=cloud --columns 2 --tile 160x120 -o two.png\n  \
+    stratavox sheet FOLDER --recursive -o scans.png\n\n\
+    Of a folder that is no volume itself the volumes inside are drawn, in the order of their names; each is drawn once.\n\
     An INPUT may end in ,variable=NAME and ,time=N and ,component=N, where it holds several volumes.")]
 pub struct Sheet {
-    /// Volumes, as `render` takes them
+    /// Volumes, as `render` takes them, and folders of volumes
     #[arg(value_name = "INPUT", required = true)]
     inputs: Vec<String>,
     /// The picture, a .png
@@ -37,6 +41,15 @@ pub struct Sheet {
     /// Small pictures in a row [default: as many as make the sheet about as wide as it is high]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     columns: Option<u32>,
+    /// Look into folders inside folders too
+    #[arg(long)]
+    recursive: bool,
+    /// As for `render`: auto fits, lights and classifies by what each volume is; plain does not [default: auto]
+    #[arg(long)]
+    look: Option<Look>,
+    /// Draw thin components of CT that touch faces of the box, such as a table, as for `render`
+    #[arg(long)]
+    keep_all: bool,
     #[command(flatten)]
     annotate: AnnotateFlags,
     /// A Vulkan device, as for `render`
@@ -58,13 +71,23 @@ impl Sheet {
     /// and the first such error is that of the whole.
     pub fn run(self, gate: &Gate) -> Result<(), Error> {
         self.annotate.check()?;
-        let scene = |words: &String| {
-            let mut scene = scene_of(words);
-            scene.annotate = self.annotate.clone();
-            scene.input.untrusted = self.untrusted;
-            scene
+        let flags = InputFlags {
+            untrusted: self.untrusted,
+            ..InputFlags::default()
         };
-        let scenes: Vec<SceneFlags> = self.inputs.iter().map(scene).collect();
+        let inputs = Inputs::find(&self.inputs, &flags, self.recursive)?;
+        let volumes = &inputs.volumes;
+        let scene = |words: &String| SceneFlags {
+            look: self.look,
+            annotate: self.annotate.clone(),
+            ..scene_of(words)
+        };
+        let mut scenes: Vec<SceneFlags> = volumes.iter().map(scene).collect();
+        for scene in &mut scenes {
+            scene.input.untrusted = self.untrusted;
+            scene.input.keep_all = self.keep_all.then_some(true);
+            scene.default_to_auto();
+        }
         let files: Vec<PathBuf> = scenes
             .iter()
             .filter_map(|scene| scene.input.file().map(PathBuf::from))
@@ -74,11 +97,14 @@ impl Sheet {
         let progress = Progress::new(self.progress);
         let mut device = Device::find(self.device.as_deref())?;
         progress.device(&device.name()?);
+        if let Some(note) = inputs.note() {
+            progress.note(&note);
+        }
         let mut places = String::new();
         let mut first_error = None;
         for (at, scene) in scenes.iter().enumerate() {
             progress.stage("draw", at, scenes.len());
-            let words = &self.inputs[at];
+            let words = &volumes[at];
             sheet.name(at as u32, short_name(words));
             match draw(scene, self.tile.0, &mut device, &self.device, &progress) {
                 Ok((picture, notes)) => {
@@ -125,12 +151,10 @@ fn scene_of(words: &str) -> SceneFlags {
         path = rest;
     }
     input.path = Some(path.to_owned());
-    let mut scene = SceneFlags {
+    SceneFlags {
         input,
         ..SceneFlags::default()
-    };
-    scene.default_to_auto();
-    scene
+    }
 }
 
 fn draw(
@@ -156,9 +180,9 @@ fn draw(
         let mut picture = renderer.draw(&view.camera)?.picture;
         let annotation = annotation(scene, &shown.header, settings.mode)?;
         let behind = annotation.as_ref().and_then(|a| a.transmittance(&picture));
-        if let Some(background) = view.scene.picture.background() {
-            picture.over_background(background);
-        }
+        // A sheet has no transparency: what plain pictures leave open shows what lies between them.
+        let behind_all = view.scene.picture.background();
+        picture.over_background(behind_all.unwrap_or(BACKGROUND));
         if let Some(annotation) = &annotation {
             annotation
                 .note()
@@ -272,7 +296,7 @@ impl Tiles {
 
 /// Between the small pictures lies what is behind them.
 fn background() -> Color {
-    crate::look::BACKGROUND.map(|share| (share * 255.0).round() as u8)
+    BACKGROUND.map(|share| (share * 255.0).round() as u8)
 }
 
 /// Words on it.

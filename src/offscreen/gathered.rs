@@ -1,14 +1,15 @@
 //! What the CPU twins leave for each pixel, and the layers that come of it.
 
 use super::position::{labels, positions};
-use super::tally::has_labels;
+use super::reference::normals;
+use super::tally::{has_labels, has_normals};
 use crate::picture::{Layer, LayerKind};
 use crate::real::Real;
 use crate::resolve::reference::projected_value;
 use crate::scene::Scene;
 use crate::technique::composite::Composite;
 use crate::technique::isosurface::Surfaces;
-use crate::technique::{Mode, Technique};
+use crate::technique::{Error, Mode, Technique};
 use crate::transfer::{Classified, TransferFunction, Window};
 
 /// What a technique leaves for one pixel, before it is resolved.
@@ -62,7 +63,10 @@ pub(super) fn grey_of_picture<R: Real>(mode: Mode, gathered: &[Gathered<R>]) -> 
     Window::of_range(range).grey(Classified::Projection)
 }
 
-pub(super) fn layers<R: Real>(scene: &Scene, gathered: &[Gathered<R>]) -> Vec<Layer> {
+pub(super) fn layers<R: Real>(
+    scene: &Scene,
+    gathered: &[Gathered<R>],
+) -> Result<Vec<Layer>, Error> {
     let mode = scene.settings.mode;
     let layer = |kind, number: &dyn Fn(&Gathered<R>) -> f32| Layer {
         kind,
@@ -90,6 +94,12 @@ pub(super) fn layers<R: Real>(scene: &Scene, gathered: &[Gathered<R>]) -> Vec<La
                 values: positions(scene, &depth.values),
             });
         }
+        if mode.has_depth() && has_normals(scene) {
+            layers.push(Layer {
+                kind: LayerKind::Normal,
+                values: normals(scene, &depth.values)?,
+            });
+        }
         if mode.has_depth() && has_labels(scene) {
             layers.push(Layer {
                 kind: LayerKind::Label,
@@ -98,5 +108,5 @@ pub(super) fn layers<R: Real>(scene: &Scene, gathered: &[Gathered<R>]) -> Vec<La
         }
         layers.push(depth);
     }
-    layers
+    Ok(layers)
 }

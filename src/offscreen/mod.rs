@@ -51,6 +51,9 @@ pub enum Error {
         "the layer `label` is for a label map over the volume, or for one volume of labels with the filter nearest"
     )]
     NoLabels,
+    /// The layer of normals, of what is no single volume in memory.
+    #[error("the layer `normal` is for one volume of numbers in memory")]
+    NoNormals,
     /// A brick of a [`Stream`] cannot be read.
     #[error(transparent)]
     Read(#[from] crate::volume::ReadError),

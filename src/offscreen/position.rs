@@ -37,7 +37,8 @@ pub fn label_map<'a>(scene: &Scene<'a>) -> Option<&'a Volume> {
     }
 }
 
-fn in_world<'a>(scene: &'a Scene, depths: &'a [f32]) -> impl Iterator<Item = DVec3> + 'a {
+/// The world positions of these depths; NaN where there is none.
+pub fn in_world<'a>(scene: &'a Scene, depths: &'a [f32]) -> impl Iterator<Item = DVec3> + 'a {
     let rays = scene.camera.rays(scene.extent_pixels);
     let width = scene.extent_pixels[0] as usize;
     depths.iter().enumerate().map(move |(i, &depth)| {

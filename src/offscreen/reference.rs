@@ -3,6 +3,7 @@
 mod half_angle;
 mod light;
 mod material;
+mod normals;
 mod slabs;
 
 use super::fade::{faded, stacks_of};
@@ -33,6 +34,7 @@ use crate::volume::sample::{linear, linear_in_slice, nearest};
 use crate::volume::{Coefficients, Grid, Volume};
 use light::light_of;
 use material::{gradient_at, marks_of_scene, steepness};
+pub(super) use normals::normals;
 
 /// The picture of `scene` with all layers that its technique has.
 ///
@@ -116,7 +118,7 @@ fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
         height,
         pixels: pixels.iter().map(|pixel| pixel.map(R::to_f32)).collect(),
         color_space: space,
-        layers: layers(scene, &centers),
+        layers: layers(scene, &centers)?,
     })
 }
 

@@ -4,7 +4,7 @@ use super::Error;
 use super::position::label_map;
 use crate::picture::LayerKind;
 use crate::scene::Scene;
-use crate::technique::{Filter, Mix, Settings, Technique};
+use crate::technique::{Filter, Mix, Mode, Settings, Technique};
 
 /// Blending keeps no depth, a projection no transmittance, and a composite has no one value.
 pub fn check_layers(scene: &Scene, wanted: &[LayerKind]) -> Result<(), Error> {
@@ -15,10 +15,16 @@ pub fn check_layers(scene: &Scene, wanted: &[LayerKind]) -> Result<(), Error> {
     let is_sum = scene.mix() == Mix::Channels && mode.is_projection();
     for &layer in wanted {
         let is_there = match layer {
-            LayerKind::Value | LayerKind::Depth | LayerKind::Position if is_sum => false,
+            LayerKind::Value | LayerKind::Depth | LayerKind::Position | LayerKind::Normal
+                if is_sum =>
+            {
+                false
+            }
             LayerKind::Value => mode.has_value(),
             LayerKind::Depth => technique == Technique::Raycast,
-            LayerKind::Position => technique == Technique::Raycast && mode.has_depth(),
+            LayerKind::Position | LayerKind::Normal => {
+                technique == Technique::Raycast && mode.has_depth()
+            }
             LayerKind::Transmittance => !mode.is_projection(),
             LayerKind::Samples => true,
             LayerKind::Annotation => false,
@@ -34,6 +40,9 @@ pub fn check_layers(scene: &Scene, wanted: &[LayerKind]) -> Result<(), Error> {
         if layer == LayerKind::Label && !has_labels(scene) {
             return Err(Error::NoLabels);
         }
+        if layer == LayerKind::Normal && !has_normals(scene) {
+            return Err(Error::NoNormals);
+        }
     }
     Ok(())
 }
@@ -43,6 +52,12 @@ pub fn check_layers(scene: &Scene, wanted: &[LayerKind]) -> Result<(), Error> {
 pub fn has_labels(scene: &Scene) -> bool {
     let is_alone = scene.mix().is_of_one();
     label_map(scene).is_some() && (!is_alone || scene.settings.filter == Filter::Nearest)
+}
+
+/// True where the hit is one of the scene's volume, and its voxels are here.
+pub fn has_normals(scene: &Scene) -> bool {
+    let is_of_one = scene.mix().is_of_one() || scene.settings.mode == Mode::Iso;
+    is_of_one && !scene.volume.is_outline()
 }
 
 /// The mean of pictures, added up in f32 in the order of their rays: no device needs to blend for it.

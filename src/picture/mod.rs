@@ -67,6 +67,8 @@ pub enum LayerKind {
     Samples,
     /// World position of the first hit: x, y, z.
     Position,
+    /// Unit normal at the first hit: x, y, z in the world, towards lower values; NaN without a gradient.
+    Normal,
     /// The label at the first hit.
     Label,
     /// Marks that lie over the picture: linear light times opacity, and opacity. No renderer makes it.
@@ -75,12 +77,13 @@ pub enum LayerKind {
 
 impl LayerKind {
     /// All that renderers make, in the order of `--aov`'s help.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Value,
         Self::Depth,
         Self::Transmittance,
         Self::Samples,
         Self::Position,
+        Self::Normal,
         Self::Label,
     ];
 
@@ -92,6 +95,7 @@ impl LayerKind {
             Self::Transmittance => "transmittance",
             Self::Samples => "samples",
             Self::Position => "position",
+            Self::Normal => "normal",
             Self::Label => "label",
             Self::Annotation => "annotation",
         }
@@ -100,7 +104,7 @@ impl LayerKind {
     /// How many numbers a pixel has.
     pub fn numbers(self) -> usize {
         match self {
-            Self::Position => 3,
+            Self::Position | Self::Normal => 3,
             Self::Annotation => 4,
             _ => 1,
         }

@@ -200,3 +200,26 @@ fn views_are_gone_through_as_often_as_asked() {
         );
     }
 }
+
+/// What is measured does not hang on what a look would choose.
+#[test]
+fn without_a_flag_a_bench_is_plain() {
+    let folder = Folder::new();
+    folder.file(
+        "views.json",
+        r#"[{"eye":[0,500,0],"target":[0,0,0],"up":[0,0,1],"fov":30}]"#,
+    );
+    let samples = |words: &str| {
+        folder
+            .run(&format!(
+                "bench phantom:head,n=24 --size 32x24 {words} --cameras views.json --json t.json --force"
+            ))
+            .assert_done();
+        let times = json(&fs::read_to_string(folder.path("t.json")).expect("a file"));
+        times["samples"].as_f64().expect("a count")
+    };
+    let bare = samples("");
+    assert!(bare > 1000.0);
+    assert_eq!(bare, samples("--look plain"));
+    assert!(samples("--samples-per-voxel 2") > 1.5 * bare);
+}

@@ -2,12 +2,15 @@
 //! output is shown below a line, that is what comes.
 //!
 //! README says so in code blocks of `sh`. A comment at the end of a line is left out, `&&` runs one line after
-//! the other; what stands behind a pipe is another program and is left out. A line with a word of capitals (`INPUT`,
+//! the other. A pipe between `cat` and `stratavox` runs as it stands, in a shell; what stands behind a pipe into another
+//! program is left out. A line with a word of capitals (`INPUT`,
 //! `FILE`), `[` or words to choose from (`list|show`) shows a form, not an example. A block of `console` shows `$ `
 //! lines with what they print below them.
 
-use crate::person::{Folder, Ran};
+use crate::person::{Folder, Ran, assert_begins};
 use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// A line to run, what it must print where that is shown, and where it stands.
 #[derive(Debug, PartialEq)]
@@ -28,6 +31,9 @@ impl Example {
 
     /// Runs it and checks what comes.
     fn check(&self, folder: &Folder) {
+        if self.line.contains(PIPE) {
+            return self.check_output(&piped(&self.line, folder));
+        }
         let mut printed = String::new();
         for words in self.line.split(" && ") {
             let words = words
@@ -48,17 +54,44 @@ impl Example {
     }
 }
 
+const PIPE: &str = " | ";
+
+/// What a line with pipes prints, run by a shell that finds the program of the tests.
+fn piped(line: &str, folder: &Folder) -> String {
+    let program = Path::new(env!("CARGO_BIN_EXE_stratavox"));
+    let here = program.parent().expect("a folder").to_owned();
+    let others = std::env::var_os("PATH").unwrap_or_default();
+    let others = std::env::split_paths(&others).collect::<Vec<PathBuf>>();
+    let path = std::env::join_paths([vec![here], others].concat()).expect("folders");
+    let ran = Command::new("sh")
+        .args(["-c", line])
+        .env("PATH", path)
+        .current_dir(folder.path(""))
+        .output()
+        .expect("a shell");
+    let said = String::from_utf8_lossy(&ran.stderr);
+    assert!(ran.status.success(), "{line}: {said}");
+    String::from_utf8_lossy(&ran.stdout).into_owned()
+}
+
 /// The line without its comment, if it is an example.
 fn example_line(line: &str) -> Option<&str> {
     let line = line.split(" #").next().unwrap_or_default();
-    let line = line.split(" | ").next().unwrap_or_default().trim();
+    let first = line.split(PIPE).next().unwrap_or_default();
+    let programs = line.split(PIPE).map(|part| part.split_whitespace().next());
+    let is_run = programs
+        .clone()
+        .all(|name| matches!(name, Some("stratavox" | "cat")))
+        && programs.clone().any(|name| name == Some("stratavox"));
+    let line = if is_run { line } else { first }.trim();
+    let forms = line.replace(PIPE, " ");
     let is_form = |word: &str| {
         let word = word.trim_matches(|c: char| !c.is_alphanumeric());
         word.len() > 1 && word.chars().all(|c| c.is_ascii_uppercase())
     };
-    let parts = line.split([' ', '|', ',', '.', '=']);
-    let is_example =
-        line.starts_with("stratavox ") && !line.contains(['[', '|']) && !parts.clone().any(is_form);
+    let mut parts = forms.split([' ', '|', ',', '.', '=']);
+    let is_ours = is_run || line.starts_with("stratavox ");
+    let is_example = is_ours && !forms.contains(['[', '|']) && !parts.any(is_form);
     is_example.then_some(line)
 }
 
@@ -219,24 +252,60 @@ fn every_transfer_function_of_the_docs_draws_something() {
     }
 }
 
-#[test]
-fn every_command_of_the_pages_of_annotation_and_of_recipes_runs() {
-    for page in ["docs/annotation.md", "docs/recipes.md"] {
-        let path = format!("{}/{page}", env!("CARGO_MANIFEST_DIR"));
-        let text = fs::read_to_string(path).expect("the page");
-        let examples = of_markdown(&text, page);
-        let folder = Folder::new();
-        for example in &examples {
-            example.check(&folder);
-        }
-        assert!(examples.len() >= 4, "{page}: {examples:#?}");
+/// Runs what a page shows, and gives the folder that it ran in, and how many lines there were.
+fn run_page(page: &str) -> (Folder, String, usize) {
+    let path = format!("{}/{page}", env!("CARGO_MANIFEST_DIR"));
+    let text = fs::read_to_string(path).expect("the page");
+    let examples = of_markdown(&text, page);
+    let folder = Folder::new();
+    for example in &examples {
+        example.check(&folder);
     }
+    (folder, text, examples.len())
 }
+
+#[test]
+fn every_command_of_the_page_of_annotation_runs() {
+    let (_, _, lines) = run_page("docs/annotation.md");
+    assert!(lines >= 4, "{lines} lines");
+}
+
+/// No line of a recipe is passed over, and what the recipes are about is in their files.
+#[cfg(unix)]
+#[test]
+fn every_recipe_runs_and_its_files_hold_what_it_says() {
+    let (folder, text, lines) = run_page("docs/recipes.md");
+    let blocks = text.split("```sh\n").skip(1);
+    let blocks = blocks.filter_map(|block| block.split("```").next());
+    let shown: Vec<usize> = blocks.map(|block| block.lines().count()).collect();
+    assert_eq!(lines, shown.iter().sum::<usize>(), "lines that do not run");
+    assert_eq!(shown.len(), RECIPES, "recipes");
+    let info = folder.run("info storm.nii.gz --json");
+    info.assert_done();
+    assert!(info.out.contains("\"times\": 4"), "{info:?}");
+    assert_begins(&folder.path("picture.png"), b"\x89PNG");
+    let layers = fs::read(folder.path("layers.exr")).expect("layers");
+    for channel in ["depth", "normal.X", "normal.Y", "normal.Z"] {
+        let name = [channel.as_bytes(), &[0]].concat();
+        let is_there = layers.windows(name.len()).any(|bytes| bytes == name);
+        assert!(is_there, "no channel {channel}");
+    }
+    let mesh = fs::read(folder.path("bone.ply")).expect("a mesh");
+    let mesh = String::from_utf8_lossy(&mesh[..400]).into_owned();
+    assert!(
+        mesh.contains("element face") && !mesh.contains("element face 0"),
+        "{mesh}"
+    );
+}
+
+/// Recipes of the page: the ten workflows that it must have, and two more.
+const RECIPES: usize = 12;
 
 #[test]
 fn examples_are_told_from_forms_and_comments() {
     let text = "```sh\ncargo build\nstratavox info phantom:fog   # what\nstratavox info INPUT\n\
-        stratavox render a -o OUT.png|.exr\n```\nstratavox not this\n```console\n$ stratavox preset list\na\nb\n```\n";
+        stratavox render a -o OUT.png|.exr\n\
+        stratavox render a -o - | display\ncat a | stratavox info - | cat\ncat a | other\n```\nstratavox not this\n```console\n$ stratavox preset list\na\nb\n```\n";
     let found = of_markdown(text, "x");
     let lines: Vec<_> = found
         .iter()
@@ -246,6 +315,8 @@ fn examples_are_told_from_forms_and_comments() {
         lines,
         [
             ("stratavox info phantom:fog", None),
+            ("stratavox render a -o -", None),
+            ("cat a | stratavox info - | cat", None),
             ("stratavox preset list", Some("a\nb\n"))
         ]
     );

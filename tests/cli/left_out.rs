@@ -39,6 +39,11 @@ fn head([x, y, z]: [f64; 3], has_plate: bool) -> i16 {
     }
 }
 
+/// A file of [`head`] with the plate.
+pub fn with_plate(folder: &Folder, name: &str) {
+    ct(folder, name, |at| head(at, true));
+}
+
 /// A trunk that fills the box and is cut by its faces, lungs with vessels that the lower face cuts, ribs, and an arm.
 fn thorax(at: [f64; 3]) -> i16 {
     let [x, y, z] = at;

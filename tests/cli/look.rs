@@ -328,3 +328,45 @@ fn large_work_takes_one_sample_a_voxel_and_says_so() {
     let text = fs::read_to_string(folder.path("s.json")).expect("a scene");
     assert!(text.contains("\"samples_per_voxel\": 1.0"), "{text}");
 }
+
+/// A folder that is the volume has the name of its folder, wherever one stands.
+#[test]
+fn the_picture_of_a_folder_has_its_name_from_inside_too() {
+    let folder = Folder::new();
+    let inner = folder.path("study/inner");
+    fs::create_dir_all(&inner).expect("folders");
+    let slices = format!("{}/tests/fixtures/tiff/slices", env!("CARGO_MANIFEST_DIR"));
+    for slice in 0..4 {
+        let name = format!("s{slice}.tif");
+        fs::copy(format!("{slices}/{name}"), folder.path("study").join(&name)).expect("a slice");
+    }
+    for (input, place, name) in [
+        (".", "study", "study.png"),
+        ("./", "study", "study-2.png"),
+        ("..", "study/inner", "study.png"),
+        ("inner/..", "study", "study-3.png"),
+    ] {
+        let mut command = folder.command(&format!("{input} --size 8x8 --device reference"));
+        let ran = command.current_dir(folder.path(place)).output();
+        let ran = ran.expect("the program runs");
+        assert!(ran.status.success(), "{input}: {ran:?}");
+        assert!(
+            folder.path(place).join(name).is_file(),
+            "{input}: no {name}"
+        );
+    }
+}
+
+#[test]
+fn a_file_that_is_not_there_is_no_misspelt_verb_and_a_misspelt_verb_no_file() {
+    let folder = Folder::new();
+    for words in ["nosuch.nii.gz", "scans/one", "./scan --size 8x8"] {
+        let name = words.split(' ').next().expect("a word");
+        let ran = folder.run(words);
+        ran.assert_refused(3, &[name]);
+        assert!(!ran.err.contains("subcommand"), "{ran:?}");
+    }
+    folder
+        .run("rendr phantom:fog")
+        .assert_refused(2, &["rendr", "'render'", "hint: `stratavox --help`"]);
+}

@@ -50,6 +50,7 @@ mod thumbnail_views;
 mod thumbnails;
 mod thumbnails_at_once;
 mod untrusted;
+mod view;
 mod weather;
 mod widgets;
 mod words;

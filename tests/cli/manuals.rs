@@ -90,3 +90,34 @@ fn there_is_a_manual_page_for_every_verb() {
         .run("man -o nowhere")
         .assert_refused(4, &["there is no folder"]);
 }
+
+/// Defaults that hang on the look say so.
+#[test]
+fn the_help_of_render_says_what_holds_under_auto_and_the_root_how_a_file_is_drawn() {
+    let folder = Folder::new();
+    let help = folder.run("render --help").out;
+    for flag in [
+        "--background",
+        "--shading",
+        "--material",
+        "--light <",
+        "--half-gradient",
+        "--samples-per-voxel",
+        "--zoom",
+        "--view <",
+        "--frame",
+    ] {
+        let at = help.find(&format!("\n      {flag}"));
+        let at = at.unwrap_or_else(|| panic!("no {flag}: {help}"));
+        // Up to the next flag.
+        let about = help[at + 1..]
+            .split("\n      --")
+            .next()
+            .unwrap_or_default();
+        let words: Vec<_> = about.split_whitespace().collect();
+        let about = words.join(" ");
+        assert!(about.contains("--look auto"), "{flag}: {about}");
+    }
+    let root = folder.run("--help").out;
+    assert!(root.contains("Usage: stratavox FILE"), "{root}");
+}

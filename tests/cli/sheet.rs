@@ -1,6 +1,8 @@
 //! `stratavox sheet`: many volumes in one picture.
 
 use super::person::{Folder, assert_begins};
+use crate::thumbnails::nrrd;
+use std::fs;
 
 /// Codes of the small picture of the first place.
 fn first_tile(folder: &Folder, input: &str) -> Vec<[u8; 3]> {
@@ -56,4 +58,53 @@ fn a_sheet_has_a_place_for_each_input_and_says_which_could_not_be_drawn() {
     assert_begins(&folder.path("b.png"), b"\x89PNG");
     let ran = folder.run("sheet phantom:fog,n=8 -o a.png");
     ran.assert_refused(4, &["a.png", "--force"]);
+}
+
+#[test]
+fn a_folder_is_the_volumes_in_it_in_the_order_of_their_names() {
+    let folder = Folder::new();
+    fs::create_dir_all(folder.path("scans/deep")).expect("folders");
+    for (seed, name) in ["b.nrrd", "a.nrrd", "deep/c.nrrd"].into_iter().enumerate() {
+        folder.file(&format!("scans/{name}"), nrrd(4, seed));
+    }
+    folder.file("scans/README.txt", "no volume");
+    let words = "sheet scans phantom:fog,n=8 scans/a.nrrd --tile 16x12 --device reference";
+    let ran = folder.run(&format!("{words} -o a.png"));
+    ran.assert_done();
+    assert_eq!(
+        ran.out,
+        "1 1 scans/a.nrrd\n1 2 scans/b.nrrd\n2 1 phantom:fog,n=8\n"
+    );
+    assert!(ran.err.contains("no volume are left alone"), "{ran:?}");
+    let ran = folder.run(&format!("{words} --recursive --columns 9 -o b.png"));
+    ran.assert_done();
+    let row = "1 1 scans/a.nrrd\n1 2 scans/b.nrrd\n1 3 scans/deep/c.nrrd\n1 4 phantom:fog,n=8\n";
+    assert_eq!(ran.out, row);
+    fs::create_dir(folder.path("empty")).expect("a folder");
+    let ran = folder.run("sheet empty -o c.png --tile 16x12");
+    ran.assert_refused(3, &["empty", "no volume"]);
+}
+
+#[test]
+fn look_and_keep_all_are_those_of_render() {
+    let folder = Folder::new();
+    crate::left_out::with_plate(&folder, "plate.mha");
+    let tile = |words: &str| first_tile(&folder, &format!("plate.mha {words}"));
+    let rendered = |words: &str| {
+        let fixed = "--size 32x24 -o r.png --device reference --force";
+        folder
+            .run(&format!("render plate.mha {words} {fixed}"))
+            .assert_done();
+        let picture = image::open(folder.path("r.png")).expect("a picture");
+        picture.to_rgb8().pixels().map(|p| p.0).collect::<Vec<_>>()
+    };
+    let tiles = ["", "--keep-all", "--look plain"].map(tile);
+    assert!(tiles[0] != tiles[1] && tiles[0] != tiles[2] && tiles[1] != tiles[2]);
+    let words = ["", "--keep-all", "--look plain --background #18181c"];
+    for (tile, words) in tiles.iter().zip(words) {
+        assert!(
+            *tile == rendered(words),
+            "{words}: not the picture of render"
+        );
+    }
 }

@@ -192,7 +192,7 @@ fn each_series_of_a_folder_and_each_variable_of_a_file_has_its_picture() {
     let variables = info["variables"].as_array().expect("a list").len();
     assert!(variables > 1, "{info}");
     let ran = folder.run(&format!(
-        "thumbnails study one.h5 -o out --index index.json {SMALL}"
+        "thumbnails study one.h5 -o out --variable all --index index.json {SMALL}"
     ));
     let index = fs::read(folder.path("index.json")).expect("an index");
     let index: Value = serde_json::from_slice(&index).expect("JSON");
@@ -222,6 +222,41 @@ fn each_series_of_a_folder_and_each_variable_of_a_file_has_its_picture() {
     ));
     ran.assert_done();
     assert_eq!(pictures(&folder.path("few")).len(), 1);
+}
+
+#[test]
+fn of_several_variables_the_first_is_drawn_as_render_draws_it_and_plain_draws_each() {
+    let folder = Folder::new();
+    fs::copy(fixture("netcdf/wrf.nc"), folder.path("wrf.nc")).expect("a copy");
+    let words = format!("thumbnails wrf.nc phantom:storm,n=8 -o out --index index.json {SMALL}");
+    let ran = folder.run(&words);
+    ran.assert_done();
+    let others = ran.err.matches("--variable takes another").count();
+    assert_eq!(others, 2, "{ran:#?}");
+    assert_eq!(
+        pictures(&folder.path("out"))
+            .into_keys()
+            .collect::<Vec<_>>(),
+        ["phantom-storm-n-8.png", "wrf.png"]
+    );
+    // The file begins with where its levels lie.
+    for words in ["", "--variable T"] {
+        folder
+            .run(&format!("render wrf.nc {words} -o one.png --force {SMALL}"))
+            .assert_done();
+        let [same, one] = ["out/wrf.png", "one.png"].map(|name| fs::read(folder.path(name)).ok());
+        assert!(same.is_some() && same == one, "not that of render {words}");
+    }
+    let index = fs::read_to_string(folder.path("index.json")).expect("an index");
+    assert!(index.contains("\"variable\": \"T\""), "{index}");
+    let ran = folder.run(&format!("thumbnails wrf.nc --look plain -o each {SMALL}"));
+    ran.assert_done();
+    let each = pictures(&folder.path("each"));
+    assert!(
+        each.len() > 2 && each.contains_key("wrf-T.png"),
+        "{:?}",
+        each.keys()
+    );
 }
 
 #[test]

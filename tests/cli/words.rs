@@ -113,6 +113,48 @@ fn a_word_that_cannot_be_is_a_usage_error() {
     assert!(folder.names().is_empty(), "{:?}", folder.names());
 }
 
+/// What clap refuses too: its own last lines name no verb.
+#[test]
+fn an_unknown_flag_ends_in_a_hint_that_names_the_verb() {
+    let folder = Folder::new();
+    for (words, hint) in [
+        ("render phantom:fog --nonsense", "`stratavox render --help`"),
+        ("render phantom:fog --size", "`stratavox render --help`"),
+        ("sheet -o a.png", "`stratavox sheet --help`"),
+        ("compare a.png", "`stratavox compare --help`"),
+        ("nonsense", "`stratavox --help`"),
+        ("--nonsense", "`stratavox --help`"),
+    ] {
+        let ran = folder.run(words);
+        assert_eq!(ran.code, 2, "{words}: {ran:#?}");
+        let last = ran.err.trim_end().lines().last().unwrap_or_default();
+        let wanted = format!("  hint: {hint} shows examples and lists every flag");
+        assert_eq!(last, wanted, "{words}: {ran:#?}");
+    }
+}
+
+#[test]
+fn normals_are_refused_by_name_where_there_is_no_ray_and_no_one_volume() {
+    let folder = Folder::new();
+    for (words, named) in [
+        (
+            "phantom:fog,n=8 --technique slices-3d",
+            "--technique raycast",
+        ),
+        ("phantom:fog,n=8 --mode average", "a mode with a depth"),
+        ("phantom:cells,n=8", "one number a voxel"),
+        ("phantom:fog,n=8 --stream", "no --stream"),
+    ] {
+        let ran = folder.run(&format!("render {words} --aov normal --size 8x8 -o a.npy"));
+        ran.assert_refused(2, &["--aov normal needs", named]);
+    }
+    let words = "render phantom:sphere,n=16 --mode iso --aov normal --size 8x8 -o a.npy";
+    folder.run(words).assert_done();
+    let layer = std::fs::read(folder.path("a.normal.npy")).expect("a layer");
+    let header = String::from_utf8_lossy(&layer[..128]).into_owned();
+    assert!(header.contains("'shape': (8, 8, 3), }"), "{header}");
+}
+
 #[test]
 fn help_and_version_are_answers_on_standard_output() {
     let folder = Folder::new();

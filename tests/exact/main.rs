@@ -26,6 +26,7 @@ mod maximum;
 mod mixtures;
 mod modes_along_rays;
 mod mutants;
+mod normals;
 mod occlusion;
 mod quality;
 mod shapes;

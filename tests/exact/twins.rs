@@ -33,6 +33,8 @@ fn layers_of(shot: &Shot) -> Vec<LayerKind> {
         LayerKind::Depth => shot.settings.technique == Technique::Raycast,
         LayerKind::Transmittance => !mode.is_projection(),
         LayerKind::Position => shot.settings.technique == Technique::Raycast && mode.has_depth(),
+        // No shader makes it; tests/exact/normals.rs has exact ones.
+        LayerKind::Normal => false,
         // Waves are no labels.
         LayerKind::Label => false,
         // Marks over a picture are the command line's.

@@ -31,13 +31,17 @@ const EMBEDDER: [&str; 21] = [
     "zerocopy-derive",
 ];
 
-/// The packages of a tree, by name. Cargo fetches those that no build on this target has wanted yet.
+/// The packages of a tree on all targets, by name. Cargo fetches those that no build on this target has wanted yet.
 fn tree(edges: &str, features: &str) -> BTreeSet<String> {
+    tree_on("all", edges, features)
+}
+
+fn tree_on(target: &str, edges: &str, features: &str) -> BTreeSet<String> {
     let cargo = env::var("CARGO").unwrap_or("cargo".into());
     let told = Command::new(cargo)
         .args(["tree", "--locked", "--no-default-features"])
         .args(["--features", features, "--edges", edges])
-        .args(["--target", "all", "--prefix", "none", "--format", "{p}"])
+        .args(["--target", target, "--prefix", "none", "--format", "{p}"])
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .output()
         .expect("cargo runs");
@@ -67,5 +71,24 @@ fn nothing_that_is_built_for_an_embedder_builds_c() {
     for package in tree("normal,build", "") {
         let builds_c = ["cc", "cmake", "pkg-config", "bindgen"].contains(&package.as_str());
         assert!(!builds_c && !package.ends_with("-sys"), "{package}");
+    }
+}
+
+#[test]
+fn the_program_has_every_reader_and_none_of_them_builds_c() {
+    // A crate of time zones builds C on Haiku alone.
+    for target in [
+        "x86_64-unknown-linux-gnu",
+        "x86_64-pc-windows-msvc",
+        "aarch64-apple-darwin",
+    ] {
+        let readers = tree_on(target, "normal,build", "formats");
+        for package in ["grib", "hdf5-reader", "hayro-jpeg2000", "tiff"] {
+            assert!(readers.contains(package), "no {package}: {readers:?}");
+        }
+        assert!(readers.is_subset(&tree_on(target, "normal,build", "cli")));
+        for tool in ["cc", "cmake", "pkg-config", "bindgen"] {
+            assert!(!readers.contains(tool), "{tool} is needed on {target}");
+        }
     }
 }

@@ -106,3 +106,30 @@ fn metaimage_is_taken_at_its_writers_habits_and_that_is_said() {
         assert_eq!(is_said, wanted != Meaning::Numbers, "{:?}", header.notes);
     }
 }
+
+/// What pictures are taken with decides how they are coloured, and only some formats can say it.
+#[cfg(all(feature = "dicom", feature = "tiff", feature = "zarr"))]
+#[test]
+fn dicom_says_the_modality_and_files_of_microscopes_are_of_microscopes() {
+    let fixture = |name: &str| {
+        PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+            .join("tests/fixtures")
+            .join(name)
+    };
+    let opened = |path: &std::path::Path| {
+        let source = open(path, &Wanted::default(), &Limits::default());
+        source.unwrap_or_else(|error| panic!("{path:?}: {error}"))
+    };
+    for (name, wanted) in [
+        ("dicom/enhanced_ct.dcm", Some("CT")),
+        ("tiff/slices/s0.tif", Some("GM")),
+        ("npy/i2-le.npy", None),
+    ] {
+        let source = opened(&fixture(name));
+        assert_eq!(source.header().modality.as_deref(), wanted, "{name}");
+    }
+    for name in ["ngff-0.4", "ngff-0.5"] {
+        let source = crate::zarr::Store::of(name).open().expect("a store");
+        assert_eq!(source.header().modality.as_deref(), Some("GM"), "{name}");
+    }
+}

@@ -230,3 +230,40 @@ fn members_of_an_ensemble_are_what_the_manifest_says() {
         }
     }
 }
+
+/// Heights and curved longitudes say where voxels lie by their standard names and units; `coordinates` need not list
+/// them.
+#[test]
+fn variables_that_say_where_others_lie_come_last() {
+    let store = Store::new(&[(".zgroup".to_owned(), br#"{"zarr_format":2}"#.to_vec())]);
+    let add = |name: &str, shape: &[u64], attributes: serde_json::Value| {
+        let names = &["z", "y", "x"][3 - shape.len()..];
+        let mut attributes = attributes;
+        attributes["_ARRAY_DIMENSIONS"] = serde_json::json!(names);
+        let array = serde_json::json!({
+            "zarr_format": 2, "shape": shape, "chunks": shape, "dtype": "<f4", "compressor": null,
+            "fill_value": 0, "order": "C", "filters": null
+        });
+        store.write(&format!("{name}/.zarray"), array.to_string());
+        store.write(&format!("{name}/.zattrs"), attributes.to_string());
+        let voxels = shape.iter().product::<u64>();
+        let numbers = (0..voxels).flat_map(|i| (i as f32).to_le_bytes());
+        let chunk = vec!["0"; shape.len()].join(".");
+        store.write(&format!("{name}/{chunk}"), numbers.collect::<Vec<_>>());
+    };
+    add(
+        "altitude",
+        &[3, 4, 5],
+        serde_json::json!({"standard_name": "altitude", "units": "m"}),
+    );
+    add(
+        "east",
+        &[3, 4, 5],
+        serde_json::json!({"units": "degrees_east"}),
+    );
+    add("slp", &[4, 5], serde_json::json!({"units": "Pa"}));
+    add("theta", &[3, 4, 5], serde_json::json!({"units": "K"}));
+    let source = store.open().unwrap();
+    let names = &source.header().variables;
+    assert_eq!(names[..], ["theta", "slp", "altitude", "east"]);
+}

@@ -44,6 +44,8 @@ mod zarr;
 
 mod both_sides;
 mod cf_wrf;
+#[cfg(unix)]
+mod ci_group;
 mod colour_blind;
 #[cfg(feature = "conformance")]
 mod conformance_package;

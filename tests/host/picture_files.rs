@@ -77,6 +77,7 @@ fn npy_files_are_what_numpy_writes() {
         [
             "out.depth.npy",
             "out.label.npy",
+            "out.normal.npy",
             "out.npy",
             "out.position.npy",
             "out.samples.npy",
@@ -141,6 +142,9 @@ fn exr_files_hold_the_same_floats_and_a_channel_for_each_layer() {
             "R",
             "depth",
             "label",
+            "normal.X",
+            "normal.Y",
+            "normal.Z",
             "position.X",
             "position.Y",
             "position.Z",

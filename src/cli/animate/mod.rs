@@ -337,8 +337,8 @@ impl Animate {
             _ if self.bit_depth == BitDepth::Sixteen => Depth::More,
             _ => Depth::Eight,
         };
-        let source = load::open(&scene.input, &shown::limits(&scene))?;
-        scene.take_first_variable(source.header(), progress);
+        let limits = shown::limits(&scene);
+        let source = load::open_first(&mut scene, &limits, progress)?;
         let header = source.header();
         scene.classification.context = scene.is_auto().then(|| context(header));
         let mut shots = film.shots(&scene, depth, header, &shots::grid(&scene, header)?)?;

@@ -18,16 +18,18 @@ pub struct CameraFlags {
     #[arg(long, value_name = "DEG", value_parser = positive, help_heading = "Camera")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fov: Option<f64>,
-    /// What fills the picture: what is visible of the volume, or its whole box [default: visible; with --zoom alone, the
-    /// bounding sphere]
+    /// What fills the picture: what is visible of the volume, or its whole box [default: visible under --look auto; the
+    /// bounding sphere with --zoom alone and under plain]
     #[arg(long, value_name = "WHAT", conflicts_with_all = ["eye", "target", "view_height"], help_heading = "Camera")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frame: Option<FrameWord>,
-    /// 1: the bounding sphere fits, or what --frame says; more is nearer [default: 1]
+    /// 1: what --frame says fits, without it the bounding sphere; more is nearer [default: 1, of what --frame says under
+    /// --look auto]
     #[arg(long, value_name = "F", value_parser = positive, help_heading = "Camera")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub zoom: Option<f64>,
-    /// Stand on this side [default: between right and anterior, a little above; of a piece of the Earth the south]
+    /// Stand on this side [default: between right and anterior, a little above; of a piece of the Earth the south;
+    /// under --look auto the face of a slab, and the best of six sides where the file names no axes]
     #[arg(long, value_name = "SIDE", conflicts_with_all = ["azimuth", "elevation"], help_heading = "Camera")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub view: Option<ViewWord>,

@@ -16,22 +16,23 @@ const HEADING: &str = "Light";
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LightFlags {
-    /// Colours as they are, or surfaces lit from both sides; presets are drawn without light [default: none, phong in
-    /// --mode iso]
+    /// Colours as they are, or surfaces lit from both sides [default: phong in --mode iso, and under --look auto in
+    /// composites of CT, tissue and labels, not with --tf; else none]
     #[arg(long, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shading: Option<ShadingWord>,
-    /// Ambient, diffuse and specular part, and shininess [default: 0.1,0.7,0.2,10]
+    /// Ambient, diffuse and specular part, and shininess [default: 0.1,0.7,0.2,10; 0.35,0.65,0.2,20 where --look
+    /// auto lights]
     #[arg(long, value_name = "A,D,S,N", allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub material: Option<Numbers<4>>,
     /// A light in this direction of the world, or of the camera (right, up, towards the eye), of a colour in sRGB numbers
-    /// (repeatable) [default: from the eye, white]
+    /// (repeatable) [default: white, from the eye; from above and left of it where --look auto lights]
     #[arg(long, value_name = "[camera:]X,Y,Z[,R,G,B]", allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub light: Vec<LightWord>,
     /// Light gradients under G, in values per world length, less as a surface and more evenly: half and half at G, so that
-    /// noise does not sparkle [default: 0]
+    /// noise does not sparkle [default: 0; by the noise of the volume where --look auto lights]
     #[arg(long, value_name = "G", value_parser = finite, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub half_gradient: Option<f64>,

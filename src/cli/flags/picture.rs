@@ -13,7 +13,8 @@ pub struct PictureFlags {
     #[arg(long, value_name = "WxH", help_heading = "Picture")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub size: Option<Size>,
-    /// What lies behind: a colour by name, #hex or sRGB numbers from 0 to 1 [default: none]
+    /// What lies behind: a colour by name, #hex or sRGB numbers from 0 to 1 [default: #18181c in PNG and
+    /// films under --look auto, else none]
     #[arg(long, value_name = "COLOR|none", help_heading = "Picture")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub background: Option<Background>,
@@ -81,6 +82,8 @@ pub enum LayerWord {
     Label,
     /// World position at the depth, three numbers a pixel
     Position,
+    /// Unit normal at the depth, in the world towards lower values, three numbers a pixel
+    Normal,
 }
 
 impl LayerWord {
@@ -91,6 +94,7 @@ impl LayerWord {
             Self::Transmittance => LayerKind::Transmittance,
             Self::Samples => LayerKind::Samples,
             Self::Position => LayerKind::Position,
+            Self::Normal => LayerKind::Normal,
             Self::Label => LayerKind::Label,
         }
     }

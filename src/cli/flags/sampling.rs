@@ -68,7 +68,7 @@ pub struct SamplingFlags {
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub order: Option<OrderWord>,
-    /// Samples per smallest voxel spacing [default: 1]
+    /// Samples per smallest voxel spacing [default: 1; 2 in stills of composites under --look auto]
     #[arg(long, value_name = "F", value_parser = positive)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub samples_per_voxel: Option<f64>,

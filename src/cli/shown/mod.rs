@@ -18,7 +18,7 @@ use super::{
         summary,
     },
     labels,
-    load::{load_from, open},
+    load::{load_from, open_first},
     look::{Seen, base_of},
     memory::{self, DeviceRoom, Held, fitting},
     progress::Progress,
@@ -89,8 +89,8 @@ impl Shown {
         progress: &Progress,
     ) -> Result<Self, Error> {
         check(scene, settings)?;
-        let source = open(&scene.input, &limits(scene))?;
-        scene.take_first_variable(source.header(), progress);
+        let limits = limits(scene);
+        let source = open_first(scene, &limits, progress)?;
         let shown = Self::of_source(source, scene, settings, device, progress)?;
         Ok(shown.at_level(scene))
     }

@@ -387,6 +387,9 @@ impl<'a> Reading<'a> {
             scene.input.series = item.part.series.clone();
             scene.input.variable = item.part.variable.clone();
         }
+        if let Some(note) = &item.part.note {
+            progress.note(note);
+        }
         let source = load::open(&scene.input, &scene.input.limits())?;
         // The source is of the first of several, where nobody chose.
         let header = source.header();

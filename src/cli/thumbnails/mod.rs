@@ -6,7 +6,6 @@
 
 mod batch;
 mod index;
-mod inputs;
 mod item;
 mod names;
 mod parts;
@@ -15,6 +14,7 @@ mod room;
 use super::{
     Error,
     flags::{Depth, SceneFlags, Size, ViewWord},
+    inputs::Inputs,
     memory::available_bytes,
     output::{self, say_aside, write_whole},
     progress::{Progress, ProgressWord},
@@ -26,9 +26,8 @@ use crate::picture::{BitDepth, WriteOptions};
 use batch::Batch;
 use clap::Args;
 use index::{Became, Index, Row};
-use inputs::Inputs;
 use item::{Item, Wanted};
-use parts::Part;
+use parts::{Part, Variables};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -42,7 +41,8 @@ use std::{
     stratavox thumbnails FOLDER --mode mip --view anterior --size 128x128 -o pictures --resume\n  \
     stratavox thumbnails FOLDER --views anterior,left,superior -o pictures\n\n\
     A folder that is one volume (DICOM, slices of TIFF, Zarr) is one; of another the volumes inside are drawn.\n\
-    Of a folder of several series, and a file of several variables, each is drawn.\n\
+    Of a folder of several series each is drawn; of a file of several variables the first that is no coordinate, by\n\
+    --variable all and under --look plain each.\n\
     A volume that cannot be drawn is named, and the others are drawn: the exit code is that of the first failure.\n\
     A volume too large for the memory is drawn with fewer voxels, as by --fit of `render`.")]
 // The volumes are INPUT... here; the one INPUT of other verbs makes room for them.
@@ -87,13 +87,29 @@ pub struct Thumbnails {
     no_skip: bool,
 }
 
+/// The word of `--variable` for each of them.
+const ALL: &str = "all";
+
+/// Which of several variables are drawn: what `--variable all` says, else the look. Such a word names none.
+fn variables_of(scene: &mut SceneFlags) -> Variables {
+    let is_all = scene.input.variable.as_deref() == Some(ALL);
+    if is_all {
+        scene.input.variable = None;
+    }
+    match is_all || !scene.is_auto() {
+        true => Variables::All,
+        false => Variables::First,
+    }
+}
+
 /// Pixels where no word says how many.
 const SIZE: Size = Size([256, 256]);
 
 impl Thumbnails {
     /// Draws and writes.
     pub fn run(mut self, gate: &Gate) -> Result<(), Error> {
-        let scene = self.whole_scene()?;
+        let mut scene = self.whole_scene()?;
+        let variables = variables_of(&mut scene);
         let depth = match self.bit_depth {
             BitDepth::Eight => Depth::Eight,
             BitDepth::Sixteen => Depth::More,
@@ -104,9 +120,9 @@ impl Thumbnails {
         scene.annotate.check()?;
         shown::check(&scene, &settings)?;
         let inputs = Inputs::find(&self.inputs, &scene.input, self.recursive)?;
-        let left_alone = inputs.left_alone;
+        let left_alone = inputs.note();
         let volumes = inputs.volumes.into_iter().flat_map(|input| {
-            let parts = parts::of_input(&input, &scene.input).into_iter();
+            let parts = parts::of_input(&input, &scene.input, variables).into_iter();
             parts.map(move |part| (input.clone(), part))
         });
         let volumes: Vec<(String, Part)> = volumes.collect();
@@ -124,10 +140,8 @@ impl Thumbnails {
         let wanted: Vec<Wanted> = wanted.collect();
 
         let progress = Progress::new(self.progress);
-        if left_alone > 0 {
-            progress.note(&format!(
-                "{left_alone} files and folders that are no volume are left alone"
-            ));
+        if let Some(note) = left_alone {
+            progress.note(&note);
         }
         let items: Vec<Item> = volumes
             .into_iter()

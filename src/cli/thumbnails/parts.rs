@@ -1,7 +1,8 @@
 //! The volumes that one input holds: series of a folder, variables of a file.
 //!
 //! ```text
-//! header -> UID of each series | name of each variable -> the word that picks it, and what its picture is called
+//! header -> UID of each series | name of each variable, or of the first -> the word that picks it, and what its
+//!           picture is called
 //! ```
 
 use crate::{
@@ -18,22 +19,41 @@ pub struct Part {
     pub variable: Option<String>,
     /// What stands behind the name of the input; empty of the only one.
     pub name: String,
+    /// What a person should know of the choice.
+    pub note: Option<String>,
 }
 
 /// Letters of a name: descriptions may be long.
 const LONGEST_NAME: usize = 60;
 
+/// Which of several variables are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Variables {
+    /// Each.
+    All,
+    /// The first that is no coordinate.
+    First,
+}
+
 /// The volumes of an input, as far as its header tells; words of `flags` choose one. What cannot be opened is one.
-pub fn of_input(input: &str, flags: &InputFlags) -> Vec<Part> {
-    let flags = InputFlags {
+pub fn of_input(input: &str, flags: &InputFlags, variables: Variables) -> Vec<Part> {
+    let mut flags = InputFlags {
         path: Some(input.to_owned()),
         ..flags.clone()
     };
-    let is_phantom = flags.file().is_none();
-    if is_phantom || flags.series.is_some() || flags.variable.is_some() {
+    let is_whole = flags.file().is_none() && variables == Variables::All;
+    if is_whole || flags.series.is_some() || flags.variable.is_some() {
         return vec![Part::default()];
     }
     match load::open(&flags, &flags.limits()) {
+        Ok(source) if variables == Variables::First && source.header().series.len() < 2 => {
+            let note = flags.take_first_variable(source.header());
+            vec![Part {
+                variable: flags.variable,
+                note,
+                ..Part::default()
+            }]
+        }
         Ok(source) => of_header(source.header()),
         // Said where it is drawn.
         Err(_) => vec![Part::default()],
@@ -61,16 +81,16 @@ fn of_header(header: &Header) -> Vec<Part> {
 fn of_series(series: &Series) -> Part {
     Part {
         series: Some(series.uid.clone()),
-        variable: None,
         name: short(&series.description),
+        ..Part::default()
     }
 }
 
 fn of_variable(variable: &str) -> Part {
     Part {
-        series: None,
         variable: Some(variable.to_owned()),
         name: short(variable.trim_matches('/')),
+        ..Part::default()
     }
 }
 

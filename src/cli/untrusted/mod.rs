@@ -22,6 +22,10 @@ pub use child::ReadUntrusted;
 #[cfg(target_os = "linux")]
 pub use parent::open;
 
+/// The verb of the child, like no word that a person may mean.
+#[cfg(target_os = "linux")]
+pub const VERB: &str = "child-of-untrusted";
+
 /// Limits of processes are Linux's here.
 #[cfg(not(target_os = "linux"))]
 pub fn open(

@@ -89,7 +89,7 @@ struct Reader {
 impl Reader {
     fn start(opening: &Opening) -> io::Result<Self> {
         let mut command = Command::new(std::env::current_exe()?);
-        command.arg("read-untrusted");
+        command.arg(super::VERB);
         if let Some(fault) = std::env::var_os(FAULT) {
             command.arg("--fault").arg(fault);
         }

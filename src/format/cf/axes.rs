@@ -143,6 +143,13 @@ fn by_attributes(coordinate: &Variable) -> Option<Axis> {
     }
 }
 
+/// True for a variable that says where others lie, whatever its shape: longitudes of a curved grid, heights of levels.
+pub(super) fn says_place(variable: &Variable) -> bool {
+    let standard_name = variable.attributes.text("standard_name").unwrap_or("");
+    let axis = by_attributes(variable);
+    is_vertical(standard_name) || matches!(axis, Some(Axis::X | Axis::Y | Axis::Time))
+}
+
 /// Standard names of vertical coordinates, CF Conventions 4.3 and appendix D.
 fn is_vertical(standard_name: &str) -> bool {
     matches!(

@@ -1,7 +1,7 @@
 //! Which variable of a file is drawn: `NAME`, or `NAME[DIMENSION=INDEX,...]` where it has axes beside time and
 //! space, such as the members of an ensemble; without an index the first is taken.
 
-use super::axes::{Axis, axes_of};
+use super::axes::{Axis, axes_of, says_place};
 use super::grid::Role;
 use super::model::{Arrays, Kind, Variable};
 use crate::format::problem::{escape, invalid};
@@ -60,7 +60,7 @@ pub(super) fn choose(arrays: &dyn Arrays, wanted: &Wanted) -> Result<Choice, Pro
     })
 }
 
-/// Variables that a picture can show, those with height first.
+/// Variables that a picture can show, those with height first, and last what only says where others lie.
 fn drawable(arrays: &dyn Arrays) -> Vec<&Variable> {
     let helpers = helpers(arrays);
     let mut ranked: Vec<(usize, &Variable)> = arrays
@@ -73,7 +73,7 @@ fn drawable(arrays: &dyn Arrays) -> Vec<&Variable> {
         .filter(|&(axes, _)| axes >= 2)
         .collect();
     // A stable sort keeps the file's order.
-    ranked.sort_by_key(|&(axes, _)| std::cmp::Reverse(axes));
+    ranked.sort_by_key(|&(axes, variable)| (says_place(variable), std::cmp::Reverse(axes)));
     ranked.into_iter().map(|(_, variable)| variable).collect()
 }
 

@@ -5,6 +5,7 @@ use crate::gpu::Use;
 use crate::offscreen::Error;
 use crate::offscreen::passes::Passes;
 use crate::offscreen::position::{labels, positions};
+use crate::offscreen::reference::normals;
 use crate::picture::{Layer, LayerKind};
 use crate::resolve::reference::projected_value;
 use crate::scene::Scene;
@@ -69,10 +70,12 @@ impl Renderer<'_> {
                 LayerKind::Value if mode == Mode::Iso && beside[1] < 0.0 => f32::NAN,
                 LayerKind::Value if mode == Mode::Iso => beside[0],
                 LayerKind::Value => projected_value(mode, *left).unwrap_or(f32::NAN),
-                LayerKind::Depth | LayerKind::Position | LayerKind::Label => match beside[1] {
-                    depth if depth < 0.0 => f32::NAN,
-                    depth => depth,
-                },
+                LayerKind::Depth | LayerKind::Position | LayerKind::Normal | LayerKind::Label => {
+                    match beside[1] {
+                        depth if depth < 0.0 => f32::NAN,
+                        depth => depth,
+                    }
+                }
                 LayerKind::Transmittance => 1.0 - left[3],
                 LayerKind::Samples => beside[3],
                 // It is refused before.
@@ -81,11 +84,12 @@ impl Renderer<'_> {
             let values: Vec<f32> = left.iter().zip(&beside).map(number).collect();
             let values = match kind {
                 LayerKind::Position => positions(scene, &values),
+                LayerKind::Normal => normals(scene, &values)?,
                 LayerKind::Label => labels(scene, &values),
                 _ => values,
             };
-            Layer { kind, values }
+            Ok(Layer { kind, values })
         };
-        Ok(wanted.iter().map(|&kind| layer(kind)).collect())
+        wanted.iter().map(|&kind| layer(kind)).collect()
     }
 }

@@ -64,6 +64,12 @@ impl Inputs {
         Ok(inputs)
     }
 
+    /// A sentence about what was passed over, where something was.
+    pub fn note(&self) -> Option<String> {
+        let n = self.left_alone;
+        (n > 0).then(|| format!("{n} files and folders that are no volume are left alone"))
+    }
+
     /// The same file under two names is one volume.
     fn add(&mut self, word: String, known: &mut HashSet<PathBuf>) {
         let place = Path::new(&word).canonicalize();
