@@ -19,8 +19,8 @@ use crate::{
     camera::{Camera, PixelBox},
     cli::{
         Error,
-        flags::{Depth, FrameWord, Numbers, SceneFlags},
-        look::{Seen, Use, short, side_words, with_light, with_side},
+        flags::{Depth, FrameWord, SceneFlags},
+        look::{Seen, Use, short, side_words, target_word, with_light, with_side},
         progress::Progress,
         renderer::Device,
     },
@@ -92,7 +92,7 @@ pub fn framed(
     };
     let fitted = visible.unwrap_or_else(|| film.to_box());
     let nearer = plan.scene.camera.zoom.unwrap_or(1.0);
-    let target = Numbers(fitted.target.to_array().map(short));
+    let target = target_word(&fitted);
     let zoom = short(fitted.zoom * nearer);
     let flags = &mut scene.camera;
     flags.frame = None;

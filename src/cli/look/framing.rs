@@ -152,7 +152,7 @@ impl Framing<'_> {
                 (None, false, false) => "the box, because nothing is visible",
             };
             let nearer = self.scene.camera.zoom.unwrap_or(1.0);
-            let target = Numbers(camera.target.to_array().map(short));
+            let target = target_word(&camera);
             let zoom = short(camera.zoom * nearer);
             let flags = &mut scene.camera;
             flags.frame = None;
@@ -193,6 +193,16 @@ impl Framing<'_> {
             .fitted_to_points(&corners, self.extent_pixels, SHARE);
         Ok(View { camera, ..view })
     }
+}
+
+/// The target in six digits each; what rounding left of a 0 is one.
+pub fn target_word(camera: &Camera) -> Numbers<3> {
+    let smallest = 1e-12 * camera.eye.distance(camera.target);
+    let digits = |number: f64| match number.abs() < smallest {
+        true => 0.0,
+        false => short(number),
+    };
+    Numbers(camera.target.to_array().map(digits))
 }
 
 /// Six digits: more than pixels show, and few enough to be read.

@@ -12,7 +12,7 @@ mod light;
 mod prepared;
 mod side;
 
-pub use framing::{Framing, View, short};
+pub use framing::{Framing, View, short, target_word};
 pub use freeze::{Chosen, base_of, ends_of, without_parts};
 pub use light::{Seen, Use, with_light};
 pub use prepared::{Views, prepared};
