@@ -306,6 +306,21 @@ fn the_first_of_several_variables_is_drawn_and_the_others_are_named() {
     assert!(ran.err.contains("--variable takes another"), "{ran:?}");
     let ran = folder.run("render phantom:storm,n=16 --look plain --size 32x24 -o b.png");
     ran.assert_refused(2, &["several variables"]);
+    // The first of this file is a coordinate.
+    let wrf = format!(
+        "{}/tests/fixtures/netcdf/wrf.nc",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    for (name, words) in [("a", ""), ("b", "--variable T"), ("c", "--variable PHB")] {
+        folder
+            .run(&format!(
+                "animate {wrf} {words} --turntable 2 --size 32x24 -o {name}.gif"
+            ))
+            .assert_done();
+    }
+    let [first, named, coordinate] =
+        ["a", "b", "c"].map(|name| fs::read(folder.path(&format!("{name}.gif"))).expect("a film"));
+    assert!(first == named && first != coordinate);
 }
 
 #[test]
