@@ -47,6 +47,7 @@ pub use alike::{Alike, Tolerance};
 pub use automatic::{Kind, automatic};
 pub use boundaries::{JointCounts, boundaries};
 pub use by_meaning::{Choice, Context, LIT_LABEL_OPACITY, automatic_in};
+#[cfg(feature = "cli")]
 pub(crate) use channel::window_of_channel;
 pub use channel::{CHANNEL_COLORS, of_channel, of_colors};
 pub use colormap::{COLORMAP_COLORS, Colormap};
