@@ -27,7 +27,8 @@ use std::{fmt, str::FromStr};
 #[serde(default, deny_unknown_fields)]
 pub struct SectionFlags {
     /// Show a cut through --target, seen from in front: axial (from below), coronal (from anterior), sagittal (from
-    /// the left), or by its normal; --mode is average unless given
+    /// the left), or by its normal; on the Earth axial is a map (from above) and coronal seen from the south; --mode is
+    /// average unless given
     #[arg(long, value_name = "PLANE", allow_hyphen_values = true, help_heading = "Camera",
           conflicts_with_all = ["projection", "fov", "view", "azimuth", "elevation", "eye"])]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -115,7 +116,7 @@ impl SectionFlags {
         }
         let center = subject.bounds.center;
         let target = camera.target.map_or(center, |Numbers(p)| p.into());
-        let normal = plane.normal()?;
+        let normal = plane.normal(subject.is_earth)?;
         let up = camera
             .up
             .map_or_else(|| up_for(normal), |Numbers(v)| v.into());
@@ -167,9 +168,12 @@ impl SectionFlags {
 }
 
 impl Plane {
-    /// The unit vector towards the eye. Radiologists look so that the patient's right is left in the picture.
-    fn normal(self) -> Result<DVec3, Error> {
+    /// The unit vector towards the eye. Radiologists look so that the patient's right is left in the picture; maps of
+    /// the Earth have the east on the right.
+    fn normal(self, is_earth: bool) -> Result<DVec3, Error> {
         match self {
+            Self::Axial if is_earth => Ok(DVec3::Z),
+            Self::Coronal if is_earth => Ok(DVec3::NEG_Y),
             Self::Axial => Ok(DVec3::NEG_Z),
             Self::Coronal => Ok(DVec3::Y),
             Self::Sagittal => Ok(DVec3::NEG_X),
@@ -282,6 +286,25 @@ mod tests {
             (view_height - 100.0 * 2.0 / 3.0).abs() < 1e-9,
             "{view_height}"
         );
+    }
+
+    #[test]
+    fn maps_of_the_earth_have_the_east_on_the_right() {
+        let subject = Subject {
+            is_earth: true,
+            ..subject()
+        };
+        for (plane, up) in [(Plane::Axial, DVec3::Y), (Plane::Coronal, DVec3::Z)] {
+            let section = SectionFlags {
+                section: Some(plane),
+                thickness: None,
+            };
+            let (camera, mut settings) = (CameraFlags::default(), Settings::default());
+            let camera = section.camera(&camera, &subject, [300, 200], &mut settings);
+            let frame = camera.expect("a camera").frame();
+            assert!((frame.right - DVec3::X).length() < 1e-12, "{frame:?}");
+            assert!((frame.up - up).length() < 1e-12, "{frame:?}");
+        }
     }
 
     #[test]
