@@ -22,6 +22,7 @@ mod conformance;
 mod conformance_clamped;
 mod conformance_runs;
 mod convert;
+mod convert_lengths;
 mod convert_refused;
 mod convert_stops;
 mod device;
