@@ -39,6 +39,7 @@ mod look_frame;
 mod manuals;
 mod memory;
 mod messages;
+mod messages_inputs;
 mod mixed;
 mod opacity;
 mod person;
