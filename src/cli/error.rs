@@ -12,7 +12,7 @@
 //! | 101 | a bug of ours (see [`super::bug`]) |
 //! | 130 | interrupted |
 
-use super::signals::INTERRUPTED;
+use super::{flags::PHANTOM, sample_limit, signals::INTERRUPTED, stdin};
 use crate::{
     annotate, gpu, offscreen,
     picture::{OutputError, PictureError},
@@ -75,8 +75,13 @@ pub enum Error {
     #[error(transparent)]
     Device(#[from] gpu::Error),
     /// More than there is, or than is allowed.
-    #[error("{0}")]
-    Limit(String),
+    #[error("{message}")]
+    Limit {
+        /// Of what.
+        message: String,
+        /// How to stay below it.
+        hint: Cow<'static, str>,
+    },
     /// More of something than there may be.
     #[error("{message}")]
     TooMany {
@@ -152,7 +157,10 @@ impl From<offscreen::Error> for Error {
                 error @ (technique::Error::TooManySamples { .. }
                 | technique::Error::LoopsEnd { .. }
                 | technique::Error::SlabsTooLong { .. }),
-            ) => Self::Limit(error.to_string()),
+            ) => Self::Limit {
+                message: error.to_string(),
+                hint: sample_limit::hint(&error),
+            },
             offscreen::Error::Technique(error) => Self::usage(
                 error.to_string(),
                 "docs/matrix.md shows which technique, mode, filter and feature go together",
@@ -236,7 +244,8 @@ impl Error {
             Self::Device(gpu::Error::Limit { .. } | gpu::Error::OutOfMemory { .. }) => 6,
             Self::Device(gpu::Error::Stopped) => INTERRUPTED,
             Self::Device(_) => 5,
-            Self::Limit(_) | Self::TooMany { .. } | Self::Memory(_) | Self::NotInParts { .. } => 6,
+            Self::Limit { .. } | Self::TooMany { .. } | Self::Memory(_) => 6,
+            Self::NotInParts { .. } => 6,
         }
     }
 
@@ -248,10 +257,16 @@ impl Error {
             Self::TooMany { hint, .. } => Some(hint),
             Self::NotBuilt(_) => Some("`stratavox help` lists what is there"),
             Self::Output { hint, .. } => *hint,
-            Self::Read(ReadError { problem, .. }) => match problem {
+            Self::Read(ReadError { path, problem }) => match problem {
                 Problem::UnknownFormat(_) => {
                     Some("a file without a header needs its layout: --raw 256x256x109,i16")
                 }
+                Problem::Size { format: "raw", .. } => Some(
+                    "--raw WxHxD,TYPE says how many voxels there are, and of how many bytes each",
+                ),
+                Problem::Limit { .. } if path.to_string_lossy().starts_with(PHANTOM) => Some(
+                    "a smaller n= makes the phantom smaller, --fit does not; --max-memory 16G allows more",
+                ),
                 Problem::Limit { .. } => {
                     Some("--max-memory 16G allows more, where --untrusted does not forbid it")
                 }
@@ -268,7 +283,7 @@ impl Error {
             Self::Memory(_) => {
                 Some("--fit draws it with fewer voxels; --max-memory 16G sets what may be taken")
             }
-            Self::Limit(_) => Some("a smaller --size or fewer --samples-per-voxel stay below it"),
+            Self::Limit { hint, .. } => Some(hint),
             Self::Device(gpu::Error::Format { .. }) => {
                 Some("--technique raycast needs no blending")
             }
@@ -292,14 +307,14 @@ impl Error {
             Self::Other(_) => return String::new(),
             _ => {}
         }
-        let mut lines = format!("stratavox: {}\n", visible(&self.to_string()));
+        let mut lines = format!("stratavox: {}\n", visible(&stdin::named(&self.to_string())));
         let mut last = self.to_string();
         let mut cause = self.source();
         while let Some(error) = cause {
             let text = error.to_string();
             // A transparent or summarizing error has already said what its cause says.
             if !last.contains(&text) {
-                let _ = writeln!(lines, "  because: {}", visible(&text));
+                let _ = writeln!(lines, "  because: {}", visible(&stdin::named(&text)));
                 last = text;
             }
             cause = error.source();
@@ -389,7 +404,7 @@ mod tests {
             (unreadable(Problem::UnknownFormat(String::new())), 3),
             (unreadable(limit), 6),
             (Error::output("x", &io::Error::other("full")), 4),
-            (Error::Limit(String::new()), 6),
+            (Error::Memory(String::new()), 6),
         ] {
             assert_eq!(error.exit_code(), code, "{error:?}");
         }

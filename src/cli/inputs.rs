@@ -1,7 +1,7 @@
 //! The words of the command line to the volumes that they mean.
 
 use crate::{
-    cli::{Error, flags::InputFlags},
+    cli::{Error, error::visible, flags::InputFlags},
     format::{self, Search},
 };
 use std::{
@@ -16,6 +16,8 @@ pub struct Inputs {
     pub volumes: Vec<String>,
     /// Files in folders that are none.
     pub left_alone: usize,
+    /// Volumes in folders that cannot be named.
+    pub failures: Vec<Error>,
 }
 
 impl Inputs {
@@ -53,21 +55,31 @@ impl Inputs {
             }
             for volume in found.volumes {
                 let Some(text) = volume.to_str() else {
-                    return Err(Error::Input {
+                    inputs.failures.push(Error::Input {
                         path: volume,
-                        problem: "its name is no text".to_owned(),
+                        problem: "its name is not UTF-8".to_owned(),
                     });
+                    continue;
                 };
                 inputs.add(text.to_owned(), &mut known);
             }
         }
-        Ok(inputs)
+        match inputs.volumes.is_empty() && !inputs.failures.is_empty() {
+            true => Err(inputs.failures.swap_remove(0)),
+            false => Ok(inputs),
+        }
     }
 
-    /// A sentence about what was passed over, where something was.
-    pub fn note(&self) -> Option<String> {
+    /// Sentences about what was passed over, where something was.
+    pub fn notes(&self) -> Vec<String> {
         let n = self.left_alone;
-        (n > 0).then(|| format!("{n} files and folders that are no volume are left alone"))
+        let others =
+            (n > 0).then(|| format!("{n} files and folders that are no volume are left alone"));
+        let failures = self
+            .failures
+            .iter()
+            .map(|error| visible(&format!("left out: {error}")));
+        others.into_iter().chain(failures).collect()
     }
 
     /// The same file under two names is one volume.

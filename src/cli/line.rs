@@ -183,7 +183,7 @@ mod tests {
                 |at, item| {
                     assert_eq!(item, 3 * at);
                     if Some(at) == failing {
-                        return Err(Error::Limit(at.to_string()));
+                        return Err(Error::Memory(at.to_string()));
                     }
                     under_way.fetch_sub(1, Ordering::SeqCst);
                     put.push(at);

@@ -36,6 +36,7 @@ mod readable;
 mod reasons;
 mod render;
 mod renderer;
+mod sample_limit;
 mod scene_file;
 mod sheet;
 mod shown;

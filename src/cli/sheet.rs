@@ -97,11 +97,11 @@ impl Sheet {
         let progress = Progress::new(self.progress);
         let mut device = Device::find(self.device.as_deref())?;
         progress.device(&device.name()?);
-        if let Some(note) = inputs.note() {
+        for note in inputs.notes() {
             progress.note(&note);
         }
         let mut places = String::new();
-        let mut first_error = None;
+        let mut first_error = inputs.failures.into_iter().next();
         for (at, scene) in scenes.iter().enumerate() {
             progress.stage("draw", at, scenes.len());
             let words = &volumes[at];

@@ -2,13 +2,17 @@
 
 use super::{Error, output::say_aside};
 use crate::cli::flags::with_causes;
+use std::borrow::Cow;
 use std::io::{self, IsTerminal, Read};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
 use tempfile::NamedTempFile;
 
 /// The standard input in the place of a volume, and the standard output in the place of a picture.
 pub const STANDARD: &str = "-";
+
+/// Where that file lies: nobody gave its name, and no message says it.
+static PLACE: OnceLock<String> = OnceLock::new();
 
 static SPOOLED: Mutex<Option<NamedTempFile>> = Mutex::new(None);
 
@@ -44,8 +48,17 @@ pub fn file(max_bytes: u64) -> Result<PathBuf, Error> {
     }
     say_aside(&format!("read {bytes} bytes from the standard input"));
     let path = file.path().to_owned();
+    let _ = PLACE.set(path.display().to_string());
     *spooled = Some(file);
     Ok(path)
+}
+
+/// A message with the file called by what it holds.
+pub fn named(text: &str) -> Cow<'_, str> {
+    match PLACE.get() {
+        Some(place) => text.replace(place, "the standard input").into(),
+        None => text.into(),
+    }
 }
 
 /// Removes the file, when the program ends.

@@ -24,6 +24,8 @@ pub enum Error {
         wanted: f64,
         /// How many there are turns for.
         limit: f64,
+        /// The samples per voxel that give so many; `None` where samples lie on slices, whose number is that of voxels.
+        samples_per_voxel: Option<f64>,
     },
     /// Compositing classifies every sample.
     #[error("compositing needs a transfer function")]

@@ -141,6 +141,13 @@ impl View<'_> {
         if wanted <= limit {
             return Ok(());
         }
-        Err(Error::LoopsEnd { wanted, limit })
+        let is_by_voxels = self.settings.technique == Technique::Slices2d;
+        let samples_per_voxel =
+            (!is_by_voxels).then(|| self.settings.samples_per_voxel * limit / wanted);
+        Err(Error::LoopsEnd {
+            wanted,
+            limit,
+            samples_per_voxel,
+        })
     }
 }

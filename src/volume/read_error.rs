@@ -50,7 +50,7 @@ pub enum Problem {
     },
     /// Fewer (or more) bytes than promised.
     #[error(
-        "{format} data: the header promises {wanted_bytes} bytes of voxels, found {found_bytes}"
+        "{format} data: {} promises {wanted_bytes} bytes of voxels, found {found_bytes}", promiser(.format)
     )]
     Size {
         /// The kind of file.
@@ -106,4 +106,12 @@ pub enum Problem {
         /// What is allowed.
         limit_bytes: u64,
     },
+}
+
+/// Who says how many bytes there are: raw voxels have no header.
+fn promiser(format: &str) -> &'static str {
+    match format {
+        "raw" => "the layout that was given",
+        _ => "the header",
+    }
 }

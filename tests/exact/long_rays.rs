@@ -91,7 +91,7 @@ fn a_ray_is_as_long_as_its_twin_up_to_the_limit_of_the_driver() {
         // 400 000 samples are over the limit of every picture on a driver that has one.
         let error = draw(1000.0).err();
         let at_most = match error {
-            Some(Error::Technique(technique::Error::LoopsEnd { wanted, limit })) => {
+            Some(Error::Technique(technique::Error::LoopsEnd { wanted, limit, .. })) => {
                 refused += 1;
                 assert!(wanted > 399_999.0, "{what}: {wanted}");
                 0.995 * limit / f64::from(LENGTH)

@@ -327,7 +327,10 @@ fn a_wrong_word_is_answered_with_the_right_ones() {
         ("phantom:head,n=-3", "`n`: wanted"),
         ("phantom:head,n=1e3", "`n`: wanted"),
         ("phantom:head,type=i16", "`type`: wanted one of"),
-        ("phantom:head,edge=1", "wanted one of n, type, found `edge`"),
+        (
+            "phantom:head,edge=1",
+            "field `edge`: wanted one of n, type, found `edge`",
+        ),
         ("phantom:head,n", "wanted words such as n=128, found `n`"),
         ("phantom:head,n=8,n=9", "the word once"),
         (

@@ -68,8 +68,10 @@ pub fn classified(shown: Shown, space: ColorSpace) -> Result<Shown, Error> {
     let length = function
         .reference_length
         .unwrap_or_else(|| volume.grid().smallest_spacing());
-    let made = preclassified(volume, function, length, space)
-        .map_err(|problem| Error::Limit(problem.to_string()))?;
+    let made = preclassified(volume, function, length, space).map_err(|problem| Error::Limit {
+        message: problem.to_string(),
+        hint: "without --preclassified a volume takes less".into(),
+    })?;
     let [red, green, blue, depth] = made;
     Ok(Shown {
         volume: Arc::new(red),

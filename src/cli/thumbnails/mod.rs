@@ -120,7 +120,8 @@ impl Thumbnails {
         scene.annotate.check()?;
         shown::check(&scene, &settings)?;
         let inputs = Inputs::find(&self.inputs, &scene.input, self.recursive)?;
-        let left_alone = inputs.note();
+        let passed_over = inputs.notes();
+        let unnamed = inputs.failures.into_iter().next();
         let volumes = inputs.volumes.into_iter().flat_map(|input| {
             let parts = parts::of_input(&input, &scene.input, variables).into_iter();
             parts.map(move |part| (input.clone(), part))
@@ -140,7 +141,7 @@ impl Thumbnails {
         let wanted: Vec<Wanted> = wanted.collect();
 
         let progress = Progress::new(self.progress);
-        if let Some(note) = left_alone {
+        for note in passed_over {
             progress.note(&note);
         }
         let items: Vec<Item> = volumes
@@ -183,7 +184,7 @@ impl Thumbnails {
         if self.progress != ProgressWord::None {
             say_aside(&index.summary());
         }
-        first_error.map_or(Ok(()), Err)
+        unnamed.or(first_error).map_or(Ok(()), Err)
     }
 
     /// Every side to stand on; one that no word of --views names where none does.

@@ -260,6 +260,7 @@ pub(super) fn length_metres(fields: &Fields) -> Option<f64> {
     let mut units = units.split_ascii_whitespace();
     let first = units.next()?;
     let metres = match first.trim_matches('"') {
+        "km" => 1e3,
         "m" => 1.0,
         "mm" => 1e-3,
         "um" | "\u{b5}m" | "\u{3bc}m" | "microns" => 1e-6,

@@ -19,6 +19,8 @@ pub(super) struct Layout {
     /// How a stored number becomes one of the file.
     pub map: Map,
     pub world_from_voxel: DAffine3,
+    /// What the file calls the unit of its lengths, where that is not the millimetre.
+    pub length_unit: Option<&'static str>,
     pub meaning: Meaning,
     pub unit: Option<String>,
     pub is_labels: bool,
@@ -41,6 +43,7 @@ impl Layout {
         };
         let (number, map, rescale) = numbers(header, options, &mut notes);
         let corner = DVec3::from_array(selection.region.min.map(f64::from));
+        let (length_unit, scale) = lengths(header, options.format, &mut notes);
         let layout = Self {
             dims: selection.region.dims(),
             times: selection.times.end.saturating_sub(selection.times.start),
@@ -55,7 +58,10 @@ impl Layout {
                 clippy::arithmetic_side_effects,
                 reason = "a product of matrices of f64: nothing wraps or panics"
             )]
-            world_from_voxel: header.world_from_voxel * DAffine3::from_translation(corner),
+            world_from_voxel: DAffine3::from_scale(DVec3::splat(scale))
+                * header.world_from_voxel
+                * DAffine3::from_translation(corner),
+            length_unit,
             meaning,
             unit: header.unit.clone(),
             is_labels: header.is_labels,
@@ -115,6 +121,12 @@ impl Layout {
             self.notes
                 .push(format!("the file does not keep {}", lost.join(", ")));
         }
+        if !header.is_patient && (is_nifti || options.format == VolumeFormat::Nrrd) {
+            self.notes.push(
+                "the axes are written as those of a patient, x right, y anterior, z superior: the input does not say so"
+                    .to_owned(),
+            );
+        }
         if let Some(fill) = header.fill {
             self.notes.push(match self.number.is_float() {
                 true => "voxels without data are written as NaN".to_owned(),
@@ -123,6 +135,37 @@ impl Layout {
             });
         }
     }
+}
+
+/// Units that NRRD files name, in metres.
+const NRRD_UNITS: [(&str, f64); 4] = [("nm", 1e-9), ("um", 1e-6), ("m", 1.0), ("km", 1e3)];
+
+/// The unit of lengths that the file names, and what multiplies lengths to be in it, or else in millimetres: readers of
+/// MetaImage and many of NIfTI know no other unit.
+fn lengths(
+    header: &Header,
+    format: VolumeFormat,
+    notes: &mut Vec<String>,
+) -> (Option<&'static str>, f64) {
+    let is_metres = |unit: f64, metres: f64| (metres / unit - 1.0).abs() < 1e-9;
+    let keeps_numbers = matches!(format, VolumeFormat::Bricks | VolumeFormat::Npy);
+    let Some(metres) = header
+        .length_metres
+        .filter(|&metres| !keeps_numbers && !is_metres(1e-3, metres))
+    else {
+        return (None, 1.0);
+    };
+    let named = NRRD_UNITS
+        .iter()
+        .find(|(_, unit)| format == VolumeFormat::Nrrd && is_metres(*unit, metres));
+    if let Some((name, _)) = named {
+        return (Some(name), 1.0);
+    }
+    let scale = metres / 1e-3;
+    notes.push(format!(
+        "lengths are written in millimetres, {scale} for each unit of the input"
+    ));
+    (None, scale)
 }
 
 /// The type of the file, the way to it, and what the file says of its numbers.

@@ -60,6 +60,9 @@ fn header(layout: &Layout, compress: bool) -> String {
         if compress { "gzip" } else { "raw" },
         vector(first),
     );
+    if let Some(unit) = layout.length_unit {
+        let _ = writeln!(text, "space units: \"{unit}\" \"{unit}\" \"{unit}\"");
+    }
     let unit = match layout.is_hounsfield {
         true => Some("HU"),
         false => layout.unit.as_deref(),

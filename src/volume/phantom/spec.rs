@@ -98,7 +98,7 @@ impl<'a> Spec<'a> {
     pub fn finish(self, known: &[&str]) -> Result<(), Problem> {
         match self.words.first() {
             None => Ok(()),
-            Some((key, _)) => Err(invalid(self.name, one_of(known), key)),
+            Some((key, _)) => Err(invalid(key, one_of(known), key)),
         }
     }
 
