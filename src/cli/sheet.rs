@@ -18,7 +18,7 @@ use crate::figure::{Anchor, Color, Figure, Mark, SCALE, png};
 use crate::look::BACKGROUND;
 use crate::picture::{Picture, PictureFormat};
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Draw many volumes into one picture, a small one each
 #[derive(Args, Debug)]
@@ -70,6 +70,7 @@ impl Sheet {
     /// Draws one after the other and writes the sheet. An input that cannot be drawn leaves its place empty,
     /// and the first such error is that of the whole.
     pub fn run(self, gate: &Gate) -> Result<(), Error> {
+        check_name(&self.output)?;
         self.annotate.check()?;
         let flags = InputFlags {
             untrusted: self.untrusted,
@@ -125,6 +126,19 @@ impl Sheet {
         say(&places)?;
         first_error.map_or(Ok(()), Err)
     }
+}
+
+/// A sheet is written as PNG: another ending would be no name for it.
+fn check_name(path: &Path) -> Result<(), Error> {
+    let problem = match PictureFormat::of_path(path) {
+        Some(PictureFormat::Png) => return Ok(()),
+        Some(_) => "a sheet is a PNG",
+        None => "the ending says no kind of picture",
+    };
+    Err(Error::usage(
+        format!("-o {}: {problem}", path.display()),
+        "end the name in .png",
+    ))
 }
 
 /// The last part of a path, with the words behind it.

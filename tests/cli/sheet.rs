@@ -61,6 +61,20 @@ fn a_sheet_has_a_place_for_each_input_and_says_which_could_not_be_drawn() {
 }
 
 #[test]
+fn a_sheet_that_is_not_named_as_a_png_is_refused_before_anything_is_read() {
+    let folder = Folder::new();
+    for (name, problem) in [
+        ("x.jpg", "the ending says no kind of picture"),
+        ("x.exr", "a sheet is a PNG"),
+    ] {
+        let ran = folder.run(&format!("sheet missing.nrrd -o {name}"));
+        ran.assert_refused(2, &[&format!("-o {name}: {problem}"), ".png"]);
+        assert!(!ran.err.contains("missing.nrrd"), "{ran:?}");
+    }
+    assert!(folder.names().is_empty());
+}
+
+#[test]
 fn a_folder_is_the_volumes_in_it_in_the_order_of_their_names() {
     let folder = Folder::new();
     fs::create_dir_all(folder.path("scans/deep")).expect("folders");
