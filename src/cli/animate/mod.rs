@@ -32,12 +32,11 @@ use super::{
     Error,
     annotation::annotation,
     exaggerate,
-    flags::{Depth, SceneFlags, context},
+    flags::{Depth, PictureFlags, SceneFlags, context},
     load,
     memory::{DeviceRoom, Held, fitting},
     output::{self, write_whole},
     progress::{Progress, ProgressWord},
-    render::bit_depth,
     renderer::Device,
     scene_file,
     shown::{self, Shown, wants_stream},
@@ -114,9 +113,6 @@ pub struct Animate {
     /// Replace files that exist
     #[arg(long, help_heading = "Run")]
     force: bool,
-    /// Bits of a channel of a PNG or APNG
-    #[arg(long, value_name = "8|16", default_value = "8", value_parser = bit_depth, help_heading = "Picture")]
-    bit_depth: BitDepth,
     /// No empty-space skipping: the picture is the same without
     #[arg(long)]
     no_skip: bool,
@@ -311,7 +307,7 @@ impl Animate {
         scene.annotate.check()?;
         let target = Target::new(&self.output)?;
         let layers = scene.picture.layers();
-        self.check_target(&target, &layers)?;
+        self.check_target(&target, &scene.picture)?;
         let keyframes = self
             .keyframes
             .as_deref()
@@ -334,7 +330,7 @@ impl Animate {
         }
         let depth = match &target {
             Target::Frames(frames) if frames.format != PictureFormat::Png => Depth::More,
-            _ if self.bit_depth == BitDepth::Sixteen => Depth::More,
+            _ if scene.picture.bit_depth() == BitDepth::Sixteen => Depth::More,
             _ => Depth::Eight,
         };
         let limits = shown::limits(&scene);
@@ -362,20 +358,20 @@ impl Animate {
     }
 
     /// What a kind of file has no room for.
-    fn check_target(&self, target: &Target, layers: &[LayerKind]) -> Result<(), Error> {
+    fn check_target(&self, target: &Target, picture: &PictureFlags) -> Result<(), Error> {
         let (has_layers, has_depth) = match target {
             Target::Frames(frames) => (frames.format != PictureFormat::Png, true),
             Target::Film { format, .. } => (false, format.is_as_good_as_png()),
             Target::Stream => (false, false),
         };
         let name = self.output.display();
-        if !has_layers && !layers.is_empty() {
+        if !has_layers && !picture.layers().is_empty() {
             let message = format!("-o {name}: no room for the layers of --aov");
             return Err(Error::usage(message, "write frames/%04d.exr or .npy"));
         }
-        if !has_depth && self.bit_depth == BitDepth::Sixteen {
+        if !has_depth && picture.bit_depth() == BitDepth::Sixteen {
             let message = format!("-o {name}: --bit-depth 16 is for PNG and APNG");
-            return Err(Error::usage(message, "leave out --bit-depth"));
+            return Err(Error::usage(message, "--bit-depth 8"));
         }
         match target {
             Target::Film {
@@ -400,7 +396,7 @@ impl Animate {
         if matches!(plan.target, Target::Film { .. }) && self.force && !self.resume {
             store::clear(&frames)?;
         }
-        let film = identity::of_film(plan, &frames, self.bit_depth)?;
+        let film = identity::of_film(plan, &frames)?;
         let annotation = plan.scene.annotate.annotate.is_some();
         let annotation = annotation.then_some(LayerKind::Annotation);
         let layers: Vec<_> = plan.layers.iter().copied().chain(annotation).collect();
@@ -411,7 +407,7 @@ impl Animate {
             inputs: &plan.inputs,
         };
         let options = WriteOptions {
-            bit_depth: self.bit_depth,
+            bit_depth: plan.scene.picture.bit_depth(),
             force: self.force,
         };
         Store::new(frames, plan.shots.len() as u32, film, wishes, options, gate).map(Some)
