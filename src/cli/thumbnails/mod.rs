@@ -262,6 +262,13 @@ impl Thumbnails {
                 self.force || self.resume,
             )?;
         }
+        if self.output.is_file() {
+            return Err(Error::Output {
+                path: self.output.clone(),
+                problem: "it is a file, and pictures are written into a folder".to_owned(),
+                hint: Some("name a folder: -o pictures"),
+            });
+        }
         if !self.output.is_dir() {
             output::check(std::slice::from_ref(&self.output), &[], false)?;
             return Ok(vec![false; pictures.len()]);
