@@ -95,10 +95,11 @@ pub struct Animate {
     fps: Rate,
     #[command(flatten)]
     scene: SceneFlags,
-    /// Flags from a file; those of the command line win
+    /// Flags from a file; those of the command line win. A scene keeps the pictures, not the motion: --turntable,
+    /// --times, --keyframes and --fps are said again
     #[arg(long = "scene", value_name = "FILE.json", help_heading = "Run")]
     scene_file: Option<PathBuf>,
-    /// Write all flags of the pictures into a file
+    /// Write all flags of the pictures into a file, not those of the motion
     #[arg(long, value_name = "FILE.json", help_heading = "Run")]
     save_scene: Option<PathBuf>,
     /// Write what the work took into a file
@@ -317,6 +318,12 @@ impl Animate {
             self.turntable = Some(TURN_FRAMES);
             progress.note(&format!(
                 "a turntable of {TURN_FRAMES} frames; --turntable N, --times and --keyframes FILE make other films"
+            ));
+        }
+        if is_still && !scene.is_auto() && self.scene_file.is_some() {
+            return Err(Error::usage(
+                "nothing says what changes from frame to frame: a scene keeps the pictures, not the motion",
+                "say it again: --turntable 120, --times or --keyframes FILE, with its --fps",
             ));
         }
         let film = Film {
