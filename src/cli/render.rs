@@ -71,24 +71,12 @@ pub struct Render {
     /// Replace files that exist
     #[arg(long, help_heading = "Run")]
     force: bool,
-    /// Bits of a channel of a PNG
-    #[arg(long, value_name = "8|16", default_value = "8", value_parser = bit_depth, help_heading = "Picture")]
-    bit_depth: BitDepth,
     /// Draw from the coarsest resolution of the file to the finest, each written as soon as it is drawn
     #[arg(long, conflicts_with_all = ["level", "fit"], help_heading = "Run")]
     refine: bool,
     /// No empty-space skipping: the picture is the same without
     #[arg(long)]
     no_skip: bool,
-}
-
-/// Reads the word of `--bit-depth`.
-pub fn bit_depth(word: &str) -> Result<BitDepth, String> {
-    match word {
-        "8" => Ok(BitDepth::Eight),
-        "16" => Ok(BitDepth::Sixteen),
-        _ => Err("wanted 8 or 16".to_owned()),
-    }
 }
 
 impl Render {
@@ -150,7 +138,7 @@ impl Render {
                 "write a .exr or a .npy",
             ));
         }
-        let depth = match (format, self.bit_depth) {
+        let depth = match (format, scene.picture.bit_depth()) {
             (PictureFormat::Png, BitDepth::Eight) => Depth::Eight,
             _ => Depth::More,
         };
@@ -245,7 +233,7 @@ impl Render {
 
         progress.stage("write", 0, 1);
         let options = WriteOptions {
-            bit_depth: self.bit_depth,
+            bit_depth: scene.picture.bit_depth(),
             force: self.force,
         };
         if is_stdout {

@@ -415,6 +415,19 @@ fn has_labels(job: &Job) -> bool {
     }
 }
 
+/// What to leave, so that one number a voxel is seen alone.
+fn one_number(beside: &Beside) -> &'static str {
+    match beside {
+        Beside::Channels(others) if others.iter().any(|one| one.role == Role::Labels) => {
+            match others.len() {
+                1 => "one number a voxel: no --labels",
+                _ => "one number a voxel: --component 0 and no --labels",
+            }
+        }
+        _ => "one number a voxel: --component 0",
+    }
+}
+
 /// Blending keeps no depth, a projection no transmittance, and a composite has no one value.
 fn check_layers(job: &Job) -> Result<(), Error> {
     let Settings {
@@ -431,7 +444,7 @@ fn check_layers(job: &Job) -> Result<(), Error> {
             | LayerKind::Label
                 if is_sum =>
             {
-                "one number a voxel: --component 0"
+                one_number(&job.beside)
             }
             LayerKind::Value if !mode.has_value() => "a mode with one value, such as --mode mip",
             LayerKind::Transmittance if mode.is_projection() => "--mode composite",
@@ -444,9 +457,7 @@ fn check_layers(job: &Job) -> Result<(), Error> {
                 "labels: --labels FILE, or a volume of labels with --filter nearest"
             }
             LayerKind::Normal if job.stream.is_some() => "the voxels in memory: no --stream",
-            LayerKind::Normal if !is_of_one && mode != Mode::Iso => {
-                "one number a voxel: --component 0"
-            }
+            LayerKind::Normal if !is_of_one && mode != Mode::Iso => one_number(&job.beside),
             LayerKind::Position | LayerKind::Normal | LayerKind::Label if !mode.has_depth() => {
                 "a mode with a depth, such as --mode mip"
             }

@@ -161,7 +161,7 @@ mod tests {
         --lattice planes --order front-to-back --samples-per-voxel 0.3 --aa 4 --color-space display \
         --crop 0,1,0,1,0.5,1 --clip 1,0,0,5 --clip -1,0,0,-9.1 --conformance --preset mri --colormap vik,reverse --window -1,2 \
         --projection orthographic --fov 31.7 --zoom 1.1 --azimuth 12.3 --elevation -4 --roll 7 \
-        --target 1,2,3 --up 0,0,1 --view-height 77 --exaggerate 3 --size 64x48 --background 0,0.1,1 --aov value,depth \
+        --target 1,2,3 --up 0,0,1 --view-height 77 --exaggerate 3 --size 64x48 --background 0,0.1,1 --aov value,depth --bit-depth 16 \
         --device cpu --component 1 --raw 2x2x2,u8 --variable T --channel 0,color=red,window=0:3 --channel 2 \
         --lmip-threshold 5 --mida-gamma -0.5 --attenuation 3 --depth-cue 0.4 --exact-maximum --iso -3,4.5 \
         --iso-color red,0:0.5:1 --iso-opacity 0.3,1 --labels l.nrrd --opacity-variable q --opacity-component 2 --opacity-from o.nrrd --opacity-window -1,2 --label-tf l.txt --label-show 1,3-5";

@@ -18,7 +18,7 @@ use crate::figure::{Anchor, Color, Figure, Mark, SCALE, png};
 use crate::look::BACKGROUND;
 use crate::picture::{Picture, PictureFormat};
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Draw many volumes into one picture, a small one each
 #[derive(Args, Debug)]
@@ -68,8 +68,9 @@ pub struct Sheet {
 
 impl Sheet {
     /// Draws one after the other and writes the sheet. An input that cannot be drawn leaves its place empty,
-    /// and the first such error is that of the whole.
+    /// and the first such error is that of the whole. Where none can be drawn there is no sheet.
     pub fn run(self, gate: &Gate) -> Result<(), Error> {
+        check_name(&self.output)?;
         self.annotate.check()?;
         let flags = InputFlags {
             untrusted: self.untrusted,
@@ -106,25 +107,45 @@ impl Sheet {
             progress.stage("draw", at, scenes.len());
             let words = &volumes[at];
             sheet.name(at as u32, short_name(words));
-            match draw(scene, self.tile.0, &mut device, &self.device, &progress) {
-                Ok((picture, notes)) => {
+            let of_one = Progress::of_part();
+            let drawn = draw(scene, self.tile.0, &mut device, &self.device, &of_one);
+            // Of many volumes a note says which it is of.
+            for note in of_one.into_notes() {
+                progress.note(&format!("{words}: {note}"));
+            }
+            match drawn {
+                Ok(picture) => {
                     sheet.put(at as u32, &picture);
-                    let notes = notes.iter().map(|note| format!("{words}: {note}"));
-                    notes.for_each(|note| progress.note(&note));
+                    let [row, column] = sheet.place(at as u32).map(|n| n + 1);
+                    places += &format!("{row} {column} {}\n", visible(words));
                 }
                 Err(error) => {
                     progress.note(&format!("{words} is left out: {error}"));
                     first_error.get_or_insert(error);
                 }
             }
-            let [row, column] = sheet.place(at as u32).map(|n| n + 1);
-            places += &format!("{row} {column} {}\n", visible(words));
+        }
+        if places.is_empty() {
+            return first_error.map_or(Ok(()), Err);
         }
         progress.stage("write", 0, 1);
         output::write_whole(&self.output, &png(&sheet.figure), self.force, gate)?;
         say(&places)?;
         first_error.map_or(Ok(()), Err)
     }
+}
+
+/// A sheet is written as PNG: another ending would be no name for it.
+fn check_name(path: &Path) -> Result<(), Error> {
+    let problem = match PictureFormat::of_path(path) {
+        Some(PictureFormat::Png) => return Ok(()),
+        Some(_) => "a sheet is a PNG",
+        None => "the ending says no kind of picture",
+    };
+    Err(Error::usage(
+        format!("-o {}: {problem}", path.display()),
+        "end the name in .png",
+    ))
 }
 
 /// The last part of a path, with the words behind it.
@@ -163,7 +184,7 @@ fn draw(
     device: &mut Device,
     device_word: &Option<String>,
     progress: &Progress,
-) -> Result<(Picture, Vec<String>), Error> {
+) -> Result<Picture, Error> {
     let settings = scene.settings(Depth::Eight)?;
     let scene = &mut scene.clone();
     let shown = Shown::read(scene, &settings, device, progress)?;
@@ -201,7 +222,8 @@ fn draw(
             };
             annotation.put(&mut picture, behind.as_deref(), &seen, PictureFormat::Png)?;
         }
-        Ok(((picture, view.notes.clone()), renderer.into_device()))
+        view.notes.iter().for_each(|note| progress.note(note));
+        Ok((picture, renderer.into_device()))
     });
     match drawn {
         Ok((drawn, free)) => {

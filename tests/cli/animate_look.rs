@@ -231,6 +231,7 @@ fn a_scene_of_a_film_keeps_all_that_was_chosen() {
         ("cells", "phantom:cells,n=16", "--turntable 3"),
         ("times", storm, "--times"),
         ("mips", &format!("{storm} --mode mip"), "--times"),
+        ("deep", "head.nrrd --bit-depth 16", "--turntable 3"),
     ] {
         let film = format!("{motion} -o {name}-%d.png");
         folder
@@ -264,6 +265,13 @@ fn a_scene_of_a_film_keeps_all_that_was_chosen() {
             );
         }
     }
+    // A scene has the pictures, not what moves.
+    folder
+        .run("animate --scene head.json -o none-%d.png")
+        .assert_refused(
+            2,
+            &["not the motion", "--turntable", "--keyframes", "--fps"],
+        );
     // Frames that are there already have a scene too.
     folder
         .run(&format!(

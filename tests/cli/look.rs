@@ -125,6 +125,7 @@ fn a_scene_keeps_all_that_was_chosen() {
         ("names", "names.nrrd --label-hide 2"),
         ("classified", "head.nrrd --preclassified"),
         ("mida", "head.nrrd --mode mida --window auto"),
+        ("deep", "head.nrrd --bit-depth 16"),
         (
             "mip-auto",
             "head.nrrd --mode mip --window auto --colormap viridis",
@@ -151,6 +152,7 @@ fn a_scene_keeps_all_that_was_chosen() {
             "iso" => &["iso_color"],
             "preset" | "labels" => &["preset"],
             "mip-auto" => &["window", "viridis"],
+            "deep" => &["transfer_function", "\"bit_depth\": 16"],
             _ => &["transfer_function"],
         };
         for word in words {

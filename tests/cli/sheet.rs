@@ -55,9 +55,49 @@ fn a_sheet_has_a_place_for_each_input_and_says_which_could_not_be_drawn() {
 
     let ran = folder.run("sheet phantom:fog,n=8 missing.nrrd -o b.png --tile 16x16");
     ran.assert_refused(3, &["missing.nrrd is left out"]);
+    assert_eq!(ran.out, "1 1 phantom:fog,n=8\n");
     assert_begins(&folder.path("b.png"), b"\x89PNG");
     let ran = folder.run("sheet phantom:fog,n=8 -o a.png");
     ran.assert_refused(4, &["a.png", "--force"]);
+}
+
+#[test]
+fn a_sheet_that_is_not_named_as_a_png_is_refused_before_anything_is_read() {
+    let folder = Folder::new();
+    for (name, problem) in [
+        ("x.jpg", "the ending says no kind of picture"),
+        ("x.exr", "a sheet is a PNG"),
+    ] {
+        let ran = folder.run(&format!("sheet missing.nrrd -o {name}"));
+        ran.assert_refused(2, &[&format!("-o {name}: {problem}"), ".png"]);
+        assert!(!ran.err.contains("missing.nrrd"), "{ran:?}");
+    }
+    assert!(folder.names().is_empty());
+}
+
+#[test]
+fn a_sheet_of_nothing_is_not_written() {
+    let folder = Folder::new();
+    let ran = folder.run("sheet missing.nrrd gone.nrrd -o s.png --tile 16x12");
+    ran.assert_refused(3, &["missing.nrrd is left out", "gone.nrrd is left out"]);
+    assert_eq!(ran.out, "");
+    assert!(folder.names().is_empty(), "{:?}", folder.names());
+}
+
+#[test]
+fn each_note_names_its_volume() {
+    let folder = Folder::new();
+    let words = "sheet phantom:fog,n=8 phantom:storm,n=8 -o s.png --tile 16x12 --device reference";
+    let ran = folder.run(words);
+    ran.assert_done();
+    let notes = ran.err.lines();
+    let mut notes = notes.filter(|note| note.contains("is taken") || note.contains("is drawn"));
+    let first = notes.next().expect("a note on the times or variables");
+    assert!(first.contains("phantom:storm,n=8: "), "{ran:?}");
+    assert!(
+        notes.all(|note| note.contains("phantom:storm,n=8: ")),
+        "{ran:?}"
+    );
 }
 
 #[test]

@@ -312,6 +312,13 @@ fn pictures_that_are_there_are_kept_unless_forced() {
     );
     folder.run(&format!("{words} --force")).assert_done();
     assert!(pictures(&folder.path("out")) == first);
+    // No force puts a folder in the place of a file.
+    let ran = folder.run(&format!("thumbnails a.nrrd -o a.nrrd --force {SMALL}"));
+    ran.assert_refused(
+        4,
+        &["a.nrrd", "it is a file", "into a folder", "-o pictures"],
+    );
+    assert!(!ran.err.contains("--force"), "{ran:?}");
     // Never over what is read.
     fs::create_dir(folder.path("own")).expect("a folder");
     folder.file("own/b.png", nrrd(4, 3));

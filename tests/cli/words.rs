@@ -136,13 +136,15 @@ fn an_unknown_flag_ends_in_a_hint_that_names_the_verb() {
 #[test]
 fn normals_are_refused_by_name_where_there_is_no_ray_and_no_one_volume() {
     let folder = Folder::new();
+    folder.file("v.nrrd", crate::thumbnails::nrrd(4, 0));
     for (words, named) in [
         (
             "phantom:fog,n=8 --technique slices-3d",
             "--technique raycast",
         ),
         ("phantom:fog,n=8 --mode average", "a mode with a depth"),
-        ("phantom:cells,n=8", "one number a voxel"),
+        ("phantom:cells,n=8", "one number a voxel: --component 0"),
+        ("v.nrrd --labels v.nrrd", "one number a voxel: no --labels"),
         ("phantom:fog,n=8 --stream", "no --stream"),
     ] {
         let ran = folder.run(&format!("render {words} --aov normal --size 8x8 -o a.npy"));

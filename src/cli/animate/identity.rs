@@ -11,8 +11,12 @@ use crate::{
 use serde_json::{Value, json};
 
 /// Every word that decides what a frame shows, and what is known of the input without reading it.
-pub fn of_film(plan: &Plan, frames: &Frames, depth: BitDepth) -> Result<Value, Error> {
-    let scene = scene_file::text(&plan.scene, &frames.path(0));
+pub fn of_film(plan: &Plan, frames: &Frames) -> Result<Value, Error> {
+    let mut scene = plan.scene.clone();
+    let depth = scene.picture.bit_depth();
+    // 8 bits are the same film whether a word says them or none does: `bits` below has them.
+    scene.picture.bit_depth = None;
+    let scene = scene_file::text(&scene, &frames.path(0));
     let scene: Value = serde_json::from_str(&scene).expect("what we have just written as JSON");
     let input = stamp_of(plan.scene.input.file())?;
     let [labels, label_names] = plan.scene.labels.files().map(stamp_of);

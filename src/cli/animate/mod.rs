@@ -32,12 +32,11 @@ use super::{
     Error,
     annotation::annotation,
     exaggerate,
-    flags::{Depth, SceneFlags, context},
+    flags::{Depth, PictureFlags, SceneFlags, context},
     load,
     memory::{DeviceRoom, Held, fitting},
     output::{self, write_whole},
     progress::{Progress, ProgressWord},
-    render::bit_depth,
     renderer::Device,
     scene_file,
     shown::{self, Shown, wants_stream},
@@ -96,10 +95,11 @@ pub struct Animate {
     fps: Rate,
     #[command(flatten)]
     scene: SceneFlags,
-    /// Flags from a file; those of the command line win
+    /// Flags from a file; those of the command line win. A scene keeps the pictures, not the motion: --turntable,
+    /// --times, --keyframes and --fps are said again
     #[arg(long = "scene", value_name = "FILE.json", help_heading = "Run")]
     scene_file: Option<PathBuf>,
-    /// Write all flags of the pictures into a file
+    /// Write all flags of the pictures into a file, not those of the motion
     #[arg(long, value_name = "FILE.json", help_heading = "Run")]
     save_scene: Option<PathBuf>,
     /// Write what the work took into a file
@@ -114,9 +114,6 @@ pub struct Animate {
     /// Replace files that exist
     #[arg(long, help_heading = "Run")]
     force: bool,
-    /// Bits of a channel of a PNG or APNG
-    #[arg(long, value_name = "8|16", default_value = "8", value_parser = bit_depth, help_heading = "Picture")]
-    bit_depth: BitDepth,
     /// No empty-space skipping: the picture is the same without
     #[arg(long)]
     no_skip: bool,
@@ -311,7 +308,7 @@ impl Animate {
         scene.annotate.check()?;
         let target = Target::new(&self.output)?;
         let layers = scene.picture.layers();
-        self.check_target(&target, &layers)?;
+        self.check_target(&target, &scene.picture)?;
         let keyframes = self
             .keyframes
             .as_deref()
@@ -321,6 +318,12 @@ impl Animate {
             self.turntable = Some(TURN_FRAMES);
             progress.note(&format!(
                 "a turntable of {TURN_FRAMES} frames; --turntable N, --times and --keyframes FILE make other films"
+            ));
+        }
+        if is_still && !scene.is_auto() && self.scene_file.is_some() {
+            return Err(Error::usage(
+                "nothing says what changes from frame to frame: a scene keeps the pictures, not the motion",
+                "say it again: --turntable 120, --times or --keyframes FILE, with its --fps",
             ));
         }
         let film = Film {
@@ -334,7 +337,7 @@ impl Animate {
         }
         let depth = match &target {
             Target::Frames(frames) if frames.format != PictureFormat::Png => Depth::More,
-            _ if self.bit_depth == BitDepth::Sixteen => Depth::More,
+            _ if scene.picture.bit_depth() == BitDepth::Sixteen => Depth::More,
             _ => Depth::Eight,
         };
         let limits = shown::limits(&scene);
@@ -362,20 +365,20 @@ impl Animate {
     }
 
     /// What a kind of file has no room for.
-    fn check_target(&self, target: &Target, layers: &[LayerKind]) -> Result<(), Error> {
+    fn check_target(&self, target: &Target, picture: &PictureFlags) -> Result<(), Error> {
         let (has_layers, has_depth) = match target {
             Target::Frames(frames) => (frames.format != PictureFormat::Png, true),
             Target::Film { format, .. } => (false, format.is_as_good_as_png()),
             Target::Stream => (false, false),
         };
         let name = self.output.display();
-        if !has_layers && !layers.is_empty() {
+        if !has_layers && !picture.layers().is_empty() {
             let message = format!("-o {name}: no room for the layers of --aov");
             return Err(Error::usage(message, "write frames/%04d.exr or .npy"));
         }
-        if !has_depth && self.bit_depth == BitDepth::Sixteen {
+        if !has_depth && picture.bit_depth() == BitDepth::Sixteen {
             let message = format!("-o {name}: --bit-depth 16 is for PNG and APNG");
-            return Err(Error::usage(message, "leave out --bit-depth"));
+            return Err(Error::usage(message, "--bit-depth 8"));
         }
         match target {
             Target::Film {
@@ -400,7 +403,7 @@ impl Animate {
         if matches!(plan.target, Target::Film { .. }) && self.force && !self.resume {
             store::clear(&frames)?;
         }
-        let film = identity::of_film(plan, &frames, self.bit_depth)?;
+        let film = identity::of_film(plan, &frames)?;
         let annotation = plan.scene.annotate.annotate.is_some();
         let annotation = annotation.then_some(LayerKind::Annotation);
         let layers: Vec<_> = plan.layers.iter().copied().chain(annotation).collect();
@@ -411,7 +414,7 @@ impl Animate {
             inputs: &plan.inputs,
         };
         let options = WriteOptions {
-            bit_depth: self.bit_depth,
+            bit_depth: plan.scene.picture.bit_depth(),
             force: self.force,
         };
         Store::new(frames, plan.shots.len() as u32, film, wishes, options, gate).map(Some)

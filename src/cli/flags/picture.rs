@@ -1,7 +1,7 @@
 //! How large the picture is, what lies behind the volume, and which layers go with it.
 
 use super::{Background, Error, Size};
-use crate::picture::LayerKind;
+use crate::picture::{BitDepth, LayerKind};
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
 
@@ -27,6 +27,45 @@ pub struct PictureFlags {
     )]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub aov: Vec<LayerWord>,
+    /// Bits of a channel of a PNG or APNG [default: 8]
+    #[arg(long, value_name = "8|16", value_parser = bits_of, help_heading = "Picture")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bit_depth: Option<Bits>,
+}
+
+/// Bits of a channel; a scene file has them as a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "u8", into = "u8")]
+pub struct Bits(BitDepth);
+
+impl TryFrom<u8> for Bits {
+    type Error = &'static str;
+
+    fn try_from(bits: u8) -> Result<Self, &'static str> {
+        match bits {
+            8 => Ok(Self(BitDepth::Eight)),
+            16 => Ok(Self(BitDepth::Sixteen)),
+            _ => Err("wanted 8 or 16 bits of a channel"),
+        }
+    }
+}
+
+impl From<Bits> for u8 {
+    fn from(Bits(depth): Bits) -> Self {
+        match depth {
+            BitDepth::Eight => 8,
+            BitDepth::Sixteen => 16,
+        }
+    }
+}
+
+/// Reads the word of `--bit-depth`.
+fn bits_of(word: &str) -> Result<Bits, String> {
+    let bits = word
+        .parse::<u8>()
+        .ok()
+        .and_then(|bits| bits.try_into().ok());
+    bits.ok_or_else(|| "wanted 8 or 16".to_owned())
 }
 
 /// Pixels on one side: what image formats and devices agree on.
@@ -54,6 +93,11 @@ impl PictureFlags {
             Some(Background::Color(color)) => Some(color),
             Some(Background::None) | None => None,
         }
+    }
+
+    /// Bits of a channel of a PNG.
+    pub fn bit_depth(&self) -> BitDepth {
+        self.bit_depth.map_or(BitDepth::Eight, |Bits(depth)| depth)
     }
 
     /// The layers asked for, each once, in the order of the words.

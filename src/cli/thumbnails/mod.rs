@@ -18,7 +18,6 @@ use super::{
     memory::available_bytes,
     output::{self, say_aside, write_whole},
     progress::{Progress, ProgressWord},
-    render::bit_depth,
     scene_file, shown,
     signals::Gate,
 };
@@ -79,9 +78,6 @@ pub struct Thumbnails {
     /// Replace files that exist
     #[arg(long, help_heading = "Run")]
     force: bool,
-    /// Bits of a channel of a picture
-    #[arg(long, value_name = "8|16", default_value = "8", value_parser = bit_depth, help_heading = "Picture")]
-    bit_depth: BitDepth,
     /// No empty-space skipping: the pictures are the same without
     #[arg(long)]
     no_skip: bool,
@@ -110,7 +106,7 @@ impl Thumbnails {
     pub fn run(mut self, gate: &Gate) -> Result<(), Error> {
         let mut scene = self.whole_scene()?;
         let variables = variables_of(&mut scene);
-        let depth = match self.bit_depth {
+        let depth = match scene.picture.bit_depth() {
             BitDepth::Eight => Depth::Eight,
             BitDepth::Sixteen => Depth::More,
         };
@@ -164,7 +160,7 @@ impl Thumbnails {
             items: &items,
             folder: &self.output,
             options: WriteOptions {
-                bit_depth: self.bit_depth,
+                bit_depth: scene.picture.bit_depth(),
                 force: self.force,
             },
             gate,
@@ -266,6 +262,13 @@ impl Thumbnails {
                 &files,
                 self.force || self.resume,
             )?;
+        }
+        if self.output.is_file() {
+            return Err(Error::Output {
+                path: self.output.clone(),
+                problem: "it is a file, and pictures are written into a folder".to_owned(),
+                hint: Some("name a folder: -o pictures"),
+            });
         }
         if !self.output.is_dir() {
             output::check(std::slice::from_ref(&self.output), &[], false)?;
