@@ -405,6 +405,13 @@ mod tests {
             (unreadable(limit), 6),
             (Error::output("x", &io::Error::other("full")), 4),
             (Error::Memory(String::new()), 6),
+            (
+                Error::Limit {
+                    message: String::new(),
+                    hint: "".into(),
+                },
+                6,
+            ),
         ] {
             assert_eq!(error.exit_code(), code, "{error:?}");
         }
