@@ -32,6 +32,12 @@ pub(crate) fn world_from_voxel(columns: [DVec3; 3], first_center: DVec3) -> Opti
     sound.then(|| DAffine3::from_mat3_translation(steps, corner))
 }
 
+/// Whether points have one place each way: a determinant that is as small as a number can be has an inverse that is
+/// none.
+pub(crate) fn is_invertible(affine: &DAffine3) -> bool {
+    affine.is_finite() && affine.matrix3.determinant().is_normal() && affine.inverse().is_finite()
+}
+
 /// Adds steps for the axes that a line or a plane of voxels lacks: at right angles to the others, as long as
 /// the shortest of them.
 pub(crate) fn with_missing_axes(columns: &[DVec3]) -> [DVec3; 3] {
@@ -81,6 +87,20 @@ mod tests {
             assert_eq!(world_from_voxel(columns, DVec3::ZERO), None, "{columns:?}");
         }
         assert_eq!(world_from_voxel([x, y, z], DVec3::splat(f64::NAN)), None);
+    }
+
+    #[test]
+    fn a_transform_whose_inverse_overflows_is_not_invertible() {
+        let affine = |y: f64| {
+            let x = DVec3::new(-1.5, 0.0, 0.0);
+            let y = DVec3::new(0.0, y, 0.25);
+            let matrix = DMat3::from_cols(x, y, DVec3::new(0.0, 0.0, 16.0));
+            DAffine3::from_mat3_translation(matrix, DVec3::new(-0.25, 2.75, 1.875))
+        };
+        assert!(is_invertible(&affine(1.0)));
+        // The determinant is as a number should be.
+        assert!(affine(1e-308).matrix3.determinant().is_normal());
+        assert!(!is_invertible(&affine(1e-308)));
     }
 
     #[test]

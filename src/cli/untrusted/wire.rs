@@ -6,6 +6,7 @@
 //!
 //! Numbers of headers cross as their bits: nothing is rounded, and a fill may be NaN.
 
+use crate::format::is_invertible;
 use crate::volume::{
     Channel, Format, Header, Limits, Loss, Meaning, Piece, Problem, ReadError, Rescale, Series,
     VoxelType, Voxels, Wanted,
@@ -280,8 +281,7 @@ impl Opened {
         let is_sound = header.dims.iter().all(|&n| n > 0)
             && header.components > 0
             && header.times > 0
-            && world_from_voxel.is_finite()
-            && world_from_voxel.matrix3.determinant().is_normal()
+            && is_invertible(&world_from_voxel)
             && slope.is_normal()
             && intercept.is_finite();
         is_sound.then_some(header)

@@ -1,6 +1,7 @@
 //! The header of a file of bricks: lines `key: words`.
 
 use super::BRICKS;
+use crate::format::geometry::is_invertible;
 use crate::format::problem::{invalid, missing};
 use crate::volume::{Problem, VoxelType};
 use glam::DAffine3;
@@ -90,8 +91,7 @@ impl Lines {
         const WANTED: &str = "twelve finite numbers of an invertible transform, column by column";
         let numbers: [f64; 12] = self.numbers(KEY, WANTED)?;
         let affine = DAffine3::from_cols_array(&numbers);
-        let determinant = affine.matrix3.determinant();
-        match determinant.is_normal() {
+        match is_invertible(&affine) {
             true => Ok(affine),
             false => Err(invalid(BRICKS, KEY, WANTED, &format!("{numbers:?}"))),
         }

@@ -7,7 +7,7 @@
 
 use super::HDF5;
 use crate::format::cf::Variable;
-use crate::format::geometry::world_from_voxel;
+use crate::format::geometry::{is_invertible, world_from_voxel};
 use crate::format::problem::invalid;
 use crate::volume::Problem;
 use glam::{DAffine3, DMat4, DVec3};
@@ -61,7 +61,7 @@ pub(super) fn place(variable: &Variable) -> Result<(DAffine3, Vec<String>), Prob
     };
     let is_affine = after.row(3).to_array() == [0.0, 0.0, 0.0, 1.0];
     let whole = DAffine3::from_mat4(after) * sound;
-    if is_affine && whole.is_finite() && whole.matrix3.determinant().is_normal() {
+    if is_affine && is_invertible(&whole) {
         return Ok((whole, notes));
     }
     notes.push(
