@@ -361,6 +361,20 @@ mod tests {
     }
 
     #[test]
+    fn labels_that_are_lit_are_more_opaque_and_the_background_stays_transparent() {
+        let values: Vec<_> = (0..4000).map(|i| f64::from(i / 1334)).collect();
+        let summary = summary(&values);
+        let context = Context::default();
+        assert_eq!(context.choice(&summary).kind, Kind::Labels);
+        let function = automatic_in(&context, &summary, Classified::Samples, None);
+        assert_eq!(function.opacity(0.0), 0.0);
+        for label in [1.0, 2.0] {
+            assert_eq!(function.opacity(label), LIT_LABEL_OPACITY);
+            assert!(categorical(&summary).opacity(label) < LIT_LABEL_OPACITY);
+        }
+    }
+
+    #[test]
     fn matter_of_no_known_kind_shows_what_is_inside() {
         // A dark background, a hull of 110 and a core of 200.
         let values: Vec<_> = (0..4000)

@@ -334,6 +334,29 @@ fn a_film_of_which_nothing_moves_is_a_turntable() {
 }
 
 #[test]
+fn labels_are_lit_at_their_boundaries_and_opaque_enough_to_show_it() {
+    let folder = Folder::new();
+    folder
+        .run("convert phantom:sphere,n=32 -o labels.nrrd --type u8 --window 0,1")
+        .assert_done();
+    folder
+        .run("render labels.nrrd --size 64x48 -o a.png --save-scene a.json")
+        .assert_done();
+    let text = fs::read_to_string(folder.path("a.json")).expect("a scene");
+    let scene: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    // A hundredth of a label over a voxel of 100 / 32.
+    let half_gradient = scene["light"]["half_gradient"].as_f64().expect("a number");
+    assert!((half_gradient - 0.01 / 3.125).abs() < 1e-12, "{text}");
+    let opacity = &scene["classification"]["transfer_function"]["opacity"];
+    let last = opacity.as_array().and_then(|points| points.last());
+    assert_eq!(
+        last.and_then(|point| point[1].as_f64()),
+        Some(0.15),
+        "{text}"
+    );
+}
+
+#[test]
 fn large_work_takes_one_sample_a_voxel_and_says_so() {
     let folder = Folder::new();
     // 2 x 200 samples through nearly 3000 x 3000 pixels of a ball are over 400 million.
