@@ -185,7 +185,7 @@ mod tests {
 
     #[test]
     fn a_scale_takes_half_of_its_room_where_a_round_length_does() {
-        // Rooms of 1 to 10 units, in steps of a fortieth of a decade.
+        // Lengths of 1 to 10 units, in steps of a fortieth of a decade.
         for room in (0..40).map(|i| 10_f64.powf(f64::from(i) / 40.0) * (1.0 + 1e-12)) {
             for metres in [None, Some(1e-3), Some(1.0), Some(1e3)] {
                 let part = round_length(room, metres).0 / room;

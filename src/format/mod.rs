@@ -75,8 +75,8 @@ use absent::tiff;
 #[cfg(not(feature = "netcdf"))]
 use absent::{hdf5, netcdf};
 #[cfg(feature = "cli")]
-#[cfg(feature = "cli")]
 pub(crate) use geometry::is_invertible;
+#[cfg(feature = "cli")]
 pub(crate) use sequence::expand as numbered_name;
 
 pub use find::{Found, Search, find, stem};

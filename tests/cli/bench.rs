@@ -201,7 +201,7 @@ fn views_are_gone_through_as_often_as_asked() {
     }
 }
 
-/// What is measured does not hang on what a look would choose.
+/// What is measured does not depend on what a look would choose.
 #[test]
 fn without_a_flag_a_bench_is_plain() {
     let folder = Folder::new();

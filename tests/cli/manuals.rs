@@ -91,7 +91,7 @@ fn there_is_a_manual_page_for_every_verb() {
         .assert_refused(4, &["there is no folder"]);
 }
 
-/// Defaults that hang on the look say so.
+/// Defaults that depend on the look say so.
 #[test]
 fn the_help_of_render_says_what_holds_under_auto_and_the_root_how_a_file_is_drawn() {
     let folder = Folder::new();

@@ -14,7 +14,7 @@ use stratavox::offscreen::Renderer;
 use stratavox::picture::{Picture, WriteOptions, read_image, write_picture};
 use stratavox::scene::{Beside, Scene};
 use stratavox::technique::{Settings, Technique};
-use stratavox::transfer::{Classified, ValueSummary, automatic, automatic_in};
+use stratavox::transfer::{Classified, TransferFunction, ValueSummary, automatic, automatic_in};
 use stratavox::volume::{Limits, Pick, Volume, phantom};
 use tempfile::TempDir;
 
@@ -105,6 +105,27 @@ fn read(spec: &str) -> Volume {
     Volume::read(source.as_ref(), Pick::default(), whole, &Limits::default()).unwrap()
 }
 
+/// The picture that the library makes of the same volume by itself, without a background.
+fn offscreen(
+    volume: &Volume,
+    function: &TransferFunction,
+    camera: &Camera,
+    extent_pixels: [u32; 2],
+    settings: &Settings,
+) -> Picture {
+    let scene = Scene {
+        volume,
+        transfer: Some(function),
+        beside: Beside::Nothing,
+        camera,
+        extent_pixels,
+        settings,
+    };
+    let device = Headless::new(&DeviceChoice::default(), &Options::default()).unwrap();
+    let mut renderer = Renderer::new(device, volume).unwrap();
+    renderer.render(&scene, &[]).unwrap().picture
+}
+
 #[test]
 fn the_window_shows_what_the_offscreen_renderer_draws() {
     let Some(display) = Display::new() else {
@@ -147,17 +168,7 @@ fn the_window_shows_what_the_offscreen_renderer_draws() {
             ..Settings::default()
         };
         let camera = report.camera(&volume, extent);
-        let scene = Scene {
-            volume: &volume,
-            transfer: Some(&function),
-            beside: Beside::Nothing,
-            camera: &camera,
-            extent_pixels: extent,
-            settings: &settings,
-        };
-        let device = Headless::new(&DeviceChoice::default(), &Options::default()).unwrap();
-        let mut renderer = Renderer::new(device, &volume).unwrap();
-        let mut wanted = renderer.render(&scene, &[]).unwrap().picture;
+        let mut wanted = offscreen(&volume, &function, &camera, extent, &settings);
         // What `drawing.rs` clears the picture to, blended by the device in the same numbers.
         let behind = [0.008_f32, 0.011, 0.016, 1.0];
         for pixel in &mut wanted.pixels {
@@ -553,17 +564,7 @@ fn the_first_picture_is_fitted_to_what_is_visible_and_lit_as_the_command_line_do
         ..Settings::default()
     };
     let camera = report.camera(&volume, extent);
-    let scene = Scene {
-        volume: &volume,
-        transfer: Some(&function),
-        beside: Beside::Nothing,
-        camera: &camera,
-        extent_pixels: extent,
-        settings: &settings,
-    };
-    let device = Headless::new(&DeviceChoice::default(), &Options::default()).unwrap();
-    let mut renderer = Renderer::new(device, &volume).unwrap();
-    let mut wanted = renderer.render(&scene, &[]).unwrap().picture;
+    let mut wanted = offscreen(&volume, &function, &camera, extent, &settings);
     for pixel in &mut wanted.pixels {
         let left = 1.0 - pixel[3];
         for c in 0..3 {
@@ -622,17 +623,7 @@ fn marks_are_laid_over_the_picture_and_their_box_shows_through_the_volume() {
         ..Settings::default()
     };
     let camera = report.camera(&volume, extent);
-    let scene = Scene {
-        volume: &volume,
-        transfer: Some(&function),
-        beside: Beside::Nothing,
-        camera: &camera,
-        extent_pixels: extent,
-        settings: &settings,
-    };
-    let device = Headless::new(&DeviceChoice::default(), &Options::default()).unwrap();
-    let mut renderer = Renderer::new(device, &volume).unwrap();
-    let mut wanted = renderer.render(&scene, &[]).unwrap().picture;
+    let mut wanted = offscreen(&volume, &function, &camera, extent, &settings);
     let background = Picture {
         pixels: vec![[0.008, 0.011, 0.016, 1.0]; wanted.pixels.len()],
         ..wanted.clone()

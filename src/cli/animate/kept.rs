@@ -76,7 +76,7 @@ impl Kept {
             scene.sampling.filter.is_none() && *filter != shots[0].settings.filter
         };
         let filter = Some(settings.filter).filter(changed);
-        // Between two labels there is none: which times are shown hangs on whether the values are found to be labels.
+        // Between two labels there is none: which times are shown depends on whether the values are found to be labels.
         let is_between = shots.iter().any(|shot| shot.time.fract() != 0.0);
         let function = match own.map(|own| &own.classification) {
             Some(Classification::Function(function)) if filter.is_none() || !is_between => {
