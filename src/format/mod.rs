@@ -38,7 +38,7 @@ mod dicom;
 mod fence;
 mod file_source;
 mod find;
-mod geometry;
+pub(crate) mod geometry;
 mod grib;
 #[cfg(feature = "netcdf")]
 mod hdf5;
@@ -74,8 +74,6 @@ use absent::dicom;
 use absent::tiff;
 #[cfg(not(feature = "netcdf"))]
 use absent::{hdf5, netcdf};
-#[cfg(feature = "cli")]
-pub(crate) use geometry::is_invertible;
 #[cfg(feature = "cli")]
 pub(crate) use sequence::expand as numbered_name;
 

@@ -6,7 +6,7 @@
 //!
 //! Numbers of headers cross as their bits: nothing is rounded, and a fill may be NaN.
 
-use crate::format::is_invertible;
+use crate::format::geometry::is_invertible;
 use crate::volume::{
     Channel, Format, Header, Limits, Loss, Meaning, Piece, Problem, ReadError, Rescale, Series,
     VoxelType, Voxels, Wanted,
