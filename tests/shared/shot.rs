@@ -1,7 +1,7 @@
 //! One picture to be taken, and what a pixel's ray meets in it, from camera and grid alone, in f64.
 //!
-//! Written a second time on purpose and not by calling `src/ray.rs` or `src/lattice.rs`: the exact answers
-//! stand on it.
+//! It calls neither `src/ray.rs` nor `src/lattice.rs`, which the exact answers judge. It shares `places.rs` with the
+//! oracle of conformance, so it is no independent judge of that oracle.
 
 #[path = "../../src/conformance/oracle/places.rs"]
 mod places;
