@@ -7,6 +7,7 @@
 //!          1.055 linear^(1/2.4) - 0.055  above
 //! ```
 
+use crate::named::named;
 use crate::real::Real;
 
 /// In which numbers colours are blended and kept (`sampling.md` 4 and 8).
@@ -18,6 +19,11 @@ pub enum ColorSpace {
     /// sRGB numbers blended as they are, as VTK and Slicer do.
     Display,
 }
+
+named!(ColorSpace {
+    Linear "linear" "",
+    Display "display" "",
+});
 
 /// Linear light of an sRGB number.
 pub fn decode_srgb<N: Real>(srgb: N) -> N {

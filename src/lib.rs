@@ -7,7 +7,7 @@
 //!
 //! | floor | modules | what they know |
 //! |---|---|---|
-//! | 0 | [`shaders`], [`real`], [`ray`], [`blue_noise`], [`lattice`], [`color`], `fence` | arithmetic shared with the shaders, free of Vulkan |
+//! | 0 | [`shaders`], [`real`], [`ray`], [`blue_noise`], [`lattice`], [`color`], `fence`, `named` | arithmetic shared with the shaders, free of Vulkan |
 //! | 1 | [`gpu`], [`volume`], [`transfer`], [`camera`], [`picture`], [`mesh`], `figure` | Vulkan objects, or data; never both |
 //! | 2 | [`resident`], [`isosurface`], `format` | data put on a device; a surface in a volume; bytes of files turned into a [`volume::Source`] |
 //! | 3 | [`technique`], [`resolve`], [`look`] | `new`, `bind`, `record`, and the CPU twins; what suits a volume |
@@ -196,6 +196,7 @@ pub mod isosurface;
 pub mod lattice;
 pub mod look;
 pub mod mesh;
+mod named;
 pub mod offscreen;
 pub mod picture;
 pub mod ray;

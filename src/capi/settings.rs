@@ -2,9 +2,13 @@
 
 use super::status::{Failure, number};
 use super::structure::{self, Versioned};
-use super::words::{COLOR_SPACES, FILTERS, LATTICES, MODES, TECHNIQUES, word};
+use super::words::word;
+use crate::color::ColorSpace;
+use crate::named::Named;
 use crate::shaders::{MAX_CLIP_PLANES, MAX_LEVELS, MAX_LIGHTS};
-use crate::technique::{ClipPlane, Jitter, Level, Light, PerMode, Settings, Shading};
+use crate::technique::{
+    ClipPlane, Filter, Jitter, Lattice, Level, Light, Mode, PerMode, Settings, Shading, Technique,
+};
 use glam::DVec3;
 use std::ffi::c_void;
 
@@ -160,11 +164,11 @@ pub(super) unsafe fn settings(
     number("sv_settings.samples_per_voxel", wanted, samples, is_right)?;
     share("sv_settings.termination", c.termination)?;
     let made = Settings {
-        technique: word("sv_settings.technique", &TECHNIQUES, c.technique)?,
-        mode: word("sv_settings.mode", &MODES, c.mode)?,
-        filter: word("sv_settings.filter", &FILTERS, c.filter)?,
-        lattice: word("sv_settings.lattice", &LATTICES, c.lattice)?,
-        color_space: word("sv_settings.color_space", &COLOR_SPACES, c.color_space)?,
+        technique: word("sv_settings.technique", Technique::ALL, c.technique)?,
+        mode: word("sv_settings.mode", Mode::ALL, c.mode)?,
+        filter: word("sv_settings.filter", Filter::ALL, c.filter)?,
+        lattice: word("sv_settings.lattice", Lattice::ALL, c.lattice)?,
+        color_space: word("sv_settings.color_space", ColorSpace::ALL, c.color_space)?,
         jitter: Jitter {
             seed: c.jitter_seed,
             frame: c.jitter_frame,

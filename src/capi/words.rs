@@ -1,8 +1,6 @@
 //! Numbers of C for words of the library. Structures hold them as `uint32_t`: any number may stand there.
 
 use super::status::Failure;
-use crate::color::ColorSpace;
-use crate::technique::{Filter, Lattice, Mode, Technique};
 use crate::volume::VoxelType;
 
 /// Where samples lie.
@@ -127,35 +125,6 @@ pub enum sv_version {
     SV_ABI_VERSION = 1,
 }
 
-pub(super) const TECHNIQUES: [Technique; 3] =
-    [Technique::Raycast, Technique::Slices3d, Technique::Slices2d];
-
-pub(super) const MODES: [Mode; 9] = [
-    Mode::Composite,
-    Mode::Mip,
-    Mode::Minip,
-    Mode::Average,
-    Mode::Xray,
-    Mode::Lmip,
-    Mode::AttenuatedMip,
-    Mode::Iso,
-    Mode::Mida,
-];
-
-pub(super) const FILTERS: [Filter; 7] = [
-    Filter::Linear,
-    Filter::Nearest,
-    Filter::Quadratic,
-    Filter::Cubic,
-    Filter::QuadraticSmooth,
-    Filter::CubicSmooth,
-    Filter::CatmullRom,
-];
-
-pub(super) const LATTICES: [Lattice; 3] = [Lattice::Ray, Lattice::Planes, Lattice::Jitter];
-
-pub(super) const COLOR_SPACES: [ColorSpace; 2] = [ColorSpace::Linear, ColorSpace::Display];
-
 pub(super) const VOXEL_TYPES: [VoxelType; 9] = [
     VoxelType::U8,
     VoxelType::I8,
@@ -179,36 +148,39 @@ pub(super) fn word<T: Copy>(name: &str, words: &[T], number: u32) -> Result<T, F
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::color::ColorSpace;
+    use crate::named::Named;
+    use crate::technique::{Filter, Lattice, Mode, Technique};
 
     #[test]
-    fn a_number_of_c_is_the_word_of_the_same_name() {
-        use sv_filter::*;
-        use sv_mode::*;
+    fn a_number_of_c_is_the_value_of_the_same_name() {
+        let header = include_str!("words.rs");
+        fn is_named<T: Named>(header: &str, prefix: &str) {
+            for (number, value) in T::ALL.iter().enumerate() {
+                let name = value.name().replace('-', "_").to_uppercase();
+                let row = format!("    {prefix}_{name} = {number},\n");
+                assert!(header.contains(&row), "{row}");
+            }
+        }
+        is_named::<Technique>(header, "SV_TECHNIQUE");
+        is_named::<Mode>(header, "SV_MODE");
+        is_named::<Filter>(header, "SV_FILTER");
+        is_named::<Lattice>(header, "SV_LATTICE");
+        is_named::<ColorSpace>(header, "SV_COLOR_SPACE");
         use sv_voxel_type::*;
-        assert_eq!(MODES[SV_MODE_MIDA as usize], Mode::Mida);
-        assert_eq!(MODES[SV_MODE_ISO as usize], Mode::Iso);
-        assert_eq!(MODES[SV_MODE_XRAY as usize], Mode::Xray);
-        assert_eq!(
-            TECHNIQUES[sv_technique::SV_TECHNIQUE_SLICES_2D as usize],
-            Technique::Slices2d
-        );
-        assert_eq!(FILTERS[SV_FILTER_CATMULL_ROM as usize], Filter::CatmullRom);
-        assert_eq!(FILTERS[SV_FILTER_CUBIC as usize], Filter::Cubic);
         assert_eq!(VOXEL_TYPES[SV_VOXEL_F64 as usize], VoxelType::F64);
         assert_eq!(VOXEL_TYPES[SV_VOXEL_I16 as usize], VoxelType::I16);
     }
 
     #[test]
     fn zero_is_what_the_library_takes_by_default() {
-        let zero = |_: ()| {
-            (
-                TECHNIQUES[0],
-                MODES[0],
-                FILTERS[0],
-                LATTICES[0],
-                COLOR_SPACES[0],
-            )
-        };
-        assert_eq!(zero(()), Default::default());
+        let zero = (
+            Technique::ALL[0],
+            Mode::ALL[0],
+            Filter::ALL[0],
+            Lattice::ALL[0],
+            ColorSpace::ALL[0],
+        );
+        assert_eq!(zero, Default::default());
     }
 }

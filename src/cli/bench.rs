@@ -7,7 +7,7 @@ mod table;
 
 use super::{
     Error, cameras_file,
-    flags::{Classification, Depth, ModeWord, ProjectionWord, SceneFlags, TechniqueWord},
+    flags::{Classification, Depth, ProjectionWord, SceneFlags},
     output::{self, say, write_whole},
     progress::{Progress, ProgressWord},
     renderer::{Device, Job, Renderer},
@@ -18,7 +18,7 @@ use super::{
 };
 use crate::{
     camera::Camera,
-    technique::Settings,
+    technique::{Mode, Settings, Technique},
     transfer::{Classified, Window},
 };
 use clap::Args;
@@ -44,7 +44,7 @@ pub struct Bench {
         value_delimiter = ',',
         help_heading = "Run"
     )]
-    techniques: Vec<TechniqueWord>,
+    techniques: Vec<Technique>,
     /// Modes of the table [default: that of --mode, else composite,mip]
     #[arg(
         long,
@@ -53,7 +53,7 @@ pub struct Bench {
         value_delimiter = ',',
         help_heading = "Run"
     )]
-    modes: Vec<ModeWord>,
+    modes: Vec<Mode>,
     /// Projections of the table [default: that of --projection, else both]
     #[arg(
         long,

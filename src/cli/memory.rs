@@ -158,7 +158,7 @@ pub enum Held {
 impl Held {
     /// So many volumes of a picture of these flags.
     pub fn of(scene: &SceneFlags, count: u32) -> Self {
-        let mode = scene.sampling.mode.unwrap_or_default().mode();
+        let mode = scene.sampling.mode.unwrap_or_default();
         let count = count + u32::from(scene.modes.paint(mode).is_some());
         match scene.denoise {
             _ if scene.sampling.preclassified => Self::Classified,
@@ -259,8 +259,8 @@ pub fn is_little(header: &Header, scene: &SceneFlags, held: Held) -> bool {
 /// Of the settings, those that memory depends on.
 fn filters_of(scene: &SceneFlags) -> Settings {
     Settings {
-        technique: scene.sampling.technique.unwrap_or_default().technique(),
-        filter: scene.sampling.filter.unwrap_or_default().filter(),
+        technique: scene.sampling.technique.unwrap_or_default(),
+        filter: scene.sampling.filter.unwrap_or_default(),
         gradient_filter: scene.gradient.filter(),
         keep_gradients: scene.gradient.keep(),
         ..Settings::default()

@@ -36,11 +36,9 @@ impl Resolve {
         target: impl Into<TargetClass>,
     ) -> Result<Self, Error> {
         let fragment = match mode {
-            Mode::Composite | Mode::Mida | Mode::Iso => "resolve.picture",
-            Mode::Mip | Mode::Minip | Mode::Xray | Mode::Lmip | Mode::AttenuatedMip => {
-                "resolve.value"
-            }
             Mode::Average => "resolve.mean",
+            mode if mode.is_projection() => "resolve.value",
+            _ => "resolve.picture",
         };
         Self::of_shader(gpu, fragment, blend, target.into())
     }

@@ -8,7 +8,7 @@
 //!
 //! All colours are premultiplied (Porter and Duff 1984); `algorithms.md` 1.6.
 
-use super::{Mode, Order, Sight, Take, Words};
+use super::{Fold, Mode, Order, Sight, Take, Words};
 use crate::gpu::{Blend, Gpu};
 use crate::real::Real;
 use crate::shaders::{Shader, find, shader};
@@ -89,35 +89,34 @@ impl Drawn {
 
 /// The fixed-function operator.
 pub fn operator(drawn: Drawn, order: Order) -> Blend {
-    match (drawn, order) {
-        (Drawn::Picture(Mode::Composite | Mode::Mida | Mode::Iso), Order::BackToFront) => {
-            Blend::Over
-        }
-        (Drawn::Picture(Mode::Composite | Mode::Mida | Mode::Iso), Order::FrontToBack) => {
-            Blend::Under
-        }
-        (Drawn::Picture(Mode::Mip | Mode::Lmip | Mode::AttenuatedMip), _) => Blend::Max,
-        (Drawn::Picture(Mode::Minip), _) => Blend::Min,
-        (Drawn::Picture(Mode::Average | Mode::Xray) | Drawn::Count, _) => Blend::Add,
+    let Drawn::Picture(mode) = drawn else {
+        return Blend::Add;
+    };
+    match (mode.fold(), order) {
+        (Fold::Material, Order::BackToFront) => Blend::Over,
+        (Fold::Material, Order::FrontToBack) => Blend::Under,
+        (Fold::Max, _) => Blend::Max,
+        (Fold::Min, _) => Blend::Min,
+        (Fold::Sum, _) => Blend::Add,
     }
 }
 
 /// What the target holds before the first fragment: where nothing is drawn, the second number of a
 /// projection stays 0.
 pub fn clear_color(mode: Mode) -> [f32; 4] {
-    match mode {
-        Mode::Mip | Mode::Lmip | Mode::AttenuatedMip => [-f32::MAX, 0.0, 0.0, 0.0],
-        Mode::Minip => [f32::MAX, 0.0, 0.0, 0.0],
-        Mode::Composite | Mode::Mida | Mode::Iso | Mode::Average | Mode::Xray => [0.0; 4],
+    match mode.fold() {
+        Fold::Max => [-f32::MAX, 0.0, 0.0, 0.0],
+        Fold::Min => [f32::MAX, 0.0, 0.0, 0.0],
+        Fold::Material | Fold::Sum => [0.0; 4],
     }
 }
 
 /// +1 where a mode looks for the largest, -1 where for the smallest value, 0 where values are added up.
 pub fn extreme_sign(mode: Mode) -> f32 {
-    match mode {
-        Mode::Minip => -1.0,
-        Mode::Average | Mode::Xray => 0.0,
-        _ => 1.0,
+    match mode.fold() {
+        Fold::Min => -1.0,
+        Fold::Sum => 0.0,
+        Fold::Max | Fold::Material => 1.0,
     }
 }
 
@@ -131,15 +130,11 @@ pub fn blend<R: Real>(
 ) -> [R; 4] {
     let zero = R::from_f64(0.0);
     let sign = R::from_f32(extreme_sign(mode));
-    match mode {
-        Mode::Composite | Mode::Mida | Mode::Iso => {
-            blend_material(order, target, classify(fragment.value), fragment.length)
-        }
-        Mode::Mip | Mode::Lmip | Mode::AttenuatedMip => {
-            each([fragment.value, sign, zero, zero], target, R::max)
-        }
-        Mode::Minip => each([fragment.value, sign, zero, zero], target, R::min),
-        Mode::Average | Mode::Xray => {
+    match mode.fold() {
+        Fold::Material => blend_material(order, target, classify(fragment.value), fragment.length),
+        Fold::Max => each([fragment.value, sign, zero, zero], target, R::max),
+        Fold::Min => each([fragment.value, sign, zero, zero], target, R::min),
+        Fold::Sum => {
             let Fragment { value, length } = fragment;
             each([value * length, length, zero, zero], target, |s, c| s + c)
         }

@@ -2,7 +2,7 @@
 //! asks for.
 
 use super::{
-    Filter, FilterBy, Keep, Lattice, LightVolume, Mix, Mode, Operator, Part, Role, Settings, Skip,
+    Filter, FilterBy, Keep, Lattice, LightVolume, Mix, Operator, Part, Role, Settings, Skip,
 };
 use crate::gpu::{Bindings, Error, Gpu, Image, Layout, ParameterRing, Resource};
 use crate::resident::{Brick, Corners, GpuTransfer, GpuVolume, TextureLayout};
@@ -248,19 +248,5 @@ fn corners_of<'a>(parts: &[Part<'a>]) -> Option<&'a Corners> {
     match parts {
         [part] => part.volume.corners(),
         _ => None,
-    }
-}
-
-/// The word of a compute pass's mode.
-pub fn mode_word(mode: Mode) -> &'static str {
-    match mode {
-        Mode::Composite => "composite",
-        Mode::Mip => "mip",
-        Mode::Minip => "minip",
-        Mode::Average | Mode::Xray => "sum",
-        Mode::Lmip => "lmip",
-        Mode::AttenuatedMip => "attenuated_mip",
-        Mode::Mida => "mida",
-        Mode::Iso => "iso",
     }
 }

@@ -25,6 +25,7 @@ mod march;
 pub mod merge;
 pub mod mida;
 pub mod mixture;
+mod modes;
 mod names;
 mod patch_slicer;
 mod patches;
@@ -58,6 +59,8 @@ pub use light_field::LightField;
 pub use light_plan::{AmbientOcclusion, LightPlan, MAX_LIGHT_CELLS, MAX_RADIUS_CELLS, Shadows};
 pub use light_volume::LightVolume;
 pub use mixture::{Mix, Part, Role};
+pub(crate) use modes::Fold;
+pub use modes::Mode;
 pub use patch_slicer::{PatchBindings, PatchSlicer};
 pub use patches::{BATCH_SLICES, PatchRoom, Patches};
 pub use per_mode::{DEFAULT_ATTENUATION, Level, PerMode};
@@ -82,30 +85,6 @@ pub enum Technique {
     Slices3d,
     /// The volume's own slices along the axis that faces the eye most.
     Slices2d,
-}
-
-/// What is done with the samples of a ray.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Mode {
-    /// Emission and absorption.
-    #[default]
-    Composite,
-    /// Maximum.
-    Mip,
-    /// Minimum.
-    Minip,
-    /// Mean, weighted by length.
-    Average,
-    /// Integral of the value over world length.
-    Xray,
-    /// First local maximum over a threshold, the maximum where there is none (Sato et al. 1998).
-    Lmip,
-    /// Maximum of values that what lies before them fades.
-    AttenuatedMip,
-    /// Surfaces where the volume has one value, or one of several.
-    Iso,
-    /// Emission and absorption in which a new maximum takes from what lies before it (Bruckner and Groeller 2009).
-    Mida,
 }
 
 /// How a value between voxel centres is made.

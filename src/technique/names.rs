@@ -1,44 +1,37 @@
-//! Techniques, modes and filters by the words that people write.
+//! The names of what settings choose.
 
-use super::{Filter, Mode, Technique};
-use std::fmt::{Display, Formatter, Result};
+use super::{Filter, FilterBy, Lattice, Order, Technique};
+use crate::named::named;
 
-impl Display for Technique {
-    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        f.write_str(match self {
-            Self::Raycast => "raycast",
-            Self::Slices3d => "slices-3d",
-            Self::Slices2d => "slices-2d",
-        })
-    }
-}
+named!(Technique {
+    Raycast "raycast" "",
+    Slices3d "slices-3d" "",
+    Slices2d "slices-2d" "",
+});
 
-impl Display for Mode {
-    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        f.write_str(match self {
-            Self::Composite => "composite",
-            Self::Mip => "mip",
-            Self::Minip => "minip",
-            Self::Average => "average",
-            Self::Xray => "xray",
-            Self::Lmip => "lmip",
-            Self::AttenuatedMip => "attenuated-mip",
-            Self::Iso => "iso",
-            Self::Mida => "mida",
-        })
-    }
-}
+named!(Filter {
+    Linear "linear" "",
+    Nearest "nearest" "",
+    Quadratic "quadratic" "quadratic B-spline through the voxels",
+    Cubic "cubic" "cubic B-spline through the voxels, the most exact",
+    QuadraticSmooth "quadratic-smooth" "quadratic B-spline of the voxels: never rings, blurs more than linear",
+    CubicSmooth "cubic-smooth" "cubic B-spline of the voxels: never rings, blurs most",
+    CatmullRom "catmull-rom" "Catmull-Rom cubic through the voxels",
+});
 
-impl Display for Filter {
-    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        f.write_str(match self {
-            Self::Nearest => "nearest",
-            Self::Linear => "linear",
-            Self::Quadratic => "quadratic",
-            Self::Cubic => "cubic",
-            Self::QuadraticSmooth => "quadratic-smooth",
-            Self::CubicSmooth => "cubic-smooth",
-            Self::CatmullRom => "catmull-rom",
-        })
-    }
-}
+named!(FilterBy {
+    Auto "auto" "fetch for rays where the driver is llvmpipe, whose sampler is slower; else sampler",
+    Sampler "sampler" "the device's sampler, whose weights have some 8 bits on graphics cards",
+    Fetch "fetch" "the shader, with weights in floats",
+});
+
+named!(Lattice {
+    Ray "ray" "",
+    Planes "planes" "",
+    Jitter "jitter" "",
+});
+
+named!(Order {
+    BackToFront "back-to-front" "",
+    FrontToBack "front-to-back" "",
+});

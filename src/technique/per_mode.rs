@@ -113,39 +113,6 @@ impl PerMode {
     }
 }
 
-impl Mode {
-    /// True where one value a ray is projected and classified once.
-    pub fn is_projection(self) -> bool {
-        !matches!(self, Self::Composite | Self::Mida | Self::Iso)
-    }
-
-    /// True where samples must come from front to back, one after the other: blending units cannot do it.
-    pub fn needs_rays(self) -> bool {
-        matches!(
-            self,
-            Self::Lmip | Self::AttenuatedMip | Self::Mida | Self::Iso
-        )
-    }
-
-    /// True where one number a ray is found, before any colour.
-    pub fn has_value(self) -> bool {
-        self.is_projection() || self == Self::Iso
-    }
-
-    /// True where the ray caster finds a place of the ray that stands for the picture.
-    pub fn has_depth(self) -> bool {
-        !matches!(self, Self::Average | Self::Xray)
-    }
-
-    /// True where what is projected lies at one place of the ray.
-    pub fn projects_one_place(self) -> bool {
-        matches!(
-            self,
-            Self::Mip | Self::Minip | Self::Lmip | Self::AttenuatedMip
-        )
-    }
-}
-
 impl Settings {
     /// Whether technique, mode and the numbers of the mode go together.
     ///

@@ -93,8 +93,9 @@ impl Settings {
                 Skippable::Unseen(Seen::of_values(&levels.collect::<Vec<_>>(), value_range))
             }
             // By how much of it is over what has been met.
-            (Mode::Lmip | Mode::AttenuatedMip, _) => Skippable::Exceeded,
-            (Mode::Mip | Mode::Minip, _) if !self.per_mode.exact_maximum => Skippable::Exceeded,
+            (mode, _) if mode.projects_one_place() && !self.per_mode.exact_maximum => {
+                Skippable::Exceeded
+            }
             (Mode::Composite | Mode::Mida, Some(function)) => unseen(seen_in(function)),
             _ => Skippable::Nothing,
         }

@@ -8,7 +8,7 @@ use std::{fs, path::Path};
 
 /// Modules by floor, as `src/lib.rs` tells them; floors 0, 3 and 4 have steps inside.
 const FLOORS: &[&[&str]] = &[
-    &["shaders", "real", "fence"],
+    &["shaders", "real", "fence", "named"],
     &["ray", "color", "blue_noise"],
     &["lattice"],
     &[
@@ -29,6 +29,7 @@ const FREE_OF_VULKAN: &[&str] = &[
     "shaders",
     "real",
     "fence",
+    "named",
     "ray",
     "lattice",
     "color",

@@ -12,7 +12,7 @@
 use super::{Bench, filtered, median_gpu, median_wall, timed};
 use crate::cli::{
     Error,
-    flags::{Depth, ModeWord, ProjectionWord, SceneFlags, TechniqueWord},
+    flags::{Depth, ProjectionWord, SceneFlags},
     output::{say, say_aside},
     progress::Progress,
     renderer::{Device, Job, Renderer},
@@ -46,8 +46,8 @@ struct Row {
 /// How a picture of a row is made.
 #[derive(Clone, Copy)]
 struct Way {
-    technique: TechniqueWord,
-    mode: ModeWord,
+    technique: Technique,
+    mode: Mode,
     projection: ProjectionWord,
 }
 
@@ -78,13 +78,13 @@ pub fn measured(bench: &Bench, scene: &SceneFlags) -> Result<String, Error> {
     let modes = words_of(
         &bench.modes,
         scene.sampling.mode,
-        &[ModeWord::Composite, ModeWord::Mip],
+        &[Mode::Composite, Mode::Mip],
     );
     // Labels are not projected.
     let has_labels = scene.labels.labels.is_some();
     let modes = modes.into_iter();
     let modes: Vec<_> = modes
-        .filter(|mode| !has_labels || !mode.mode().is_projection())
+        .filter(|mode| !has_labels || !mode.is_projection())
         .collect();
     let total = inputs.len() * modes.len();
     let (mut rows, mut probes, mut device) = (Vec::new(), Vec::new(), String::new());
@@ -97,7 +97,7 @@ pub fn measured(bench: &Bench, scene: &SceneFlags) -> Result<String, Error> {
         progress.stage("measure", at, total);
         let mut scene = scene.clone();
         scene.input.path = Some((*input).clone());
-        let base = of_mode(&base, mode.mode());
+        let base = of_mode(&base, *mode);
         // What is shown depends on the mode: channels are read for each.
         let here = Device::find(scene.one_device()?)?;
         let shown = Shown::read(&mut scene.clone(), &base, &here, &progress)?;
@@ -159,11 +159,11 @@ pub fn measured(bench: &Bench, scene: &SceneFlags) -> Result<String, Error> {
 
 impl Bench {
     /// The pictures of one mode.
-    fn ways(&self, scene: &SceneFlags, mode: ModeWord) -> Vec<Way> {
+    fn ways(&self, scene: &SceneFlags, mode: Mode) -> Vec<Way> {
         let techniques = words_of(
             &self.techniques,
             scene.sampling.technique,
-            TechniqueWord::value_variants(),
+            Technique::value_variants(),
         );
         let projections = words_of(
             &self.projections,
@@ -193,7 +193,7 @@ impl Bench {
         let mut camera = scene.camera.clone();
         camera.projection = Some(way.projection);
         let camera = camera.camera(&shown.subject(), extent_pixels)?;
-        let technique = way.technique.technique();
+        let technique = way.technique;
         let mut settings = filtered(
             Settings {
                 technique,

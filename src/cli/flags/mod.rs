@@ -59,7 +59,6 @@ pub use section::SectionFlags;
 pub use subject::Subject;
 pub use values::{preset, with_causes};
 pub use window::WindowWord;
-pub use words::{FilterWord, ModeWord, TechniqueWord};
 
 use super::Error;
 use crate::technique::Settings;
@@ -161,7 +160,7 @@ impl SceneFlags {
 
     /// False where nothing in the picture hangs on a gradient; a function that is read may make something of it.
     fn may_have_gradients(&self) -> bool {
-        let mode = self.sampling.mode.unwrap_or_default().mode();
+        let mode = self.sampling.mode.unwrap_or_default();
         self.light.is_lit(mode) || !mode.is_projection() && self.classification.names_a_function()
     }
 
@@ -176,7 +175,7 @@ impl SceneFlags {
 
     /// Flags that change nothing under the others, a sentence each.
     pub fn idle(&self) -> Vec<&'static str> {
-        let mode = self.sampling.mode.unwrap_or_default().mode();
+        let mode = self.sampling.mode.unwrap_or_default();
         let topics = [
             self.sampling.idle(),
             self.modes.idle(mode),

@@ -51,11 +51,10 @@ impl ModeFlags {
             filter,
             ..
         } = *settings;
-        let word = mode_name(mode);
         if technique != Technique::Raycast && mode.needs_rays() {
             return Err(Error::usage(
                 format!(
-                    "--mode {word} needs --technique raycast: in it a sample depends on those before it"
+                    "--mode {mode} needs --technique raycast: in it a sample depends on those before it"
                 ),
                 "leave out --technique, or take --mode mip",
             ));
@@ -63,7 +62,7 @@ impl ModeFlags {
         if lattice == Lattice::Planes && mode.needs_rays() {
             return Err(Error::usage(
                 format!(
-                    "--mode {word} takes samples along rays: --lattice planes is for modes that slicers have"
+                    "--mode {mode} takes samples along rays: --lattice planes is for modes that slicers have"
                 ),
                 "leave out --lattice",
             ));
@@ -77,7 +76,7 @@ impl ModeFlags {
             }
             if !mode.projects_one_place() {
                 return Err(Error::usage(
-                    format!("--depth-cue: --mode {word} has no one depth a ray"),
+                    format!("--depth-cue: --mode {mode} has no one depth a ray"),
                     "--mode mip has one, and minip, lmip and attenuated-mip",
                 ));
             }
@@ -113,9 +112,8 @@ impl ModeFlags {
         if !mode.needs_rays() {
             return Ok(());
         }
-        let word = mode_name(mode);
         Err(Error::usage(
-            format!("--mode {word} shows one number a voxel, and several channels are drawn"),
+            format!("--mode {mode} shows one number a voxel, and several channels are drawn"),
             "take one of them: --component 0",
         ))
     }
@@ -224,25 +222,11 @@ fn usual(summary: &ValueSummary) -> Window {
     Window::new(low, high).unwrap_or(Window::of_range(summary.range))
 }
 
-/// The word of `--mode`.
-fn mode_name(mode: Mode) -> &'static str {
-    match mode {
-        Mode::Composite => "composite",
-        Mode::Mip => "mip",
-        Mode::Minip => "minip",
-        Mode::Average => "average",
-        Mode::Xray => "xray",
-        Mode::Lmip => "lmip",
-        Mode::AttenuatedMip => "attenuated-mip",
-        Mode::Mida => "mida",
-        Mode::Iso => "iso",
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::cli::flags::summary;
+    use crate::named::Named;
     use crate::volume::{Rescale, Volume, Voxels};
     use glam::DAffine3;
 
@@ -315,7 +299,7 @@ mod tests {
         let none = ModeFlags::default();
         for mode in [Mode::Lmip, Mode::AttenuatedMip, Mode::Mida] {
             let text = refused(&none, Technique::Slices2d, mode);
-            assert!(text.contains(mode_name(mode)), "{text}");
+            assert!(text.contains(mode.name()), "{text}");
             let mut right = settings(Technique::Raycast, mode);
             none.check(&right).expect("right");
             right.lattice = Lattice::Planes;

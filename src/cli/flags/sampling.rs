@@ -4,14 +4,13 @@ use super::{
     Error, Numbers,
     cuts::{ClipBox, CutFacesWord},
     positive,
-    words::{
-        ColorSpaceWord, FilterByWord, FilterWord, LatticeWord, ModeWord, OrderWord, TechniqueWord,
-    },
 };
 use crate::{
     picture::ColorSpace,
     shaders::MAX_CLIP_PLANES,
-    technique::{ClipPlane, DEFAULT_DIM, Jitter, Lattice, Settings},
+    technique::{
+        ClipPlane, DEFAULT_DIM, Filter, FilterBy, Jitter, Lattice, Mode, Order, Settings, Technique,
+    },
 };
 use clap::Args;
 use glam::DVec3;
@@ -24,25 +23,25 @@ pub struct SamplingFlags {
     /// Where samples lie [default: raycast]
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub technique: Option<TechniqueWord>,
+    pub technique: Option<Technique>,
     /// What is done with the samples of a ray [default: composite]
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub mode: Option<ModeWord>,
+    pub mode: Option<Mode>,
     /// How a value between voxels is made [default: linear]; quadratic and cubic take more memory, and all but nearest
     /// and linear more time
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub filter: Option<FilterWord>,
+    pub filter: Option<Filter>,
     /// What makes it: the device's sampler, or the shader from voxels that it fetches itself, as exactly as floats are
     /// [default: auto]
     #[arg(long, value_name = "WAY")]
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub filter_by: Option<FilterByWord>,
+    pub filter_by: Option<FilterBy>,
     /// Samples at equal steps along the ray, or on the planes of the slicer [default: ray]
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub lattice: Option<LatticeWord>,
+    pub lattice: Option<Lattice>,
     /// What lies between two samples counts: no bands where the transfer function is steep
     #[arg(long)]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
@@ -67,7 +66,7 @@ pub struct SamplingFlags {
     /// How slicers blend [default: back-to-front]
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub order: Option<OrderWord>,
+    pub order: Option<Order>,
     /// Samples per smallest voxel spacing [default: 1; 2 in stills of composites under --look auto]
     #[arg(long, value_name = "F", value_parser = positive)]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -90,7 +89,7 @@ pub struct SamplingFlags {
     /// Blend in linear light, or in sRGB numbers as VTK and Slicer do [default: linear]
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub color_space: Option<ColorSpaceWord>,
+    pub color_space: Option<ColorSpace>,
     /// Keep this box of voxels; fractions are allowed
     #[arg(long, value_name = "X0,X1,Y0,Y1,Z0,Z1", allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -141,7 +140,7 @@ const MAX_RAYS_PER_SIDE: u32 = 64;
 impl SamplingFlags {
     /// What to compute, for a picture kept so exactly.
     pub fn settings(&self, depth: Depth) -> Result<Settings, Error> {
-        let color_space = self.color_space.unwrap_or_default().color_space();
+        let color_space = self.color_space.unwrap_or_default();
         let termination = match (depth, color_space) {
             _ if self.conformance => 0.0,
             (Depth::More, _) => 0.0,
@@ -149,10 +148,10 @@ impl SamplingFlags {
             (Depth::Eight, ColorSpace::Display) => TERMINATION_DISPLAY,
         };
         let settings = Settings {
-            technique: self.technique.unwrap_or_default().technique(),
-            mode: self.mode.unwrap_or_default().mode(),
-            filter: self.filter.unwrap_or_default().filter(),
-            filter_by: self.filter_by.unwrap_or_default().filter_by(),
+            technique: self.technique.unwrap_or_default(),
+            mode: self.mode.unwrap_or_default(),
+            filter: self.filter.unwrap_or_default(),
+            filter_by: self.filter_by.unwrap_or_default(),
             lattice: self.lattice()?,
             jitter: Jitter {
                 seed: self.jitter.unwrap_or_default(),
@@ -161,7 +160,7 @@ impl SamplingFlags {
             stack: None,
             smooth: self.smooth,
             preintegrated: self.preintegrated,
-            order: self.order.unwrap_or_default().order(),
+            order: self.order.unwrap_or_default(),
             samples_per_voxel: samples_per_voxel(self.samples_per_voxel.unwrap_or(1.0))?,
             adaptive_steps: self.adaptive_steps,
             rays_per_side: rays_per_side(self.aa.unwrap_or(1))?,
@@ -204,7 +203,7 @@ impl SamplingFlags {
 
     /// True where samples lie at steps that --samples-per-voxel sets: not on the slices of plain 2D stacks.
     pub fn has_steps(&self) -> bool {
-        self.smooth || self.technique != Some(TechniqueWord::Slices2d)
+        self.smooth || self.technique != Some(Technique::Slices2d)
     }
 
     /// True where a word says what is classified.
@@ -228,12 +227,12 @@ impl SamplingFlags {
 
     fn lattice(&self) -> Result<Lattice, Error> {
         match (self.jitter, self.lattice) {
-            (Some(_), Some(LatticeWord::Planes)) => Err(Error::usage(
+            (Some(_), Some(Lattice::Planes)) => Err(Error::usage(
                 "--jitter --lattice planes: planes begin at the same place for all rays",
                 "--jitter alone moves the steps of --lattice ray",
             )),
             (Some(_), _) => Ok(Lattice::Jitter),
-            (None, word) => Ok(word.unwrap_or_default().lattice()),
+            (None, word) => Ok(word.unwrap_or_default()),
         }
     }
 
@@ -244,18 +243,17 @@ impl SamplingFlags {
             notes.push("--aa-uneven has no effect on one ray a pixel: --aa 4");
         }
         let technique = self.technique.unwrap_or_default();
-        if self.order.is_some() && technique == TechniqueWord::Raycast {
+        if self.order.is_some() && technique == Technique::Raycast {
             notes.push("--order has no effect on rays, they go front to back");
         }
         let is_cut = self.crop.is_some() || self.clip_box.is_some() || !self.clip.is_empty();
         if self.cut_faces.is_some() && !is_cut {
             notes.push("--cut-faces has no effect without --crop, --clip or --clip-box");
         }
-        if self.lattice == Some(LatticeWord::Ray) && technique != TechniqueWord::Raycast {
+        if self.lattice == Some(Lattice::Ray) && technique != Technique::Raycast {
             notes.push("--lattice ray has no effect on slices, they have a lattice of their own");
         }
-        if self.samples_per_voxel.is_some() && technique == TechniqueWord::Slices2d && !self.smooth
-        {
+        if self.samples_per_voxel.is_some() && technique == Technique::Slices2d && !self.smooth {
             notes.push(
                 "--samples-per-voxel has no effect on 2D stacks, they have one sample a slice",
             );
@@ -346,7 +344,7 @@ mod tests {
     #[test]
     fn rays_end_early_only_as_far_as_the_picture_can_show() {
         let linear = flags(|_| {});
-        let display = flags(|f| f.color_space = Some(ColorSpaceWord::Display));
+        let display = flags(|f| f.color_space = Some(ColorSpace::Display));
         let conformance = flags(|f| f.conformance = true);
         for (flags, depth, wanted) in [
             (&linear, Depth::Eight, 2_f32.powi(-13)),
@@ -398,7 +396,7 @@ mod tests {
 
     #[test]
     fn a_flag_without_effect_is_mentioned() {
-        let idle = flags(|f| f.order = Some(OrderWord::FrontToBack)).idle();
+        let idle = flags(|f| f.order = Some(Order::FrontToBack)).idle();
         assert_eq!(idle.len(), 1, "{idle:?}");
         assert!(flags(|_| {}).idle().is_empty());
     }

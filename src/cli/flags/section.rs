@@ -10,7 +10,7 @@
 //! the ray holds one sample a ray, at its middle: on the plane itself.
 
 use super::{
-    CameraFlags, Depth, Error, ModeWord, Numbers, SamplingFlags, Subject, camera::refused, positive,
+    CameraFlags, Depth, Error, Numbers, SamplingFlags, Subject, camera::refused, positive,
 };
 use crate::{
     camera::{Camera, Frame, Projection, up_for},
@@ -82,7 +82,7 @@ impl SectionFlags {
         is_right: impl FnOnce(&SamplingFlags) -> bool,
     ) -> Error {
         let composite = SamplingFlags {
-            mode: Some(ModeWord::Composite),
+            mode: Some(Mode::Composite),
             ..sampling.clone()
         };
         match error {
@@ -230,7 +230,6 @@ impl From<Plane> for String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::flags::words::TechniqueWord;
     use crate::volume::Grid;
     use glam::{DAffine3, DMat3, dvec3};
 
@@ -334,7 +333,7 @@ mod tests {
         let refused = section.camera(&turned, &subject(), [8, 8], &mut settings);
         assert_eq!(refused.expect_err("refused").exit_code(), 2);
         let slices = SamplingFlags {
-            technique: Some(TechniqueWord::Slices3d),
+            technique: Some(Technique::Slices3d),
             ..SamplingFlags::default()
         };
         let refused = section.settings(&slices, Depth::Eight);

@@ -1,216 +1,66 @@
-//! The words that flags of sampling take, built or not, and what they stand for.
+//! What settings choose, as options and scene files name it: by the tables of [`Named`].
 
 use crate::{
+    named::Named,
     picture::ColorSpace,
     technique::{Filter, FilterBy, Lattice, Mode, Order, Technique},
 };
-use clap::ValueEnum;
-use serde::{Deserialize, Serialize};
+use clap::{ValueEnum, builder::PossibleValue};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
-/// Every word of `--technique`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "the names say it")]
-pub enum TechniqueWord {
-    #[default]
-    Raycast,
-    #[value(name = "slices-3d")]
-    #[serde(rename = "slices-3d")]
-    Slices3d,
-    #[value(name = "slices-2d")]
-    #[serde(rename = "slices-2d")]
-    Slices2d,
-}
+/// Options and scene files take these values.
+macro_rules! by_name {
+    ($($of:ty: $values:expr,)*) => {$(
+        impl ValueEnum for $of {
+            fn value_variants<'a>() -> &'a [Self] {
+                $values
+            }
 
-impl TechniqueWord {
-    /// What it stands for.
-    pub fn technique(self) -> Technique {
-        match self {
-            Self::Raycast => Technique::Raycast,
-            Self::Slices3d => Technique::Slices3d,
-            Self::Slices2d => Technique::Slices2d,
+            fn to_possible_value(&self) -> Option<PossibleValue> {
+                let value = PossibleValue::new(self.name());
+                Some(match self.about() {
+                    "" => value,
+                    about => value.help(about),
+                })
+            }
         }
-    }
-}
 
-/// Every word of `--mode`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "the names say it")]
-pub enum ModeWord {
-    /// Colours and opacities blended from the eye on
-    #[default]
-    Composite,
-    /// The maximum along each ray (maximum intensity projection)
-    Mip,
-    /// The minimum along each ray
-    Minip,
-    /// The mean along each ray
-    Average,
-    /// The integral along each ray, value times world length
-    Xray,
-    /// The first local maximum over a threshold
-    Lmip,
-    /// The maximum of values that fade behind others
-    AttenuatedMip,
-    /// Composite in which a new maximum clears what lies before it
-    Mida,
-    /// Surfaces where the volume has a value, or several
-    Iso,
-}
-
-impl ModeWord {
-    /// What it stands for.
-    pub fn mode(self) -> Mode {
-        match self {
-            Self::Composite => Mode::Composite,
-            Self::Mip => Mode::Mip,
-            Self::Minip => Mode::Minip,
-            Self::Average => Mode::Average,
-            Self::Xray => Mode::Xray,
-            Self::Lmip => Mode::Lmip,
-            Self::AttenuatedMip => Mode::AttenuatedMip,
-            Self::Mida => Mode::Mida,
-            Self::Iso => Mode::Iso,
+        impl Serialize for $of {
+            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                serializer.serialize_str(self.name())
+            }
         }
-    }
+
+        impl<'de> Deserialize<'de> for $of {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                of_name(&String::deserialize(deserializer)?)
+            }
+        }
+    )*};
 }
 
-/// Every word of `--filter`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "the names say it")]
-pub enum FilterWord {
-    Nearest,
-    #[default]
-    Linear,
-    #[value(help = "quadratic B-spline through the voxels")]
-    Quadratic,
-    #[value(help = "cubic B-spline through the voxels, the most exact")]
-    Cubic,
-    #[value(help = "quadratic B-spline of the voxels: never rings, blurs more than linear")]
-    QuadraticSmooth,
-    #[value(help = "cubic B-spline of the voxels: never rings, blurs most")]
-    CubicSmooth,
-    #[value(help = "Catmull-Rom cubic through the voxels")]
-    CatmullRom,
+by_name! {
+    Technique: Self::ALL,
+    Mode: Self::ALL,
+    Filter: Self::ALL,
+    FilterBy: Self::ALL,
+    // `--jitter` chooses the third.
+    Lattice: &[Self::Ray, Self::Planes],
+    Order: Self::ALL,
+    ColorSpace: Self::ALL,
 }
 
-impl FilterWord {
-    /// The flag with this word.
-    pub fn said(self) -> String {
-        let name = self.to_possible_value();
-        format!(
-            "--filter {}",
-            name.as_ref().map_or("", |name| name.get_name())
-        )
-    }
-
-    /// The word for this filter.
-    pub fn of(filter: Filter) -> Self {
-        let word = Self::value_variants()
+fn of_name<T: Named + ValueEnum, E: Error>(found: &str) -> Result<T, E> {
+    let values = T::value_variants();
+    let value = values.iter().find(|value| value.name() == found);
+    value.copied().ok_or_else(|| {
+        let names: Vec<_> = values
             .iter()
-            .find(|word| word.filter() == filter);
-        *word.expect("every filter has a word")
-    }
-
-    /// What it stands for.
-    pub fn filter(self) -> Filter {
-        match self {
-            Self::Nearest => Filter::Nearest,
-            Self::Linear => Filter::Linear,
-            Self::Quadratic => Filter::Quadratic,
-            Self::Cubic => Filter::Cubic,
-            Self::QuadraticSmooth => Filter::QuadraticSmooth,
-            Self::CubicSmooth => Filter::CubicSmooth,
-            Self::CatmullRom => Filter::CatmullRom,
-        }
-    }
-}
-
-/// Every word of `--filter-by`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "the names say it")]
-pub enum FilterByWord {
-    #[default]
-    #[value(
-        help = "fetch for rays where the driver is llvmpipe, whose sampler is slower; else sampler"
-    )]
-    Auto,
-    #[value(help = "the device's sampler, whose weights have some 8 bits on graphics cards")]
-    Sampler,
-    #[value(help = "the shader, with weights in floats")]
-    Fetch,
-}
-
-impl FilterByWord {
-    /// What it stands for.
-    pub fn filter_by(self) -> FilterBy {
-        match self {
-            Self::Auto => FilterBy::Auto,
-            Self::Sampler => FilterBy::Sampler,
-            Self::Fetch => FilterBy::Fetch,
-        }
-    }
-}
-
-/// Every word of `--lattice`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "the names say it")]
-pub enum LatticeWord {
-    #[default]
-    Ray,
-    Planes,
-}
-
-impl LatticeWord {
-    /// What it stands for.
-    pub fn lattice(self) -> Lattice {
-        match self {
-            Self::Ray => Lattice::Ray,
-            Self::Planes => Lattice::Planes,
-        }
-    }
-}
-
-/// Every word of `--order`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "the names say it")]
-pub enum OrderWord {
-    #[default]
-    BackToFront,
-    FrontToBack,
-}
-
-impl OrderWord {
-    /// What it stands for.
-    pub fn order(self) -> Order {
-        match self {
-            Self::BackToFront => Order::BackToFront,
-            Self::FrontToBack => Order::FrontToBack,
-        }
-    }
-}
-
-/// Every word of `--color-space`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "the names say it")]
-pub enum ColorSpaceWord {
-    #[default]
-    Linear,
-    Display,
-}
-
-impl ColorSpaceWord {
-    /// What it stands for.
-    pub fn color_space(self) -> ColorSpace {
-        match self {
-            Self::Linear => ColorSpace::Linear,
-            Self::Display => ColorSpace::Display,
-        }
-    }
+            .map(|value| format!("`{}`", value.name()))
+            .collect();
+        let names = names.join(", ");
+        E::custom(format!(
+            "unknown variant `{found}`, expected one of {names}"
+        ))
+    })
 }

@@ -2,8 +2,8 @@
 
 use super::View;
 use crate::cli::flags::{
-    ChannelWord, Classification, ClassificationFlags, ColorWord, FilterWord, Look, SceneFlags,
-    ShadingWord, WindowWord, inlined,
+    ChannelWord, Classification, ClassificationFlags, ColorWord, Look, SceneFlags, ShadingWord,
+    WindowWord, inlined,
 };
 use crate::cli::shown::Shown;
 use crate::scene::{Beside, Channel};
@@ -71,7 +71,7 @@ impl<'a> Chosen<'a> {
             scene.input.keep_all.get_or_insert(false);
         }
         if let (Some(filter), true) = (self.filter, self.function.is_some()) {
-            scene.sampling.filter.get_or_insert(FilterWord::of(filter));
+            scene.sampling.filter.get_or_insert(filter);
         }
         self.keep_colors(&mut scene);
         if scene.light.shading.is_none() && !scene.light.is_lit(self.mode) {

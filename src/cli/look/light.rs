@@ -3,7 +3,7 @@
 //! Two samples a voxel in stills, one in films.
 
 use crate::cli::flags::{
-    Background, Classification, Depth, LightWord, ModeWord, Numbers, SceneFlags, ShadingWord,
+    Background, Classification, Depth, LightWord, Numbers, SceneFlags, ShadingWord,
 };
 use crate::cli::shown::check;
 use crate::look::{
@@ -73,8 +73,8 @@ pub fn with_light(scene: &SceneFlags, seen: Seen, made_for: Use) -> SceneFlags {
 
 /// The mode, where the picture is one of the volume.
 fn mode(scene: &SceneFlags) -> Option<Mode> {
-    let word = scene.sampling.mode.unwrap_or(ModeWord::Composite);
-    scene.section.section.is_none().then(|| word.mode())
+    let word = scene.sampling.mode.unwrap_or(Mode::Composite);
+    scene.section.section.is_none().then_some(word)
 }
 
 fn origin(scene: &SceneFlags) -> Origin {

@@ -20,7 +20,7 @@ pub fn shows_several(scene: &SceneFlags, header: &Header) -> Result<bool, Error>
 
 /// True where words name something that is seen together with the volume.
 pub(super) fn has_beside(scene: &SceneFlags) -> bool {
-    let mode = scene.sampling.mode.unwrap_or_default().mode();
+    let mode = scene.sampling.mode.unwrap_or_default();
     scene.labels.labels.is_some()
         || scene.modes.paint(mode).is_some()
         || scene.opacity.are_given()

@@ -176,10 +176,7 @@ impl Shown {
         if are_several && !settings.mode.is_projection() && settings.filter.kernel().is_some() {
             let filter = scene.sampling.filter.unwrap_or_default();
             return Err(Error::usage(
-                format!(
-                    "{} reads one number a voxel, and several are drawn",
-                    filter.said()
-                ),
+                format!("--filter {filter} reads one number a voxel, and several are drawn"),
                 "--filter linear draws them together",
             ));
         }

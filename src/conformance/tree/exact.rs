@@ -15,7 +15,8 @@ use crate::volume::VoxelType;
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     for placement in PLACEMENTS {
-        for (mode_word, mode) in MODES {
+        for mode in MODES {
+            let mode_word = ground::word_of(mode);
             let Some(word) = placement.word_in(mode) else {
                 continue;
             };

@@ -4,6 +4,7 @@
 use crate::camera::{Camera, Projection};
 use crate::conformance::oracle::Shot;
 use crate::gpu::Item;
+use crate::named::Named;
 use crate::technique::{Filter, FilterBy, Lattice, Mode, Order, Settings, Technique};
 use crate::transfer::{ColorPoint, Interpolation, OpacityPoint, Shape, TransferFunction};
 use crate::volume::{Grid, VoxelType};
@@ -88,12 +89,12 @@ pub const PLACEMENTS: [Placement; 6] = [
 ];
 
 /// The modes that every placement has.
-pub const MODES: [(&str, Mode); 5] = [
-    ("composite", Mode::Composite),
-    ("mip", Mode::Mip),
-    ("minip", Mode::Minip),
-    ("average", Mode::Average),
-    ("xray", Mode::Xray),
+pub const MODES: [Mode; 5] = [
+    Mode::Composite,
+    Mode::Mip,
+    Mode::Minip,
+    Mode::Average,
+    Mode::Xray,
 ];
 
 /// Types that voxels are kept in.
@@ -136,6 +137,11 @@ impl Placement {
             (true, word) => Some(word),
         }
     }
+}
+
+/// A mode in the names of cases.
+pub fn word_of(mode: Mode) -> String {
+    mode.name().replace('-', "_")
 }
 
 /// One picture.

@@ -9,6 +9,7 @@ use crate::conformance::oracle::{
     Chord, FILTERS, Numbers, Open, Part, Seen, Shot, seen, seen_through,
 };
 use crate::conformance::stand::Stand;
+use crate::named::Named;
 use crate::picture::LayerKind;
 use crate::scene::{Beside, Channel};
 use crate::technique::{
@@ -125,18 +126,18 @@ pub fn cases() -> Vec<Case> {
         all.push((rays, mode, Look::Exact, linear));
     }
     all.push((rays, MODES[0], Look::SteadyLamps, linear));
-    for mode in [
-        ("lmip", Mode::Lmip),
-        ("attenuated_mip", Mode::AttenuatedMip),
-        ("mida", Mode::Mida),
-    ] {
+    for &mode in Mode::ALL.iter().filter(|mode| mode.needs_rays()) {
+        if mode == Mode::Iso {
+            continue;
+        }
         all.extend(FILTERS.map(|filter| (rays, mode, Look::Waves, filter)));
-        if mode.1 == Mode::Mida {
+        if mode == Mode::Mida {
             all.push((rays, mode, Look::Lamps, linear));
         }
     }
     let mut cases = Vec::new();
-    for (placement, (mode_word, mode), look, (filter_word, filter)) in all {
+    for (placement, mode, look, (filter_word, filter)) in all {
+        let mode_word = ground::word_of(mode);
         let Some(of) = placement.word_in(mode) else {
             continue;
         };

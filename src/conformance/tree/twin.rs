@@ -10,6 +10,7 @@ use crate::conformance::case::{Case, Profile, Stop};
 use crate::conformance::measurement::{Bound, Measurement, Pictures};
 use crate::conformance::oracle::Shot;
 use crate::conformance::stand::Stand;
+use crate::named::Named;
 use crate::offscreen::reference;
 use crate::picture::ColorSpace;
 use crate::technique::{Filter, Level, Mode, Shading};
@@ -77,7 +78,8 @@ pub fn cases() -> Vec<Case> {
         .map(|f| (f.0, f.1));
     let filters: Vec<_> = fetched.chain(wide).collect();
     for placement in PLACEMENTS {
-        for (word, mode) in MODES {
+        for mode in MODES {
+            let word = &ground::word_of(mode);
             for &filter in &filters {
                 add(placement, word, mode, filter, Look::Plain);
             }
@@ -105,12 +107,8 @@ pub fn cases() -> Vec<Case> {
         );
     }
     let rays = PLACEMENTS[0];
-    for (word, mode) in [
-        ("lmip", Mode::Lmip),
-        ("attenuated_mip", Mode::AttenuatedMip),
-        ("iso", Mode::Iso),
-        ("mida", Mode::Mida),
-    ] {
+    for &mode in Mode::ALL.iter().filter(|mode| mode.needs_rays()) {
+        let word = &ground::word_of(mode);
         for &filter in filters.iter().filter(|filter| filter.1 != Filter::Nearest) {
             add(rays, word, mode, filter, Look::Plain);
         }

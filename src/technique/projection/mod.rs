@@ -3,7 +3,6 @@
 pub mod exact;
 pub mod reference;
 
-use super::inputs::mode_word;
 use super::ray_tiles::{Nothing, TilePass};
 use super::{Inputs, Mode, RayBindings, RayTiles, Words};
 use crate::gpu::{Error, Gpu, Image, Resource, Tile};
@@ -29,7 +28,10 @@ impl Projection {
             lattice,
             ..
         } = words;
-        let name = format!("projection.{}.{lattice}.{filter}.{holes}", mode_word(mode));
+        let name = format!(
+            "projection.{}.{lattice}.{filter}.{holes}",
+            mode.shader_key()
+        );
         Self::of_shader(gpu, words.shader(&name))
     }
 
@@ -38,7 +40,7 @@ impl Projection {
     /// # Errors
     /// Where the device refuses.
     pub fn exact(gpu: &Arc<Gpu>, mode: Mode, words: &Words) -> Result<Self, Error> {
-        let name = format!("projection_cells.{}.{}", mode_word(mode), words.holes);
+        let name = format!("projection_cells.{}.{}", mode.shader_key(), words.holes);
         Self::of_shader(gpu, shader(&name))
     }
 

@@ -2,7 +2,6 @@
 
 pub mod reference;
 
-use super::inputs::mode_word;
 use super::ray_tiles::{Nothing, TilePass};
 use super::{Inputs, Mix, Mode, RayBindings, RayTiles, Take, Words};
 use crate::gpu::{Error, Gpu, Image, Resource, Tile};
@@ -46,7 +45,7 @@ impl Raycast {
             && *transfer != "points"
             && !matches!(*filter, "kernel" | "spline");
         let mix = if has_lean { *mix } else { mix.general() };
-        let mode = mode_word(of);
+        let mode = of.shader_key();
         let name = match take {
             _ if of == Mode::Iso && mix == Mix::Channels => {
                 format!("isosurface.by.{filter}.{holes}")

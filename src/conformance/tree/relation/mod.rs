@@ -19,22 +19,10 @@ mod pair;
 
 use super::ground::{self, PLACEMENTS, PROJECTIONS, Placement};
 use crate::conformance::case::{Case, Profile};
+use crate::named::Named;
 use crate::technique::{Lattice, Mode, Order};
 use crate::volume::VoxelType;
 pub use kinds::Kind;
-
-/// Modes of which something must stay as it is, on rays.
-const MODES: [(&str, Mode); 9] = [
-    ("composite", Mode::Composite),
-    ("xray", Mode::Xray),
-    ("mip", Mode::Mip),
-    ("minip", Mode::Minip),
-    ("average", Mode::Average),
-    ("lmip", Mode::Lmip),
-    ("attenuated_mip", Mode::AttenuatedMip),
-    ("iso", Mode::Iso),
-    ("mida", Mode::Mida),
-];
 
 /// Every relation for every placement, mode and projection that has it.
 pub fn cases() -> Vec<Case> {
@@ -42,13 +30,14 @@ pub fn cases() -> Vec<Case> {
     for placement in PLACEMENTS {
         for (projection, is_perspective) in PROJECTIONS {
             for (word, kind) in Kind::ALL {
-                for (mode_word, mode) in MODES {
+                for &mode in Mode::ALL {
                     let Some(of) = placement.word_in(mode) else {
                         continue;
                     };
                     if !has(placement, mode) || !kind.is_for(placement, mode) {
                         continue;
                     }
+                    let mode_word = ground::word_of(mode);
                     let name = format!("relation.{word}.{of}.{mode_word}.{projection}");
                     let mut case = Case::new(name, move |stand| {
                         pair::measure(stand, kind, placement, mode, is_perspective)
