@@ -20,8 +20,8 @@ use super::{
     flags::{InputFlags, SceneFlags},
 };
 use crate::{
-    resident::{Corners, KeptGradients, TextureLayout},
-    technique::{FilterBy, GradientSource, Keep, LightPlan, Settings, Technique},
+    resident::{Corners, KeptGradients},
+    technique::{FilterBy, GradientSource, Keep, LightPlan, Settings},
     volume::{Header, Reduced, Source, Volume, VoxelType},
 };
 use serde::Serialize;
@@ -90,10 +90,7 @@ impl RenderBytes {
             all.device = all.device.saturating_add(kept);
         }
         // A texture beside the values, without a mask of its own.
-        let layout = match filters.technique {
-            Technique::Slices2d => TextureLayout::Stack(0),
-            _ => TextureLayout::Texture3d,
-        };
+        let layout = filters.technique.desc().layouts[0];
         let beside = match filters.gradient_source_beside(layout) {
             None => return all,
             Some(GradientSource::Voxels) => Self {

@@ -15,7 +15,7 @@ use crate::{
     offscreen::{self, Ceilings, Kept, Stream, reference},
     picture::{LayerKind, Picture},
     scene::{Beside, Scene},
-    technique::{Filter, Mode, Role, Settings, Technique},
+    technique::{Filter, Mode, Role, Settings},
     volume::{Denoise, Volume, labels::labels_of},
 };
 use std::panic::resume_unwind;
@@ -449,7 +449,7 @@ fn check_layers(job: &Job) -> Result<(), Error> {
             LayerKind::Value if !mode.has_value() => "a mode with one value, such as --mode mip",
             LayerKind::Transmittance if mode.is_projection() => "--mode composite",
             LayerKind::Depth | LayerKind::Position | LayerKind::Normal | LayerKind::Label
-                if technique != Technique::Raycast =>
+                if !technique.casts_rays() =>
             {
                 "--technique raycast"
             }

@@ -6,7 +6,7 @@ use crate::offscreen::Renderer;
 use crate::picture::{LayerKind, Picture};
 use crate::scene::Scene;
 use crate::technique::blend::Drawn;
-use crate::technique::{self, Settings, Technique, merge};
+use crate::technique::{self, Settings, merge};
 
 type Make = Box<dyn FnMut(Lower) -> Result<Headless, gpu::Error>>;
 
@@ -69,7 +69,7 @@ impl Stand {
     /// # Errors
     /// Where there is no device and should be.
     pub fn is_merged(&mut self, settings: &Settings) -> Result<bool, gpu::Error> {
-        if self.draw.is_some() || settings.technique == Technique::Raycast {
+        if self.draw.is_some() || settings.technique.casts_rays() {
             return Ok(false);
         }
         let drawn = Drawn::Picture(settings.mode);

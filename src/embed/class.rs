@@ -3,7 +3,7 @@
 use super::Error;
 use crate::camera::{Camera, HostDepth};
 use crate::gpu::TargetClass;
-use crate::technique::{self, Mode, Order, Settings, Sight, Technique};
+use crate::technique::{self, Mode, Order, Settings, Sight};
 use ash::vk;
 
 /// What a renderer is made for: all that pipelines and images hang on.
@@ -95,7 +95,7 @@ impl Class {
     /// Refuses by name what is not drawn inside a host's frame.
     pub(super) fn check(&self) -> Result<(), Error> {
         let settings = &self.settings;
-        let is_sliced = settings.technique != Technique::Raycast;
+        let is_sliced = !settings.technique.casts_rays();
         let is_in_target = self.slice_blending == SliceBlending::InTarget;
         let refused = [
             (
@@ -176,13 +176,13 @@ impl Class {
 
     /// Whether the renderer reads the host's depth from images.
     pub fn reads_host_depth(&self) -> bool {
-        let has_rays = self.settings.technique == Technique::Raycast || self.gives_depth;
+        let has_rays = self.settings.technique.casts_rays() || self.gives_depth;
         self.host_depth && (has_rays || self.gathers())
     }
 
     /// Whether slices are gathered in an image of our own.
     pub(super) fn gathers(&self) -> bool {
-        let is_sliced = self.settings.technique != Technique::Raycast;
+        let is_sliced = !self.settings.technique.casts_rays();
         is_sliced && self.slice_blending == SliceBlending::Float
     }
 

@@ -6,7 +6,7 @@ use crate::gpu::{Blend, Gpu};
 use crate::resolve::{DepthResolve, Resolve};
 use crate::technique::blend::Drawn;
 use crate::technique::slices_3d::HalfAngleSlicer;
-use crate::technique::{Mix, RayPass, SliceGather, Slicer, Technique, Words};
+use crate::technique::{Mix, RayPass, SliceGather, Slicer, Words};
 use std::sync::Arc;
 
 /// How a picture comes into the host's rendering, and its depth.
@@ -38,7 +38,7 @@ impl Pass {
     pub fn new(gpu: &Arc<Gpu>, class: &Class, words: &Words, mix: Mix) -> Result<Self, Error> {
         let (settings, target) = (&class.settings, class.target);
         let (mode, technique, order) = (settings.mode, settings.technique, settings.order);
-        let is_sliced = technique != Technique::Raycast;
+        let is_sliced = !technique.casts_rays();
         let slices = || -> Result<Slices, crate::gpu::Error> {
             let (drawn, sight) = (Drawn::Picture(mode), class.sight());
             Ok(match class.slice_blending {

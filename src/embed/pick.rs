@@ -3,7 +3,7 @@
 use super::frame::PICK_BYTES;
 use super::{Error, Renderer};
 use crate::gpu::{Region, Use, buffer_barrier, image_barrier, image_to_buffer};
-use crate::technique::{Mode, Technique};
+use crate::technique::Mode;
 use crate::volume::{Volume, sample::nearest};
 use ash::vk;
 use glam::DVec3;
@@ -124,7 +124,7 @@ impl Renderer {
                     Mode::Composite => !settings.preintegrated,
                     _ => mode == Mode::Iso,
                 };
-                let is_whole = settings.technique == Technique::Raycast;
+                let is_whole = settings.technique.casts_rays();
                 let value = has_value.then_some(layers[0]);
                 (layers[1], value, is_whole.then_some(picture))
             }

@@ -7,7 +7,7 @@ use super::upload::Upload;
 use crate::gpu::Gpu;
 use crate::resident::{Apron, Corners, GpuVolume, MacroCells, Texels, TextureLayout, VolumePlan};
 use crate::shaders::CELL_VOXELS;
-use crate::technique::{FilterBy, GradientSource, Keep, Mix, Settings, Technique, View};
+use crate::technique::{FilterBy, GradientSource, Keep, Mix, Settings, View};
 use crate::volume::{self, Coefficients, Grid, Rescale, VoxelType};
 use std::sync::Arc;
 
@@ -29,7 +29,7 @@ pub struct Volume {
 
 impl Volume {
     /// Textures for `voxels`, and a staging buffer that holds them: one texture, or the three stacks of
-    /// [`Technique::Slices2d`].
+    /// 2D slices.
     ///
     /// # Errors
     /// Where the device gives no memory; [`Error::NotEmbedded`] for gradients that are to be kept; a
@@ -55,7 +55,7 @@ impl Volume {
             bytes,
         )?;
         let (mut copies, mut upload) = (Vec::new(), Upload::default());
-        for layout in layouts_of(settings) {
+        for &layout in settings.technique.desc().layouts {
             let copy = copy(gpu, voxels, settings, layout, &mut upload)?;
             copies.push(copy);
         }
@@ -70,7 +70,7 @@ impl Volume {
             updates: Arc::default(),
         };
         made.keep_corners(gpu, voxels, settings)?;
-        if settings.technique == Technique::Raycast && settings.skip {
+        if settings.technique.casts_rays() && settings.skip {
             made.know_empty_space(gpu, voxels, settings)?;
         }
         Ok(made)
@@ -93,7 +93,7 @@ impl Volume {
             staging_bytes: 0,
             bricks: 0,
         };
-        for layout in layouts_of(settings) {
+        for &layout in settings.technique.desc().layouts {
             let spline = settings.filter.spline();
             let values = spline.map_or(stored, |_| VoxelType::F32);
             let beside = settings.gradient_source_beside(layout);
@@ -106,7 +106,7 @@ impl Volume {
                 all.bricks = all.bricks.max(one.bricks);
             }
         }
-        let is_raycast = settings.technique == Technique::Raycast;
+        let is_raycast = settings.technique.casts_rays();
         let is_one = all.bricks == 1;
         if is_one && wants_corners(gpu, stored, dims, settings) {
             all.device_bytes += Corners::bytes_of(stored, dims).unwrap_or_default();
@@ -236,14 +236,6 @@ fn wants_corners(gpu: &Gpu, stored: VoxelType, dims: [u32; 3], settings: &Settin
         && settings.filter.spline().is_none()
         && settings.reads_corners(Mix::Alone)
         && Corners::are_for_such(gpu, stored, dims)
-}
-
-/// How it lies on the device: a stack for each axis that the eye may look along, or one texture.
-fn layouts_of(settings: &Settings) -> Vec<TextureLayout> {
-    match settings.technique {
-        Technique::Slices2d => (0..3).map(TextureLayout::Stack).collect(),
-        Technique::Raycast | Technique::Slices3d => vec![TextureLayout::Texture3d],
-    }
 }
 
 /// One copy of the volume, with what fills it: voxels or coefficients, and what gradients are made of beside.

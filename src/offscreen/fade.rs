@@ -4,12 +4,12 @@
 use super::{Error, Rendered, Renderer};
 use crate::picture::{LayerKind, Picture};
 use crate::scene::Scene;
+use crate::technique::Settings;
 use crate::technique::slices_2d::stack_shares;
-use crate::technique::{Settings, Technique};
 
 /// The settings of each stack that is seen, and its share; none where one stack makes the picture.
 pub fn stacks_of(scene: &Scene) -> Vec<(Settings, f64)> {
-    if scene.settings.technique != Technique::Slices2d {
+    if !scene.settings.technique.draws_stacks() {
         return Vec::new();
     }
     let shares = stack_shares(&scene.view(&scene.volume.grid(), [0.0; 2]));

@@ -9,7 +9,7 @@ use crate::resolve::reference::projected_value;
 use crate::scene::Scene;
 use crate::technique::composite::Composite;
 use crate::technique::isosurface::Surfaces;
-use crate::technique::{Error, Mode, Technique};
+use crate::technique::{Error, Mode};
 use crate::transfer::{Classified, TransferFunction, Window};
 
 /// What a technique leaves for one pixel, before it is resolved.
@@ -86,7 +86,7 @@ pub(super) fn layers<R: Real>(
     if mode == Mode::Iso {
         layers.push(layer(LayerKind::Value, &|g| number(g.level)));
     }
-    if scene.settings.technique == Technique::Raycast {
+    if scene.settings.technique.casts_rays() {
         let depth = layer(LayerKind::Depth, &|g| number(g.depth));
         if mode.has_depth() {
             layers.push(Layer {

@@ -67,12 +67,12 @@ impl Passes {
         let Settings {
             technique, mode, ..
         } = *settings;
-        let gather = match technique {
-            Technique::Raycast => Gather::Rays(RayPass::new(gpu, settings, words)?),
-            Technique::Slices3d if settings.is_half_angle() => {
+        let gather = match technique.casts_rays() {
+            true => Gather::Rays(RayPass::new(gpu, settings, words)?),
+            false if settings.is_half_angle() => {
                 Gather::HalfAngle(HalfAngleSlicer::new(gpu, words)?)
             }
-            Technique::Slices3d | Technique::Slices2d => {
+            false => {
                 let drawn = Drawn::Picture(mode);
                 Gather::Slices(Slicing::new(gpu, settings, drawn, words, is_patched)?)
             }

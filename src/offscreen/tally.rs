@@ -4,7 +4,7 @@ use super::Error;
 use super::position::label_map;
 use crate::picture::LayerKind;
 use crate::scene::Scene;
-use crate::technique::{Filter, Mix, Mode, Settings, Technique};
+use crate::technique::{Filter, Mix, Mode, Settings};
 
 /// Blending keeps no depth, a projection no transmittance, and a composite has no one value.
 pub fn check_layers(scene: &Scene, wanted: &[LayerKind]) -> Result<(), Error> {
@@ -21,14 +21,12 @@ pub fn check_layers(scene: &Scene, wanted: &[LayerKind]) -> Result<(), Error> {
                 false
             }
             LayerKind::Value => mode.has_value(),
-            LayerKind::Depth => technique == Technique::Raycast,
-            LayerKind::Position | LayerKind::Normal => {
-                technique == Technique::Raycast && mode.has_depth()
-            }
+            LayerKind::Depth => technique.casts_rays(),
+            LayerKind::Position | LayerKind::Normal => technique.casts_rays() && mode.has_depth(),
             LayerKind::Transmittance => !mode.is_projection(),
             LayerKind::Samples => true,
             LayerKind::Annotation => false,
-            LayerKind::Label => technique == Technique::Raycast && mode.has_depth() && !is_sum,
+            LayerKind::Label => technique.casts_rays() && mode.has_depth() && !is_sum,
         };
         if !is_there {
             return Err(Error::NoLayer {

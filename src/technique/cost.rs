@@ -1,6 +1,6 @@
 //! What work will take, guessed before anything like it was measured: rather too much than too little.
 
-use super::{MAX_SAMPLES_PER_RAY, Mode, Settings, Technique, View};
+use super::{MAX_SAMPLES_PER_RAY, Mode, Settings, View};
 use crate::gpu::{Gpu, TARGET_MS};
 use crate::resident::Cell;
 use glam::DVec3;
@@ -63,10 +63,10 @@ fn looks_of_pixels(view: &View, slices: u32) -> impl Iterator<Item = f64> {
             voxel_from_world.transform_point3(origin),
             voxel_from_world.transform_vector3(direction),
         ) * direction.length();
-        let samples = match settings.technique {
-            Technique::Raycast => (length / view.step_world()).min(MAX_SAMPLES_PER_RAY.into()),
-            _ if length > 0.0 => slices.into(),
-            _ => 0.0,
+        let samples = match settings.technique.casts_rays() {
+            true => (length / view.step_world()).min(MAX_SAMPLES_PER_RAY.into()),
+            false if length > 0.0 => slices.into(),
+            false => 0.0,
         };
         samples * looks_of_sample(settings)
     })

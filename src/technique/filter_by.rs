@@ -6,7 +6,7 @@
 //! corners    the same, on devices that compute on the CPU, from four words beside the texture or in its place (`resident::Corners`)
 //! ```
 
-use super::{Filter, Keep, Mix, Operator, Settings, Technique};
+use super::{Filter, Keep, Mix, Operator, Settings};
 
 /// A wish for one of them. Conformance pictures fetch, whatever is wished.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -27,7 +27,7 @@ impl Settings {
     /// and of view-aligned slices, linear.
     pub fn reads_corners(&self, mix: Mix) -> bool {
         let is_point = !self.preintegrated && !self.conformance;
-        let has_such = self.technique != Technique::Slices2d && !self.is_half_angle();
+        let has_such = !self.technique.draws_stacks() && !self.is_half_angle();
         let is_wished = self.filter_by != FilterBy::Sampler;
         mix.is_of_one() && has_such && is_point && is_wished && self.filter == Filter::Linear
     }

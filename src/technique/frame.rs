@@ -6,7 +6,7 @@
 
 use super::blend::extreme_sign;
 use super::shading::set_shading;
-use super::{Filter, InPixel, MAX_SAMPLES_PER_RAY, Settings, Technique};
+use super::{Filter, InPixel, MAX_SAMPLES_PER_RAY, Settings};
 use crate::camera::{Camera, Rays};
 use crate::picture::ColorSpace;
 use crate::resident::{Cell, Coding, TransferLayout, front_to_back, front_to_back_by_rows};
@@ -304,7 +304,7 @@ impl View<'_> {
 
     /// A 2D stack takes one sample a slice, whatever the step.
     fn check_sample_count(&self) -> Result<(), Error> {
-        if self.settings.technique == Technique::Slices2d {
+        if self.settings.technique.draws_stacks() {
             return Ok(());
         }
         let wanted = self.longest_sample_count();

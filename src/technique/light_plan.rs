@@ -37,7 +37,7 @@ pub enum Shadows {
         /// How wide a light looks from the surface: 0 for sharp shadows, the sun 0.5.
         light_size_degrees: f64,
     },
-    /// Composite by [`super::Technique::Slices3d`], of one volume in one texture: slices half way between eye and
+    /// Composite by view-aligned slices, of one volume in one texture: slices half way between eye and
     /// light, drawn into the picture and into what the light sees ([`super::slices_3d::HalfAngleSlicer`]).
     HalfAngle,
 }

@@ -36,6 +36,7 @@ mod ray_pass;
 mod ray_tiles;
 pub mod raycast;
 mod recording;
+mod registry;
 pub mod second;
 pub mod shading;
 mod skip;

@@ -53,10 +53,8 @@ impl PatchSlicer {
         words: &Words,
         format: vk::Format,
     ) -> Result<Self, Error> {
-        let (name, list) = match technique {
-            Technique::Slices3d => ("slices_3d", "slice_patches.view"),
-            Technique::Slices2d | Technique::Raycast => ("slices_2d", "slice_patches.stack"),
-        };
+        let shaders = technique.slice_shaders();
+        let (name, list) = (shaders.fragment, shaders.patch_list);
         let has_points = gpu.draws_squares_as_points(MOST_POINT_PIXELS)
             && gpu
                 .limits()

@@ -7,7 +7,7 @@
 //! The list is made on the device (`shaders/slice_patches.wgsl`) and drawn by [`super::PatchSlicer`]. Squares are of
 //! whole pixels, so each fragment belongs to one, and the picture is the same to the bit.
 
-use super::{Technique, View};
+use super::View;
 use crate::gpu::{Buffer, Error, Gpu, Memory, Use, buffer_barrier};
 use crate::resident::Apron;
 use crate::shaders::{BATCH_LAYERS, BLOCK_SIDE, LARGEST_BLOCK, LAYER_SLICES, MOST_POINT_PIXELS};
@@ -52,11 +52,11 @@ impl PatchRoom {
 impl View<'_> {
     /// What lists of this picture need; `None` where they would be too long, or the picture has no slices.
     pub fn patch_room(&self) -> Option<PatchRoom> {
-        let slices = match self.settings.technique {
-            Technique::Raycast => return None,
-            Technique::Slices3d => self.longest_sample_count(),
-            Technique::Slices2d => self.longest_stack(),
-        };
+        let desc = self.settings.technique.desc();
+        if desc.casts_rays {
+            return None;
+        }
+        let slices = (desc.longest_sample_count)(self);
         // One more at each end.
         let batches = (slices + 2.0) / f64::from(BATCH_SLICES);
         let room = PatchRoom {

@@ -1,6 +1,6 @@
 //! What single modes want to know beside the words that all of them share.
 
-use super::{Error, Filter, Lattice, Mode, Settings, Technique};
+use super::{Error, Filter, Lattice, Mode, Settings};
 use crate::real::Real;
 use crate::shaders::{Frame, MAX_LEVELS};
 
@@ -124,19 +124,19 @@ impl Settings {
         self.check_gradient_filter()?;
         self.check_light()?;
         let (technique, mode) = (self.technique, self.mode);
-        if technique != Technique::Raycast && mode.needs_rays() {
+        if !technique.casts_rays() && mode.needs_rays() {
             return Err(Error::NeedsRays { technique, mode });
         }
         if self.lattice == Lattice::Planes && mode.needs_rays() {
             return Err(Error::NeedsRayLattice { mode });
         }
-        let has_depth = technique == Technique::Raycast && mode.projects_one_place();
+        let has_depth = technique.casts_rays() && mode.projects_one_place();
         if self.per_mode.depth_cue != 0.0 && !has_depth {
             return Err(Error::NoDepth { technique, mode });
         }
         let is_trilinear = self.filter == Filter::Linear;
         let has_extreme = matches!(mode, Mode::Mip | Mode::Minip);
-        let is_along_rays = technique == Technique::Raycast && self.lattice == Lattice::Ray;
+        let is_along_rays = technique.casts_rays() && self.lattice == Lattice::Ray;
         if self.per_mode.exact_maximum && !(is_trilinear && has_extreme && is_along_rays) {
             return Err(Error::NotExact { technique, mode });
         }

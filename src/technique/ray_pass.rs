@@ -2,7 +2,7 @@
 
 use super::projection::Projection;
 use super::raycast::Raycast;
-use super::{Inputs, Mix, RayBindings, RayTiles, Settings, Technique, Words};
+use super::{Inputs, Mix, RayBindings, RayTiles, Settings, Words};
 use crate::gpu::{Error, Gpu, Image, Resource, Tile};
 use ash::vk;
 use std::sync::Arc;
@@ -44,13 +44,13 @@ impl RayPass {
         mix: Mix,
     ) -> Result<Self, Error> {
         let words = Words { mix, ..*words };
-        let words = match settings.technique {
-            Technique::Slices2d => Words {
+        let words = match settings.technique.draws_stacks() {
+            true => Words {
                 lattice: "stack",
                 transfer: "table",
                 ..words
             },
-            Technique::Slices3d | Technique::Raycast => Words {
+            false => Words {
                 lattice: "planes",
                 ..words
             },

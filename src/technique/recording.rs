@@ -7,9 +7,7 @@
 //! ```
 
 use super::mixture::{Part, set_channels};
-use super::slices_2d::{set_slices, stack_axis};
-use super::slices_3d::set_planes;
-use super::{Error, Order, Technique, View};
+use super::{Error, Order, View};
 use crate::blue_noise::BLUE_NOISE;
 use crate::camera::{HostDepth, Nearer};
 use crate::gpu::{self, Gpu, ParameterRing};
@@ -45,10 +43,7 @@ enum Walk {
 impl View<'_> {
     /// How the volume must lie in textures for the technique seen from here: 2D slicing changes stacks.
     pub fn texture_layout(&self) -> TextureLayout {
-        match self.settings.technique {
-            Technique::Raycast | Technique::Slices3d => TextureLayout::Texture3d,
-            Technique::Slices2d => TextureLayout::Stack(stack_axis(self)),
-        }
+        (self.settings.technique.desc().layout_of)(self)
     }
 
     /// What is recorded for one picture of `volume`, in the order in which it is recorded: compute passes go
@@ -145,7 +140,7 @@ impl View<'_> {
         let eye_cell = self.eye_cell(bricks[0].cell.own.dims());
         sort_front_to_back(order, |i| &bricks[i].cell, eye_cell);
         let settings = self.settings;
-        let is_sliced = settings.technique != Technique::Raycast && walk == Walk::Picture;
+        let is_sliced = !settings.technique.casts_rays() && walk == Walk::Picture;
         if is_sliced && settings.order == Order::BackToFront {
             order.reverse();
         }
@@ -255,14 +250,7 @@ impl View<'_> {
 
     fn recording(&self, brick: usize, cell: Option<&Cell>, mut fields: FrameFields) -> Recording {
         let part = self.part(cell);
-        let slices = match self.settings.technique {
-            Technique::Raycast => 0,
-            Technique::Slices3d => set_planes(self, part, &mut fields),
-            Technique::Slices2d => {
-                self.set_between(&mut fields);
-                set_slices(self, stack_axis(self), part, &mut fields)
-            }
-        };
+        let slices = (self.settings.technique.desc().set_slices)(self, part, &mut fields);
         fields.slice_count = slices;
         Recording {
             brick,

@@ -9,7 +9,7 @@
 //! recording.skip(&skip), Inputs { skip, .. }     for each recording
 //! ```
 
-use super::{Filter, Keep, Mix, Mode, Operator, Order, Recording, Settings, Technique};
+use super::{Filter, Keep, Mix, Mode, Operator, Order, Recording, Settings};
 use crate::resident::{Apron, EmptySpace, MacroCells};
 use crate::transfer::{Alike, Seen, TransferFunction};
 use crate::volume::Grid;
@@ -80,7 +80,7 @@ impl Settings {
         if !self.skip || !is_one {
             return Skippable::Nothing;
         }
-        if self.technique != Technique::Raycast {
+        if !self.technique.casts_rays() {
             return self.skippable_by_slices(function, seen_in);
         }
         match (self.mode, function) {
@@ -122,7 +122,7 @@ impl Settings {
     /// numbers.
     pub fn skippable_in_all(&self, functions: &[(usize, &TransferFunction)]) -> Skippable {
         // Patches of mixed slices cost more than they have been seen to leave out.
-        let is_mixed = self.technique == Technique::Raycast && self.mode == Mode::Composite;
+        let is_mixed = self.technique.casts_rays() && self.mode == Mode::Composite;
         if !self.skip || !is_mixed || self.preintegrated || functions.is_empty() {
             return Skippable::Nothing;
         }

@@ -13,7 +13,7 @@
 //! of it; filter and gradient must find their voxels from there. Bricks hold three voxels around their own.
 
 use super::slices_2d::{planes_per_slice, stack_axis};
-use super::{Error, Filter, Mode, Technique, View};
+use super::{Error, Filter, Mode, View};
 use crate::shaders::FrameFields;
 use glam::DVec3;
 
@@ -42,13 +42,12 @@ impl View<'_> {
         let corners =
             corners.map(|[x, y]| rays.direction + x * rays.direction_dx + y * rays.direction_dy);
         let rows = self.grid.voxel_rows();
-        if self.settings.technique != Technique::Slices2d {
-            let longest = match self.settings.technique {
-                Technique::Slices3d => corners.map(DVec3::length).into_iter().fold(1.0, f64::max),
-                _ if self.settings.lattice == super::Lattice::Planes => {
-                    corners.map(DVec3::length).into_iter().fold(1.0, f64::max)
-                }
-                _ => 1.0,
+        if !self.settings.technique.draws_stacks() {
+            let is_on_planes = !self.settings.technique.casts_rays()
+                || self.settings.lattice == super::Lattice::Planes;
+            let longest = match is_on_planes {
+                true => corners.map(DVec3::length).into_iter().fold(1.0, f64::max),
+                false => 1.0,
             };
             let half = 0.5 * self.step_world() * longest;
             return half * DVec3::from_array(rows.map(|row| row.length()));
@@ -80,7 +79,7 @@ impl View<'_> {
 
     /// How much larger than the domain covers are.
     pub(super) fn cover_reach(&self) -> CoverReach {
-        let is_stack = self.settings.technique == Technique::Slices2d;
+        let is_stack = self.settings.technique.draws_stacks();
         if !self.settings.preintegrated {
             return CoverReach {
                 voxels: DVec3::ZERO,
@@ -89,11 +88,9 @@ impl View<'_> {
         }
         let voxels = self.slab_reach();
         let is_perspective = self.camera.projection.is_perspective();
-        let eye = match (self.settings.technique, is_perspective) {
-            (Technique::Slices2d, _) if !voxels.cmplt(DVec3::splat(STEEPEST)).all() => {
-                f64::from(f32::MAX)
-            }
-            (Technique::Slices2d, true) => voxels[stack_axis(self)] + EYE_IN_PLANE,
+        let eye = match (is_stack, is_perspective) {
+            (true, _) if !voxels.cmplt(DVec3::splat(STEEPEST)).all() => f64::from(f32::MAX),
+            (true, true) => voxels[stack_axis(self)] + EYE_IN_PLANE,
             // A little more than half a step, against rounding.
             (_, true) => 0.51 * self.step_world(),
             (_, false) => 0.0,

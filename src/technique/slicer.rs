@@ -32,8 +32,7 @@ pub struct Slicer {
 }
 
 impl Slicer {
-    /// Compiles the variant of these words for such targets: view-aligned slices for [`Technique::Slices3d`], else the
-    /// slices of a stack. Where the rendering has a depth attachment, what a host has drawn hides what lies behind it
+    /// Compiles the variant of these words for such targets: the slices of `technique`. Where the rendering has a depth attachment, what a host has drawn hides what lies behind it
     /// ([`super::Recording::tested_in`]).
     ///
     /// # Errors
@@ -67,11 +66,8 @@ impl Slicer {
         target: TargetClass,
         sight: Sight,
     ) -> Result<Self, Error> {
-        // Four triangles cover the six corners of a plane in a box, two a rectangle.
-        let (names, vertices_per_slice) = match technique {
-            Technique::Slices3d => (["slices_3d_cover", "slices_3d"], 12),
-            Technique::Slices2d | Technique::Raycast => (["slices_2d_cover", "slices_2d"], 6),
-        };
+        let shaders = technique.slice_shaders();
+        let names = [shaders.cover, shaders.fragment];
         let [vertex, fragment] = drawn.shaders(gpu, names, words, sight);
         let desc = RasterDesc {
             vertex,
@@ -86,7 +82,7 @@ impl Slicer {
         Ok(Self {
             gpu: Arc::clone(gpu),
             pipeline: RasterPipeline::new(gpu, &desc)?,
-            vertices_per_slice,
+            vertices_per_slice: shaders.vertices_per_slice,
         })
     }
 

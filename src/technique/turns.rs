@@ -11,7 +11,7 @@
 //! search for the halvings of the points, light for lamps and for the corners of a cell of the light volume. Clip
 //! planes are gone over once a ray, and once more for cut faces.
 
-use super::{Error, Filter, Keep, Operator, Settings, Take, Technique, View, Words};
+use super::{Error, Filter, Keep, Operator, Settings, Take, View, Words};
 
 /// Of what is rare: surfaces that are refined, the first turns of everything.
 const SPARE: f64 = 2048.0;
@@ -100,7 +100,7 @@ impl View<'_> {
         max_loop_turns: u32,
     ) -> Result<(), Error> {
         // Of a slicer every invocation takes one sample.
-        if self.settings.technique != Technique::Raycast {
+        if !self.settings.technique.casts_rays() {
             return Ok(());
         }
         let wanted = self.longest_sample_count();
@@ -117,10 +117,7 @@ impl View<'_> {
         functions: Functions,
         max_loop_turns: u32,
     ) -> Result<(), Error> {
-        let wanted = match self.settings.technique {
-            Technique::Slices2d => self.longest_stack(),
-            Technique::Slices3d | Technique::Raycast => self.longest_sample_count(),
-        };
+        let wanted = (self.settings.technique.desc().longest_sample_count)(self);
         self.check_loops(words, 1, functions, max_loop_turns, wanted)
     }
 
@@ -141,7 +138,7 @@ impl View<'_> {
         if wanted <= limit {
             return Ok(());
         }
-        let is_by_voxels = self.settings.technique == Technique::Slices2d;
+        let is_by_voxels = self.settings.technique.draws_stacks();
         let samples_per_voxel =
             (!is_by_voxels).then(|| self.settings.samples_per_voxel * limit / wanted);
         Err(Error::LoopsEnd {

@@ -1,6 +1,6 @@
 //! Ways to take samples of their own, and what does not go together with them.
 
-use super::{CutFaces, Error, Lattice, Mode, Settings, Technique};
+use super::{CutFaces, Error, Lattice, Mode, Settings};
 
 impl Settings {
     /// Whether technique and mode have the ways to sample that are asked for.
@@ -9,6 +9,7 @@ impl Settings {
     /// [`Error::NotFor`], [`Error::SeveralShadowLights`], and [`Error::OutOfRange`] for a window that is none.
     pub fn check_ways(&self) -> Result<(), Error> {
         let (mode, technique) = (self.mode, self.technique);
+        let desc = technique.desc();
         let of_mode = |is_on: bool, wanted| match is_on && mode != Mode::Composite {
             true => Err(Error::NotFor {
                 wanted,
@@ -17,7 +18,7 @@ impl Settings {
             }),
             false => Ok(()),
         };
-        let of_technique = |is_on: bool, wanted, right, of| match is_on && technique != right {
+        let of_technique = |is_on: bool, wanted, has: bool, of| match is_on && !has {
             true => Err(Error::NotFor {
                 wanted,
                 of,
@@ -27,17 +28,17 @@ impl Settings {
         };
         let is_jittered = self.lattice == Lattice::Jitter;
         of_mode(self.preintegrated, PREINTEGRATED)?;
-        of_technique(self.smooth, SMOOTH, Technique::Slices2d, "2D stacks")?;
+        of_technique(self.smooth, SMOOTH, desc.draws_stacks, "2D stacks")?;
         of_mode(self.smooth, SMOOTH)?;
-        of_technique(is_jittered, JITTER, Technique::Raycast, "ray casting")?;
+        of_technique(is_jittered, JITTER, desc.casts_rays, "ray casting")?;
         let is_adaptive = self.adaptive_steps.is_some();
-        of_technique(is_adaptive, ADAPTIVE, Technique::Raycast, "ray casting")?;
+        of_technique(is_adaptive, ADAPTIVE, desc.casts_rays, "ray casting")?;
         of_mode(is_adaptive, ADAPTIVE)?;
         if let Some(error) = self.adaptive_steps {
             self.check_adaptive(error)?;
         }
         let is_cut = self.cut_faces.is_some();
-        of_technique(is_cut, CUT_FACES, Technique::Raycast, "ray casting")?;
+        of_technique(is_cut, CUT_FACES, desc.casts_rays, "ray casting")?;
         of_mode(is_cut, CUT_FACES)?;
         if let Some(CutFaces::Grey([low, high])) = self.cut_faces
             && !(low < high && (high - low).is_finite())
@@ -60,7 +61,7 @@ impl Settings {
         if is_half && lights > 1 {
             return Err(Error::SeveralShadowLights { wanted: lights });
         }
-        of_technique(is_half, HALF_ANGLE, Technique::Slices3d, "3D slices")?;
+        of_technique(is_half, HALF_ANGLE, desc.has_half_angle, "3D slices")?;
         of_mode(is_half, HALF_ANGLE)?;
         if is_half && self.filter.kernel().is_some() {
             return Err(Error::NotFor {

@@ -203,7 +203,7 @@ impl Bench {
             shown,
         );
         // Half-angle slices are those of one technique and mode.
-        let has_them = technique == Technique::Slices3d && settings.mode == Mode::Composite;
+        let has_them = technique.desc().has_half_angle && settings.mode == Mode::Composite;
         if let Some(shading) = settings.shading.as_mut().filter(|_| !has_them) {
             shading.shadows = Shadows::Off;
         }

@@ -3,7 +3,7 @@
 use super::{Error, LevelFlags, finite};
 use crate::{
     figure::short,
-    technique::{DEFAULT_ATTENUATION, Filter, Lattice, Mode, PerMode, Settings, Technique},
+    technique::{DEFAULT_ATTENUATION, Filter, Lattice, Mode, PerMode, Settings},
     transfer::{TransferFunction, ValueSummary, Window},
 };
 use clap::Args;
@@ -51,7 +51,7 @@ impl ModeFlags {
             filter,
             ..
         } = *settings;
-        if technique != Technique::Raycast && mode.needs_rays() {
+        if !technique.casts_rays() && mode.needs_rays() {
             return Err(Error::usage(
                 format!(
                     "--mode {mode} needs --technique raycast: in it a sample depends on those before it"
@@ -68,7 +68,7 @@ impl ModeFlags {
             ));
         }
         if self.depth_cue.is_some_and(|cue| cue != 0.0) {
-            if technique != Technique::Raycast {
+            if !technique.casts_rays() {
                 return Err(Error::usage(
                     "--depth-cue needs --technique raycast: blending keeps no depth",
                     "leave out --technique",
@@ -81,7 +81,7 @@ impl ModeFlags {
                 ));
             }
         }
-        let is_along_rays = technique == Technique::Raycast && lattice == Lattice::Ray;
+        let is_along_rays = technique.casts_rays() && lattice == Lattice::Ray;
         let has_extreme = matches!(mode, Mode::Mip | Mode::Minip);
         if self.exact_maximum && !(is_along_rays && has_extreme && filter == Filter::Linear) {
             return Err(Error::usage(
@@ -227,6 +227,7 @@ mod tests {
     use super::*;
     use crate::cli::flags::summary;
     use crate::named::Named;
+    use crate::technique::Technique;
     use crate::volume::{Rescale, Volume, Voxels};
     use glam::DAffine3;
 

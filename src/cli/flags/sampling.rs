@@ -203,7 +203,7 @@ impl SamplingFlags {
 
     /// True where samples lie at steps that --samples-per-voxel sets: not on the slices of plain 2D stacks.
     pub fn has_steps(&self) -> bool {
-        self.smooth || self.technique != Some(Technique::Slices2d)
+        self.smooth || !self.technique.unwrap_or_default().draws_stacks()
     }
 
     /// True where a word says what is classified.
@@ -243,17 +243,17 @@ impl SamplingFlags {
             notes.push("--aa-uneven has no effect on one ray a pixel: --aa 4");
         }
         let technique = self.technique.unwrap_or_default();
-        if self.order.is_some() && technique == Technique::Raycast {
+        if self.order.is_some() && technique.casts_rays() {
             notes.push("--order has no effect on rays, they go front to back");
         }
         let is_cut = self.crop.is_some() || self.clip_box.is_some() || !self.clip.is_empty();
         if self.cut_faces.is_some() && !is_cut {
             notes.push("--cut-faces has no effect without --crop, --clip or --clip-box");
         }
-        if self.lattice == Some(Lattice::Ray) && technique != Technique::Raycast {
+        if self.lattice == Some(Lattice::Ray) && !technique.casts_rays() {
             notes.push("--lattice ray has no effect on slices, they have a lattice of their own");
         }
-        if self.samples_per_voxel.is_some() && technique == Technique::Slices2d && !self.smooth {
+        if self.samples_per_voxel.is_some() && technique.draws_stacks() && !self.smooth {
             notes.push(
                 "--samples-per-voxel has no effect on 2D stacks, they have one sample a slice",
             );

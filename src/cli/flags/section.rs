@@ -15,7 +15,7 @@ use super::{
 use crate::{
     camera::{Camera, Frame, Projection, up_for},
     shaders::MAX_CLIP_PLANES,
-    technique::{ClipPlane, Lattice, Mode, Settings, Technique},
+    technique::{ClipPlane, Lattice, Mode, Settings},
 };
 use clap::Args;
 use glam::DVec3;
@@ -64,7 +64,7 @@ impl SectionFlags {
         if sampling.mode.is_none() {
             settings.mode = Mode::Average;
         }
-        if settings.technique != Technique::Raycast || settings.lattice != Lattice::Ray {
+        if !settings.technique.casts_rays() || settings.lattice != Lattice::Ray {
             return Err(Error::usage(
                 "--section takes its samples on the cut: the lattices of slicers have none there",
                 "leave out --technique and --lattice",
@@ -230,6 +230,7 @@ impl From<Plane> for String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::technique::Technique;
     use crate::volume::Grid;
     use glam::{DAffine3, DMat3, dvec3};
 

@@ -67,7 +67,7 @@ mod tests {
         word.check(&slices()).expect("slices");
         let others = [
             Settings {
-                technique: Technique::Raycast,
+                technique: Technique::default(),
                 ..slices()
             },
             Settings {

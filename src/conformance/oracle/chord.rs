@@ -10,7 +10,7 @@ use super::places::{planes, segments};
 use crate::camera::Camera;
 use crate::scene::Scene;
 use crate::technique::slices_2d::stack_axis;
-use crate::technique::{Lattice, Settings, Technique, View};
+use crate::technique::{Lattice, Settings, View};
 use crate::transfer::TransferFunction;
 use crate::volume::{Grid, Volume};
 use glam::{DAffine3, DVec3};
@@ -139,9 +139,8 @@ impl Shot {
             }
         }
         let h = self.view().step_world();
-        let is_stack = self.settings.technique == Technique::Slices2d;
-        let is_ray =
-            self.settings.technique == Technique::Raycast && self.settings.lattice == Lattice::Ray;
+        let is_stack = self.settings.technique.draws_stacks();
+        let is_ray = self.settings.technique.casts_rays() && self.settings.lattice == Lattice::Ray;
         let n = rays.forward;
         let (height, slope, spacing, of_plane) = if is_stack {
             let k = stack_axis(&self.view());

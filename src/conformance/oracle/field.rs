@@ -9,8 +9,8 @@
 //! are even), as long as no tap lies outside the grid.
 
 use super::chord::{Chord, Shot};
+use crate::technique::Filter;
 use crate::technique::slices_2d::stack_axis;
-use crate::technique::{Filter, Technique};
 use crate::volume::{Rescale, Volume, VoxelType, Voxels};
 use glam::DVec3;
 
@@ -76,7 +76,7 @@ impl Field {
     pub fn sampled(&self, shot: &Shot, chord: &Chord, t: f64) -> Option<(f64, f64)> {
         let mut place = chord.at(t);
         let mut blur = chord.blur_voxels;
-        if shot.settings.technique == Technique::Slices2d {
+        if shot.settings.technique.draws_stacks() {
             let k = stack_axis(&shot.view());
             place[k] = place[k].floor() + 0.5;
             blur[k] = 0.0;

@@ -10,7 +10,6 @@
 
 use super::Shot;
 use crate::technique::Filter;
-use crate::technique::Technique;
 use crate::technique::slices_2d::stack_axis;
 use crate::volume::{Rescale, Volume, Voxels};
 use glam::{DVec3, dvec3};
@@ -98,5 +97,5 @@ fn weight(filter: Filter, d: f64) -> f64 {
 
 /// The axis of the stack that a shot draws, where it draws one.
 pub fn stack_of(shot: &Shot) -> Option<usize> {
-    (shot.settings.technique == Technique::Slices2d).then(|| stack_axis(&shot.view()))
+    (shot.settings.technique.draws_stacks()).then(|| stack_axis(&shot.view()))
 }

@@ -8,7 +8,7 @@ use crate::conformance::measurement::{Bound, Measurement, Pictures};
 use crate::conformance::oracle::{Answer, Classes, Kind, Shot, answer};
 use crate::conformance::stand::Stand;
 use crate::picture::{LayerKind, Picture};
-use crate::technique::{Filter, Mode, Technique};
+use crate::technique::{Filter, Mode};
 use crate::volume::VoxelType;
 
 /// The product.
@@ -89,7 +89,7 @@ impl Of {
         let is_merged = stand.is_merged(&shot.settings)?;
         if is_merged
             && self.kind == Kind::Homogeneous
-            && shot.settings.technique == Technique::Slices3d
+            && shot.settings.technique.desc().has_half_angle
         {
             // More slices than a batch has.
             shot.settings.samples_per_voxel = 3.0;

@@ -124,7 +124,7 @@ pub const PROJECTIONS: [(&str, bool); 2] = [("orthographic", false), ("perspecti
 impl Placement {
     /// True where the rasterizer blends.
     pub fn is_slicer(&self) -> bool {
-        self.technique != Technique::Raycast
+        !self.technique.casts_rays()
     }
 
     /// The first part of names: modes that project have no order.

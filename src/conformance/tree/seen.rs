@@ -14,7 +14,7 @@ use crate::picture::LayerKind;
 use crate::scene::{Beside, Channel};
 use crate::technique::{
     AmbientOcclusion, ClipPlane, Filter, Lattice, Light, LightSpace, Mode, Order, Role, Settings,
-    Shading, Shadows, Technique,
+    Shading, Shadows,
 };
 use crate::transfer::{Graded, OpacityPoint, TransferFunction, Widget};
 use crate::volume::VoxelType;
@@ -200,7 +200,7 @@ fn profile(
         Look::Clipped => is_perspective && matches!(mode, Mode::Composite | Mode::Xray),
         Look::Exact => true,
         Look::Lit | Look::Lamps => is_linear,
-        _ => is_first && is_perspective != (placement.technique == Technique::Slices2d),
+        _ => is_first && is_perspective != (placement.technique.draws_stacks()),
     };
     [Profile::Full, Profile::Baseline][usize::from(is_in)]
 }
@@ -234,7 +234,7 @@ fn draw(
     if !beside.is_empty() {
         scene.beside = Beside::Channels(&beside);
     }
-    let is_by_rays = placement.technique == Technique::Raycast;
+    let is_by_rays = placement.technique.casts_rays();
     let layers: &[LayerKind] = match (mode.is_projection(), is_by_rays && mode.has_depth()) {
         // Its colour shows it.
         (true, _) if mode == Mode::Average => &[],

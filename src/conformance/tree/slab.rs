@@ -11,7 +11,7 @@ use crate::conformance::case::{Case, Profile, Stop};
 use crate::conformance::measurement::Measurement;
 use crate::conformance::oracle::{Chord, Classes, Kind, Seen};
 use crate::conformance::stand::Stand;
-use crate::technique::{Filter, Lattice, Mode, Order, Settings, Technique};
+use crate::technique::{Filter, Lattice, Mode, Order, Settings};
 use crate::transfer::{
     Absorption, ColorPoint, Interpolation, OpacityPoint, SlabTable, TransferFunction,
 };
@@ -78,7 +78,7 @@ fn draw(
         settings.preintegrated = true;
         settings.samples_per_voxel = samples_per_voxel;
         // Stacks with slices of their own keep one a slice.
-        settings.smooth = settings.technique == Technique::Slices2d && samples_per_voxel < 0.4;
+        settings.smooth = settings.technique.draws_stacks() && samples_per_voxel < 0.4;
     });
     let field = Kind::Ramp.field();
     let volume = field.volume(&shot, VoxelType::F32);

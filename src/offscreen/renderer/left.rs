@@ -9,7 +9,7 @@ use crate::offscreen::reference::normals;
 use crate::picture::{Layer, LayerKind};
 use crate::resolve::reference::projected_value;
 use crate::scene::Scene;
-use crate::technique::{InPixel, Mode, Settings, Technique};
+use crate::technique::{InPixel, Mode, Settings};
 use crate::transfer::{Classified, TransferFunction, Window};
 
 impl Renderer<'_> {
@@ -42,7 +42,7 @@ impl Renderer<'_> {
         if wanted.is_empty() {
             return Ok(Vec::new());
         }
-        let is_slicer = technique != Technique::Raycast;
+        let is_slicer = !technique.casts_rays();
         let targets = self.targets.as_ref().expect("prepared");
         let left = targets.read(
             &mut self.device,

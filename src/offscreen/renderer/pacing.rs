@@ -4,7 +4,7 @@ use super::Renderer;
 use crate::offscreen::time_slices::Spent;
 use crate::scene::Scene;
 use crate::technique::cost::{looks_of_picture, ms_of_looks};
-use crate::technique::{Jitter, Recording, Settings, Skip, Technique, View};
+use crate::technique::{Jitter, Recording, Settings, Skip, View};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -120,7 +120,7 @@ pub fn passes_of(scene: &Scene, has_layers: bool) -> usize {
     let is_grey = settings.mode.is_projection() && scene.transfers().iter().any(Option::is_none);
     // Layers are those of the rays through pixel centres, and slicers count samples by themselves.
     let is_drawn_again = has_layers && settings.rays_per_side > 1;
-    let is_counted = has_layers && settings.technique != Technique::Raycast;
+    let is_counted = has_layers && !settings.technique.casts_rays();
     let more = [is_grey, is_drawn_again, is_counted].map(usize::from);
     rays + more.iter().sum::<usize>()
 }

@@ -16,7 +16,7 @@ use crate::offscreen::time_slices::Spent;
 use crate::resident::Apron;
 use crate::scene::Scene;
 use crate::technique::cost::{looks_of_picture, ms_of_looks};
-use crate::technique::{InPixel, Inputs, Mode, Part, Skippable, Technique, View};
+use crate::technique::{InPixel, Inputs, Mode, Part, Skippable, View};
 use crate::volume::Volume;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -64,7 +64,7 @@ impl<'v> Renderer<'v> {
             return Err(Error::Outline);
         }
         let refused = match () {
-            () if settings.technique != Technique::Raycast => "another technique than ray casting",
+            () if !settings.technique.casts_rays() => "another technique than ray casting",
             () if scene.volumes().len() > 1 => "several volumes",
             () if settings.filter.spline().is_some() => "a filter that reads coefficients",
             () if settings.wants_light_volume() => "occlusion or shadows",

@@ -3,10 +3,23 @@
 pub mod reference;
 
 use super::ray_tiles::{Nothing, TilePass};
+use super::registry::TechniqueDesc;
 use super::{Inputs, Mix, Mode, RayBindings, RayTiles, Take, Words};
 use crate::gpu::{Error, Gpu, Image, Resource, Tile};
+use crate::resident::TextureLayout;
 use ash::vk;
 use std::sync::Arc;
+
+pub(super) static DESC: TechniqueDesc = TechniqueDesc {
+    casts_rays: true,
+    draws_stacks: false,
+    has_half_angle: false,
+    layouts: &[TextureLayout::Texture3d],
+    layout_of: |_| TextureLayout::Texture3d,
+    longest_sample_count: |view| view.longest_sample_count(),
+    set_slices: |_, _, _| 0,
+    slice_shaders: None,
+};
 
 /// The compute pass.
 #[derive(Debug)]

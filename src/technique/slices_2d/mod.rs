@@ -6,3 +6,32 @@ mod stack;
 
 pub use between::planes_per_slice;
 pub use stack::{set_slices, stack_axis, stack_shares};
+
+use super::registry::{SliceShaders, TechniqueDesc};
+use crate::resident::TextureLayout;
+
+pub(super) static DESC: TechniqueDesc = TechniqueDesc {
+    casts_rays: false,
+    draws_stacks: true,
+    has_half_angle: false,
+    layouts: &[
+        TextureLayout::Stack(0),
+        TextureLayout::Stack(1),
+        TextureLayout::Stack(2),
+    ],
+    layout_of: |view| TextureLayout::Stack(stack_axis(view)),
+    longest_sample_count: |view| view.longest_stack(),
+    set_slices: |view, part, fields| {
+        view.set_between(fields);
+        set_slices(view, stack_axis(view), part, fields)
+    },
+    slice_shaders: Some(&SLICE_SHADERS),
+};
+
+pub(super) static SLICE_SHADERS: SliceShaders = SliceShaders {
+    cover: "slices_2d_cover",
+    // Two triangles cover a rectangle.
+    vertices_per_slice: 6,
+    fragment: "slices_2d",
+    patch_list: "slice_patches.stack",
+};

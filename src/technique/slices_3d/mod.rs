@@ -8,3 +8,23 @@ pub mod reference;
 
 pub use half_angle::HalfAngleSlicer;
 pub use planes::set_planes;
+
+use super::registry::{SliceShaders, TechniqueDesc};
+use crate::resident::TextureLayout;
+
+pub(super) static DESC: TechniqueDesc = TechniqueDesc {
+    casts_rays: false,
+    draws_stacks: false,
+    has_half_angle: true,
+    layouts: &[TextureLayout::Texture3d],
+    layout_of: |_| TextureLayout::Texture3d,
+    longest_sample_count: |view| view.longest_sample_count(),
+    set_slices: set_planes,
+    slice_shaders: Some(&SliceShaders {
+        cover: "slices_3d_cover",
+        // Four triangles cover the six corners of a plane in a box.
+        vertices_per_slice: 12,
+        fragment: "slices_3d",
+        patch_list: "slice_patches.view",
+    }),
+};

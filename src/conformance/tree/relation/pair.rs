@@ -226,7 +226,7 @@ fn roundings(stand: &mut Stand, kind: Kind, sight: &Sight) -> Result<(Rough, Rou
     match kind {
         Kind::OtherOrder => other.shot.settings.order = Order::FrontToBack,
         Kind::RaysOnPlanes => {
-            other.shot.settings.technique = Technique::Raycast;
+            other.shot.settings.technique = Technique::default();
             other.shot.settings.lattice = Lattice::Planes;
         }
         Kind::Mirrored => {

@@ -1,0 +1,69 @@
+//! The closed list of techniques: what each says of itself, and what all others ask in place of its name.
+
+use super::{Technique, View, raycast, slices_2d, slices_3d};
+use crate::resident::TextureLayout;
+use crate::shaders::FrameFields;
+use glam::DVec3;
+
+/// What a technique says of itself.
+#[derive(Debug)]
+pub(crate) struct TechniqueDesc {
+    /// One invocation takes the samples of a pixel from front to back. `false`: the rasterizer draws slices and blends
+    /// them.
+    pub casts_rays: bool,
+    /// The slices are those of the volume's own grid: one sample a slice, whatever the step is.
+    pub draws_stacks: bool,
+    /// Its slices may lie half way between the eye and a light.
+    pub has_half_angle: bool,
+    /// How a volume lies in textures so that it can be seen from everywhere.
+    pub layouts: &'static [TextureLayout],
+    /// Which of these a view reads.
+    pub layout_of: fn(&View) -> TextureLayout,
+    /// How many samples a pixel takes at most.
+    pub longest_sample_count: fn(&View) -> f64,
+    /// Fills in the slices of a part of the grid ([`View::part`]) and returns how many to draw.
+    pub set_slices: fn(&View, [DVec3; 2], &mut FrameFields) -> u32,
+    /// What draws its slices; `None`: rays draw none.
+    pub slice_shaders: Option<&'static SliceShaders>,
+}
+
+/// The shaders that draw slices, by name.
+#[derive(Debug)]
+pub(crate) struct SliceShaders {
+    /// Covers a slice with triangles.
+    pub cover: &'static str,
+    /// How many vertices that takes.
+    pub vertices_per_slice: u32,
+    /// Takes the sample of a pixel.
+    pub fragment: &'static str,
+    /// Lists the patches of slices that are not empty.
+    pub patch_list: &'static str,
+}
+
+impl Technique {
+    /// What it says of itself.
+    pub(crate) fn desc(self) -> &'static TechniqueDesc {
+        match self {
+            Self::Raycast => &raycast::DESC,
+            Self::Slices3d => &slices_3d::DESC,
+            Self::Slices2d => &slices_2d::DESC,
+        }
+    }
+
+    /// What draws its slices; of rays, whose slices nobody asks for, those of a stack.
+    pub(super) fn slice_shaders(self) -> &'static SliceShaders {
+        self.desc()
+            .slice_shaders
+            .unwrap_or(&slices_2d::SLICE_SHADERS)
+    }
+
+    /// [`TechniqueDesc::casts_rays`].
+    pub(crate) fn casts_rays(self) -> bool {
+        self.desc().casts_rays
+    }
+
+    /// [`TechniqueDesc::draws_stacks`].
+    pub(crate) fn draws_stacks(self) -> bool {
+        self.desc().draws_stacks
+    }
+}
