@@ -154,19 +154,21 @@ mod tests {
 
     #[test]
     fn a_number_of_c_is_the_value_of_the_same_name() {
-        let header = include_str!("words.rs");
-        fn is_named<T: Named>(header: &str, prefix: &str) {
+        let source = include_str!("words.rs");
+        fn is_named<T: Named>(source: &str, prefix: &str) {
+            let rows = source.matches(&format!("\n    {prefix}_")).count();
+            assert_eq!(rows, T::ALL.len(), "{prefix}");
             for (number, value) in T::ALL.iter().enumerate() {
                 let name = value.name().replace('-', "_").to_uppercase();
                 let row = format!("    {prefix}_{name} = {number},\n");
-                assert!(header.contains(&row), "{row}");
+                assert!(source.contains(&row), "{row}");
             }
         }
-        is_named::<Technique>(header, "SV_TECHNIQUE");
-        is_named::<Mode>(header, "SV_MODE");
-        is_named::<Filter>(header, "SV_FILTER");
-        is_named::<Lattice>(header, "SV_LATTICE");
-        is_named::<ColorSpace>(header, "SV_COLOR_SPACE");
+        is_named::<Technique>(source, "SV_TECHNIQUE");
+        is_named::<Mode>(source, "SV_MODE");
+        is_named::<Filter>(source, "SV_FILTER");
+        is_named::<Lattice>(source, "SV_LATTICE");
+        is_named::<ColorSpace>(source, "SV_COLOR_SPACE");
         use sv_voxel_type::*;
         assert_eq!(VOXEL_TYPES[SV_VOXEL_F64 as usize], VoxelType::F64);
         assert_eq!(VOXEL_TYPES[SV_VOXEL_I16 as usize], VoxelType::I16);

@@ -28,8 +28,7 @@ pub struct Volume {
 }
 
 impl Volume {
-    /// Textures for `voxels`, and a staging buffer that holds them: one texture, or the three stacks of
-    /// 2D slices.
+    /// Textures for `voxels`, and a staging buffer that holds them: one texture, or the three stacks of 2D slicing.
     ///
     /// # Errors
     /// Where the device gives no memory; [`Error::NotEmbedded`] for gradients that are to be kept; a

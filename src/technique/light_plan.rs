@@ -37,8 +37,8 @@ pub enum Shadows {
         /// How wide a light looks from the surface: 0 for sharp shadows, the sun 0.5.
         light_size_degrees: f64,
     },
-    /// Composite by view-aligned slices, of one volume in one texture: slices half way between eye and
-    /// light, drawn into the picture and into what the light sees ([`super::slices_3d::HalfAngleSlicer`]).
+    /// Composite by view-aligned slices, of one volume in one texture: slices half way between eye and light, drawn
+    /// into the picture and into what the light sees ([`super::slices_3d::HalfAngleSlicer`]).
     HalfAngle,
 }
 

@@ -32,7 +32,8 @@ pub struct Slicer {
 }
 
 impl Slicer {
-    /// Compiles the variant of these words for such targets: the slices of `technique`. Where the rendering has a depth attachment, what a host has drawn hides what lies behind it
+    /// Compiles the variant of these words for such targets: the slices of `technique`, which casts no rays. Where the
+    /// rendering has a depth attachment, what a host has drawn hides what lies behind it
     /// ([`super::Recording::tested_in`]).
     ///
     /// # Errors

@@ -67,7 +67,7 @@ mod tests {
         word.check(&slices()).expect("slices");
         let others = [
             Settings {
-                technique: Technique::default(),
+                technique: Technique::Raycast,
                 ..slices()
             },
             Settings {

@@ -6,7 +6,8 @@ use crate::{
     technique::{Filter, FilterBy, Lattice, Mode, Order, Technique},
 };
 use clap::{ValueEnum, builder::PossibleValue};
-use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
+use std::{fmt, marker::PhantomData};
 
 /// Options and scene files take these values.
 macro_rules! by_name {
@@ -33,7 +34,7 @@ macro_rules! by_name {
 
         impl<'de> Deserialize<'de> for $of {
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                of_name(&String::deserialize(deserializer)?)
+                deserializer.deserialize_str(Name(PhantomData))
             }
         }
     )*};
@@ -50,17 +51,54 @@ by_name! {
     ColorSpace: Self::ALL,
 }
 
-fn of_name<T: Named + ValueEnum, E: Error>(found: &str) -> Result<T, E> {
-    let values = T::value_variants();
-    let value = values.iter().find(|value| value.name() == found);
-    value.copied().ok_or_else(|| {
-        let names: Vec<_> = values
+/// Takes a name while the deserializer stands at it: what is wrong with it has the line that it is on.
+struct Name<T>(PhantomData<T>);
+
+impl<T: Named + ValueEnum> de::Visitor<'_> for Name<T> {
+    type Value = T;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let names = T::value_variants()
             .iter()
-            .map(|value| format!("`{}`", value.name()))
-            .collect();
-        let names = names.join(", ");
-        E::custom(format!(
-            "unknown variant `{found}`, expected one of {names}"
-        ))
-    })
+            .map(|value| format!("`{}`", value.name()));
+        write!(f, "one of {}", names.collect::<Vec<_>>().join(", "))
+    }
+
+    fn visit_str<E: de::Error>(self, found: &str) -> Result<T, E> {
+        let mut values = T::value_variants().iter();
+        let value = values.find(|value| value.name() == found);
+        value.copied().ok_or_else(|| {
+            E::custom(format_args!(
+                "unknown variant `{found}`, expected {}",
+                &self as &dyn de::Expected
+            ))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::flags::SamplingFlags;
+
+    #[test]
+    fn scene_files_take_the_names_that_options_take_and_no_others() {
+        for &filter in Filter::ALL {
+            let text = serde_json::to_string(&filter).expect("a name");
+            assert_eq!(text, format!("\"{filter}\""));
+            assert_eq!(
+                serde_json::from_str::<Filter>(&text).expect("the same"),
+                filter
+            );
+            assert_eq!(Filter::from_str(filter.name(), false), Ok(filter));
+        }
+        let refused = |text| serde_json::from_str::<SamplingFlags>(text).expect_err("refused");
+        let jitter = refused("{\"lattice\": \"jitter\"}").to_string();
+        assert!(
+            jitter.contains("expected one of `ray`, `planes`"),
+            "{jitter}"
+        );
+        let late = refused("{\"mode\":\n\"splat\"\n\n}");
+        assert_eq!(late.line(), 2, "{late}");
+    }
 }

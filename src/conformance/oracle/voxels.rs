@@ -97,5 +97,8 @@ fn weight(filter: Filter, d: f64) -> f64 {
 
 /// The axis of the stack that a shot draws, where it draws one.
 pub fn stack_of(shot: &Shot) -> Option<usize> {
-    (shot.settings.technique.draws_stacks()).then(|| stack_axis(&shot.view()))
+    shot.settings
+        .technique
+        .draws_stacks()
+        .then(|| stack_axis(&shot.view()))
 }

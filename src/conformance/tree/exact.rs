@@ -87,10 +87,7 @@ impl Of {
     fn measure(self, stand: &mut Stand) -> Result<Measurement, Stop> {
         let mut shot = ground::shot(self.placement, self.mode, self.filter, self.is_perspective);
         let is_merged = stand.is_merged(&shot.settings)?;
-        if is_merged
-            && self.kind == Kind::Homogeneous
-            && shot.settings.technique.desc().has_half_angle
-        {
+        if is_merged && self.kind == Kind::Homogeneous && !shot.settings.technique.draws_stacks() {
             // More slices than a batch has.
             shot.settings.samples_per_voxel = 3.0;
         }

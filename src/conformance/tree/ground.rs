@@ -88,6 +88,9 @@ pub const PLACEMENTS: [Placement; 6] = [
     ),
 ];
 
+/// One ray a pixel, at equal steps from where it enters the volume.
+pub const RAYS: Placement = PLACEMENTS[0];
+
 /// The modes that every placement has.
 pub const MODES: [Mode; 5] = [
     Mode::Composite,

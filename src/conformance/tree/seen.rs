@@ -2,7 +2,7 @@
 //! A15, A17 to A19, the modes along rays, mixtures, cuts.
 
 use super::drawn::{measure, measure_within};
-use super::ground::{self, MODES, PLACEMENTS, PROJECTIONS, Placement};
+use super::ground::{self, MODES, PLACEMENTS, PROJECTIONS, Placement, RAYS};
 use crate::conformance::case::{Case, Profile, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
 use crate::conformance::oracle::{
@@ -121,18 +121,15 @@ pub fn cases() -> Vec<Case> {
             }
         }
     }
-    let rays = PLACEMENTS[0];
     for mode in [MODES[1], MODES[2]] {
-        all.push((rays, mode, Look::Exact, linear));
+        all.push((RAYS, mode, Look::Exact, linear));
     }
-    all.push((rays, MODES[0], Look::SteadyLamps, linear));
-    for &mode in Mode::ALL.iter().filter(|mode| mode.needs_rays()) {
-        if mode == Mode::Iso {
-            continue;
-        }
-        all.extend(FILTERS.map(|filter| (rays, mode, Look::Waves, filter)));
+    all.push((RAYS, MODES[0], Look::SteadyLamps, linear));
+    let by_rays = |mode: &&Mode| mode.needs_rays() && **mode != Mode::Iso;
+    for &mode in Mode::ALL.iter().filter(by_rays) {
+        all.extend(FILTERS.map(|filter| (RAYS, mode, Look::Waves, filter)));
         if mode == Mode::Mida {
-            all.push((rays, mode, Look::Lamps, linear));
+            all.push((RAYS, mode, Look::Lamps, linear));
         }
     }
     let mut cases = Vec::new();
@@ -200,7 +197,7 @@ fn profile(
         Look::Clipped => is_perspective && matches!(mode, Mode::Composite | Mode::Xray),
         Look::Exact => true,
         Look::Lit | Look::Lamps => is_linear,
-        _ => is_first && is_perspective != (placement.technique.draws_stacks()),
+        _ => is_first && is_perspective != placement.technique.draws_stacks(),
     };
     [Profile::Full, Profile::Baseline][usize::from(is_in)]
 }

@@ -5,7 +5,7 @@
 //! it that a device rounds about as well as the twin in f32 does: what lies outside of that is a warning.
 
 use super::drawn;
-use super::ground::{self, FILTERS, MODES, PLACEMENTS, PROJECTIONS, Placement};
+use super::ground::{self, FILTERS, MODES, PLACEMENTS, PROJECTIONS, Placement, RAYS};
 use crate::conformance::case::{Case, Profile, Stop};
 use crate::conformance::measurement::{Bound, Measurement, Pictures};
 use crate::conformance::oracle::Shot;
@@ -106,11 +106,10 @@ pub fn cases() -> Vec<Case> {
             Look::Lit,
         );
     }
-    let rays = PLACEMENTS[0];
     for &mode in Mode::ALL.iter().filter(|mode| mode.needs_rays()) {
         let word = &ground::word_of(mode);
         for &filter in filters.iter().filter(|filter| filter.1 != Filter::Nearest) {
-            add(rays, word, mode, filter, Look::Plain);
+            add(RAYS, word, mode, filter, Look::Plain);
         }
     }
     cases

@@ -10,6 +10,7 @@ use crate::resident::TextureLayout;
 use ash::vk;
 use std::sync::Arc;
 
+/// Ray casting, to those who ask.
 pub(super) static DESC: TechniqueDesc = TechniqueDesc {
     casts_rays: true,
     draws_stacks: false,

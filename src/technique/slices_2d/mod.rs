@@ -10,6 +10,7 @@ pub use stack::{set_slices, stack_axis, stack_shares};
 use super::registry::{SliceShaders, TechniqueDesc};
 use crate::resident::TextureLayout;
 
+/// 2D texture slicing, to those who ask.
 pub(super) static DESC: TechniqueDesc = TechniqueDesc {
     casts_rays: false,
     draws_stacks: true,
@@ -28,6 +29,7 @@ pub(super) static DESC: TechniqueDesc = TechniqueDesc {
     slice_shaders: Some(&SLICE_SHADERS),
 };
 
+/// Of the slices of a stack.
 pub(super) static SLICE_SHADERS: SliceShaders = SliceShaders {
     cover: "slices_2d_cover",
     // Two triangles cover a rectangle.

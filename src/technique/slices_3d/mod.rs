@@ -12,6 +12,7 @@ pub use planes::set_planes;
 use super::registry::{SliceShaders, TechniqueDesc};
 use crate::resident::TextureLayout;
 
+/// View-aligned slicing, to those who ask.
 pub(super) static DESC: TechniqueDesc = TechniqueDesc {
     casts_rays: false,
     draws_stacks: false,

@@ -10,7 +10,7 @@ use crate::conformance::oracle::{Numbers, Shot};
 use crate::conformance::stand::Stand;
 use crate::gpu::Caps;
 use crate::picture::{LayerKind, Picture};
-use crate::technique::{Filter, Lattice, Level, Mode, Order, Shading, Technique};
+use crate::technique::{Filter, Lattice, Level, Mode, Order, Shading};
 use crate::transfer::{ColorPoint, OpacityPoint, TransferFunction};
 use glam::{DAffine3, DVec3, dvec3};
 
@@ -226,7 +226,7 @@ fn roundings(stand: &mut Stand, kind: Kind, sight: &Sight) -> Result<(Rough, Rou
     match kind {
         Kind::OtherOrder => other.shot.settings.order = Order::FrontToBack,
         Kind::RaysOnPlanes => {
-            other.shot.settings.technique = Technique::default();
+            other.shot.settings.technique = ground::RAYS.technique;
             other.shot.settings.lattice = Lattice::Planes;
         }
         Kind::Mirrored => {
