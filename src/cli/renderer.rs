@@ -15,7 +15,7 @@ use crate::{
     offscreen::{self, Ceilings, Kept, Stream, reference},
     picture::{LayerKind, Picture},
     scene::{Beside, Scene},
-    technique::{Filter, Mode, Role, Settings},
+    technique::{Filter, Lack, Mode, Role, Settings},
     volume::{Denoise, Volume, labels::labels_of},
 };
 use std::panic::resume_unwind;
@@ -428,40 +428,26 @@ fn one_number(beside: &Beside) -> &'static str {
     }
 }
 
-/// Blending keeps no depth, a projection no transmittance, and a composite has no one value.
+/// Layers that the picture does not have, with what would give them.
 fn check_layers(job: &Job) -> Result<(), Error> {
-    let Settings {
-        technique, mode, ..
-    } = *job.settings;
     let is_of_one = matches!(job.beside, Beside::Nothing);
-    let is_sum = !is_of_one && mode.is_projection();
-    for layer in job.layers {
-        let missing = match layer {
-            LayerKind::Value
-            | LayerKind::Depth
-            | LayerKind::Position
-            | LayerKind::Normal
-            | LayerKind::Label
-                if is_sum =>
-            {
-                one_number(&job.beside)
-            }
-            LayerKind::Value if !mode.has_value() => "a mode with one value, such as --mode mip",
-            LayerKind::Transmittance if mode.is_projection() => "--mode composite",
-            LayerKind::Depth | LayerKind::Position | LayerKind::Normal | LayerKind::Label
-                if !technique.casts_rays() =>
-            {
-                "--technique raycast"
-            }
-            LayerKind::Label if !has_labels(job) => {
-                "labels: --labels FILE, or a volume of labels with --filter nearest"
-            }
-            LayerKind::Normal if job.stream.is_some() => "the voxels in memory: no --stream",
-            LayerKind::Normal if !is_of_one && mode != Mode::Iso => one_number(&job.beside),
-            LayerKind::Position | LayerKind::Normal | LayerKind::Label if !mode.has_depth() => {
-                "a mode with a depth, such as --mode mip"
-            }
-            _ => continue,
+    for &layer in job.layers {
+        let missing = match job.settings.lack(layer, !is_of_one) {
+            Some(Lack::OneNumber) => one_number(&job.beside),
+            Some(Lack::OneValue) => "a mode with one value, such as --mode mip",
+            Some(Lack::Transmittance) => "--mode composite",
+            Some(Lack::Rays) => "--technique raycast",
+            Some(Lack::Depth) => "a mode with a depth, such as --mode mip",
+            Some(Lack::Annotation) | None => match layer {
+                LayerKind::Label if !has_labels(job) => {
+                    "labels: --labels FILE, or a volume of labels with --filter nearest"
+                }
+                LayerKind::Normal if job.stream.is_some() => "the voxels in memory: no --stream",
+                LayerKind::Normal if !is_of_one && job.settings.mode != Mode::Iso => {
+                    one_number(&job.beside)
+                }
+                _ => continue,
+            },
         };
         return Err(Error::usage(
             format!("--aov {} needs {missing}", layer.name()),

@@ -6,29 +6,14 @@ use crate::picture::LayerKind;
 use crate::scene::Scene;
 use crate::technique::{Filter, Mix, Mode, Settings};
 
-/// Blending keeps no depth, a projection no transmittance, and a composite has no one value.
+/// Refuses layers that the picture of a scene does not have.
 pub fn check_layers(scene: &Scene, wanted: &[LayerKind]) -> Result<(), Error> {
     let Settings {
         technique, mode, ..
     } = *scene.settings;
-    // The sum of several projections has no one value and no one depth.
-    let is_sum = scene.mix() == Mix::Channels && mode.is_projection();
+    let are_several = scene.mix() == Mix::Channels;
     for &layer in wanted {
-        let is_there = match layer {
-            LayerKind::Value | LayerKind::Depth | LayerKind::Position | LayerKind::Normal
-                if is_sum =>
-            {
-                false
-            }
-            LayerKind::Value => mode.has_value(),
-            LayerKind::Depth => technique.casts_rays(),
-            LayerKind::Position | LayerKind::Normal => technique.casts_rays() && mode.has_depth(),
-            LayerKind::Transmittance => !mode.is_projection(),
-            LayerKind::Samples => true,
-            LayerKind::Annotation => false,
-            LayerKind::Label => technique.casts_rays() && mode.has_depth() && !is_sum,
-        };
-        if !is_there {
+        if scene.settings.lack(layer, are_several).is_some() {
             return Err(Error::NoLayer {
                 technique,
                 mode,

@@ -123,6 +123,22 @@ impl Settings {
         self.check_ways()?;
         self.check_gradient_filter()?;
         self.check_light()?;
+        self.check_mode()?;
+        if !(0.0..=1.0).contains(&self.dim) {
+            return Err(Error::OutOfRange {
+                name: "what is left of dimmed labels",
+                wanted: "0 to 1",
+                found: self.dim,
+            });
+        }
+        self.per_mode.check(self.mode)
+    }
+
+    /// Whether the technique and its lattice have the mode, its depth cue and its exact extremes.
+    ///
+    /// # Errors
+    /// [`Error::NeedsRays`], [`Error::NeedsRayLattice`], [`Error::NoDepth`] and [`Error::NotExact`].
+    pub(crate) fn check_mode(&self) -> Result<(), Error> {
         let (technique, mode) = (self.technique, self.mode);
         if !technique.casts_rays() && mode.needs_rays() {
             return Err(Error::NeedsRays { technique, mode });
@@ -140,14 +156,7 @@ impl Settings {
         if self.per_mode.exact_maximum && !(is_trilinear && has_extreme && is_along_rays) {
             return Err(Error::NotExact { technique, mode });
         }
-        if !(0.0..=1.0).contains(&self.dim) {
-            return Err(Error::OutOfRange {
-                name: "what is left of dimmed labels",
-                wanted: "0 to 1",
-                found: self.dim,
-            });
-        }
-        self.per_mode.check(mode)
+        Ok(())
     }
 }
 

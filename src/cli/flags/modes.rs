@@ -3,7 +3,7 @@
 use super::{Error, LevelFlags, finite};
 use crate::{
     figure::short,
-    technique::{DEFAULT_ATTENUATION, Filter, Lattice, Mode, PerMode, Settings},
+    technique::{self, DEFAULT_ATTENUATION, Mode, PerMode, Settings},
     transfer::{TransferFunction, ValueSummary, Window},
 };
 use clap::Args;
@@ -44,51 +44,12 @@ const HEADING: &str = "Modes";
 impl ModeFlags {
     /// What can be said wrong before a voxel is read.
     pub fn check(&self, settings: &Settings) -> Result<(), Error> {
-        let Settings {
-            technique,
-            mode,
-            lattice,
-            filter,
-            ..
-        } = *settings;
-        if !technique.casts_rays() && mode.needs_rays() {
-            return Err(Error::usage(
-                format!(
-                    "--mode {mode} needs --technique raycast: in it a sample depends on those before it"
-                ),
-                "leave out --technique, or take --mode mip",
-            ));
-        }
-        if lattice == Lattice::Planes && mode.needs_rays() {
-            return Err(Error::usage(
-                format!(
-                    "--mode {mode} takes samples along rays: --lattice planes is for modes that slicers have"
-                ),
-                "leave out --lattice",
-            ));
-        }
-        if self.depth_cue.is_some_and(|cue| cue != 0.0) {
-            if !technique.casts_rays() {
-                return Err(Error::usage(
-                    "--depth-cue needs --technique raycast: blending keeps no depth",
-                    "leave out --technique",
-                ));
-            }
-            if !mode.projects_one_place() {
-                return Err(Error::usage(
-                    format!("--depth-cue: --mode {mode} has no one depth a ray"),
-                    "--mode mip has one, and minip, lmip and attenuated-mip",
-                ));
-            }
-        }
-        let is_along_rays = technique.casts_rays() && lattice == Lattice::Ray;
-        let has_extreme = matches!(mode, Mode::Mip | Mode::Minip);
-        if self.exact_maximum && !(is_along_rays && has_extreme && filter == Filter::Linear) {
-            return Err(Error::usage(
-                "--exact-maximum is one of --mode mip or minip along rays, filtered linearly",
-                "leave out --technique, --lattice and --filter",
-            ));
-        }
+        let mode = settings.mode;
+        let asked = Settings {
+            per_mode: self.given(),
+            ..settings.clone()
+        };
+        asked.check_mode().map_err(refused)?;
         self.levels.check()?;
         if mode == Mode::Iso {
             return Ok(());
@@ -216,6 +177,43 @@ impl ModeFlags {
     }
 }
 
+/// A mode that technique and lattice do not have, by flags.
+fn refused(problem: technique::Error) -> Error {
+    use technique::Error as Problem;
+    let (text, hint) = match problem {
+        Problem::NeedsRays { mode, .. } => (
+            format!(
+                "--mode {mode} needs --technique raycast: in it a sample depends on those before it"
+            ),
+            "leave out --technique, or take --mode mip",
+        ),
+        Problem::NeedsRayLattice { mode } => (
+            format!(
+                "--mode {mode} takes samples along rays: --lattice planes is for modes that slicers have"
+            ),
+            "leave out --lattice",
+        ),
+        Problem::NoDepth { technique, .. } if !technique.casts_rays() => (
+            "--depth-cue needs --technique raycast: blending keeps no depth".to_owned(),
+            "leave out --technique",
+        ),
+        Problem::NoDepth { mode, .. } => (
+            format!("--depth-cue: --mode {mode} has no one depth a ray"),
+            "--mode mip has one, and minip, lmip and attenuated-mip",
+        ),
+        Problem::NotExact { .. } => (
+            "--exact-maximum is one of --mode mip or minip along rays, filtered linearly"
+                .to_owned(),
+            "leave out --technique, --lattice and --filter",
+        ),
+        other => (
+            other.to_string(),
+            "`stratavox render --help` says what goes together",
+        ),
+    };
+    Error::usage(text, hint)
+}
+
 /// Where all but a thousandth of the voxels lie: one hot voxel does not make the others equal.
 fn usual(summary: &ValueSummary) -> Window {
     let [low, high] = [0.0005, 0.9995].map(|share| summary.quantile(share));
@@ -227,7 +225,7 @@ mod tests {
     use super::*;
     use crate::cli::flags::summary;
     use crate::named::Named;
-    use crate::technique::Technique;
+    use crate::technique::{Lattice, Technique};
     use crate::volume::{Rescale, Volume, Voxels};
     use glam::DAffine3;
 

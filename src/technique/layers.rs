@@ -1,0 +1,42 @@
+//! Which layers a picture has beside its colours: blending keeps no depth, a projection no transmittance, and a composite
+//! has no one value.
+
+use super::Settings;
+use crate::picture::LayerKind;
+
+/// What a picture lacks for a layer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Lack {
+    /// One number a voxel: the sum of several projections has no one value and no one depth.
+    OneNumber,
+    /// A mode that finds one value a ray.
+    OneValue,
+    /// A mode that composites.
+    Transmittance,
+    /// Rays.
+    Rays,
+    /// A mode with one depth a ray.
+    Depth,
+    /// Annotation lies over a picture that is done.
+    Annotation,
+}
+
+impl Settings {
+    /// What pictures of these settings lack for a layer, one volume's or, with `are_several`, that of several.
+    pub(crate) fn lack(&self, layer: LayerKind, are_several: bool) -> Option<Lack> {
+        use LayerKind::{
+            Annotation, Depth, Label, Normal, Position, Samples, Transmittance, Value,
+        };
+        let (technique, mode) = (self.technique, self.mode);
+        let is_sum = are_several && mode.is_projection();
+        match layer {
+            Value | Depth | Position | Normal | Label if is_sum => Some(Lack::OneNumber),
+            Value => (!mode.has_value()).then_some(Lack::OneValue),
+            Transmittance => mode.is_projection().then_some(Lack::Transmittance),
+            Depth | Position | Normal | Label if !technique.casts_rays() => Some(Lack::Rays),
+            Position | Normal | Label if !mode.has_depth() => Some(Lack::Depth),
+            Depth | Position | Normal | Label | Samples => None,
+            Annotation => Some(Lack::Annotation),
+        }
+    }
+}
