@@ -15,7 +15,7 @@ use crate::{
     offscreen::{self, Ceilings, Kept, Stream, reference},
     picture::{LayerKind, Picture},
     scene::{Beside, Scene},
-    technique::{Filter, Lack, Mode, Role, Settings},
+    technique::{Filter, Mode, Role, Settings, layers::Lack},
     volume::{Denoise, Volume, labels::labels_of},
 };
 use std::panic::resume_unwind;
