@@ -95,6 +95,7 @@ unsafe fn draw(device: &ash::Device, gpu: &Arc<Gpu>) -> Result<Vec<u8>, Box<dyn 
         frames_in_flight: 1,
         host_depth: false,
         gives_depth: false,
+        picks: false,
         slice_blending: Default::default(),
     };
     let [width, height] = EXTENT;

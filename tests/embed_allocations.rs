@@ -79,12 +79,14 @@ fn assert_nothing_is_taken(host: &Host, settings: &Settings) {
         frames_in_flight: 2,
         host_depth: !is_half,
         gives_depth: has_depth,
+        picks: false,
         slice_blending: Default::default(),
     };
     let outside = Class {
         target: FORMAT.into(),
         host_depth: false,
         gives_depth: false,
+        picks: false,
         slice_blending: Default::default(),
         ..inside.clone()
     };

@@ -88,6 +88,7 @@ unsafe fn film(
             frames_in_flight: 1,
             host_depth: true,
             gives_depth: false,
+            picks: false,
             slice_blending: SliceBlending::Float,
         };
         let layout = DepthFor::Reading.state().2;

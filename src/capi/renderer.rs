@@ -41,7 +41,7 @@ pub struct sv_renderer_desc {
     /// Not 0: what the host has drawn hides the volume behind it. Cameras are SV_CAMERA_MATRICES then.
     pub has_host_depth: u32,
     /// Not 0: sv_renderer_draw_depth will be called, where `target` has a depth attachment (cameras are
-    /// SV_CAMERA_MATRICES then), and of slices sv_renderer_record_pick, for which rays need it not.
+    /// SV_CAMERA_MATRICES then). sv_renderer_record_pick may be called too.
     pub gives_depth: u32,
     /// 0: slices are blended with each other in an image of floats, and the result once into the target. Not 0: one by one
     /// in the target, each rounded to its format, which is wrong in targets of few bits; composites from back to front
@@ -52,6 +52,9 @@ pub struct sv_renderer_desc {
     pub depth_images: *const sv_depth_image,
     /// How many there are.
     pub depth_image_count: u64,
+    /// Not 0: sv_renderer_record_pick will be called. Rays that composite keep 16 bytes more for it, a pixel and frame in
+    /// flight; of slices, rays look for the depth.
+    pub picks: u32,
 }
 
 // SAFETY: as the trait wants it.
@@ -237,6 +240,7 @@ unsafe fn made(device: &Device, desc: &sv_renderer_desc) -> Result<Inner, Failur
         frames_in_flight: frames,
         host_depth: desc.has_host_depth != 0,
         gives_depth: desc.gives_depth != 0,
+        picks: desc.picks != 0,
         slice_blending: match desc.blends_slices_in_target {
             0 => SliceBlending::Float,
             _ => SliceBlending::InTarget,

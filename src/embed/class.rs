@@ -19,10 +19,12 @@ pub struct Class {
     /// from images ([`HostDepthImage`]); slices that are blended in the target are tested against the attachment of
     /// `target` instead ([`Class::reads_host_depth`]).
     pub host_depth: bool,
-    /// Whether depth is given back: by [`super::Renderer::draw_depth`], where `target` has a depth attachment, and of
-    /// slices, for which rays have to look for it, by [`super::Renderer::record_pick`]. Pictures by rays can be picked
-    /// from without.
+    /// Whether depth is given back by [`super::Renderer::draw_depth`], where `target` has a depth attachment. Pixels can
+    /// be picked from then as with `picks`.
     pub gives_depth: bool,
+    /// Whether pixels are picked from ([`super::Renderer::record_pick`]). Rays that composite keep another image for it,
+    /// 16 bytes a pixel and frame in flight; of slices, rays look for the depth.
+    pub picks: bool,
     /// Where slices are blended with each other.
     pub slice_blending: SliceBlending,
 }
@@ -109,7 +111,7 @@ impl Class {
                 "add up pictures of `View::in_pixel`",
             ),
             (
-                settings.is_half_angle() && (self.host_depth || self.gives_depth),
+                settings.is_half_angle() && (self.host_depth || self.finds_depth()),
                 "half-angle slicing behind what a host has drawn, or with its depth",
                 "its slices face neither eye nor light: take rays",
             ),
@@ -168,7 +170,7 @@ impl Class {
                 found: "none".into(),
             });
         }
-        if self.gives_depth && !settings.mode.has_depth() {
+        if self.finds_depth() && !settings.mode.has_depth() {
             return Err(Error::NoDepth { what: self.what() });
         }
         Ok(())
@@ -176,7 +178,7 @@ impl Class {
 
     /// Whether the renderer reads the host's depth from images.
     pub fn reads_host_depth(&self) -> bool {
-        let has_rays = self.settings.technique.casts_rays() || self.gives_depth;
+        let has_rays = self.settings.technique.casts_rays() || self.finds_depth();
         self.host_depth && (has_rays || self.gathers())
     }
 
@@ -196,6 +198,11 @@ impl Class {
             (true, true) => Sight::Read,
             (true, false) => Sight::Tested,
         }
+    }
+
+    /// Whether the depth of the picture is kept.
+    pub(super) fn finds_depth(&self) -> bool {
+        self.gives_depth || self.picks
     }
 
     /// Whether [`super::Renderer::draw_depth`] may be called.

@@ -119,7 +119,7 @@ pub enum Error {
     },
     /// There is no depth in such pictures.
     #[error(
-        "{what} has no depth to give back: modes with a place of their own have, of slices with `Class::gives_depth`"
+        "{what} has no depth to give back: modes with a place of their own have, with `Class::gives_depth` or `Class::picks`"
     )]
     NoDepth {
         /// Technique and mode.

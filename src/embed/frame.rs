@@ -1,16 +1,13 @@
 //! What one frame in flight has to itself: images, descriptor sets, and what was recorded for it.
 
 use super::function::Function;
-use super::pass::{Pass, Slices};
+use super::pass::Pass;
 use super::{Error, HostDepthImage, Volume};
 use crate::camera::Camera;
-use crate::gpu::{Bindings, Blocks, Buffer, Gpu, Image, Memory, ParameterRing, Resource};
+use crate::gpu::{Bindings, Blocks, Buffer, Gpu, Memory, ParameterRing, Resource};
 use crate::resident::GpuVolume;
-use crate::technique::slice_gather::GatherImages;
-use crate::technique::slices_3d::half_angle::{
-    HalfAngleBindings, Steps, light_buffer, light_extent,
-};
-use crate::technique::{Inputs, Order, RayBindings, RayTiles, accumulation};
+use crate::technique::Inputs;
+use crate::technique::gather::{Bound, Brick, Canvas, CanvasDesc, PICTURE};
 use ash::vk;
 use std::sync::Arc;
 
@@ -20,16 +17,10 @@ pub(super) const PICK_BYTES: u64 = 32;
 /// What one frame in flight has to itself.
 #[derive(Debug)]
 pub(super) struct Frame {
-    /// What slices are gathered in, where they are not drawn into the host's target.
-    pub gathered: Option<Image>,
-    /// What slices are drawn into beside that.
-    pub gather: Option<GatherImages>,
-    /// What the light sees of half-angle slices.
-    pub light: Option<Image>,
-    /// What rays leave, the one with the depth last.
-    pub left: Vec<Image>,
-    /// Which tiles rays draw.
-    pub tiles: Option<RayTiles>,
+    /// What the picture is gathered in, where it is not drawn into the host's target.
+    pub picture: Option<Canvas>,
+    /// What rays leave that look for the depth of slices.
+    pub slice_depth: Option<Canvas>,
     pub sets: Sets,
     /// Where the device puts the texels of a pixel.
     pub pick: Option<Buffer>,
@@ -58,15 +49,15 @@ pub(super) struct Begun {
 #[derive(Debug)]
 pub(super) enum Cut {
     Blocks(Blocks),
-    /// Half-angle slices, which are no sum of blocks: eye and light take turns over all of the picture.
-    Steps(Steps),
+    /// What is no sum of blocks: so many steps, each in so many bands.
+    Steps { count: u64, bands: u32 },
 }
 
 impl Cut {
     pub fn count(&self) -> u64 {
         match self {
             Self::Blocks(blocks) => blocks.count(),
-            Self::Steps(steps) => steps.count(),
+            Self::Steps { count, .. } => *count,
         }
     }
 }
@@ -74,12 +65,9 @@ impl Cut {
 /// The descriptor sets of one frame in flight, those of bricks for each copy of the volume.
 #[derive(Debug, Default)]
 pub(super) struct Sets {
-    pub slices: Vec<Vec<Bindings>>,
-    /// Of what copies the host's depth for slices to be tested against.
-    pub host_depth: Option<Bindings>,
-    /// Of half-angle slices, which have one brick of one copy.
-    pub half_angle: Option<HalfAngleBindings>,
-    pub rays: Vec<Vec<RayBindings>>,
+    pub picture: Vec<Box<dyn Bound>>,
+    pub slice_depth: Vec<Box<dyn Bound>>,
+    pub in_target: Vec<Vec<Bindings>>,
     /// Of what makes colours of the images.
     pub resolve: Option<Bindings>,
     /// Of what writes their depth.
@@ -92,26 +80,16 @@ pub(super) struct Recorded {
     /// The camera, and which copy of the volume. `None`: nothing that may be drawn.
     pub shot: Option<(Camera, usize)>,
     /// Bricks in the order of the picture.
-    pub picture: Vec<Part>,
+    pub picture: Vec<Brick>,
     /// Bricks of the depth of slices, from front to back.
-    pub depth: Vec<Part>,
+    pub depth: Vec<Brick>,
     /// For sorting.
     pub order: Vec<usize>,
 }
 
-/// One brick of it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Part {
-    pub brick: usize,
-    /// Of its parameters.
-    pub offset: u32,
-    pub slices: u32,
-    pub order: Order,
-}
-
 /// What descriptor sets name.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bound<'a> {
+pub(super) struct Given<'a> {
     pub gpu: &'a Arc<Gpu>,
     pub pass: &'a Pass,
     pub ring: &'a ParameterRing,
@@ -132,103 +110,94 @@ impl Recorded {
     }
 }
 
+/// How large frames are, and what they keep.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FrameSize {
+    pub extent: [u32; 2],
+    /// Of all that is recorded for one frame.
+    pub recordings: usize,
+    /// Whether depth is asked for, or bricks go on where others have ended.
+    pub keeps_layers: bool,
+    /// Whether pixels are picked from.
+    pub is_picked: bool,
+}
+
 impl Frame {
-    /// Images of `extent` and descriptor sets, with room for so many recordings.
-    pub fn new(bound: &Bound, extent: [u32; 2], recordings: usize) -> Result<Self, Error> {
-        let (gpu, pass) = (bound.gpu, bound.pass);
-        let image = |name: &str| accumulation(gpu, extent, name);
-        let is_gathered =
-            matches!(pass.slices, Some(Slices::Gathered(_))) || pass.half_angle.is_some();
-        let of_light = || light_buffer(gpu, light_extent(bound.volume.grid(), extent));
-        let light = pass.half_angle.is_some().then(of_light).transpose()?;
-        let gathered = is_gathered.then(|| image("slices")).transpose()?;
-        let gather = match (&pass.slices, &gathered) {
-            (Some(Slices::Gathered(slices)), Some(image)) => Some(slices.images(image)?),
-            _ => None,
+    /// Images and descriptor sets; lists that no frame leaves behind are shared with the first one.
+    pub fn new(given: &Given, size: FrameSize, first: Option<&Self>) -> Result<Self, Error> {
+        let pass = given.pass;
+        let desc = |beside| CanvasDesc {
+            extent: size.extent,
+            grid: given.volume.grid(),
+            keeps_layers: size.keeps_layers,
+            beside,
         };
-        let of_rays = pass.rays.as_ref().map_or(0, |rays| rays.image_count());
-        let left = ["rays", "beside rays"].into_iter().take(of_rays).map(image);
-        let tiles = pass.rays.is_some().then(|| RayTiles::new(gpu, extent));
+        let of_picture = desc(first.and_then(|frame| frame.picture.as_ref()));
+        let picture = pass.picture.as_ref();
+        let of_depth = desc(first.and_then(|frame| frame.slice_depth.as_ref()));
+        let slice_depth = pass.slice_depth.as_ref();
         let readback = || {
             let usage = vk::BufferUsageFlags::TRANSFER_DST;
-            Buffer::new(gpu, PICK_BYTES, usage, Memory::Readback, "picked texels")
+            Buffer::new(given.gpu, PICK_BYTES, usage, Memory::Readback, "picked texels")
         };
         let mut made = Self {
-            gathered,
-            gather,
-            light,
-            left: left.collect::<Result<_, _>>()?,
-            tiles: tiles.transpose()?,
+            picture: picture.map(|gather| gather.canvas(&of_picture)).transpose()?,
+            slice_depth: slice_depth.map(|gather| gather.canvas(&of_depth)).transpose()?,
             sets: Sets::default(),
-            pick: pass.rays.is_some().then(readback).transpose()?,
+            pick: size.is_picked.then(readback).transpose()?,
             picked: None,
-            recorded: Recorded::with_room(recordings),
+            recorded: Recorded::with_room(size.recordings),
             begun: None,
         };
-        made.sets = made.bind(bound)?;
+        made.sets = made.bind(given)?;
         Ok(made)
     }
 
+    /// What the depth of the picture is in.
+    pub fn depth_canvas(&self) -> Option<&Canvas> {
+        self.slice_depth.as_ref().or(self.picture.as_ref())
+    }
+
     /// Descriptor sets anew: of another transfer function, or of another depth buffer.
-    pub fn bind(&self, bound: &Bound) -> Result<Sets, Error> {
-        let pass = bound.pass;
-        let depth = bound.host_depth;
+    pub fn bind(&self, given: &Given) -> Result<Sets, Error> {
+        let pass = given.pass;
+        let depth = given.host_depth;
         let depth = depth.map(|image| Resource::Texture(image.view, image.layout));
         let mut sets = Sets::default();
-        match &pass.slices {
-            Some(Slices::Gathered(slices)) => {
-                sets.slices = of_bricks(bound, |inputs| slices.bind(inputs, depth))?;
-                let depth = depth.map(|depth| slices.bind_host_depth(bound.ring, depth));
-                sets.host_depth = depth.transpose()?.flatten();
+        for copy in given.volume.copies() {
+            let bricks = 0..copy.bricks().len();
+            let bricks: Vec<_> = bricks.map(|brick| inputs(given, copy, brick)).collect();
+            if let (Some(gather), Some(canvas)) = (&pass.picture, &self.picture) {
+                sets.picture.push(gather.bind(canvas, &bricks, depth)?);
             }
-            Some(Slices::InTarget(slicer)) => {
-                sets.slices = of_bricks(bound, |inputs| slicer.bind(inputs))?;
+            if let (Some(gather), Some(canvas)) = (&pass.slice_depth, &self.slice_depth) {
+                sets.slice_depth.push(gather.bind(canvas, &bricks, depth)?);
             }
-            None => {}
+            if let Some(slicer) = &pass.in_target {
+                let bound = bricks.iter().map(|inputs| slicer.bind(inputs));
+                sets.in_target.push(bound.collect::<Result<_, _>>()?);
+            }
         }
-        if let (Some(slicer), Some(light)) = (&pass.half_angle, &self.light) {
-            let inputs = inputs(bound, &bound.volume.copies()[0], 0);
-            sets.half_angle = Some(slicer.bind(&inputs, light)?);
+        if let (Some(resolve), Some(canvas)) = (&pass.resolve, &self.picture) {
+            let (shown, transfer) = (canvas.image(PICTURE), given.function.transfer());
+            sets.resolve = Some(resolve.bind(given.ring, shown, transfer)?);
         }
-        if let (Some(rays), Some(tiles)) = (&pass.rays, &self.tiles)
-            && let [first, .., last] | [first @ last] = &self.left[..]
-        {
-            sets.rays = of_bricks(bound, |inputs| rays.bind(inputs, first, last, tiles, depth))?;
-        }
-        let shown = self.gathered.as_ref().or(self.left.first());
-        if let (Some(resolve), Some(shown)) = (&pass.resolve, shown) {
-            sets.resolve = Some(resolve.bind(bound.ring, shown, bound.function.transfer())?);
-        }
-        if let (Some(depth), Some(last)) = (&pass.depth, self.left.last()) {
-            sets.depth = Some(depth.bind(bound.ring, last)?);
+        let depth_image = self.depth_canvas().and_then(|canvas| canvas.images().last());
+        if let (Some(depth), Some(image)) = (&pass.depth, depth_image) {
+            sets.depth = Some(depth.bind(given.ring, image)?);
         }
         Ok(sets)
     }
 }
 
-/// Those of all bricks of each copy.
-fn of_bricks<B>(
-    bound: &Bound,
-    bind: impl Fn(&Inputs) -> Result<B, crate::gpu::Error>,
-) -> Result<Vec<Vec<B>>, crate::gpu::Error> {
-    let copies = bound.volume.copies().iter();
-    let of_copy = |copy: &GpuVolume| {
-        let bricks = 0..copy.bricks().len();
-        bricks
-            .map(|brick| bind(&inputs(bound, copy, brick)))
-            .collect()
-    };
-    copies.map(of_copy).collect()
-}
-
-fn inputs<'a>(bound: &Bound<'a>, copy: &'a GpuVolume, brick: usize) -> Inputs<'a> {
+fn inputs<'a>(given: &Given<'a>, copy: &'a GpuVolume, brick: usize) -> Inputs<'a> {
     Inputs {
-        ring: bound.ring,
+        ring: given.ring,
         volume: copy,
         brick: &copy.bricks()[brick],
-        transfer: bound.function.transfer(),
+        transfer: given.function.transfer(),
         beside: &[],
         light: None,
-        skip: bound.function.skip(bound.volume),
+        skip: given.function.skip(given.volume),
     }
 }

@@ -16,7 +16,7 @@
 //! ([`Shot::frame`]) to no second frame before the first is done.
 //!
 //! What a host has drawn hides the volume behind it ([`Class::host_depth`]): its depth buffer is read as a texture. Its own
-//! depth a picture gives back by [`Renderer::draw_depth`] and [`Renderer::record_pick`] ([`Class::gives_depth`]).
+//! depth a picture gives back by [`Renderer::draw_depth`] and [`Renderer::record_pick`] ([`Class::gives_depth`], [`Class::picks`]).
 //!
 //! While it is drawn, a volume takes new voxels of a box ([`Volume::stage_update`], [`Volume::record_update`]). Frames,
 //! uploads and updates may be cut into parts that are submitted one by one and given up between two of them:

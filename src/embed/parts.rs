@@ -11,9 +11,9 @@
 
 use super::frame::{Begun, Cut};
 use super::pieces::PIECE_MS;
-use super::recording::Share;
 use super::{Error, Renderer, Shot};
 use crate::gpu::{Blocks, Load, Target, Tile, Use, begin_rendering, end_rendering};
+use crate::technique::gather::Part;
 use crate::technique::cost::{looks_of_dearest_pixel, looks_of_picture, ms_of_looks};
 use ash::vk;
 
@@ -49,7 +49,7 @@ impl Renderer {
         let a_step = expected_ms / f64::from(slices.max(1));
         let bands = (a_step / PIECE_MS).ceil().max(1.0) as u32;
         let cut = match self.steps(frame, &recorded, bands) {
-            Some(steps) => Cut::Steps(steps),
+            Some(count) => Cut::Steps { count, bands },
             None => {
                 let side = side_of_block(ms(looks_of_dearest_pixel(&view, slices)));
                 let count = self.extent.map(|n| n.div_ceil(side));
@@ -107,23 +107,23 @@ impl Renderer {
             self.frames[number].begun = Some(begun);
             return Ok(left);
         }
-        let part = begun.next..begun.next.saturating_add(count).min(all);
-        let share = Share {
-            is_first: part.start == 0,
-            is_last: part.end == all,
+        let range = begun.next..begun.next.saturating_add(count).min(all);
+        let (tiles, bands) = match &begun.cut {
+            Cut::Blocks(blocks) => (blocks.tiles(range.clone()), 1),
+            Cut::Steps { bands, .. } => (Vec::new(), *bands),
+        };
+        let part = Part {
+            tiles: &tiles,
+            is_first: range.start == 0,
+            is_last: range.end == all,
+            steps: range,
+            bands,
         };
         let recorded = &begun.recorded;
         // SAFETY: the caller's promises.
         unsafe {
-            let tiles = match &begun.cut {
-                Cut::Blocks(blocks) => blocks.tiles(part.clone()),
-                Cut::Steps(_) => Vec::new(),
-            };
-            match &begun.cut {
-                Cut::Blocks(_) => self.gather(cmd, number, recorded, &tiles, share)?,
-                Cut::Steps(steps) => self.gather_steps(cmd, number, steps, part.clone()),
-            }
-            if share.is_last {
+            self.gather(cmd, number, recorded, &part)?;
+            if part.is_last {
                 target.enter(&self.gpu, cmd, Use::ColorTarget);
                 begin_rendering(&self.gpu, cmd, &[(target.view, load)], self.extent);
                 self.draw_picture(cmd, &self.frames[number], recorded);
@@ -131,14 +131,14 @@ impl Renderer {
                 target.leave(&self.gpu, cmd, Use::ColorTarget);
             }
         }
-        match share.is_last {
+        match part.is_last {
             true => self.keep(number, begun.recorded),
             false => {
-                begun.next = part.end;
+                begun.next = part.steps.end;
                 self.frames[number].begun = Some(begun);
             }
         }
-        Ok(all - part.end)
+        Ok(all - part.steps.end)
     }
 
     /// Gives a frame in parts up.

@@ -4,6 +4,7 @@ use super::frame::PICK_BYTES;
 use super::{Error, Renderer};
 use crate::gpu::{Region, Use, buffer_barrier, image_barrier, image_to_buffer};
 use crate::technique::Mode;
+use crate::technique::gather::Canvas;
 use crate::volume::{Volume, sample::nearest};
 use ash::vk;
 use glam::DVec3;
@@ -80,7 +81,8 @@ impl Renderer {
                 Use::TransferWrite,
             );
         }
-        for (image, offset) in there.left.iter().zip((0..).step_by(16)) {
+        let images = there.depth_canvas().into_iter().flat_map(Canvas::images);
+        for (image, offset) in images.zip((0..).step_by(16)) {
             // SAFETY: the caller's promises; `record` left the images as they are here.
             unsafe {
                 let gpu = &self.gpu;

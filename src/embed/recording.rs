@@ -1,17 +1,12 @@
 //! Levels A and B: what a renderer records.
 
-use super::frame::{Frame, Part, Recorded};
-use super::pass::Slices;
+use super::frame::{Frame, Recorded};
 use super::{Error, Renderer, Shot};
 use crate::camera::{Camera, HostDepth, Nearer};
-use crate::gpu::{
-    Load, Target, TargetClass, Tile, Use, begin_rendering, end_rendering, image_barrier,
-};
-use crate::technique::slice_gather::{BrickSlices, GatherInto, PicturePart};
-use crate::technique::slices_3d::half_angle::{HalfAngleSlices, Steps};
+use crate::gpu::{Load, Target, TargetClass, Tile, Use, begin_rendering, end_rendering};
+use crate::technique::gather::{Brick, Part, Player};
 use crate::technique::{self, InPixel, Recording, Sight, Skip, View};
 use ash::vk;
-use std::ops::Range;
 
 impl Renderer {
     /// Records all of a frame that lies outside of the host's rendering: parameters, the upload of a new transfer
@@ -30,17 +25,17 @@ impl Renderer {
     ///   of fragment shaders where there are slices.
     pub unsafe fn record(&mut self, cmd: vk::CommandBuffer, shot: &Shot) -> Result<(), Error> {
         let (frame, made) = self.prepare(shot)?;
-        let whole = [Tile::whole(self.extent)];
-        // SAFETY: the caller's promises; barriers stand between what is written and what is read.
+        let part = Part {
+            tiles: &[Tile::whole(self.extent)],
+            steps: 0..self.steps(frame, &made, 1).unwrap_or(0),
+            bands: 1,
+            is_first: true,
+            is_last: true,
+        };
+        // SAFETY: the caller's promises.
         let gathered = unsafe {
             let uploaded = self.function.record_part(cmd, &self.volume, u64::MAX);
-            uploaded.and_then(|()| match self.steps(frame, &made, 1) {
-                Some(steps) => {
-                    self.gather_steps(cmd, frame, &steps, 0..steps.count());
-                    Ok(())
-                }
-                None => self.gather(cmd, frame, &made, &whole, Share::ALL),
-            })
+            uploaded.and_then(|()| self.gather(cmd, frame, &made, &part))
         };
         match gathered {
             Ok(()) => self.keep(frame, made),
@@ -121,20 +116,6 @@ impl Renderer {
             drawn
         }
     }
-}
-
-/// Which part of a frame is recorded: the first has what comes before all tiles, the last what comes after.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Share {
-    pub is_first: bool,
-    pub is_last: bool,
-}
-
-impl Share {
-    const ALL: Self = Self {
-        is_first: true,
-        is_last: true,
-    };
 }
 
 impl Renderer {
@@ -277,7 +258,7 @@ impl Renderer {
         })?;
         let (words, functions) = (&self.words, self.function.turns);
         let limit = self.gpu.limits().max_loop_turns;
-        let finds_depth = self.pass.slices.is_some() && self.pass.rays.is_some();
+        let finds_depth = self.pass.slice_depth.is_some();
         view.check_turns(words, 1, functions, limit)?;
         if finds_depth {
             view.check_depth_turns(words, functions, limit)?;
@@ -288,11 +269,11 @@ impl Renderer {
             false => Skip::Nothing,
         };
         let (class, center) = (&self.class, grid.center());
-        let sight = match self.pass.slices {
-            Some(_) => class.sight(),
-            None => Sight::Read,
+        let sight = match class.settings.technique.casts_rays() {
+            false => class.sight(),
+            true => Sight::Read,
         };
-        let mut write = |mut recording: Recording, sight: Sight| -> Result<Part, Error> {
+        let mut write = |mut recording: Recording, sight: Sight| -> Result<Brick, Error> {
             recording.skip(skip);
             match (depth, sight) {
                 (Some(depth), _) if !class.host_depth => recording.in_depths_of(&depth, center),
@@ -304,11 +285,12 @@ impl Renderer {
                 (None, _) => {}
             }
             slot += 1;
-            Ok(Part {
-                brick: recording.brick,
+            Ok(Brick {
+                number: recording.brick,
                 offset: recording.write(&self.ring, slot - 1)?,
                 slices: recording.slices,
                 order: recording.order,
+                seen: None,
             })
         };
         let Recorded {
@@ -337,137 +319,58 @@ impl Renderer {
     /// # Safety
     /// As [`Slicer::record`](technique::Slicer::record), for all bricks.
     unsafe fn draw_slices(&self, cmd: vk::CommandBuffer, there: &Frame, recorded: &Recorded) {
-        let (Some(Slices::InTarget(slicer)), Some((_, copy))) = (&self.pass.slices, recorded.shot)
-        else {
+        let (Some(slicer), Some((_, copy))) = (&self.pass.in_target, recorded.shot) else {
             unreachable!("what is not drawn in the target is resolved, and this was described");
         };
-        for part in &recorded.picture {
-            let bound = &there.sets.slices[copy][part.brick];
-            let (extent, slices) = (self.extent, 0..part.slices);
+        for brick in &recorded.picture {
+            let bound = &there.sets.in_target[copy][brick.number];
+            let (extent, slices) = (self.extent, 0..brick.slices);
             // SAFETY: the caller's promises.
-            unsafe { slicer.record(cmd, bound, part.offset, extent, slices) };
+            unsafe { slicer.record(cmd, bound, brick.offset, extent, slices) };
         }
     }
 
-    /// Half-angle slices in steps, each of the two pictures in so many bands; `None` where there are none.
-    pub(super) fn steps(&self, frame: usize, made: &Recorded, bands: u32) -> Option<Steps> {
-        self.pass.half_angle.as_ref()?;
-        let [width, height, _] = self.frames[frame].light.as_ref()?.extent();
-        let [eye, light] = &made.picture[..] else {
-            unreachable!("the eye's recording and the light's");
-        };
-        let slices = HalfAngleSlices {
-            offsets: [eye.offset, light.offset],
-            count: eye.slices,
-            order: eye.order,
-        };
-        Some(Steps::new(slices, [self.extent, [width, height]], bands))
+    /// How many steps make a picture that is no sum of blocks, each in so many bands.
+    pub(super) fn steps(&self, frame: usize, made: &Recorded, bands: u32) -> Option<u64> {
+        let (there, (_, copy)) = (&self.frames[frame], made.shot?);
+        let bound = there.sets.picture.get(copy)?;
+        bound.steps(there.picture.as_ref()?, &made.picture, bands)
     }
 
+    /// Records a part of all that lies outside of the host's rendering.
+    ///
     /// # Safety
-    /// As [`Renderer::record`]; steps follow each other.
-    pub(super) unsafe fn gather_steps(
-        &self,
-        cmd: vk::CommandBuffer,
-        frame: usize,
-        steps: &Steps,
-        part: Range<u64>,
-    ) {
-        let there = &self.frames[frame];
-        let (Some(image), Some(light), Some(slicer), Some(bound)) = (
-            &there.gathered,
-            &there.light,
-            &self.pass.half_angle,
-            &there.sets.half_angle,
-        ) else {
-            unreachable!("steps are of half-angle slices");
-        };
-        let is_last = part.end == steps.count();
-        // SAFETY: the caller's promises; what earlier parts have drawn stays.
-        unsafe {
-            if part.start == 0 {
-                for image in [image, light] {
-                    image_barrier(&self.gpu, cmd, image, Use::Nothing, Use::ColorTarget);
-                }
-            }
-            steps.record(slicer, cmd, bound, image, light, part);
-            if is_last {
-                image_barrier(
-                    &self.gpu,
-                    cmd,
-                    image,
-                    Use::ColorTarget,
-                    Use::FragmentSampled,
-                );
-            }
-        }
-    }
-
-    /// # Safety
-    /// As [`Renderer::record`].
+    /// As [`Renderer::record`]; parts follow each other.
     pub(super) unsafe fn gather(
-        &self,
+        &mut self,
         cmd: vk::CommandBuffer,
         frame: usize,
         made: &Recorded,
-        tiles: &[Tile],
-        share: Share,
+        part: &Part,
     ) -> Result<(), Error> {
-        let (gpu, extent) = (&self.gpu, self.extent);
-        let there = &self.frames[frame];
         let Some((_, copy)) = made.shot else {
             unreachable!("described before");
         };
-        // What earlier parts have written stays.
-        let before = |written| match share.is_first {
-            true => Use::Nothing,
-            false => written,
-        };
-        if let (Some(Slices::Gathered(slices)), Some(image), Some(images)) =
-            (&self.pass.slices, &there.gathered, &there.gather)
-        {
-            let bricks = made.picture.iter().map(|part| BrickSlices {
-                bindings: &there.sets.slices[copy][part.brick],
-                offset: part.offset,
-                slices: part.slices,
-            });
-            let into = GatherInto {
-                accumulation: image,
-                images,
-                host_depth: there.sets.host_depth.as_ref(),
-                extent,
+        let Frame {
+            picture,
+            slice_depth,
+            sets,
+            ..
+        } = &mut self.frames[frame];
+        for (canvas, sets, bricks) in [
+            (picture, &sets.picture, &made.picture),
+            (slice_depth, &sets.slice_depth, &made.depth),
+        ] {
+            let (Some(canvas), Some(bound)) = (canvas, sets.get(copy)) else {
+                continue;
             };
-            let part = PicturePart {
-                tiles,
-                is_first: share.is_first,
-                is_last: share.is_last,
-            };
-            // SAFETY: the caller's promises.
-            unsafe { slices.record(cmd, bricks, into, part)? };
-        }
-        let Some(rays) = &self.pass.rays else {
-            return Ok(());
-        };
-        let barriers = |before, after| {
-            for image in &there.left {
-                // SAFETY: the caller's promises.
-                unsafe { image_barrier(gpu, cmd, image, before, after) };
+            if part.is_first {
+                canvas.begin();
             }
-        };
-        let parts = match self.pass.slices {
-            Some(_) => &made.depth,
-            None => &made.picture,
-        };
-        let mut from = before(Use::ComputeWrite);
-        for part in parts {
-            barriers(from, Use::ComputeWrite);
-            from = Use::ComputeWrite;
-            let (bound, tiles) = (&there.sets.rays[copy][part.brick], tiles.iter().copied());
+            let gpu = &self.gpu;
+            let mut player = Player { gpu, cmd, canvas };
             // SAFETY: the caller's promises.
-            unsafe { rays.record_tiles(cmd, bound, part.offset, extent, tiles)? };
-        }
-        if share.is_last {
-            barriers(Use::ComputeWrite, Use::FragmentSampled);
+            unsafe { bound.record(&mut player, bricks, part)? };
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Pictures of one volume in a host's frames.
 
 use super::class::{READ_DEPTH, what};
-use super::frame::{Bound, Frame, Recorded};
+use super::frame::{Frame, FrameSize, Given, Recorded};
 use super::function::{self, Function};
 use super::pass::Pass;
 use super::{Class, Error, HostDepthImage, Volume};
@@ -59,7 +59,7 @@ impl Renderer {
         let bricks = volume.copies().iter().map(|copy| copy.bricks().len()).max();
         let most_bricks = bricks.unwrap_or(1);
         // The depth of slices is looked for with parameters of its own, and the light has its own.
-        let is_twofold = pass.half_angle.is_some() || pass.slices.is_some() && pass.rays.is_some();
+        let is_twofold = class.settings.is_half_angle() || pass.slice_depth.is_some();
         let walks = if is_twofold { 2 } else { 1 };
         let slots = (most_bricks as u32).saturating_mul(walks * class.frames_in_flight);
         let mut made = Self {
@@ -92,11 +92,19 @@ impl Renderer {
         host_depths: &[HostDepthImage],
     ) -> Result<(), Error> {
         self.check_depths(extent, host_depths)?;
-        let frames = (0..self.class.frames_in_flight as usize).map(|frame| {
+        let is_picked = self.class.finds_depth();
+        let size = FrameSize {
+            extent,
+            recordings: 2 * self.most_bricks,
+            keeps_layers: is_picked || self.most_bricks > 1,
+            is_picked,
+        };
+        let mut frames = Vec::new();
+        for frame in 0..self.class.frames_in_flight as usize {
             let depth = host_depths.get(frame).or(host_depths.first());
-            Frame::new(&self.bound(depth.copied()), extent, 2 * self.most_bricks)
-        });
-        let frames = frames.collect::<Result<_, _>>()?;
+            let given = self.given(depth.copied());
+            frames.push(Frame::new(&given, size, frames.first())?);
+        }
         self.frames = frames;
         self.extent = extent;
         self.host_depths = host_depths.to_vec();
@@ -192,7 +200,7 @@ impl Renderer {
         };
         // Half-angle slices have an image of the light's view of the grid.
         let is_as_large =
-            self.pass.half_angle.is_none() || volume.grid().dims == self.volume.grid().dims;
+            !settings.is_half_angle() || volume.grid().dims == self.volume.grid().dims;
         let lies_alike = layouts(volume) == layouts(&self.volume) && is_as_large;
         if !lies_alike || words != self.words || bricks(volume) > self.most_bricks {
             return Err(Error::OtherClass {
@@ -213,8 +221,8 @@ impl Renderer {
         self.extent
     }
 
-    fn bound(&self, host_depth: Option<HostDepthImage>) -> Bound<'_> {
-        Bound {
+    fn given(&self, host_depth: Option<HostDepthImage>) -> Given<'_> {
+        Given {
             gpu: &self.gpu,
             pass: &self.pass,
             ring: &self.ring,
@@ -229,10 +237,10 @@ impl Renderer {
     fn show(&mut self, volume: Arc<Volume>, function: Function) -> Result<(), Error> {
         let sets = self.frames.iter().enumerate().map(|(k, frame)| {
             let depth = self.host_depths.get(k).or(self.host_depths.first());
-            frame.bind(&Bound {
+            frame.bind(&Given {
                 volume: &volume,
                 function: &function,
-                ..self.bound(depth.copied())
+                ..self.given(depth.copied())
             })
         });
         let sets = sets.collect::<Result<Vec<_>, _>>()?;

@@ -45,6 +45,21 @@ pub enum Use {
 }
 
 impl Use {
+    /// Whether it leaves the content as it is.
+    pub(crate) const fn is_read(self) -> bool {
+        matches!(
+            self,
+            Self::ComputeSampled
+                | Self::ComputeRead
+                | Self::FragmentSampled
+                | Self::Sampled
+                | Self::SampledOrRead
+                | Self::DrawRead
+                | Self::DrawIndirect
+                | Self::TransferRead
+        )
+    }
+
     /// The one table. Sampling is `SHADER_READ`: the layer's best practices do not know the finer word.
     pub const fn state(self) -> (Stage, Access, Layout) {
         match self {
@@ -141,6 +156,30 @@ pub unsafe fn image_barrier(
     let (before, after) = (TargetState::from(before), TargetState::from(after));
     // SAFETY: the caller's promises.
     unsafe { transition(gpu, cmd, image.raw(), whole(image.format()), before, after) };
+}
+
+/// The same for several images, `N` at most, in one barrier; none for no image.
+///
+/// # Safety
+///
+/// As [`image_barrier`], of each of them.
+pub(crate) unsafe fn image_barriers<'a, const N: usize>(
+    gpu: &Gpu,
+    cmd: vk::CommandBuffer,
+    moved: impl Iterator<Item = (&'a Image, Use, Use)>,
+) {
+    let mut barriers = [vk::ImageMemoryBarrier2::default(); N];
+    let mut count = 0;
+    for (barrier, (image, before, after)) in barriers.iter_mut().zip(moved) {
+        let (range, states) = (whole(image.format()), [before.into(), after.into()]);
+        *barrier = barrier_of(gpu, image.raw(), range, states);
+        count += 1;
+    }
+    if count > 0 {
+        let info = vk::DependencyInfo::default().image_memory_barriers(&barriers[..count]);
+        // SAFETY: the caller's promises; synchronization2 was required of the device.
+        gpu.record(|device| unsafe { device.cmd_pipeline_barrier2(cmd, &info) });
+    }
 }
 
 /// Orders two uses of all of a buffer.
@@ -261,12 +300,24 @@ unsafe fn transition(
     before: TargetState,
     after: TargetState,
 ) {
+    let barriers = [barrier_of(gpu, image, range, [before, after])];
+    let info = vk::DependencyInfo::default().image_memory_barriers(&barriers);
+    // SAFETY: the caller's promises; synchronization2 was required of the device.
+    gpu.record(|device| unsafe { device.cmd_pipeline_barrier2(cmd, &info) });
+}
+
+fn barrier_of<'a>(
+    gpu: &Gpu,
+    image: vk::Image,
+    range: vk::ImageSubresourceRange,
+    [before, after]: [TargetState; 2],
+) -> vk::ImageMemoryBarrier2<'a> {
     let family = |state: TargetState| match state.queue_family {
         vk::QUEUE_FAMILY_IGNORED => gpu.queue_family(),
         family => family,
     };
     // Equal families: no transfer of ownership.
-    let barriers = [vk::ImageMemoryBarrier2::default()
+    vk::ImageMemoryBarrier2::default()
         .src_stage_mask(before.stage)
         .src_access_mask(before.access)
         .old_layout(before.layout)
@@ -276,8 +327,5 @@ unsafe fn transition(
         .src_queue_family_index(family(before))
         .dst_queue_family_index(family(after))
         .image(image)
-        .subresource_range(range)];
-    let info = vk::DependencyInfo::default().image_memory_barriers(&barriers);
-    // SAFETY: the caller's promises; synchronization2 was required of the device.
-    gpu.record(|device| unsafe { device.cmd_pipeline_barrier2(cmd, &info) });
+        .subresource_range(range)
 }

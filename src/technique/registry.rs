@@ -1,6 +1,8 @@
 //! The closed list of techniques: what each says of itself, and what all others ask in place of its name.
 
+use super::gather::{Gather, GatherDesc};
 use super::{Technique, View, raycast, slices_2d, slices_3d};
+use crate::gpu;
 use crate::resident::TextureLayout;
 use crate::shaders::FrameFields;
 use glam::DVec3;
@@ -23,6 +25,8 @@ pub(crate) struct TechniqueDesc {
     pub longest_sample_count: fn(&View) -> f64,
     /// Fills in the slices of a part of the grid ([`View::part`]) and returns how many to draw.
     pub set_slices: fn(&View, [DVec3; 2], &mut FrameFields) -> u32,
+    /// The passes in which it makes a picture.
+    pub gather: fn(&GatherDesc) -> Result<Box<dyn Gather>, gpu::Error>,
     /// What draws its slices; `None`: rays draw none.
     pub slice_shaders: Option<&'static SliceShaders>,
 }

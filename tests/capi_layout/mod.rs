@@ -46,7 +46,7 @@ pub fn asserts() -> Vec<String> {
         sv_settings { struct_size, next, technique, mode, filter, lattice, color_space, is_preintegrated, keeps_empty_space, has_exact_maximum, samples_per_voxel, termination, crop_min, crop_max, clip_planes, clip_plane_count, levels, level_count, is_lit, has_lmip_threshold, ambient, diffuse, specular, shininess, lights, light_count, unit_values, lmip_threshold, mida_gamma, attenuation, depth_cue, jitter_seed, jitter_frame }
         sv_target_class { struct_size, next, color_format, samples, depth_format, has_stencil, is_depth_reversed, subpass, render_pass }
         sv_depth_image { view, layout, width, height, reserved }
-        sv_renderer_desc { struct_size, next, volume, function, settings, target, width, height, frames_in_flight, has_host_depth, gives_depth, blends_slices_in_target, depth_images, depth_image_count }
+        sv_renderer_desc { struct_size, next, volume, function, settings, target, width, height, frames_in_flight, has_host_depth, gives_depth, blends_slices_in_target, depth_images, depth_image_count, picks }
         sv_timeline_point { semaphore, value }
         sv_submission { struct_size, next, queue, lock, unlock, user, waits, wait_count, signals, signal_count }
         sv_volume_desc { struct_size, next, dims, voxel_type, voxels, voxel_bytes, world_from_voxel, slope, intercept, has_fill, fill, settings, has_value_range, reserved, value_range }

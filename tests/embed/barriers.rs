@@ -72,6 +72,7 @@ fn level_a(missing: Option<usize>) -> Vec<String> {
         frames_in_flight: 1,
         host_depth: true,
         gives_depth: true,
+        picks: false,
         slice_blending: Default::default(),
     };
     // SAFETY: the buffer outlives the renderer.
@@ -126,6 +127,7 @@ fn level_b(missing: Option<usize>) -> Vec<String> {
         frames_in_flight: 1,
         host_depth: false,
         gives_depth: false,
+        picks: false,
         slice_blending: Default::default(),
     };
     let (function, extent) = (Some(&stage.transfer), stage.extent);

@@ -28,6 +28,7 @@ fn picture(host: &Host, stage: &Stage) -> Result<Vec<[f64; 4]>, embed::Error> {
         frames_in_flight: 1,
         host_depth: false,
         gives_depth: false,
+        picks: false,
         slice_blending: Default::default(),
     };
     let (volume, function) = (Arc::new(volume), Some(&stage.transfer));
@@ -139,6 +140,7 @@ fn what_no_longer_fits_leaves_a_renderer_as_it_was() {
         frames_in_flight: 1,
         host_depth: false,
         gives_depth: false,
+        picks: false,
         slice_blending: Default::default(),
     };
     let function = Some(&stage.transfer);

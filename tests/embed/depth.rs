@@ -270,6 +270,7 @@ fn a_depth_that_is_nearer_the_other_way_round_is_refused() {
         frames_in_flight: 1,
         host_depth: false,
         gives_depth: true,
+        picks: false,
         slice_blending: Default::default(),
     };
     // SAFETY: outside rendering; `run` waits.
@@ -324,6 +325,7 @@ fn a_picked_pixel_says_where_it_is_and_what_voxel_is_there() {
             frames_in_flight: 1,
             host_depth: false,
             gives_depth: false,
+            picks: false,
             slice_blending: Default::default(),
         };
         let (function, volume) = (Some(&stage.transfer), Arc::new(volume));

@@ -33,7 +33,8 @@ fn renderer(host: &Host, volume: &Arc<Volume>, stage: &Stage, frames: u64) -> Re
         frames_in_flight: frames as u32,
         host_depth: false,
         // The depth of slices has images and parameters of its own for each frame.
-        gives_depth: stage.settings.technique != Technique::Raycast,
+        gives_depth: false,
+        picks: true,
         slice_blending: Default::default(),
     };
     let function = Some(&stage.transfer);

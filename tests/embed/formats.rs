@@ -113,6 +113,7 @@ fn renderer(
         frames_in_flight: 2,
         host_depth: false,
         gives_depth: false,
+        picks: false,
         slice_blending,
     };
     let (volume, function) = (Arc::new(volume), Some(&stage.transfer));

@@ -25,6 +25,7 @@ fn class(stage: &Stage) -> Class {
         frames_in_flight: 2,
         host_depth: false,
         gives_depth: false,
+        picks: false,
         slice_blending: Default::default(),
     }
 }

@@ -70,6 +70,7 @@ fn renderer(host: &Host, stage: &Stage) -> Renderer {
         frames_in_flight: 2,
         host_depth: false,
         gives_depth: false,
+        picks: false,
         slice_blending: Default::default(),
     };
     let function = Some(&stage.transfer);

@@ -87,6 +87,7 @@ fn renderer(host: &Host, volume: &Arc<Volume>, settings: &Settings) -> Renderer 
         frames_in_flight: 2,
         host_depth: false,
         gives_depth: false,
+        picks: false,
         slice_blending: Default::default(),
     };
     let function = Some(&crate::shared::ramps()).cloned();

@@ -28,6 +28,7 @@ fn renderer(host: &Host, stage: &Stage, volume: &Arc<Volume>) -> Renderer {
         frames_in_flight: 1,
         host_depth: false,
         gives_depth: false,
+        picks: false,
         slice_blending: Default::default(),
     };
     let function = Some(&stage.transfer);

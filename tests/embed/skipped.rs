@@ -24,6 +24,7 @@ fn drawn(host: &Host, stage: &Stage) -> Vec<[f64; 4]> {
         frames_in_flight: 1,
         host_depth: false,
         gives_depth: false,
+        picks: false,
         slice_blending: Default::default(),
     };
     let function = Some(&stage.transfer);

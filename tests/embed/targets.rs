@@ -49,6 +49,7 @@ fn renderer(
         target,
         frames_in_flight: 1,
         gives_depth: false,
+        picks: false,
         slice_blending,
     };
     let (volume, function) = (Arc::new(volume), Some(&stage.transfer));

@@ -56,6 +56,7 @@ impl<'h> Drawn<'h> {
             frames_in_flight: 1,
             host_depth: false,
             gives_depth: false,
+            picks: false,
             slice_blending: Default::default(),
         };
         let volume = &volumes[number % 3];

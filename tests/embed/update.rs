@@ -152,6 +152,7 @@ fn class(settings: &Settings) -> Class {
         frames_in_flight: 2,
         host_depth: false,
         gives_depth: false,
+        picks: false,
         slice_blending: Default::default(),
     }
 }

@@ -144,6 +144,7 @@ pub fn draw(
         frames_in_flight: 1,
         host_depth: true,
         gives_depth,
+        picks: false,
         slice_blending: Default::default(),
     };
     let reads = class.reads_host_depth();

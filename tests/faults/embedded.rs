@@ -42,7 +42,8 @@ impl<'d> Drawn<'d> {
             frames_in_flight: 2,
             host_depth: false,
             // For picks alone: the target has no depth.
-            gives_depth: stage.settings.technique != Technique::Raycast,
+            gives_depth: false,
+            picks: true,
             slice_blending: Default::default(),
         };
         let function = Some(&stage.transfer);

@@ -171,6 +171,7 @@ impl Stage {
             frames_in_flight: 3,
             host_depth: false,
             gives_depth: false,
+            picks: false,
             slice_blending: Default::default(),
         };
         let shot = Shot {

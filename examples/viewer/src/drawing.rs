@@ -54,6 +54,7 @@ impl Drawing {
             frames_in_flight,
             host_depth: false,
             gives_depth: false,
+            picks: true,
             slice_blending: Default::default(),
         };
         let renderer = Renderer::new(gpu, &volume, look.function(), class, extent, &[])?;

@@ -2,6 +2,7 @@
 
 pub mod reference;
 
+use super::gather::rays;
 use super::ray_tiles::{Nothing, TilePass};
 use super::registry::TechniqueDesc;
 use super::{Inputs, Mix, Mode, RayBindings, RayTiles, Take, Words};
@@ -19,6 +20,7 @@ pub(super) static DESC: TechniqueDesc = TechniqueDesc {
     layout_of: |_| TextureLayout::Texture3d,
     longest_sample_count: |view| view.longest_sample_count(),
     set_slices: |_, _, _| 0,
+    gather: rays,
     slice_shaders: None,
 };
 

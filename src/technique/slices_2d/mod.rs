@@ -7,6 +7,7 @@ mod stack;
 pub use between::planes_per_slice;
 pub use stack::{set_slices, stack_axis, stack_shares};
 
+use super::gather::slices;
 use super::registry::{SliceShaders, TechniqueDesc};
 use crate::resident::TextureLayout;
 
@@ -26,6 +27,7 @@ pub(super) static DESC: TechniqueDesc = TechniqueDesc {
         view.set_between(fields);
         set_slices(view, stack_axis(view), part, fields)
     },
+    gather: slices,
     slice_shaders: Some(&SLICE_SHADERS),
 };
 

@@ -9,6 +9,8 @@ pub mod reference;
 pub use half_angle::HalfAngleSlicer;
 pub use planes::set_planes;
 
+use super::blend::Drawn;
+use super::gather::slices;
 use super::registry::{SliceShaders, TechniqueDesc};
 use crate::resident::TextureLayout;
 
@@ -21,6 +23,10 @@ pub(super) static DESC: TechniqueDesc = TechniqueDesc {
     layout_of: |_| TextureLayout::Texture3d,
     longest_sample_count: |view| view.longest_sample_count(),
     set_slices: set_planes,
+    gather: |desc| match desc.settings.is_half_angle() && desc.drawn != Drawn::Count {
+        true => half_angle::half_angle_slices(desc),
+        false => slices(desc),
+    },
     slice_shaders: Some(&SliceShaders {
         cover: "slices_3d_cover",
         // Four triangles cover the six corners of a plane in a box.

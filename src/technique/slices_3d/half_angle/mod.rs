@@ -11,17 +11,17 @@
 //! the step. Kniss, Premoze, Hansen, Shirley and McPherson, "A Model for Volume Lighting and Modeling", IEEE
 //! TVCG 9(2), 2003, section 4.
 
+mod gather;
 mod geometry;
 pub mod reference;
-mod steps;
 
+pub(super) use gather::half_angle_slices;
 pub use geometry::{HalfAngle, light_extent};
-pub(crate) use steps::Steps;
 
 use crate::gpu::{
     Bindings, Blend, DepthUse, Error, Gpu, Image, ImageDesc, ImageKind, Load, RasterDesc,
-    RasterPipeline, Resource, Tile, Use, begin_rendering, begin_rendering_of, end_rendering,
-    image_barrier, set_area_of,
+    RasterPipeline, Resource, Tile, Use, begin_rendering_of, end_rendering, image_barrier,
+    set_area_of,
 };
 use crate::shaders::shader;
 use crate::technique::blend::Drawn;
@@ -151,99 +151,74 @@ impl HalfAngleSlicer {
         (picture, extent): (&Image, [u32; 2]),
         light_buffer: &Image,
     ) {
-        let [light_width, light_height, _] = light_buffer.extent();
-        let (of_eye, of_light) = (
-            Tile::whole(extent),
-            Tile::whole([light_width, light_height]),
-        );
-        // SAFETY: the caller's promises.
-        unsafe {
-            self.record_clear(cmd, (picture, extent), light_buffer);
-            for slice in 0..slices.count {
-                let target = (picture, extent);
-                self.record_eye(cmd, bindings, slices, target, light_buffer, (slice, of_eye));
-                self.record_light(cmd, bindings, slices, light_buffer, (slice, of_light));
-            }
-        }
-    }
-
-    /// The same as [`Self::record`] in steps, so that no submission takes long: this first, then for each slice in its
-    /// order the eye's and after it the light's. The tiles of a slice may be recorded in any order. Steps may lie in
-    /// different submissions; they bring their own barriers.
-    ///
-    /// # Safety
-    /// As [`Self::record`].
-    pub unsafe fn record_clear(
-        &self,
-        cmd: vk::CommandBuffer,
-        (picture, extent): (&Image, [u32; 2]),
-        light_buffer: &Image,
-    ) {
+        let gpu = &self.gpu;
         let [width, height, _] = light_buffer.extent();
-        for (image, extent) in [(picture, extent), (light_buffer, [width, height])] {
-            let target = [(image.view(), Load::Clear([0.0; 4]))];
-            // SAFETY: the caller's promises.
-            unsafe {
-                begin_rendering(&self.gpu, cmd, &target, extent);
-                end_rendering(&self.gpu, cmd);
+        let (of_eye, of_light) = (Tile::whole(extent), Tile::whole([width, height]));
+        let (drawn, read) = (Use::ColorTarget, Use::FragmentSampled);
+        let target = |image: &Image, load| [(image.view(), load)];
+        let (of_picture, cleared) = (target(picture, Load::Keep), Load::Clear([0.0; 4]));
+        // SAFETY: the caller's promises; every image is in the use that its next access needs.
+        unsafe {
+            for (image, tile) in [(picture, of_eye), (light_buffer, of_light)] {
+                begin_rendering_of(gpu, cmd, &target(image, cleared), tile);
+                end_rendering(gpu, cmd);
+            }
+            for slice in 0..slices.count {
+                image_barrier(gpu, cmd, light_buffer, drawn, read);
+                image_barrier(gpu, cmd, picture, drawn, drawn);
+                begin_rendering_of(gpu, cmd, &of_picture, of_eye);
+                self.draw_eye(cmd, bindings, slices, extent, (slice, of_eye));
+                end_rendering(gpu, cmd);
+                image_barrier(gpu, cmd, light_buffer, read, drawn);
+                begin_rendering_of(gpu, cmd, &target(light_buffer, Load::Keep), of_light);
+                let place = (slice, of_light);
+                self.draw_light(cmd, bindings, slices, [width, height], place);
+                end_rendering(gpu, cmd);
             }
         }
     }
 
-    /// A tile of what the eye sees of a slice: see [`Self::record_clear`].
+    /// A tile of what the eye sees of a slice.
     ///
     /// # Safety
-    /// As [`Self::record`].
-    pub unsafe fn record_eye(
+    /// As [`Self::record`], inside rendering to the picture of `extent`.
+    unsafe fn draw_eye(
         &self,
         cmd: vk::CommandBuffer,
         bindings: &HalfAngleBindings,
         slices: HalfAngleSlices,
-        (picture, extent): (&Image, [u32; 2]),
-        light_buffer: &Image,
+        extent: [u32; 2],
         (slice, tile): (u32, Tile),
     ) {
-        let gpu = &self.gpu;
         let pipeline = match slices.order {
             Order::BackToFront => &self.over,
             Order::FrontToBack => &self.under,
         };
         let offsets = [slices.offsets[0]];
-        let (drawn, read) = (Use::ColorTarget, Use::FragmentSampled);
-        // SAFETY: the caller's promises; every image is in the use that its next access needs, and the layouts of both
-        // pipelines are equal.
+        // SAFETY: the caller's promises; the layouts of both pipelines are equal.
         unsafe {
-            image_barrier(gpu, cmd, light_buffer, drawn, read);
-            image_barrier(gpu, cmd, picture, drawn, drawn);
-            begin_rendering_of(gpu, cmd, &[(picture.view(), Load::Keep)], tile);
-            set_area_of(gpu, cmd, extent, tile);
+            set_area_of(&self.gpu, cmd, extent, tile);
             pipeline.draw(cmd, &bindings.eye, &offsets, VERTICES, slice..slice + 1);
-            end_rendering(gpu, cmd);
-            image_barrier(gpu, cmd, light_buffer, read, drawn);
         }
     }
 
-    /// A tile of what the light sees of a slice: see [`Self::record_clear`].
+    /// A tile of what the light sees of a slice.
     ///
     /// # Safety
-    /// As [`Self::record`].
-    pub unsafe fn record_light(
+    /// As [`Self::record`], inside rendering to the light buffer of `extent`.
+    unsafe fn draw_light(
         &self,
         cmd: vk::CommandBuffer,
         bindings: &HalfAngleBindings,
         slices: HalfAngleSlices,
-        light_buffer: &Image,
+        extent: [u32; 2],
         (slice, tile): (u32, Tile),
     ) {
-        let [width, height, _] = light_buffer.extent();
-        let (bound, offset) = (&bindings.light, slices.offsets[1]);
-        let (slices, extent) = (slice..slice + 1, [width, height]);
-        // SAFETY: the caller's promises; what was drawn before is ordered by the barriers of the eye.
+        let (bound, offset, one) = (&bindings.light, slices.offsets[1], slice..slice + 1);
+        // SAFETY: the caller's promises.
         unsafe {
-            begin_rendering_of(&self.gpu, cmd, &[(light_buffer.view(), Load::Keep)], tile);
             self.light
-                .record_tile(cmd, bound, offset, extent, slices, tile);
-            end_rendering(&self.gpu, cmd);
+                .record_tile(cmd, bound, offset, extent, one, tile);
         }
     }
 }

@@ -1,0 +1,86 @@
+//! The images that one picture is gathered in, and what was last done with each.
+
+use super::super::{PatchRoom, Patches, RayTiles};
+use crate::gpu::{Error, Gpu, Image, Use};
+use crate::volume::Grid;
+use std::sync::Arc;
+
+/// What a technique gathers: premultiplied colour and alpha, or what a resolve classifies. Four f32 a pixel.
+pub(crate) const PICTURE: usize = 0;
+
+/// What a canvas is made for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CanvasDesc<'a> {
+    /// Pixels across and down.
+    pub extent: [u32; 2],
+    /// What is shown.
+    pub grid: &'a Grid,
+    /// What rays that composite leave beside the picture is kept: a depth or another layer is asked for, or a brick goes
+    /// on where another has ended.
+    pub keeps_layers: bool,
+    /// A canvas whose pictures are recorded for the same queue: lists that no picture leaves behind are shared with it.
+    pub beside: Option<&'a Canvas>,
+}
+
+/// Images of one extent, [`PICTURE`] first, those of the technique after it.
+#[derive(Debug)]
+pub(crate) struct Canvas {
+    extent: [u32; 2],
+    images: Vec<(Image, Use)>,
+    /// Which tiles rays draw.
+    pub tiles: Option<RayTiles>,
+    /// Which parts of slices are drawn, and how large the lists of this picture get.
+    pub patches: Option<(Arc<Patches>, PatchRoom)>,
+}
+
+impl Canvas {
+    /// Of images that nothing is in yet.
+    pub fn new(extent: [u32; 2], images: impl IntoIterator<Item = Image>) -> Self {
+        let images = images.into_iter().map(|image| (image, Use::Nothing));
+        Self {
+            extent,
+            images: images.collect(),
+            tiles: None,
+            patches: None,
+        }
+    }
+
+    /// Pixels across and down.
+    pub fn extent(&self) -> [u32; 2] {
+        self.extent
+    }
+
+    /// An image by its number.
+    pub fn image(&self, number: usize) -> &Image {
+        &self.images[number].0
+    }
+
+    /// All images.
+    pub fn images(&self) -> impl Iterator<Item = &Image> {
+        self.images.iter().map(|(image, _)| image)
+    }
+
+    /// Gives up what the images hold: a picture begins, and nothing unfinished uses them.
+    pub fn begin(&mut self) {
+        for (_, last) in &mut self.images {
+            *last = Use::Nothing;
+        }
+    }
+
+    pub(super) fn last_use(&mut self, number: usize) -> &mut Use {
+        &mut self.images[number].1
+    }
+
+    /// Makes the lists of patches, where there are none that are long enough.
+    ///
+    /// # Errors
+    /// Where the device gives no memory, or has no buffers of that size.
+    pub fn prepare_patches(&mut self, gpu: &Arc<Gpu>, room: PatchRoom) -> Result<(), Error> {
+        let made = match self.patches.take() {
+            Some((made, _)) if made.holds(room) => made,
+            _ => Arc::new(Patches::new(gpu, room)?),
+        };
+        self.patches = Some((made, room));
+        Ok(())
+    }
+}

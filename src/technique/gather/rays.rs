@@ -1,0 +1,204 @@
+//! The passes of rays, whatever their mode.
+//!
+//! ```text
+//! for each brick, from front to back:
+//!     search     tiles in which rays may meet something     writes the lists
+//!     rays       those tiles                                goes on in picture and layers
+//! ```
+
+use super::super::projection::Projection;
+use super::super::raycast::Raycast;
+use super::super::{Inputs, Mix, RayBindings, RayTiles, Settings, Words, accumulation};
+use super::{Bound, Brick, Canvas, CanvasDesc, Gather, GatherDesc, PICTURE, Part, Player};
+use crate::gpu::{Error, Gpu, Image, Resource, Tile, Use};
+use ash::vk;
+use std::sync::Arc;
+
+/// What compositing rays leave beside the picture: (what the mode keeps, depth or -1, transmittance, samples).
+const LAYERS: usize = 1;
+
+/// The passes of a ray caster.
+///
+/// # Errors
+/// Where the device refuses.
+pub(in crate::technique) fn rays(desc: &GatherDesc) -> Result<Box<dyn Gather>, Error> {
+    let pass = RayPass::new(desc.gpu, desc.settings, desc.words)?;
+    Ok(Box::new(Rays::new(desc.gpu, pass)))
+}
+
+/// Rays that find the depth of slices: they take the samples of the slices one after the other
+/// ([`super::super::View::each_depth_recording`]). The words are those of the picture; what lights it has no say.
+///
+/// # Errors
+/// Where the device refuses.
+pub(crate) fn depth_of_slices(desc: &GatherDesc, mix: Mix) -> Result<Box<dyn Gather>, Error> {
+    let pass = RayPass::along_slices(desc.gpu, desc.settings, desc.words, mix)?;
+    Ok(Box::new(Rays::new(desc.gpu, pass)))
+}
+
+#[derive(Debug)]
+struct Rays {
+    gpu: Arc<Gpu>,
+    pass: Arc<RayPass>,
+}
+
+#[derive(Debug)]
+struct BoundRays {
+    pass: Arc<RayPass>,
+    bricks: Vec<RayBindings>,
+}
+
+impl Rays {
+    fn new(gpu: &Arc<Gpu>, pass: RayPass) -> Self {
+        Self {
+            gpu: Arc::clone(gpu),
+            pass: Arc::new(pass),
+        }
+    }
+}
+
+impl Gather for Rays {
+    fn canvas(&self, desc: &CanvasDesc) -> Result<Canvas, Error> {
+        let picture = accumulation(&self.gpu, desc.extent, "rays")?;
+        // Texels outside of an image are not written: one that nobody reads needs no more than one.
+        let kept = if desc.keeps_layers { desc.extent } else { [1; 2] };
+        let layers = match *self.pass {
+            RayPass::Raycast(_) => Some(accumulation(&self.gpu, kept, "beside rays")?),
+            RayPass::Projection(_) => None,
+        };
+        let mut canvas = Canvas::new(desc.extent, [picture].into_iter().chain(layers));
+        // What one picture reads of them comes before what the next one writes.
+        let beside = desc.beside.and_then(|canvas| canvas.tiles.clone());
+        canvas.tiles = Some(match beside {
+            Some(tiles) => tiles,
+            None => RayTiles::new(&self.gpu, desc.extent)?,
+        });
+        Ok(canvas)
+    }
+
+    fn bind(
+        &self,
+        canvas: &Canvas,
+        bricks: &[Inputs],
+        host_depth: Option<Resource>,
+    ) -> Result<Box<dyn Bound>, Error> {
+        let tiles = canvas.tiles.as_ref().expect("made with the canvas");
+        let bind = |inputs| self.pass.bind(inputs, canvas, tiles, host_depth);
+        Ok(Box::new(BoundRays {
+            pass: Arc::clone(&self.pass),
+            bricks: bricks.iter().map(bind).collect::<Result<_, _>>()?,
+        }))
+    }
+}
+
+impl Bound for BoundRays {
+    unsafe fn record(
+        &self,
+        player: &mut Player,
+        bricks: &[Brick],
+        part: &Part,
+    ) -> Result<(), Error> {
+        let (cmd, extent) = (player.cmd, player.canvas.extent());
+        let images = PICTURE..player.canvas.images().count();
+        // SAFETY: the caller's promises.
+        unsafe {
+            for brick in bricks {
+                player.bring(images.clone().map(|image| (image, Use::ComputeWrite)));
+                let seen = |tile: &Tile| match brick.seen {
+                    Some(seen) => tile.and(seen),
+                    None => Some(*tile),
+                };
+                let (bound, tiles) = (&self.bricks[brick.number], part.tiles.iter());
+                let tiles = tiles.filter_map(seen);
+                self.pass
+                    .record_tiles(cmd, bound, brick.offset, extent, tiles)?;
+            }
+            if part.is_last {
+                player.bring(images.map(|image| (image, Use::FragmentSampled)));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Rays that composite, or that project.
+#[derive(Debug)]
+enum RayPass {
+    /// Colours, and what lies beside them.
+    Raycast(Raycast),
+    /// One number a ray, which the resolve classifies.
+    Projection(Projection),
+}
+
+impl RayPass {
+    /// Compiles the variant of the settings and these words.
+    fn new(gpu: &Arc<Gpu>, settings: &Settings, words: &Words) -> Result<Self, Error> {
+        let mode = settings.mode;
+        Ok(match mode.is_projection() {
+            _ if settings.per_mode.exact_maximum => {
+                Self::Projection(Projection::exact(gpu, mode, words)?)
+            }
+            true => Self::Projection(Projection::new(gpu, mode, words)?),
+            false => Self::Raycast(Raycast::of_mode(gpu, mode, words)?),
+        })
+    }
+
+    fn along_slices(
+        gpu: &Arc<Gpu>,
+        settings: &Settings,
+        words: &Words,
+        mix: Mix,
+    ) -> Result<Self, Error> {
+        let words = Words { mix, ..*words };
+        let words = match settings.technique.draws_stacks() {
+            true => Words {
+                lattice: "stack",
+                transfer: "table",
+                ..words
+            },
+            false => Words {
+                lattice: "planes",
+                ..words
+            },
+        };
+        Self::new(gpu, settings, &words)
+    }
+
+    fn bind(
+        &self,
+        inputs: &Inputs,
+        canvas: &Canvas,
+        tiles: &RayTiles,
+        host_depth: Option<Resource>,
+    ) -> Result<RayBindings, Error> {
+        let picture = canvas.image(PICTURE);
+        // In place of a depth that is not looked at.
+        let stand_in = |image: &Image| host_depth.unwrap_or(Resource::sampled_or_read(image));
+        match self {
+            Self::Raycast(pass) => {
+                let layers = canvas.image(LAYERS);
+                pass.bind_behind(inputs, picture, layers, tiles, stand_in(layers))
+            }
+            Self::Projection(pass) => pass.bind_behind(inputs, picture, tiles, stand_in(picture)),
+        }
+    }
+
+    /// # Safety
+    /// As [`Raycast::record_tiles`].
+    unsafe fn record_tiles(
+        &self,
+        cmd: vk::CommandBuffer,
+        bindings: &RayBindings,
+        offset: u32,
+        extent: [u32; 2],
+        tiles: impl IntoIterator<Item = Tile>,
+    ) -> Result<(), Error> {
+        // SAFETY: the caller's promises.
+        unsafe {
+            match self {
+                Self::Raycast(pass) => pass.record_tiles(cmd, bindings, offset, extent, tiles),
+                Self::Projection(pass) => pass.record_tiles(cmd, bindings, offset, extent, tiles),
+            }
+        }
+    }
+}
