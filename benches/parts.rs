@@ -204,6 +204,7 @@ fn pieces_of_frames(
         frames_in_flight: 1,
         host_depth: false,
         gives_depth: false,
+        picks: false,
         slice_blending: Default::default(),
     };
     let mut renderer = Renderer::new(&gpu, &Arc::new(there), Some(&function), class, EXTENT, &[])?;

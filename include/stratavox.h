@@ -793,7 +793,7 @@ typedef struct sv_renderer_desc {
     // Not 0: what the host has drawn hides the volume behind it. Cameras are SV_CAMERA_MATRICES then.
     uint32_t has_host_depth;
     // Not 0: sv_renderer_draw_depth will be called, where `target` has a depth attachment (cameras are
-    // SV_CAMERA_MATRICES then), and of slices sv_renderer_record_pick, for which rays need it not.
+    // SV_CAMERA_MATRICES then). sv_renderer_record_pick may be called too.
     uint32_t gives_depth;
     // 0: slices are blended with each other in an image of floats, and the result once into the target. Not 0: one by one
     // in the target, each rounded to its format, which is wrong in targets of few bits; composites from back to front
@@ -804,6 +804,9 @@ typedef struct sv_renderer_desc {
     const struct sv_depth_image *depth_images;
     // How many there are.
     uint64_t depth_image_count;
+    // Not 0: sv_renderer_record_pick will be called. Rays that composite keep 16 bytes more for it, a pixel and frame in
+    // flight; of slices, rays look for the depth.
+    uint32_t picks;
 } sv_renderer_desc;
 
 // One thing that a device has or lacks. Texts are UTF-8 that end with a zero.

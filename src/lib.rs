@@ -148,7 +148,7 @@
 //! holds a device for long, records parts of it into several submissions: tiles of a picture
 //! ([`technique::raycast::Raycast::record_tiles`], [`technique::projection::Projection::record_tiles`],
 //! [`technique::Slicer::record_tile`], [`resolve::Resolve::record_tile`]), runs of slices, steps of half-angle slices
-//! ([`technique::slices_3d::HalfAngleSlicer::record_clear`]), and of what is made before a picture runs of workgroups
+//! ([`embed::Renderer::begin_parts`]), and of what is made before a picture runs of workgroups
 //! ([`technique::LightVolume::record_part`], [`resident::KeptGradients::record_part`],
 //! [`resident::MacroCells::record_part`], [`resident::EmptySpace::record_part`]). The result is the same to the bit.
 //! [`offscreen::Renderer`] does so by itself, and can be stopped in between.

@@ -50,7 +50,10 @@ pub(super) struct Begun {
 pub(super) enum Cut {
     Blocks(Blocks),
     /// What is no sum of blocks: so many steps, each in so many bands.
-    Steps { count: u64, bands: u32 },
+    Steps {
+        count: u64,
+        bands: u32,
+    },
 }
 
 impl Cut {
@@ -128,7 +131,7 @@ impl Frame {
         let pass = given.pass;
         let desc = |beside| CanvasDesc {
             extent: size.extent,
-            grid: given.volume.grid(),
+            dims: given.volume.grid().dims,
             keeps_layers: size.keeps_layers,
             beside,
         };
@@ -138,11 +141,21 @@ impl Frame {
         let slice_depth = pass.slice_depth.as_ref();
         let readback = || {
             let usage = vk::BufferUsageFlags::TRANSFER_DST;
-            Buffer::new(given.gpu, PICK_BYTES, usage, Memory::Readback, "picked texels")
+            Buffer::new(
+                given.gpu,
+                PICK_BYTES,
+                usage,
+                Memory::Readback,
+                "picked texels",
+            )
         };
         let mut made = Self {
-            picture: picture.map(|gather| gather.canvas(&of_picture)).transpose()?,
-            slice_depth: slice_depth.map(|gather| gather.canvas(&of_depth)).transpose()?,
+            picture: picture
+                .map(|gather| gather.canvas(&of_picture))
+                .transpose()?,
+            slice_depth: slice_depth
+                .map(|gather| gather.canvas(&of_depth))
+                .transpose()?,
             sets: Sets::default(),
             pick: size.is_picked.then(readback).transpose()?,
             picked: None,
@@ -182,7 +195,9 @@ impl Frame {
             let (shown, transfer) = (canvas.image(PICTURE), given.function.transfer());
             sets.resolve = Some(resolve.bind(given.ring, shown, transfer)?);
         }
-        let depth_image = self.depth_canvas().and_then(|canvas| canvas.images().last());
+        let depth_image = self
+            .depth_canvas()
+            .and_then(|canvas| canvas.images().last());
         if let (Some(depth), Some(image)) = (&pass.depth, depth_image) {
             sets.depth = Some(depth.bind(given.ring, image)?);
         }

@@ -13,8 +13,8 @@ use super::frame::{Begun, Cut};
 use super::pieces::PIECE_MS;
 use super::{Error, Renderer, Shot};
 use crate::gpu::{Blocks, Load, Target, Tile, Use, begin_rendering, end_rendering};
-use crate::technique::gather::Part;
 use crate::technique::cost::{looks_of_dearest_pixel, looks_of_picture, ms_of_looks};
+use crate::technique::gather::Part;
 use ash::vk;
 
 /// Pixels along the side of a block, and of one that is thought to take long.

@@ -52,8 +52,8 @@ mod tile;
 mod timer;
 mod validation;
 
-pub(crate) use barrier::{image_barriers, memory_barrier};
 pub use barrier::{Target, TargetState, Use, buffer_barrier, image_barrier};
+pub(crate) use barrier::{image_barriers, memory_barrier};
 pub use bindings::{Bindings, Resource};
 pub(crate) use blocks::Blocks;
 pub use buffer::{Buffer, Memory};

@@ -2,14 +2,14 @@
 
 use super::submission::Submission;
 use super::targets::Targets;
-use super::time_slices::Spent;
 use crate::gpu::{
-    Blend, Error, Gpu, Load, ParameterRing, Use, begin_rendering_of, end_rendering, image_barrier,
+    Blend, Error, Gpu, Image, Load, ParameterRing, Use, begin_rendering_of, end_rendering,
+    image_barrier,
 };
 use crate::resident::GpuTransfer;
 use crate::resolve::Resolve;
 use crate::technique::blend::Drawn;
-use crate::technique::gather::{Gather, GatherDesc};
+use crate::technique::gather::{Gather, GatherDesc, PICTURE};
 use crate::technique::{ACCUMULATION_FORMAT, Mode, Order, Settings, Sight, Technique, Words};
 use std::cell::OnceCell;
 use std::sync::Arc;
@@ -91,23 +91,26 @@ impl Passes {
         Ok(&**self.count.get().expect("set above"))
     }
 
-    /// The colour of the values that were gathered to `targets.resolved`, which it leaves in [`Use::ColorTarget`]; false
-    /// where the picture itself was.
-    pub fn resolve(
+    /// Whether a resolve makes the colours of what was gathered.
+    pub fn has_resolve(&self) -> bool {
+        self.resolve.is_some()
+    }
+
+    /// The colours of what was gathered, in the use that the image is left in.
+    pub fn resolve<'t>(
         &self,
         submission: Submission,
-        targets: &mut Targets,
+        targets: &'t Targets,
         ring: &ParameterRing,
         offset: u32,
         transfer: Option<&GpuTransfer>,
-    ) -> Result<bool, Error> {
-        let Some(resolve) = &self.resolve else {
-            return Ok(false);
+    ) -> Result<(&'t Image, Use), Error> {
+        let gathered = targets.canvas.image(PICTURE);
+        let (Some(resolve), Some(picture)) = (&self.resolve, &targets.resolved) else {
+            return Ok((gathered, Use::FragmentSampled));
         };
         let extent = targets.extent();
-        let resolved = targets.resolved(submission.device.gpu())?;
-        let picture = &resolved.image;
-        let bindings = resolve.bind(ring, resolved.picture, transfer)?;
+        let bindings = resolve.bind(ring, gathered, transfer)?;
         let target = [(picture.view(), Load::Clear([0.0; 4]))];
         // SAFETY: recorded in order, with barriers between; `run` waits, and all that is bound lives meanwhile.
         submission.in_tiles(extent, |cmd, gpu, part| unsafe {
@@ -121,7 +124,7 @@ impl Passes {
             }
             Ok(())
         })?;
-        Ok(true)
+        Ok((picture, Use::ColorTarget))
     }
 }
 

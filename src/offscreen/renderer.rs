@@ -29,11 +29,12 @@ use super::tally::{Clock, Mean, check_layers};
 use super::targets::Targets;
 use super::time_slices::TimeSlices;
 use super::upload::{keep, upload, upload_with_gradient_source};
-use crate::gpu::{Headless, ParameterRing, Timer, Use};
+use crate::gpu::{Headless, ParameterRing, Timer};
 use crate::picture::{ColorSpace, LayerKind, Picture};
 use crate::resident::{GpuTransfer, GpuVolume};
 use crate::scene::{Scene, positions_in_pixel};
 use crate::technique::cost::ms_of_looks;
+use crate::technique::gather::CanvasDesc;
 use crate::technique::{
     self, Functions, InPixel, LightVolume, Mix, Mode, Part, Words, parameter_ring,
 };
@@ -201,7 +202,7 @@ impl<'v> Renderer<'v> {
     /// # Errors
     /// As [`Renderer::render`].
     pub fn prepare_pipelines(&mut self, scene: &Scene) -> Result<(), Error> {
-        self.prepare_with(scene, Self::prepare)
+        self.prepare_with(scene, |renderer, scene| renderer.prepare(scene, false))
     }
 
     /// Finds out what pictures of `scene` need not look at, as [`Renderer::prepare_pipelines`] makes pipelines.
@@ -271,7 +272,7 @@ impl<'v> Renderer<'v> {
         clock: &mut Clock,
     ) -> Result<Picture, Error> {
         self.passes_done = [0, passes_of(scene, !layers.is_empty())];
-        self.prepare(scene)?;
+        self.prepare(scene, !layers.is_empty())?;
         self.prepare_skip(scene)?;
         let functions = scene.transfers().into_iter();
         match functions.collect::<Option<Vec<_>>>() {
@@ -311,16 +312,9 @@ impl<'v> Renderer<'v> {
         })
     }
 
-    /// Targets and pipelines for the picture.
-    fn prepare(&mut self, scene: &Scene) -> Result<(), Error> {
+    /// Pipelines and targets for the picture.
+    fn prepare(&mut self, scene: &Scene, has_layers: bool) -> Result<(), Error> {
         let gpu = Arc::clone(self.device.gpu());
-        if self
-            .targets
-            .as_ref()
-            .is_none_or(|targets| targets.extent != scene.extent_pixels)
-        {
-            self.targets = Some(Targets::new(&gpu, scene.extent_pixels)?);
-        }
         let parts = match &self.streaming {
             Some(streaming) => vec![streaming.part()],
             None => parts_of(&self.resident, self.shown, scene),
@@ -328,12 +322,8 @@ impl<'v> Renderer<'v> {
         // Half-angle slices have parameters of the eye and of the light.
         let is_half = scene.settings.is_half_angle();
         let at_once = if is_half { 2 } else { BRICKS_AT_ONCE };
-        let slots = parts[0].volume.bricks().len().max(at_once) as u32;
-        if is_half {
-            let extent = scene.view(&scene.volume.grid(), [0.0; 2]).light_extent();
-            let targets = self.targets.as_mut().expect("made above");
-            targets.prepare_light_buffer(&gpu, extent)?;
-        }
+        let bricks = parts[0].volume.bricks().len();
+        let slots = bricks.max(at_once) as u32;
         let words = Words::mixed(scene.settings, scene.mix(), &parts).of_whole(scene.settings);
         let functions = scene.transfers().into_iter().flatten();
         let points = functions.map(|f| f.color.len().max(f.opacity.len())).max();
@@ -351,15 +341,28 @@ impl<'v> Renderer<'v> {
         if self.ring.slots() < slots {
             self.ring = parameter_ring(&gpu, slots)?;
         }
-        let is_patched = self.prepare_patches(scene)?;
+        let patches = self.patches_for(scene)?;
+        let is_patched = patches.is_some();
         let key = key_of(scene.settings, &words, is_patched);
-        if self
-            .passes
-            .as_ref()
-            .is_none_or(|passes| *passes.key() != key)
-        {
-            self.passes = Some(Passes::new(&gpu, scene.settings, &words, is_patched)?);
-        }
+        let desc = CanvasDesc {
+            extent: scene.extent_pixels,
+            dims: scene.volume.dims,
+            keeps_layers: has_layers || bricks > 1 || self.streaming.is_some(),
+            beside: None,
+        };
+        let passes = match self.passes.take() {
+            Some(passes) if *passes.key() == key => passes,
+            _ => {
+                self.targets = None;
+                Passes::new(&gpu, scene.settings, &words, is_patched)?
+            }
+        };
+        let targets = match self.targets.take() {
+            Some(targets) if targets.serve(&desc) => targets,
+            _ => Targets::new(&gpu, &passes, &desc)?,
+        };
+        self.passes = Some(passes);
+        self.targets.insert(targets).canvas.patches = patches;
         Ok(())
     }
 
@@ -369,21 +372,15 @@ impl<'v> Renderer<'v> {
         let targets = self.targets.as_ref().expect("prepared");
         let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
         let offset = self.ring.offset(0)?;
-        let pixels = targets.extent.map(f64::from).iter().product::<f64>();
+        let pixels = targets.extent().map(f64::from).iter().product::<f64>();
         let submission = Submission {
             expected_ms: ms_of_looks(self.device.gpu(), LOOKS_OF_A_RESOLVE * pixels),
             device: &mut self.device,
-            targets,
-            bricks: &[],
             timer: None,
             slices: &mut self.slices,
             is_drawing: false,
-            resumes: false,
         };
-        let (image, used) = match passes.resolve(submission, &self.ring, offset, transfer)? {
-            true => (&targets.picture, Use::ColorTarget),
-            false => (&targets.accumulation, Use::FragmentSampled),
-        };
+        let (image, used) = passes.resolve(submission, targets, &self.ring, offset, transfer)?;
         Ok(targets.read(&mut self.device, image, used)?)
     }
 }

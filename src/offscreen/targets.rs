@@ -1,86 +1,75 @@
 //! The images that a picture is made in, and the way back to the CPU.
 
+use super::passes::Passes;
 use crate::gpu::{
     Buffer, Error, Gpu, Headless, Image, Memory, Region, Use, image_barrier, image_to_buffer,
 };
-use crate::technique::slices_3d::half_angle::light_buffer;
-use crate::technique::{PatchRoom, Patches, RayTiles, accumulation};
+use crate::technique::accumulation;
+use crate::technique::gather::{Canvas, CanvasDesc};
 use ash::vk;
 use std::sync::Arc;
 
 /// A submission copies no more.
 const COPIED_BYTES: u64 = 64 << 20;
 
-/// Images of one extent.
+/// Images of one extent, for the passes of one kind of picture.
 #[derive(Debug)]
 pub struct Targets {
-    /// Pixels across and down.
-    pub extent: [u32; 2],
-    /// What a technique leaves.
-    pub accumulation: Image,
-    /// What the ray caster leaves beside it; counts of slicers.
-    pub layers: Image,
-    /// Resolved colour of what projects.
-    pub picture: Image,
-    /// Which tiles rays draw.
-    pub tiles: RayTiles,
-    /// What the light sees of half-angle slices, once they were wanted.
-    light_buffer: Option<Image>,
-    /// Which parts of slices are drawn, once that was wanted.
-    patches: Option<(Patches, PatchRoom)>,
+    /// What the technique fills.
+    pub canvas: Canvas,
+    /// Whether what rays leave beside the picture is kept.
+    keeps_layers: bool,
+    /// Voxels of what is shown.
+    dims: [u32; 3],
+    /// Where a slicer counts samples, once that was wanted.
+    pub count: Option<Canvas>,
+    /// The colours of what projects.
+    pub resolved: Option<Image>,
     readback: Buffer,
 }
 
 impl Targets {
-    /// Objects for pictures of `extent`.
-    pub fn new(gpu: &Arc<Gpu>, extent: [u32; 2]) -> Result<Self, Error> {
-        let bytes = u64::from(extent[0]) * u64::from(extent[1]) * 16;
+    /// Objects for pictures of such a canvas.
+    pub fn new(gpu: &Arc<Gpu>, passes: &Passes, desc: &CanvasDesc) -> Result<Self, Error> {
+        let bytes = u64::from(desc.extent[0]) * u64::from(desc.extent[1]) * 16;
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
+        let resolved = passes.has_resolve();
+        let resolved = resolved.then(|| accumulation(gpu, desc.extent, "picture"));
         Ok(Self {
-            extent,
-            accumulation: accumulation(gpu, extent, "accumulation")?,
-            layers: accumulation(gpu, extent, "layers")?,
-            picture: accumulation(gpu, extent, "picture")?,
-            tiles: RayTiles::new(gpu, extent)?,
-            light_buffer: None,
-            patches: None,
+            canvas: passes.picture().canvas(desc)?,
+            keeps_layers: desc.keeps_layers,
+            dims: desc.dims,
+            count: None,
+            resolved: resolved.transpose()?,
             readback: Buffer::new(gpu, bytes, usage, Memory::Readback, "readback")?,
         })
     }
 
-    /// Makes the image that the light sees, where it is not there yet.
-    pub fn prepare_light_buffer(&mut self, gpu: &Arc<Gpu>, extent: [u32; 2]) -> Result<(), Error> {
-        let [width, height] = extent;
-        let found = self.light_buffer.as_ref().map(Image::extent);
-        if found != Some([width, height, 1]) {
-            self.light_buffer = Some(light_buffer(gpu, extent)?);
-        }
-        Ok(())
+    /// Whether they serve pictures of another canvas that the same passes fill.
+    pub fn serve(&self, desc: &CanvasDesc) -> bool {
+        let has_layers = self.keeps_layers || !desc.keeps_layers;
+        self.extent() == desc.extent && self.dims == desc.dims && has_layers
     }
 
-    /// The image that the light sees.
-    pub fn light_buffer(&self) -> &Image {
-        let made = self.light_buffer.as_ref();
-        made.expect("`prepare_light_buffer` comes before a picture with half-angle slices")
+    /// Pixels across and down.
+    pub fn extent(&self) -> [u32; 2] {
+        self.canvas.extent()
     }
 
-    /// Makes the lists of patches, where there are none that are long enough.
-    pub fn prepare_patches(&mut self, gpu: &Arc<Gpu>, room: PatchRoom) -> Result<(), Error> {
-        let made = match self.patches.take() {
-            Some((made, _)) if made.holds(room) => made,
-            _ => Patches::new(gpu, room)?,
+    /// Where the samples of a slicer are counted by `passes`, of the same patches as those of the picture.
+    pub fn count_canvas(&mut self, gpu: &Arc<Gpu>, passes: &Passes) -> Result<&mut Canvas, Error> {
+        let made = match self.count.take() {
+            Some(made) => made,
+            None => passes.count(gpu)?.canvas(&CanvasDesc {
+                extent: self.extent(),
+                dims: self.dims,
+                keeps_layers: false,
+                beside: None,
+            })?,
         };
-        self.patches = Some((made, room));
-        Ok(())
-    }
-
-    /// The lists of patches, and how large those of this picture get.
-    pub fn patches(&self) -> (&Patches, PatchRoom) {
-        let (made, room) = self
-            .patches
-            .as_ref()
-            .expect("`prepare_patches` comes before a picture of patches");
-        (made, *room)
+        let canvas = self.count.insert(made);
+        canvas.patches = self.canvas.patches.clone();
+        Ok(canvas)
     }
 
     /// The pixels of one of the images, rows from the top. `used` is what was last done with it, and can be done again.
@@ -91,7 +80,7 @@ impl Targets {
         used: Use,
     ) -> Result<Vec<[f32; 4]>, Error> {
         let gpu = Arc::clone(device.gpu());
-        let [width, height] = self.extent;
+        let [width, height] = self.extent();
         let rows = (COPIED_BYTES / (16 * u64::from(width))).clamp(1, height.into()) as u32;
         for first in (0..height).step_by(rows as usize) {
             let region = Region {
@@ -107,7 +96,7 @@ impl Targets {
                 Ok(())
             })?;
         }
-        let count = self.extent.map(|n| n as usize).iter().product();
+        let count = self.extent().map(|n| n as usize).iter().product();
         let mut pixels = vec![[0.0; 4]; count];
         self.readback
             .read(0, bytemuck::cast_slice_mut(&mut pixels))?;

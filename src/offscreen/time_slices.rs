@@ -75,14 +75,6 @@ pub struct Spent {
     pub wall_ms: f64,
 }
 
-impl Spent {
-    /// Without a submission.
-    pub const NOTHING: Self = Self {
-        gpu_ms: None,
-        wall_ms: 0.0,
-    };
-}
-
 impl<'v> TimeSlices<'v> {
     /// From here on `watch` is told.
     pub fn watch(&mut self, watch: Watch<'v>) {

@@ -325,7 +325,7 @@ fn a_picked_pixel_says_where_it_is_and_what_voxel_is_there() {
             frames_in_flight: 1,
             host_depth: false,
             gives_depth: false,
-            picks: false,
+            picks: true,
             slice_blending: Default::default(),
         };
         let (function, volume) = (Some(&stage.transfer), Arc::new(volume));

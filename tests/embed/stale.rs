@@ -25,7 +25,7 @@ fn renderer(host: &Host, stage: &Stage) -> Renderer {
         frames_in_flight: FRAMES,
         host_depth: false,
         gives_depth: false,
-        picks: false,
+        picks: true,
         slice_blending: Default::default(),
     };
     let (volume, function) = (uploaded(host, stage), Some(&stage.transfer));

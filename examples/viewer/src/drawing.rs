@@ -12,6 +12,7 @@ use stratavox::embed::{Class, Renderer, Shot, Volume};
 use stratavox::gpu::{
     Bindings, Gpu, Image, ImageDesc, ImageKind, Load, Target, TargetState, Timer, Use,
 };
+use stratavox::technique::Technique;
 use stratavox::transfer::TransferFunction;
 use stratavox::volume;
 
@@ -49,12 +50,13 @@ impl Drawing {
         let volume = Arc::new(volume);
         let canvas = Canvas::new(gpu, painter, extent)?;
         let class = Class {
+            // Of slices, rays would have to look for the depth of each frame.
+            picks: settings.technique == Technique::Raycast && settings.mode.has_depth(),
             settings,
             target: canvas.image.format().into(),
             frames_in_flight,
             host_depth: false,
             gives_depth: false,
-            picks: true,
             slice_blending: Default::default(),
         };
         let renderer = Renderer::new(gpu, &volume, look.function(), class, extent, &[])?;

@@ -3,11 +3,12 @@
 use super::pacing::Expected;
 use super::{Renderer, parts_of};
 use crate::offscreen::Error;
-use crate::offscreen::passes::Passes;
-use crate::offscreen::submission::{self, Submission};
+use crate::offscreen::submission::Submission;
 use crate::offscreen::time_slices::Spent;
 use crate::scene::Scene;
+use crate::technique::gather::Brick;
 use crate::technique::{InPixel, Inputs, Recording};
+use std::sync::Arc;
 
 impl Renderer<'_> {
     /// One pass of the technique, rays at one position in each pixel.
@@ -19,7 +20,7 @@ impl Renderer<'_> {
         if self.streaming.is_some() {
             return self.gather_stream(scene, in_pixel);
         }
-        let (spent, expected) = self.pass(scene, in_pixel, Passes::gather)?;
+        let (spent, expected) = self.pass(scene, in_pixel, Pass::Picture)?;
         self.learn(expected, &spent);
         Ok(spent.gpu_ms)
     }
@@ -29,7 +30,7 @@ impl Renderer<'_> {
         &mut self,
         scene: &Scene,
         in_pixel: InPixel,
-        pass: impl FnOnce(&Passes, Submission) -> Result<Spent, crate::gpu::Error>,
+        pass: Pass,
     ) -> Result<(Spent, Expected), Error> {
         let [done, of] = self.passes_done;
         let span = self.slices.enter(done, of);
@@ -44,7 +45,7 @@ impl Renderer<'_> {
         &mut self,
         scene: &Scene,
         in_pixel: InPixel,
-        pass: impl FnOnce(&Passes, Submission) -> Result<Spent, crate::gpu::Error>,
+        pass: Pass,
     ) -> Result<(Spent, Expected), Error> {
         let grid = scene.volume.grid();
         let view = scene.view(&grid, in_pixel);
@@ -52,6 +53,10 @@ impl Renderer<'_> {
         let parts = parts_of(&self.resident, self.shown, scene);
         let mut recordings = view.recordings_of(&parts, transfer)?;
         let expected = self.expected(scene, &view, &recordings, parts.len());
+        if pass == Pass::Count && scene.settings.is_half_angle() {
+            // The light's samples are no pixel's.
+            recordings.truncate(1);
+        }
         let skip = self.skipped.skip();
         for recording in &mut recordings {
             recording.skip(skip);
@@ -63,39 +68,52 @@ impl Renderer<'_> {
                 .collect()
         };
         let beside: Vec<_> = recordings.iter().map(beside).collect();
-        let part = |(slot, (recording, beside)): (u32, (Recording, _))| {
-            let volume = parts[0].volume;
-            let inputs = Inputs {
-                ring: &self.ring,
-                volume,
-                brick: &volume.bricks()[recording.brick],
-                transfer,
-                beside,
-                light: self.light.as_ref().map(|lit| &lit.made),
-                skip,
-            };
-            Ok(submission::Part {
-                inputs,
-                offset: recording.write(&self.ring, slot)?,
+        let volume = parts[0].volume;
+        let of_recording = |(recording, beside): (&Recording, _)| Inputs {
+            ring: &self.ring,
+            volume,
+            brick: &volume.bricks()[recording.brick],
+            transfer,
+            beside,
+            light: self.light.as_ref().map(|lit| &lit.made),
+            skip,
+        };
+        let with_others = recordings.iter().zip(beside.iter().map(Vec::as_slice));
+        let inputs: Vec<_> = with_others.map(of_recording).collect();
+        let brick = |(number, recording): (usize, &Recording)| {
+            Ok(Brick {
+                number,
+                offset: recording.write(&self.ring, number as u32)?,
                 slices: recording.slices,
                 order: recording.order,
                 seen: None,
             })
         };
-        let with_others = recordings.into_iter().zip(beside.iter().map(Vec::as_slice));
-        let drawn = (0..).zip(with_others).map(part);
-        let bricks = drawn.collect::<Result<Vec<_>, Error>>()?;
+        let bricks = recordings.iter().enumerate().map(brick);
+        let bricks = bricks.collect::<Result<Vec<_>, Error>>()?;
+        let gpu = Arc::clone(self.device.gpu());
+        let passes = self.passes.as_ref().expect("prepared");
+        let targets = self.targets.as_mut().expect("prepared");
+        let (gather, canvas) = match pass {
+            Pass::Picture => (passes.picture(), &mut targets.canvas),
+            Pass::Count => (passes.count(&gpu)?, targets.count_canvas(&gpu, passes)?),
+        };
         let submission = Submission {
             device: &mut self.device,
-            targets: self.targets.as_ref().expect("prepared"),
-            bricks: &bricks,
             timer: self.timer.as_ref(),
             slices: &mut self.slices,
             expected_ms: expected.ms,
             is_drawing: true,
-            resumes: false,
         };
-        let spent = pass(self.passes.as_ref().expect("prepared"), submission)?;
+        let spent = submission.gather(gather, canvas, (&inputs, &bricks), false)?;
         Ok((spent, expected))
     }
+}
+
+/// What a pass over all samples is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Pass {
+    Picture,
+    /// How many samples a slicer takes in each pixel.
+    Count,
 }

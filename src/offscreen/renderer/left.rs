@@ -1,26 +1,22 @@
 //! What a technique leaves beside the picture: the range of its values, and layers.
 
 use super::Renderer;
+use super::gather::Pass;
 use crate::gpu::Use;
 use crate::offscreen::Error;
-use crate::offscreen::passes::Passes;
 use crate::offscreen::position::{labels, positions};
 use crate::offscreen::reference::normals;
 use crate::picture::{Layer, LayerKind};
 use crate::resolve::reference::projected_value;
 use crate::scene::Scene;
+use crate::technique::gather::{LAYERS, PICTURE};
 use crate::technique::{InPixel, Mode, Settings};
 use crate::transfer::{Classified, TransferFunction, Window};
 
 impl Renderer<'_> {
     /// The default window of a projecting mode without a transfer function: the range of this picture.
     pub(super) fn grey_of_picture(&mut self, scene: &Scene) -> Result<TransferFunction, Error> {
-        let targets = self.targets.as_ref().expect("prepared");
-        let found = targets.read(
-            &mut self.device,
-            &targets.accumulation,
-            Use::FragmentSampled,
-        )?;
+        let found = self.read_gathered(PICTURE)?;
         let values = found
             .iter()
             .filter_map(|&left| projected_value(scene.settings.mode, left));
@@ -28,6 +24,13 @@ impl Renderer<'_> {
             [low.min(v.into()), high.max(v.into())]
         });
         Ok(Window::of_range([low, high]).grey(Classified::Projection))
+    }
+
+    /// The pixels of an image of the canvas.
+    fn read_gathered(&mut self, number: usize) -> Result<Vec<[f32; 4]>, Error> {
+        let targets = self.targets.as_ref().expect("prepared");
+        let image = targets.canvas.image(number);
+        Ok(targets.read(&mut self.device, image, Use::FragmentSampled)?)
     }
 
     /// The layers of the rays through pixel centres, which were gathered last.
@@ -43,17 +46,14 @@ impl Renderer<'_> {
             return Ok(Vec::new());
         }
         let is_slicer = !technique.casts_rays();
-        let targets = self.targets.as_ref().expect("prepared");
-        let left = targets.read(
-            &mut self.device,
-            &targets.accumulation,
-            Use::FragmentSampled,
-        )?;
+        let left = self.read_gathered(PICTURE)?;
         // (value, depth, transmittance, samples) of each pixel, as far as the technique has them.
         let beside = if is_slicer {
-            self.pass(scene, InPixel::CENTER, Passes::count)?;
+            self.pass(scene, InPixel::CENTER, Pass::Count)?;
             let targets = self.targets.as_ref().expect("prepared");
-            let counts = targets.read(&mut self.device, &targets.layers, Use::FragmentSampled)?;
+            let canvas = targets.count.as_ref().expect("just filled");
+            let counts = canvas.image(PICTURE);
+            let counts = targets.read(&mut self.device, counts, Use::FragmentSampled)?;
             counts
                 .into_iter()
                 .map(|[n, ..]| [0.0, -1.0, 0.0, n])
@@ -63,7 +63,7 @@ impl Renderer<'_> {
                 .map(|&[_, _, depth, samples]| [0.0, depth, 0.0, samples])
                 .collect()
         } else {
-            targets.read(&mut self.device, &targets.layers, Use::FragmentSampled)?
+            self.read_gathered(LAYERS)?
         };
         let layer = |kind| {
             let number = |(left, beside): (&[f32; 4], &[f32; 4])| match kind {

@@ -9,7 +9,7 @@ use crate::offscreen::upload::fill;
 use crate::resident::{Apron, Corners, EmptySpace, GpuVolume, MacroCells};
 use crate::scene::{Beside, Scene};
 use crate::technique::cost::ms_of_looks;
-use crate::technique::{Mix, Mode, Part, Role, Skip, Skippable};
+use crate::technique::{Mix, Mode, Part, PatchRoom, Patches, Role, Skip, Skippable};
 use crate::transfer::{Alike, Seen, TransferFunction};
 use crate::volume::Volume;
 use std::sync::Arc;
@@ -99,18 +99,25 @@ impl Renderer<'_> {
         Ok(true)
     }
 
-    /// Lists of the patches of slices for pictures of `scene`: whether there are any.
+    /// Lists of the patches of slices for pictures of `scene`, if there are any, and how large they get.
     ///
     /// # Errors
     /// Where the device is lost.
-    pub(super) fn prepare_patches(&mut self, scene: &Scene) -> Result<bool, Error> {
+    pub(super) fn patches_for(
+        &mut self,
+        scene: &Scene,
+    ) -> Result<Option<(Arc<Patches>, PatchRoom)>, Error> {
         let room = scene.view(&scene.volume.grid(), [0.0; 2]).patch_room();
         let Some((room, _)) = room.zip(wanted(scene)) else {
-            return Ok(false);
+            return Ok(None);
         };
-        let targets = self.targets.as_mut().expect("made before");
-        let made = targets.prepare_patches(self.device.gpu(), room);
-        Ok(if_it_fits(made)?.is_some())
+        let there = self.targets.as_mut();
+        let there = there.and_then(|targets| targets.canvas.patches.take());
+        let made = match there {
+            Some((made, _)) if made.holds(room) => Some(made),
+            _ => if_it_fits(Patches::new(self.device.gpu(), room))?.map(Arc::new),
+        };
+        Ok(made.map(|made| (made, room)))
     }
 
     /// Finds out what pictures of `scene` need not look at. Nothing to do where that is known.

@@ -11,11 +11,12 @@ use super::Renderer;
 use crate::gpu::{Gpu, Tile, Use};
 use crate::offscreen::Error;
 use crate::offscreen::stream::{Cache, Eye, Place, Stream};
-use crate::offscreen::submission::{self, Submission};
+use crate::offscreen::submission::Submission;
 use crate::offscreen::time_slices::Spent;
 use crate::resident::Apron;
 use crate::scene::Scene;
 use crate::technique::cost::{looks_of_picture, ms_of_looks};
+use crate::technique::gather::{Brick, LAYERS, PICTURE};
 use crate::technique::{InPixel, Inputs, Mode, Part, Skippable, View};
 use crate::volume::Volume;
 use std::collections::HashMap;
@@ -224,14 +225,14 @@ impl<'v> Renderer<'v> {
         let grid = scene.volume.grid();
         let view = scene.view(&grid, in_pixel);
         let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
-        let mut bricks = Vec::new();
+        let (mut inputs, mut bricks) = (Vec::new(), Vec::new());
         for (nth, (&brick, &seen)) in chunk.iter().zip(tiles).enumerate() {
             let there = cache.get(brick).expect("bricks of a chunk stay");
             let ends = [is_first && nth == 0, is_last && nth + 1 == chunk.len()];
             let mut recording = view.recording_of_brick(&there.volume, transfer, ends)?;
             let skip = there.skip(way);
             recording.skip(skip);
-            let inputs = Inputs {
+            inputs.push(Inputs {
                 ring: &self.ring,
                 volume: &there.volume,
                 brick: &there.volume.bricks()[0],
@@ -239,9 +240,9 @@ impl<'v> Renderer<'v> {
                 beside: &[],
                 light: None,
                 skip,
-            };
-            bricks.push(submission::Part {
-                inputs,
+            });
+            bricks.push(Brick {
+                number: nth,
                 offset: recording.write(&self.ring, nth as u32)?,
                 slices: recording.slices,
                 order: recording.order,
@@ -250,15 +251,14 @@ impl<'v> Renderer<'v> {
         }
         let submission = Submission {
             device: &mut self.device,
-            targets: self.targets.as_ref().expect("prepared"),
-            bricks: &bricks,
             timer: self.timer.as_ref(),
             slices: &mut self.slices,
             expected_ms,
             is_drawing: true,
-            resumes: !is_first,
         };
-        Ok(self.passes.as_ref().expect("prepared").gather(submission)?)
+        let gather = self.passes.as_ref().expect("prepared").picture();
+        let canvas = &mut self.targets.as_mut().expect("prepared").canvas;
+        Ok(submission.gather(gather, canvas, (&inputs, &bricks), !is_first)?)
     }
 
     /// Marks the bricks that can add nothing any more: all of their rays have ended, or have met larger values.
@@ -271,13 +271,14 @@ impl<'v> Renderer<'v> {
         let settings = scene.settings;
         let targets = self.targets.as_ref().expect("prepared");
         let image = match settings.mode {
-            Mode::Composite | Mode::Iso => &targets.layers,
-            Mode::Mip | Mode::Minip if !settings.per_mode.exact_maximum => &targets.accumulation,
+            Mode::Composite | Mode::Iso => LAYERS,
+            Mode::Mip | Mode::Minip if !settings.per_mode.exact_maximum => PICTURE,
             _ => return Ok(()),
         };
         if !settings.skip {
             return Ok(());
         }
+        let image = targets.canvas.image(image);
         let pixels = targets.read(&mut self.device, image, Use::FragmentSampled)?;
         let width = scene.extent_pixels[0] as usize;
         let has_ended = |[value, weight, transmittance, _]: [f32; 4], [low, high]: [f32; 2]| {

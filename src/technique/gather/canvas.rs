@@ -1,8 +1,7 @@
 //! The images that one picture is gathered in, and what was last done with each.
 
 use super::super::{PatchRoom, Patches, RayTiles};
-use crate::gpu::{Error, Gpu, Image, Use};
-use crate::volume::Grid;
+use crate::gpu::{Image, Use};
 use std::sync::Arc;
 
 /// What a technique gathers: premultiplied colour and alpha, or what a resolve classifies. Four f32 a pixel.
@@ -13,8 +12,8 @@ pub(crate) const PICTURE: usize = 0;
 pub(crate) struct CanvasDesc<'a> {
     /// Pixels across and down.
     pub extent: [u32; 2],
-    /// What is shown.
-    pub grid: &'a Grid,
+    /// Voxels of what is shown.
+    pub dims: [u32; 3],
     /// What rays that composite leave beside the picture is kept: a depth or another layer is asked for, or a brick goes
     /// on where another has ended.
     pub keeps_layers: bool,
@@ -69,18 +68,5 @@ impl Canvas {
 
     pub(super) fn last_use(&mut self, number: usize) -> &mut Use {
         &mut self.images[number].1
-    }
-
-    /// Makes the lists of patches, where there are none that are long enough.
-    ///
-    /// # Errors
-    /// Where the device gives no memory, or has no buffers of that size.
-    pub fn prepare_patches(&mut self, gpu: &Arc<Gpu>, room: PatchRoom) -> Result<(), Error> {
-        let made = match self.patches.take() {
-            Some((made, _)) if made.holds(room) => made,
-            _ => Arc::new(Patches::new(gpu, room)?),
-        };
-        self.patches = Some((made, room));
-        Ok(())
     }
 }

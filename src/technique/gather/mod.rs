@@ -20,7 +20,7 @@ mod slices;
 
 pub(crate) use canvas::{Canvas, CanvasDesc, PICTURE};
 pub(crate) use player::Player;
-pub(crate) use rays::depth_of_slices;
+pub(crate) use rays::{LAYERS, depth_of_slices};
 pub(super) use {rays::rays, slices::slices};
 
 use super::blend::Drawn;

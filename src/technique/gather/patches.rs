@@ -210,7 +210,11 @@ impl BoundPatches {
                 _ => {}
             }
             player.bring([(PICTURE, Use::ColorTarget)]);
-            let load = if number == 0 { self.cleared() } else { Load::Keep };
+            let load = if number == 0 {
+                self.cleared()
+            } else {
+                Load::Keep
+            };
             self.draw(player, step, load);
         }
         Ok(())

@@ -37,7 +37,8 @@ impl Player<'_> {
             }
         }
         let moved = &moved[..count];
-        let of = |&(number, last, next): &(usize, Use, Use)| (self.canvas.image(number), last, next);
+        let of =
+            |&(number, last, next): &(usize, Use, Use)| (self.canvas.image(number), last, next);
         // SAFETY: the caller's promise; images live as long as their canvas.
         unsafe { image_barriers::<MOST_USES>(self.gpu, self.cmd, moved.iter().map(of)) };
     }
@@ -88,4 +89,3 @@ impl Player<'_> {
         self.canvas.image(number)
     }
 }
-

@@ -15,7 +15,7 @@ use ash::vk;
 use std::sync::Arc;
 
 /// What compositing rays leave beside the picture: (what the mode keeps, depth or -1, transmittance, samples).
-const LAYERS: usize = 1;
+pub(crate) const LAYERS: usize = 1;
 
 /// The passes of a ray caster.
 ///
@@ -61,7 +61,11 @@ impl Gather for Rays {
     fn canvas(&self, desc: &CanvasDesc) -> Result<Canvas, Error> {
         let picture = accumulation(&self.gpu, desc.extent, "rays")?;
         // Texels outside of an image are not written: one that nobody reads needs no more than one.
-        let kept = if desc.keeps_layers { desc.extent } else { [1; 2] };
+        let kept = if desc.keeps_layers {
+            desc.extent
+        } else {
+            [1; 2]
+        };
         let layers = match *self.pass {
             RayPass::Raycast(_) => Some(accumulation(&self.gpu, kept, "beside rays")?),
             RayPass::Projection(_) => None,

@@ -30,8 +30,12 @@ pub(in crate::technique) fn slices(desc: &GatherDesc) -> Result<Box<dyn Gather>,
     if desc.is_patched {
         return patches(desc);
     }
-    let GatherDesc { gpu, drawn, sight, .. } = *desc;
-    let Settings { technique, order, .. } = *desc.settings;
+    let GatherDesc {
+        gpu, drawn, sight, ..
+    } = *desc;
+    let Settings {
+        technique, order, ..
+    } = *desc.settings;
     let format = blend_format(gpu, drawn);
     let is_tested = sight == Sight::Tested;
     let target = match is_tested {

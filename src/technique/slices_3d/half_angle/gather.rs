@@ -23,9 +23,7 @@ const LIGHT: usize = 1;
 ///
 /// # Errors
 /// Where the device does not blend R32G32B32A32_SFLOAT, by its name.
-pub(in crate::technique) fn half_angle_slices(
-    desc: &GatherDesc,
-) -> Result<Box<dyn Gather>, Error> {
+pub(in crate::technique) fn half_angle_slices(desc: &GatherDesc) -> Result<Box<dyn Gather>, Error> {
     Ok(Box::new(HalfAngleGather {
         gpu: Arc::clone(desc.gpu),
         slicer: Arc::new(HalfAngleSlicer::new(desc.gpu, desc.words)?),
@@ -47,7 +45,7 @@ struct BoundHalfAngle {
 impl Gather for HalfAngleGather {
     fn canvas(&self, desc: &CanvasDesc) -> Result<Canvas, Error> {
         let picture = accumulation(&self.gpu, desc.extent, "slices")?;
-        let light = light_buffer(&self.gpu, light_extent(desc.grid, desc.extent))?;
+        let light = light_buffer(&self.gpu, light_extent(desc.dims, desc.extent))?;
         Ok(Canvas::new(desc.extent, [picture, light]))
     }
 

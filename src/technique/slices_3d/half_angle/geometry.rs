@@ -20,7 +20,6 @@ use crate::camera::Rays;
 use crate::shaders::FrameFields;
 use crate::technique::frame::clip_rows;
 use crate::technique::{Error, Order, View};
-use crate::volume::Grid;
 use glam::{DVec3, dvec3};
 
 /// Texels along a side of the light's picture, at most: a device has as many, and 256 MiB hold them.
@@ -44,9 +43,9 @@ pub struct HalfAngle {
     texel_world: f64,
 }
 
-/// [`View::light_extent`] of any view of a grid.
-pub fn light_extent(grid: &Grid, extent_pixels: [u32; 2]) -> [u32; 2] {
-    let voxels = DVec3::from_array(grid.dims.map(f64::from)).length();
+/// [`View::light_extent`] of any view of so many voxels.
+pub fn light_extent(dims: [u32; 3], extent_pixels: [u32; 2]) -> [u32; 2] {
+    let voxels = DVec3::from_array(dims.map(f64::from)).length();
     let pixels = extent_pixels.into_iter().max().unwrap_or_default();
     [(voxels.ceil() as u32).max(pixels).clamp(8, MAX_LIGHT_SIDE); 2]
 }
@@ -55,7 +54,7 @@ impl View<'_> {
     /// Texels of the light's picture: as many a side as the larger side of the picture has pixels, and not fewer
     /// than there are voxels along the diagonal of the grid; at most 4096. Does not depend on camera and light.
     pub fn light_extent(&self) -> [u32; 2] {
-        light_extent(self.grid, self.extent_pixels)
+        light_extent(self.grid.dims, self.extent_pixels)
     }
 
     /// The slices for this camera and the one light of the settings; without one, it shines the way the camera looks.
