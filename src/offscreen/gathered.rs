@@ -1,4 +1,4 @@
-//! What the CPU twins leave for each pixel, and the layers that come of it.
+//! The layers that come of what the CPU references leave for each pixel.
 
 use super::position::{labels, positions};
 use super::reference::normals;
@@ -7,49 +7,9 @@ use crate::picture::{Layer, LayerKind};
 use crate::real::Real;
 use crate::resolve::reference::projected_value;
 use crate::scene::Scene;
-use crate::technique::composite::Composite;
-use crate::technique::isosurface::Surfaces;
+use crate::technique::reference::Gathered;
 use crate::technique::{Error, Mode};
 use crate::transfer::{Classified, TransferFunction, Window};
-
-/// What a technique leaves for one pixel, before it is resolved.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Gathered<R> {
-    /// Composite: premultiplied colour. Else (value, weight, unused, unused).
-    pub accumulation: [R; 4],
-    pub depth: Option<R>,
-    /// The value of a surface that was hit first.
-    pub level: Option<R>,
-    /// What a depth cue leaves of the colour.
-    pub light: R,
-    pub samples: u32,
-}
-
-impl<R: Real> Gathered<R> {
-    /// Of a ray that has composited so many samples.
-    pub fn of_composite((found, samples): (Composite<R>, u32)) -> Self {
-        let ([r, g, b], one) = (found.color, R::from_f64(1.0));
-        Self {
-            accumulation: [r, g, b, one - found.transmittance],
-            depth: found.depth,
-            level: None,
-            light: one,
-            samples,
-        }
-    }
-
-    /// Of a ray that has met surfaces.
-    pub fn of_surfaces(found: Surfaces<R>) -> Self {
-        let ([r, g, b], one) = (found.color, R::from_f64(1.0));
-        Self {
-            accumulation: [r, g, b, one - found.transmittance],
-            depth: found.first.map(|(_, t)| t),
-            level: found.first.map(|(level, _)| level),
-            light: one,
-            samples: found.samples,
-        }
-    }
-}
 
 /// The default window of a projecting mode without a transfer function: the range of this picture.
 pub(super) fn grey_of_picture<R: Real>(mode: Mode, gathered: &[Gathered<R>]) -> TransferFunction {

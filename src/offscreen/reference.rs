@@ -4,26 +4,23 @@ mod half_angle;
 mod light;
 mod material;
 mod normals;
-mod slabs;
 
 use super::fade::{faded, stacks_of};
-use super::gathered::{Gathered, grey_of_picture, layers};
+use super::gathered::{grey_of_picture, layers};
 use super::sum::sum_of;
 use crate::picture::Picture;
-use crate::ray::pixel_ray;
 use crate::real::{Real, scale};
 use crate::resolve::reference::{light_at, premultiplied};
 use crate::scene::{Beside, Scene, positions_in_pixel};
 use crate::shaders::Frame;
-use crate::technique::blend::{Fragment, blend, blend_material, clear_color, merge};
 use crate::technique::composite::Composite;
 use crate::technique::faces::{FACE_LENGTH, cut_face, on_face};
-use crate::technique::merge::MAX_BATCH_SLICES;
 use crate::technique::mixture::color_of;
+use crate::technique::reference::{Gathered, Samples};
 use crate::technique::shading::shade;
 use crate::technique::{
     AlikeCells, Error, Filter, GradientSource, InPixel, LightField, Mix, Mode, Recording, Role,
-    Technique, isosurface, projection, raycast, slices_2d, slices_3d,
+    Settings, isosurface,
 };
 use crate::transfer::{
     Absorption, PackedWidgets, Points, SlabTable, Table, TransferFunction, classify_by_points,
@@ -238,50 +235,20 @@ impl<'a, R: Real> Walk<'a, R> {
         let pixel = [x, y].map(|n| R::from_f64(f64::from(n)) + R::from_f64(0.5));
         let found = match self.scene.settings.mode {
             Mode::Iso => self.surfaces(pixel),
-            mode if mode.is_projection() => self.project(pixel),
+            mode if mode.is_projection() => {
+                let found = self.samples(pixel);
+                let light = found.depth.map(|t| light_at(&self.frame, t));
+                Gathered {
+                    light: light.unwrap_or(found.light),
+                    ..found
+                }
+            }
             _ => self.composite(pixel),
         };
         Gathered {
             accumulation: found.accumulation.map(R::ended),
             depth: found.depth.map(R::ended),
             ..found
-        }
-    }
-
-    /// One value a ray.
-    fn project(&self, pixel: [R; 2]) -> Gathered<R> {
-        let settings = self.scene.settings;
-        let (mode, order) = (settings.mode, settings.order);
-        let (volume, frame) = (self.volumes[0], &self.frame);
-        let value_at = |p| filtered(volume, settings.filter, p);
-        // A projecting mode classifies when it resolves.
-        let unclassified = |_| [R::from_f64(0.0); 4];
-        let blend = |target, fragment| blend(mode, order, target, fragment, unclassified);
-        match settings.technique {
-            Technique::Raycast => {
-                let (found, samples) = if settings.per_mode.exact_maximum {
-                    let center = |i: i32| R::from_f64(f64::from(i) + 0.5);
-                    let voxel_at = |index: [i32; 3]| nearest(volume, index.map(center));
-                    projection::exact::project_exactly(frame, mode, pixel, voxel_at)
-                } else {
-                    let lattice = settings.lattice;
-                    projection::reference::project(frame, lattice, mode, pixel, value_at)
-                };
-                let zero = R::from_f64(0.0);
-                Gathered {
-                    accumulation: [found.value, found.weight, zero, zero],
-                    depth: found.depth,
-                    level: None,
-                    light: found.depth.map_or(R::from_f64(1.0), |t| light_at(frame, t)),
-                    samples,
-                }
-            }
-            Technique::Slices3d => self.blend_all(|i| self.on_plane(pixel, i, value_at), blend),
-            Technique::Slices2d => {
-                let value_at =
-                    |axis, slice, p| filtered_in_slice(volume, settings.filter, axis, slice, p);
-                self.blend_all(|i| self.on_slice(pixel, i, value_at), blend)
-            }
         }
     }
 
@@ -310,11 +277,10 @@ impl<'a, R: Real> Walk<'a, R> {
     /// Emission and absorption of what the volumes are made of together, behind what a cut has laid bare.
     fn composite(&self, pixel: [R; 2]) -> Gathered<R> {
         let Some((t, p)) = cut_face(&self.frame, pixel) else {
-            return self.composite_samples(pixel);
+            return self.samples(pixel);
         };
-        let look = |volume: &_, filter, step| filtered(volume, filter, moved(p, step));
         // No light falls along no direction.
-        let own = self.material(look, p, [R::from_f64(0.0); 3]);
+        let own = self.material(p, [R::from_f64(0.0); 3]);
         let mut face = Composite::default();
         if let Some(own) = own {
             let material = on_face(&self.frame, own, self.value_on_face(p));
@@ -323,7 +289,7 @@ impl<'a, R: Real> Walk<'a, R> {
         if face.transmittance == R::from_f64(0.0) {
             return Gathered::of_composite((face, 1));
         }
-        let mut found = self.composite_samples(pixel);
+        let mut found = self.samples(pixel);
         found.samples += 1;
         found
     }
@@ -344,123 +310,86 @@ impl<'a, R: Real> Walk<'a, R> {
         }
     }
 
-    fn composite_samples(&self, pixel: [R; 2]) -> Gathered<R> {
-        let settings = self.scene.settings;
-        if settings.preintegrated {
-            return self.composite_slabs(pixel);
-        }
-        let ray_direction = pixel_ray(&self.frame, pixel).direction;
-        let material_at = |p| {
-            let look = |volume: &_, filter, step| filtered(volume, filter, moved(p, step));
-            self.material(look, p, ray_direction)
-        };
-        let blend = |target, fragment: Fragment<R, [R; 4]>| {
-            blend_material(settings.order, target, fragment.value, fragment.length)
-        };
-        match settings.technique {
-            Technique::Raycast => {
-                let (frame, lattice) = (&self.frame, settings.lattice);
-                Gathered::of_composite(if settings.mode == Mode::Mida {
-                    let value_at = |p| filtered(self.volumes[0], settings.filter, p);
-                    let sample_at = |p| value_at(p).zip(material_at(p));
-                    let classify = |value| self.classify(0, value);
-                    raycast::reference::accumulated(frame, lattice, pixel, sample_at, classify)
-                } else if let Some(alike) = &self.alike {
-                    let cell_at = |p| alike.at(p);
-                    let same = |material| material;
-                    raycast::reference::radiance_in_runs(frame, pixel, cell_at, material_at, same)
-                } else {
-                    let same = |material| material;
-                    raycast::reference::radiance(frame, lattice, pixel, material_at, same)
-                })
-            }
-            Technique::Slices3d => self.blend_all(|i| self.on_plane(pixel, i, material_at), blend),
-            Technique::Slices2d if settings.smooth => self.composite_between(pixel),
-            Technique::Slices2d => {
-                let material_at = |axis: usize, slice: u32, p: [R; 3]| {
-                    let look = |volume: &Volume, filter, step: [i32; 3]| {
-                        let last = volume.dims[axis] - 1;
-                        let slice = slice.saturating_add_signed(step[axis]).min(last);
-                        filtered_in_slice(volume, filter, axis, slice, moved(p, step))
-                    };
-                    let mut on_slice = p;
-                    on_slice[axis] = R::from_f64(f64::from(slice) + 0.5);
-                    self.material(look, on_slice, ray_direction)
-                };
-                self.blend_all(|i| self.on_slice(pixel, i, material_at), blend)
-            }
-        }
+    fn samples(&self, pixel: [R; 2]) -> Gathered<R> {
+        self.scene.settings.technique.pixel(self, pixel)
     }
 
-    /// The sample of a pixel's ray on the view-aligned plane of an instance.
-    fn on_plane<V>(
-        &self,
-        pixel: [R; 2],
-        instance: u32,
-        value_at: impl Fn([R; 3]) -> Option<V>,
-    ) -> Option<Option<Fragment<R, V>>> {
-        slices_3d::reference::fragment(&self.frame, pixel, self.plane_of(instance), value_at)
-    }
-
-    fn plane_of(&self, instance: u32) -> i32 {
-        self.frame.slice_first + instance as i32 * self.frame.slice_direction
-    }
-
-    /// The same on the slice of a stack, which is slice number so much of an axis.
-    fn on_slice<V>(
-        &self,
-        pixel: [R; 2],
-        instance: u32,
-        value_at: impl Fn(usize, u32, [R; 3]) -> Option<V>,
-    ) -> Option<Option<Fragment<R, V>>> {
-        let slice = slices_2d::reference::slice_of(&self.frame, instance);
-        let axis = self.frame.slice_axis as usize;
-        let value_at = |p| value_at(axis, slice as u32, p);
-        slices_2d::reference::fragment(&self.frame, pixel, slice, value_at)
-    }
-
-    /// All slices of one pixel through the blending unit.
-    fn blend_all<V>(
-        &self,
-        fragment: impl Fn(u32) -> Option<Option<Fragment<R, V>>>,
-        blend: impl Fn([R; 4], Fragment<R, V>) -> [R; 4],
-    ) -> Gathered<R> {
-        let settings = self.scene.settings;
-        let clear = clear_color(settings.mode).map(R::from_f32);
-        let mut samples = 0;
-        let mut blended = |slices: std::ops::Range<u32>| {
-            let mut target = clear;
-            for fragment in slices.filter_map(&fragment) {
-                samples += 1;
-                if let Some(fragment) = fragment {
-                    target = blend(target, fragment);
-                }
-            }
-            target
-        };
-        let at_once = if R::IS_MERGED {
-            MAX_BATCH_SLICES
-        } else {
-            self.slices.max(1)
-        };
-        let batches = (0..self.slices).step_by(at_once as usize);
-        let batches = batches.map(|first| blended(first..(first + at_once).min(self.slices)));
-        let merged = batches.reduce(|before, batch| merge(settings.order, before, batch));
-        Gathered {
-            accumulation: merged.unwrap_or(clear),
-            depth: None,
-            level: None,
-            light: R::from_f64(1.0),
-            samples,
-        }
-    }
-
-    fn classify(&self, channel: usize, value: R) -> [R; 4] {
+    fn classified(&self, channel: usize, value: R) -> [R; 4] {
         match &self.classifiers[channel] {
             Classifier::Table(table) => classify_by_table(table, value),
             Classifier::Points(points) => classify_by_points(points, value),
             Classifier::Slabs(slabs) => classify_slab(slabs, value, value),
         }
+    }
+}
+
+impl<R: Real> Samples<R> for Walk<'_, R> {
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn settings(&self) -> &Settings {
+        self.scene.settings
+    }
+
+    fn slice_count(&self) -> u32 {
+        self.slices
+    }
+
+    fn dim(&self, axis: usize) -> u32 {
+        self.volumes[0].dims[axis]
+    }
+
+    fn value(&self, p: [R; 3]) -> Option<R> {
+        filtered(self.volumes[0], self.scene.settings.filter, p)
+    }
+
+    fn value_in_slice(&self, axis: usize, slice: u32, p: [R; 3]) -> Option<R> {
+        filtered_in_slice(self.volumes[0], self.scene.settings.filter, axis, slice, p)
+    }
+
+    fn voxel(&self, index: [i32; 3]) -> Option<R> {
+        nearest(
+            self.volumes[0],
+            index.map(|i| R::from_f64(f64::from(i) + 0.5)),
+        )
+    }
+
+    fn material(&self, p: [R; 3], ray_direction: [R; 3]) -> Option<[R; 4]> {
+        let look = |volume: &_, filter, step| filtered(volume, filter, moved(p, step));
+        self.mixed(look, p, ray_direction)
+    }
+
+    fn material_in_slice(
+        &self,
+        axis: usize,
+        slice: u32,
+        p: [R; 3],
+        ray_direction: [R; 3],
+    ) -> Option<[R; 4]> {
+        let look = |volume: &Volume, filter, step: [i32; 3]| {
+            let last = volume.dims[axis] - 1;
+            let slice = slice.saturating_add_signed(step[axis]).min(last);
+            filtered_in_slice(volume, filter, axis, slice, moved(p, step))
+        };
+        let mut on_slice = p;
+        on_slice[axis] = R::from_f64(f64::from(slice) + 0.5);
+        self.mixed(look, on_slice, ray_direction)
+    }
+
+    fn classify(&self, value: R) -> [R; 4] {
+        self.classified(0, value)
+    }
+
+    fn classify_slab(&self, [front, back]: [R; 2]) -> [R; 4] {
+        match &self.classifiers[0] {
+            Classifier::Slabs(slabs) => classify_slab(slabs, front, back),
+            Classifier::Table(_) | Classifier::Points(_) => self.classified(0, front),
+        }
+    }
+
+    fn alike(&self) -> Option<&AlikeCells> {
+        self.alike.as_ref()
     }
 }
 

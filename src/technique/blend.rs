@@ -23,6 +23,16 @@ pub struct Fragment<R, V = R> {
     pub length: R,
 }
 
+impl<R, V> Fragment<R, V> {
+    /// The same with something else in place of its value.
+    pub fn map<W>(self, of_value: impl FnOnce(V) -> W) -> Fragment<R, W> {
+        Fragment {
+            value: of_value(self.value),
+            length: self.length,
+        }
+    }
+}
+
 /// What slices are drawn for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Drawn {

@@ -37,6 +37,7 @@ pub mod projection;
 mod ray_tiles;
 pub mod raycast;
 mod recording;
+pub(crate) mod reference;
 mod registry;
 pub mod second;
 pub mod shading;

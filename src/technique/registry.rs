@@ -1,8 +1,10 @@
 //! The closed list of techniques: what each says of itself, and what all others ask in place of its name.
 
 use super::gather::{Gather, GatherDesc};
+use super::reference::{Gathered, Samples};
 use super::{Technique, View, raycast, slices_2d, slices_3d};
 use crate::gpu;
+use crate::real::Real;
 use crate::resident::TextureLayout;
 use crate::shaders::FrameFields;
 use glam::DVec3;
@@ -69,5 +71,14 @@ impl Technique {
     /// [`TechniqueDesc::draws_stacks`].
     pub(crate) fn draws_stacks(self) -> bool {
         self.desc().draws_stacks
+    }
+
+    /// What its CPU reference gathers for one pixel, of all modes but surfaces.
+    pub(crate) fn pixel<R: Real>(self, of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R> {
+        match self {
+            Self::Raycast => raycast::reference::pixel(of, pixel),
+            Self::Slices3d => slices_3d::reference::pixel(of, pixel),
+            Self::Slices2d => slices_2d::reference::pixel(of, pixel),
+        }
     }
 }

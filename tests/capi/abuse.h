@@ -86,7 +86,8 @@ static inline sv_renderer_desc renderer_desc(void) {
                                    .target = &CLASS,
                                    .width = WIDTH,
                                    .height = HEIGHT,
-                                   .frames_in_flight = 2};
+                                   .frames_in_flight = 2,
+                                   .picks = 1};
     return made;
 }
 

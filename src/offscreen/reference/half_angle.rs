@@ -1,16 +1,17 @@
 //! Half-angle slices on the CPU: the eye's picture and the light's, slice by slice. Twin of
 //! [`crate::technique::slices_3d::HalfAngleSlicer`], `shaders/lib/lit_alone.wgsl` and `lit_graded.wgsl`.
 
-use super::super::gathered::Gathered;
 use super::{Walk, filtered, moved, steepness};
 use crate::ray::pixel_ray;
 use crate::real::Real;
 use crate::shaders::Frame;
 use crate::technique::blend::{Fragment, blend_material};
+use crate::technique::reference::Gathered;
 use crate::technique::shading::shade;
 use crate::technique::slices_3d::half_angle::reference::{
     LightBuffer, dimmed, fragment, plainly_lit,
 };
+use crate::technique::slices_3d::reference::plane_of;
 use crate::technique::{Order, Recording};
 use crate::transfer::{classify_by_gradient, opacity_over};
 
@@ -18,18 +19,12 @@ impl<R: Real> Walk<'_, R> {
     /// All pixels of the picture, in the light of `light`, the recording of the light's pass.
     pub(super) fn gather_in_light(&self, light: &Recording) -> Vec<Gathered<R>> {
         let zero = R::from_f64(0.0);
-        let nothing = Gathered {
-            accumulation: [zero; 4],
-            depth: None,
-            level: None,
-            light: R::from_f64(1.0),
-            samples: 0,
-        };
+        let nothing = Gathered::of_blended([zero; 4], 0);
         let [width, height] = self.scene.extent_pixels;
         let mut pixels = vec![nothing; width as usize * height as usize];
         let mut buffer = LightBuffer::new(light.frame.extent_pixels);
         for slice in 0..self.slices {
-            let plane = self.plane_of(slice);
+            let plane = plane_of(&self.frame, slice);
             for_each_row(&mut pixels, width, |pixel, found| {
                 self.see(pixel, plane, light.order, &buffer, found);
             });
@@ -77,7 +72,7 @@ impl<R: Real> Walk<'_, R> {
     fn unlit_material(&self, place: [R; 3]) -> Option<[R; 4]> {
         let (volume, filter) = (self.volumes[0], self.scene.settings.filter);
         let value = filtered(volume, filter, place)?;
-        let material = self.classify(0, value);
+        let material = self.classified(0, value);
         let Some(widgets) = &self.widgets else {
             return Some(material);
         };

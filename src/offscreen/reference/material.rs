@@ -36,7 +36,7 @@ impl<R: Real> Walk<'_, R> {
     }
 
     /// What the volumes are made of at `p`, where `look_from` looks from, so many voxels away; `None` for no data.
-    pub(super) fn material(
+    pub(super) fn mixed(
         &self,
         look_from: impl Fn(&Volume, Filter, [i32; 3]) -> Option<R>,
         p: [R; 3],
@@ -56,12 +56,12 @@ impl<R: Real> Walk<'_, R> {
                 let [r, g, b] = srgb;
                 return Some([r, g, b, value / R::from_f64(self.scene.reference_length())]);
             }
-            let extinction = self.classify(0, value)[3];
+            let extinction = self.classified(0, value)[3];
             return Some(colored(srgb, extinction, settings.color_space));
         }
         if let [volume] = self.volumes[..] {
             let value = look(volume, settings.filter)?;
-            let mut material = self.classify(0, value);
+            let mut material = self.classified(0, value);
             let is_on_face = ray_direction == [R::from_f64(0.0); 3];
             let is_lit = self.frame.light_count != 0 && !is_on_face;
             let lamps = self.lamps(p, ray_direction);
@@ -93,7 +93,7 @@ impl<R: Real> Walk<'_, R> {
             };
         }
         let found = &found[..self.roles.len()];
-        let material = material_of(&self.roles, found, |c, value| self.classify(c, value))?;
+        let material = material_of(&self.roles, found, |c, value| self.classified(c, value))?;
         let dimmed_mark = Some(R::from_f64(DIMMED.into()));
         let is_dimmed = |marks| look(marks, Filter::Nearest) == dimmed_mark;
         Some(match self.marks.iter().any(is_dimmed) {

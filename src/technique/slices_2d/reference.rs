@@ -1,9 +1,56 @@
 //! 2D texture slicing on the CPU: twin of `shaders/slices_2d.wgsl` and of its cover's order.
 
+use super::between::{self, Level};
 use crate::ray::{domain_interval, pixel_ray, voxel_ray};
 use crate::real::Real;
 use crate::shaders::Frame;
+use crate::technique::Filter;
 use crate::technique::blend::Fragment;
+use crate::technique::reference::{Gathered, Samples, composited, projected};
+
+/// What the slices of a pixel gather.
+pub(crate) fn pixel<R: Real>(of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R> {
+    let (frame, settings) = (of.frame(), of.settings());
+    let axis = frame.slice_axis as usize;
+    let slice = |i| slice_of(frame, i);
+    let on_slice = |i| slice(i) as u32;
+    if settings.mode.is_projection() {
+        return projected(of, |i| {
+            let value_at = |p| of.value_in_slice(axis, on_slice(i), p);
+            fragment(frame, pixel, slice(i), value_at)
+        });
+    }
+    let between = |level, p| value_between(of, level, p);
+    if settings.preintegrated {
+        return composited(of, |i| {
+            let slab = between::slab(frame, pixel, slice(i), between)?;
+            Some(slab.map(|found| found.map(|ends| of.classify_slab(ends))))
+        });
+    }
+    if settings.smooth {
+        return composited(of, |i| {
+            let found = between::fragment(frame, pixel, slice(i), between)?;
+            Some(found.map(|found| found.map(|value| of.classify(value))))
+        });
+    }
+    let ray_direction = pixel_ray(frame, pixel).direction;
+    composited(of, |i| {
+        let material_at = |p| of.material_in_slice(axis, on_slice(i), p, ray_direction);
+        fragment(frame, pixel, slice(i), material_at)
+    })
+}
+
+/// The volume's value between the slices of the stack.
+fn value_between<R: Real>(of: &impl Samples<R>, level: Level<R>, p: [R; 3]) -> Option<R> {
+    let axis = of.frame().slice_axis as usize;
+    let slices = of.dim(axis);
+    let in_slice = |slice| of.value_in_slice(axis, slice, p);
+    match of.settings().filter {
+        Filter::Nearest => in_slice(level.nearest(slices)),
+        // Wide filters refuse planes between slices.
+        _ => level.linear(slices, in_slice),
+    }
+}
 
 /// The slice that instance `instance` shows.
 pub fn slice_of(frame: &Frame, instance: u32) -> i32 {

@@ -5,7 +5,32 @@ use crate::ray::{domain_interval, pixel_ray, plane_length, plane_t, voxel_ray};
 use crate::real::Real;
 use crate::shaders::Frame;
 use crate::technique::blend::Fragment;
+use crate::technique::reference::{Gathered, Samples, composited, projected};
 use std::cmp::Ordering;
+
+/// What the slices of a pixel gather.
+pub(crate) fn pixel<R: Real>(of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R> {
+    let (frame, settings) = (of.frame(), of.settings());
+    let plane = |i| plane_of(frame, i);
+    let value_at = |p| of.value(p);
+    if settings.mode.is_projection() {
+        return projected(of, |i| fragment(frame, pixel, plane(i), value_at));
+    }
+    if settings.preintegrated {
+        return composited(of, |i| {
+            let slab = slab(frame, pixel, plane(i), value_at)?;
+            Some(slab.map(|found| found.map(|ends| of.classify_slab(ends))))
+        });
+    }
+    let ray_direction = pixel_ray(frame, pixel).direction;
+    let material_at = |p| of.material(p, ray_direction);
+    composited(of, |i| fragment(frame, pixel, plane(i), material_at))
+}
+
+/// The plane that instance `instance` shows.
+pub(crate) fn plane_of(frame: &Frame, instance: u32) -> i32 {
+    frame.slice_first + instance as i32 * frame.slice_direction
+}
 
 /// The sample of a pixel's ray on one plane; `None` outside the domain, `Some(None)` for no data.
 pub fn fragment<R: Real, V>(

@@ -1,0 +1,150 @@
+//! What the CPU reference of a technique is given, and what it leaves.
+//!
+//! ```text
+//! technique.pixel(samples, pixel)     one pixel of what the technique gathers, in f32 or f64
+//! ```
+
+use super::blend::{Fragment, clear_color, merge};
+use super::composite::Composite;
+use super::isosurface::Surfaces;
+use super::merge::MAX_BATCH_SLICES;
+use super::{AlikeCells, Settings};
+use crate::real::Real;
+use crate::shaders::Frame;
+
+/// What a technique asks of what it shows. Positions are in voxel space; `None` stands for no data.
+pub(crate) trait Samples<R: Real> {
+    /// The parameters of the picture.
+    fn frame(&self) -> &Frame;
+    /// What to compute.
+    fn settings(&self) -> &Settings;
+    /// Slices to draw.
+    fn slice_count(&self) -> u32;
+    /// Voxels along an axis.
+    fn dim(&self, axis: usize) -> u32;
+    /// The filtered value.
+    fn value(&self, p: [R; 3]) -> Option<R>;
+    /// The same of the voxels of one slice across an axis.
+    fn value_in_slice(&self, axis: usize, slice: u32, p: [R; 3]) -> Option<R>;
+    /// A voxel, by its index.
+    fn voxel(&self, index: [i32; 3]) -> Option<R>;
+    /// Colour and extinction of what is there, lit.
+    fn material(&self, p: [R; 3], ray_direction: [R; 3]) -> Option<[R; 4]>;
+    /// The same of the voxels of one slice across an axis.
+    fn material_in_slice(
+        &self,
+        axis: usize,
+        slice: u32,
+        p: [R; 3],
+        ray_direction: [R; 3],
+    ) -> Option<[R; 4]>;
+    /// Colour and extinction of a value.
+    fn classify(&self, value: R) -> [R; 4];
+    /// The same of a slab with these values at its ends.
+    fn classify_slab(&self, ends: [R; 2]) -> [R; 4];
+    /// Where one sample stands for others, where steps adapt.
+    fn alike(&self) -> Option<&AlikeCells>;
+}
+
+/// What a technique leaves for one pixel, before it is resolved.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Gathered<R> {
+    /// Composite: premultiplied colour and alpha. Else (value, weight, unused, unused).
+    pub accumulation: [R; 4],
+    pub depth: Option<R>,
+    /// The value of a surface that was hit first.
+    pub level: Option<R>,
+    /// What a depth cue leaves of the colour.
+    pub light: R,
+    pub samples: u32,
+}
+
+impl<R: Real> Gathered<R> {
+    /// Of a ray that has composited so many samples.
+    pub fn of_composite((found, samples): (Composite<R>, u32)) -> Self {
+        let ([r, g, b], one) = (found.color, R::from_f64(1.0));
+        Self {
+            accumulation: [r, g, b, one - found.transmittance],
+            depth: found.depth,
+            level: None,
+            light: R::from_f64(1.0),
+            samples,
+        }
+    }
+
+    /// Of a ray that has met surfaces.
+    pub fn of_surfaces(found: Surfaces<R>) -> Self {
+        let ([r, g, b], one) = (found.color, R::from_f64(1.0));
+        Self {
+            accumulation: [r, g, b, one - found.transmittance],
+            depth: found.first.map(|(_, t)| t),
+            level: found.first.map(|(level, _)| level),
+            light: one,
+            samples: found.samples,
+        }
+    }
+
+    /// Of what a blending unit has made of so many fragments.
+    pub fn of_blended(accumulation: [R; 4], samples: u32) -> Self {
+        Self {
+            accumulation,
+            depth: None,
+            level: None,
+            light: R::from_f64(1.0),
+            samples,
+        }
+    }
+}
+
+/// All slices of one pixel through the blending unit.
+pub(super) fn blended<R: Real, V>(
+    of: &impl Samples<R>,
+    fragment: impl Fn(u32) -> Option<Option<Fragment<R, V>>>,
+    blend: impl Fn([R; 4], Fragment<R, V>) -> [R; 4],
+) -> Gathered<R> {
+    let (settings, slices) = (of.settings(), of.slice_count());
+    let clear = clear_color(settings.mode).map(R::from_f32);
+    let mut samples = 0;
+    let mut of_batch = |slices: std::ops::Range<u32>| {
+        let mut target = clear;
+        for fragment in slices.filter_map(&fragment) {
+            samples += 1;
+            if let Some(fragment) = fragment {
+                target = blend(target, fragment);
+            }
+        }
+        target
+    };
+    let at_once = if R::IS_MERGED {
+        MAX_BATCH_SLICES
+    } else {
+        slices.max(1)
+    };
+    let batches = (0..slices).step_by(at_once as usize);
+    let batches = batches.map(|first| of_batch(first..(first + at_once).min(slices)));
+    let merged = batches.reduce(|before, batch| merge(settings.order, before, batch));
+    Gathered::of_blended(merged.unwrap_or(clear), samples)
+}
+
+/// The fragments of slices of one volume's values, blended as the mode says. It classifies when it is resolved.
+pub(super) fn projected<R: Real>(
+    of: &impl Samples<R>,
+    fragment: impl Fn(u32) -> Option<Option<Fragment<R>>>,
+) -> Gathered<R> {
+    let (mode, order) = (of.settings().mode, of.settings().order);
+    let unclassified = |_| [R::from_f64(0.0); 4];
+    blended(of, fragment, |target, fragment| {
+        super::blend::blend(mode, order, target, fragment, unclassified)
+    })
+}
+
+/// The fragments of slices of matter, composited.
+pub(super) fn composited<R: Real>(
+    of: &impl Samples<R>,
+    fragment: impl Fn(u32) -> Option<Option<Fragment<R, [R; 4]>>>,
+) -> Gathered<R> {
+    let order = of.settings().order;
+    blended(of, fragment, |target, fragment| {
+        super::blend::blend_material(order, target, fragment.value, fragment.length)
+    })
+}
