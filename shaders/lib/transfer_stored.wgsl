@@ -4,7 +4,7 @@
 #import frame
 
 // The table is folded into rows of this many entries.
-const TABLE_WIDTH: u32 = 4096u;
+const TABLE_WIDTH: u32 = 1024u;
 
 @group(0) @binding(4) var stored_table: texture_storage_2d<rgba32float, read>;
 

@@ -4,7 +4,7 @@
 #import frame
 
 // The table is folded into rows of this many entries.
-const TABLE_WIDTH: u32 = 4096u;
+const TABLE_WIDTH: u32 = 1024u;
 
 @group(0) @binding(4) var transfer_table: texture_2d<f32>;
 

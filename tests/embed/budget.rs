@@ -6,6 +6,7 @@ use std::sync::Arc;
 use stratavox::embed::{self, Class, Renderer, Shot, Volume};
 use stratavox::gpu::{self, Load};
 use stratavox::technique::{Settings, Technique};
+use stratavox::transfer::{Classified, Window};
 
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
@@ -273,4 +274,47 @@ fn what_the_driver_says_of_its_heaps_is_told() {
     assert!(first.is_device_local && first.bytes > 0, "{first:?}");
     let told = (first.budget_bytes, first.used_bytes);
     assert_eq!(told, (with_budget::BUDGET_BYTES, with_budget::USED_BYTES));
+}
+
+#[test]
+fn rays_that_keep_no_depth_take_one_image_a_frame() {
+    const MIB: u64 = 1 << 20;
+    // Of gentle slopes, with a table of 4096 entries: those of steep ones take up to 8 MiB.
+    let function = Window::of_range([0.0, 100.0]).grey(Classified::Samples);
+    let stage = stage(Technique::Raycast);
+    for (extent, frames_in_flight, most) in
+        [([3840, 2160], 3, 400 * MIB), ([1920, 1080], 2, 64 * MIB)]
+    {
+        let host = Host::new();
+        let gpu = host.gpu();
+        let mut volume = Volume::new(gpu, &stage.volume, &stage.settings).unwrap();
+        // SAFETY: outside rendering; `run` waits.
+        host.run(|cmd| unsafe { volume.record_upload(gpu, cmd).unwrap() });
+        let volume = Arc::new(volume);
+        let of = |picks| {
+            let before = gpu.memory().used_bytes;
+            let class = Class {
+                settings: stage.settings.clone(),
+                target: FORMAT.into(),
+                frames_in_flight,
+                host_depth: false,
+                gives_depth: false,
+                picks,
+                slice_blending: Default::default(),
+            };
+            let made = Renderer::new(gpu, &volume, Some(&function), class, extent, &[]).unwrap();
+            let bytes = gpu.memory().used_bytes - before;
+            drop(made);
+            bytes
+        };
+        let bytes = of(false);
+        println!(
+            "{extent:?} in {frames_in_flight} frames: {:.2} MiB",
+            bytes as f64 / MIB as f64
+        );
+        assert!(bytes <= most, "{bytes} bytes");
+        // Whoever picks pays for it.
+        let an_image = 16 * u64::from(extent[0] * extent[1]);
+        assert!(of(true) >= bytes + u64::from(frames_in_flight) * an_image - MIB);
+    }
 }
