@@ -89,8 +89,9 @@ impl Submission<'_, '_> {
         resumes: bool,
     ) -> Result<Spent, Error> {
         let bound = gather.bind(canvas, inputs, None)?;
-        if !resumes {
-            canvas.begin();
+        match resumes {
+            true => canvas.resume(),
+            false => canvas.begin(),
         }
         // A slice of those that take steps is drawn twice.
         let slices: u32 = bricks.iter().map(|brick| brick.slices).sum();

@@ -26,6 +26,8 @@ pub(crate) struct CanvasDesc<'a> {
 pub(crate) struct Canvas {
     extent: [u32; 2],
     images: Vec<(Image, Use)>,
+    /// What comes next goes on from what is there.
+    resumes: bool,
     /// Which tiles rays draw.
     pub tiles: Option<RayTiles>,
     /// Which parts of slices are drawn, and how large the lists of this picture get.
@@ -39,6 +41,7 @@ impl Canvas {
         Self {
             extent,
             images: images.collect(),
+            resumes: false,
             tiles: None,
             patches: None,
         }
@@ -59,11 +62,23 @@ impl Canvas {
         self.images.iter().map(|(image, _)| image)
     }
 
-    /// Gives up what the images hold: a picture begins, and nothing unfinished uses them.
+    /// A picture begins: what the images hold is given up, and nothing unfinished uses them.
     pub fn begin(&mut self) {
+        self.resumes = false;
         for (_, last) in &mut self.images {
             *last = Use::Nothing;
         }
+    }
+
+    /// A picture goes on: what comes next is put to what the images hold, bricks behind bricks or a frame onto those
+    /// before it.
+    pub fn resume(&mut self) {
+        self.resumes = true;
+    }
+
+    /// Whether a picture goes on.
+    pub fn resumes(&self) -> bool {
+        self.resumes
     }
 
     pub(super) fn last_use(&mut self, number: usize) -> &mut Use {

@@ -16,6 +16,8 @@ mod canvas;
 mod patches;
 mod player;
 mod rays;
+#[cfg(test)]
+mod seams;
 mod slices;
 
 pub(crate) use canvas::{Canvas, CanvasDesc, PICTURE};

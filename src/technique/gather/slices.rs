@@ -158,16 +158,21 @@ impl Bound for BoundSlices {
         bricks: &[Brick],
         part: &Part,
     ) -> Result<(), Error> {
+        let cleared = Load::Clear(self.clear);
         // SAFETY: the caller's promises.
         unsafe {
             match &self.merge {
                 None => {
                     player.bring([(PICTURE, Use::ColorTarget)]);
                     let all = bricks.iter().map(|brick| (brick, 0..brick.slices));
-                    self.draw(player, all, PICTURE, part.tiles);
+                    let load = match player.canvas.resumes() {
+                        true => Load::Keep,
+                        false => cleared,
+                    };
+                    self.draw(player, all, (PICTURE, load), part.tiles);
                 }
                 Some((merge, bound)) => {
-                    if part.is_first {
+                    if part.is_first && !player.canvas.resumes() {
                         player.clear(PICTURE);
                     }
                     let [batch, _] = numbers(true);
@@ -177,7 +182,7 @@ impl Bound for BoundSlices {
                     });
                     for slices in batches {
                         player.bring([(batch, Use::ColorTarget)]);
-                        self.draw(player, [slices].into_iter(), batch, part.tiles);
+                        self.draw(player, [slices].into_iter(), (batch, cleared), part.tiles);
                         player.bring([(batch, Use::ComputeSampled), (PICTURE, Use::ComputeWrite)]);
                         for &tile in part.tiles {
                             let extent = player.canvas.extent();
@@ -203,7 +208,7 @@ impl BoundSlices {
         &self,
         player: &mut Player,
         slices: impl Iterator<Item = (&'a Brick, Range<u32>)> + Clone,
-        target: usize,
+        target: (usize, Load),
         tiles: &[Tile],
     ) {
         let extent = player.canvas.extent();
@@ -216,7 +221,6 @@ impl BoundSlices {
                     player.give_up_depth(number);
                     player.bring([(number, Use::DepthTarget)]);
                 }
-                let target = (target, Load::Clear(self.clear));
                 player.render(target, depth, tile, |cmd| {
                     let mut slices = slices.clone().peekable();
                     if let (Some((copy, bound)), Some((brick, _))) = (tested, slices.peek()) {
