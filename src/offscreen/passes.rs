@@ -1,16 +1,17 @@
 //! The pipelines of one kind of picture.
 
 use super::submission::Submission;
-use super::targets::Targets;
+use super::targets::Output;
 use crate::gpu::{
-    Blend, Error, Gpu, Image, Load, ParameterRing, Use, begin_rendering_of, end_rendering,
-    image_barrier,
+    Bindings, Blend, Buffer, Error, Gpu, Image, Load, ParameterRing, Region, Tile, Use,
+    begin_rendering_of, end_rendering, image_barrier, image_to_buffer,
 };
 use crate::resident::GpuTransfer;
 use crate::resolve::Resolve;
 use crate::technique::blend::Drawn;
-use crate::technique::gather::{Gather, GatherDesc, PICTURE};
+use crate::technique::gather::{Gather, GatherDesc};
 use crate::technique::{ACCUMULATION_FORMAT, Mode, Order, Settings, Sight, Technique, Words};
+use ash::vk;
 use std::cell::OnceCell;
 use std::sync::Arc;
 
@@ -96,35 +97,122 @@ impl Passes {
         self.resolve.is_some()
     }
 
-    /// The colours of what was gathered, in the use that the image is left in.
-    pub fn resolve<'t>(
-        &self,
-        submission: Submission,
-        targets: &'t Targets,
-        ring: &ParameterRing,
-        offset: u32,
+    /// What makes colours of what is gathered in an image, by the parameters at `offset` of the ring, and brings them
+    /// back.
+    pub fn finish<'a>(
+        &'a self,
+        gathered: &Image,
+        output: &'a Output,
+        (ring, offset): (&ParameterRing, u32),
         transfer: Option<&GpuTransfer>,
-    ) -> Result<(&'t Image, Use), Error> {
-        let gathered = targets.canvas.image(PICTURE);
-        let (Some(resolve), Some(picture)) = (&self.resolve, &targets.resolved) else {
-            return Ok((gathered, Use::FragmentSampled));
+    ) -> Result<Finish<'a>, Error> {
+        let resolve = match (&self.resolve, &output.resolved) {
+            (Some(resolve), Some(picture)) => {
+                let bindings = resolve.bind(ring, gathered, transfer)?;
+                Some((resolve, bindings, picture))
+            }
+            _ => None,
         };
-        let extent = targets.extent();
-        let bindings = resolve.bind(ring, gathered, transfer)?;
+        Ok(Finish {
+            resolve,
+            readback: &output.readback,
+            offset,
+            extent: output.extent,
+        })
+    }
+}
+
+/// From what a technique has gathered to what the host reads.
+#[derive(Debug)]
+pub struct Finish<'a> {
+    /// Of modes that leave a value, with the image of the colours.
+    resolve: Option<(&'a Resolve, Bindings, &'a Image)>,
+    readback: &'a Buffer,
+    offset: u32,
+    extent: [u32; 2],
+}
+
+impl Finish<'_> {
+    /// Records all of it at once.
+    ///
+    /// # Errors
+    /// None but a mistake of ours.
+    ///
+    /// # Safety
+    /// `cmd` is recording outside rendering; what was gathered is in [`Use::FragmentSampled`], in which it is left; all
+    /// that is bound lives until it has run.
+    pub unsafe fn record(
+        &self,
+        cmd: vk::CommandBuffer,
+        gpu: &Gpu,
+        gathered: &Image,
+    ) -> Result<(), Error> {
+        let (image, used) = self.image(gathered);
+        let [width, height] = self.extent;
+        let region = Region {
+            origin: [0; 3],
+            extent: [width, height, 1],
+        };
+        // SAFETY: the caller's promises.
+        unsafe {
+            self.resolve_tiles(cmd, gpu, &[Tile::whole(self.extent)], true);
+            image_barrier(gpu, cmd, image, used, Use::TransferRead);
+            image_to_buffer(gpu, cmd, image, region, self.readback, 0)?;
+            image_barrier(gpu, cmd, image, Use::TransferRead, used);
+        }
+        Ok(())
+    }
+
+    /// Records the colours of some tiles.
+    ///
+    /// # Safety
+    /// As [`Self::record`].
+    unsafe fn resolve_tiles(
+        &self,
+        cmd: vk::CommandBuffer,
+        gpu: &Gpu,
+        tiles: &[Tile],
+        is_first: bool,
+    ) {
+        let Some((resolve, bindings, picture)) = &self.resolve else {
+            return;
+        };
         let target = [(picture.view(), Load::Clear([0.0; 4]))];
-        // SAFETY: recorded in order, with barriers between; `run` waits, and all that is bound lives meanwhile.
-        submission.in_tiles(extent, |cmd, gpu, part| unsafe {
-            if part.is_first {
+        // SAFETY: the caller's promises.
+        unsafe {
+            if is_first {
                 image_barrier(gpu, cmd, picture, Use::Nothing, Use::ColorTarget);
             }
-            for &tile in part.tiles {
+            for &tile in tiles {
                 begin_rendering_of(gpu, cmd, &target, tile);
-                resolve.record_tile(cmd, &bindings, offset, extent, tile);
+                resolve.record_tile(cmd, bindings, self.offset, self.extent, tile);
                 end_rendering(gpu, cmd);
             }
+        }
+    }
+
+    /// The image of the colours of what was gathered, and the use that it is left in.
+    pub fn image<'i>(&'i self, gathered: &'i Image) -> (&'i Image, Use) {
+        match &self.resolve {
+            Some((.., picture)) => (picture, Use::ColorTarget),
+            None => (gathered, Use::FragmentSampled),
+        }
+    }
+
+    /// Makes the colours in submissions of their own.
+    ///
+    /// # Errors
+    /// A lost device.
+    pub fn resolve(&self, submission: Submission) -> Result<(), Error> {
+        if self.resolve.is_none() {
+            return Ok(());
+        }
+        let resolved = submission.in_tiles(self.extent, |cmd, gpu, part| {
+            // SAFETY: recorded in order; `run` waits, and all that is bound lives meanwhile.
+            unsafe { self.resolve_tiles(cmd, gpu, part.tiles, part.is_first) };
             Ok(())
-        })?;
-        Ok((picture, Use::ColorTarget))
+        });
+        resolved.map(drop)
     }
 }
 

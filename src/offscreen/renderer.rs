@@ -34,7 +34,7 @@ use crate::picture::{ColorSpace, LayerKind, Picture};
 use crate::resident::{GpuTransfer, GpuVolume};
 use crate::scene::{Scene, positions_in_pixel};
 use crate::technique::cost::ms_of_looks;
-use crate::technique::gather::CanvasDesc;
+use crate::technique::gather::{CanvasDesc, PICTURE};
 use crate::technique::{
     self, Functions, InPixel, LightVolume, Mix, Mode, Part, Words, parameter_ring,
 };
@@ -293,8 +293,9 @@ impl<'v> Renderer<'v> {
         let per_side = scene.settings.rays_per_side;
         let mut mean = Mean::new(per_side);
         for in_pixel in positions_in_pixel(scene.settings) {
-            clock.add(self.gather(scene, in_pixel)?);
-            mean.add(self.resolve()?);
+            let (colors, gpu_ms) = self.colors(scene, in_pixel)?;
+            clock.add(gpu_ms);
+            mean.add(colors);
         }
         let pixels = mean.pixels;
         if per_side > 1 && !layers.is_empty() {
@@ -366,21 +367,31 @@ impl<'v> Renderer<'v> {
         Ok(())
     }
 
+    /// What making colours of what was gathered takes.
+    fn resolve_ms(&self) -> f64 {
+        let targets = self.targets.as_ref().expect("prepared");
+        let pixels = targets.extent().map(f64::from).iter().product::<f64>();
+        ms_of_looks(self.device.gpu(), LOOKS_OF_A_RESOLVE * pixels)
+    }
+
     /// The colours of what was gathered; the parameters are still in the ring.
     fn resolve(&mut self) -> Result<Vec<[f32; 4]>, Error> {
+        let expected_ms = self.resolve_ms();
         let passes = self.passes.as_ref().expect("prepared");
         let targets = self.targets.as_ref().expect("prepared");
         let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
-        let offset = self.ring.offset(0)?;
-        let pixels = targets.extent().map(f64::from).iter().product::<f64>();
-        let submission = Submission {
-            expected_ms: ms_of_looks(self.device.gpu(), LOOKS_OF_A_RESOLVE * pixels),
+        let gathered = targets.canvas.image(PICTURE);
+        let ring = (&self.ring, self.ring.offset(0)?);
+        let finish = passes.finish(gathered, &targets.output, ring, transfer)?;
+        finish.resolve(Submission {
+            expected_ms,
             device: &mut self.device,
             timer: None,
             slices: &mut self.slices,
             is_drawing: false,
-        };
-        let (image, used) = passes.resolve(submission, targets, &self.ring, offset, transfer)?;
+            finish: None,
+        })?;
+        let (image, used) = finish.image(gathered);
         Ok(targets.read(&mut self.device, image, used)?)
     }
 }

@@ -1,9 +1,10 @@
 //! A picture's bricks in timed submissions, each a part of the picture.
 
+use super::passes::Finish;
 use super::time_slices::{Spent, TimeSlices, Work};
 use crate::gpu::{Blocks, Error, Gpu, Headless, Tile, Timer};
 use crate::technique::Inputs;
-use crate::technique::gather::{Brick, Canvas, Gather, Part, Player};
+use crate::technique::gather::{Brick, Canvas, Gather, PICTURE, Part, Player};
 use ash::vk;
 use std::ops::Range;
 
@@ -20,6 +21,8 @@ pub struct Submission<'a, 'v> {
     pub expected_ms: f64,
     /// Whether it is one of the passes that a picture takes: the watch is told how far it is.
     pub is_drawing: bool,
+    /// What is made of the picture behind its last part, in the same submission.
+    pub finish: Option<&'a Finish<'a>>,
 }
 
 /// A block takes no more than this part of a submission.
@@ -45,12 +48,13 @@ impl Submission<'_, '_> {
             slices,
             expected_ms,
             is_drawing,
-            ..
+            finish,
         } = self;
         let work = Work {
             units: 0..units,
             expected_ms,
             is_drawing,
+            is_finished: finish.is_some(),
         };
         slices.run(device, timer, work, record)
     }
@@ -96,7 +100,12 @@ impl Submission<'_, '_> {
         // A slice of those that take steps is drawn twice.
         let slices: u32 = bricks.iter().map(|brick| brick.slices).sum();
         let bands = self.pieces(1.0 / f64::from(slices.max(1)));
+        let finish = self.finish;
         let record = |cmd, gpu: &Gpu, canvas: &mut Canvas, part: &Part| {
+            if let (Some(finish), [], true) = (finish, part.tiles, part.steps.is_empty()) {
+                // SAFETY: as below; the last part has left the picture so.
+                return unsafe { finish.record(cmd, gpu, canvas.image(PICTURE)) };
+            }
             let mut player = Player { gpu, cmd, canvas };
             // SAFETY: recorded outside rendering, parts in order; `run` waits, and all that is bound lives meanwhile.
             unsafe { bound.record(&mut player, bricks, part) }

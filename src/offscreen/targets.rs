@@ -23,9 +23,19 @@ pub struct Targets {
     dims: [u32; 3],
     /// Where a slicer counts samples, once that was wanted.
     pub count: Option<Canvas>,
+    /// Where it becomes a picture.
+    pub output: Output,
+}
+
+/// From what was gathered to the CPU.
+#[derive(Debug)]
+pub struct Output {
+    /// Pixels across and down.
+    pub extent: [u32; 2],
     /// The colours of what projects.
     pub resolved: Option<Image>,
-    readback: Buffer,
+    /// Four f32 a pixel, rows from the top.
+    pub readback: Buffer,
 }
 
 impl Targets {
@@ -40,8 +50,11 @@ impl Targets {
             keeps_layers: desc.keeps_layers,
             dims: desc.dims,
             count: None,
-            resolved: resolved.transpose()?,
-            readback: Buffer::new(gpu, bytes, usage, Memory::Readback, "readback")?,
+            output: Output {
+                extent: desc.extent,
+                resolved: resolved.transpose()?,
+                readback: Buffer::new(gpu, bytes, usage, Memory::Readback, "readback")?,
+            },
         })
     }
 
@@ -57,7 +70,7 @@ impl Targets {
     }
 
     /// Where the samples of a slicer are counted by `passes`, of the same patches as those of the picture.
-    pub fn count_canvas(&mut self, gpu: &Arc<Gpu>, passes: &Passes) -> Result<&mut Canvas, Error> {
+    pub fn prepare_count(&mut self, gpu: &Arc<Gpu>, passes: &Passes) -> Result<(), Error> {
         let made = match self.count.take() {
             Some(made) => made,
             None => passes.count(gpu)?.canvas(&CanvasDesc {
@@ -67,9 +80,8 @@ impl Targets {
                 beside: None,
             })?,
         };
-        let canvas = self.count.insert(made);
-        canvas.patches = self.canvas.patches.clone();
-        Ok(canvas)
+        self.count.insert(made).patches = self.canvas.patches.clone();
+        Ok(())
     }
 
     /// The pixels of one of the images, rows from the top. `used` is what was last done with it, and can be done again.
@@ -91,13 +103,24 @@ impl Targets {
             // SAFETY: recorded outside rendering; `run` waits, and `self` lives meanwhile.
             device.run(|cmd| unsafe {
                 image_barrier(&gpu, cmd, image, used, Use::TransferRead);
-                image_to_buffer(&gpu, cmd, image, region, &self.readback, offset)?;
+                image_to_buffer(&gpu, cmd, image, region, &self.output.readback, offset)?;
                 image_barrier(&gpu, cmd, image, Use::TransferRead, used);
                 Ok(())
             })?;
         }
-        let count = self.extent().map(|n| n as usize).iter().product();
-        let mut pixels = vec![[0.0; 4]; count];
+        self.output.pixels()
+    }
+}
+
+impl Output {
+    /// Whether a copy of all of it is no long work.
+    pub fn is_small(&self) -> bool {
+        self.readback.bytes() <= COPIED_BYTES
+    }
+
+    /// What was copied last.
+    pub fn pixels(&self) -> Result<Vec<[f32; 4]>, Error> {
+        let mut pixels = vec![[0.0; 4]; self.readback.bytes() as usize / 16];
         self.readback
             .read(0, bytemuck::cast_slice_mut(&mut pixels))?;
         Ok(pixels)

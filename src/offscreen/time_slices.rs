@@ -53,6 +53,8 @@ pub struct Work {
     pub expected_ms: f64,
     /// Whether it draws the picture: the watch is told how much of it is done.
     pub is_drawing: bool,
+    /// Whether something is recorded behind it in the last submission, which the clock does not count.
+    pub is_finished: bool,
 }
 
 impl Work {
@@ -62,6 +64,7 @@ impl Work {
             units,
             expected_ms,
             is_drawing: false,
+            is_finished: false,
         }
     }
 }
@@ -110,7 +113,7 @@ impl<'v> TimeSlices<'v> {
         }
     }
 
-    /// Runs some work. `record` is given the units of one submission.
+    /// Runs some work. `record` is given the units of one submission; none for what is recorded behind all of them.
     pub fn run(
         &mut self,
         device: &mut Headless,
@@ -132,7 +135,10 @@ impl<'v> TimeSlices<'v> {
                 start();
                 record(cmd, &gpu, first + part.start..first + part.end)?;
                 stop();
-                Ok(())
+                match work.is_finished && part.end == count {
+                    true => record(cmd, &gpu, work.units.end..work.units.end),
+                    false => Ok(()),
+                }
             })?;
             let more = timer.map_or(Ok(None), Timer::elapsed_ms)?;
             gpu_ms = gpu_ms.zip(more).map(|(sum, more)| sum + more);

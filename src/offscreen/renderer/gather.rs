@@ -6,12 +6,12 @@ use crate::offscreen::Error;
 use crate::offscreen::submission::Submission;
 use crate::offscreen::time_slices::Spent;
 use crate::scene::Scene;
-use crate::technique::gather::Brick;
+use crate::technique::gather::{Brick, PICTURE};
 use crate::technique::{InPixel, Inputs, Recording};
 use std::sync::Arc;
 
 impl Renderer<'_> {
-    /// One pass of the technique, rays at one position in each pixel.
+    /// One pass of the technique, rays at one position in each pixel. Milliseconds on the device.
     pub(super) fn gather(
         &mut self,
         scene: &Scene,
@@ -20,9 +20,27 @@ impl Renderer<'_> {
         if self.streaming.is_some() {
             return self.gather_stream(scene, in_pixel);
         }
-        let (spent, expected) = self.pass(scene, in_pixel, Pass::Picture)?;
+        let (spent, expected) = self.pass(scene, in_pixel, Pass::Values)?;
         self.learn(expected, &spent);
         Ok(spent.gpu_ms)
+    }
+
+    /// The same and the colours of it: in one submission where none of it takes long.
+    pub(super) fn colors(
+        &mut self,
+        scene: &Scene,
+        in_pixel: InPixel,
+    ) -> Result<(Vec<[f32; 4]>, Option<f64>), Error> {
+        let targets = self.targets.as_ref().expect("prepared");
+        let is_long = self.resolve_ms() > MOST_OF_A_RESOLVE * self.slices.target_ms;
+        if self.streaming.is_some() || is_long || !targets.output.is_small() {
+            let gpu_ms = self.gather(scene, in_pixel)?;
+            return Ok((self.resolve()?, gpu_ms));
+        }
+        let (spent, expected) = self.pass(scene, in_pixel, Pass::Colors)?;
+        self.learn(expected, &spent);
+        let targets = self.targets.as_ref().expect("prepared");
+        Ok((targets.output.pixels()?, spent.gpu_ms))
     }
 
     /// The next of the passes over all samples that the picture takes.
@@ -94,9 +112,23 @@ impl Renderer<'_> {
         let gpu = Arc::clone(self.device.gpu());
         let passes = self.passes.as_ref().expect("prepared");
         let targets = self.targets.as_mut().expect("prepared");
+        if pass == Pass::Count {
+            targets.prepare_count(&gpu, passes)?;
+        }
+        let finish = match pass {
+            Pass::Colors => {
+                let (picture, slot) = (targets.canvas.image(PICTURE), self.ring.offset(0)?);
+                let ring = (&self.ring, slot);
+                Some(passes.finish(picture, &targets.output, ring, transfer)?)
+            }
+            Pass::Values | Pass::Count => None,
+        };
         let (gather, canvas) = match pass {
-            Pass::Picture => (passes.picture(), &mut targets.canvas),
-            Pass::Count => (passes.count(&gpu)?, targets.count_canvas(&gpu, passes)?),
+            Pass::Values | Pass::Colors => (passes.picture(), &mut targets.canvas),
+            Pass::Count => (
+                passes.count(&gpu)?,
+                targets.count.as_mut().expect("made above"),
+            ),
         };
         let submission = Submission {
             device: &mut self.device,
@@ -104,16 +136,23 @@ impl Renderer<'_> {
             slices: &mut self.slices,
             expected_ms: expected.ms,
             is_drawing: true,
+            finish: finish.as_ref(),
         };
         let spent = submission.gather(gather, canvas, (&inputs, &bricks), false)?;
         Ok((spent, expected))
     }
 }
 
+/// A resolve of its own submission takes more than this part of one.
+const MOST_OF_A_RESOLVE: f64 = 0.25;
+
 /// What a pass over all samples is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pass {
-    Picture,
+    /// What the technique gathers.
+    Values,
+    /// The same, and the colours of it, read back.
+    Colors,
     /// How many samples a slicer takes in each pixel.
     Count,
 }

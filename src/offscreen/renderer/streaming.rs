@@ -255,6 +255,7 @@ impl<'v> Renderer<'v> {
             slices: &mut self.slices,
             expected_ms,
             is_drawing: true,
+            finish: None,
         };
         let gather = self.passes.as_ref().expect("prepared").picture();
         let canvas = &mut self.targets.as_mut().expect("prepared").canvas;
