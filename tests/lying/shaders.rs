@@ -136,8 +136,7 @@ fn compiled(text: &str) -> Vec<u32> {
     use naga::back::spv;
     let module =
         naga::front::wgsl::parse_str(text).unwrap_or_else(|e| panic!("{}", e.emit_to_string(text)));
-    let more = Capabilities::SUBGROUP | Capabilities::IMMEDIATES;
-    let mut validator = Validator::new(ValidationFlags::all(), more);
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
     let info = validator
         .validate(&module)
         .unwrap_or_else(|e| panic!("{}", e.emit_to_string(text)));
