@@ -25,15 +25,13 @@ mod no_contraction;
 mod opaque;
 #[path = "shaders/point_size.rs"]
 mod point_size;
-#[path = "shaders/probes.rs"]
-mod probes;
 #[path = "shaders/read_once.rs"]
 mod read_once;
 #[path = "shaders/variants.rs"]
 mod variants;
 
 use compose::{Source, combinations};
-use naga::valid::{ValidationFlags, Validator};
+use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -107,9 +105,9 @@ impl Book {
             let picture = e.emit_to_string(&source.text);
             fail(&source, &name, e.location(&source.text), &picture)
         });
-        // No capability beyond the core, but for probes: a shader that needs more is a build error.
+        // No capability beyond the core: a shader that needs more is a build error.
         let check = |module: &naga::Module, flags| {
-            Validator::new(flags, probes::capabilities(file))
+            Validator::new(flags, Capabilities::empty())
                 .validate(module)
                 .unwrap_or_else(|e| {
                     let picture = e.emit_to_string(&source.text);
@@ -235,7 +233,6 @@ fn spirv(module: &naga::Module, info: &naga::valid::ModuleInfo, file: &str) -> V
         capabilities: Some(
             [spirv::Capability::Shader, spirv::Capability::ImageQuery]
                 .into_iter()
-                .chain(probes::spirv_capabilities(file).iter().copied())
                 .collect(),
         ),
         zero_initialize_workgroup_memory: spv::ZeroInitializeWorkgroupMemoryMode::None,
@@ -252,7 +249,7 @@ fn spirv(module: &naga::Module, info: &naga::valid::ModuleInfo, file: &str) -> V
     let words = spv::write_vec(module, info, &options, Some(&entry));
     let words = words.expect("a valid module can be written");
     match is_probe(file) {
-        true => probes::finished(file, words),
+        true => words,
         false => no_contraction::forbid_contraction(&words),
     }
 }

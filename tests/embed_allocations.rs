@@ -1,5 +1,6 @@
 //! After the first frame of each frame in flight, levels A and B take nothing from the heap: what a renderer needs to
 //! record it has from the day it was made.
+#![cfg(feature = "conformance")]
 
 mod embed_shared;
 mod shared;

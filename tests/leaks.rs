@@ -1,4 +1,5 @@
 //! What a renderer makes on a device goes with it, however often.
+#![cfg(feature = "conformance")]
 
 mod hooked;
 mod shared;

@@ -4,11 +4,13 @@ use super::{
     Error,
     flags::{Classification, ScaleWord, SceneFlags},
     load::open,
+    look::View,
     renderer::Renderer,
+    shown::Shown,
 };
 use crate::{
-    annotate::{Annotation, Facts, caption, unit},
-    camera::Camera,
+    annotate::{Annotation, Facts, Seen, caption, unit},
+    picture::{Picture, PictureFormat},
     technique::Mode,
     volume::Header,
 };
@@ -56,15 +58,36 @@ fn paint(scene: &SceneFlags, word: &str) -> Result<(String, Option<String>), Err
     Ok((caption(header), unit(header)))
 }
 
-/// The range of what the mode projects, where the bar needs that of the picture.
-pub fn projected(
-    annotation: &Annotation,
-    classification: &Classification,
+/// Lays a picture over `background`, and over both what is drawn over its view.
+pub fn finish(
+    picture: &mut Picture,
+    annotation: Option<&Annotation>,
+    shown: &Shown,
+    view: &View,
     renderer: &mut Renderer,
-    camera: &Camera,
-) -> Result<Option<[f64; 2]>, Error> {
-    let is_wanted = annotation.marks.bar && *classification == Classification::RangeOfPicture;
-    is_wanted
-        .then(|| renderer.projected_range(camera))
-        .transpose()
+    background: Option<[f64; 4]>,
+    format: PictureFormat,
+) -> Result<(), Error> {
+    let behind = annotation.and_then(|annotation| annotation.transmittance(picture));
+    if let Some(background) = background {
+        picture.over_background(background);
+    }
+    let Some(annotation) = annotation else {
+        return Ok(());
+    };
+    let (classification, camera, parts) = (&shown.classification, &view.camera, shown.parts());
+    // The bar of a projection needs the range of what this picture projects.
+    let needs_range = annotation.marks.bar && *classification == Classification::RangeOfPicture;
+    let projected = needs_range.then(|| renderer.projected_range(camera));
+    let seen = Seen {
+        camera,
+        settings: &view.settings,
+        function: classification.function(),
+        beside: parts.beside(),
+        grid: shown.volume.grid(),
+        height_factor: shown.height_factor,
+        time: f64::from(view.scene.input.time(&shown.header)?.0),
+        projected: projected.transpose()?,
+    };
+    Ok(annotation.put(picture, behind.as_deref(), &seen, format)?)
 }

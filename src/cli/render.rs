@@ -2,7 +2,7 @@
 
 use super::{
     Error,
-    annotation::{annotation, projected},
+    annotation::{annotation, finish},
     flags::{Classification, Depth, InputFlags, PHANTOM, SceneFlags},
     load::open,
     look::{Chosen, Framing, Use, View, Views, prepared},
@@ -16,7 +16,7 @@ use super::{
     stdin::STANDARD,
     timings::{FrameTime, Timings, ms_since, peak_rss_bytes},
 };
-use crate::annotate::Seen;
+use crate::annotate::Annotation;
 use crate::format;
 use crate::picture::{
     BitDepth, EncodedPicture, LayerKind, PictureFormat, WriteOptions, write_picture,
@@ -209,27 +209,20 @@ impl Render {
             progress.note(&format!("the picture is empty: {reason}"));
         }
         let annotation = annotation(&scene, &shown.header, settings.mode)?;
-        let behind = annotation.as_ref().and_then(|a| a.transmittance(&picture));
-        if let Some(background) = view.scene.picture.background() {
-            picture.over_background(background);
+        if let Some(note) = annotation.as_ref().and_then(Annotation::note) {
+            progress.note(&note);
         }
-        if let Some(annotation) = &annotation {
-            annotation
-                .note()
-                .iter()
-                .for_each(|note| progress.note(note));
-            let seen = Seen {
-                camera,
-                settings,
-                function: classification.function(),
-                beside: parts.beside(),
-                grid: volume.grid(),
-                height_factor: shown.height_factor,
-                time: f64::from(scene.input.time(&shown.header)?.0),
-                projected: projected(annotation, classification, &mut renderer, camera)?,
-            };
-            annotation.put(&mut picture, behind.as_deref(), &seen, format)?;
-        }
+        let background = view.scene.picture.background();
+        let annotation = annotation.as_ref();
+        finish(
+            &mut picture,
+            annotation,
+            &shown,
+            view,
+            &mut renderer,
+            background,
+            format,
+        )?;
 
         progress.stage("write", 0, 1);
         let options = WriteOptions {

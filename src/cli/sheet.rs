@@ -2,7 +2,7 @@
 
 use super::{
     Error,
-    annotation::{annotation, projected},
+    annotation::{annotation, finish},
     error::visible,
     flags::{AnnotateFlags, Depth, InputFlags, Look, SceneFlags, Size},
     inputs::Inputs,
@@ -13,7 +13,7 @@ use super::{
     shown::Shown,
     signals::Gate,
 };
-use crate::annotate::Seen;
+use crate::annotate::Annotation;
 use crate::figure::{Anchor, Color, Figure, Mark, SCALE, png};
 use crate::look::BACKGROUND;
 use crate::picture::{Picture, PictureFormat};
@@ -200,28 +200,22 @@ fn draw(
     let drawn = prepared(&framing, &parts, &[], here, &views).and_then(|(mut renderer, view)| {
         let mut picture = renderer.draw(&view.camera)?.picture;
         let annotation = annotation(scene, &shown.header, settings.mode)?;
-        let behind = annotation.as_ref().and_then(|a| a.transmittance(&picture));
-        // A sheet has no transparency: what plain pictures leave open shows what lies between them.
-        let behind_all = view.scene.picture.background();
-        picture.over_background(behind_all.unwrap_or(BACKGROUND));
-        if let Some(annotation) = &annotation {
-            annotation
-                .note()
-                .iter()
-                .for_each(|note| progress.note(note));
-            let classification = &shown.classification;
-            let seen = Seen {
-                camera: &view.camera,
-                settings: &view.settings,
-                function: classification.function(),
-                beside: parts.beside(),
-                grid: shown.volume.grid(),
-                height_factor: shown.height_factor,
-                time: f64::from(scene.input.time(&shown.header)?.0),
-                projected: projected(annotation, classification, &mut renderer, &view.camera)?,
-            };
-            annotation.put(&mut picture, behind.as_deref(), &seen, PictureFormat::Png)?;
+        if let Some(note) = annotation.as_ref().and_then(Annotation::note) {
+            progress.note(&note);
         }
+        // A sheet has no transparency: what plain pictures leave open shows what lies between them.
+        let background = Some(view.scene.picture.background().unwrap_or(BACKGROUND));
+        let annotation = annotation.as_ref();
+        let format = PictureFormat::Png;
+        finish(
+            &mut picture,
+            annotation,
+            &shown,
+            view,
+            &mut renderer,
+            background,
+            format,
+        )?;
         view.notes.iter().for_each(|note| progress.note(note));
         Ok((picture, renderer.into_device()))
     });

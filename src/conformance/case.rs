@@ -1,7 +1,7 @@
 //! A case: a name in the tree, what it asks of a device, and what it does there.
 
 use super::measurement::Measurement;
-use super::need::{Found, Want};
+use super::need::Found;
 use super::stand::Stand;
 use crate::gpu::{self, Item, Limit};
 use crate::offscreen;
@@ -76,8 +76,8 @@ pub struct Case {
     pub profile: Profile,
     /// What a device has to have for it.
     pub needs: Vec<Item>,
-    /// The same, of what the library has no need of.
-    pub wants: Vec<Want>,
+    /// Whether it calls `vkCreateEvent`, of which the library has no need.
+    pub wants_events: bool,
     /// The measurement.
     pub run: Run,
 }
@@ -92,7 +92,7 @@ impl Case {
             name: name.into(),
             profile: Profile::Baseline,
             needs: Vec::new(),
-            wants: Vec::new(),
+            wants_events: false,
             run: Box::new(run),
         }
     }
@@ -103,9 +103,9 @@ impl Case {
         self
     }
 
-    /// The same, which needs something that the library does not.
-    pub fn wanting(mut self, want: Want) -> Self {
-        self.wants.push(want);
+    /// The same, which needs events.
+    pub fn wanting_events(mut self) -> Self {
+        self.wants_events = true;
         self
     }
 

@@ -37,21 +37,15 @@ impl DeviceRecord {
 /// Those that the library compares before its calls, as lowered for the run, and those that cases look up themselves.
 fn limits(gpu: &Gpu) -> BTreeMap<String, u64> {
     let lowered = gpu.limits();
-    let mut properties11 = vk::PhysicalDeviceVulkan11Properties::default();
     let mut properties12 = vk::PhysicalDeviceVulkan12Properties::default();
-    let mut properties13 = vk::PhysicalDeviceVulkan13Properties::default();
-    let mut properties = vk::PhysicalDeviceProperties2::default()
-        .push_next(&mut properties11)
-        .push_next(&mut properties12)
-        .push_next(&mut properties13);
+    let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut properties12);
     // SAFETY: the physical device belongs to the instance; both live as long as `gpu`.
     unsafe {
         let instance = gpu.instance();
         instance.get_physical_device_properties2(gpu.physical_device(), &mut properties);
     }
     let own = properties.properties.limits;
-    let special_floats = properties12.shader_signed_zero_inf_nan_preserve_float32;
-    let named: [(&str, u64); 23] = [
+    let named: [(&str, u64); 16] = [
         ("maxBufferSize", lowered.max_buffer_bytes),
         (
             "maxComputeWorkGroupInvocations",
@@ -68,12 +62,10 @@ fn limits(gpu: &Gpu) -> BTreeMap<String, u64> {
             "maxPerStageDescriptorStorageBuffers",
             lowered.max_storage_buffers_per_stage.into(),
         ),
-        ("maxPushConstantsSize", own.max_push_constants_size.into()),
         (
             "maxStorageBufferRange",
             lowered.max_storage_buffer_range.into(),
         ),
-        ("maxSubgroupSize", properties13.max_subgroup_size.into()),
         (
             "maxTimelineSemaphoreValueDifference",
             properties12.max_timeline_semaphore_value_difference,
@@ -86,19 +78,8 @@ fn limits(gpu: &Gpu) -> BTreeMap<String, u64> {
             "minUniformBufferOffsetAlignment",
             lowered.min_uniform_offset_alignment,
         ),
-        ("minSubgroupSize", properties13.min_subgroup_size.into()),
-        ("mipmapPrecisionBits", own.mipmap_precision_bits.into()),
-        (
-            "shaderSignedZeroInfNanPreserveFloat32",
-            special_floats.into(),
-        ),
         ("subPixelPrecisionBits", own.sub_pixel_precision_bits.into()),
         ("subTexelPrecisionBits", lowered.subtexel_bits.into()),
-        ("subgroupSize", properties11.subgroup_size.into()),
-        (
-            "subgroupSupportedOperations",
-            properties11.subgroup_supported_operations.as_raw().into(),
-        ),
     ];
     let mut limits: BTreeMap<String, u64> = named.map(|(name, n)| (name.to_owned(), n)).into();
     let lists: [(&str, &[u32]); 3] = [

@@ -41,8 +41,8 @@ fn judged(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
         Some(Ok(device)) => {
             let gpu = device.gpu();
             let needs = case.needs.iter().map(|&item| Found::of(gpu, item));
-            let wants = case.wants.iter().map(|&want| Found::wanted(gpu, want));
-            needs.chain(wants).collect()
+            let events = case.wants_events.then(|| Found::events(gpu));
+            needs.chain(events).collect()
         }
         Some(Err(error)) => return (of(verdict_of(&error), error.to_string()), None),
         None => Vec::new(),

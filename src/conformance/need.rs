@@ -1,5 +1,5 @@
-//! What a case asks of a device, looked up twice: as the library knows the device, and by a query of its own. Of what
-//! the library has no need, the query alone says. How many storage buffers a case binds is known once it makes its
+//! What a case asks of a device, looked up twice: as the library knows the device, and by a query of its own. Of events,
+//! which the library does not use, the query alone says. How many storage buffers a case binds is known once it makes its
 //! programs ([`Stop::need`](super::case::Stop::need)).
 //!
 //! | library | query | said |
@@ -12,21 +12,6 @@
 use crate::gpu::{Feature, Gpu, Item, Limit, portability_subset};
 use ash::vk;
 use serde::{Deserialize, Serialize};
-
-/// What a case needs and the library does not.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Want {
-    /// Operations of subgroups, in compute shaders.
-    Subgroups(vk::SubgroupFeatureFlags),
-    /// Infinities, what is no number and signs of zero are kept in 32-bit floats, where a shader asks for it.
-    SpecialFloats,
-    /// So many bytes of push constants, or more.
-    PushConstants(u32),
-    /// `vkCreateEvent`, which devices with `VK_KHR_portability_subset` may lack.
-    Events,
-    /// Samplers with a level-of-detail bias, which such devices may lack too.
-    SamplerBias,
-}
 
 /// One need compared with a device.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -60,66 +45,16 @@ impl Found {
         }
     }
 
-    /// What the device says of `want`.
-    pub fn wanted(gpu: &Gpu, want: Want) -> Self {
-        let mut properties11 = vk::PhysicalDeviceVulkan11Properties::default();
-        let mut properties12 = vk::PhysicalDeviceVulkan12Properties::default();
-        let mut properties = vk::PhysicalDeviceProperties2::default()
-            .push_next(&mut properties11)
-            .push_next(&mut properties12);
+    /// What the device says of `vkCreateEvent`, which devices with `VK_KHR_portability_subset` may lack.
+    pub fn events(gpu: &Gpu) -> Self {
         // SAFETY: the physical device belongs to the instance; both live as long as `gpu`.
-        unsafe {
-            let instance = gpu.instance();
-            instance.get_physical_device_properties2(gpu.physical_device(), &mut properties);
-        }
-        let limits = properties.properties.limits;
-        // SAFETY: as above.
-        let subset = || unsafe { portability_subset(gpu.instance(), gpu.physical_device()) };
-        let (name, wanted, device_says, has) = match want {
-            Want::Subgroups(wanted) => {
-                let stages = properties11.subgroup_supported_stages;
-                let found = properties11.subgroup_supported_operations;
-                let is_compute = stages.contains(vk::ShaderStageFlags::COMPUTE);
-                (
-                    "subgroupSupportedOperations",
-                    format!("{wanted:?} in COMPUTE"),
-                    format!("{found:?} in {stages:?}"),
-                    is_compute && found.contains(wanted),
-                )
-            }
-            Want::SpecialFloats => {
-                let found = properties12.shader_signed_zero_inf_nan_preserve_float32 == vk::TRUE;
-                (
-                    "shaderSignedZeroInfNanPreserveFloat32",
-                    "true".to_owned(),
-                    found.to_string(),
-                    found,
-                )
-            }
-            Want::PushConstants(bytes) => {
-                let found = limits.max_push_constants_size;
-                (
-                    "maxPushConstantsSize",
-                    format!("{bytes} or more"),
-                    found.to_string(),
-                    found >= bytes,
-                )
-            }
-            Want::Events => {
-                let found = subset().is_none_or(|subset| subset.events == vk::TRUE);
-                ("events", "true".to_owned(), found.to_string(), found)
-            }
-            Want::SamplerBias => {
-                let found = subset().is_none_or(|subset| subset.sampler_mip_lod_bias == vk::TRUE);
-                let name = "samplerMipLodBias";
-                (name, "true".to_owned(), found.to_string(), found)
-            }
-        };
+        let subset = unsafe { portability_subset(gpu.instance(), gpu.physical_device()) };
+        let has = subset.is_none_or(|subset| subset.events == vk::TRUE);
         Self {
-            name: name.to_owned(),
-            wanted,
-            library_says: device_says.clone(),
-            device_says,
+            name: "events".to_owned(),
+            wanted: "true".to_owned(),
+            library_says: has.to_string(),
+            device_says: has.to_string(),
             device_has: has,
             library_has: has,
         }

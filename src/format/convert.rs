@@ -194,6 +194,17 @@ pub(crate) fn to_u64(n: usize) -> u64 {
     u64::try_from(n).unwrap_or(u64::MAX)
 }
 
+/// Numbers in memory, as voxels of the type `stored`.
+#[cfg(feature = "netcdf")]
+pub(crate) fn piece_of<T: bytemuck::NoUninit>(
+    numbers: &[T],
+    stored: VoxelType,
+) -> Result<Piece, Problem> {
+    let mut builder = Builder::new(stored, Endian::NATIVE, numbers.len());
+    builder.push(bytemuck::cast_slice(numbers), 1)?;
+    Ok(builder.finish())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

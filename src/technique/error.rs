@@ -258,6 +258,25 @@ pub enum Error {
     },
 }
 
+impl Error {
+    /// Refuses a number that is not right.
+    pub(super) fn unless(
+        is_right: bool,
+        name: &'static str,
+        wanted: &'static str,
+        found: f64,
+    ) -> Result<(), Self> {
+        match is_right {
+            true => Ok(()),
+            false => Err(Self::OutOfRange {
+                name,
+                wanted,
+                found,
+            }),
+        }
+    }
+}
+
 fn held(spline: Option<Spline>) -> String {
     spline.map_or("voxels".to_owned(), |spline| {
         let name = match spline {

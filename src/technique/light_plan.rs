@@ -286,24 +286,16 @@ impl super::Settings {
     /// # Errors
     /// [`Error::OutOfRange`].
     pub(super) fn check_light(&self) -> Result<(), Error> {
-        let within = |name, wanted, found: f64, range: std::ops::RangeInclusive<f64>| match range
-            .contains(&found)
-        {
-            true => Ok(()),
-            false => Err(Error::OutOfRange {
-                name,
-                wanted,
-                found,
-            }),
-        };
         let strength = self.ambient_occlusion.map_or(0.0, |o| o.strength);
-        within(
+        let is_share = (0.0..=1.0).contains(&strength);
+        Error::unless(
+            is_share,
             "the strength of ambient occlusion",
             "0 to 1",
             strength,
-            0.0..=1.0,
         )?;
         let size = self.shadow_size().unwrap_or(0.0);
-        within("the size of lights", "0 to 90 degrees", size, 0.0..=90.0)
+        let is_angle = (0.0..=90.0).contains(&size);
+        Error::unless(is_angle, "the size of lights", "0 to 90 degrees", size)
     }
 }

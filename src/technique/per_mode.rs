@@ -60,36 +60,27 @@ impl PerMode {
     /// # Errors
     /// [`Error::OutOfRange`] by the name of the number, [`Error::LevelCount`].
     pub fn check(&self, mode: Mode) -> Result<(), Error> {
-        let within = |name, wanted, found: f64, right: bool| match right {
-            true => Ok(()),
-            false => Err(Error::OutOfRange {
-                name,
-                wanted,
-                found,
-            }),
-        };
         let [low, high] = self.unit_values;
         let (gamma, attenuation, cue) = (self.mida_gamma, self.attenuation, self.depth_cue);
         let has_width = low < high && (high - low).is_finite();
         let is_share = (0.0..=1.0).contains(&cue);
-        within("the depth cue", "0 to 1", cue, is_share)?;
+        Error::unless(is_share, "the depth cue", "0 to 1", cue)?;
         if matches!(mode, Mode::Mida | Mode::AttenuatedMip) {
             let wanted = "a higher number than the first, both finite";
-            within("the second of the unit values", wanted, high, has_width)?;
+            Error::unless(has_width, "the second of the unit values", wanted, high)?;
         }
         match mode {
             Mode::Lmip => {
                 let found = self.lmip_threshold;
-                within("the threshold of LMIP", "a number", found, !found.is_nan())
+                Error::unless(!found.is_nan(), "the threshold of LMIP", "a number", found)
             }
             Mode::Mida => {
                 let is_right = (-1.0..=1.0).contains(&gamma);
-                within("the gamma of MIDA", "-1 to 1", gamma, is_right)
+                Error::unless(is_right, "the gamma of MIDA", "-1 to 1", gamma)
             }
             Mode::AttenuatedMip => {
                 let is_right = attenuation >= 0.0 && attenuation.is_finite();
-                let wanted = "0 or more";
-                within("the attenuation", wanted, attenuation, is_right)
+                Error::unless(is_right, "the attenuation", "0 or more", attenuation)
             }
             Mode::Iso => {
                 let (found, limit) = (self.levels.len(), MAX_LEVELS as usize);
@@ -98,14 +89,9 @@ impl PerMode {
                 }
                 self.levels.iter().try_for_each(|level| {
                     let Level { value, opacity, .. } = *level;
-                    let is_share = (0.0..=1.0).contains(&opacity);
-                    within(
-                        "the value of a surface",
-                        "a number",
-                        value,
-                        value.is_finite(),
-                    )?;
-                    within("the opacity of a surface", "0 to 1", opacity, is_share)
+                    let (is_value, is_share) = (value.is_finite(), (0.0..=1.0).contains(&opacity));
+                    Error::unless(is_value, "the value of a surface", "a number", value)?;
+                    Error::unless(is_share, "the opacity of a surface", "0 to 1", opacity)
                 })
             }
             _ => Ok(()),
@@ -124,13 +110,13 @@ impl Settings {
         self.check_gradient_filter()?;
         self.check_light()?;
         self.check_mode()?;
-        if !(0.0..=1.0).contains(&self.dim) {
-            return Err(Error::OutOfRange {
-                name: "what is left of dimmed labels",
-                wanted: "0 to 1",
-                found: self.dim,
-            });
-        }
+        let is_share = (0.0..=1.0).contains(&self.dim);
+        Error::unless(
+            is_share,
+            "what is left of dimmed labels",
+            "0 to 1",
+            self.dim,
+        )?;
         self.per_mode.check(self.mode)
     }
 

@@ -1,6 +1,7 @@
 //! Ways to take samples of their own, and what does not go together with them.
 
 use super::{CutFaces, Error, Lattice, Mode, Settings};
+use std::fmt;
 
 impl Settings {
     /// Whether technique and mode have the ways to sample that are asked for.
@@ -10,52 +11,33 @@ impl Settings {
     pub fn check_ways(&self) -> Result<(), Error> {
         let (mode, technique) = (self.mode, self.technique);
         let desc = technique.desc();
-        let of_mode = |is_on: bool, wanted| match is_on && mode != Mode::Composite {
-            true => Err(Error::NotFor {
-                wanted,
-                of: "composite",
-                found: format!("mode {mode}"),
-            }),
-            false => Ok(()),
+        let of_mode = |is_on: bool, wanted| {
+            let is_refused = is_on && mode != Mode::Composite;
+            refuse(is_refused, wanted, "composite", format_args!("mode {mode}"))
         };
-        let of_technique = |is_on: bool, wanted, has: bool, of| match is_on && !has {
-            true => Err(Error::NotFor {
-                wanted,
-                of,
-                found: technique.to_string(),
-            }),
-            false => Ok(()),
-        };
+        let of_technique =
+            |is_on: bool, wanted, has: bool, of| refuse(is_on && !has, wanted, of, technique);
+        let of_rays = |is_on, wanted| of_technique(is_on, wanted, desc.casts_rays, "ray casting");
         let is_jittered = self.lattice == Lattice::Jitter;
         of_mode(self.preintegrated, PREINTEGRATED)?;
         of_technique(self.smooth, SMOOTH, desc.draws_stacks, "2D stacks")?;
         of_mode(self.smooth, SMOOTH)?;
-        of_technique(is_jittered, JITTER, desc.casts_rays, "ray casting")?;
-        let is_adaptive = self.adaptive_steps.is_some();
-        of_technique(is_adaptive, ADAPTIVE, desc.casts_rays, "ray casting")?;
-        of_mode(is_adaptive, ADAPTIVE)?;
+        of_rays(is_jittered, JITTER)?;
+        of_rays(self.adaptive_steps.is_some(), ADAPTIVE)?;
+        of_mode(self.adaptive_steps.is_some(), ADAPTIVE)?;
         if let Some(error) = self.adaptive_steps {
             self.check_adaptive(error)?;
         }
-        let is_cut = self.cut_faces.is_some();
-        of_technique(is_cut, CUT_FACES, desc.casts_rays, "ray casting")?;
-        of_mode(is_cut, CUT_FACES)?;
-        if let Some(CutFaces::Grey([low, high])) = self.cut_faces
-            && !(low < high && (high - low).is_finite())
-        {
-            return Err(Error::OutOfRange {
-                name: "the upper end of the window of cut faces",
-                wanted: "a higher number than the lower, both finite",
-                found: high,
-            });
+        of_rays(self.cut_faces.is_some(), CUT_FACES)?;
+        of_mode(self.cut_faces.is_some(), CUT_FACES)?;
+        if let Some(CutFaces::Grey([low, high])) = self.cut_faces {
+            let name = "the upper end of the window of cut faces";
+            let wanted = "a higher number than the lower, both finite";
+            Error::unless(low < high && (high - low).is_finite(), name, wanted, high)?;
         }
-        if is_jittered && mode == Mode::Iso {
-            return Err(Error::NotFor {
-                wanted: JITTER,
-                of: "modes of samples",
-                found: "surfaces, whose places do not hang on where steps begin".to_owned(),
-            });
-        }
+        let surfaces = "surfaces, whose places do not hang on where steps begin";
+        let is_moved = is_jittered && mode == Mode::Iso;
+        refuse(is_moved, JITTER, "modes of samples", surfaces)?;
         let is_half = self.is_half_angle();
         let lights = self.shading.as_ref().map_or(0, |s| s.lights.len());
         if is_half && lights > 1 {
@@ -63,51 +45,45 @@ impl Settings {
         }
         of_technique(is_half, HALF_ANGLE, desc.has_half_angle, "3D slices")?;
         of_mode(is_half, HALF_ANGLE)?;
-        if is_half && self.filter.kernel().is_some() {
-            return Err(Error::NotFor {
-                wanted: HALF_ANGLE,
-                of: "nearest and linear filters",
-                found: format!("the filter {}", self.filter),
-            });
+        let (has_kernel, of_filter) =
+            (self.filter.kernel().is_some(), "nearest and linear filters");
+        let filter = format_args!("the filter {}", self.filter);
+        refuse(is_half && has_kernel, HALF_ANGLE, of_filter, filter)?;
+        let (is_occluded, around) = (
+            self.ambient_occlusion.is_some(),
+            "light from all around that is occluded",
+        );
+        refuse(
+            is_half && is_occluded,
+            HALF_ANGLE,
+            "the light of one lamp",
+            around,
+        )?;
+        if self.shading.is_some() || is_occluded {
+            self.refuse_way("samples without light", "shaded ones")?;
         }
-        if is_half && self.ambient_occlusion.is_some() {
-            return Err(Error::NotFor {
-                wanted: HALF_ANGLE,
-                of: "the light of one lamp",
-                found: "light from all around that is occluded".to_owned(),
-            });
+        match has_kernel {
+            true => self.refuse_way(of_filter, filter),
+            false => Ok(()),
         }
-        if self.shading.is_some() || self.ambient_occlusion.is_some() {
-            self.refuse_way("samples without light", || "shaded ones".to_owned())?;
-        }
-        if self.filter.kernel().is_some() {
-            let found = || format!("the filter {}", self.filter);
-            self.refuse_way("nearest and linear filters", found)?;
-        }
-        Ok(())
     }
 
     fn check_adaptive(&self, error: f64) -> Result<(), Error> {
-        if !(error > 0.0 && error <= 1.0) {
-            return Err(Error::OutOfRange {
-                name: "the error of adaptive steps",
-                wanted: "a number over 0 and at most 1",
-                found: error,
-            });
-        }
-        let refuse = |of, found: &str| {
-            Err(Error::NotFor {
-                wanted: ADAPTIVE,
-                of,
-                found: found.to_owned(),
-            })
-        };
-        match () {
-            () if self.conformance => refuse("pictures within an error", "conformance"),
-            () if self.lattice == Lattice::Planes => refuse("the lattice of rays", "planes"),
-            () if self.preintegrated => refuse("samples that are points", PREINTEGRATED),
-            () => Ok(()),
-        }
+        let wanted = "a number over 0 and at most 1";
+        Error::unless(
+            error > 0.0 && error <= 1.0,
+            "the error of adaptive steps",
+            wanted,
+            error,
+        )?;
+        let refuse = |is_there, of, found| refuse(is_there, ADAPTIVE, of, found);
+        refuse(self.conformance, "pictures within an error", "conformance")?;
+        refuse(
+            self.lattice == Lattice::Planes,
+            "the lattice of rays",
+            "planes",
+        )?;
+        refuse(self.preintegrated, "samples that are points", PREINTEGRATED)
     }
 
     /// Whether steps may adapt to a volume.
@@ -115,14 +91,9 @@ impl Settings {
     /// # Errors
     /// [`Error::NotFor`].
     pub(crate) fn check_holes(&self, has_holes: bool) -> Result<(), Error> {
-        match self.adaptive_steps.is_some() && has_holes {
-            true => Err(Error::NotFor {
-                wanted: ADAPTIVE,
-                of: "volumes that have data everywhere",
-                found: "one with voxels without".to_owned(),
-            }),
-            false => Ok(()),
-        }
+        let is_refused = self.adaptive_steps.is_some() && has_holes;
+        let of = "volumes that have data everywhere";
+        refuse(is_refused, ADAPTIVE, of, "one with voxels without")
     }
 
     /// A way to sample of its own that is asked for.
@@ -141,9 +112,7 @@ impl Settings {
     /// # Errors
     /// [`Error::NotFor`].
     pub(crate) fn check_mixed(&self) -> Result<(), Error> {
-        self.refuse_way("one volume of numbers", || {
-            "several that are mixed".to_owned()
-        })
+        self.refuse_way("one volume of numbers", "several that are mixed")
     }
 
     /// The same for functions of gradients.
@@ -151,20 +120,31 @@ impl Settings {
     /// # Errors
     /// [`Error::NotFor`].
     pub(crate) fn check_graded(&self) -> Result<(), Error> {
-        self.refuse_way("functions of the value alone", || {
-            "one of the value and its gradient".to_owned()
-        })
+        self.refuse_way(
+            "functions of the value alone",
+            "one of the value and its gradient",
+        )
     }
 
-    fn refuse_way(&self, of: &'static str, found: impl FnOnce() -> String) -> Result<(), Error> {
-        match self.way() {
-            Some(wanted) => Err(Error::NotFor {
-                wanted,
-                of,
-                found: found(),
-            }),
-            None => Ok(()),
-        }
+    fn refuse_way(&self, of: &'static str, found: impl fmt::Display) -> Result<(), Error> {
+        let way = self.way();
+        refuse(way.is_some(), way.unwrap_or_default(), of, found)
+    }
+}
+
+fn refuse(
+    is_refused: bool,
+    wanted: &'static str,
+    of: &'static str,
+    found: impl fmt::Display,
+) -> Result<(), Error> {
+    match is_refused {
+        true => Err(Error::NotFor {
+            wanted,
+            of,
+            found: found.to_string(),
+        }),
+        false => Ok(()),
     }
 }
 

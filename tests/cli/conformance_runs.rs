@@ -230,8 +230,8 @@ fn a_package_says_what_it_was_made_by_and_of_which_device() {
             .is_some_and(|all| !all.is_empty())
     );
     for limit in [
-        "maxPushConstantsSize",
-        "mipmapPrecisionBits",
+        "maxTimelineSemaphoreValueDifference",
+        "subPixelPrecisionBits",
         "memoryHeaps[0].size",
         "maxFramebufferWidth",
     ] {

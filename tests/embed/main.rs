@@ -1,4 +1,5 @@
 //! `stratavox::embed` in a host of its own: the frames that it records are the offscreen pictures.
+#![cfg(feature = "conformance")]
 
 #[path = "../embed_shared/mod.rs"]
 mod embed_shared;

@@ -1,7 +1,9 @@
 //! A29: the polygon of a plane and a box against brute force, and the cover that the device draws against
 //! the samples of its twin, pixel by pixel.
 
-use crate::shared::{Shot, Worst, device, oblique_shots, ramps, sheared_affine, volume_of, waves};
+use crate::shared::{
+    Chord, Shot, Worst, device, oblique_shots, ramps, sheared_affine, volume_of, waves,
+};
 use glam::{DAffine3, DMat3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
 use stratavox::offscreen::{Renderer, reference};
@@ -219,7 +221,7 @@ fn the_cover_leaves_out_no_sample_and_doubles_none() {
                 .unwrap();
             let pairs = found.layers[0].values.iter().zip(&wanted.values);
             for (pixel, (found, wanted)) in shot.pixels().zip(pairs) {
-                if shot.chord(pixel).is_some_and(|chord| chord.hangs) {
+                if Chord::of(&shot, pixel).is_some_and(|chord| chord.hangs) {
                     worst.leave_out();
                 } else {
                     worst.take(pixel, f64::from(found - wanted), 0.5);

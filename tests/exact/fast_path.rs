@@ -10,7 +10,9 @@
 //!                                                             at most all of the light
 //! ```
 
-use crate::shared::{Shot, Worst, device, oblique_shots, ramps, sheared_affine, volume_of, waves};
+use crate::shared::{
+    Chord, Shot, Worst, device, oblique_shots, ramps, sheared_affine, volume_of, waves,
+};
 use stratavox::offscreen::Renderer;
 use stratavox::picture::LayerKind;
 use stratavox::technique::{Filter, Mode};
@@ -126,7 +128,7 @@ fn check(renderer: &mut Renderer, volume: &Volume, filter: Filter, read: &Volume
             let found = renderer.render(&scene, layers).unwrap().picture;
             let mut worst = Worst::new(format!("fast, {}", fast.what()));
             for (i, pixel) in shot.pixels().enumerate() {
-                let Some(chord) = shot.chord(pixel) else {
+                let Some(chord) = Chord::of(&shot, pixel) else {
                     continue;
                 };
                 let length = chord.length();

@@ -1,7 +1,7 @@
 //! Quadratic, cubic and Catmull-Rom on a device: what their twins compute, the known errors, and what is refused.
 
 use crate::shared::{
-    Shot, Worst, compare, device, oblique_shots, ramps, sheared_affine, volume_of, waves,
+    Chord, Shot, Worst, compare, device, oblique_shots, ramps, sheared_affine, volume_of, waves,
 };
 use glam::{DAffine3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
@@ -165,7 +165,7 @@ fn errors_on_the_signal_of_marschner_and_lobb_are_the_known_ones() {
             let layers = [LayerKind::Value];
             let found = renderer.render(&scene, &layers).unwrap().picture;
             for (pixel, value) in shot.pixels().zip(&found.layers[0].values) {
-                let chord = shot.chord(pixel).unwrap();
+                let chord = Chord::of(&shot, pixel).unwrap();
                 assert_eq!(chord.samples.len(), 1);
                 let point = chord.at(chord.samples[0].0);
                 squares += (f64::from(*value) - field.value(point)).powi(2);

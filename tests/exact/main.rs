@@ -1,4 +1,5 @@
 //! Pictures against exact answers: closed forms, and the CPU reference that says what each shader computes.
+#![cfg(feature = "conformance")]
 
 #[path = "../embed_shared/mod.rs"]
 mod embed_shared;

@@ -71,10 +71,10 @@ fn sampled_maximum(way: &dyn Way, shot: &Shot, volume: &Volume) -> Worst {
         extinction: &|v| v,
         range: [0.0, 1.0],
     };
-    let voxel_from_world = shot.voxel_from_world();
+    let voxel_from_world = shot.grid.world_from_voxel.inverse();
     let mut worst = Worst::new(format!("A15, {}, {}", way.name(), shot.what()));
     for (pixel, found) in shot.pixels().zip(way.values(shot, &matter)) {
-        let Some(chord) = shot.chord(pixel) else {
+        let Some(chord) = Chord::of(shot, pixel) else {
             continue;
         };
         if chord.hangs || chord.samples.is_empty() {

@@ -5,8 +5,8 @@ mod opacity;
 mod preclassified;
 
 use crate::shared::{
-    Shot, Worst, compare, device, device_with, oblique_shots, ramps, sheared_affine, volume_of,
-    waves,
+    Chord, Shot, Worst, compare, device, device_with, oblique_shots, ramps, sheared_affine,
+    volume_of, waves,
 };
 use glam::{DAffine3, DVec3};
 use stratavox::color::decode_srgb;
@@ -234,7 +234,7 @@ fn two_fogs_in_one_place_are_one_of_their_mean_colour_and_added_extinction() {
         for (way, picture) in ["f64", "f32", "device"].into_iter().zip(&all) {
             let mut worst = Worst::new(format!("two fogs, {way}, {}", shot.what()));
             for (pixel, found) in shot.pixels().zip(&picture.pixels) {
-                let chord = shot.chord(pixel);
+                let chord = Chord::of(&shot, pixel);
                 if chord.as_ref().is_some_and(|chord| chord.hangs) {
                     worst.leave_out();
                     continue;
@@ -416,7 +416,7 @@ fn hidden_labels_cut_away_what_a_crop_box_cuts_away() {
         let found = with_labels.render(&hidden, &[]).unwrap().picture;
         let mut worst = Worst::new(format!("hidden by labels, {}", shot.what()));
         for (pixel, (wanted, found)) in shot.pixels().zip(wanted.pixels.iter().zip(&found.pixels)) {
-            if cropped_shot.chord(pixel).is_some_and(|chord| chord.hangs) {
+            if Chord::of(&cropped_shot, pixel).is_some_and(|chord| chord.hangs) {
                 worst.leave_out();
                 continue;
             }

@@ -42,7 +42,7 @@ const REFERENCE_LENGTH: f64 = 1.0;
 impl Naive {
     /// Position in voxel space, value and length of each sample, front to back.
     fn samples(&self, shot: &Shot, matter: &Matter, chord: &Chord) -> Vec<(f64, f64)> {
-        let voxel_from_world = shot.voxel_from_world();
+        let voxel_from_world = shot.grid.world_from_voxel.inverse();
         let value = |&(t, length): &(f64, f64)| {
             let back = if self.0 == Mistake::NoHalfStep {
                 0.5 * length
@@ -83,7 +83,7 @@ impl Way for Naive {
 
     fn picture(&self, shot: &Shot, matter: &Matter) -> Vec<[f64; 4]> {
         let blended = |pixel| {
-            let Some(chord) = shot.chord(pixel) else {
+            let Some(chord) = Chord::of(shot, pixel) else {
                 return [0.0; 4];
             };
             let samples = self.samples(shot, matter, &chord);
@@ -111,7 +111,7 @@ impl Way for Naive {
     fn values(&self, shot: &Shot, matter: &Matter) -> Vec<f64> {
         assert_eq!(shot.settings.mode, Mode::Xray);
         let sum = |pixel| {
-            let Some(chord) = shot.chord(pixel) else {
+            let Some(chord) = Chord::of(shot, pixel) else {
                 return f64::NAN;
             };
             let samples = self.samples(shot, matter, &chord);

@@ -10,7 +10,7 @@
 //! ((1 - a) ln(1 - a) + a) / d0 between both, over their slope.
 
 use crate::shared::{
-    Shot, Worst, device, inner_box, oblique_camera, projections, volume_of, waves,
+    Chord, Shot, Worst, device, inner_box, oblique_camera, projections, volume_of, waves,
 };
 use glam::{DAffine3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
@@ -223,7 +223,7 @@ fn linear_field(
     let mut worst = Worst::new(format!("A13 {what}, {}", shot.what()));
     let width = 1.0 / f64::from(table_of(function).scale);
     for (pixel, found) in shot.pixels().zip(&picture.pixels) {
-        let Some(chord) = shot.chord(pixel) else {
+        let Some(chord) = Chord::of(shot, pixel) else {
             worst.take(pixel, found[3].into(), 0.0);
             continue;
         };
@@ -381,7 +381,7 @@ fn a_uniform_medium_is_as_deep_as_its_chords() {
                 .picture;
             let mut worst = Worst::new(format!("A1 slabs, {}", shot.what()));
             for (pixel, found) in shot.pixels().zip(&picture.pixels) {
-                let chord = shot.chord(pixel);
+                let chord = Chord::of(&shot, pixel);
                 let length = chord
                     .as_ref()
                     .map_or(0.0, |chord| chord.leave - chord.enter);

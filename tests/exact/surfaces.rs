@@ -1,7 +1,8 @@
 //! Isosurfaces where they must lie (exact answer A16), in their order, and on the device as their twin has them.
 
 use crate::shared::{
-    Shot, Worst, compare, device, oblique_shots, sheared_affine, straight_shots, volume_of, waves,
+    Chord, Shot, Worst, compare, device, oblique_shots, sheared_affine, straight_shots, volume_of,
+    waves,
 };
 use glam::{DAffine3, DVec3, dvec3};
 use stratavox::gpu::Caps;
@@ -101,10 +102,10 @@ fn a_plane_is_hit_where_it_lies_to_1e5_of_a_voxel() {
         let found = depths(&shot, field);
         let spacing = GRID().smallest_spacing();
         for (i, pixel) in shot.pixels().enumerate() {
-            let Some(chord) = shot.chord(pixel) else {
+            let Some(chord) = Chord::of(&shot, pixel) else {
                 continue;
             };
-            let voxel = shot.voxel_from_world();
+            let voxel = shot.grid.world_from_voxel.inverse();
             let (o, d) = (
                 voxel.transform_point3(chord.origin),
                 voxel.transform_vector3(chord.direction),
@@ -124,7 +125,7 @@ fn a_plane_is_hit_where_it_lies_to_1e5_of_a_voxel() {
         // The end of the step, where nothing is refined, is caught.
         let mut unrefined = Worst::new("no refinement");
         for (i, pixel) in shot.pixels().enumerate() {
-            let Some(chord) = shot.chord(pixel).filter(|_| !found[0][i].is_nan()) else {
+            let Some(chord) = Chord::of(&shot, pixel).filter(|_| !found[0][i].is_nan()) else {
                 continue;
             };
             let step = shot.view().step_world();
@@ -174,7 +175,7 @@ fn a_ball_and_a_torus_are_hit_within_what_interpolation_bends() {
         assert!(values.iter().all(|v| v.is_nan() || *v == 0.0));
         // No ray that goes deep under the surface misses it.
         for (i, pixel) in shot.pixels().enumerate() {
-            let Some(chord) = shot.chord(pixel) else {
+            let Some(chord) = Chord::of(&shot, pixel) else {
                 continue;
             };
             let deep = chord

@@ -4,7 +4,8 @@ mod second;
 mod weighed;
 
 use crate::shared::{
-    Shot, compare, device, oblique_shots, placements, ramps, sheared_affine, volume_of, waves,
+    Chord, Shot, compare, device, oblique_shots, placements, ramps, sheared_affine, volume_of,
+    waves,
 };
 use glam::{DAffine3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
@@ -93,9 +94,9 @@ fn along_z(grid: Grid) -> Vec<Shot> {
 /// difference is one-sided, and the world x that it runs along.
 fn opacities(shot: &Shot, picture: &Picture) -> Vec<(f64, f64)> {
     let spacing = shot.grid.smallest_spacing();
-    let voxel = shot.voxel_from_world();
+    let voxel = shot.grid.world_from_voxel.inverse();
     let opacity = |[x, y]: [u32; 2]| {
-        let chord = shot.chord([x, y])?;
+        let chord = Chord::of(shot, [x, y])?;
         let inside = voxel.transform_point3(chord.origin).x;
         let last = f64::from(shot.grid.dims[0]);
         if !(1.5..=last - 1.5).contains(&inside) {

@@ -1,4 +1,5 @@
 //! Each Vulkan call that can fail does: an error comes, nothing leaks, and the next picture is right.
+#![cfg(feature = "conformance")]
 
 #[path = "../hooked/mod.rs"]
 mod hooked;

@@ -1,4 +1,5 @@
 //! The device layer: devices, objects, limits, submissions, and the validation that listens.
+#![cfg(feature = "conformance")]
 
 #[path = "../gpu_shared/mod.rs"]
 mod gpu_shared;

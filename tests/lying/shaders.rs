@@ -3,11 +3,13 @@
 use super::{Function, Lie, count, lie, real};
 use ash::vk;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use std::collections::{BTreeMap, BTreeSet};
+use std::cell::Cell;
 use std::ffi::CStr;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use stratavox::shaders::SHADERS;
 
+#[path = "../../shaders/compose.rs"]
+mod compose;
 #[path = "../../shaders/variants.rs"]
 mod variants;
 
@@ -51,93 +53,41 @@ unsafe extern "system" fn create(
 /// The words of the same shader with the change; `None` where it has no part in it.
 fn mutated(words: &[u32], file: &str, from: &str, to: &str) -> Option<Vec<u32>> {
     let name = SHADERS.iter().find(|shader| shader.spirv == words)?.name;
-    let (entry, fills) = entry_of(name);
-    let mut source = Source {
-        change: (file, from, to),
-        fills,
-        seen: BTreeSet::new(),
-        text: String::new(),
-        is_changed: false,
+    let is_changed = Cell::new(false);
+    let read = |path: &str| {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
+        let text = std::fs::read_to_string(root.join(path)).expect("a shader");
+        if path != file {
+            return text;
+        }
+        assert!(
+            text.contains(from),
+            "{file} has no {from:?}: the lie is out of date"
+        );
+        is_changed.set(true);
+        text.replace(from, to)
     };
-    source.append(Path::new("shaders").join(entry).with_extension("wgsl"));
-    source.is_changed.then(|| compiled(&source.text))
+    let (entry, slots, words) = entry_of(name);
+    let source = compose::Source::read(entry, &compose::fills(slots, &words), &read);
+    is_changed.get().then(|| compiled(&source.text))
 }
 
-/// The file and the words of a variant.
-fn entry_of(name: &str) -> (&'static str, BTreeMap<&'static str, &'static str>) {
-    for (file, slots) in variants::ENTRIES.iter().chain(variants::PROBES) {
-        let mut all: Vec<BTreeMap<&str, &str>> = vec![BTreeMap::new()];
-        let mut names = vec![(*file).to_owned()];
-        for (slot, words) in *slots {
-            let (mut next, mut next_names) = (Vec::new(), Vec::new());
-            for (fills, name) in all.iter().zip(&names) {
-                for word in *words {
-                    let mut fills = fills.clone();
-                    fills.insert(*slot, *word);
-                    next.push(fills);
-                    let is_silent = variants::SILENT.contains(word);
-                    let end = if is_silent {
-                        String::new()
-                    } else {
-                        format!(".{word}")
-                    };
-                    next_names.push(format!("{name}{end}"));
-                }
-            }
-            (all, names) = (next, next_names);
-        }
-        if let Some(at) = names.iter().position(|found| found == name) {
-            return (file, all.swap_remove(at));
-        }
-    }
-    panic!("no variant {name}");
-}
-
-struct Source<'a> {
-    change: (&'a str, &'a str, &'a str),
-    fills: BTreeMap<&'static str, &'static str>,
-    seen: BTreeSet<PathBuf>,
-    text: String,
-    is_changed: bool,
-}
-
-impl Source<'_> {
-    fn append(&mut self, path: PathBuf) {
-        if !self.seen.insert(path.clone()) {
-            return;
-        }
-        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-        let mut text = std::fs::read_to_string(root.join(&path)).expect("a shader");
-        let (file, from, to) = self.change;
-        if path == Path::new("shaders").join(file) {
-            assert!(
-                text.contains(from),
-                "{file} has no {from:?}: the lie is out of date"
-            );
-            text = text.replace(from, to);
-            self.is_changed = true;
-        }
-        for line in text.lines() {
-            match line.strip_prefix("#import ") {
-                Some(name) => {
-                    let name = variants::filled(name, &self.fills);
-                    self.append(Path::new("shaders/lib").join(name).with_extension("wgsl"));
-                }
-                None => {
-                    self.text += line;
-                    self.text.push('\n');
-                }
-            }
-        }
-    }
+/// The file, the slots and the words of a variant.
+fn entry_of(name: &str) -> (&'static str, &'static [variants::Slot], Vec<&'static str>) {
+    let entries = variants::ENTRIES.iter().chain(variants::PROBES);
+    let mut all = entries.flat_map(|&(file, slots)| {
+        let sets = compose::combinations(slots).into_iter();
+        sets.map(move |words| (file, slots, words))
+    });
+    let found = all.find(|(file, _, words)| compose::name(file, words) == name);
+    found.unwrap_or_else(|| panic!("no variant {name}"))
 }
 
 fn compiled(text: &str) -> Vec<u32> {
     use naga::back::spv;
     let module =
         naga::front::wgsl::parse_str(text).unwrap_or_else(|e| panic!("{}", e.emit_to_string(text)));
-    let more = Capabilities::SUBGROUP | Capabilities::IMMEDIATES;
-    let mut validator = Validator::new(ValidationFlags::all(), more);
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
     let info = validator
         .validate(&module)
         .unwrap_or_else(|e| panic!("{}", e.emit_to_string(text)));

@@ -43,18 +43,10 @@ pub enum State {
     DepthClamped,
     DepthRangeForgotten,
     DepthClearedTo(f32),
-    /// This way between levels is that one.
-    BetweenLevels(vk::SamplerMipmapMode, vk::SamplerMipmapMode),
-    BiasForgotten,
-    LevelsUnbounded,
-    MinifiedAsMagnified,
     BuffersNotCopied,
     /// What is bound of a buffer reaches so many times as far.
     RangeTimes(u64),
     DynamicOffsetsForgotten,
-    LastWordNotPushed,
-    /// Subgroups are said to be so many times as large.
-    SubgroupsTimes(u32),
     SubmittedBackwards,
 }
 
@@ -193,22 +185,6 @@ unsafe extern "system" fn vkCreateSampler(
             }
             Some(State::SampledBy(from, to)) if info.mag_filter == from => {
                 (info.mag_filter, info.min_filter) = (to, to);
-                count();
-            }
-            Some(State::BetweenLevels(from, to)) if info.mipmap_mode == from => {
-                info.mipmap_mode = to;
-                count();
-            }
-            Some(State::BiasForgotten) if info.mip_lod_bias != 0.0 => {
-                info.mip_lod_bias = 0.0;
-                count();
-            }
-            Some(State::LevelsUnbounded) if info.max_lod > 0.0 => {
-                (info.min_lod, info.max_lod) = (0.0, vk::LOD_CLAMP_NONE);
-                count();
-            }
-            Some(State::MinifiedAsMagnified) if info.min_filter != info.mag_filter => {
-                info.min_filter = info.mag_filter;
                 count();
             }
             _ => {}

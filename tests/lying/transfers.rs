@@ -16,9 +16,7 @@ pub fn hook(name: &CStr) -> Option<(&'static str, Function)> {
         vkCmdFillBuffer,
         vkUpdateDescriptorSets,
         vkCmdBindDescriptorSets,
-        vkCmdPushConstants,
         vkQueueSubmit2,
-        vkGetPhysicalDeviceProperties2,
         vkGetSemaphoreCounterValue
     )
 }
@@ -158,27 +156,6 @@ unsafe extern "system" fn vkCmdBindDescriptorSets(
     }
 }
 
-unsafe extern "system" fn vkCmdPushConstants(
-    cmd: vk::CommandBuffer,
-    layout: vk::PipelineLayout,
-    stages: vk::ShaderStageFlags,
-    offset: u32,
-    size: u32,
-    bytes: *const std::ffi::c_void,
-) {
-    let mut size = size;
-    if state() == Some(State::LastWordNotPushed) && size > 4 {
-        size -= 4;
-        count();
-    }
-    // SAFETY: as above; fewer of the bytes.
-    unsafe {
-        behind!(vkCmdPushConstants:
-            fn(vk::CommandBuffer, vk::PipelineLayout, vk::ShaderStageFlags, u32, u32, *const std::ffi::c_void),
-            (cmd, layout, stages, offset, size, bytes));
-    }
-}
-
 unsafe extern "system" fn vkQueueSubmit2(
     queue: vk::Queue,
     number: u32,
@@ -197,28 +174,6 @@ unsafe extern "system" fn vkQueueSubmit2(
             count();
         }
         behind!(vkQueueSubmit2: fn(vk::Queue, u32, *const vk::SubmitInfo2<'static>, vk::Fence) -> vk::Result, (queue, number, infos.as_ptr(), fence))
-    }
-}
-
-unsafe extern "system" fn vkGetPhysicalDeviceProperties2(
-    device: vk::PhysicalDevice,
-    out: *mut vk::PhysicalDeviceProperties2<'static>,
-) {
-    // SAFETY: as above; the chain is the caller's, and each of its structures begins with its type.
-    unsafe {
-        behind!(vkGetPhysicalDeviceProperties2: fn(vk::PhysicalDevice, *mut vk::PhysicalDeviceProperties2<'static>), (device, out));
-        let Some(State::SubgroupsTimes(times)) = state() else {
-            return;
-        };
-        let mut next = (*out).p_next.cast::<vk::BaseOutStructure<'static>>();
-        while let Some(found) = next.as_mut() {
-            if found.s_type == vk::StructureType::PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES {
-                let found = next.cast::<vk::PhysicalDeviceVulkan11Properties<'static>>();
-                (*found).subgroup_size *= times;
-                count();
-            }
-            next = found.p_next;
-        }
     }
 }
 

@@ -1,4 +1,5 @@
 //! What goes together: every cell of `docs/matrix.md`, and what a device must have for it.
+#![cfg(feature = "conformance")]
 
 #[path = "../../examples/matrix/cells.rs"]
 mod cells;

@@ -235,11 +235,8 @@ fn no_shader_asks_for_more_than_the_list() {
         let (mut storage_buffers, mut images) = (Vec::new(), Vec::new());
         for (op, operands) in instructions(shader) {
             match op {
-                // Cases name what their probes need beyond it.
                 spirv::OP_CAPABILITY => assert!(
-                    [spirv::SHADER, spirv::IMAGE_QUERY].contains(&operands[0])
-                        || name.starts_with("probe/subgroup")
-                        || name.starts_with("probe/specials"),
+                    [spirv::SHADER, spirv::IMAGE_QUERY].contains(&operands[0]),
                     "{name}: capability {}",
                     operands[0]
                 ),

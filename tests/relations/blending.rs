@@ -2,8 +2,8 @@
 //! channels, a slice drawn as two; and what early termination may leave out.
 
 use crate::shared::{
-    Shot, Worst, device, oblique_camera, oblique_shots, ramps, sheared_affine, straight_shots,
-    volume_of, waves,
+    Chord, Shot, Worst, device, oblique_camera, oblique_shots, ramps, sheared_affine,
+    straight_shots, volume_of, waves,
 };
 use glam::{DAffine3, DVec3};
 use stratavox::camera::{Camera, Projection};
@@ -102,7 +102,7 @@ fn check_split(
     at: [f64; 3],
 ) {
     let far = shot.grid.far_corner();
-    let voxel_from_world = shot.voxel_from_world();
+    let voxel_from_world = shot.grid.world_from_voxel.inverse();
     for axis in 0..3 {
         let part = |low: f64, high: f64| {
             let (mut min, mut max) = (DVec3::ZERO, far);
@@ -118,10 +118,10 @@ fn check_split(
             let what = format!("cut along {axis}, {way}, {}", shot.what());
             let mut worst = Worst::new(what);
             for (p, pixel) in shot.pixels().enumerate() {
-                let Some(chord) = shot.chord(pixel) else {
+                let Some(chord) = Chord::of(shot, pixel) else {
                     continue;
                 };
-                let hangs = |part: &Shot| part.chord(pixel).is_some_and(|chord| chord.hangs);
+                let hangs = |part: &Shot| Chord::of(part, pixel).is_some_and(|chord| chord.hangs);
                 if hangs(&low) || hangs(&high) {
                     worst.leave_out();
                     continue;

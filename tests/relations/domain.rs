@@ -4,7 +4,7 @@
 
 use crate::shared::oracle::{constant_color, homogeneous, linear_density};
 use crate::shared::{
-    Device, Shot, Twin, Way, Worst, device, inner_box, oblique_camera, oblique_shots, ramps,
+    Chord, Device, Shot, Twin, Way, Worst, device, inner_box, oblique_camera, oblique_shots, ramps,
     sheared_affine, volume_of, waves,
 };
 use glam::{DAffine3, DMat3, DVec3, dvec3};
@@ -127,7 +127,7 @@ fn a_polytope_of_as_many_planes_as_there_may_be_is_cut_out_exactly() {
             let shot = Shot { extent, ..shot };
             let lengths = shot
                 .pixels()
-                .filter_map(|pixel| Some(shot.chord(pixel)?.length()));
+                .filter_map(|pixel| Some(Chord::of(&shot, pixel)?.length()));
             let longest = lengths.fold(0.0, f64::max);
             assert!(
                 (9.0..11.5).contains(&longest),
@@ -245,12 +245,12 @@ fn a_sample_counts_where_its_whole_footprint_has_data() {
                     settings.filter = filter;
                     settings.conformance = conformance;
                 });
-                let voxel_from_world = shot.voxel_from_world();
+                let voxel_from_world = shot.grid.world_from_voxel.inverse();
                 let axis = stack_axis(&shot.view());
                 let in_slice = shot.settings.technique == Technique::Slices2d;
                 // Length that counts, and whether some sample is too close to a border to say.
                 let wanted = |pixel| {
-                    let chord = shot.chord(pixel)?;
+                    let chord = Chord::of(&shot, pixel)?;
                     let mut sum = 0.0;
                     let mut hangs = chord.hangs;
                     for &(t, length) in &chord.samples {
@@ -348,7 +348,7 @@ fn several_rays_a_pixel_are_the_mean_of_a_finer_picture() {
                     let inside = (0..per_side * per_side)
                         .map(|i| [x * per_side + i % per_side, y * per_side + i / per_side]);
                     inside
-                        .filter_map(|p| finer.chord(p))
+                        .filter_map(|p| Chord::of(&finer, p))
                         .any(|chord| chord.hangs)
                 };
                 // The parameters differ in the last place, and with them where samples lie.

@@ -2,8 +2,8 @@
 //! steps converge as they should; scales of density, length and resolution do not matter.
 
 use crate::shared::{
-    Matter, Shot, Twin, Way, Worst, device, oblique_camera, oblique_shots, projections, ramps,
-    sheared_affine, straight_shots, volume_of, waves,
+    Chord, Matter, Shot, Twin, Way, Worst, device, oblique_camera, oblique_shots, projections,
+    ramps, sheared_affine, straight_shots, volume_of, waves,
 };
 use glam::{DAffine3, DQuat, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
@@ -130,7 +130,7 @@ fn stacks_follow_their_twin_through_a_full_turn_and_switch_at_45_degrees() {
                 let twin = reference::render::<f32>(&scene).unwrap();
                 let mut worst = Worst::new(format!("at {angle} degrees, {}", shot.what()));
                 for (i, pixel) in shot.pixels().enumerate() {
-                    if shot.chord(pixel).is_some_and(|chord| chord.hangs) {
+                    if Chord::of(&shot, pixel).is_some_and(|chord| chord.hangs) {
                         worst.leave_out();
                         continue;
                     }

@@ -1,4 +1,5 @@
 //! Pictures against each other: what may not change one, and how it changes with its scene.
+#![cfg(feature = "conformance")]
 
 #[path = "../shared/mod.rs"]
 mod shared;

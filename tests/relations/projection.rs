@@ -2,7 +2,7 @@
 //! X-rays are linear, and all techniques see one Gaussian alike.
 
 use crate::shared::{
-    Device, Matter, Shot, Twin, Way, Worst, device, oblique_shots, ramps, sheared_affine,
+    Chord, Device, Matter, Shot, Twin, Way, Worst, device, oblique_shots, ramps, sheared_affine,
     volume_of, waves,
 };
 use glam::{DAffine3, DVec3};
@@ -53,10 +53,10 @@ fn a_maximum_is_at_least_every_sample_and_a_minimum_at_most() {
         for (mode, sign) in [(Mode::Mip, 1.0), (Mode::Minip, -1.0)] {
             for shot in shots(mode) {
                 let found = way.values(&shot, &of_values(&on_volume));
-                let voxel_from_world = shot.voxel_from_world();
+                let voxel_from_world = shot.grid.world_from_voxel.inverse();
                 let mut worst = Worst::new(format!("extremes, {}, {}", way.name(), shot.what()));
                 for (pixel, found) in shot.pixels().zip(found) {
-                    let Some(chord) = shot.chord(pixel) else {
+                    let Some(chord) = Chord::of(&shot, pixel) else {
                         continue;
                     };
                     if chord.hangs {
@@ -173,9 +173,8 @@ fn an_average_is_the_xray_over_the_length() {
             let mut worst = Worst::new(format!("average, {}, {}", way.name(), average.what()));
             let (means, sums) = (of(&average), of(&xray));
             for (i, pixel) in average.pixels().enumerate() {
-                let Some(chord) = average
-                    .chord(pixel)
-                    .filter(|chord| !chord.samples.is_empty())
+                let Some(chord) =
+                    Chord::of(&average, pixel).filter(|chord| !chord.samples.is_empty())
                 else {
                     continue;
                 };

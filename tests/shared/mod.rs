@@ -4,23 +4,26 @@
 #![allow(dead_code, unused_imports, reason = "each test file uses its part")]
 
 mod agree;
+mod chord;
 mod limits;
 pub mod oracle;
-mod shot;
 mod way;
 mod worst;
 
 pub use agree::compare;
+pub use chord::Chord;
 pub use limits::allowed;
-pub use shot::{Chord, Shot};
 pub use way::{Device, Matter, Twin, Way};
 pub use worst::Worst;
 
-use glam::{DAffine3, DMat3, DVec3, dvec3};
+pub use stratavox::conformance::oracle::Shot;
+pub use stratavox::conformance::tree::{oblique_camera, ramps, waves};
+
+use glam::{DAffine3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
+use stratavox::conformance::tree::{PLACEMENTS, Placement, grid};
 use stratavox::gpu::{Caps, DeviceChoice, Headless, Options, PipelineCache};
-use stratavox::technique::{Lattice, Mode, Order, Settings, Technique};
-use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
+use stratavox::technique::{Mode, Settings};
 use stratavox::volume::{Grid, Rescale, Volume, Voxels};
 
 /// A device without a pipeline cache; dropping it panics on a validation message.
@@ -41,12 +44,7 @@ pub fn device_with(caps: Caps) -> Headless {
 
 /// A grid that is neither axis-aligned nor orthogonal nor isotropic, far from the origin.
 pub fn sheared_affine() -> DAffine3 {
-    let m = DMat3::from_cols(
-        dvec3(1.1, 0.2, -0.1),
-        dvec3(-0.3, 0.9, 0.2),
-        dvec3(0.1, 0.3, 1.6),
-    );
-    DAffine3::from_mat3_translation(m, dvec3(250.0, -80.0, 1000.0))
+    grid().world_from_voxel
 }
 
 /// A volume of `dims` voxels of a field over voxel space, sampled at voxel centres.
@@ -57,43 +55,6 @@ pub fn volume_of(dims: [u32; 3], affine: DAffine3, field: impl Fn(DVec3) -> f64)
     let values: Vec<f32> = voxels.map(|(x, y, z)| at(x, y, z)).collect();
     Volume::from_voxels(dims, affine, Voxels::F32(values), Rescale::default(), None)
         .expect("a right volume")
-}
-
-/// A field that varies along every axis, between about 0 and 1.
-pub fn waves(p: DVec3) -> f64 {
-    0.5 + 0.2 * (0.61 * p.x).sin()
-        + 0.15 * (0.53 * p.y + 0.4).cos()
-        + 0.15 * (0.37 * p.z - p.x * 0.2).sin()
-}
-
-/// Colours and opacities with ramps between 0 and 1.
-pub fn ramps() -> TransferFunction {
-    let color = |value, srgb| ColorPoint { value, srgb };
-    let opacity = |value, opacity| OpacityPoint { value, opacity };
-    TransferFunction {
-        color: vec![
-            color(0.0, [0.1, 0.2, 0.9]),
-            color(0.5, [0.2, 0.8, 0.3]),
-            color(1.0, [1.0, 0.5, 0.1]),
-        ],
-        opacity: vec![opacity(0.2, 0.0), opacity(0.6, 0.15), opacity(0.9, 0.4)],
-        reference_length: None,
-        interpolation: Interpolation::Linear,
-        graded: None,
-    }
-}
-
-/// A camera that looks along no axis at the centre of a grid, close enough to fill the picture.
-pub fn oblique_camera(grid: &Grid, projection: Projection) -> Camera {
-    let center = grid.center();
-    let size = (grid.world_from_voxel.matrix3 * grid.far_corner()).length();
-    Camera {
-        eye: center + size * dvec3(0.9, -1.3, 0.6),
-        target: center,
-        up: dvec3(0.1, 0.0, 1.0),
-        projection,
-        zoom: 1.0,
-    }
 }
 
 /// Both projections, framing about the same.
@@ -109,22 +70,14 @@ pub fn projections(grid: &Grid) -> [Projection; 2] {
 
 /// Every place where samples can lie, and both orders of blending.
 pub fn placements() -> Vec<Settings> {
-    let settings = |technique, lattice, order| Settings {
-        technique,
-        lattice,
-        order,
+    let settings = |placement: Placement| Settings {
+        technique: placement.technique,
+        lattice: placement.lattice,
+        order: placement.order,
         conformance: true,
         ..Settings::default()
     };
-    use {Lattice::*, Order::*, Technique::*};
-    vec![
-        settings(Raycast, Ray, BackToFront),
-        settings(Raycast, Planes, BackToFront),
-        settings(Slices3d, Ray, BackToFront),
-        settings(Slices3d, Ray, FrontToBack),
-        settings(Slices2d, Ray, BackToFront),
-        settings(Slices2d, Ray, FrontToBack),
-    ]
+    PLACEMENTS.map(settings).into()
 }
 
 /// Each placement in both projections, seen from where no axis is: all of `grid` in the picture.

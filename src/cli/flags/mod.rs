@@ -142,8 +142,7 @@ impl SceneFlags {
             dim: self.labels.dim()?,
             ..settings
         };
-        self.light.shadows.unwrap_or_default().check(&settings)?;
-        sampling.check_ways(&settings)?;
+        sampling::check_ways(&settings)?;
         if !self.wants_slabs() {
             return Ok(settings);
         }

@@ -4,6 +4,7 @@ use super::{
     Error, Numbers,
     cuts::{ClipBox, CutFacesWord},
     positive,
+    shadows::HALF_ANGLE,
 };
 use crate::{
     picture::ColorSpace,
@@ -137,6 +138,18 @@ const WAYS: &str = "--preintegrated is for --mode composite, --smooth for that w
 /// Rays along one side of a pixel.
 const MAX_RAYS_PER_SIDE: u32 = 64;
 
+/// Whether settings have the ways to sample that are asked for.
+pub fn check_ways(settings: &Settings) -> Result<(), Error> {
+    let hint = if settings.is_half_angle() {
+        HALF_ANGLE
+    } else {
+        WAYS
+    };
+    settings
+        .check_ways()
+        .map_err(|problem| Error::usage(problem.to_string(), hint))
+}
+
 impl SamplingFlags {
     /// What to compute, for a picture kept so exactly.
     pub fn settings(&self, depth: Depth) -> Result<Settings, Error> {
@@ -180,7 +193,7 @@ impl SamplingFlags {
             // Of the values, which are not known yet.
             per_mode: Default::default(),
         };
-        self.check_ways(&settings)?;
+        check_ways(&settings)?;
         Ok(settings)
     }
 
@@ -217,12 +230,6 @@ impl SamplingFlags {
             (self.preintegrated, self.preclassified) = (false, false);
             self.postclassified = false;
         }
-    }
-
-    /// Whether these settings go with the ways to sample that are asked for.
-    pub fn check_ways(&self, settings: &Settings) -> Result<(), Error> {
-        let checked = settings.check_ways();
-        checked.map_err(|problem| Error::usage(problem.to_string(), WAYS))
     }
 
     fn lattice(&self) -> Result<Lattice, Error> {

@@ -1,7 +1,6 @@
 //! What keeps light from matter: words of `--shadows`.
 
-use super::Error;
-use crate::technique::{Settings, Shadows};
+use crate::technique::Shadows;
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 
@@ -19,7 +18,7 @@ pub enum ShadowsWord {
 }
 
 /// What half-angle slicing goes together with.
-const HALF_ANGLE: &str = "--shadows half-angle is for --technique slices-3d --mode composite, one --light, one volume, --filter nearest \
+pub(super) const HALF_ANGLE: &str = "--shadows half-angle is for --technique slices-3d --mode composite, one --light, one volume, --filter nearest \
                           or linear, without --preintegrated and --ambient-occlusion; --shadows volume is for all techniques";
 
 impl ShadowsWord {
@@ -31,22 +30,13 @@ impl ShadowsWord {
             Self::HalfAngle => Shadows::HalfAngle,
         }
     }
-
-    /// Whether the settings, of which it is a part, go together with it.
-    pub fn check(self, settings: &Settings) -> Result<(), Error> {
-        match settings.check_ways() {
-            Err(problem) if self == Self::HalfAngle => {
-                Err(Error::usage(problem.to_string(), HALF_ANGLE))
-            }
-            _ => Ok(()),
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::technique::{Filter, Light, Mode, Shading, Technique};
+    use crate::cli::flags::sampling::check_ways;
+    use crate::technique::{Filter, Light, Mode, Settings, Shading, Technique};
 
     #[test]
     fn half_angle_slices_are_refused_by_name_where_they_are_not() {
@@ -63,8 +53,7 @@ mod tests {
             }
         };
         let slices = || in_light(1);
-        let word = ShadowsWord::HalfAngle;
-        word.check(&slices()).expect("slices");
+        check_ways(&slices()).expect("slices");
         let others = [
             Settings {
                 technique: Technique::Raycast,
@@ -88,13 +77,13 @@ mod tests {
             },
         ];
         for other in others {
-            let error = word.check(&other).expect_err("refused");
+            let error = check_ways(&other).expect_err("refused");
             let text = error.to_string();
             let names = ["half-angle", "pre-integrated"];
             assert!(names.iter().any(|name| text.contains(name)), "{text}");
             assert_eq!(error.hint(), Some(HALF_ANGLE));
         }
-        let error = word.check(&in_light(2)).expect_err("two lights");
+        let error = check_ways(&in_light(2)).expect_err("two lights");
         assert!(error.to_string().contains("2 were given"), "{error}");
     }
 }

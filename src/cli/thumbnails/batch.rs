@@ -7,10 +7,10 @@ use super::{
     room::{Room, Share},
 };
 use crate::{
-    annotate::{Annotation, Seen},
+    annotate::Annotation,
     cli::{
         Error,
-        annotation::{annotation, projected},
+        annotation::{annotation, finish},
         flags::{Depth, SceneFlags, ViewWord},
         line::{Line, encoders},
         load,
@@ -243,12 +243,13 @@ impl Batch<'_> {
                     renderer.draw_other(camera, settings, extent_pixels)
                 })?,
             };
+            let drawn = view.get_or_init(|| fitted);
             let View {
                 camera,
                 settings,
                 scene,
                 notes: framed,
-            } = view.get_or_init(|| fitted);
+            } = drawn;
             renderer.change(&shown.classification, settings);
             let mut picture = renderer.draw(camera)?.picture;
             let reason = why_empty(&picture, &shown.volume, reasoned, camera, settings);
@@ -258,24 +259,17 @@ impl Batch<'_> {
             let idle = scene.idle().into_iter().map(str::to_owned);
             let notes = idle.chain(empty).chain(annotation_note.clone());
             let framed = framed.iter().map(|note| format!("{view}{note}"));
-            let behind = annotation.as_ref().and_then(|a| a.transmittance(&picture));
-            if let Some(background) = scene.picture.background() {
-                picture.over_background(background);
-            }
-            if let Some(annotation) = &annotation {
-                let classification = &shown.classification;
-                let seen = Seen {
-                    camera,
-                    settings,
-                    function: classification.function(),
-                    beside: parts.beside(),
-                    grid: shown.volume.grid(),
-                    height_factor: shown.height_factor,
-                    time: f64::from(scene.input.time(&shown.header)?.0),
-                    projected: projected(annotation, classification, &mut renderer, camera)?,
-                };
-                annotation.put(&mut picture, behind.as_deref(), &seen, PictureFormat::Png)?;
-            }
+            let (background, annotation) = (scene.picture.background(), annotation.as_ref());
+            let format = PictureFormat::Png;
+            finish(
+                &mut picture,
+                annotation,
+                shown,
+                drawn,
+                &mut renderer,
+                background,
+                format,
+            )?;
             shots.push(Shot {
                 at: *at,
                 picture,

@@ -9,8 +9,9 @@
 use super::places::{planes, segments};
 use crate::camera::Camera;
 use crate::scene::Scene;
+use crate::shaders::Frame;
 use crate::technique::slices_2d::stack_axis;
-use crate::technique::{Lattice, Settings, View};
+use crate::technique::{Lattice, Recording, Settings, View};
 use crate::transfer::TransferFunction;
 use crate::volume::{Grid, Volume};
 use glam::{DAffine3, DVec3};
@@ -65,6 +66,7 @@ impl Shot {
         volume: &'a Volume,
         transfer: Option<&'a TransferFunction>,
     ) -> Scene<'a> {
+        assert_eq!(volume.grid(), self.grid, "another grid");
         Scene {
             beside: Default::default(),
             volume,
@@ -80,6 +82,28 @@ impl Shot {
         let mut shot = self.clone();
         change(&mut shot.settings);
         shot
+    }
+
+    /// The parameters that the twins read, and how many slices there are.
+    pub fn parameters(&self) -> (Frame, u32) {
+        let Recording { frame, slices, .. } =
+            self.view().on_cpu().expect("settings that can be drawn");
+        (frame, slices)
+    }
+
+    /// What tells it from others, for messages.
+    pub fn what(&self) -> String {
+        let Settings {
+            technique,
+            lattice,
+            order,
+            mode,
+            ..
+        } = self.settings;
+        format!(
+            "{technique:?} {lattice:?} {order:?} {mode:?} {:?}",
+            self.camera.projection
+        )
     }
 
     /// Row by row.

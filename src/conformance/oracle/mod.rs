@@ -9,7 +9,7 @@ mod chord;
 mod field;
 mod light;
 mod matter;
-mod places;
+pub mod places;
 mod seen;
 mod tracked;
 mod voxels;

@@ -1,5 +1,5 @@
 //! Where the samples of a ray lie and the length that each stands for (`sampling.md` 3), in f64 and of nothing but
-//! numbers. Tests of the library include this file too.
+//! numbers.
 
 /// Equal steps, and a shorter one at the end.
 pub fn segments(enter: f64, leave: f64, h: f64) -> Vec<(f64, f64)> {

@@ -26,6 +26,7 @@ pub fn grid() -> Grid {
 
 /// Where samples lie and in which order they are blended.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs, reason = "the types say it")]
 pub struct Placement {
     /// The word of names.
     pub word: &'static str,
@@ -147,6 +148,19 @@ pub fn word_of(mode: Mode) -> String {
     mode.name().replace('-', "_")
 }
 
+/// A camera that looks along no axis at the centre of a grid, close enough to fill the picture.
+pub fn oblique_camera(grid: &Grid, projection: Projection) -> Camera {
+    let center = grid.center();
+    let size = (grid.world_from_voxel.matrix3 * grid.far_corner()).length();
+    Camera {
+        eye: center + size * dvec3(0.9, -1.3, 0.6),
+        target: center,
+        up: dvec3(0.1, 0.0, 1.0),
+        projection,
+        zoom: 1.0,
+    }
+}
+
 /// One picture.
 pub fn shot(
     placement: Placement,
@@ -157,7 +171,6 @@ pub fn shot(
     let grid = grid();
     let far = grid.far_corner();
     let size = (grid.world_from_voxel.matrix3 * far).length();
-    let center = grid.center();
     let projection = match is_perspective {
         true => Projection::Perspective { fov_degrees: 26.0 },
         false => Projection::Orthographic {
@@ -168,13 +181,7 @@ pub fn shot(
     let margin = 2.125;
     Shot {
         grid,
-        camera: Camera {
-            eye: center + size * dvec3(0.9, -1.3, 0.6),
-            target: center,
-            up: dvec3(0.1, 0.0, 1.0),
-            projection,
-            zoom: 1.0,
-        },
+        camera: oblique_camera(&grid, projection),
         extent: [32, 28],
         settings: Settings {
             technique: placement.technique,

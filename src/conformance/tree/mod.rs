@@ -13,6 +13,8 @@ mod twin;
 
 use super::case::Case;
 
+pub use ground::{PLACEMENTS, Placement, grid, oblique_camera, ramps, waves};
+
 /// Every case of every profile, in the order in which they run.
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();

@@ -31,5 +31,5 @@ mod wrf;
 
 pub(crate) use grid::{Grid, Role};
 pub(crate) use missing::Missing;
-pub(crate) use model::{Arrays, Attributes, Dimension, Kind, Value, Variable};
+pub(crate) use model::{Arrays, Attributes, Contents, Dimension, Kind, Value, Variable};
 pub(crate) use open::open;

@@ -1,21 +1,29 @@
 //! What a container of arrays holds, and how parts of an array are read.
 
+use crate::format::problem::unsupported;
 use crate::volume::{Piece, Problem, VoxelType};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// An open container of named arrays.
 pub(crate) trait Arrays: Send + Sync {
-    /// The file, as errors name it.
-    fn path(&self) -> &Path;
+    /// What it is called and what it holds.
+    fn contents(&self) -> &Contents;
 
-    /// The word of errors.
-    fn format(&self) -> &'static str;
+    fn path(&self) -> &Path {
+        &self.contents().path
+    }
 
-    /// All arrays.
-    fn variables(&self) -> &[Variable];
+    fn format(&self) -> &'static str {
+        self.contents().format
+    }
 
-    /// What is said of the whole file.
-    fn attributes(&self) -> &Attributes;
+    fn variables(&self) -> &[Variable] {
+        &self.contents().variables
+    }
+
+    fn attributes(&self) -> &Attributes {
+        &self.contents().attributes
+    }
 
     /// The numbers of a box of a variable, the last dimension fastest. `stored` is the variable's type, or the
     /// unsigned one of the same size.
@@ -28,10 +36,26 @@ pub(crate) trait Arrays: Send + Sync {
     ) -> Result<Piece, Problem>;
 
     /// All numbers of a small variable, exactly.
-    fn numbers(&self, variable: &Variable) -> Result<Vec<f64>, Problem>;
+    fn numbers(&self, _: &Variable) -> Result<Vec<f64>, Problem> {
+        Err(unsupported(self.format(), "a coordinate"))
+    }
 
     /// All strings of a small variable; those of an array of characters run along its last dimension.
-    fn texts(&self, variable: &Variable) -> Result<Vec<String>, Problem>;
+    fn texts(&self, _: &Variable) -> Result<Vec<String>, Problem> {
+        Err(unsupported(self.format(), "an array of text"))
+    }
+}
+
+/// What a container is called and what it holds.
+pub(crate) struct Contents {
+    /// The file, as errors name it.
+    pub path: PathBuf,
+    /// The word of errors.
+    pub format: &'static str,
+    /// All arrays.
+    pub variables: Vec<Variable>,
+    /// What is said of the whole file.
+    pub attributes: Attributes,
 }
 
 /// A named array.

@@ -4,25 +4,23 @@ use super::GRIB;
 use super::decode::values;
 use super::group::{Group, groups};
 use super::scan::{Field, scan};
-use crate::format::cf::{Arrays, Attributes, Dimension, Kind, Value, Variable};
+use crate::format::cf::{Arrays, Attributes, Contents, Dimension, Kind, Value, Variable};
 use crate::format::place::open_regular;
 use crate::format::problem::{invalid, unsupported};
 use crate::volume::{Limits, Piece, Problem, VoxelType, Voxels};
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// An open file of messages.
 pub(super) struct Messages {
-    path: PathBuf,
     file: Mutex<Opened>,
     fields: Vec<Field>,
     /// One for each variable that is no coordinate, by its name.
     groups: BTreeMap<String, Group>,
-    variables: Vec<Variable>,
+    contents: Contents,
     coordinates: BTreeMap<String, Vec<f64>>,
-    attributes: Attributes,
     left_out: Vec<String>,
 }
 
@@ -54,13 +52,16 @@ impl Messages {
         }
         let (file, _) = open_regular(path)?;
         let mut messages = Self {
-            path: path.to_owned(),
             file: Mutex::new(Opened { file, last: None }),
             fields: found.fields,
             groups: BTreeMap::new(),
-            variables: Vec::new(),
+            contents: Contents {
+                path: path.to_owned(),
+                format: GRIB,
+                variables: Vec::new(),
+                attributes: Attributes::default(),
+            },
             coordinates: BTreeMap::new(),
-            attributes: Attributes::default(),
             left_out: left_out
                 .iter()
                 .map(|(why, count)| format!("{count} fields of the file are left out: {why}"))
@@ -110,7 +111,7 @@ impl Messages {
         let east = [("axis", "X"), ("units", "degrees_east")];
         dimensions.push(self.axis("longitude", longitudes, attributes(&east)));
         let unit: Vec<(&str, &str)> = group.unit.map(|unit| ("units", unit)).into_iter().collect();
-        self.variables.push(Variable {
+        self.contents.variables.push(Variable {
             name: group.name.clone(),
             dimensions,
             kind: Kind::Numbers(VoxelType::F32),
@@ -135,7 +136,7 @@ impl Messages {
             size,
         };
         if self.coordinates.insert(name.clone(), points).is_none() {
-            self.variables.push(Variable {
+            self.contents.variables.push(Variable {
                 name,
                 dimensions: vec![dimension.clone()],
                 kind: Kind::Numbers(VoxelType::F64),
@@ -176,20 +177,8 @@ fn outside(what: &str) -> Problem {
 }
 
 impl Arrays for Messages {
-    fn path(&self) -> &Path {
-        &self.path
-    }
-
-    fn format(&self) -> &'static str {
-        GRIB
-    }
-
-    fn variables(&self) -> &[Variable] {
-        &self.variables
-    }
-
-    fn attributes(&self) -> &Attributes {
-        &self.attributes
+    fn contents(&self) -> &Contents {
+        &self.contents
     }
 
     fn read(
@@ -250,9 +239,5 @@ impl Arrays for Messages {
     fn numbers(&self, variable: &Variable) -> Result<Vec<f64>, Problem> {
         let found = self.coordinates.get(&variable.name);
         found.cloned().ok_or_else(|| outside("coordinate"))
-    }
-
-    fn texts(&self, _: &Variable) -> Result<Vec<String>, Problem> {
-        Err(unsupported(GRIB, "text"))
     }
 }

@@ -2,8 +2,8 @@
 
 use super::HDF5;
 use super::chunks::{ChunkBytes, filter_name, filters};
-use crate::format::cf::{Arrays, Attributes, Dimension, Kind, Value, Variable};
-use crate::format::convert::{Builder, Endian, to_u64};
+use crate::format::cf::{Arrays, Attributes, Contents, Dimension, Kind, Value, Variable};
+use crate::format::convert::{Builder, Endian, piece_of, to_u64};
 use crate::format::fence::fenced;
 use crate::format::place::open_regular;
 use crate::format::problem::{escape, invalid, unsupported};
@@ -14,15 +14,13 @@ use hdf5_reader::{
     Attribute, Dataset, Datatype, FileStorage, H5Type, Hdf5File, OpenOptions, SliceInfo,
     SliceInfoElem,
 };
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 /// An open file, and what its data sets are.
 pub(crate) struct Hdf5 {
-    path: PathBuf,
     file: Hdf5File,
-    variables: Vec<Variable>,
-    attributes: Attributes,
+    contents: Contents,
     /// Of the data sets that were read.
     pub(in crate::format) chunk_bytes: ChunkBytes,
 }
@@ -64,10 +62,13 @@ impl Hdf5 {
             });
         }
         let hdf5 = Self {
-            path: path.to_owned(),
             file,
-            variables: Vec::new(),
-            attributes: Attributes::default(),
+            contents: Contents {
+                path: path.to_owned(),
+                format: HDF5,
+                variables: Vec::new(),
+                attributes: Attributes::default(),
+            },
             chunk_bytes,
         };
         Ok((hdf5, file_bytes))
@@ -87,7 +88,11 @@ impl Hdf5 {
             {
                 return Ok(true);
             }
-            let ending = self.path.extension().and_then(|ending| ending.to_str());
+            let ending = self
+                .contents
+                .path
+                .extension()
+                .and_then(|ending| ending.to_str());
             if ending
                 .is_some_and(|e| matches!(e.to_ascii_lowercase().as_str(), "nc" | "nc4" | "cdf"))
             {
@@ -127,13 +132,8 @@ impl Hdf5 {
                 limit_bytes: to_u64(limits.max_header_bytes),
             });
         }
-        self.variables = variables;
+        self.contents.variables = variables;
         Ok(self)
-    }
-
-    /// All data sets.
-    pub(super) fn list(&self) -> &[Variable] {
-        &self.variables
     }
 
     /// A data set whose chunks may be read. `format` is the word of errors.
@@ -314,20 +314,8 @@ pub(crate) fn problem_of(format: &'static str, what: &str, error: &Error) -> Pro
 }
 
 impl Arrays for Hdf5 {
-    fn path(&self) -> &Path {
-        &self.path
-    }
-
-    fn format(&self) -> &'static str {
-        HDF5
-    }
-
-    fn variables(&self) -> &[Variable] {
-        &self.variables
-    }
-
-    fn attributes(&self) -> &Attributes {
-        &self.attributes
+    fn contents(&self) -> &Contents {
+        &self.contents
     }
 
     fn read(
@@ -354,10 +342,7 @@ impl Arrays for Hdf5 {
                 ($number:ty) => {{
                     let found = dataset.read_slice::<$number>(&selection);
                     let array = found.map_err(|error| problem_of(HDF5, name, &error))?;
-                    let numbers = array.as_slice().unwrap_or(&[]);
-                    let mut builder = Builder::new(stored, Endian::NATIVE, numbers.len());
-                    builder.push(bytemuck::cast_slice(numbers), 1)?;
-                    Ok(builder.finish())
+                    piece_of(array.as_slice().unwrap_or(&[]), stored)
                 }};
             }
             match stored {
@@ -381,13 +366,5 @@ impl Arrays for Hdf5 {
                 }
             }
         })
-    }
-
-    fn numbers(&self, _: &Variable) -> Result<Vec<f64>, Problem> {
-        Err(unsupported(HDF5, "a coordinate"))
-    }
-
-    fn texts(&self, _: &Variable) -> Result<Vec<String>, Problem> {
-        Err(unsupported(HDF5, "a text coordinate"))
     }
 }

@@ -17,7 +17,7 @@ mod arrays;
 mod chunks;
 mod place;
 
-use super::cf::{Grid, Kind, Missing, Role, Variable};
+use super::cf::{Arrays, Grid, Kind, Missing, Role, Variable};
 use super::problem::{at, escape, invalid, unsupported};
 use crate::volume::{
     Format, Header, Limits, Meaning, Problem, ReadError, Source, VoxelType, Wanted,
@@ -124,7 +124,7 @@ fn grid(file: Hdf5, file_bytes: u64, wanted: &Wanted, limits: &Limits) -> Result
 /// The data set to read, and the names of all, that one first.
 fn choose(file: &Hdf5, wanted: &Wanted) -> Result<(Variable, Vec<String>), Problem> {
     let of_rank = |least: usize| -> Vec<&Variable> {
-        let all = file.list().iter();
+        let all = file.variables().iter();
         all.filter(|variable| {
             matches!(variable.kind, Kind::Numbers(_)) && long_axes(variable) >= least
         })
@@ -141,7 +141,10 @@ fn choose(file: &Hdf5, wanted: &Wanted) -> Result<(Variable, Vec<String>), Probl
     let (variable, asked) = match &wanted.variable {
         Some(asked) => {
             let plain = asked.trim_start_matches('/');
-            let found = file.list().iter().find(|variable| variable.name == plain);
+            let found = file
+                .variables()
+                .iter()
+                .find(|variable| variable.name == plain);
             let found = found.ok_or_else(|| {
                 let wanted = format!("one of {}", escape(&there.join(", ")));
                 invalid(HDF5, "data set", wanted, asked)

@@ -6,8 +6,8 @@
 
 mod length;
 
-use super::cf::{self, Arrays, Attributes, Dimension, Kind, Value, Variable};
-use super::convert::{Builder, Endian};
+use super::cf::{self, Arrays, Attributes, Contents, Dimension, Kind, Value, Variable};
+use super::convert::piece_of;
 use super::fence::fenced;
 use super::hdf5::{Hdf5, filters, problem_of as hdf5_problem};
 use super::place::open_regular;
@@ -17,7 +17,7 @@ use netcdf_reader::{
     Error, NcAttrValue, NcAttribute, NcFile, NcGroup, NcOpenOptions, NcSliceInfo, NcSliceInfoElem,
     NcType, NcVariable,
 };
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 /// The word of errors.
@@ -59,12 +59,10 @@ fn opened(
 
 /// An open file, and what its variables are.
 struct NetCdf {
-    path: PathBuf,
     file: NcFile,
     /// The same file without the meaning of NetCDF, where it has chunks.
     hdf5: Option<Hdf5>,
-    variables: Vec<Variable>,
-    attributes: Attributes,
+    contents: Contents,
 }
 
 /// Chunks that are kept decoded.
@@ -98,9 +96,12 @@ impl NetCdf {
             list(root, "", &mut variables);
             let attributes = attributes(&root.attributes);
             let open = Self {
-                path: path.to_owned(),
-                variables,
-                attributes,
+                contents: Contents {
+                    path: path.to_owned(),
+                    format: NETCDF,
+                    variables,
+                    attributes,
+                },
                 file,
                 hdf5,
             };
@@ -207,20 +208,8 @@ fn check_small(variable: &Variable) -> Result<(), Problem> {
 }
 
 impl Arrays for NetCdf {
-    fn path(&self) -> &Path {
-        &self.path
-    }
-
-    fn format(&self) -> &'static str {
-        NETCDF
-    }
-
-    fn variables(&self) -> &[Variable] {
-        &self.variables
-    }
-
-    fn attributes(&self) -> &Attributes {
-        &self.attributes
+    fn contents(&self) -> &Contents {
+        &self.contents
     }
 
     fn read(
@@ -251,10 +240,7 @@ impl Arrays for NetCdf {
                 ($number:ty) => {{
                     let found = self.file.read_variable_slice::<$number>(name, &selection);
                     let array = found.map_err(|error| problem_of(name, &error))?;
-                    let numbers = array.as_slice().unwrap_or(&[]);
-                    let mut builder = Builder::new(stored, Endian::NATIVE, numbers.len());
-                    builder.push(bytemuck::cast_slice(numbers), 1)?;
-                    Ok(builder.finish())
+                    piece_of(array.as_slice().unwrap_or(&[]), stored)
                 }};
             }
             match in_file {

@@ -12,20 +12,18 @@ use super::source::{read_box, unit_strides};
 use super::store::Store;
 use super::tree::Tree;
 use crate::format::base64::Base64;
-use crate::format::cf::{self, Arrays, Attributes, Dimension, Kind, Value, Variable};
+use crate::format::cf::{self, Arrays, Attributes, Contents, Dimension, Kind, Value, Variable};
 use crate::format::convert::{Endian, to_u64};
-use crate::format::problem::{at, invalid, unsupported};
+use crate::format::problem::{at, invalid};
 use crate::volume::{Format, Limits, Piece, Problem, ReadError, Source, VoxelType, Wanted};
 use std::io::Read;
-use std::path::Path;
 use std::sync::Arc;
 
 /// The arrays of a store.
 struct Named {
     store: Store,
     arrays: Vec<Array>,
-    variables: Vec<Variable>,
-    attributes: Attributes,
+    contents: Contents,
     limits: Limits,
 }
 
@@ -59,10 +57,14 @@ pub(super) fn open(
     let arrays: Vec<Array> = arrays(tree, limits).collect();
     let root = tree.nodes.get("").map(|node| attributes(&node.attributes));
     let named = Named {
-        variables: arrays.iter().map(variable).collect(),
+        contents: Contents {
+            path: store.path().to_owned(),
+            format: ZARR,
+            variables: arrays.iter().map(variable).collect(),
+            attributes: root.unwrap_or_default(),
+        },
         arrays,
         store,
-        attributes: root.unwrap_or_default(),
         limits: *limits,
     };
     // A chunk that is not there takes no bytes: no number of bytes is too few.
@@ -134,20 +136,8 @@ impl Named {
 }
 
 impl Arrays for Named {
-    fn path(&self) -> &Path {
-        self.store.path()
-    }
-
-    fn format(&self) -> &'static str {
-        ZARR
-    }
-
-    fn variables(&self) -> &[Variable] {
-        &self.variables
-    }
-
-    fn attributes(&self) -> &Attributes {
-        &self.attributes
+    fn contents(&self) -> &Contents {
+        &self.contents
     }
 
     fn read(
@@ -180,10 +170,6 @@ impl Arrays for Named {
     fn numbers(&self, variable: &Variable) -> Result<Vec<f64>, Problem> {
         let array = self.array(variable)?;
         numbers(&self.store, array, &self.limits).map_err(|error| error.problem)
-    }
-
-    fn texts(&self, _: &Variable) -> Result<Vec<String>, Problem> {
-        Err(unsupported(ZARR, "an array of text"))
     }
 }
 

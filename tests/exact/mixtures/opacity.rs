@@ -1,7 +1,7 @@
 //! Colour by one volume, opacity by another.
 
 use super::*;
-use crate::shared::{placements, straight_shots};
+use crate::shared::{Chord, placements, straight_shots};
 use stratavox::technique::Settings;
 
 /// Voxels of side 1; every sample of [`straight_shots`] is one of their centres.
@@ -55,7 +55,7 @@ fn the_colour_is_that_of_one_volume_and_the_opacity_that_of_the_other() {
         for picture in pictures(&mut renderer, &scene) {
             let mut worst = Worst::new(format!("opacity beside, {}", shot.what()));
             for (pixel, found) in shot.pixels().zip(&picture.pixels) {
-                let Some(chord) = shot.chord(pixel) else {
+                let Some(chord) = Chord::of(&shot, pixel) else {
                     continue;
                 };
                 let middle = chord.origin + 0.5 * (chord.enter + chord.leave) * chord.direction;

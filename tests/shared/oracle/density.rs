@@ -65,7 +65,7 @@ fn absorbed(
     };
     let mut worst = Worst::new(what(answer, way, shot));
     for (pixel, found) in shot.pixels().zip(way.picture(shot, &matter)) {
-        let chord = shot.chord(pixel);
+        let chord = Chord::of(shot, pixel);
         if chord.as_ref().is_some_and(|chord| chord.hangs) {
             worst.leave_out();
             continue;
@@ -168,7 +168,7 @@ fn error_with_light_rising(way: &dyn Way, shot: &Shot) -> f64 {
     };
     let (mut sum, mut count) = (0.0, 0.0f64);
     for (pixel, found) in shot.pixels().zip(way.picture(shot, &matter)) {
-        let Some(chord) = shot.chord(pixel).filter(|chord| !chord.hangs) else {
+        let Some(chord) = Chord::of(shot, pixel).filter(|chord| !chord.hangs) else {
             continue;
         };
         let Some([t0, t1]) = chord.covered() else {

@@ -21,7 +21,7 @@ pub fn homogeneous(way: &dyn Way, shot: &Shot) -> Worst {
     let mut worst = Worst::new(what("A1", way, shot));
     let found = way.picture(shot, &matter);
     for (pixel, found) in shot.pixels().zip(found) {
-        let chord = shot.chord(pixel);
+        let chord = Chord::of(shot, pixel);
         if chord.as_ref().is_some_and(|chord| chord.hangs) {
             worst.leave_out();
             continue;

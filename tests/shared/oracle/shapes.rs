@@ -81,7 +81,7 @@ fn in_sphere(
     };
     let mut worst = Worst::new(what(answer, way, shot));
     for (pixel, found) in shot.pixels().zip(found(&matter)) {
-        let Some(chord) = shot.chord(pixel) else {
+        let Some(chord) = Chord::of(shot, pixel) else {
             continue;
         };
         if chord.samples.is_empty() {
@@ -168,7 +168,7 @@ fn through(
 ) -> Worst {
     let mut worst = Worst::new(what(answer, way, shot));
     for (pixel, found) in shot.pixels().zip(gaussian.values(way, shot)) {
-        if let Some(chord) = shot.chord(pixel).filter(|chord| chord.samples.len() > 4) {
+        if let Some(chord) = Chord::of(shot, pixel).filter(|chord| chord.samples.len() > 4) {
             check(&mut worst, pixel, &chord, found);
         }
     }

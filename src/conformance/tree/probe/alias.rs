@@ -140,7 +140,7 @@ unsafe fn there_and_back(
     let raw = gpu.device();
     let (write, read) = (Use::TransferWrite.state(), Use::TransferRead.state());
     let undefined: State = (write.0, write.1, vk::ImageLayout::UNDEFINED);
-    let region = [image.level(0, extent, 0)];
+    let region = [image.whole(extent)];
     // SAFETY: the caller's promise.
     unsafe {
         barrier(raw, cmd);

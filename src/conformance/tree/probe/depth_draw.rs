@@ -178,7 +178,7 @@ pub fn draw(stand: &mut Stand, picture: &Picture<'_>) -> Result<Drawn, Stop> {
                 Source::Copied(_) => {
                     let to = Use::TransferWrite.state();
                     depth.barrier(cmd, Use::Nothing.state(), to);
-                    let region = [depth.level(0, whole, 0)];
+                    let region = [depth.whole(whole)];
                     device_of.cmd_copy_buffer_to_image(cmd, from.raw(), depth.raw(), to.2, &region);
                     depth.barrier(cmd, to, DEPTH_TARGET);
                     (vk::AttachmentLoadOp::LOAD, 0.0)
@@ -199,7 +199,7 @@ pub fn draw(stand: &mut Stand, picture: &Picture<'_>) -> Result<Drawn, Stop> {
             device_of.cmd_end_rendering(cmd);
             let read = Use::TransferRead.state();
             depth.barrier(cmd, DEPTH_TARGET, read);
-            let region = [depth.level(0, whole, 0)];
+            let region = [depth.whole(whole)];
             device_of.cmd_copy_image_to_buffer(cmd, depth.raw(), read.2, back.raw(), &region);
         }
         Ok(())

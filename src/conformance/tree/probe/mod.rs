@@ -1,5 +1,5 @@
-//! The parts of a driver that pictures stand on, one by one: filters, levels, formats, blending, the rasterizer, depth,
-//! compute, subgroups, memory, order.
+//! The parts of a driver that pictures stand on, one by one: filters, formats, blending, the rasterizer, depth,
+//! compute, memory, order.
 
 mod alias;
 mod beyond;
@@ -8,26 +8,20 @@ mod compute;
 mod convert;
 mod depth;
 mod depth_draw;
-mod derivative;
 mod filter;
 mod fits;
 mod interpolate;
 mod kit;
 mod large;
 mod limits;
-mod lod;
-mod lod_implicit;
 mod math;
 mod plane;
-mod push;
 mod raster;
 mod raw;
 mod relay;
 mod robust;
 mod sparse;
-mod special;
 mod store;
-mod subgroup;
 mod timeline;
 
 use crate::conformance::case::Case;
@@ -35,19 +29,14 @@ use crate::conformance::case::Case;
 /// All of them.
 pub fn cases() -> Vec<Case> {
     let mut cases = filter::cases();
-    cases.extend(lod::cases());
     cases.extend(convert::cases());
     cases.extend(store::cases());
-    cases.extend(special::cases());
     cases.extend(math::cases());
     cases.extend(blend::cases());
     cases.extend(raster::cases());
     cases.extend(interpolate::cases());
-    cases.extend(derivative::cases());
     cases.extend(depth::cases());
     cases.extend(compute::cases());
-    cases.extend(subgroup::cases());
-    cases.extend(push::cases());
     cases.extend(relay::cases());
     cases.extend(timeline::cases());
     cases.extend(alias::cases());

@@ -1,5 +1,5 @@
-//! Objects of Vulkan that the library has no need of and probes have: images of several levels and of depth, memory
-//! that several share, states of pipelines.
+//! Objects of Vulkan that the library has no need of and probes have: images of depth, memory that several share, states
+//! of pipelines.
 
 use crate::conformance::case::Stop;
 use crate::gpu::owned::{Own, OwnMemory};
@@ -40,7 +40,7 @@ pub const DEPTH_TARGET: State = (
     ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
 );
 
-/// An image of any aspect and any number of levels.
+/// An image of any aspect.
 #[derive(Debug)]
 pub struct RawImage {
     view: Own<vk::ImageView>,
@@ -159,15 +159,14 @@ impl RawImage {
         unsafe { self.raw.gpu().device().cmd_pipeline_barrier2(cmd, &info) };
     }
 
-    /// One level, for a copy from or to tightly packed texels at `offset` of a buffer.
-    pub fn level(&self, level: u32, extent: [u32; 3], offset: u64) -> vk::BufferImageCopy {
+    /// All of it, for a copy from or to tightly packed texels at the start of a buffer.
+    pub fn whole(&self, extent: [u32; 3]) -> vk::BufferImageCopy {
         let [width, height, depth] = extent;
         let is_array = self.range.layer_count > 1;
         vk::BufferImageCopy::default()
-            .buffer_offset(offset)
             .image_subresource(vk::ImageSubresourceLayers {
                 aspect_mask: self.range.aspect_mask,
-                mip_level: level,
+                mip_level: 0,
                 base_array_layer: 0,
                 layer_count: self.range.layer_count,
             })
@@ -248,13 +247,6 @@ pub fn place(memory: &OwnMemory) -> (vk::DeviceMemory, u64) {
     (unsafe { allocation.memory() }, allocation.offset())
 }
 
-/// A sampler.
-pub fn sampler(gpu: &Arc<Gpu>, info: &vk::SamplerCreateInfo<'_>) -> Result<Own<vk::Sampler>, Stop> {
-    // SAFETY: the device is valid; no feature is asked for.
-    let raw = unsafe { gpu.device().create_sampler(info, None) };
-    Ok(Own::new(gpu, raw.map_err(refused("make a sampler"))?))
-}
-
 /// Binds a part of a buffer in place of what is bound to `number`.
 pub fn rebind(
     gpu: &Gpu,
@@ -275,18 +267,6 @@ pub fn rebind(
         .descriptor_type(kind)
         .buffer_info(&info)];
     // SAFETY: the set is in no use yet; the caller gives the binding's own type.
-    unsafe { gpu.device().update_descriptor_sets(&write, &[]) };
-}
-
-/// Binds a sampler in place of what is bound to `number`.
-pub fn rebind_sampler(gpu: &Gpu, bindings: &Bindings, number: u32, sampler: vk::Sampler) {
-    let info = [vk::DescriptorImageInfo::default().sampler(sampler)];
-    let write = [vk::WriteDescriptorSet::default()
-        .dst_set(bindings.raw())
-        .dst_binding(number)
-        .descriptor_type(vk::DescriptorType::SAMPLER)
-        .image_info(&info)];
-    // SAFETY: as above.
     unsafe { gpu.device().update_descriptor_sets(&write, &[]) };
 }
 

@@ -11,7 +11,6 @@ use super::kit;
 use super::raw::refused;
 use crate::conformance::case::{Case, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
-use crate::conformance::need::Want;
 use crate::conformance::stand::Stand;
 use crate::gpu::owned::Own;
 use crate::gpu::{
@@ -48,7 +47,7 @@ pub fn cases() -> Vec<Case> {
     };
     vec![
         case("barriers", Order::Barriers),
-        case("events", Order::Events).wanting(Want::Events),
+        case("events", Order::Events).wanting_events(),
         case("submissions", Order::Submissions).needing(Item::Feature(Feature::TimelineSemaphore)),
     ]
 }

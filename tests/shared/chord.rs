@@ -1,29 +1,15 @@
-//! One picture to be taken, and what a pixel's ray meets in it, from camera and grid alone, in f64.
+//! What a pixel's ray meets, from camera and grid alone, in f64 and in world space.
 //!
-//! It calls neither `src/ray.rs` nor `src/lattice.rs`, which the exact answers judge. It shares `places.rs` with the
-//! oracle of conformance, so it is no independent judge of that oracle.
+//! It calls neither `src/ray.rs` nor `src/lattice.rs`, which the exact answers judge. The oracle of conformance has a
+//! `Chord` too, in voxel space and with wider blurs: those are proven for any device, and these, which tests allow
+//! twins and the drivers at hand, are narrower. It shares `places` with that oracle, so it is no independent judge of
+//! it.
 
-#[path = "../../src/conformance/oracle/places.rs"]
-mod places;
-
-use glam::{DAffine3, DVec3};
-use places::{planes, segments};
-use stratavox::camera::Camera;
-use stratavox::scene::Scene;
-use stratavox::shaders::Frame;
+use glam::DVec3;
+use stratavox::conformance::oracle::Shot;
+use stratavox::conformance::oracle::places::{planes, segments};
 use stratavox::technique::slices_2d::stack_axis;
-use stratavox::technique::{Lattice, Recording, Settings, Technique, View};
-use stratavox::transfer::TransferFunction;
-use stratavox::volume::{Grid, Volume};
-
-/// A picture without its matter.
-#[derive(Clone, Debug)]
-pub struct Shot {
-    pub grid: Grid,
-    pub camera: Camera,
-    pub extent: [u32; 2],
-    pub settings: Settings,
-}
+use stratavox::technique::{Lattice, Technique};
 
 /// The samples of one ray, front to back.
 #[derive(Clone, Debug)]
@@ -41,81 +27,18 @@ pub struct Chord {
     pub blur: f64,
 }
 
-impl Shot {
-    pub fn view(&self) -> View<'_> {
-        View {
-            grid: &self.grid,
-            camera: &self.camera,
-            extent_pixels: self.extent,
-            in_pixel: [0.0; 2].into(),
-            settings: &self.settings,
-        }
-    }
-
-    /// The same picture of a volume on the same grid.
-    pub fn scene<'a>(
-        &'a self,
-        volume: &'a Volume,
-        transfer: Option<&'a TransferFunction>,
-    ) -> Scene<'a> {
-        assert_eq!(volume.grid(), self.grid, "another grid");
-        Scene {
-            beside: Default::default(),
-            volume,
-            transfer,
-            camera: &self.camera,
-            extent_pixels: self.extent,
-            settings: &self.settings,
-        }
-    }
-
-    /// The same with other settings.
-    pub fn with(&self, change: impl FnOnce(&mut Settings)) -> Self {
-        let mut shot = self.clone();
-        change(&mut shot.settings);
-        shot
-    }
-
-    /// The parameters that the twins read, and how many slices there are.
-    pub fn parameters(&self) -> (Frame, u32) {
-        let Recording { frame, slices, .. } = self.view().on_cpu().unwrap();
-        (frame, slices)
-    }
-
-    pub fn pixels(&self) -> impl Iterator<Item = [u32; 2]> + use<> {
-        let [width, height] = self.extent;
-        (0..height).flat_map(move |y| (0..width).map(move |x| [x, y]))
-    }
-
-    pub fn what(&self) -> String {
-        let Settings {
-            technique,
-            lattice,
-            order,
-            mode,
-            ..
-        } = self.settings;
-        format!(
-            "{technique:?} {lattice:?} {order:?} {mode:?} {:?}",
-            self.camera.projection
-        )
-    }
-
-    pub fn voxel_from_world(&self) -> DAffine3 {
-        self.grid.world_from_voxel.inverse()
-    }
-
+impl Chord {
     /// What the ray of a pixel meets; `None` where it misses the domain.
-    pub fn chord(&self, [x, y]: [u32; 2]) -> Option<Chord> {
-        let rays = self.camera.rays(self.extent);
+    pub fn of(shot: &Shot, [x, y]: [u32; 2]) -> Option<Self> {
+        let rays = shot.camera.rays(shot.extent);
         let (origin, direction) = rays.at(f64::from(x) + 0.5, f64::from(y) + 0.5);
-        let voxel = self.voxel_from_world();
+        let voxel = shot.grid.world_from_voxel.inverse();
         let [o, d] = [
             voxel.transform_point3(origin),
             voxel.transform_vector3(direction),
         ];
-        let far = self.grid.far_corner();
-        let [low, high] = self.settings.crop.unwrap_or([DVec3::ZERO, far]);
+        let far = shot.grid.far_corner();
+        let [low, high] = shot.settings.crop.unwrap_or([DVec3::ZERO, far]);
         let (mut enter, mut leave) = ((0.0f64, 0.0), (f64::INFINITY, 0.0));
         for k in 0..3 {
             let (low, high) = (low[k].max(0.0), high[k].min(far[k]));
@@ -133,7 +56,7 @@ impl Shot {
             enter = if ends[0].0 > enter.0 { ends[0] } else { enter };
             leave = if ends[1].0 < leave.0 { ends[1] } else { leave };
         }
-        for plane in &self.settings.clip_planes {
+        for plane in &shot.settings.clip_planes {
             let (height, slope) = (
                 plane.normal.dot(origin) - plane.offset,
                 plane.normal.dot(direction),
@@ -141,7 +64,7 @@ impl Shot {
             let t = -height / slope;
             let end = (
                 t,
-                rounding(t, origin.distance(self.grid.center()) / slope.abs()),
+                rounding(t, origin.distance(shot.grid.center()) / slope.abs()),
             );
             if slope > 0.0 && t > enter.0 {
                 enter = end;
@@ -154,21 +77,21 @@ impl Shot {
         if enter >= leave {
             return None;
         }
-        let h = self.view().step_world();
-        let (samples, hangs) = match (self.settings.technique, self.settings.lattice) {
+        let h = shot.view().step_world();
+        let (samples, hangs) = match (shot.settings.technique, shot.settings.lattice) {
             (Technique::Raycast, Lattice::Ray) => (segments(enter, leave, h), false),
             (Technique::Slices2d, _) => {
                 // Slice s lies where coordinate k is s + 1/2.
-                let k = stack_axis(&self.view());
+                let k = stack_axis(&shot.view());
                 planes([enter, leave], blur, o[k], d[k], 1.0)
             }
             _ => {
                 let n = rays.forward;
-                let height = n.dot(origin - self.grid.center());
+                let height = n.dot(origin - shot.grid.center());
                 planes([enter, leave], blur, height, n.dot(direction), h)
             }
         };
-        Some(Chord {
+        Some(Self {
             origin,
             direction,
             enter,
@@ -178,15 +101,6 @@ impl Shot {
             blur,
         })
     }
-}
-
-/// What f32 makes of t = (face - o) / d: o is a sum of four products, d of three, of a vector that was made
-/// a unit vector, each of them rounded. `apart` is (|face| + |o|) / |d|.
-fn rounding(t: f64, apart: f64) -> f64 {
-    4.0 * (apart + t.abs()) * f64::from(f32::EPSILON) / 2.0
-}
-
-impl Chord {
     /// The interval of t that the samples stand for: on the ray lattice all of the chord, on planes half a
     /// spacing to both sides of them. `None` without a sample.
     pub fn covered(&self) -> Option<[f64; 2]> {
@@ -211,4 +125,10 @@ impl Chord {
         let inner = self.samples.windows(2).map(|w| 0.5 * (w[1].0 - w[0].0));
         inner.fold((first.0 - self.enter).max(self.leave - last.0), f64::max)
     }
+}
+
+/// What f32 makes of t = (face - o) / d: o is a sum of four products, d of three, of a vector that was made
+/// a unit vector, each of them rounded. `apart` is (|face| + |o|) / |d|.
+fn rounding(t: f64, apart: f64) -> f64 {
+    4.0 * (apart + t.abs()) * f64::from(f32::EPSILON) / 2.0
 }

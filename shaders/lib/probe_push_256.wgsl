@@ -1,1 +1,0 @@
-const PUSHED = 16u;
