@@ -47,6 +47,7 @@ pub(crate) mod recorder;
 mod rendering;
 mod requirements;
 mod sampler;
+mod sets;
 mod shared_device;
 mod tile;
 mod timer;

@@ -10,7 +10,8 @@ use std::sync::Arc;
 use stratavox::camera::Camera;
 use stratavox::embed::{Class, Error, Renderer, Shot, Volume};
 use stratavox::gpu::{
-    Buffer, Gpu, Image, Load, Memory, Region, Target, Use, buffer_barrier, image_to_buffer,
+    Buffer, Caps, Gpu, HostDevice, Image, Load, Memory, Region, Target, Use, buffer_barrier,
+    image_to_buffer,
 };
 use stratavox::technique::{ACCUMULATION_FORMAT, Level, Mode, Settings, Technique, accumulation};
 
@@ -119,6 +120,10 @@ struct Change<'a> {
 /// Makes the first, the second and the last call of each function that a change calls fail with each of its codes.
 fn sweep(tape: &Tape, drawn: &mut Drawn, change: &Change) -> u32 {
     let wanted = drawn.picture();
+    // Pools of descriptors that a change has asked for are there when it comes again.
+    (change.act)(&mut drawn.renderer).unwrap();
+    (change.undo)(&mut drawn.renderer);
+    drawn.picture();
     let before = tape.calls();
     (change.act)(&mut drawn.renderer).unwrap();
     let called = since(tape, &before);
@@ -269,9 +274,58 @@ fn what_fails_to_change_leaves_a_renderer_as_it_was() {
     }
 }
 
+#[test]
+fn functions_of_many_bricks_one_after_the_other_take_no_new_pool_and_free_no_set_in_use() {
+    let tape = Tape::begin();
+    let (host, stage) = (Host::new(), stage(Technique::Raycast, Mode::Composite));
+    let device = host.device(FEATURES);
+    let caps = Caps {
+        max_image_dimension_3d: 8,
+        ..Caps::UNLIMITED
+    };
+    // SAFETY: the handles are right, and everything made on the device is dropped before it.
+    let gpu = unsafe {
+        let handles = device.handles(hooked);
+        Gpu::from_host(HostDevice { caps, ..handles }).unwrap()
+    };
+    let mut drawn = Drawn::new(&device, &gpu, &stage);
+    let mut faint = stage.transfer.clone();
+    faint.opacity.iter_mut().for_each(|at| at.value *= 0.7);
+    let calls = |name| tape.calls().get(name).copied().unwrap_or(0);
+    let mut pools = 0;
+    for turn in 0..12 {
+        if turn == 2 {
+            pools = calls("vkCreateDescriptorPool");
+        }
+        let [taken, freed] = ["vkAllocateDescriptorSets", "vkFreeDescriptorSets"].map(calls);
+        let function = [&faint, &stage.transfer][turn % 2];
+        drawn.renderer.set_function(Some(function)).unwrap();
+        assert_eq!(
+            calls("vkFreeDescriptorSets"),
+            freed,
+            "turn {turn}: freed in use"
+        );
+        drawn.picture();
+        let taken = calls("vkAllocateDescriptorSets") - taken;
+        assert!(taken > 100, "only {taken} sets of all bricks");
+        assert_eq!(calls("vkFreeDescriptorSets") - freed, taken, "turn {turn}");
+    }
+    assert_eq!(calls("vkCreateDescriptorPool"), pools);
+    println!("{pools} pools");
+    drop(drawn);
+    // SAFETY: every submission was waited for.
+    unsafe { gpu.retire(u64::MAX) };
+    drop(gpu);
+    assert_eq!(tape.books(), Vec::<&str>::new(), "left on the device");
+}
+
 /// The same for another size, of which there is no picture here.
 fn resized(tape: &Tape, drawn: &mut Drawn) -> u32 {
     let (extent, wanted) = (drawn.renderer.extent(), drawn.picture());
+    // As above.
+    drawn.renderer.resize([20, 24], &[]).unwrap();
+    drawn.renderer.resize(extent, &[]).unwrap();
+    drawn.picture();
     let before = tape.calls();
     drawn.renderer.resize([20, 24], &[]).unwrap();
     let called = since(tape, &before);

@@ -163,6 +163,8 @@ fallible! {
     vkAllocateDescriptorSets(
         device: vk::Device, info: *const vk::DescriptorSetAllocateInfo<'_>,
         out: *mut vk::DescriptorSet);
+    vkFreeDescriptorSets(
+        device: vk::Device, pool: vk::DescriptorPool, count: u32, sets: *const vk::DescriptorSet);
     vkCreateQueryPool(
         device: vk::Device, info: *const vk::QueryPoolCreateInfo<'_>, alloc: Alloc,
         out: *mut vk::QueryPool) => { made("query pool", *out) };
