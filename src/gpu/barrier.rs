@@ -138,9 +138,8 @@ pub unsafe fn image_barrier(
     before: Use,
     after: Use,
 ) {
-    let (before, after) = (TargetState::from(before), TargetState::from(after));
     // SAFETY: the caller's promises.
-    unsafe { transition(gpu, cmd, image.raw(), whole(image.format()), before, after) };
+    unsafe { barriers(gpu, cmd, [], [], [(image, before, after)]) };
 }
 
 /// Orders two uses of all of a buffer.
@@ -155,34 +154,51 @@ pub unsafe fn buffer_barrier(
     before: Use,
     after: Use,
 ) {
-    let ((src_stage, src_access, _), (dst_stage, dst_access, _)) = (before.state(), after.state());
-    let barriers = [vk::BufferMemoryBarrier2::default()
-        .src_stage_mask(src_stage)
-        .src_access_mask(src_access)
-        .dst_stage_mask(dst_stage)
-        .dst_access_mask(dst_access)
-        .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-        .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-        .buffer(buffer.raw())
-        .size(vk::WHOLE_SIZE)];
-    let info = vk::DependencyInfo::default().buffer_memory_barriers(&barriers);
-    // SAFETY: the caller's promises; synchronization2 was required of the device.
-    gpu.record(|device| unsafe { device.cmd_pipeline_barrier2(cmd, &info) });
+    // SAFETY: the caller's promises.
+    unsafe { barriers(gpu, cmd, [], [(buffer, before, after)], []) };
 }
 
-/// Orders two uses of everything that they use, which keeps its layout.
+/// Orders in one command two uses of everything that they use, which keeps its layout; of buffers; and of images, as
+/// [`image_barrier`]: a device stops once.
 ///
 /// # Safety
 ///
-/// `cmd` is recording on `gpu`'s device, outside rendering.
-pub(crate) unsafe fn memory_barrier(gpu: &Gpu, cmd: vk::CommandBuffer, before: Use, after: Use) {
-    let ((src_stage, src_access, _), (dst_stage, dst_access, _)) = (before.state(), after.state());
-    let barriers = [vk::MemoryBarrier2::default()
-        .src_stage_mask(src_stage)
-        .src_access_mask(src_access)
-        .dst_stage_mask(dst_stage)
-        .dst_access_mask(dst_access)];
-    let info = vk::DependencyInfo::default().memory_barriers(&barriers);
+/// As [`image_barrier`].
+pub(crate) unsafe fn barriers<const A: usize, const B: usize, const I: usize>(
+    gpu: &Gpu,
+    cmd: vk::CommandBuffer,
+    all: [(Use, Use); A],
+    buffers: [(&Buffer, Use, Use); B],
+    images: [(&Image, Use, Use); I],
+) {
+    let all = all.map(|(before, after)| {
+        let ((stage, access, _), (next_stage, next_access, _)) = (before.state(), after.state());
+        vk::MemoryBarrier2::default()
+            .src_stage_mask(stage)
+            .src_access_mask(access)
+            .dst_stage_mask(next_stage)
+            .dst_access_mask(next_access)
+    });
+    let buffers = buffers.map(|(buffer, before, after)| {
+        let ((stage, access, _), (next_stage, next_access, _)) = (before.state(), after.state());
+        vk::BufferMemoryBarrier2::default()
+            .src_stage_mask(stage)
+            .src_access_mask(access)
+            .dst_stage_mask(next_stage)
+            .dst_access_mask(next_access)
+            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .buffer(buffer.raw())
+            .size(vk::WHOLE_SIZE)
+    });
+    let images = images.map(|(image, before, after)| {
+        let range = whole(image.format());
+        transition(gpu, image.raw(), range, before.into(), after.into())
+    });
+    let info = vk::DependencyInfo::default()
+        .memory_barriers(&all)
+        .buffer_memory_barriers(&buffers)
+        .image_memory_barriers(&images);
     // SAFETY: the caller's promises; synchronization2 was required of the device.
     gpu.record(|device| unsafe { device.cmd_pipeline_barrier2(cmd, &info) });
 }
@@ -237,7 +253,7 @@ impl Target {
     /// `cmd` is recording on `gpu`'s device, outside rendering; the target is in the state `before`.
     pub unsafe fn enter(&self, gpu: &Gpu, cmd: vk::CommandBuffer, first: Use) {
         // SAFETY: the caller's promises.
-        unsafe { transition(gpu, cmd, self.image, WHOLE_COLOR, self.before, first.into()) };
+        unsafe { self.pass(gpu, cmd, self.before, first.into()) };
     }
 
     /// From our last use of the target to how it must leave.
@@ -247,26 +263,38 @@ impl Target {
     /// `cmd` is recording on `gpu`'s device, outside rendering; `last` is what was last recorded for the target.
     pub unsafe fn leave(&self, gpu: &Gpu, cmd: vk::CommandBuffer, last: Use) {
         // SAFETY: the caller's promises.
-        unsafe { transition(gpu, cmd, self.image, WHOLE_COLOR, last.into(), self.after) };
+        unsafe { self.pass(gpu, cmd, last.into(), self.after) };
+    }
+
+    /// # Safety
+    /// As [`Self::enter`], in the state `before`.
+    unsafe fn pass(
+        &self,
+        gpu: &Gpu,
+        cmd: vk::CommandBuffer,
+        before: TargetState,
+        after: TargetState,
+    ) {
+        let barriers = [transition(gpu, self.image, WHOLE_COLOR, before, after)];
+        let info = vk::DependencyInfo::default().image_memory_barriers(&barriers);
+        // SAFETY: the caller's promises; synchronization2 was required of the device.
+        gpu.record(|device| unsafe { device.cmd_pipeline_barrier2(cmd, &info) });
     }
 }
 
-/// # Safety
-/// As [`image_barrier`].
-unsafe fn transition(
+fn transition(
     gpu: &Gpu,
-    cmd: vk::CommandBuffer,
     image: vk::Image,
     range: vk::ImageSubresourceRange,
     before: TargetState,
     after: TargetState,
-) {
+) -> vk::ImageMemoryBarrier2<'static> {
     let family = |state: TargetState| match state.queue_family {
         vk::QUEUE_FAMILY_IGNORED => gpu.queue_family(),
         family => family,
     };
     // Equal families: no transfer of ownership.
-    let barriers = [vk::ImageMemoryBarrier2::default()
+    vk::ImageMemoryBarrier2::default()
         .src_stage_mask(before.stage)
         .src_access_mask(before.access)
         .old_layout(before.layout)
@@ -276,8 +304,5 @@ unsafe fn transition(
         .src_queue_family_index(family(before))
         .dst_queue_family_index(family(after))
         .image(image)
-        .subresource_range(range)];
-    let info = vk::DependencyInfo::default().image_memory_barriers(&barriers);
-    // SAFETY: the caller's promises; synchronization2 was required of the device.
-    gpu.record(|device| unsafe { device.cmd_pipeline_barrier2(cmd, &info) });
+        .subresource_range(range)
 }

@@ -53,7 +53,7 @@ mod tile;
 mod timer;
 mod validation;
 
-pub(crate) use barrier::memory_barrier;
+pub(crate) use barrier::barriers;
 pub use barrier::{Target, TargetState, Use, buffer_barrier, image_barrier};
 pub use bindings::{Bindings, Resource};
 pub(crate) use blocks::Blocks;

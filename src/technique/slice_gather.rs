@@ -14,7 +14,7 @@ use super::merge::{BATCH_FORMAT, MAX_BATCH_SLICES, Merge, is_merged};
 use super::{ACCUMULATION_FORMAT, Inputs, Settings, Sight, Slicer, Words};
 use crate::gpu::{
     Bindings, Error, Gpu, Image, ImageDesc, ImageKind, Load, ParameterRing, Resource, Tile, Use,
-    begin_rendering_behind, clear_image, end_rendering, image_barrier,
+    barriers, begin_rendering_behind, clear_image, end_rendering, image_barrier,
 };
 use ash::vk;
 use std::ops::Range;
@@ -273,8 +273,14 @@ impl SliceGather {
                         let slices = [(brick, slices.clone())].into_iter();
                         self.draw(cmd, slices, into, batch, tile);
                     }
-                    image_barrier(gpu, cmd, batch, Use::ColorTarget, Use::ComputeSampled);
-                    image_barrier(gpu, cmd, image, before, Use::ComputeWrite);
+                    let drawn = (batch, Use::ColorTarget, Use::ComputeSampled);
+                    barriers(
+                        gpu,
+                        cmd,
+                        [],
+                        [],
+                        [drawn, (image, before, Use::ComputeWrite)],
+                    );
                     for &tile in part.tiles {
                         merge.record_tile(cmd, merged, into.extent, tile)?;
                     }

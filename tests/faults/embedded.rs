@@ -10,8 +10,7 @@ use std::sync::Arc;
 use stratavox::camera::Camera;
 use stratavox::embed::{Class, Error, Renderer, Shot, Volume};
 use stratavox::gpu::{
-    Buffer, Caps, Gpu, HostDevice, Image, Load, Memory, Region, Target, Use, buffer_barrier,
-    image_to_buffer,
+    Buffer, Gpu, Image, Load, Memory, Region, Target, Use, buffer_barrier, image_to_buffer,
 };
 use stratavox::technique::{ACCUMULATION_FORMAT, Level, Mode, Settings, Technique, accumulation};
 
@@ -23,8 +22,8 @@ const MAY_PASS: [&str; 3] = [
 ];
 
 /// A renderer, and what its picture comes in.
-struct Drawn<'d> {
-    renderer: Renderer,
+pub struct Drawn<'d> {
+    pub renderer: Renderer,
     camera: Camera,
     image: Image,
     readback: Buffer,
@@ -34,7 +33,7 @@ struct Drawn<'d> {
 }
 
 impl<'d> Drawn<'d> {
-    fn new(device: &'d HostedDevice<'d>, gpu: &Arc<Gpu>, stage: &Stage) -> Self {
+    pub fn new(device: &'d HostedDevice<'d>, gpu: &Arc<Gpu>, stage: &Stage) -> Self {
         let (extent, settings) = (stage.extent, stage.settings.clone());
         let volume = uploaded(device, gpu, stage);
         let class = Class {
@@ -61,7 +60,7 @@ impl<'d> Drawn<'d> {
     }
 
     /// The picture, a pixel of it picked beside.
-    fn picture(&mut self) -> Vec<u8> {
+    pub fn picture(&mut self) -> Vec<u8> {
         self.frames += 1;
         self.gpu.announce(self.frames);
         let shot = Shot {
@@ -178,7 +177,7 @@ fn since(tape: &Tape, before: &BTreeMap<&'static str, u32>) -> BTreeMap<&'static
     tape.calls().into_iter().filter_map(more).collect()
 }
 
-fn stage(technique: Technique, mode: Mode) -> Stage {
+pub fn stage(technique: Technique, mode: Mode) -> Stage {
     let mut stage = Stage::new();
     stage.settings = Settings {
         technique,
@@ -272,51 +271,6 @@ fn what_fails_to_change_leaves_a_renderer_as_it_was() {
         drop(gpu);
         assert_eq!(tape.books(), Vec::<&str>::new(), "left on the device");
     }
-}
-
-#[test]
-fn functions_of_many_bricks_one_after_the_other_take_no_new_pool_and_free_no_set_in_use() {
-    let tape = Tape::begin();
-    let (host, stage) = (Host::new(), stage(Technique::Raycast, Mode::Composite));
-    let device = host.device(FEATURES);
-    let caps = Caps {
-        max_image_dimension_3d: 8,
-        ..Caps::UNLIMITED
-    };
-    // SAFETY: the handles are right, and everything made on the device is dropped before it.
-    let gpu = unsafe {
-        let handles = device.handles(hooked);
-        Gpu::from_host(HostDevice { caps, ..handles }).unwrap()
-    };
-    let mut drawn = Drawn::new(&device, &gpu, &stage);
-    let mut faint = stage.transfer.clone();
-    faint.opacity.iter_mut().for_each(|at| at.value *= 0.7);
-    let calls = |name| tape.calls().get(name).copied().unwrap_or(0);
-    let mut pools = 0;
-    for turn in 0..12 {
-        if turn == 2 {
-            pools = calls("vkCreateDescriptorPool");
-        }
-        let [taken, freed] = ["vkAllocateDescriptorSets", "vkFreeDescriptorSets"].map(calls);
-        let function = [&faint, &stage.transfer][turn % 2];
-        drawn.renderer.set_function(Some(function)).unwrap();
-        assert_eq!(
-            calls("vkFreeDescriptorSets"),
-            freed,
-            "turn {turn}: freed in use"
-        );
-        drawn.picture();
-        let taken = calls("vkAllocateDescriptorSets") - taken;
-        assert!(taken > 100, "only {taken} sets of all bricks");
-        assert_eq!(calls("vkFreeDescriptorSets") - freed, taken, "turn {turn}");
-    }
-    assert_eq!(calls("vkCreateDescriptorPool"), pools);
-    println!("{pools} pools");
-    drop(drawn);
-    // SAFETY: every submission was waited for.
-    unsafe { gpu.retire(u64::MAX) };
-    drop(gpu);
-    assert_eq!(tape.books(), Vec::<&str>::new(), "left on the device");
 }
 
 /// The same for another size, of which there is no picture here.

@@ -286,7 +286,4 @@ others! {
     vkCmdCopyBuffer(
         cmd: vk::CommandBuffer, from: vk::Buffer, to: vk::Buffer, count: u32,
         regions: *const vk::BufferCopy);
-    vkCmdUpdateBuffer(
-        cmd: vk::CommandBuffer, buffer: vk::Buffer, offset: vk::DeviceSize, size: vk::DeviceSize,
-        data: *const c_void);
 }

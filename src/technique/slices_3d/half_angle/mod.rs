@@ -20,8 +20,8 @@ pub(crate) use steps::Steps;
 
 use crate::gpu::{
     Bindings, Blend, DepthUse, Error, Gpu, Image, ImageDesc, ImageKind, Load, RasterDesc,
-    RasterPipeline, Resource, Tile, Use, begin_rendering, begin_rendering_of, end_rendering,
-    image_barrier, set_area_of,
+    RasterPipeline, Resource, Tile, Use, barriers, begin_rendering, begin_rendering_of,
+    end_rendering, image_barrier, set_area_of,
 };
 use crate::shaders::shader;
 use crate::technique::blend::Drawn;
@@ -213,8 +213,8 @@ impl HalfAngleSlicer {
         // SAFETY: the caller's promises; every image is in the use that its next access needs, and the layouts of both
         // pipelines are equal.
         unsafe {
-            image_barrier(gpu, cmd, light_buffer, drawn, read);
-            image_barrier(gpu, cmd, picture, drawn, drawn);
+            let images = [(light_buffer, drawn, read), (picture, drawn, drawn)];
+            barriers(gpu, cmd, [], [], images);
             begin_rendering_of(gpu, cmd, &[(picture.view(), Load::Keep)], tile);
             set_area_of(gpu, cmd, extent, tile);
             pipeline.draw(cmd, &bindings.eye, &offsets, VERTICES, slice..slice + 1);
