@@ -14,29 +14,32 @@
 #import nothing_{left}
 #import ray_tile
 
-// Parts of a picture that are looked through at once.
-const MAX_PARTS: u32 = 256u;
+// Tiles along the side of a block, which a workgroup looks through.
+const BLOCK_TILES: u32 = 8u;
+// Along an axis of any picture there are fewer blocks.
+const MOST_BLOCKS: u32 = 1024u;
 
 struct RayList {
     // A dispatch, as Vulkan reads it: a workgroup a tile.
     tiles: atomic<u32>,
     down: u32,
     deep: u32,
-    nothing: u32,
-    // In tiles: the first and how many, across and down.
-    parts: array<vec4<u32>, MAX_PARTS>,
 }
 
 @group(0) @binding(42) var<storage, read_write> ray_list: RayList;
 @group(0) @binding(43) var ray_tiles: texture_storage_2d<rgba32float, write>;
 
-@compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3<u32>) {
-    let part = ray_list.parts[id.z];
-    if any(id.xy >= part.zw) {
+@compute @workgroup_size(BLOCK_TILES, BLOCK_TILES)
+fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) own: vec3<u32>) {
+    // The place of a workgroup says which block it has, and how many of its tiles are left out before and behind. Its
+    // first number is 0: indirect dispatches of lavapipe (Mesa 22.3) begin where the dispatch before did.
+    let left_out = group.yz / MOST_BLOCKS;
+    let before = left_out % BLOCK_TILES;
+    let behind = left_out / BLOCK_TILES;
+    let tile = BLOCK_TILES * (group.yz % MOST_BLOCKS) + own.xy;
+    if any(own.xy < before) || any(own.xy + behind >= vec2(BLOCK_TILES)) || any(TILE_PIXELS * tile >= frame.extent_pixels) {
         return;
     }
-    let tile = part.xy + id.xy;
     let pencil = pencil_of(vec2<f32>(TILE_PIXELS * tile) + 0.5 * f32(TILE_PIXELS));
     let within = known_part(pencil, box_part(pencil));
     if within.x < within.y {

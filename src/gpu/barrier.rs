@@ -153,33 +153,8 @@ pub unsafe fn image_barrier(
     before: Use,
     after: Use,
 ) {
-    let (before, after) = (TargetState::from(before), TargetState::from(after));
     // SAFETY: the caller's promises.
-    unsafe { transition(gpu, cmd, image.raw(), whole(image.format()), before, after) };
-}
-
-/// The same for several images, `N` at most, in one barrier; none for no image.
-///
-/// # Safety
-///
-/// As [`image_barrier`], of each of them.
-pub(crate) unsafe fn image_barriers<'a, const N: usize>(
-    gpu: &Gpu,
-    cmd: vk::CommandBuffer,
-    moved: impl Iterator<Item = (&'a Image, Use, Use)>,
-) {
-    let mut barriers = [vk::ImageMemoryBarrier2::default(); N];
-    let mut count = 0;
-    for (barrier, (image, before, after)) in barriers.iter_mut().zip(moved) {
-        let (range, states) = (whole(image.format()), [before.into(), after.into()]);
-        *barrier = barrier_of(gpu, image.raw(), range, states);
-        count += 1;
-    }
-    if count > 0 {
-        let info = vk::DependencyInfo::default().image_memory_barriers(&barriers[..count]);
-        // SAFETY: the caller's promises; synchronization2 was required of the device.
-        gpu.record(|device| unsafe { device.cmd_pipeline_barrier2(cmd, &info) });
-    }
+    unsafe { barriers(gpu, cmd, [], [], [(image, before, after)]) };
 }
 
 /// Orders two uses of all of a buffer.
@@ -194,36 +169,77 @@ pub unsafe fn buffer_barrier(
     before: Use,
     after: Use,
 ) {
-    let ((src_stage, src_access, _), (dst_stage, dst_access, _)) = (before.state(), after.state());
-    let barriers = [vk::BufferMemoryBarrier2::default()
-        .src_stage_mask(src_stage)
-        .src_access_mask(src_access)
-        .dst_stage_mask(dst_stage)
-        .dst_access_mask(dst_access)
-        .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-        .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
-        .buffer(buffer.raw())
-        .size(vk::WHOLE_SIZE)];
-    let info = vk::DependencyInfo::default().buffer_memory_barriers(&barriers);
+    // SAFETY: the caller's promises.
+    unsafe { barriers(gpu, cmd, [], [(buffer, before, after)], []) };
+}
+
+/// Orders in one command two uses of everything that they use, which keeps its layout; of buffers; and of images, as
+/// [`image_barrier`]: a device stops once.
+///
+/// # Safety
+///
+/// As [`image_barrier`].
+pub(crate) unsafe fn barriers<const A: usize, const B: usize, const I: usize>(
+    gpu: &Gpu,
+    cmd: vk::CommandBuffer,
+    all: [(Use, Use); A],
+    buffers: [(&Buffer, Use, Use); B],
+    images: [(&Image, Use, Use); I],
+) {
+    let all = all.map(|(before, after)| {
+        let ((stage, access, _), (next_stage, next_access, _)) = (before.state(), after.state());
+        vk::MemoryBarrier2::default()
+            .src_stage_mask(stage)
+            .src_access_mask(access)
+            .dst_stage_mask(next_stage)
+            .dst_access_mask(next_access)
+    });
+    let buffers = buffers.map(|(buffer, before, after)| {
+        let ((stage, access, _), (next_stage, next_access, _)) = (before.state(), after.state());
+        vk::BufferMemoryBarrier2::default()
+            .src_stage_mask(stage)
+            .src_access_mask(access)
+            .dst_stage_mask(next_stage)
+            .dst_access_mask(next_access)
+            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .buffer(buffer.raw())
+            .size(vk::WHOLE_SIZE)
+    });
+    let images = images.map(|(image, before, after)| {
+        let range = whole(image.format());
+        transition(gpu, image.raw(), range, before.into(), after.into())
+    });
+    let info = vk::DependencyInfo::default()
+        .memory_barriers(&all)
+        .buffer_memory_barriers(&buffers)
+        .image_memory_barriers(&images);
     // SAFETY: the caller's promises; synchronization2 was required of the device.
     gpu.record(|device| unsafe { device.cmd_pipeline_barrier2(cmd, &info) });
 }
 
-/// Orders two uses of everything that they use, which keeps its layout.
+/// The same for up to `N` images in one command; none for no image.
 ///
 /// # Safety
 ///
-/// `cmd` is recording on `gpu`'s device, outside rendering.
-pub(crate) unsafe fn memory_barrier(gpu: &Gpu, cmd: vk::CommandBuffer, before: Use, after: Use) {
-    let ((src_stage, src_access, _), (dst_stage, dst_access, _)) = (before.state(), after.state());
-    let barriers = [vk::MemoryBarrier2::default()
-        .src_stage_mask(src_stage)
-        .src_access_mask(src_access)
-        .dst_stage_mask(dst_stage)
-        .dst_access_mask(dst_access)];
-    let info = vk::DependencyInfo::default().memory_barriers(&barriers);
-    // SAFETY: the caller's promises; synchronization2 was required of the device.
-    gpu.record(|device| unsafe { device.cmd_pipeline_barrier2(cmd, &info) });
+/// As [`image_barrier`], of each of them.
+pub(crate) unsafe fn image_barriers<'a, const N: usize>(
+    gpu: &Gpu,
+    cmd: vk::CommandBuffer,
+    moved: impl Iterator<Item = (&'a Image, Use, Use)>,
+) {
+    let mut barriers = [vk::ImageMemoryBarrier2::default(); N];
+    let mut count = 0;
+    for (barrier, (image, before, after)) in barriers.iter_mut().zip(moved) {
+        let range = whole(image.format());
+        *barrier = transition(gpu, image.raw(), range, before.into(), after.into());
+        count += 1;
+    }
+    if count > 0 {
+        let info = vk::DependencyInfo::default().image_memory_barriers(&barriers[..count]);
+        // SAFETY: the caller's promises; synchronization2 was required of the device.
+        gpu.record(|device| unsafe { device.cmd_pipeline_barrier2(cmd, &info) });
+    }
 }
 
 /// The state of a host's image at one moment.
@@ -276,7 +292,7 @@ impl Target {
     /// `cmd` is recording on `gpu`'s device, outside rendering; the target is in the state `before`.
     pub unsafe fn enter(&self, gpu: &Gpu, cmd: vk::CommandBuffer, first: Use) {
         // SAFETY: the caller's promises.
-        unsafe { transition(gpu, cmd, self.image, WHOLE_COLOR, self.before, first.into()) };
+        unsafe { self.pass(gpu, cmd, self.before, first.into()) };
     }
 
     /// From our last use of the target to how it must leave.
@@ -286,32 +302,32 @@ impl Target {
     /// `cmd` is recording on `gpu`'s device, outside rendering; `last` is what was last recorded for the target.
     pub unsafe fn leave(&self, gpu: &Gpu, cmd: vk::CommandBuffer, last: Use) {
         // SAFETY: the caller's promises.
-        unsafe { transition(gpu, cmd, self.image, WHOLE_COLOR, last.into(), self.after) };
+        unsafe { self.pass(gpu, cmd, last.into(), self.after) };
+    }
+
+    /// # Safety
+    /// As [`Self::enter`], in the state `before`.
+    unsafe fn pass(
+        &self,
+        gpu: &Gpu,
+        cmd: vk::CommandBuffer,
+        before: TargetState,
+        after: TargetState,
+    ) {
+        let barriers = [transition(gpu, self.image, WHOLE_COLOR, before, after)];
+        let info = vk::DependencyInfo::default().image_memory_barriers(&barriers);
+        // SAFETY: the caller's promises; synchronization2 was required of the device.
+        gpu.record(|device| unsafe { device.cmd_pipeline_barrier2(cmd, &info) });
     }
 }
 
-/// # Safety
-/// As [`image_barrier`].
-unsafe fn transition(
+fn transition(
     gpu: &Gpu,
-    cmd: vk::CommandBuffer,
     image: vk::Image,
     range: vk::ImageSubresourceRange,
     before: TargetState,
     after: TargetState,
-) {
-    let barriers = [barrier_of(gpu, image, range, [before, after])];
-    let info = vk::DependencyInfo::default().image_memory_barriers(&barriers);
-    // SAFETY: the caller's promises; synchronization2 was required of the device.
-    gpu.record(|device| unsafe { device.cmd_pipeline_barrier2(cmd, &info) });
-}
-
-fn barrier_of<'a>(
-    gpu: &Gpu,
-    image: vk::Image,
-    range: vk::ImageSubresourceRange,
-    [before, after]: [TargetState; 2],
-) -> vk::ImageMemoryBarrier2<'a> {
+) -> vk::ImageMemoryBarrier2<'static> {
     let family = |state: TargetState| match state.queue_family {
         vk::QUEUE_FAMILY_IGNORED => gpu.queue_family(),
         family => family,

@@ -2,6 +2,7 @@
 
 use super::{
     Buffer, Error, Gpu, Image, Layout, ParameterRing, Sampler, layout::descriptor_type, owned::Own,
+    sets::Set,
 };
 use crate::shaders::{BindingKind, BindingSlot};
 use ash::vk;
@@ -44,11 +45,10 @@ impl<'a> Resource<'a> {
     }
 }
 
-/// One descriptor set, written once, and the pool that it comes from.
+/// One descriptor set, written once.
 #[derive(Debug)]
 pub struct Bindings {
-    pool: Own<vk::DescriptorPool>,
-    set: vk::DescriptorSet,
+    set: Own<Set>,
 }
 
 impl Bindings {
@@ -64,57 +64,34 @@ impl Bindings {
     ) -> Result<Self, Error> {
         let doing = || format!("make the descriptor set of `{}`", layout.name());
         let infos = match_names(layout, resources)?;
-        let sizes: Vec<_> = layout
-            .slots()
-            .iter()
-            .map(|slot| vk::DescriptorPoolSize {
-                ty: descriptor_type(slot.kind),
-                descriptor_count: 1,
-            })
-            .collect();
-        let info = vk::DescriptorPoolCreateInfo::default()
-            .max_sets(1)
-            .pool_sizes(&sizes);
-        // SAFETY: the device is valid.
-        let pool = gpu.call(doing, |device| unsafe {
-            device.create_descriptor_pool(&info, None)
-        })?;
-        let pool = Own::new(gpu, pool);
-        let layouts = [layout.set()];
-        let info = vk::DescriptorSetAllocateInfo::default()
-            .descriptor_pool(pool.get())
-            .set_layouts(&layouts);
-        // SAFETY: the pool is ours and has room for just this set.
-        let set = gpu.call(doing, |device| unsafe {
-            device.allocate_descriptor_sets(&info)
-        })?[0];
-        gpu.name(set, layout.name());
+        let set = Own::of(gpu, layout, doing)?;
+        gpu.name(set.get().raw, layout.name());
         let writes: Vec<_> = layout
             .slots()
             .iter()
             .zip(&infos)
-            .map(|(slot, info)| info.write(set, slot))
+            .map(|(slot, info)| info.write(set.get().raw, slot))
             .collect();
         // SAFETY: the set is in no use yet; the resources are of the kinds that its layout declares.
         unsafe { gpu.device().update_descriptor_sets(&writes, &[]) };
-        Ok(Self { pool, set })
+        Ok(Self { set })
     }
 
     /// The Vulkan handle.
     pub fn raw(&self) -> vk::DescriptorSet {
-        self.set
+        self.set.get().raw
     }
 
     /// The device that the bindings were made on.
     pub fn gpu(&self) -> &Arc<Gpu> {
-        self.pool.gpu()
+        self.set.gpu()
     }
 }
 
 impl Drop for Bindings {
-    /// A set goes with its pool, but not its name: lavapipe keeps that (Mesa 22.3).
+    /// A set that is freed keeps its name in lavapipe (Mesa 22.3).
     fn drop(&mut self) {
-        self.gpu().unname(self.set);
+        self.gpu().unname(self.raw());
     }
 }
 

@@ -47,13 +47,14 @@ pub(crate) mod recorder;
 mod rendering;
 mod requirements;
 mod sampler;
+mod sets;
 mod shared_device;
 mod tile;
 mod timer;
 mod validation;
 
 pub use barrier::{Target, TargetState, Use, buffer_barrier, image_barrier};
-pub(crate) use barrier::{image_barriers, memory_barrier};
+pub(crate) use barrier::{barriers, image_barriers};
 pub use bindings::{Bindings, Resource};
 pub(crate) use blocks::Blocks;
 pub use buffer::{Buffer, Memory};

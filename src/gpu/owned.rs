@@ -3,6 +3,7 @@
 //! An owner's `Drop` never waits: it hands the raw object to the [`Store`] with the newest value that
 //! the timeline was announced to reach. [`Store::retire`] destroys what the timeline has passed.
 
+use super::sets::{Set, Sets};
 use super::{Error, Gpu, LARGEST_BLOCK_BYTES, MemoryUse, error::within, memory::BUDGET};
 use ash::vk;
 use gpu_allocator::AllocationError;
@@ -109,6 +110,7 @@ macro_rules! handles {
         #[derive(Debug)]
         pub(crate) enum Raw {
             $($kind($handle),)*
+            Set(Set),
             Memory(Allocation),
         }
 
@@ -128,18 +130,21 @@ macro_rules! handles {
             fn word(&self) -> &'static str {
                 match self {
                     $(Self::$kind(_) => $word,)*
+                    Self::Set(_) => Set::WORD,
                     Self::Memory(_) => "memory",
                 }
             }
 
             /// # Safety
-            /// The object belongs to `device`, which has finished with it.
-            unsafe fn destroy(self, device: &ash::Device, allocator: Option<&mut Allocator>) {
+            /// The object belongs to `device`, whose store this is and which has finished with it.
+            unsafe fn destroy(self, device: &ash::Device, store: &mut Store) {
                 match self {
                     // SAFETY: the caller's promise is what each of these calls asks.
                     $(Self::$kind(handle) => unsafe { device.$destroy(handle, None) },)*
+                    // SAFETY: as above.
+                    Self::Set(set) => unsafe { store.sets.free(device, set) },
                     Self::Memory(allocation) => {
-                        let freed = allocator.map(|allocator| allocator.free(allocation));
+                        let freed = store.allocator.as_mut().map(|allocator| allocator.free(allocation));
                         debug_assert!(matches!(freed, Some(Ok(()))), "memory freed twice: {freed:?}");
                     }
                 }
@@ -157,12 +162,21 @@ handles! {
     PipelineLayout vk::PipelineLayout, "pipeline layout", destroy_pipeline_layout;
     Pipeline vk::Pipeline, "pipeline", destroy_pipeline;
     ShaderModule vk::ShaderModule, "shader module", destroy_shader_module;
-    DescriptorPool vk::DescriptorPool, "descriptor pool", destroy_descriptor_pool;
     QueryPool vk::QueryPool, "query pool", destroy_query_pool;
     CommandPool vk::CommandPool, "command pool", destroy_command_pool;
     Fence vk::Fence, "fence", destroy_fence;
     Semaphore vk::Semaphore, "semaphore", destroy_semaphore;
     Event vk::Event, "event", destroy_event;
+}
+
+impl From<Set> for Raw {
+    fn from(set: Set) -> Self {
+        Self::Set(set)
+    }
+}
+
+impl Handle for Set {
+    const WORD: &'static str = "descriptor set";
 }
 
 /// What the allocator hands on as text only.
@@ -176,6 +190,8 @@ const SAID: [vk::Result; 2] = [
 pub(super) struct Store {
     /// `None` only while the device goes: memory is freed before it.
     allocator: Option<Allocator>,
+    /// Where descriptor sets come from.
+    pub sets: Sets,
     /// The newest value that a recording was announced to reach.
     announced: u64,
     /// In the order of their values, and of one owner's parts: an image before its memory.
@@ -193,6 +209,7 @@ impl Store {
     pub fn new(allocator: Allocator) -> Self {
         Self {
             allocator: Some(allocator),
+            sets: Sets::default(),
             announced: 0,
             waiting: VecDeque::new(),
             live: BTreeMap::new(),
@@ -230,7 +247,7 @@ impl Store {
             let live = self.live.entry(raw.word()).or_default();
             *live = live.saturating_sub(1);
             // SAFETY: the caller promises that work up to this object's value is done.
-            unsafe { raw.destroy(device, self.allocator.as_mut()) };
+            unsafe { raw.destroy(device, self) };
         }
     }
 
@@ -238,7 +255,10 @@ impl Store {
     /// As [`Store::retire`], for all work; nothing is created afterwards.
     pub unsafe fn destroy_all(&mut self, device: &ash::Device) {
         // SAFETY: the caller's promise.
-        unsafe { self.retire(device, u64::MAX) };
+        unsafe {
+            self.retire(device, u64::MAX);
+            self.sets.destroy_all(device);
+        }
         self.allocator = None;
     }
 

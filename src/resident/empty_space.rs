@@ -6,7 +6,7 @@
 
 use super::macro_cells::{MacroCells, ring_of};
 use crate::gpu::{
-    Bindings, Buffer, ComputePipeline, Error, Gpu, Memory, ParameterRing, Resource, Use,
+    Bindings, Buffer, ComputePipeline, Error, Gpu, Memory, ParameterRing, Resource, Use, barriers,
     buffer_barrier, group_count, within,
 };
 use crate::shaders::{CellGrid, Pass, ROOMS_A_WORD, shader};
@@ -337,10 +337,9 @@ impl EmptySpace {
             }
             // SAFETY: outside rendering; the buffers live until `cmd` has run.
             unsafe {
-                let written = &self.rooms[parity];
-                buffer_barrier(&self.gpu, cmd, written, Use::ComputeWrite, Use::ComputeRead);
-                let read = &self.rooms[1 - parity];
-                buffer_barrier(&self.gpu, cmd, read, Use::ComputeRead, Use::ComputeWrite);
+                let written = (&self.rooms[parity], Use::ComputeWrite, Use::ComputeRead);
+                let read = (&self.rooms[1 - parity], Use::ComputeRead, Use::ComputeWrite);
+                barriers(&self.gpu, cmd, [], [written, read], []);
             }
         }
         Ok(())

@@ -11,7 +11,7 @@
 
 use super::{Filter, Inputs, LightPlan, Settings};
 use crate::gpu::{
-    Bindings, Buffer, ComputePipeline, Error, Gpu, Memory, ParameterRing, Resource, Use,
+    Bindings, Buffer, ComputePipeline, Error, Gpu, Memory, ParameterRing, Resource, Use, barriers,
     buffer_barrier, group_count, within,
 };
 use crate::resident::{GpuVolume, TextureLayout};
@@ -172,10 +172,9 @@ impl LightVolume {
         let mut first = 0;
         // SAFETY: the caller's promises; each write is put between the reads before and after it.
         unsafe {
-            let barrier =
-                |buffer, before, after| buffer_barrier(&self.gpu, cmd, buffer, before, after);
+            let (gpu, written) = (&self.gpu, Use::ComputeWrite);
             if part.start == 0 {
-                barrier(&self.cells, Use::ComputeRead, Use::ComputeWrite);
+                buffer_barrier(gpu, cmd, &self.cells, Use::ComputeRead, written);
             }
             for (bound, offset) in bricks {
                 let run = within(&part, first, cell_count);
@@ -184,7 +183,7 @@ impl LightVolume {
                 self.of_cells
                     .dispatch_run(cmd, bound, &[offset, own], cell_groups, run);
                 if ends {
-                    barrier(&self.cells, Use::ComputeWrite, Use::ComputeWrite);
+                    buffer_barrier(gpu, cmd, &self.cells, written, written);
                 }
             }
             let run = within(&part, first, node_count);
@@ -192,16 +191,18 @@ impl LightVolume {
                 return Ok(());
             }
             if run.start == 0 {
-                barrier(&self.cells, Use::ComputeWrite, Use::ComputeRead);
-                barrier(&self.volume, Use::ComputeRead, Use::ComputeWrite);
-                barrier(&self.volume, Use::DrawRead, Use::ComputeWrite);
+                let cells = (&self.cells, written, Use::ComputeRead);
+                let [read, drawn] =
+                    [Use::ComputeRead, Use::DrawRead].map(|was| (&self.volume, was, written));
+                barriers(gpu, cmd, [], [cells, read, drawn], []);
             }
             let ends = run.end == node_count;
             self.of_nodes
                 .dispatch_run(cmd, &self.nodes_bound, &[own], node_groups, run);
             if ends {
-                barrier(&self.volume, Use::ComputeWrite, Use::ComputeRead);
-                barrier(&self.volume, Use::ComputeWrite, Use::DrawRead);
+                let readers = [Use::ComputeRead, Use::DrawRead];
+                let volumes = readers.map(|reader| (&self.volume, written, reader));
+                barriers(gpu, cmd, [], volumes, []);
             }
         }
         Ok(())

@@ -8,7 +8,7 @@
 //! whole pixels, so each fragment belongs to one, and the picture is the same to the bit.
 
 use super::View;
-use crate::gpu::{Buffer, Error, Gpu, Memory, Use, buffer_barrier};
+use crate::gpu::{Buffer, Error, Gpu, Memory, Use, barriers, buffer_barrier};
 use crate::resident::Apron;
 use crate::shaders::{BATCH_LAYERS, BLOCK_SIDE, LARGEST_BLOCK, LAYER_SLICES, MOST_POINT_PIXELS};
 use ash::vk;
@@ -202,8 +202,9 @@ impl Patches {
             gpu.record(|device| {
                 device.cmd_copy_buffer(cmd, self.at_rest.raw(), draws.raw(), &regions)
             });
-            buffer_barrier(gpu, cmd, draws, Use::TransferWrite, Use::ComputeWrite);
-            buffer_barrier(gpu, cmd, listed, Use::DrawRead, Use::ComputeWrite);
+            let emptied = (draws, Use::TransferWrite, Use::ComputeWrite);
+            let drawn = (listed, Use::DrawRead, Use::ComputeWrite);
+            barriers(gpu, cmd, [], [emptied, drawn], []);
         }
     }
 
@@ -212,12 +213,10 @@ impl Patches {
     /// # Safety
     /// As [`Self::record_start`].
     pub(super) unsafe fn record_listed(&self, cmd: vk::CommandBuffer) {
+        let draws = (&self.draws, Use::ComputeWrite, Use::DrawIndirect);
+        let listed = (&self.listed, Use::ComputeWrite, Use::DrawRead);
         // SAFETY: the caller's promises.
-        unsafe {
-            let gpu = &self.gpu;
-            buffer_barrier(gpu, cmd, &self.draws, Use::ComputeWrite, Use::DrawIndirect);
-            buffer_barrier(gpu, cmd, &self.listed, Use::ComputeWrite, Use::DrawRead);
-        }
+        unsafe { barriers(&self.gpu, cmd, [], [draws, listed], []) };
     }
 
     /// Tells which batch of slices of the picture, counted from 1 over all its bricks, is drawn next: squares that were
@@ -239,9 +238,8 @@ impl Patches {
         // SAFETY: the caller's promises.
         unsafe {
             buffer_barrier(&self.gpu, cmd, since, Use::DrawRead, Use::TransferWrite);
-            let bytes = batch.to_ne_bytes();
             self.gpu
-                .record(|device| device.cmd_update_buffer(cmd, since.raw(), 0, &bytes));
+                .record(|device| device.cmd_fill_buffer(cmd, since.raw(), 0, 4, batch));
             buffer_barrier(&self.gpu, cmd, since, Use::TransferWrite, next);
         }
     }

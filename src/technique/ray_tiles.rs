@@ -6,25 +6,23 @@
 //!
 //! The list is made on the device (`shaders/ray_tiles.wgsl`), which then draws as many workgroups as it holds. What is
 //! left out would have added nothing, and the picture is the same to the bit.
+//!
+//! The host writes nothing for it, so that a host may record several parts of a picture before the first is done: which
+//! tiles are looked through is said by the places of the search's workgroups.
 
 use super::Inputs;
 use crate::gpu::{
     Bindings, Buffer, ComputePipeline, Error, Gpu, Groups, Image, ImageDesc, ImageKind, Memory,
-    Resource, Tile, Use, buffer_barrier, image_barrier, memory_barrier,
+    Resource, Tile, Use, barriers,
 };
-use crate::shaders::{Shader, shader};
+use crate::shaders::{BLOCK_TILES, MOST_BLOCKS, Shader, shader};
 use ash::vk;
 use std::sync::Arc;
-
-/// Parts of a picture that are looked through at once: `MAX_PARTS` of the shader.
-const MAX_PARTS: usize = 256;
-/// Bytes of a dispatch, or of a part.
-const ENTRY_BYTES: usize = 16;
 
 /// The list of one recording at a time: a host that has several pictures in flight has one for each.
 #[derive(Clone, Debug)]
 pub struct RayTiles {
-    /// How many there are, and the parts of the picture that are looked through.
+    /// How many there are, as a dispatch.
     list: Arc<Buffer>,
     /// Which they are.
     tiles: Arc<Image>,
@@ -37,7 +35,7 @@ impl RayTiles {
     /// Where the device gives no memory, or has no images of that size.
     pub fn new(gpu: &Arc<Gpu>, extent: [u32; 2]) -> Result<Self, Error> {
         use vk::BufferUsageFlags as Usage;
-        let bytes = ((1 + MAX_PARTS) * ENTRY_BYTES) as u64;
+        let bytes = size_of::<vk::DispatchIndirectCommand>() as u64;
         let usage = Usage::STORAGE_BUFFER | Usage::INDIRECT_BUFFER | Usage::TRANSFER_DST;
         let [across, down] = extent.map(|n| n.div_ceil(Tile::STEP).max(1));
         let desc = ImageDesc {
@@ -163,139 +161,192 @@ impl TilePass {
             });
         }
         let [most, ..] = self.gpu.limits().max_workgroup_count;
-        let mut some = Parts::new(most);
+        let offsets = [offset];
+        // Of the list that is being made.
+        let mut room = None;
         for part in parts {
             let mut left = self.rays.groups_of(extent, part)?;
-            while some.take(&mut left) {
-                // SAFETY: the caller's promises.
-                unsafe { self.record_some(cmd, bindings, offset, &some)? };
-                some = Parts::new(most);
+            while let Some(rows) = take(&mut left, room.unwrap_or(most)) {
+                if rows.count[1] == 0 {
+                    // SAFETY: the caller's promises, here and below.
+                    unsafe { self.record_rays(cmd, bindings, offset) };
+                    room = None;
+                    continue;
+                }
+                if room.is_none() {
+                    // SAFETY: as above.
+                    unsafe { self.record_empty(cmd, &bindings.tiles) };
+                }
+                room = Some(room.unwrap_or(most) - rows.count[0] * rows.count[1]);
+                // SAFETY: as above; no more tiles are looked through than the list and a dispatch have room for.
+                unsafe {
+                    let (bound, blocks) = (&bindings.search, blocks(rows, extent));
+                    self.search.dispatch_boxes(cmd, bound, &offsets, blocks);
+                }
             }
         }
-        // SAFETY: as above.
-        unsafe { self.record_some(cmd, bindings, offset, &some) }
-    }
-
-    /// # Safety
-    /// As [`Self::record`].
-    unsafe fn record_some(
-        &self,
-        cmd: vk::CommandBuffer,
-        bindings: &RayBindings,
-        offset: u32,
-        parts: &Parts,
-    ) -> Result<(), Error> {
-        if parts.count == 0 {
-            return Ok(());
-        }
-        let [width, height] = parts.largest;
-        let groups = self.search.groups([width, height, parts.count as u32])?;
-        let (gpu, RayTiles { list, tiles }) = (&self.gpu, &bindings.tiles);
-        let written = Use::ComputeWrite;
-        // SAFETY: the caller's promises; what is written fits, and there are no more tiles than the dispatch may have
-        // workgroups.
-        unsafe {
-            // Pixels that the search leaves and those that rays fill lie in the same images.
-            memory_barrier(gpu, cmd, written, written);
-            image_barrier(gpu, cmd, tiles, Use::ComputeDone, written);
-            buffer_barrier(gpu, cmd, list, Use::DrawIndirect, Use::TransferWrite);
-            gpu.record(|device| device.cmd_update_buffer(cmd, list.raw(), 0, parts.bytes()));
-            buffer_barrier(gpu, cmd, list, Use::TransferWrite, written);
-            self.search
-                .dispatch(cmd, &bindings.search, &[offset], groups);
-            memory_barrier(gpu, cmd, written, written);
-            buffer_barrier(gpu, cmd, list, written, Use::DrawIndirect);
-            self.rays
-                .dispatch_indirect(cmd, &bindings.rays, &[offset], list);
+        if room.is_some() {
+            // SAFETY: as above.
+            unsafe { self.record_rays(cmd, bindings, offset) };
         }
         Ok(())
     }
-}
 
-/// Parts of a picture as the search reads them, behind a dispatch of nothing.
-struct Parts {
-    words: [[u32; 4]; 1 + MAX_PARTS],
-    count: usize,
-    /// Of all parts, and how many there may be.
-    tiles: u32,
-    most: u32,
-    /// The most across and down.
-    largest: [u32; 2],
-}
-
-impl Parts {
-    fn new(most: u32) -> Self {
-        let mut words = [[0; 4]; 1 + MAX_PARTS];
-        words[0] = [0, 1, 1, 0];
-        Self {
-            words,
-            count: 0,
-            tiles: 0,
-            most,
-            largest: [0; 2],
+    /// Empties the list.
+    ///
+    /// # Safety
+    /// As [`Self::record`].
+    unsafe fn record_empty(&self, cmd: vk::CommandBuffer, tiles: &RayTiles) {
+        let (gpu, RayTiles { list, tiles }) = (&self.gpu, tiles);
+        let written = Use::ComputeWrite;
+        let drawn = (&**list, Use::DrawIndirect, Use::TransferWrite);
+        let read = (&**tiles, Use::ComputeDone, written);
+        let emptied = (&**list, Use::TransferWrite, written);
+        // SAFETY: the caller's promises; what is written lies in the list.
+        unsafe {
+            // Pixels that the search leaves and those that rays fill lie in the same images.
+            barriers(gpu, cmd, [(written, written)], [drawn], [read]);
+            // A dispatch of no workgroups across, one down and one deep.
+            gpu.record(|device| {
+                device.cmd_fill_buffer(cmd, list.raw(), 0, 4, 0);
+                device.cmd_fill_buffer(cmd, list.raw(), 4, vk::WHOLE_SIZE, 1);
+            });
+            barriers(gpu, cmd, [], [emptied], []);
         }
     }
 
-    /// Takes as many rows of `part` as there is room for. Whether some are left.
-    fn take(&mut self, part: &mut Groups) -> bool {
-        let [across, down, _] = part.count;
-        if across == 0 || down == 0 {
-            return false;
+    /// Draws what was listed.
+    ///
+    /// # Safety
+    /// As [`Self::record`].
+    unsafe fn record_rays(&self, cmd: vk::CommandBuffer, bindings: &RayBindings, offset: u32) {
+        let (list, written) = (&*bindings.tiles.list, Use::ComputeWrite);
+        let listed = (list, written, Use::DrawIndirect);
+        // SAFETY: the caller's promises.
+        unsafe {
+            barriers(&self.gpu, cmd, [(written, written)], [listed], []);
+            self.rays
+                .dispatch_indirect(cmd, &bindings.rays, &[offset], list);
         }
-        let room = match self.count < MAX_PARTS {
-            true => (self.most - self.tiles) / across,
-            false => 0,
+    }
+}
+
+/// As many rows of `part` as there is room for; `None` where none is left.
+fn take(part: &mut Groups, room: u32) -> Option<Groups> {
+    let [across, down, _] = part.count;
+    if across == 0 || down == 0 {
+        return None;
+    }
+    let mut rows = *part;
+    rows.count[1] = down.min(room / across);
+    part.base[1] += rows.count[1];
+    part.count[1] -= rows.count[1];
+    Some(rows)
+}
+
+/// Workgroups of the search for a rectangle of tiles of a picture: boxes of blocks that are looked through alike. What
+/// lies beyond the edge of the picture is in none of them: the shader leaves it out.
+fn blocks(tiles: Groups, extent: [u32; 2]) -> impl Iterator<Item = Groups> {
+    let [across, down] = [0, 1].map(|k| {
+        let end = tiles.base[k] + tiles.count[k];
+        let end = match end * Tile::STEP >= extent[k] {
+            true => end.next_multiple_of(BLOCK_TILES),
+            false => end,
         };
-        let rows = room.min(down);
-        if rows > 0 {
-            self.count += 1;
-            self.words[self.count] = [part.base[0], part.base[1], across, rows];
-            self.tiles += across * rows;
-            self.largest = [self.largest[0].max(across), self.largest[1].max(rows)];
-            part.base[1] += rows;
-            part.count[1] -= rows;
-        }
-        part.count[1] > 0
-    }
+        runs(tiles.base[k], end)
+    });
+    across.flat_map(move |[x, width]| {
+        down.clone().map(move |[y, height]| Groups {
+            base: [0, x, y],
+            count: [1, width, height],
+        })
+    })
+}
 
-    fn bytes(&self) -> &[u8] {
-        bytemuck::cast_slice(&self.words[..=self.count])
-    }
+/// Blocks of the tiles from `first` to before `end` of one axis: the place of the first of them, which says how many
+/// tiles are left out before and behind, too; and how many blocks.
+fn runs(first: u32, end: u32) -> impl Iterator<Item = [u32; 2]> + Clone {
+    let mut at = first;
+    std::iter::from_fn(move || {
+        let (block, before) = (at / BLOCK_TILES, at % BLOCK_TILES);
+        let count = match before {
+            0 => ((end - at) / BLOCK_TILES).max(1),
+            _ => 1,
+        };
+        let after = BLOCK_TILES * (block + count);
+        let left_out = before + BLOCK_TILES * after.saturating_sub(end);
+        let run = (at < end).then_some([block + MOST_BLOCKS * left_out, count]);
+        at = end.min(after);
+        run
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn parts_are_cut_by_rows_where_there_are_too_many_tiles_and_none_is_lost() {
-        let mut left = Groups {
-            base: [3, 5, 0],
-            count: [7, 10, 1],
-        };
-        let mut taken = Vec::new();
-        let mut some = Parts::new(30);
-        while some.take(&mut left) {
-            taken.push((some.words[1], some.tiles));
-            some = Parts::new(30);
+    fn groups(base: [u32; 2], count: [u32; 2]) -> Groups {
+        Groups {
+            base: [base[0], base[1], 0],
+            count: [count[0], count[1], 1],
         }
-        taken.push((some.words[1], some.tiles));
-        let wanted = [[3, 5, 7, 4], [3, 9, 7, 4], [3, 13, 7, 2]];
-        assert_eq!(taken, wanted.map(|part| (part, part[2] * part[3])));
     }
 
     #[test]
-    fn so_are_more_parts_than_a_list_has() {
-        let one = |k: u32| Groups {
-            base: [k, 0, 0],
-            count: [1, 1, 1],
-        };
-        let mut some = Parts::new(u32::MAX);
-        for k in 0..MAX_PARTS as u32 {
-            assert!(!some.take(&mut one(k)), "{k}");
+    fn parts_are_cut_by_rows_where_there_are_too_many_tiles_and_none_is_lost() {
+        let mut left = groups([3, 5], [7, 10]);
+        let taken: Vec<_> = std::iter::from_fn(|| take(&mut left, 30)).collect();
+        let wanted = [(5, 4), (9, 4), (13, 2)].map(|(y, rows)| groups([3, y], [7, rows]));
+        assert_eq!(taken, wanted);
+        assert_eq!(
+            take(&mut groups([0, 0], [7, 1]), 6),
+            Some(groups([0, 0], [7, 0]))
+        );
+    }
+
+    /// As the shader takes the places of its invocations.
+    #[test]
+    fn blocks_have_each_tile_of_a_part_once_and_no_other() {
+        // In tiles.
+        let extent = [29, 34];
+        for (base, count) in [
+            ([0, 0], [29, 34]),
+            ([0, 0], [16, 16]),
+            ([0, 0], [5, 23]),
+            ([8, 16], [8, 8]),
+            ([3, 5], [2, 1]),
+            ([3, 5], [5, 29]),
+            ([7, 1], [22, 7]),
+        ] {
+            let part = groups(base, count);
+            let mut seen = [[0; 40]; 40];
+            for Groups { base, count } in blocks(part, extent.map(|n| 8 * n - 3)) {
+                assert_eq!((base[0], count[0]), (0, 1));
+                let of_axis = |k: usize| {
+                    let left_out = base[k] / MOST_BLOCKS;
+                    let (before, behind) = (left_out % 8, left_out / 8);
+                    let first = 8 * (base[k] % MOST_BLOCKS);
+                    let tiles = first..(first + 8 * count[k]).min(extent[k - 1]);
+                    tiles.filter(move |tile| tile % 8 >= before && tile % 8 + behind < 8)
+                };
+                for y in of_axis(2) {
+                    of_axis(1).for_each(|x| seen[y as usize][x as usize] += 1);
+                }
+            }
+            for (y, row) in (0..).zip(seen) {
+                for (x, seen) in (0..).zip(row) {
+                    let is_in = |k: usize, at: u32| at >= base[k] && at < base[k] + count[k];
+                    let wanted = u32::from(is_in(0, x) && is_in(1, y));
+                    assert_eq!(seen, wanted, "{part:?} at {x}, {y}");
+                }
+            }
         }
-        assert!(some.take(&mut one(999)));
-        assert_eq!((some.count, some.largest), (MAX_PARTS, [1, 1]));
-        assert_eq!(some.bytes().len(), (1 + MAX_PARTS) * ENTRY_BYTES);
+        // Whole pictures in one box.
+        let whole = blocks(groups([0, 0], [29, 34]), extent.map(|n| 8 * n - 3));
+        let wanted = Groups {
+            base: [0; 3],
+            count: [1, 4, 5],
+        };
+        assert_eq!(whole.collect::<Vec<_>>(), [wanted]);
     }
 }

@@ -6,6 +6,7 @@ mod hooked;
 #[path = "../shared/mod.rs"]
 mod shared;
 
+mod calls;
 mod device_loss;
 mod embedded;
 mod sweep;

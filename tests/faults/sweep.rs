@@ -19,11 +19,12 @@ use stratavox::technique::{Mode, Settings, Technique};
 
 type Drawn = Result<Vec<u8>, Box<dyn Error>>;
 
-/// What may fail without a word: names of objects, and the wait before a device of our own goes, after which there is
-/// nobody to tell.
-const COURTESIES: [&str; 3] = [
+/// What may fail without a word: names of objects, the wait before a device of our own goes, after which there is
+/// nobody to tell, and what gives back, which has no code of a failure.
+const COURTESIES: [&str; 4] = [
     "vkSetDebugUtilsObjectNameEXT",
     "vkDeviceWaitIdle",
+    "vkFreeDescriptorSets",
     // What it tells of is of use, no more.
     "vkEnumerateDeviceExtensionProperties",
 ];

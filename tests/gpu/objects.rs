@@ -120,7 +120,7 @@ fn every_kind_of_owner_is_gone_after_drop_and_retire() {
         ];
         let kinds = kinds
             .iter()
-            .chain(&["pipeline", "shader module", "descriptor pool", "memory"]);
+            .chain(&["pipeline", "shader module", "descriptor set", "memory"]);
         for kind in kinds {
             assert!(alive.contains_key(kind), "no {kind} in {alive:?}");
         }

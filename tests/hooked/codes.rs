@@ -48,6 +48,8 @@ pub fn codes(function: &str) -> &'static [vk::Result] {
             R::ERROR_FRAGMENTED_POOL,
             R::ERROR_OUT_OF_POOL_MEMORY,
         ],
+        // It returns a code, and has none of a failure.
+        "vkFreeDescriptorSets" => &[],
         "vkResetCommandPool" | "vkResetFences" => &[DEVICE],
         "vkGetQueryPoolResults"
         | "vkQueueSubmit"

@@ -163,6 +163,8 @@ fallible! {
     vkAllocateDescriptorSets(
         device: vk::Device, info: *const vk::DescriptorSetAllocateInfo<'_>,
         out: *mut vk::DescriptorSet);
+    vkFreeDescriptorSets(
+        device: vk::Device, pool: vk::DescriptorPool, count: u32, sets: *const vk::DescriptorSet);
     vkCreateQueryPool(
         device: vk::Device, info: *const vk::QueryPoolCreateInfo<'_>, alloc: Alloc,
         out: *mut vk::QueryPool) => { made("query pool", *out) };
@@ -284,7 +286,4 @@ others! {
     vkCmdCopyBuffer(
         cmd: vk::CommandBuffer, from: vk::Buffer, to: vk::Buffer, count: u32,
         regions: *const vk::BufferCopy);
-    vkCmdUpdateBuffer(
-        cmd: vk::CommandBuffer, buffer: vk::Buffer, offset: vk::DeviceSize, size: vk::DeviceSize,
-        data: *const c_void);
 }
