@@ -7,15 +7,18 @@
 //!
 //! | floor | modules | what they know |
 //! |---|---|---|
-//! | 0 | [`shaders`], [`real`], [`ray`], [`blue_noise`], [`lattice`], [`color`], `fence`, `named` | arithmetic shared with the shaders, free of Vulkan |
+//! | 0 | `shaders`, `real`, `ray`, `blue_noise`, `lattice`, [`color`], `fence`, `named` | arithmetic shared with the shaders, free of Vulkan |
 //! | 1 | [`gpu`], [`volume`], [`transfer`], [`camera`], [`picture`], [`mesh`], `figure` | Vulkan objects, or data; never both |
-//! | 2 | [`resident`], [`isosurface`], `format` | data put on a device; a surface in a volume; bytes of files turned into a [`volume::Source`] |
-//! | 3 | [`technique`], [`resolve`], [`look`] | `new`, `bind`, `record`, and the CPU twins; what suits a volume |
+//! | 2 | [`resident`], `isosurface`, `format` | data put on a device; a surface in a volume; bytes of files turned into a [`volume::Source`] |
+//! | 3 | [`technique`], [`resolve`], `look` | `new`, `bind`, `record`, and the CPU twins; what suits a volume |
 //! | 4 | [`embed`] | a volume in a host's frames |
 //! | 5 | [`scene`], [`offscreen`], `annotate` | a scene to a [`picture::Picture`], the only place that waits; words and marks over it |
 //! | 6 | `conformance` | cases with exact answers, and verdicts on devices |
 //! | 7 | `cli` | words to scenes, errors to exit codes |
 //! | 7 | `capi` | what [`embed`] does, for C |
+//!
+//! Modules and items that this documentation does not show serve the program and the tests: they are no promise, and
+//! change with any version.
 //!
 //! # Spaces
 //!
@@ -167,14 +170,17 @@
 
 #[cfg(feature = "png")]
 pub mod annotate;
+#[doc(hidden)]
 pub mod blue_noise;
 pub mod camera;
 #[cfg(feature = "capi")]
 pub mod capi;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod cli;
 pub mod color;
 #[cfg(feature = "conformance")]
+#[doc(hidden)]
 pub mod conformance;
 pub mod embed;
 #[cfg(feature = "files")]
@@ -192,18 +198,24 @@ mod figure;
 #[cfg(feature = "files")]
 pub mod format;
 pub mod gpu;
+#[doc(hidden)]
 pub mod isosurface;
+#[doc(hidden)]
 pub mod lattice;
+#[doc(hidden)]
 pub mod look;
 pub mod mesh;
 mod named;
 pub mod offscreen;
 pub mod picture;
+#[doc(hidden)]
 pub mod ray;
+#[doc(hidden)]
 pub mod real;
 pub mod resident;
 pub mod resolve;
 pub mod scene;
+#[doc(hidden)]
 pub mod shaders;
 pub mod technique;
 pub mod transfer;

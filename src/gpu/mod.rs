@@ -63,15 +63,18 @@ pub use caps::Caps;
 pub use choice::DeviceChoice;
 pub use commands::{Commands, TimelinePoint};
 pub(crate) use copy::buffer_to_buffer;
+#[doc(hidden)]
 pub use copy::{Region, buffer_to_image, clear_image, image_to_buffer};
 pub use devices::{DeviceReport, Enabled, Finding, HostPhysicalDevice, check_device, list_devices};
 pub use error::Error;
+#[doc(hidden)]
 pub use format::{FormatFeatures, texel_bytes};
 pub use headless::{Headless, Options, Submissions};
 pub use host::{Features, HostDevice};
 pub use identity::{DeviceKind, Identity};
 pub(crate) use image::DEPTH_FORMAT;
 pub use image::{Image, ImageDesc, ImageKind};
+#[doc(hidden)]
 pub use layout::Layout;
 pub use memory::{HeapUse, MemoryUse};
 pub(crate) use pace::{Pace, TARGET_MS};
@@ -84,11 +87,13 @@ pub use rendering::{
     Load, begin_rendering, begin_rendering_of, end_rendering, set_area, set_area_of,
 };
 pub use requirements::{Feature, Item, Limit, Need, REQUIREMENTS, Requirement};
+#[doc(hidden)]
 pub use sampler::Sampler;
 #[cfg(feature = "conformance")]
 pub(crate) use shared_device::SharedDevice;
 pub use tile::Tile;
 pub(crate) use tile::{Groups, boxes, group_count, within};
+#[doc(hidden)]
 pub use timer::Timer;
 pub use validation::{Message, VARIABLE as VALIDATION_VARIABLE, Validation, ValidationMode};
 

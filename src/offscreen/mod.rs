@@ -6,6 +6,7 @@ mod denoise;
 mod fade;
 mod gathered;
 mod gradients;
+mod keyed;
 mod light;
 mod passes;
 mod position;

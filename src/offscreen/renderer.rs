@@ -20,6 +20,7 @@ mod streaming;
 use super::Error;
 use super::fade::{render_faded, stacks_of};
 use super::gradients::decided;
+use super::keyed::Keyed;
 use super::light::Matter;
 use super::passes::{Passes, key_of};
 use super::stream::{Cache, Stream};
@@ -36,7 +37,7 @@ use crate::scene::{Scene, positions_in_pixel};
 use crate::technique::cost::ms_of_looks;
 use crate::technique::gather::{CanvasDesc, PICTURE};
 use crate::technique::{
-    self, Functions, InPixel, LightVolume, Mix, Mode, Part, Words, parameter_ring,
+    self, Functions, InPixel, LightPlan, LightVolume, Mix, Mode, Part, Words, parameter_ring,
 };
 use crate::transfer::{Graded, TransferFunction};
 use crate::volume::Volume;
@@ -72,8 +73,8 @@ pub struct Renderer<'v> {
     streaming: Option<Streaming<'v>>,
     /// What has been needed so far.
     resident: HashMap<Copied, Vec<GpuVolume>>,
-    transfer: Option<Uploaded>,
-    light: Option<Lit>,
+    transfer: Keyed<Classifying, GpuTransfer>,
+    light: Keyed<(Matter, LightPlan), LightVolume>,
     skipped: Skipped,
     targets: Option<Targets>,
     passes: Option<Passes>,
@@ -89,20 +90,12 @@ pub struct Renderer<'v> {
     device: Headless,
 }
 
-/// A transfer function on the device, and what it was made of.
-#[derive(Debug)]
-struct Uploaded {
+/// What transfer functions on the device are made of.
+#[derive(Debug, PartialEq)]
+struct Classifying {
     functions: Vec<TransferFunction>,
     space: ColorSpace,
-    made: GpuTransfer,
     is_preintegrated: bool,
-}
-
-/// A light volume on the device, and the matter that it was made of.
-#[derive(Debug)]
-struct Lit {
-    matter: Matter,
-    made: LightVolume,
 }
 
 impl<'v> Renderer<'v> {
@@ -379,7 +372,7 @@ impl<'v> Renderer<'v> {
         let expected_ms = self.resolve_ms();
         let passes = self.passes.as_ref().expect("prepared");
         let targets = self.targets.as_ref().expect("prepared");
-        let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
+        let transfer = self.transfer.get();
         let gathered = targets.canvas.image(PICTURE);
         let ring = (&self.ring, self.ring.offset(0)?);
         let finish = passes.finish(gathered, &targets.output, ring, transfer)?;

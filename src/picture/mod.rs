@@ -2,6 +2,7 @@
 //! pictures are apart.
 
 mod background;
+#[doc(hidden)]
 pub mod compare;
 #[cfg(feature = "exr")]
 mod exr;

@@ -1,6 +1,7 @@
 //! What a technique left behind to linear premultiplied colour: a draw that is legal inside a host's rendering.
 
 mod depth;
+#[doc(hidden)]
 pub mod reference;
 
 pub use depth::DepthResolve;

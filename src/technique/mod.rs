@@ -3,20 +3,25 @@
 mod accumulation;
 mod alike_cells;
 pub mod blend;
+#[doc(hidden)]
 pub mod composite;
 pub(crate) mod cost;
 mod error;
+#[doc(hidden)]
 pub mod faces;
 mod filter_by;
 mod frame;
 mod frame_of_mode;
 pub(crate) mod gather;
+#[doc(hidden)]
 pub mod gradient;
 mod gradient_filter;
+#[doc(hidden)]
 pub mod gradient_taps;
 mod host_depth_copy;
 mod in_pixel;
 mod inputs;
+#[doc(hidden)]
 pub mod isosurface;
 pub(crate) mod layers;
 mod light_field;
@@ -24,14 +29,18 @@ mod light_paths;
 mod light_plan;
 mod light_volume;
 mod march;
+#[doc(hidden)]
 pub mod merge;
+#[doc(hidden)]
 pub mod mida;
+#[doc(hidden)]
 pub mod mixture;
 mod modes;
 mod names;
 mod patch_slicer;
 mod patches;
 mod per_mode;
+#[doc(hidden)]
 pub mod preclassified;
 pub mod projection;
 mod ray_tiles;
@@ -39,7 +48,9 @@ pub mod raycast;
 mod recording;
 pub(crate) mod reference;
 mod registry;
+#[doc(hidden)]
 pub mod second;
+#[doc(hidden)]
 pub mod shading;
 mod skip;
 mod slab;
@@ -50,6 +61,7 @@ mod turns;
 mod ways;
 
 pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
+#[doc(hidden)]
 pub use alike_cells::AlikeCells;
 pub use error::Error;
 pub use filter_by::FilterBy;
@@ -57,6 +69,7 @@ pub use frame::View;
 pub use gradient_filter::{GradientFilter, GradientSource, Keep, Operator};
 pub use in_pixel::InPixel;
 pub use inputs::{Inputs, Take, Words};
+#[doc(hidden)]
 pub use light_field::LightField;
 pub use light_plan::{AmbientOcclusion, LightPlan, MAX_LIGHT_CELLS, MAX_RADIUS_CELLS, Shadows};
 pub use light_volume::LightVolume;
@@ -71,6 +84,7 @@ pub use recording::{Recording, parameter_ring};
 pub use shading::{Light, LightSpace, Shading};
 pub use skip::{Skip, Skippable};
 pub use slicer::{Sight, Slicer};
+#[doc(hidden)]
 pub use turns::Functions;
 
 use crate::volume::{Spline, kernel::Kernel};

@@ -126,9 +126,7 @@ impl Settings {
     /// [`Error::NeedsRays`], [`Error::NeedsRayLattice`], [`Error::NoDepth`] and [`Error::NotExact`].
     pub(crate) fn check_mode(&self) -> Result<(), Error> {
         let (technique, mode) = (self.technique, self.mode);
-        if !technique.casts_rays() && mode.needs_rays() {
-            return Err(Error::NeedsRays { technique, mode });
-        }
+        (technique.desc().supports)(self)?;
         if self.lattice == Lattice::Planes && mode.needs_rays() {
             return Err(Error::NeedsRayLattice { mode });
         }

@@ -95,7 +95,7 @@ impl View<'_> {
         self.each_brick(&parts, transfer, Walk::Picture, order, each)
     }
 
-    /// What is recorded for the depth of slices ([`super::RayPass::along_slices`]), which rays find that walk along the
+    /// What is recorded for the depth of slices (`technique/gather/rays.rs`), which rays find that walk along the
     /// slices from front to back, and end where a composite has become half opaque.
     ///
     /// # Errors

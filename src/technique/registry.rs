@@ -2,7 +2,7 @@
 
 use super::gather::{Gather, GatherDesc};
 use super::reference::{Gathered, Samples};
-use super::{Technique, View, raycast, slices_2d, slices_3d};
+use super::{Error, Settings, Technique, View, raycast, slices_2d, slices_3d};
 use crate::gpu;
 use crate::real::Real;
 use crate::resident::TextureLayout;
@@ -17,6 +17,8 @@ pub(crate) struct TechniqueDesc {
     pub casts_rays: bool,
     /// The slices are those of the volume's own grid: one sample a slice, whatever the step is.
     pub draws_stacks: bool,
+    /// Refuses what it has no passes for.
+    pub supports: fn(&Settings) -> Result<(), Error>,
     /// Its slices may lie half way between the eye and a light.
     pub has_half_angle: bool,
     /// How a volume lies in textures so that it can be seen from everywhere.

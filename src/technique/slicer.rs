@@ -2,7 +2,7 @@
 //! the blending unit, all slices of a picture in one instanced draw.
 
 use super::blend::{Drawn, operator};
-use super::{Inputs, Order, Technique, Words};
+use super::{Inputs, Order, Settings, Technique, Words};
 use crate::gpu::{
     Bindings, DepthUse, Error, Gpu, RasterDesc, RasterPipeline, Resource, TargetClass, Tile,
     set_area_of,
@@ -10,6 +10,17 @@ use crate::gpu::{
 use ash::vk;
 use std::ops::Range;
 use std::sync::Arc;
+
+/// A blending unit has one number a channel: no mode in which a sample depends on those before it.
+pub(super) fn slicer_supports(settings: &Settings) -> Result<(), super::Error> {
+    let Settings {
+        technique, mode, ..
+    } = *settings;
+    match mode.needs_rays() {
+        true => Err(super::Error::NeedsRays { technique, mode }),
+        false => Ok(()),
+    }
+}
 
 /// What hides samples of slices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -43,8 +43,10 @@ mod table;
 mod widgets;
 mod window;
 
+#[doc(hidden)]
 pub use alike::{Alike, Tolerance};
 pub use automatic::{Kind, automatic};
+#[doc(hidden)]
 pub use boundaries::{JointCounts, boundaries};
 pub use by_meaning::{Choice, Context, LIT_LABEL_OPACITY, automatic_in};
 #[cfg(feature = "cli")]
@@ -65,13 +67,19 @@ pub use law::{Absorption, MAX_OPACITY, extinction, opacity_over};
 pub use levels::{SURFACE_COLORS, Surface, surfaces};
 pub use materials::{Material, TooMuch};
 pub use meaning::{MEANINGS, Meaning, Scale as MeaningScale};
+#[doc(hidden)]
 pub use points::{Points, classify_by_points};
 pub use preset::Preset;
 pub use quantity::Quantity;
+#[doc(hidden)]
 pub use seen::{Near, Seen};
+#[doc(hidden)]
 pub use slabs::{SlabCell, SlabTable, classify_slab};
+#[doc(hidden)]
 pub use summary::ValueSummary;
+#[doc(hidden)]
 pub use table::{MAX_ENTRIES, MIN_ENTRIES, Table, classify_by_table};
+#[doc(hidden)]
 pub use widgets::{PackedWidgets, Steepness, classify_by_gradient};
 pub use window::{Classified, Window};
 

@@ -11,12 +11,14 @@
 mod colors;
 mod components;
 mod denoise;
+#[doc(hidden)]
 pub mod field;
 mod grid;
 mod header;
 mod histogram;
 mod holes;
 mod joint;
+#[doc(hidden)]
 pub mod kernel;
 pub mod labels;
 mod limits;
@@ -31,6 +33,7 @@ mod read;
 mod read_error;
 mod reduce;
 mod regrid;
+#[doc(hidden)]
 pub mod sample;
 mod source;
 mod statistics;

@@ -1,6 +1,6 @@
 //! What classifies and lights the samples of a scene, on the device and made anew only where it changes.
 
-use super::{Lit, Renderer, Uploaded, parts_of};
+use super::{Classifying, Renderer, parts_of};
 use crate::offscreen::Error;
 use crate::offscreen::light::{Matter, made_light};
 use crate::resident::GpuTransfer;
@@ -29,17 +29,12 @@ impl Renderer<'_> {
         self.set_transfers(scene, &functions)?;
         let Some(plan) = plan else { return Ok(()) };
         let matter = Matter::of(scene, functions[0]);
-        let is_there = |lit: &Lit| *lit.made.plan() == plan && lit.matter == matter;
-        if self.light.as_ref().is_some_and(is_there) {
-            return Ok(());
-        }
-        // Its memory first.
-        self.light = None;
         let parts = parts_of(&self.resident, self.shown, scene);
-        let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
         let (device, slices) = (&mut self.device, &mut self.slices);
-        let made = made_light(device, slices, scene, plan, &parts, transfer)?;
-        self.light = Some(Lit { matter, made });
+        let transfer = self.transfer.get();
+        self.light.of((matter, plan), |(_, plan)| {
+            made_light(device, slices, scene, plan.clone(), &parts, transfer)
+        })?;
         Ok(())
     }
 
@@ -53,32 +48,27 @@ impl Renderer<'_> {
             preintegrated: is_preintegrated,
             ..
         } = *scene.settings;
-        let is_there = |there: &Uploaded| {
-            there.functions.iter().eq(functions.iter().copied())
-                && there.space == space
-                && there.is_preintegrated == is_preintegrated
-        };
-        if self.transfer.as_ref().is_some_and(is_there) {
-            return Ok(());
-        }
-        let with_length = functions.iter().map(|&f| (f, scene.length_of(f)));
-        let with_length: Vec<_> = with_length.collect();
-        let gpu = self.device.gpu();
-        let made = match with_length[..] {
-            [(function, length)] if is_preintegrated => {
-                GpuTransfer::preintegrated(gpu, function, length, space)?
-            }
-            _ => GpuTransfer::several(gpu, &with_length, space)?,
-        };
-        // SAFETY: recorded outside rendering; `run` waits, and `made` lives meanwhile.
-        self.device.run(|cmd| unsafe { made.record_upload(cmd) })?;
-        self.changes += 1;
-        self.transfer = Some(Uploaded {
+        let key = Classifying {
             functions: functions.iter().copied().cloned().collect(),
             space,
-            made,
             is_preintegrated,
-        });
+        };
+        let (device, changes) = (&mut self.device, &mut self.changes);
+        self.transfer.of(key, |_| {
+            let with_length = functions.iter().map(|&f| (f, scene.length_of(f)));
+            let with_length: Vec<_> = with_length.collect();
+            let gpu = device.gpu();
+            let made = match with_length[..] {
+                [(function, length)] if is_preintegrated => {
+                    GpuTransfer::preintegrated(gpu, function, length, space)?
+                }
+                _ => GpuTransfer::several(gpu, &with_length, space)?,
+            };
+            // SAFETY: recorded outside rendering; `run` waits, and `made` lives meanwhile.
+            device.run(|cmd| unsafe { made.record_upload(cmd) })?;
+            *changes += 1;
+            Ok::<_, Error>(made)
+        })?;
         Ok(())
     }
 }

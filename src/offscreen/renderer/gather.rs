@@ -67,7 +67,7 @@ impl Renderer<'_> {
     ) -> Result<(Spent, Expected), Error> {
         let grid = scene.volume.grid();
         let view = scene.view(&grid, in_pixel);
-        let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
+        let transfer = self.transfer.get();
         let parts = parts_of(&self.resident, self.shown, scene);
         let mut recordings = view.recordings_of(&parts, transfer)?;
         let expected = self.expected(scene, &view, &recordings, parts.len());
@@ -93,7 +93,7 @@ impl Renderer<'_> {
             brick: &volume.bricks()[recording.brick],
             transfer,
             beside,
-            light: self.light.as_ref().map(|lit| &lit.made),
+            light: self.light.get(),
             skip,
         };
         let with_others = recordings.iter().zip(beside.iter().map(Vec::as_slice));

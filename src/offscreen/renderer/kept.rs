@@ -2,6 +2,7 @@
 
 use super::Renderer;
 use crate::gpu::{Headless, ParameterRing, Timer};
+use crate::offscreen::keyed::Keyed;
 use crate::offscreen::passes::Passes;
 use crate::offscreen::targets::Targets;
 use crate::offscreen::time_slices::TimeSlices;
@@ -64,8 +65,8 @@ impl<'v> Renderer<'v> {
             shown: 0,
             streaming: None,
             resident: HashMap::new(),
-            transfer: None,
-            light: None,
+            transfer: Keyed::default(),
+            light: Keyed::default(),
             skipped: Skipped::default(),
             targets,
             passes,

@@ -3,6 +3,7 @@
 use super::{Copied, Renderer, parts_of};
 use crate::gpu::{self, Headless};
 use crate::offscreen::Error;
+use crate::offscreen::keyed::Keyed;
 use crate::offscreen::stream::if_it_fits;
 use crate::offscreen::time_slices::Work;
 use crate::offscreen::upload::fill;
@@ -18,8 +19,8 @@ use std::sync::Arc;
 #[derive(Debug, Default)]
 pub struct Skipped {
     /// Of each volume of a mixture.
-    cells: Option<(Of, Vec<MacroCells>)>,
-    empty: Option<(Shown, EmptySpace)>,
+    cells: Keyed<Of, Option<Vec<MacroCells>>>,
+    empty: Keyed<(Of, Shown), Option<EmptySpace>>,
     wanted: Option<Skippable>,
 }
 
@@ -38,14 +39,16 @@ struct Of {
 impl Skipped {
     /// What recordings are told.
     pub fn skip(&self) -> Skip<'_> {
-        match (&self.wanted, &self.cells, &self.empty) {
-            (Some(Skippable::Exceeded), Some((_, cells)), _) => Skip::Exceeded(&cells[0]),
+        let cells = self.cells.get().and_then(Option::as_ref);
+        let empty = self.empty.get().and_then(Option::as_ref);
+        match (&self.wanted, cells, empty) {
+            (Some(Skippable::Exceeded), Some(cells), _) => Skip::Exceeded(&cells[0]),
             (
                 Some(
                     Skippable::Unseen(_) | Skippable::UnseenInAll(_) | Skippable::UnseenOrAlike(..),
                 ),
-                Some((_, cells)),
-                Some((_, empty)),
+                Some(cells),
+                Some(empty),
             ) => Skip::Unseen(&cells[0], empty),
             _ => Skip::Nothing,
         }
@@ -142,26 +145,12 @@ impl Renderer<'_> {
             volumes,
             apron,
         };
-        let there = self.skipped.cells.as_ref();
-        if there.is_none_or(|(there, _)| *there != of) {
-            self.skipped = Skipped::default();
-            let mut all = Vec::new();
-            for number in 0..volumes {
-                let Some(made) = if_it_fits(self.cells_of(scene, number, apron))? else {
-                    return Ok(());
-                };
-                // A cell of 8^3 voxels with an apron around them, which are not filtered.
-                let looks = 100.0 * made.cell_count() as f64;
-                let expected_ms = ms_of_looks(self.device.gpu(), looks);
-                let work = Work::beside(0..made.group_count()?, expected_ms);
-                self.slices
-                    .run(&mut self.device, None, work, |cmd, _, part| {
-                        // SAFETY: recorded outside rendering; the volume has been uploaded; `run` waits.
-                        unsafe { made.record_part(cmd, part) }
-                    })?;
-                all.push(made);
-            }
-            self.skipped.cells = Some((of, all));
+        let mut cells = std::mem::take(&mut self.skipped.cells);
+        let found = cells.of(of, |_| self.make_cells(scene, volumes, apron));
+        let is_there = found.map(|found| found.is_some());
+        self.skipped.cells = cells;
+        if !is_there? {
+            return Ok(());
         }
         let seen = match &wanted {
             Skippable::Unseen(seen) | Skippable::UnseenOrAlike(seen, _) => vec![(0, seen.clone())],
@@ -172,33 +161,70 @@ impl Renderer<'_> {
             Skippable::UnseenOrAlike(_, alike) => Some(alike.clone()),
             _ => None,
         };
-        let there = self.skipped.empty.as_ref();
-        let is_there = |((of, like), _): &(Shown, _)| (of, like) == (&seen, &alike);
-        if !seen.is_empty() && !there.is_some_and(is_there) {
-            let (_, cells) = self.skipped.cells.as_ref().expect("made above");
-            let several: Vec<_> = seen.iter().map(|(n, seen)| (&cells[*n], seen)).collect();
-            let gpu = self.device.gpu();
-            let made = match &alike {
-                Some(alike) => EmptySpace::with_alike(gpu, &cells[0], &seen[0].1, alike),
-                None => EmptySpace::of_several(gpu, &several),
-            };
-            let Some(made) = if_it_fits(made)? else {
+        if !seen.is_empty() {
+            let mut empty = std::mem::take(&mut self.skipped.empty);
+            let key = (of, (seen, alike));
+            let found = empty.of(key, |(_, shown)| self.make_empty_space(shown));
+            let is_there = found.map(|found| found.is_some());
+            self.skipped.empty = empty;
+            if !is_there? {
                 return Ok(());
-            };
-            // Most cells look at some ten others.
-            let expected_ms = ms_of_looks(self.device.gpu(), cells[0].cell_count() as f64);
-            for pass in made.group_runs()? {
-                let work = Work::beside(pass, expected_ms);
-                self.slices
-                    .run(&mut self.device, None, work, |cmd, _, part| {
-                        // SAFETY: as above, parts in order; the cells have been made.
-                        unsafe { made.record_part(cmd, part) }
-                    })?;
             }
-            self.skipped.empty = Some(((seen, alike), made));
         }
         self.skipped.wanted = Some(wanted);
         Ok(())
+    }
+
+    /// The cells of all these volumes; `None` where there is no room for them.
+    fn make_cells(
+        &mut self,
+        scene: &Scene,
+        volumes: usize,
+        apron: Apron,
+    ) -> Result<Option<Vec<MacroCells>>, Error> {
+        let mut all = Vec::new();
+        for number in 0..volumes {
+            let Some(made) = if_it_fits(self.cells_of(scene, number, apron))? else {
+                return Ok(None);
+            };
+            // A cell of 8^3 voxels with an apron around them, which are not filtered.
+            let looks = 100.0 * made.cell_count() as f64;
+            let expected_ms = ms_of_looks(self.device.gpu(), looks);
+            let work = Work::beside(0..made.group_count()?, expected_ms);
+            self.slices
+                .run(&mut self.device, None, work, |cmd, _, part| {
+                    // SAFETY: recorded outside rendering; the volume has been uploaded; `run` waits.
+                    unsafe { made.record_part(cmd, part) }
+                })?;
+            all.push(made);
+        }
+        Ok(Some(all))
+    }
+
+    /// What is empty of the cells that have been made; `None` where there is no room for it.
+    fn make_empty_space(&mut self, (seen, alike): &Shown) -> Result<Option<EmptySpace>, Error> {
+        let cells = self.skipped.cells.get().and_then(Option::as_ref);
+        let cells = cells.expect("made before");
+        let several: Vec<_> = seen.iter().map(|(n, seen)| (&cells[*n], seen)).collect();
+        let gpu = self.device.gpu();
+        let made = match alike {
+            Some(alike) => EmptySpace::with_alike(gpu, &cells[0], &seen[0].1, alike),
+            None => EmptySpace::of_several(gpu, &several),
+        };
+        let Some(made) = if_it_fits(made)? else {
+            return Ok(None);
+        };
+        // Most cells look at some ten others.
+        let expected_ms = ms_of_looks(self.device.gpu(), cells[0].cell_count() as f64);
+        for pass in made.group_runs()? {
+            let work = Work::beside(pass, expected_ms);
+            self.slices
+                .run(&mut self.device, None, work, |cmd, _, part| {
+                    // SAFETY: as above, parts in order; the cells have been made.
+                    unsafe { made.record_part(cmd, part) }
+                })?;
+        }
+        Ok(Some(made))
     }
 
     /// Objects for the cells of volume number `number` of the picture.

@@ -224,7 +224,7 @@ impl<'v> Renderer<'v> {
         cache.find_empty_space(&mut self.device, way, chunk)?;
         let grid = scene.volume.grid();
         let view = scene.view(&grid, in_pixel);
-        let transfer = self.transfer.as_ref().map(|uploaded| &uploaded.made);
+        let transfer = self.transfer.get();
         let (mut inputs, mut bricks) = (Vec::new(), Vec::new());
         for (nth, (&brick, &seen)) in chunk.iter().zip(tiles).enumerate() {
             let there = cache.get(brick).expect("bricks of a chunk stay");

@@ -1,6 +1,8 @@
 //! MIP and its relatives: one ray a pixel in a compute pass, one number a ray.
 
+#[doc(hidden)]
 pub mod exact;
+#[doc(hidden)]
 pub mod reference;
 
 use super::ray_tiles::{Nothing, TilePass};

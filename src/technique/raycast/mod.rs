@@ -1,5 +1,6 @@
 //! Ray casting: one ray a pixel in a compute pass, emission and absorption front to back (Levoy 1988).
 
+#[doc(hidden)]
 pub mod reference;
 
 use super::gather::rays;
@@ -15,6 +16,7 @@ use std::sync::Arc;
 pub(super) static DESC: TechniqueDesc = TechniqueDesc {
     casts_rays: true,
     draws_stacks: false,
+    supports: |_| Ok(()),
     has_half_angle: false,
     layouts: &[TextureLayout::Texture3d],
     layout_of: |_| TextureLayout::Texture3d,

@@ -1,6 +1,8 @@
 //! 2D texture slicing: three stacks of axis-aligned slices, blended in hardware ([`super::Slicer`]).
 
+#[doc(hidden)]
 pub mod between;
+#[doc(hidden)]
 pub mod reference;
 mod stack;
 
@@ -9,12 +11,14 @@ pub use stack::{set_slices, stack_axis, stack_shares};
 
 use super::gather::slices;
 use super::registry::{SliceShaders, TechniqueDesc};
+use super::slicer::slicer_supports;
 use crate::resident::TextureLayout;
 
 /// 2D texture slicing, to those who ask.
 pub(super) static DESC: TechniqueDesc = TechniqueDesc {
     casts_rays: false,
     draws_stacks: true,
+    supports: slicer_supports,
     has_half_angle: false,
     layouts: &[
         TextureLayout::Stack(0),

@@ -1,9 +1,11 @@
 //! View-aligned slicing: planes parallel to the picture, cut in the vertex shader, blended in hardware
 //! ([`super::Slicer`]). With shadows, planes half way between the picture and the light ([`HalfAngleSlicer`]).
 
+#[doc(hidden)]
 pub mod cover;
 pub mod half_angle;
 mod planes;
+#[doc(hidden)]
 pub mod reference;
 
 pub use half_angle::HalfAngleSlicer;
@@ -12,12 +14,14 @@ pub use planes::set_planes;
 use super::blend::Drawn;
 use super::gather::slices;
 use super::registry::{SliceShaders, TechniqueDesc};
+use super::slicer::slicer_supports;
 use crate::resident::TextureLayout;
 
 /// View-aligned slicing, to those who ask.
 pub(super) static DESC: TechniqueDesc = TechniqueDesc {
     casts_rays: false,
     draws_stacks: false,
+    supports: slicer_supports,
     has_half_angle: true,
     layouts: &[TextureLayout::Texture3d],
     layout_of: |_| TextureLayout::Texture3d,

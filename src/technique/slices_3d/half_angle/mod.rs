@@ -13,6 +13,7 @@
 
 mod gather;
 mod geometry;
+#[doc(hidden)]
 pub mod reference;
 
 pub(super) use gather::half_angle_slices;
