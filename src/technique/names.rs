@@ -1,13 +1,7 @@
 //! The names of what settings choose.
 
-use super::{Filter, FilterBy, Lattice, Order, Technique};
+use super::{Filter, FilterBy, Lattice, Order};
 use crate::named::named;
-
-named!(Technique {
-    Raycast "raycast" "",
-    Slices3d "slices-3d" "",
-    Slices2d "slices-2d" "",
-});
 
 named!(Filter {
     Linear "linear" "",

@@ -4,10 +4,17 @@ use super::gather::{Gather, GatherDesc};
 use super::reference::{Gathered, Samples};
 use super::{Error, Settings, Technique, View, raycast, slices_2d, slices_3d};
 use crate::gpu;
+use crate::named::named;
 use crate::real::Real;
 use crate::resident::TextureLayout;
 use crate::shaders::FrameFields;
 use glam::DVec3;
+
+named!(Technique {
+    Raycast "raycast" "",
+    Slices3d "slices-3d" "",
+    Slices2d "slices-2d" "",
+});
 
 /// What a technique says of itself.
 #[derive(Debug)]
