@@ -103,7 +103,10 @@ impl Bound for BoundRays {
         part: &Part,
     ) -> Result<(), Error> {
         let (cmd, extent) = (player.cmd, player.canvas.extent());
-        let images = PICTURE..player.canvas.images().count();
+        let images = PICTURE..=match *self.pass {
+            RayPass::Raycast(_) => LAYERS,
+            RayPass::Projection(_) => PICTURE,
+        };
         // SAFETY: the caller's promises.
         unsafe {
             for brick in bricks {
