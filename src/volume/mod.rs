@@ -17,6 +17,8 @@ mod header;
 mod histogram;
 mod holes;
 mod joint;
+#[cfg(feature = "json")]
+mod json;
 pub mod kernel;
 pub mod labels;
 mod limits;
