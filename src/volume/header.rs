@@ -6,6 +6,7 @@ use glam::DAffine3;
 
 /// What a source holds. Nothing in it can be wrong: dims are not zero, the affine can be inverted.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "json", derive(serde::Serialize, serde::Deserialize))]
 pub struct Header {
     /// The kind of file.
     pub format: Format,
@@ -18,10 +19,12 @@ pub struct Header {
     /// The type in the file.
     pub stored: VoxelType,
     /// Voxel space (corner of the grid at 0, centres at +0.5) to world, RAS+ for medical files.
+    #[cfg_attr(feature = "json", serde(with = "super::json::affine"))]
     pub world_from_voxel: DAffine3,
     /// Stored number to value.
     pub rescale: Rescale,
     /// The stored number that means "no data".
+    #[cfg_attr(feature = "json", serde(with = "super::json::bits"))]
     pub fill: Option<f64>,
     /// True where the file says that values are Hounsfield units (or the format's way of saying so).
     pub hounsfield: bool,
@@ -110,6 +113,7 @@ impl Header {
 
 /// What the components of a voxel are to each other.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "json", derive(serde::Serialize, serde::Deserialize))]
 pub enum Meaning {
     /// One number, or several of which the file says nothing.
     Numbers,
@@ -125,6 +129,7 @@ pub enum Meaning {
 
 /// One of several things seen in the same place.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "json", derive(serde::Serialize, serde::Deserialize))]
 pub struct Channel {
     /// Empty where the file has none.
     pub name: String,
@@ -136,6 +141,7 @@ pub struct Channel {
 
 /// A series of a DICOM folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "json", derive(serde::Serialize, serde::Deserialize))]
 pub struct Series {
     /// Its instance UID.
     pub uid: String,
@@ -147,6 +153,7 @@ pub struct Series {
 
 /// Which volume of a file that holds several; `None` takes the only one.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "json", derive(serde::Serialize, serde::Deserialize))]
 pub struct Wanted {
     /// The name of a variable, a data set's path, an array's name.
     pub variable: Option<String>,
@@ -161,6 +168,7 @@ pub struct Wanted {
 
 /// `value = stored * slope + intercept`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "json", derive(serde::Serialize, serde::Deserialize))]
 pub struct Rescale {
     /// Value per stored unit; finite and not zero.
     pub slope: f64,
@@ -179,6 +187,7 @@ impl Default for Rescale {
 
 /// The kind of a source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "json", derive(serde::Serialize, serde::Deserialize))]
 #[allow(missing_docs, reason = "the names say it")]
 pub enum Format {
     Nifti1,

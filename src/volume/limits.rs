@@ -2,6 +2,7 @@
 
 /// What a reader may use. Checked against declared sizes before anything is allocated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "json", derive(serde::Serialize, serde::Deserialize))]
 pub struct Limits {
     /// Memory that one volume may take.
     pub max_bytes: u64,

@@ -18,6 +18,8 @@ mod header;
 mod histogram;
 mod holes;
 mod joint;
+#[cfg(feature = "json")]
+mod json;
 #[doc(hidden)]
 pub mod kernel;
 pub mod labels;

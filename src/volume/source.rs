@@ -115,6 +115,7 @@ impl Loss {
 
 /// Which of several volumes in one source.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "json", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pick {
     /// Index of the time step.
     pub time: u32,

@@ -2,6 +2,7 @@
 
 /// Voxels from `min` (included) to `max` (excluded).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "json", derive(serde::Serialize, serde::Deserialize))]
 #[allow(missing_docs, reason = "the line above says it")]
 pub struct VoxelBox {
     pub min: [u32; 3],

@@ -8,7 +8,6 @@ use crate::cli::load::{denoise, say_what_was_lost, stretch};
 use crate::technique::{Mode, Role};
 use crate::transfer::{CHANNEL_COLORS, Window, of_channel, window_of_channel};
 use crate::volume::{Meaning, Source, read_all};
-use std::sync::Arc;
 
 impl Reader<'_> {
     pub(super) fn channels(
@@ -77,18 +76,12 @@ impl Reader<'_> {
         }
         self.progress.note(&said.join("; "));
         let first = made.remove(0);
+        let function = Classification::Function(first.function);
+        let (header, modes) = (header.clone(), self.scene.modes.alone());
         Ok(Shown {
-            volume: Arc::new(first.volume),
-            header: header.clone(),
-            context: None,
-            classification: Classification::Function(first.function),
-            per_mode: self.scene.modes.alone(),
-            filter: None,
-            height_factor,
             others: Others::Channels(made),
             channels: drawn,
-            stream: None,
-            overview: None,
+            ..Shown::new(first.volume, header, height_factor, function, modes)
         })
     }
 }

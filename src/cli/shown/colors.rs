@@ -12,7 +12,6 @@ use crate::{
     transfer::{Classified, Window, of_colors},
     volume::{Header, Source, Volume, read_colors},
 };
-use std::sync::Arc;
 
 impl Reader<'_> {
     /// The volume in its own colours.
@@ -56,18 +55,11 @@ impl Reader<'_> {
             "a voxel holds a colour: drawn in it, opaque by its luma; --component N takes one number"
         });
         let red = volumes.remove(0);
+        let function = Classification::Function(function);
+        let (header, modes) = (source.header().clone(), self.scene.modes.alone());
         Ok(Shown {
-            volume: Arc::new(red),
-            header: source.header().clone(),
-            context: None,
-            classification: Classification::Function(function),
-            per_mode: self.scene.modes.alone(),
-            filter: None,
-            height_factor,
             others: Others::Colors(volumes),
-            channels: Vec::new(),
-            stream: None,
-            overview: None,
+            ..Shown::new(red, header, height_factor, function, modes)
         })
     }
 
@@ -99,18 +91,11 @@ impl Reader<'_> {
             });
         }
         let first = made.remove(0);
+        let function = Classification::Function(first.function);
+        let modes = self.scene.modes.alone();
         Ok(Shown {
-            volume: Arc::new(first.volume),
-            header,
-            context: None,
-            classification: Classification::Function(first.function),
-            per_mode: self.scene.modes.alone(),
-            filter: None,
-            height_factor,
             others: Others::Channels(made),
-            channels: Vec::new(),
-            stream: None,
-            overview: None,
+            ..Shown::new(first.volume, header, height_factor, function, modes)
         })
     }
 }

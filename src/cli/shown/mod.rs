@@ -6,6 +6,7 @@ mod colors;
 mod opacity;
 mod paint;
 mod preclassified;
+mod reader;
 mod streamed;
 
 pub use check::{check, shows_several};
@@ -13,26 +14,23 @@ pub use streamed::{is_wanted as wants_stream, open as open_stream};
 
 use super::{
     Error,
-    flags::{
-        ChannelWord, Classification, ClassificationFlags, Plan, SceneFlags, Subject, context,
-        summary,
-    },
+    flags::{ChannelWord, Classification, ClassificationFlags, Plan, SceneFlags, Subject, context},
     labels,
-    load::{load_from, open_first},
+    load::open_first,
     look::{Seen, base_of},
-    memory::{self, DeviceRoom, Held, fitting},
+    memory::{self, DeviceRoom},
     progress::Progress,
 };
 use crate::{
     camera::Camera,
-    look::leave_out,
     offscreen::Stream,
     scene::{Beside, Channel},
     technique::{Filter, FilterBy, Mode, PerMode, Role, Settings},
-    transfer::{Classified, Context, LIT_LABEL_OPACITY, LabelTable, TransferFunction},
-    volume::{Header, Limits, Source, Volume, labels::labels_of},
+    transfer::{Classified, Context, TransferFunction},
+    volume::{Header, Limits, Source, Volume},
 };
 use check::{has_beside, plan};
+use reader::Reader;
 use std::sync::Arc;
 
 /// Everything that is drawn.
@@ -80,6 +78,29 @@ pub struct Other {
 }
 
 impl Shown {
+    /// Of one number a voxel, seen alone.
+    fn new(
+        volume: Volume,
+        header: Header,
+        height_factor: f64,
+        classification: Classification,
+        per_mode: PerMode,
+    ) -> Self {
+        Self {
+            volume: Arc::new(volume),
+            header,
+            context: None,
+            classification,
+            per_mode,
+            filter: None,
+            height_factor,
+            others: Others::Channels(Vec::new()),
+            channels: Vec::new(),
+            stream: None,
+            overview: None,
+        }
+    }
+
     /// Reads what the words name, for a picture of these settings. Under `--look auto` the first of several variables is
     /// taken, and `scene` says so afterwards.
     pub fn read(
@@ -357,150 +378,6 @@ impl Parts<'_> {
             Self::Colors(volumes) => Beside::Colors(volumes),
             Self::Classified(volumes) => Beside::Classified(volumes),
         }
-    }
-}
-
-/// What reading needs beside the source.
-struct Reader<'a> {
-    scene: &'a SceneFlags,
-    mode: Mode,
-    device: &'a dyn DeviceRoom,
-    progress: &'a Progress,
-}
-
-impl Reader<'_> {
-    fn one(&self, source: Box<dyn Source>) -> Result<Shown, Error> {
-        let header = source.header().clone();
-        let is_labels = header.is_labels;
-        let context = self.scene.is_auto().then(|| context(&header));
-        let (mut volume, height_factor) =
-            load_from(source, self.scene, self.device, self.progress)?;
-        let keeps_all = self.scene.keeps_all(self.mode) || volume.is_outline();
-        if !keeps_all && let Some(note) = leave_out(&mut volume, &header) {
-            self.progress
-                .note(&format!("{note}; --keep-all draws them"));
-        }
-        let flags = &ClassificationFlags {
-            // That of other numbers says nothing of these.
-            opacity_function: match self.scene.opacity.are_given() {
-                true => None,
-                false => self.scene.classification.opacity_function.clone(),
-            },
-            context,
-            ..self.scene.classification.clone()
-        };
-        let words = &self.scene.labels;
-        let has_table = words.label_tf.is_some() && words.labels.is_none();
-        let may_name = says_nothing(flags)? && self.mode == Mode::Composite;
-        let is_cut = words.cut() && words.labels.is_none();
-        // Words on labels take only what looks like labels for them.
-        let looks_so = is_cut && may_name && {
-            let found = flags.classification(&volume, self.mode)?;
-            flags.found_labels(&found)
-        };
-        if (has_table || is_labels || looks_so)
-            && may_name
-            && let Some(function) = self.names(&volume)?
-        {
-            return Ok(Shown {
-                volume: Arc::new(volume),
-                header,
-                context: None,
-                classification: Classification::Function(function),
-                per_mode: PerMode::default(),
-                filter: Some(Filter::Nearest),
-                height_factor,
-                others: Others::Channels(Vec::new()),
-                channels: Vec::new(),
-                stream: None,
-                overview: None,
-            });
-        }
-        if is_cut {
-            return Err(Error::usage(
-                "--label-show, --label-hide and --label-dim are for labels: of a map over INPUT (--labels), or of INPUT in their own colours",
-                "--labels FILE lays a map over INPUT",
-            ));
-        }
-        let modes = &self.scene.modes;
-        let none = ClassificationFlags::default();
-        let (flags, others) = match modes.paint(self.mode) {
-            // The words are of what colours the surfaces.
-            Some(word) => (&none, vec![self.paint(word, &volume.grid())?]),
-            None => (flags, Vec::new()),
-        };
-        let flags = &flags.with_window_of(self.mode, || Ok(summary(&volume)))?;
-        let classification = flags.classification(&volume, self.mode)?;
-        let (per_mode, note) = modes.per_mode(
-            self.mode,
-            flags.window()?,
-            flags.named(&classification),
-            || Ok(summary(&volume)),
-        )?;
-        if let Some(note) = note {
-            self.progress.note(&note);
-        }
-        let found_labels = flags.found_labels(&classification);
-        if found_labels && self.scene.sampling.filter.is_none() {
-            self.progress
-                .note("the values look like labels: drawn with --filter nearest");
-        }
-        Ok(Shown {
-            volume: Arc::new(volume),
-            header,
-            context: None,
-            classification,
-            per_mode,
-            filter: found_labels.then_some(Filter::Nearest),
-            height_factor,
-            others: Others::Channels(others),
-            channels: Vec::new(),
-            stream: None,
-            overview: None,
-        })
-    }
-
-    /// A volume of labels by itself: each in its colour. `None` where the values are none.
-    fn names(&self, volume: &Volume) -> Result<Option<TransferFunction>, Error> {
-        let table = self.scene.labels.table()?;
-        let present = labels_of(volume);
-        Ok(match (table, present) {
-            (table, Some(present)) => {
-                let mut table = table.unwrap_or_else(LabelTable::default);
-                if self.scene.is_auto() {
-                    table.opacity.get_or_insert(LIT_LABEL_OPACITY);
-                }
-                let function = table.function(present.into_keys(), labels::diagonal(volume));
-                let words = &self.scene.labels;
-                Some(LabelTable::cut(
-                    function,
-                    |label| words.shows(label),
-                    |label| words.dims(Some(&table), label),
-                    words.dim()?,
-                ))
-            }
-            (_, None) if self.scene.labels.label_tf.is_some() || self.scene.labels.cut() => {
-                return Err(Error::usage(
-                    "--label-tf, --label-show, --label-hide and --label-dim are for labels, and the values of INPUT are none",
-                    "--labels FILE lays a label map over INPUT",
-                ));
-            }
-            (_, None) => None,
-        })
-    }
-
-    /// The source, small enough for so many volumes, and what is to be known of it.
-    fn fitted(&self, source: Box<dyn Source>, count: usize) -> Result<Box<dyn Source>, Error> {
-        let input = &self.scene.input;
-        let count = u32::try_from(count).unwrap_or(u32::MAX);
-        let held = Held::of(self.scene, count);
-        let source = fitting(source, self.scene, self.device.memory()?, held)?;
-        let (_, note) = input.time(source.header())?;
-        input.check_one(source.header())?;
-        for note in source.header().notes.iter().chain(&note) {
-            self.progress.note(note);
-        }
-        Ok(source)
     }
 }
 

@@ -1,12 +1,8 @@
 //! The process that reads: limits first, then what it is asked for, until nobody asks.
 
 use super::sandbox::restrict_to;
-use super::wire::{Answer, Asking, Opened, Opening, What, failed, put, put_piece, take};
-use crate::{
-    cli::Error,
-    format,
-    volume::{Pick, Source, VoxelBox},
-};
+use super::wire::{Answer, Asking, Opened, Opening, What, put, put_failed, put_piece, take};
+use crate::{cli::Error, format, volume::Source};
 use clap::Args;
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use std::{
@@ -48,10 +44,8 @@ impl ReadUntrusted {
         let Some(opening) = take::<Opening>(input)? else {
             return Ok(());
         };
-        let most = opening
-            .max_bytes
-            .saturating_mul(2)
-            .saturating_add(OTHER_BYTES);
+        let most = opening.limits.max_bytes;
+        let most = most.saturating_mul(2).saturating_add(OTHER_BYTES);
         limit(Resource::As, most)?;
         limit(Resource::Nofile, OPEN_FILES)?;
         limit(Resource::Fsize, 0)?;
@@ -66,19 +60,19 @@ impl ReadUntrusted {
             Some(layout) => {
                 let layout = format::raw::RawSpec::parse(layout);
                 let layout = layout.map_err(|problem| io::Error::other(problem.to_string()))?;
-                format::raw::open(path, &layout, &opening.limits())
+                format::raw::open(path, &layout, &opening.limits)
             }
-            None => format::open(path, &opening.wanted(), &opening.limits()),
+            None => format::open(path, &opening.wanted, &opening.limits),
         };
         let source = match opened {
             Ok(source) => source,
-            Err(error) => return put(out, &failed(&error)),
+            Err(error) => return put_failed(out, error),
         };
-        let opened = Opened::of(
-            source.header(),
-            source.reads_parts(),
-            source.reads_whole_rows(),
-        );
+        let opened = Opened {
+            header: source.header().clone(),
+            reads_parts: source.reads_parts(),
+            reads_whole_rows: source.reads_whole_rows(),
+        };
         put(out, &Answer::Opened(Box::new(opened)))?;
         while let Some(asking) = take::<Asking>(input)? {
             answer(source.as_ref(), asking, out)?;
@@ -107,23 +101,16 @@ impl ReadUntrusted {
 }
 
 fn answer(source: &dyn Source, asking: Asking, out: &mut impl Write) -> io::Result<()> {
-    let pick = Pick {
-        time: asking.time,
-        component: asking.component,
-    };
-    let region = VoxelBox {
-        min: asking.min,
-        max: asking.max,
-    };
+    let Asking { pick, region, what } = asking;
     let voxels: u64 = (0..3)
         .map(|k| u64::from(region.max[k].saturating_sub(region.min[k])))
         .product();
     let mib = voxels.saturating_mul(source.header().stored.bytes() as u64) >> 20;
     allow_time(SECONDS.saturating_add(mib.saturating_mul(SECONDS_PER_MIB)))?;
-    match asking.what {
+    match what {
         What::Piece => match source.read(pick, region) {
             Ok(piece) => put_piece(out, &piece),
-            Err(error) => put(out, &failed(&error)),
+            Err(error) => put_failed(out, error),
         },
         What::Slabs(slices) => {
             let mut written = Ok(());
@@ -137,7 +124,7 @@ fn answer(source: &dyn Source, asking: Asking, out: &mut impl Write) -> io::Resu
             written?;
             match read {
                 Ok(()) => put(out, &Answer::End),
-                Err(error) => put(out, &failed(&error)),
+                Err(error) => put_failed(out, error),
             }
         }
         What::Bytes => match source.read_bytes(pick, region) {
@@ -147,7 +134,7 @@ fn answer(source: &dyn Source, asking: Asking, out: &mut impl Write) -> io::Resu
                 out.flush()
             }
             Ok(None) => put(out, &Answer::Bytes(None)),
-            Err(error) => put(out, &failed(&error)),
+            Err(error) => put_failed(out, error),
         },
     }
 }

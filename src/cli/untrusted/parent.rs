@@ -2,7 +2,7 @@
 
 use super::{
     child::{OTHER_BYTES, SECONDS},
-    wire::{Answer, Asking, Opening, What, put, take, take_piece},
+    wire::{Answer, Asking, Opened, Opening, What, put, take, take_piece},
 };
 use crate::{
     cli::memory::in_units,
@@ -40,29 +40,20 @@ pub fn open(
     let opening = Opening {
         path: name.to_owned(),
         raw: raw.map(str::to_owned),
-        variable: wanted.variable.clone(),
-        series: wanted.series.clone(),
-        level: wanted.level,
-        as_stored: wanted.as_stored,
-        max_bytes: limits.max_bytes,
-        max_files: limits.max_files,
-        max_header_bytes: limits.max_header_bytes,
-        detached: limits.detached,
+        wanted: wanted.clone(),
+        limits: *limits,
     };
     let mut reader = Reader::start(&opening).map_err(|cause| failed(started(cause)))?;
     let answer = reader.answer(path, limits.max_bytes)?;
     let Answer::Opened(opened) = answer else {
         return Err(failed(not_answered("no header")));
     };
-    let [reads_parts, reads_whole_rows] = [opened.reads_parts, opened.reads_whole_rows];
-    let header = opened
-        .header()
-        .ok_or_else(|| failed(not_answered("a header that cannot be")))?;
+    if !opened.is_sound() {
+        return Err(failed(not_answered("a header that cannot be")));
+    }
     Ok(Box::new(ReadElsewhere {
         path: path.to_owned(),
-        header,
-        reads_parts,
-        reads_whole_rows,
+        opened: *opened,
         opening,
         reader: Mutex::new(Some(reader)),
     }))
@@ -71,9 +62,7 @@ pub fn open(
 /// The source.
 struct ReadElsewhere {
     path: PathBuf,
-    header: Header,
-    reads_parts: bool,
-    reads_whole_rows: bool,
+    opened: Opened,
     opening: Opening,
     /// `None` where the last one was ended before it had said all.
     reader: Mutex<Option<Reader>>,
@@ -115,7 +104,7 @@ impl Reader {
         match take(&mut self.from) {
             Ok(Some(Answer::Failed { path, problem })) => Err(ReadError {
                 path: path.into(),
-                problem: problem.problem(),
+                problem,
             }),
             Ok(Some(answer)) => Ok(answer),
             Ok(None) | Err(_) => Err(self.ended(path, max_bytes)),
@@ -195,7 +184,7 @@ impl ReadElsewhere {
         if kept.is_none() {
             let mut reader =
                 Reader::start(&self.opening).map_err(|cause| self.failed(started(cause)))?;
-            reader.answer(&self.path, self.opening.max_bytes)?;
+            reader.answer(&self.path, self.opening.limits.max_bytes)?;
             *kept = Some(reader);
         }
         kept.as_mut()
@@ -226,7 +215,7 @@ impl ReadElsewhere {
         regions: &mut dyn Iterator<Item = VoxelBox>,
         take: &mut dyn FnMut(VoxelBox, Piece) -> ControlFlow<()>,
     ) -> Result<ControlFlow<()>, ReadError> {
-        let most = self.opening.max_bytes;
+        let most = self.opening.limits.max_bytes;
         // A reader that is gone says so below.
         let _ = put(&mut reader.to, &asking);
         for region in regions {
@@ -262,36 +251,27 @@ fn count_of(region: VoxelBox) -> u64 {
     region.dims().iter().map(|&n| u64::from(n)).product()
 }
 
-fn asking(pick: Pick, region: VoxelBox, what: What) -> Asking {
-    Asking {
-        time: pick.time,
-        component: pick.component,
-        min: region.min,
-        max: region.max,
-        what,
-    }
-}
-
 impl Source for ReadElsewhere {
     fn path(&self) -> &Path {
         &self.path
     }
 
     fn header(&self) -> &Header {
-        &self.header
+        &self.opened.header
     }
 
     fn reads_parts(&self) -> bool {
-        self.reads_parts
+        self.opened.reads_parts
     }
 
     fn reads_whole_rows(&self) -> bool {
-        self.reads_whole_rows
+        self.opened.reads_whole_rows
     }
 
     fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
         let mut read = None;
-        let asking = asking(pick, region, What::Piece);
+        let what = What::Piece;
+        let asking = Asking { pick, region, what };
         self.pieces(asking, &mut std::iter::once(region), &mut |_, piece| {
             read = Some(piece);
             ControlFlow::Continue(())
@@ -306,16 +286,18 @@ impl Source for ReadElsewhere {
         slices: u32,
         take: &mut dyn FnMut(VoxelBox, Piece) -> ControlFlow<()>,
     ) -> Result<(), ReadError> {
-        let asking = asking(pick, region, What::Slabs(slices));
+        let what = What::Slabs(slices);
+        let asking = Asking { pick, region, what };
         self.pieces(asking, &mut region.slabs(slices), take)
     }
 
     fn read_bytes(&self, pick: Pick, region: VoxelBox) -> Result<Option<Vec<u8>>, ReadError> {
-        let most = self.opening.max_bytes;
+        let most = self.opening.limits.max_bytes;
         let mut kept = self.kept();
         let reader = self.reader(&mut kept)?;
-        let _ = put(&mut reader.to, &asking(pick, region, What::Bytes));
-        let wanted = count_of(region).saturating_mul(self.header.stored.bytes() as u64);
+        let what = What::Bytes;
+        let _ = put(&mut reader.to, &Asking { pick, region, what });
+        let wanted = count_of(region).saturating_mul(self.opened.header.stored.bytes() as u64);
         let read = match reader.answer(&self.path, most) {
             Ok(Answer::Bytes(None)) => return Ok(None),
             Ok(Answer::Bytes(Some(count))) if count == wanted => {
