@@ -1,5 +1,6 @@
 // Which values filters can make in a macro cell: smallest and largest of all voxels that a sample in it may touch, its
-// own and an apron around them (`algorithms.md` 3: without, border samples would be called empty). One thread a cell.
+// own and an apron around them (`algorithms.md` 3: without, border samples would be called empty). Several threads a
+// cell: they go along rows of texels beside each other.
 // Where voxels have no value, what stands there counts, though no sample does.
 // Twin: src/resident/cell_ranges.rs.
 
@@ -12,31 +13,54 @@ struct CellRanges {
 
 @group(0) @binding(31) var<storage, read_write> cell_ranges: CellRanges;
 
-@compute @workgroup_size(8, 4, 2)
-fn main(@builtin(global_invocation_id) cell: vec3<u32>) {
-    if any(cell >= cell_grid.cells) {
-        return;
-    }
+// Threads of a cell, and cells of a workgroup, side by side.
+const CELL_THREADS: u32 = 8u;
+const CELLS: u32 = 8u;
+
+// Least and most of what each thread has seen.
+var<workgroup> seen: array<array<vec2<f32>, CELL_THREADS>, CELLS>;
+
+@compute @workgroup_size(CELL_THREADS * CELLS)
+fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_id) place: vec3<u32>) {
+    let cell = vec3(id.x / CELL_THREADS, id.yz);
+    let thread = i32(id.x % CELL_THREADS);
+    let beside = place.x / CELL_THREADS;
     let own = cell_grid.origin + vec3<i32>(cell * CELL_VOXELS);
     let apron = vec3(cell_grid.apron);
     let low = max(own - apron, cell_grid.stored_min) - cell_grid.stored_min;
     let high = min(own + i32(CELL_VOXELS) - 1 + apron, cell_grid.stored_last) - cell_grid.stored_min;
-    var least = 3.4e38;
-    var most = -3.4e38;
-    for (var z = low.z; z <= high.z; z++) {
-        for (var y = low.y; y <= high.y; y++) {
-            for (var x = low.x; x <= high.x; x++) {
-                let texel = code_at(vec3(x, y, z));
-                least = min(least, texel);
-                most = max(most, texel);
-            }
+    let size = max(high - low + 1, vec3(1));
+    let is_cell = all(cell < cell_grid.cells);
+    let rows = select(0, size.y * size.z, is_cell);
+    var range = vec2(3.4e38, -3.4e38);
+    for (var row = thread; row < rows; row += i32(CELL_THREADS)) {
+        let first = low + vec3(0, row % size.y, row / size.y);
+        for (var x = 0; x < size.x; x++) {
+            range = both(range, vec2(code_at(first + vec3(x, 0, 0))));
         }
     }
-    let ends = vec2(value_of(least), value_of(most));
+    seen[beside][thread] = range;
+    workgroupBarrier();
+    if thread > 0 || !is_cell {
+        return;
+    }
+    for (var i = 1u; i < CELL_THREADS; i++) {
+        range = both(range, seen[beside][i]);
+    }
+    cell_ranges.d[cell_index(cell)] = range_of(range);
+}
+
+fn both(a: vec2<f32>, b: vec2<f32>) -> vec2<f32> {
+    return vec2(min(a.x, b.x), max(a.y, b.y));
+}
+
+// The values that filters may make of codes between two ends.
+fn range_of(codes: vec2<f32>) -> vec2<f32> {
+    let ends = vec2(value_of(codes.x), value_of(codes.y));
     let range = vec2(min(ends.x, ends.y), max(ends.x, ends.y));
     let beyond = cell_grid.overshoot * 0.5 * (range.y - range.x) + cell_grid.slack
         + cell_grid.rounding * max(abs(range.x), abs(range.y));
-    cell_ranges.d[cell_index(cell)] = range + vec2(-beyond, beyond);
+    return range + vec2(-beyond, beyond);
 }
 
 fn value_of(texel: f32) -> f32 {

@@ -1,7 +1,7 @@
 //! Ranges of macro cells after voxels of a box have changed: those of the cells that look at it, and no others.
 
-use super::MacroCells;
 use super::cell_ranges::{CellBox, ranges};
+use super::macro_cells::{MacroCells, Ranging};
 use crate::gpu::{Buffer, Error, Use, buffer_barrier, buffer_to_buffer};
 use crate::volume::{VoxelBox, VoxelPart};
 use ash::vk;
@@ -81,7 +81,8 @@ impl MacroCells {
                         let Some(cells) = CellBox::that_see(grid, region) else {
                             continue;
                         };
-                        let groups = pass.pipeline.groups_around(cells.min, cells.max);
+                        let [min, max] = [cells.min, cells.max].map(Ranging::threads);
+                        let groups = pass.pipeline.groups_around(min, max);
                         let offset = [pass.ring.offset(slot)?];
                         let pipeline = &pass.pipeline;
                         pipeline.dispatch_boxes(cmd, bindings, &offset, [groups]);

@@ -13,7 +13,7 @@ use crate::gpu::{
     Bindings, Buffer, ComputePipeline, Error, Gpu, Memory, ParameterRing, Resource, Use,
     buffer_barrier, group_count, within,
 };
-use crate::shaders::{CELL_VOXELS, CellGrid, CellGridFields, Frame, shader};
+use crate::shaders::{CELL_THREADS, CELL_VOXELS, CellGrid, CellGridFields, Frame, shader};
 use crate::volume::{Volume, VoxelBox, VoxelPart};
 use ash::vk;
 use std::ops::Range;
@@ -67,6 +67,17 @@ pub(super) struct Ranging {
     pub pipeline: ComputePipeline,
     pub ring: ParameterRing,
     pub bindings: Vec<Bindings>,
+}
+
+impl Ranging {
+    /// Several for each cell, side by side.
+    pub fn threads([x, y, z]: [u32; 3]) -> [u32; 3] {
+        [x.saturating_mul(CELL_THREADS), y, z]
+    }
+
+    fn groups(&self, grid: &CellGrid) -> Result<[u32; 3], Error> {
+        self.pipeline.groups(Self::threads(grid.cells))
+    }
 }
 
 impl MacroCells {
@@ -199,7 +210,7 @@ impl MacroCells {
     /// A brick larger than the device can dispatch.
     pub fn group_count(&self) -> Result<u64, Error> {
         let Some(pass) = &self.pass else { return Ok(0) };
-        let groups = |grid: &CellGrid| Ok(group_count(pass.pipeline.groups(grid.cells)?));
+        let groups = |grid: &CellGrid| Ok(group_count(pass.groups(grid)?));
         self.grids.iter().map(groups).sum()
     }
 
@@ -221,7 +232,7 @@ impl MacroCells {
         };
         let mut first = 0;
         for (slot, (grid, bindings)) in (0..).zip(self.grids.iter().zip(&pass.bindings)) {
-            let groups = pass.pipeline.groups(grid.cells)?;
+            let groups = pass.groups(grid)?;
             let offset = pass.ring.offset(slot)?;
             let run = within(&part, first, group_count(groups));
             first += group_count(groups);
