@@ -25,7 +25,7 @@ pub enum Preset {
     /// Hot spots of uptake in a faint body. Fits itself to the values.
     Pet,
     /// The boundaries between substances, the lowest faint. Fits itself to values and gradients
-    /// ([`super::boundaries`]).
+    /// (`super::boundaries`).
     Boundaries,
     /// A grey ramp over the window, as `cli.md` has it.
     Grey,

@@ -58,8 +58,8 @@ fn functions_of_many_bricks_one_after_the_other_take_no_new_pool_and_free_no_set
 
 #[test]
 fn a_picture_by_rays_has_few_barriers() {
-    // Three a brick around its tiles, one for each of two images, and those of images, target, pick and readback.
-    for (side, bricks, most) in [(64, 1, 16), (14, 8, 51)] {
+    // Three a brick around its tiles, and those of images, target, pick and readback.
+    for (side, bricks, most) in [(64, 1, 15), (14, 8, 36)] {
         with_bricks(side, |drawn, calls| {
             // A function is uploaded with the first.
             drawn.picture();

@@ -109,8 +109,9 @@ impl Bound for BoundRays {
         };
         // SAFETY: the caller's promises.
         unsafe {
+            // The search of each brick waits for all that rays before it have written.
+            player.bring(images.clone().map(|image| (image, Use::ComputeWrite)));
             for brick in bricks {
-                player.bring(images.clone().map(|image| (image, Use::ComputeWrite)));
                 let seen = |tile: &Tile| match brick.seen {
                     Some(seen) => tile.and(seen),
                     None => Some(*tile),
