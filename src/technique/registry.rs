@@ -2,7 +2,7 @@
 
 use super::gather::{Gather, GatherDesc};
 use super::reference::{Gathered, Samples};
-use super::{Error, Settings, Technique, View, raycast, slices_2d, slices_3d};
+use super::{Error, Settings, Technique, View, projection, raycast, slices_2d, slices_3d};
 use crate::gpu;
 use crate::named::named;
 use crate::real::Real;
@@ -85,6 +85,9 @@ impl Technique {
     /// What its CPU reference gathers for one pixel, of all modes but surfaces.
     pub(crate) fn pixel<R: Real>(self, of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R> {
         match self {
+            Self::Raycast if of.settings().mode.is_projection() => {
+                projection::reference::pixel(of, pixel)
+            }
             Self::Raycast => raycast::reference::pixel(of, pixel),
             Self::Slices3d => slices_3d::reference::pixel(of, pixel),
             Self::Slices2d => slices_2d::reference::pixel(of, pixel),

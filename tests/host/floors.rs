@@ -170,7 +170,8 @@ fn no_technique_names_another() {
     let folders: Vec<String> = fs::read_dir(&folder)
         .expect("src/technique")
         .map(|entry| entry.expect("an entry").path())
-        .filter(|path| path.is_dir())
+        // The executor plays what techniques record: it is none of them.
+        .filter(|path| path.is_dir() && !path.ends_with("gather"))
         .map(|path| {
             path.file_name()
                 .expect("a name")

@@ -8,13 +8,31 @@
 //! attenuated   value = extreme of u exp(-attenuation sum of u d of those before), u the value from 0 to 1
 //! ```
 
+use super::exact::project_exactly;
 use crate::lattice::Segment;
 use crate::real::Real;
 use crate::shaders::Frame;
 use crate::technique::march::march;
 use crate::technique::per_mode::{unit_from_value, value_from_unit};
+use crate::technique::reference::{Gathered, Samples};
 use crate::technique::{Lattice, Mode};
 use std::ops::ControlFlow;
+
+/// What the ray of a pixel projects.
+pub(crate) fn pixel<R: Real>(of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R> {
+    let (frame, settings) = (of.frame(), of.settings());
+    let mode = settings.mode;
+    let (found, samples) = if settings.per_mode.exact_maximum {
+        project_exactly(frame, mode, pixel, |index| of.voxel(index))
+    } else {
+        project(frame, settings.lattice, mode, pixel, |p| of.value(p))
+    };
+    let zero = R::from_f64(0.0);
+    Gathered {
+        depth: found.depth,
+        ..Gathered::of_blended([found.value, found.weight, zero, zero], samples)
+    }
+}
 
 /// What one ray projects.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,27 +7,15 @@ use crate::shaders::Frame;
 use crate::technique::composite::Composite;
 use crate::technique::march::{march, march_in_runs, march_slabs};
 use crate::technique::mida::Mida;
-use crate::technique::projection::{exact::project_exactly, reference::project};
 use crate::technique::reference::{Gathered, Samples};
 use crate::technique::{Lattice, Mode};
 use std::ops::ControlFlow;
 
-/// What the ray of a pixel gathers, of all modes but surfaces.
+/// What the ray of a pixel gathers, in the modes that composite.
 pub(crate) fn pixel<R: Real>(of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R> {
     let (frame, settings) = (of.frame(), of.settings());
     let (mode, lattice) = (settings.mode, settings.lattice);
     let value_at = |p| of.value(p);
-    if mode.is_projection() {
-        let (found, samples) = match settings.per_mode.exact_maximum {
-            true => project_exactly(frame, mode, pixel, |index| of.voxel(index)),
-            false => project(frame, lattice, mode, pixel, value_at),
-        };
-        let zero = R::from_f64(0.0);
-        return Gathered {
-            depth: found.depth,
-            ..Gathered::of_blended([found.value, found.weight, zero, zero], samples)
-        };
-    }
     let ray_direction = pixel_ray(frame, pixel).direction;
     let material_at = |p| of.material(p, ray_direction);
     let same = |material| material;
