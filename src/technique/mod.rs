@@ -46,7 +46,8 @@ pub mod projection;
 mod ray_tiles;
 pub mod raycast;
 mod recording;
-pub(crate) mod reference;
+#[doc(hidden)]
+pub mod reference;
 mod registry;
 #[doc(hidden)]
 pub mod second;

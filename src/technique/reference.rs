@@ -13,7 +13,7 @@ use crate::real::Real;
 use crate::shaders::Frame;
 
 /// What a technique asks of what it shows. Positions are in voxel space; `None` stands for no data.
-pub(crate) trait Samples<R: Real> {
+pub trait Samples<R: Real> {
     /// The parameters of the picture.
     fn frame(&self) -> &Frame;
     /// What to compute.
@@ -48,9 +48,10 @@ pub(crate) trait Samples<R: Real> {
 
 /// What a technique leaves for one pixel, before it is resolved.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Gathered<R> {
+pub struct Gathered<R> {
     /// Composite: premultiplied colour and alpha. Else (value, weight, unused, unused).
     pub accumulation: [R; 4],
+    /// Of what the depth layer tells; `None`: of nothing.
     pub depth: Option<R>,
     /// The value of a surface that was hit first.
     pub level: Option<R>,

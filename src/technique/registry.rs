@@ -83,7 +83,8 @@ impl Technique {
     }
 
     /// What its CPU reference gathers for one pixel, of all modes but surfaces.
-    pub(crate) fn pixel<R: Real>(self, of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R> {
+    #[doc(hidden)]
+    pub fn pixel<R: Real>(self, of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R> {
         match self {
             Self::Raycast if of.settings().mode.is_projection() => {
                 projection::reference::pixel(of, pixel)

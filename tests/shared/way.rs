@@ -9,8 +9,8 @@ use stratavox::real::Real;
 use stratavox::resolve::reference::projected_value;
 use stratavox::scene::Scene;
 use stratavox::shaders::Frame;
-use stratavox::technique::blend::{blend, clear_color};
-use stratavox::technique::{Settings, Technique, projection, raycast, slices_2d, slices_3d};
+use stratavox::technique::reference::Samples;
+use stratavox::technique::{AlikeCells, Settings};
 use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
 
 /// A field over voxel space and what its values look like. Colours are blended as they are
@@ -45,9 +45,16 @@ impl<R: Real> Twin<R> {
 
     fn gather(&self, shot: &Shot, matter: &Matter) -> Vec<[R; 4]> {
         let (frame, slices) = shot.parameters();
+        let formula = Formula {
+            shot,
+            frame: &frame,
+            slices,
+            matter,
+        };
         let pixel = |[x, y]: [u32; 2]| {
             let pixel = [x, y].map(|n| R::from_f64(f64::from(n) + 0.5));
-            accumulate(shot, &frame, slices, pixel, matter)
+            let technique = shot.settings.technique;
+            technique.pixel(&formula, pixel).accumulation
         };
         shot.pixels().map(pixel).collect()
     }
@@ -69,58 +76,70 @@ impl<R: Real> Way for Twin<R> {
     }
 }
 
-/// What a technique leaves of one pixel.
-fn accumulate<R: Real>(
-    shot: &Shot,
-    frame: &Frame,
+/// The formula in place of a volume.
+struct Formula<'a> {
+    shot: &'a Shot,
+    frame: &'a Frame,
     slices: u32,
-    pixel: [R; 2],
-    matter: &Matter,
-) -> [R; 4] {
-    let Settings {
-        technique,
-        mode,
-        order,
-        lattice,
-        ..
-    } = shot.settings;
-    let value_at = |p: [R; 3]| {
+    matter: &'a Matter<'a>,
+}
+
+impl<R: Real> Samples<R> for Formula<'_> {
+    fn frame(&self) -> &Frame {
+        self.frame
+    }
+
+    fn settings(&self) -> &Settings {
+        &self.shot.settings
+    }
+
+    fn slice_count(&self) -> u32 {
+        self.slices
+    }
+
+    fn dim(&self, axis: usize) -> u32 {
+        self.shot.grid.dims[axis]
+    }
+
+    fn value(&self, p: [R; 3]) -> Option<R> {
         let [x, y, z] = p.map(R::to_f64);
-        Some(R::from_f64((matter.value)(dvec3(x, y, z))))
-    };
-    let classify = |value: R| {
+        Some(R::from_f64((self.matter.value)(dvec3(x, y, z))))
+    }
+
+    fn value_in_slice(&self, _axis: usize, _slice: u32, p: [R; 3]) -> Option<R> {
+        self.value(p)
+    }
+
+    fn voxel(&self, _index: [i32; 3]) -> Option<R> {
+        panic!("a formula has no voxels")
+    }
+
+    fn material(&self, p: [R; 3], _ray_direction: [R; 3]) -> Option<[R; 4]> {
+        self.value(p).map(|value| self.classify(value))
+    }
+
+    fn material_in_slice(
+        &self,
+        _axis: usize,
+        _slice: u32,
+        p: [R; 3],
+        ray_direction: [R; 3],
+    ) -> Option<[R; 4]> {
+        self.material(p, ray_direction)
+    }
+
+    fn classify(&self, value: R) -> [R; 4] {
         let value = value.to_f64();
-        let [r, g, b] = (matter.color)(value);
-        [r, g, b, (matter.extinction)(value)].map(R::from_f64)
-    };
-    let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
-    let fragment = |i: u32| match technique {
-        Technique::Slices2d => {
-            let slice = slices_2d::reference::slice_of(frame, i);
-            slices_2d::reference::fragment(frame, pixel, slice, value_at)
-        }
-        _ => {
-            let plane = frame.slice_first + i as i32 * frame.slice_direction;
-            slices_3d::reference::fragment(frame, pixel, plane, value_at)
-        }
-    };
-    match technique {
-        Technique::Raycast if mode.is_projection() => {
-            let (found, _) = projection::reference::project(frame, lattice, mode, pixel, value_at);
-            [found.value, found.weight, zero, zero]
-        }
-        Technique::Raycast => {
-            let (found, _) =
-                raycast::reference::radiance(frame, lattice, pixel, value_at, classify);
-            let [r, g, b] = found.color;
-            [r, g, b, one - found.transmittance]
-        }
-        Technique::Slices3d | Technique::Slices2d => (0..slices)
-            .filter_map(fragment)
-            .flatten()
-            .fold(clear_color(mode).map(R::from_f32), |target, fragment| {
-                blend(mode, order, target, fragment, classify)
-            }),
+        let [r, g, b] = (self.matter.color)(value);
+        [r, g, b, (self.matter.extinction)(value)].map(R::from_f64)
+    }
+
+    fn classify_slab(&self, _ends: [R; 2]) -> [R; 4] {
+        panic!("a formula is not pre-integrated")
+    }
+
+    fn alike(&self) -> Option<&AlikeCells> {
+        None
     }
 }
 
