@@ -79,7 +79,7 @@ fn stages() -> Vec<Stage> {
             preintegrated,
             lattice: match technique {
                 Technique::Raycast => Lattice::Ray,
-                Technique::Slices3d | Technique::Slices2d => Lattice::Planes,
+                _ => Lattice::Planes,
             },
             ..Settings::default()
         })

@@ -9,12 +9,7 @@ use stratavox::technique::{Filter, Mode, Technique};
 pub fn ways(ui: &mut Ui, view: &mut View) {
     ui.horizontal(|ui| {
         for technique in TECHNIQUES {
-            let name = match technique {
-                Technique::Raycast => "Rays",
-                Technique::Slices3d => "3D slices",
-                Technique::Slices2d => "2D slices",
-            };
-            ui.selectable_value(&mut view.look.technique, technique, name);
+            ui.selectable_value(&mut view.look.technique, technique, technique.to_string());
         }
     });
     Grid::new("ways")
