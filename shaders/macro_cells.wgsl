@@ -13,18 +13,17 @@ struct CellRanges {
 
 @group(0) @binding(31) var<storage, read_write> cell_ranges: CellRanges;
 
-// Threads of a cell, and cells of a workgroup, side by side.
+// Threads of a cell, and cells of a workgroup, beside each other along y.
 const CELL_THREADS: u32 = 8u;
 const CELLS: u32 = 8u;
 
 // Least and most of what each thread has seen.
 var<workgroup> seen: array<array<vec2<f32>, CELL_THREADS>, CELLS>;
 
-@compute @workgroup_size(CELL_THREADS * CELLS)
+@compute @workgroup_size(CELL_THREADS, CELLS)
 fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_id) place: vec3<u32>) {
     let cell = vec3(id.x / CELL_THREADS, id.yz);
-    let thread = i32(id.x % CELL_THREADS);
-    let beside = place.x / CELL_THREADS;
+    let thread = i32(place.x);
     let own = cell_grid.origin + vec3<i32>(cell * CELL_VOXELS);
     let apron = vec3(cell_grid.apron);
     let low = max(own - apron, cell_grid.stored_min) - cell_grid.stored_min;
@@ -39,13 +38,13 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_
             range = both(range, vec2(code_at(first + vec3(x, 0, 0))));
         }
     }
-    seen[beside][thread] = range;
+    seen[place.y][thread] = range;
     workgroupBarrier();
     if thread > 0 || !is_cell {
         return;
     }
     for (var i = 1u; i < CELL_THREADS; i++) {
-        range = both(range, seen[beside][i]);
+        range = both(range, seen[place.y][i]);
     }
     cell_ranges.d[cell_index(cell)] = range_of(range);
 }

@@ -65,6 +65,7 @@
 //!         frames_in_flight: 2,
 //!         host_depth: false,
 //!         gives_depth: false,
+//!         picks: false,
 //!         slice_blending: SliceBlending::Float,
 //!     };
 //!     Renderer::new(gpu, &Arc::new(volume), Some(function), class, extent, &[])
