@@ -9,6 +9,8 @@
 //! table of modules with their bindings, a `#[repr(C)]` struct for each uniform, and the constants) and
 //! `blue_noise.bin` (the pattern of jittered rays); with the feature `conformance` `wgsl.rs` too (the texts of all files).
 
+#[path = "shaders/alternatives.rs"]
+mod alternatives;
 #[path = "shaders/among_few.rs"]
 mod among_few;
 #[path = "shaders/blue_noise.rs"]
@@ -17,6 +19,8 @@ mod blue_noise;
 mod both_sides;
 #[path = "shaders/compose.rs"]
 mod compose;
+#[path = "shaders/constants.rs"]
+mod constants;
 #[path = "shaders/handed.rs"]
 mod handed;
 #[path = "shaders/no_contraction.rs"]
@@ -30,7 +34,7 @@ mod read_once;
 #[path = "shaders/variants.rs"]
 mod variants;
 
-use compose::{Source, combinations};
+use compose::{Source, combinations, fills};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -52,9 +56,7 @@ fn main() {
         None => &[],
     };
     for (file, slots) in ENTRIES.iter().chain(probes) {
-        for words in combinations(slots) {
-            book.add(file, slots, &words);
-        }
+        book.add_all(file, slots);
     }
     say_packaged_commit();
     fs::write(out.join("shaders.spv"), &book.spirv).expect("OUT_DIR can be written");
@@ -97,21 +99,50 @@ struct Book {
 }
 
 impl Book {
-    fn add(&mut self, file: &str, slots: &[Slot], words: &[&str]) {
-        let name = compose::name(file, words);
-        let fills = compose::fills(slots, words);
-        let source = Source::read(file, &fills, &read);
+    /// All variants of an entry: modules of those that constants choose among.
+    fn add_all(&mut self, file: &str, slots: &[Slot]) {
+        let mut modules: BTreeMap<Vec<&str>, Module> = BTreeMap::new();
+        for words in combinations(slots) {
+            let parted = slots.iter().zip(&words);
+            let own = parted.filter(|(slot, _)| !slot.is_constant);
+            let own: Vec<&str> = own.map(|(_, word)| *word).collect();
+            let name = compose::name(file, &words);
+            let module = modules
+                .entry(own)
+                .or_insert_with(|| self.add(file, &name, slots, &words));
+            let values = module.values(slots, &words);
+            let line = format!(
+                "Shader {{ name: {name:?}, constants: &{values:?}, {} }}",
+                module.text
+            );
+            assert!(
+                self.table.insert(name.clone(), line).is_none(),
+                "{name} stands twice in ENTRIES"
+            );
+        }
+    }
+
+    /// The module of a variant and of all those that differ from it by constants.
+    fn add(&mut self, file: &str, name: &str, slots: &[Slot], words: &[&str]) -> Module {
+        let fills = fills(slots, words);
+        let chosen: Vec<Slot> = slots
+            .iter()
+            .filter(|slot| slot.is_constant)
+            .copied()
+            .collect();
+        let source = alternatives::merged(file, &chosen, &fills, &read);
         let mut module = naga::front::wgsl::parse_str(&source.text).unwrap_or_else(|e| {
             let picture = e.emit_to_string(&source.text);
-            fail(&source, &name, e.location(&source.text), &picture)
+            fail(&source, name, e.location(&source.text), &picture)
         });
+        constants::mark(&mut module);
         // No capability beyond the core: a shader that needs more is a build error.
         let check = |module: &naga::Module, flags| {
             Validator::new(flags, Capabilities::empty())
                 .validate(module)
                 .unwrap_or_else(|e| {
                     let picture = e.emit_to_string(&source.text);
-                    fail(&source, &name, e.location(&source.text), &picture)
+                    fail(&source, name, e.location(&source.text), &picture)
                 })
         };
         check(&module, ValidationFlags::all());
@@ -129,20 +160,10 @@ impl Book {
         let uniformity = ValidationFlags::CONTROL_FLOW_UNIFORMITY;
         let info = check(&module, ValidationFlags::all().difference(uniformity));
 
-        let words = spirv(&module, &info, file);
+        let (words, ids) = constants::specialized(&spirv(&module, &info, file));
         let first = self.spirv.len() / 4;
         self.spirv
             .extend(words.iter().flat_map(|word| word.to_le_bytes()));
-        let line = format!(
-            "Shader {{ name: {name:?}, stage: {}, spirv: &words[{first}..{}], bindings: &[{}] }}",
-            stage(&module),
-            first + words.len(),
-            bindings(&module)
-        );
-        assert!(
-            self.table.insert(name.clone(), line).is_none(),
-            "{name} stands twice in ENTRIES"
-        );
         for (name, text) in uniform_structs(&module) {
             let known = self
                 .structs
@@ -150,7 +171,14 @@ impl Book {
                 .or_insert_with(|| text.clone());
             assert!(*known == text, "struct {name} has two layouts");
         }
-        self.constants.extend(constants(&module));
+        self.constants.extend(named_constants(&module));
+        let text = format!(
+            "stage: {}, spirv: &words[{first}..{}], bindings: &[{}]",
+            stage(&module),
+            first + words.len(),
+            bindings(&module)
+        );
+        Module { text, ids }
     }
 
     fn rust(&self) -> String {
@@ -171,6 +199,30 @@ impl Book {
         }
         writeln!(text, "    ]\n}}").unwrap();
         text
+    }
+}
+
+/// A module that is written.
+struct Module {
+    /// What all of its variants have alike in the table.
+    text: String,
+    /// `SpecId` of each constant that the module has.
+    ids: Vec<u32>,
+}
+
+impl Module {
+    /// `SpecId` and value of each constant, for these words of the slots.
+    fn values(&self, slots: &[Slot], words: &[&str]) -> Vec<(u32, u32)> {
+        let chosen = slots.iter().zip(words).filter(|(slot, _)| slot.is_constant);
+        let value = |(slot, word): (&Slot, &&str)| {
+            let value = slot.words.iter().position(|one| one == word);
+            (
+                alternatives::id_of(slot.name) as u32,
+                value.expect("a word of the slot") as u32,
+            )
+        };
+        let values = chosen.map(value);
+        values.filter(|(id, _)| self.ids.contains(id)).collect()
     }
 }
 
@@ -308,7 +360,7 @@ fn bindings(module: &naga::Module) -> String {
 }
 
 /// Whole and float constants that a file gives as plain literals.
-fn constants(module: &naga::Module) -> Vec<(String, String)> {
+fn named_constants(module: &naga::Module) -> Vec<(String, String)> {
     let literal = |(_, constant): (_, &naga::Constant)| {
         let name = constant.name.clone()?;
         let naga::Expression::Literal(value) = module.global_expressions[constant.init] else {

@@ -2,14 +2,16 @@
 //! shader was made from.
 
 use super::variants::{SILENT, Slot, filled};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// Every way to take one word from each slot.
 pub fn combinations(slots: &[Slot]) -> Vec<Vec<&'static str>> {
-    slots.iter().fold(vec![Vec::new()], |sets, (_, words)| {
+    slots.iter().fold(vec![Vec::new()], |sets, slot| {
         let extended = |set: &Vec<&'static str>| {
             let set = set.clone();
-            words.iter().map(move |word| [&set[..], &[*word]].concat())
+            slot.words
+                .iter()
+                .map(move |word| [&set[..], &[*word]].concat())
         };
         sets.iter().flat_map(extended).collect()
     })
@@ -27,7 +29,7 @@ pub fn name(file: &str, words: &[&str]) -> String {
 
 /// The word of each slot.
 pub fn fills<'w>(slots: &[Slot], words: &[&'w str]) -> BTreeMap<&'static str, &'w str> {
-    let names = slots.iter().map(|slot| slot.0);
+    let names = slots.iter().map(|slot| slot.name);
     names.zip(words.iter().copied()).collect()
 }
 
@@ -43,29 +45,55 @@ impl Source {
     /// Of `file`, without its ending, with the texts that `read` gives for files under `shaders`.
     pub fn read(file: &str, fills: &BTreeMap<&str, &str>, read: &dyn Fn(&str) -> String) -> Self {
         let mut source = Self::default();
-        source.append(format!("{file}.wgsl"), fills, read, &mut BTreeSet::new());
+        for path in Self::files(file, fills, read) {
+            for (number, line) in (1..).zip(read(&path).lines()) {
+                if !line.starts_with(IMPORT) {
+                    source.push(&path, number, line);
+                }
+            }
+        }
         source
     }
 
-    fn append(
-        &mut self,
-        path: String,
+    /// Paths of `file` and of all that it imports, each once.
+    pub fn files(
+        file: &str,
         fills: &BTreeMap<&str, &str>,
         read: &dyn Fn(&str) -> String,
-        seen: &mut BTreeSet<String>,
-    ) {
-        if !seen.insert(path.clone()) {
-            return;
-        }
-        for (number, line) in read(&path).lines().enumerate() {
-            if let Some(name) = line.strip_prefix("#import ") {
-                let path = format!("lib/{}.wgsl", filled(name, fills));
-                self.append(path, fills, read, seen);
-            } else {
-                self.text.push_str(line);
-                self.text.push('\n');
-                self.lines.push((path.clone(), number + 1));
-            }
-        }
+    ) -> Vec<String> {
+        let mut files = Vec::new();
+        append(&mut files, format!("{file}.wgsl"), fills, read);
+        files
+    }
+
+    /// Another line.
+    pub fn push(&mut self, path: &str, number: usize, line: &str) {
+        self.text.push_str(line);
+        self.text.push('\n');
+        self.lines.push((path.to_owned(), number));
+    }
+}
+
+/// What a line that names another file begins with.
+pub const IMPORT: &str = "#import ";
+
+fn append(
+    files: &mut Vec<String>,
+    path: String,
+    fills: &BTreeMap<&str, &str>,
+    read: &dyn Fn(&str) -> String,
+) {
+    if files.contains(&path) {
+        return;
+    }
+    let text = read(&path);
+    files.push(path);
+    for name in text.lines().filter_map(|line| line.strip_prefix(IMPORT)) {
+        append(
+            files,
+            format!("lib/{}.wgsl", filled(name, fills)),
+            fills,
+            read,
+        );
     }
 }

@@ -15,9 +15,14 @@
 //! if c        ->    if c & (here != 2^32 - 1 - k)
 //! switch n    ->    switch select(none of the cases, n, here != 2^32 - 1 - k)
 //! ```
+//!
+//! Other drivers see through it: `here` is the constant 0 where the specialization constant `software` is not 1. What
+//! hangs on a specialization constant alone is left as it is.
 
+use crate::alternatives::id_of;
+use crate::constants::{is_marked, marked};
 use naga::{
-    AddressSpace, Arena, BinaryOperator, Binding, Block, BuiltIn, Expression, Function,
+    AddressSpace, Arena, BinaryOperator, Binding, Block, BuiltIn, Constant, Expression, Function,
     FunctionArgument, GlobalVariable, Handle, Literal, MemoryDecorations, Module, Range, Scalar,
     ScalarKind, Span, Statement, Type, TypeInner, UniqueArena,
 };
@@ -36,8 +41,13 @@ pub fn hide_branches(module: &mut Module) {
         init: None,
         memory_decorations: MemoryDecorations::empty(),
     };
+    let software = marked(module, id_of("software") as u16, Some("SOFTWARE".into()));
+    let chosen = module.constants.iter().map(|(handle, _)| handle);
+    let chosen = chosen.filter(|handle| is_marked(module, *handle)).collect();
     let mut hiding = Hiding {
         here: module.global_variables.append(here, Span::UNDEFINED),
+        software,
+        chosen,
         branches: 0,
     };
     for (_, function) in module.functions.iter_mut() {
@@ -53,6 +63,10 @@ pub fn hide_branches(module: &mut Module) {
 
 struct Hiding {
     here: Handle<GlobalVariable>,
+    /// 1 where the driver is llvmpipe.
+    software: Handle<Constant>,
+    /// All specialization constants.
+    chosen: Vec<Handle<Constant>>,
     /// How many there have been.
     branches: u32,
 }
@@ -85,8 +99,11 @@ impl Hiding {
                 }
                 Statement::Switch { selector, cases } => {
                     // What a caller gives is a constant, or the turn of a loop.
-                    let is_given =
-                        matches!(expressions[*selector], Expression::FunctionArgument(_));
+                    let is_given = match expressions[*selector] {
+                        Expression::FunctionArgument(_) => true,
+                        Expression::Constant(one) => self.chosen.contains(&one),
+                        _ => false,
+                    };
                     if !is_given {
                         self.hide_selector(block, selector, expressions, span);
                     }
@@ -166,13 +183,29 @@ impl Hiding {
         let pointer = add(Expression::GlobalVariable(self.here));
         let base = add(Expression::FunctionArgument(index));
         let first = is_vector.then(|| add(Expression::AccessIndex { base, index: 0 }));
-        let value = add(Expression::As {
+        let software = add(Expression::Constant(self.software));
+        let [zero, one] = [0, 1].map(|number| add(Expression::Literal(Literal::U32(number))));
+        let place = add(Expression::As {
             expr: first.unwrap_or(base),
             kind: ScalarKind::Uint,
             convert: None,
         });
+        let condition = add(Expression::Binary {
+            op: BinaryOperator::Equal,
+            left: software,
+            right: one,
+        });
+        let value = add(Expression::Select {
+            condition,
+            accept: place,
+            reject: zero,
+        });
         let mut block = Block::new();
-        let made = Range::new_from_bounds(first.unwrap_or(value), value);
+        if let Some(first) = first {
+            let made = Range::new_from_bounds(first, first);
+            block.push(Statement::Emit(made), span);
+        }
+        let made = Range::new_from_bounds(place, value);
         block.push(Statement::Emit(made), span);
         block.push(Statement::Store { pointer, value }, span);
         block

@@ -4,7 +4,45 @@
 use std::collections::BTreeMap;
 
 /// A slot of `#import` names and the words that fill it.
-pub type Slot = (&'static str, &'static [&'static str]);
+#[derive(Clone, Copy, Debug)]
+pub struct Slot {
+    pub name: &'static str,
+    pub words: &'static [&'static str],
+    /// A specialization constant chooses the word: all of them are in one module.
+    pub is_constant: bool,
+}
+
+/// A slot of which each word makes modules of its own.
+const fn slot(name: &'static str, words: &'static [&'static str]) -> Slot {
+    Slot {
+        name,
+        words,
+        is_constant: false,
+    }
+}
+
+/// A slot whose word a specialization constant chooses.
+const fn constant(name: &'static str, words: &'static [&'static str]) -> Slot {
+    Slot {
+        name,
+        words,
+        is_constant: true,
+    }
+}
+
+impl Slot {
+    /// The name of its constant in WGSL.
+    pub fn constant(&self) -> String {
+        self.name.to_uppercase()
+    }
+}
+
+/// Names of the specialization constants: the place of one is its `SpecId`. The first says whether the driver is
+/// llvmpipe (`opaque.rs`).
+pub const CONSTANTS: &[&str] = &[
+    "software", "filter", "holes", "lattice", "cuts", "transfer", "sight", "mode", "operator",
+    "source", "left",
+];
 
 /// The name of an import with its slots filled. `{slot=word}` has that word where an entry has no such slot.
 pub fn filled(name: &str, fills: &BTreeMap<&str, &str>) -> String {
@@ -20,38 +58,38 @@ pub fn filled(name: &str, fills: &BTreeMap<&str, &str>) -> String {
 }
 
 /// A kernel is wider than linear, by fetches; a spline is a B-spline by the sampler.
-const FILTER: Slot = (
+const FILTER: Slot = slot(
     "filter",
     &["nearest", "linear", "linear_fetch", "kernel", "spline"],
 );
 /// By corners too, of 8-bit and of 16-bit voxels: what rays on their own lattice have on software devices.
-const CORNERS: Slot = ("filter", &["corners8", "corners16"]);
+const CORNERS: Slot = slot("filter", &["corners8", "corners16"]);
 /// Conformance pictures search the points, and never leave filtering to the device.
-const FETCHED: Slot = ("filter", &["nearest", "linear_fetch", "kernel"]);
+const FETCHED: Slot = slot("filter", &["nearest", "linear_fetch", "kernel"]);
 /// Several volumes are mixed by narrow filters.
-const NARROW: Slot = ("filter", &["nearest", "linear", "linear_fetch"]);
-const NARROW_FETCHED: Slot = ("filter", &["nearest", "linear_fetch"]);
-const LINEAR: Slot = ("filter", &["linear"]);
-const TABLE: Slot = ("transfer", &["table"]);
+const NARROW: Slot = slot("filter", &["nearest", "linear", "linear_fetch"]);
+const NARROW_FETCHED: Slot = slot("filter", &["nearest", "linear_fetch"]);
+const LINEAR: Slot = slot("filter", &["linear"]);
+const TABLE: Slot = slot("transfer", &["table"]);
 /// What goes with corners: devices whose sampler is a program.
-const STORED: Slot = ("transfer", &["stored"]);
-const POINTS: Slot = ("transfer", &["points"]);
+const STORED: Slot = slot("transfer", &["stored"]);
+const POINTS: Slot = slot("transfer", &["points"]);
 /// One number at both ends of a segment. The word is left out of names.
-const SLAB: Slot = ("mix", &["slab"]);
+const SLAB: Slot = slot("mix", &["slab"]);
 /// What a compute pass walks along: a line of samples, one of slabs, or the slices of a stack, by points and by slabs.
-const LINE: Slot = ("walk", &["march"]);
-const SLABS: Slot = ("walk", &["march_slab"]);
-const SLICES: Slot = ("walk", &["march_stack"]);
-const SLICE_SLABS: Slot = ("walk", &["march_stack_slab"]);
+const LINE: Slot = slot("walk", &["march"]);
+const SLABS: Slot = slot("walk", &["march_slab"]);
+const SLICES: Slot = slot("walk", &["march_stack"]);
+const SLICE_SLABS: Slot = slot("walk", &["march_stack_slab"]);
 /// The lattice of the slices of a stack, walked along for their depth.
-const STACK: Slot = ("lattice", &["stack"]);
+const STACK: Slot = slot("lattice", &["stack"]);
 /// Slices that a host's depth buffer is tested against hide by themselves what lies behind it, others read it.
-const TESTED: Slot = ("sight", &["open"]);
-const SIGHT: Slot = ("sight", &["open", "host"]);
+const TESTED: Slot = slot("sight", &["open"]);
+const SIGHT: Slot = slot("sight", &["open", "host"]);
 /// How central differences are made. The words are left out of names: corners have their own way, and it is theirs
 /// alone.
-const TAPS: Slot = ("slope", &["taps"]);
-const SHARED: Slot = ("slope", &["corners"]);
+const TAPS: Slot = slot("slope", &["taps"]);
+const SHARED: Slot = slot("slope", &["corners"]);
 /// Words that stand in no name.
 pub const SILENT: &[&str] = &[
     "alone",
@@ -68,33 +106,33 @@ pub const SILENT: &[&str] = &[
     "triangles",
 ];
 /// Who reads the parameters of slices: the fragments, or the vertices for them (`handed.rs`).
-const PARAMETERS: Slot = ("parameters", &["asked", "planes", "stack"]);
+const PARAMETERS: Slot = slot("parameters", &["asked", "planes", "stack"]);
 /// Whether clip planes cut the domain, cut faces are seen, rays have places of their own in their pixels or begin by a part
 /// of a step earlier: or nothing of it.
-const CUTS: Slot = ("cuts", &["cut", "whole"]);
-const PLANES: Slot = ("parameters", &["planes"]);
-const STACKED: Slot = ("parameters", &["stack"]);
+const CUTS: Slot = slot("cuts", &["cut", "whole"]);
+const PLANES: Slot = slot("parameters", &["planes"]);
+const STACKED: Slot = slot("parameters", &["stack"]);
 /// What squares of patches are drawn as.
-const SQUARES: Slot = ("squares", &["triangles", "points"]);
-const TRANSFER: Slot = ("transfer", &["table", "points"]);
-const HOLES: Slot = ("holes", &["none", "mask"]);
-const LATTICE: Slot = ("lattice", &["ray", "planes"]);
+const SQUARES: Slot = slot("squares", &["triangles", "points"]);
+const TRANSFER: Slot = slot("transfer", &["table", "points"]);
+const HOLES: Slot = constant("holes", &["none", "mask"]);
+const LATTICE: Slot = slot("lattice", &["ray", "planes"]);
 /// One number a voxel, alone or with its gradient. The word `alone` is left out of names.
-const ONE: Slot = ("mix", &["alone", "graded"]);
+const ONE: Slot = slot("mix", &["alone", "graded"]);
 /// Graded for no more than unhindered light and weights of opacity, by central differences.
-const LEAN: Slot = ("mix", &["lit", "weighed"]);
-const ALONE: Slot = ("mix", &["alone"]);
+const LEAN: Slot = slot("mix", &["lit", "weighed"]);
+const ALONE: Slot = slot("mix", &["alone"]);
 /// Steps that adapt to what is there, of volumes without holes.
-const ADAPTIVE: Slot = ("mix", &["adaptive"]);
-const WHOLE: Slot = ("holes", &["none"]);
-const MIXED: Slot = ("mix", &["channels", "colors"]);
-const MODE: Slot = ("mode", &["composite"]);
+const ADAPTIVE: Slot = slot("mix", &["adaptive"]);
+const WHOLE: Slot = slot("holes", &["none"]);
+const MIXED: Slot = slot("mix", &["channels", "colors"]);
+const MODE: Slot = slot("mode", &["composite"]);
 /// Modes that slicers do not have leave the lattice of slicers to them.
-const RAY: Slot = ("lattice", &["ray"]);
-const MIDA: Slot = ("mode", &["mida"]);
-const BLEND: Slot = ("blend", &["composite"]);
+const RAY: Slot = slot("lattice", &["ray"]);
+const MIDA: Slot = slot("mode", &["mida"]);
+const BLEND: Slot = slot("blend", &["composite"]);
 /// What projections have blended: an extreme, or a sum.
-const NUMBER: Slot = ("blend", &["number"]);
+const NUMBER: Slot = slot("blend", &["number"]);
 
 /// The wanted combinations. Order of the slots is the order of words in a variant's name.
 pub const ENTRIES: &[(&str, &[Slot])] = &[
@@ -148,18 +186,24 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         "raycast",
         &[LINE, MIDA, ONE, RAY, FETCHED, HOLES, POINTS, TAPS],
     ),
-    ("isosurface", &[("paint", &["alone"]), FILTER, HOLES, TAPS]),
     (
         "isosurface",
-        &[("paint", &["alone"]), CORNERS, HOLES, SHARED, CUTS],
+        &[slot("paint", &["alone"]), FILTER, HOLES, TAPS],
     ),
-    ("isosurface", &[("paint", &["by"]), NARROW, HOLES, TAPS]),
-    ("projection_cells", &[("mode", &["mip", "minip"]), HOLES]),
+    (
+        "isosurface",
+        &[slot("paint", &["alone"]), CORNERS, HOLES, SHARED, CUTS],
+    ),
+    ("isosurface", &[slot("paint", &["by"]), NARROW, HOLES, TAPS]),
+    (
+        "projection_cells",
+        &[slot("mode", &["mip", "minip"]), HOLES],
+    ),
     (
         "projection",
         &[
             LINE,
-            ("mode", &["mip", "minip", "sum"]),
+            slot("mode", &["mip", "minip", "sum"]),
             ALONE,
             LATTICE,
             FILTER,
@@ -170,7 +214,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         "projection",
         &[
             LINE,
-            ("mode", &["mip", "minip", "sum"]),
+            slot("mode", &["mip", "minip", "sum"]),
             ALONE,
             LATTICE,
             CORNERS,
@@ -182,7 +226,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         "projection",
         &[
             LINE,
-            ("mode", &["lmip", "attenuated_mip"]),
+            slot("mode", &["lmip", "attenuated_mip"]),
             ALONE,
             RAY,
             CORNERS,
@@ -194,7 +238,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         "projection",
         &[
             LINE,
-            ("mode", &["lmip", "attenuated_mip"]),
+            slot("mode", &["lmip", "attenuated_mip"]),
             ALONE,
             RAY,
             FILTER,
@@ -214,7 +258,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         "projection",
         &[
             SLICES,
-            ("mode", &["mip", "minip"]),
+            slot("mode", &["mip", "minip"]),
             ALONE,
             STACK,
             FILTER,
@@ -257,13 +301,16 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         "slices_3d",
         &[
             TESTED,
-            ("blend", &["count"]),
+            slot("blend", &["count"]),
             ALONE,
-            ("filter", &["nearest"]),
-            ("holes", &["none"]),
+            slot("filter", &["nearest"]),
+            slot("holes", &["none"]),
         ],
     ),
-    ("slices_3d_cover", &[("parameters", &["asked", "planes"])]),
+    (
+        "slices_3d_cover",
+        &[slot("parameters", &["asked", "planes"])],
+    ),
     (
         "slices_2d",
         &[TESTED, BLEND, ONE, FILTER, HOLES, TABLE, TAPS],
@@ -292,18 +339,21 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         "slices_2d",
         &[
             TESTED,
-            ("blend", &["count"]),
+            slot("blend", &["count"]),
             ALONE,
-            ("filter", &["nearest"]),
-            ("holes", &["none"]),
+            slot("filter", &["nearest"]),
+            slot("holes", &["none"]),
         ],
     ),
-    ("slices_2d_cover", &[("parameters", &["asked", "stack"])]),
+    (
+        "slices_2d_cover",
+        &[slot("parameters", &["asked", "stack"])],
+    ),
     (
         "raycast_slab",
         &[
             SLABS,
-            ("mode", &["composite"]),
+            slot("mode", &["composite"]),
             SLAB,
             LATTICE,
             NARROW,
@@ -315,10 +365,10 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         "slices_3d_slab",
         &[
             TESTED,
-            ("blend", &["count"]),
+            slot("blend", &["count"]),
             SLAB,
-            ("filter", &["nearest"]),
-            ("holes", &["none"]),
+            slot("filter", &["nearest"]),
+            slot("holes", &["none"]),
         ],
     ),
     ("slices_2d_slab", &[BLEND, SLAB, SIGHT, NARROW, HOLES]),
@@ -326,23 +376,29 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         "slices_2d_slab",
         &[
             TESTED,
-            ("blend", &["count"]),
+            slot("blend", &["count"]),
             SLAB,
-            ("filter", &["nearest"]),
-            ("holes", &["none"]),
+            slot("filter", &["nearest"]),
+            slot("holes", &["none"]),
         ],
     ),
     (
         "slices_2d_smooth",
-        &[("blend", &["composite"]), ALONE, NARROW, HOLES, TRANSFER],
+        &[
+            slot("blend", &["composite"]),
+            ALONE,
+            NARROW,
+            HOLES,
+            TRANSFER,
+        ],
     ),
     (
         "slices_2d_smooth",
         &[
-            ("blend", &["count"]),
+            slot("blend", &["count"]),
             ALONE,
-            ("filter", &["nearest"]),
-            ("holes", &["none"]),
+            slot("filter", &["nearest"]),
+            slot("holes", &["none"]),
         ],
     ),
     ("slices_3d_half", &[ONE, NARROW, HOLES, TABLE, TAPS]),
@@ -352,23 +408,23 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "resolve",
-        &[("source", &["picture", "value", "mean", "cued"])],
+        &[slot("source", &["picture", "value", "mean", "cued"])],
     ),
     ("resolve_cover", &[]),
-    ("resolve_depth", &[("left", &["picture", "value"])]),
+    ("resolve_depth", &[slot("left", &["picture", "value"])]),
     ("host_depth_copy", &[]),
-    ("keep_gradients", &[("layout", &["box", "stack"])]),
-    ("merge", &[("operator", &["over", "under", "add"])]),
+    ("keep_gradients", &[slot("layout", &["box", "stack"])]),
+    ("merge", &[slot("operator", &["over", "under", "add"])]),
     (
         "denoise",
-        &[("kernel", &["gaussian", "median", "bilateral", "nlm"])],
+        &[slot("kernel", &["gaussian", "median", "bilateral", "nlm"])],
     ),
     // Once for many pictures: classified by the points in all of them.
     (
         "light_cells",
         &[
-            ("layout", &["box", "stack"]),
-            ("filter", &["nearest", "kernel"]),
+            slot("layout", &["box", "stack"]),
+            slot("filter", &["nearest", "kernel"]),
             HOLES,
             POINTS,
             TAPS,
@@ -380,18 +436,21 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     // Which tiles rays draw: all that they may meet something in, or all over the box.
     (
         "ray_tiles",
-        &[("known", &["rooms"]), ("left", &["picture"])],
+        &[slot("known", &["rooms"]), slot("left", &["picture"])],
     ),
     (
         "ray_tiles",
         &[
-            ("known", &["box"]),
-            ("left", &["picture", "mida", "number"]),
+            slot("known", &["box"]),
+            slot("left", &["picture", "mida", "number"]),
         ],
     ),
-    ("macro_cells", &[("layout", &["box", "stack"])]),
+    ("macro_cells", &[slot("layout", &["box", "stack"])]),
     ("distance_map", &[]),
-    ("slice_patches", &[("planes", &["view", "stack"]), SQUARES]),
+    (
+        "slice_patches",
+        &[slot("planes", &["view", "stack"]), SQUARES],
+    ),
     ("slice_patches_cover", &[SQUARES, PARAMETERS]),
     ("opaque_patches", &[]),
 ];
@@ -418,13 +477,13 @@ const STORAGE_FORMATS: &[&str] = &[
 pub const PROBES: &[(&str, &[Slot])] = &[
     (
         "probe/fragment_caster",
-        &[ALONE, ("holes", &["none"]), TABLE],
+        &[ALONE, slot("holes", &["none"]), TABLE],
     ),
     ("probe/filter_3d", &[]),
     ("probe/filter_array", &[]),
     ("probe/fetch", &[]),
-    ("probe/store", &[("format", STORAGE_FORMATS)]),
-    ("probe/load", &[("format", STORAGE_FORMATS)]),
+    ("probe/store", &[slot("format", STORAGE_FORMATS)]),
+    ("probe/load", &[slot("format", STORAGE_FORMATS)]),
     ("probe/many", &[]),
     ("probe/spots", &[]),
     ("probe/places_3d", &[]),

@@ -11,8 +11,10 @@ pub struct Shader {
     pub name: &'static str,
     /// Compute, vertex or fragment; its entry point is called `main`.
     pub stage: Stage,
-    /// SPIR-V 1.5.
+    /// SPIR-V 1.5; that of several variants, which [`Self::constants`] choose among.
     pub spirv: &'static [u32],
+    /// `SpecId` and value of each specialization constant.
+    pub constants: &'static [(u32, u32)],
     /// In order of `binding`; all of them in descriptor set 0.
     pub bindings: &'static [BindingSlot],
 }
@@ -31,6 +33,9 @@ pub(crate) fn find(name: &str) -> Option<&'static Shader> {
     let found = SHADERS.binary_search_by(|shader| shader.name.cmp(name));
     found.ok().map(|index| &SHADERS[index])
 }
+
+/// `SpecId` of the constant that says whether the driver is llvmpipe, whatever the variant (`shaders/opaque.rs`).
+pub const SOFTWARE_ID: u32 = 0;
 
 /// The stage of an entry point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -306,6 +306,11 @@ impl Gpu {
     /// Whether shaders that fetch and weigh voxels themselves were found to be faster than the driver's sampler: those
     /// of llvmpipe are, by a half and more, and those of SwiftShader take twice as long (`docs/performance.md`).
     pub fn has_slow_sampler(&self) -> bool {
+        self.is_llvmpipe()
+    }
+
+    /// Whether shaders are made for a processor that runs invocations side by side under a mask.
+    pub(crate) fn is_llvmpipe(&self) -> bool {
         self.identity().driver_id == vk::DriverId::MESA_LLVMPIPE
     }
 
@@ -318,8 +323,7 @@ impl Gpu {
     /// Whether squares of a picture are drawn as points of at most so many pixels, not as two triangles: llvmpipe
     /// shades twice what these share (`shaders/lib/square_points.wgsl`).
     pub(crate) fn draws_squares_as_points(&self, most_pixels: u32) -> bool {
-        let is_llvmpipe = self.identity().driver_id == vk::DriverId::MESA_LLVMPIPE;
-        is_llvmpipe && self.limits.max_point_pixels >= most_pixels
+        self.is_llvmpipe() && self.limits.max_point_pixels >= most_pixels
     }
 
     /// The limits that every size is compared with.

@@ -6,7 +6,7 @@ use super::{
     Bindings, Buffer, Error, Gpu, Groups, Layout, Tile, boxes, error::within, layout::stage_flag,
     owned::Own,
 };
-use crate::shaders::{Shader, Stage};
+use crate::shaders::{SOFTWARE_ID, Shader, Stage};
 use ash::vk;
 use std::ops::Range;
 use std::sync::{Arc, atomic::Ordering};
@@ -52,10 +52,12 @@ impl ComputePipeline {
         )?;
         let layout = Layout::new(gpu, &[shader], shader.name)?;
         let module = module(gpu, shader)?;
+        let constants = Constants::of(gpu, shader);
+        let constants = constants.info();
         let info = vk::ComputePipelineCreateInfo::default()
             // Parts of a dispatch begin at workgroups of their own.
             .flags(vk::PipelineCreateFlags::DISPATCH_BASE)
-            .stage(stage(shader, &module))
+            .stage(stage(shader, &module, &constants))
             .layout(layout.raw());
         // SAFETY: module and layout were made of the same shader, whose SPIR-V `build.rs` has validated.
         let raw = first(gpu, doing, |device| unsafe {
@@ -265,11 +267,49 @@ pub(crate) fn module(gpu: &Arc<Gpu>, shader: &Shader) -> Result<Own<vk::ShaderMo
 pub(crate) fn stage<'a>(
     shader: &Shader,
     module: &Own<vk::ShaderModule>,
+    constants: &'a vk::SpecializationInfo<'_>,
 ) -> vk::PipelineShaderStageCreateInfo<'a> {
     vk::PipelineShaderStageCreateInfo::default()
         .stage(stage_flag(shader.stage))
         .module(module.get())
+        .specialization_info(constants)
         .name(c"main")
+}
+
+/// The specialization constants of a variant.
+pub(crate) struct Constants {
+    entries: Vec<vk::SpecializationMapEntry>,
+    values: Vec<u32>,
+}
+
+impl Constants {
+    /// Those of a shader on this device.
+    pub fn of(gpu: &Gpu, shader: &Shader) -> Self {
+        let software = u32::from(gpu.is_llvmpipe());
+        let all = [(SOFTWARE_ID, software)]
+            .into_iter()
+            .chain(shader.constants.iter().copied());
+        let (ids, values): (Vec<u32>, Vec<u32>) = all.unzip();
+        let entry = |(offset, id)| vk::SpecializationMapEntry {
+            constant_id: id,
+            offset,
+            size: size_of::<u32>(),
+        };
+        Self {
+            entries: (0..)
+                .step_by(size_of::<u32>())
+                .zip(ids)
+                .map(entry)
+                .collect(),
+            values,
+        }
+    }
+
+    pub fn info(&self) -> vk::SpecializationInfo<'_> {
+        vk::SpecializationInfo::default()
+            .map_entries(&self.entries)
+            .data(bytemuck::cast_slice(&self.values))
+    }
 }
 
 /// The one pipeline that was asked for.
