@@ -58,17 +58,17 @@ pub fn filled(name: &str, fills: &BTreeMap<&str, &str>) -> String {
 }
 
 /// A kernel is wider than linear, by fetches; a spline is a B-spline by the sampler.
-const FILTER: Slot = slot(
+const FILTER: Slot = constant(
     "filter",
     &["nearest", "linear", "linear_fetch", "kernel", "spline"],
 );
 /// By corners too, of 8-bit and of 16-bit voxels: what rays on their own lattice have on software devices.
 const CORNERS: Slot = slot("filter", &["corners8", "corners16"]);
 /// Conformance pictures search the points, and never leave filtering to the device.
-const FETCHED: Slot = slot("filter", &["nearest", "linear_fetch", "kernel"]);
+const FETCHED: Slot = constant("filter", &["nearest", "linear_fetch", "kernel"]);
 /// Several volumes are mixed by narrow filters.
-const NARROW: Slot = slot("filter", &["nearest", "linear", "linear_fetch"]);
-const NARROW_FETCHED: Slot = slot("filter", &["nearest", "linear_fetch"]);
+const NARROW: Slot = constant("filter", &["nearest", "linear", "linear_fetch"]);
+const NARROW_FETCHED: Slot = constant("filter", &["nearest", "linear_fetch"]);
 const LINEAR: Slot = slot("filter", &["linear"]);
 const TABLE: Slot = slot("transfer", &["table"]);
 /// What goes with corners: devices whose sampler is a program.
@@ -85,7 +85,7 @@ const SLICE_SLABS: Slot = slot("walk", &["march_stack_slab"]);
 const STACK: Slot = slot("lattice", &["stack"]);
 /// Slices that a host's depth buffer is tested against hide by themselves what lies behind it, others read it.
 const TESTED: Slot = slot("sight", &["open"]);
-const SIGHT: Slot = slot("sight", &["open", "host"]);
+const SIGHT: Slot = constant("sight", &["open", "host"]);
 /// How central differences are made. The words are left out of names: corners have their own way, and it is theirs
 /// alone.
 const TAPS: Slot = slot("slope", &["taps"]);
@@ -109,7 +109,7 @@ pub const SILENT: &[&str] = &[
 const PARAMETERS: Slot = slot("parameters", &["asked", "planes", "stack"]);
 /// Whether clip planes cut the domain, cut faces are seen, rays have places of their own in their pixels or begin by a part
 /// of a step earlier: or nothing of it.
-const CUTS: Slot = slot("cuts", &["cut", "whole"]);
+const CUTS: Slot = constant("cuts", &["cut", "whole"]);
 const PLANES: Slot = slot("parameters", &["planes"]);
 const STACKED: Slot = slot("parameters", &["stack"]);
 /// What squares of patches are drawn as.
