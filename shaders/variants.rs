@@ -40,8 +40,8 @@ impl Slot {
 /// Names of the specialization constants: the place of one is its `SpecId`. The first says whether the driver is
 /// llvmpipe (`opaque.rs`).
 pub const CONSTANTS: &[&str] = &[
-    "software", "filter", "holes", "lattice", "cuts", "transfer", "sight", "mode", "operator",
-    "source", "left",
+    "software", "filter", "holes", "lattice", "cuts", "transfer", "sight", "mode", "kernel",
+    "operator",
 ];
 
 /// The name of an import with its slots filled. `{slot=word}` has that word where an entry has no such slot.
@@ -85,7 +85,7 @@ const SLICE_SLABS: Slot = slot("walk", &["march_stack_slab"]);
 const STACK: Slot = slot("lattice", &["stack"]);
 /// Slices that a host's depth buffer is tested against hide by themselves what lies behind it, others read it.
 const TESTED: Slot = slot("sight", &["open"]);
-const SIGHT: Slot = constant("sight", &["open", "host"]);
+const SIGHT: Slot = slot("sight", &["open", "host"]);
 /// How central differences are made. The words are left out of names: corners have their own way, and it is theirs
 /// alone.
 const TAPS: Slot = slot("slope", &["taps"]);
@@ -116,7 +116,7 @@ const STACKED: Slot = slot("parameters", &["stack"]);
 const SQUARES: Slot = slot("squares", &["triangles", "points"]);
 const TRANSFER: Slot = slot("transfer", &["table", "points"]);
 const HOLES: Slot = constant("holes", &["none", "mask"]);
-const LATTICE: Slot = slot("lattice", &["ray", "planes"]);
+const LATTICE: Slot = constant("lattice", &["ray", "planes"]);
 /// One number a voxel, alone or with its gradient. The word `alone` is left out of names.
 const ONE: Slot = slot("mix", &["alone", "graded"]);
 /// Graded for no more than unhindered light and weights of opacity, by central differences.
@@ -129,6 +129,8 @@ const MIXED: Slot = slot("mix", &["channels", "colors"]);
 const MODE: Slot = slot("mode", &["composite"]);
 /// Modes that slicers do not have leave the lattice of slicers to them.
 const RAY: Slot = slot("lattice", &["ray"]);
+/// One number a ray.
+const PROJECTED: Slot = constant("mode", &["mip", "minip", "sum", "lmip", "attenuated_mip"]);
 const MIDA: Slot = slot("mode", &["mida"]);
 const BLEND: Slot = slot("blend", &["composite"]);
 /// What projections have blended: an extreme, or a sum.
@@ -197,53 +199,15 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ("isosurface", &[slot("paint", &["by"]), NARROW, HOLES, TAPS]),
     (
         "projection_cells",
-        &[slot("mode", &["mip", "minip"]), HOLES],
+        &[constant("mode", &["mip", "minip"]), HOLES],
     ),
     (
         "projection",
-        &[
-            LINE,
-            slot("mode", &["mip", "minip", "sum"]),
-            ALONE,
-            LATTICE,
-            FILTER,
-            HOLES,
-        ],
+        &[LINE, PROJECTED, ALONE, LATTICE, FILTER, HOLES],
     ),
     (
         "projection",
-        &[
-            LINE,
-            slot("mode", &["mip", "minip", "sum"]),
-            ALONE,
-            LATTICE,
-            CORNERS,
-            HOLES,
-            CUTS,
-        ],
-    ),
-    (
-        "projection",
-        &[
-            LINE,
-            slot("mode", &["lmip", "attenuated_mip"]),
-            ALONE,
-            RAY,
-            CORNERS,
-            HOLES,
-            CUTS,
-        ],
-    ),
-    (
-        "projection",
-        &[
-            LINE,
-            slot("mode", &["lmip", "attenuated_mip"]),
-            ALONE,
-            RAY,
-            FILTER,
-            HOLES,
-        ],
+        &[LINE, PROJECTED, ALONE, LATTICE, CORNERS, HOLES, CUTS],
     ),
     // The depth of slices of a stack.
     (
@@ -258,7 +222,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         "projection",
         &[
             SLICES,
-            slot("mode", &["mip", "minip"]),
+            constant("mode", &["mip", "minip"]),
             ALONE,
             STACK,
             FILTER,
@@ -414,17 +378,20 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ("resolve_depth", &[slot("left", &["picture", "value"])]),
     ("host_depth_copy", &[]),
     ("keep_gradients", &[slot("layout", &["box", "stack"])]),
-    ("merge", &[slot("operator", &["over", "under", "add"])]),
+    ("merge", &[constant("operator", &["over", "under", "add"])]),
     (
         "denoise",
-        &[slot("kernel", &["gaussian", "median", "bilateral", "nlm"])],
+        &[constant(
+            "kernel",
+            &["gaussian", "median", "bilateral", "nlm"],
+        )],
     ),
     // Once for many pictures: classified by the points in all of them.
     (
         "light_cells",
         &[
             slot("layout", &["box", "stack"]),
-            slot("filter", &["nearest", "kernel"]),
+            constant("filter", &["nearest", "kernel"]),
             HOLES,
             POINTS,
             TAPS,

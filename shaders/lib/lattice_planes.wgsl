@@ -1,18 +1,7 @@
 // Samples where the ray meets the planes that a view-aligned slicer draws. Twin: src/lattice.rs.
 
 #import ray
-
-struct Lattice {
-    first: i32,
-    count: i32,
-    t0: f32,
-    t1: f32,
-}
-
-struct Segment {
-    t: f32,
-    length: f32,
-}
+#import lattice
 
 // One plane more at each end: rounding may not lose one, and `segment_of` has the last word.
 fn lattice_of(world: Ray, interval: vec2<f32>, pixel: vec2<f32>) -> Lattice {
@@ -20,7 +9,7 @@ fn lattice_of(world: Ray, interval: vec2<f32>, pixel: vec2<f32>) -> Lattice {
     let slope = dot(frame.forward, world.direction);
     let first = i32(floor((origin + interval.x * slope) / frame.step_world - 0.5));
     let last = i32(ceil((origin + interval.y * slope) / frame.step_world - 0.5));
-    return Lattice(first, last - first + 1, interval.x, interval.y);
+    return Lattice(first, last - first + 1, interval.x, interval.y, interval.x);
 }
 
 // A segment of no length is outside.

@@ -3,22 +3,8 @@
 // pixel, and their first segment is cut short in the same way. Twin: src/lattice.rs.
 
 #import ray
+#import lattice
 #import start_{cuts=cut}
-
-struct Lattice {
-    first: i32,
-    count: i32,
-    // Where the ray is in the domain.
-    t0: f32,
-    t1: f32,
-    // Where the first step begins: t0 without jitter.
-    start: f32,
-}
-
-struct Segment {
-    t: f32,
-    length: f32,
-}
 
 fn lattice_of(world: Ray, interval: vec2<f32>, pixel: vec2<f32>) -> Lattice {
     let start = start_of(interval, pixel);

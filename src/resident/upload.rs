@@ -187,9 +187,13 @@ impl GpuVolume {
             false => 0,
         };
         let validity_offset = offset.saturating_add(values_bytes.next_multiple_of(ALIGNMENT_BYTES));
-        if !self.has_texels && slab.before == Use::Nothing {
-            // SAFETY: the caller's promises; the one texel is not looked at, but for its layout.
-            unsafe { image_barrier(self.gpu(), cmd, &brick.values, Use::Nothing, Use::Sampled) };
+        if slab.before == Use::Nothing {
+            let values = (!self.has_texels).then_some(&brick.values);
+            let no_mask = self.no_mask().filter(|_| slab.brick == 0);
+            for image in values.into_iter().chain(no_mask) {
+                // SAFETY: the caller's promises; the one texel is not looked at, but for its layout.
+                unsafe { image_barrier(self.gpu(), cmd, image, Use::Nothing, Use::Sampled) };
+            }
         }
         let planes = [
             (self.has_texels.then_some(&brick.values), offset),

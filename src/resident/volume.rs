@@ -78,6 +78,8 @@ pub struct GpuVolume {
     gradient_source: Option<Box<GpuVolume>>,
     kept_gradients: Option<KeptGradients>,
     pub(super) corners: Option<Corners>,
+    /// Bound in the place of a mask where every voxel has a value; nobody looks at its texel.
+    pub(super) no_mask: Option<Image>,
     /// Whether the values lie in the textures, and not in corners alone.
     pub(super) has_texels: bool,
 }
@@ -144,8 +146,10 @@ impl Plan {
             })
         };
         let grid = volume.grid();
+        let no_mask = (!self.has_holes).then(|| Image::new(gpu, &self.validity([1; 3])));
         Ok(GpuVolume {
             gpu: Arc::clone(gpu),
+            no_mask: no_mask.transpose()?,
             layout: self.layout,
             texel: self.texel,
             value_range: volume.value_range,
@@ -369,6 +373,11 @@ impl GpuVolume {
     /// True where some voxels have no value.
     pub fn has_holes(&self) -> bool {
         self.bricks.iter().any(|brick| brick.validity.is_some())
+    }
+
+    /// What is bound in the place of a mask where every voxel has a value.
+    pub(crate) fn no_mask(&self) -> Option<&Image> {
+        self.no_mask.as_ref()
     }
 
     /// How textures are read between texels.

@@ -108,6 +108,7 @@ impl<'a> Inputs<'a> {
         let mut given = Vec::new();
         let bricks = || [self.brick].into_iter().chain(self.beside.iter().copied());
         let any_mask = bricks().find_map(|brick| brick.validity.as_ref());
+        let any_mask = any_mask.or(self.volume.no_mask());
         let mask = |brick: &'a Brick| brick.validity.as_ref().or(any_mask);
         given.extend(mask(self.brick).map(|mask| ("validity", Resource::sampled(mask))));
         for (c, [values, validity]) in CHANNELS.into_iter().enumerate() {
