@@ -26,12 +26,12 @@ fn main(@builtin(vertex_index) vertex: u32) -> Vertex {
     let side = select(1u, BLOCK_SIDE, entry >= BLOCK);
     let square = (entry & ~BLOCK) / BATCH_LAYERS;
     let layer = batch * BATCH_LAYERS + entry % BATCH_LAYERS;
-    let nth = layer * LAYER_SLICES + vertex / SQUARE_VERTICES % LAYER_SLICES;
+    let nth = layer * LAYER_SLICES + vertex / square_vertices() % LAYER_SLICES;
     let across = patch_grid().x;
     let first = vec2(square % across, square / across);
     let is_drawn = nth < frame.slice_count && changes(first, side);
     let pixels = side * frame.patch_pixels;
-    let ndc = square_vertex(vertex % SQUARE_VERTICES, first * frame.patch_pixels, pixels);
+    let ndc = square_vertex(vertex % square_vertices(), first * frame.patch_pixels, pixels);
     // All in one point that is out of sight: no fragment.
     let place = vec4(select(vec2(-2.0), ndc, is_drawn), 0.5, 1.0);
     return vertex_of(place, slice_of(nth), f32(pixels));

@@ -41,7 +41,7 @@ impl Slot {
 /// llvmpipe (`opaque.rs`).
 pub const CONSTANTS: &[&str] = &[
     "software", "filter", "holes", "lattice", "cuts", "transfer", "sight", "mode", "kernel",
-    "operator",
+    "operator", "blend", "left", "squares",
 ];
 
 /// The name of an import with its slots filled. `{slot=word}` has that word where an entry has no such slot.
@@ -85,7 +85,7 @@ const SLICE_SLABS: Slot = slot("walk", &["march_stack_slab"]);
 const STACK: Slot = slot("lattice", &["stack"]);
 /// Slices that a host's depth buffer is tested against hide by themselves what lies behind it, others read it.
 const TESTED: Slot = slot("sight", &["open"]);
-const SIGHT: Slot = slot("sight", &["open", "host"]);
+const SIGHT: Slot = constant("sight", &["open", "host"]);
 /// How central differences are made. The words are left out of names: corners have their own way, and it is theirs
 /// alone.
 const TAPS: Slot = slot("slope", &["taps"]);
@@ -113,8 +113,9 @@ const CUTS: Slot = constant("cuts", &["cut", "whole"]);
 const PLANES: Slot = slot("parameters", &["planes"]);
 const STACKED: Slot = slot("parameters", &["stack"]);
 /// What squares of patches are drawn as.
-const SQUARES: Slot = slot("squares", &["triangles", "points"]);
-const TRANSFER: Slot = slot("transfer", &["table", "points"]);
+const SQUARES: Slot = constant("squares", &["triangles", "points"]);
+/// What conformance pictures search, beside the table.
+const TRANSFER: Slot = constant("transfer", &["table", "points"]);
 const HOLES: Slot = constant("holes", &["none", "mask"]);
 const LATTICE: Slot = constant("lattice", &["ray", "planes"]);
 /// One number a voxel, alone or with its gradient. The word `alone` is left out of names.
@@ -133,8 +134,8 @@ const RAY: Slot = slot("lattice", &["ray"]);
 const PROJECTED: Slot = constant("mode", &["mip", "minip", "sum", "lmip", "attenuated_mip"]);
 const MIDA: Slot = slot("mode", &["mida"]);
 const BLEND: Slot = slot("blend", &["composite"]);
-/// What projections have blended: an extreme, or a sum.
-const NUMBER: Slot = slot("blend", &["number"]);
+/// What projections have blended, an extreme or a sum, and the number of samples.
+const NUMBER: Slot = constant("blend", &["number", "count"]);
 
 /// The wanted combinations. Order of the slots is the order of words in a variant's name.
 pub const ENTRIES: &[(&str, &[Slot])] = &[
@@ -231,16 +232,11 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "slices_3d",
-        &[TESTED, BLEND, ONE, FILTER, HOLES, TABLE, TAPS],
+        &[TESTED, BLEND, ONE, FILTER, HOLES, TRANSFER, TAPS],
     ),
     (
         "slices_3d",
-        &[TESTED, BLEND, ONE, FETCHED, HOLES, POINTS, TAPS],
-    ),
-    ("slices_3d", &[TESTED, BLEND, MIXED, NARROW, HOLES, TABLE]),
-    (
-        "slices_3d",
-        &[TESTED, BLEND, MIXED, NARROW_FETCHED, HOLES, POINTS],
+        &[TESTED, BLEND, MIXED, NARROW, HOLES, TRANSFER],
     ),
     (
         "slices_3d",
@@ -262,31 +258,16 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         &[NUMBER, ALONE, SIGHT, LINEAR, HOLES, PLANES, CUTS],
     ),
     (
-        "slices_3d",
-        &[
-            TESTED,
-            slot("blend", &["count"]),
-            ALONE,
-            slot("filter", &["nearest"]),
-            slot("holes", &["none"]),
-        ],
-    ),
-    (
         "slices_3d_cover",
         &[slot("parameters", &["asked", "planes"])],
     ),
     (
         "slices_2d",
-        &[TESTED, BLEND, ONE, FILTER, HOLES, TABLE, TAPS],
+        &[TESTED, BLEND, ONE, FILTER, HOLES, TRANSFER, TAPS],
     ),
     (
         "slices_2d",
-        &[TESTED, BLEND, ONE, FETCHED, HOLES, POINTS, TAPS],
-    ),
-    ("slices_2d", &[TESTED, BLEND, MIXED, NARROW, HOLES, TABLE]),
-    (
-        "slices_2d",
-        &[TESTED, BLEND, MIXED, NARROW_FETCHED, HOLES, POINTS],
+        &[TESTED, BLEND, MIXED, NARROW, HOLES, TRANSFER],
     ),
     ("slices_2d", &[NUMBER, ALONE, SIGHT, FILTER, HOLES]),
     (
@@ -298,16 +279,6 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     (
         "slices_2d",
         &[NUMBER, ALONE, SIGHT, LINEAR, HOLES, STACKED, CUTS],
-    ),
-    (
-        "slices_2d",
-        &[
-            TESTED,
-            slot("blend", &["count"]),
-            ALONE,
-            slot("filter", &["nearest"]),
-            slot("holes", &["none"]),
-        ],
     ),
     (
         "slices_2d_cover",
@@ -365,17 +336,13 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
             slot("holes", &["none"]),
         ],
     ),
-    ("slices_3d_half", &[ONE, NARROW, HOLES, TABLE, TAPS]),
-    (
-        "slices_3d_half",
-        &[ONE, NARROW_FETCHED, HOLES, POINTS, TAPS],
-    ),
+    ("slices_3d_half", &[ONE, NARROW, HOLES, TRANSFER, TAPS]),
     (
         "resolve",
         &[slot("source", &["picture", "value", "mean", "cued"])],
     ),
     ("resolve_cover", &[]),
-    ("resolve_depth", &[slot("left", &["picture", "value"])]),
+    ("resolve_depth", &[constant("left", &["picture", "value"])]),
     ("host_depth_copy", &[]),
     ("keep_gradients", &[slot("layout", &["box", "stack"])]),
     ("merge", &[constant("operator", &["over", "under", "add"])]),
@@ -409,8 +376,12 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         "ray_tiles",
         &[
             slot("known", &["box"]),
-            slot("left", &["picture", "mida", "number"]),
+            constant("left", &["picture", "mida"]),
         ],
+    ),
+    (
+        "ray_tiles",
+        &[slot("known", &["box"]), slot("left", &["number"])],
     ),
     ("macro_cells", &[slot("layout", &["box", "stack"])]),
     ("distance_map", &[]),
@@ -418,7 +389,10 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         "slice_patches",
         &[slot("planes", &["view", "stack"]), SQUARES],
     ),
-    ("slice_patches_cover", &[SQUARES, PARAMETERS]),
+    (
+        "slice_patches_cover",
+        &[slot("squares", &["triangles", "points"]), PARAMETERS],
+    ),
     ("opaque_patches", &[]),
 ];
 

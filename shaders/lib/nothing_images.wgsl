@@ -1,4 +1,4 @@
-// No light, what the mode keeps (KEPT), no depth, all of the light behind, no sample.
+// No light, what the mode keeps (`kept`), no depth, all of the light behind, no sample.
 
 #import frame
 #import ray_tile
@@ -11,7 +11,7 @@ fn leave_nothing(corner: vec2<u32>) {
         let pixel = corner + vec2(k % TILE_PIXELS, k / TILE_PIXELS);
         if all(pixel < frame.extent_pixels) {
             textureStore(picture, pixel, vec4(0.0));
-            textureStore(layers, pixel, vec4(KEPT, -1.0, 1.0, 0.0));
+            textureStore(layers, pixel, vec4(kept(), -1.0, 1.0, 0.0));
         }
     }
 }

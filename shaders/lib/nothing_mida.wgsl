@@ -3,4 +3,6 @@
 #import nothing_images
 #import no_value
 
-const KEPT: f32 = NO_VALUE;
+fn kept() -> f32 {
+    return NO_VALUE;
+}

@@ -2,4 +2,6 @@
 
 #import nothing_images
 
-const KEPT: f32 = 0.0;
+fn kept() -> f32 {
+    return 0.0;
+}

@@ -5,5 +5,5 @@
 
 // Those of a square (or a block) on each slice of its layer.
 fn entry_vertices() -> u32 {
-    return SQUARE_VERTICES * LAYER_SLICES;
+    return square_vertices() * LAYER_SLICES;
 }

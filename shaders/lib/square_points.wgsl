@@ -5,7 +5,9 @@
 
 #import patch_grid
 
-const SQUARE_VERTICES: u32 = 1u;
+fn square_vertices() -> u32 {
+    return 1u;
+}
 // Points may be so large: a device that has less draws triangles.
 const MOST_POINT_PIXELS: u32 = 128u;
 const LARGEST_BLOCK: u32 = 512u;

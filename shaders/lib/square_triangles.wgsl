@@ -2,7 +2,9 @@
 
 #import frame
 
-const SQUARE_VERTICES: u32 = 6u;
+fn square_vertices() -> u32 {
+    return 6u;
+}
 
 const CORNERS = array<vec2<u32>, 6>(
     vec2(0u, 0u),

@@ -2,7 +2,7 @@
 
 use super::bricks::{Cell, cut};
 use super::{TexelFormat, TextureLayout};
-use crate::gpu::{Error, Gpu, ImageDesc};
+use crate::gpu::{Error, Gpu, ImageDesc, ImageKind};
 use crate::volume::{Rescale, Volume, VoxelType};
 use ash::vk;
 use std::cell::OnceCell;
@@ -82,6 +82,16 @@ impl Plan {
 
     pub fn validity(&self, stored: [u32; 3]) -> ImageDesc<'static> {
         self.desc(stored, vk::Format::R8_UINT, "validity")
+    }
+
+    /// What stands in the place of a host's depth buffer.
+    pub fn no_depth(&self) -> ImageDesc<'static> {
+        ImageDesc {
+            kind: ImageKind::D2,
+            format: vk::Format::R8_UNORM,
+            name: "no depth",
+            ..self.validity([1; 3])
+        }
     }
 
     fn desc(&self, stored: [u32; 3], format: vk::Format, name: &'static str) -> ImageDesc<'static> {

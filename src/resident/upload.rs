@@ -189,8 +189,9 @@ impl GpuVolume {
         let validity_offset = offset.saturating_add(values_bytes.next_multiple_of(ALIGNMENT_BYTES));
         if slab.before == Use::Nothing {
             let values = (!self.has_texels).then_some(&brick.values);
-            let no_mask = self.no_mask().filter(|_| slab.brick == 0);
-            for image in values.into_iter().chain(no_mask) {
+            let once = [self.no_mask(), self.no_depth()];
+            let once = once.into_iter().filter(|_| slab.brick == 0);
+            for image in values.into_iter().chain(once) {
                 // SAFETY: the caller's promises; the one texel is not looked at, but for its layout.
                 unsafe { image_barrier(self.gpu(), cmd, image, Use::Nothing, Use::Sampled) };
             }

@@ -78,8 +78,10 @@ pub struct GpuVolume {
     gradient_source: Option<Box<GpuVolume>>,
     kept_gradients: Option<KeptGradients>,
     pub(super) corners: Option<Corners>,
-    /// Bound in the place of a mask where every voxel has a value; nobody looks at its texel.
-    pub(super) no_mask: Option<Image>,
+    /// Bound in the place of a mask where every voxel has a value, and of a host's depth buffer where there is none. Nobody
+    /// looks at their texels.
+    pub(super) no_mask: Image,
+    pub(super) no_depth: Image,
     /// Whether the values lie in the textures, and not in corners alone.
     pub(super) has_texels: bool,
 }
@@ -146,10 +148,10 @@ impl Plan {
             })
         };
         let grid = volume.grid();
-        let no_mask = (!self.has_holes).then(|| Image::new(gpu, &self.validity([1; 3])));
         Ok(GpuVolume {
             gpu: Arc::clone(gpu),
-            no_mask: no_mask.transpose()?,
+            no_mask: Image::new(gpu, &self.validity([1; 3]))?,
+            no_depth: Image::new(gpu, &self.no_depth())?,
             layout: self.layout,
             texel: self.texel,
             value_range: volume.value_range,
@@ -376,8 +378,13 @@ impl GpuVolume {
     }
 
     /// What is bound in the place of a mask where every voxel has a value.
-    pub(crate) fn no_mask(&self) -> Option<&Image> {
-        self.no_mask.as_ref()
+    pub(crate) fn no_mask(&self) -> &Image {
+        &self.no_mask
+    }
+
+    /// What is bound in the place of a host's depth buffer where there is none.
+    pub(crate) fn no_depth(&self) -> &Image {
+        &self.no_depth
     }
 
     /// How textures are read between texels.

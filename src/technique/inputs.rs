@@ -74,6 +74,9 @@ impl Inputs<'_> {
         given.push(("rooms", Resource::Storage(rooms)));
         given.push(("cell_ranges", Resource::Storage(ranges)));
         given.extend_from_slice(outputs);
+        if !outputs.iter().any(|(name, _)| *name == "host_depth") {
+            given.push(("host_depth", Resource::sampled(self.volume.no_depth())));
+        }
         given.retain(|(name, _)| layout.slots().iter().any(|slot| slot.name == *name));
         Bindings::new(gpu, layout, &given)
     }
@@ -108,7 +111,7 @@ impl<'a> Inputs<'a> {
         let mut given = Vec::new();
         let bricks = || [self.brick].into_iter().chain(self.beside.iter().copied());
         let any_mask = bricks().find_map(|brick| brick.validity.as_ref());
-        let any_mask = any_mask.or(self.volume.no_mask());
+        let any_mask = any_mask.or(Some(self.volume.no_mask()));
         let mask = |brick: &'a Brick| brick.validity.as_ref().or(any_mask);
         given.extend(mask(self.brick).map(|mask| ("validity", Resource::sampled(mask))));
         for (c, [values, validity]) in CHANNELS.into_iter().enumerate() {
