@@ -3,9 +3,10 @@
 //! Every file directly under `shaders/` is one entry point called `main`. A line `#import name` stands
 //! for `shaders/lib/name.wgsl`, each file once. In a name, `{slot}` is replaced by each word that
 //! [`variants::ENTRIES`] gives for that slot, `{slot=word}` by that word where it gives none: every combination of
-//! words becomes a variant of its own, because naga writes no specialization constants.
+//! words is a variant. Words of a slot that is a constant are in one module, and a specialization constant chooses
+//! (`shaders/alternatives.rs`, `shaders/constants.rs`); words of others make modules of their own.
 //!
-//! Written to `OUT_DIR`: `shaders.spv` (all words, one module after the other), `shaders.rs` (the
+//! Written to `OUT_DIR`: `shaders.deflate` (the words of all modules, each compressed by itself), `shaders.rs` (the
 //! table of modules with their bindings, a `#[repr(C)]` struct for each uniform, and the constants) and
 //! `blue_noise.bin` (the pattern of jittered rays); with the feature `conformance` `wgsl.rs` too (the texts of all files).
 
@@ -18,6 +19,10 @@ mod blue_noise;
 #[path = "shaders/both_sides.rs"]
 mod both_sides;
 #[path = "shaders/compose.rs"]
+#[allow(
+    dead_code,
+    reason = "dumps of conformance cases put single variants together"
+)]
 mod compose;
 #[path = "shaders/constants.rs"]
 mod constants;
@@ -38,6 +43,7 @@ use compose::{Source, combinations, fills};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 use variants::{ENTRIES, PROBES, Slot};
@@ -59,7 +65,7 @@ fn main() {
         book.add_all(file, slots);
     }
     say_packaged_commit();
-    fs::write(out.join("shaders.spv"), &book.spirv).expect("OUT_DIR can be written");
+    fs::write(out.join("shaders.deflate"), &book.stored).expect("OUT_DIR can be written");
     fs::write(out.join("shaders.rs"), book.rust()).expect("OUT_DIR can be written");
     let ranks = blue_noise::ranks().into_iter().flat_map(u32::to_le_bytes);
     let ranks: Vec<u8> = ranks.collect();
@@ -87,10 +93,15 @@ fn say_packaged_commit() {
     }
 }
 
+/// The best of `miniz_oxide`.
+const COMPRESSION: u8 = 10;
+
 /// What has been compiled so far.
 #[derive(Default)]
 struct Book {
-    spirv: Vec<u8>,
+    stored: Vec<u8>,
+    /// Where each module lies in it.
+    modules: Vec<Range<usize>>,
     /// One line of the Rust table for each variant, by name.
     table: BTreeMap<String, String>,
     /// Rust text of each uniform struct, by name.
@@ -161,9 +172,11 @@ impl Book {
         let info = check(&module, ValidationFlags::all().difference(uniformity));
 
         let (words, ids) = constants::specialized(&spirv(&module, &info, file));
-        let first = self.spirv.len() / 4;
-        self.spirv
-            .extend(words.iter().flat_map(|word| word.to_le_bytes()));
+        let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+        let first = self.stored.len();
+        self.stored
+            .extend(miniz_oxide::deflate::compress_to_vec(&bytes, COMPRESSION));
+        self.modules.push(first..self.stored.len());
         for (name, text) in uniform_structs(&module) {
             let known = self
                 .structs
@@ -173,9 +186,9 @@ impl Book {
         }
         self.constants.extend(named_constants(&module));
         let text = format!(
-            "stage: {}, spirv: &words[{first}..{}], bindings: &[{}]",
+            "stage: {}, code: Code::Stored({}), bindings: &[{}]",
             stage(&module),
-            first + words.len(),
+            self.modules.len() - 1,
             bindings(&module)
         );
         Module { text, ids }
@@ -189,15 +202,13 @@ impl Book {
         for definition in self.structs.values() {
             writeln!(text, "{definition}").unwrap();
         }
-        writeln!(
-            text,
-            "/// Every variant, by name, from the words of all modules.\nfn shaders(words: &'static [u32]) -> Vec<Shader> {{\n    vec!["
-        )
-        .unwrap();
+        let modules = &self.modules;
+        writeln!(text, "/// Where the words of each module are stored.\nconst MODULES: &[Range<usize>] = &{modules:?};").unwrap();
+        writeln!(text, "const TABLE: &[Shader] = &[").unwrap();
         for line in self.table.values() {
             writeln!(text, "    {line},").unwrap();
         }
-        writeln!(text, "    ]\n}}").unwrap();
+        writeln!(text, "];").unwrap();
         text
     }
 }

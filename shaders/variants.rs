@@ -41,7 +41,7 @@ impl Slot {
 /// llvmpipe (`opaque.rs`).
 pub const CONSTANTS: &[&str] = &[
     "software", "filter", "holes", "lattice", "cuts", "transfer", "sight", "mode", "kernel",
-    "operator", "blend", "left", "squares",
+    "operator", "blend", "left", "squares", "layers",
 ];
 
 /// The name of an import with its slots filled. `{slot=word}` has that word where an entry has no such slot.
@@ -104,12 +104,16 @@ pub const SILENT: &[&str] = &[
     "asked",
     "cut",
     "triangles",
+    "layers",
 ];
 /// Who reads the parameters of slices: the fragments, or the vertices for them (`handed.rs`).
 const PARAMETERS: Slot = slot("parameters", &["asked", "planes", "stack"]);
 /// Whether clip planes cut the domain, cut faces are seen, rays have places of their own in their pixels or begin by a part
 /// of a step earlier: or nothing of it.
 const CUTS: Slot = constant("cuts", &["cut", "whole"]);
+/// Whether rays leave depth, value and number of samples beside the picture, and what bricks behind go on with: or the
+/// picture alone.
+const LAYERS: Slot = constant("layers", &["layers", "picture"]);
 const PLANES: Slot = slot("parameters", &["planes"]);
 const STACKED: Slot = slot("parameters", &["stack"]);
 /// What squares of patches are drawn as.
@@ -141,41 +145,56 @@ const NUMBER: Slot = constant("blend", &["number", "count"]);
 pub const ENTRIES: &[(&str, &[Slot])] = &[
     (
         "raycast",
-        &[LINE, MODE, ONE, LATTICE, FILTER, HOLES, TABLE, TAPS],
+        &[LINE, MODE, ONE, LATTICE, FILTER, HOLES, TABLE, TAPS, LAYERS],
     ),
     (
         "raycast",
         &[
-            LINE, MODE, ONE, LATTICE, CORNERS, HOLES, STORED, SHARED, CUTS,
+            LINE, MODE, ONE, LATTICE, CORNERS, HOLES, STORED, SHARED, CUTS, LAYERS,
         ],
     ),
     (
         "raycast",
-        &[LINE, MODE, LEAN, RAY, NARROW, HOLES, TABLE, TAPS],
+        &[LINE, MODE, LEAN, RAY, NARROW, HOLES, TABLE, TAPS, LAYERS],
     ),
     (
         "raycast",
-        &[LINE, MODE, LEAN, RAY, CORNERS, HOLES, STORED, SHARED, CUTS],
+        &[
+            LINE, MODE, LEAN, RAY, CORNERS, HOLES, STORED, SHARED, CUTS, LAYERS,
+        ],
     ),
     (
         "raycast",
-        &[LINE, MODE, ADAPTIVE, RAY, NARROW, WHOLE, TABLE],
+        &[LINE, MODE, ADAPTIVE, RAY, NARROW, WHOLE, TABLE, LAYERS],
     ),
     (
         "raycast",
-        &[LINE, MODE, ADAPTIVE, RAY, CORNERS, WHOLE, STORED, CUTS],
+        &[
+            LINE, MODE, ADAPTIVE, RAY, CORNERS, WHOLE, STORED, CUTS, LAYERS,
+        ],
     ),
     (
         "raycast",
-        &[LINE, MODE, ONE, LATTICE, FETCHED, HOLES, POINTS, TAPS],
+        &[
+            LINE, MODE, ONE, LATTICE, FETCHED, HOLES, POINTS, TAPS, LAYERS,
+        ],
     ),
     (
         "raycast",
-        &[LINE, MODE, MIXED, LATTICE, NARROW, HOLES, TABLE],
+        &[LINE, MODE, MIXED, LATTICE, NARROW, HOLES, TABLE, LAYERS],
     ),
     (
         "raycast",
-        &[LINE, MODE, MIXED, LATTICE, NARROW_FETCHED, HOLES, POINTS],
+        &[
+            LINE,
+            MODE,
+            MIXED,
+            LATTICE,
+            NARROW_FETCHED,
+            HOLES,
+            POINTS,
+            LAYERS,
+        ],
     ),
     (
         "raycast",

@@ -2,7 +2,8 @@
 //!
 //! Free of Vulkan: kinds of binding are words of our own that [`crate::gpu`] maps.
 
-use std::sync::LazyLock;
+use std::ops::Range;
+use std::sync::OnceLock;
 
 /// One entry point, compiled.
 #[derive(Clone, Copy, Debug)]
@@ -11,17 +12,45 @@ pub struct Shader {
     pub name: &'static str,
     /// Compute, vertex or fragment; its entry point is called `main`.
     pub stage: Stage,
-    /// SPIR-V 1.5; that of several variants, which [`Self::constants`] choose among.
-    pub spirv: &'static [u32],
+    /// SPIR-V 1.5, of several variants, which [`Self::constants`] choose among.
+    pub code: Code,
     /// `SpecId` and value of each specialization constant.
     pub constants: &'static [(u32, u32)],
     /// In order of `binding`; all of them in descriptor set 0.
     pub bindings: &'static [BindingSlot],
 }
 
+impl Shader {
+    /// The words of the module.
+    pub fn spirv(&self) -> &'static [u32] {
+        match self.code {
+            Code::Words(words) => words,
+            Code::Stored(module) => OPENED[module].get_or_init(|| opened(MODULES[module].clone())),
+        }
+    }
+}
+
+/// Where the words of a module are.
+#[derive(Clone, Copy, Debug)]
+pub enum Code {
+    /// In memory.
+    Words(&'static [u32]),
+    /// In the library, compressed, by the number of the module.
+    Stored(usize),
+}
+
+/// Modules that were asked for.
+static OPENED: [OnceLock<Vec<u32>>; MODULES.len()] = [const { OnceLock::new() }; MODULES.len()];
+
+/// The words that `build.rs` has compressed to these bytes.
+fn opened(bytes: Range<usize>) -> Vec<u32> {
+    static STORED: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/shaders.deflate"));
+    let bytes = miniz_oxide::inflate::decompress_to_vec(&STORED[bytes]);
+    bytemuck::pod_collect_to_vec(&bytes.expect("what the build has compressed"))
+}
+
 /// Every variant that `build.rs` has made, by name.
-pub static SHADERS: LazyLock<Vec<Shader>> =
-    LazyLock::new(|| shaders(bytemuck::cast_slice(&SPIRV.bytes)));
+pub static SHADERS: &[Shader] = TABLE;
 
 /// The variant of that name. A name that `build.rs` has no row for is our own mistake.
 pub fn shader(name: &str) -> &'static Shader {
@@ -76,17 +105,5 @@ pub enum BindingKind {
     /// A storage image.
     StorageImage,
 }
-
-/// `include_bytes!` alone is aligned to one byte.
-#[repr(C)]
-struct Aligned<Bytes: ?Sized> {
-    align: [u32; 0],
-    bytes: Bytes,
-}
-
-static SPIRV: &Aligned<[u8]> = &Aligned {
-    align: [],
-    bytes: *include_bytes!(concat!(env!("OUT_DIR"), "/shaders.spv")),
-};
 
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));

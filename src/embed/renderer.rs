@@ -55,9 +55,14 @@ impl Renderer {
         let settings = &class.settings;
         let function = Function::new(gpu, volume, settings, function, emptying.as_ref())?;
         let words = words_of(&class.settings, volume, &function)?;
-        let pass = Pass::new(gpu, &class, &words, function.mix)?;
         let bricks = volume.copies().iter().map(|copy| copy.bricks().len()).max();
         let most_bricks = bricks.unwrap_or(1);
+        let writes_layers = class.finds_depth() || most_bricks > 1;
+        let of_pass = Words {
+            writes_layers,
+            ..words
+        };
+        let pass = Pass::new(gpu, &class, &of_pass, function.mix)?;
         // The depth of slices is looked for with parameters of its own, and the light has its own.
         let is_twofold = class.settings.is_half_angle() || pass.slice_depth.is_some();
         let walks = if is_twofold { 2 } else { 1 };

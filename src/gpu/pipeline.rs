@@ -252,7 +252,7 @@ pub(super) fn wrong_stage(doing: String, wanted: &str, shader: &Shader) -> Error
 
 /// The SPIR-V of a shader on the device; needed only until its pipeline is made.
 pub(crate) fn module(gpu: &Arc<Gpu>, shader: &Shader) -> Result<Own<vk::ShaderModule>, Error> {
-    let info = vk::ShaderModuleCreateInfo::default().code(shader.spirv);
+    let info = vk::ShaderModuleCreateInfo::default().code(shader.spirv());
     // SAFETY: the SPIR-V was validated when it was built.
     let raw = gpu.call(
         || format!("load shader `{}`", shader.name),

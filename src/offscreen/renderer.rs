@@ -318,7 +318,11 @@ impl<'v> Renderer<'v> {
         let at_once = if is_half { 2 } else { BRICKS_AT_ONCE };
         let bricks = parts[0].volume.bricks().len();
         let slots = bricks.max(at_once) as u32;
-        let words = Words::mixed(scene.settings, scene.mix(), &parts).of_whole(scene.settings);
+        let keeps_layers = has_layers || bricks > 1 || self.streaming.is_some();
+        let words = Words {
+            writes_layers: keeps_layers,
+            ..Words::mixed(scene.settings, scene.mix(), &parts).of_whole(scene.settings)
+        };
         let functions = scene.transfers().into_iter().flatten();
         let points = functions.map(|f| f.color.len().max(f.opacity.len())).max();
         let graded = scene.transfer.and_then(|function| function.graded.as_ref());
@@ -341,7 +345,7 @@ impl<'v> Renderer<'v> {
         let desc = CanvasDesc {
             extent: scene.extent_pixels,
             dims: scene.volume.dims,
-            keeps_layers: has_layers || bricks > 1 || self.streaming.is_some(),
+            keeps_layers,
             beside: None,
         };
         let passes = match self.passes.take() {

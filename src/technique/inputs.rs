@@ -142,6 +142,8 @@ pub struct Words {
     pub is_adaptive: bool,
     /// No clip planes and no cut faces, and all rays begin at the same place of their pixels: for such pictures alone.
     pub is_whole: bool,
+    /// Rays leave what lies beside the picture: depth, value, samples, and what bricks behind go on with.
+    pub writes_layers: bool,
 }
 
 /// What a sample is: a point of a ray, or a piece of it.
@@ -221,6 +223,7 @@ impl Words {
             },
             is_adaptive: settings.adaptive_steps.is_some(),
             is_whole: false,
+            writes_layers: true,
         }
     }
 }
@@ -237,13 +240,14 @@ impl Words {
         }
     }
 
-    /// The shader of that name for such pictures: that of [`Self::is_whole`], where there is one.
+    /// The shader of that name for such pictures: the leanest that there is, [`Self::is_whole`] before one that writes
+    /// no layers.
     pub(super) fn shader(&self, name: &str) -> &'static Shader {
-        let whole = self
-            .is_whole
-            .then(|| find(&format!("{name}.whole")))
-            .flatten();
-        whole.unwrap_or_else(|| shader(name))
+        let whole: &[&str] = if self.is_whole { &[".whole", ""] } else { &[""] };
+        let alone: &[&str] = if self.writes_layers { &[""] } else { &[".picture", ""] };
+        let ends = whole.iter().flat_map(|whole| alone.iter().map(move |alone| (whole, alone)));
+        let mut found = ends.filter_map(|(whole, alone)| find(&format!("{name}{whole}{alone}")));
+        found.next().unwrap_or_else(|| shader(name))
     }
 }
 

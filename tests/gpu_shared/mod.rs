@@ -6,7 +6,7 @@ use std::sync::Arc;
 use stratavox::gpu::{
     Buffer, Caps, DeviceChoice, Gpu, Headless, Memory, Options, PipelineCache, Validation,
 };
-use stratavox::shaders::{BindingKind, BindingSlot, Shader, Stage};
+use stratavox::shaders::{BindingKind, BindingSlot, Code, Shader, Stage};
 
 /// A device with the limits of its own, without a cache file.
 pub fn headless() -> Headless {
@@ -84,7 +84,8 @@ pub fn shader(
     Shader {
         name,
         stage,
-        spirv: spirv.leak(),
+        code: Code::Words(spirv.leak()),
+        constants: &[],
         bindings,
     }
 }

@@ -88,9 +88,9 @@ fn each_result_of_float_arithmetic_is_decorated_once_and_nothing_else_changes() 
 fn no_shader_of_the_renderer_may_be_contracted() {
     let mut count = 0;
     for shader in shaders(false) {
-        let wanted = arithmetic(shader.spirv);
+        let wanted = arithmetic(shader.spirv());
         count += wanted.len();
-        let found = decorated(shader.spirv, Decoration::NoContraction);
+        let found = decorated(shader.spirv(), Decoration::NoContraction);
         assert!(found == wanted, "{}", shader.name);
     }
     assert!(count > 10_000, "{count} results of float arithmetic");
@@ -125,7 +125,7 @@ fn no_shader_of_the_renderer_calls_a_function_that_is_more_than_one_operation() 
         G::InverseSqrt,
     ];
     for shader in shaders(false) {
-        for (_, instruction) in instructions(shader.spirv) {
+        for (_, instruction) in instructions(shader.spirv()) {
             if instruction[0] & 0xffff == Op::ExtInst as u32 {
                 let called = instruction[4];
                 let is_single = single.iter().any(|op| *op as u32 == called);
@@ -139,12 +139,12 @@ fn no_shader_of_the_renderer_calls_a_function_that_is_more_than_one_operation() 
 fn the_positions_of_slices_are_invariant() {
     let mut count = 0;
     for shader in shaders(false).filter(|s| s.stage == Stage::Vertex && s.name.contains("slice")) {
-        let position = instructions(shader.spirv).find_map(|(_, instruction)| {
+        let position = instructions(shader.spirv()).find_map(|(_, instruction)| {
             let is_position = instruction[0] & 0xffff == Op::Decorate as u32
                 && instruction[2..] == [Decoration::BuiltIn as u32, BuiltIn::Position as u32];
             is_position.then(|| instruction[1])
         });
-        let invariant = decorated(shader.spirv, Decoration::Invariant);
+        let invariant = decorated(shader.spirv(), Decoration::Invariant);
         assert!(
             invariant.contains_key(&position.unwrap()),
             "{}",
@@ -158,7 +158,7 @@ fn the_positions_of_slices_are_invariant() {
 #[test]
 fn probes_of_conformance_are_left_to_the_driver() {
     for shader in shaders(true) {
-        let found = decorated(shader.spirv, Decoration::NoContraction);
+        let found = decorated(shader.spirv(), Decoration::NoContraction);
         assert!(found.is_empty(), "{}", shader.name);
     }
 }

@@ -8,8 +8,14 @@ use std::ffi::CStr;
 use std::path::Path;
 use stratavox::shaders::SHADERS;
 
+#[path = "../../shaders/alternatives.rs"]
+mod alternatives;
 #[path = "../../shaders/compose.rs"]
+#[allow(dead_code, reason = "dumps want single variants")]
 mod compose;
+#[path = "../../shaders/constants.rs"]
+#[allow(dead_code, reason = "the build marks constants of its own")]
+mod constants;
 #[path = "../../shaders/variants.rs"]
 mod variants;
 
@@ -52,7 +58,7 @@ unsafe extern "system" fn create(
 
 /// The words of the same shader with the change; `None` where it has no part in it.
 fn mutated(words: &[u32], file: &str, from: &str, to: &str) -> Option<Vec<u32>> {
-    let name = SHADERS.iter().find(|shader| shader.spirv == words)?.name;
+    let name = SHADERS.iter().find(|shader| shader.spirv() == words)?.name;
     let is_changed = Cell::new(false);
     let read = |path: &str| {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
@@ -68,7 +74,13 @@ fn mutated(words: &[u32], file: &str, from: &str, to: &str) -> Option<Vec<u32>> 
         text.replace(from, to)
     };
     let (entry, slots, words) = entry_of(name);
-    let source = compose::Source::read(entry, &compose::fills(slots, &words), &read);
+    let fills = compose::fills(slots, &words);
+    let chosen: Vec<_> = slots
+        .iter()
+        .filter(|slot| slot.is_constant)
+        .copied()
+        .collect();
+    let source = alternatives::merged(entry, &chosen, &fills, &read);
     is_changed.get().then(|| compiled(&source.text))
 }
 
@@ -85,8 +97,9 @@ fn entry_of(name: &str) -> (&'static str, &'static [variants::Slot], Vec<&'stati
 
 fn compiled(text: &str) -> Vec<u32> {
     use naga::back::spv;
-    let module =
+    let mut module =
         naga::front::wgsl::parse_str(text).unwrap_or_else(|e| panic!("{}", e.emit_to_string(text)));
+    constants::mark(&mut module);
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
     let info = validator
         .validate(&module)
@@ -105,5 +118,6 @@ fn compiled(text: &str) -> Vec<u32> {
         shader_stage: module.entry_points[0].stage,
         entry_point: "main".into(),
     };
-    spv::write_vec(&module, &info, &options, Some(&entry)).expect("a valid module")
+    let words = spv::write_vec(&module, &info, &options, Some(&entry)).expect("a valid module");
+    constants::specialized(&words).0
 }

@@ -216,9 +216,9 @@ mod spirv {
 fn instructions(shader: &Shader) -> impl Iterator<Item = (u32, &[u32])> {
     let mut at = 5;
     std::iter::from_fn(move || {
-        let &first = shader.spirv.get(at)?;
+        let &first = shader.spirv().get(at)?;
         let words = (first >> 16) as usize;
-        let operands = &shader.spirv[at + 1..at + words];
+        let operands = &shader.spirv()[at + 1..at + words];
         at += words;
         Some((first & 0xffff, operands))
     })

@@ -105,7 +105,7 @@ impl Files {
             Event::Shader(shader) => {
                 let name = file_name(shader.name);
                 if self.shaders.insert(name.clone()) {
-                    self.write(&format!("{name}.spv"), bytemuck::cast_slice(shader.spirv))?;
+                    self.write(&format!("{name}.spv"), bytemuck::cast_slice(shader.spirv()))?;
                     let text = wgsl(shader.name).unwrap_or_default();
                     self.write(&format!("{name}.wgsl"), text.as_bytes())?;
                 }
@@ -113,7 +113,14 @@ impl Files {
                 let slots =
                     slots.map(|slot| format!("{} {:?} {}", slot.binding, slot.kind, slot.name));
                 let slots: Vec<String> = slots.collect();
-                format!("load {} ({})", shader.name, slots.join(", "))
+                let constants = shader.constants.iter();
+                let constants = constants.map(|(id, value)| format!(" {id}={value}"));
+                let constants: String = constants.collect();
+                format!(
+                    "load {} ({}) constants{constants}",
+                    shader.name,
+                    slots.join(", ")
+                )
             }
             Event::Written {
                 buffer,

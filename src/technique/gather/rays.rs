@@ -157,7 +157,11 @@ impl RayPass {
         words: &Words,
         mix: Mix,
     ) -> Result<Self, Error> {
-        let words = Words { mix, ..*words };
+        let words = Words {
+            mix,
+            writes_layers: true,
+            ..*words
+        };
         let words = match settings.technique.draws_stacks() {
             true => Words {
                 lattice: "stack",
