@@ -1,4 +1,5 @@
-//! What the pipelines cost on graphics cards, as the compiler of RADV's device without hardware says (`docs/gpu-cost.md`).
+//! What the pipelines cost on graphics cards, as the compiler of RADV's device without hardware says
+//! (`docs/gpu-cost.md`).
 
 #[allow(dead_code)]
 #[path = "../../examples/gpu_cost/table/mod.rs"]

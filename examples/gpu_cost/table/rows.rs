@@ -6,26 +6,29 @@ pub const ROWS: &[(&str, &[&str])] = &[
     (
         "",
         &[
-            // Rays that composite: filters, missing data, the lattices of slices.
+            // Rays that composite: filters, missing data; light and opacity by gradients; adaptive steps, several numbers a
+            // voxel. They leave the picture alone.
+            "raycast.composite.ray.linear.none.table.picture",
+            "raycast.composite.ray.nearest.none.table.picture",
+            "raycast.composite.ray.kernel.none.table.picture",
+            "raycast.composite.ray.spline.none.table.picture",
+            "raycast.composite.ray.linear.mask.table.picture",
+            "raycast.composite.lit.ray.linear.none.table.picture",
+            "raycast.composite.weighed.ray.linear.none.table.picture",
+            "raycast.composite.graded.ray.linear.none.table.picture",
+            "raycast.composite.adaptive.ray.linear.none.table.picture",
+            "raycast.composite.channels.ray.linear.none.table.picture",
+            "raycast.composite.colors.ray.linear.none.table.picture",
+            // The same with depths and other layers; along the lattices of slices.
             "raycast.composite.ray.linear.none.table",
-            "raycast.composite.ray.nearest.none.table",
-            "raycast.composite.ray.kernel.none.table",
-            "raycast.composite.ray.spline.none.table",
-            "raycast.composite.ray.linear.mask.table",
+            "raycast.composite.lit.ray.linear.none.table",
+            "raycast.composite.graded.ray.linear.none.table",
             "raycast.composite.planes.linear.none.table",
             "raycast.composite.stack.linear.none.table",
-            // Light and opacity by gradients; slabs, adaptive steps, several numbers a voxel.
-            "raycast.composite.lit.ray.linear.none.table",
-            "raycast.composite.weighed.ray.linear.none.table",
-            "raycast.composite.graded.ray.linear.none.table",
-            "raycast.composite.graded.planes.linear.none.table",
-            "raycast.composite.adaptive.ray.linear.none.table",
-            "raycast.composite.channels.ray.linear.none.table",
-            "raycast.composite.colors.ray.linear.none.table",
+            // Slabs, and projections with the ranges of cells that they skip by.
             "raycast_slab.composite.ray.linear.none",
             "raycast.mida.ray.linear.none.table",
             "raycast.mida.graded.ray.linear.none.table",
-            // Projections, and the values of cells that they skip by.
             "projection.mip.ray.linear.none",
             "projection.mip.ray.nearest.none",
             "projection.mip.ray.kernel.none",

@@ -17,19 +17,26 @@ const FEW_REGISTERS: &str = "polaris10";
 
 /// Registers that a row may spill yet, by family in the order of [`FAMILIES`]. All others spill none.
 const SPILLS: &[(&str, [u64; FAMILIES.len()])] = &[
+    (
+        "raycast.composite.lit.ray.linear.none.table.picture",
+        [0, 0, 2],
+    ),
+    (
+        "raycast.composite.weighed.ray.linear.none.table.picture",
+        [0, 0, 2],
+    ),
+    (
+        "raycast.composite.graded.ray.linear.none.table.picture",
+        [62, 62, 77],
+    ),
+    (
+        "raycast.composite.channels.ray.linear.none.table.picture",
+        [6, 6, 10],
+    ),
     ("raycast.composite.lit.ray.linear.none.table", [0, 0, 2]),
-    ("raycast.composite.weighed.ray.linear.none.table", [0, 0, 2]),
     (
         "raycast.composite.graded.ray.linear.none.table",
         [62, 62, 77],
-    ),
-    (
-        "raycast.composite.graded.planes.linear.none.table",
-        [62, 62, 77],
-    ),
-    (
-        "raycast.composite.channels.ray.linear.none.table",
-        [6, 6, 10],
     ),
     ("raycast.mida.graded.ray.linear.none.table", [62, 62, 76]),
     ("isosurface.linear.none", [243, 243, 253]),

@@ -1,5 +1,5 @@
-//! The straight form of a variant: its constants set, folded and their dead branches removed by `spirv-opt`, so that the
-//! driver sees a module of that variant alone.
+//! The straight form of a variant: `spirv-opt` has set its constants, folded them and removed dead branches, so that
+//! the driver sees a module of that variant alone.
 
 use std::{
     io::Write,
@@ -24,7 +24,7 @@ pub fn is_installed() -> bool {
 
 /// The words of a variant's module.
 pub fn words(shader: &Shader) -> Vec<u32> {
-    shader.spirv.to_vec()
+    shader.spirv().to_vec()
 }
 
 /// `SpecId` and value of each constant, for a graphics card.
