@@ -6,8 +6,8 @@ pub const ROWS: &[(&str, &[&str])] = &[
     (
         "",
         &[
-            // Rays that composite: filters, missing data; light and opacity by gradients; adaptive steps, several numbers a
-            // voxel. They leave the picture alone.
+            // Rays that composite and leave the picture alone: filters, missing data; light and opacity by gradients;
+            // adaptive steps, several numbers a voxel.
             "raycast.composite.ray.linear.none.table.picture",
             "raycast.composite.ray.nearest.none.table.picture",
             "raycast.composite.ray.kernel.none.table.picture",

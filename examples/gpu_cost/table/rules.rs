@@ -16,6 +16,9 @@ pub const LEAST_WAVES: u64 = 8;
 const FEW_REGISTERS: &str = "polaris10";
 
 /// Registers that a row may spill yet, by family in the order of [`FAMILIES`]. All others spill none.
+///
+/// These are scalar registers, which the copy of the parameters that `shaders/read_once.rs` makes where an entry point
+/// begins keeps busy to its end: without that pass none spills on RDNA, and at most four on GCN 4.
 const SPILLS: &[(&str, [u64; FAMILIES.len()])] = &[
     (
         "raycast.composite.lit.ray.linear.none.table.picture",
