@@ -18,11 +18,13 @@
 #              file for pkg-config there; make header writes include/stratavox.h anew
 # make api     compares what the library shows of itself with docs/public-api.txt
 # make bench   frame times of each technique, mode and projection on this device
+# make gpu-cost   registers, spills, waves and estimated cycles of pipelines on three generations of AMD's chips, by the compiler of
+#              RADV without a graphics card, into docs/gpu-cost.md
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := test
 .PHONY: test test-more fresh lint build drawn-exact drawn-embedded command-line command-line-drawn without-device longer viewer-barriers \
-    second conformance-default conformance-least conformance-swiftshader plain least viewer-lint conformance swiftshader demo pictures sheet first-pictures gallery capi install header api bench driver layers display
+    second conformance-default conformance-least conformance-swiftshader plain least viewer-lint conformance swiftshader demo pictures sheet first-pictures gallery capi install header api bench gpu-cost driver layers display
 
 CARGO ?= cargo
 ROOT := $(if $(filter 0,$(shell id -u)),,sudo )
@@ -314,6 +316,10 @@ api:
 bench: driver
 	$(CARGO) build --locked --release
 	target/release/stratavox bench
+
+# Without the program's features the library is built soonest.
+gpu-cost: driver layers
+	$(CARGO) run --locked --no-default-features --example gpu_cost -- docs/gpu-cost.md
 
 # make soak      devices and renderers made, drawn with and destroyed LOOPS times: memory of ours, of the process, open files
 # make portable  what the compiler says of Windows, macOS and Android; a target that rustup cannot install is skipped by name

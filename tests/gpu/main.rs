@@ -9,6 +9,7 @@ mod layer;
 #[path = "../shared/mod.rs"]
 mod shared;
 
+mod cost;
 mod devices;
 mod float_blend;
 mod host;

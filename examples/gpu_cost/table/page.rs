@@ -1,0 +1,126 @@
+//! The page of a table: written by `make gpu-cost`, read by the test.
+
+use super::{Table, cost::Cost, cost::Row, rules};
+use std::fmt::Write as _;
+
+const HEAD: &str = "# What pipelines cost on graphics cards
+
+`make gpu-cost` writes this page, without a graphics card: RADV, Mesa's driver for AMD's chips, has a device without hardware
+(`RADV_FORCE_FAMILY`) whose compiler is the real one, and `VK_KHR_pipeline_executable_properties` tells what it made. The
+same modules with the same specialization constants are compiled as on a card. The test `cost::` of the test program
+`gpu` compiles them again where this version of Mesa is installed, and compares.
+
+## How to read it
+
+A row is a variant: a SPIR-V module with its specialization constants. Rows are what `stratavox bench` draws with and the
+defaults of each technique and mode on a card (filter `linear` by the sampler, transfer functions as a table), with the
+passes before and after; variants that only software drivers use are not among them.
+
+| column | meaning | good |
+|---|---|---|
+| VGPRs | vector registers of an invocation: they decide the waves | few |
+| SGPRs | scalar registers of a wave, which hold what is alike for its invocations; from RDNA on always all 128 | |
+| spilled | scalar and vector registers that did not fit and are moved to and fro | 0 |
+| may spill | the most that the test allows; empty: none. An entry is a known fault, to be mended and not raised | empty |
+| scratch | bytes of memory for an invocation's variables: arrays with computed indices, spilled vector registers | 0 |
+| waves | subgroups that a SIMD unit holds at a time, by registers and shared memory: while one waits for memory another runs | 8 or more; on GCN 4, with 256 registers a lane for all waves together, no fewer than here |
+| code | bytes of machine code; the instruction cache has 32 KiB | |
+| throughput | inverse throughput: estimated cycles for 64 invocations. A loop counts as 8 turns (one within it as 4, deeper ones as 2), what a uniform branch holds as half, what a divergent one holds as three quarters; waves that hide latency make it smaller | compare with the same row before |
+| straight | that over the inverse throughput of the straight form: the module whose constants `spirv-opt` has folded, with its dead branches, before the driver saw it | at most 1.03 |
+
+The estimate is of compiled code, not of a run: it knows neither caches nor how often a loop turns. It says which of two
+forms of one shader is dearer, and what a change of the shaders has done. Rows of different shaders are not to be compared. A raster
+pipeline has a row for each of its stages; its target is `R32G32B32A32_SFLOAT`, blended back to front.
+
+The test asserts no scratch, no spilled registers beyond *may spill*, waves as above, and that no row is over 3 % dearer
+than here or than its straight form. Where a change makes a row dearer with good reason, or shaders come and go, run `make gpu-cost`
+and commit the page with the change. The rows are in `examples/gpu_cost/table/rows.rs`, the rules in `rules.rs` beside it.
+";
+
+const COMPILER: &str = "Compiler: RADV of ";
+
+const COLUMNS: &str = "| variant | VGPRs | SGPRs | spilled | may spill | scratch | waves | code | throughput | straight |";
+
+/// The text of a page.
+pub fn written(table: &Table) -> String {
+    let mut text = format!("{HEAD}\n{COMPILER}{}.\n", table.driver);
+    for (family, rows) in &table.families {
+        let line = format!("|---{}|", "|---:".repeat(9));
+        writeln!(text, "\n## {family}\n\n{COLUMNS}\n{line}").unwrap();
+        for row in rows {
+            let cost = &row.pair;
+            let most = match rules::most_spilled(family, &row.name) {
+                0 => String::new(),
+                most => most.to_string(),
+            };
+            let ratio = row.over_straight();
+            let ratio = ratio.map_or("-".into(), |ratio| format!("{ratio:.3}"));
+            writeln!(
+                text,
+                "| `{}` | {} | {} | {} | {most} | {} | {} | {} | {} | {ratio} |",
+                row.name,
+                cost.vgprs,
+                cost.sgprs,
+                cost.spilled,
+                cost.scratch_bytes,
+                cost.waves,
+                cost.code_bytes,
+                cost.throughput,
+            )
+            .unwrap();
+        }
+    }
+    text
+}
+
+/// The table of a page, without straight forms.
+///
+/// # Errors
+/// The line that is none of a page's.
+pub fn read(text: &str) -> Result<Table, String> {
+    let mut table = Table {
+        driver: String::new(),
+        families: Vec::new(),
+    };
+    for line in text.lines() {
+        if let Some(driver) = line.strip_prefix(COMPILER) {
+            driver.trim_end_matches('.').clone_into(&mut table.driver);
+        } else if let Some(family) = line.strip_prefix("## ") {
+            table.families.push((family.to_owned(), Vec::new()));
+        } else if let Some(cells) = line.strip_prefix("| `") {
+            let row = row(cells).ok_or_else(|| format!("no row of a table: {line}"))?;
+            let (_, rows) = table.families.last_mut().ok_or("a row without a family")?;
+            rows.push(row);
+        }
+    }
+    // The chapter before the tables has none.
+    table.families.retain(|(_, rows)| !rows.is_empty());
+    Ok(table)
+}
+
+fn row(cells: &str) -> Option<Row> {
+    let (name, cells) = cells.split_once("` |")?;
+    let cells: Vec<&str> = cells.split('|').map(str::trim).collect();
+    let &[
+        vgprs,
+        sgprs,
+        spilled,
+        _,
+        scratch,
+        waves,
+        code,
+        throughput,
+        _,
+        "",
+    ] = &cells[..]
+    else {
+        return None;
+    };
+    let numbers = [vgprs, sgprs, spilled, scratch, waves, code, throughput];
+    let numbers: Result<Vec<u64>, _> = numbers.iter().map(|cell| cell.parse()).collect();
+    Some(Row {
+        name: name.to_owned(),
+        pair: Cost::of_numbers(&numbers.ok()?)?,
+        straight: None,
+    })
+}
