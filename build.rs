@@ -102,6 +102,8 @@ struct Book {
     stored: Vec<u8>,
     /// Where each module lies in it.
     modules: Vec<Range<usize>>,
+    /// The text of the bindings of each.
+    bindings: Vec<String>,
     /// One line of the Rust table for each variant, by name.
     table: BTreeMap<String, String>,
     /// Rust text of each uniform struct, by name.
@@ -176,6 +178,7 @@ impl Book {
         let first = self.stored.len();
         self.stored
             .extend(miniz_oxide::deflate::compress_to_vec(&bytes, COMPRESSION));
+        let number = self.modules.len();
         self.modules.push(first..self.stored.len());
         for (name, text) in uniform_structs(&module) {
             let known = self
@@ -186,11 +189,10 @@ impl Book {
         }
         self.constants.extend(named_constants(&module));
         let text = format!(
-            "stage: {}, code: Code::Stored({}), bindings: &[{}]",
+            "stage: {}, code: Code::Stored({number}), bindings: BINDINGS_{number}",
             stage(&module),
-            self.modules.len() - 1,
-            bindings(&module)
         );
+        self.bindings.push(bindings(&module));
         Module { text, ids }
     }
 
@@ -204,6 +206,13 @@ impl Book {
         }
         let modules = &self.modules;
         writeln!(text, "/// Where the words of each module are stored.\nconst MODULES: &[Range<usize>] = &{modules:?};").unwrap();
+        for (number, bindings) in self.bindings.iter().enumerate() {
+            writeln!(
+                text,
+                "const BINDINGS_{number}: &[BindingSlot] = &[{bindings}];"
+            )
+            .unwrap();
+        }
         writeln!(text, "const TABLE: &[Shader] = &[").unwrap();
         for line in self.table.values() {
             writeln!(text, "    {line},").unwrap();

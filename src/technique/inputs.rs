@@ -243,9 +243,19 @@ impl Words {
     /// The shader of that name for such pictures: the leanest that there is, [`Self::is_whole`] before one that writes
     /// no layers.
     pub(super) fn shader(&self, name: &str) -> &'static Shader {
-        let whole: &[&str] = if self.is_whole { &[".whole", ""] } else { &[""] };
-        let alone: &[&str] = if self.writes_layers { &[""] } else { &[".picture", ""] };
-        let ends = whole.iter().flat_map(|whole| alone.iter().map(move |alone| (whole, alone)));
+        let whole: &[&str] = if self.is_whole {
+            &[".whole", ""]
+        } else {
+            &[""]
+        };
+        let alone: &[&str] = if self.writes_layers {
+            &[""]
+        } else {
+            &[".picture", ""]
+        };
+        let ends = whole
+            .iter()
+            .flat_map(|whole| alone.iter().map(move |alone| (whole, alone)));
         let mut found = ends.filter_map(|(whole, alone)| find(&format!("{name}{whole}{alone}")));
         found.next().unwrap_or_else(|| shader(name))
     }

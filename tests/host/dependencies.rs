@@ -5,9 +5,10 @@ use std::env;
 use std::process::Command;
 
 /// By name: versions are those of the lock file. Of these `bytemuck_derive`, `thiserror-impl`, `zerocopy-derive` and
-/// what they need run in the compiler alone, `crunchy` is for one target of graphics cards, `windows-link` for another
+/// what they need run in the compiler alone, `miniz_oxide` opens the stored shaders, `crunchy` is for one target of graphics cards, `windows-link` for another
 /// system.
-const EMBEDDER: [&str; 21] = [
+const EMBEDDER: [&str; 23] = [
+    "adler2",
     "ash",
     "bytemuck",
     "bytemuck_derive",
@@ -18,6 +19,7 @@ const EMBEDDER: [&str; 21] = [
     "half",
     "libloading",
     "log",
+    "miniz_oxide",
     "presser",
     "proc-macro2",
     "quote",
