@@ -297,6 +297,8 @@ fn each_barrier_of_the_host_in_c_is_needed() {
         command
     };
     let unheard = [
+        missing_barrier::STAND_IN,
+        missing_barrier::STAND_IN,
         missing_barrier::NEXT_FUNCTION,
         missing_barrier::LIST_BEFORE,
         missing_barrier::PART_BEFORE,

@@ -48,6 +48,8 @@ fn the_smallest_host() {
     assert_each_is_missed(
         "embed",
         &[
+            STAND_IN,
+            STAND_IN,
             NEXT_FUNCTION,
             LIST_BEFORE,
             PART_BEFORE,
@@ -60,6 +62,8 @@ fn the_smallest_host() {
 #[test]
 fn rays_among_meshes() {
     let unheard = [
+        STAND_IN,
+        STAND_IN,
         WRITTEN_BY_HOST,
         NEW_DEPTH,
         NEW_TARGET,
@@ -76,6 +80,8 @@ fn rays_among_meshes() {
 #[test]
 fn slices_among_meshes() {
     let unheard = [
+        STAND_IN,
+        STAND_IN,
         WRITTEN_BY_HOST,
         NEW_DEPTH,
         NEW_TARGET,

@@ -8,6 +8,9 @@ mod layer;
 
 use std::process::Command;
 
+/// What is bound in the place of a mask or of a host's depth buffer where there is none: nobody reads it, and layers know.
+pub const STAND_IN: &str = "image 0 to 5";
+
 /// A rendering that begins: layers of 2023 do not look at what dynamic rendering loads and clears. The barrier before
 /// one to a new image, before one that goes on with it, and the first of a depth attachment, the host's and the renderer's.
 pub const NEW_TARGET: &str = "image 0 to 2";

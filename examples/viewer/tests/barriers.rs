@@ -41,6 +41,8 @@ fn each_barrier_of_a_window_is_needed() {
         viewer
     };
     let unheard = [
+        STAND_IN,
+        STAND_IN,
         NEXT_FUNCTION,
         LIST_BEFORE,
         PART_BEFORE,
