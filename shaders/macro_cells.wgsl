@@ -1,11 +1,11 @@
 // Which values filters can make in a macro cell: smallest and largest of all voxels that a sample in it may touch, its
-// own and an apron around them (`algorithms.md` 3: without, border samples would be called empty). Several threads a
+// own and a halo around them (`algorithms.md` 3: without, border samples would be called empty). Several threads a
 // cell: they go along rows of texels beside each other.
 // Where voxels have no value, what stands there counts, though no sample does.
-// Twin: src/resident/cell_ranges.rs.
+// CPU reference: src/resident/cell_ranges.rs.
 
 #import cell_grid
-#import code_{layout}
+#import decode_{layout}
 
 struct CellRanges {
     d: array<vec2<f32>>,
@@ -25,9 +25,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_
     let cell = vec3(id.x / CELL_THREADS, id.yz);
     let thread = i32(place.x);
     let own = cell_grid.origin + vec3<i32>(cell * CELL_VOXELS);
-    let apron = vec3(cell_grid.apron);
-    let low = max(own - apron, cell_grid.stored_min) - cell_grid.stored_min;
-    let high = min(own + i32(CELL_VOXELS) - 1 + apron, cell_grid.stored_last) - cell_grid.stored_min;
+    let halo = vec3(cell_grid.halo);
+    let low = max(own - halo, cell_grid.stored_min) - cell_grid.stored_min;
+    let high = min(own + i32(CELL_VOXELS) - 1 + halo, cell_grid.stored_last) - cell_grid.stored_min;
     let size = max(high - low + 1, vec3(1));
     let is_cell = all(cell < cell_grid.cells);
     let rows = select(0, size.y * size.z, is_cell);
@@ -35,7 +35,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_
     for (var row = thread; row < rows; row += i32(CELL_THREADS)) {
         let first = low + vec3(0, row % size.y, row / size.y);
         for (var x = 0; x < size.x; x++) {
-            range = both(range, vec2(code_at(first + vec3(x, 0, 0))));
+            range = both(range, vec2(decoded_at(first + vec3(x, 0, 0))));
         }
     }
     seen[place.y][thread] = range;

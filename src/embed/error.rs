@@ -22,7 +22,7 @@ pub enum Error {
     },
     /// Pipelines are of another kind of picture.
     #[error("the renderer was made for {made}, and {wanted} needs another one")]
-    OtherClass {
+    OtherDescription {
         /// What pipelines and textures are for.
         made: String,
         /// What was asked for.
@@ -119,7 +119,7 @@ pub enum Error {
     },
     /// There is no depth in such pictures.
     #[error(
-        "{what} has no depth to give back: modes with a place of their own have, with `Class::gives_depth` or `Class::picks`"
+        "{what} has no depth to give back: modes with a place of their own have, with `RendererDesc::gives_depth` or `RendererDesc::picks`"
     )]
     NoDepth {
         /// Technique and mode.

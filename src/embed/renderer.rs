@@ -1,13 +1,13 @@
 //! Pictures of one volume in a host's frames.
 
-use super::class::{READ_DEPTH, what};
 use super::frame::{Frame, FrameSize, Given, Recorded};
 use super::function::{self, Function};
 use super::pass::Pass;
-use super::{Class, Error, HostDepthImage, Volume};
+use super::renderer_desc::{READ_DEPTH, what};
+use super::{Error, HostDepthImage, RendererDesc, Volume};
 use crate::gpu::{ComputePipeline, Gpu, ParameterRing};
 use crate::resident::EmptySpace;
-use crate::technique::{self, Mode, Settings, Words, parameter_ring};
+use crate::technique::{self, Mode, Settings, ShaderVariant, parameter_ring};
 use crate::transfer::TransferFunction;
 use std::sync::Arc;
 
@@ -16,8 +16,8 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub struct Renderer {
     pub(super) gpu: Arc<Gpu>,
-    pub(super) class: Class,
-    pub(super) words: Words,
+    pub(super) class: RendererDesc,
+    pub(super) variant: ShaderVariant,
     pub(super) volume: Arc<Volume>,
     pub(super) function: Function,
     /// Finds what is empty under a function.
@@ -35,7 +35,7 @@ pub struct Renderer {
 
 impl Renderer {
     /// Everything that frames of `extent` pixels will need. `function` may be missing in mode [`Mode::Iso`] alone;
-    /// `host_depths` are wanted where [`Class::reads_host_depth`]: one for all frames in flight, or one for each.
+    /// `host_depths` are wanted where [`RendererDesc::reads_host_depth`]: one for all frames in flight, or one for each.
     ///
     /// # Errors
     /// What is not drawn so, by name, what the device cannot do, and no memory.
@@ -43,7 +43,7 @@ impl Renderer {
         gpu: &Arc<Gpu>,
         volume: &Arc<Volume>,
         function: Option<&TransferFunction>,
-        class: Class,
+        class: RendererDesc,
         extent: [u32; 2],
         host_depths: &[HostDepthImage],
     ) -> Result<Self, Error> {
@@ -54,13 +54,13 @@ impl Renderer {
         };
         let settings = &class.settings;
         let function = Function::new(gpu, volume, settings, function, emptying.as_ref())?;
-        let words = words_of(&class.settings, volume, &function)?;
+        let variant = variant_of(&class.settings, volume, &function)?;
         let bricks = volume.copies().iter().map(|copy| copy.bricks().len()).max();
         let most_bricks = bricks.unwrap_or(1);
         let writes_layers = class.finds_depth() || most_bricks > 1;
-        let of_pass = Words {
+        let of_pass = ShaderVariant {
             writes_layers,
-            ..words
+            ..variant
         };
         let pass = Pass::new(gpu, &class, &of_pass, function.mix)?;
         // The depth of slices is looked for with parameters of its own, and the light has its own.
@@ -69,7 +69,7 @@ impl Renderer {
         let slots = (most_bricks as u32).saturating_mul(walks * class.frames_in_flight);
         let mut made = Self {
             gpu: Arc::clone(gpu),
-            words,
+            variant,
             volume: Arc::clone(volume),
             function,
             emptying,
@@ -120,14 +120,14 @@ impl Renderer {
     /// compiled, nothing waits, and what frames in flight read of the one before stays until they are done.
     ///
     /// # Errors
-    /// [`Error::OtherClass`] where it asks for gradients and the one before did not, or the other way round; no memory.
+    /// [`Error::OtherDescription`] where it asks for gradients and the one before did not, or the other way round; no memory.
     pub fn set_function(&mut self, function: Option<&TransferFunction>) -> Result<(), Error> {
         let settings = &self.class.settings;
         let emptying = self.emptying.as_ref();
         let made = Function::new(&self.gpu, &self.volume, settings, function, emptying)?;
-        let words = words_of(settings, &self.volume, &made)?;
-        if words != self.words {
-            return Err(Error::OtherClass {
+        let variant = variant_of(settings, &self.volume, &made)?;
+        if variant != self.variant {
+            return Err(Error::OtherDescription {
                 made: format!("functions that are {:?}", self.function.mix),
                 wanted: format!("one that is {:?}", made.mix),
             });
@@ -138,15 +138,15 @@ impl Renderer {
     /// Other numbers in the settings from the next [`Renderer::record`] on: steps, crops, clip planes, levels, lights.
     ///
     /// # Errors
-    /// [`Error::OtherClass`] where other pipelines or textures would be needed; nothing has changed then.
+    /// [`Error::OtherDescription`] where other pipelines or textures would be needed; nothing has changed then.
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), Error> {
-        let class = Class {
+        let class = RendererDesc {
             settings,
             ..self.class.clone()
         };
         class.check()?;
         function::check(self.function.mix, &class.settings)?;
-        let words = words_of(&class.settings, &self.volume, &self.function)?;
+        let variant = variant_of(&class.settings, &self.volume, &self.function)?;
         let kind = |settings: &Settings| {
             (
                 settings.technique,
@@ -160,18 +160,19 @@ impl Renderer {
                 settings.is_half_angle(),
             )
         };
-        let is_same = kind(&class.settings) == kind(&self.class.settings) && words == self.words;
+        let is_same =
+            kind(&class.settings) == kind(&self.class.settings) && variant == self.variant;
         let levels = |settings: &Settings| settings.per_mode.levels.clone();
         let empties_other = class.settings.mode == Mode::Iso
             && levels(&class.settings) != levels(&self.class.settings);
         if !is_same {
-            return Err(Error::OtherClass {
+            return Err(Error::OtherDescription {
                 made: self.class.what(),
                 wanted: what(&class.settings),
             });
         }
         if empties_other {
-            // Which cells have no surface hangs on the levels.
+            // Which cells have no surface depends on the levels.
             let emptying = self.emptying.as_ref();
             let settings = &class.settings;
             let made = Function::new(&self.gpu, &self.volume, settings, None, emptying)?;
@@ -185,7 +186,7 @@ impl Renderer {
     /// the next time of a series. It has been uploaded by then, which may be recorded in the same command buffer.
     ///
     /// # Errors
-    /// [`Error::OtherClass`] where it lies in other textures; no memory.
+    /// [`Error::OtherDescription`] where it lies in other textures; no memory.
     pub fn set_volume(
         &mut self,
         volume: &Arc<Volume>,
@@ -194,7 +195,7 @@ impl Renderer {
         let settings = &self.class.settings;
         let emptying = self.emptying.as_ref();
         let made = Function::new(&self.gpu, volume, settings, function, emptying)?;
-        let words = words_of(settings, volume, &made)?;
+        let variant = variant_of(settings, volume, &made)?;
         let bricks = |volume: &Volume| {
             let counts = volume.copies().iter().map(|copy| copy.bricks().len());
             counts.max().unwrap_or(1)
@@ -207,17 +208,17 @@ impl Renderer {
         let is_as_large =
             !settings.is_half_angle() || volume.grid().dims == self.volume.grid().dims;
         let lies_alike = layouts(volume) == layouts(&self.volume) && is_as_large;
-        if !lies_alike || words != self.words || bricks(volume) > self.most_bricks {
-            return Err(Error::OtherClass {
-                made: format!("{:?} in {} bricks", self.words, self.most_bricks),
-                wanted: format!("{words:?} in {} bricks", bricks(volume)),
+        if !lies_alike || variant != self.variant || bricks(volume) > self.most_bricks {
+            return Err(Error::OtherDescription {
+                made: format!("{:?} in {} bricks", self.variant, self.most_bricks),
+                wanted: format!("{variant:?} in {} bricks", bricks(volume)),
             });
         }
         self.show(Arc::clone(volume), made)
     }
 
     /// What it was made for.
-    pub fn class(&self) -> &Class {
+    pub fn class(&self) -> &RendererDesc {
         &self.class
     }
 
@@ -295,7 +296,11 @@ impl Renderer {
 }
 
 /// The variant of the shaders for these settings: the same for all copies of the volume.
-fn words_of(settings: &Settings, volume: &Volume, function: &Function) -> Result<Words, Error> {
+fn variant_of(
+    settings: &Settings,
+    volume: &Volume,
+    function: &Function,
+) -> Result<ShaderVariant, Error> {
     let copy = &volume.copies()[0];
     let is_graded = function.mix.is_graded();
     let lacks_source = settings.gradient_source_beside(copy.layout()).is_some()
@@ -306,7 +311,7 @@ fn words_of(settings: &Settings, volume: &Volume, function: &Function) -> Result
             hint: "take a filter that reads voxels, or light with it",
         });
     }
-    Ok(Words::mixed(
+    Ok(ShaderVariant::mixed(
         settings,
         function.mix,
         &[technique::Part::numbers(copy)],

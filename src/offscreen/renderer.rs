@@ -12,8 +12,8 @@ mod copied;
 mod filtered;
 mod gather;
 mod kept;
-mod left;
 mod pacing;
+mod readback;
 mod skipping;
 mod streaming;
 
@@ -21,12 +21,12 @@ use super::Error;
 use super::fade::{render_faded, stacks_of};
 use super::gradients::decided;
 use super::keyed::Keyed;
+use super::layer_rules::{Clock, Mean, check_layers};
 use super::light::Matter;
 use super::passes::{Passes, key_of};
 use super::stream::{Cache, Stream};
 use super::submission::Submission;
 use super::sum::sum_of;
-use super::tally::{Clock, Mean, check_layers};
 use super::targets::Targets;
 use super::time_slices::TimeSlices;
 use super::upload::{keep, upload, upload_with_gradient_source};
@@ -34,12 +34,13 @@ use crate::gpu::{Headless, ParameterRing, Timer};
 use crate::picture::{ColorSpace, LayerKind, Picture};
 use crate::resident::{GpuTransfer, GpuVolume};
 use crate::scene::{Scene, positions_in_pixel};
-use crate::technique::cost::ms_of_looks;
+use crate::technique::cost::ms_of_fetches;
 use crate::technique::gather::{CanvasDesc, PICTURE};
 use crate::technique::{
-    self, Functions, InPixel, LightPlan, LightVolume, Mix, Mode, Part, Words, parameter_ring,
+    self, Functions, InPixel, LightPlan, LightVolume, Mode, Part, SampleInputs, ShaderVariant,
+    parameter_ring,
 };
-use crate::transfer::{Graded, TransferFunction};
+use crate::transfer::{GradientTransfer, TransferFunction};
 use crate::volume::Volume;
 use copied::Copied;
 pub use filtered::Filtered;
@@ -50,7 +51,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use streaming::{BRICKS_AT_ONCE, Streaming};
 
-/// A resolve reads one texel and classifies at most once, beside which a sample of a volume is dear.
+/// A resolve reads one texel and classifies at most once, beside which a sample of a volume is expensive.
 const LOOKS_OF_A_RESOLVE: f64 = 0.5;
 
 /// A picture and what it took.
@@ -213,7 +214,7 @@ impl<'v> Renderer<'v> {
     ) -> Result<(), Error> {
         let settings = &decided(self.device.gpu(), scene);
         let scene = &Scene { settings, ..*scene };
-        let is_sum = scene.mix() == Mix::Channels && scene.settings.mode.is_projection();
+        let is_sum = scene.mix() == SampleInputs::Channels && scene.settings.mode.is_projection();
         self.upload(scene)?;
         match is_sum || !stacks_of(scene).is_empty() {
             true => Ok(()),
@@ -235,7 +236,7 @@ impl<'v> Renderer<'v> {
         }
         self.upload(scene)?;
         let mut clock = Clock(self.timer.is_some().then_some(0.0));
-        if scene.mix() == Mix::Channels && scene.settings.mode.is_projection() {
+        if scene.mix() == SampleInputs::Channels && scene.settings.mode.is_projection() {
             let all = scene.projected();
             let of = all.len();
             let one_by_one = all.into_iter().enumerate();
@@ -319,19 +320,19 @@ impl<'v> Renderer<'v> {
         let bricks = parts[0].volume.bricks().len();
         let slots = bricks.max(at_once) as u32;
         let keeps_layers = has_layers || bricks > 1 || self.streaming.is_some();
-        let words = Words {
+        let variant = ShaderVariant {
             writes_layers: keeps_layers,
-            ..Words::mixed(scene.settings, scene.mix(), &parts).of_whole(scene.settings)
+            ..ShaderVariant::mixed(scene.settings, scene.mix(), &parts).of_whole(scene.settings)
         };
         let functions = scene.transfers().into_iter().flatten();
         let points = functions.map(|f| f.color.len().max(f.opacity.len())).max();
         let graded = scene.transfer.and_then(|function| function.graded.as_ref());
         let functions = Functions {
             points: points.unwrap_or(0),
-            second: graded.is_some_and(Graded::needs_second),
+            second: graded.is_some_and(GradientTransfer::needs_second),
         };
         scene.view(&scene.volume.grid(), [0.0; 2]).check_turns(
-            &words,
+            &variant,
             parts.len(),
             functions,
             gpu.limits().max_loop_turns,
@@ -341,7 +342,7 @@ impl<'v> Renderer<'v> {
         }
         let patches = self.patches_for(scene)?;
         let is_patched = patches.is_some();
-        let key = key_of(scene.settings, &words, is_patched);
+        let key = key_of(scene.settings, &variant, is_patched);
         let desc = CanvasDesc {
             extent: scene.extent_pixels,
             dims: scene.volume.dims,
@@ -352,7 +353,7 @@ impl<'v> Renderer<'v> {
             Some(passes) if *passes.key() == key => passes,
             _ => {
                 self.targets = None;
-                Passes::new(&gpu, scene.settings, &words, is_patched)?
+                Passes::new(&gpu, scene.settings, &variant, is_patched)?
             }
         };
         let targets = match self.targets.take() {
@@ -368,7 +369,7 @@ impl<'v> Renderer<'v> {
     fn resolve_ms(&self) -> f64 {
         let targets = self.targets.as_ref().expect("prepared");
         let pixels = targets.extent().map(f64::from).iter().product::<f64>();
-        ms_of_looks(self.device.gpu(), LOOKS_OF_A_RESOLVE * pixels)
+        ms_of_fetches(self.device.gpu(), LOOKS_OF_A_RESOLVE * pixels)
     }
 
     /// The colours of what was gathered; the parameters are still in the ring.

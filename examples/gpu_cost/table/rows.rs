@@ -43,7 +43,7 @@ pub const ROWS: &[(&str, &[&str])] = &[
             "isosurface.kernel.none",
             "isosurface.by.linear.none",
             // Before a picture.
-            "ray_tiles.rooms.picture",
+            "ray_tiles.distances.picture",
             "ray_tiles.box.picture",
             "ray_tiles.box.mida",
             "ray_tiles.box.number",
