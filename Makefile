@@ -168,8 +168,8 @@ plain: driver layers
 # run without that.
 NOT_LEAST := gpu matrix capi examples
 # Images larger than the least device allows; a volume longer than its 256 texels, which is to lie in one texture.
-WITH_MORE := codes:: fetches_are_those_of_the_twin_in_every_technique words_folded_over_many_rows_have_the_values_of_the_twin \
-    rooms_are_distances_to_the_nearest_cell_with_matter
+WITH_MORE := codes:: fetches_are_those_of_the_reference_in_every_technique words_folded_over_many_rows_have_the_values_of_the_reference \
+    distance_maps_hold_distances_to_the_nearest_cell_with_matter
 UNDER_LEAST := STRATAVOX_LIMITS=least RUST_TEST_THREADS=1 $(TEST)
 
 least: driver layers

@@ -379,7 +379,7 @@ fn named_constants(module: &naga::Module) -> Vec<(String, String)> {
     module.constants.iter().filter_map(literal).collect()
 }
 
-/// `#[repr(C)]` twins of the uniform structs. Padding is private and made by `new`, so a field added in
+/// `#[repr(C)]` CPU references of the uniform structs. Padding is private and made by `new`, so a field added in
 /// WGSL is a compile error wherever the struct is filled.
 fn uniform_structs(module: &naga::Module) -> Vec<(String, String)> {
     let uniforms = module
@@ -426,7 +426,7 @@ fn rust_struct(module: &naga::Module, handle: naga::Handle<naga::Type>) -> (Stri
         names.push((field, rust));
     }
     pad_to(&mut fields, *span, end);
-    // A plain-old-data twin without padding: what a host fills.
+    // A plain-old-data CPU reference without padding: what a host fills.
     let public: String = names
         .iter()
         .map(|(f, t)| format!("    /// See `shaders/lib`.\n    pub {f}: {t},\n"))

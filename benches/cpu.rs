@@ -1,4 +1,4 @@
-//! What work on the CPU takes: twins, decoding, and the tables of transfer functions.
+//! What work on the CPU takes: CPU references, decoding, and the tables of transfer functions.
 
 mod median;
 
@@ -14,7 +14,7 @@ use stratavox::picture::ColorSpace;
 use stratavox::scene::Scene;
 use stratavox::technique::{Settings, Technique};
 use stratavox::transfer::{Absorption, Classified, Points, Table, Window};
-use stratavox::volume::{Limits, Pick, Volume, Wanted, phantom};
+use stratavox::volume::{Limits, TimeComponent, Volume, VolumeSelection, phantom};
 
 const RUNS: usize = 5;
 const SIDE: u32 = 128;
@@ -29,14 +29,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let read = || {
         Volume::read(
             source.as_ref(),
-            Pick::default(),
+            TimeComponent::default(),
             source.header().whole(),
             &limits,
         )
     };
     line(&name, median_of(RUNS, read));
     let volume = read()?;
-    twins(&volume)?;
+    references(&volume)?;
     decoding()?;
     tables(&volume);
     Ok(())
@@ -46,8 +46,8 @@ fn line(what: &str, ms: f64) {
     println!("{what:<64} {ms:>8.2} ms");
 }
 
-/// Each technique's twin, in f32.
-fn twins(volume: &Volume) -> Result<(), Box<dyn Error>> {
+/// Each technique's CPU reference, in f32.
+fn references(volume: &Volume) -> Result<(), Box<dyn Error>> {
     let bounds = BoundingSphere::of_grid(&volume.world_from_voxel, volume.dims);
     let lens = Lens::Perspective { fov_degrees: 30.0 };
     let facing = View::Left.orbit();
@@ -67,7 +67,7 @@ fn twins(volume: &Volume) -> Result<(), Box<dyn Error>> {
             settings: &settings,
         };
         let what = format!(
-            "twin of {technique:?}, {:?} voxels, {EXTENT:?} pixels",
+            "reference of {technique:?}, {:?} voxels, {EXTENT:?} pixels",
             volume.dims
         );
         line(&what, median_of(RUNS, || reference::render::<f32>(&scene)));
@@ -109,10 +109,10 @@ fn decoding() -> Result<(), Box<dyn Error>> {
 
 fn read(path: &Path) -> Result<Volume, stratavox::volume::ReadError> {
     let limits = Limits::default();
-    let source = format::open(path, &Wanted::default(), &limits)?;
+    let source = format::open(path, &VolumeSelection::default(), &limits)?;
     Volume::read(
         source.as_ref(),
-        Pick::default(),
+        TimeComponent::default(),
         source.header().whole(),
         &limits,
     )

@@ -16,7 +16,7 @@ use stratavox::picture::LayerKind;
 use stratavox::scene::Scene;
 use stratavox::technique::{Mode, Settings, Technique};
 use stratavox::transfer::{Classified, Window};
-use stratavox::volume::{Limits, Pick, Source, Volume, Wanted, phantom};
+use stratavox::volume::{Limits, Source, TimeComponent, Volume, VolumeSelection, phantom};
 
 const EXTENT: [u32; 2] = [256, 256];
 const RUNS: usize = 5;
@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     if scan.exists() {
         measure(
             SCAN,
-            format::open(&scan, &Wanted::default(), &limits)?.as_ref(),
+            format::open(&scan, &VolumeSelection::default(), &limits)?.as_ref(),
         )?;
     } else {
         println!("skipped: no data at {}", scan.display());
@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// One row a technique and mode.
 fn measure(name: &str, source: &dyn Source) -> Result<(), Box<dyn Error>> {
     let whole = source.header().whole();
-    let volume = Volume::read(source, Pick::default(), whole, &Limits::default())?;
+    let volume = Volume::read(source, TimeComponent::default(), whole, &Limits::default())?;
     let device = Headless::new(&DeviceChoice::Default, &Options::default())?;
     let identity = device.gpu().identity();
     let driver = (&identity.driver_name, &identity.driver_info);

@@ -11,7 +11,7 @@ use median::median;
 use std::error::Error;
 use std::sync::Arc;
 use stratavox::camera::{BoundingSphere, Camera, Lens, View};
-use stratavox::embed::{Class, Renderer, Shot, Volume};
+use stratavox::embed::{FrameInfo, Renderer, RendererDesc, Volume};
 use stratavox::gpu::{
     self, DeviceChoice, Gpu, Headless, Image, ImageDesc, ImageKind, Load, Options, Target, Use,
 };
@@ -198,7 +198,7 @@ fn pieces_of_frames(
         lens,
         EXTENT,
     )?;
-    let class = Class {
+    let class = RendererDesc {
         settings,
         target: FORMAT.into(),
         frames_in_flight: 1,
@@ -217,7 +217,7 @@ fn pieces_of_frames(
         before: Use::Nothing.into(),
         after: Use::TransferRead.into(),
     };
-    let shot = Shot {
+    let shot = FrameInfo {
         frame: 0,
         camera: &camera,
         depth: None,

@@ -29,7 +29,7 @@ use stratavox::technique::{
     parameter_ring,
 };
 use stratavox::transfer::{Classified, TransferFunction, Window};
-use stratavox::volume::{Limits, Pick, Source, Volume, Wanted, phantom};
+use stratavox::volume::{Limits, Source, TimeComponent, Volume, VolumeSelection, phantom};
 
 const EXTENT: [u32; 2] = [512, 512];
 const RUNS: usize = 9;
@@ -48,7 +48,7 @@ fn main() -> Outcome<()> {
     match scan.exists() {
         true => measure(
             SCAN,
-            format::open(&scan, &Wanted::default(), &limits)?.as_ref(),
+            format::open(&scan, &VolumeSelection::default(), &limits)?.as_ref(),
         ),
         false => {
             println!("skipped: no data at {}", scan.display());
@@ -67,7 +67,7 @@ fn functions(volume: &Volume) -> [(&'static str, TransferFunction); 2] {
 
 fn measure(name: &str, source: &dyn Source) -> Outcome<()> {
     let whole = source.header().whole();
-    let volume = Volume::read(source, Pick::default(), whole, &Limits::default())?;
+    let volume = Volume::read(source, TimeComponent::default(), whole, &Limits::default())?;
     let bounds = BoundingSphere::of_grid(&volume.world_from_voxel, volume.dims);
     let lens = Lens::Perspective { fov_degrees: 30.0 };
     let facing = camera::View::Left.orbit();

@@ -11,7 +11,7 @@ use stratavox::offscreen::Renderer;
 use stratavox::scene::Scene;
 use stratavox::technique::{Mode, Settings, Shading, Technique};
 use stratavox::transfer::{Classified, Window};
-use stratavox::volume::{Limits, Pick, Volume, phantom};
+use stratavox::volume::{Limits, TimeComponent, Volume, phantom};
 
 /// A picture, of how many pixels a side, and how often it is drawn each way.
 struct Case {
@@ -100,7 +100,7 @@ fn measure(case: &Case) -> Result<(), Box<dyn Error>> {
     let limits = Limits::default();
     let source = phantom::open(case.volume, &limits)?;
     let whole = source.header().whole();
-    let volume = Volume::read(source.as_ref(), Pick::default(), whole, &limits)?;
+    let volume = Volume::read(source.as_ref(), TimeComponent::default(), whole, &limits)?;
     let settings = (case.settings)();
     let extent = [case.side; 2];
     let bounds = BoundingSphere::of_grid(&volume.world_from_voxel, volume.dims);

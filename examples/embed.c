@@ -79,7 +79,7 @@ int main(int count, char **arguments) {
     check(sv_renderer_create(device, &wanted, &renderer, &diagnostic));
 
     /* Each frame. */
-    const sv_shot shot = {.struct_size = sizeof shot, .frame = 0};
+    const sv_frame_info shot = {.struct_size = sizeof shot, .frame = 0};
     const sv_target target = {.struct_size = sizeof target,
                               .image = (uint64_t)h.image,
                               .view = (uint64_t)h.view,

@@ -6,14 +6,14 @@
 use ash::vk;
 use std::{env, error::Error, path::Path, sync::Arc};
 use stratavox::camera::{BoundingSphere, Camera, Lens, View};
-use stratavox::embed::{Class, Renderer, Shot, Volume};
+use stratavox::embed::{FrameInfo, Renderer, RendererDesc, Volume};
 use stratavox::gpu::{
     API_VERSION, Buffer, Caps, Features, Gpu, HostDevice, Image, ImageDesc, ImageKind, Load,
     Memory, Region, Target, Use, image_to_buffer,
 };
 use stratavox::technique::Settings;
 use stratavox::transfer::{Classified, Window};
-use stratavox::volume::{self, Limits, Pick, phantom};
+use stratavox::volume::{self, Limits, TimeComponent, phantom};
 
 const EXTENT: [u32; 2] = [256, 256];
 const FORMAT: vk::Format = vk::Format::R8G8B8A8_SRGB;
@@ -79,7 +79,7 @@ unsafe fn draw(device: &ash::Device, gpu: &Arc<Gpu>) -> Result<Vec<u8>, Box<dyn 
     let limits = Limits::default();
     let source = phantom::open("phantom:sphere,n=64", &limits)?;
     let region = source.header().whole();
-    let voxels = volume::Volume::read(source.as_ref(), Pick::default(), region, &limits)?;
+    let voxels = volume::Volume::read(source.as_ref(), TimeComponent::default(), region, &limits)?;
     let function = Window::of_range(voxels.value_range).grey(Classified::Samples);
     let bounds = BoundingSphere::of_grid(&voxels.grid().world_from_voxel, voxels.dims);
     let lens = Lens::Perspective { fov_degrees: 30.0 };
@@ -89,7 +89,7 @@ unsafe fn draw(device: &ash::Device, gpu: &Arc<Gpu>) -> Result<Vec<u8>, Box<dyn 
     // Once: objects, pipelines, images, descriptor sets.
     let settings = Settings::default();
     let mut volume = Volume::new(gpu, &voxels, &settings)?;
-    let class = Class {
+    let class = RendererDesc {
         settings,
         target: FORMAT.into(),
         frames_in_flight: 1,
@@ -131,7 +131,7 @@ unsafe fn draw(device: &ash::Device, gpu: &Arc<Gpu>) -> Result<Vec<u8>, Box<dyn 
         let volume = Arc::new(volume);
         let mut renderer = Renderer::new(gpu, &volume, Some(&function), class, EXTENT, &[])?;
         // Once a frame.
-        let shot = Shot {
+        let shot = FrameInfo {
             frame: 0,
             camera: &camera,
             depth: None,

@@ -188,7 +188,7 @@ enum sv_lattice
     SV_LATTICE_RAY = 0,
     // Where the ray meets the planes that SV_TECHNIQUE_SLICES_3D draws.
     SV_LATTICE_PLANES = 1,
-    // Equal steps after a first one that hangs on the pixel: grain in place of bands.
+    // Equal steps after a first one that depends on the pixel: grain in place of bands.
     SV_LATTICE_JITTER = 2,
 };
 #ifndef __cplusplus
@@ -398,8 +398,8 @@ typedef struct sv_opacity_point {
 } sv_opacity_point;
 
 // A transfer function by control points in order of their values, constant beyond the ends.
-typedef struct sv_function_desc {
-    // `sizeof(sv_function_desc)`.
+typedef struct sv_transfer_function_desc {
+    // `sizeof(sv_transfer_function_desc)`.
     uint32_t struct_size;
     // NULL.
     const void *next;
@@ -415,10 +415,10 @@ typedef struct sv_function_desc {
     double reference_length;
     // Not 0: from one point to the next the value of the first holds. Else it goes straight.
     uint32_t is_stepped;
-} sv_function_desc;
+} sv_transfer_function_desc;
 
 // A transfer function. 0 is a ramp of greys over the volume's range.
-typedef uint64_t sv_function;
+typedef uint64_t sv_transfer_function;
 
 // Pictures of one volume in a host's frames. 0 is none.
 typedef uint64_t sv_renderer;
@@ -452,8 +452,8 @@ typedef struct sv_camera {
 } sv_camera;
 
 // One frame of the host's.
-typedef struct sv_shot {
-    // `sizeof(sv_shot)`.
+typedef struct sv_frame_info {
+    // `sizeof(sv_frame_info)`.
     uint32_t struct_size;
     // NULL.
     const void *next;
@@ -463,7 +463,7 @@ typedef struct sv_shot {
     uint32_t frame;
     // 0.
     uint32_t reserved;
-} sv_shot;
+} sv_frame_info;
 
 // The state of an image at one moment. All zero of `before`: what it holds is given up.
 // All zero of `after`: as rendering leaves it, in `VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL`.
@@ -598,14 +598,14 @@ typedef struct sv_clip_plane {
 } sv_clip_plane;
 
 // A surface of SV_MODE_ISO.
-typedef struct sv_level {
+typedef struct sv_isosurface {
     // The value that the volume has there.
     double value;
     // Its colour before light, in sRGB numbers from 0 to 1.
     double srgb[3];
     // What it takes of the light from behind, 0 to 1.
     double opacity;
-} sv_level;
+} sv_isosurface;
 
 // A light that is infinitely far away.
 typedef struct sv_light {
@@ -634,7 +634,7 @@ typedef struct sv_settings {
     // Not 0: composites count what lies between two samples too.
     uint32_t is_preintegrated;
     // Not 0: samples that cannot matter are taken as well. The picture is the same, and slower.
-    uint32_t keeps_empty_space;
+    uint32_t disable_space_skipping;
     // Not 0: MIP and MinIP of the trilinear field itself, not of samples.
     uint32_t has_exact_maximum;
     // Samples a voxel along a ray. 0 is 1.
@@ -650,7 +650,7 @@ typedef struct sv_settings {
     // How many there are.
     uint64_t clip_plane_count;
     // Surfaces of SV_MODE_ISO.
-    const struct sv_level *levels;
+    const struct sv_isosurface *levels;
     // How many there are.
     uint64_t level_count;
     // Not 0: composites and surfaces are lit.
@@ -779,7 +779,7 @@ typedef struct sv_renderer_desc {
     // Uploaded, with settings of the same kind.
     sv_volume volume;
     // 0: a ramp of greys over the volume's range.
-    sv_function function;
+    sv_transfer_function function;
     // What to compute, or NULL.
     const struct sv_settings *settings;
     // What is drawn into.
@@ -892,19 +892,19 @@ sv_status sv_device_pipeline_cache(sv_device device,
                                    struct sv_diagnostic *diagnostic);
 
 // Takes control points in. Nothing of it lies on the device. Threads: any.
-sv_status sv_function_create(sv_device device,
-                             const struct sv_function_desc *desc,
-                             sv_function *function,
+sv_status sv_transfer_function_create(sv_device device,
+                             const struct sv_transfer_function_desc *desc,
+                             sv_transfer_function *function,
                              struct sv_diagnostic *diagnostic);
 
 // Destroys it. Renderers that were made with it have a copy. Threads: any.
-sv_status sv_function_destroy(sv_function function, struct sv_diagnostic *diagnostic);
+sv_status sv_transfer_function_destroy(sv_transfer_function function, struct sv_diagnostic *diagnostic);
 
 // Begins a frame that is recorded in parts, and tells how many pieces it has: blocks of 64 x 64 pixels, smaller where those
 // are thought to take long, slices of half-angle slicing, and what a new function has to be found empty. What else is recorded
 // for the frame, another function, volume or size, and an update of the volume, ends it. Threads: one at a time for one renderer.
 sv_status sv_renderer_begin_parts(sv_renderer renderer,
-                                  const struct sv_shot *shot,
+                                  const struct sv_frame_info *shot,
                                   uint64_t *pieces,
                                   struct sv_diagnostic *diagnostic);
 
@@ -926,7 +926,7 @@ sv_status sv_renderer_record_part_into(sv_renderer renderer,
 // Threads: one at a time for one submitter and for one renderer.
 sv_status sv_submitter_submit_in_parts(sv_submitter submitter,
                                        sv_renderer renderer,
-                                       const struct sv_shot *shot,
+                                       const struct sv_frame_info *shot,
                                        const struct sv_target *target,
                                        const struct sv_submission *submission,
                                        const struct sv_pacing *pacing,
@@ -988,7 +988,7 @@ sv_status sv_volume_plan(sv_device device,
 // Threads: one at a time for one renderer; others beside it.
 sv_status sv_renderer_record(sv_renderer renderer,
                              void *command_buffer,
-                             const struct sv_shot *shot,
+                             const struct sv_frame_info *shot,
                              struct sv_diagnostic *diagnostic);
 
 // Level A, second half: draws what was recorded for `frame` over what the host has drawn. Bound pipeline, descriptor
@@ -1012,7 +1012,7 @@ sv_status sv_renderer_draw_depth(sv_renderer renderer,
 // As sv_renderer_record; the image lives until `command_buffer` has run.
 sv_status sv_renderer_record_into(sv_renderer renderer,
                                   void *command_buffer,
-                                  const struct sv_shot *shot,
+                                  const struct sv_frame_info *shot,
                                   const struct sv_target *target,
                                   struct sv_diagnostic *diagnostic);
 
@@ -1034,7 +1034,7 @@ sv_status sv_renderer_resize(sv_renderer renderer,
 
 // Another transfer function from the next recording on; 0 is the ramp of greys. It may be called each frame: nothing is
 // compiled, nothing waits. Threads: one at a time for one renderer.
-sv_status sv_renderer_set_function(sv_renderer renderer, sv_function function, struct sv_diagnostic *diagnostic);
+sv_status sv_renderer_set_transfer_function(sv_renderer renderer, sv_transfer_function function, struct sv_diagnostic *diagnostic);
 
 // Other numbers in the settings from the next recording on: steps, crops, planes, levels, lights. What needs other
 // pipelines is refused. Threads: one at a time for one renderer.
@@ -1046,7 +1046,7 @@ sv_status sv_renderer_set_settings(sv_renderer renderer,
 // upload is recorded. Threads: one at a time for one renderer.
 sv_status sv_renderer_set_volume(sv_renderer renderer,
                                  sv_volume volume,
-                                 sv_function function,
+                                 sv_transfer_function function,
                                  struct sv_diagnostic *diagnostic);
 
 // Destroys the handle; what frames in flight use is freed by sv_device_retire. Threads: any.
@@ -1078,7 +1078,7 @@ sv_status sv_submitter_create(sv_device device,
 // Threads: one at a time for one submitter and for one renderer.
 sv_status sv_submitter_submit(sv_submitter submitter,
                               sv_renderer renderer,
-                              const struct sv_shot *shot,
+                              const struct sv_frame_info *shot,
                               const struct sv_target *target,
                               const struct sv_submission *submission,
                               struct sv_diagnostic *diagnostic);

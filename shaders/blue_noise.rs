@@ -10,7 +10,7 @@
 //! where it is least. (The paper's third phase takes the tightest cluster of free places; the sum over all places is
 //! one number on a torus, so that is the largest void again.)
 //!
-//! Energies are whole numbers: sums do not hang on their order, and every machine builds the same array.
+//! Energies are whole numbers: sums do not depend on their order, and every machine builds the same array.
 
 /// Numbers along a side.
 pub const SIDE: usize = 64;

@@ -37,7 +37,7 @@ pub fn ask_both_sides(module: &mut Module) {
     }
 }
 
-/// What names and places of variables hang on.
+/// What names and places of variables depend on.
 struct Asking<'m> {
     globals: &'m Arena<GlobalVariable>,
     locals: &'m Arena<LocalVariable>,

@@ -1,5 +1,5 @@
 // One pass of a noise filter over slices of numbers in a buffer, or over a part of them: one thread a voxel.
-// Twin: src/volume/denoise.rs, which says what the kernels are.
+// CPU reference: src/volume/denoise.rs, which says what the kernels are.
 
 #import denoise_{kernel}
 

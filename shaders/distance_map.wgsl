@@ -9,15 +9,15 @@
 //
 // Of several volumes in one place D0 is 0 where any of their functions shows one of their values.
 //
-// For steps that adapt (looks_adaptive.wgsl) a fifth pass writes ROOM_ALIKE for 0 where the function hardly changes
+// For steps that adapt (unroll_adaptive.wgsl) a fifth pass writes HOMOGENEOUS for 0 where the function hardly changes
 // over the values of the cell, by a table of which values are alike in place of that of those that are seen.
 //
-// One thread a word, which has ROOMS_A_WORD cells along x: of D0 a bit each, set where matter is, so that D along x is
-// counted in bits; of the others a byte each. Outside the grid is nothing. Twin: none, but pictures with it and without
+// One thread a word, which has CELLS_PER_WORD cells along x: of D0 a bit each, set where matter is, so that D along x is
+// counted in bits; of the others a byte each. Outside the grid is nothing. CPU reference: none, but pictures with it and without
 // are the same.
 
 #import cell_grid
-#import room_word
+#import distance_map_word
 
 // Words of bits along x, and half of a word as it is.
 const REACH: u32 = 16u;
@@ -37,7 +37,7 @@ struct Seen {
     next: array<u32>,
 }
 
-struct Rooms {
+struct DistanceMap {
     d: array<u32>,
 }
 
@@ -49,8 +49,8 @@ struct Pass {
 
 @group(0) @binding(31) var<storage, read> cell_ranges: CellRanges;
 @group(0) @binding(32) var<storage, read> seen: Seen;
-@group(0) @binding(33) var<storage, read> rooms_before: Rooms;
-@group(0) @binding(34) var<storage, read_write> rooms_after: Rooms;
+@group(0) @binding(33) var<storage, read> distances_before: DistanceMap;
+@group(0) @binding(34) var<storage, read_write> distances_after: DistanceMap;
 @group(0) @binding(35) var<uniform> which: Pass;
 
 @compute @workgroup_size(4, 8, 2)
@@ -59,23 +59,23 @@ fn main(@builtin(global_invocation_id) place: vec3<u32>) {
     if any(place >= words) {
         return;
     }
-    let own = room_word(cell_grid.first, cell_grid.cells, place);
+    let own = distance_map_word(cell_grid.first, cell_grid.cells, place);
     switch which.number {
         case 0u, 4u: {
-            let before = select(0u, rooms_after.d[own], which.number == 4u);
-            rooms_after.d[own] = before | cells_seen(place);
+            let before = select(0u, distances_after.d[own], which.number == 4u);
+            distances_after.d[own] = before | cells_seen(place);
         }
         case 1u: {
-            rooms_after.d[own] = packed(along_x(own, place.x, words.x));
+            distances_after.d[own] = packed(along_x(own, place.x, words.x));
         }
         case 5u: {
-            rooms_after.d[own] = packed(with_alike(place, rooms_in(rooms_after.d[own])));
+            distances_after.d[own] = packed(with_alike(place, distances_in(distances_after.d[own])));
         }
         default: {
             let is_z = which.number == 3u;
             let step = words.x * select(1u, words.y, is_z);
             let axis = select(1u, 2u, is_z);
-            rooms_after.d[own] = packed(along(own, step, place[axis], words[axis]));
+            distances_after.d[own] = packed(along(own, step, place[axis], words[axis]));
         }
     }
 }
@@ -83,8 +83,8 @@ fn main(@builtin(global_invocation_id) place: vec3<u32>) {
 // A bit for each cell of a word in which something is seen.
 fn cells_seen(place: vec3<u32>) -> u32 {
     var bits = 0u;
-    for (var i = 0u; i < ROOMS_A_WORD; i++) {
-        let x = ROOMS_A_WORD * place.x + i;
+    for (var i = 0u; i < CELLS_PER_WORD; i++) {
+        let x = CELLS_PER_WORD * place.x + i;
         if x < cell_grid.cells.x {
             let range = cell_ranges.d[cell_index(vec3(x, place.yz))];
             bits |= u32(is_seen(range)) << i;
@@ -95,14 +95,14 @@ fn cells_seen(place: vec3<u32>) -> u32 {
 
 // Of bits, by how many cells lie between.
 fn along_x(own: u32, at: u32, count: u32) -> vec4<u32> {
-    var behind = rooms_before.d[own] << REACH;
-    var ahead = rooms_before.d[own];
-    for (var k = 1u; k <= REACH / ROOMS_A_WORD; k++) {
+    var behind = distances_before.d[own] << REACH;
+    var ahead = distances_before.d[own];
+    for (var k = 1u; k <= REACH / CELLS_PER_WORD; k++) {
         if k <= at {
-            behind |= rooms_before.d[own - k] << (REACH - k * ROOMS_A_WORD);
+            behind |= distances_before.d[own - k] << (REACH - k * CELLS_PER_WORD);
         }
         if at + k < count {
-            ahead |= rooms_before.d[own + k] << (k * ROOMS_A_WORD);
+            ahead |= distances_before.d[own + k] << (k * CELLS_PER_WORD);
         }
     }
     let cells = vec4(0u, 1u, 2u, 3u);
@@ -113,27 +113,27 @@ fn along_x(own: u32, at: u32, count: u32) -> vec4<u32> {
 
 // Of bytes, along an axis of `count` cells, words `step` apart.
 fn along(own: u32, step: u32, at: u32, count: u32) -> vec4<u32> {
-    var nearest = rooms_in(rooms_before.d[own]);
+    var nearest = distances_in(distances_before.d[own]);
     let behind = count - 1u - at;
     let reach = max(at, behind);
     for (var k = 1u; k <= reach && any(vec4(k) < nearest); k++) {
         if k <= at {
-            nearest = min(nearest, max(vec4(k), rooms_in(rooms_before.d[own - k * step])));
+            nearest = min(nearest, max(vec4(k), distances_in(distances_before.d[own - k * step])));
         }
         if k <= behind {
-            nearest = min(nearest, max(vec4(k), rooms_in(rooms_before.d[own + k * step])));
+            nearest = min(nearest, max(vec4(k), distances_in(distances_before.d[own + k * step])));
         }
     }
     return nearest;
 }
 
-fn with_alike(place: vec3<u32>, rooms: vec4<u32>) -> vec4<u32> {
-    var marked = rooms;
-    for (var i = 0u; i < ROOMS_A_WORD; i++) {
-        let x = ROOMS_A_WORD * place.x + i;
-        if x < cell_grid.cells.x && rooms[i] == 0u {
+fn with_alike(place: vec3<u32>, distances: vec4<u32>) -> vec4<u32> {
+    var marked = distances;
+    for (var i = 0u; i < CELLS_PER_WORD; i++) {
+        let x = CELLS_PER_WORD * place.x + i;
+        if x < cell_grid.cells.x && distances[i] == 0u {
             let range = cell_ranges.d[cell_index(vec3(x, place.yz))];
-            marked[i] = select(0u, ROOM_ALIKE, is_alike(range));
+            marked[i] = select(0u, HOMOGENEOUS, is_alike(range));
         }
     }
     return marked;
@@ -142,7 +142,7 @@ fn with_alike(place: vec3<u32>, rooms: vec4<u32>) -> vec4<u32> {
 // What f32 may lose on the way to a value, as a part of it.
 const NEAR_ROUNDING: f32 = 1e-5;
 
-// Whether a table shows any of these values, or a contour is near. Twin: src/transfer/seen.rs.
+// Whether a table shows any of these values, or a contour is near. CPU reference: src/transfer/visible_ranges.rs.
 fn is_seen(range: vec2<f32>) -> bool {
     let entries = entries_of(range);
     var is_shown = seen.next[entries.x] <= entries.y;

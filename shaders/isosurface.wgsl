@@ -1,13 +1,13 @@
 // Surfaces of one value or of several, front to back: one ray a pixel, a crossing wherever one end of a segment
 // is under a level and the other is not, found by halving the segment ten times and a straight line between what
 // is left (Hadwiger et al. 2005 refine so). A crossing is lit by the gradient there, and lets through what its
-// opacity leaves. Twin: src/technique/isosurface.rs.
+// opacity leaves. CPU reference: src/technique/isosurface.rs.
 
 #import ray
 #import host_depth
 #import drawn_tile
 #import brick
-#import room_map
+#import distance_map
 #import filter_{filter}
 #import nearest
 #import mask
@@ -93,17 +93,17 @@ fn surfaces(pixel: vec2<f32>, tile: RayTile, before: Surfaces) -> Surfaces {
         // search together and shade together.
         loop {
             // Neighbouring cells without surface are on the same side of all levels, for they share voxels. The last
-            // sample of a room is the near end of the segment that leaves it.
-            var room = 0;
+            // sample of a distance is the near end of the segment that leaves it.
+            var distance = 0;
             loop {
-                room = 0;
+                distance = 0;
                 if !may_skip(walk, k) {
                     break;
                 }
                 let cell = cell_of(walk, k);
-                room = room_of(cell);
-                let landing = after_room(walk, k, cell, max(room, 1)) - 1;
-                if room == 0 || !is_near_empty || landing <= k {
+                distance = distance_to_occupied(cell);
+                let landing = first_sample_beyond(walk, k, cell, max(distance, 1)) - 1;
+                if distance == 0 || !is_near_empty || landing <= k {
                     break;
                 }
                 k = landing;
@@ -121,7 +121,7 @@ fn surfaces(pixel: vec2<f32>, tile: RayTile, before: Surfaces) -> Surfaces {
                 continue;
             }
             far = end_at(voxel, t);
-            is_near_empty = room > 0;
+            is_near_empty = distance > 0;
             so_far.samples += f32(is_own);
             // Between a value and no data there is no surface. Before the first end there is none.
             is_crossed = is_own && near.has_data && far.has_data && are_apart(near, far);

@@ -5,7 +5,7 @@
 //     A = k mean of (1 - T_i)        sigma = -ln(1 - min(A, 1 - 2^-12)) / L
 //
 // So a cell half full of something opaque is half transparent, and uniform matter keeps its extinction. What has no
-// data absorbs nothing. Bricks add their looks one after the other. Twin: src/technique/light_field.rs.
+// data absorbs nothing. Bricks add their looks one after the other. CPU reference: src/technique/light_field.rs.
 
 #import gradient
 #import light_grid
@@ -15,7 +15,7 @@
 #import transfer_{transfer}
 #import widgets
 #import norm
-#import second
+#import second_derivative
 #import extinction
 
 @group(0) @binding(27) var<storage, read_write> light_cells: LightNumbers;

@@ -6,7 +6,7 @@
 // exact for matter that is uniform in each cell, since a straight line from one node goes through the same pieces as
 // that from any other. Paths all around give 1 - occlusion (Hernell, Ljung and Ynnerman, "Local Ambient Occlusion in
 // Direct Volume Rendering", IEEE TVCG 16(4), 2010), those towards a light give its shadow. Outside the grid is nothing.
-// Twin: src/technique/light_field.rs.
+// CPU reference: src/technique/light_field.rs.
 
 #import light_grid
 

@@ -2,10 +2,10 @@
 // own and an apron around them (`algorithms.md` 3: without, border samples would be called empty). Several threads a
 // cell: they go along rows of texels beside each other.
 // Where voxels have no value, what stands there counts, though no sample does.
-// Twin: src/resident/cell_ranges.rs.
+// CPU reference: src/resident/cell_ranges.rs.
 
 #import cell_grid
-#import code_{layout}
+#import decode_{layout}
 
 struct CellRanges {
     d: array<vec2<f32>>,
@@ -35,7 +35,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_
     for (var row = thread; row < rows; row += i32(CELL_THREADS)) {
         let first = low + vec3(0, row % size.y, row / size.y);
         for (var x = 0; x < size.x; x++) {
-            range = both(range, vec2(code_at(first + vec3(x, 0, 0))));
+            range = both(range, vec2(decoded_at(first + vec3(x, 0, 0))));
         }
     }
     seen[place.y][thread] = range;

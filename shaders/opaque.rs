@@ -1,6 +1,6 @@
 //! Keeps drivers from compiling a program anew for the parameters of each picture.
 //!
-//! lavapipe of Mesa 22 puts the values of a uniform buffer that branches hang on into the program before each dispatch
+//! lavapipe of Mesa 22 puts the values of a uniform buffer that branches depend on into the program before each dispatch
 //! and each draw (`lvp_inline_uniforms.c`), compiles that, and keeps what it compiled as long as the device lives. It
 //! means to stop where that makes the program less than half as long, but compares numbers that wrap around, and goes
 //! on for ever: milliseconds for each picture, a tenth of a second and a megabyte for each brick of a mixture. Later
@@ -17,7 +17,7 @@
 //! ```
 //!
 //! Other drivers see through it: `here` is the constant 0 where the specialization constant `software` is not 1. What
-//! hangs on a specialization constant alone is left as it is.
+//! depends on a specialization constant alone is left as it is.
 
 use crate::alternatives::id_of;
 use crate::constants::{is_marked, marked};

@@ -1,7 +1,7 @@
 // The most that a device's sampler gives: threads side by side in x and y walk along z of a 3D texture, voxel by
 // voxel, through the corners between voxels, where all eight texels count; and nothing else. More threads in z than
 // the texture is deep begin again at its front.
-// Twin: none, it is a measurement (src/offscreen/probe.rs).
+// CPU reference: none, it is a measurement (src/offscreen/probe.rs).
 
 const PROBE_SAMPLES: u32 = 64u;
 

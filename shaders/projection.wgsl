@@ -1,5 +1,5 @@
 // MIP and its relatives: one ray a pixel, one number a ray; a resolve classifies it once.
-// Twin: src/technique/projection/reference.rs.
+// CPU reference: src/technique/projection/reference.rs.
 
 #import {walk}
 #import drawn_tile

@@ -1,5 +1,5 @@
 // The exact extreme of the trilinear field along each ray: no sample misses it.
-// Twin: src/technique/projection/exact.rs.
+// CPU reference: src/technique/projection/exact.rs.
 
 #import march_cells
 #import drawn_tile

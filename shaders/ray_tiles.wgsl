@@ -1,15 +1,15 @@
 // Which tiles of 8 x 8 pixels are drawn by rays, and which part of their rays: one thread a tile.
 //
-// With D not made a unit vector, the rays of a tile are a pencil around that of its middle: in voxel space
+// With D not made a unit vector, the rays of a tile are a frustum around that of its middle: in voxel space
 //
 //     x(s) = O + s D + e(s),    |e_i(s)| <= w_i + s v_i
 //
 // so where all of it lies on one side of an axis-aligned plane follows from linear inequalities in s, and where it may
-// be in a box is an interval. From its ends the pencil goes from cube to cube of empty macro cells, as each ray does in
+// be in a box is an interval. From its ends the frustum goes from cube to cube of empty macro cells, as each ray does in
 // empty_space.wgsl; what is left is handed on. A tile of which nothing is left gets what a ray finds in no volume, and
 // is not drawn. What is left out would have added nothing: the picture is the same to the bit (`sampling.md` 5).
 
-#import pencil
+#import tile_frustum
 #import known_{known}
 #import nothing_{left}
 #import ray_tile
@@ -40,11 +40,11 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
     if any(own.xy < before) || any(own.xy + behind >= vec2(BLOCK_TILES)) || any(TILE_PIXELS * tile >= frame.extent_pixels) {
         return;
     }
-    let pencil = pencil_of(vec2<f32>(TILE_PIXELS * tile) + 0.5 * f32(TILE_PIXELS));
-    let within = known_part(pencil, box_part(pencil));
+    let frustum = tile_frustum_of(vec2<f32>(TILE_PIXELS * tile) + 0.5 * f32(TILE_PIXELS));
+    let within = known_part(frustum, box_part(frustum));
     if within.x < within.y {
         let index = atomicAdd(&ray_list.tiles, 1u);
-        textureStore(ray_tiles, entry_of(index), vec4(vec2<f32>(tile), lengths(pencil, within)));
+        textureStore(ray_tiles, entry_of(index), vec4(vec2<f32>(tile), lengths(frustum, within)));
     } else if frame.is_first_brick != 0u {
         leave_nothing(TILE_PIXELS * tile);
     }

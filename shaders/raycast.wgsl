@@ -1,5 +1,5 @@
 // Ray casting: one ray a pixel, emission and absorption from front to back (Levoy 1988).
-// Twin: src/technique/raycast/reference.rs.
+// CPU reference: src/technique/raycast/reference.rs.
 
 #import {walk}
 #import drawn_tile

@@ -1,5 +1,5 @@
 // Ray casting with pre-integrated classification: the samples are slabs, from front to back.
-// Twin: src/technique/raycast/reference.rs.
+// CPU reference: src/technique/raycast/reference.rs.
 
 #import {walk}
 #import drawn_tile

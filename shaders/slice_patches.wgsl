@@ -13,9 +13,9 @@
 // f32 loses. Samples that are left out would have added nothing at all, and which patch a pixel belongs to is a matter
 // of whole numbers: the picture is the same to the bit (`sampling.md` 5).
 //
-// Twin: none, but pictures with it and without are the same.
+// CPU reference: none, but pictures with it and without are the same.
 
-#import room_map
+#import distance_map
 #import patch_{planes}
 #import patch_entry
 
@@ -204,14 +204,14 @@ fn may_have_matter(box_low: vec3<f32>, box_high: vec3<f32>, planes: vec2<f32>) -
     }
     for (var z = first.z; z <= last.z; z++) {
         for (var y = first.y; y <= last.y; y++) {
-            // No cell that is nearer than the room has any.
+            // No cell that is nearer than the distance has any.
             for (var x = first.x; x <= last.x;) {
-                let room = room_of(vec3(x, y, z));
+                let distance = distance_to_occupied(vec3(x, y, z));
                 let center = frame.cells_origin + (vec3(f32(x), f32(y), f32(z)) + 0.5) * cell;
-                if room == 0 && is_at_planes(center, 0.5 * cell + frame.patch_reach_voxels, planes) {
+                if distance == 0 && is_at_planes(center, 0.5 * cell + frame.patch_reach_voxels, planes) {
                     return true;
                 }
-                x += max(room, 1);
+                x += max(distance, 1);
             }
         }
     }

@@ -1,6 +1,6 @@
 // 2D texture slicing, the fragment: the sample of the pixel's ray on one slice of the stack, bilinear
 // inside it. A sample stands for the length 1 / |(voxel_from_world r)_k|.
-// Twin: src/technique/slices_2d/reference.rs.
+// CPU reference: src/technique/slices_2d/reference.rs.
 
 #import ray
 #import sight_{sight}

@@ -1,6 +1,6 @@
 // 2D texture slicing with pre-integrated classification, the fragment: the slab of the pixel's ray between one plane
 // and the next, cut to the domain (Engel, Kraus and Ertl 2001). Slabs touch: together they are the ray.
-// Twin: src/technique/slices_2d/between.rs.
+// CPU reference: src/technique/slices_2d/between.rs.
 
 #import stack_slab
 #import sight_{sight}

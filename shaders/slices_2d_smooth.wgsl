@@ -1,6 +1,6 @@
 // 2D texture slicing with slices interpolated between those of the stack, the fragment: the sample of the pixel's
 // ray on one plane. It stands for the length 1 / (n |(voxel_from_world r)_k|), n planes a slice.
-// Twin: src/technique/slices_2d/between.rs.
+// CPU reference: src/technique/slices_2d/between.rs.
 
 #import ray
 #import brick

@@ -1,7 +1,7 @@
 // View-aligned slicing, the fragment: the sample of the pixel's ray on one plane, handed to the blending
 // unit (Cabral, Cam and Foran 1994). The polygon is only a cover: what lies outside the domain is
 // discarded here, by the functions of the ray caster, so both take the same samples.
-// Twin: src/technique/slices_3d/reference.rs.
+// CPU reference: src/technique/slices_3d/reference.rs.
 
 #import ray
 #import sight_{sight}

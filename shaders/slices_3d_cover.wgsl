@@ -2,7 +2,7 @@
 //
 // Six vertices by the table of Rezk-Salama and Kolb ("A Vertex Program for Efficient Box-Plane
 // Intersection", VMV 2005): corners are numbered from the one nearest the eye along three paths to the
-// farthest one; the plane meets each path once. Twin: src/technique/slices_3d/cover.rs.
+// farthest one; the plane meets each path once. CPU reference: src/technique/slices_3d/cover.rs.
 
 #import frame
 #import vertex_{parameters}

@@ -6,7 +6,7 @@
 //
 // The planes are those of the view-aligned slicer with another normal, s half way between view and light; where the
 // light comes towards the eye, it points to the eye. The light's picture of the same slices is drawn by
-// `slices_3d.wgsl`. Twin: src/technique/slices_3d/half_angle/reference.rs.
+// `slices_3d.wgsl`. CPU reference: src/technique/slices_3d/half_angle/reference.rs.
 
 #import ray
 #import brick

@@ -1,6 +1,6 @@
 // View-aligned slicing with pre-integrated classification, the fragment: the slab of the pixel's ray around one
 // plane, cut to the domain (Engel, Kraus and Ertl 2001). Slabs touch: together they are the ray.
-// Twin: src/technique/slices_3d/reference.rs.
+// CPU reference: src/technique/slices_3d/reference.rs.
 
 #import ray
 #import sight_{sight}

@@ -63,7 +63,7 @@ const FILTER: Slot = constant(
     &["nearest", "linear", "linear_fetch", "kernel", "spline"],
 );
 /// By corners too, of 8-bit and of 16-bit voxels: what rays on their own lattice have on software devices.
-const CORNERS: Slot = slot("filter", &["corners8", "corners16"]);
+const CORNERS: Slot = slot("filter", &["footprint8", "footprint16"]);
 /// Conformance pictures search the points, and never leave filtering to the device.
 const FETCHED: Slot = constant("filter", &["nearest", "linear_fetch", "kernel"]);
 /// Several volumes are mixed by narrow filters.
@@ -89,7 +89,7 @@ const SIGHT: Slot = constant("sight", &["open", "host"]);
 /// How central differences are made. The words are left out of names: corners have their own way, and it is theirs
 /// alone.
 const TAPS: Slot = slot("slope", &["taps"]);
-const SHARED: Slot = slot("slope", &["corners"]);
+const SHARED: Slot = slot("slope", &["footprint"]);
 /// Words that stand in no name.
 pub const SILENT: &[&str] = &[
     "alone",
@@ -100,7 +100,7 @@ pub const SILENT: &[&str] = &[
     "march_stack",
     "march_stack_slab",
     "taps",
-    "corners",
+    "footprint",
     "asked",
     "cut",
     "triangles",
@@ -344,7 +344,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ("resolve_cover", &[]),
     ("resolve_depth", &[constant("left", &["picture", "value"])]),
     ("host_depth_copy", &[]),
-    ("keep_gradients", &[slot("layout", &["box", "stack"])]),
+    ("precompute_gradients", &[slot("layout", &["box", "stack"])]),
     ("merge", &[constant("operator", &["over", "under", "add"])]),
     (
         "denoise",
@@ -370,7 +370,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     // Which tiles rays draw: all that they may meet something in, or all over the box.
     (
         "ray_tiles",
-        &[slot("known", &["rooms"]), slot("left", &["picture"])],
+        &[slot("known", &["distances"]), slot("left", &["picture"])],
     ),
     (
         "ray_tiles",

@@ -1,4 +1,4 @@
-//! Where the steps of a jittered ray begin: twin of `shaders/lib/jitter.wgsl`.
+//! Where the steps of a jittered ray begin: CPU reference of `shaders/lib/jitter.wgsl`.
 //!
 //! ```text
 //! u = frac((r + 1/2) / n^2 + jitter)        part = 1 - |2 u - 1|

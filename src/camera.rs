@@ -22,7 +22,7 @@ mod matrices;
 mod orbit;
 
 pub use fit::PixelBox;
-pub use matrices::{HostDepth, Nearer};
+pub use matrices::{DepthConvention, HostDepth};
 pub use orbit::{BoundingSphere, Lens, Orbit, View, fitted_view_height, up_for};
 
 use glam::DVec3;

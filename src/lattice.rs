@@ -1,8 +1,8 @@
-//! Which samples a ray caster takes: twins of `shaders/lib/lattice_ray.wgsl` and `lattice_planes.wgsl`.
+//! Which samples a ray caster takes: CPU references of `shaders/lib/lattice_ray.wgsl` and `lattice_planes.wgsl`.
 //!
 //! ```text
 //! ray:     t = t0 + (k + 1/2) h, by multiplication; the last, shorter segment at its own middle
-//! jitter:  t0 less a part of h that hangs on the pixel; the first, shorter segment at its own middle too
+//! jitter:  t0 less a part of h that depends on the pixel; the first, shorter segment at its own middle too
 //! planes:  n . (o + t r) = (k + 1/2) h, a sample stands for h / (n . r)
 //! ```
 
@@ -146,7 +146,7 @@ impl<R: Real> Slab<R> {
     }
 }
 
-/// Slabs of one step each; the last is shorter, and with jitter the first too. Twin of `slab_ray.wgsl`.
+/// Slabs of one step each; the last is shorter, and with jitter the first too. CPU reference of `slab_ray.wgsl`.
 pub fn slabs_along_ray<R: Real>(
     frame: &Frame,
     pixel: [R; 2],
@@ -156,7 +156,7 @@ pub fn slabs_along_ray<R: Real>(
     (0..=steps.full).map(move |k| steps.slab(k))
 }
 
-/// The slab around plane `k`, cut to the interval. Twin of `slab.wgsl`.
+/// The slab around plane `k`, cut to the interval. CPU reference of `slab.wgsl`.
 pub fn plane_slab<R: Real>(frame: &Frame, world: &Ray<R>, interval: [R; 2], k: i32) -> Slab<R> {
     let forward = vector(frame.forward);
     let (origin, slope) = (dot(forward, world.origin), dot(forward, world.direction));
@@ -165,7 +165,7 @@ pub fn plane_slab<R: Real>(frame: &Frame, world: &Ray<R>, interval: [R; 2], k: i
     Slab::cut([edge(k), edge(k + 1)], interval, plane_length(frame, world))
 }
 
-/// Slabs around the planes of a view-aligned slicer. Twin of `slab_planes.wgsl`.
+/// Slabs around the planes of a view-aligned slicer. CPU reference of `slab_planes.wgsl`.
 pub fn slabs_on_planes<R: Real>(
     frame: &Frame,
     world: &Ray<R>,

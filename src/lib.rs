@@ -1,5 +1,5 @@
 //! A volume renderer that speaks Vulkan: two texture slicers, a ray caster and
-//! maximum intensity projection, each with a CPU twin and an exact answer.
+//! maximum intensity projection, each with a CPU reference and an exact answer.
 //!
 //! # Floors
 //!
@@ -10,7 +10,7 @@
 //! | 0 | `shaders`, `real`, `ray`, `blue_noise`, `lattice`, [`color`], `fence`, `named` | arithmetic shared with the shaders, free of Vulkan |
 //! | 1 | [`gpu`], [`volume`], [`transfer`], [`camera`], [`picture`], [`mesh`], `figure` | Vulkan objects, or data; never both |
 //! | 2 | [`resident`], `isosurface`, `format` | data put on a device; a surface in a volume; bytes of files turned into a [`volume::Source`] |
-//! | 3 | [`technique`], [`resolve`], `look` | `new`, `bind`, `record`, and the CPU twins; what suits a volume |
+//! | 3 | [`technique`], [`resolve`], `look` | `new`, `bind`, `record`, and the CPU references; what suits a volume |
 //! | 4 | [`embed`] | a volume in a host's frames |
 //! | 5 | [`scene`], [`offscreen`], `annotate` | a scene to a [`picture::Picture`], the only place that waits; words and marks over it |
 //! | 6 | `conformance` | cases with exact answers, and verdicts on devices |
@@ -41,8 +41,8 @@
 //! ```rust,no_run
 //! use ash::vk;
 //! use std::sync::Arc;
-//! use stratavox::camera::{Camera, Nearer};
-//! use stratavox::embed::{Class, Error, Renderer, Shot, SliceBlending, Volume};
+//! use stratavox::camera::{Camera, DepthConvention};
+//! use stratavox::embed::{RendererDesc, Error, Renderer, FrameInfo, SliceBlending, Volume};
 //! use stratavox::gpu::{Gpu, TargetClass};
 //! use stratavox::technique::Settings;
 //! use stratavox::transfer::TransferFunction;
@@ -59,7 +59,7 @@
 //!     let settings = Settings::default();
 //!     let mut volume = Volume::new(gpu, voxels, &settings)?;
 //!     unsafe { volume.record_upload(gpu, cmd)? };
-//!     let class = Class {
+//!     let class = RendererDesc {
 //!         settings,
 //!         target,
 //!         frames_in_flight: 2,
@@ -78,8 +78,8 @@
 //!     frame: u32,
 //!     [view_from_world, clip_from_view]: [glam::DMat4; 2],
 //! ) -> Result<(), Error> {
-//!     let (camera, _) = Camera::from_matrices(&view_from_world, &clip_from_view, Nearer::Smaller)?;
-//!     unsafe { renderer.record(cmd, &Shot { frame, camera: &camera, depth: None })? };
+//!     let (camera, _) = Camera::from_matrices(&view_from_world, &clip_from_view, DepthConvention::Standard)?;
+//!     unsafe { renderer.record(cmd, &FrameInfo { frame, camera: &camera, depth: None })? };
 //!     // vkCmdBeginRendering, the host's own geometry
 //!     unsafe { renderer.draw(cmd, frame)? };
 //!     // vkCmdEndRendering
@@ -137,7 +137,7 @@
 //!
 //! [`scene::Scene::beside`] puts volumes on one grid together, sample by sample. A host makes them by
 //! [`resident::GpuVolume::several`] and [`resident::GpuTransfer::several`], takes the variant of
-//! [`technique::Words::mixed`] and the parameters of [`technique::View::recordings_of`], and binds the bricks of all of
+//! [`technique::ShaderVariant::mixed`] and the parameters of [`technique::View::recordings_of`], and binds the bricks of all of
 //! them by [`technique::Inputs`].
 //!
 //! # Filters through the voxels

@@ -1,4 +1,4 @@
-//! Rays and the part of them that lies in the domain: twin of `shaders/lib/ray.wgsl` (`sampling.md` 3).
+//! Rays and the part of them that lies in the domain: CPU reference of `shaders/lib/ray.wgsl` (`sampling.md` 3).
 //!
 //! One parameter t, world length, in every space: directions are transformed and never normalized again.
 
@@ -20,8 +20,8 @@ impl<R: Real> Ray<R> {
     }
 }
 
-/// Where in a pixel its ray goes through: the centre that is given, or a place in a square around it that hangs on
-/// the pixel. Twin of `in_pixel.wgsl`.
+/// Where in a pixel its ray goes through: the centre that is given, or a place in a square around it that depends on
+/// the pixel. CPU reference of `in_pixel.wgsl`.
 pub fn place_in_pixel<R: Real>(frame: &Frame, pixel: [R; 2]) -> [R; 2] {
     if frame.is_uneven == 0 {
         return pixel;
@@ -125,7 +125,7 @@ pub fn plane_length<R: Real>(frame: &Frame, world: &Ray<R>) -> R {
     R::from_f32(frame.step_world) / dot(vector(frame.forward), world.direction)
 }
 
-/// A vector of the parameters, in the twin's precision.
+/// A vector of the parameters, in the CPU reference's precision.
 pub fn vector<R: Real>(v: [f32; 3]) -> [R; 3] {
     v.map(R::from_f32)
 }

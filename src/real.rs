@@ -1,4 +1,4 @@
-//! f32 or f64: the twins are written once for both, f32 to prove a shader and f64 to prove the mathematics. A third
+//! f32 or f64: the CPU references are written once for both, f32 to prove a shader and f64 to prove the mathematics. A third
 //! kind knows how far off a device may be (`conformance::oracle::Tracked`).
 //!
 //! A number does what it does in WGSL, one rounding an operation: no fused multiply-add, and `round`

@@ -3,8 +3,10 @@
 use crate::camera::Camera;
 use crate::shaders::MAX_CHANNELS;
 use crate::technique::mixture::opacities_have_colors;
-use crate::technique::{CutFaces, Error, InPixel, Keep, Mix, Mode, Role, Settings, View};
-use crate::transfer::{Alike, Tolerance, TransferFunction};
+use crate::technique::{
+    CutFaces, Error, GradientStorage, InPixel, Mode, Role, SampleInputs, Settings, View,
+};
+use crate::transfer::{HomogeneousRanges, Tolerance, TransferFunction};
 use crate::volume::Volume;
 
 /// One of several things seen in the same place.
@@ -69,11 +71,11 @@ pub struct Scene<'a> {
 
 impl<'a> Scene<'a> {
     /// How its volumes go together.
-    pub fn mix(&self) -> Mix {
+    pub fn mix(&self) -> SampleInputs {
         match self.beside {
-            Beside::Channels(channels) if !channels.is_empty() => Mix::Channels,
-            Beside::Colors(_) | Beside::Classified(_) => Mix::Colors,
-            Beside::Nothing | Beside::Channels(_) => Mix::of_one(self.transfer),
+            Beside::Channels(channels) if !channels.is_empty() => SampleInputs::Channels,
+            Beside::Colors(_) | Beside::Classified(_) => SampleInputs::Colors,
+            Beside::Nothing | Beside::Channels(_) => SampleInputs::of_one(self.transfer),
         }
     }
 
@@ -149,7 +151,9 @@ impl<'a> Scene<'a> {
             self.settings.check_graded()?;
         }
         self.settings.check_holes(self.volume.validity.is_some())?;
-        if self.settings.keep_gradients == Keep::Always && self.volume.validity.is_some() {
+        if self.settings.gradient_storage == GradientStorage::Precomputed
+            && self.volume.validity.is_some()
+        {
             let reason = "where voxels have no data, neighbours of what is zero would be too";
             return Err(Error::NotKept { reason });
         }
@@ -178,7 +182,7 @@ impl<'a> Scene<'a> {
         match self.mix() {
             mix if mix.is_of_one() => Ok(()),
             _ if self.is_graded() => Err(Error::NotGradedTogether),
-            Mix::Channels if mode == Mode::Iso => self.check_painted(),
+            SampleInputs::Channels if mode == Mode::Iso => self.check_painted(),
             _ if self.settings.shading.is_some() => Err(Error::NotShadedTogether),
             _ if self.settings.ambient_occlusion.is_some() => Err(Error::NotOccludedTogether),
             // Modes that project draw them one by one.
@@ -186,16 +190,20 @@ impl<'a> Scene<'a> {
                 Err(Error::FilterAlone { filter })
             }
             _ if volumes.iter().any(|volume| volume.grid() != grid) => Err(Error::OtherGrid),
-            Mix::Colors if matches!(self.beside, Beside::Classified(_)) && wanted != 4 => {
+            SampleInputs::Colors if matches!(self.beside, Beside::Classified(_)) && wanted != 4 => {
                 Err(Error::NoColor { found: wanted })
             }
-            Mix::Colors if !(3..=4).contains(&wanted) => Err(Error::NoColor { found: wanted }),
-            Mix::Colors if mode != Mode::Composite => Err(Error::NotMixed { mode }),
-            Mix::Channels if mode == Mode::Mida => Err(Error::NotMixed { mode }),
-            Mix::Channels if mode.is_projection() && roles.iter().any(only_composite) => {
+            SampleInputs::Colors if !(3..=4).contains(&wanted) => {
+                Err(Error::NoColor { found: wanted })
+            }
+            SampleInputs::Colors if mode != Mode::Composite => Err(Error::NotMixed { mode }),
+            SampleInputs::Channels if mode == Mode::Mida => Err(Error::NotMixed { mode }),
+            SampleInputs::Channels if mode.is_projection() && roles.iter().any(only_composite) => {
                 Err(Error::NotMixed { mode })
             }
-            Mix::Channels if !opacities_have_colors(&roles) => Err(Error::OpacityOfNothing),
+            SampleInputs::Channels if !opacities_have_colors(&roles) => {
+                Err(Error::OpacityOfNothing)
+            }
             _ if wanted > limit => Err(Error::TooManyChannels { wanted, limit }),
             _ => Ok(()),
         }
@@ -239,14 +247,14 @@ impl<'a> Scene<'a> {
     }
 
     /// Between which values samples look alike, where steps adapt to that.
-    pub(crate) fn alike(&self) -> Option<Alike> {
+    pub(crate) fn alike(&self) -> Option<HomogeneousRanges> {
         let (error, function) = self.settings.adaptive_steps.zip(self.transfer)?;
         let tolerance = Tolerance {
             error,
             longest_ray: self.volume.grid().diagonal(),
         };
         let length = self.length_of(function);
-        Some(Alike::new(
+        Some(HomogeneousRanges::new(
             function,
             length,
             self.settings.color_space,
@@ -260,7 +268,7 @@ impl<'a> Scene<'a> {
 }
 
 /// Where in the pixel its rays go through: in the middles of a regular grid, or at a place of each of its cells that
-/// hangs on the pixel, and others in each picture of a film.
+/// depends on the pixel, and others in each picture of a film.
 pub fn positions_in_pixel(settings: &Settings) -> impl Iterator<Item = InPixel> + use<> {
     let per_side = settings.rays_per_side;
     let is_uneven = settings.uneven_rays && per_side > 1;

@@ -212,7 +212,7 @@ fn c_and_rust_agree_on_each_size_and_offset() {
     let text = String::from_utf8_lossy(&found.stderr);
     assert!(found.status.success(), "{text}");
     // One that is wrong is seen.
-    let wrong = ["_Static_assert(sizeof(sv_shot) == 1, \"sv_shot\");\n".to_owned()];
+    let wrong = ["_Static_assert(sizeof(sv_frame_info) == 1, \"sv_frame_info\");\n".to_owned()];
     assert!(!compiles(&wrong).status.success());
 }
 

@@ -10,8 +10,8 @@ use embed_shared::{ATTACHED, DepthImage, Host, HostImage, READ, Stage, all_setti
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::sync::Arc;
-use stratavox::camera::{Camera, Nearer};
-use stratavox::embed::{Class, HostDepthImage, Renderer, Shot, Volume};
+use stratavox::camera::{Camera, DepthConvention};
+use stratavox::embed::{FrameInfo, HostDepthImage, Renderer, RendererDesc, Volume};
 use stratavox::gpu::{Caps, DepthClass, Load, TargetClass};
 use stratavox::technique::{Settings, Technique};
 
@@ -67,13 +67,13 @@ fn assert_nothing_is_taken(host: &Host, settings: &Settings) {
     // Slices that face neither eye nor light have none, and are behind nothing.
     let is_half = stage.settings.is_half_angle();
     let has_depth = stage.settings.mode.has_depth() && !is_half;
-    let inside = Class {
+    let inside = RendererDesc {
         settings: stage.settings.clone(),
         target: TargetClass {
             depth: Some(DepthClass {
                 format: vk::Format::D32_SFLOAT,
                 has_stencil: false,
-                is_reversed: depth.nearer == Nearer::Larger,
+                is_reversed: depth.nearer == DepthConvention::Reversed,
             }),
             ..FORMAT.into()
         },
@@ -83,7 +83,7 @@ fn assert_nothing_is_taken(host: &Host, settings: &Settings) {
         picks: false,
         slice_blending: Default::default(),
     };
-    let outside = Class {
+    let outside = RendererDesc {
         target: FORMAT.into(),
         host_depth: false,
         gives_depth: false,
@@ -106,7 +106,7 @@ fn assert_nothing_is_taken(host: &Host, settings: &Settings) {
     let target = image.target();
     for nth in 0..4 {
         let frame = nth % 2;
-        let shot = Shot {
+        let shot = FrameInfo {
             frame,
             camera: &camera,
             depth: Some(depth),

@@ -6,11 +6,11 @@ use stratavox::picture::ColorSpace;
 use stratavox::scene::{Beside, Channel, Scene};
 use stratavox::technique::preclassified::preclassified;
 use stratavox::technique::{
-    AmbientOcclusion, ClipPlane, CutFaces, Filter, GradientFilter, Keep, Lattice, Level, Light,
-    Mode, Order, PerMode, Role, Settings, Shading, Shadows, Technique,
+    AmbientOcclusion, ClipPlane, CutFaces, Filter, GradientFilter, GradientStorage, Lattice, Level,
+    Light, Mode, Order, PerMode, Role, Settings, Shading, Shadows, Technique,
 };
 use stratavox::transfer::{
-    ColorPoint, Graded, Interpolation, OpacityPoint, Shape, TransferFunction, Widget,
+    ColorPoint, GradientTransfer, Interpolation, OpacityPoint, Shape, TransferFunction, Widget,
 };
 use stratavox::volume::{Denoise, Rescale, Volume, Voxels, labels::dim};
 
@@ -230,7 +230,7 @@ pub const FEATURES: &[Feature] = &[
                 ..lights()
             });
             s.gradient_filter = GradientFilter::Sobel;
-            s.keep_gradients = Keep::Always;
+            s.gradient_storage = GradientStorage::Precomputed;
         },
     ),
     feature("a volume in several bricks", "", Seen::Bricked, |s| {
@@ -342,7 +342,7 @@ pub struct Matter {
     cameras: [Camera; 2],
 }
 
-/// Picks one of the values around a voxel: twin and device agree to the bit.
+/// Picks one of the values around a voxel: CPU reference and device agree to the bit.
 pub const DENOISE: Denoise = Denoise::Median;
 
 impl Matter {
@@ -390,7 +390,7 @@ impl Matter {
             labels: map,
             function: function(),
             graded: TransferFunction {
-                graded: Some(Graded {
+                graded: Some(GradientTransfer {
                     steepest: Some(0.4),
                     share: Vec::new(),
                     widgets: vec![Widget {

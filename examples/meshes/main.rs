@@ -13,12 +13,12 @@ use glam::{DMat4, DQuat, DVec3, dvec3};
 use host::{Corner, DEPTH_FORMAT, DepthFor, FORMAT, Host, QUEUE_FAMILY};
 use std::f64::consts::TAU;
 use std::{env, error::Error, path::Path, sync::Arc};
-use stratavox::camera::{Camera, Nearer};
-use stratavox::embed::{Class, HostDepthImage, Renderer, Shot, SliceBlending, Volume};
+use stratavox::camera::{Camera, DepthConvention};
+use stratavox::embed::{FrameInfo, HostDepthImage, Renderer, RendererDesc, SliceBlending, Volume};
 use stratavox::gpu::{API_VERSION, Caps, DepthClass, Features, Gpu, HostDevice, TargetClass};
 use stratavox::technique::{Lattice, Settings, Shading, Technique};
 use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
-use stratavox::volume::{self, Limits, Pick, phantom};
+use stratavox::volume::{self, Limits, TimeComponent, phantom};
 
 const EXTENT: [u32; 2] = [480, 360];
 const BACKGROUND: [f32; 4] = [0.02, 0.03, 0.05, 1.0];
@@ -58,7 +58,7 @@ unsafe fn film(
     let limits = Limits::default();
     let source = phantom::open("phantom:head,n=96", &limits)?;
     let region = source.header().whole();
-    let voxels = volume::Volume::read(source.as_ref(), Pick::default(), region, &limits)?;
+    let voxels = volume::Volume::read(source.as_ref(), TimeComponent::default(), region, &limits)?;
     let grid = voxels.grid();
     let size = (grid.world_from_voxel.matrix3 * grid.far_corner()).length();
     let center = grid.center();
@@ -75,7 +75,7 @@ unsafe fn film(
         let gpu = Gpu::from_host(handles(host))?;
         let mut volume = Volume::new(&gpu, &voxels, &settings)?;
         host.frame(|cmd| Ok(volume.record_upload(&gpu, cmd)?))?;
-        let class = Class {
+        let class = RendererDesc {
             settings,
             target: TargetClass {
                 depth: Some(DepthClass {
@@ -103,8 +103,8 @@ unsafe fn film(
             let view = look_at_mat4(eye, center, DVec3::Z);
             let [width, height] = EXTENT.map(f64::from);
             let clip = vulkan::perspective_infinite_reverse(0.6, width / height, 0.01 * size);
-            let (camera, depth) = Camera::from_matrices(&view, &clip, Nearer::Larger)?;
-            let shot = Shot {
+            let (camera, depth) = Camera::from_matrices(&view, &clip, DepthConvention::Reversed)?;
+            let shot = FrameInfo {
                 frame: 0,
                 camera: &camera,
                 depth: Some(depth),

@@ -12,7 +12,7 @@ use stratavox::scene::Scene;
 use stratavox::technique::{Filter, Mode, Settings};
 use stratavox::transfer::{Classified, Window};
 use stratavox::volume::field::{Field, MarschnerLobb};
-use stratavox::volume::{Limits, Pick, Volume, phantom};
+use stratavox::volume::{Limits, TimeComponent, Volume, phantom};
 
 /// Word, filter, and the RMS error that an independent program found.
 const FILTERS: [(&str, Filter, f64); 7] = [
@@ -34,7 +34,12 @@ pub fn print() -> Result<(), Box<dyn Error>> {
     let signal = signal();
     let source = phantom::open("phantom:head,n=128", &Limits::default())?;
     let whole = source.header().whole();
-    let head = Volume::read(source.as_ref(), Pick::default(), whole, &Limits::default())?;
+    let head = Volume::read(
+        source.as_ref(),
+        TimeComponent::default(),
+        whole,
+        &Limits::default(),
+    )?;
 
     let device = Headless::new(&DeviceChoice::Default, &Options::default())?;
     let [width, height] = EXTENT;

@@ -2,7 +2,7 @@
 //!
 //! A white surface in red light from x, green from y and blue from z has the colour (|n_x|, |n_y|, |n_z|); three more
 //! lights between the axes tell which of them have the same sign. Light on both sides does not tell the sign of all
-//! three, which is that of the CPU's twin.
+//! three, which is that of the CPU's CPU reference.
 
 use super::marschner_lobb::{camera, heights, signal, slab, world_from_voxel};
 use glam::{DVec3, dvec3};
@@ -79,7 +79,7 @@ pub fn mean_angle_degrees(
     [slabs, pixels]: [u32; 2],
 ) -> Result<f64, Box<dyn Error>> {
     let field = MarschnerLobb::default();
-    let twin = Twin::new(signal, settings);
+    let reference = Reference::new(signal, settings);
     let (mut sum, mut count) = (0.0, 0);
     for z in heights(slabs) {
         let (crop, points) = slab(z, pixels);
@@ -87,7 +87,7 @@ pub fn mean_angle_degrees(
         let [x, y, z] = DVec3::AXES;
         let (along, between) = (seen([x, y, z])?, seen([x + y, y + z, z + x])?);
         for ((point, along), between) in points.into_iter().zip(along).zip(between) {
-            let normal = twin.signed(point, axis_free(along, between));
+            let normal = reference.signed(point, axis_free(along, between));
             sum += normal.angle_between(slope(&field, point));
             count += 1;
         }
@@ -175,7 +175,7 @@ fn slope(field: &MarschnerLobb, point: DVec3) -> DVec3 {
 }
 
 /// Gradients by the CPU.
-struct Twin<'a> {
+struct Reference<'a> {
     settings: &'a Settings,
     frame: stratavox::shaders::Frame,
     signal: &'a Volume,
@@ -183,7 +183,7 @@ struct Twin<'a> {
     source: Option<Coefficients>,
 }
 
-impl<'a> Twin<'a> {
+impl<'a> Reference<'a> {
     fn new(signal: &'a Volume, settings: &'a Settings) -> Self {
         let coefficients = |spline| Coefficients::new(signal, spline, [true; 3]);
         let source = settings.gradient_source().and_then(GradientSource::spline);
@@ -206,7 +206,7 @@ impl<'a> Twin<'a> {
         }
     }
 
-    /// The one of a normal and its opposite that the twin's gradient is nearer to.
+    /// The one of a normal and its opposite that the CPU reference's gradient is nearer to.
     fn signed(&self, point: DVec3, normal: DVec3) -> DVec3 {
         let p = world_from_voxel().inverse().transform_point3(point);
         let values = self

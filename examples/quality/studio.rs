@@ -105,7 +105,7 @@ impl<'v> Studio<'v> {
     }
 
     /// The same by the CPU, in f64.
-    pub fn picture_of_twin(
+    pub fn picture_of_reference(
         &self,
         camera: &Camera,
         settings: Settings,

@@ -51,7 +51,7 @@ impl Scene {
             samples_per_voxel: 64.0,
             ..Settings::default()
         };
-        studio.picture_of_twin(&self.camera, fine)
+        studio.picture_of_reference(&self.camera, fine)
     }
 }
 

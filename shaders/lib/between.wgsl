@@ -1,6 +1,6 @@
 // Between the slices of a stack (Rezk-Salama et al. 2000): plane i lies at the height 1/2 + i / n along the axis of
 // the stack, with n planes a slice, so that every n-th is a slice.
-// Twin: src/technique/slices_2d/between.rs.
+// CPU reference: src/technique/slices_2d/between.rs.
 
 #import stack
 

@@ -1,6 +1,6 @@
 // A volume too large for one texture lies in bricks. A sample belongs to the brick whose part of the grid
 // it lies in: each to one, so bricks in order leave the samples of a ray as they are.
-// Twin: none, the CPU has one brick.
+// CPU reference: none, the CPU has one brick.
 
 #import ray
 

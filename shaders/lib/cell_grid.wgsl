@@ -1,5 +1,5 @@
 // Macro cells: the brick's own voxels in cubes of CELL_VOXELS a side, from its first voxel on.
-// Twin: src/resident/macro_cells.rs.
+// CPU reference: src/resident/macro_cells.rs.
 
 const CELL_VOXELS: u32 = 8u;
 

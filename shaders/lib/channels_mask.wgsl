@@ -2,7 +2,7 @@
 
 #import holes_mask
 
-// In the mask of a label map: there, and dimmed.
+// In the mask of a label map: there, and shadowed.
 const DIMMED: u32 = 2u;
 
 @group(0) @binding(11) var validity_1: Mask;

@@ -1,4 +1,4 @@
-// The sRGB transfer curve, IEC 61966-2-1. Twin: src/color.rs.
+// The sRGB transfer curve, IEC 61966-2-1. CPU reference: src/color.rs.
 
 fn linear_from_srgb(srgb: vec3<f32>) -> vec3<f32> {
     let low = srgb / 12.92;

@@ -2,7 +2,7 @@
 //
 //     x(k) = at + k step
 //
-// Where the nearest cell with matter is `room` cells away, nothing is seen until the ray leaves the cube of cells that
+// Where the nearest cell with matter is `distance` cells away, nothing is seen until the ray leaves the cube of cells that
 // are nearer. What is left out would have added nothing at all, and what comes next is a sample of the lattice: the
 // picture is the same to the bit (`sampling.md` 5). The apron of the cells has half a voxel to spare, more than f32
 // loses on the way.
@@ -56,9 +56,9 @@ fn cell_index(cell: vec3<i32>) -> u32 {
     return frame.cells_first + u32(cell.x + cells.x * (cell.y + cells.y * cell.z));
 }
 
-// The first sample that lies outside of the room around the cell of sample k.
-fn after_room(walk: Walk, k: i32, cell: vec3<i32>, room: i32) -> i32 {
-    let ahead = select(vec3(1 - room), vec3(room), walk.step > vec3(0.0));
+// The first sample that lies outside of the distance around the cell of sample k.
+fn first_sample_beyond(walk: Walk, k: i32, cell: vec3<i32>, distance: i32) -> i32 {
+    let ahead = select(vec3(1 - distance), vec3(distance), walk.step > vec3(0.0));
     let leaves = (vec3<f32>(cell + ahead) - walk.at) * walk.steps_per_cell;
     return max(k + 1, i32(ceil(min(leaves.x, min(leaves.y, leaves.z)))));
 }

@@ -11,7 +11,7 @@ struct CellRanges {
 @group(0) @binding(36) var<storage, read> cell_ranges: CellRanges;
 
 // 0: there may be a new extreme. Of equal ones the first counts.
-fn empty_room(so_far: Accumulator, cell: vec3<i32>) -> i32 {
+fn empty_distance(so_far: Accumulator, cell: vec3<i32>) -> i32 {
     let range = frame.extreme_sign * cell_ranges.d[cell_index(cell)];
     let most = max(range.x, range.y);
     return i32(so_far.weight != 0.0 && most <= frame.extreme_sign * so_far.value);

@@ -1,4 +1,4 @@
-// What a cut face is made of. Twin: src/technique/faces.rs.
+// What a cut face is made of. CPU reference: src/technique/faces.rs.
 
 #import faces
 #import color

@@ -1,6 +1,6 @@
 // Cut faces: where a ray enters through what has cut the volume (the crop box, a clip plane), what lies there is a
 // sample of its own, before all others, and opaque wherever it is not transparent: its segment is longer than any
-// extinction is short. Twin: src/technique/faces.rs.
+// extinction is short. CPU reference: src/technique/faces.rs.
 
 #import enters_{cuts=cut}
 

@@ -31,13 +31,13 @@ fn filtered(values: Values, coding: Coding, voxel: vec3<f32>) -> f32 {
 
 fn row(values: Values, coding: Coding, x: vec4<i32>, y: i32, z: i32) -> vec4<f32> {
     return vec4(
-        code_at(values, coding, vec3(x.x, y, z)),
-        code_at(values, coding, vec3(x.y, y, z)),
-        code_at(values, coding, vec3(x.z, y, z)),
-        code_at(values, coding, vec3(x.w, y, z)),
+        decoded_at(values, coding, vec3(x.x, y, z)),
+        decoded_at(values, coding, vec3(x.y, y, z)),
+        decoded_at(values, coding, vec3(x.z, y, z)),
+        decoded_at(values, coding, vec3(x.w, y, z)),
     );
 }
 
-fn code_at(values: Values, coding: Coding, texel: vec3<i32>) -> f32 {
+fn decoded_at(values: Values, coding: Coding, texel: vec3<i32>) -> f32 {
     return code_from_texel(coding, textureLoad(values, texel, 0).x);
 }

@@ -21,12 +21,12 @@ fn filtered(values: Values, coding: Coding, voxel: vec3<f32>) -> f32 {
 
 fn row(values: Values, coding: Coding, taps: Footprint, weight: f32, y: i32, z: i32) -> f32 {
     return lerp(
-        code_at(values, coding, vec3(taps.min.x, y, z)),
-        code_at(values, coding, vec3(taps.max.x, y, z)),
+        decoded_at(values, coding, vec3(taps.min.x, y, z)),
+        decoded_at(values, coding, vec3(taps.max.x, y, z)),
         weight,
     );
 }
 
-fn code_at(values: Values, coding: Coding, index: vec3<i32>) -> f32 {
+fn decoded_at(values: Values, coding: Coding, index: vec3<i32>) -> f32 {
     return code_from_texel(coding, textureLoad(values, index - vec3<i32>(frame.brick_origin), 0).x);
 }

@@ -152,7 +152,7 @@ struct Frame {
     gradient_operator: u32,
     gradient_scale: f32,
     gradient_codes_are_integers: u32,
-    // What is left of extinction and colour where a label is dimmed.
+    // What is left of extinction and colour where a label is shadowed.
     dim: f32,
     // Cut faces: 0 none, 1 in the picture's own colours, 2 in greys, by (value - cut_low) * cut_scale.
     cut_faces: u32,

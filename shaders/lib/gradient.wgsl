@@ -10,11 +10,11 @@
 //
 // or weights of the voxels around, `gradient_taps.wgsl`, or what was kept of either at the voxels. Taps outside the
 // grid are those of its edge, a tap without data makes it zero (`sampling.md` 2). Across the slices of a stack the taps
-// lie in the slices beside. Twin: src/technique/gradient.rs.
+// lie in the slices beside. CPU reference: src/technique/gradient.rs.
 
 #import gradient_central
 #import gradient_taps
-#import gradient_kept
+#import gradient_precomputed
 
 fn gradient_at(place: Place) -> vec3<f32> {
     var slope = Slope(vec3(0.0), true);

@@ -13,7 +13,7 @@
 //     Catmull-Rom   s  g(3f-1)/2, f(9f-10)/2, g(10-9g)/2, f(3f-2)/2
 //
 // f is the fraction of p - 1/2 (quadratic: of p), g = 1 - f. All but linear hold p at the outermost centres: beyond
-// them the slope is that at the edge. Twin: src/technique/gradient_taps.rs.
+// them the slope is that at the edge. CPU reference: src/technique/gradient_taps.rs.
 
 #import frame
 #import value

@@ -1,6 +1,6 @@
 // Where in a pixel its ray goes through, where each pixel has a place of its own: stratified sampling (Cook 1986), one
 // place in a square of the pixel for each of its rays. The hash is pcg3d of M. Jarzynski and M. Olano (Hash Functions
-// for GPU Rendering, JCGT 9(3), 2020). Twin: src/ray.rs.
+// for GPU Rendering, JCGT 9(3), 2020). CPU reference: src/ray.rs.
 
 #import frame
 

@@ -5,7 +5,7 @@
 //     u = frac((r + 1/2) / n^2 + jitter)        part = 1 - |2 u - 1|
 //
 // frac alone would put beside each other what lies near 0 and near 1, which are apart in the pattern, and the noise
-// would no longer be blue; folded it stays so, and as even from picture to picture as the jitters are. Twin:
+// would no longer be blue; folded it stays so, and as even from picture to picture as the jitters are. CPU reference:
 // src/blue_noise.rs.
 
 #import frame

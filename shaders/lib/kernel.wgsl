@@ -9,7 +9,7 @@
 //                          -f g^2/2,  1 + f^2 (3f - 5)/2,  1 + g^2 (3g - 5)/2,  -f^2 g/2
 //
 // Which one it is stands in the parameters and not in a variant: the branch is taken alike by all, and is nothing
-// beside the fetches. Twin: src/volume/kernel.rs.
+// beside the fetches. CPU reference: src/volume/kernel.rs.
 
 #import frame
 #import footprint

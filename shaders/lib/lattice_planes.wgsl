@@ -1,4 +1,4 @@
-// Samples where the ray meets the planes that a view-aligned slicer draws. Twin: src/lattice.rs.
+// Samples where the ray meets the planes that a view-aligned slicer draws. CPU reference: src/lattice.rs.
 
 #import ray
 #import lattice

@@ -1,6 +1,6 @@
 // Samples at equal steps from where the ray enters: t0 + (k + 1/2) h; the last, shorter segment is
-// sampled at its own middle with its own length. Jittered rays begin by a part of a step earlier, which hangs on the
-// pixel, and their first segment is cut short in the same way. Twin: src/lattice.rs.
+// sampled at its own middle with its own length. Jittered rays begin by a part of a step earlier, which depends on the
+// pixel, and their first segment is cut short in the same way. CPU reference: src/lattice.rs.
 
 #import ray
 #import lattice

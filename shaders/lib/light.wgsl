@@ -5,7 +5,7 @@
 //
 // v is the way to the eye and l that to the light, d the length of a cell: a surface is a cell thick there, and would
 // keep light from itself. Between nodes trilinear, eight loads of a buffer and no texture:
-// the same on every device. Twin: src/technique/light_field.rs.
+// the same on every device. CPU reference: src/technique/light_field.rs.
 
 #import frame
 

@@ -1,6 +1,6 @@
 // What is left of the light at a point of the centred world: 1 - A of the picture that the light has of the slices
 // before this one, interpolated bilinearly between four of its texels. Fetched and not sampled: the same on every
-// device, and 32-bit floats need not be filterable. Twin: src/technique/slices_3d/half_angle/reference.rs.
+// device, and 32-bit floats need not be filterable. CPU reference: src/technique/slices_3d/half_angle/reference.rs.
 
 #import frame
 

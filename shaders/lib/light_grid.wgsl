@@ -1,5 +1,5 @@
 // The coarse grid that light is followed through: at most 128 cells an axis, none smaller than a voxel, all of one
-// extinction inside. Twin: src/technique/light_plan.rs.
+// extinction inside. CPU reference: src/technique/light_plan.rs.
 
 struct LightGrid {
     cells: vec3<u32>,

@@ -1,20 +1,20 @@
 // Matter in a light of which this part is left, where gradients count: for what it is made of, and where there are
-// lights on surfaces, for these. Twin: src/offscreen/reference/half_angle.rs.
+// lights on surfaces, for these. CPU reference: src/offscreen/reference/half_angle.rs.
 
 #import transfer_{transfer}
 #import gradient
 #import widgets
-#import second
+#import second_derivative
 #import norm
 #import shade
 #import light
-#import dimmed
+#import shadowed
 
 fn lit_material_of(sample: Sample, light: f32) -> Classified {
     var material = classify(sample.value);
     let is_plain = frame.light_count == 0u;
     if !are_widgets() && (is_plain || material.extinction == 0.0) {
-        return Classified(dimmed(material.color, plainly_lit(material.color), light), material.extinction);
+        return Classified(shadowed(material.color, plainly_lit(material.color), light), material.extinction);
     }
     let gradient = gradient_at(sample.place);
     if are_widgets() {
@@ -28,5 +28,5 @@ fn lit_material_of(sample: Sample, light: f32) -> Classified {
     if !is_plain {
         lit = shade(material.color, gradient, sample.ray_direction, voxel_of(sample.place));
     }
-    return Classified(dimmed(material.color, lit, light), material.extinction);
+    return Classified(shadowed(material.color, lit, light), material.extinction);
 }

@@ -1,5 +1,5 @@
 // The walk along one ray that every compute pass shares. The lattice says where, the filter what, the
-// mode what for, and which part of the way cannot matter. Twin: src/technique/march.rs.
+// mode what for, and which part of the way cannot matter. CPU reference: src/technique/march.rs.
 
 #import ray
 #import host_depth
@@ -13,7 +13,7 @@
 #import sample_{mix}
 #import mode_{mode}
 #import skipped
-#import looks_{mix}
+#import unroll_{mix}
 
 // `before` is what bricks nearer to the eye have gathered.
 fn march(pixel: vec2<f32>, tile: RayTile, before: Accumulator) -> Accumulator {
@@ -39,12 +39,12 @@ fn march(pixel: vec2<f32>, tile: RayTile, before: Accumulator) -> Accumulator {
     let is_cut = enters_a_cut(voxel, interval) && is_in_brick(voxel.origin + interval.x * voxel.direction);
     let whole = whole_samples(lattice);
     let walk = walk_of(voxel, line_of(lattice, world), vec2(max(whole.x, first), min(whole.y, end)));
-    let way = Way(world, voxel, lattice, walk, interval.x, first, end);
-    return gathered(so_far, way, first - i32(is_cut));
+    let segments = RaySegments(world, voxel, lattice, walk, interval.x, first, end);
+    return gathered(so_far, segments, first - i32(is_cut));
 }
 
 // Where the samples of a ray lie, those from `first` to `end` (excluded); before them comes that of a cut face.
-struct Way {
+struct RaySegments {
     world: Ray,
     voxel: Ray,
     lattice: Lattice,
@@ -55,31 +55,31 @@ struct Way {
 }
 
 // With sample k, whatever it is.
-fn with_sample(before: Accumulator, way: Way, k: i32) -> Accumulator {
-    let segment = segment_at(way, k);
+fn accumulate_sample(before: Accumulator, segments: RaySegments, k: i32) -> Accumulator {
+    let segment = segment_at(segments, k);
     var so_far = before;
     so_far.samples += 1.0;
-    if !has_data(position_in(way, segment)) {
+    if !has_data(position_in(segments, segment)) {
         return so_far;
     }
-    return add(so_far, sample_in(way, k, segment), segment);
+    return add(so_far, sample_in(segments, k, segment), segment);
 }
 
-fn segment_at(way: Way, k: i32) -> Segment {
-    if k < way.first {
-        return Segment(way.t_face, FACE_LENGTH);
+fn segment_at(segments: RaySegments, k: i32) -> Segment {
+    if k < segments.first {
+        return Segment(segments.t_face, FACE_LENGTH);
     }
-    return segment_of(way.lattice, way.world, k);
+    return segment_of(segments.lattice, segments.world, k);
 }
 
-fn position_in(way: Way, segment: Segment) -> vec3<f32> {
-    return way.voxel.origin + segment.t * way.voxel.direction;
+fn position_in(segments: RaySegments, segment: Segment) -> vec3<f32> {
+    return segments.voxel.origin + segment.t * segments.voxel.direction;
 }
 
-fn sample_in(way: Way, k: i32, segment: Segment) -> Sample {
+fn sample_in(segments: RaySegments, k: i32, segment: Segment) -> Sample {
     // No light falls along no direction.
-    let direction = select(way.world.direction, vec3(0.0), k < way.first);
-    return sample_at(position_in(way, segment), direction);
+    let direction = select(segments.world.direction, vec3(0.0), k < segments.first);
+    return sample_at(position_in(segments, segment), direction);
 }
 
 fn is_ours(segment: Segment, voxel: Ray) -> bool {

@@ -5,7 +5,7 @@
 //
 // which has its extremes where the ray enters or leaves the cell or where A1 + 2 A2 s + 3 A3 s^2 = 0 (Sakas,
 // Grimm and Savopoulos 1995). Everything of a cell follows from its index, so that bricks meet the same places.
-// Twin: src/technique/projection/exact.rs.
+// CPU reference: src/technique/projection/exact.rs.
 
 #import ray
 #import host_depth
@@ -119,7 +119,7 @@ fn corners_of(taps: Footprint) -> Corners {
 }
 
 fn corner(x: i32, y: i32, z: i32) -> f32 {
-    return code_at(volume, volume_coding(), vec3(x, y, z));
+    return decoded_at(volume, volume_coding(), vec3(x, y, z));
 }
 
 fn code_in(corners: Corners, part: vec3<f32>) -> f32 {

@@ -1,5 +1,5 @@
 // The walk along one ray in slabs: the value where one ends is the value where the next begins. A slab belongs to
-// the brick that its middle lies in. Twin: src/technique/march.rs.
+// the brick that its middle lies in. CPU reference: src/technique/march.rs.
 
 #import ray
 #import host_depth

@@ -20,7 +20,7 @@ fn is_valid_at(mask: Mask, voxel: vec3<i32>) -> bool {
     return valid_at(mask, texel_in_brick(voxel)) != 0u;
 }
 
-// A row has at most four voxels: no loop, because some drivers count the turns of all loops (`src/technique/turns.rs`).
+// A row has at most four voxels: no loop, because some drivers count the turns of all loops (`src/technique/loop_limit.rs`).
 fn row_is_valid(mask: Mask, low: i32, high: i32, y: i32, z: i32) -> bool {
     let ends = min(valid_at(mask, vec3(low, y, z)), valid_at(mask, vec3(high, y, z)));
     if high - low < 2 {

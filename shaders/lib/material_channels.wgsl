@@ -2,11 +2,11 @@
 //
 //     sigma = sum of sigma_i        c = sum of sigma_i c_i / sigma
 //
-// A channel that is opaque by the next one has c_i of its own value, sigma_i of the next one's. Where a label is dimmed
+// A channel that is opaque by the next one has c_i of its own value, sigma_i of the next one's. Where a label is shadowed
 //
 //     sigma = d sigma               c = y + d (c - y),  y the luminance of c
 //
-// Twin: src/technique/mixture.rs.
+// CPU reference: src/technique/mixture.rs.
 
 #import channel_{transfer}
 

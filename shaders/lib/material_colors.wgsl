@@ -1,5 +1,5 @@
 // Volumes of colour bring their own; the transfer function says how opaque it is. Classified voxels bring both.
-// Twin: src/technique/mixture.rs.
+// CPU reference: src/technique/mixture.rs.
 
 #import color
 #import transfer_{transfer}

@@ -1,10 +1,10 @@
 // What a sample is made of where gradients or light count: first classified, then lit.
-// Twin: src/technique/shading.rs, src/transfer/widgets.rs.
+// CPU reference: src/technique/shading.rs, src/transfer/widgets.rs.
 
 #import transfer_{transfer}
 #import gradient
 #import widgets
-#import second
+#import second_derivative
 #import norm
 #import shade
 #import light

@@ -1,10 +1,10 @@
 // What a sample is made of where its opacity is weighed by how steep it is there, by central differences, and light
-// falls on it unhindered: of what material_graded.wgsl can do, what is wanted most of the time. Twin: that of
+// falls on it unhindered: of what material_graded.wgsl can do, what is wanted most of the time. CPU reference: that of
 // material_graded.wgsl.
 
 #import transfer_{transfer}
 #import gradient_central
-#import shares
+#import gradient_opacity
 #import norm
 #import shade
 #import light_unhindered

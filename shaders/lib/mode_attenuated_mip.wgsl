@@ -3,7 +3,7 @@
 //
 //     largest of u_k exp(-attenuation * sum of u_i d_i over i < k)
 //
-// As napari and vispy have it, but by world length, so that the number of samples does not count. Twin:
+// As napari and vispy have it, but by world length, so that the number of samples does not count. CPU reference:
 // src/technique/projection/reference.rs.
 
 #import unit

@@ -2,12 +2,12 @@
 //
 //     C += T alpha c        T *= 1 - alpha
 //
-// Twin: src/technique/composite.rs.
+// CPU reference: src/technique/composite.rs.
 
 #import opacity
 #import material_{mix}
 #import face_grey
-#import rooms
+#import skip_empty
 
 struct Accumulator {
     color: vec3<f32>,

@@ -1,6 +1,6 @@
 // The first local maximum over the threshold (Sato et al. 1998): a maximum that ends where the values first
 // fall from over the threshold. Up to there the largest value is the local maximum itself; a ray that never
-// gets there ends as a MIP. Samples without data are passed over. Twin: src/technique/projection/reference.rs.
+// gets there ends as a MIP. Samples without data are passed over. CPU reference: src/technique/projection/reference.rs.
 
 #import passed_over
 

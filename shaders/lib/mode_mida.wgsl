@@ -10,12 +10,12 @@
 //     C = C + gamma (a0_M c_M - C)        A = A + gamma (a0_M - A)
 //
 // 1 - beta A is T + (1 - beta) (1 - T): where beta is 1, as it always is for gamma = -1, what follows are the
-// operations of mode_composite.wgsl. Twin: src/technique/mida.rs.
+// operations of mode_composite.wgsl. CPU reference: src/technique/mida.rs.
 
 #import opacity
 #import material_{mix}
 #import unit
-#import rooms_passed_over
+#import skip_passed_over
 #import no_value
 
 struct Accumulator {

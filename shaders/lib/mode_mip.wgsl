@@ -1,4 +1,4 @@
-// Maximum of the values along the ray; of equal ones the first. Twin: src/technique/projection/reference.rs.
+// Maximum of the values along the ray; of equal ones the first. CPU reference: src/technique/projection/reference.rs.
 
 #import exceeded
 

@@ -1,7 +1,7 @@
 // The line integral, sum of v d, and the length it was taken over, sum of d: X-ray shows the first,
-// average their quotient. Twin: src/technique/projection/reference.rs.
+// average their quotient. CPU reference: src/technique/projection/reference.rs.
 
-#import no_rooms
+#import skip_nothing
 
 struct Accumulator {
     value: f32,

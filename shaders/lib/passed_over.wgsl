@@ -10,6 +10,6 @@ struct CellRanges {
 @group(0) @binding(36) var<storage, read> cell_ranges: CellRanges;
 
 // 0: some sample there may count.
-fn empty_room(so_far: Accumulator, cell: vec3<i32>) -> i32 {
+fn empty_distance(so_far: Accumulator, cell: vec3<i32>) -> i32 {
     return i32(is_passed_over(so_far, cell_ranges.d[cell_index(cell)].y));
 }

@@ -4,7 +4,7 @@
 //     BATCH_LAYERS ceil(width / side) ceil(height / side)        entries, square * BATCH_LAYERS + layer
 //
 // Blocks of BLOCK_SIDE x BLOCK_SIDE squares that are all drawn in a layer are one entry of the first of them and BLOCK:
-// the fewer there are, the less is paid for each. Twin of the constants and of the size: src/technique/patches.rs.
+// the fewer there are, the less is paid for each. CPU reference of the constants and of the size: src/technique/patches.rs.
 
 #import slice_order
 

@@ -1,6 +1,6 @@
 // The transfer function by its control points, exactly (`sampling.md` 4): opacity per reference length,
 // and colour, linear between points in sRGB numbers. At equal values the later point wins.
-// Twin: src/transfer/points.rs.
+// CPU reference: src/transfer/points.rs.
 
 #import frame
 #import color

@@ -1,7 +1,7 @@
 // Rays and the part of them that lies in the domain (`sampling.md` 3).
 //
 // One parameter t, world length, in every space: directions are transformed and never normalized again.
-// Twin: src/ray.rs.
+// CPU reference: src/ray.rs.
 
 #import frame
 #import norm

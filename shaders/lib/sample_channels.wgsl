@@ -1,4 +1,4 @@
-// Several things seen in the same place, one number each. Twin: src/technique/mixture.rs.
+// Several things seen in the same place, one number each. CPU reference: src/technique/mixture.rs.
 
 #import channels
 

@@ -1,6 +1,6 @@
 // The colour of a sample, sRGB numbers from 0 to 1, and what its opacity is classified by: alpha, where red,
 // green and blue come multiplied with it, else luma. Interpolated as they are stored and decoded afterwards.
-// Twin: src/technique/mixture.rs.
+// CPU reference: src/technique/mixture.rs.
 
 #import channels
 

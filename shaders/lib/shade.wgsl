@@ -7,7 +7,7 @@
 // colour stays, as far as light comes there: c (o a + (1 - a) sum of t L / sum of L), a = min(ambient, 1). The two are
 // mixed by the gradient's magnitude g: w surface + (1 - w) flat, w = g / (g + half_gradient).
 // Blinn, "Models of Light Reflection for Computer Synthesized Pictures", SIGGRAPH 1977.
-// Who imports this also imports where that light is known: light or light_unhindered. Twin: src/technique/shading.rs.
+// Who imports this also imports where that light is known: light or light_unhindered. CPU reference: src/technique/shading.rs.
 
 #import frame
 #import norm

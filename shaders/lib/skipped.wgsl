@@ -1,4 +1,4 @@
-// On to the next sample that may count, by what the mode says of the cells on the way (`empty_room`): a loop of its
+// On to the next sample that may count, by what the mode says of the cells on the way (`empty_distance`): a loop of its
 // own, so that rays that are walked side by side skip and sample together.
 
 #import empty_space
@@ -10,11 +10,11 @@ fn skipped(so_far: Accumulator, walk: Walk, start: i32) -> i32 {
             break;
         }
         let cell = cell_of(walk, k);
-        let room = empty_room(so_far, cell);
-        if room == 0 {
+        let distance = empty_distance(so_far, cell);
+        if distance == 0 {
             break;
         }
-        k = after_room(walk, k, cell, room);
+        k = first_sample_beyond(walk, k, cell, distance);
     }
     return k;
 }

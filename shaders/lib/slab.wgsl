@@ -1,4 +1,4 @@
-// A piece of a ray between two ends, cut to the domain. Twin: src/lattice.rs.
+// A piece of a ray between two ends, cut to the domain. CPU reference: src/lattice.rs.
 
 #import ray
 

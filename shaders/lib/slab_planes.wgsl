@@ -1,4 +1,4 @@
-// Slabs around the planes that a view-aligned slicer draws. Twin: src/lattice.rs.
+// Slabs around the planes that a view-aligned slicer draws. CPU reference: src/lattice.rs.
 
 #import slab
 #import lattice_planes

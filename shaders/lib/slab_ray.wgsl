@@ -1,5 +1,5 @@
 // Slabs of one step each from where the steps begin; the last is shorter, and with jitter the first too.
-// Twin: src/lattice.rs.
+// CPU reference: src/lattice.rs.
 
 #import slab
 #import lattice_ray

@@ -21,16 +21,16 @@ fn filtered(values: Values, coding: Coding, place: Place) -> f32 {
     var sum = 0.0;
     for (var j = 0; j < count; j++) {
         let row = vec4(
-            code_at(values, coding, vec2(at[0].x, at[j].y), layer),
-            code_at(values, coding, vec2(at[1].x, at[j].y), layer),
-            code_at(values, coding, vec2(at[2].x, at[j].y), layer),
-            code_at(values, coding, vec2(at[3].x, at[j].y), layer),
+            decoded_at(values, coding, vec2(at[0].x, at[j].y), layer),
+            decoded_at(values, coding, vec2(at[1].x, at[j].y), layer),
+            decoded_at(values, coding, vec2(at[2].x, at[j].y), layer),
+            decoded_at(values, coding, vec2(at[3].x, at[j].y), layer),
         );
         sum += down[j] * dot(across, row);
     }
     return value_from_code(coding, sum);
 }
 
-fn code_at(values: Values, coding: Coding, texel: vec2<i32>, layer: i32) -> f32 {
+fn decoded_at(values: Values, coding: Coding, texel: vec2<i32>, layer: i32) -> f32 {
     return code_from_texel(coding, textureLoad(values, texel, layer, 0).x);
 }

@@ -8,15 +8,15 @@ fn filtered(values: Values, coding: Coding, place: Place) -> f32 {
     let low = texel_of(taps.min);
     let high = texel_of(taps.max);
     let weight = fract(in_stack(place.voxel).xy - 0.5);
-    let above = lerp(code_at(values, coding, low), code_at(values, coding, vec3(high.x, low.yz)), weight.x);
+    let above = lerp(decoded_at(values, coding, low), decoded_at(values, coding, vec3(high.x, low.yz)), weight.x);
     let below = lerp(
-        code_at(values, coding, vec3(low.x, high.y, low.z)),
-        code_at(values, coding, high),
+        decoded_at(values, coding, vec3(low.x, high.y, low.z)),
+        decoded_at(values, coding, high),
         weight.x,
     );
     return value_from_code(coding, lerp(above, below, weight.y));
 }
 
-fn code_at(values: Values, coding: Coding, texel: vec3<i32>) -> f32 {
+fn decoded_at(values: Values, coding: Coding, texel: vec3<i32>) -> f32 {
     return code_from_texel(coding, textureLoad(values, texel.xy, texel.z, 0).x);
 }

@@ -1,4 +1,4 @@
-// The slab of a ray between one plane of a stack and the next, cut to an interval: twin of
+// The slab of a ray between one plane of a stack and the next, cut to an interval: CPU reference of
 // src/technique/slices_2d/between.rs.
 
 #import ray

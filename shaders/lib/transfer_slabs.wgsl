@@ -4,7 +4,7 @@
 //     sigma = (T(sb) - T(sf)) / (sb - sf)        c = (K(sb) - K(sf)) / (T(sb) - T(sf))
 //
 // A mean over several cells is the part of the first, the whole ones between, and the part of the last: no
-// digits are lost where values are close. Twin: src/transfer/slabs.rs.
+// digits are lost where values are close. CPU reference: src/transfer/slabs.rs.
 
 #import frame
 

@@ -1,5 +1,5 @@
 // Classification by table: the nearest of `table_count` entries between the first and the last control
-// point; each holds colour and extinction at the middle of its cell. Twin: src/transfer/table.rs.
+// point; each holds colour and extinction at the middle of its cell. CPU reference: src/transfer/table.rs.
 
 #import frame
 

@@ -1,5 +1,5 @@
 // Texel to value (`sampling.md` 2): code = texel * scale + offset, value = code * slope + intercept.
-// Integer types sit in UNORM formats; rounding brings their code back exactly. Twin: src/volume/sample.rs.
+// Integer types sit in UNORM formats; rounding brings their code back exactly. CPU reference: src/volume/sample.rs.
 
 #import frame
 

@@ -3,12 +3,12 @@
 //
 //     alpha = 1 - (1 - opacity(f) share(s)) product of (1 - a_n shape_n(f, s))
 //
-// which is Levoy's way to put contours together (1988, section 3). Shapes and their sources: src/transfer/graded.rs;
-// how they lie in the buffer, and the twin: src/transfer/widgets.rs.
+// which is Levoy's way to put contours together (1988, section 3). Shapes and their sources: src/transfer/gradient_transfer.rs;
+// how they lie in the buffer, and the CPU reference: src/transfer/widgets.rs.
 
 #import frame
 #import extinction
-#import shares
+#import gradient_opacity
 #import transfer_{transfer}
 
 const WIDGET_ENTRIES: u32 = 5u;

@@ -2,7 +2,7 @@
 //!
 //! An edge of which both faces look away from the eye lies behind the volume, all others lie before it: a box is
 //! convex. Numbers stand at edges of the outline, of those along an axis at the lowest, along the most upright one at
-//! the leftmost: what is chosen hangs on the camera alone.
+//! the leftmost: what is chosen depends on the camera alone.
 
 use super::{facts::Facts, projector::Projector, sheet::Sheet, units};
 use crate::{figure::Anchor, volume::Grid};

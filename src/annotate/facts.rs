@@ -2,7 +2,7 @@
 
 use crate::{
     figure::letter_lacking,
-    volume::{Format, Header, Meaning},
+    volume::{ComponentKind, Format, Header},
 };
 
 /// Of the volume that is drawn, or of what colours it.
@@ -38,7 +38,7 @@ impl Facts {
     /// Of a header, and of the name of its file; nothing colours surfaces.
     pub fn of(header: &Header, name: &str) -> Self {
         let channels = match &header.meaning {
-            Meaning::Channels(channels) if header.format != Format::Dicom => {
+            ComponentKind::Channels(channels) if header.format != Format::Dicom => {
                 channels.iter().map(|c| c.name.clone()).collect()
             }
             _ => Vec::new(),
@@ -53,7 +53,7 @@ impl Facts {
             degree_lengths: header.degree_lengths,
             length_metres: header.length_metres,
             channels,
-            is_color: matches!(header.meaning, Meaning::Rgb | Meaning::Rgba),
+            is_color: matches!(header.meaning, ComponentKind::Rgb | ComponentKind::Rgba),
             source: source(name, header),
             paint: None,
         }
@@ -110,7 +110,7 @@ mod tests {
             long_name: Some(private()),
             variables: vec![private()],
             notes: vec![private()],
-            meaning: Meaning::Channels(vec![Channel {
+            meaning: ComponentKind::Channels(vec![Channel {
                 name: private(),
                 ..Channel::default()
             }]),

@@ -28,7 +28,7 @@ impl Projector {
         }
     }
 
-    /// Whether lengths hang on the distance from the eye.
+    /// Whether lengths depend on the distance from the eye.
     pub fn is_perspective(&self) -> bool {
         self.camera.projection.is_perspective()
     }

@@ -18,20 +18,20 @@ const LARGEST_SHEAR: f64 = 1e-4;
 
 /// Which of two depths in a host's depth buffer is nearer to the eye.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Nearer {
+pub enum DepthConvention {
     /// The smaller one: 0 is the near plane.
     #[default]
-    Smaller,
+    Standard,
     /// The larger one: 1 is the near plane ("reverse Z").
-    Larger,
+    Reversed,
 }
 
-impl Nearer {
+impl DepthConvention {
     /// The depth of the near plane.
     pub fn near(self) -> f64 {
         match self {
-            Self::Smaller => 0.0,
-            Self::Larger => 1.0,
+            Self::Standard => 0.0,
+            Self::Reversed => 1.0,
         }
     }
 }
@@ -45,7 +45,7 @@ pub struct HostDepth {
     /// Clip w of a world point: its depth along the line of sight, or 1.
     pub w: DVec4,
     /// Which depth is nearer.
-    pub nearer: Nearer,
+    pub nearer: DepthConvention,
 }
 
 impl HostDepth {
@@ -82,7 +82,7 @@ impl Camera {
     pub fn from_matrices(
         view_from_world: &DMat4,
         clip_from_view: &DMat4,
-        nearer: Nearer,
+        nearer: DepthConvention,
     ) -> Result<(Self, HostDepth), Error> {
         let [x_axis, y_axis, z_axis] = rigid(view_from_world)?;
         let [x, y, z, w] = [0, 1, 2, 3].map(|k| clip_from_view.row(k));
@@ -118,8 +118,8 @@ impl Camera {
         // Parallel rays do not say which way they go: depth does.
         let way = match (is_perspective, nearer) {
             (true, _) => scale.signum(),
-            (false, Nearer::Smaller) => (z.z / scale).signum(),
-            (false, Nearer::Larger) => -(z.z / scale).signum(),
+            (false, DepthConvention::Standard) => (z.z / scale).signum(),
+            (false, DepthConvention::Reversed) => -(z.z / scale).signum(),
         };
         if !is_perspective && z.z == 0.0 {
             return wrong("it has no depth");
@@ -194,8 +194,8 @@ fn rigid(view_from_world: &DMat4) -> Result<[DVec3; 3], Error> {
 fn is_nearer_in_front(depth: &HostDepth, eye: DVec3, forward: DVec3) -> bool {
     let [near, far] = [1.0, 2.0].map(|d| depth.of(eye + d * forward));
     match depth.nearer {
-        Nearer::Smaller => near < far,
-        Nearer::Larger => near > far,
+        DepthConvention::Standard => near < far,
+        DepthConvention::Reversed => near > far,
     }
 }
 
@@ -213,8 +213,8 @@ mod tests {
         rh::view::look_at_mat4(EYE, TARGET, dvec3(0.1, 0.0, 1.0))
     }
 
-    fn matrices() -> Vec<(&'static str, DMat4, DMat4, Nearer)> {
-        use Nearer::{Larger, Smaller};
+    fn matrices() -> Vec<(&'static str, DMat4, DMat4, DepthConvention)> {
+        use DepthConvention::{Reversed, Standard};
         use rh::proj::{directx, vulkan};
         let (fov, aspect) = (0.7, 4.0 / 3.0);
         let perspective = vulkan::perspective(fov, aspect, 0.5, 90.0);
@@ -227,15 +227,15 @@ mod tests {
         let parallel = vulkan::orthographic(-9.0, 12.0, -7.0, 8.0, -20.0, 70.0);
         let parallel_reversed = vulkan::orthographic(-9.0, 12.0, -7.0, 8.0, 70.0, -20.0);
         vec![
-            ("perspective", look(), perspective, Smaller),
-            ("upside down", look(), upside_down, Smaller),
-            ("left-handed", left_handed, of_left_handed, Smaller),
-            ("scaled", look(), perspective * 7.0, Smaller),
-            ("no far plane, reversed", look(), endless, Larger),
-            ("reversed", look(), reversed, Larger),
-            ("off the middle", look(), off_the_middle, Smaller),
-            ("parallel", look(), parallel, Smaller),
-            ("parallel, reversed", look(), parallel_reversed, Larger),
+            ("perspective", look(), perspective, Standard),
+            ("upside down", look(), upside_down, Standard),
+            ("left-handed", left_handed, of_left_handed, Standard),
+            ("scaled", look(), perspective * 7.0, Standard),
+            ("no far plane, reversed", look(), endless, Reversed),
+            ("reversed", look(), reversed, Reversed),
+            ("off the middle", look(), off_the_middle, Standard),
+            ("parallel", look(), parallel, Standard),
+            ("parallel, reversed", look(), parallel_reversed, Reversed),
         ]
     }
 
@@ -265,7 +265,11 @@ mod tests {
                 assert!((moved - ndc.z).abs() < 1e-12, "{name}: {moved}");
                 // What lies behind has the farther depth.
                 let behind = depth.of(point + direction);
-                assert_eq!(behind > ndc.z, nearer == Nearer::Smaller, "{name}");
+                assert_eq!(
+                    behind > ndc.z,
+                    nearer == DepthConvention::Standard,
+                    "{name}"
+                );
             }
         }
     }
@@ -273,7 +277,8 @@ mod tests {
     #[test]
     fn without_a_far_plane_its_depth_is_infinitely_far_away() {
         let clip = rh::proj::vulkan::perspective_infinite_reverse(0.7, 1.0, 0.5);
-        let (camera, depth) = Camera::from_matrices(&look(), &clip, Nearer::Larger).unwrap();
+        let (camera, depth) =
+            Camera::from_matrices(&look(), &clip, DepthConvention::Reversed).unwrap();
         let (origin, direction) = camera.rays(EXTENT).at(3.0, 4.0);
         assert_eq!(depth.distance(origin, direction, 0.0).abs(), f64::INFINITY);
     }
@@ -285,7 +290,7 @@ mod tests {
             let refused = Camera::from_matrices(&view, &clip, nearer);
             refused.expect_err("no camera").to_string()
         };
-        let smaller = Nearer::Smaller;
+        let smaller = DepthConvention::Standard;
         let mut oblique = rh::proj::vulkan::orthographic(-9.0, 12.0, -7.0, 8.0, -20.0, 70.0);
         oblique.x_axis.z = 0.01;
         for (text, view, clip, nearer) in [
@@ -294,7 +299,7 @@ mod tests {
             ("plane", look(), DMat4::from_cols_array(&[0.0; 16]), smaller),
             ("not parallel", look(), oblique, smaller),
             ("last row", look(), clip + DMat4::IDENTITY, smaller),
-            ("nearer", look(), clip, Nearer::Larger),
+            ("nearer", look(), clip, DepthConvention::Reversed),
             ("turns", look(), clip * DMat4::from_rotation_z(0.3), smaller),
         ] {
             let found = refused(view, clip, nearer);

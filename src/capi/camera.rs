@@ -3,7 +3,7 @@
 use super::settings::finite;
 use super::status::{Failure, number};
 use super::structure::{self, Versioned};
-use crate::camera::{BoundingSphere, Camera, HostDepth, Lens, Nearer, Projection, View};
+use crate::camera::{BoundingSphere, Camera, DepthConvention, HostDepth, Lens, Projection, View};
 use crate::volume::Grid;
 use glam::DMat4;
 use std::ffi::c_void;
@@ -61,8 +61,8 @@ pub(super) unsafe fn camera(
         1 => Ok((look_at(&c)?, None)),
         2 => {
             let nearer = match c.is_reversed {
-                0 => Nearer::Smaller,
-                _ => Nearer::Larger,
+                0 => DepthConvention::Standard,
+                _ => DepthConvention::Reversed,
             };
             let [view, clip] = [c.view_from_world, c.clip_from_view];
             let [view, clip] = [view, clip].map(|columns| DMat4::from_cols_array(&columns));

@@ -13,7 +13,7 @@ use std::ffi::c_void;
 use std::sync::Arc;
 
 /// A transfer function. 0 is a ramp of greys over the volume's range.
-pub type sv_function = u64;
+pub type sv_transfer_function = u64;
 
 /// Colour at a value.
 #[repr(C)]
@@ -38,8 +38,8 @@ pub struct sv_opacity_point {
 /// A transfer function by control points in order of their values, constant beyond the ends.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
-pub struct sv_function_desc {
-    /// `sizeof(sv_function_desc)`.
+pub struct sv_transfer_function_desc {
+    /// `sizeof(sv_transfer_function_desc)`.
     pub struct_size: u32,
     /// NULL.
     pub next: *const c_void,
@@ -58,8 +58,8 @@ pub struct sv_function_desc {
 }
 
 // SAFETY: as the trait wants it.
-unsafe impl Versioned for sv_function_desc {
-    const NAME: &'static str = "sv_function_desc";
+unsafe impl Versioned for sv_transfer_function_desc {
+    const NAME: &'static str = "sv_transfer_function_desc";
 }
 
 /// Renderers copy it.
@@ -67,7 +67,7 @@ pub(super) struct Held(TransferFunction);
 
 impl Kind for Held {
     const NUMBER: u64 = 3;
-    const NAME: &'static str = "sv_function";
+    const NAME: &'static str = "sv_transfer_function";
 }
 
 /// As many as a file may have.
@@ -76,7 +76,7 @@ const MOST_POINTS: u64 = 4096;
 /// The function of a handle of this device; 0 is the grey ramp, or nothing where surfaces need none.
 pub(super) fn function(
     device: &super::device::Device,
-    handle: sv_function,
+    handle: sv_transfer_function,
     mode: Mode,
     range: [f64; 2],
 ) -> Result<Option<TransferFunction>, Failure> {
@@ -99,14 +99,14 @@ impl Held {
 
 /// Takes control points in. Nothing of it lies on the device. Threads: any.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn sv_function_create(
+pub unsafe extern "C" fn sv_transfer_function_create(
     device: sv_device,
-    desc: *const sv_function_desc,
-    function: *mut sv_function,
+    desc: *const sv_transfer_function_desc,
+    function: *mut sv_transfer_function,
     diagnostic: *mut sv_diagnostic,
 ) -> sv_status {
     let body = || {
-        structure::out("the place of the sv_function", function)?;
+        structure::out("the place of the sv_transfer_function", function)?;
         let device = handles::device(device)?;
         // SAFETY: the caller's promise.
         let made = unsafe { made(desc)? };
@@ -121,8 +121,8 @@ pub unsafe extern "C" fn sv_function_create(
 
 /// Destroys it. Renderers that were made with it have a copy. Threads: any.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn sv_function_destroy(
-    function: sv_function,
+pub unsafe extern "C" fn sv_transfer_function_destroy(
+    function: sv_transfer_function,
     diagnostic: *mut sv_diagnostic,
 ) -> sv_status {
     let body = || handles::remove::<Held>(function).map(drop);
@@ -132,11 +132,14 @@ pub unsafe extern "C" fn sv_function_destroy(
 
 /// # Safety
 /// As [`structure::read`], and the arrays are as long as they say.
-unsafe fn made(desc: *const sv_function_desc) -> Result<TransferFunction, Failure> {
+unsafe fn made(desc: *const sv_transfer_function_desc) -> Result<TransferFunction, Failure> {
     // SAFETY: the caller's promise.
     let (desc, colors, opacities) = unsafe {
         let desc = structure::read(desc)?;
-        let (colors, opacities) = ("sv_function_desc.colors", "sv_function_desc.opacities");
+        let (colors, opacities) = (
+            "sv_transfer_function_desc.colors",
+            "sv_transfer_function_desc.opacities",
+        );
         let colors = structure::array(colors, desc.colors, desc.color_count, MOST_POINTS)?;
         let count = desc.opacity_count;
         let opacities = structure::array(opacities, desc.opacities, count, MOST_POINTS)?;
@@ -154,7 +157,7 @@ unsafe fn made(desc: *const sv_function_desc) -> Result<TransferFunction, Failur
     let is_length = length >= 0.0 && length.is_finite();
     let wanted = "a length, or 0";
     number(
-        "sv_function_desc.reference_length",
+        "sv_transfer_function_desc.reference_length",
         wanted,
         length,
         is_length,

@@ -28,7 +28,7 @@ const NAMES: [&str; 7] = [
     "",
     "sv_device",
     "sv_volume",
-    "sv_function",
+    "sv_transfer_function",
     "sv_renderer",
     "sv_submitter",
     "sv_update",

@@ -44,8 +44,8 @@ pub use device::{
     sv_device_set_memory_budget, sv_memory,
 };
 pub use function::{
-    sv_color_point, sv_function, sv_function_create, sv_function_desc, sv_function_destroy,
-    sv_opacity_point,
+    sv_color_point, sv_opacity_point, sv_transfer_function, sv_transfer_function_create,
+    sv_transfer_function_desc, sv_transfer_function_destroy,
 };
 pub use host::{sv_feature, sv_get_instance_proc_addr, sv_host_device, sv_limits, sv_vk_function};
 pub use images::{sv_depth_image, sv_image_state, sv_target, sv_target_class};
@@ -56,14 +56,15 @@ pub use parts::{
 pub use pick::{sv_pick, sv_renderer_pick, sv_renderer_record_pick};
 pub use plan::{sv_plan, sv_volume_plan};
 pub use record::{
-    sv_renderer_draw, sv_renderer_draw_depth, sv_renderer_record, sv_renderer_record_into, sv_shot,
+    sv_frame_info, sv_renderer_draw, sv_renderer_draw_depth, sv_renderer_record,
+    sv_renderer_record_into,
 };
 pub use renderer::{
     sv_renderer, sv_renderer_create, sv_renderer_desc, sv_renderer_destroy, sv_renderer_resize,
-    sv_renderer_set_function, sv_renderer_set_settings, sv_renderer_set_volume,
+    sv_renderer_set_settings, sv_renderer_set_transfer_function, sv_renderer_set_volume,
 };
 pub use requirements::{sv_check_device, sv_requirement, sv_requirements};
-pub use settings::{sv_clip_plane, sv_level, sv_light, sv_settings};
+pub use settings::{sv_clip_plane, sv_isosurface, sv_light, sv_settings};
 pub use status::{sv_diagnostic, sv_status};
 pub use submit::{
     sv_submission, sv_submitter, sv_submitter_create, sv_submitter_destroy, sv_submitter_submit,

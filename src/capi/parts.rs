@@ -2,7 +2,7 @@
 
 use super::handles::{self, Kind};
 use super::images::{sv_target, target};
-use super::record::{Taken, sv_shot};
+use super::record::{Taken, sv_frame_info};
 use super::renderer::{self, sv_renderer, with};
 use super::status::{Failure, guard, number, sv_diagnostic, sv_status};
 use super::structure::{self, Versioned};
@@ -43,7 +43,7 @@ unsafe impl Versioned for sv_pacing {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn sv_renderer_begin_parts(
     renderer: sv_renderer,
-    shot: *const sv_shot,
+    shot: *const sv_frame_info,
     pieces: *mut u64,
     diagnostic: *mut sv_diagnostic,
 ) -> sv_status {
@@ -107,7 +107,7 @@ pub unsafe extern "C" fn sv_renderer_record_part_into(
 pub unsafe extern "C" fn sv_submitter_submit_in_parts(
     submitter: sv_submitter,
     renderer: sv_renderer,
-    shot: *const sv_shot,
+    shot: *const sv_frame_info,
     target: *const sv_target,
     submission: *const sv_submission,
     pacing: *const sv_pacing,

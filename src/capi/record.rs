@@ -7,14 +7,14 @@ use super::status::{Failure, guard, reserved, sv_diagnostic, sv_status};
 use super::structure::{self, Versioned};
 use super::volume::commands;
 use crate::camera::{Camera, HostDepth};
-use crate::embed::Shot;
+use crate::embed::FrameInfo;
 use std::ffi::c_void;
 
 /// One frame of the host's.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
-pub struct sv_shot {
-    /// `sizeof(sv_shot)`.
+pub struct sv_frame_info {
+    /// `sizeof(sv_frame_info)`.
     pub struct_size: u32,
     /// NULL.
     pub next: *const c_void,
@@ -27,8 +27,8 @@ pub struct sv_shot {
 }
 
 // SAFETY: as the trait wants it.
-unsafe impl Versioned for sv_shot {
-    const NAME: &'static str = "sv_shot";
+unsafe impl Versioned for sv_frame_info {
+    const NAME: &'static str = "sv_frame_info";
 }
 
 /// A shot of whose camera the caller has the place.
@@ -41,19 +41,19 @@ pub(super) struct Taken {
 impl Taken {
     /// # Safety
     /// As [`structure::read`] of all that `pointer` points to.
-    pub unsafe fn new(pointer: *const sv_shot, inner: &mut Inner) -> Result<Self, Failure> {
+    pub unsafe fn new(pointer: *const sv_frame_info, inner: &mut Inner) -> Result<Self, Failure> {
         // SAFETY: the caller's promise.
         let (shot, (camera, depth)) = unsafe {
             let shot = structure::read(pointer)?;
             let extent = inner.renderer.extent();
             (shot, camera(shot.camera, inner.volume.grid(), extent)?)
         };
-        reserved("sv_shot.reserved", shot.reserved)?;
+        reserved("sv_frame_info.reserved", shot.reserved)?;
         let class = inner.renderer.class();
         let writes_depth = class.gives_depth && class.target.depth.is_some();
         if depth.is_none() && (class.host_depth || writes_depth) {
             return Err(Failure::argument(
-                "sv_shot.camera: a renderer with has_host_depth or gives_depth wants SV_CAMERA_MATRICES",
+                "sv_frame_info.camera: a renderer with has_host_depth or gives_depth wants SV_CAMERA_MATRICES",
             ));
         }
         Ok(Self {
@@ -63,8 +63,8 @@ impl Taken {
         })
     }
 
-    pub fn shot(&self) -> Shot<'_> {
-        Shot {
+    pub fn shot(&self) -> FrameInfo<'_> {
+        FrameInfo {
             frame: self.frame,
             camera: &self.camera,
             depth: self.depth,
@@ -82,7 +82,7 @@ impl Taken {
 pub unsafe extern "C" fn sv_renderer_record(
     renderer: sv_renderer,
     command_buffer: *mut c_void,
-    shot: *const sv_shot,
+    shot: *const sv_frame_info,
     diagnostic: *mut sv_diagnostic,
 ) -> sv_status {
     let body = || {
@@ -148,7 +148,7 @@ pub unsafe extern "C" fn sv_renderer_draw_depth(
 pub unsafe extern "C" fn sv_renderer_record_into(
     renderer: sv_renderer,
     command_buffer: *mut c_void,
-    shot: *const sv_shot,
+    shot: *const sv_frame_info,
     target: *const sv_target,
     diagnostic: *mut sv_diagnostic,
 ) -> sv_status {

@@ -1,14 +1,14 @@
 //! Pictures of a volume in the host's frames.
 
 use super::device::{Device, sv_device};
-use super::function::{function, sv_function};
+use super::function::{function, sv_transfer_function};
 use super::handles::{self, Kind};
 use super::images::{MOST_FRAMES, depth_images, sv_depth_image, sv_target_class, target_class};
 use super::settings::{settings, sv_settings};
 use super::status::{Failure, guard, number, sv_diagnostic, sv_status};
 use super::structure::{self, Versioned};
 use super::volume::{self, sv_volume};
-use crate::embed::{self, Class, SliceBlending};
+use crate::embed::{self, RendererDesc, SliceBlending};
 use crate::technique::Settings;
 use std::ffi::c_void;
 use std::sync::{Arc, Mutex};
@@ -27,7 +27,7 @@ pub struct sv_renderer_desc {
     /// Uploaded, with settings of the same kind.
     pub volume: sv_volume,
     /// 0: a ramp of greys over the volume's range.
-    pub function: sv_function,
+    pub function: sv_transfer_function,
     /// What to compute, or NULL.
     pub settings: *const sv_settings,
     /// What is drawn into.
@@ -138,9 +138,9 @@ pub unsafe extern "C" fn sv_renderer_resize(
 /// Another transfer function from the next recording on; 0 is the ramp of greys. It may be called each frame: nothing
 /// is compiled, nothing waits. Threads: one at a time for one renderer.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn sv_renderer_set_function(
+pub unsafe extern "C" fn sv_renderer_set_transfer_function(
     renderer: sv_renderer,
-    function: sv_function,
+    function: sv_transfer_function,
     diagnostic: *mut sv_diagnostic,
 ) -> sv_status {
     let body = || {
@@ -179,7 +179,7 @@ pub unsafe extern "C" fn sv_renderer_set_settings(
 pub unsafe extern "C" fn sv_renderer_set_volume(
     renderer: sv_renderer,
     volume: sv_volume,
-    function: sv_function,
+    function: sv_transfer_function,
     diagnostic: *mut sv_diagnostic,
 ) -> sv_status {
     let body = || {
@@ -234,7 +234,7 @@ unsafe fn made(device: &Device, desc: &sv_renderer_desc) -> Result<Inner, Failur
         let doing = "keep frames in flight";
         return Err(Failure::limit(doing, frames.into(), MOST_FRAMES.into()));
     }
-    let class = Class {
+    let class = RendererDesc {
         settings,
         target,
         frames_in_flight: frames,

@@ -25,7 +25,7 @@ pub struct sv_clip_plane {
 /// A surface of SV_MODE_ISO.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
-pub struct sv_level {
+pub struct sv_isosurface {
     /// The value that the volume has there.
     pub value: f64,
     /// Its colour before light, in sRGB numbers from 0 to 1.
@@ -65,7 +65,7 @@ pub struct sv_settings {
     /// Not 0: composites count what lies between two samples too.
     pub is_preintegrated: u32,
     /// Not 0: samples that cannot matter are taken as well. The picture is the same, and slower.
-    pub keeps_empty_space: u32,
+    pub disable_space_skipping: u32,
     /// Not 0: MIP and MinIP of the trilinear field itself, not of samples.
     pub has_exact_maximum: u32,
     /// Samples a voxel along a ray. 0 is 1.
@@ -81,7 +81,7 @@ pub struct sv_settings {
     /// How many there are.
     pub clip_plane_count: u64,
     /// Surfaces of SV_MODE_ISO.
-    pub levels: *const sv_level,
+    pub levels: *const sv_isosurface,
     /// How many there are.
     pub level_count: u64,
     /// Not 0: composites and surfaces are lit.
@@ -174,7 +174,7 @@ pub(super) unsafe fn settings(
             frame: c.jitter_frame,
         },
         preintegrated: c.is_preintegrated != 0,
-        skip: c.keeps_empty_space == 0,
+        skip: c.disable_space_skipping == 0,
         samples_per_voxel: samples,
         termination: c.termination as f32,
         crop: crop(&c)?,
@@ -241,11 +241,11 @@ fn plane(plane: &sv_clip_plane) -> Result<ClipPlane, Failure> {
     })
 }
 
-fn level(level: &sv_level) -> Result<Level, Failure> {
+fn level(level: &sv_isosurface) -> Result<Level, Failure> {
     level
         .srgb
         .iter()
-        .try_for_each(|&channel| share("sv_level.srgb", channel))?;
+        .try_for_each(|&channel| share("sv_isosurface.srgb", channel))?;
     Ok(Level {
         value: level.value,
         srgb: level.srgb,

@@ -3,7 +3,7 @@
 use super::device::sv_device;
 use super::handles::{self, Kind};
 use super::images::{MOST_FRAMES, sv_target, target};
-use super::record::{Taken, sv_shot};
+use super::record::{Taken, sv_frame_info};
 use super::renderer::{self, sv_renderer};
 use super::status::{Failure, guard, sv_diagnostic, sv_status};
 use super::structure::{self, Versioned};
@@ -105,7 +105,7 @@ pub unsafe extern "C" fn sv_submitter_create(
 pub unsafe extern "C" fn sv_submitter_submit(
     submitter: sv_submitter,
     renderer: sv_renderer,
-    shot: *const sv_shot,
+    shot: *const sv_frame_info,
     target: *const sv_target,
     submission: *const sv_submission,
     diagnostic: *mut sv_diagnostic,

@@ -67,7 +67,7 @@ pub enum sv_lattice {
     SV_LATTICE_RAY = 0,
     /// Where the ray meets the planes that SV_TECHNIQUE_SLICES_3D draws.
     SV_LATTICE_PLANES = 1,
-    /// Equal steps after a first one that hangs on the pixel: grain in place of bands.
+    /// Equal steps after a first one that depends on the pixel: grain in place of bands.
     SV_LATTICE_JITTER = 2,
 }
 

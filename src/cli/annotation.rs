@@ -6,7 +6,7 @@ use super::{
     load::open,
     look::View,
     renderer::Renderer,
-    shown::Shown,
+    scene_inputs::SceneInputs,
 };
 use crate::{
     annotate::{Annotation, Facts, Seen, caption, unit},
@@ -62,7 +62,7 @@ fn paint(scene: &SceneFlags, word: &str) -> Result<(String, Option<String>), Err
 pub fn finish(
     picture: &mut Picture,
     annotation: Option<&Annotation>,
-    shown: &Shown,
+    shown: &SceneInputs,
     view: &View,
     renderer: &mut Renderer,
     background: Option<[f64; 4]>,

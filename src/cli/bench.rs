@@ -12,7 +12,7 @@ use super::{
     progress::{Progress, ProgressWord},
     renderer::{Device, Job, Renderer},
     scene_file,
-    shown::Shown,
+    scene_inputs::SceneInputs,
     signals::Gate,
     timings::{FrameTime, Timings, median, ms_since, peak_rss_bytes},
 };
@@ -162,7 +162,7 @@ impl Bench {
         progress.device(&device.name()?);
         progress.stage("read", 0, 1);
         let start = Instant::now();
-        let shown = Shown::read(&mut scene.clone(), &settings, &device, &progress)?;
+        let shown = SceneInputs::read(&mut scene.clone(), &settings, &device, &progress)?;
         let settings = filtered(settings, scene, &shown);
         let parts = shown.parts();
         let load_ms = ms_since(start);
@@ -229,7 +229,7 @@ fn window_of(
 }
 
 /// The settings, with what depends on the values.
-fn filtered(settings: Settings, scene: &SceneFlags, shown: &Shown) -> Settings {
+fn filtered(settings: Settings, scene: &SceneFlags, shown: &SceneInputs) -> Settings {
     let per_mode = shown.per_mode.clone();
     let filter = match (scene.sampling.filter, shown.filter) {
         (None, Some(filter)) => filter,

@@ -5,8 +5,8 @@ use super::{
     flags::{InputFlags, Numbers},
     output,
     progress::{Progress, ProgressWord},
+    resume_check::{hash_of, stamp_of},
     signals::Gate,
-    stamp::{hash_of, stamp_of},
     surface::Surface,
     unfinished::Unfinished,
 };

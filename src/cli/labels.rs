@@ -2,14 +2,14 @@
 
 use super::{
     Error, exaggerate, flags::SceneFlags, load::say_what_was_lost, progress::Progress,
-    shown::Other, timings::Loaded, untrusted,
+    scene_inputs::Other, timings::Loaded, untrusted,
 };
 use crate::{
     format,
     technique::Role,
     transfer::{LabelTable, TransferFunction},
     volume::{
-        Grid, Pick, Volume, Wanted, is_same_grid,
+        Grid, TimeComponent, Volume, VolumeSelection, is_same_grid,
         labels::{dim, hide, labels_of, on_grid},
     },
 };
@@ -37,8 +37,8 @@ pub fn read(
     let table = flags.table()?;
     let limits = scene.input.limits();
     let source = match scene.input.untrusted {
-        true => untrusted::open(path, None, &Wanted::default(), &limits)?,
-        false => format::open(path, &Wanted::default(), &limits)?,
+        true => untrusted::open(path, None, &VolumeSelection::default(), &limits)?,
+        false => format::open(path, &VolumeSelection::default(), &limits)?,
     };
     let header = source.header();
     if header.components != 1 || header.times != 1 {
@@ -46,7 +46,7 @@ pub fn read(
             "a label map holds one number a voxel, of one time; this file holds several",
         ));
     }
-    let (mut map, loaded) = Loaded::volume(source.as_ref(), Pick::default(), &limits)?;
+    let (mut map, loaded) = Loaded::volume(source.as_ref(), TimeComponent::default(), &limits)?;
     progress.loaded(loaded);
     map.world_from_voxel = exaggerate::stretched(map.world_from_voxel, height_factor);
     say_what_was_lost(&map, "labels", progress);

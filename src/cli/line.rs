@@ -6,7 +6,7 @@
 //! ```
 //!
 //! No item is begun before those far enough below it are put, so that no more than a few wait in memory whichever
-//! stage is the slowest. What comes out does not hang on who was faster: items are put by their numbers, and of
+//! stage is the slowest. What comes out does not depend on who was faster: items are put by their numbers, and of
 //! several errors the first one in that order counts.
 
 use super::Error;

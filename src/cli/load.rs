@@ -8,13 +8,14 @@ use super::{
     renderer::Device,
     timings::Loaded,
 };
-use crate::volume::{Header, Limits, Loss, Magnitude, Meaning, Source, Volume};
+use crate::volume::{ComponentKind, Header, Limits, Magnitude, PrecisionLoss, Source, Volume};
 
 /// The source that the words name. Vectors are taken by their length, unless a word takes something else.
 pub fn open(input: &InputFlags, limits: &Limits) -> Result<Box<dyn Source>, Error> {
     let source = input.open(limits)?;
     let header = source.header();
-    if input.component.is_none() && header.meaning == Meaning::Vector && header.components > 1 {
+    if input.component.is_none() && header.meaning == ComponentKind::Vector && header.components > 1
+    {
         return Ok(Box::new(Magnitude::new(source)));
     }
     Ok(source)
@@ -119,7 +120,7 @@ pub fn stretch(
 /// Notes on what is not in memory as it is in the file; `voxels` is what they are called.
 pub fn say_what_was_lost(volume: &Volume, voxels: &str, progress: &Progress) {
     if !volume.loss.is_none() {
-        let Loss { changed, worst } = volume.loss;
+        let PrecisionLoss { changed, worst } = volume.loss;
         progress.note(&format!(
             "{changed} {voxels} were rounded to 32-bit floats, by at most {worst}"
         ));

@@ -20,8 +20,8 @@ use super::{
     flags::{InputFlags, SceneFlags},
 };
 use crate::{
-    resident::{Corners, KeptGradients},
-    technique::{FilterBy, GradientSource, Keep, LightPlan, Settings},
+    resident::{FootprintTexels, KeptGradients},
+    technique::{FilterBy, GradientSource, GradientStorage, LightPlan, Settings},
     volume::{Header, Reduced, Source, Volume, VoxelType},
 };
 use serde::Serialize;
@@ -83,7 +83,7 @@ impl RenderBytes {
             all.host = all.host.saturating_add(floats.host);
             all.device = floats.times(count).device;
         }
-        if filters.keep_gradients == Keep::Always {
+        if filters.gradient_storage == GradientStorage::Precomputed {
             let kept = header
                 .voxel_count()
                 .saturating_mul(KeptGradients::BYTES_PER_VOXEL);
@@ -117,7 +117,7 @@ impl RenderBytes {
 /// place of texels.
 pub fn software_device_bytes(header: &Header, has_holes: bool) -> u64 {
     let mask = if has_holes { header.voxel_count() } else { 0 };
-    match Corners::bytes_of(header.stored, header.dims) {
+    match FootprintTexels::bytes_of(header.stored, header.dims) {
         Some(corners) => corners.saturating_add(mask),
         None => RenderBytes::of(header, has_holes).device,
     }
@@ -129,7 +129,7 @@ pub fn filter_by(input: &InputFlags, wanted: FilterBy, volumes: &[&Volume]) -> F
     let bytes_of = |volume: &&Volume| {
         let stored = volume.voxels.voxel_type();
         let voxel_bytes = stored.bytes() as u64 + u64::from(volume.validity.is_some());
-        let corners = Corners::bytes_of(stored, volume.dims).unwrap_or(0);
+        let corners = FootprintTexels::bytes_of(stored, volume.dims).unwrap_or(0);
         (volume.voxels.len() as u64 * voxel_bytes).saturating_add(corners)
     };
     let bytes: u64 = volumes.iter().map(bytes_of).fold(0, u64::saturating_add);
@@ -259,7 +259,7 @@ fn filters_of(scene: &SceneFlags) -> Settings {
         technique: scene.sampling.technique.unwrap_or_default(),
         filter: scene.sampling.filter.unwrap_or_default(),
         gradient_filter: scene.gradient.filter(),
-        keep_gradients: scene.gradient.keep(),
+        gradient_storage: scene.gradient.keep(),
         ..Settings::default()
     }
 }

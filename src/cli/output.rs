@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn a_missing_folder_a_folder_and_a_twin_are_refused_before_the_work() {
+    fn a_missing_folder_a_folder_and_a_reference_are_refused_before_the_work() {
         let folder = tempfile::tempdir().expect("a folder");
         let nowhere = folder.path().join("no").join("a.png");
         let (code, text) = refusal(&[&nowhere], &[], true);

@@ -10,8 +10,8 @@ use super::{
 use crate::{
     figure::short,
     transfer::{
-        Classified, Colormap, Graded, Preset, Scale, Shape, TransferFunction, ValueSummary, Window,
-        import_transfer_function, transfer_function_to_json,
+        Classified, Colormap, GradientTransfer, Preset, Scale, Shape, TransferFunction,
+        ValueSummary, Window, import_transfer_function, transfer_function_to_json,
     },
     volume::Volume,
 };
@@ -267,7 +267,7 @@ fn table(function: &TransferFunction) -> String {
 }
 
 /// What the gradient makes of the points, a line each.
-fn gradients(graded: &Graded) -> String {
+fn gradients(graded: &GradientTransfer) -> String {
     let mut text = String::new();
     let share = graded.share.iter();
     let share = share.map(|p| format!("{} of it at gradient {}", short(p.opacity), short(p.value)));

@@ -11,7 +11,7 @@ use super::{
     reasons::why_empty,
     renderer::Device,
     scene_file,
-    shown::Shown,
+    scene_inputs::SceneInputs,
     signals::Gate,
     stdin::STANDARD,
     timings::{FrameTime, Timings, ms_since, peak_rss_bytes},
@@ -159,12 +159,12 @@ impl Render {
         let device = Device::begin(scene.one_device()?);
         progress.stage("read", 0, 1);
         let start = Instant::now();
-        let shown = Shown::read(&mut scene, &settings, &device, &progress);
+        let shown = SceneInputs::read(&mut scene, &settings, &device, &progress);
         // Without a device nothing else that is wrong matters.
         device.wait()?;
         let shown = shown?;
         progress.device(&device.name()?);
-        let Shown {
+        let SceneInputs {
             volume,
             classification,
             ..

@@ -53,7 +53,7 @@ type Making = JoinHandle<Result<Made, Error>>;
 
 #[derive(Debug)]
 struct Made {
-    /// `None`: the CPU twins.
+    /// `None`: the CPU references.
     on: Option<Kept>,
     found_ms: f64,
 }
@@ -62,7 +62,7 @@ struct Made {
 #[derive(Debug)]
 pub struct Renderer<'a> {
     job: Job<'a>,
-    /// `None`: the CPU twins.
+    /// `None`: the CPU references.
     on_device: Option<Box<offscreen::Renderer<'a>>>,
     /// What bringing the volume to the device took.
     pub upload_ms: f64,
@@ -85,7 +85,7 @@ pub struct Frame {
     pub gpu_ms: Option<f64>,
 }
 
-/// The word of `--device` for the CPU twins.
+/// The word of `--device` for the CPU references.
 const REFERENCE: &str = "reference";
 
 impl Device {
@@ -125,7 +125,7 @@ impl Device {
         Ok(self.made.into_inner().expect("made above"))
     }
 
-    /// What it does at most, with the texture of this volume; `None` of the CPU twins. Ends the device.
+    /// What it does at most, with the texture of this volume; `None` of the CPU references. Ends the device.
     pub fn ceilings(self, volume: &Volume) -> Result<Option<Ceilings>, Error> {
         let mut made = self.into_made()?;
         let device = made.on.as_mut();
@@ -256,7 +256,7 @@ impl<'a> Renderer<'a> {
         })
     }
 
-    /// From here on `watch` is told how much of a picture is done, 0 to 1; the CPU twins tell nothing.
+    /// From here on `watch` is told how much of a picture is done, 0 to 1; the CPU references tell nothing.
     pub fn watch(&mut self, watch: impl FnMut(f64) + Send + 'a) {
         if let Some(renderer) = &mut self.on_device {
             renderer.watch(watch);
@@ -325,7 +325,7 @@ impl<'a> Renderer<'a> {
         let mut made = std::mem::take(&mut picture.layers);
         for kind in layers {
             let at = made.iter().position(|layer| layer.kind == *kind);
-            let at = at.expect("`check_layers` knows what a twin makes");
+            let at = at.expect("`check_layers` knows what a reference makes");
             picture.layers.push(made.swap_remove(at));
         }
         Ok(Frame {

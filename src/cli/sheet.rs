@@ -10,7 +10,7 @@ use super::{
     output::{self, say},
     progress::{Progress, ProgressWord},
     renderer::Device,
-    shown::Shown,
+    scene_inputs::SceneInputs,
     signals::Gate,
 };
 use crate::annotate::Annotation;
@@ -187,7 +187,7 @@ fn draw(
 ) -> Result<Picture, Error> {
     let settings = scene.settings(Depth::Eight)?;
     let scene = &mut scene.clone();
-    let shown = Shown::read(scene, &settings, device, progress)?;
+    let shown = SceneInputs::read(scene, &settings, device, progress)?;
     let made_for = Use {
         is_film: false,
         is_opaque: true,

@@ -1,6 +1,6 @@
 //! What the work took: the file of `--timings`.
 
-use crate::volume::{Header, Limits, Pick, Piece, ReadError, Source, Volume, VoxelBox};
+use crate::volume::{Header, Limits, Piece, ReadError, Source, TimeComponent, Volume, VoxelBox};
 use serde::Serialize;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -56,7 +56,7 @@ pub struct Stages {
     /// What the longest of them took.
     pub longest_submission_ms: f64,
     /// What made values between voxels: `sampler`, `fetch`, or `corners`, which are fetches from words that software
-    /// devices have; `null` on the CPU twins.
+    /// devices have; `null` on the CPU references.
     pub filtered_by: Option<&'static str>,
     /// Why that.
     pub filtered_because: Option<&'static str>,
@@ -83,7 +83,7 @@ impl Loaded {
     /// One time and component of a source, and what reading it took.
     pub fn volume(
         source: &dyn Source,
-        pick: Pick,
+        pick: TimeComponent,
         limits: &Limits,
     ) -> Result<(Volume, Self), ReadError> {
         let start = Instant::now();
@@ -113,7 +113,7 @@ impl Source for Clocked<'_> {
         self.source.header()
     }
 
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         let start = Instant::now();
         let piece = self.source.read(pick, region);
         *self.read.lock().unwrap_or_else(PoisonError::into_inner) += start.elapsed();

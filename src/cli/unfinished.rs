@@ -8,7 +8,7 @@
 //! A line is written behind its bricks, and nothing waits for the disk: what a loss of power has left of bricks is
 //! found by their checksums, which are compared before anybody goes on.
 
-use super::{Error, signals::Gate, stamp::difference};
+use super::{Error, resume_check::difference, signals::Gate};
 use crate::format::write::DoneBricks;
 use serde_json::{Value, json};
 use std::{

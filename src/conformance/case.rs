@@ -2,7 +2,7 @@
 
 use super::measurement::Measurement;
 use super::need::Found;
-use super::stand::Stand;
+use super::test_bed::TestBed;
 use crate::gpu::{self, Item, Limit};
 use crate::offscreen;
 use serde::{Deserialize, Serialize};
@@ -66,7 +66,7 @@ impl From<gpu::Error> for Stop {
 }
 
 /// What a case does.
-pub type Run = Box<dyn Fn(&mut Stand) -> Result<Measurement, Stop> + Send + Sync>;
+pub type Run = Box<dyn Fn(&mut TestBed) -> Result<Measurement, Stop> + Send + Sync>;
 
 /// One question to a device.
 pub struct Case {
@@ -86,7 +86,7 @@ impl Case {
     /// A case of the baseline that needs nothing beyond it.
     pub fn new(
         name: impl Into<String>,
-        run: impl Fn(&mut Stand) -> Result<Measurement, Stop> + Send + Sync + 'static,
+        run: impl Fn(&mut TestBed) -> Result<Measurement, Stop> + Send + Sync + 'static,
     ) -> Self {
         Self {
             name: name.into(),

@@ -4,8 +4,8 @@
 use super::case::Case;
 use super::record::{DeviceRecord, Record};
 use super::repeat::repeated;
-use super::stand::Stand;
 use super::supervisor::Outcome;
+use super::test_bed::TestBed;
 use super::worker::Answers;
 use std::io;
 use std::num::NonZero;
@@ -18,7 +18,7 @@ use std::ops::ControlFlow;
 /// Where pictures cannot be written.
 pub fn run(
     answers: &Answers,
-    stand: &mut Stand,
+    bed: &mut TestBed,
     cases: &[&Case],
     repeat: NonZero<u32>,
     mut heard: impl FnMut(usize, &mut Record) -> ControlFlow<()>,
@@ -26,10 +26,10 @@ pub fn run(
     let mut outcome = Outcome::default();
     for case in cases {
         if outcome.device.is_none() {
-            let device = stand.device().ok();
+            let device = bed.device().ok();
             outcome.device = device.map(|device| DeviceRecord::of(device.gpu()));
         }
-        let mut record = repeated(repeat, |is_again| answers.to(case, is_again, stand))?;
+        let mut record = repeated(repeat, |is_again| answers.to(case, is_again, bed))?;
         let next = heard(outcome.records.len() + 1, &mut record);
         outcome.records.push(record);
         if next.is_break() {

@@ -4,14 +4,14 @@ use super::case::{Case, Stop};
 use super::measurement::{Measurement, Pictures};
 use super::need::Found;
 use super::record::Record;
-use super::stand::Stand;
+use super::test_bed::TestBed;
 use super::verdict::Verdict;
 use crate::gpu;
 use crate::offscreen;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
 
-/// Of the numbers of a case at most so many parts may hang on rounding: else it says nothing.
+/// Of the numbers of a case at most so many parts may depend on rounding: else it says nothing.
 const MOST_LEFT_OUT: f64 = 0.1;
 
 /// Of a channel of a picture that may be off by more than half a code of 255 little is known.
@@ -20,10 +20,10 @@ pub const WIDE_ALLOWANCE: f64 = 0.5 / 255.0;
 const MOST_WIDE: f64 = 0.1;
 
 /// Runs `case` and judges it; the pictures are those that were compared, where it has drawn any.
-pub fn judge(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
+pub fn judge(case: &Case, bed: &mut TestBed) -> (Record, Option<Pictures>) {
     let start = Instant::now();
-    let (mut record, pictures) = judged(case, stand);
-    if let Some(Ok(device)) = stand.wants_device().then(|| stand.device()) {
+    let (mut record, pictures) = judged(case, bed);
+    if let Some(Ok(device)) = bed.wants_device().then(|| bed.device()) {
         let messages = device.take_validation_messages();
         record.validation_messages = messages.iter().map(ToString::to_string).collect();
     }
@@ -35,9 +35,9 @@ pub fn judge(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
     (record, pictures)
 }
 
-fn judged(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
+fn judged(case: &Case, bed: &mut TestBed) -> (Record, Option<Pictures>) {
     let of = |verdict, reason| Record::unmeasured(&case.name, case.profile, verdict, reason);
-    let mut needs: Vec<Found> = match stand.wants_device().then(|| stand.device()) {
+    let mut needs: Vec<Found> = match bed.wants_device().then(|| bed.device()) {
         Some(Ok(device)) => {
             let gpu = device.gpu();
             let needs = case.needs.iter().map(|&item| Found::of(gpu, item));
@@ -54,7 +54,7 @@ fn judged(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
         };
         return (record, None);
     }
-    let ran = catch_unwind(AssertUnwindSafe(|| (case.run)(stand)));
+    let ran = catch_unwind(AssertUnwindSafe(|| (case.run)(bed)));
     let (record, pictures) = match ran {
         Ok(Ok(measurement)) => {
             let (record, pictures) = measured(case, measurement);
@@ -70,7 +70,7 @@ fn judged(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
         }
         Ok(Err(stop)) => {
             if let Some(item) = stop.need()
-                && let Ok(device) = stand.device()
+                && let Ok(device) = bed.device()
             {
                 needs.push(Found::of(device.gpu(), item));
             }
@@ -80,13 +80,13 @@ fn judged(case: &Case, stand: &mut Stand) -> (Record, Option<Pictures>) {
             };
             let (verdict, reason) = lacking(&needs).unwrap_or((of_stop, stop.to_string()));
             if verdict == Verdict::DeviceLost {
-                stand.drop_device();
+                bed.drop_device();
             }
             (of(verdict, reason), None)
         }
         Err(panic) => {
             // What it held may be half done.
-            stand.drop_device();
+            bed.drop_device();
             let text = panic.downcast_ref::<String>().cloned();
             let text = text.or_else(|| panic.downcast_ref::<&str>().map(|s| (*s).to_owned()));
             let reason = format!("the suite panicked: {}", text.unwrap_or_default());
@@ -157,7 +157,7 @@ fn measured(case: &Case, measurement: Measurement) -> (Record, Option<Pictures>)
         let reason = format!("{checked} numbers were compared, at least {least} are wanted");
         (Verdict::InternalError, reason, worst)
     } else if left_out as f64 > MOST_LEFT_OUT * all {
-        let reason = format!("{left_out} of {all} numbers hang on rounding");
+        let reason = format!("{left_out} of {all} numbers depend on rounding");
         (Verdict::InternalError, reason, worst)
     } else {
         match quality {

@@ -75,7 +75,7 @@ pub struct Measurement {
     pub bound: Bound,
     /// Numbers that were looked at.
     pub checked: usize,
-    /// Numbers whose answer hangs on rounding, and were not.
+    /// Numbers whose answer depends on rounding, and were not.
     pub left_out: usize,
     /// A case that looks at fewer says nothing.
     pub least: usize,
@@ -163,7 +163,7 @@ impl Measurement {
         }
     }
 
-    /// So many numbers whose answers hang on rounding.
+    /// So many numbers whose answers depend on rounding.
     pub fn leave_out(&mut self, numbers: usize) {
         self.left_out += numbers;
     }

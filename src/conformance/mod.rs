@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! tree::cases -> Case (name, profile, needs, run)
-//! judge       -> run on a Stand (a device) -> Measurement (expected, found, allowed) -> Record (verdict)
+//! judge       -> run on a TestBed (a device) -> Measurement (expected, found, allowed) -> Record (verdict)
 //! supervisor  -> hands names to a worker, a process of its own, and hears records: what dies there dies alone
 //! report      -> JSON, JUnit, HTML;  package verifies one, difference compares two
 //! ```
@@ -26,9 +26,9 @@ pub mod record;
 pub mod repeat;
 pub mod report;
 pub mod selection;
-pub mod stand;
 pub mod stress;
 pub mod supervisor;
+pub mod test_bed;
 pub mod tree;
 pub mod verdict;
 pub mod waiver;

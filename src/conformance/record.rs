@@ -28,7 +28,7 @@ pub struct Record {
     pub needs: Vec<Found>,
     /// Numbers that were compared.
     pub checked: usize,
-    /// Numbers whose answer hangs on rounding.
+    /// Numbers whose answer depends on rounding.
     pub left_out: usize,
     /// SHA-256 of what was found in their place, as f64, the lowest byte first.
     #[serde(default, skip_serializing_if = "String::is_empty")]

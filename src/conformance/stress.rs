@@ -9,8 +9,8 @@
 
 use super::case::Case;
 use super::record::{DeviceRecord, Record, Stress};
-use super::stand::Stand;
 use super::supervisor::Outcome;
+use super::test_bed::TestBed;
 use super::verdict::Verdict;
 use super::worker::Answers;
 use std::io;
@@ -25,12 +25,12 @@ use std::thread;
 pub fn run(
     answers: &Answers,
     stress: Stress,
-    stand: impl Fn(usize) -> Stand + Sync,
+    bed: impl Fn(usize) -> TestBed + Sync,
     cases: &[&Case],
     mut heard: impl FnMut(usize, &mut Record) -> ControlFlow<()>,
 ) -> io::Result<Outcome> {
     let mut outcome = Outcome::default();
-    let mut alone = stand(0);
+    let mut alone = bed(0);
     let device = alone.device().ok();
     outcome.device = device.map(|device| DeviceRecord::of(device.gpu()));
     let mut records = Vec::with_capacity(cases.len());
@@ -44,11 +44,11 @@ pub fn run(
         ..*answers
     };
     let work = |number: usize| -> io::Result<Vec<(usize, Record)>> {
-        let mut stand = stand(number);
+        let mut bed = bed(number);
         let first = number * cases.len() / stress.threads as usize;
         let places = (first..cases.len()).chain(0..first);
         places
-            .map(|place| Ok((place, quiet.to(cases[place], true, &mut stand)?)))
+            .map(|place| Ok((place, quiet.to(cases[place], true, &mut bed)?)))
             .collect()
     };
     let together = thread::scope(|scope| {

@@ -299,7 +299,7 @@ mod tests {
         assert_eq!(crash, Verdict::Crash);
         let late = verdict_of(probe, Verdict::Fail, &same, [2027, 7, 1]);
         assert_eq!(late, Verdict::Fail);
-        let other_case = verdict_of("twin.a", Verdict::Fail, &same, last_day);
+        let other_case = verdict_of("reference.a", Verdict::Fail, &same, last_day);
         assert_eq!(other_case, Verdict::Fail);
         let mut record = Record::unmeasured(probe, Profile::Full, Verdict::Pass, String::new());
         waivers.apply(&mut record, &same, last_day);

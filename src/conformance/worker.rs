@@ -12,7 +12,7 @@ use super::dump::dumped;
 use super::judge::judge;
 use super::measurement::Pictures;
 use super::record::{DeviceRecord, Record};
-use super::stand::Stand;
+use super::test_bed::TestBed;
 use super::verdict::Verdict;
 use crate::picture::compare::{Comparison, Image};
 use crate::picture::{ColorSpace, Picture, WriteOptions, write_picture};
@@ -111,13 +111,13 @@ impl Answers<'_> {
     ///
     /// # Errors
     /// Where pictures cannot be written.
-    pub fn to(&self, case: &Case, is_again: bool, stand: &mut Stand) -> io::Result<Record> {
+    pub fn to(&self, case: &Case, is_again: bool, bed: &mut TestBed) -> io::Result<Record> {
         let is_meant = |(pattern, _): &(&str, Trouble)| super::glob::matches(pattern, &case.name);
         let trouble = self.trouble.filter(is_meant).map(|(_, trouble)| trouble);
         if let Some(trouble) = trouble {
             suffer(trouble);
         }
-        let mut judged = || judge(case, stand);
+        let mut judged = || judge(case, bed);
         let (mut record, found) = match self.dumps {
             Some(dumps) if !is_again => dumped(dumps, &case.name, judged)?,
             _ => judged(),
@@ -151,7 +151,7 @@ impl Answers<'_> {
 ///
 /// # Errors
 /// Where a line cannot be read or written.
-pub fn serve(cases: &[Case], stand: &mut Stand, answers: &Answers) -> io::Result<()> {
+pub fn serve(cases: &[Case], bed: &mut TestBed, answers: &Answers) -> io::Result<()> {
     let mut out = io::stdout().lock();
     let mut is_introduced = false;
     for name in io::stdin().lock().lines() {
@@ -161,12 +161,12 @@ pub fn serve(cases: &[Case], stand: &mut Stand, answers: &Answers) -> io::Result
         let Some(case) = cases.iter().find(|case| case.name == wanted) else {
             return Err(io::Error::other(format!("there is no case {wanted}")));
         };
-        if !is_introduced && let Ok(device) = stand.device() {
+        if !is_introduced && let Ok(device) = bed.device() {
             let device = DeviceRecord::of(device.gpu());
             say(&mut out, &Line::Device(Box::new(device)))?;
             is_introduced = true;
         }
-        let record = answers.to(case, is_again, stand)?;
+        let record = answers.to(case, is_again, bed)?;
         say(&mut out, &Line::Record(Box::new(record)))?;
     }
     Ok(())

@@ -119,7 +119,7 @@ pub enum Error {
     },
     /// There is no depth in such pictures.
     #[error(
-        "{what} has no depth to give back: modes with a place of their own have, with `Class::gives_depth` or `Class::picks`"
+        "{what} has no depth to give back: modes with a place of their own have, with `RendererDesc::gives_depth` or `RendererDesc::picks`"
     )]
     NoDepth {
         /// Technique and mode.

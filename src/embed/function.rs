@@ -4,8 +4,8 @@ use super::pieces::run_of;
 use super::{Error, Volume};
 use crate::gpu::{ComputePipeline, Gpu};
 use crate::resident::{EmptySpace, GpuTransfer};
-use crate::technique::{self, Mix, Mode, Settings, Skip, Skippable};
-use crate::transfer::{Graded, TransferFunction};
+use crate::technique::{self, Mode, SampleInputs, Settings, Skip, Skippable};
+use crate::transfer::{GradientTransfer, TransferFunction};
 use ash::vk;
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ pub(super) struct Function {
     made: Option<GpuTransfer>,
     skippable: Skippable,
     empty: Option<EmptySpace>,
-    pub mix: Mix,
+    pub mix: SampleInputs,
     /// Points and second gradients, which loops of the driver are counted by.
     pub turns: crate::technique::Functions,
     uploaded: Uploaded,
@@ -47,7 +47,7 @@ impl Function {
             return Err(technique::Error::NoTransferFunction.into());
         }
         // Functions that weigh by gradients may be followed by others that do more.
-        let mix = Mix::of_one(function).general();
+        let mix = SampleInputs::of_one(function).general();
         check(mix, settings)?;
         volume.check(gpu, settings)?;
         let spacing = volume.grid().smallest_spacing();
@@ -75,7 +75,7 @@ impl Function {
             mix,
             turns: crate::technique::Functions {
                 points: function.map_or(0, |f| f.color.len().max(f.opacity.len())),
-                second: graded.is_some_and(Graded::needs_second),
+                second: graded.is_some_and(GradientTransfer::needs_second),
             },
             uploaded: Uploaded::default(),
         })
@@ -111,7 +111,7 @@ impl Function {
             return Ok((0, 0));
         };
         let runs = empty.group_runs()?;
-        let cells = empty.rooms().bytes() / 4;
+        let cells = empty.distance_map().bytes() / 4;
         let all = runs.len() as u64 * cells.div_ceil(PIECE_CELLS);
         Ok((all, runs.last().map_or(0, |last| last.end)))
     }
@@ -174,7 +174,7 @@ impl Function {
 }
 
 /// Whether such settings draw such functions.
-pub(super) fn check(mix: Mix, settings: &Settings) -> Result<(), Error> {
+pub(super) fn check(mix: SampleInputs, settings: &Settings) -> Result<(), Error> {
     if !mix.is_graded() {
         return Ok(());
     }

@@ -5,7 +5,7 @@
 //! ```
 
 use super::pieces::PIECE_MS;
-use super::{Error, QueueLock, Renderer, Shot, Submitter, Update, Volume};
+use super::{Error, FrameInfo, QueueLock, Renderer, Submitter, Update, Volume};
 use crate::gpu::{Gpu, Load, Pace, Target, TimelinePoint};
 use ash::vk;
 use std::fmt;
@@ -65,7 +65,7 @@ impl Submitter {
     pub unsafe fn submit_in_parts(
         &mut self,
         renderer: &mut Renderer,
-        shot: &Shot,
+        shot: &FrameInfo,
         target: &Target,
         load: Load,
         lock: QueueLock,

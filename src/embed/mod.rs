@@ -13,10 +13,10 @@
 //! A and B never submit, never wait and make no Vulkan object. What a frame uses is free again when the host says so:
 //! it counts its submissions, calls [`Gpu::announce`](crate::gpu::Gpu::announce) before it records and
 //! [`Gpu::retire`](crate::gpu::Gpu::retire) when the device has done them, and gives a number of a frame in flight
-//! ([`Shot::frame`]) to no second frame before the first is done.
+//! ([`FrameInfo::frame`]) to no second frame before the first is done.
 //!
-//! What a host has drawn hides the volume behind it ([`Class::host_depth`]): its depth buffer is read as a texture. Its own
-//! depth a picture gives back by [`Renderer::draw_depth`] and [`Renderer::record_pick`] ([`Class::gives_depth`], [`Class::picks`]).
+//! What a host has drawn hides the volume behind it ([`RendererDesc::host_depth`]): its depth buffer is read as a texture. Its own
+//! depth a picture gives back by [`Renderer::draw_depth`] and [`Renderer::record_pick`] ([`RendererDesc::gives_depth`], [`RendererDesc::picks`]).
 //!
 //! While it is drawn, a volume takes new voxels of a box ([`Volume::stage_update`], [`Volume::record_update`]). Frames,
 //! uploads and updates may be cut into parts that are submitted one by one and given up between two of them:
@@ -33,7 +33,6 @@
 //! adaptive steps, cross-fades of stacks. `docs/embedding.md` says why, and the pieces for them lie one floor below, in
 //! [`crate::technique`].
 
-mod class;
 mod error;
 mod frame;
 mod function;
@@ -44,6 +43,7 @@ mod pick;
 mod pieces;
 mod recording;
 mod renderer;
+mod renderer_desc;
 mod submitter;
 mod update;
 #[cfg(test)]
@@ -52,11 +52,11 @@ mod updates;
 mod upload;
 mod volume;
 
-pub use class::{Class, HostDepthImage, Shot, SliceBlending};
 pub use error::Error;
 pub use in_parts::Pacing;
 pub use pick::Pick;
 pub use renderer::Renderer;
+pub use renderer_desc::{FrameInfo, HostDepthImage, RendererDesc, SliceBlending};
 pub use submitter::{QueueLock, Submitter};
 pub use update::Update;
 pub use volume::Volume;

@@ -11,7 +11,7 @@
 
 use super::frame::{Begun, Cut};
 use super::pieces::PIECE_MS;
-use super::{Error, Renderer, Shot};
+use super::{Error, FrameInfo, Renderer};
 use crate::gpu::{Blocks, Load, Target, Tile, Use, begin_rendering, end_rendering};
 use crate::technique::cost::{looks_of_dearest_pixel, looks_of_picture, ms_of_looks};
 use crate::technique::gather::Part;
@@ -33,7 +33,7 @@ impl Renderer {
     ///
     /// # Errors
     /// As [`Renderer::record`]; [`Error::NotEmbedded`] for slices that are blended in the target.
-    pub fn begin_parts(&mut self, shot: &Shot) -> Result<u64, Error> {
+    pub fn begin_parts(&mut self, shot: &FrameInfo) -> Result<u64, Error> {
         if self.pass.resolve.is_none() {
             return Err(Error::NotEmbedded {
                 what: "a composite by slices in parts that are blended in the target",

@@ -1,12 +1,12 @@
 //! The pipelines of a class.
 
-use super::class::SliceBlending;
-use super::{Class, Error};
+use super::renderer_desc::SliceBlending;
+use super::{Error, RendererDesc};
 use crate::gpu::{Blend, Gpu};
 use crate::resolve::{DepthResolve, Resolve};
 use crate::technique::blend::Drawn;
 use crate::technique::gather::{Gather, GatherDesc, depth_of_slices};
-use crate::technique::{Mix, Slicer, Words};
+use crate::technique::{SampleInputs, ShaderVariant, Slicer};
 use std::sync::Arc;
 
 /// How a picture comes into the host's rendering, and its depth.
@@ -26,20 +26,25 @@ pub(super) struct Pass {
 
 impl Pass {
     /// Compiles all that the class will ever need. `mix` is that of the transfer function.
-    pub fn new(gpu: &Arc<Gpu>, class: &Class, words: &Words, mix: Mix) -> Result<Self, Error> {
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        class: &RendererDesc,
+        variant: &ShaderVariant,
+        mix: SampleInputs,
+    ) -> Result<Self, Error> {
         let (settings, target, sight) = (&class.settings, class.target, class.sight());
         let (mode, technique, order) = (settings.mode, settings.technique, settings.order);
         let drawn = Drawn::Picture(mode);
         let desc = GatherDesc {
             gpu,
             settings,
-            words,
+            variant,
             drawn,
             sight,
             is_patched: false,
         };
         let is_in_target = class.slice_blending == SliceBlending::InTarget;
-        let slicer = || Slicer::seen(gpu, technique, drawn, order, words, target, sight);
+        let slicer = || Slicer::seen(gpu, technique, drawn, order, variant, target, sight);
         let picture = || (technique.desc().gather)(&desc);
         let finds_depth = !technique.casts_rays() && class.finds_depth();
         let slice_depth = || depth_of_slices(&desc, mix);

@@ -1,11 +1,11 @@
 //! Levels A and B: what a renderer records.
 
 use super::frame::{Frame, Recorded};
-use super::{Error, Renderer, Shot};
-use crate::camera::{Camera, HostDepth, Nearer};
+use super::{Error, FrameInfo, Renderer};
+use crate::camera::{Camera, DepthConvention, HostDepth};
 use crate::gpu::{Load, Target, TargetClass, Tile, Use, begin_rendering, end_rendering};
 use crate::technique::gather::{Brick, Part, Player};
-use crate::technique::{self, InPixel, Recording, Sight, Skip, View};
+use crate::technique::{self, DepthAccess, InPixel, Recording, Skip, View};
 use ash::vk;
 
 impl Renderer {
@@ -23,7 +23,7 @@ impl Renderer {
     /// - nothing unfinished was recorded with the shot's number of a frame in flight;
     /// - the image of the host's depth is in the layout that was said, visible to sampled reads of compute shaders, and
     ///   of fragment shaders where there are slices.
-    pub unsafe fn record(&mut self, cmd: vk::CommandBuffer, shot: &Shot) -> Result<(), Error> {
+    pub unsafe fn record(&mut self, cmd: vk::CommandBuffer, shot: &FrameInfo) -> Result<(), Error> {
         let (frame, made) = self.prepare(shot)?;
         let part = Part {
             tiles: &[Tile::whole(self.extent)],
@@ -51,7 +51,7 @@ impl Renderer {
     /// Where nothing was recorded.
     ///
     /// # Safety
-    /// - `cmd` is recording inside rendering to a target of [`Class::target`](super::Class::target) and of the
+    /// - `cmd` is recording inside rendering to a target of [`RendererDesc::target`](super::RendererDesc::target) and of the
     ///   renderer's extent;
     /// - it runs after what [`Renderer::record`] recorded, on the same queue.
     pub unsafe fn draw(&self, cmd: vk::CommandBuffer, frame: u32) -> Result<(), Error> {
@@ -67,7 +67,7 @@ impl Renderer {
     /// rays or from slice to slice.
     ///
     /// # Errors
-    /// [`Error::NoDepth`] without [`Class::gives_depth`](super::Class::gives_depth) and a depth attachment; where
+    /// [`Error::NoDepth`] without [`RendererDesc::gives_depth`](super::RendererDesc::gives_depth) and a depth attachment; where
     /// nothing was recorded.
     ///
     /// # Safety
@@ -100,7 +100,7 @@ impl Renderer {
     pub unsafe fn record_into(
         &mut self,
         cmd: vk::CommandBuffer,
-        shot: &Shot,
+        shot: &FrameInfo,
         target: &Target,
         load: Load,
     ) -> Result<(), Error> {
@@ -120,7 +120,7 @@ impl Renderer {
 
 impl Renderer {
     /// The frame of a shot and its parameters, written. Nothing that was recorded for it before is drawn or picked now.
-    pub(super) fn prepare(&mut self, shot: &Shot) -> Result<(usize, Recorded), Error> {
+    pub(super) fn prepare(&mut self, shot: &FrameInfo) -> Result<(usize, Recorded), Error> {
         self.gpu.check_alive("record a frame")?;
         let frame = self.frame_number(shot.frame)?;
         shot.camera.check()?;
@@ -206,20 +206,20 @@ impl Renderer {
         }
     }
 
-    fn depth_of(&self, shot: &Shot) -> Result<Option<HostDepth>, Error> {
+    fn depth_of(&self, shot: &FrameInfo) -> Result<Option<HostDepth>, Error> {
         let is_wanted = self.class.host_depth || self.class.draws_depth();
         match (is_wanted, shot.depth) {
             (true, None) => Err(Error::HostDepth {
-                wanted: "`Shot::depth`, from `Camera::from_matrices`".into(),
+                wanted: "`FrameInfo::depth`, from `Camera::from_matrices`".into(),
                 found: "none".into(),
             }),
             (false, _) => Ok(None),
             (true, Some(depth)) => {
                 let is_reversed = self.class.target.depth.map(|depth| depth.is_reversed);
-                let found = depth.nearer == Nearer::Larger;
+                let found = depth.nearer == DepthConvention::Reversed;
                 match is_reversed.is_some_and(|wanted| wanted != found) {
                     true => Err(Error::HostDepth {
-                        wanted: "`Shot::depth` and `Class::target` with the same depth nearer"
+                        wanted: "`FrameInfo::depth` and `RendererDesc::target` with the same depth nearer"
                             .into(),
                         found: format!("{:?}", depth.nearer),
                     }),
@@ -229,7 +229,7 @@ impl Renderer {
         }
     }
 
-    pub(super) fn view<'a>(&'a self, shot: &Shot<'a>) -> View<'a> {
+    pub(super) fn view<'a>(&'a self, shot: &FrameInfo<'a>) -> View<'a> {
         View {
             grid: self.volume.grid(),
             camera: shot.camera,
@@ -243,7 +243,7 @@ impl Renderer {
     fn describe(
         &self,
         frame: usize,
-        shot: &Shot,
+        shot: &FrameInfo,
         depth: Option<HostDepth>,
         made: &mut Recorded,
     ) -> Result<(), Error> {
@@ -256,12 +256,12 @@ impl Renderer {
             wanted: layout,
             found: self.volume.copies()[0].layout(),
         })?;
-        let (words, functions) = (&self.words, self.function.turns);
+        let (variant, functions) = (&self.variant, self.function.turns);
         let limit = self.gpu.limits().max_loop_turns;
         let finds_depth = self.pass.slice_depth.is_some();
-        view.check_turns(words, 1, functions, limit)?;
+        view.check_turns(variant, 1, functions, limit)?;
         if finds_depth {
-            view.check_depth_turns(words, functions, limit)?;
+            view.check_depth_turns(variant, functions, limit)?;
         }
         let mut slot = (frame * self.ring.slots() as usize / self.frames.len()) as u32;
         let skip = match self.volume.knows_enough_for(&view) {
@@ -271,17 +271,19 @@ impl Renderer {
         let (class, center) = (&self.class, grid.center());
         let sight = match class.settings.technique.casts_rays() {
             false => class.sight(),
-            true => Sight::Read,
+            true => DepthAccess::Sampled,
         };
-        let mut write = |mut recording: Recording, sight: Sight| -> Result<Brick, Error> {
+        let mut write = |mut recording: Recording, sight: DepthAccess| -> Result<Brick, Error> {
             recording.skip(skip);
             match (depth, sight) {
                 (Some(depth), _) if !class.host_depth => recording.in_depths_of(&depth, center),
-                (Some(depth), Sight::Tested) if class.gathers() => {
+                (Some(depth), DepthAccess::Tested) if class.gathers() => {
                     recording.tested_in_copy(&depth, center);
                 }
-                (Some(depth), Sight::Tested) => recording.tested_in(&depth, center),
-                (Some(depth), Sight::Open | Sight::Read) => recording.behind(&depth, center),
+                (Some(depth), DepthAccess::Tested) => recording.tested_in(&depth, center),
+                (Some(depth), DepthAccess::None | DepthAccess::Sampled) => {
+                    recording.behind(&depth, center)
+                }
                 (None, _) => {}
             }
             slot += 1;
@@ -308,7 +310,7 @@ impl Renderer {
         })?;
         if finds_depth {
             view.each_depth_recording(volume, transfer, order, |recording| {
-                of_slices.push(write(recording, Sight::Read)?);
+                of_slices.push(write(recording, DepthAccess::Sampled)?);
                 Ok::<_, Error>(())
             })?;
         }

@@ -1,13 +1,13 @@
 //! Pictures of one volume in a host's frames.
 
-use super::class::{READ_DEPTH, what};
 use super::frame::{Frame, FrameSize, Given, Recorded};
 use super::function::{self, Function};
 use super::pass::Pass;
-use super::{Class, Error, HostDepthImage, Volume};
+use super::renderer_desc::{READ_DEPTH, what};
+use super::{Error, HostDepthImage, RendererDesc, Volume};
 use crate::gpu::{ComputePipeline, Gpu, ParameterRing};
 use crate::resident::EmptySpace;
-use crate::technique::{self, Mode, Settings, Words, parameter_ring};
+use crate::technique::{self, Mode, Settings, ShaderVariant, parameter_ring};
 use crate::transfer::TransferFunction;
 use std::sync::Arc;
 
@@ -16,8 +16,8 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub struct Renderer {
     pub(super) gpu: Arc<Gpu>,
-    pub(super) class: Class,
-    pub(super) words: Words,
+    pub(super) class: RendererDesc,
+    pub(super) variant: ShaderVariant,
     pub(super) volume: Arc<Volume>,
     pub(super) function: Function,
     /// Finds what is empty under a function.
@@ -35,7 +35,7 @@ pub struct Renderer {
 
 impl Renderer {
     /// Everything that frames of `extent` pixels will need. `function` may be missing in mode [`Mode::Iso`] alone;
-    /// `host_depths` are wanted where [`Class::reads_host_depth`]: one for all frames in flight, or one for each.
+    /// `host_depths` are wanted where [`RendererDesc::reads_host_depth`]: one for all frames in flight, or one for each.
     ///
     /// # Errors
     /// What is not drawn so, by name, what the device cannot do, and no memory.
@@ -43,7 +43,7 @@ impl Renderer {
         gpu: &Arc<Gpu>,
         volume: &Arc<Volume>,
         function: Option<&TransferFunction>,
-        class: Class,
+        class: RendererDesc,
         extent: [u32; 2],
         host_depths: &[HostDepthImage],
     ) -> Result<Self, Error> {
@@ -54,8 +54,8 @@ impl Renderer {
         };
         let settings = &class.settings;
         let function = Function::new(gpu, volume, settings, function, emptying.as_ref())?;
-        let words = words_of(&class.settings, volume, &function)?;
-        let pass = Pass::new(gpu, &class, &words, function.mix)?;
+        let variant = variant_of(&class.settings, volume, &function)?;
+        let pass = Pass::new(gpu, &class, &variant, function.mix)?;
         let bricks = volume.copies().iter().map(|copy| copy.bricks().len()).max();
         let most_bricks = bricks.unwrap_or(1);
         // The depth of slices is looked for with parameters of its own, and the light has its own.
@@ -64,7 +64,7 @@ impl Renderer {
         let slots = (most_bricks as u32).saturating_mul(walks * class.frames_in_flight);
         let mut made = Self {
             gpu: Arc::clone(gpu),
-            words,
+            variant,
             volume: Arc::clone(volume),
             function,
             emptying,
@@ -120,8 +120,8 @@ impl Renderer {
         let settings = &self.class.settings;
         let emptying = self.emptying.as_ref();
         let made = Function::new(&self.gpu, &self.volume, settings, function, emptying)?;
-        let words = words_of(settings, &self.volume, &made)?;
-        if words != self.words {
+        let variant = variant_of(settings, &self.volume, &made)?;
+        if variant != self.variant {
             return Err(Error::OtherClass {
                 made: format!("functions that are {:?}", self.function.mix),
                 wanted: format!("one that is {:?}", made.mix),
@@ -135,13 +135,13 @@ impl Renderer {
     /// # Errors
     /// [`Error::OtherClass`] where other pipelines or textures would be needed; nothing has changed then.
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), Error> {
-        let class = Class {
+        let class = RendererDesc {
             settings,
             ..self.class.clone()
         };
         class.check()?;
         function::check(self.function.mix, &class.settings)?;
-        let words = words_of(&class.settings, &self.volume, &self.function)?;
+        let variant = variant_of(&class.settings, &self.volume, &self.function)?;
         let kind = |settings: &Settings| {
             (
                 settings.technique,
@@ -155,7 +155,8 @@ impl Renderer {
                 settings.is_half_angle(),
             )
         };
-        let is_same = kind(&class.settings) == kind(&self.class.settings) && words == self.words;
+        let is_same =
+            kind(&class.settings) == kind(&self.class.settings) && variant == self.variant;
         let levels = |settings: &Settings| settings.per_mode.levels.clone();
         let empties_other = class.settings.mode == Mode::Iso
             && levels(&class.settings) != levels(&self.class.settings);
@@ -166,7 +167,7 @@ impl Renderer {
             });
         }
         if empties_other {
-            // Which cells have no surface hangs on the levels.
+            // Which cells have no surface depends on the levels.
             let emptying = self.emptying.as_ref();
             let settings = &class.settings;
             let made = Function::new(&self.gpu, &self.volume, settings, None, emptying)?;
@@ -189,7 +190,7 @@ impl Renderer {
         let settings = &self.class.settings;
         let emptying = self.emptying.as_ref();
         let made = Function::new(&self.gpu, volume, settings, function, emptying)?;
-        let words = words_of(settings, volume, &made)?;
+        let variant = variant_of(settings, volume, &made)?;
         let bricks = |volume: &Volume| {
             let counts = volume.copies().iter().map(|copy| copy.bricks().len());
             counts.max().unwrap_or(1)
@@ -202,17 +203,17 @@ impl Renderer {
         let is_as_large =
             !settings.is_half_angle() || volume.grid().dims == self.volume.grid().dims;
         let lies_alike = layouts(volume) == layouts(&self.volume) && is_as_large;
-        if !lies_alike || words != self.words || bricks(volume) > self.most_bricks {
+        if !lies_alike || variant != self.variant || bricks(volume) > self.most_bricks {
             return Err(Error::OtherClass {
-                made: format!("{:?} in {} bricks", self.words, self.most_bricks),
-                wanted: format!("{words:?} in {} bricks", bricks(volume)),
+                made: format!("{:?} in {} bricks", self.variant, self.most_bricks),
+                wanted: format!("{variant:?} in {} bricks", bricks(volume)),
             });
         }
         self.show(Arc::clone(volume), made)
     }
 
     /// What it was made for.
-    pub fn class(&self) -> &Class {
+    pub fn class(&self) -> &RendererDesc {
         &self.class
     }
 
@@ -290,7 +291,11 @@ impl Renderer {
 }
 
 /// The variant of the shaders for these settings: the same for all copies of the volume.
-fn words_of(settings: &Settings, volume: &Volume, function: &Function) -> Result<Words, Error> {
+fn variant_of(
+    settings: &Settings,
+    volume: &Volume,
+    function: &Function,
+) -> Result<ShaderVariant, Error> {
     let copy = &volume.copies()[0];
     let is_graded = function.mix.is_graded();
     let lacks_source = settings.gradient_source_beside(copy.layout()).is_some()
@@ -301,7 +306,7 @@ fn words_of(settings: &Settings, volume: &Volume, function: &Function) -> Result
             hint: "take a filter that reads voxels, or light with it",
         });
     }
-    Ok(Words::mixed(
+    Ok(ShaderVariant::mixed(
         settings,
         function.mix,
         &[technique::Part::numbers(copy)],

@@ -1,7 +1,7 @@
 //! Level C: frames that we submit.
 
-use super::class::check_frames;
-use super::{Error, Renderer, Shot, Volume};
+use super::renderer_desc::check_frames;
+use super::{Error, FrameInfo, Renderer, Volume};
 use crate::gpu::{Commands, Gpu, Load, Target, TimelinePoint};
 use ash::vk;
 use std::fmt;
@@ -54,7 +54,7 @@ impl Submitter {
     pub unsafe fn submit(
         &mut self,
         renderer: &mut Renderer,
-        shot: &Shot,
+        shot: &FrameInfo,
         target: &Target,
         load: Load,
         lock: QueueLock,

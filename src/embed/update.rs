@@ -98,7 +98,7 @@ impl Volume {
         if self.textures().any(|texture| texture.spline().is_some()) {
             return Err(Error::NotEmbedded {
                 what: "an update of a part of a volume whose filter reads coefficients of a spline",
-                hint: "each of them hangs on all voxels: make another volume and `set_volume`",
+                hint: "each of them depends on all voxels: make another volume and `set_volume`",
             });
         }
         let corners = self.copies().iter().filter_map(GpuVolume::corners);

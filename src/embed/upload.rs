@@ -8,7 +8,7 @@ use crate::volume;
 use ash::vk;
 use std::ops::Range;
 
-/// What a volume is filled with, and how much of that is recorded. Corners and cells may have come with the voxels.
+/// What a volume is filled with, and how much of that is recorded. FootprintTexels and cells may have come with the voxels.
 #[derive(Debug, Default)]
 pub(super) struct Upload {
     /// A buffer for each texture, until all of it is recorded.

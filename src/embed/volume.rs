@@ -1,13 +1,15 @@
 //! A volume on a host's device, as the technique of a class reads it.
 
 use super::Error;
-use super::class::what;
+use super::renderer_desc::what;
 use super::updates::Updates;
 use super::upload::Upload;
 use crate::gpu::Gpu;
-use crate::resident::{Apron, Corners, GpuVolume, MacroCells, Texels, TextureLayout, VolumePlan};
+use crate::resident::{
+    FootprintTexels, GpuVolume, Halo, MacroCells, Texels, TextureLayout, VolumePlan,
+};
 use crate::shaders::CELL_VOXELS;
-use crate::technique::{FilterBy, GradientSource, Keep, Mix, Settings, View};
+use crate::technique::{FilterBy, GradientSource, GradientStorage, SampleInputs, Settings, View};
 use crate::volume::{self, Coefficients, Grid, Rescale, VoxelType};
 use std::sync::Arc;
 
@@ -22,7 +24,7 @@ pub struct Volume {
     /// One, or a stack along each axis.
     copies: Vec<GpuVolume>,
     /// Of the copy that rays read, and how far around a cell was looked.
-    cells: Option<(MacroCells, Apron)>,
+    cells: Option<(MacroCells, Halo)>,
     pub(super) upload: Upload,
     pub(super) updates: Arc<Updates>,
 }
@@ -39,10 +41,10 @@ impl Volume {
         voxels: &volume::Volume,
         settings: &Settings,
     ) -> Result<Self, Error> {
-        if settings.keep_gradients == Keep::Always {
+        if settings.gradient_storage == GradientStorage::Precomputed {
             return Err(Error::NotEmbedded {
                 what: "a volume with kept gradients",
-                hint: "take `Keep::Never`, or `resident::KeptGradients` and record them",
+                hint: "take `GradientStorage::OnTheFly`, or `resident::KeptGradients` and record them",
             });
         }
         let stored = voxels.voxels.voxel_type();
@@ -108,7 +110,7 @@ impl Volume {
         let is_raycast = settings.technique.casts_rays();
         let is_one = all.bricks == 1;
         if is_one && wants_corners(gpu, stored, dims, settings) {
-            all.device_bytes += Corners::bytes_of(stored, dims).unwrap_or_default();
+            all.device_bytes += FootprintTexels::bytes_of(stored, dims).unwrap_or_default();
         }
         if is_raycast && settings.skip {
             let side = u64::from(CELL_VOXELS);
@@ -121,7 +123,7 @@ impl Volume {
         Ok(all)
     }
 
-    /// Corners, for pictures that read them.
+    /// FootprintTexels, for pictures that read them.
     fn keep_corners(
         &mut self,
         gpu: &Arc<Gpu>,
@@ -132,7 +134,7 @@ impl Volume {
         let stored = voxels.voxels.voxel_type();
         if copy.bricks().len() == 1
             && wants_corners(gpu, stored, voxels.dims, settings)
-            && let Some(corners) = Corners::new(gpu, voxels)?
+            && let Some(corners) = FootprintTexels::new(gpu, voxels)?
         {
             copy.keep_corners(corners);
         }
@@ -218,11 +220,11 @@ impl Volume {
     }
 }
 
-/// What cells are to know of. Slabs reach farther than the filter, and how far hangs on the camera too: where a voxel
+/// What cells are to know of. Slabs reach farther than the filter, and how far depends on the camera too: where a voxel
 /// is not enough, nothing is left out of the picture.
-fn cells_apron(settings: &Settings) -> Apron {
+fn cells_apron(settings: &Settings) -> Halo {
     let apron = settings.apron();
-    Apron {
+    Halo {
         voxels: apron.voxels + u32::from(settings.preintegrated),
         ..apron
     }
@@ -233,8 +235,8 @@ fn wants_corners(gpu: &Gpu, stored: VoxelType, dims: [u32; 3], settings: &Settin
     let is_wanted = settings.filter_by == FilterBy::Fetch || gpu.has_slow_sampler();
     is_wanted
         && settings.filter.spline().is_none()
-        && settings.reads_corners(Mix::Alone)
-        && Corners::are_for_such(gpu, stored, dims)
+        && settings.reads_footprint_texels(SampleInputs::Scalar)
+        && FootprintTexels::are_for_such(gpu, stored, dims)
 }
 
 /// One copy of the volume, with what fills it: voxels or coefficients, and what gradients are made of beside.

@@ -6,7 +6,7 @@ macro_rules! absent {
     ($($format:ident, $feature:literal, $recognizes:expr;)*) => {$(
         pub(super) mod $format {
             use crate::format::problem::{at, unsupported};
-            use crate::volume::{Limits, ReadError, Source, Wanted};
+            use crate::volume::{Limits, ReadError, Source, VolumeSelection};
             use std::path::Path;
 
             pub(in crate::format) fn recognizes(first: &[u8]) -> bool {
@@ -16,7 +16,7 @@ macro_rules! absent {
 
             pub(in crate::format) fn open(
                 path: &Path,
-                _: &Wanted,
+                _: &VolumeSelection,
                 _: &Limits,
             ) -> Result<Box<dyn Source>, ReadError> {
                 let what = concat!("a file in a build without the feature `", $feature, "`");

@@ -1,6 +1,6 @@
 //! Bytes of a file to [`Voxels`]: byte order, and rounding to f32 where a type has no room in memory.
 
-use crate::volume::{Loss, Piece, Problem, VoxelType, Voxels};
+use crate::volume::{Piece, PrecisionLoss, Problem, VoxelType, Voxels};
 use half::f16;
 
 /// The order of the bytes of a number.
@@ -26,7 +26,7 @@ pub(crate) struct Builder {
     endian: Endian,
     wanted: usize,
     voxels: Voxels,
-    loss: Loss,
+    loss: PrecisionLoss,
 }
 
 /// Bytes of one number in memory.
@@ -55,7 +55,7 @@ impl Builder {
             endian,
             wanted,
             voxels,
-            loss: Loss::default(),
+            loss: PrecisionLoss::default(),
         }
     }
 
@@ -163,7 +163,7 @@ impl Builder {
     clippy::cast_precision_loss,
     reason = "rounding is what this is for; an f32 of at most 2^64 fits an i128"
 )]
-pub(crate) fn round(x: i128, loss: &mut Loss) -> f32 {
+pub(crate) fn round(x: i128, loss: &mut PrecisionLoss) -> f32 {
     let kept = x as f32;
     let distance = (kept as i128).saturating_sub(x).unsigned_abs();
     if distance != 0 {
@@ -178,7 +178,7 @@ pub(crate) fn round(x: i128, loss: &mut Loss) -> f32 {
     clippy::cast_possible_truncation,
     reason = "rounding is what this is for"
 )]
-pub(crate) fn round_float(x: f64, loss: &mut Loss) -> f32 {
+pub(crate) fn round_float(x: f64, loss: &mut PrecisionLoss) -> f32 {
     let kept = x as f32;
     let back = f64::from(kept);
     // An infinity is equal to itself and a NaN stays one: neither is a change.
@@ -226,7 +226,7 @@ mod tests {
         );
         assert_eq!(
             piece.loss,
-            Loss {
+            PrecisionLoss {
                 changed: 2,
                 worst: 1.0
             }
@@ -242,7 +242,7 @@ mod tests {
         let loss = converted(VoxelType::U64, Endian::Little, &bytes, 1).loss;
         assert_eq!(
             loss,
-            Loss {
+            PrecisionLoss {
                 changed: 1,
                 worst: 2.0
             }

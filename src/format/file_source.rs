@@ -7,7 +7,9 @@ use super::problem::at;
 use super::request::wanted_count;
 use super::select::{Row, rows};
 use super::stream::Stream;
-use crate::volume::{Header, Limits, Pick, Piece, Problem, ReadError, Source, VoxelBox, VoxelType};
+use crate::volume::{
+    Header, Limits, Piece, Problem, ReadError, Source, TimeComponent, VoxelBox, VoxelType,
+};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -41,7 +43,7 @@ impl FileSource {
     fn read_piece(
         &self,
         stream: &mut Stream,
-        pick: Pick,
+        pick: TimeComponent,
         region: VoxelBox,
     ) -> Result<Piece, ReadError> {
         let data = &self.data;
@@ -68,7 +70,7 @@ impl FileSource {
     fn read_rows(
         &self,
         stream: &mut Stream,
-        pick: Pick,
+        pick: TimeComponent,
         region: VoxelBox,
         mut take: impl FnMut(&[u8], usize) -> Result<(), Problem>,
     ) -> Result<(), ReadError> {
@@ -106,7 +108,7 @@ const CHUNK_BYTES: u64 = 1 << 18;
 /// Bytes between two rows that are fetched with them.
 const GAP_BYTES: u64 = 1 << 13;
 
-/// Wanted numbers that are fetched at once.
+/// VolumeSelection numbers that are fetched at once.
 #[derive(Clone, Copy, Debug)]
 struct RowPiece {
     start_byte: u64,
@@ -204,7 +206,7 @@ impl Source for FileSource {
         true
     }
 
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         let mut stream = Stream::new(&self.data);
         let piece = self.read_piece(&mut stream, pick, region)?;
         stream.finish()?;
@@ -213,7 +215,7 @@ impl Source for FileSource {
 
     fn read_slabs(
         &self,
-        pick: Pick,
+        pick: TimeComponent,
         region: VoxelBox,
         slices: u32,
         take: &mut dyn FnMut(VoxelBox, Piece) -> ControlFlow<()>,
@@ -227,7 +229,11 @@ impl Source for FileSource {
         stream.finish()
     }
 
-    fn read_bytes(&self, pick: Pick, region: VoxelBox) -> Result<Option<Vec<u8>>, ReadError> {
+    fn read_bytes(
+        &self,
+        pick: TimeComponent,
+        region: VoxelBox,
+    ) -> Result<Option<Vec<u8>>, ReadError> {
         let bytes_each = self.data.stored.bytes();
         let times_kept = to_u64(bytes_each).div_ceil(to_u64(bytes_in_memory(self.data.stored)));
         let max_bytes = self.max_bytes.checked_div(times_kept).unwrap_or(0);

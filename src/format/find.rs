@@ -12,7 +12,7 @@ use super::problem::{self, at};
 #[cfg(feature = "zarr")]
 use super::zarr;
 use super::{FOLDERS, READERS, Reader, first_bytes, raw};
-use crate::volume::{Limits, ReadError, Wanted};
+use crate::volume::{Limits, ReadError, VolumeSelection};
 use std::path::{Path, PathBuf};
 
 /// How to look.
@@ -234,7 +234,7 @@ fn opens(folder: &Path, limits: &Limits) -> bool {
     let reader = FOLDERS
         .iter()
         .find(|reader| (reader.recognizes)(folder, limits));
-    reader.is_some_and(|reader| (reader.open)(folder, &Wanted::default(), limits).is_ok())
+    reader.is_some_and(|reader| (reader.open)(folder, &VolumeSelection::default(), limits).is_ok())
 }
 
 #[cfg(feature = "zarr")]

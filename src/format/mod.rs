@@ -79,7 +79,7 @@ pub(crate) use sequence::expand as numbered_name;
 
 pub use find::{Found, Search, find, stem};
 
-use crate::volume::{Limits, Problem, ReadError, Source, Wanted};
+use crate::volume::{Limits, Problem, ReadError, Source, VolumeSelection};
 use problem::at;
 use std::path::Path;
 
@@ -93,7 +93,11 @@ const FIRST_BYTES: u64 = 4096;
 /// # Errors
 /// The file cannot be read, is of no known format, says something that cannot be, or promises more voxels than
 /// there are bytes. The error names the file, the field, what was wanted and what was found.
-pub fn open(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Source>, ReadError> {
+pub fn open(
+    path: &Path,
+    wanted: &VolumeSelection,
+    limits: &Limits,
+) -> Result<Box<dyn Source>, ReadError> {
     if path.is_dir() {
         let reader = FOLDERS
             .iter()
@@ -114,7 +118,7 @@ pub fn open(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Box<dyn Sou
     }
 }
 
-type Open = fn(&Path, &Wanted, &Limits) -> Result<Box<dyn Source>, ReadError>;
+type Open = fn(&Path, &VolumeSelection, &Limits) -> Result<Box<dyn Source>, ReadError>;
 
 /// A reader of files.
 struct Reader {

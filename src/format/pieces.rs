@@ -4,7 +4,8 @@ use super::convert::{bytes_in_memory, to_u64};
 use super::problem::{at, invalid};
 use super::request::wanted_count;
 use crate::volume::{
-    Header, Limits, Loss, Pick, Piece, Problem, ReadError, Source, VoxelBox, Voxels,
+    Header, Limits, Piece, PrecisionLoss, Problem, ReadError, Source, TimeComponent, VoxelBox,
+    Voxels,
 };
 use std::path::{Path, PathBuf};
 
@@ -105,7 +106,7 @@ impl Source for Pieces {
         &self.header
     }
 
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         let header = &self.header;
         let format = header.format.name();
         let length =
@@ -118,7 +119,7 @@ impl Source for Pieces {
             limit_bytes: self.max_bytes,
         };
         let mut whole: Option<Voxels> = None;
-        let mut loss = Loss::default();
+        let mut loss = PrecisionLoss::default();
         for (place, source) in &self.pieces {
             let Some(shared) = common(region, *place) else {
                 continue;

@@ -1,13 +1,13 @@
 //! What is asked of a source, compared with its header before anything is allocated.
 
 use super::convert::{bytes_in_memory, to_u64};
-use crate::volume::{Header, Pick, Problem, VoxelBox};
+use crate::volume::{Header, Problem, TimeComponent, VoxelBox};
 
 /// How many voxels `region` has, if `pick` and `region` lie inside the header and `max_bytes` hold them in memory.
 pub(crate) fn wanted_count(
     format: &'static str,
     header: &Header,
-    pick: Pick,
+    pick: TimeComponent,
     region: VoxelBox,
     max_bytes: u64,
 ) -> Result<usize, Problem> {
@@ -32,7 +32,7 @@ pub(crate) fn wanted_count(
 fn check(
     format: &'static str,
     header: &Header,
-    pick: Pick,
+    pick: TimeComponent,
     region: VoxelBox,
 ) -> Result<(), Problem> {
     let wrong = |field: &str, wanted: String, found: String| {

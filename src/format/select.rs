@@ -3,7 +3,7 @@
 //! The array's axes stand fastest first. Space axes keep their order, so the wanted numbers come out of
 //! the file x fastest by going forward only.
 
-use crate::volume::{Pick, VoxelBox};
+use crate::volume::{TimeComponent, VoxelBox};
 
 /// What an axis of the stored array means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,7 +33,7 @@ pub(crate) struct Row {
 /// The wanted numbers as rows, in the order in which they are stored.
 ///
 /// The product of all sizes fits a u64, and `pick` and `region` lie inside the axes: what saturates below never does.
-pub(crate) fn rows(axes: &[Axis], pick: Pick, region: VoxelBox) -> Rows {
+pub(crate) fn rows(axes: &[Axis], pick: TimeComponent, region: VoxelBox) -> Rows {
     let mut component = u64::from(pick.component);
     let mut time = u64::from(pick.time);
     let mut spans: Vec<Span> = Vec::new();
@@ -143,7 +143,7 @@ mod tests {
     const SIZES: [u64; 5] = [2, 4, 3, 5, 3];
 
     /// Every wanted index, found the slow way.
-    fn expected(roles: [Role; 5], pick: Pick, region: VoxelBox) -> Vec<u64> {
+    fn expected(roles: [Role; 5], pick: TimeComponent, region: VoxelBox) -> Vec<u64> {
         let total: u64 = SIZES.iter().product();
         (0..total)
             .filter(|&index| {
@@ -187,7 +187,7 @@ mod tests {
             for min in [[0, 0, 0], [1, 0, 0], [0, 1, 1]] {
                 for max in [dims, [dims[0], dims[1] - 1, dims[2]], [2, 2, 2]] {
                     let region = VoxelBox { min, max };
-                    let pick = Pick {
+                    let pick = TimeComponent {
                         time: 1,
                         component: 1,
                     };
@@ -212,7 +212,7 @@ mod tests {
             min: [0; 3],
             max: [7, 5, 3],
         };
-        let found: Vec<Row> = rows(&axes, Pick::default(), region).collect();
+        let found: Vec<Row> = rows(&axes, TimeComponent::default(), region).collect();
         let whole = Row {
             start: 0,
             count: 105,

@@ -14,13 +14,13 @@ use std::fmt;
 pub struct Requirement {
     /// What is asked for.
     pub item: Item,
-    /// How much hangs on it.
+    /// How much depends on it.
     pub need: Need,
     /// What it is for: the pictures, or the speed, that there is no other way to.
     pub unlocks: &'static str,
 }
 
-/// How much hangs on a requirement.
+/// How much depends on a requirement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Need {
     /// A device that lacks it is refused.

@@ -1,8 +1,8 @@
 //! The layers that come of what the CPU references leave for each pixel.
 
+use super::layer_rules::{has_labels, has_normals};
 use super::position::{labels, positions};
 use super::reference::normals;
-use super::tally::{has_labels, has_normals};
 use crate::picture::{Layer, LayerKind};
 use crate::real::Real;
 use crate::resolve::reference::projected_value;

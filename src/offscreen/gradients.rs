@@ -3,29 +3,31 @@
 use crate::gpu::Gpu;
 use crate::resident::KeptGradients;
 use crate::scene::Scene;
-use crate::technique::{FilterBy, Keep, Settings};
+use crate::technique::{FilterBy, GradientStorage, Settings};
 use std::borrow::Cow;
 
 /// Part of the device's memory that kept gradients may take: voxels and pictures want theirs.
 const SHARE: f64 = 0.5;
 
-/// The settings of a scene with [`Keep::Auto`] decided, and with [`FilterBy::Auto`] where a device has the sampler.
+/// The settings of a scene with [`GradientStorage::Auto`] decided, and with [`FilterBy::Auto`] where a device has the sampler.
 pub fn decided<'a>(gpu: &Gpu, scene: &Scene<'a>) -> Cow<'a, Settings> {
     let settings = scene.settings;
     let filter_by = filter_by(settings.filter_by, gpu.has_slow_sampler());
-    if settings.keep_gradients != Keep::Auto && settings.filter_by == filter_by {
+    if settings.gradient_storage != GradientStorage::Auto && settings.filter_by == filter_by {
         return Cow::Borrowed(settings);
     }
     let can_be = settings.kept_operator().is_some() && scene.volume.validity.is_none();
     let voxels = scene.volume.dims.iter().map(|&n| u64::from(n)).product();
     let heap_bytes = gpu.limits().max_heap_bytes;
-    let keep_gradients = match settings.keep_gradients {
-        Keep::Auto if can_be && is_worth_it(gpu.is_cpu(), heap_bytes, voxels) => Keep::Always,
-        Keep::Auto => Keep::Never,
+    let gradient_storage = match settings.gradient_storage {
+        GradientStorage::Auto if can_be && is_worth_it(gpu.is_cpu(), heap_bytes, voxels) => {
+            GradientStorage::Precomputed
+        }
+        GradientStorage::Auto => GradientStorage::OnTheFly,
         wanted => wanted,
     };
     Cow::Owned(Settings {
-        keep_gradients,
+        gradient_storage,
         filter_by,
         ..settings.clone()
     })

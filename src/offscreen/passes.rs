@@ -10,16 +10,18 @@ use crate::resident::GpuTransfer;
 use crate::resolve::Resolve;
 use crate::technique::blend::Drawn;
 use crate::technique::gather::{Gather, GatherDesc};
-use crate::technique::{ACCUMULATION_FORMAT, Mode, Order, Settings, Sight, Technique, Words};
+use crate::technique::{
+    ACCUMULATION_FORMAT, DepthAccess, Mode, Order, Settings, ShaderVariant, Technique,
+};
 use ash::vk;
 use std::cell::OnceCell;
 use std::sync::Arc;
 
 /// What pipelines depend on.
-pub type Key = (Technique, Mode, Order, [bool; 4], Words);
+pub type Key = (Technique, Mode, Order, [bool; 4], ShaderVariant);
 
 /// The key of such pictures.
-pub fn key_of(settings: &Settings, words: &Words, is_patched: bool) -> Key {
+pub fn key_of(settings: &Settings, variant: &ShaderVariant, is_patched: bool) -> Key {
     let Settings {
         technique,
         mode,
@@ -30,7 +32,7 @@ pub fn key_of(settings: &Settings, words: &Words, is_patched: bool) -> Key {
     let is_cued = per_mode.depth_cue != 0.0;
     let is_half = settings.is_half_angle();
     let marks = [is_cued, per_mode.exact_maximum, is_half, is_patched];
-    (technique, mode, order, marks, *words)
+    (technique, mode, order, marks, *variant)
 }
 
 /// The pipelines of one kind of picture.
@@ -50,11 +52,11 @@ impl Passes {
     pub fn new(
         gpu: &Arc<Gpu>,
         settings: &Settings,
-        words: &Words,
+        variant: &ShaderVariant,
         is_patched: bool,
     ) -> Result<Self, Error> {
         let mode = settings.mode;
-        let key = key_of(settings, words, is_patched);
+        let key = key_of(settings, variant, is_patched);
         Ok(Self {
             picture: gather(gpu, settings, &key, Drawn::Picture(mode))?,
             count: OnceCell::new(),
@@ -222,13 +224,13 @@ fn gather(
     key: &Key,
     drawn: Drawn,
 ) -> Result<Box<dyn Gather>, Error> {
-    let (.., [.., is_patched], words) = key;
+    let (.., [.., is_patched], variant) = key;
     (settings.technique.desc().gather)(&GatherDesc {
         gpu,
         settings,
-        words,
+        variant,
         drawn,
-        sight: Sight::Open,
+        sight: DepthAccess::None,
         is_patched: *is_patched,
     })
 }

@@ -1,4 +1,4 @@
-//! A scene to a picture on the CPU: every technique by its twin, in f32 or f64, no Vulkan anywhere.
+//! A scene to a picture on the CPU: every technique by its CPU reference, in f32 or f64, no Vulkan anywhere.
 
 mod half_angle;
 mod light;
@@ -19,8 +19,8 @@ use crate::technique::mixture::color_of;
 use crate::technique::reference::{Gathered, Samples};
 use crate::technique::shading::shade;
 use crate::technique::{
-    AlikeCells, Error, Filter, GradientSource, InPixel, LightField, Mix, Mode, Recording, Role,
-    Settings, isosurface,
+    AlikeCells, Error, Filter, GradientSource, InPixel, LightField, Mode, Recording, Role,
+    SampleInputs, Settings, isosurface,
 };
 use crate::transfer::{
     Absorption, PackedWidgets, Points, SlabTable, Table, TransferFunction, classify_by_points,
@@ -46,7 +46,7 @@ pub fn render<R: Real>(scene: &Scene) -> Result<Picture, Error> {
             Ok((picture, *share))
         }));
     }
-    if scene.mix() == Mix::Channels && scene.settings.mode.is_projection() {
+    if scene.mix() == SampleInputs::Channels && scene.settings.mode.is_projection() {
         let pictures = scene.projected().into_iter();
         return sum_of(pictures.map(|one| render_one::<R>(&one)));
     }

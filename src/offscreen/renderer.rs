@@ -12,8 +12,8 @@ mod copied;
 mod filtered;
 mod gather;
 mod kept;
-mod left;
 mod pacing;
+mod readback;
 mod skipping;
 mod streaming;
 
@@ -21,12 +21,12 @@ use super::Error;
 use super::fade::{render_faded, stacks_of};
 use super::gradients::decided;
 use super::keyed::Keyed;
+use super::layer_rules::{Clock, Mean, check_layers};
 use super::light::Matter;
 use super::passes::{Passes, key_of};
 use super::stream::{Cache, Stream};
 use super::submission::Submission;
 use super::sum::sum_of;
-use super::tally::{Clock, Mean, check_layers};
 use super::targets::Targets;
 use super::time_slices::TimeSlices;
 use super::upload::{keep, upload, upload_with_gradient_source};
@@ -37,9 +37,10 @@ use crate::scene::{Scene, positions_in_pixel};
 use crate::technique::cost::ms_of_looks;
 use crate::technique::gather::{CanvasDesc, PICTURE};
 use crate::technique::{
-    self, Functions, InPixel, LightPlan, LightVolume, Mix, Mode, Part, Words, parameter_ring,
+    self, Functions, InPixel, LightPlan, LightVolume, Mode, Part, SampleInputs, ShaderVariant,
+    parameter_ring,
 };
-use crate::transfer::{Graded, TransferFunction};
+use crate::transfer::{GradientTransfer, TransferFunction};
 use crate::volume::Volume;
 use copied::Copied;
 pub use filtered::Filtered;
@@ -213,7 +214,7 @@ impl<'v> Renderer<'v> {
     ) -> Result<(), Error> {
         let settings = &decided(self.device.gpu(), scene);
         let scene = &Scene { settings, ..*scene };
-        let is_sum = scene.mix() == Mix::Channels && scene.settings.mode.is_projection();
+        let is_sum = scene.mix() == SampleInputs::Channels && scene.settings.mode.is_projection();
         self.upload(scene)?;
         match is_sum || !stacks_of(scene).is_empty() {
             true => Ok(()),
@@ -235,7 +236,7 @@ impl<'v> Renderer<'v> {
         }
         self.upload(scene)?;
         let mut clock = Clock(self.timer.is_some().then_some(0.0));
-        if scene.mix() == Mix::Channels && scene.settings.mode.is_projection() {
+        if scene.mix() == SampleInputs::Channels && scene.settings.mode.is_projection() {
             let all = scene.projected();
             let of = all.len();
             let one_by_one = all.into_iter().enumerate();
@@ -318,16 +319,17 @@ impl<'v> Renderer<'v> {
         let at_once = if is_half { 2 } else { BRICKS_AT_ONCE };
         let bricks = parts[0].volume.bricks().len();
         let slots = bricks.max(at_once) as u32;
-        let words = Words::mixed(scene.settings, scene.mix(), &parts).of_whole(scene.settings);
+        let variant =
+            ShaderVariant::mixed(scene.settings, scene.mix(), &parts).of_whole(scene.settings);
         let functions = scene.transfers().into_iter().flatten();
         let points = functions.map(|f| f.color.len().max(f.opacity.len())).max();
         let graded = scene.transfer.and_then(|function| function.graded.as_ref());
         let functions = Functions {
             points: points.unwrap_or(0),
-            second: graded.is_some_and(Graded::needs_second),
+            second: graded.is_some_and(GradientTransfer::needs_second),
         };
         scene.view(&scene.volume.grid(), [0.0; 2]).check_turns(
-            &words,
+            &variant,
             parts.len(),
             functions,
             gpu.limits().max_loop_turns,
@@ -337,7 +339,7 @@ impl<'v> Renderer<'v> {
         }
         let patches = self.patches_for(scene)?;
         let is_patched = patches.is_some();
-        let key = key_of(scene.settings, &words, is_patched);
+        let key = key_of(scene.settings, &variant, is_patched);
         let desc = CanvasDesc {
             extent: scene.extent_pixels,
             dims: scene.volume.dims,
@@ -348,7 +350,7 @@ impl<'v> Renderer<'v> {
             Some(passes) if *passes.key() == key => passes,
             _ => {
                 self.targets = None;
-                Passes::new(&gpu, scene.settings, &words, is_patched)?
+                Passes::new(&gpu, scene.settings, &variant, is_patched)?
             }
         };
         let targets = match self.targets.take() {

@@ -107,7 +107,7 @@ impl MacroCells {
 mod tests {
     use super::*;
     use crate::gpu::{DeviceChoice, Gpu, Headless, Memory, Options};
-    use crate::resident::{Apron, GpuVolume, TextureLayout};
+    use crate::resident::{GpuVolume, Halo, TextureLayout};
     use crate::volume::{Rescale, Volume, Voxels};
     use glam::DAffine3;
     use std::sync::Arc;
@@ -180,7 +180,7 @@ mod tests {
         let mut device = Headless::new(&DeviceChoice::Default, &Options::default())
             .expect("a Vulkan device (`make test` installs one)");
         let gpu = Arc::clone(device.gpu());
-        let apron = Apron {
+        let apron = Halo {
             voxels: 1,
             overshoot: 0.0,
             is_mixed: true,

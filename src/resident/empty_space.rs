@@ -9,8 +9,8 @@ use crate::gpu::{
     Bindings, Buffer, ComputePipeline, Error, Gpu, Memory, ParameterRing, Resource, Use, barriers,
     buffer_barrier, group_count, within,
 };
-use crate::shaders::{CellGrid, Pass, ROOMS_A_WORD, shader};
-use crate::transfer::{Alike, Near, Seen};
+use crate::shaders::{CELLS_PER_WORD, CellGrid, Pass, shader};
+use crate::transfer::{ContourReach, HomogeneousRanges, VisibleRanges};
 use ash::vk;
 use std::ops::Range;
 use std::sync::Arc;
@@ -22,12 +22,12 @@ const ALSO: u32 = PASSES;
 /// What looks alike.
 const LIKE: u32 = PASSES + 1;
 
-/// The rooms of a volume's macro cells. Made empty; [`EmptySpace::record`] fills them.
+/// The distances of a volume's macro cells. Made empty; [`EmptySpace::record`] fills them.
 #[derive(Debug)]
 pub struct EmptySpace {
     gpu: Arc<Gpu>,
     grids: Vec<CellGrid>,
-    rooms: [Buffer; 2],
+    distances: [Buffer; 2],
     grid_ring: ParameterRing,
     /// Of even and of odd passes.
     bindings: [Bindings; 2],
@@ -52,12 +52,12 @@ struct Words<'a> {
     first: f32,
     scale: f32,
     next: &'a [u32],
-    contours: &'a [Near],
+    contours: &'a [ContourReach],
 }
 
-impl<'a> From<&'a Seen> for Words<'a> {
-    fn from(seen: &'a Seen) -> Self {
-        let Seen {
+impl<'a> From<&'a VisibleRanges> for Words<'a> {
+    fn from(seen: &'a VisibleRanges) -> Self {
+        let VisibleRanges {
             first,
             scale,
             next,
@@ -72,9 +72,9 @@ impl<'a> From<&'a Seen> for Words<'a> {
     }
 }
 
-impl<'a> From<&'a Alike> for Words<'a> {
-    fn from(alike: &'a Alike) -> Self {
-        let Alike { first, scale, end } = alike;
+impl<'a> From<&'a HomogeneousRanges> for Words<'a> {
+    fn from(alike: &'a HomogeneousRanges) -> Self {
+        let HomogeneousRanges { first, scale, end } = alike;
         Self {
             first: *first,
             scale: *scale,
@@ -104,7 +104,7 @@ impl Mapping {
             seen.contours.len() as u32,
         ];
         words.extend_from_slice(seen.next);
-        for Near { value, reach } in seen.contours {
+        for ContourReach { value, reach } in seen.contours {
             words.extend([value, reach].map(|n| n.to_bits()));
         }
         let bytes: &[u8] = bytemuck::cast_slice(&words);
@@ -133,8 +133,8 @@ impl Mapping {
             ("cell_grid", Resource::Uniform(grid_ring)),
             ("cell_ranges", Resource::Storage(cells.ranges())),
             ("seen", Resource::Storage(&self.seen)),
-            ("rooms_before", Resource::Storage(before)),
-            ("rooms_after", Resource::Storage(after)),
+            ("distances_before", Resource::Storage(before)),
+            ("distances_after", Resource::Storage(after)),
             ("which", Resource::Uniform(&self.pass_ring)),
         ];
         Bindings::new(gpu, self.pipeline.layout(), &given)
@@ -146,7 +146,7 @@ impl EmptySpace {
     ///
     /// # Errors
     /// Where the device gives no memory, or has no buffers of that size.
-    pub fn new(gpu: &Arc<Gpu>, cells: &MacroCells, seen: &Seen) -> Result<Self, Error> {
+    pub fn new(gpu: &Arc<Gpu>, cells: &MacroCells, seen: &VisibleRanges) -> Result<Self, Error> {
         Self::of_several(gpu, &[(cells, seen)])
     }
 
@@ -157,14 +157,18 @@ impl EmptySpace {
     ///
     /// # Panics
     /// Without a volume, or where the volumes have other cells.
-    pub fn of_several(gpu: &Arc<Gpu>, several: &[(&MacroCells, &Seen)]) -> Result<Self, Error> {
+    pub fn of_several(
+        gpu: &Arc<Gpu>,
+        several: &[(&MacroCells, &VisibleRanges)],
+    ) -> Result<Self, Error> {
         let ((cells, seen), others) = several.split_first().expect("at least one volume");
         let mut made = Self::with(gpu, cells, Arc::new(Mapping::new(gpu, *seen)?))?;
         for (other, seen) in others {
             assert_eq!(other.cell_count(), cells.cell_count(), "the same cells");
             let mapping = Arc::new(Mapping::new(gpu, *seen)?);
-            let rooms = &made.rooms;
-            let bound = mapping.bind(gpu, &made.grid_ring, other, [&rooms[1], &rooms[0]])?;
+            let distances = &made.distances;
+            let bound =
+                mapping.bind(gpu, &made.grid_ring, other, [&distances[1], &distances[0]])?;
             made.others.push((mapping, bound));
         }
         Ok(made)
@@ -177,13 +181,13 @@ impl EmptySpace {
     pub fn with_alike(
         gpu: &Arc<Gpu>,
         cells: &MacroCells,
-        seen: &Seen,
-        alike: &Alike,
+        seen: &VisibleRanges,
+        alike: &HomogeneousRanges,
     ) -> Result<Self, Error> {
         let mut made = Self::new(gpu, cells, seen)?;
         let pipeline = Arc::clone(&made.mapping.pipeline);
         let mapping = Arc::new(Mapping::by(gpu, pipeline, alike)?);
-        let [before, after] = &made.rooms;
+        let [before, after] = &made.distances;
         let bound = mapping.bind(gpu, &made.grid_ring, cells, [before, after])?;
         made.alike = Some((mapping, bound));
         Ok(made)
@@ -205,7 +209,7 @@ impl EmptySpace {
         gpu: &Arc<Gpu>,
         pipeline: &Arc<ComputePipeline>,
         cells: &MacroCells,
-        seen: &Seen,
+        seen: &VisibleRanges,
     ) -> Result<Self, Error> {
         let mapping = Mapping::by(gpu, Arc::clone(pipeline), seen)?;
         Self::with(gpu, cells, Arc::new(mapping))
@@ -221,24 +225,24 @@ impl EmptySpace {
 
     fn with(gpu: &Arc<Gpu>, cells: &MacroCells, mapping: Arc<Mapping>) -> Result<Self, Error> {
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_SRC;
-        let rooms = || {
+        let distances = || {
             Buffer::new(
                 gpu,
                 4 * cells.cell_count(),
                 storage,
                 Memory::Device,
-                "rooms",
+                "distance_map",
             )
         };
-        let rooms = [rooms()?, rooms()?];
+        let distances = [distances()?, distances()?];
         let grid_ring = ring_of(gpu, cells.grids())?;
-        let bound = |rooms| mapping.bind(gpu, &grid_ring, cells, rooms);
-        let [a, b] = &rooms;
+        let bound = |distances| mapping.bind(gpu, &grid_ring, cells, distances);
+        let [a, b] = &distances;
         let bindings = [bound([b, a])?, bound([a, b])?];
         Ok(Self {
             gpu: Arc::clone(gpu),
             grids: cells.grids().to_vec(),
-            rooms,
+            distances,
             grid_ring,
             bindings,
             mapping,
@@ -247,9 +251,9 @@ impl EmptySpace {
         })
     }
 
-    /// What techniques read: a byte for each cell, in words (`shaders/lib/room_word.wgsl`). 0: there may be matter.
-    pub fn rooms(&self) -> &Buffer {
-        &self.rooms[1]
+    /// What techniques read: a byte for each cell, in words (`shaders/lib/distance_map_word.wgsl`). 0: there may be matter.
+    pub fn distance_map(&self) -> &Buffer {
+        &self.distances[1]
     }
 
     /// Records what fills them: after the record of the cells, and once more whenever those have changed. The barriers
@@ -317,8 +321,8 @@ impl EmptySpace {
                     );
                     // Each cell may be found to have matter in a further volume.
                     for (mapping, bindings) in others {
-                        let (rooms, again) = (&self.rooms[parity], Use::ComputeWrite);
-                        buffer_barrier(&self.gpu, cmd, rooms, again, again);
+                        let (distances, again) = (&self.distances[parity], Use::ComputeWrite);
+                        buffer_barrier(&self.gpu, cmd, distances, again, again);
                         let offsets = [offsets[0], mapping.pass_ring.offset(ALSO)?];
                         mapping
                             .pipeline
@@ -337,8 +341,12 @@ impl EmptySpace {
             }
             // SAFETY: outside rendering; the buffers live until `cmd` has run.
             unsafe {
-                let written = (&self.rooms[parity], Use::ComputeWrite, Use::ComputeRead);
-                let read = (&self.rooms[1 - parity], Use::ComputeRead, Use::ComputeWrite);
+                let written = (&self.distances[parity], Use::ComputeWrite, Use::ComputeRead);
+                let read = (
+                    &self.distances[1 - parity],
+                    Use::ComputeRead,
+                    Use::ComputeWrite,
+                );
                 barriers(&self.gpu, cmd, [], [written, read], []);
             }
         }
@@ -374,7 +382,7 @@ impl EmptySpace {
             let again = Use::ComputeWrite;
             // SAFETY: the caller's promises; a cell is marked behind its last pass.
             unsafe {
-                buffer_barrier(&self.gpu, cmd, &self.rooms[1], again, again);
+                buffer_barrier(&self.gpu, cmd, &self.distances[1], again, again);
                 let pipeline = &mapping.pipeline;
                 pipeline.dispatch_run(cmd, bindings, &offsets, groups(grid)?, run);
             }
@@ -386,5 +394,5 @@ impl EmptySpace {
 /// Threads for the cells of a brick, one a word.
 fn words_of(grid: &CellGrid) -> [u32; 3] {
     let [nx, ny, nz] = grid.cells;
-    [nx.div_ceil(ROOMS_A_WORD), ny, nz]
+    [nx.div_ceil(CELLS_PER_WORD), ny, nz]
 }

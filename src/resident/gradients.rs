@@ -57,7 +57,7 @@ impl KeptGradients {
             TextureLayout::Texture3d => ("box", "volume"),
             TextureLayout::Stack(_) => ("stack", "stack"),
         };
-        let pipeline = ComputePipeline::new(gpu, shader(&format!("keep_gradients.{word}")))?;
+        let pipeline = ComputePipeline::new(gpu, shader(&format!("precompute_gradients.{word}")))?;
         let [low, high] = volume.value_range();
         let range = (high - low) as f32;
         let scale = if range > 0.0 && range.is_finite() {

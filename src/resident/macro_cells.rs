@@ -21,7 +21,7 @@ use std::sync::Arc;
 
 /// How far around a macro cell the voxels lie that samples in it touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Apron {
+pub struct Halo {
     /// On each side. Half a voxel more than a filter needs, so that rounding of positions does not count: one for
     /// nearest and linear filters, two for wider ones.
     pub voxels: u32,
@@ -32,7 +32,7 @@ pub struct Apron {
     pub is_mixed: bool,
 }
 
-impl Apron {
+impl Halo {
     /// The same for cells that know of all voxels that central differences of samples are made of: one more on each
     /// side.
     pub fn of_gradients(self) -> Self {
@@ -88,7 +88,7 @@ impl MacroCells {
     ///
     /// # Errors
     /// Where the device gives no memory, or has no buffers of that size.
-    pub fn new(gpu: &Arc<Gpu>, volume: &GpuVolume, apron: Apron) -> Result<Self, Error> {
+    pub fn new(gpu: &Arc<Gpu>, volume: &GpuVolume, apron: Halo) -> Result<Self, Error> {
         let (name, values) = match volume.layout() {
             TextureLayout::Texture3d => ("macro_cells.box", "volume"),
             TextureLayout::Stack(_) => ("macro_cells.stack", "stack"),
@@ -124,7 +124,7 @@ impl MacroCells {
     pub fn of_voxels(
         gpu: &Arc<Gpu>,
         volume: &GpuVolume,
-        apron: Apron,
+        apron: Halo,
         voxels: &Volume,
     ) -> Result<Self, Error> {
         assert!(volume.spline().is_none(), "ranges of voxels");
@@ -146,7 +146,7 @@ impl MacroCells {
     fn empty(
         gpu: &Arc<Gpu>,
         volume: &GpuVolume,
-        apron: Apron,
+        apron: Halo,
         memory: Memory,
     ) -> Result<Self, Error> {
         let mut first = 0;
@@ -270,7 +270,7 @@ fn grid_of(
     volume: &GpuVolume,
     own: VoxelBox,
     stored: VoxelBox,
-    apron: Apron,
+    apron: Halo,
     first: u32,
 ) -> CellGrid {
     let coding = volume.texel().coding;

@@ -5,7 +5,7 @@
 
 use super::TexelFormat;
 use super::bricks::Cell;
-use super::corners::Corners;
+use super::footprint_texels::FootprintTexels;
 use super::gradients::KeptGradients;
 use super::plan::Plan;
 use crate::gpu::{Error, Gpu, Image, ImageKind, Sampler};
@@ -77,7 +77,7 @@ pub struct GpuVolume {
     spline: Option<Spline>,
     gradient_source: Option<Box<GpuVolume>>,
     kept_gradients: Option<KeptGradients>,
-    pub(super) corners: Option<Corners>,
+    pub(super) corners: Option<FootprintTexels>,
     /// Bound in the place of a mask where every voxel has a value, and of a host's depth buffer where there is none. Nobody
     /// looks at their texels.
     pub(super) no_mask: Image,
@@ -134,7 +134,7 @@ impl Plan {
         gpu: &Arc<Gpu>,
         volume: &Volume,
         cells: &[Cell],
-        corners: Option<Corners>,
+        corners: Option<FootprintTexels>,
     ) -> Result<GpuVolume, Error> {
         let has_texels = corners.is_none();
         let brick = |&cell: &Cell| {
@@ -276,14 +276,14 @@ impl GpuVolume {
     }
 
     /// Objects for a volume whose values lie in its corners alone. Only what reads nothing else may be drawn of it
-    /// ([`Settings::reads_corners_alone`](crate::technique::Settings::reads_corners_alone)).
+    /// ([`Settings::reads_footprint_texels_alone`](crate::technique::Settings::reads_footprint_texels_alone)).
     ///
     /// # Errors
     /// As [`GpuVolume::new`].
     pub(crate) fn of_corners(
         gpu: &Arc<Gpu>,
         volume: &Volume,
-        corners: Corners,
+        corners: FootprintTexels,
     ) -> Result<Self, Error> {
         let plan = Plan::of(gpu, volume, TextureLayout::Texture3d);
         let all = VoxelBox {

@@ -1,4 +1,4 @@
-//! Accumulation to colour on the CPU: twin of `shaders/resolve.wgsl`.
+//! Accumulation to colour on the CPU: CPU reference of `shaders/resolve.wgsl`.
 //!
 //! ```text
 //! composite           the picture itself
@@ -37,7 +37,7 @@ pub fn premultiplied<R: Real>(
     [opacity * r, opacity * g, opacity * b, opacity]
 }
 
-/// How much light is left at a depth: twin of `shaders/lib/resolve_cued.wgsl`.
+/// How much light is left at a depth: CPU reference of `shaders/lib/resolve_cued.wgsl`.
 pub fn light_at<R: Real>(frame: &Frame, depth: R) -> R {
     let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
     let far = (depth - R::from_f32(frame.depth_near)) * R::from_f32(frame.depth_scale);

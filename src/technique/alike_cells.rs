@@ -1,9 +1,9 @@
-//! Which macro cells hold values that look alike: twin of `shaders/macro_cells.wgsl` and of the last pass of
+//! Which macro cells hold values that look alike: CPU reference of `shaders/macro_cells.wgsl` and of the last pass of
 //! `shaders/distance_map.wgsl`, for linear and nearest filters.
 
 use crate::real::Real;
 use crate::shaders::CELL_VOXELS;
-use crate::transfer::Alike;
+use crate::transfer::HomogeneousRanges;
 use crate::volume::Volume;
 use crate::volume::sample::nearest;
 
@@ -19,7 +19,7 @@ pub struct AlikeCells {
 
 impl AlikeCells {
     /// Of all voxels of a volume without holes.
-    pub fn new(volume: &Volume, alike: &Alike) -> Self {
+    pub fn new(volume: &Volume, alike: &HomogeneousRanges) -> Self {
         let cells = volume.dims.map(|n| n.div_ceil(CELL_VOXELS));
         let [nx, ny, nz] = cells;
         let all = (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));

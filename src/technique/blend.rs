@@ -1,4 +1,4 @@
-//! What a blending unit does with the fragments of one pixel, and its twin on the CPU.
+//! What a blending unit does with the fragments of one pixel, and its CPU reference on the CPU.
 //!
 //! ```text
 //! over    back to front   C = s + (1 - alpha_s) C
@@ -8,7 +8,7 @@
 //!
 //! All colours are premultiplied (Porter and Duff 1984); `algorithms.md` 1.6.
 
-use super::{Fold, Mode, Order, Sight, Take, Words};
+use super::{DepthAccess, Fold, Mode, Order, SampleKind, ShaderVariant};
 use crate::gpu::{Blend, Gpu};
 use crate::real::Real;
 use crate::shaders::{Shader, find, shader};
@@ -50,15 +50,15 @@ impl Drawn {
         self,
         gpu: &Gpu,
         [cover, slicer]: [&str; 2],
-        words: &Words,
-        sight: Sight,
+        variant: &ShaderVariant,
+        sight: DepthAccess,
     ) -> [&'static Shader; 2] {
-        let name = self.fragment_name(slicer, words, sight);
+        let name = self.fragment_name(slicer, variant, sight);
         let of = match slicer {
             "slices_3d" => "planes",
             _ => "stack",
         };
-        let cuts = if words.is_whole { ".whole" } else { "" };
+        let cuts = if variant.is_whole { ".whole" } else { "" };
         let handed = find(&format!("{name}.{of}{cuts}"));
         match (handed, find(&name)) {
             (Some(fragment), asked) if gpu.has_slow_parameters() || asked.is_none() => {
@@ -68,23 +68,23 @@ impl Drawn {
         }
     }
 
-    fn fragment_name(self, slicer: &str, words: &Words, sight: Sight) -> String {
-        let Words {
+    fn fragment_name(self, slicer: &str, variant: &ShaderVariant, sight: DepthAccess) -> String {
+        let ShaderVariant {
             filter,
             holes,
             transfer,
             mix,
             take,
             ..
-        } = words;
+        } = variant;
         let mix = mix.general().word();
         let sight = match sight {
-            Sight::Open | Sight::Tested => "",
-            Sight::Read => ".host",
+            DepthAccess::None | DepthAccess::Tested => "",
+            DepthAccess::Sampled => ".host",
         };
         let slicer = format!("{slicer}{}", take.word());
         match self {
-            Self::Picture(Mode::Composite) if *take == Take::Slab => {
+            Self::Picture(Mode::Composite) if *take == SampleKind::Preintegrated => {
                 format!("{slicer}.composite{sight}.{filter}.{holes}")
             }
             // Modes that need rays are refused where parameters are made: nothing is drawn by these.
@@ -181,7 +181,7 @@ pub fn blend_material<R: Real>(
     [r, g, b, alpha]
 }
 
-/// What batches before have left, after one more: twin of `shaders/merge.wgsl`.
+/// What batches before have left, after one more: CPU reference of `shaders/merge.wgsl`.
 pub(crate) fn merge<R: Real>(order: Order, before: [R; 4], batch: [R; 4]) -> [R; 4] {
     let one = R::from_f64(1.0);
     match order {

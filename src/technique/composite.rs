@@ -1,4 +1,4 @@
-//! Emission and absorption, front to back: twin of `shaders/lib/mode_composite.wgsl`.
+//! Emission and absorption, front to back: CPU reference of `shaders/lib/mode_composite.wgsl`.
 //!
 //! ```text
 //! C += T alpha c        T *= 1 - alpha

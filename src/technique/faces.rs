@@ -1,4 +1,4 @@
-//! Cut faces, where a ray enters through what has cut the volume: twin of `shaders/lib/faces.wgsl` and
+//! Cut faces, where a ray enters through what has cut the volume: CPU reference of `shaders/lib/faces.wgsl` and
 //! `face_grey.wgsl`.
 //!
 //! ```text

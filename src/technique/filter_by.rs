@@ -3,29 +3,29 @@
 //! ```text
 //! sampler    the device's texture unit: as exact as its sub-texel bits
 //! fetches    the shader itself, from eight texels in f32
-//! corners    the same, on devices that compute on the CPU, from four words beside the texture or in its place (`resident::Corners`)
+//! corners    the same, on devices that compute on the CPU, from four words beside the texture or in its place (`resident::FootprintTexels`)
 //! ```
 
-use super::{Filter, Keep, Mix, Operator, Settings};
+use super::{Filter, GradientStorage, Operator, SampleInputs, Settings};
 
 /// A wish for one of them. Conformance pictures fetch, whatever is wished.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum FilterBy {
-    /// Corners where there are any, else the sampler. Renderers of our own make corners for drivers that were found to
+    /// FootprintTexels where there are any, else the sampler. Renderers of our own make corners for drivers that were found to
     /// be faster with them ([`Gpu::has_slow_sampler`](crate::gpu::Gpu::has_slow_sampler)): it follows from driver,
     /// volume and picture alone, so that the same picture always comes out the same (`docs/sampling-notes.md`).
     #[default]
     Auto,
     /// The sampler, where the device has one for the format.
     Sampler,
-    /// Corners where there can be any, else fetches.
+    /// FootprintTexels where there can be any, else fetches.
     Fetch,
 }
 
 impl Settings {
-    /// Whether pictures of one volume read its [`Corners`](crate::resident::Corners), where it has them: those of rays
+    /// Whether pictures of one volume read its [`FootprintTexels`](crate::resident::FootprintTexels), where it has them: those of rays
     /// and of view-aligned slices, linear.
-    pub fn reads_corners(&self, mix: Mix) -> bool {
+    pub fn reads_footprint_texels(&self, mix: SampleInputs) -> bool {
         let is_point = !self.preintegrated && !self.conformance;
         let has_such = !self.technique.draws_stacks() && !self.is_half_angle();
         let is_wished = self.filter_by != FilterBy::Sampler;
@@ -33,10 +33,10 @@ impl Settings {
     }
 
     /// Whether they read nothing else of its values, so that it needs no texture: what fetches voxels one by one does.
-    pub(crate) fn reads_corners_alone(&self, mix: Mix) -> bool {
-        let is_central =
-            self.gradient_operator() == Operator::Central && self.keep_gradients == Keep::Never;
+    pub(crate) fn reads_footprint_texels_alone(&self, mix: SampleInputs) -> bool {
+        let is_central = self.gradient_operator() == Operator::Central
+            && self.gradient_storage == GradientStorage::OnTheFly;
         let has_texels = self.per_mode.exact_maximum || self.wants_light_volume() || !is_central;
-        self.reads_corners(mix) && !has_texels
+        self.reads_footprint_texels(mix) && !has_texels
     }
 }

@@ -1,4 +1,4 @@
-//! Camera, grid and settings to the parameters that shaders and twins share: pure, set up once in f64.
+//! Camera, grid and settings to the parameters that shaders and CPU references share: pure, set up once in f64.
 //!
 //! The world is moved so that the centre of the uncropped grid box is its origin: f32 then keeps the same
 //! precision wherever the volume lies, and the planes n . x = (k + 1/2) h pass by the centre as

@@ -1,4 +1,4 @@
-//! The gradient of the value at a sample: twin of `shaders/lib/gradient.wgsl`.
+//! The gradient of the value at a sample: CPU reference of `shaders/lib/gradient.wgsl`.
 //!
 //! Central differences of the chosen filter one voxel before and after along each grid axis, and the chain rule
 //! with voxel = A world:

@@ -27,12 +27,12 @@ pub enum GradientFilter {
 
 /// Whether gradients are made where a sample is taken, or once at the voxels and kept beside them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Keep {
+pub enum GradientStorage {
     /// Made for each sample.
     #[default]
-    Never,
+    OnTheFly,
     /// Kept; where they cannot be, the picture is refused.
-    Always,
+    Precomputed,
     /// Kept where they can be and a graphics card has the memory, else made: on software devices they are no faster.
     Auto,
 }
@@ -140,7 +140,7 @@ impl Settings {
         }
         let reason = match self.kept_operator() {
             Some(_) => return Ok(()),
-            None if self.keep_gradients != Keep::Always => return Ok(()),
+            None if self.gradient_storage != GradientStorage::Precomputed => return Ok(()),
             None if self.conformance => "a conformance picture leaves no filtering to the device",
             None => "only operators on the trilinear field are the same between kept ones",
         };
@@ -164,8 +164,8 @@ impl View<'_> {
         let operator = self.settings.kept_operator();
         let kept = volume.kept_gradients();
         let kept = kept.filter(|kept| operator == Some(kept.operator()));
-        match (self.settings.keep_gradients, kept) {
-            (Keep::Always | Keep::Auto, Some(kept)) => {
+        match (self.settings.gradient_storage, kept) {
+            (GradientStorage::Precomputed | GradientStorage::Auto, Some(kept)) => {
                 fields.gradient_operator = match kept.operator() {
                     KeptOperator::Differences => GRADIENT_KEPT,
                     KeptOperator::Sobel => GRADIENT_KEPT_SOBEL,
@@ -173,7 +173,7 @@ impl View<'_> {
                 fields.gradient_scale = kept.scale();
                 return Ok(());
             }
-            (Keep::Always, None) => {
+            (GradientStorage::Precomputed, None) => {
                 let reason = "the volume on the device has none";
                 return Err(Error::NotKept { reason });
             }

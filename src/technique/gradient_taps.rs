@@ -1,4 +1,4 @@
-//! Gradients as weights of the 64 voxels around, whatever filter makes the value: twin of
+//! Gradients as weights of the 64 voxels around, whatever filter makes the value: CPU reference of
 //! `shaders/lib/gradient_taps.wgsl`, which has the weights in a table.
 //!
 //! ```text

@@ -2,10 +2,11 @@
 //! asks for.
 
 use super::{
-    Filter, FilterBy, Keep, Lattice, LightVolume, Mix, Operator, Part, Role, Settings, Skip,
+    Filter, FilterBy, GradientStorage, Lattice, LightVolume, Operator, Part, Role, SampleInputs,
+    Settings, Skip,
 };
 use crate::gpu::{Bindings, Error, Gpu, Image, Layout, ParameterRing, Resource};
-use crate::resident::{Brick, Corners, GpuTransfer, GpuVolume, TextureLayout};
+use crate::resident::{Brick, FootprintTexels, GpuTransfer, GpuVolume, TextureLayout};
 use crate::shaders::{MAX_CHANNELS, Shader, find, shader};
 use std::sync::Arc;
 
@@ -64,14 +65,14 @@ impl Inputs<'_> {
         let shared = self.ring.shared().map(Resource::Storage);
         given.extend(shared.map(|noise| ("blue_noise", noise)));
         given.push(("light_volume", Resource::Storage(light)));
-        let [rooms, ranges] = match self.skip {
+        let [distance_map, ranges] = match self.skip {
             Skip::Nothing => [self.ring.buffer(); 2],
-            Skip::Unseen(cells, empty) => [empty.rooms(), cells.ranges()],
+            Skip::Unseen(cells, empty) => [empty.distance_map(), cells.ranges()],
             Skip::Exceeded(cells) => [self.ring.buffer(), cells.ranges()],
         };
-        let corners = self.volume.corners().map(Corners::image);
+        let corners = self.volume.corners().map(FootprintTexels::image);
         given.extend(corners.map(|corners| ("corners", Resource::read(corners))));
-        given.push(("rooms", Resource::Storage(rooms)));
+        given.push(("distance_map", Resource::Storage(distance_map)));
         given.push(("cell_ranges", Resource::Storage(ranges)));
         given.extend_from_slice(outputs);
         if !outputs.iter().any(|(name, _)| *name == "host_depth") {
@@ -123,9 +124,9 @@ impl<'a> Inputs<'a> {
     }
 }
 
-/// The words that fill the slots of a shader's name.
+/// The variant of a shader: what fills the slots of its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Words {
+pub struct ShaderVariant {
     /// How values between voxels are made.
     pub filter: &'static str,
     /// Whether the volume has holes.
@@ -135,9 +136,9 @@ pub struct Words {
     /// How values are classified.
     pub transfer: &'static str,
     /// How several volumes go together, or whether the gradient of one counts.
-    pub mix: Mix,
+    pub mix: SampleInputs,
     /// What a sample is.
-    pub take: Take,
+    pub take: SampleKind,
     /// Steps adapt to what is there.
     pub is_adaptive: bool,
     /// No clip planes and no cut faces, and all rays begin at the same place of their pixels: for such pictures alone.
@@ -146,34 +147,34 @@ pub struct Words {
 
 /// What a sample is: a point of a ray, or a piece of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Take {
+pub enum SampleKind {
     /// A point.
     Point,
     /// A point on a plane between the slices of a stack.
-    Between,
+    InterpolatedSlice,
     /// A piece, by the values at its two ends.
-    Slab,
+    Preintegrated,
 }
 
-impl Take {
+impl SampleKind {
     /// Its part of a shader's name.
     pub(super) fn word(self) -> &'static str {
         match self {
             Self::Point => "",
-            Self::Between => "_smooth",
-            Self::Slab => "_slab",
+            Self::InterpolatedSlice => "_smooth",
+            Self::Preintegrated => "_slab",
         }
     }
 }
 
-impl Words {
+impl ShaderVariant {
     /// The variant for a picture of such a volume.
     pub fn of(settings: &Settings, volume: &GpuVolume) -> Self {
-        Self::mixed(settings, Mix::Alone, &[Part::numbers(volume)])
+        Self::mixed(settings, SampleInputs::Scalar, &[Part::numbers(volume)])
     }
 
     /// The variant for a picture of several volumes.
-    pub fn mixed(settings: &Settings, mix: Mix, parts: &[Part]) -> Self {
+    pub fn mixed(settings: &Settings, mix: SampleInputs, parts: &[Part]) -> Self {
         let is_fetched =
             |part: &Part| part.role != Role::Labels && !part.volume.texel().is_filtered;
         let is_by_fetches = settings.conformance
@@ -183,14 +184,14 @@ impl Words {
         let has_surfaces = settings.shading.as_ref().is_some_and(|s| s.has_surfaces);
         let is_lit = has_surfaces || settings.wants_light_volume();
         let is_general = settings.gradient_operator() != Operator::Central
-            || settings.keep_gradients == Keep::Always
+            || settings.gradient_storage == GradientStorage::Precomputed
             || settings.wants_light_volume();
-        let corners = corners_of(parts).filter(|_| settings.reads_corners(mix));
+        let corners = footprint_texels_of(parts).filter(|_| settings.reads_footprint_texels(mix));
         Self {
             mix: match mix {
-                Mix::Alone if is_lit && is_general => Mix::Graded,
-                Mix::Alone if is_lit => Mix::Lit,
-                Mix::Weighed if is_general => Mix::Graded,
+                SampleInputs::Scalar if is_lit && is_general => SampleInputs::ScalarGradient,
+                SampleInputs::Scalar if is_lit => SampleInputs::Shaded,
+                SampleInputs::GradientOpacity if is_general => SampleInputs::ScalarGradient,
                 _ => mix,
             },
             filter: match settings.filter {
@@ -210,9 +211,9 @@ impl Words {
                 Lattice::Planes => "planes",
             },
             take: match settings.preintegrated {
-                true => Take::Slab,
-                false if settings.smooth => Take::Between,
-                false => Take::Point,
+                true => SampleKind::Preintegrated,
+                false if settings.smooth => SampleKind::InterpolatedSlice,
+                false => SampleKind::Point,
             },
             transfer: match corners {
                 _ if settings.conformance => "points",
@@ -225,7 +226,7 @@ impl Words {
     }
 }
 
-impl Words {
+impl ShaderVariant {
     /// The variant that knows nothing of clip planes, cut faces, jitter and rays with places of their own in their
     /// pixels, where these settings have none of it: for pictures of them alone.
     pub(crate) fn of_whole(self, settings: &Settings) -> Self {
@@ -248,7 +249,7 @@ impl Words {
 }
 
 /// Those of the one volume.
-fn corners_of<'a>(parts: &[Part<'a>]) -> Option<&'a Corners> {
+fn footprint_texels_of<'a>(parts: &[Part<'a>]) -> Option<&'a FootprintTexels> {
     match parts {
         [part] => part.volume.corners(),
         _ => None,

@@ -1,4 +1,4 @@
-//! Surfaces of one value or of several along a ray: twin of `shaders/isosurface.wgsl`.
+//! Surfaces of one value or of several along a ray: CPU reference of `shaders/isosurface.wgsl`.
 //!
 //! A crossing lies wherever one end of a segment is under a level and the other is not (at the level is over it). It
 //! is found by halving the segment ten times, which leaves 2^-10 of a step, and by a straight line between the ends

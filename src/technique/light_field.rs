@@ -1,4 +1,4 @@
-//! The light volume on the CPU: twin of `shaders/light_cells.wgsl`, `light_volume.wgsl` and `lib/light.wgsl`.
+//! The light volume on the CPU: CPU reference of `shaders/light_cells.wgsl`, `light_volume.wgsl` and `lib/light.wgsl`.
 //!
 //! ```text
 //! A = k mean of (1 - exp(-sigma_i L))     sigma = -ln(1 - min(A, 1 - 2^-12)) / L        of a cell

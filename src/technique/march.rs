@@ -1,4 +1,4 @@
-//! The walk along one ray that every compute pass shares: twin of `shaders/lib/march.wgsl`.
+//! The walk along one ray that every compute pass shares: CPU reference of `shaders/lib/march.wgsl`.
 
 use super::Lattice;
 use crate::lattice::{Segment, Slab, along_ray, on_planes, slabs_along_ray, slabs_on_planes};
@@ -41,8 +41,8 @@ pub fn march<R: Real, V>(
     samples
 }
 
-/// The same walk in which one sample, that in the middle, stands for all that follow each other in a cell: twin of
-/// `shaders/lib/looks_adaptive.wgsl`. `cell_at` names the cell of a position where samples look alike.
+/// The same walk in which one sample, that in the middle, stands for all that follow each other in a cell: CPU reference of
+/// `shaders/lib/unroll_adaptive.wgsl`. `cell_at` names the cell of a position where samples look alike.
 pub fn march_in_runs<R: Real, V>(
     frame: &Frame,
     pixel: [R; 2],
@@ -84,7 +84,7 @@ pub fn march_in_runs<R: Real, V>(
     samples
 }
 
-/// The same walk in slabs, each with the values at its two ends: twin of `shaders/lib/march_slab.wgsl`.
+/// The same walk in slabs, each with the values at its two ends: CPU reference of `shaders/lib/march_slab.wgsl`.
 pub fn march_slabs<R: Real>(
     frame: &Frame,
     lattice: Lattice,

@@ -1,4 +1,4 @@
-//! Emission and absorption in which a new maximum takes from what lies before it: twin of
+//! Emission and absorption in which a new maximum takes from what lies before it: CPU reference of
 //! `shaders/lib/mode_mida.wgsl`.
 //!
 //! ```text

@@ -1,4 +1,4 @@
-//! Several volumes on one grid, put together sample by sample: the words, the parameters, and the twin of
+//! Several volumes on one grid, put together sample by sample: the words, the parameters, and the CPU reference of
 //! `shaders/lib/material_channels.wgsl`, `sample_colors.wgsl` and `material_colors.wgsl`.
 //!
 //! ```text
@@ -21,46 +21,51 @@ use crate::transfer::TransferFunction;
 
 /// How volumes on one grid go together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Mix {
+pub enum SampleInputs {
     /// There is one.
     #[default]
-    Alone,
+    Scalar,
     /// There is one, and its gradient counts.
-    Graded,
+    ScalarGradient,
     /// The same, for nothing but unhindered light, by central differences.
-    Lit,
+    Shaded,
     /// The same, by central differences, for such light and to weigh the opacity by its magnitude.
-    Weighed,
+    GradientOpacity,
     /// Each is a thing of its own with a transfer function of its own.
     Channels,
     /// Red, green, blue, and perhaps alpha, of one colour.
     Colors,
 }
 
-impl Mix {
+impl SampleInputs {
     /// How `function` goes with a volume that is alone.
     pub fn of_one(function: Option<&TransferFunction>) -> Self {
         match function.and_then(|function| function.graded.as_ref()) {
-            None => Self::Alone,
-            Some(graded) if graded.widgets.is_empty() && !graded.share.is_empty() => Self::Weighed,
-            Some(_) => Self::Graded,
+            None => Self::Scalar,
+            Some(graded) if graded.widgets.is_empty() && !graded.share.is_empty() => {
+                Self::GradientOpacity
+            }
+            Some(_) => Self::ScalarGradient,
         }
     }
 
     /// Whether there is one volume.
     pub fn is_of_one(self) -> bool {
-        self == Self::Alone || self.is_graded()
+        self == Self::Scalar || self.is_graded()
     }
 
     /// Whether gradients count.
     pub fn is_graded(self) -> bool {
-        matches!(self, Self::Graded | Self::Lit | Self::Weighed)
+        matches!(
+            self,
+            Self::ScalarGradient | Self::Shaded | Self::GradientOpacity
+        )
     }
 
     /// With all that gradients may count for.
     pub(crate) fn general(self) -> Self {
         match self.is_graded() {
-            true => Self::Graded,
+            true => Self::ScalarGradient,
             false => self,
         }
     }
@@ -68,10 +73,10 @@ impl Mix {
     /// Its part of a shader's name.
     pub(super) fn word(self) -> &'static str {
         match self {
-            Self::Alone => "",
-            Self::Graded => ".graded",
-            Self::Lit => ".lit",
-            Self::Weighed => ".weighed",
+            Self::Scalar => "",
+            Self::ScalarGradient => ".graded",
+            Self::Shaded => ".lit",
+            Self::GradientOpacity => ".weighed",
             Self::Channels => ".channels",
             Self::Colors => ".colors",
         }

@@ -3,6 +3,7 @@
 mod accumulation;
 mod alike_cells;
 pub mod blend;
+mod compatibility;
 #[doc(hidden)]
 pub mod composite;
 pub(crate) mod cost;
@@ -28,6 +29,7 @@ mod light_field;
 mod light_paths;
 mod light_plan;
 mod light_volume;
+mod loop_limit;
 mod march;
 #[doc(hidden)]
 pub mod merge;
@@ -50,7 +52,7 @@ mod recording;
 pub mod reference;
 mod registry;
 #[doc(hidden)]
-pub mod second;
+pub mod second_derivative;
 #[doc(hidden)]
 pub mod shading;
 mod skip;
@@ -58,8 +60,6 @@ mod slab;
 mod slicer;
 pub mod slices_2d;
 pub mod slices_3d;
-mod turns;
-mod ways;
 
 pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 #[doc(hidden)]
@@ -67,14 +67,16 @@ pub use alike_cells::AlikeCells;
 pub use error::Error;
 pub use filter_by::FilterBy;
 pub use frame::View;
-pub use gradient_filter::{GradientFilter, GradientSource, Keep, Operator};
+pub use gradient_filter::{GradientFilter, GradientSource, GradientStorage, Operator};
 pub use in_pixel::InPixel;
-pub use inputs::{Inputs, Take, Words};
+pub use inputs::{Inputs, SampleKind, ShaderVariant};
 #[doc(hidden)]
 pub use light_field::LightField;
 pub use light_plan::{AmbientOcclusion, LightPlan, MAX_LIGHT_CELLS, MAX_RADIUS_CELLS, Shadows};
 pub use light_volume::LightVolume;
-pub use mixture::{Mix, Part, Role};
+#[doc(hidden)]
+pub use loop_limit::Functions;
+pub use mixture::{Part, Role, SampleInputs};
 pub(crate) use modes::Fold;
 pub use modes::Mode;
 pub use patch_slicer::{PatchBindings, PatchSlicer};
@@ -84,9 +86,7 @@ pub use ray_tiles::{RayBindings, RayTiles};
 pub use recording::{Recording, parameter_ring};
 pub use shading::{Light, LightSpace, Shading};
 pub use skip::{Skip, Skippable};
-pub use slicer::{Sight, Slicer};
-#[doc(hidden)]
-pub use turns::Functions;
+pub use slicer::{DepthAccess, Slicer};
 
 use crate::volume::{Spline, kernel::Kernel};
 
@@ -151,7 +151,7 @@ pub enum Lattice {
     Ray,
     /// Where the ray meets the planes that a view-aligned slicer draws.
     Planes,
-    /// Equal steps, of which the first is cut short by a part that hangs on the pixel ([`Jitter`]): grain in place
+    /// Equal steps, of which the first is cut short by a part that depends on the pixel ([`Jitter`]): grain in place
     /// of bands. Ray casting only, and not for surfaces.
     Jitter,
 }
@@ -244,7 +244,7 @@ pub struct Settings {
     /// How gradients are made, for light and for transfer functions of gradients.
     pub gradient_filter: GradientFilter,
     /// Whether they are made for each sample, or kept at the voxels.
-    pub keep_gradients: Keep,
+    pub gradient_storage: GradientStorage,
     /// Ambient light that matter nearby takes away, with lights or without, of one volume that is composited.
     pub ambient_occlusion: Option<AmbientOcclusion>,
     /// Float targets, no early termination, filtering by texel fetch, control points searched exactly.
@@ -286,7 +286,7 @@ impl Default for Settings {
             cut_faces: None,
             shading: None,
             gradient_filter: GradientFilter::default(),
-            keep_gradients: Keep::default(),
+            gradient_storage: GradientStorage::default(),
             ambient_occlusion: None,
             conformance: false,
             per_mode: PerMode::default(),

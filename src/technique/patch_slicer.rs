@@ -11,7 +11,7 @@
 //! ```
 
 use super::blend::{Drawn, operator};
-use super::{BATCH_SLICES, Inputs, Order, Patches, Sight, Technique, Words};
+use super::{BATCH_SLICES, DepthAccess, Inputs, Order, Patches, ShaderVariant, Technique};
 use crate::gpu::{
     Bindings, ComputePipeline, DepthUse, Error, Gpu, Image, RasterDesc, RasterPipeline, Resource,
     Tile, Use, buffer_barrier, set_area_of,
@@ -41,7 +41,7 @@ pub struct PatchBindings {
 }
 
 impl PatchSlicer {
-    /// Compiles the variant of these words for a target of `format`, as [`super::Slicer::new`].
+    /// Compiles this variant for a target of `format`, as [`super::Slicer::new`].
     ///
     /// # Errors
     /// Where the device does not blend that format, by its name.
@@ -50,7 +50,7 @@ impl PatchSlicer {
         technique: Technique,
         drawn: Drawn,
         order: Order,
-        words: &Words,
+        variant: &ShaderVariant,
         format: vk::Format,
     ) -> Result<Self, Error> {
         let shaders = technique.slice_shaders();
@@ -63,7 +63,7 @@ impl PatchSlicer {
                 .all(|n| n % LARGEST_BLOCK == 0);
         let shape = if has_points { ".points" } else { "" };
         let names = [&format!("slice_patches_cover{shape}"), name];
-        let [vertex, fragment] = drawn.shaders(gpu, names, words, Sight::Open);
+        let [vertex, fragment] = drawn.shaders(gpu, names, variant, DepthAccess::None);
         let desc = RasterDesc {
             vertex,
             fragment,

@@ -9,7 +9,7 @@
 
 use super::View;
 use crate::gpu::{Buffer, Error, Gpu, Memory, Use, barriers, buffer_barrier};
-use crate::resident::Apron;
+use crate::resident::Halo;
 use crate::shaders::{BATCH_LAYERS, BLOCK_SIDE, LARGEST_BLOCK, LAYER_SLICES, MOST_POINT_PIXELS};
 use ash::vk;
 use glam::DVec3;
@@ -103,7 +103,7 @@ impl View<'_> {
 
     /// How far around a macro cell the voxels lie that samples touch which begin in it; `None` where that is too far to
     /// be worth knowing.
-    pub fn apron(&self) -> Option<Apron> {
+    pub fn apron(&self) -> Option<Halo> {
         let mut apron = self.settings.apron();
         if self.settings.preintegrated {
             // Both ends of a slab, from its middle.

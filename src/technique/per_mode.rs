@@ -144,13 +144,13 @@ impl Settings {
     }
 }
 
-/// A value from 0 to 1: twin of `shaders/lib/unit.wgsl`.
+/// A value from 0 to 1: CPU reference of `shaders/lib/unit.wgsl`.
 pub fn unit_from_value<R: Real>(frame: &Frame, value: R) -> R {
     let unit = (value - R::from_f32(frame.value_low)) * R::from_f32(frame.value_scale);
     unit.max(R::from_f64(0.0)).min(R::from_f64(1.0))
 }
 
-/// The value of such a number: twin of `shaders/lib/unit.wgsl`.
+/// The value of such a number: CPU reference of `shaders/lib/unit.wgsl`.
 pub fn value_from_unit<R: Real>(frame: &Frame, unit: R) -> R {
     R::from_f32(frame.value_low) + unit / R::from_f32(frame.value_scale)
 }

@@ -92,7 +92,7 @@ pub(super) enum Nothing {
 impl Nothing {
     fn shader(self) -> &'static str {
         match self {
-            Self::OfComposite => "ray_tiles.rooms.picture",
+            Self::OfComposite => "ray_tiles.distances.picture",
             Self::Beyond => "ray_tiles.box.picture",
             Self::BeyondMida => "ray_tiles.box.mida",
             Self::BeyondProjection => "ray_tiles.box.number",

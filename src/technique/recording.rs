@@ -9,7 +9,7 @@
 use super::mixture::{Part, set_channels};
 use super::{Error, Order, View};
 use crate::blue_noise::BLUE_NOISE;
-use crate::camera::{HostDepth, Nearer};
+use crate::camera::{DepthConvention, HostDepth};
 use crate::gpu::{self, Gpu, ParameterRing};
 use crate::resident::{
     Cell, Coding, GpuTransfer, GpuVolume, TextureLayout, TransferLayout, sort_front_to_back,
@@ -215,7 +215,7 @@ impl View<'_> {
         }
     }
 
-    /// What the CPU twins compute: the whole grid at once, values as they are. `flat_gradient` is 0, the range of
+    /// What the CPU references compute: the whole grid at once, values as they are. `flat_gradient` is 0, the range of
     /// the volume is not known here.
     ///
     /// # Errors
@@ -263,7 +263,7 @@ impl View<'_> {
 
 impl Recording {
     /// Puts what is recorded behind what a host has drawn, which it reads from an image: rays, and slices with
-    /// [`Sight::Read`](super::Sight::Read), end where that says, and begin at the host's near plane. `center` is that
+    /// [`DepthAccess::Sampled`](super::DepthAccess::Sampled), end where that says, and begin at the host's near plane. `center` is that
     /// of the [grid](crate::volume::Grid::center), and the view's camera the one that came with `depth`
     /// ([`Camera::from_matrices`](crate::camera::Camera::from_matrices)).
     pub fn behind(&mut self, depth: &HostDepth, center: DVec3) {
@@ -272,7 +272,7 @@ impl Recording {
     }
 
     /// Draws slices in the depths of a host's clip space, for its depth attachment to be tested
-    /// ([`Sight::Tested`](super::Sight::Tested)).
+    /// ([`DepthAccess::Tested`](super::DepthAccess::Tested)).
     pub fn tested_in(&mut self, depth: &HostDepth, center: DVec3) {
         self.in_depths_of(depth, center);
         self.frame.clip_from_world[2] = self.frame.host_z;
@@ -283,11 +283,11 @@ impl Recording {
     /// (`host_depth_copy.rs`).
     pub(crate) fn tested_in_copy(&mut self, depth: &HostDepth, center: DVec3) {
         let HostDepth { z, w, nearer } = *depth;
-        let is_flipped = nearer == Nearer::Smaller;
+        let is_flipped = nearer == DepthConvention::Standard;
         let copied = HostDepth {
             z: if is_flipped { w - z } else { z },
             w,
-            nearer: Nearer::Larger,
+            nearer: DepthConvention::Reversed,
         };
         self.tested_in(&copied, center);
         self.frame.flips_host_depth = is_flipped.into();

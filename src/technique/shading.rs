@@ -1,5 +1,5 @@
 //! Two-sided light of Blinn and Phong on the surface that stands across the gradient: the words, the parameters,
-//! and the twin of `shaders/lib/shade.wgsl` (`sampling.md` 7).
+//! and the CPU reference of `shaders/lib/shade.wgsl` (`sampling.md` 7).
 //!
 //! ```text
 //! c (o ambient + diffuse sum of t L |n.l|) + specular sum of t L |n.h|^shininess        h = (l + v) / |l + v|

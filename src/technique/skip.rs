@@ -9,9 +9,9 @@
 //! recording.skip(&skip), Inputs { skip, .. }     for each recording
 //! ```
 
-use super::{Filter, Keep, Mix, Mode, Operator, Order, Recording, Settings};
-use crate::resident::{Apron, EmptySpace, MacroCells};
-use crate::transfer::{Alike, Seen, TransferFunction};
+use super::{Filter, GradientStorage, Mode, Operator, Order, Recording, SampleInputs, Settings};
+use crate::resident::{EmptySpace, Halo, MacroCells};
+use crate::transfer::{HomogeneousRanges, TransferFunction, VisibleRanges};
 use crate::volume::Grid;
 
 /// What is known of where a recording need not look. The picture is the same to the bit.
@@ -33,19 +33,19 @@ pub enum Skippable {
     /// Every sample matters, or it is not known which do.
     Nothing,
     /// Samples outside of the seen values: [`Skip::Unseen`].
-    Unseen(Seen),
+    Unseen(VisibleRanges),
     /// The same, and samples beside others that look like them, for [`Settings::adaptive_steps`]:
     /// [`EmptySpace::with_alike`], and [`Skip::Unseen`].
-    UnseenOrAlike(Seen, Alike),
+    UnseenOrAlike(VisibleRanges, HomogeneousRanges),
     /// The same of a mixture, of each of its volumes that has opacity: [`EmptySpace::of_several`].
-    UnseenInAll(Vec<(usize, Seen)>),
+    UnseenInAll(Vec<(usize, VisibleRanges)>),
     /// Samples that are no new extreme: [`Skip::Exceeded`].
     Exceeded,
 }
 
 impl Settings {
     /// How far around a macro cell the filter looks.
-    pub fn apron(&self) -> Apron {
+    pub fn apron(&self) -> Halo {
         let voxels = match self.filter {
             Filter::Nearest | Filter::Linear => 1,
             _ => 2,
@@ -55,7 +55,7 @@ impl Settings {
             Filter::CatmullRom => 1.25f32.powi(3) - 1.0,
             _ => 0.0,
         };
-        Apron {
+        Halo {
             voxels,
             overshoot,
             is_mixed: self.filter != Filter::Nearest,
@@ -64,17 +64,17 @@ impl Settings {
 
     /// What can be left out of pictures of one volume under `function`, whose values are in `value_range`. What colours
     /// surfaces has no say. With [`Self::slope`] contours are left out where no value comes near them, if cells know of
-    /// all voxels that gradients are made of ([`Apron::of_gradients`]); `None`: they are seen everywhere.
+    /// all voxels that gradients are made of ([`Halo::of_gradients`]); `None`: they are seen everywhere.
     pub fn skippable(
         &self,
-        mix: Mix,
+        mix: SampleInputs,
         function: Option<&TransferFunction>,
         value_range: [f64; 2],
         slope: Option<f64>,
     ) -> Skippable {
         let seen_in = |function: &TransferFunction| match slope {
-            Some(slope) => Seen::of_slope(function, slope),
-            None => Seen::new(function),
+            Some(slope) => VisibleRanges::of_slope(function, slope),
+            None => VisibleRanges::new(function),
         };
         let is_one = mix.is_of_one() || self.mode == Mode::Iso;
         if !self.skip || !is_one {
@@ -85,12 +85,15 @@ impl Settings {
         }
         match (self.mode, function) {
             (Mode::Composite, Some(function)) if self.preintegrated => {
-                unseen(Seen::between(function))
+                unseen(VisibleRanges::between(function))
             }
             _ if self.preintegrated => Skippable::Nothing,
             (Mode::Iso, _) => {
                 let levels = self.per_mode.levels.iter().map(|level| level.value as f32);
-                Skippable::Unseen(Seen::of_values(&levels.collect::<Vec<_>>(), value_range))
+                Skippable::Unseen(VisibleRanges::of_values(
+                    &levels.collect::<Vec<_>>(),
+                    value_range,
+                ))
             }
             // By how much of it is over what has been met.
             (mode, _) if mode.projects_one_place() && !self.per_mode.exact_maximum => {
@@ -112,8 +115,8 @@ impl Settings {
     ///
     /// `None` where gradients are made in another way, of which nothing is said.
     pub fn slope(&self, grid: &Grid) -> Option<f64> {
-        let is_central =
-            self.gradient_operator() == Operator::Central && self.keep_gradients != Keep::Always;
+        let is_central = self.gradient_operator() == Operator::Central
+            && self.gradient_storage != GradientStorage::Precomputed;
         let rows: f64 = grid.voxel_rows().iter().map(|row| row.length()).sum();
         is_central.then(|| 0.5 * rows * grid.smallest_spacing())
     }
@@ -126,7 +129,7 @@ impl Settings {
         if !self.skip || !is_mixed || self.preintegrated || functions.is_empty() {
             return Skippable::Nothing;
         }
-        let seen = functions.iter().map(|&(n, f)| (n, Seen::new(f)));
+        let seen = functions.iter().map(|&(n, f)| (n, VisibleRanges::new(f)));
         let seen: Vec<_> = seen.collect();
         match seen.iter().any(|(_, seen)| seen.is_all()) {
             true => Skippable::Nothing,
@@ -137,7 +140,7 @@ impl Settings {
 
 /// Where all is seen, looking for what is not would only cost; slices from front to back go on to look for what is
 /// hidden.
-fn unseen(seen: Seen) -> Skippable {
+fn unseen(seen: VisibleRanges) -> Skippable {
     match seen.is_all() {
         true => Skippable::Nothing,
         false => Skippable::Unseen(seen),
@@ -150,7 +153,7 @@ impl Settings {
     fn skippable_by_slices(
         &self,
         function: Option<&TransferFunction>,
-        seen_in: impl Fn(&TransferFunction) -> Seen,
+        seen_in: impl Fn(&TransferFunction) -> VisibleRanges,
     ) -> Skippable {
         let Some(function) = function else {
             return Skippable::Nothing;
@@ -159,7 +162,7 @@ impl Settings {
             return Skippable::Nothing;
         }
         let seen = match self.preintegrated {
-            true => Seen::between(function),
+            true => VisibleRanges::between(function),
             false => seen_in(function),
         };
         match self.order {

@@ -2,7 +2,7 @@
 //! the blending unit, all slices of a picture in one instanced draw.
 
 use super::blend::{Drawn, operator};
-use super::{Inputs, Order, Settings, Technique, Words};
+use super::{Inputs, Order, Settings, ShaderVariant, Technique};
 use crate::gpu::{
     Bindings, DepthUse, Error, Gpu, RasterDesc, RasterPipeline, Resource, TargetClass, Tile,
     set_area_of,
@@ -24,14 +24,14 @@ pub(super) fn slicer_supports(settings: &Settings) -> Result<(), super::Error> {
 
 /// What hides samples of slices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sight {
+pub enum DepthAccess {
     /// Nothing.
-    Open,
+    None,
     /// The depth attachment of the rendering, slice by slice.
     Tested,
     /// What a host has drawn, read from an image ([`Slicer::bind_behind`]): of projections, which are drawn into an
     /// image that has no depth attachment, and of slabs, which reach out of the slices that would be tested.
-    Read,
+    Sampled,
 }
 
 /// The pipeline that draws the slices of one technique.
@@ -43,7 +43,7 @@ pub struct Slicer {
 }
 
 impl Slicer {
-    /// Compiles the variant of these words for such targets: the slices of `technique`, which casts no rays. Where the
+    /// Compiles this variant for such targets: the slices of `technique`, which casts no rays. Where the
     /// rendering has a depth attachment, what a host has drawn hides what lies behind it
     /// ([`super::Recording::tested_in`]).
     ///
@@ -54,15 +54,15 @@ impl Slicer {
         technique: Technique,
         drawn: Drawn,
         order: Order,
-        words: &Words,
+        variant: &ShaderVariant,
         target: impl Into<TargetClass>,
     ) -> Result<Self, Error> {
         let target = target.into();
         let sight = match target.depth {
-            Some(_) => Sight::Tested,
-            None => Sight::Open,
+            Some(_) => DepthAccess::Tested,
+            None => DepthAccess::None,
         };
-        Self::seen(gpu, technique, drawn, order, words, target, sight)
+        Self::seen(gpu, technique, drawn, order, variant, target, sight)
     }
 
     /// The same with another word on what hides samples.
@@ -74,20 +74,20 @@ impl Slicer {
         technique: Technique,
         drawn: Drawn,
         order: Order,
-        words: &Words,
+        variant: &ShaderVariant,
         target: TargetClass,
-        sight: Sight,
+        sight: DepthAccess,
     ) -> Result<Self, Error> {
         let shaders = technique.slice_shaders();
         let names = [shaders.cover, shaders.fragment];
-        let [vertex, fragment] = drawn.shaders(gpu, names, words, sight);
+        let [vertex, fragment] = drawn.shaders(gpu, names, variant, sight);
         let desc = RasterDesc {
             vertex,
             fragment,
             target,
             depth: match sight {
-                Sight::Tested => DepthUse::Tested,
-                Sight::Open | Sight::Read => DepthUse::Ignored,
+                DepthAccess::Tested => DepthUse::Tested,
+                DepthAccess::None | DepthAccess::Sampled => DepthUse::Ignored,
             },
             blend: operator(drawn, order),
         };
@@ -106,7 +106,7 @@ impl Slicer {
         inputs.bind(&self.gpu, self.pipeline.layout(), &[])
     }
 
-    /// The same for [`Sight::Read`]: `host_depth` is the host's depth buffer, a texture as large as the picture, of
+    /// The same for [`DepthAccess::Sampled`]: `host_depth` is the host's depth buffer, a texture as large as the picture, of
     /// which [`super::Recording::behind`] tells the parameters.
     ///
     /// # Errors

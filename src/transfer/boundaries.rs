@@ -10,7 +10,9 @@
 //! Visualization 1998). Each top that stands out gets a contour ([`super::Shape::Contour`]), the faintest the lowest
 //! value, so that what is inside is seen.
 
-use super::{ColorPoint, Graded, Interpolation, OpacityPoint, Shape, TransferFunction, Widget};
+use super::{
+    ColorPoint, GradientTransfer, Interpolation, OpacityPoint, Shape, TransferFunction, Widget,
+};
 
 /// How often pairs of value and gradient magnitude occur.
 #[derive(Clone, Copy, Debug)]
@@ -68,7 +70,7 @@ pub fn boundaries(joint: &JointCounts, reference_length: Option<f64>) -> Option<
         color,
         reference_length,
         interpolation: Interpolation::Linear,
-        graded: Some(Graded {
+        graded: Some(GradientTransfer {
             steepest: None,
             share: Vec::new(),
             widgets,

@@ -20,20 +20,20 @@ pub(super) fn wrong(field: &str, wanted: &'static str, found: &Value) -> FilePro
 
 /// What a number may be, and how that is said.
 #[derive(Clone, Copy)]
-pub(super) struct Wanted {
+pub(super) struct Expected {
     fits: fn(f64) -> bool,
     text: &'static str,
 }
 
-pub(super) const VALUE: Wanted = Wanted {
+pub(super) const VALUE: Expected = Expected {
     fits: |x| x.abs() <= f32::MAX as f64,
     text: "a number that a 32-bit float can hold",
 };
-pub(super) const FRACTION: Wanted = Wanted {
+pub(super) const FRACTION: Expected = Expected {
     fits: |x| (0.0..=1.0).contains(&x),
     text: "a number from 0 to 1",
 };
-pub(super) const POSITIVE: Wanted = Wanted {
+pub(super) const POSITIVE: Expected = Expected {
     fits: |x| x > 0.0 && x <= f32::MAX as f64,
     text: "a positive number",
 };
@@ -79,13 +79,18 @@ impl<'a> Fields<'a> {
     }
 
     /// A number.
-    pub fn number(&mut self, key: &str, wanted: Wanted) -> Result<f64, FileProblem> {
+    pub fn number(&mut self, key: &str, wanted: Expected) -> Result<f64, FileProblem> {
         let found = self.take(key, wanted.text)?;
         number(&self.name(key), &found, wanted)
     }
 
     /// A number, or what it is where nothing is said.
-    pub fn number_or(&mut self, key: &str, wanted: Wanted, other: f64) -> Result<f64, FileProblem> {
+    pub fn number_or(
+        &mut self,
+        key: &str,
+        wanted: Expected,
+        other: f64,
+    ) -> Result<f64, FileProblem> {
         match self.keys.remove(key) {
             Some(found) => number(&self.name(key), &found, wanted),
             None => Ok(other),
@@ -97,7 +102,7 @@ impl<'a> Fields<'a> {
         &mut self,
         key: &str,
         row_wanted: &'static str,
-        wanted: Wanted,
+        wanted: Expected,
     ) -> Result<[f64; N], FileProblem> {
         let found = self.take(key, row_wanted)?;
         numbers(&self.name(key), &found, row_wanted, |_| wanted)
@@ -117,7 +122,7 @@ impl<'a> Fields<'a> {
 }
 
 /// The number `found`, which stands at `field`.
-pub(super) fn number(field: &str, found: &Value, wanted: Wanted) -> Result<f64, FileProblem> {
+pub(super) fn number(field: &str, found: &Value, wanted: Expected) -> Result<f64, FileProblem> {
     let number = found.as_f64().filter(|&x| (wanted.fits)(x));
     number.ok_or_else(|| wrong(field, wanted.text, found))
 }
@@ -127,7 +132,7 @@ pub(super) fn numbers<const N: usize>(
     field: &str,
     found: &Value,
     row_wanted: &'static str,
-    wanted: impl Fn(usize) -> Wanted,
+    wanted: impl Fn(usize) -> Expected,
 ) -> Result<[f64; N], FileProblem> {
     let Some(row) = found.as_array().filter(|row| row.len() == N) else {
         return Err(wrong(field, row_wanted, found));

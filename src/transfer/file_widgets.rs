@@ -3,7 +3,8 @@
 use super::field::{FRACTION, Fields, POSITIVE, VALUE, list, number, numbers, points, wrong};
 use super::file_images::{cells, rows_to_json};
 use super::{
-    Cells, FileProblem, Graded, Material, OpacityPoint, Second, Shape, TransferFunction, Widget,
+    Cells, FileProblem, GradientTransfer, Material, OpacityPoint, SecondDerivative, Shape,
+    TransferFunction, Widget,
 };
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -84,8 +85,8 @@ pub(super) struct GradedKeys {
 pub(super) fn graded(
     keys: GradedKeys,
     folder: Option<&Path>,
-) -> Result<Option<Graded>, FileProblem> {
-    let mut graded = Graded::default();
+) -> Result<Option<GradientTransfer>, FileProblem> {
+    let mut graded = GradientTransfer::default();
     if let Some(found) = keys.gradient_opacity {
         graded.share = opacity_points("gradient_opacity", "[gradient, share]", &found)?;
     }
@@ -228,7 +229,7 @@ const SECOND: &str =
     "[from, to], [begins, is full, is full no longer, ends], or a number with `sigma_second`";
 
 /// The weight by the second derivative.
-fn second(fields: &mut Fields) -> Result<Option<Second>, FileProblem> {
+fn second(fields: &mut Fields) -> Result<Option<SecondDerivative>, FileProblem> {
     let Some(found) = fields.optional("second") else {
         return Ok(None);
     };
@@ -236,7 +237,7 @@ fn second(fields: &mut Fields) -> Result<Option<Second>, FileProblem> {
     if found.is_number() {
         let middle = number(&field, &found, VALUE)?;
         let sigma = fields.number("sigma_second", POSITIVE)?;
-        return Ok(Some(Second::Bell { middle, sigma }));
+        return Ok(Some(SecondDerivative::Bell { middle, sigma }));
     }
     let corners = match found.as_array().map(Vec::len) {
         Some(2) => {
@@ -249,11 +250,11 @@ fn second(fields: &mut Fields) -> Result<Option<Second>, FileProblem> {
         let wanted = "ascending numbers, the last above the first";
         return Err(wrong(&field, wanted, &found));
     }
-    Ok(Some(Second::Trapezoid(corners)))
+    Ok(Some(SecondDerivative::Trapezoid(corners)))
 }
 
 /// The lines of a file that state `graded`, each with a comma behind it.
-pub(super) fn graded_to_json(graded: &Graded) -> String {
+pub(super) fn graded_to_json(graded: &GradientTransfer) -> String {
     let mut lines = String::new();
     if let Some(steepest) = graded.steepest {
         lines += &format!("  \"steepest\": {},\n", Value::from(steepest));
@@ -321,10 +322,10 @@ fn widget_to_json(widget: &Widget) -> Value {
     }
     match widget.second {
         None => {}
-        Some(Second::Trapezoid(corners)) => {
+        Some(SecondDerivative::Trapezoid(corners)) => {
             keys.insert("second".to_owned(), json!(corners));
         }
-        Some(Second::Bell { middle, sigma }) => {
+        Some(SecondDerivative::Bell { middle, sigma }) => {
             keys.insert("second".to_owned(), middle.into());
             keys.insert("sigma_second".to_owned(), sigma.into());
         }

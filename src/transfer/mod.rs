@@ -9,7 +9,6 @@
 //!
 //! Colour is linear between its points in sRGB numbers and decoded afterwards.
 
-mod alike;
 mod automatic;
 mod boundaries;
 mod by_meaning;
@@ -23,7 +22,8 @@ mod file;
 mod file_images;
 #[cfg(feature = "json")]
 mod file_widgets;
-mod graded;
+mod gradient_transfer;
+mod homogeneous_ranges;
 #[cfg(all(feature = "json", feature = "files"))]
 mod import;
 #[cfg(feature = "json")]
@@ -36,15 +36,13 @@ mod parts;
 mod points;
 mod preset;
 mod quantity;
-mod seen;
 mod slabs;
 mod summary;
 mod table;
+mod visible_ranges;
 mod widgets;
 mod window;
 
-#[doc(hidden)]
-pub use alike::{Alike, Tolerance};
 pub use automatic::{Kind, automatic};
 #[doc(hidden)]
 pub use boundaries::{JointCounts, boundaries};
@@ -58,7 +56,9 @@ pub use file::{
     FileError, FileProblem, MAX_FILE_BYTES, MAX_POINTS, read_transfer_function,
     transfer_function_from_json, transfer_function_to_json,
 };
-pub use graded::{Cells, Graded, Second, Shape, Widget};
+pub use gradient_transfer::{Cells, GradientTransfer, SecondDerivative, Shape, Widget};
+#[doc(hidden)]
+pub use homogeneous_ranges::{HomogeneousRanges, Tolerance};
 #[cfg(all(feature = "json", feature = "files"))]
 pub use import::{Imported, Scale, import_transfer_function, transfer_function_from_bytes};
 #[cfg(feature = "json")]
@@ -72,15 +72,15 @@ pub use points::{Points, classify_by_points};
 pub use preset::Preset;
 pub use quantity::Quantity;
 #[doc(hidden)]
-pub use seen::{Near, Seen};
-#[doc(hidden)]
 pub use slabs::{SlabCell, SlabTable, classify_slab};
 #[doc(hidden)]
 pub use summary::ValueSummary;
 #[doc(hidden)]
 pub use table::{MAX_ENTRIES, MIN_ENTRIES, Table, classify_by_table};
 #[doc(hidden)]
-pub use widgets::{PackedWidgets, Steepness, classify_by_gradient};
+pub use visible_ranges::{ContourReach, VisibleRanges};
+#[doc(hidden)]
+pub use widgets::{GradientMagnitude, PackedWidgets, classify_by_gradient};
 pub use window::{Classified, Window};
 
 /// A one-dimensional transfer function: colour and opacity have control points of their own.
@@ -95,7 +95,7 @@ pub struct TransferFunction {
     /// What lies between two points.
     pub interpolation: Interpolation,
     /// What the gradient makes of it; `None`: nothing.
-    pub graded: Option<Graded>,
+    pub graded: Option<GradientTransfer>,
 }
 
 /// sRGB colour at a value.

@@ -5,8 +5,8 @@
 //! once; one that grazes it gathers them, and the rim darkens as if it were lit.
 
 use super::{
-    Classified, ColorPoint, Graded, Interpolation, OpacityPoint, TransferFunction, ValueSummary,
-    Window,
+    Classified, ColorPoint, GradientTransfer, Interpolation, OpacityPoint, TransferFunction,
+    ValueSummary, Window,
 };
 
 /// A transfer function with a name.
@@ -201,9 +201,9 @@ fn steep(summary: &ValueSummary) -> TransferFunction {
     let share = [(0.05, 0.0), (0.4, 1.0)];
     let share = share.map(|(value, opacity)| OpacityPoint { value, opacity });
     TransferFunction {
-        graded: Some(Graded {
+        graded: Some(GradientTransfer {
             share: share.into(),
-            ..Graded::default()
+            ..GradientTransfer::default()
         }),
         ..tissue(summary)
     }

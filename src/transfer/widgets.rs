@@ -1,4 +1,4 @@
-//! Widgets as numbers for a shader, and what they make of a sample: twin of `shaders/lib/widgets.wgsl`.
+//! Widgets as numbers for a shader, and what they make of a sample: CPU reference of `shaders/lib/widgets.wgsl`.
 //!
 //! ```text
 //! entry 0                  1 / steepest, count of shares, count of widgets, 1 where second derivatives count
@@ -12,7 +12,8 @@
 //! ```
 
 use super::{
-    Cells, Graded, OpacityPoint, Second, Shape, TransferFunction, Widget, extinction, opacity_over,
+    Cells, GradientTransfer, OpacityPoint, SecondDerivative, Shape, TransferFunction, Widget,
+    extinction, opacity_over,
 };
 use crate::color::{ColorSpace, decode_srgb};
 use crate::real::Real;
@@ -44,7 +45,7 @@ impl PackedWidgets {
     /// Those of `function`, whose opacities are for `reference_length`, blended in `space`. A function
     /// of the value alone has none.
     pub fn new(function: &TransferFunction, reference_length: f64, space: ColorSpace) -> Self {
-        let empty = Graded::default();
+        let empty = GradientTransfer::default();
         let graded = function.graded.as_ref().unwrap_or(&empty);
         // Where nothing is steep no gradient counts.
         let steepest = graded.steepest.filter(|&g| g > 0.0 && g.is_finite());
@@ -134,8 +135,10 @@ impl Packing {
         };
         let (second_kind, second) = match widget.second {
             None => (0.0, [0.0; 4]),
-            Some(Second::Trapezoid(corners)) => (TRAPEZOID, corners),
-            Some(Second::Bell { middle, sigma }) => (BELL, [middle, 1.0 / sigma, 0.0, 0.0]),
+            Some(SecondDerivative::Trapezoid(corners)) => (TRAPEZOID, corners),
+            Some(SecondDerivative::Bell { middle, sigma }) => {
+                (BELL, [middle, 1.0 / sigma, 0.0, 0.0])
+            }
         };
         let opacity = widget.opacity as f32;
         if let Shape::Image { columns, cells, .. } = &widget.shape {
@@ -194,7 +197,7 @@ impl Packing {
 
 /// How steep the values are where a sample lies.
 #[derive(Clone, Copy, Debug)]
-pub struct Steepness<N> {
+pub struct GradientMagnitude<N> {
     /// The gradient magnitude, per world length.
     pub magnitude: N,
     /// The second derivative along the gradient, per square of world length; looked at where a widget asks for it.
@@ -209,7 +212,7 @@ pub fn classify_by_gradient<N: Real>(
     packed: &PackedWidgets,
     material: [N; 4],
     value: N,
-    steep: Steepness<N>,
+    steep: GradientMagnitude<N>,
 ) -> [N; 4] {
     let n = N::from_f64;
     let entry = |i: usize| packed.entries[i].map(N::from_f32);
@@ -311,7 +314,7 @@ struct Lobe<'a, N> {
 
 impl<N: Real> Lobe<'_, N> {
     /// What is opaque of it.
-    fn share(&self, value: N, steep: Steepness<N>, steepness: N) -> N {
+    fn share(&self, value: N, steep: GradientMagnitude<N>, steepness: N) -> N {
         let n = N::from_f64;
         let [a, b, c, d] = self.numbers;
         let is_between = |x: N, low: N, high: N| low <= x && x <= high;

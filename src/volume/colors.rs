@@ -4,9 +4,11 @@
 //! Only so can a sampler interpolate them: what is transparent has no colour to give to its neighbours. The
 //! products of 8-bit codes are whole and fit 16 bits, so that nothing is lost; others are f32.
 
-use super::{Header, Limits, Pick, Problem, ReadError, Rescale, Source, Volume, VoxelType, Voxels};
+use super::{
+    Header, Limits, Problem, ReadError, Rescale, Source, TimeComponent, Volume, VoxelType, Voxels,
+};
 
-/// The volumes of one time of a source of `Meaning::Rgb` or `Meaning::Rgba`: three, or four.
+/// The volumes of one time of a source of `ComponentKind::Rgb` or `ComponentKind::Rgba`: three, or four.
 ///
 /// # Errors
 /// Another number of components than 3 and 4, more memory than allowed, and whatever the source meets.
@@ -59,7 +61,7 @@ pub fn read_all(
         ..*limits
     };
     let read = |component| {
-        let pick = Pick { time, component };
+        let pick = TimeComponent { time, component };
         Volume::read(source, pick, source.header().whole(), &each)
     };
     components.map(read).collect()

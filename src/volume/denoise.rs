@@ -1,5 +1,5 @@
 //! Noise taken out of a volume before it is projected: noise alone lifts a maximum, by more than three times its
-//! deviation along 512 samples. Twin of `shaders/denoise.wgsl` and of its kernels.
+//! deviation along 512 samples. CPU reference of `shaders/denoise.wgsl` and of its kernels.
 //!
 //! ```text
 //! gaussian    sum of w(|k|) f(x + k),  w ~ exp(-k^2 / 2 s^2), along x, then y, then z

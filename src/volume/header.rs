@@ -37,7 +37,7 @@ pub struct Header {
     /// How the picture was taken, by the codes of DICOM PS3.3 C.7.3.1.1.1: `CT`, `MR`, `PT`, `GM` (microscopy).
     pub modality: Option<String>,
     /// What the numbers of a voxel are to each other.
-    pub meaning: Meaning,
+    pub meaning: ComponentKind,
     /// True where the file says that values are names of things: nothing lies between two of them.
     pub is_labels: bool,
     /// True where the world is a piece of the Earth in kilometres: x east, y north, z up.
@@ -83,7 +83,7 @@ impl Header {
             standard_name: None,
             long_name: None,
             modality: (format == Format::Tiff).then(|| "GM".to_owned()),
-            meaning: Meaning::Numbers,
+            meaning: ComponentKind::Numbers,
             is_labels: false,
             is_earth: false,
             degree_lengths: [None; 2],
@@ -114,7 +114,7 @@ impl Header {
 /// What the components of a voxel are to each other.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "json", derive(serde::Serialize, serde::Deserialize))]
-pub enum Meaning {
+pub enum ComponentKind {
     /// One number, or several of which the file says nothing.
     Numbers,
     /// sRGB red, green and blue, full at the largest number of an integer type and at 1 for floats.
@@ -154,7 +154,7 @@ pub struct Series {
 /// Which volume of a file that holds several; `None` takes the only one.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "json", derive(serde::Serialize, serde::Deserialize))]
-pub struct Wanted {
+pub struct VolumeSelection {
     /// The name of a variable, a data set's path, an array's name.
     pub variable: Option<String>,
     /// The UID of a DICOM series.

@@ -15,7 +15,7 @@
 //!
 //! Unser, "Splines: A Perfect Fit for Signal and Image Processing", IEEE Signal Processing Magazine 1999;
 //! Catmull, Rom, "A Class of Local Interpolating Splines", 1974. A tap outside of the grid has the number of the
-//! edge. Twin of `shaders/lib/kernel.wgsl` and of the files that import it.
+//! edge. CPU reference of `shaders/lib/kernel.wgsl` and of the files that import it.
 
 use super::Volume;
 use super::sample::{clamped, fetch, rescaled};

@@ -3,7 +3,7 @@
 //! A label is never interpolated: each voxel of the grid takes that of the voxel of the map that its centre lies
 //! in; outside of the map it is 0.
 
-use super::{Grid, Loss, Rescale, Volume, Voxels};
+use super::{Grid, PrecisionLoss, Rescale, Volume, Voxels};
 use glam::{DVec3, dvec3};
 use std::collections::BTreeMap;
 
@@ -84,7 +84,7 @@ pub fn on_grid(map: &Volume, grid: &Grid) -> (Volume, f64) {
         validity: None,
         hounsfield: false,
         unit: None,
-        loss: Loss::default(),
+        loss: PrecisionLoss::default(),
         value_range: range,
     };
     (moved, share)

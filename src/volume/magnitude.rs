@@ -7,7 +7,8 @@
 //! In f64, kept as f32. No data where any component is.
 
 use super::{
-    Header, Loss, Meaning, Pick, Piece, ReadError, Rescale, Source, VoxelBox, VoxelType, Voxels,
+    ComponentKind, Header, Piece, PrecisionLoss, ReadError, Rescale, Source, TimeComponent,
+    VoxelBox, VoxelType, Voxels,
 };
 use std::path::Path;
 
@@ -34,7 +35,7 @@ impl Magnitude {
             rescale: Rescale::default(),
             // Holes are NaN, see `slab`.
             fill: None,
-            meaning: Meaning::Numbers,
+            meaning: ComponentKind::Numbers,
             is_labels: false,
             hounsfield: false,
             ..source.header().clone()
@@ -64,11 +65,11 @@ impl Source for Magnitude {
         self.of.reads_whole_rows()
     }
 
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         let [nx, ny, _] = region.dims().map(u64::from);
         let slices = (SLAB_VOXELS / (nx * ny).max(1)).clamp(1, u32::MAX.into()) as u32;
         let mut lengths = Vec::new();
-        let mut loss = Loss::default();
+        let mut loss = PrecisionLoss::default();
         for z in (region.min[2]..region.max[2]).step_by(slices as usize) {
             let mut slab = region;
             (slab.min[2], slab.max[2]) = (z, z.saturating_add(slices).min(region.max[2]));
@@ -87,10 +88,10 @@ const SLAB_VOXELS: u64 = 1 << 22;
 impl Magnitude {
     fn slab(
         &self,
-        pick: Pick,
+        pick: TimeComponent,
         region: VoxelBox,
         lengths: &mut Vec<f32>,
-    ) -> Result<Loss, ReadError> {
+    ) -> Result<PrecisionLoss, ReadError> {
         let Header {
             components,
             rescale,
@@ -99,9 +100,9 @@ impl Magnitude {
         } = *self.of.header();
         let Rescale { slope, intercept } = rescale;
         let mut squares: Vec<f64> = Vec::new();
-        let mut loss = Loss::default();
+        let mut loss = PrecisionLoss::default();
         for component in 0..components {
-            let piece = self.of.read(Pick { component, ..pick }, region)?;
+            let piece = self.of.read(TimeComponent { component, ..pick }, region)?;
             squares.resize(piece.voxels.len(), 0.0);
             loss = loss.and(piece.loss);
             // What was rounded to f32 meets a fill that was rounded too.

@@ -47,7 +47,7 @@ pub use colors::{luma, read_all, read_colors};
 pub(crate) use components::{Component, Components};
 pub use denoise::{Denoise, MAX_SIGMA_VOXELS, Pass, noise_of, with_numbers};
 pub use grid::Grid;
-pub use header::{Channel, Format, Header, Meaning, Rescale, Series, Wanted};
+pub use header::{Channel, ComponentKind, Format, Header, Rescale, Series, VolumeSelection};
 pub use histogram::Histogram;
 pub use joint::{JointHistogram, steepest_gradient};
 pub use limits::Limits;
@@ -60,7 +60,7 @@ pub(crate) use pyramid::{Difference, difference, halved, held};
 pub use read_error::{Problem, ReadError};
 pub use reduce::Reduced;
 pub use regrid::{is_same_grid, regridded};
-pub use source::{Loss, Pick, Piece, Source};
+pub use source::{Piece, PrecisionLoss, Source, TimeComponent};
 pub use statistics::Statistics;
 #[cfg(feature = "cli")]
 pub(crate) use statistics::slices_of_slab;
@@ -91,7 +91,7 @@ pub struct Volume {
     /// The unit of the values, as the file words it.
     pub unit: Option<String>,
     /// What rounding stored numbers to f32 changed.
-    pub loss: Loss,
+    pub loss: PrecisionLoss,
     /// Smallest and largest valid value; `[0.0, 0.0]` where none is valid.
     pub value_range: [f64; 2],
 }

@@ -2,8 +2,8 @@
 
 use super::voxels::{Stored, with_numbers};
 use super::{
-    Header, Limits, Loss, Pick, Piece, Problem, ReadError, Rescale, Source, Volume, VoxelBox,
-    Voxels, holes,
+    Header, Limits, Piece, PrecisionLoss, Problem, ReadError, Rescale, Source, TimeComponent,
+    Volume, VoxelBox, Voxels, holes,
 };
 use glam::{DAffine3, DVec3};
 
@@ -15,7 +15,7 @@ impl Volume {
     /// need more than `limits.max_bytes`, and whatever the source itself meets.
     pub fn read(
         source: &dyn Source,
-        pick: Pick,
+        pick: TimeComponent,
         region: VoxelBox,
         limits: &Limits,
     ) -> Result<Self, ReadError> {
@@ -76,7 +76,7 @@ impl Volume {
             fill,
             hounsfield: false,
             unit: None,
-            loss: Loss::default(),
+            loss: PrecisionLoss::default(),
         };
         let limits = Limits {
             max_bytes: u64::MAX,
@@ -94,7 +94,7 @@ struct Grid {
     fill: Option<f64>,
     hounsfield: bool,
     unit: Option<String>,
-    loss: Loss,
+    loss: PrecisionLoss,
 }
 
 fn finish(
@@ -188,7 +188,7 @@ fn within(limits: &Limits, what: &str, wanted_bytes: u64) -> Result<(), Problem>
     })
 }
 
-fn check_inside(header: &Header, pick: Pick, region: VoxelBox) -> Result<(), Problem> {
+fn check_inside(header: &Header, pick: TimeComponent, region: VoxelBox) -> Result<(), Problem> {
     let format = header.format.name();
     let under = |field, found: u32, count: u32| {
         if found < count {

@@ -7,7 +7,7 @@
 //! Of labels the voxel in the middle of the block is taken: nothing lies between two names.
 
 use super::voxels::Stored;
-use super::{Header, Pick, Piece, ReadError, Source, VoxelBox, Voxels};
+use super::{Header, Piece, ReadError, Source, TimeComponent, VoxelBox, Voxels};
 use glam::{DAffine3, DVec3};
 use half::f16;
 use std::path::Path;
@@ -79,7 +79,7 @@ impl Source for Reduced {
         self.source.reads_whole_rows()
     }
 
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         let slice = self.region_of_source(VoxelBox {
             max: [region.max[0], region.max[1], region.min[2] + 1],
             ..region

@@ -18,7 +18,7 @@ pub trait Source: Send + Sync {
     ///
     /// `pick` and `region` lie inside the header; integers of 32 and 64 bits and f64 are rounded to f32,
     /// and [`Piece::loss`] says what that cost.
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError>;
+    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError>;
 
     /// False where a part is found only by reading all that stands before it, as in a file that is compressed as a
     /// whole.
@@ -37,7 +37,7 @@ pub trait Source: Send + Sync {
     ///
     /// # Errors
     /// What reading meets.
-    fn surveyed(&self, pick: Pick, most_seen: u64) -> Result<Option<Surveyed>, ReadError> {
+    fn surveyed(&self, pick: TimeComponent, most_seen: u64) -> Result<Option<Surveyed>, ReadError> {
         let _ = (pick, most_seen);
         Ok(None)
     }
@@ -49,7 +49,7 @@ pub trait Source: Send + Sync {
     /// What reading meets.
     fn read_slabs(
         &self,
-        pick: Pick,
+        pick: TimeComponent,
         region: VoxelBox,
         slices: u32,
         take: &mut dyn FnMut(VoxelBox, Piece) -> ControlFlow<()>,
@@ -64,7 +64,11 @@ pub trait Source: Send + Sync {
 
     /// The same numbers as little-endian bytes of the type in the file, none of them rounded. `None` from a source
     /// that has them in the types of [`Voxels`] only.
-    fn read_bytes(&self, pick: Pick, region: VoxelBox) -> Result<Option<Vec<u8>>, ReadError> {
+    fn read_bytes(
+        &self,
+        pick: TimeComponent,
+        region: VoxelBox,
+    ) -> Result<Option<Vec<u8>>, ReadError> {
         let _ = (pick, region);
         Ok(None)
     }
@@ -76,7 +80,7 @@ pub struct Piece {
     /// The stored numbers, x fastest.
     pub voxels: Voxels,
     /// What rounding them to f32 changed.
-    pub loss: Loss,
+    pub loss: PrecisionLoss,
 }
 
 impl From<Voxels> for Piece {
@@ -84,21 +88,21 @@ impl From<Voxels> for Piece {
     fn from(voxels: Voxels) -> Self {
         Self {
             voxels,
-            loss: Loss::default(),
+            loss: PrecisionLoss::default(),
         }
     }
 }
 
 /// What rounding 32- and 64-bit integers and f64 to f32 changed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Loss {
+pub struct PrecisionLoss {
     /// How many numbers are not what the file holds. A NaN that stays NaN is not changed.
     pub changed: u64,
     /// The largest distance between a number in the file and the one kept; infinite where one left the range of f32.
     pub worst: f64,
 }
 
-impl Loss {
+impl PrecisionLoss {
     /// True where every number is exactly that of the file.
     pub fn is_none(&self) -> bool {
         self.changed == 0
@@ -116,7 +120,7 @@ impl Loss {
 /// Which of several volumes in one source.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "json", derive(serde::Serialize, serde::Deserialize))]
-pub struct Pick {
+pub struct TimeComponent {
     /// Index of the time step.
     pub time: u32,
     /// Index of the component of a voxel.

@@ -5,7 +5,7 @@
 use super::histogram::{Bins, Histogram};
 use super::read::check_memory;
 use super::voxels::{Stored, with_numbers};
-use super::{Header, Limits, Loss, Pick, ReadError, Source, Voxels};
+use super::{Header, Limits, PrecisionLoss, ReadError, Source, TimeComponent, Voxels};
 use std::ops::{ControlFlow, Range};
 
 /// Smallest, largest and mean value, and how many voxels count.
@@ -24,7 +24,7 @@ pub struct Statistics {
     /// Finite voxels that equal the fill.
     pub fill_count: u64,
     /// What rounding to f32 changed, in stored units.
-    pub loss: Loss,
+    pub loss: PrecisionLoss,
     /// How often each value occurs.
     pub histogram: Histogram,
 }
@@ -48,11 +48,11 @@ impl Statistics {
                 problem,
             }
         })?;
-        let picks: Vec<Pick> = (0..header.times)
+        let picks: Vec<TimeComponent> = (0..header.times)
             .flat_map(|time| {
                 components
                     .clone()
-                    .map(move |component| Pick { time, component })
+                    .map(move |component| TimeComponent { time, component })
             })
             .collect();
         let is_one_slab = picks.len() == 1 && slices >= header.dims[2];
@@ -113,7 +113,7 @@ struct Tally {
     valid: u64,
     non_finite: u64,
     fill: u64,
-    loss: Loss,
+    loss: PrecisionLoss,
 }
 
 impl Default for Tally {
@@ -125,7 +125,7 @@ impl Default for Tally {
             valid: 0,
             non_finite: 0,
             fill: 0,
-            loss: Loss::default(),
+            loss: PrecisionLoss::default(),
         }
     }
 }

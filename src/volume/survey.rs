@@ -10,8 +10,8 @@
 
 use super::voxels::{Stored, with_numbers};
 use super::{
-    Format, Header, Loss, Meaning, Pick, Piece, Problem, ReadError, Rescale, Source, VoxelBox,
-    Voxels,
+    ComponentKind, Format, Header, Piece, PrecisionLoss, Problem, ReadError, Rescale, Source,
+    TimeComponent, VoxelBox, Voxels,
 };
 use glam::{DAffine3, DVec3};
 use std::ops::ControlFlow;
@@ -29,7 +29,7 @@ pub struct Survey {
     /// True where some voxel holds no data.
     pub has_holes: bool,
     /// What rounding stored numbers to f32 changed. Boxes that overlap count twice.
-    pub loss: Loss,
+    pub loss: PrecisionLoss,
     /// Every n-th voxel.
     pub overview: Overview,
 }
@@ -60,7 +60,7 @@ impl Overview {
             times: 1,
             levels: 1,
             stored: voxels.voxel_type(),
-            meaning: Meaning::Numbers,
+            meaning: ComponentKind::Numbers,
             time_names: Vec::new(),
             ..header
         };
@@ -100,7 +100,7 @@ impl Survey {
     /// What the source meets; `None` where `tell` has ended it.
     pub fn of(
         source: &dyn Source,
-        pick: Pick,
+        pick: TimeComponent,
         boxes: &[VoxelBox],
         [piece_bytes, most_seen]: [u64; 2],
         tell: &mut dyn FnMut(usize, usize) -> ControlFlow<()>,
@@ -109,7 +109,7 @@ impl Survey {
         let runs = runs(header, boxes, piece_bytes);
         let mut seen = Seen::new(header, most_seen);
         let mut found: Vec<Option<Found>> = vec![None; boxes.len()];
-        let mut loss = Loss::default();
+        let mut loss = PrecisionLoss::default();
         let is_ended = thread::scope(|scope| {
             let (send, pieces) = sync_channel(0);
             let runs = &runs;
@@ -162,7 +162,7 @@ impl Survey {
             value_range: ranges.iter().flatten().copied().reduce(both),
             ranges,
             has_holes,
-            loss: Loss::default(),
+            loss: PrecisionLoss::default(),
             overview,
         }
     }
@@ -366,7 +366,7 @@ impl Source for Overview {
         &self.header
     }
 
-    fn read(&self, _: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, _: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         if region == self.header.whole() {
             return Ok(self.voxels.clone().into());
         }

@@ -6,7 +6,7 @@ host h;
 sv_host_device ours;
 sv_device device, other_device;
 sv_volume volume, fresh;
-sv_function function;
+sv_transfer_function function;
 sv_renderer renderer, deep;
 sv_submitter submitter;
 sv_update staged;
@@ -84,25 +84,25 @@ static void device_loss(void) {
 
 /* ---- Threads ---- */
 
-static sv_function shared_function;
+static sv_transfer_function shared_function;
 static int destroyed[4];
 
 static void *many_functions(void *number) {
-    const sv_function_desc desc = {.struct_size = sizeof desc};
+    const sv_transfer_function_desc desc = {.struct_size = sizeof desc};
     sv_diagnostic own = {.struct_size = sizeof own};
     for (int k = 0; k < 500; ++k) {
-        sv_function made = 0;
-        if (sv_function_create(device, &desc, &made, &own) != SV_OK) return "create";
-        if (sv_function_destroy(made, &own) != SV_OK) return "destroy";
-        if (sv_function_destroy(made, &own) != SV_E_ARGUMENT) return "destroy again";
+        sv_transfer_function made = 0;
+        if (sv_transfer_function_create(device, &desc, &made, &own) != SV_OK) return "create";
+        if (sv_transfer_function_destroy(made, &own) != SV_OK) return "destroy";
+        if (sv_transfer_function_destroy(made, &own) != SV_E_ARGUMENT) return "destroy again";
     }
-    destroyed[*(int *)number] = sv_function_destroy(shared_function, &own) == SV_OK;
+    destroyed[*(int *)number] = sv_transfer_function_destroy(shared_function, &own) == SV_OK;
     return NULL;
 }
 
 static void threads(void) {
-    const sv_function_desc desc = {.struct_size = sizeof desc};
-    GOOD(sv_function_create(device, &desc, &shared_function, &diagnostic));
+    const sv_transfer_function_desc desc = {.struct_size = sizeof desc};
+    GOOD(sv_transfer_function_create(device, &desc, &shared_function, &diagnostic));
     pthread_t all[4];
     int numbers[4] = {0, 1, 2, 3};
     for (int k = 0; k < 4; ++k) host_check(!pthread_create(&all[k], NULL, many_functions, &numbers[k]), "start");
@@ -135,10 +135,10 @@ int main(void) {
     GOOD(sv_device_from_host(&ours, &device, &diagnostic));
     GOOD(sv_device_from_host(&ours, &other_device, &diagnostic));
     const sv_volume_desc desc = volume_desc();
-    const sv_function_desc points = {.struct_size = sizeof points};
+    const sv_transfer_function_desc points = {.struct_size = sizeof points};
     sv_renderer_desc wanted = renderer_desc();
     GOOD(sv_volume_create(device, &desc, &volume, &diagnostic));
-    GOOD(sv_function_create(device, &points, &function, &diagnostic));
+    GOOD(sv_transfer_function_create(device, &points, &function, &diagnostic));
     GOOD(sv_submitter_create(device, 2, &submitter, &diagnostic));
     cmd = host_begin(&h);
     GOOD(sv_volume_record_upload(volume, cmd, &diagnostic));

@@ -13,7 +13,7 @@ extern host h;
 extern sv_host_device ours;
 extern sv_device device, other_device;
 extern sv_volume volume, fresh;
-extern sv_function function;
+extern sv_transfer_function function;
 extern sv_renderer renderer, deep;
 extern sv_submitter submitter;
 extern sv_update staged;
@@ -105,7 +105,7 @@ static inline sv_target whole_target(void) {
     return made;
 }
 
-static const sv_shot SHOT = {.struct_size = sizeof(sv_shot)};
+static const sv_frame_info SHOT = {.struct_size = sizeof(sv_frame_info)};
 
 static inline sv_submission submission(void) {
     const sv_submission made = {.struct_size = sizeof made, .queue = h.queue};

@@ -2,7 +2,7 @@
 #include "abuse.h"
 
 static sv_status with_camera(sv_camera camera) {
-    const sv_shot shot = {.struct_size = sizeof shot, .camera = &camera};
+    const sv_frame_info shot = {.struct_size = sizeof shot, .camera = &camera};
     return sv_renderer_record(renderer, cmd, &shot, &diagnostic);
 }
 static sv_status with_target(sv_target target) {
@@ -51,12 +51,12 @@ static void frames(void) {
     WITH(sv_camera, matrices, clip_from_view[15], 0.0, SV_E_ARGUMENT);
     WITH(sv_camera, matrices, clip_from_view[3], 1.0, SV_E_ARGUMENT);
 #undef with
-    sv_shot late = SHOT;
+    sv_frame_info late = SHOT;
     late.frame = 2;
     BAD(SV_E_ARGUMENT, sv_renderer_record(renderer, cmd, &late, &diagnostic));
-    sv_shot reserved = SHOT;
+    sv_frame_info reserved = SHOT;
     reserved.reserved = 7;
-    NAMED(SV_E_ARGUMENT, "sv_shot.reserved: wanted 0, found 7", sv_renderer_record(renderer, cmd, &reserved, &diagnostic));
+    NAMED(SV_E_ARGUMENT, "sv_frame_info.reserved: wanted 0, found 7", sv_renderer_record(renderer, cmd, &reserved, &diagnostic));
     late.frame = UINT32_MAX;
     BAD(SV_E_ARGUMENT, sv_renderer_record(renderer, cmd, &late, &diagnostic));
     BAD(SV_E_ARGUMENT, sv_renderer_draw(renderer, cmd, 2, &diagnostic));

@@ -57,8 +57,8 @@ static sv_status h_volume_create(uint64_t x) {
     return sv_volume_create(x, &desc, &made_handle, &diagnostic);
 }
 static sv_status h_function_create(uint64_t x) {
-    const sv_function_desc desc = {.struct_size = sizeof desc};
-    return sv_function_create(x, &desc, &made_handle, &diagnostic);
+    const sv_transfer_function_desc desc = {.struct_size = sizeof desc};
+    return sv_transfer_function_create(x, &desc, &made_handle, &diagnostic);
 }
 static sv_status h_renderer_create(uint64_t x) {
     const sv_renderer_desc desc = renderer_desc();
@@ -81,15 +81,15 @@ static sv_status h_submit_upload(uint64_t x) {
     const sv_submission s = submission();
     return sv_submitter_upload(submitter, x, 0, &s, &diagnostic);
 }
-static sv_status h_function_destroy(uint64_t x) { return sv_function_destroy(x, &diagnostic); }
+static sv_status h_function_destroy(uint64_t x) { return sv_transfer_function_destroy(x, &diagnostic); }
 static sv_status h_of_function(uint64_t x) {
     sv_renderer_desc desc = renderer_desc();
     desc.function = x;
     return with_renderer(desc);
 }
-static sv_status h_set_function(uint64_t x) { return sv_renderer_set_function(renderer, x, &diagnostic); }
+static sv_status h_set_function(uint64_t x) { return sv_renderer_set_transfer_function(renderer, x, &diagnostic); }
 static sv_status h_resize(uint64_t x) { return sv_renderer_resize(x, WIDTH, HEIGHT, NULL, 0, &diagnostic); }
-static sv_status h_function_of(uint64_t x) { return sv_renderer_set_function(x, 0, &diagnostic); }
+static sv_status h_function_of(uint64_t x) { return sv_renderer_set_transfer_function(x, 0, &diagnostic); }
 static sv_status h_settings_of(uint64_t x) { return sv_renderer_set_settings(x, NULL, &diagnostic); }
 static sv_status h_volume_of(uint64_t x) { return sv_renderer_set_volume(x, volume, 0, &diagnostic); }
 static sv_status h_record(uint64_t x) { return sv_renderer_record(x, cmd, &SHOT, &diagnostic); }
@@ -174,7 +174,7 @@ static const struct {
     {"sv_submitter_submit_in_parts", h_parts, SUBMITTER, 0},
     {"sv_device_destroy", h_device_destroy, DEVICE, 0},
     {"sv_volume_create", h_volume_create, DEVICE, 0},
-    {"sv_function_create", h_function_create, DEVICE, 0},
+    {"sv_transfer_function_create", h_function_create, DEVICE, 0},
     {"sv_renderer_create", h_renderer_create, DEVICE, 0},
     {"sv_submitter_create", h_submitter_create, DEVICE, 0},
     {"sv_volume_record_upload", h_upload, VOLUME, 0},
@@ -183,11 +183,11 @@ static const struct {
     {"sv_renderer_create, its volume", h_of_volume, VOLUME, 0},
     {"sv_renderer_set_volume, its volume", h_set_volume, VOLUME, 0},
     {"sv_submitter_upload, its volume", h_submit_upload, VOLUME, 0},
-    {"sv_function_destroy", h_function_destroy, FUNCTION, 0},
+    {"sv_transfer_function_destroy", h_function_destroy, FUNCTION, 0},
     {"sv_renderer_create, its function", h_of_function, FUNCTION, 1},
-    {"sv_renderer_set_function, its function", h_set_function, FUNCTION, 1},
+    {"sv_renderer_set_transfer_function, its function", h_set_function, FUNCTION, 1},
     {"sv_renderer_resize", h_resize, RENDERER, 0},
-    {"sv_renderer_set_function", h_function_of, RENDERER, 0},
+    {"sv_renderer_set_transfer_function", h_function_of, RENDERER, 0},
     {"sv_renderer_set_settings", h_settings_of, RENDERER, 0},
     {"sv_renderer_set_volume", h_volume_of, RENDERER, 0},
     {"sv_renderer_record", h_record, RENDERER, 0},
@@ -207,16 +207,16 @@ void abuse_handles(void) {
     /* Of each kind one that is gone, and whose place is taken by another one. */
     uint64_t stale[7] = {0};
     const sv_volume_desc desc = volume_desc();
-    const sv_function_desc points = {.struct_size = sizeof points};
+    const sv_transfer_function_desc points = {.struct_size = sizeof points};
     const sv_renderer_desc wanted = renderer_desc();
     GOOD(sv_device_from_host(&ours, &stale[DEVICE], &diagnostic));
     GOOD(sv_device_destroy(stale[DEVICE], &diagnostic));
     GOOD(sv_volume_create(device, &desc, &stale[VOLUME], &diagnostic));
     GOOD(sv_volume_destroy(stale[VOLUME], &diagnostic));
     GOOD(sv_volume_create(device, &desc, &fresh, &diagnostic));
-    GOOD(sv_function_create(device, &points, &stale[FUNCTION], &diagnostic));
-    GOOD(sv_function_destroy(stale[FUNCTION], &diagnostic));
-    GOOD(sv_function_create(device, &points, &made_handle, &diagnostic));
+    GOOD(sv_transfer_function_create(device, &points, &stale[FUNCTION], &diagnostic));
+    GOOD(sv_transfer_function_destroy(stale[FUNCTION], &diagnostic));
+    GOOD(sv_transfer_function_create(device, &points, &made_handle, &diagnostic));
     GOOD(sv_renderer_create(device, &wanted, &stale[RENDERER], &diagnostic));
     GOOD(sv_renderer_destroy(stale[RENDERER], &diagnostic));
     GOOD(sv_submitter_create(device, 1, &stale[SUBMITTER], &diagnostic));
@@ -244,9 +244,9 @@ void abuse_handles(void) {
     }
     /* Of another device. */
     sv_volume foreign = 0;
-    sv_function foreign_function = 0;
+    sv_transfer_function foreign_function = 0;
     GOOD(sv_volume_create(other_device, &desc, &foreign, &diagnostic));
-    GOOD(sv_function_create(other_device, &points, &foreign_function, &diagnostic));
+    GOOD(sv_transfer_function_create(other_device, &points, &foreign_function, &diagnostic));
     BAD(SV_E_ARGUMENT, h_of_volume(foreign));
     BAD(SV_E_ARGUMENT, h_set_volume(foreign));
     BAD(SV_E_ARGUMENT, h_submit_upload(foreign));

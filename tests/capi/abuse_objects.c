@@ -5,8 +5,8 @@ static sv_status with_host(sv_host_device wanted) { return sv_device_from_host(&
 static sv_status with_volume(sv_volume_desc desc) {
     return sv_volume_create(device, &desc, &made_handle, &diagnostic);
 }
-static sv_status with_function(sv_function_desc desc) {
-    return sv_function_create(device, &desc, &made_handle, &diagnostic);
+static sv_status with_function(sv_transfer_function_desc desc) {
+    return sv_transfer_function_create(device, &desc, &made_handle, &diagnostic);
 }
 static sv_status h_of_volume(uint64_t x) {
     sv_renderer_desc desc = renderer_desc();
@@ -17,12 +17,12 @@ static sv_status h_of_volume(uint64_t x) {
 static void null_pointers(void) {
     const sv_volume_desc desc = volume_desc();
     const sv_renderer_desc wanted = renderer_desc();
-    const sv_function_desc points = {.struct_size = sizeof points};
+    const sv_transfer_function_desc points = {.struct_size = sizeof points};
     const sv_target target = whole_target();
     const sv_submission s = submission();
     BAD(SV_E_ARGUMENT, sv_device_from_host(&ours, NULL, &diagnostic));
     BAD(SV_E_ARGUMENT, sv_volume_create(device, &desc, NULL, &diagnostic));
-    BAD(SV_E_ARGUMENT, sv_function_create(device, &points, NULL, &diagnostic));
+    BAD(SV_E_ARGUMENT, sv_transfer_function_create(device, &points, NULL, &diagnostic));
     BAD(SV_E_ARGUMENT, sv_renderer_create(device, &wanted, NULL, &diagnostic));
     BAD(SV_E_ARGUMENT, sv_submitter_create(device, 1, NULL, &diagnostic));
     BAD(SV_E_ARGUMENT, sv_device_pipelines_made(device, NULL, &diagnostic));
@@ -217,31 +217,31 @@ static void parts(void) {
 static void functions(void) {
     static const sv_color_point colors[] = {{0, {0, 0, 0}}, {1, {1, 1, 1}}};
     static const sv_opacity_point opacities[] = {{0, 0}, {1, 1}};
-    const sv_function_desc start = {.struct_size = sizeof start,
+    const sv_transfer_function_desc start = {.struct_size = sizeof start,
                                     .colors = colors,
                                     .color_count = 2,
                                     .opacities = opacities,
                                     .opacity_count = 2};
 #define with with_function
-    WITH(sv_function_desc, start, colors, NULL, SV_E_ARGUMENT);
-    WITH(sv_function_desc, start, opacities, NULL, SV_E_ARGUMENT);
-    WITH(sv_function_desc, start, color_count, 4097, SV_E_LIMIT);
-    WITH(sv_function_desc, start, color_count, UINT64_MAX, SV_E_LIMIT);
-    WITH(sv_function_desc, start, opacity_count, UINT64_MAX / 16, SV_E_LIMIT);
-    WITH(sv_function_desc, start, reference_length, -1.0, SV_E_ARGUMENT);
-    WITH(sv_function_desc, start, reference_length, (double)NAN, SV_E_ARGUMENT);
-    WITH(sv_function_desc, start, reference_length, (double)INFINITY, SV_E_ARGUMENT);
-    WITH(sv_function_desc, start, colors, (const sv_color_point *)((const char *)colors + 1), SV_E_ARGUMENT);
+    WITH(sv_transfer_function_desc, start, colors, NULL, SV_E_ARGUMENT);
+    WITH(sv_transfer_function_desc, start, opacities, NULL, SV_E_ARGUMENT);
+    WITH(sv_transfer_function_desc, start, color_count, 4097, SV_E_LIMIT);
+    WITH(sv_transfer_function_desc, start, color_count, UINT64_MAX, SV_E_LIMIT);
+    WITH(sv_transfer_function_desc, start, opacity_count, UINT64_MAX / 16, SV_E_LIMIT);
+    WITH(sv_transfer_function_desc, start, reference_length, -1.0, SV_E_ARGUMENT);
+    WITH(sv_transfer_function_desc, start, reference_length, (double)NAN, SV_E_ARGUMENT);
+    WITH(sv_transfer_function_desc, start, reference_length, (double)INFINITY, SV_E_ARGUMENT);
+    WITH(sv_transfer_function_desc, start, colors, (const sv_color_point *)((const char *)colors + 1), SV_E_ARGUMENT);
     static const sv_color_point wrong_colors[][2] = {{{1, {0, 0, 0}}, {0, {0, 0, 0}}},
                                                      {{0, {0, 0, 0}}, {NAN, {0, 0, 0}}},
                                                      {{0, {0, 0, 0}}, {INFINITY, {0, 0, 0}}},
                                                      {{0, {0, 0, 0}}, {1, {0, 2, 0}}},
                                                      {{0, {0, 0, 0}}, {1, {-0.1, 0, 0}}},
                                                      {{0, {0, NAN, 0}}, {1, {0, 0, 0}}}};
-    for (int k = 0; k < 6; ++k) WITH(sv_function_desc, start, colors, wrong_colors[k], SV_E_ARGUMENT);
+    for (int k = 0; k < 6; ++k) WITH(sv_transfer_function_desc, start, colors, wrong_colors[k], SV_E_ARGUMENT);
     static const sv_opacity_point wrong_opacities[][2] = {
         {{1, 0}, {0, 0}}, {{0, 0}, {NAN, 0}}, {{0, 0}, {1, 1.5}}, {{0, 0}, {1, -1}}, {{0, NAN}, {1, 0}}};
-    for (int k = 0; k < 5; ++k) WITH(sv_function_desc, start, opacities, wrong_opacities[k], SV_E_ARGUMENT);
+    for (int k = 0; k < 5; ++k) WITH(sv_transfer_function_desc, start, opacities, wrong_opacities[k], SV_E_ARGUMENT);
 #undef with
 }
 

@@ -54,7 +54,7 @@ static void settings(void) {
         wrong.clip_plane_count = UINT64_MAX;
         BAD(SV_E_LIMIT, with(wrong));
     }
-    static const sv_level levels[] = {
+    static const sv_isosurface levels[] = {
         {NAN, {0, 0, 0}, 1}, {0, {0, 3, 0}, 1}, {0, {0, 0, NAN}, 1}, {0, {0, 0, 0}, 2}, {INFINITY, {0, 0, 0}, 0}};
     for (int k = 0; k < 5; ++k) {
         sv_settings wrong = start;

@@ -14,7 +14,7 @@ static sv_status s_limits(void *x) {
 }
 static sv_status s_memory(void *x) { return sv_device_memory(device, x, &diagnostic); }
 static sv_status s_volume(void *x) { return sv_volume_create(device, x, &made_handle, &diagnostic); }
-static sv_status s_function(void *x) { return sv_function_create(device, x, &made_handle, &diagnostic); }
+static sv_status s_function(void *x) { return sv_transfer_function_create(device, x, &made_handle, &diagnostic); }
 static sv_status s_renderer(void *x) { return sv_renderer_create(device, x, &made_handle, &diagnostic); }
 static sv_status s_settings(void *x) {
     sv_renderer_desc desc = renderer_desc();
@@ -28,7 +28,7 @@ static sv_status s_class(void *x) {
 }
 static sv_status s_shot(void *x) { return sv_renderer_record(renderer, cmd, x, &diagnostic); }
 static sv_status s_camera(void *x) {
-    const sv_shot shot = {.struct_size = sizeof shot, .camera = x};
+    const sv_frame_info shot = {.struct_size = sizeof shot, .camera = x};
     return sv_renderer_record(renderer, cmd, &shot, &diagnostic);
 }
 static sv_status s_target(void *x) { return sv_renderer_record_into(renderer, cmd, &SHOT, x, &diagnostic); }
@@ -68,11 +68,11 @@ static const struct {
     {"sv_limits", s_limits, sizeof(sv_limits), 1, 0},
     {"sv_memory", s_memory, sizeof(sv_memory), 0, 1},
     {"sv_volume_desc", s_volume, sizeof(sv_volume_desc), 0, 0},
-    {"sv_function_desc", s_function, sizeof(sv_function_desc), 0, 0},
+    {"sv_transfer_function_desc", s_function, sizeof(sv_transfer_function_desc), 0, 0},
     {"sv_renderer_desc", s_renderer, sizeof(sv_renderer_desc), 0, 0},
     {"sv_settings", s_settings, sizeof(sv_settings), 1, 0},
     {"sv_target_class", s_class, sizeof(sv_target_class), 0, 0},
-    {"sv_shot", s_shot, sizeof(sv_shot), 0, 0},
+    {"sv_frame_info", s_shot, sizeof(sv_frame_info), 0, 0},
     {"sv_camera", s_camera, sizeof(sv_camera), 1, 0},
     {"sv_target", s_target, sizeof(sv_target), 0, 0},
     {"sv_pick", s_pick, sizeof(sv_pick), 0, 1},

@@ -106,20 +106,20 @@ void fetch(VkCommandBuffer cmd, uint8_t *texels) {
 }
 
 /* Dense enough that light from behind is halved inside the ball. */
-sv_function make_function(void) {
+sv_transfer_function make_function(void) {
     const sv_color_point colors[] = {{0.0, {1, 0, 0}}, {8.0, {0, 1, 0}}};
     const sv_opacity_point opacities[] = {{0.0, 0.0}, {8.0, 0.5}};
-    const sv_function_desc described = {.struct_size = sizeof described,
+    const sv_transfer_function_desc described = {.struct_size = sizeof described,
                                         .colors = colors,
                                         .color_count = 2,
                                         .opacities = opacities,
                                         .opacity_count = 2};
-    sv_function made = 0;
-    CHECK(sv_function_create(device, &described, &made, &diagnostic));
+    sv_transfer_function made = 0;
+    CHECK(sv_transfer_function_create(device, &described, &made, &diagnostic));
     return made;
 }
 
-sv_renderer make_renderer(const sv_settings *settings, sv_function function) {
+sv_renderer make_renderer(const sv_settings *settings, sv_transfer_function function) {
     const sv_target_class class = {.struct_size = sizeof class, .color_format = FORMAT};
     const sv_renderer_desc wanted = {.struct_size = sizeof wanted,
                                      .volume = volume,
@@ -135,7 +135,7 @@ sv_renderer make_renderer(const sv_settings *settings, sv_function function) {
 }
 
 void draw_a(sv_renderer renderer, const sv_camera *camera, uint8_t *texels) {
-    const sv_shot shot = {.struct_size = sizeof shot, .camera = camera, .frame = 1};
+    const sv_frame_info shot = {.struct_size = sizeof shot, .camera = camera, .frame = 1};
     VkCommandBuffer cmd = host_begin(&h);
     CHECK(sv_renderer_record(renderer, cmd, &shot, &diagnostic));
     image_barrier(cmd, h.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
@@ -147,7 +147,7 @@ void draw_a(sv_renderer renderer, const sv_camera *camera, uint8_t *texels) {
 }
 
 void draw_b(sv_renderer renderer, uint8_t *texels) {
-    const sv_shot shot = {.struct_size = sizeof shot};
+    const sv_frame_info shot = {.struct_size = sizeof shot};
     const sv_target target = whole_target();
     VkCommandBuffer cmd = host_begin(&h);
     CHECK(sv_renderer_record_into(renderer, cmd, &shot, &target, &diagnostic));
@@ -177,7 +177,7 @@ static void draw_c(sv_renderer renderer, uint8_t *texels) {
                                       .wait_count = 1,
                                       .signals = &signal,
                                       .signal_count = 1};
-    const sv_shot shot = {.struct_size = sizeof shot};
+    const sv_frame_info shot = {.struct_size = sizeof shot};
     const sv_target target = whole_target();
     sv_submitter submitter = 0;
     CHECK(sv_submitter_create(device, 2, &submitter, &diagnostic));
@@ -222,13 +222,13 @@ static void test_levels(void) {
     expect(!memcmp(c, b, BYTES), "level C draws what level B draws");
     expect(locked == 1 && unlocked == 1, "the queue was locked and unlocked once");
 
-    sv_function function = make_function();
+    sv_transfer_function function = make_function();
     CHECK(sv_device_announce(device, 1, &diagnostic));
-    CHECK(sv_renderer_set_function(renderer, function, &diagnostic));
-    CHECK(sv_function_destroy(function, &diagnostic));
+    CHECK(sv_renderer_set_transfer_function(renderer, function, &diagnostic));
+    CHECK(sv_transfer_function_destroy(function, &diagnostic));
     draw_b(renderer, other);
     expect(memcmp(other, b, BYTES) != 0, "another function is another picture");
-    CHECK(sv_renderer_set_function(renderer, 0, &diagnostic));
+    CHECK(sv_renderer_set_transfer_function(renderer, 0, &diagnostic));
     draw_b(renderer, other);
     expect(!memcmp(other, b, BYTES), "and 0 is the ramp of greys again");
     CHECK(sv_device_retire(device, 1, &diagnostic));

@@ -27,8 +27,8 @@ void image_barrier(VkCommandBuffer cmd, VkImage image, VkImageAspectFlags aspect
 void begin_rendering(VkCommandBuffer cmd, VkImageView depth, float depth_value);
 /* Ends and runs the command buffer: what was drawn. */
 void fetch(VkCommandBuffer cmd, uint8_t *texels);
-sv_function make_function(void);
-sv_renderer make_renderer(const sv_settings *settings, sv_function function);
+sv_transfer_function make_function(void);
+sv_renderer make_renderer(const sv_settings *settings, sv_transfer_function function);
 /* By level A. */
 void draw_a(sv_renderer renderer, const sv_camera *camera, uint8_t *texels);
 /* Pixels that are not of the host's colour alone. */

@@ -61,7 +61,7 @@ void test_depth(int is_reversed) {
     static uint8_t alone[BYTES], far[BYTES], near[BYTES];
     const float far_depth = is_reversed ? 0.0f : 1.0f, near_depth = is_reversed ? 0.999f : 0.001f;
     const sv_camera camera = matrices(60.0, is_reversed);
-    sv_function function = make_function();
+    sv_transfer_function function = make_function();
     sv_renderer plain = make_renderer(NULL, function);
     draw_a(plain, &camera, alone);
     expect(drawn_pixels(alone) > 200, "a camera of matrices shows something");
@@ -85,7 +85,7 @@ void test_depth(int is_reversed) {
     sv_renderer renderer = 0;
     CHECK(sv_renderer_create(device, &wanted, &renderer, &diagnostic));
     for (int is_near = 0; is_near < 2; ++is_near) {
-        const sv_shot shot = {.struct_size = sizeof shot, .camera = &camera};
+        const sv_frame_info shot = {.struct_size = sizeof shot, .camera = &camera};
         VkCommandBuffer cmd = host_begin(&h);
         clear_depth(cmd, &read, is_near ? near_depth : far_depth);
         CHECK(sv_renderer_record(renderer, cmd, &shot, &diagnostic));
@@ -111,7 +111,7 @@ void test_depth(int is_reversed) {
     expect(drawn_pixels(near) == 0, "all of it behind the host: nothing of it");
     CHECK(sv_renderer_destroy(renderer, &diagnostic));
     CHECK(sv_renderer_destroy(plain, &diagnostic));
-    CHECK(sv_function_destroy(function, &diagnostic));
+    CHECK(sv_transfer_function_destroy(function, &diagnostic));
     const depth_image both[] = {read, attached};
     for (int k = 0; k < 2; ++k) {
         vkDestroyImageView(h.device, both[k].view, NULL);

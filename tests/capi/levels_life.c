@@ -85,7 +85,7 @@ static uint32_t stop(void *user, double done) { return user == NULL && done > 0.
 /* Frames in parts, by levels B and C. */
 static void test_parts(sv_renderer renderer, const uint8_t *wanted) {
     static uint8_t texels[BYTES];
-    const sv_shot shot = {.struct_size = sizeof shot, .frame = 1};
+    const sv_frame_info shot = {.struct_size = sizeof shot, .frame = 1};
     const sv_target target = whole_target();
     uint64_t blocks = 0, left = 9;
     CHECK(sv_renderer_begin_parts(renderer, &shot, &blocks, &diagnostic));
@@ -102,7 +102,7 @@ static void test_parts(sv_renderer renderer, const uint8_t *wanted) {
     sv_submitter submitter = 0;
     CHECK(sv_submitter_create(device, 1, &submitter, &diagnostic));
     const sv_submission submission = {.struct_size = sizeof submission, .queue = h.queue};
-    const sv_shot first = {.struct_size = sizeof first};
+    const sv_frame_info first = {.struct_size = sizeof first};
     told heard = {0, 0, 0.0};
     const sv_pacing pacing = {.struct_size = sizeof pacing, .target_ms = 1e-6, .tell = tell, .user = &heard};
     uint32_t is_done = 9;
@@ -154,7 +154,7 @@ static void test_half(const sv_update_desc *changed, sv_renderer renderer, const
     CHECK(sv_volume_stage_update(volume, changed, &update, &diagnostic));
     VkCommandBuffer cmd = host_begin(&h);
     CHECK(sv_volume_record_update_part(volume, cmd, update, 1, &left, &diagnostic));
-    const sv_shot shot = {.struct_size = sizeof shot};
+    const sv_frame_info shot = {.struct_size = sizeof shot};
     /* Where a device finds cells by itself there is another piece; on all there are more than one, of corners or cells. */
     expect(left > 0 && sv_renderer_record(renderer, cmd, &shot, &diagnostic) == SV_E_STATE, "half an update");
     host_submit_and_wait(&h, cmd);

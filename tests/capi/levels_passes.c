@@ -41,7 +41,7 @@ static void in_a_render_pass(const uint8_t *wanted) {
     const sv_target_class target = {
         .struct_size = sizeof target, .color_format = FORMAT, .render_pass = (uint64_t)pass};
     sv_renderer renderer = renderer_for(&target);
-    const sv_shot shot = {.struct_size = sizeof shot};
+    const sv_frame_info shot = {.struct_size = sizeof shot};
     VkCommandBuffer cmd = host_begin(&h);
     CHECK(sv_renderer_record(renderer, cmd, &shot, &diagnostic));
     image_barrier(cmd, h.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
@@ -88,7 +88,7 @@ static void of_several_samples(const uint8_t *wanted) {
     host_check(vkCreateImageView(h.device, &seen, NULL, &view) == VK_SUCCESS, "make a view");
     const sv_target_class target = {.struct_size = sizeof target, .color_format = FORMAT, .samples = 4};
     sv_renderer renderer = renderer_for(&target);
-    const sv_shot shot = {.struct_size = sizeof shot};
+    const sv_frame_info shot = {.struct_size = sizeof shot};
     VkCommandBuffer cmd = host_begin(&h);
     CHECK(sv_renderer_record(renderer, cmd, &shot, &diagnostic));
     image_barrier(cmd, h.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
@@ -124,7 +124,7 @@ static void of_a_family(const uint8_t *wanted) {
     static uint8_t texels[BYTES];
     const sv_target_class class = {.struct_size = sizeof class, .color_format = FORMAT};
     sv_renderer renderer = renderer_for(&class);
-    const sv_shot shot = {.struct_size = sizeof shot};
+    const sv_frame_info shot = {.struct_size = sizeof shot};
     sv_target target = whole_target();
     target.before.has_queue_family = target.after.has_queue_family = 1;
     target.before.queue_family = target.after.queue_family = HOST_QUEUE_FAMILY;

@@ -34,16 +34,16 @@ pub fn asserts() -> Vec<String> {
         sv_requirement { name, wanted, found, unlocks, is_required, is_met }
         sv_color_point { value, srgb }
         sv_opacity_point { value, opacity }
-        sv_function_desc { struct_size, next, colors, color_count, opacities, opacity_count, reference_length, is_stepped }
+        sv_transfer_function_desc { struct_size, next, colors, color_count, opacities, opacity_count, reference_length, is_stepped }
         sv_pick { struct_size, next, is_hit, has_value, has_color, reserved, distance, position, value, color }
         sv_camera { struct_size, next, kind, is_reversed, eye, target, up, fov_degrees, view_height, zoom, view_from_world, clip_from_view }
-        sv_shot { struct_size, next, camera, frame, reserved }
+        sv_frame_info { struct_size, next, camera, frame, reserved }
         sv_image_state { layout, has_queue_family, stage, access, queue_family, reserved }
         sv_target { struct_size, next, image, view, format, width, height, is_cleared, clear_color, before, after }
         sv_clip_plane { normal, offset }
-        sv_level { value, srgb, opacity }
+        sv_isosurface { value, srgb, opacity }
         sv_light { towards, srgb }
-        sv_settings { struct_size, next, technique, mode, filter, lattice, color_space, is_preintegrated, keeps_empty_space, has_exact_maximum, samples_per_voxel, termination, crop_min, crop_max, clip_planes, clip_plane_count, levels, level_count, is_lit, has_lmip_threshold, ambient, diffuse, specular, shininess, lights, light_count, unit_values, lmip_threshold, mida_gamma, attenuation, depth_cue, jitter_seed, jitter_frame }
+        sv_settings { struct_size, next, technique, mode, filter, lattice, color_space, is_preintegrated, disable_space_skipping, has_exact_maximum, samples_per_voxel, termination, crop_min, crop_max, clip_planes, clip_plane_count, levels, level_count, is_lit, has_lmip_threshold, ambient, diffuse, specular, shininess, lights, light_count, unit_values, lmip_threshold, mida_gamma, attenuation, depth_cue, jitter_seed, jitter_frame }
         sv_target_class { struct_size, next, color_format, samples, depth_format, has_stencil, is_depth_reversed, subpass, render_pass }
         sv_depth_image { view, layout, width, height, reserved }
         sv_renderer_desc { struct_size, next, volume, function, settings, target, width, height, frames_in_flight, has_host_depth, gives_depth, blends_slices_in_target, depth_images, depth_image_count, picks }

@@ -111,7 +111,9 @@ fn a_run_is_written_as_records_for_a_server_and_as_a_page_and_is_the_same_twice(
         ran.code == 1 && ran.out.contains("is a part of the profile"),
         "{ran:#?}"
     );
-    folder.run("conformance verify --part a.json").assert_done();
+    folder
+        .run("conformance verify --partial a.json")
+        .assert_done();
     folder.run("conformance diff a.json a.json").assert_done();
 }
 

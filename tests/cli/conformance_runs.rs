@@ -48,7 +48,9 @@ fn a_case_list_is_run_in_its_order_without_what_is_excluded() {
         "{ran:#?}"
     );
     assert_eq!(names(&first), [SQRT, EXP]);
-    folder.run("conformance verify --part a.json").assert_done();
+    folder
+        .run("conformance verify --partial a.json")
+        .assert_done();
     let listed = folder.run("conformance --list --caselist list --filter *sqrt|*exp --shard 2/2");
     assert_eq!(listed.out, "probe.math.exp\n", "{listed:#?}");
 
@@ -133,7 +135,7 @@ fn repeated_cases_that_say_other_things_fail_and_stop_on_fail_ends_the_run() {
     assert_eq!(names(&flaky).len(), before + 1, "{ran:#?}");
     assert!(before + 1 < all.out.lines().count());
     assert_eq!(flaky["is_partial"], true);
-    let ran = folder.run("conformance verify --part a.json");
+    let ran = folder.run("conformance verify --partial a.json");
     assert!(
         ran.code == 1 && ran.out.contains("ended before all"),
         "{ran:#?}"
@@ -180,7 +182,7 @@ fn failures_of_the_baseline_are_expected_and_others_are_regressions() {
     assert_eq!(case(&same, EXP)["verdict"], "expected_failure");
     assert_eq!(case(&same, EXP)["baseline"], "fail");
     // Nobody is told that a device which fails is well.
-    let ran = folder.run("conformance verify --part a.json");
+    let ran = folder.run("conformance verify --partial a.json");
     assert!(
         ran.code == 1 && ran.out.contains("expected_failure"),
         "{ran:#?}"
@@ -358,5 +360,7 @@ fn what_is_too_large_for_a_device_is_not_supported_by_the_name_of_the_limit() {
         .as_str()
         .expect("a command");
     assert!(command.contains("--profile full"), "{command}");
-    folder.run("conformance verify --part a.json").assert_done();
+    folder
+        .run("conformance verify --partial a.json")
+        .assert_done();
 }

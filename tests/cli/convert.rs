@@ -4,7 +4,9 @@ use crate::person::{Folder, assert_begins};
 use std::path::Path;
 use stratavox::{
     format,
-    volume::{Header, Limits, Meaning, Pick, Source, VoxelType, Voxels, Wanted},
+    volume::{
+        ComponentKind, Header, Limits, Source, TimeComponent, VolumeSelection, VoxelType, Voxels,
+    },
 };
 
 const ENDINGS: [&str; 5] = ["nrrd", "mha", "nii", "nii.gz", "npy"];
@@ -13,7 +15,7 @@ const ENDINGS: [&str; 5] = ["nrrd", "mha", "nii", "nii.gz", "npy"];
 const READ_AGAIN: [&str; 4] = ["nrrd", "mha", "nii", "nii.gz"];
 
 fn open(path: &Path) -> Box<dyn Source> {
-    format::open(path, &Wanted::default(), &Limits::default())
+    format::open(path, &VolumeSelection::default(), &Limits::default())
         .unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
@@ -24,7 +26,7 @@ fn values(source: &dyn Source) -> Vec<f64> {
     for time in 0..header.times {
         for component in 0..header.components {
             let piece = source
-                .read(Pick { time, component }, header.whole())
+                .read(TimeComponent { time, component }, header.whole())
                 .expect("voxels");
             all.extend((0..piece.voxels.len()).map(|i| {
                 f64::from(piece.voxels.stored(i)) * header.rescale.slope + header.rescale.intercept
@@ -193,7 +195,7 @@ fn every_stored_type_keeps_its_type_and_every_number_of_it() {
             }
             let source = open(&path);
             assert_eq!(source.header().stored.name(), word, "{ending}");
-            let found = match source.read_bytes(Pick::default(), source.header().whole()) {
+            let found = match source.read_bytes(TimeComponent::default(), source.header().whole()) {
                 Ok(Some(found)) => found,
                 other => panic!("{word} {ending}: {other:?}"),
             };
@@ -219,10 +221,10 @@ fn colors_stay_side_by_side_and_one_component_can_be_taken() {
         assert_eq!(source.header().components, 3, "{ending}");
         // MetaImage has no word for colors.
         if ending != "mha" {
-            assert_eq!(source.header().meaning, Meaning::Rgb, "{ending}");
+            assert_eq!(source.header().meaning, ComponentKind::Rgb, "{ending}");
         }
         for component in 0..3 {
-            let pick = Pick { time: 0, component };
+            let pick = TimeComponent { time: 0, component };
             let piece = source.read(pick, source.header().whole()).expect("voxels");
             let c = component as u8;
             assert_eq!(
@@ -237,7 +239,7 @@ fn colors_stay_side_by_side_and_one_component_can_be_taken() {
         let source = open(&folder.path(&format!("one.{ending}")));
         assert_eq!(source.header().components, 1, "{ending}");
         assert_eq!(values(source.as_ref()), [1.0, 4.0, 7.0, 10.0], "{ending}");
-        assert_eq!(source.header().meaning, Meaning::Numbers, "{ending}");
+        assert_eq!(source.header().meaning, ComponentKind::Numbers, "{ending}");
     }
 }
 

@@ -3,13 +3,17 @@
 use crate::person::Folder;
 use stratavox::{
     format,
-    volume::{Limits, Wanted},
+    volume::{Limits, VolumeSelection},
 };
 
 /// Metres of the first step and of the corner, of a file.
 fn metres(folder: &Folder, name: &str) -> [f64; 2] {
-    let source = format::open(&folder.path(name), &Wanted::default(), &Limits::default())
-        .unwrap_or_else(|e| panic!("{name}: {e}"));
+    let source = format::open(
+        &folder.path(name),
+        &VolumeSelection::default(),
+        &Limits::default(),
+    )
+    .unwrap_or_else(|e| panic!("{name}: {e}"));
     let header = source.header();
     let unit = header.length_metres.expect("a unit");
     let place = header.world_from_voxel;

@@ -73,7 +73,7 @@ fn the_device_draws_what_the_reference_draws() {
             folder
                 .run(&format!("{words} -o b.npy --device reference"))
                 .assert_done();
-            // Rounding of some tens of blends in f32; the twins themselves are held tighter elsewhere.
+            // Rounding of some tens of blends in f32; the CPU references themselves are held tighter elsewhere.
             folder
                 .run("compare a.npy b.npy --at-most 0.0001")
                 .assert_done();

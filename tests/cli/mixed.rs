@@ -1,4 +1,4 @@
-//! Several numbers a voxel, vectors, colours and label maps from words to pictures. Drawn by the twins on the CPU.
+//! Several numbers a voxel, vectors, colours and label maps from words to pictures. Drawn by the CPU references on the CPU.
 
 use crate::person::Folder;
 use std::fs;

@@ -1,5 +1,5 @@
 //! Pictures from words: what is written, that a scene file gives the same one again, that flags do what they
-//! say. Drawn by the twins on the CPU, so that no device is needed.
+//! say. Drawn by the CPU references on the CPU, so that no device is needed.
 
 use crate::person::{Folder, assert_begins};
 use serde_json::Value;

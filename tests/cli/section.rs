@@ -1,4 +1,4 @@
-//! Cuts through a volume: the very voxels, where radiologists look for them. Drawn by the twins and by a device.
+//! Cuts through a volume: the very voxels, where radiologists look for them. Drawn by the CPU references and by a device.
 
 use crate::person::Folder;
 use std::fs;
@@ -125,7 +125,7 @@ fn what_a_cut_cannot_be_is_refused() {
     }
 }
 
-/// Numbers of a picture of 32 x 32 pixels by the twins.
+/// Numbers of a picture of 32 x 32 pixels by the CPU references.
 fn cut(folder: &Folder, words: &str) -> Vec<u8> {
     let fixed = "-o b.npy --size 32x32 --force --device reference --preset grey";
     folder

@@ -1,9 +1,11 @@
-//! The suite proves itself: each lie of a driver is caught by the case that is named for it.
+//! The suite proves itself: each fault of a driver is caught by the case that is named for it.
 //!
 //! The table of `docs/conformance.md` is written by `BLESS=1` (and the test then fails).
 //! Slices in 16-bit floats have faults of their own, on a device of the least limits.
 
-use crate::lying::{ANSWERS, CLAMPED_LIES, LIES, Lie, PROBE_LIES, lying, tell, told};
+use crate::driver_faults::{
+    ANSWERS, CLAMPED_FAULTS, FAULTS, Fault, PROBE_FAULTS, faulty, tell, told,
+};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::sync::{Mutex, PoisonError};
@@ -11,7 +13,7 @@ use stratavox::conformance::case::Case;
 use stratavox::conformance::glob::matches;
 use stratavox::conformance::judge::judge;
 use stratavox::conformance::record::Record;
-use stratavox::conformance::stand::Stand;
+use stratavox::conformance::test_bed::TestBed;
 use stratavox::conformance::tree::cases;
 use stratavox::conformance::verdict::Verdict;
 use stratavox::gpu::{Caps, DeviceChoice, Headless, Options, PipelineCache, Validation};
@@ -19,23 +21,23 @@ use stratavox::gpu::{Caps, DeviceChoice, Headless, Options, PipelineCache, Valid
 /// One lie at a time is told in a process.
 static ONE: Mutex<()> = Mutex::new(());
 
-fn stand(caps: Caps) -> Stand {
-    Stand::new(1, move |lower| {
+fn stand(caps: Caps) -> TestBed {
+    TestBed::new(1, move |lower| {
         let options = Options {
             caps: lower(caps),
             pipeline_cache: PipelineCache::Off,
             validation: Validation::Off,
         };
         // SAFETY: its functions are Vulkan's, or lie within what Vulkan allows.
-        unsafe { Headless::through(lying, &DeviceChoice::Default, &options) }
+        unsafe { Headless::through(faulty, &DeviceChoice::Default, &options) }
     })
 }
 
-/// The first case that a pattern means and that does not say what it says without the lie, or why there is none.
+/// The first case that a pattern means and that does not say what it says without the fault, or why there is none.
 fn caught<'c>(
     all: &'c [Case],
     pattern: &str,
-    lie: Lie,
+    fault: Fault,
     caps: Caps,
     healthy: &mut BTreeMap<String, Verdict>,
 ) -> Result<(&'c str, Record), String> {
@@ -44,10 +46,10 @@ fn caught<'c>(
     for case in all.iter().filter(is_meant) {
         let truth = *healthy.entry(case.name.clone()).or_insert_with(|| {
             tell(None);
-            judge(case, &mut stand(caps)).0.verdict
+            judge(case, &mut bed(caps)).0.verdict
         });
-        tell(Some(lie));
-        let record = judge(case, &mut stand(caps)).0;
+        tell(Some(fault));
+        let record = judge(case, &mut bed(caps)).0;
         let is_told = told() > 0;
         tell(None);
         if !truth.is_good() || !is_told || record.verdict == Verdict::InternalError {
@@ -69,10 +71,10 @@ fn every_lie_is_caught_and_the_page_says_by_what() {
     let _one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
     let all = cases();
     let mut healthy = BTreeMap::new();
-    let mut table = String::from("| Lie | caught by | verdict |\n|---|---|---|\n");
+    let mut table = String::from("| Fault | caught by | verdict |\n|---|---|---|\n");
     let mut missed = Vec::new();
-    for (what, lie, pattern) in LIES.iter().chain(ANSWERS).chain(PROBE_LIES) {
-        match caught(&all, pattern, *lie, Caps::UNLIMITED, &mut healthy) {
+    for (what, fault, pattern) in FAULTS.iter().chain(ANSWERS).chain(PROBE_FAULTS) {
+        match caught(&all, pattern, *fault, Caps::UNLIMITED, &mut healthy) {
             Ok((name, record)) => {
                 println!("{what}: {}", record.reason);
                 let _ = writeln!(table, "| {what} | `{name}` | {} |", record.verdict);
@@ -81,10 +83,13 @@ fn every_lie_is_caught_and_the_page_says_by_what() {
         }
     }
     assert!(missed.is_empty(), "not caught: {missed:#?}");
-    assert!(LIES.len() >= 40, "only {} lies", LIES.len());
+    assert!(FAULTS.len() >= 40, "only {} lies", FAULTS.len());
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/conformance.md");
     let page = std::fs::read_to_string(path).expect("docs/conformance.md");
-    const MARKS: [&str; 2] = ["<!-- lies -->\n", "<!-- end of lies -->"];
+    const MARKS: [&str; 2] = [
+        "<!-- injected faults -->\n",
+        "<!-- end of injected faults -->",
+    ];
     let [begin, end] = MARKS.map(|mark| page.find(mark).expect("the marks of the table"));
     let begin = begin + MARKS[0].len();
     if page[begin..end] != table {
@@ -101,8 +106,8 @@ fn lies_about_slices_in_16_bit_floats_are_caught() {
     let _one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
     let all = cases();
     let mut healthy = BTreeMap::new();
-    for (what, lie, pattern) in CLAMPED_LIES {
-        match caught(&all, pattern, *lie, Caps::VULKAN_MINIMUM, &mut healthy) {
+    for (what, fault, pattern) in CLAMPED_FAULTS {
+        match caught(&all, pattern, *fault, Caps::VULKAN_MINIMUM, &mut healthy) {
             Ok((_, record)) => {
                 println!("{what}: {}", record.reason);
                 assert_eq!(record.verdict, Verdict::Fail, "{what}: {record:?}");

@@ -1,8 +1,8 @@
 //! `stratavox conformance` judged: by injected driver faults, and by the CPU reference in the place of a device.
 
 #[cfg(feature = "conformance")]
-#[path = "../lying/mod.rs"]
-mod lying;
+#[path = "../driver_faults/mod.rs"]
+mod driver_faults;
 
 #[cfg(feature = "conformance")]
 mod injected_faults;

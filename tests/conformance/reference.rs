@@ -2,24 +2,24 @@
 
 use stratavox::conformance::case::{Case, Profile};
 use stratavox::conformance::judge::judge;
-use stratavox::conformance::stand::{Draw, Stand};
+use stratavox::conformance::test_bed::{Draw, TestBed};
 use stratavox::conformance::tree::cases;
 use stratavox::conformance::verdict::Verdict;
 use stratavox::offscreen::reference;
 
 /// Cases whose answer is not the reference's own, of the baseline.
 fn is_closed(case: &Case) -> bool {
-    let of_driver = ["probe.", "twin."]
+    let of_driver = ["probe.", "reference."]
         .iter()
         .any(|tree| case.name.starts_with(tree));
     !of_driver && case.profile == Profile::Baseline
 }
 
 fn judged(draw: Draw) {
-    let mut stand = Stand::without_device(1, draw);
+    let mut bed = TestBed::without_device(1, draw);
     let (mut count, mut wrong) = (0, Vec::new());
     for case in cases().iter().filter(|case| is_closed(case)) {
-        let (record, _) = judge(case, &mut stand);
+        let (record, _) = judge(case, &mut bed);
         count += 1;
         if record.verdict != Verdict::Pass {
             wrong.push(format!(

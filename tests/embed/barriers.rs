@@ -6,8 +6,8 @@ use ash::vk;
 use glam::dcamera::rh::proj::vulkan;
 use glam::dcamera::rh::view::look_at_mat4;
 use std::sync::Arc;
-use stratavox::camera::{Camera, HostDepth, Nearer};
-use stratavox::embed::{Class, HostDepthImage, Renderer, Shot, Volume};
+use stratavox::camera::{Camera, DepthConvention, HostDepth};
+use stratavox::embed::{FrameInfo, HostDepthImage, Renderer, RendererDesc, Volume};
 use stratavox::gpu::{DepthClass, Load, Target, TargetClass, TargetState, Use, ValidationMode};
 use stratavox::technique::Settings;
 
@@ -38,7 +38,12 @@ fn eye(stage: &Stage) -> (Camera, HostDepth) {
     } = stage.camera;
     let distance = eye.distance(target);
     let clip = vulkan::perspective(0.4, 1.2, 0.1 * distance, 9.0 * distance);
-    Camera::from_matrices(&look_at_mat4(eye, target, up), &clip, Nearer::Smaller).unwrap()
+    Camera::from_matrices(
+        &look_at_mat4(eye, target, up),
+        &clip,
+        DepthConvention::Standard,
+    )
+    .unwrap()
 }
 
 fn uploaded(host: &Host, stage: &Stage) -> Arc<Volume> {
@@ -59,7 +64,7 @@ fn level_a(missing: Option<usize>) -> Vec<String> {
     let open = vec![1.0; (extent[0] * extent[1]) as usize];
     let buffer = DepthImage::new(&host, extent, &open, ATTACHED);
     let image = HostImage::new(&host, FORMAT, extent);
-    let class = Class {
+    let class = RendererDesc {
         settings: stage.settings.clone(),
         target: TargetClass {
             depth: Some(DepthClass {
@@ -98,7 +103,7 @@ fn level_a(missing: Option<usize>) -> Vec<String> {
         renderer
             .record(
                 cmd,
-                &Shot {
+                &FrameInfo {
                     frame,
                     camera,
                     depth,
@@ -121,7 +126,7 @@ fn level_b(missing: Option<usize>) -> Vec<String> {
     let stage = Stage::new(Settings::default());
     let volume = uploaded(&host, &stage);
     let image = HostImage::new(&host, FORMAT, stage.extent);
-    let class = Class {
+    let class = RendererDesc {
         settings: stage.settings.clone(),
         target: FORMAT.into(),
         frames_in_flight: 1,
@@ -144,7 +149,7 @@ fn level_b(missing: Option<usize>) -> Vec<String> {
         before: state(0, Use::TransferWrite),
         after: state(1, Use::TransferRead),
     };
-    let shot = Shot {
+    let shot = FrameInfo {
         frame: 0,
         camera: &stage.camera,
         depth: None,

@@ -3,7 +3,7 @@
 use crate::embed_shared::{Host, HostImage, Stage};
 use ash::vk;
 use std::sync::Arc;
-use stratavox::embed::{self, Class, Renderer, Shot, Volume};
+use stratavox::embed::{self, FrameInfo, Renderer, RendererDesc, Volume};
 use stratavox::gpu::{self, Load};
 use stratavox::technique::{Settings, Technique};
 use stratavox::transfer::{Classified, Window};
@@ -23,7 +23,7 @@ fn picture(host: &Host, stage: &Stage) -> Result<Vec<[f64; 4]>, embed::Error> {
     let mut volume = Volume::new(gpu, &stage.volume, &stage.settings)?;
     // SAFETY: outside rendering; `run` waits.
     host.run(|cmd| unsafe { volume.record_upload(gpu, cmd).unwrap() });
-    let class = Class {
+    let class = RendererDesc {
         settings: stage.settings.clone(),
         target: FORMAT.into(),
         frames_in_flight: 1,
@@ -36,7 +36,7 @@ fn picture(host: &Host, stage: &Stage) -> Result<Vec<[f64; 4]>, embed::Error> {
     let mut renderer = Renderer::new(gpu, &volume, function, class, stage.extent, &[])?;
     let image = HostImage::new(host, FORMAT, stage.extent);
     let target = image.target();
-    let shot = Shot {
+    let shot = FrameInfo {
         frame: 0,
         camera: &stage.camera,
         depth: None,
@@ -135,7 +135,7 @@ fn what_no_longer_fits_leaves_a_renderer_as_it_was() {
         host.run(|cmd| unsafe { volume.record_upload(gpu, cmd).unwrap() });
         Arc::new(volume)
     };
-    let class = Class {
+    let class = RendererDesc {
         settings: stage.settings.clone(),
         target: FORMAT.into(),
         frames_in_flight: 1,
@@ -155,7 +155,7 @@ fn what_no_longer_fits_leaves_a_renderer_as_it_was() {
     assert_eq!(renderer.extent(), stage.extent);
     let image = HostImage::new(&host, FORMAT, stage.extent);
     let target = image.target();
-    let shot = Shot {
+    let shot = FrameInfo {
         frame: 0,
         camera: &stage.camera,
         depth: None,
@@ -293,7 +293,7 @@ fn rays_that_keep_no_depth_take_one_image_a_frame() {
         let volume = Arc::new(volume);
         let of = |picks| {
             let before = gpu.memory().used_bytes;
-            let class = Class {
+            let class = RendererDesc {
                 settings: stage.settings.clone(),
                 target: FORMAT.into(),
                 frames_in_flight,

@@ -1,12 +1,12 @@
 //! A host's own spheres inside, before and behind a volume hide of it what lies behind them, and no more: against the
-//! CPU twin, whose ray of each pixel a clip plane cuts where that pixel's depth says. And the volume's own depth, back.
+//! CPU reference, whose ray of each pixel a clip plane cuts where that pixel's depth says. And the volume's own depth, back.
 
 use crate::embed_shared::{Host, HostImage, Stage, depths, draw, eyes};
 use ash::vk;
 use glam::{DVec3, dvec3};
 use std::sync::Arc;
-use stratavox::camera::{Camera, HostDepth, Nearer, Projection, Sides};
-use stratavox::embed::{Class, Error, Renderer, Shot, Volume};
+use stratavox::camera::{Camera, DepthConvention, HostDepth, Projection, Sides};
+use stratavox::embed::{Error, FrameInfo, Renderer, RendererDesc, Volume};
 use stratavox::gpu::{DepthClass, Load, TargetClass};
 use stratavox::offscreen::{self, reference};
 use stratavox::picture::LayerKind;
@@ -15,9 +15,9 @@ use stratavox::technique::{ClipPlane, Lattice, Level, Mode, Settings, Technique}
 
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
-/// What the twin sees through one pixel when the ray begins at the near plane and ends where the host's depth lies,
+/// What the CPU reference sees through one pixel when the ray begins at the near plane and ends where the host's depth lies,
 /// both `moved` a little.
-fn twin(
+fn reference(
     stage: &Stage,
     camera: &Camera,
     depth: &HostDepth,
@@ -99,7 +99,7 @@ fn stages() -> Vec<Stage> {
 
 /// As [`embed_shared::assert_close`] has it for f32 targets, of 60 slices; and where a ray ends, the sample there may
 /// come or go, or be cut a little elsewhere: each of them is right. The far end moves by 1e-5 of its length (the depth
-/// buffer's rounding near the far plane, and the twin's own arithmetic). The near end moves by that, and for slices by
+/// buffer's rounding near the far plane, and the CPU reference's own arithmetic). The near end moves by that, and for slices by
 /// what a rasterizer may be off where it clips them at the near plane: corners lie on a grid of
 /// 2^-subPixelPrecisionBits of a pixel, and a slice that is seen no flatter than at 45 degrees to two axes goes back
 /// sqrt(2) as far as it goes aside.
@@ -160,12 +160,12 @@ fn what_a_host_has_drawn_hides_what_lies_behind_it_and_no_more() {
             for i in (0..drawn.len()).step_by(7) {
                 let pixel = [i as u32 % width, i as u32 / width];
                 let off = |moved| {
-                    let wanted = twin(&stage, &camera, &depth, pixel, drawn[i], moved);
+                    let wanted = reference(&stage, &camera, &depth, pixel, drawn[i], moved);
                     let channels = wanted.iter().zip(&found.pixels[i]);
                     let off = channels.map(|(&w, f)| (f64::from(w) - f).abs());
                     off.fold(0.0, f64::max)
                 };
-                // Twins are slow: others are asked only where the first is off.
+                // CPU references are slow: others are asked only where the first is off.
                 let ways = [0.0, -1.0, 1.0].into_iter();
                 let ways = ways.flat_map(|near| [0.0, -1.0, 1.0].map(|end| [near, end]));
                 let moved = ways.map(|[near, end]| [near * near_moved, end * END_MOVED]);
@@ -223,8 +223,8 @@ fn a_surface_gives_its_depth_back_where_it_is_nearer_than_the_host() {
                 continue;
             }
             let is_nearer = |a: f64, b: f64| match depth.nearer {
-                Nearer::Smaller => a < b,
-                Nearer::Larger => a > b,
+                DepthConvention::Standard => a < b,
+                DepthConvention::Reversed => a > b,
             };
             let host_depth = f64::from(drawn[i]);
             // Positions are f32 of some 60 mm: 4e-6 of it, times the slope of the depth, which is 1 over at least a
@@ -257,7 +257,7 @@ fn a_depth_that_is_nearer_the_other_way_round_is_refused() {
     let [eye, ..] = eyes(&stage);
     let (camera, depth) = Camera::from_matrices(&eye.view, &eye.clip, eye.nearer).unwrap();
     let mut volume = Volume::new(host.gpu(), &stage.volume, &stage.settings).unwrap();
-    let class = Class {
+    let class = RendererDesc {
         settings: stage.settings.clone(),
         target: TargetClass {
             depth: Some(DepthClass {
@@ -278,7 +278,7 @@ fn a_depth_that_is_nearer_the_other_way_round_is_refused() {
     let (function, volume) = (Some(&stage.transfer), Arc::new(volume));
     let mut renderer =
         Renderer::new(host.gpu(), &volume, function, class, stage.extent, &[]).unwrap();
-    let shot = Shot {
+    let shot = FrameInfo {
         frame: 0,
         camera: &camera,
         depth: Some(depth),
@@ -319,7 +319,7 @@ fn a_picked_pixel_says_where_it_is_and_what_voxel_is_there() {
         let mut volume = Volume::new(host.gpu(), &stage.volume, &stage.settings).unwrap();
         // SAFETY: outside rendering; `run` waits.
         host.run(|cmd| unsafe { volume.record_upload(host.gpu(), cmd).unwrap() });
-        let class = Class {
+        let class = RendererDesc {
             settings: stage.settings.clone(),
             target: FORMAT.into(),
             frames_in_flight: 1,
@@ -335,7 +335,7 @@ fn a_picked_pixel_says_where_it_is_and_what_voxel_is_there() {
         let target = image.target();
         let (mut hits, mut misses) = (0, 0);
         for pixel in [[22, 18], [20, 12], [30, 20], [0, 0], [43, 35]] {
-            let shot = Shot {
+            let shot = FrameInfo {
                 frame: 0,
                 camera: &stage.camera,
                 depth: None,

@@ -5,7 +5,7 @@ use crate::embed_shared::{Host, HostImage, Pace, Stage};
 use ash::vk;
 use glam::DMat3;
 use std::sync::Arc;
-use stratavox::embed::{Class, Renderer, Shot, Volume};
+use stratavox::embed::{FrameInfo, Renderer, RendererDesc, Volume};
 use stratavox::gpu::Load;
 use stratavox::technique::{Mode, Settings, Technique};
 
@@ -27,7 +27,7 @@ fn turned(settings: &Settings, n: u64) -> Stage {
 }
 
 fn renderer(host: &Host, volume: &Arc<Volume>, stage: &Stage, frames: u64) -> Renderer {
-    let class = Class {
+    let class = RendererDesc {
         settings: stage.settings.clone(),
         target: FORMAT.into(),
         frames_in_flight: frames as u32,
@@ -49,7 +49,7 @@ fn record(
     image: &HostImage,
     frame: u32,
 ) {
-    let shot = Shot {
+    let shot = FrameInfo {
         frame,
         camera: &stage.camera,
         depth: None,

@@ -6,7 +6,9 @@ use crate::shared::device_with;
 use ash::vk;
 use std::sync::Arc;
 use stratavox::color::encode_srgb;
-use stratavox::embed::{Class, QueueLock, Renderer, Shot, SliceBlending, Submitter, Volume};
+use stratavox::embed::{
+    FrameInfo, QueueLock, Renderer, RendererDesc, SliceBlending, Submitter, Volume,
+};
 use stratavox::gpu::{Caps, Load};
 use stratavox::picture::ColorSpace;
 use stratavox::technique::{Mode, Order, Settings, Technique};
@@ -107,7 +109,7 @@ fn renderer(
     let mut volume = Volume::new(host.gpu(), &stage.volume, &stage.settings).unwrap();
     // SAFETY: outside rendering; `run` waits.
     host.run(|cmd| unsafe { volume.record_upload(host.gpu(), cmd).unwrap() });
-    let class = Class {
+    let class = RendererDesc {
         settings: stage.settings.clone(),
         target: format.into(),
         frames_in_flight: 2,
@@ -120,8 +122,8 @@ fn renderer(
     Renderer::new(host.gpu(), &volume, function, class, stage.extent, &[]).unwrap()
 }
 
-fn shot(stage: &Stage, frame: u32) -> Shot<'_> {
-    Shot {
+fn shot(stage: &Stage, frame: u32) -> FrameInfo<'_> {
+    FrameInfo {
         frame,
         camera: &stage.camera,
         depth: None,

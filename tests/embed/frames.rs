@@ -7,7 +7,7 @@ use stratavox::gpu::{Bindings, Blend, Image, ParameterRing, Use, image_barrier};
 use stratavox::resolve::Resolve;
 use stratavox::technique::raycast::Raycast;
 use stratavox::technique::{
-    Inputs, Mode, RayBindings, RayTiles, Settings, Words, accumulation, parameter_ring,
+    Inputs, Mode, RayBindings, RayTiles, Settings, ShaderVariant, accumulation, parameter_ring,
 };
 
 const FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
@@ -37,7 +37,7 @@ impl<'h> Ready<'h> {
     fn new(host: &'h Host, stage: &Stage) -> Self {
         let gpu = host.gpu();
         let there = OnDevice::new(host, stage);
-        let words = Words::of(&stage.settings, &there.volume);
+        let words = ShaderVariant::of(&stage.settings, &there.volume);
         let ring = parameter_ring(gpu, IN_FLIGHT as u32).unwrap();
         let raycast = Raycast::new(gpu, &words).unwrap();
         let resolve = Resolve::new(gpu, Mode::Composite, Blend::Over, FORMAT).unwrap();
@@ -129,7 +129,7 @@ fn turned(n: u64) -> Stage {
 }
 
 fn assert_shows(image: &HostImage, stage: &Stage, what: &str) {
-    let wanted: Vec<_> = stage.twin().iter().map(|&p| over(p, DRAWN)).collect();
+    let wanted: Vec<_> = stage.reference().iter().map(|&p| over(p, DRAWN)).collect();
     assert_close(image, &wanted, 1, what);
 }
 

@@ -6,7 +6,9 @@ use ash::vk;
 use std::process::Command;
 use stratavox::gpu::{Load, Target, TargetState, Use, begin_rendering, end_rendering};
 use stratavox::technique::blend::Drawn;
-use stratavox::technique::{Inputs, Mode, Settings, Slicer, Technique, Words, parameter_ring};
+use stratavox::technique::{
+    Inputs, Mode, Settings, ShaderVariant, Slicer, Technique, parameter_ring,
+};
 
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const DRAWN: [f32; 4] = [0.25, 0.0, 0.5, 1.0];
@@ -42,7 +44,7 @@ fn drawn_and_left_in(layout: vk::ImageLayout) {
         ..Settings::default()
     });
     let there = OnDevice::new(&host, &stage);
-    let words = Words::of(&stage.settings, &there.volume);
+    let words = ShaderVariant::of(&stage.settings, &there.volume);
     let ring = parameter_ring(gpu, 1).unwrap();
     let picture = Drawn::Picture(Mode::Composite);
     let order = stage.settings.order;
@@ -94,7 +96,7 @@ fn drawn_and_left_in(layout: vk::ImageLayout) {
         target.leave(gpu, cmd, Use::ColorTarget);
         image.fetch(cmd, taken);
     });
-    let wanted: Vec<_> = stage.twin().iter().map(|&p| over(p, DRAWN)).collect();
+    let wanted: Vec<_> = stage.reference().iter().map(|&p| over(p, DRAWN)).collect();
     assert_close(
         &image,
         &wanted,

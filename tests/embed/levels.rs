@@ -3,7 +3,9 @@
 use crate::embed_shared::{Host, HostImage, Stage, all_settings, offscreen};
 use ash::vk;
 use std::sync::Arc;
-use stratavox::embed::{Class, Error, QueueLock, Renderer, Shot, SliceBlending, Submitter, Volume};
+use stratavox::embed::{
+    Error, FrameInfo, QueueLock, Renderer, RendererDesc, SliceBlending, Submitter, Volume,
+};
 use stratavox::gpu::Load;
 use stratavox::technique::{Mode, Order, Settings, Technique};
 use stratavox::volume::{self, Rescale, Voxels};
@@ -18,8 +20,8 @@ fn stage(settings: &Settings) -> Stage {
     stage
 }
 
-fn class(stage: &Stage) -> Class {
-    Class {
+fn class(stage: &Stage) -> RendererDesc {
+    RendererDesc {
         settings: stage.settings.clone(),
         target: FORMAT.into(),
         frames_in_flight: 2,
@@ -30,8 +32,8 @@ fn class(stage: &Stage) -> Class {
     }
 }
 
-fn shot(stage: &Stage, frame: u32) -> Shot<'_> {
-    Shot {
+fn shot(stage: &Stage, frame: u32) -> FrameInfo<'_> {
+    FrameInfo {
         frame,
         camera: &stage.camera,
         depth: None,
@@ -377,12 +379,12 @@ fn what_cannot_be_drawn_so_is_refused_by_name() {
     let host = Host::new();
     let good = stage(&Settings::default());
     let volume = uploaded(&host, &good);
-    let refused = |class: Class| {
+    let refused = |class: RendererDesc| {
         let function = Some(&good.transfer);
         let made = Renderer::new(host.gpu(), &volume, function, class, good.extent, &[]);
         made.map(drop).expect_err("refused").to_string()
     };
-    let with = |change: &dyn Fn(&mut Class)| {
+    let with = |change: &dyn Fn(&mut RendererDesc)| {
         let mut class = class(&good);
         change(&mut class);
         refused(class)

@@ -5,7 +5,7 @@ use ash::vk;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use stratavox::embed::{
-    Class, Error, Pacing, QueueLock, Renderer, Shot, SliceBlending, Submitter, Volume,
+    Error, FrameInfo, Pacing, QueueLock, Renderer, RendererDesc, SliceBlending, Submitter, Volume,
 };
 use stratavox::gpu::{Caps, Load, Target, TargetState, Use};
 use stratavox::technique::{Mode, Order, Settings, Shading, Shadows, Technique};
@@ -64,7 +64,7 @@ fn renderer(host: &Host, stage: &Stage) -> Renderer {
     let mut volume = Volume::new(gpu, &stage.volume, &stage.settings).unwrap();
     // SAFETY: outside rendering; `run` waits.
     host.run(|cmd| unsafe { volume.record_upload(gpu, cmd).unwrap() });
-    let class = Class {
+    let class = RendererDesc {
         settings: stage.settings.clone(),
         target: FORMAT.into(),
         frames_in_flight: 2,
@@ -77,8 +77,8 @@ fn renderer(host: &Host, stage: &Stage) -> Renderer {
     Renderer::new(gpu, &Arc::new(volume), function, class, EXTENT, &[]).unwrap()
 }
 
-fn shot(stage: &Stage, frame: u32) -> Shot<'_> {
-    Shot {
+fn shot(stage: &Stage, frame: u32) -> FrameInfo<'_> {
+    FrameInfo {
         frame,
         camera: &stage.camera,
         depth: None,
@@ -291,7 +291,7 @@ fn what_ends_a_frame_in_parts_is_told() {
         technique: Technique::Slices3d,
         ..Settings::default()
     });
-    let class = Class {
+    let class = RendererDesc {
         slice_blending: SliceBlending::InTarget,
         settings: slices.settings.clone(),
         ..renderer.class().clone()

@@ -6,8 +6,8 @@ use ash::vk;
 use stratavox::resident::{EmptySpace, MacroCells};
 use stratavox::technique::blend::Drawn;
 use stratavox::technique::{
-    Inputs, Mode, PatchSlicer, Patches, Settings, Skip, Skippable, Slicer, Technique, Words,
-    parameter_ring,
+    Inputs, Mode, PatchSlicer, Patches, Settings, ShaderVariant, Skip, Skippable, Slicer,
+    Technique, parameter_ring,
 };
 
 const FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
@@ -28,13 +28,13 @@ fn patches_inside_the_hosts_rendering_are_the_picture_of_whole_slices() {
             point.opacity = if point.value > 0.8 * high { 0.7 } else { 0.0 };
         }
         let there = OnDevice::new(&host, &stage);
-        let words = Words::of(&stage.settings, &there.volume);
+        let words = ShaderVariant::of(&stage.settings, &there.volume);
         let picture = Drawn::Picture(Mode::Composite);
         let order = stage.settings.order;
         let ring = parameter_ring(gpu, 1).unwrap();
         let view = stage.view();
         let range = stage.volume.value_range;
-        let mix = stratavox::technique::Mix::Alone;
+        let mix = stratavox::technique::SampleInputs::Scalar;
         let skippable = stage
             .settings
             .skippable(mix, Some(&stage.transfer), range, None);

@@ -1,4 +1,4 @@
-//! A host records our techniques into its own command buffer and finds the twin's picture in its own image.
+//! A host records our techniques into its own command buffer and finds the CPU reference's picture in its own image.
 
 use crate::embed_shared::{Host, HostImage, OnDevice, Stage, assert_close, over};
 use ash::vk;
@@ -9,8 +9,8 @@ use stratavox::technique::blend::Drawn;
 use stratavox::technique::projection::Projection;
 use stratavox::technique::raycast::Raycast;
 use stratavox::technique::{
-    Inputs, Mode, Order, RayBindings, RayTiles, Settings, Slicer, Technique, Words, accumulation,
-    parameter_ring,
+    Inputs, Mode, Order, RayBindings, RayTiles, Settings, ShaderVariant, Slicer, Technique,
+    accumulation, parameter_ring,
 };
 
 /// Behind the volume, in numbers that 8 bits and halves hold exactly where they are not sRGB.
@@ -48,7 +48,7 @@ fn over_the_hosts_drawing(host: &Host, stage: &Stage, format: vk::Format) -> usi
     let gpu = host.gpu();
     let there = OnDevice::new(host, stage);
     let Settings { mode, .. } = stage.settings;
-    let words = Words::of(&stage.settings, &there.volume);
+    let words = ShaderVariant::of(&stage.settings, &there.volume);
     let bricks = there.volume.bricks().len();
     let ring = parameter_ring(gpu, bricks as u32).unwrap();
     let gathered = accumulation(gpu, stage.extent, "gathered").unwrap();
@@ -86,7 +86,7 @@ fn over_the_hosts_drawing(host: &Host, stage: &Stage, format: vk::Format) -> usi
         host.device.cmd_end_rendering(cmd);
         image.fetch_drawn(cmd);
     });
-    let wanted: Vec<_> = stage.twin().iter().map(|&p| over(p, DRAWN)).collect();
+    let wanted: Vec<_> = stage.reference().iter().map(|&p| over(p, DRAWN)).collect();
     let what = format!("{mode:?}, {bricks} bricks, into {format:?}");
     assert_close(&image, &wanted, 1, &what);
     bricks
@@ -98,7 +98,7 @@ enum Gather {
 }
 
 impl Gather {
-    fn new(host: &Host, mode: Mode, words: &Words) -> Self {
+    fn new(host: &Host, mode: Mode, words: &ShaderVariant) -> Self {
         match mode {
             Mode::Composite => Self::Raycast(Raycast::new(host.gpu(), words).unwrap()),
             mode => Self::Projection(Projection::new(host.gpu(), mode, words).unwrap()),
@@ -184,7 +184,7 @@ fn slices_into_the_hosts_image(stage: &Stage, format: vk::Format, drawn: [f32; 4
     let Settings {
         technique, order, ..
     } = stage.settings;
-    let words = Words::of(&stage.settings, &there.volume);
+    let words = ShaderVariant::of(&stage.settings, &there.volume);
     let ring = parameter_ring(gpu, 1).unwrap();
     let image = HostImage::new(&host, format, stage.extent);
     let recordings = stage
@@ -204,7 +204,7 @@ fn slices_into_the_hosts_image(stage: &Stage, format: vk::Format, drawn: [f32; 4
         host.device.cmd_end_rendering(cmd);
         image.fetch_drawn(cmd);
     });
-    let wanted: Vec<_> = stage.twin().iter().map(|&p| over(p, drawn)).collect();
+    let wanted: Vec<_> = stage.reference().iter().map(|&p| over(p, drawn)).collect();
     let what = format!("{technique:?} {order:?} into {format:?}");
     assert_close(&image, &wanted, slices, &what);
 }

@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use stratavox::camera::Camera;
 use stratavox::embed::{
-    Class, Error, Pacing, QueueLock, Renderer, Shot, Submitter, Update, Volume,
+    Error, FrameInfo, Pacing, QueueLock, Renderer, RendererDesc, Submitter, Update, Volume,
 };
 use stratavox::gpu::{Caps, Load};
 use stratavox::technique::{Filter, Order, Settings, Technique};
@@ -81,7 +81,7 @@ fn uploaded(host: &Host, voxels: &volume::Volume, settings: &Settings) -> Arc<Vo
 }
 
 fn renderer(host: &Host, volume: &Arc<Volume>, settings: &Settings) -> Renderer {
-    let class = Class {
+    let class = RendererDesc {
         settings: settings.clone(),
         target: FORMAT.into(),
         frames_in_flight: 2,
@@ -99,8 +99,8 @@ fn camera(voxels: &volume::Volume) -> Camera {
     crate::shared::oblique_camera(&grid, crate::shared::projections(&grid)[1])
 }
 
-fn shot(camera: &Camera, frame: u32) -> Shot<'_> {
-    Shot {
+fn shot(camera: &Camera, frame: u32) -> FrameInfo<'_> {
+    FrameInfo {
         frame,
         camera,
         depth: None,

@@ -4,7 +4,7 @@ use crate::embed_shared::{Host, HostImage, Stage};
 use ash::vk;
 use std::sync::Arc;
 use stratavox::camera::Camera;
-use stratavox::embed::{Class, Renderer, Shot, Volume};
+use stratavox::embed::{FrameInfo, Renderer, RendererDesc, Volume};
 use stratavox::gpu::{Load, Target, Use};
 use stratavox::technique::{Mode, Order, Settings, Technique};
 
@@ -22,7 +22,7 @@ fn target(image: &HostImage, before: Use) -> Target {
 }
 
 fn renderer(host: &Host, stage: &Stage, volume: &Arc<Volume>) -> Renderer {
-    let class = Class {
+    let class = RendererDesc {
         settings: stage.settings.clone(),
         target: FORMAT.into(),
         frames_in_flight: 1,
@@ -89,7 +89,7 @@ fn several_volumes_each_seen_twice_are_recorded_at_once_and_drawn_as_if_alone() 
     let image = || HostImage::new(&host, FORMAT, stages[0].extent);
     let draw = |cmd, renderer: &mut Renderer, camera: &Camera, image: &HostImage| {
         let (frame, depth) = (0, None);
-        let shot = Shot {
+        let shot = FrameInfo {
             frame,
             camera,
             depth,
@@ -139,7 +139,7 @@ fn one_volume_is_drawn_over_another_in_the_order_of_recording() {
         host.run(|cmd| unsafe {
             let mut before = (Use::Nothing, Load::Clear([0.0; 4]));
             for &k in which {
-                let shot = Shot {
+                let shot = FrameInfo {
                     frame: 0,
                     camera: &pair[k].camera,
                     depth: None,

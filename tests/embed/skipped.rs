@@ -7,7 +7,7 @@ use crate::skipping_shared::{DIMS, Numbers, cameras, hills};
 use ash::vk;
 use glam::{DVec3, dvec3};
 use std::sync::Arc;
-use stratavox::embed::{Class, Renderer, Shot, Volume};
+use stratavox::embed::{FrameInfo, Renderer, RendererDesc, Volume};
 use stratavox::gpu::Load;
 use stratavox::technique::{Lattice, Settings};
 use stratavox::transfer::OpacityPoint;
@@ -18,7 +18,7 @@ fn drawn(host: &Host, stage: &Stage) -> Vec<[f64; 4]> {
     let mut volume = Volume::new(host.gpu(), &stage.volume, &stage.settings).unwrap();
     // SAFETY: outside rendering; `run` waits.
     host.run(|cmd| unsafe { volume.record_upload(host.gpu(), cmd).unwrap() });
-    let class = Class {
+    let class = RendererDesc {
         settings: stage.settings.clone(),
         target: FORMAT.into(),
         frames_in_flight: 1,
@@ -32,7 +32,7 @@ fn drawn(host: &Host, stage: &Stage) -> Vec<[f64; 4]> {
     let mut renderer =
         Renderer::new(host.gpu(), &volume, function, class, stage.extent, &[]).unwrap();
     let image = HostImage::new(host, FORMAT, stage.extent);
-    let shot = Shot {
+    let shot = FrameInfo {
         frame: 0,
         camera: &stage.camera,
         depth: None,

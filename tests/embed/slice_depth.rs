@@ -1,10 +1,10 @@
 //! The depth that slices give back is that of the sample which makes them half opaque, or which is the largest, found
-//! here from slice to slice by the twins: behind a host's spheres, from all its eyes, and from inside the volume.
+//! here from slice to slice by the CPU references: behind a host's spheres, from all its eyes, and from inside the volume.
 
 use crate::embed_shared::{Eye, Host, Stage, depths, draw, eyes};
 use glam::dcamera::rh::proj::vulkan;
 use glam::dcamera::rh::view::look_at_mat4;
-use stratavox::camera::{Camera, HostDepth, Nearer};
+use stratavox::camera::{Camera, DepthConvention, HostDepth};
 use stratavox::embed::Volume;
 use stratavox::gpu::Caps;
 use stratavox::lattice::{Slab, plane_slab};
@@ -264,7 +264,7 @@ fn inside(stage: &Stage) -> Eye {
         name: "inside",
         view: look_at_mat4(target + 1.5 * to_eye, target - 9.0 * to_eye, up),
         clip: vulkan::perspective(1.2, 1.2, 0.3, 90.0),
-        nearer: Nearer::Smaller,
+        nearer: DepthConvention::Standard,
     }
 }
 

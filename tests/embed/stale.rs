@@ -3,7 +3,7 @@
 use crate::embed_shared::{Host, HostImage, Stage};
 use ash::vk;
 use std::sync::Arc;
-use stratavox::embed::{Class, Error, Renderer, Shot, Volume};
+use stratavox::embed::{Error, FrameInfo, Renderer, RendererDesc, Volume};
 use stratavox::gpu::Load;
 use stratavox::technique::{Level, Mode, Order, Settings, Technique};
 
@@ -19,7 +19,7 @@ fn uploaded(host: &Host, stage: &Stage) -> Arc<Volume> {
 }
 
 fn renderer(host: &Host, stage: &Stage) -> Renderer {
-    let class = Class {
+    let class = RendererDesc {
         settings: stage.settings.clone(),
         target: FORMAT.into(),
         frames_in_flight: FRAMES,
@@ -32,8 +32,8 @@ fn renderer(host: &Host, stage: &Stage) -> Renderer {
     Renderer::new(host.gpu(), &volume, function, class, stage.extent, &[]).unwrap()
 }
 
-fn shot(stage: &Stage, frame: u32) -> Shot<'_> {
-    Shot {
+fn shot(stage: &Stage, frame: u32) -> FrameInfo<'_> {
+    FrameInfo {
         frame,
         camera: &stage.camera,
         depth: None,

@@ -5,8 +5,8 @@ use ash::vk;
 use glam::dcamera::rh::proj::vulkan;
 use glam::dcamera::rh::view::look_at_mat4;
 use std::sync::Arc;
-use stratavox::camera::{Camera, HostDepth, Nearer};
-use stratavox::embed::{Class, Renderer, Shot, SliceBlending, Volume};
+use stratavox::camera::{Camera, DepthConvention, HostDepth};
+use stratavox::embed::{FrameInfo, Renderer, RendererDesc, SliceBlending, Volume};
 use stratavox::gpu::{DepthClass, HostPass, TargetClass};
 use stratavox::technique::{Settings, Technique};
 
@@ -43,7 +43,7 @@ fn renderer(
     let mut volume = Volume::new(host.gpu(), &stage.volume, &stage.settings).unwrap();
     // SAFETY: outside rendering; `run` waits.
     host.run(|cmd| unsafe { volume.record_upload(host.gpu(), cmd).unwrap() });
-    let class = Class {
+    let class = RendererDesc {
         settings: stage.settings.clone(),
         host_depth: target.depth.is_some() && slice_blending == SliceBlending::InTarget,
         target,
@@ -64,11 +64,16 @@ fn eye(stage: &Stage) -> (Camera, HostDepth) {
     let [width, height] = stage.extent.map(f64::from);
     let distance = eye.distance(target);
     let clip = vulkan::perspective(0.4, width / height, 0.1 * distance, 9.0 * distance);
-    Camera::from_matrices(&look_at_mat4(eye, target, up), &clip, Nearer::Smaller).unwrap()
+    Camera::from_matrices(
+        &look_at_mat4(eye, target, up),
+        &clip,
+        DepthConvention::Standard,
+    )
+    .unwrap()
 }
 
-fn shot<'a>((camera, depth): &'a (Camera, HostDepth)) -> Shot<'a> {
-    Shot {
+fn shot<'a>((camera, depth): &'a (Camera, HostDepth)) -> FrameInfo<'a> {
+    FrameInfo {
         frame: 0,
         camera,
         depth: Some(*depth),

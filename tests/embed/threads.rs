@@ -5,7 +5,7 @@ use crate::embed_shared::{Host, HostImage, Stage};
 use ash::vk;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
-use stratavox::embed::{Class, Renderer, Shot, Volume};
+use stratavox::embed::{FrameInfo, Renderer, RendererDesc, Volume};
 use stratavox::gpu::Load;
 use stratavox::technique::{Mode, Settings, Technique};
 
@@ -50,7 +50,7 @@ impl<'h> Drawn<'h> {
         let mut stage = Stage::new(settings(number));
         stage.settings.conformance = false;
         stage.extent = EXTENT;
-        let class = Class {
+        let class = RendererDesc {
             settings: stage.settings.clone(),
             target: FORMAT.into(),
             frames_in_flight: 1,
@@ -91,7 +91,7 @@ impl<'h> Drawn<'h> {
         let mut camera = self.stage.camera;
         camera.zoom *= 1.0 + 0.1 * view as f64;
         camera.eye.z += view as f64;
-        let shot = Shot {
+        let shot = FrameInfo {
             frame: 0,
             camera: &camera,
             depth: None,

@@ -7,7 +7,7 @@ use glam::{DVec3, dvec3};
 use half::f16;
 use std::sync::Arc;
 use stratavox::camera::Camera;
-use stratavox::embed::{Class, Error, Renderer, Shot, Volume};
+use stratavox::embed::{Error, FrameInfo, Renderer, RendererDesc, Volume};
 use stratavox::gpu::{Caps, Load};
 use stratavox::technique::{Filter, Mode, Order, Settings, Technique};
 use stratavox::volume::{self, Rescale, VoxelBox, VoxelPart, VoxelType, Voxels};
@@ -145,8 +145,8 @@ fn any_box(random: &mut Random) -> VoxelBox {
     found
 }
 
-fn class(settings: &Settings) -> Class {
-    Class {
+fn class(settings: &Settings) -> RendererDesc {
+    RendererDesc {
         settings: settings.clone(),
         target: FORMAT.into(),
         frames_in_flight: 2,
@@ -182,7 +182,7 @@ unsafe fn record(
     image: &HostImage,
 ) {
     let depth = None;
-    let shot = Shot {
+    let shot = FrameInfo {
         frame,
         camera,
         depth,

@@ -8,7 +8,7 @@ use stratavox::gpu::Headless;
 use stratavox::offscreen::Renderer;
 use stratavox::scene::Scene;
 
-/// What the arithmetic of a device may change in a twin's picture of [`super::Stage`]: both compute in f32,
+/// What the arithmetic of a device may change in a CPU reference's picture of [`super::Stage`]: both compute in f32,
 /// in the same order, and neither exactly.
 ///
 /// Five roundings of voxel coordinates that are sums of numbers up to 200, on values that change by at most

@@ -6,8 +6,8 @@ use glam::dcamera::rh::proj::vulkan;
 use glam::dcamera::rh::view::look_at_mat4;
 use glam::{DMat4, DVec3};
 use std::sync::Arc;
-use stratavox::camera::{Camera, HostDepth, Nearer};
-use stratavox::embed::{Class, HostDepthImage, Pick, Renderer, Shot, Volume};
+use stratavox::camera::{Camera, DepthConvention, HostDepth};
+use stratavox::embed::{FrameInfo, HostDepthImage, Pick, Renderer, RendererDesc, Volume};
 use stratavox::gpu::{DepthClass, TargetClass};
 
 /// What is drawn there is what was computed, to the bit.
@@ -18,7 +18,7 @@ pub struct Eye {
     pub name: &'static str,
     pub view: DMat4,
     pub clip: DMat4,
-    pub nearer: Nearer,
+    pub nearer: DepthConvention,
 }
 
 pub fn eyes(stage: &Stage) -> [Eye; 4] {
@@ -36,14 +36,14 @@ pub fn eyes(stage: &Stage) -> [Eye; 4] {
             name: "perspective",
             view,
             clip: vulkan::perspective(fov, aspect, near, far),
-            nearer: Nearer::Smaller,
+            nearer: DepthConvention::Standard,
         },
         // Its near plane cuts the volume.
         Eye {
             name: "perspective, reversed, without a far plane",
             view,
             clip: vulkan::perspective_infinite_reverse(fov, aspect, 0.95 * distance),
-            nearer: Nearer::Larger,
+            nearer: DepthConvention::Reversed,
         },
         Eye {
             name: "orthographic",
@@ -56,7 +56,7 @@ pub fn eyes(stage: &Stage) -> [Eye; 4] {
                 near,
                 far,
             ),
-            nearer: Nearer::Smaller,
+            nearer: DepthConvention::Standard,
         },
         // Off the middle, and its far plane cuts the volume.
         Eye {
@@ -70,7 +70,7 @@ pub fn eyes(stage: &Stage) -> [Eye; 4] {
                 1.05 * distance,
                 -far,
             ),
-            nearer: Nearer::Larger,
+            nearer: DepthConvention::Reversed,
         },
     ]
 }
@@ -131,13 +131,13 @@ pub fn draw(
     let gives_depth = stage.settings.mode.has_depth();
     let mut volume = Volume::new(host.gpu(), &stage.volume, &stage.settings).unwrap();
     let image = HostImage::new(host, FORMAT, stage.extent);
-    let class = Class {
+    let class = RendererDesc {
         settings: stage.settings.clone(),
         target: TargetClass {
             depth: Some(DepthClass {
                 format: vk::Format::D32_SFLOAT,
                 has_stencil: false,
-                is_reversed: depth.nearer == Nearer::Larger,
+                is_reversed: depth.nearer == DepthConvention::Reversed,
             }),
             ..FORMAT.into()
         },
@@ -153,7 +153,7 @@ pub fn draw(
     // SAFETY: the buffer outlives the renderer.
     let read = unsafe { HostDepthImage::new(buffer.view, READ.2, stage.extent) };
     let read = if reads { vec![read] } else { Vec::new() };
-    let shot = Shot {
+    let shot = FrameInfo {
         frame: 0,
         camera,
         depth: Some(*depth),

@@ -66,8 +66,8 @@ impl Stage {
         }
     }
 
-    /// What the CPU twin computes: premultiplied colour of each pixel.
-    pub fn twin(&self) -> Vec<[f32; 4]> {
+    /// What the CPU reference computes: premultiplied colour of each pixel.
+    pub fn reference(&self) -> Vec<[f32; 4]> {
         let scene = Scene {
             beside: Default::default(),
             volume: &self.volume,

@@ -200,16 +200,16 @@ fn a_homogenous_cube_takes_a_sample_a_cell_and_is_as_deep_as_it_was() {
             ..Settings::default()
         };
         looked_down_on(&volume, &function, &settings, |scene| {
-            let twin = reference::render::<f64>(scene).expect("a picture");
+            let reference = reference::render::<f64>(scene).expect("a picture");
             let picture = drawn.render(scene, &[LayerKind::Samples]);
-            [twin, picture.expect("a picture").picture]
+            [reference, picture.expect("a picture").picture]
         })
     };
     let [_, all] = draw(None);
-    let [twin, fewer] = draw(Some(0.001));
+    let [reference, fewer] = draw(Some(0.001));
     // 1 - 0.95^32, by an exact correction of the opacity, whatever the length of a run.
     let wanted = 1.0 - 0.95_f64.powi(32);
-    for pixel in twin.pixels.iter().chain(&fewer.pixels) {
+    for pixel in reference.pixels.iter().chain(&fewer.pixels) {
         for (c, wanted) in [(0, wanted), (1, 0.0), (3, wanted)] {
             assert!((f64::from(pixel[c]) - wanted).abs() < 3e-6, "{pixel:?}");
         }
@@ -218,8 +218,8 @@ fn a_homogenous_cube_takes_a_sample_a_cell_and_is_as_deep_as_it_was() {
     assert_eq!(every, 81.0 * 32.0);
     // Four cells of eight samples, and the first and the last that stand by themselves.
     assert!(few <= 81.0 * 6.0, "{few}");
-    let (_, [of_twin, _]) = apart(&twin, &fewer);
-    assert!(of_twin <= 81.0 * 5.0, "{of_twin}");
+    let (_, [of_reference, _]) = apart(&reference, &fewer);
+    assert!(of_reference <= 81.0 * 5.0, "{of_reference}");
 }
 
 #[test]
@@ -240,9 +240,9 @@ fn an_adversary_comes_within_a_quarter_of_the_error_and_not_beyond_it() {
             ..Settings::default()
         };
         looked_down_on(&volume, &function, &settings, |scene| {
-            let twin = reference::render::<f64>(scene).expect("a picture");
+            let reference = reference::render::<f64>(scene).expect("a picture");
             let picture = drawn.render(scene, &[LayerKind::Samples]);
-            [twin, picture.expect("a picture").picture]
+            [reference, picture.expect("a picture").picture]
         })
     };
     let (all, few) = (draw(None), draw(Some(ERROR)));

@@ -89,7 +89,7 @@ fn check(what: &str, sheet: &Sheet, is_right: impl Fn(usize, f32) -> bool) {
                 let rendered = renderer.render(&scene, &[LayerKind::Value]).unwrap();
                 let mut pictures = vec![("device", rendered.picture)];
                 if conformance {
-                    pictures.push(("twin", reference::render::<f32>(&scene).unwrap()));
+                    pictures.push(("reference", reference::render::<f32>(&scene).unwrap()));
                 }
                 for (way, picture) in pictures {
                     let layer = picture.layers.iter().find(|l| l.kind == LayerKind::Value);

@@ -1,17 +1,17 @@
-//! What software devices read in the place of a texture has the values of the law: pictures are those of the twin, for
+//! What software devices read in the place of a texture has the values of the law: pictures are those of the CPU reference, for
 //! every type that has corners and wherever words are folded.
 
 use crate::shared::{
-    Comparison, Shot, compare, device, device_with, oblique_camera, projections, ramps,
+    Comparison, PictureCase, compare, device, device_with, oblique_camera, projections, ramps,
     sheared_affine, waves,
 };
 use glam::{DAffine3, DVec3, dvec3};
 use stratavox::gpu::Caps;
 use stratavox::offscreen::{Renderer, reference};
 use stratavox::picture::{LayerKind, Picture};
-use stratavox::resident::Corners;
+use stratavox::resident::FootprintTexels;
 use stratavox::technique::{
-    ClipPlane, FilterBy, Keep, Lattice, Level, Mode, Settings, Shading, Technique,
+    ClipPlane, FilterBy, GradientStorage, Lattice, Level, Mode, Settings, Shading, Technique,
 };
 use stratavox::transfer::{ColorPoint, OpacityPoint, TransferFunction};
 use stratavox::volume::{Grid, Rescale, Volume, VoxelType, Voxels};
@@ -50,8 +50,8 @@ fn volume_of(grid: &Grid, stored: VoxelType, has_holes: bool) -> Volume {
     Volume::from_voxels(grid.dims, grid.world_from_voxel, voxels, rescale, fill).unwrap()
 }
 
-/// Corners are not for conformance pictures, whose weights they have nevertheless.
-fn shots(grid: Grid, mode: Mode) -> Vec<Shot> {
+/// FootprintTexels are not for conformance pictures, whose weights they have nevertheless.
+fn shots(grid: Grid, mode: Mode) -> Vec<PictureCase> {
     let views = projections(&grid).map(|projection| oblique_camera(&grid, projection));
     let settings = Settings {
         mode,
@@ -60,7 +60,7 @@ fn shots(grid: Grid, mode: Mode) -> Vec<Shot> {
         skip: false,
         ..Settings::default()
     };
-    let shot = |camera| Shot {
+    let shot = |camera| PictureCase {
         grid,
         camera,
         extent: [40, 36],
@@ -69,7 +69,7 @@ fn shots(grid: Grid, mode: Mode) -> Vec<Shot> {
     views.map(shot).into()
 }
 
-fn what(volume: &Volume, shot: &Shot) -> String {
+fn what(volume: &Volume, shot: &PictureCase) -> String {
     let holes = match volume.validity {
         Some(_) => "holes",
         None => "no holes",
@@ -79,7 +79,7 @@ fn what(volume: &Volume, shot: &Shot) -> String {
 }
 
 /// The layer of values, which nothing has classified, and where they lie.
-fn check_layer(renderer: &mut Renderer, volume: &Volume, shot: &Shot, kind: LayerKind) {
+fn check_layer(renderer: &mut Renderer, volume: &Volume, shot: &PictureCase, kind: LayerKind) {
     let transfer = ramps();
     let scene = shot.scene(volume, Some(&transfer));
     let found = renderer.render(&scene, &[kind]).unwrap().picture;
@@ -97,7 +97,7 @@ fn check_layer(renderer: &mut Renderer, volume: &Volume, shot: &Shot, kind: Laye
 }
 
 #[test]
-fn words_folded_over_many_rows_have_the_values_of_the_twin() {
+fn words_folded_over_many_rows_have_the_values_of_the_reference() {
     // 10 x 9 x 8 cubes of 16-bit words, 4 x 9 x 8 of 8-bit ones: more than a row of the image, which holds 128.
     let grid = Grid {
         dims: [38, 33, 30],
@@ -107,7 +107,7 @@ fn words_folded_over_many_rows_have_the_values_of_the_twin() {
         for has_holes in [false, true] {
             let volume = volume_of(&grid, stored, has_holes);
             let device = device();
-            assert!(!device.gpu().is_cpu() || Corners::are_for(device.gpu(), &volume));
+            assert!(!device.gpu().is_cpu() || FootprintTexels::are_for(device.gpu(), &volume));
             let mut renderer = Renderer::new(device, &volume).unwrap();
             // One projection each.
             for (mode, shot) in [(Mode::Mip, 0), (Mode::Average, 1)] {
@@ -119,7 +119,7 @@ fn words_folded_over_many_rows_have_the_values_of_the_twin() {
 }
 
 #[test]
-fn long_rows_have_the_values_of_the_twin_from_end_to_end() {
+fn long_rows_have_the_values_of_the_reference_from_end_to_end() {
     let grid = Grid {
         dims: [2000, 7, 5],
         world_from_voxel: DAffine3::from_scale(dvec3(0.005, 2.0, 2.0)),
@@ -135,7 +135,7 @@ fn long_rows_have_the_values_of_the_twin_from_end_to_end() {
 }
 
 #[test]
-fn surfaces_lie_where_those_of_the_twin_do() {
+fn surfaces_lie_where_those_of_the_reference_do() {
     let grid = Grid {
         dims: [23, 19, 17],
         world_from_voxel: sheared_affine(),
@@ -153,7 +153,7 @@ fn surfaces_lie_where_those_of_the_twin_do() {
 /// A table of opacities is within 1/4096 of them (`sampling.md` 4). Where they are p at most, that moves the alpha of a
 /// sample that is no longer than a reference length by 1/4096/(1 - p), and a picture of one colour by the sum of these.
 #[test]
-fn composites_lit_and_unlit_are_those_of_the_twin_up_to_the_table() {
+fn composites_lit_and_unlit_are_those_of_the_reference_up_to_the_table() {
     const MOST: f64 = 0.04;
     let opacity = |value, opacity| OpacityPoint { value, opacity };
     let color = |value| ColorPoint {
@@ -196,7 +196,7 @@ fn composites_lit_and_unlit_are_those_of_the_twin_up_to_the_table() {
     }
 }
 
-/// What a picture is made of does not hang on what was drawn before it, with or without a texture.
+/// What a picture is made of does not depend on what was drawn before it, with or without a texture.
 #[test]
 fn a_renderer_goes_from_what_reads_corners_alone_to_all_else_and_back() {
     let grid = Grid {
@@ -214,7 +214,7 @@ fn a_renderer_goes_from_what_reads_corners_alone_to_all_else_and_back() {
         },
         |settings| {
             settings.shading = Some(Shading::default());
-            settings.keep_gradients = Keep::Always;
+            settings.gradient_storage = GradientStorage::Precomputed;
         },
         |settings| settings.preintegrated = true,
         |settings| settings.filter_by = FilterBy::Sampler,
@@ -224,7 +224,7 @@ fn a_renderer_goes_from_what_reads_corners_alone_to_all_else_and_back() {
     let shot = &shots(grid, Mode::Composite)[0];
     for (stored, has_holes) in [(VoxelType::U8, false), (VoxelType::I16, true)] {
         let volume = volume_of(&grid, stored, has_holes);
-        let drawn = |renderer: &mut Renderer, shot: &Shot| {
+        let drawn = |renderer: &mut Renderer, shot: &PictureCase| {
             let scene = shot.scene(&volume, Some(&transfer));
             renderer.render(&scene, &[]).unwrap().picture.pixels
         };
@@ -232,7 +232,7 @@ fn a_renderer_goes_from_what_reads_corners_alone_to_all_else_and_back() {
         let first = drawn(&mut renderer, shot);
         for change in changes {
             let changed = shot.with(change);
-            if has_holes && changed.settings.keep_gradients == Keep::Always {
+            if has_holes && changed.settings.gradient_storage == GradientStorage::Precomputed {
                 continue;
             }
             let mut fresh = Renderer::new(device(), &volume).unwrap();
@@ -249,9 +249,9 @@ fn a_renderer_goes_from_what_reads_corners_alone_to_all_else_and_back() {
 }
 
 /// Rays and view-aligned slices read corners in both pictures; where there are none, `fetch` has the weights of
-/// conformance pictures, which are the twin's.
+/// conformance pictures, which are the CPU reference's.
 #[test]
-fn fetches_are_those_of_the_twin_in_every_technique() {
+fn fetches_are_those_of_the_reference_in_every_technique() {
     let grid = Grid {
         dims: [23, 19, 17],
         world_from_voxel: sheared_affine(),

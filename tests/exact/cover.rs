@@ -1,8 +1,8 @@
 //! A29: the polygon of a plane and a box against brute force, and the cover that the device draws against
-//! the samples of its twin, pixel by pixel.
+//! the samples of its CPU reference, pixel by pixel.
 
 use crate::shared::{
-    Chord, Shot, Worst, device, oblique_shots, ramps, sheared_affine, volume_of, waves,
+    Chord, PictureCase, Worst, device, oblique_shots, ramps, sheared_affine, volume_of, waves,
 };
 use glam::{DAffine3, DMat3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
@@ -30,7 +30,7 @@ fn axes() -> impl Iterator<Item = DVec3> {
     DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis])
 }
 
-fn shot_along(grid: Grid, forward: DVec3, samples_per_voxel: f64) -> Shot {
+fn shot_along(grid: Grid, forward: DVec3, samples_per_voxel: f64) -> PictureCase {
     let size = (grid.world_from_voxel.matrix3 * grid.far_corner()).length();
     let camera = Camera {
         eye: grid.center() - 2.0 * size * forward,
@@ -39,7 +39,7 @@ fn shot_along(grid: Grid, forward: DVec3, samples_per_voxel: f64) -> Shot {
         projection: Projection::Orthographic { view_height: size },
         zoom: 1.0,
     };
-    Shot {
+    PictureCase {
         grid,
         camera,
         extent: [32, 32],
@@ -165,7 +165,7 @@ fn the_areas_of_all_planes_add_up_to_the_volume() {
 
 #[test]
 fn the_cover_leaves_out_no_sample_and_doubles_none() {
-    // Additive blending of ones: the device counts, and must count what its twin does without a cover.
+    // Additive blending of ones: the device counts, and must count what its CPU reference does without a cover.
     let grid = Grid {
         dims: [9, 11, 8],
         world_from_voxel: sheared_affine(),
@@ -191,7 +191,7 @@ fn the_cover_leaves_out_no_sample_and_doubles_none() {
     for technique in [Technique::Slices3d, Technique::Slices2d] {
         let mut worst = Worst::new(format!("samples counted, {technique:?}"));
         for camera in &cameras {
-            let shot = Shot {
+            let shot = PictureCase {
                 grid,
                 camera: *camera,
                 extent: [40, 36],

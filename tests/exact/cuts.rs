@@ -1,8 +1,8 @@
 //! What a picture leaves out, makes faint and names: labels that are dimmed, the layer of labels, and faces of cuts.
 
 use crate::shared::{
-    Shot, Worst, compare, device, oblique_shots, ramps, sheared_affine, straight_shots, volume_of,
-    waves,
+    PictureCase, Worst, compare, device, oblique_shots, ramps, sheared_affine, straight_shots,
+    volume_of, waves,
 };
 use glam::{DAffine3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
@@ -73,7 +73,7 @@ fn a_fog_that_is_dimmed_is_one_of_less_extinction_and_a_greyer_colour() {
             settings.color_space = ColorSpace::Display;
             settings.dim = share;
         });
-        let shot = Shot {
+        let shot = PictureCase {
             extent: [20, 18],
             ..shot
         };
@@ -179,7 +179,7 @@ fn the_layer_of_labels_names_what_is_hit_first() {
                 continue;
             }
             let device = layer(&found.unwrap().picture, LayerKind::Label);
-            let twin = layer(&reference::render::<f32>(&scene).unwrap(), LayerKind::Label);
+            let reference = layer(&reference::render::<f32>(&scene).unwrap(), LayerKind::Label);
             let positions = renderer
                 .render(&scene, &[LayerKind::Position])
                 .unwrap()
@@ -191,7 +191,7 @@ fn the_layer_of_labels_names_what_is_hit_first() {
                     x if x < 6.0 => 5.0,
                     _ => 9.0,
                 };
-                for found in [device[i], twin[i]] {
+                for found in [device[i], reference[i]] {
                     let is_same = found == wanted || (found.is_nan() && wanted.is_nan());
                     assert!(is_same, "{pixel:?}: {found}, wanted {wanted}");
                 }
@@ -228,7 +228,7 @@ fn a_picture_without_labels_has_no_layer_of_them() {
 }
 
 /// Rays along both lattices, and jittered ones.
-fn ray_shots(grid: Grid) -> Vec<Shot> {
+fn ray_shots(grid: Grid) -> Vec<PictureCase> {
     let all = oblique_shots(grid, Mode::Composite).into_iter();
     let on_rays = all.filter(|shot| shot.settings.technique == Technique::Raycast);
     on_rays
@@ -239,7 +239,7 @@ fn ray_shots(grid: Grid) -> Vec<Shot> {
                 _ => vec![shot],
             }
         })
-        .map(|shot| Shot {
+        .map(|shot| PictureCase {
             extent: [28, 24],
             ..shot
         })
@@ -346,7 +346,7 @@ fn a_face_in_greys_is_the_section_through_the_same_plane() {
     let thinnest = 0.01 * GRID().smallest_spacing();
     let mut renderer = Renderer::new(device(), &volume).unwrap();
     for filter in [Filter::Linear, Filter::Cubic] {
-        let shot = |mode, clip_planes, cut_faces| Shot {
+        let shot = |mode, clip_planes, cut_faces| PictureCase {
             grid: GRID(),
             camera,
             extent: [48, 40],
@@ -398,7 +398,7 @@ fn a_face_in_greys_is_the_section_through_the_same_plane() {
 }
 
 #[test]
-fn cut_faces_are_drawn_as_their_twin_computes_them() {
+fn cut_faces_are_drawn_as_their_reference_computes_them() {
     let volume = volume_of(GRID().dims, sheared_affine(), waves);
     let (second, names) = (volume_of(GRID().dims, sheared_affine(), |p| p.x), ramps());
     let mut holes = volume_of(GRID().dims, sheared_affine(), waves);
@@ -484,7 +484,7 @@ fn where_a_face_shows_nothing_the_picture_stays_as_it_is() {
     };
     for shot in ray_shots(GRID()) {
         for camera in [shot.camera, inside] {
-            let shot = Shot {
+            let shot = PictureCase {
                 camera,
                 ..shot.with(|settings| {
                     settings.crop = Some([DVec3::splat(1.25), GRID().far_corner() - 1.25]);
@@ -517,7 +517,7 @@ fn faces_are_refused_by_name_where_there_are_none() {
             ..Settings::default()
         };
         let shot = oblique_shots(CUBE, mode).swap_remove(0);
-        let shot = Shot { settings, ..shot };
+        let shot = PictureCase { settings, ..shot };
         let scene = shot.scene(&volume, Some(&transfer));
         let problem = reference::render::<f32>(&scene).unwrap_err().to_string();
         assert!(problem.contains("opaque cut face"), "{problem}");

@@ -1,4 +1,4 @@
-//! Noise filters: what they leave of white noise, what they leave alone, and the device against its twin.
+//! Noise filters: what they leave of white noise, what they leave alone, and the device against its CPU reference.
 
 use crate::shared::{device, device_with, sheared_affine, volume_of, waves};
 use glam::{DAffine3, DVec3};
@@ -219,7 +219,7 @@ fn all_but_the_numbers_stays() {
 }
 
 #[test]
-fn the_device_filters_as_its_twin_does_in_slabs_of_any_height() {
+fn the_device_filters_as_its_reference_does_in_slabs_of_any_height() {
     let codes =
         |p: DVec3| (1000.0 * waves(p) + 37.0 * (11.3 * p.x + 5.1 * p.y * p.z).sin()).round();
     let noisy = volume_of([33, 18, 29], sheared_affine(), codes);

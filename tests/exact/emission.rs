@@ -1,13 +1,13 @@
 //! Emission and absorption against closed forms: A1 to A6 and A9 of the oracles, every placement of samples,
-//! both projections, twins in f32 and f64, and the device.
+//! both projections, CPU references in f32 and f64, and the device.
 
 use crate::shared::oracle::{
     atmosphere, constant_color, homogeneous, linear_density, order_of_convergence,
     quadratic_density,
 };
 use crate::shared::{
-    Device, Shot, Twin, Way, Worst, device, inner_box, oblique_shots, ramps, sheared_affine,
-    straight_shots, volume_of, waves,
+    Device, PictureCase, Reference, Way, Worst, device, inner_box, oblique_shots, ramps,
+    sheared_affine, straight_shots, volume_of, waves,
 };
 use glam::DAffine3;
 use stratavox::color::decode_srgb;
@@ -29,22 +29,22 @@ const STRAIGHT: Grid = Grid {
 
 fn ways() -> [Box<dyn Way>; 3] {
     [
-        Box::new(Twin::<f64>::new()),
-        Box::new(Twin::<f32>::new()),
+        Box::new(Reference::<f64>::new()),
+        Box::new(Reference::<f32>::new()),
         Box::new(Device),
     ]
 }
 
-fn all_shots() -> Vec<Shot> {
+fn all_shots() -> Vec<PictureCase> {
     let mut shots = oblique_shots(SHEARED(), Mode::Composite);
     shots.extend(straight_shots(STRAIGHT, Mode::Composite));
     shots
 }
 
 /// Without the outer half voxel, where the device holds the edge's value.
-fn inner(shot: Shot) -> Shot {
+fn inner(shot: PictureCase) -> PictureCase {
     let crop = Some(inner_box(&shot.grid));
-    Shot {
+    PictureCase {
         settings: Settings {
             crop,
             ..shot.settings
@@ -80,8 +80,8 @@ fn a_quadratic_density_is_off_by_the_error_that_midpoints_make() {
     }
     // Between voxel centres the device interpolates: only a formula has a square there.
     for shot in oblique_shots(SHEARED(), Mode::Composite) {
-        quadratic_density(&Twin::<f64>::new(), &shot).assert_holds();
-        quadratic_density(&Twin::<f32>::new(), &shot).assert_holds();
+        quadratic_density(&Reference::<f64>::new(), &shot).assert_holds();
+        quadratic_density(&Reference::<f32>::new(), &shot).assert_holds();
     }
 }
 
@@ -96,7 +96,7 @@ fn rising_light_converges_with_the_square_of_the_step() {
                 crop,
                 ..shot.settings.clone()
             };
-            let shot = Shot { settings, ..shot };
+            let shot = PictureCase { settings, ..shot };
             let [coarse, fine] = order_of_convergence(&*way, &shot);
             let order = (coarse / fine).log2();
             println!(
@@ -118,7 +118,7 @@ fn one_color_stays_that_color_at_any_density_and_step() {
                     samples_per_voxel,
                     ..shot.settings.clone()
                 };
-                let shot = Shot {
+                let shot = PictureCase {
                     settings,
                     ..shot.clone()
                 };
@@ -136,8 +136,8 @@ fn an_atmosphere_absorbs_as_its_integral_says() {
         }
     }
     for shot in oblique_shots(SHEARED(), Mode::Composite) {
-        atmosphere(&Twin::<f64>::new(), &shot).assert_holds();
-        atmosphere(&Twin::<f32>::new(), &shot).assert_holds();
+        atmosphere(&Reference::<f64>::new(), &shot).assert_holds();
+        atmosphere(&Reference::<f32>::new(), &shot).assert_holds();
     }
 }
 

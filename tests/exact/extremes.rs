@@ -1,6 +1,8 @@
 //! The exact maximum of the trilinear field against samples of it (exact answer A15).
 
-use crate::shared::{Shot, compare, device, device_with, oblique_shots, straight_shots, volume_of};
+use crate::shared::{
+    PictureCase, compare, device, device_with, oblique_shots, straight_shots, volume_of,
+};
 use glam::{DAffine3, DVec3};
 use stratavox::gpu::Caps;
 use stratavox::offscreen::{Renderer, reference};
@@ -26,7 +28,7 @@ fn volume() -> Volume {
     volume_of(GRID.dims, GRID.world_from_voxel, random)
 }
 
-fn shots(mode: Mode) -> Vec<Shot> {
+fn shots(mode: Mode) -> Vec<PictureCase> {
     let on_rays = oblique_shots(GRID, mode).into_iter().filter(|shot| {
         shot.settings.technique == Technique::Raycast && shot.settings.lattice == Lattice::Ray
     });
@@ -127,7 +129,7 @@ fn very_many_samples_find_the_exact_extreme() {
 }
 
 #[test]
-fn exact_extremes_are_drawn_as_their_twin_computes_them_with_holes_and_in_bricks() {
+fn exact_extremes_are_drawn_as_their_reference_computes_them_with_holes_and_in_bricks() {
     let mut volume = volume();
     for with_holes in [false, true] {
         if with_holes {

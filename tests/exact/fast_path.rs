@@ -11,7 +11,7 @@
 //! ```
 
 use crate::shared::{
-    Chord, Shot, Worst, device, oblique_shots, ramps, sheared_affine, volume_of, waves,
+    Chord, PictureCase, Worst, device, oblique_shots, ramps, sheared_affine, volume_of, waves,
 };
 use stratavox::offscreen::Renderer;
 use stratavox::picture::LayerKind;
@@ -158,7 +158,7 @@ fn a_fast_picture_of_a_projection_is_classified_by_the_points_themselves() {
     let transfer = ramps();
     let mut renderer = Renderer::new(device(), &volume).unwrap();
     for shot in oblique_shots(GRID(), Mode::Mip) {
-        let shot: Shot = shot.with(|s| s.filter = stratavox::technique::Filter::Nearest);
+        let shot: PictureCase = shot.with(|s| s.filter = stratavox::technique::Filter::Nearest);
         let fast = shot.with(|settings| settings.conformance = false);
         let wanted = renderer
             .render(&shot.scene(&volume, Some(&transfer)), &[])

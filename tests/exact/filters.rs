@@ -1,7 +1,8 @@
-//! Quadratic, cubic and Catmull-Rom on a device: what their twins compute, the known errors, and what is refused.
+//! Quadratic, cubic and Catmull-Rom on a device: what their CPU references compute, the known errors, and what is refused.
 
 use crate::shared::{
-    Chord, Shot, Worst, compare, device, oblique_shots, ramps, sheared_affine, volume_of, waves,
+    Chord, PictureCase, Worst, compare, device, oblique_shots, ramps, sheared_affine, volume_of,
+    waves,
 };
 use glam::{DAffine3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
@@ -32,12 +33,12 @@ const MODES: [Mode; 5] = [
     Mode::Xray,
 ];
 
-fn small(shot: Shot) -> Shot {
+fn small(shot: PictureCase) -> PictureCase {
     let extent = [20, 18];
-    Shot { extent, ..shot }
+    PictureCase { extent, ..shot }
 }
 
-fn check(renderer: &mut Renderer, volume: &Volume, shot: &Shot) {
+fn check(renderer: &mut Renderer, volume: &Volume, shot: &PictureCase) {
     let transfer = ramps();
     let scene = shot.scene(volume, Some(&transfer));
     let found = renderer.render(&scene, &[]).unwrap().picture;
@@ -51,7 +52,7 @@ fn check(renderer: &mut Renderer, volume: &Volume, shot: &Shot) {
 }
 
 #[test]
-fn every_technique_mode_and_filter_draws_what_its_twin_computes() {
+fn every_technique_mode_and_filter_draws_what_its_reference_computes() {
     let volume = volume_of(GRID().dims, sheared_affine(), waves);
     let mut renderer = Renderer::new(device(), &volume).unwrap();
     for mode in MODES {
@@ -69,7 +70,7 @@ fn every_technique_mode_and_filter_draws_what_its_twin_computes() {
 }
 
 #[test]
-fn holes_and_codes_with_a_rescale_are_those_of_the_twin() {
+fn holes_and_codes_with_a_rescale_are_those_of_the_reference() {
     let values = volume_of(GRID().dims, sheared_affine(), waves).voxels;
     let codes = (0..values.len()).map(|i| (values.stored(i) * 4000.0 - 1024.0) as i16);
     let voxels = Voxels::I16(codes.collect());
@@ -92,7 +93,7 @@ fn holes_and_codes_with_a_rescale_are_those_of_the_twin() {
 }
 
 #[test]
-fn shaded_pictures_of_wide_filters_are_those_of_the_twin() {
+fn shaded_pictures_of_wide_filters_are_those_of_the_reference() {
     let volume = volume_of(GRID().dims, sheared_affine(), waves);
     let mut renderer = Renderer::new(device(), &volume).unwrap();
     for shot in oblique_shots(GRID(), Mode::Composite).into_iter().take(6) {
@@ -116,10 +117,10 @@ fn signal_affine() -> DAffine3 {
 }
 
 /// One sample a ray: a slab of half a voxel, seen along z, is sampled in its middle.
-fn signal_shot(slab: f64, filter: Filter) -> Shot {
+fn signal_shot(slab: f64, filter: Filter) -> PictureCase {
     let bottom = 20.0 + 19.5 * slab;
     let far = 40.0;
-    Shot {
+    PictureCase {
         grid: Grid {
             dims: [40; 3],
             world_from_voxel: signal_affine(),
@@ -206,7 +207,7 @@ fn slices_of_a_stack_show_the_spline_through_the_whole_volume() {
                 conformance: true,
                 ..Settings::default()
             };
-            let shot = Shot {
+            let shot = PictureCase {
                 grid,
                 camera,
                 extent: [32, 32],

@@ -21,7 +21,7 @@ use stratavox::picture::ColorSpace;
 use stratavox::resident::{GpuTransfer, GpuVolume, TextureLayout};
 use stratavox::technique::blend::Drawn;
 use stratavox::technique::{
-    Inputs, Mode, Order, Settings, Slicer, Technique, View, Words, parameter_ring,
+    Inputs, Mode, Order, Settings, ShaderVariant, Slicer, Technique, View, parameter_ring,
 };
 use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
 use stratavox::volume::Volume;
@@ -83,7 +83,7 @@ fn drawn(device: &mut Headless, format: vk::Format, order: Order, slices: u32) -
     let ring = parameter_ring(&gpu, 1).unwrap();
     let offset = recording.write(&ring, 0).unwrap();
     let planes = recording.slices;
-    let words = Words::of(&settings, &voxels);
+    let words = ShaderVariant::of(&settings, &voxels);
     let drawn = Drawn::Picture(Mode::Composite);
     let slicer = Slicer::new(&gpu, Technique::Slices3d, drawn, order, &words, format).unwrap();
     let inputs = Inputs {

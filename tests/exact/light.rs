@@ -1,15 +1,15 @@
-//! Light on samples: the device draws what its twin computes, and the twin what the closed form says.
+//! Light on samples: the device draws what its CPU reference computes, and the CPU reference what the closed form says.
 
 use crate::shared::{
-    Shot, Worst, compare, device, device_with, oblique_shots, ramps, sheared_affine, volume_of,
-    waves,
+    PictureCase, Worst, compare, device, device_with, oblique_shots, ramps, sheared_affine,
+    volume_of, waves,
 };
 use glam::{DAffine3, DVec3, dvec3};
 use stratavox::gpu::Caps;
 use stratavox::offscreen::{Renderer, reference};
 use stratavox::picture::{ColorSpace, Picture};
 use stratavox::technique::{
-    Filter, GradientFilter, Keep, Light, LightSpace, Mode, Settings, Shading,
+    Filter, GradientFilter, GradientStorage, Light, LightSpace, Mode, Settings, Shading,
 };
 use stratavox::transfer::{ColorPoint, TransferFunction};
 use stratavox::volume::{Grid, Volume};
@@ -99,12 +99,12 @@ fn assert_steady_light_drawn_as_computed(volume: &Volume, what: &str) {
     }
 }
 
-/// The lit picture is that of its twin, and another than `without`, by colour alone.
+/// The lit picture is that of its CPU reference, and another than `without`, by colour alone.
 fn assert_changes(
     renderer: &mut Renderer,
     volume: &Volume,
-    without: &Shot,
-    lit: &Shot,
+    without: &PictureCase,
+    lit: &PictureCase,
     what: &str,
 ) {
     let transfer = ramps();
@@ -152,7 +152,7 @@ fn assert_gradients_drawn_as_computed(volume: &Volume, what: &str) {
         // One of the two placements of each technique, in one of the two projections.
         for technique in [0, 2, 4] {
             let shot = &shots[(technique + i % 2 + 6 * (i / 2 % 2)) % shots.len()];
-            let small = Shot {
+            let small = PictureCase {
                 extent: [24, 20],
                 ..shot.clone()
             };
@@ -201,23 +201,24 @@ fn kept_gradients_light_what_made_ones_light_in_bricks_too() {
         .enumerate()
         {
             for technique in [0, 2, 4] {
-                let small = Shot {
+                let small = PictureCase {
                     extent: [24, 20],
                     ..shots[technique + 6 * (i % 2)].clone()
                 };
                 let shot = small.with(|settings| {
                     settings.filter = filter;
                     settings.gradient_filter = gradient_filter;
-                    settings.keep_gradients = Keep::Always;
+                    settings.gradient_storage = GradientStorage::Precomputed;
                     settings.shading = Some(diffuse.clone());
                     settings.color_space = ColorSpace::Display;
                     settings.conformance = false;
                 });
                 let scene = shot.scene(&volume, Some(&transfer));
                 let kept = renderer.render(&scene, &[]).unwrap().picture;
-                let twin = reference::render::<f64>(&scene).unwrap();
+                let reference = reference::render::<f64>(&scene).unwrap();
                 let mut worst = Worst::new(format!("{filter:?}, {}", shot.what()));
-                for (pixel, (a, b)) in shot.pixels().zip(kept.pixels.iter().zip(&twin.pixels)) {
+                for (pixel, (a, b)) in shot.pixels().zip(kept.pixels.iter().zip(&reference.pixels))
+                {
                     if b[3] < 0.01 {
                         continue;
                     }
@@ -250,30 +251,31 @@ fn gradients_are_kept_where_they_can_be_and_made_or_refused_elsewhere() {
         let mut drawn = |keep| {
             let shot = shot.with(|settings| {
                 settings.shading = Some(Shading::default());
-                settings.keep_gradients = keep;
+                settings.gradient_storage = keep;
                 settings.gradient_filter = gradient_filter;
                 settings.conformance = conformance;
             });
             let scene = shot.scene(volume, Some(&transfer));
-            let twin = reference::render::<f32>(&scene).err();
+            let reference = reference::render::<f32>(&scene).err();
             let drawn = renderer.render(&scene, &[]);
             let drawn = drawn.map(|drawn| drawn.picture.pixels);
             (
                 drawn.map_err(|e| e.to_string()),
-                twin.map(|e| e.to_string()),
+                reference.map(|e| e.to_string()),
             )
         };
-        let (refused, by_twin) = drawn(Keep::Always);
+        let (refused, by_reference) = drawn(GradientStorage::Precomputed);
         let refused = refused.expect_err("refused");
         assert!(refused.contains(reason), "{refused}");
-        assert_eq!(by_twin, Some(refused));
-        let [auto, made] = [Keep::Auto, Keep::Never].map(|keep| drawn(keep).0.expect("drawn"));
+        assert_eq!(by_reference, Some(refused));
+        let [auto, made] = [GradientStorage::Auto, GradientStorage::OnTheFly]
+            .map(|keep| drawn(keep).0.expect("drawn"));
         assert_eq!(auto, made, "{reason}");
     }
 }
 
 #[test]
-fn every_gradient_filter_lights_what_its_twin_lights_whatever_the_filter() {
+fn every_gradient_filter_lights_what_its_reference_lights_whatever_the_filter() {
     let volume = volume_of(GRID().dims, sheared_affine(), waves);
     assert_gradients_drawn_as_computed(&volume, "whole");
 }
@@ -284,19 +286,19 @@ fn every_gradient_filter_is_dark_where_a_voxel_with_a_weight_has_no_data() {
 }
 
 #[test]
-fn every_technique_and_filter_lights_what_its_twin_lights() {
+fn every_technique_and_filter_lights_what_its_reference_lights() {
     let volume = volume_of(GRID().dims, sheared_affine(), waves);
     assert_drawn_as_computed(&volume, "whole");
 }
 
 #[test]
-fn each_technique_draws_light_of_the_camera_with_a_half_gradient_as_its_twin() {
+fn each_technique_draws_light_of_the_camera_with_a_half_gradient_as_its_reference() {
     let volume = volume_of(GRID().dims, sheared_affine(), waves);
     assert_steady_light_drawn_as_computed(&volume, "whole");
 }
 
 #[test]
-fn a_gradient_with_a_hole_in_it_is_dark_on_the_device_as_in_the_twin() {
+fn a_gradient_with_a_hole_in_it_is_dark_on_the_device_as_in_the_reference() {
     assert_drawn_as_computed(&with_holes(), "with holes");
 }
 
@@ -373,7 +375,7 @@ fn one_color() -> TransferFunction {
 }
 
 /// Every pixel that shows anything has the colour of a surface across `slope`.
-fn assert_has_normal(shot: &Shot, shading: &Shading, found: &Picture, slope: DVec3) {
+fn assert_has_normal(shot: &PictureCase, shading: &Shading, found: &Picture, slope: DVec3) {
     let conformance = shot.settings.conformance;
     let mut worst = Worst::new(format!("conformance {conformance}, {}", shot.what()));
     let m = sheared_affine().matrix3;

@@ -40,7 +40,7 @@ fn samples(picture: &Picture) -> &[f32] {
 }
 
 #[test]
-fn a_ray_is_as_long_as_its_twin_up_to_the_limit_of_the_driver() {
+fn a_ray_is_as_long_as_its_reference_up_to_the_limit_of_the_driver() {
     let transfer = ramps();
     let camera = along_z();
     let [plain, holes] = [false, true].map(long_volume);
@@ -99,8 +99,12 @@ fn a_ray_is_as_long_as_its_twin_up_to_the_limit_of_the_driver() {
             Some(error) => panic!("{what}: {error}"),
             None => 4.0,
         };
-        let (found, twin) = draw(at_most).unwrap();
-        assert_eq!(samples(&found), samples(&twin), "{what}: {at_most} a voxel");
+        let (found, reference) = draw(at_most).unwrap();
+        assert_eq!(
+            samples(&found),
+            samples(&reference),
+            "{what}: {at_most} a voxel"
+        );
         assert!(samples(&found)[0] > 90.0, "{what}");
     }
     println!("{refused} of 13 kinds of picture have a limit here");

@@ -4,7 +4,8 @@
 //! an end or where its derivative, a quadratic, is zero.
 
 use crate::shared::{
-    Chord, Device, Matter, Shot, Twin, Way, Worst, oblique_shots, sheared_affine, volume_of,
+    Chord, Device, Matter, PictureCase, Reference, Way, Worst, oblique_shots, sheared_affine,
+    volume_of,
 };
 use glam::{DAffine3, DVec3};
 use stratavox::technique::{Mode, Settings};
@@ -63,7 +64,7 @@ fn exact(volume: &Volume, voxel_from_world: &DAffine3, chord: &Chord) -> (f64, f
 
 /// The maximum over samples is no more than the maximum, and no less than it by what the field can rise
 /// between a sample and any place of the chord.
-fn sampled_maximum(way: &dyn Way, shot: &Shot, volume: &Volume) -> Worst {
+fn sampled_maximum(way: &dyn Way, shot: &PictureCase, volume: &Volume) -> Worst {
     let value = |p: DVec3| linear::<f64>(volume, p.to_array()).unwrap();
     let matter = Matter {
         value: &value,
@@ -101,7 +102,7 @@ fn a_sampled_maximum_is_below_the_exact_one_by_no_more_than_a_half_step_rises() 
         world_from_voxel: sheared_affine(),
     };
     let volume = volume_of(grid.dims, grid.world_from_voxel, noise);
-    let ways: [&dyn Way; 3] = [&Twin::<f64>::new(), &Twin::<f32>::new(), &Device];
+    let ways: [&dyn Way; 3] = [&Reference::<f64>::new(), &Reference::<f32>::new(), &Device];
     for way in ways {
         for shot in oblique_shots(grid, Mode::Mip) {
             for samples_per_voxel in [1.0, 16.0] {
@@ -109,7 +110,7 @@ fn a_sampled_maximum_is_below_the_exact_one_by_no_more_than_a_half_step_rises() 
                     samples_per_voxel,
                     ..shot.settings.clone()
                 };
-                let shot = Shot {
+                let shot = PictureCase {
                     settings,
                     ..shot.clone()
                 };

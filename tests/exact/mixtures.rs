@@ -1,11 +1,11 @@
-//! Several volumes on one grid: each shader computes what its twin computes, bricks change nothing, and a mixture
+//! Several volumes on one grid: each shader computes what its CPU reference computes, bricks change nothing, and a mixture
 //! is what independent emitters and absorbers in one place are.
 
 mod opacity;
 mod preclassified;
 
 use crate::shared::{
-    Chord, Shot, Worst, compare, device, device_with, oblique_shots, ramps, sheared_affine,
+    Chord, PictureCase, Worst, compare, device, device_with, oblique_shots, ramps, sheared_affine,
     volume_of, waves,
 };
 use glam::{DAffine3, DVec3};
@@ -104,7 +104,7 @@ fn channel<'a>(volume: &'a Volume, transfer: &'a TransferFunction, role: Role) -
 }
 
 fn scene<'a>(
-    shot: &'a Shot,
+    shot: &'a PictureCase,
     volume: &'a Volume,
     transfer: &'a TransferFunction,
     beside: Beside<'a>,
@@ -121,13 +121,13 @@ fn renderer<'a>(volumes: &[&'a Volume]) -> Renderer<'a> {
 }
 
 /// Small pictures, those of one pipeline next to each other.
-fn small_shots(grid: Grid, mode: Mode) -> Vec<Shot> {
+fn small_shots(grid: Grid, mode: Mode) -> Vec<PictureCase> {
     let all = oblique_shots(grid, mode);
     let (first, second) = all.split_at(all.len() / 2);
     let pairs = first.iter().zip(second);
     let shots = pairs.flat_map(|(a, b)| [a.clone(), b.clone()]);
     let extent = [28, 24];
-    shots.map(|shot| Shot { extent, ..shot }).collect()
+    shots.map(|shot| PictureCase { extent, ..shot }).collect()
 }
 
 fn pictures(renderer: &mut Renderer, scene: &Scene) -> [Picture; 3] {
@@ -139,7 +139,7 @@ fn pictures(renderer: &mut Renderer, scene: &Scene) -> [Picture; 3] {
 }
 
 /// Every placement of samples and both filters.
-fn check_against_twins(
+fn check_against_references(
     volume: &Volume,
     transfer: &TransferFunction,
     beside: Beside,
@@ -170,7 +170,7 @@ fn check_against_twins(
 }
 
 #[test]
-fn channels_with_holes_and_types_of_their_own_are_mixed_as_the_twin_mixes_them() {
+fn channels_with_holes_and_types_of_their_own_are_mixed_as_the_reference_mixes_them() {
     let first = with_holes(volume_of(GRID().dims, sheared_affine(), waves), 7);
     let (second, mut labels) = (ripples(), with_holes(blocks(), 11));
     dim(&mut labels, |label| label == 2);
@@ -185,28 +185,28 @@ fn channels_with_holes_and_types_of_their_own_are_mixed_as_the_twin_mixes_them()
     for count in 1..=channels.len() {
         let beside = Beside::Channels(&channels[..count]);
         let what = format!("{count} beside");
-        check_against_twins(&first, &functions[0], beside, Mode::Composite, &what);
+        check_against_references(&first, &functions[0], beside, Mode::Composite, &what);
     }
     let whole = ripples();
     let channels = [channel(&second, &functions[1], Role::Numbers)];
     let beside = Beside::Channels(&channels);
-    check_against_twins(&whole, &functions[0], beside, Mode::Composite, "no holes");
+    check_against_references(&whole, &functions[0], beside, Mode::Composite, "no holes");
 }
 
 #[test]
-fn projections_of_channels_are_added_as_the_twin_adds_them() {
+fn projections_of_channels_are_added_as_the_reference_adds_them() {
     let first = with_holes(volume_of(GRID().dims, sheared_affine(), waves), 7);
     let second = ripples();
     let functions = [tinted([0.0, 0.9, 1.0]), tinted([1.0, 0.2, 0.9])];
     let channels = [channel(&second, &functions[1], Role::Numbers)];
     for mode in [Mode::Mip, Mode::Minip, Mode::Average] {
         let beside = Beside::Channels(&channels);
-        check_against_twins(&first, &functions[0], beside, mode, "projected");
+        check_against_references(&first, &functions[0], beside, mode, "projected");
     }
 }
 
 #[test]
-fn colours_are_drawn_as_the_twin_draws_them() {
+fn colours_are_drawn_as_the_reference_draws_them() {
     let red = volume_of(GRID().dims, sheared_affine(), waves);
     let green = with_holes(ripples(), 13);
     let blue = volume_of(GRID().dims, sheared_affine(), |p| 1.0 - waves(p));
@@ -215,7 +215,7 @@ fn colours_are_drawn_as_the_twin_draws_them() {
     for volumes in [&[&green, &blue][..], &[&green, &blue, &alpha]] {
         let what = format!("{} colours", 1 + volumes.len());
         let beside = Beside::Colors(volumes);
-        check_against_twins(&red, &transfer, beside, Mode::Composite, &what);
+        check_against_references(&red, &transfer, beside, Mode::Composite, &what);
     }
 }
 
@@ -400,7 +400,7 @@ fn hidden_labels_cut_away_what_a_crop_box_cuts_away() {
     let (shown, nothing) = (ramps(), fog([0.0; 3], 0.0));
     let channels = [channel(&labels, &nothing, Role::Labels)];
     // Samples that do not depend on where the ray enters.
-    let on_planes = |shot: &Shot| {
+    let on_planes = |shot: &PictureCase| {
         shot.settings.technique != Technique::Raycast || shot.settings.lattice == Lattice::Planes
     };
     let (mut with_crop, mut with_labels) = (renderer(&[&volume]), renderer(&[&volume, &labels]));

@@ -1,7 +1,8 @@
-//! LMIP, attenuated MIP, MIDA and depth cues: closed forms, orders between modes, and the device against its twin.
+//! LMIP, attenuated MIP, MIDA and depth cues: closed forms, orders between modes, and the device against its CPU reference.
 
 use crate::shared::{
-    Shot, compare, device, oblique_shots, ramps, sheared_affine, straight_shots, volume_of, waves,
+    PictureCase, compare, device, oblique_shots, ramps, sheared_affine, straight_shots, volume_of,
+    waves,
 };
 use glam::{DAffine3, DVec3, dvec3};
 use stratavox::offscreen::{Renderer, reference};
@@ -24,7 +25,7 @@ const CUBE: Grid = Grid {
 };
 
 /// Both projections on the lattice of rays, with numbers under which each mode differs from its neighbours.
-fn shots(grid: Grid, mode: Mode) -> Vec<Shot> {
+fn shots(grid: Grid, mode: Mode) -> Vec<PictureCase> {
     let on_rays = oblique_shots(grid, mode).into_iter().filter(|shot| {
         shot.settings.technique == Technique::Raycast && shot.settings.lattice == Lattice::Ray
     });
@@ -43,14 +44,14 @@ fn layer(picture: &Picture, kind: LayerKind) -> Vec<f32> {
     layer.expect("the layer").values.clone()
 }
 
-fn drawn(volume: &Volume, shot: &Shot, layers: &[LayerKind]) -> Picture {
+fn drawn(volume: &Volume, shot: &PictureCase, layers: &[LayerKind]) -> Picture {
     let transfer = ramps();
     let mut renderer = Renderer::new(device(), volume).unwrap();
     let scene = shot.scene(volume, Some(&transfer));
     renderer.render(&scene, layers).unwrap().picture
 }
 
-/// One straight ray through the middle of `CUBE`, of the f64 twin on a formula over z.
+/// One straight ray through the middle of `CUBE`, of the f64 CPU reference on a formula over z.
 fn along_z(
     mode: Mode,
     samples_per_voxel: f64,
@@ -267,11 +268,11 @@ fn mida_of_gamma_one_is_the_mip_and_half_the_way_is_the_mean_of_both() {
                 })
             };
             let mip = mip.with(|s| s.conformance = conformance);
-            let mut picture = |shot: &Shot| {
+            let mut picture = |shot: &PictureCase| {
                 let scene = shot.scene(&volume, Some(&transfer));
                 let found = renderer.render(&scene, &[]).unwrap().picture;
-                let twin = reference::render::<f32>(&scene).unwrap();
-                [found.pixels, twin.pixels]
+                let reference = reference::render::<f32>(&scene).unwrap();
+                [found.pixels, reference.pixels]
             };
             let [start, half, end] = [0.0, 0.5, 1.0].map(|gamma| picture(&of(gamma)));
             let wanted = picture(&mip);
@@ -414,7 +415,7 @@ fn the_position_of_a_maximum_is_where_the_maximum_lies_in_the_world() {
 }
 
 #[test]
-fn each_of_these_modes_is_drawn_as_its_twin_computes_it() {
+fn each_of_these_modes_is_drawn_as_its_reference_computes_it() {
     let mut volume = volume_of(GRID().dims, sheared_affine(), waves);
     let transfer = ramps();
     for with_holes in [false, true] {
@@ -442,7 +443,7 @@ fn each_of_these_modes_is_drawn_as_its_twin_computes_it() {
     }
 }
 
-fn check(renderer: &mut Renderer, scene: &Scene, shot: &Shot) {
+fn check(renderer: &mut Renderer, scene: &Scene, shot: &PictureCase) {
     let mode = shot.settings.mode;
     let mut kinds = vec![LayerKind::Depth, LayerKind::Samples, LayerKind::Position];
     kinds.push(if mode.has_value() {
@@ -482,7 +483,7 @@ fn check(renderer: &mut Renderer, scene: &Scene, shot: &Shot) {
 fn what_these_modes_lack_is_refused_by_name() {
     let volume = volume_of(GRID().dims, sheared_affine(), waves);
     let transfer = ramps();
-    let refused = |shot: &Shot| {
+    let refused = |shot: &PictureCase| {
         let error = reference::render::<f32>(&shot.scene(&volume, Some(&transfer)));
         error.expect_err("refused").to_string()
     };

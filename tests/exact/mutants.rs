@@ -1,13 +1,13 @@
 //! Renderers with one mistake each, and the exact answers that catch them.
 //!
-//! [`Naive`] is a renderer of a few lines on the geometry of `shared::Shot`. Without a mistake it passes what
-//! the twins pass; with one it must fail where it is said to.
+//! [`Naive`] is a renderer of a few lines on the geometry of `shared::PictureCase`. Without a mistake it passes what
+//! the CPU references pass; with one it must fail where it is said to.
 
 use crate::shared::oracle::{
     Gaussian, constant_color, gaussian_xray, homogeneous, linear_density, order_of_convergence,
     quadratic_density,
 };
-use crate::shared::{Chord, Matter, Shot, Way, inner_box, oblique_shots, sheared_affine};
+use crate::shared::{Chord, Matter, PictureCase, Way, inner_box, oblique_shots, sheared_affine};
 use glam::{DAffine3, DVec3};
 use stratavox::technique::slices_2d::stack_axis;
 use stratavox::technique::{Mode, Order, Settings, Technique};
@@ -41,7 +41,7 @@ const REFERENCE_LENGTH: f64 = 1.0;
 
 impl Naive {
     /// Position in voxel space, value and length of each sample, front to back.
-    fn samples(&self, shot: &Shot, matter: &Matter, chord: &Chord) -> Vec<(f64, f64)> {
+    fn samples(&self, shot: &PictureCase, matter: &Matter, chord: &Chord) -> Vec<(f64, f64)> {
         let voxel_from_world = shot.grid.world_from_voxel.inverse();
         let value = |&(t, length): &(f64, f64)| {
             let back = if self.0 == Mistake::NoHalfStep {
@@ -81,7 +81,7 @@ impl Way for Naive {
         format!("{:?}", self.0)
     }
 
-    fn picture(&self, shot: &Shot, matter: &Matter) -> Vec<[f64; 4]> {
+    fn picture(&self, shot: &PictureCase, matter: &Matter) -> Vec<[f64; 4]> {
         let blended = |pixel| {
             let Some(chord) = Chord::of(shot, pixel) else {
                 return [0.0; 4];
@@ -108,7 +108,7 @@ impl Way for Naive {
     }
 
     /// An X-ray.
-    fn values(&self, shot: &Shot, matter: &Matter) -> Vec<f64> {
+    fn values(&self, shot: &PictureCase, matter: &Matter) -> Vec<f64> {
         assert_eq!(shot.settings.mode, Mode::Xray);
         let sum = |pixel| {
             let Some(chord) = Chord::of(shot, pixel) else {
@@ -122,14 +122,14 @@ impl Way for Naive {
 }
 
 /// One picture of each technique in each projection.
-fn shots(mode: Mode) -> Vec<Shot> {
+fn shots(mode: Mode) -> Vec<PictureCase> {
     let grid = Grid {
         dims: [17, 21, 13],
         world_from_voxel: sheared_affine(),
     };
     let all = oblique_shots(grid, mode).into_iter();
     all.filter(|shot| shot.settings.order == Order::BackToFront)
-        .map(|shot| Shot {
+        .map(|shot| PictureCase {
             settings: Settings {
                 crop: Some(inner_box(&grid)),
                 ..shot.settings
@@ -139,14 +139,14 @@ fn shots(mode: Mode) -> Vec<Shot> {
         .collect()
 }
 
-fn order_is_two(way: &dyn Way, shot: &Shot) -> bool {
+fn order_is_two(way: &dyn Way, shot: &PictureCase) -> bool {
     let [coarse, fine] = order_of_convergence(way, shot);
     let order = (coarse / fine).log2();
     println!("A4, {}, {}: order {order:.3}", way.name(), shot.what());
     (order - 2.0).abs() <= 0.1
 }
 
-fn gaussian() -> (Vec<Shot>, Gaussian) {
+fn gaussian() -> (Vec<PictureCase>, Gaussian) {
     let grid = Grid {
         dims: [40; 3],
         world_from_voxel: DAffine3::IDENTITY,
@@ -168,7 +168,7 @@ fn a_renderer_without_a_mistake_passes() {
         linear_density(&naive, &shot).assert_holds();
         quadratic_density(&naive, &shot).assert_holds();
         constant_color(&naive, &shot).assert_holds();
-        let shot = Shot {
+        let shot = PictureCase {
             settings: Settings {
                 crop: None,
                 ..shot.settings.clone()
@@ -226,7 +226,7 @@ fn straight_color_in_a_premultiplied_blend_is_caught_by_the_constant_color() {
 
 #[test]
 fn swapped_axes_of_a_stack_are_caught_by_a_density_and_by_a_gaussian() {
-    let is_stack = |shot: &Shot| shot.settings.technique == Technique::Slices2d;
+    let is_stack = |shot: &PictureCase| shot.settings.technique == Technique::Slices2d;
     for shot in shots(Mode::Composite).into_iter().filter(is_stack) {
         linear_density(&Naive(Mistake::SwappedAxes), &shot).assert_caught();
     }

@@ -1,6 +1,6 @@
 //! The layer of normals: the gradient's direction at the hit, in world space, towards lower values.
 
-use crate::shared::{Shot, Worst, device, oblique_shots, sheared_affine, volume_of};
+use crate::shared::{PictureCase, Worst, device, oblique_shots, sheared_affine, volume_of};
 use glam::{DAffine3, DVec3, dvec3};
 use stratavox::offscreen::{self, Renderer, reference};
 use stratavox::picture::{LayerKind, Picture};
@@ -9,7 +9,7 @@ use stratavox::technique::{GradientFilter, Lattice, Level, Mode, Technique};
 use stratavox::volume::field::{Ball, Field};
 use stratavox::volume::{Grid, Volume};
 
-fn iso_shots(grid: Grid, value: f64) -> Vec<Shot> {
+fn iso_shots(grid: Grid, value: f64) -> Vec<PictureCase> {
     let on_rays = oblique_shots(grid, Mode::Iso).into_iter().filter(|shot| {
         shot.settings.technique == Technique::Raycast && shot.settings.lattice == Lattice::Ray
     });
@@ -23,8 +23,8 @@ fn iso_shots(grid: Grid, value: f64) -> Vec<Shot> {
         .collect()
 }
 
-/// The picture of the device and that of the twin.
-fn drawn(volume: &Volume, shot: &Shot) -> [Picture; 2] {
+/// The picture of the device and that of the CPU reference.
+fn drawn(volume: &Volume, shot: &PictureCase) -> [Picture; 2] {
     let mut renderer = Renderer::new(device(), volume).unwrap();
     let layers = [LayerKind::Position, LayerKind::Normal];
     let scene = shot.scene(volume, None);

@@ -1,8 +1,8 @@
-//! Light that matter takes away: closed forms on the coarse grid, and the device against its twin.
+//! Light that matter takes away: closed forms on the coarse grid, and the device against its CPU reference.
 
 use crate::shared::{
-    Shot, compare, device, device_with, oblique_camera, oblique_shots, ramps, sheared_affine,
-    volume_of, waves,
+    PictureCase, compare, device, device_with, oblique_camera, oblique_shots, ramps,
+    sheared_affine, volume_of, waves,
 };
 use glam::{DAffine3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
@@ -15,7 +15,7 @@ use stratavox::technique::{
     Settings, Shading, Shadows, Technique, View,
 };
 use stratavox::transfer::{
-    ColorPoint, Graded, Interpolation, OpacityPoint, Shape, TransferFunction, Widget,
+    ColorPoint, GradientTransfer, Interpolation, OpacityPoint, Shape, TransferFunction, Widget,
 };
 use stratavox::volume::{Grid, Volume};
 
@@ -298,8 +298,8 @@ fn dim(settings: &mut Settings, turn: usize) {
     }
 }
 
-/// The device as its twin in f32 and f64, and unlike `bright`.
-fn assert_twins(renderer: &mut Renderer, scene: &Scene, bright: &Settings, what: &str) {
+/// The device as its CPU reference in f32 and f64, and unlike `bright`.
+fn assert_references(renderer: &mut Renderer, scene: &Scene, bright: &Settings, what: &str) {
     let found = renderer.render(scene, &[]).unwrap().picture;
     let double = reference::render::<f64>(scene).unwrap();
     let single = reference::render::<f32>(scene).unwrap();
@@ -326,7 +326,7 @@ fn without(settings: &Settings) -> Settings {
 }
 
 #[test]
-fn every_technique_and_filter_is_dimmed_as_its_twin() {
+fn every_technique_and_filter_is_dimmed_as_its_reference() {
     let mut volume = volume_of(GRID().dims, sheared_affine(), waves);
     for has_holes in [false, true] {
         if has_holes {
@@ -348,13 +348,13 @@ fn every_technique_and_filter_is_dimmed_as_its_twin() {
             });
             let what = format!("holes {has_holes}, {filter:?}, {}", shot.what());
             let scene = shot.scene(&volume, Some(&transfer));
-            assert_twins(&mut renderer, &scene, &without(&shot.settings), &what);
+            assert_references(&mut renderer, &scene, &without(&shot.settings), &what);
         }
     }
 }
 
 #[test]
-fn surfaces_and_mida_are_dimmed_as_their_twins() {
+fn surfaces_and_mida_are_dimmed_as_their_references() {
     let volume = volume_of(GRID().dims, sheared_affine(), waves);
     let transfer = ramps();
     let mut renderer = Renderer::new(device(), &volume).unwrap();
@@ -372,7 +372,7 @@ fn surfaces_and_mida_are_dimmed_as_their_twins() {
             });
             let scene = shot.scene(&volume, Some(&transfer));
             let what = format!("turn {turn}, {}", shot.what());
-            assert_twins(&mut renderer, &scene, &without(&shot.settings), &what);
+            assert_references(&mut renderer, &scene, &without(&shot.settings), &what);
         }
     }
 }
@@ -394,7 +394,7 @@ fn functions_of_the_gradient_cast_what_they_draw() {
             value: 0.0,
             opacity: 0.0,
         }],
-        graded: Some(Graded {
+        graded: Some(GradientTransfer {
             steepest: Some(1.0),
             share: Vec::new(),
             widgets: vec![widget],
@@ -406,7 +406,7 @@ fn functions_of_the_gradient_cast_what_they_draw() {
         let shot = oblique_shots(GRID(), Mode::Composite)[nth].with(|s| dim(s, turn));
         let scene = shot.scene(&volume, Some(&transfer));
         let what = format!("widgets, {}", shot.what());
-        assert_twins(&mut renderer, &scene, &without(&shot.settings), &what);
+        assert_references(&mut renderer, &scene, &without(&shot.settings), &what);
     }
 }
 
@@ -429,7 +429,7 @@ fn no_strength_and_a_light_at_the_eye_leave_every_bit() {
                     };
                 }
             });
-            let mut drawn = |shot: &Shot| {
+            let mut drawn = |shot: &PictureCase| {
                 let scene = shot.scene(&volume, Some(&transfer));
                 renderer.render(&scene, &[]).unwrap().picture.pixels
             };
@@ -556,7 +556,7 @@ fn light_is_followed_anew_when_what_it_depends_on_changes() {
         // Few numbers jump where a plane ends in a pixel.
         assert!(
             apart < 20,
-            "picture {nth}: {apart} numbers are not those of the twin"
+            "picture {nth}: {apart} numbers are not those of the reference"
         );
         assert!(found != before, "picture {nth} is the one before");
         before = found;
@@ -603,14 +603,14 @@ fn what_has_no_light_to_take_is_refused_by_name() {
         let scene = shot.scene(&volume, Some(&transfer));
         let mut renderer = Renderer::new(device(), &volume).unwrap();
         let found = renderer.render(&scene, &[]).expect_err("refused");
-        let twin = reference::render::<f32>(&scene).expect_err("refused");
+        let reference = reference::render::<f32>(&scene).expect_err("refused");
         match found {
             offscreen::Error::Technique(found) => {
-                assert_eq!(found.to_string(), twin.to_string());
+                assert_eq!(found.to_string(), reference.to_string());
             }
             other => panic!("{other}"),
         }
-        twin
+        reference
     };
     let of_mip = refused(&|settings| settings.mode = Mode::Mip);
     assert_eq!(of_mip, Error::NotOccluded { mode: Mode::Mip });

@@ -3,7 +3,7 @@
 use crate::shared::oracle::{
     Gaussian, absorbing_sphere, emissive_sphere, gaussian_maximum, gaussian_ratio, gaussian_xray,
 };
-use crate::shared::{Device, Shot, Twin, Way, oblique_shots, sheared_affine};
+use crate::shared::{Device, PictureCase, Reference, Way, oblique_shots, sheared_affine};
 use glam::{DAffine3, DMat3, DQuat, DVec3, dvec3};
 use stratavox::technique::{Filter, Mode, Settings};
 use stratavox::volume::Grid;
@@ -18,25 +18,28 @@ const CUBE: Grid = Grid {
     world_from_voxel: DAffine3::IDENTITY,
 };
 
-fn twins() -> [Box<dyn Way>; 2] {
-    [Box::new(Twin::<f64>::new()), Box::new(Twin::<f32>::new())]
+fn references() -> [Box<dyn Way>; 2] {
+    [
+        Box::new(Reference::<f64>::new()),
+        Box::new(Reference::<f32>::new()),
+    ]
 }
 
 /// Voxels as they are: a sphere of voxels has a value of 0 or 1 everywhere.
-fn nearest(shot: Shot) -> Shot {
+fn nearest(shot: PictureCase) -> PictureCase {
     let settings = Settings {
         filter: Filter::Nearest,
         ..shot.settings
     };
-    Shot { settings, ..shot }
+    PictureCase { settings, ..shot }
 }
 
-fn every(shot: Shot, samples_per_voxel: f64) -> Shot {
+fn every(shot: PictureCase, samples_per_voxel: f64) -> PictureCase {
     let settings = Settings {
         samples_per_voxel,
         ..shot.settings
     };
-    Shot { settings, ..shot }
+    PictureCase { settings, ..shot }
 }
 
 #[test]
@@ -45,7 +48,7 @@ fn an_absorbing_sphere_is_as_opaque_as_its_chords_to_a_sample() {
         .into_iter()
         .map(nearest)
     {
-        for way in twins() {
+        for way in references() {
             absorbing_sphere(&*way, &shot, false).assert_holds();
             absorbing_sphere(&*way, &every(shot.clone(), 9.0), false).assert_holds();
         }
@@ -59,7 +62,7 @@ fn an_emissive_sphere_shines_as_its_chords_are_long_to_a_sample() {
         .into_iter()
         .map(nearest)
     {
-        for way in twins() {
+        for way in references() {
             emissive_sphere(&*way, &shot, false).assert_holds();
             emissive_sphere(&*way, &every(shot.clone(), 9.0), false).assert_holds();
         }
@@ -93,7 +96,7 @@ fn sampled() -> Gaussian {
 #[test]
 fn the_xray_of_a_gaussian_is_a_gaussian() {
     for shot in oblique_shots(CUBE, Mode::Xray) {
-        for way in twins() {
+        for way in references() {
             for samples_per_voxel in [1.0, 0.25] {
                 gaussian_xray(&*way, &every(shot.clone(), samples_per_voxel), &leaning())
                     .assert_holds();
@@ -106,7 +109,7 @@ fn the_xray_of_a_gaussian_is_a_gaussian() {
 #[test]
 fn the_maximum_of_a_gaussian_is_a_gaussian() {
     for shot in oblique_shots(CUBE, Mode::Mip) {
-        for way in twins() {
+        for way in references() {
             for samples_per_voxel in [1.0, 0.25] {
                 gaussian_maximum(&*way, &every(shot.clone(), samples_per_voxel), &leaning())
                     .assert_holds();
@@ -126,7 +129,7 @@ fn maximum_over_xray_of_a_gaussian_is_the_same_everywhere() {
         })
     };
     for (mip, xray) in close(Mode::Mip).zip(close(Mode::Xray)) {
-        for way in twins() {
+        for way in references() {
             gaussian_ratio(&*way, &mip, &xray, &leaning()).assert_holds();
         }
         gaussian_ratio(&Device, &mip, &xray, &sampled()).assert_holds();

@@ -10,7 +10,7 @@
 //! ((1 - a) ln(1 - a) + a) / d0 between both, over their slope.
 
 use crate::shared::{
-    Chord, Shot, Worst, device, inner_box, oblique_camera, projections, volume_of, waves,
+    Chord, PictureCase, Worst, device, inner_box, oblique_camera, projections, volume_of, waves,
 };
 use glam::{DAffine3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
@@ -185,7 +185,7 @@ fn linear_fields_are_exact_at_any_step_with_any_function() {
                 crop: Some(inner_box(&grid)),
                 ..settings
             };
-            let shot = Shot {
+            let shot = PictureCase {
                 grid,
                 camera,
                 extent: [32, 28],
@@ -198,8 +198,8 @@ fn linear_fields_are_exact_at_any_step_with_any_function() {
                 let function = &function;
                 let scene = shot.scene(&volume, Some(function));
                 let device = renderer.render(&scene, &[]).unwrap().picture;
-                let twin = reference::render::<f64>(&scene).unwrap();
-                for (picture, name) in [(device, "device"), (twin, "f64 twin")] {
+                let reference = reference::render::<f64>(&scene).unwrap();
+                for (picture, name) in [(device, "device"), (reference, "f64 reference")] {
                     linear_field(
                         &shot,
                         function,
@@ -214,7 +214,7 @@ fn linear_fields_are_exact_at_any_step_with_any_function() {
 }
 
 fn linear_field(
-    shot: &Shot,
+    shot: &PictureCase,
     function: &TransferFunction,
     field: impl Fn(DVec3) -> f64,
     picture: &Picture,
@@ -272,7 +272,7 @@ fn a_spike_inside_one_voxel_has_its_whole_depth() {
             crop: Some(crop),
             ..settings
         };
-        let shot = Shot {
+        let shot = PictureCase {
             grid,
             camera,
             extent: [16, 16],
@@ -318,7 +318,7 @@ fn one_colour_stays_that_colour_whatever_the_density() {
         };
         for settings in slabs() {
             let camera = oblique_camera(&grid, projections(&grid)[1]);
-            let shot = Shot {
+            let shot = PictureCase {
                 grid,
                 camera,
                 extent: [32, 28],
@@ -369,7 +369,7 @@ fn a_uniform_medium_is_as_deep_as_its_chords() {
     for projection in projections(&grid) {
         for settings in slabs() {
             let camera = oblique_camera(&grid, projection);
-            let shot = Shot {
+            let shot = PictureCase {
                 grid,
                 camera,
                 extent: [32, 28],
@@ -413,7 +413,7 @@ fn slabs_tend_to_the_picture_of_samples_with_order_two() {
             crop: Some(inner_box(&grid)),
             ..Settings::default()
         };
-        let shot = Shot {
+        let shot = PictureCase {
             grid,
             camera,
             extent: [24, 20],

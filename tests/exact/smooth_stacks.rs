@@ -1,7 +1,8 @@
 //! Smooth 2D stacks: planes between slices, the cross-fade from stack to stack, popping; and the jitter of rays.
 
 use crate::shared::{
-    Shot, Worst, device, oblique_camera, projections, ramps, straight_shots, volume_of, waves,
+    PictureCase, Worst, device, oblique_camera, projections, ramps, straight_shots, volume_of,
+    waves,
 };
 use glam::{DAffine3, DVec3, dvec3};
 use std::f64::consts::TAU;
@@ -62,7 +63,7 @@ fn without_planes_between_a_smooth_stack_is_the_classic_one_to_the_bit() {
         "seen along the axis"
     );
     let transfer = ramps();
-    let mut picture = |shot: &Shot| {
+    let mut picture = |shot: &PictureCase| {
         let scene = shot.scene(&volume, Some(&transfer));
         renderer.render(&scene, &[]).unwrap().picture.pixels
     };
@@ -81,7 +82,7 @@ fn samples_keep_their_distance_however_the_eye_turns() {
                 ..stacks(true)
             };
             let camera = turned(&grid, degrees.into(), 0.0);
-            let shot = Shot {
+            let shot = PictureCase {
                 grid,
                 camera,
                 extent: [8, 8],
@@ -99,7 +100,7 @@ fn samples_keep_their_distance_however_the_eye_turns() {
 fn stacks_share_a_picture_near_the_switch_and_only_there() {
     let grid = cube(16);
     let shares = |degrees: f64, tilt: f64, smooth| {
-        let shot = Shot {
+        let shot = PictureCase {
             grid,
             camera: turned(&grid, degrees, tilt),
             extent: [8, 8],
@@ -143,7 +144,7 @@ fn a_faded_picture_is_the_mean_of_both_stacks() {
     let grid = volume.grid();
     let mut renderer = Renderer::new(device(), &volume).unwrap();
     let transfer = ramps();
-    let shot = Shot {
+    let shot = PictureCase {
         grid,
         camera: turned(&grid, 43.0, 7.0),
         extent: [32, 28],
@@ -151,16 +152,16 @@ fn a_faded_picture_is_the_mean_of_both_stacks() {
     };
     let shares = stack_shares(&shot.view());
     assert_eq!(shares.len(), 2, "{shares:?}");
-    let mut device = |shot: &Shot| {
+    let mut device = |shot: &PictureCase| {
         let scene = shot.scene(&volume, Some(&transfer));
         renderer.render(&scene, &[]).unwrap().picture
     };
     let faded = device(&shot);
     let of_stack = |stack| shot.with(|settings| settings.stack = Some(stack));
     let both = [0, 1].map(|i| (device(&of_stack(shares[i].0)), shares[i].1));
-    let twin = reference::render::<f64>(&shot.scene(&volume, Some(&transfer))).unwrap();
+    let reference = reference::render::<f64>(&shot.scene(&volume, Some(&transfer))).unwrap();
     let mut mean = Worst::new("mean of stacks");
-    let mut twins = Worst::new("twin of a faded picture");
+    let mut references = Worst::new("reference of a faded picture");
     for (i, pixel) in shot.pixels().enumerate() {
         for c in 0..4 {
             let found = f64::from(faded.pixels[i][c]);
@@ -169,11 +170,11 @@ fn a_faded_picture_is_the_mean_of_both_stacks() {
                 .map(|(p, share)| share * f64::from(p.pixels[i][c]))
                 .sum();
             mean.take(pixel, found - wanted, 2e-7);
-            twins.take(pixel, found - f64::from(twin.pixels[i][c]), 1e-5);
+            references.take(pixel, found - f64::from(reference.pixels[i][c]), 1e-5);
         }
     }
     mean.assert_holds();
-    twins.assert_holds();
+    references.assert_holds();
 }
 
 fn shell() -> TransferFunction {
@@ -205,7 +206,7 @@ fn a_thin_shell_does_not_pop_in_smooth_stacks() {
                 stack: Some(stack),
                 ..stacks(smooth)
             };
-            let shot = Shot {
+            let shot = PictureCase {
                 grid,
                 camera: turned(&grid, 45.0, 12.0),
                 extent: [48, 48],
@@ -241,7 +242,7 @@ fn jittered(
         ..Settings::default()
     };
     let camera = oblique_camera(&grid, projections(&grid)[1]);
-    let shot = Shot {
+    let shot = PictureCase {
         grid,
         camera,
         extent: [32, 28],
@@ -293,7 +294,7 @@ fn parts(seed: u32, frame: u32) -> Vec<f32> {
         jitter: Jitter { seed, frame },
         ..Settings::default()
     };
-    let shot = Shot {
+    let shot = PictureCase {
         grid,
         camera: oblique_camera(&grid, projections(&grid)[0]),
         extent: [64, 64],

@@ -1,8 +1,8 @@
-//! Isosurfaces where they must lie (exact answer A16), in their order, and on the device as their twin has them.
+//! Isosurfaces where they must lie (exact answer A16), in their order, and on the device as their CPU reference has them.
 
 use crate::shared::{
-    Chord, Shot, Worst, compare, device, oblique_shots, sheared_affine, straight_shots, volume_of,
-    waves,
+    Chord, PictureCase, Worst, compare, device, oblique_shots, sheared_affine, straight_shots,
+    volume_of, waves,
 };
 use glam::{DAffine3, DVec3, dvec3};
 use stratavox::gpu::Caps;
@@ -43,7 +43,7 @@ fn opaque(values: &[f64]) -> Vec<Level> {
         .collect()
 }
 
-fn shots(grid: Grid, levels: &[Level]) -> Vec<Shot> {
+fn shots(grid: Grid, levels: &[Level]) -> Vec<PictureCase> {
     let on_rays = oblique_shots(grid, Mode::Iso).into_iter().filter(|shot| {
         shot.settings.technique == Technique::Raycast && shot.settings.lattice == Lattice::Ray
     });
@@ -52,7 +52,7 @@ fn shots(grid: Grid, levels: &[Level]) -> Vec<Shot> {
         .collect()
 }
 
-fn drawn(volume: &Volume, shot: &Shot, layers: &[LayerKind]) -> Picture {
+fn drawn(volume: &Volume, shot: &PictureCase, layers: &[LayerKind]) -> Picture {
     let mut renderer = Renderer::new(device(), volume).unwrap();
     renderer
         .render(&shot.scene(volume, None), layers)
@@ -65,8 +65,8 @@ fn layer(picture: &Picture, kind: LayerKind) -> Vec<f32> {
     layer.expect("the layer").values.clone()
 }
 
-/// The f64 twin on a formula.
-fn on_formula(shot: &Shot, [x, y]: [u32; 2], value: impl Fn(DVec3) -> f64) -> Surfaces<f64> {
+/// The f64 CPU reference on a formula.
+fn on_formula(shot: &PictureCase, [x, y]: [u32; 2], value: impl Fn(DVec3) -> f64) -> Surfaces<f64> {
     let (frame, _) = shot.parameters();
     let pixel = [x, y].map(|n| f64::from(n) + 0.5);
     surfaces(
@@ -77,17 +77,17 @@ fn on_formula(shot: &Shot, [x, y]: [u32; 2], value: impl Fn(DVec3) -> f64) -> Su
     )
 }
 
-/// The first depths of a shot: of the twin on the formula, and of the device on voxels of it.
-fn depths(shot: &Shot, value: impl Fn(DVec3) -> f64 + Copy) -> [Vec<f64>; 2] {
+/// The first depths of a shot: of the CPU reference on the formula, and of the device on voxels of it.
+fn depths(shot: &PictureCase, value: impl Fn(DVec3) -> f64 + Copy) -> [Vec<f64>; 2] {
     let volume = volume_of(shot.grid.dims, shot.grid.world_from_voxel, value);
     let picture = drawn(&volume, shot, &[LayerKind::Depth]);
     let found = layer(&picture, LayerKind::Depth).into_iter().map(f64::from);
-    let twin = shot.pixels().map(|pixel| {
+    let reference = shot.pixels().map(|pixel| {
         on_formula(shot, pixel, value)
             .first
             .map_or(f64::NAN, |(_, t)| t)
     });
-    [twin.collect(), found.collect()]
+    [reference.collect(), found.collect()]
 }
 
 #[test]
@@ -98,7 +98,7 @@ fn a_plane_is_hit_where_it_lies_to_1e5_of_a_voxel() {
     let field = |p: DVec3| (p - center).dot(normal);
     for shot in shots(GRID(), &opaque(&[0.75])) {
         let shot = shot.with(|s| s.crop = Some(crate::shared::inner_box(&GRID())));
-        let mut worst = [Worst::new("plane, twin"), Worst::new("plane, device")];
+        let mut worst = [Worst::new("plane, reference"), Worst::new("plane, device")];
         let found = depths(&shot, field);
         let spacing = GRID().smallest_spacing();
         for (i, pixel) in shot.pixels().enumerate() {
@@ -262,10 +262,10 @@ fn between_a_value_and_no_data_there_is_no_surface() {
     let shot = shot.with(|s| s.per_mode.levels = opaque(&[0.5]));
     let hits = |volume: &Volume| {
         let picture = drawn(volume, &shot, &[LayerKind::Depth]);
-        let twin = reference::render::<f32>(&shot.scene(volume, None)).unwrap();
+        let reference = reference::render::<f32>(&shot.scene(volume, None)).unwrap();
         assert_eq!(
             layer(&picture, LayerKind::Depth).len(),
-            layer(&twin, LayerKind::Depth).len()
+            layer(&reference, LayerKind::Depth).len()
         );
         let count = |picture: &Picture| {
             layer(picture, LayerKind::Depth)
@@ -273,7 +273,7 @@ fn between_a_value_and_no_data_there_is_no_surface() {
                 .filter(|t| !t.is_nan())
                 .count()
         };
-        assert_eq!(count(&picture), count(&twin), "device and twin");
+        assert_eq!(count(&picture), count(&reference), "device and reference");
         count(&picture)
     };
     assert_eq!(hits(&volume), 144, "with data everywhere");
@@ -285,7 +285,7 @@ fn between_a_value_and_no_data_there_is_no_surface() {
 }
 
 #[test]
-fn surfaces_are_drawn_as_their_twin_computes_them() {
+fn surfaces_are_drawn_as_their_reference_computes_them() {
     let levels = [
         level(0.35, [0.9, 0.3, 0.2], 0.4),
         level(0.5, [0.2, 0.8, 0.3], 0.4),
@@ -463,7 +463,7 @@ fn a_ball_is_coloured_by_another_variable_where_it_is_hit() {
         }
         of_hit.assert_holds();
         assert!(seen > 100, "{seen} pixels");
-        // Two surfaces through each other, light on them: as the twin has it.
+        // Two surfaces through each other, light on them: as the CPU reference has it.
         let lit = shot.with(|s| s.shading = Some(Shading::default()));
         let lit = Scene {
             settings: &lit.settings,
@@ -509,11 +509,11 @@ fn where_the_other_variable_has_no_data_a_surface_keeps_its_own_colour() {
             ..shot.scene(&ball, None)
         };
         let found = renderer.render(&scene, &[]).unwrap().picture;
-        let twins = [
+        let references = [
             &reference::render::<f64>(&scene).unwrap(),
             &reference::render::<f32>(&scene).unwrap(),
         ];
-        let lists = [twins[0], twins[1], &found].map(|p| p.pixels.as_flattened());
+        let lists = [references[0], references[1], &found].map(|p| p.pixels.as_flattened());
         compare("holes", 4 * found.width, lists, 1.0);
         let plain = shot.with(|s| s.shading = None);
         let plain = Scene {

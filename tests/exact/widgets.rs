@@ -1,11 +1,11 @@
-//! Opacity by value and gradient: closed forms on ramps and edges, and the device against its twin.
+//! Opacity by value and gradient: closed forms on ramps and edges, and the device against its CPU reference.
 
 mod second;
 mod weighed;
 
 use crate::shared::{
-    Chord, Shot, compare, device, oblique_shots, placements, ramps, sheared_affine, volume_of,
-    waves,
+    Chord, PictureCase, compare, device, oblique_shots, placements, ramps, sheared_affine,
+    volume_of, waves,
 };
 use glam::{DAffine3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
@@ -14,7 +14,8 @@ use stratavox::picture::Picture;
 use stratavox::scene::{Beside, Channel, Scene};
 use stratavox::technique::{Filter, Mode, Role, Settings, Shading};
 use stratavox::transfer::{
-    Cells, ColorPoint, Graded, Interpolation, OpacityPoint, Shape, TransferFunction, Widget,
+    Cells, ColorPoint, GradientTransfer, Interpolation, OpacityPoint, Shape, TransferFunction,
+    Widget,
 };
 use stratavox::volume::{Grid, Volume};
 
@@ -38,7 +39,7 @@ fn points(points: &[(f64, f64)]) -> Vec<OpacityPoint> {
 }
 
 /// White, and nothing but what the gradient makes of it.
-fn only(graded: Graded) -> TransferFunction {
+fn only(graded: GradientTransfer) -> TransferFunction {
     TransferFunction {
         color: vec![ColorPoint {
             value: 0.0,
@@ -52,7 +53,7 @@ fn only(graded: Graded) -> TransferFunction {
 }
 
 fn of_widgets(steepest: f64, widgets: Vec<Widget>) -> TransferFunction {
-    only(Graded {
+    only(GradientTransfer {
         steepest: Some(steepest),
         share: Vec::new(),
         widgets,
@@ -68,7 +69,7 @@ fn grid(dims: [u32; 3], sides: DVec3) -> Grid {
 }
 
 /// Straight along z, in every placement: a ray meets one value only where the field does not change along z.
-fn along_z(grid: Grid) -> Vec<Shot> {
+fn along_z(grid: Grid) -> Vec<PictureCase> {
     let size = grid.world_from_voxel.matrix3 * grid.far_corner();
     let camera = Camera {
         eye: grid.center() - dvec3(0.0, 0.0, 2.0 * size.z),
@@ -81,7 +82,7 @@ fn along_z(grid: Grid) -> Vec<Shot> {
     };
     let height = 6;
     let width = (f64::from(height) * size.x / size.y).round() as u32;
-    let shot = |settings| Shot {
+    let shot = |settings| PictureCase {
         grid,
         camera,
         extent: [width, height],
@@ -92,7 +93,7 @@ fn along_z(grid: Grid) -> Vec<Shot> {
 
 /// Opacity per smallest spacing of each ray that meets the volume at least one and a half voxels inside, where no
 /// difference is one-sided, and the world x that it runs along.
-fn opacities(shot: &Shot, picture: &Picture) -> Vec<(f64, f64)> {
+fn opacities(shot: &PictureCase, picture: &Picture) -> Vec<(f64, f64)> {
     let spacing = shot.grid.smallest_spacing();
     let voxel = shot.grid.world_from_voxel.inverse();
     let opacity = |[x, y]: [u32; 2]| {
@@ -109,7 +110,7 @@ fn opacities(shot: &Shot, picture: &Picture) -> Vec<(f64, f64)> {
     shot.pixels().filter_map(opacity).collect()
 }
 
-/// Draws a field that changes along world x only, by the twin and, if wanted, on the device, and compares the
+/// Draws a field that changes along world x only, by the CPU reference and, if wanted, on the device, and compares the
 /// opacity with what `wanted` says of x.
 fn assert_opacity(
     (volume, function): (&Volume, &TransferFunction),
@@ -242,7 +243,7 @@ fn opacity_by_gradient_alone_draws_the_arch_of_a_blurred_edge() {
     let top = 1.0 / (sigma * (2.0 * std::f64::consts::PI).sqrt());
     let function = TransferFunction {
         opacity: points(&[(0.0, 0.1)]),
-        ..only(Graded {
+        ..only(GradientTransfer {
             steepest: Some(top),
             share: points(&[(0.0, 0.0), (1.0, 1.0)]),
             widgets: Vec::new(),
@@ -307,7 +308,7 @@ fn one_of_each() -> TransferFunction {
         second: None,
     });
     TransferFunction {
-        graded: Some(Graded {
+        graded: Some(GradientTransfer {
             steepest: Some(0.3),
             share: points(&[(0.1, 0.2), (0.4, 1.0), (0.4, 0.5), (0.9, 0.0)]),
             widgets: widgets.collect(),
@@ -331,7 +332,7 @@ fn assert_drawn_as_computed(renderer: &mut Renderer, scene: &Scene, what: &str) 
 }
 
 #[test]
-fn every_technique_filter_and_light_draws_widgets_as_its_twin_does() {
+fn every_technique_filter_and_light_draws_widgets_as_its_reference_does() {
     let mut volume = volume_of(GRID().dims, sheared_affine(), waves);
     let function = one_of_each();
     let flat = TransferFunction {
@@ -367,7 +368,7 @@ fn every_technique_filter_and_light_draws_widgets_as_its_twin_does() {
 }
 
 #[test]
-fn each_shape_alone_is_drawn_as_its_twin_draws_it() {
+fn each_shape_alone_is_drawn_as_its_reference_draws_it() {
     let volume = volume_of(GRID().dims, sheared_affine(), waves);
     let mut renderer = Renderer::new(device(), &volume).unwrap();
     let shot = oblique_shots(GRID(), Mode::Composite).remove(0);

@@ -8,7 +8,7 @@ use ash::vk;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use stratavox::camera::Camera;
-use stratavox::embed::{Class, Error, Renderer, Shot, Volume};
+use stratavox::embed::{Error, FrameInfo, Renderer, RendererDesc, Volume};
 use stratavox::gpu::{
     Buffer, Gpu, Image, Load, Memory, Region, Target, Use, buffer_barrier, image_to_buffer,
 };
@@ -36,7 +36,7 @@ impl<'d> Drawn<'d> {
     pub fn new(device: &'d HostedDevice<'d>, gpu: &Arc<Gpu>, stage: &Stage) -> Self {
         let (extent, settings) = (stage.extent, stage.settings.clone());
         let volume = uploaded(device, gpu, stage);
-        let class = Class {
+        let class = RendererDesc {
             settings,
             target: ACCUMULATION_FORMAT.into(),
             frames_in_flight: 2,
@@ -64,7 +64,7 @@ impl<'d> Drawn<'d> {
     pub fn picture(&mut self) -> Vec<u8> {
         self.frames += 1;
         self.gpu.announce(self.frames);
-        let shot = Shot {
+        let shot = FrameInfo {
             frame: 1,
             camera: &self.camera,
             depth: None,

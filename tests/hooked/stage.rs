@@ -7,7 +7,7 @@ use std::error::Error;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use stratavox::camera::Camera;
-use stratavox::embed::{self, Class, Pacing, QueueLock, Shot, Submitter};
+use stratavox::embed::{self, FrameInfo, Pacing, QueueLock, RendererDesc, Submitter};
 use stratavox::gpu::{
     self, Blend, Buffer, Gpu, Memory, Region, Target, Timer, Use, image_barrier, image_to_buffer,
 };
@@ -15,7 +15,7 @@ use stratavox::resident::{GpuTransfer, GpuVolume, TextureLayout};
 use stratavox::resolve::Resolve;
 use stratavox::technique::raycast::Raycast;
 use stratavox::technique::{
-    ACCUMULATION_FORMAT, Inputs, Mode, RayTiles, Settings, Skip, View, Words, accumulation,
+    ACCUMULATION_FORMAT, Inputs, Mode, RayTiles, Settings, ShaderVariant, Skip, View, accumulation,
     parameter_ring,
 };
 use stratavox::transfer::TransferFunction;
@@ -76,7 +76,7 @@ impl Stage {
         let gathered = accumulation(gpu, extent, "gathered")?;
         let layers = accumulation(gpu, extent, "layers")?;
         let picture = accumulation(gpu, extent, "picture")?;
-        let raycast = Raycast::new(gpu, &Words::of(settings, &voxels))?;
+        let raycast = Raycast::new(gpu, &ShaderVariant::of(settings, &voxels))?;
         let inputs = Inputs {
             beside: &[],
             light: None,
@@ -165,7 +165,7 @@ impl Stage {
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
         let bytes = 16 * u64::from(self.extent[0]) * u64::from(self.extent[1]);
         let readback = Buffer::new(gpu, bytes, usage, Memory::Readback, "readback")?;
-        let class = Class {
+        let class = RendererDesc {
             settings: self.settings.clone(),
             target: ACCUMULATION_FORMAT.into(),
             frames_in_flight: 3,
@@ -174,7 +174,7 @@ impl Stage {
             picks: false,
             slice_blending: Default::default(),
         };
-        let shot = Shot {
+        let shot = FrameInfo {
             frame: 1,
             camera: &self.camera,
             depth: None,

@@ -5,7 +5,7 @@ use crate::fixtures;
 
 use fixtures::{open, open_as, values};
 use glam::DVec3;
-use stratavox::volume::{Pick, Source};
+use stratavox::volume::{Source, TimeComponent};
 
 const FILE: &str = "netcdf/wrf.nc";
 
@@ -18,7 +18,7 @@ const FACES: [f64; 5] = [0.0, 1.0, 3.0, 4.0, 8.0];
 fn voxels(source: &dyn Source, time: u32) -> Vec<(u32, f64, Option<f64>)> {
     let header = source.header();
     let [nx, ny, nz] = header.dims;
-    let values = values(source, Pick { time, component: 0 });
+    let values = values(source, TimeComponent { time, component: 0 });
     let mut found = Vec::new();
     for z in 0..nz {
         for _ in 0..ny {
@@ -82,7 +82,7 @@ fn winds_come_to_the_middle_of_cells() {
         assert_eq!(source.header().dims, stored, "{variable}");
         let drawn = open_as(FILE, Some(variable), false).unwrap();
         assert_eq!(drawn.header().dims[..2], [5, 3], "{variable}");
-        let values = values(drawn.as_ref(), Pick::default());
+        let values = values(drawn.as_ref(), TimeComponent::default());
         let mut valid = 0;
         for (i, value) in values.iter().enumerate() {
             let (x, y) = (i % 5, i / 5 % 3);

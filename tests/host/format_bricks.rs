@@ -12,8 +12,8 @@ use stratavox::format::write::{
     NumberType, Selection, VolumeFormat, WriteVolumeOptions, write_volume,
 };
 use stratavox::volume::{
-    Format, Header, Limits, Pick, Piece, ReadError, Rescale, Source, VoxelBox, VoxelType, Voxels,
-    Wanted,
+    Format, Header, Limits, Piece, ReadError, Rescale, Source, TimeComponent, VolumeSelection,
+    VoxelBox, VoxelType, Voxels,
 };
 
 /// Numbers of a formula, of any type; two times and three components.
@@ -44,7 +44,7 @@ impl Made {
         Self { header, hole: None }
     }
 
-    fn number(&self, pick: Pick, [x, y, z]: [u32; 3]) -> f32 {
+    fn number(&self, pick: TimeComponent, [x, y, z]: [u32; 3]) -> f32 {
         match self.hole == Some([x, y, z]) {
             true => 101.0,
             // A flat part too: bricks of one number.
@@ -63,7 +63,7 @@ impl Source for Made {
         &self.header
     }
 
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         let [low, high] = [region.min, region.max];
         let mut all = Vec::new();
         for z in low[2]..high[2] {
@@ -102,9 +102,9 @@ fn written(source: &dyn Source, selection: &Selection) -> Vec<u8> {
 
 fn open(folder: &Folder, bytes: &[u8], level: Option<u32>) -> Result<Box<dyn Source>, ReadError> {
     let path = folder.write("a.svb", bytes);
-    let wanted = Wanted {
+    let wanted = VolumeSelection {
         level,
-        ..Wanted::default()
+        ..VolumeSelection::default()
     };
     format::open(&path, &wanted, &Limits::default())
 }
@@ -131,7 +131,7 @@ fn numbers_and_all_that_is_known_of_them_come_back() {
         };
         assert_eq!(*found, wanted);
         for (time, component) in [(0, 0), (0, 2), (1, 1)] {
-            let pick = Pick { time, component };
+            let pick = TimeComponent { time, component };
             // All, and boxes within a brick, over borders of bricks, and in a corner.
             for region in [
                 found.whole(),
@@ -177,9 +177,9 @@ fn a_part_lies_where_it_lay() {
         .transform_point3(dvec3(2.0, 3.0, 1.0));
     assert_eq!(header.world_from_voxel.translation, there);
     let piece = source
-        .read(Pick::default(), header.whole())
+        .read(TimeComponent::default(), header.whole())
         .expect("readable");
-    let pick = Pick {
+    let pick = TimeComponent {
         time: 1,
         component: 1,
     };
@@ -201,7 +201,7 @@ fn coarser_levels_are_means_and_say_how_far_off_they_are() {
         header.world_from_voxel.transform_point3(corner),
         made.header.world_from_voxel.transform_point3(2.0 * corner)
     );
-    let pick = Pick::default();
+    let pick = TimeComponent::default();
     let found = numbers(&source.read(pick, header.whole()).expect("readable").voxels);
     let (mut largest, mut squares, mut count) = (0.0f64, 0.0, 0.0);
     for (i, &coarse) in found.iter().enumerate() {
@@ -251,7 +251,7 @@ fn what_is_damaged_is_refused_by_name() {
     let bytes = written(&made, &Selection::all(&made.header));
     let whole = |bytes: &[u8]| -> Result<Piece, ReadError> {
         let source = open(&folder, bytes, None)?;
-        source.read(Pick::default(), source.header().whole())
+        source.read(TimeComponent::default(), source.header().whole())
     };
     assert!(whole(&bytes).is_ok());
     let refused = |bytes: &[u8], word: &str| {

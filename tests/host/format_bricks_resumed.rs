@@ -11,7 +11,8 @@ use std::path::Path;
 use stratavox::format;
 use stratavox::format::write::{DoneBricks, NumberType, Selection, Written, write_bricks};
 use stratavox::volume::{
-    Format, Header, Limits, Pick, Piece, ReadError, Source, VoxelBox, VoxelType, Voxels, Wanted,
+    Format, Header, Limits, Piece, ReadError, Source, TimeComponent, VolumeSelection, VoxelBox,
+    VoxelType, Voxels,
 };
 
 /// Numbers of a formula with holes, two times and two components.
@@ -35,7 +36,7 @@ impl Source for Made {
         &self.0
     }
 
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         let ([x0, y0, z0], [x1, y1, z1]) = (region.min, region.max);
         let mut all = Vec::new();
         for (z, y) in (z0..z1).flat_map(|z| (y0..y1).map(move |y| (z, y))) {
@@ -157,13 +158,13 @@ fn an_unfinished_file_is_read_by_nobody() {
         let (mut file, mut lines) = (Vec::new(), Vec::new());
         gone_on(&mut file, &mut lines, rows, NumberType::Stored);
         let path = folder.write("a.svb", &file);
-        let error = format::open(&path, &Wanted::default(), &Limits::default()).err();
+        let error = format::open(&path, &VolumeSelection::default(), &Limits::default()).err();
         let said = message(&error.expect("refused"));
         assert!(said.contains("was stopped"), "{said}");
     }
     // The front says where the index is, and the index is not there in full.
     for end in [33, wanted.len() / 2, wanted.len() - 1] {
         let path = folder.write("a.svb", &wanted[..end]);
-        assert!(format::open(&path, &Wanted::default(), &Limits::default()).is_err());
+        assert!(format::open(&path, &VolumeSelection::default(), &Limits::default()).is_err());
     }
 }

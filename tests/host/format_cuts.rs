@@ -9,7 +9,7 @@ use std::panic::catch_unwind;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use stratavox::format;
-use stratavox::volume::{Header, Limits, Pick, ReadError, Voxels, Wanted};
+use stratavox::volume::{Header, Limits, ReadError, TimeComponent, VolumeSelection, Voxels};
 
 /// Cuts at each byte up to here, then at so many places.
 const EACH_BYTES: usize = 4096;
@@ -34,9 +34,9 @@ type Content = Vec<(Header, Vec<Voxels>)>;
 
 fn content(path: &Path) -> Result<Content, ReadError> {
     let open = |variable: Option<&String>| {
-        let wanted = Wanted {
+        let wanted = VolumeSelection {
             variable: variable.cloned(),
-            ..Wanted::default()
+            ..VolumeSelection::default()
         };
         format::open(path, &wanted, &LIMITS)
     };
@@ -53,7 +53,7 @@ fn content(path: &Path) -> Result<Content, ReadError> {
         let mut volumes = Vec::new();
         for time in 0..header.times {
             for component in 0..header.components {
-                let piece = source.read(Pick { time, component }, header.whole())?;
+                let piece = source.read(TimeComponent { time, component }, header.whole())?;
                 volumes.push(piece.voxels);
             }
         }

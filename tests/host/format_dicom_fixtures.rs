@@ -11,7 +11,7 @@ use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use stratavox::format;
-use stratavox::volume::{Limits, Pick, Source, Voxels, Wanted};
+use stratavox::volume::{Limits, Source, TimeComponent, VolumeSelection, Voxels};
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/dicom")
@@ -23,7 +23,7 @@ fn expected() -> serde_json::Map<String, Value> {
 }
 
 fn open(path: &Path) -> Result<Box<dyn Source>, String> {
-    format::open(path, &Wanted::default(), &Limits::default()).map_err(|e| message(&e))
+    format::open(path, &VolumeSelection::default(), &Limits::default()).map_err(|e| message(&e))
 }
 
 /// All numbers, component fastest, then x, y, z, time; as bytes, little-endian.
@@ -34,7 +34,7 @@ fn bytes(source: &dyn Source) -> Vec<u8> {
         let parts: Vec<Vec<Vec<u8>>> = (0..header.components)
             .map(|component| {
                 let piece = source
-                    .read(Pick { time, component }, header.whole())
+                    .read(TimeComponent { time, component }, header.whole())
                     .unwrap();
                 (0..piece.voxels.len())
                     .map(|i| number(&piece.voxels, i))
@@ -157,7 +157,9 @@ fn what_is_not_read_is_refused_by_its_name() {
         let source = open(&folder().join(format!("{name}.dcm")));
         let outcome = source.and_then(|source| {
             let all = source.header().whole();
-            source.read(Pick::default(), all).map_err(|e| message(&e))
+            source
+                .read(TimeComponent::default(), all)
+                .map_err(|e| message(&e))
         });
         let error = outcome.expect_err(&name);
         for part in parts.as_array().unwrap() {

@@ -8,7 +8,7 @@ use dicom::{COLUMNS, Dicom, ROWS, center, is_noted, open, read, series, slice_nu
 use files::{Folder, message, numbers};
 use glam::dvec3;
 use stratavox::format;
-use stratavox::volume::{Limits, Pick, VoxelBox, VoxelType, Wanted};
+use stratavox::volume::{Limits, TimeComponent, VolumeSelection, VoxelBox, VoxelType};
 
 #[test]
 fn slices_stand_where_they_lie_whatever_their_names_and_numbers_say() {
@@ -46,7 +46,7 @@ fn slices_stand_where_they_lie_whatever_their_names_and_numbers_say() {
         min: [2, 1, 3],
         max: [5, 3, 5],
     };
-    let piece = source.read(Pick::default(), region).unwrap();
+    let piece = source.read(TimeComponent::default(), region).unwrap();
     let inside = |x: usize, y: usize, z: usize| wanted[(z * ROWS + y) * COLUMNS + x];
     let cut: Vec<f32> = (3..5)
         .flat_map(|z| (1..3).flat_map(move |y| (2..5).map(move |x| inside(x, y, z))))
@@ -312,9 +312,9 @@ fn each_series_is_listed_and_the_wanted_one_is_read() {
     );
     folder.write("notes.txt", "no picture");
     let open = |series: Option<&str>| {
-        let wanted = Wanted {
+        let wanted = VolumeSelection {
             series: series.map(str::to_owned),
-            ..Wanted::default()
+            ..VolumeSelection::default()
         };
         format::open(&folder.path(""), &wanted, &Limits::default())
     };
@@ -377,7 +377,7 @@ fn a_film_without_positions_is_times_of_one_slice() {
         .put(0x7fe0_0010, b"OW", numbers);
     let folder = Folder::new();
     let path = folder.write("film", film.bytes());
-    let source = format::open(&path, &Wanted::default(), &Limits::default()).unwrap();
+    let source = format::open(&path, &VolumeSelection::default(), &Limits::default()).unwrap();
     let header = source.header();
     assert_eq!((header.dims, header.times), ([6, 4, 1], 3));
     assert_eq!(header.time_names, ["0 ms", "40 ms", "80 ms"]);

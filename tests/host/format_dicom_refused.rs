@@ -4,7 +4,7 @@ use crate::dicom::Dicom;
 use crate::files::{Folder, message};
 use std::path::Path;
 use stratavox::format;
-use stratavox::volume::{Limits, Wanted};
+use stratavox::volume::{Limits, VolumeSelection};
 
 fn fixture(name: &str) -> Vec<u8> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/dicom");
@@ -56,7 +56,13 @@ fn a_slice_of_a_folder_that_is_cut_is_never_passed_over() {
             Dicom::slice(k, [0.0, 0.0, k as f64]).bytes(),
         );
     }
-    let open = || format::open(&folder.path(""), &Wanted::default(), &Limits::default());
+    let open = || {
+        format::open(
+            &folder.path(""),
+            &VolumeSelection::default(),
+            &Limits::default(),
+        )
+    };
     assert_eq!(open().unwrap().header().dims, [6, 4, 3]);
     let last = Dicom::slice(2, [0.0, 0.0, 2.0]).bytes();
     for length in 0..last.len() {
@@ -216,7 +222,7 @@ fn a_folder_of_more_files_than_allowed_is_refused() {
         max_files: 4,
         ..Limits::default()
     };
-    let error = format::open(&folder.path(""), &Wanted::default(), &limits)
+    let error = format::open(&folder.path(""), &VolumeSelection::default(), &limits)
         .err()
         .expect("refused");
     assert!(
@@ -228,7 +234,7 @@ fn a_folder_of_more_files_than_allowed_is_refused() {
         max_bytes: 5 * 6 * 4 * 2 - 1,
         ..Limits::default()
     };
-    let source = format::open(&folder.path(""), &Wanted::default(), &limits).unwrap();
+    let source = format::open(&folder.path(""), &VolumeSelection::default(), &limits).unwrap();
     let error = source
         .read(Default::default(), source.header().whole())
         .unwrap_err();

@@ -9,7 +9,7 @@ use files::{Folder, message, numbers};
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use stratavox::format;
-use stratavox::volume::{Limits, Pick, ReadError, Wanted};
+use stratavox::volume::{Limits, ReadError, TimeComponent, VolumeSelection};
 
 /// What lies outside would be read as this.
 const OUTSIDE: u8 = 77;
@@ -59,8 +59,8 @@ fn prison() -> (Folder, PathBuf) {
 }
 
 fn read(path: &Path, limits: &Limits) -> Result<Vec<f32>, ReadError> {
-    let source = format::open(path, &Wanted::default(), limits)?;
-    let piece = source.read(Pick::default(), source.header().whole())?;
+    let source = format::open(path, &VolumeSelection::default(), limits)?;
+    let piece = source.read(TimeComponent::default(), source.header().whole())?;
     Ok(numbers(&piece.voxels))
 }
 
@@ -173,12 +173,13 @@ fn hdf5_never_opens_what_its_links_and_external_data_sets_name() {
     for limits in [Limits::default(), Limits::UNTRUSTED] {
         for k in 0..4 {
             for kind in ["link", "raw"] {
-                let wanted = Wanted {
+                let wanted = VolumeSelection {
                     variable: Some(format!("{kind}{k}")),
-                    ..Wanted::default()
+                    ..VolumeSelection::default()
                 };
-                let found = format::open(&path, &wanted, &limits)
-                    .and_then(|source| source.read(Pick::default(), source.header().whole()));
+                let found = format::open(&path, &wanted, &limits).and_then(|source| {
+                    source.read(TimeComponent::default(), source.header().whole())
+                });
                 let text = message(&found.expect_err("no other file is read"));
                 let part = if kind == "raw" { "not supported" } else { kind };
                 assert!(text.contains(part), "{kind}{k}: {text}");
@@ -209,6 +210,11 @@ fn dicom_files_without_an_ending_are_not_hidden_by_a_tiff_beside_them() {
     let folder = Folder::new();
     folder.write("IM0001", dicom);
     folder.write("report.tif", slice(OUTSIDE));
-    let source = format::open(&folder.path("."), &Wanted::default(), &Limits::default()).unwrap();
+    let source = format::open(
+        &folder.path("."),
+        &VolumeSelection::default(),
+        &Limits::default(),
+    )
+    .unwrap();
     assert_eq!(source.header().format.name(), "dicom");
 }

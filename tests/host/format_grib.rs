@@ -43,7 +43,7 @@ mod second {
     use serde_json::Value;
     use std::path::PathBuf;
     use stratavox::format;
-    use stratavox::volume::{Header, Limits, Pick, Source, Wanted};
+    use stratavox::volume::{Header, Limits, Source, TimeComponent, VolumeSelection};
 
     fn fixture(name: &str) -> PathBuf {
         let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/grib");
@@ -55,10 +55,10 @@ mod second {
     }
 
     fn open(name: &str, variable: Option<&str>, as_stored: bool) -> Box<dyn Source> {
-        let wanted = Wanted {
+        let wanted = VolumeSelection {
             variable: variable.map(str::to_owned),
             as_stored,
-            ..Wanted::default()
+            ..VolumeSelection::default()
         };
         format::open(&fixture(name), &wanted, &Limits::default())
             .unwrap_or_else(|error| panic!("{name}: {}", crate::files::message(&error)))
@@ -123,7 +123,7 @@ mod second {
             let source = open(&name, None, true);
             assert_eq!(source.header().dims, [12, 7, 1], "{name}");
             let piece = source
-                .read(Pick::default(), source.header().whole())
+                .read(TimeComponent::default(), source.header().whole())
                 .unwrap();
             let found = sums(&as_in_message(&name, numbers(&piece.voxels)));
             assert_eq!(found, expected_sums(&fields[0]), "{name}");
@@ -153,7 +153,7 @@ mod second {
                 .unwrap();
             let time = u32::from(field["time"].as_str().unwrap().starts_with("202403"));
             let piece = source
-                .read(Pick { time, component: 0 }, header.whole())
+                .read(TimeComponent { time, component: 0 }, header.whole())
                 .unwrap();
             let layer = &numbers(&piece.voxels)[z * 84..][..84];
             assert_eq!(
@@ -171,7 +171,7 @@ mod second {
     fn a_box_of_a_stack_is_the_part_of_the_whole() {
         let source = open("levels.grib2", None, true);
         let whole = source.header().whole();
-        let pick = Pick {
+        let pick = TimeComponent {
             time: 1,
             component: 0,
         };
@@ -198,7 +198,7 @@ mod second {
         let pressure = open("mixed.grib2", Some("prmsl"), true);
         assert_eq!(pressure.header().unit.as_deref(), Some("Pa"));
         let piece = pressure
-            .read(Pick::default(), pressure.header().whole())
+            .read(TimeComponent::default(), pressure.header().whole())
             .unwrap();
         let all = expected();
         let fields = all["mixed.grib2"].as_array().unwrap();
@@ -214,7 +214,7 @@ mod second {
         for (variable, member) in [("t", 0), ("t[number=1]", 1)] {
             let source = open("members.grib2", Some(variable), true);
             let piece = source
-                .read(Pick::default(), source.header().whole())
+                .read(TimeComponent::default(), source.header().whole())
                 .unwrap();
             let all = expected();
             let fields = all["members.grib2"].as_array().unwrap();
@@ -231,15 +231,17 @@ mod second {
         let whole = bytes("levels.grib2");
         // Eight messages of one length: the last is taken off.
         let path = folder.write("a.grib2", &whole[..whole.len() / 8 * 7]);
-        let wanted = Wanted {
+        let wanted = VolumeSelection {
             as_stored: true,
-            ..Wanted::default()
+            ..VolumeSelection::default()
         };
         let source = format::open(&path, &wanted, &Limits::default()).unwrap();
         let header = source.header();
         let notes = header.notes.join("\n");
         assert!(notes.contains("7 of 8 fields"), "{notes}");
-        let piece = source.read(Pick::default(), header.whole()).unwrap();
+        let piece = source
+            .read(TimeComponent::default(), header.whole())
+            .unwrap();
         let holes = numbers(&piece.voxels).iter().filter(|n| n.is_nan()).count();
         assert_eq!(holes, 84);
     }

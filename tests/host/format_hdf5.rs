@@ -7,7 +7,7 @@ use crate::fixtures;
 use files::{Folder, message};
 use fixtures::{json, open, values};
 use glam::DVec3;
-use stratavox::volume::{Limits, Meaning, Pick, Wanted};
+use stratavox::volume::{ComponentKind, Limits, TimeComponent, VolumeSelection};
 
 #[test]
 fn every_data_set_gives_the_numbers_that_h5py_reads() {
@@ -42,7 +42,7 @@ fn every_data_set_gives_the_numbers_that_h5py_reads() {
         let count = header.voxel_count() as usize;
         for time in 0..header.times {
             for component in 0..header.components {
-                let numbers = values(source.as_ref(), Pick { time, component });
+                let numbers = values(source.as_ref(), TimeComponent { time, component });
                 for (i, number) in numbers.into_iter().enumerate() {
                     let at = (time as usize * count + i) * components + component as usize;
                     found[at] = number.expect("HDF5 has no holes");
@@ -67,7 +67,11 @@ fn chunks_of_zstandard_are_read_and_damage_in_them_is_an_error() {
     ] {
         let source = open(file, Some(name)).unwrap_or_else(|e| panic!("{name}: {}", message(&e)));
         assert_eq!(source.header().dims, [5, 4, 3], "{name}");
-        assert_eq!(values(source.as_ref(), Pick::default()), wanted, "{name}");
+        assert_eq!(
+            values(source.as_ref(), TimeComponent::default()),
+            wanted,
+            "{name}"
+        );
     }
     // The first frame of the file belongs to `plain`: its magic number, then a byte within.
     let whole = std::fs::read(fixtures::path("hdf5/zstd.h5")).unwrap();
@@ -78,13 +82,15 @@ fn chunks_of_zstandard_are_read_and_damage_in_them_is_an_error() {
         let mut bytes = whole.clone();
         bytes[at] ^= 0x3f;
         let path = folder.write("a.h5", &bytes);
-        let wanted = Wanted {
+        let wanted = VolumeSelection {
             variable: Some("plain".to_owned()),
-            ..Wanted::default()
+            ..VolumeSelection::default()
         };
         let source = stratavox::format::open(&path, &wanted, &Limits::default()).unwrap();
         let whole = source.header().whole();
-        let error = source.read(Pick::default(), whole).expect_err("damage");
+        let error = source
+            .read(TimeComponent::default(), whole)
+            .expect_err("damage");
         assert!(message(&error).contains("Zstandard"), "{}", message(&error));
     }
 }
@@ -97,7 +103,7 @@ fn axes_run_t_z_y_x_c() {
         (vector.dims, vector.components, vector.times),
         ([5, 4, 3], 3, 1)
     );
-    assert_eq!(vector.meaning, Meaning::Vector);
+    assert_eq!(vector.meaning, ComponentKind::Vector);
     let times = header("axes/times");
     assert_eq!(
         (times.dims, times.components, times.times),
@@ -105,7 +111,7 @@ fn axes_run_t_z_y_x_c() {
     );
     let both = header("axes/both");
     assert_eq!((both.dims, both.components, both.times), ([5, 4, 3], 2, 2));
-    assert_eq!(both.meaning, Meaning::Numbers);
+    assert_eq!(both.meaning, ComponentKind::Numbers);
     assert_eq!(header("axes/plane").dims, [5, 4, 1]);
     assert_eq!(header("layout/one").dims, [5, 4, 3]);
 }
@@ -168,7 +174,7 @@ fn data_sets_are_found_by_their_paths_and_listed_once() {
             let source = open(&format!("hdf5/{version}.h5"), Some(name)).unwrap();
             let wanted: Vec<_> = (0..count).map(|n| Some(f64::from(n))).collect();
             assert_eq!(
-                values(source.as_ref(), Pick::default()),
+                values(source.as_ref(), TimeComponent::default()),
                 wanted,
                 "{version} {name}"
             );
@@ -189,7 +195,7 @@ fn what_is_no_volume_is_refused_by_its_reason() {
         assert!(error.contains(part), "{name}: {error}");
     }
     let source = open("hdf5/kinds.h5", Some("refused/lzf")).unwrap();
-    let error = source.read(Pick::default(), source.header().whole());
+    let error = source.read(TimeComponent::default(), source.header().whole());
     let error = message(&error.expect_err("no voxels"));
     assert!(error.contains("32000, LZF"), "{error}");
 }
@@ -203,7 +209,8 @@ fn a_file_that_was_cut_is_refused() {
         let later = (4096..bytes.len()).step_by(997).chain([bytes.len() - 1]);
         for cut in (0..bytes.len().min(4096)).chain(later) {
             let path = folder.write("a.h5", &bytes[..cut]);
-            let source = stratavox::format::open(&path, &Wanted::default(), &Limits::default());
+            let source =
+                stratavox::format::open(&path, &VolumeSelection::default(), &Limits::default());
             assert!(source.is_err(), "{name} cut at {cut}");
             tried += 1;
         }

@@ -10,7 +10,7 @@ use files::{Folder, message};
 use std::os::unix::fs::symlink;
 use std::path::Path;
 use stratavox::format;
-use stratavox::volume::{Limits, Problem, Wanted};
+use stratavox::volume::{Limits, Problem, VolumeSelection};
 
 /// The two headers that name a file, for 6 bytes.
 fn headers(name: &str) -> [(&'static str, String); 4] {
@@ -108,7 +108,7 @@ fn pathdiff(folder: &Folder, file: &Path) -> String {
 fn a_folder_a_pipe_a_device_and_an_empty_file_are_named_for_what_they_are() {
     let folder = Folder::new();
     let open = |path: &Path| {
-        let error = format::open(path, &Wanted::default(), &Limits::default())
+        let error = format::open(path, &VolumeSelection::default(), &Limits::default())
             .err()
             .expect("no volume");
         message(&error)
@@ -169,7 +169,7 @@ fn a_size_that_lies_is_refused_when_the_file_is_opened() {
                 "NRRD0004\ntype: double\ndimension: 3\nsizes: {sizes}\nencoding: {encoding}\nendian: big\n\n"
             );
             let path = folder.write("a.nrrd", [text.as_bytes(), &data].concat());
-            let error = format::open(&path, &Wanted::default(), &Limits::default())
+            let error = format::open(&path, &VolumeSelection::default(), &Limits::default())
                 .err()
                 .expect(sizes);
             let told = matches!(
@@ -184,7 +184,7 @@ fn a_size_that_lies_is_refused_when_the_file_is_opened() {
         );
         let path = folder.write("a.mha", [text.as_bytes(), &zlib(&[0; 100])].concat());
         assert!(
-            format::open(&path, &Wanted::default(), &Limits::default()).is_err(),
+            format::open(&path, &VolumeSelection::default(), &Limits::default()).is_err(),
             "{sizes}"
         );
     }
@@ -212,7 +212,7 @@ fn a_stream_that_expands_beyond_its_promise_is_stopped_there() {
             max_bytes: 1 << 20,
             ..Limits::default()
         };
-        let source = format::open(&path, &Wanted::default(), &limits).unwrap();
+        let source = format::open(&path, &VolumeSelection::default(), &limits).unwrap();
         let error = source
             .read(Default::default(), source.header().whole())
             .unwrap_err();
@@ -239,7 +239,7 @@ fn a_header_without_end_is_read_to_its_limit_only() {
             + &"x\n".repeat(9_000),
     ] {
         let path = folder.write("a", &text);
-        let error = format::open(&path, &Wanted::default(), &limits)
+        let error = format::open(&path, &VolumeSelection::default(), &limits)
             .err()
             .expect("too long");
         assert!(
@@ -261,7 +261,7 @@ fn a_file_that_shrinks_between_opening_and_reading_is_refused() {
     let folder = Folder::new();
     let text = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 3 2 1\nencoding: raw\n\n";
     let path = folder.write("a.nrrd", text.to_owned() + "abcdef");
-    let source = format::open(&path, &Wanted::default(), &Limits::default()).unwrap();
+    let source = format::open(&path, &VolumeSelection::default(), &Limits::default()).unwrap();
     folder.write("a.nrrd", text.to_owned() + "abc");
     let error = source
         .read(Default::default(), source.header().whole())

@@ -5,7 +5,7 @@
 use crate::nifti::Nifti;
 use std::path::PathBuf;
 use stratavox::format::open;
-use stratavox::volume::{Header, Limits, Meaning, Wanted};
+use stratavox::volume::{ComponentKind, Header, Limits, VolumeSelection};
 
 /// A file in a folder that is gone with the first.
 fn file(name: &str, bytes: &[u8]) -> (tempfile::TempDir, PathBuf) {
@@ -17,7 +17,7 @@ fn file(name: &str, bytes: &[u8]) -> (tempfile::TempDir, PathBuf) {
 
 fn header_of(name: &str, bytes: &[u8]) -> Header {
     let (_folder, path) = file(name, bytes);
-    let source = open(&path, &Wanted::default(), &Limits::default());
+    let source = open(&path, &VolumeSelection::default(), &Limits::default());
     let source = source.unwrap_or_else(|error| panic!("{name}: {error}"));
     source.header().clone()
 }
@@ -25,15 +25,15 @@ fn header_of(name: &str, bytes: &[u8]) -> Header {
 #[test]
 fn nifti_says_it_by_datatype_and_intent() {
     for (datatype, bits, components, intent, wanted) in [
-        (128, 24, 1, 0, Meaning::Rgb),
-        (2304, 32, 1, 0, Meaning::Rgba),
-        (16, 32, 3, 1007, Meaning::Vector),
-        (16, 32, 2, 1006, Meaning::Vector),
-        (2, 8, 3, 2003, Meaning::Rgb),
-        (2, 8, 4, 2004, Meaning::Rgba),
-        (16, 32, 3, 0, Meaning::Numbers),
-        (16, 32, 1, 1007, Meaning::Numbers),
-        (128, 24, 2, 0, Meaning::Numbers),
+        (128, 24, 1, 0, ComponentKind::Rgb),
+        (2304, 32, 1, 0, ComponentKind::Rgba),
+        (16, 32, 3, 1007, ComponentKind::Vector),
+        (16, 32, 2, 1006, ComponentKind::Vector),
+        (2, 8, 3, 2003, ComponentKind::Rgb),
+        (2, 8, 4, 2004, ComponentKind::Rgba),
+        (16, 32, 3, 0, ComponentKind::Numbers),
+        (16, 32, 1, 1007, ComponentKind::Numbers),
+        (128, 24, 2, 0, ComponentKind::Numbers),
     ] {
         for (version, big_endian) in [(1, false), (1, true), (2, false), (2, true)] {
             let mut nifti = Nifti::new(datatype, bits);
@@ -60,15 +60,15 @@ fn nifti_says_by_intent_that_values_are_labels() {
 #[test]
 fn nrrd_says_it_by_kinds() {
     for (kind, components, wanted) in [
-        ("RGB-color", 3, Meaning::Rgb),
-        ("3-color", 3, Meaning::Rgb),
-        ("RGBA-color", 4, Meaning::Rgba),
-        ("vector", 2, Meaning::Vector),
-        ("3-gradient", 3, Meaning::Vector),
-        ("covariant-vector", 3, Meaning::Vector),
-        ("HSV-color", 3, Meaning::Numbers),
-        ("list", 3, Meaning::Numbers),
-        ("RGB-color", 4, Meaning::Numbers),
+        ("RGB-color", 3, ComponentKind::Rgb),
+        ("3-color", 3, ComponentKind::Rgb),
+        ("RGBA-color", 4, ComponentKind::Rgba),
+        ("vector", 2, ComponentKind::Vector),
+        ("3-gradient", 3, ComponentKind::Vector),
+        ("covariant-vector", 3, ComponentKind::Vector),
+        ("HSV-color", 3, ComponentKind::Numbers),
+        ("list", 3, ComponentKind::Numbers),
+        ("RGB-color", 4, ComponentKind::Numbers),
     ] {
         let text = format!(
             "NRRD0004\ntype: uchar\ndimension: 4\nsizes: {components} 3 2 1\nkinds: {kind} domain domain domain\n\
@@ -83,12 +83,12 @@ fn nrrd_says_it_by_kinds() {
 #[test]
 fn metaimage_is_taken_at_its_writers_habits_and_that_is_said() {
     for (channels, name, bytes_each, wanted) in [
-        (3, "MET_UCHAR", 1, Meaning::Rgb),
-        (4, "MET_UCHAR", 1, Meaning::Rgba),
-        (3, "MET_FLOAT", 4, Meaning::Vector),
-        (2, "MET_FLOAT", 4, Meaning::Numbers),
-        (3, "MET_SHORT", 2, Meaning::Numbers),
-        (2, "MET_UCHAR", 1, Meaning::Numbers),
+        (3, "MET_UCHAR", 1, ComponentKind::Rgb),
+        (4, "MET_UCHAR", 1, ComponentKind::Rgba),
+        (3, "MET_FLOAT", 4, ComponentKind::Vector),
+        (2, "MET_FLOAT", 4, ComponentKind::Numbers),
+        (3, "MET_SHORT", 2, ComponentKind::Numbers),
+        (2, "MET_UCHAR", 1, ComponentKind::Numbers),
     ] {
         let text = format!(
             "ObjectType = Image\nNDims = 3\nDimSize = 3 2 2\nElementSpacing = 1 1 1\n\
@@ -103,7 +103,12 @@ fn metaimage_is_taken_at_its_writers_habits_and_that_is_said() {
             .notes
             .iter()
             .any(|note| note.contains("are taken as"));
-        assert_eq!(is_said, wanted != Meaning::Numbers, "{:?}", header.notes);
+        assert_eq!(
+            is_said,
+            wanted != ComponentKind::Numbers,
+            "{:?}",
+            header.notes
+        );
     }
 }
 
@@ -117,7 +122,7 @@ fn dicom_says_the_modality_and_files_of_microscopes_are_of_microscopes() {
             .join(name)
     };
     let opened = |path: &std::path::Path| {
-        let source = open(path, &Wanted::default(), &Limits::default());
+        let source = open(path, &VolumeSelection::default(), &Limits::default());
         source.unwrap_or_else(|error| panic!("{path:?}: {error}"))
     };
     for (name, wanted) in [

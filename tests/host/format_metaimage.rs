@@ -8,7 +8,7 @@ use crate::truth;
 use encode::{ascii, bytes_of, extremes, gzip, zlib};
 use files::{Folder, message, numbers};
 use stratavox::format;
-use stratavox::volume::{Format, Limits, Pick, VoxelBox, VoxelType, Wanted};
+use stratavox::volume::{Format, Limits, TimeComponent, VolumeSelection, VoxelBox, VoxelType};
 
 const TYPES: [(&str, VoxelType); 12] = [
     ("MET_CHAR", VoxelType::I8),
@@ -98,13 +98,13 @@ fn one_time_one_channel_and_one_box_can_be_picked() {
         ("CompressedData = True\n", zlib(&bytes)),
     ] {
         let path = folder.write("a.mha", attached(&(text.to_owned() + fields), &data));
-        let source = format::open(&path, &Wanted::default(), &Limits::default()).unwrap();
+        let source = format::open(&path, &VolumeSelection::default(), &Limits::default()).unwrap();
         let header = source.header();
         assert_eq!(
             (header.dims, header.times, header.components),
             ([4, 3, 2], 3, 2)
         );
-        let pick = Pick {
+        let pick = TimeComponent {
             time: 2,
             component: 1,
         };
@@ -115,7 +115,7 @@ fn one_time_one_channel_and_one_box_can_be_picked() {
         let found = numbers(&source.read(pick, region).unwrap().voxels);
         let wanted = [20111, 20121, 20211, 20221, 21111, 21121, 21211, 21221];
         assert_eq!(found, wanted.map(|n| n as f32), "{fields}");
-        let beyond = Pick {
+        let beyond = TimeComponent {
             time: 3,
             component: 0,
         };
@@ -211,11 +211,11 @@ fn voxels_may_lie_in_other_files_one_or_many() {
     let text = "NDims = 4\nDimSize = 3 2 2 2\nElementType = MET_UCHAR\nElementDataFile = LIST 3\nlow.raw\nhigh.raw\n";
     let source = format::open(
         &folder.write("t.mhd", text),
-        &Wanted::default(),
+        &VolumeSelection::default(),
         &Limits::default(),
     )
     .unwrap();
-    let pick = Pick {
+    let pick = TimeComponent {
         time: 1,
         component: 0,
     };

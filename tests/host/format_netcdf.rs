@@ -7,7 +7,7 @@ use crate::fixtures;
 use files::{Folder, message};
 use fixtures::{json, open, open_as, values};
 use glam::DVec3;
-use stratavox::volume::{Header, Limits, Pick, VoxelBox, Wanted};
+use stratavox::volume::{Header, Limits, TimeComponent, VolumeSelection, VoxelBox};
 
 fn center(header: &Header, index: [f64; 3]) -> DVec3 {
     let voxel = DVec3::from_array(index) + DVec3::splat(0.5);
@@ -46,7 +46,7 @@ fn every_variant_gives_the_numbers_that_its_own_library_reads() {
                 .collect();
             wanted_dims.resize(3, 1);
             assert_eq!(dims, wanted_dims, "{place}");
-            let pick = Pick {
+            let pick = TimeComponent {
                 time: u32::from(header.times > 1),
                 component: 0,
             };
@@ -106,7 +106,7 @@ fn a_box_is_the_same_part_of_the_whole_in_any_order_of_dimensions() {
     ] {
         let source = open(name, Some(variable)).unwrap();
         let header = source.header();
-        let pick = Pick {
+        let pick = TimeComponent {
             time: header.times - 1,
             component: 0,
         };
@@ -232,7 +232,7 @@ fn a_field_that_is_linear_stays_exactly_so_on_even_points() {
         "{notes}"
     );
     let degree = 6371.0088 * std::f64::consts::PI / 180.0;
-    let values = values(even.as_ref(), Pick::default());
+    let values = values(even.as_ref(), TimeComponent::default());
     let mut i = 0;
     for z in 0..header.dims[2] {
         for y in 0..header.dims[1] {
@@ -256,7 +256,7 @@ fn a_field_that_is_linear_stays_exactly_so_on_even_points() {
         min: [2, 3, 1],
         max: [5, 7, 6],
     };
-    let part = even.read(Pick::default(), region).unwrap().voxels;
+    let part = even.read(TimeComponent::default(), region).unwrap().voxels;
     let mut i = 0;
     for z in 1..6 {
         for y in 3..7 {
@@ -292,7 +292,8 @@ fn a_file_that_was_cut_is_refused() {
         };
         for cut in cuts.chain([last]).filter(|&cut| cut <= last) {
             let path = folder.write(name, &bytes[..cut]);
-            let all = stratavox::format::open(&path, &Wanted::default(), &Limits::default());
+            let all =
+                stratavox::format::open(&path, &VolumeSelection::default(), &Limits::default());
             let Ok(source) = all else {
                 tried += 1;
                 continue;
@@ -300,14 +301,14 @@ fn a_file_that_was_cut_is_refused() {
             // Whatever variable is read: a classic header tells where all of them end.
             assert!(!bytes.starts_with(b"CDF"), "{name} cut at {cut} opens");
             let any_fails = source.header().variables.clone().iter().any(|variable| {
-                let wanted = Wanted {
+                let wanted = VolumeSelection {
                     variable: Some(variable.clone()),
-                    ..Wanted::default()
+                    ..VolumeSelection::default()
                 };
                 let source = stratavox::format::open(&path, &wanted, &Limits::default());
                 source.is_err()
                     || source.is_ok_and(|s| {
-                        let last = Pick {
+                        let last = TimeComponent {
                             time: s.header().times - 1,
                             component: 0,
                         };
@@ -327,7 +328,7 @@ fn a_variable_that_cannot_be_is_refused_by_its_name() {
     let folder = Folder::new();
     let refused = |bytes: &[u8]| {
         let path = folder.write("a.nc", bytes);
-        let error = stratavox::format::open(&path, &Wanted::default(), &Limits::default());
+        let error = stratavox::format::open(&path, &VolumeSelection::default(), &Limits::default());
         message(&error.err().expect("no volume"))
     };
     let error = refused(b"CDF\x01");

@@ -9,7 +9,9 @@ use encode::{bytes_of, extremes, gzip};
 use files::{Folder, message, numbers};
 use nifti::Nifti;
 use stratavox::format;
-use stratavox::volume::{Format, Limits, Pick, Rescale, VoxelBox, VoxelType, Wanted};
+use stratavox::volume::{
+    Format, Limits, Rescale, TimeComponent, VolumeSelection, VoxelBox, VoxelType,
+};
 
 const TYPES: [(i16, i16, VoxelType); 10] = [
     (2, 8, VoxelType::U8),
@@ -97,7 +99,7 @@ fn one_time_one_component_and_one_box_can_be_picked() {
     for (name, bytes) in [("a.nii", bytes.clone()), ("a.nii.gz", gzip(&bytes))] {
         let source = format::open(
             &folder.write(name, bytes),
-            &Wanted::default(),
+            &VolumeSelection::default(),
             &Limits::default(),
         )
         .unwrap();
@@ -112,7 +114,7 @@ fn one_time_one_component_and_one_box_can_be_picked() {
         };
         let found = source
             .read(
-                Pick {
+                TimeComponent {
                     time: 2,
                     component: 1,
                 },
@@ -134,14 +136,14 @@ fn colors_are_components_and_have_no_slope() {
         let voxels: Vec<u8> = (10..10 + 2 * channels as u8).collect();
         let source = format::open(
             &folder.write("a.nii", header.with(&voxels)),
-            &Wanted::default(),
+            &VolumeSelection::default(),
             &Limits::default(),
         )
         .unwrap();
         assert_eq!(source.header().components, channels);
         assert_eq!(source.header().rescale, Rescale::default());
         for component in 0..channels {
-            let pick = Pick { time: 0, component };
+            let pick = TimeComponent { time: 0, component };
             let found = numbers(&source.read(pick, source.header().whole()).unwrap().voxels);
             let first = 10.0 + component as f32;
             assert_eq!(found, [first, first + channels as f32]);

@@ -9,7 +9,7 @@ use files::Folder;
 use glam::{DVec3, dvec3};
 use nifti::Nifti;
 use stratavox::format;
-use stratavox::volume::{Header, Limits, Rescale, Source, Statistics, Wanted};
+use stratavox::volume::{Header, Limits, Rescale, Source, Statistics, VolumeSelection};
 
 /// Where the center of a voxel lies.
 fn center(header: &Header, x: f64, y: f64, z: f64) -> DVec3 {
@@ -203,7 +203,7 @@ fn real_files_have_the_numbers_and_places_of_the_manifest() {
         let path = truth::folder()
             .unwrap()
             .join(entry["path"].as_str().unwrap());
-        let source = format::open(&path, &Wanted::default(), &Limits::default())
+        let source = format::open(&path, &VolumeSelection::default(), &Limits::default())
             .unwrap_or_else(|e| panic!("{id}: {e}"));
         let volume = &entry["volume"];
         let header = source.header();

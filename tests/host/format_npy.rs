@@ -7,7 +7,9 @@ use files::{Folder, numbers};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use stratavox::format;
-use stratavox::volume::{Format, Limits, Meaning, Pick, Source, VoxelBox, Wanted};
+use stratavox::volume::{
+    ComponentKind, Format, Limits, Source, TimeComponent, VolumeSelection, VoxelBox,
+};
 
 fn fixtures() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/npy")
@@ -16,7 +18,7 @@ fn fixtures() -> PathBuf {
 fn open(name: &str) -> Box<dyn Source> {
     format::open(
         &fixtures().join(name),
-        &Wanted::default(),
+        &VolumeSelection::default(),
         &Limits::default(),
     )
     .unwrap_or_else(|error| panic!("{name}: {}", files::message(&error)))
@@ -41,16 +43,16 @@ fn every_type_order_and_shape_holds_what_numpy_reads() {
         // Nothing is said of space: it is that of voxels, the corner of the grid at 0.
         assert_eq!(header.world_from_voxel, glam::DAffine3::IDENTITY, "{name}");
         let meaning = match row["meaning"].as_str() {
-            Some("rgb") => Meaning::Rgb,
-            Some("rgba") => Meaning::Rgba,
-            _ => Meaning::Numbers,
+            Some("rgb") => ComponentKind::Rgb,
+            Some("rgba") => ComponentKind::Rgba,
+            _ => ComponentKind::Numbers,
         };
         assert_eq!(header.meaning, meaning, "{name}");
         let mut found = Vec::new();
         for time in 0..header.times {
             for component in 0..header.components {
                 let piece = source
-                    .read(Pick { time, component }, header.whole())
+                    .read(TimeComponent { time, component }, header.whole())
                     .unwrap();
                 assert!(piece.loss.is_none(), "{name}: {:?}", piece.loss);
                 let (mut sum, mut weighted) = (0.0, 0.0);
@@ -104,7 +106,7 @@ fn the_order_of_memory_changes_nothing_but_a_note() {
         assert_eq!(header.notes.len() + 1, other.notes.len(), "{name}");
         for time in 0..header.times {
             for component in 0..header.components {
-                let pick = Pick { time, component };
+                let pick = TimeComponent { time, component };
                 let read = |source: &dyn Source| source.read(pick, header.whole()).unwrap();
                 let bytes = |source: &dyn Source| source.read_bytes(pick, header.whole()).unwrap();
                 assert_eq!(read(c.as_ref()), read(fortran.as_ref()), "{name} {pick:?}");
@@ -121,7 +123,7 @@ fn the_order_of_memory_changes_nothing_but_a_note() {
 #[test]
 fn a_box_of_a_fortran_array_is_that_part_of_the_whole() {
     let source = open("fortran-times.npy");
-    let pick = Pick {
+    let pick = TimeComponent {
         time: 2,
         component: 0,
     };

@@ -8,7 +8,7 @@ use crate::truth;
 use encode::{ascii, bytes_of, bzip2, extremes, gzip, hex};
 use files::{Folder, message, numbers};
 use stratavox::format;
-use stratavox::volume::{Format, Limits, Pick, VoxelBox, VoxelType, Wanted};
+use stratavox::volume::{Format, Limits, TimeComponent, VolumeSelection, VoxelBox, VoxelType};
 
 /// Every name of every type, from the definition of the format.
 const TYPES: [(VoxelType, &[&str]); 10] = [
@@ -202,7 +202,7 @@ fn voxels_may_lie_in_other_files_one_or_many_behind_lines_and_bytes() {
     let text = format!("NRRD0004\n{text}raw\ndata file: s.%d 8 11 1\n");
     let source = format::open(
         &folder.write("a.nhdr", text),
-        &Wanted::default(),
+        &VolumeSelection::default(),
         &Limits::default(),
     )
     .unwrap();
@@ -211,7 +211,12 @@ fn voxels_may_lie_in_other_files_one_or_many_behind_lines_and_bytes() {
         min: [1, 0, 1],
         max: [3, 2, 4],
     };
-    let found = numbers(&source.read(Pick::default(), region).unwrap().voxels);
+    let found = numbers(
+        &source
+            .read(TimeComponent::default(), region)
+            .unwrap()
+            .voxels,
+    );
     let wanted = [11, 12, 14, 15, 21, 22, 24, 25, 31, 32, 34, 35].map(|n| n as f32);
     assert_eq!(found, wanted);
 }

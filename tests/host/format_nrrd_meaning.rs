@@ -8,7 +8,7 @@ use encode::{ascii, bytes_of, bzip2, gzip, hex};
 use files::{Folder, message, numbers};
 use glam::{DVec3, dvec3};
 use stratavox::format;
-use stratavox::volume::{Header, Limits, Pick, VoxelBox, VoxelType, Wanted};
+use stratavox::volume::{Header, Limits, TimeComponent, VolumeSelection, VoxelBox, VoxelType};
 
 fn attached(header: &str, data: &[u8]) -> Vec<u8> {
     [b"NRRD0005\n", header.as_bytes(), b"\n", data].concat()
@@ -75,12 +75,12 @@ fn one_time_one_component_and_one_box_can_be_picked_wherever_the_axes_stand() {
                 "type: ushort\ndimension: 5\nsizes: {sizes}\nendian: big\nencoding: {encoding}\n{kinds}"
             );
             let path = folder.write("a.nrrd", attached(&text, &data));
-            let source = format::open(&path, &Wanted::default(), &Limits::default())
+            let source = format::open(&path, &VolumeSelection::default(), &Limits::default())
                 .unwrap_or_else(|e| panic!("{text}: {}", message(&e)));
             let header = source.header();
             let shape = (header.dims, header.times, header.components);
             assert_eq!(shape, ([4, 3, 2], 3, 2), "{text}");
-            let pick = Pick {
+            let pick = TimeComponent {
                 time: 2,
                 component: 1,
             };
@@ -98,11 +98,11 @@ fn one_time_one_component_and_one_box_can_be_picked_wherever_the_axes_stand() {
                 "{text}"
             );
             for wrong in [
-                Pick {
+                TimeComponent {
                     time: 3,
                     component: 0,
                 },
-                Pick {
+                TimeComponent {
                     time: 0,
                     component: 2,
                 },

@@ -7,7 +7,7 @@ use crate::files;
 use encode::{ascii, bytes_of, bzip2, gzip, hex};
 use files::{Folder, message, numbers};
 use stratavox::format;
-use stratavox::volume::{Limits, VoxelType, Wanted};
+use stratavox::volume::{Limits, VolumeSelection, VoxelType};
 
 fn attached(header: &str, data: &[u8]) -> Vec<u8> {
     [b"NRRD0005\n", header.as_bytes(), b"\n", data].concat()
@@ -76,7 +76,7 @@ fn files_that_do_not_fit_the_array_are_refused() {
         ..Limits::default()
     };
     let path = folder.write("a.nhdr", format!("{text}data file: s%d 1 3 1\n"));
-    let error = format::open(&path, &Wanted::default(), &few)
+    let error = format::open(&path, &VolumeSelection::default(), &few)
         .err()
         .unwrap()
         .to_string();

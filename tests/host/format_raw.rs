@@ -10,7 +10,9 @@ use files::{Folder, message, numbers};
 use glam::dvec3;
 use stratavox::format;
 use stratavox::format::raw::{self, RawSpec};
-use stratavox::volume::{Format, Limits, Pick, ReadError, Source, VoxelType, Wanted};
+use stratavox::volume::{
+    Format, Limits, ReadError, Source, TimeComponent, VolumeSelection, VoxelType,
+};
 
 fn spec(text: &str) -> RawSpec {
     RawSpec::parse(text).unwrap_or_else(|problem| panic!("{text}: {problem}"))
@@ -19,7 +21,7 @@ fn spec(text: &str) -> RawSpec {
 fn all_numbers(source: &dyn Source) -> Vec<f32> {
     numbers(
         &source
-            .read(Pick::default(), source.header().whole())
+            .read(TimeComponent::default(), source.header().whole())
             .unwrap()
             .voxels,
     )
@@ -160,8 +162,12 @@ fn a_sidecar_is_found_from_the_voxels_and_from_its_own_name() {
                       "spacing": [1, 2, 3], "header_bytes": 3}"#;
     folder.write("a.json", sidecar);
     for name in ["a.raw", "a.json"] {
-        let source =
-            format::open(&folder.path(name), &Wanted::default(), &Limits::default()).unwrap();
+        let source = format::open(
+            &folder.path(name),
+            &VolumeSelection::default(),
+            &Limits::default(),
+        )
+        .unwrap();
         assert_eq!(all_numbers(&*source), [1.0, 2.0, 3.0, 4.0], "{name}");
         assert_eq!(source.header().dims, [2, 2, 1]);
         assert_eq!(
@@ -176,7 +182,7 @@ fn a_sidecar_is_found_from_the_voxels_and_from_its_own_name() {
     );
     let source = format::open(
         &folder.path("b.raw"),
-        &Wanted::default(),
+        &VolumeSelection::default(),
         &Limits::default(),
     )
     .unwrap();
@@ -184,7 +190,7 @@ fn a_sidecar_is_found_from_the_voxels_and_from_its_own_name() {
     folder.write("c.raw", [5]);
     let refused = refusal(format::open(
         &folder.path("c.raw"),
-        &Wanted::default(),
+        &VolumeSelection::default(),
         &Limits::default(),
     ));
     assert!(
@@ -258,7 +264,7 @@ fn a_sidecar_that_lies_or_leads_away_is_refused() {
     for (text, wanted) in cases {
         let refused = refusal(format::open(
             &folder.write("s.json", text),
-            &Wanted::default(),
+            &VolumeSelection::default(),
             &Limits::default(),
         ));
         assert!(refused.contains(wanted), "{text}: {refused}");
@@ -269,7 +275,7 @@ fn a_sidecar_that_lies_or_leads_away_is_refused() {
     };
     let refused = refusal(format::open(
         &folder.write("s.json", [b' '; 11]),
-        &Wanted::default(),
+        &VolumeSelection::default(),
         &limits,
     ));
     assert!(
@@ -285,10 +291,19 @@ fn the_walnut_is_the_same_from_its_sidecar_and_from_a_spec() {
     };
     let of = |name: &str| folder.join("ct-walnut").join(name);
     let by_header = all_numbers(
-        &*format::open(&of("walnut.mhd"), &Wanted::default(), &Limits::default()).unwrap(),
+        &*format::open(
+            &of("walnut.mhd"),
+            &VolumeSelection::default(),
+            &Limits::default(),
+        )
+        .unwrap(),
     );
-    let by_sidecar =
-        format::open(&of("walnut.raw"), &Wanted::default(), &Limits::default()).unwrap();
+    let by_sidecar = format::open(
+        &of("walnut.raw"),
+        &VolumeSelection::default(),
+        &Limits::default(),
+    )
+    .unwrap();
     assert_eq!(
         by_sidecar.header().world_from_voxel.matrix3.x_axis.x,
         0.015625

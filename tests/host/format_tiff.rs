@@ -8,7 +8,9 @@ use files::numbers;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use stratavox::format;
-use stratavox::volume::{Format, Header, Limits, Meaning, Pick, Source, VoxelBox, Voxels, Wanted};
+use stratavox::volume::{
+    ComponentKind, Format, Header, Limits, Source, TimeComponent, VolumeSelection, VoxelBox, Voxels,
+};
 
 fn fixtures() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/tiff")
@@ -27,9 +29,9 @@ fn open(name: &str) -> Box<dyn Source> {
         Some((file, image)) => (file, Some(image.to_owned())),
         None => (name, None),
     };
-    let wanted = Wanted {
+    let wanted = VolumeSelection {
         variable: image,
-        ..Wanted::default()
+        ..VolumeSelection::default()
     };
     format::open(&fixtures().join(file), &wanted, &Limits::default())
         .unwrap_or_else(|error| panic!("{name}: {}", files::message(&error)))
@@ -63,9 +65,10 @@ fn compare_numbers(name: &str, row: &Value, source: &dyn Source) -> usize {
     );
     let mut compared = 0;
     let volumes = row["volumes"].as_array().unwrap().iter();
-    let picks = (0..header.times)
-        .flat_map(|time| (0..header.components).map(move |component| Pick { time, component }));
-    let picks: Vec<Pick> = picks.collect();
+    let picks = (0..header.times).flat_map(|time| {
+        (0..header.components).map(move |component| TimeComponent { time, component })
+    });
+    let picks: Vec<TimeComponent> = picks.collect();
     assert_eq!(picks.len(), volumes.len(), "{name}");
     let mut all = Vec::new();
     for (pick, volume) in picks.into_iter().zip(volumes) {
@@ -117,13 +120,16 @@ fn every_variant_holds_what_its_writer_reads() {
             "{name}"
         );
         match row["meaning"].as_str() {
-            Some("rgb") => assert_eq!(header.meaning, Meaning::Rgb, "{name}"),
-            Some("rgba") => assert_eq!(header.meaning, Meaning::Rgba, "{name}"),
-            _ if name.starts_with("samples") => assert_eq!(header.meaning, Meaning::Numbers),
+            Some("rgb") => assert_eq!(header.meaning, ComponentKind::Rgb, "{name}"),
+            Some("rgba") => assert_eq!(header.meaning, ComponentKind::Rgba, "{name}"),
+            _ if name.starts_with("samples") => assert_eq!(header.meaning, ComponentKind::Numbers),
             _ if header.components > 1 => {
-                assert!(matches!(header.meaning, Meaning::Channels(_)), "{name}");
+                assert!(
+                    matches!(header.meaning, ComponentKind::Channels(_)),
+                    "{name}"
+                );
             }
-            _ => assert_eq!(header.meaning, Meaning::Numbers, "{name}"),
+            _ => assert_eq!(header.meaning, ComponentKind::Numbers, "{name}"),
         }
         if let Some(wanted) = row["steps"].as_array() {
             for (found, wanted) in steps(header).into_iter().zip(wanted) {
@@ -146,7 +152,7 @@ fn every_variant_holds_what_its_writer_reads() {
             );
         }
         if let Some(wanted) = row["channels"].as_array() {
-            let Meaning::Channels(channels) = &header.meaning else {
+            let ComponentKind::Channels(channels) = &header.meaning else {
                 panic!("{name}: {:?}", header.meaning);
             };
             assert_eq!(channels.len(), wanted.len(), "{name}");
@@ -171,7 +177,7 @@ fn a_box_holds_the_same_numbers_as_the_whole() {
         let source = open(&name);
         let header = source.header();
         let [w, h, d] = header.dims;
-        let pick = Pick {
+        let pick = TimeComponent {
             time: header.times - 1,
             component: header.components - 1,
         };

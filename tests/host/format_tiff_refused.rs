@@ -5,7 +5,7 @@ use crate::tiff::Page;
 use crate::tiff::Value::{Bytes, Long, Longs, Short};
 use std::path::Path;
 use stratavox::format;
-use stratavox::volume::{Limits, Pick, ReadError, Wanted};
+use stratavox::volume::{Limits, ReadError, TimeComponent, VolumeSelection};
 
 fn gray() -> Page {
     Page::gray(3, 2, vec![1, 2, 3, 4, 5, 6])
@@ -32,11 +32,11 @@ fn refused_at(path: &Path) -> String {
 }
 
 fn read_all(path: &Path) -> Result<usize, ReadError> {
-    let source = format::open(path, &Wanted::default(), &Limits::default())?;
+    let source = format::open(path, &VolumeSelection::default(), &Limits::default())?;
     let mut count = 0;
     for time in 0..source.header().times {
         for component in 0..source.header().components {
-            let pick = Pick { time, component };
+            let pick = TimeComponent { time, component };
             count += source.read(pick, source.header().whole())?.voxels.len();
         }
     }
@@ -158,7 +158,7 @@ fn pages_that_go_round_or_never_end_are_refused() {
     };
     let folder = Folder::new();
     let path = folder.write("a.tif", crate::tiff::file(&vec![gray(); 11], None));
-    let error = format::open(&path, &Wanted::default(), &limits)
+    let error = format::open(&path, &VolumeSelection::default(), &limits)
         .err()
         .unwrap();
     assert!(
@@ -400,7 +400,12 @@ fn a_folder_is_read_where_all_its_slices_fit_and_is_left_to_others_where_it_is_t
         folder.write(&format!("s{number}.TIFF"), slice(number));
     }
     folder.write("notes.txt", "hello");
-    let source = format::open(&folder.path(""), &Wanted::default(), &Limits::default()).unwrap();
+    let source = format::open(
+        &folder.path(""),
+        &VolumeSelection::default(),
+        &Limits::default(),
+    )
+    .unwrap();
     assert_eq!(source.header().dims, [3, 2, 3]);
     let notes = source.header().notes.join("\n");
     assert!(
@@ -408,7 +413,7 @@ fn a_folder_is_read_where_all_its_slices_fit_and_is_left_to_others_where_it_is_t
         "{notes}"
     );
     let voxels = source
-        .read(Pick::default(), source.header().whole())
+        .read(TimeComponent::default(), source.header().whole())
         .unwrap()
         .voxels;
     let layers: Vec<f32> = crate::files::numbers(&voxels)

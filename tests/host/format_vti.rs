@@ -9,7 +9,9 @@ use crate::vtk;
 use files::{Folder, message, numbers};
 use glam::dvec3;
 use stratavox::format;
-use stratavox::volume::{Limits, Meaning, Pick, VoxelBox, VoxelType, Voxels, Wanted};
+use stratavox::volume::{
+    ComponentKind, Limits, TimeComponent, VolumeSelection, VoxelBox, VoxelType, Voxels,
+};
 
 /// An image of bytes in words; `extent` is that of the only piece.
 fn file(image: &str, data: &str) -> String {
@@ -50,7 +52,7 @@ fn real_files_are_what_the_manifest_says_and_agree_with_each_other() {
     };
     let open = |name: &str| {
         let path = folder.join("vti-headsq").join(name);
-        format::open(&path, &Wanted::default(), &Limits::default()).unwrap()
+        format::open(&path, &VolumeSelection::default(), &Limits::default()).unwrap()
     };
     let (all, every_second) = (open("headsq.vti"), open("headsq-inline.vti"));
     for z in 0..47 {
@@ -58,8 +60,10 @@ fn real_files_are_what_the_manifest_says_and_agree_with_each_other() {
             min: [0, 0, z],
             max: [64, 64, z + 1],
         };
-        let wanted = all.read(Pick::default(), slice(2 * z)).unwrap();
-        let found = every_second.read(Pick::default(), slice(z)).unwrap();
+        let wanted = all.read(TimeComponent::default(), slice(2 * z)).unwrap();
+        let found = every_second
+            .read(TimeComponent::default(), slice(z))
+            .unwrap();
         assert_eq!(found, wanted, "slice {z}");
     }
 }
@@ -70,15 +74,15 @@ fn a_box_and_a_component_of_any_encoding_are_those_of_the_whole() {
         min: [1, 2, 1],
         max: [4, 3, 3],
     };
-    let pick = Pick {
+    let pick = TimeComponent {
         time: 0,
         component: 2,
     };
     let mut tried = 0;
     for name in ["several.vti", "several64.vti", "several-inline.vti"] {
-        let wanted = Wanted {
+        let wanted = VolumeSelection {
             variable: Some("flow".to_owned()),
-            ..Wanted::default()
+            ..VolumeSelection::default()
         };
         let path = vtk::folder("vti").join(name);
         let source = format::open(&path, &wanted, &Limits::default()).unwrap();
@@ -100,14 +104,14 @@ fn a_box_and_a_component_of_any_encoding_are_those_of_the_whole() {
 fn arrays_are_variables_with_the_active_scalars_first_and_a_time_has_its_name() {
     for name in ["several.vti", "several64.vti", "several-inline.vti"] {
         let path = vtk::folder("vti").join(name);
-        let open = |wanted: &Wanted| format::open(&path, wanted, &Limits::default());
-        let source = open(&Wanted::default()).unwrap();
+        let open = |wanted: &VolumeSelection| format::open(&path, wanted, &Limits::default());
+        let source = open(&VolumeSelection::default()).unwrap();
         let header = source.header();
         assert_eq!(header.variables, ["a", "b", "flow", "b (cells)"], "{name}");
         assert_eq!(header.time_names, ["0.1"], "{name}");
-        let wanted = Wanted {
+        let wanted = VolumeSelection {
             variable: Some("who".to_owned()),
-            ..Wanted::default()
+            ..VolumeSelection::default()
         };
         let error = message(&open(&wanted).err().expect("no such array"));
         assert!(error.contains("b, a, flow, b (cells)"), "{error}");
@@ -197,7 +201,7 @@ fn text_may_stand_beside_the_keys_that_vtk_adds_and_marks_are_no_variables() {
     assert_eq!(header.variables, ["s"]);
     assert_eq!(
         (header.stored, header.meaning),
-        (VoxelType::U8, Meaning::Numbers)
+        (VoxelType::U8, ComponentKind::Numbers)
     );
     let notes = &header.notes;
     assert!(

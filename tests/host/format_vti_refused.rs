@@ -9,7 +9,7 @@ use crate::vtk;
 use encode::zlib;
 use files::{Folder, message};
 use stratavox::format;
-use stratavox::volume::{Limits, Problem, Wanted};
+use stratavox::volume::{Limits, Problem, VolumeSelection};
 
 /// Six bytes in words.
 const GOOD: &str = "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt32\">\n\
@@ -174,7 +174,7 @@ fn what_is_wrong_is_named() {
     }
     let lzma = format::open(
         &vtk::folder("vti").join("lzma.vti"),
-        &Wanted::default(),
+        &VolumeSelection::default(),
         &Limits::default(),
     );
     let error = message(&lzma.err().expect("no reader of LZMA"));
@@ -328,7 +328,7 @@ fn a_volume_that_the_bytes_cannot_hold_is_refused_when_the_file_is_opened() {
                 changed.splice(at..at + from.len(), format!("\"{extent}\"").bytes());
             }
             let path = folder.write(name, &changed);
-            let error = format::open(&path, &Wanted::default(), &Limits::default());
+            let error = format::open(&path, &VolumeSelection::default(), &Limits::default());
             let error = error.err().unwrap_or_else(|| panic!("{name} {extent}"));
             assert!(
                 !matches!(error.problem, Problem::Io { .. }),

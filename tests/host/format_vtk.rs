@@ -8,7 +8,7 @@ use crate::vtk;
 use files::{Folder, numbers};
 use glam::{DVec3, dvec3};
 use stratavox::format;
-use stratavox::volume::{Limits, Meaning, VoxelType, Voxels, Wanted};
+use stratavox::volume::{ComponentKind, Limits, VolumeSelection, VoxelType, Voxels};
 
 /// Structured points of 3 x 2 x 1.
 fn file(kind: &str, rest: &str) -> String {
@@ -34,7 +34,7 @@ fn arrays_are_variables_with_active_scalars_first_and_a_time_has_its_name() {
         "several-binary-51.vtk",
     ] {
         let path = vtk::folder("vtk").join(name);
-        let source = format::open(&path, &Wanted::default(), &Limits::default()).unwrap();
+        let source = format::open(&path, &VolumeSelection::default(), &Limits::default()).unwrap();
         assert_eq!(source.header().variables[0], "s", "{name}");
         assert_eq!(source.header().variables.len(), 4, "{name}");
         assert_eq!(source.header().time_names, ["2.5"], "{name}");
@@ -61,9 +61,9 @@ fn old_keywords_lookup_tables_and_fields_are_understood() {
         (dvec3(10.0, 20.0, 30.0), dvec3(12.0, 20.0, 30.0))
     );
 
-    let wanted = Wanted {
+    let wanted = VolumeSelection {
         variable: Some("c".to_owned()),
-        ..Wanted::default()
+        ..VolumeSelection::default()
     };
     let path = folder.path("a.vtk");
     let source = format::open(&path, &wanted, &Limits::default()).unwrap();
@@ -100,7 +100,7 @@ fn colors_are_bytes_in_binary_files_and_fractions_in_words() {
         .unwrap();
     assert_eq!(
         (header.meaning, header.stored),
-        (Meaning::Rgba, VoxelType::U8)
+        (ComponentKind::Rgba, VoxelType::U8)
     );
     assert_eq!(numbers(&read.voxels), [0.0, 4.0, 8.0, 12.0, 16.0, 20.0]);
     let words = "0 0.5 1\n".repeat(6);
@@ -111,13 +111,13 @@ fn colors_are_bytes_in_binary_files_and_fractions_in_words() {
     let (header, _) = folder.read("a.vtk", &text).unwrap();
     assert_eq!(
         (header.meaning, header.stored),
-        (Meaning::Rgb, VoxelType::U8)
+        (ComponentKind::Rgb, VoxelType::U8)
     );
     let words = text
         .replace("rgb 3", "grey 1")
         .replace("0 0.5 1\n", "0.498 ");
     let (header, read) = folder.read("a.vtk", words + "\n").unwrap();
-    assert_eq!(header.meaning, Meaning::Numbers);
+    assert_eq!(header.meaning, ComponentKind::Numbers);
     assert_eq!(read.voxels, Voxels::U8(vec![127; 6]));
     let error = folder.refused("a.vtk", text.replace("0.5", "1.5"));
     assert!(error.contains("`1.5` is no fraction of 1"), "{error}");

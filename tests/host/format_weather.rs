@@ -7,7 +7,7 @@ use crate::truth;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use stratavox::format;
-use stratavox::volume::{Limits, Pick, Statistics, Voxels, Wanted};
+use stratavox::volume::{Limits, Statistics, TimeComponent, VolumeSelection, Voxels};
 
 fn check(entry: &Value, variable: &Value) {
     let id = entry["id"].as_str().unwrap();
@@ -15,10 +15,10 @@ fn check(entry: &Value, variable: &Value) {
     let path = truth::folder()
         .unwrap()
         .join(entry["path"].as_str().unwrap());
-    let wanted = Wanted {
+    let wanted = VolumeSelection {
         variable: Some(name.to_owned()),
         as_stored: true,
-        ..Wanted::default()
+        ..VolumeSelection::default()
     };
     let source = format::open(&path, &wanted, &Limits::default()).unwrap();
     let header = source.header();
@@ -37,7 +37,7 @@ fn check(entry: &Value, variable: &Value) {
     for time in 0..header.times {
         for component in 0..header.components {
             let piece = source
-                .read(Pick { time, component }, header.whole())
+                .read(TimeComponent { time, component }, header.whole())
                 .unwrap();
             let Voxels::F32(numbers) = piece.voxels else {
                 panic!("{id} {name}: no floats");

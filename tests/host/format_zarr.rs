@@ -6,7 +6,7 @@ use crate::zarr;
 
 use serde_json::Value;
 use sha2::{Digest, Sha256};
-use stratavox::volume::{Pick, VoxelBox};
+use stratavox::volume::{TimeComponent, VoxelBox};
 use zarr::{Store, all, open, region, variants};
 
 /// Numbers of 32 and 64 bits are kept as f32: 2^-24 of each.
@@ -79,7 +79,7 @@ fn a_part_of_an_array_has_the_numbers_that_the_whole_has_there() {
         let [nx, ny, nz] = header.dims;
         for time in 0..header.times {
             for component in 0..header.components {
-                let pick = Pick { time, component };
+                let pick = TimeComponent { time, component };
                 let whole = region(&*source, pick, header.whole()).unwrap();
                 for min in [
                     [0, 0, 0],
@@ -122,12 +122,12 @@ fn only_chunks_that_meet_the_wanted_box_are_decoded() {
         min: [0; 3],
         max: [nx, ny, 2],
     };
-    assert!(region(&*source, Pick::default(), near).is_ok());
+    assert!(region(&*source, TimeComponent::default(), near).is_ok());
     let far = VoxelBox {
         min: [0; 3],
         max: [nx, ny, nz],
     };
-    assert!(region(&*source, Pick::default(), far).is_err());
+    assert!(region(&*source, TimeComponent::default(), far).is_err());
 }
 
 #[test]

@@ -7,7 +7,7 @@ use crate::mutate::{Mutation, Random};
 use crate::zarr::Store;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use stratavox::format;
-use stratavox::volume::{Limits, Pick, ReadError, Wanted};
+use stratavox::volume::{Limits, ReadError, TimeComponent, VolumeSelection};
 
 /// Small, so that a lie shows.
 const LIMITS: Limits = Limits {
@@ -48,13 +48,13 @@ const BASES: [&str; 23] = [
 
 /// Reads the first times and components of a store. Gives the number of voxels read.
 fn read_all(store: &Store) -> Result<u64, ReadError> {
-    let source = format::open(&store.path(), &Wanted::default(), &LIMITS)?;
+    let source = format::open(&store.path(), &VolumeSelection::default(), &LIMITS)?;
     let header = source.header();
     assert!(header.world_from_voxel.inverse().is_finite(), "{header:?}");
     let mut voxels = 0;
     for time in 0..header.times.min(3) {
         for component in 0..header.components.min(3) {
-            let piece = source.read(Pick { time, component }, header.whole())?;
+            let piece = source.read(TimeComponent { time, component }, header.whole())?;
             assert_eq!(piece.voxels.len() as u64, header.voxel_count(), "voxels");
             voxels += header.voxel_count();
         }

@@ -6,7 +6,7 @@ use crate::zarr;
 use glam::DVec3;
 use serde_json::json;
 use stratavox::format;
-use stratavox::volume::{Limits, Meaning, Wanted};
+use stratavox::volume::{ComponentKind, Limits, VolumeSelection};
 use zarr::{Store, open};
 
 const IMAGES: [&str; 2] = ["ngff-0.4", "ngff-0.5"];
@@ -42,7 +42,7 @@ fn an_image_has_times_channels_and_places_in_the_files_unit() {
 fn channels_have_the_names_colours_and_windows_of_the_file() {
     for name in IMAGES {
         let source = Store::of(name).open().unwrap();
-        let Meaning::Channels(channels) = &source.header().meaning else {
+        let ComponentKind::Channels(channels) = &source.header().meaning else {
             panic!("{name}: {:?}", source.header().meaning);
         };
         assert_eq!(channels[0].name, "nuclei");
@@ -94,7 +94,7 @@ fn the_finest_level_that_fits_the_limit_is_read_and_said() {
                 max_bytes,
                 ..Limits::default()
             };
-            let source = format::open(&store.path(), &Wanted::default(), &limits).unwrap();
+            let source = format::open(&store.path(), &VolumeSelection::default(), &limits).unwrap();
             let header = source.header();
             assert_eq!(header.variables, [level], "{name} {max_bytes}");
             let notes = header.notes.join("; ");
@@ -104,7 +104,7 @@ fn the_finest_level_that_fits_the_limit_is_read_and_said() {
             max_bytes: 40,
             ..Limits::default()
         };
-        let refused = format::open(&store.path(), &Wanted::default(), &limits).map(|_| ());
+        let refused = format::open(&store.path(), &VolumeSelection::default(), &limits).map(|_| ());
         let message = refused.unwrap_err().to_string();
         assert!(
             message.contains("needs 48 bytes, the limit is 40"),

@@ -4,7 +4,7 @@ use crate::zarr::{Store, all, files};
 use serde_json::{Value, json};
 use std::time::Instant;
 use stratavox::format;
-use stratavox::volume::{Limits, Wanted};
+use stratavox::volume::{Limits, VolumeSelection};
 
 /// Changes one value of the metadata of a store of one array.
 fn with(name: &str, pointer: &str, value: Value) -> Store {
@@ -531,7 +531,7 @@ fn headers_longer_than_the_limit_are_not_read() {
         max_header_bytes: 100,
         ..Limits::default()
     };
-    let refused = format::open(&store.path(), &Wanted::default(), &limits).map(|_| ());
+    let refused = format::open(&store.path(), &VolumeSelection::default(), &limits).map(|_| ());
     let message = refused.unwrap_err().to_string();
     assert!(message.contains("the header needs"), "{message}");
 }
@@ -564,7 +564,7 @@ fn a_read_takes_the_volume_and_one_chunk_and_little_else() {
         let whole = source.header().whole();
         crate::memory::start();
         let piece = source
-            .read(stratavox::volume::Pick::default(), whole)
+            .read(stratavox::volume::TimeComponent::default(), whole)
             .unwrap();
         let peak = crate::memory::peak_since_start();
         assert_eq!(piece.voxels.len(), VOLUME_BYTES / 2);

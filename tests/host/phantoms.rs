@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use stratavox::volume::field::{Ball, Field, Fog, Gaussian, Linear, MarschnerLobb};
-use stratavox::volume::{Limits, Pick, Problem, Source, Volume, VoxelType, phantom};
+use stratavox::volume::{Limits, Problem, Source, TimeComponent, Volume, VoxelType, phantom};
 
 fn open(spec: &str) -> Box<dyn Source> {
     phantom::open(spec, &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
@@ -12,7 +12,7 @@ fn volume(spec: &str) -> Volume {
     let source = open(spec);
     Volume::read(
         &*source,
-        Pick::default(),
+        TimeComponent::default(),
         source.header().whole(),
         &Limits::default(),
     )
@@ -283,7 +283,7 @@ fn the_storm_has_variables_and_times_that_differ_and_stay_in_their_range() {
         assert_eq!(source.header().variables[0], name);
         assert_eq!(source.header().variables.len(), names.len());
         let at = |time| {
-            let pick = Pick { time, component: 0 };
+            let pick = TimeComponent { time, component: 0 };
             Volume::read(&*source, pick, source.header().whole(), &Limits::default()).unwrap()
         };
         for time in 0..3 {
@@ -301,12 +301,12 @@ fn the_storm_has_variables_and_times_that_differ_and_stay_in_their_range() {
 fn a_phantom_has_the_same_bytes_each_time() {
     let source = open("storm,n=24,times=2");
     let whole = source
-        .read(Pick::default(), source.header().whole())
+        .read(TimeComponent::default(), source.header().whole())
         .unwrap();
     assert_eq!(
         whole,
         source
-            .read(Pick::default(), source.header().whole())
+            .read(TimeComponent::default(), source.header().whole())
             .unwrap()
     );
 }

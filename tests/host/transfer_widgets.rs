@@ -4,8 +4,9 @@
 
 use glam::{DAffine3, DVec3};
 use stratavox::transfer::{
-    Cells, ColorPoint, FileProblem, Interpolation, JointCounts, OpacityPoint, Second, Shape,
-    TransferFunction, Window, boundaries, transfer_function_from_json, transfer_function_to_json,
+    Cells, ColorPoint, FileProblem, Interpolation, JointCounts, OpacityPoint, SecondDerivative,
+    Shape, TransferFunction, Window, boundaries, transfer_function_from_json,
+    transfer_function_to_json,
 };
 use stratavox::volume::{JointHistogram, Rescale, Volume, Voxels, steepest_gradient};
 
@@ -45,11 +46,11 @@ fn every_shape_is_read_and_comes_back_as_it_was_written() {
     };
     assert_eq!(graded.widgets[5].shape, image);
     let (middle, sigma) = (0.1, 0.05);
-    let bell = Second::Bell { middle, sigma };
+    let bell = SecondDerivative::Bell { middle, sigma };
     assert_eq!(graded.widgets[4].second, Some(bell));
-    let corners = Second::Trapezoid([-0.5, -0.2, 0.0, 0.3]);
+    let corners = SecondDerivative::Trapezoid([-0.5, -0.2, 0.0, 0.3]);
     assert_eq!(graded.widgets[5].second, Some(corners));
-    let box_shaped = Second::Trapezoid([-1.0, -1.0, 1.0, 1.0]);
+    let box_shaped = SecondDerivative::Trapezoid([-1.0, -1.0, 1.0, 1.0]);
     assert_eq!(graded.widgets[6].second, Some(box_shaped));
     let colors = [
         [255, 0, 0, 128],

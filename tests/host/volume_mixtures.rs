@@ -4,8 +4,8 @@ use glam::{DAffine3, DVec3};
 use std::path::Path;
 use stratavox::volume::labels::{hide, labels_of, on_grid};
 use stratavox::volume::{
-    Format, Grid, Header, Limits, Magnitude, Meaning, Pick, Piece, ReadError, Rescale, Source,
-    Volume, VoxelBox, VoxelType, Voxels, luma, read_colors,
+    ComponentKind, Format, Grid, Header, Limits, Magnitude, Piece, ReadError, Rescale, Source,
+    TimeComponent, Volume, VoxelBox, VoxelType, Voxels, luma, read_colors,
 };
 
 /// Numbers in memory, one list a component.
@@ -33,7 +33,7 @@ impl Source for Memory {
         &self.header
     }
 
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         let [nx, ny, _] = self.header.dims;
         let all = (region.min[2]..region.max[2]).flat_map(move |z| {
             (region.min[1]..region.max[1]).flat_map(move |y| {
@@ -52,7 +52,7 @@ impl Source for Memory {
 
 fn whole(source: &dyn Source) -> Volume {
     let region = source.header().whole();
-    Volume::read(source, Pick::default(), region, &Limits::default()).expect("a volume")
+    Volume::read(source, TimeComponent::default(), region, &Limits::default()).expect("a volume")
 }
 
 fn labels(dims: [u32; 3], affine: DAffine3, codes: Vec<u8>) -> Volume {
@@ -75,7 +75,7 @@ fn the_length_of_a_vector_is_taken_after_rescale_and_holes_stay_holes() {
     source.header.fill = Some(0.5);
     let lengths = Magnitude::new(Box::new(source));
     assert_eq!(lengths.header().components, 1);
-    assert_eq!(lengths.header().meaning, Meaning::Numbers);
+    assert_eq!(lengths.header().meaning, ComponentKind::Numbers);
     assert!(lengths.header().notes[0].contains("length"));
     let volume = whole(&lengths);
     assert_eq!(volume.validity, Some(vec![1, 0, 1, 0]));
@@ -95,7 +95,10 @@ fn a_part_of_lengths_is_the_part_of_the_whole() {
         min: [1, 2, 1],
         max: [4, 4, 3],
     };
-    let found = lengths.read(Pick::default(), part).expect("a piece").voxels;
+    let found = lengths
+        .read(TimeComponent::default(), part)
+        .expect("a piece")
+        .voxels;
     let mut next = 0;
     for z in 1..3 {
         for y in 2..4 {
@@ -118,7 +121,7 @@ fn colours_of_bytes_are_multiplied_with_alpha_without_loss() {
         bytes([255, 255, 3, 0]),
     ];
     let mut source = Memory::new([4, 1, 1], VoxelType::U8, channels);
-    source.header.meaning = Meaning::Rgba;
+    source.header.meaning = ComponentKind::Rgba;
     let found = read_colors(&source, 0, &Limits::default()).expect("colours");
     let [red, _, blue, alpha] = &found[..] else {
         panic!("{} volumes", found.len());

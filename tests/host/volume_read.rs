@@ -3,8 +3,8 @@
 use glam::{DAffine3, DMat3, DVec3};
 use std::path::Path;
 use stratavox::volume::{
-    Format, Header, Limits, Pick, Piece, Problem, ReadError, Rescale, Source, Volume, VoxelBox,
-    VoxelType, Voxels, phantom,
+    Format, Header, Limits, Piece, Problem, ReadError, Rescale, Source, TimeComponent, Volume,
+    VoxelBox, VoxelType, Voxels, phantom,
 };
 
 /// Two times of one number each, or a trap for who reads what should have been refused.
@@ -22,7 +22,7 @@ impl Source for Given {
         &self.header
     }
 
-    fn read(&self, pick: Pick, _region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, _region: VoxelBox) -> Result<Piece, ReadError> {
         Ok(self.times[pick.time as usize].clone().into())
     }
 }
@@ -132,8 +132,15 @@ fn a_falling_rescale_still_gives_an_ascending_range() {
 #[test]
 fn a_box_of_a_volume_lies_where_it_lay_in_the_whole() {
     let source = phantom::open("phantom:head,n=20", &Limits::default()).unwrap();
-    let read =
-        |region| Volume::read(&*source, Pick::default(), region, &Limits::default()).unwrap();
+    let read = |region| {
+        Volume::read(
+            &*source,
+            TimeComponent::default(),
+            region,
+            &Limits::default(),
+        )
+        .unwrap()
+    };
     let whole = read(source.header().whole());
     let part = read(VoxelBox {
         min: [3, 5, 2],
@@ -172,7 +179,12 @@ fn what_does_not_fit_the_limits_is_refused_before_it_is_read() {
             max_bytes: 999_999,
             ..Limits::default()
         };
-        let found = Volume::read(&source, Pick::default(), source.header.whole(), &limits);
+        let found = Volume::read(
+            &source,
+            TimeComponent::default(),
+            source.header.whole(),
+            &limits,
+        );
         let error = found.expect_err("a volume over the limit");
         match error.problem {
             Problem::Limit {
@@ -197,7 +209,12 @@ fn the_memory_to_fill_holes_counts_too() {
             max_bytes,
             ..Limits::default()
         };
-        Volume::read(&source, Pick::default(), source.header.whole(), &limits)
+        Volume::read(
+            &source,
+            TimeComponent::default(),
+            source.header.whole(),
+            &limits,
+        )
     };
     // Four bytes of number, one of mask, four of distance for each.
     assert!(read(18).is_ok());
@@ -222,7 +239,7 @@ fn a_pick_or_box_outside_of_the_source_is_an_error_that_says_what_there_is() {
         let error = Volume::read(&*source, pick, region, &Limits::default()).expect_err("outside");
         error.to_string()
     };
-    let pick = |time, component| Pick { time, component };
+    let pick = |time, component| TimeComponent { time, component };
     assert_eq!(
         read(pick(3, 0), whole),
         "cannot read storm,n=8,times=3: phantom field `time`: wanted 0 to 2, found 3"
@@ -286,7 +303,7 @@ fn a_source_that_breaks_its_promise_is_an_error() {
     };
     let found = Volume::read(
         &source,
-        Pick::default(),
+        TimeComponent::default(),
         source.header.whole(),
         &Limits::default(),
     );

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DVec3};
 use std::path::Path;
 use stratavox::volume::{
-    Format, Header, Pick, Piece, ReadError, Reduced, Source, VoxelBox, VoxelType, Voxels,
+    Format, Header, Piece, ReadError, Reduced, Source, TimeComponent, VoxelBox, VoxelType, Voxels,
 };
 
 /// Voxels in memory.
@@ -37,7 +37,7 @@ impl Source for Given {
     fn header(&self) -> &Header {
         &self.header
     }
-    fn read(&self, _: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, _: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         let [nx, ny, _] = self.header.dims;
         let mut voxels = Vec::new();
         for z in region.min[2]..region.max[2] {
@@ -51,7 +51,11 @@ impl Source for Given {
 }
 
 fn numbers(source: &dyn Source, region: VoxelBox) -> Vec<f32> {
-    match source.read(Pick::default(), region).expect("voxels").voxels {
+    match source
+        .read(TimeComponent::default(), region)
+        .expect("voxels")
+        .voxels
+    {
         Voxels::F32(numbers) => numbers,
         other => panic!("{:?}", other.voxel_type()),
     }

@@ -4,8 +4,8 @@ use glam::DAffine3;
 use half::f16;
 use std::path::Path;
 use stratavox::volume::{
-    Format, Header, Histogram, Limits, Pick, Piece, ReadError, Rescale, Source, Statistics,
-    VoxelBox, VoxelType, Voxels,
+    Format, Header, Histogram, Limits, Piece, ReadError, Rescale, Source, Statistics,
+    TimeComponent, VoxelBox, VoxelType, Voxels,
 };
 
 struct Given {
@@ -22,7 +22,7 @@ impl Source for Given {
         &self.header
     }
 
-    fn read(&self, pick: Pick, _region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, _region: VoxelBox) -> Result<Piece, ReadError> {
         Ok(self.times[pick.time as usize].clone().into())
     }
 }

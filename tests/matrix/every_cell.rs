@@ -1,4 +1,4 @@
-//! The matrix of `docs/matrix.md`: every cell is drawn by the device as by its twin, or refused by both with the same
+//! The matrix of `docs/matrix.md`: every cell is drawn by the device as by its CPU reference, or refused by both with the same
 //! reason, and the page says which.
 
 use crate::cells::{DENOISE, FEATURES, FILTERS, Feature, MODES, Matter, Seen, settings};
@@ -9,7 +9,7 @@ use stratavox::gpu::Caps;
 use stratavox::offscreen::{self, Renderer, reference};
 use stratavox::picture::Picture;
 use stratavox::scene::Scene;
-use stratavox::technique::{Filter, Keep, Technique};
+use stratavox::technique::{Filter, GradientStorage, Technique};
 
 #[test]
 fn the_page_says_what_the_checks_of_the_code_say() {
@@ -67,7 +67,7 @@ fn assert_cells(technique: Technique) {
                 nth += 1;
                 let mut settings = settings(technique, mode, filter, feature);
                 // Kept gradients are filtered by the device.
-                settings.conformance = settings.keep_gradients != Keep::Always;
+                settings.conformance = settings.gradient_storage != GradientStorage::Precomputed;
                 let scenes = [&of_device, &matter]
                     .map(|matter| matter.scene(nth, feature.seen, &settings, &channels, &parts));
                 drawn += usize::from(is_drawn(&mut renderer, scenes, feature));
@@ -79,28 +79,29 @@ fn assert_cells(technique: Technique) {
 }
 
 /// Drawn as computed, or refused by all three in the same words.
-fn is_drawn(renderer: &mut Renderer, [scene, of_twin]: [Scene; 2], feature: &Feature) -> bool {
+fn is_drawn(renderer: &mut Renderer, [scene, of_reference]: [Scene; 2], feature: &Feature) -> bool {
     let settings = scene.settings;
     let what = format!(
         "{}, {:?} {:?} {:?} {:?}",
         feature.name, settings.technique, settings.mode, settings.filter, scene.camera.projection
     );
     let found = renderer.render(&scene, &[]);
-    let twins = [
-        reference::render::<f64>(&of_twin),
-        reference::render::<f32>(&of_twin),
+    let references = [
+        reference::render::<f64>(&of_reference),
+        reference::render::<f32>(&of_reference),
     ];
     if let Err(refused) = scene.check() {
         let reason = refused.to_string();
         let of_device = found.err().map(|error| text_of(&error));
         assert_eq!(of_device.as_ref(), Some(&reason), "{what}: device");
-        for twin in twins {
-            let of_twin = twin.err().map(|error| text_of(&error));
-            assert_eq!(of_twin.as_ref(), Some(&reason), "{what}: twin");
+        for reference in references {
+            let of_reference = reference.err().map(|error| text_of(&error));
+            assert_eq!(of_reference.as_ref(), Some(&reason), "{what}: reference");
         }
         return false;
     }
-    let [double, single] = twins.map(|twin| twin.unwrap_or_else(|e| panic!("{what}: {e}")));
+    let [double, single] =
+        references.map(|reference| reference.unwrap_or_else(|e| panic!("{what}: {e}")));
     let found = found.unwrap_or_else(|e| panic!("{what}: {e}")).picture;
     let covered = single.pixels.iter().filter(|p| p[3] > 0.01).count();
     assert!(covered > 80, "{what}: only {covered} pixels are drawn");

@@ -95,7 +95,7 @@ fn every_technique_and_mode_draws_the_same_bytes_under_the_least_limits_and_in_b
             float32_blend: technique != Technique::Raycast,
             ..caps
         });
-        // Which samples are left out hangs on the bricks.
+        // Which samples are left out depends on the bricks.
         let dress = |settings: &mut Settings| {
             settings.skip = false;
             settings.conformance = true;

@@ -2,7 +2,7 @@
 //! channels, a slice drawn as two; and what early termination may leave out.
 
 use crate::shared::{
-    Chord, Shot, Worst, device, oblique_camera, oblique_shots, ramps, sheared_affine,
+    Chord, PictureCase, Worst, device, oblique_camera, oblique_shots, ramps, sheared_affine,
     straight_shots, volume_of, waves,
 };
 use glam::{DAffine3, DVec3};
@@ -19,7 +19,7 @@ const SHEARED: fn() -> Grid = || Grid {
 };
 
 /// Oblique from outside, and from inside with a wide lens.
-fn shots() -> Vec<Shot> {
+fn shots() -> Vec<PictureCase> {
     let grid = SHEARED();
     let outside = oblique_shots(grid, Mode::Composite);
     let wide = Projection::Perspective { fov_degrees: 120.0 };
@@ -29,11 +29,11 @@ fn shots() -> Vec<Shot> {
             .transform_point3(DVec3::new(7.3, 12.1, 6.2)),
         ..oblique_camera(&grid, wide)
     };
-    let from_inside = outside[..outside.len() / 2].iter().map(|shot| Shot {
+    let from_inside = outside[..outside.len() / 2].iter().map(|shot| PictureCase {
         camera: inside,
         ..shot.clone()
     });
-    let mut all: Vec<Shot> = from_inside.collect();
+    let mut all: Vec<PictureCase> = from_inside.collect();
     all.extend(outside);
     all
 }
@@ -43,12 +43,12 @@ fn rendered(
     renderer: &mut Renderer,
     volume: &Volume,
     transfer: &TransferFunction,
-    shot: &Shot,
+    shot: &PictureCase,
 ) -> [(&'static str, Picture); 2] {
     let scene = shot.scene(volume, Some(transfer));
     [
         ("device", renderer.render(&scene, &[]).unwrap().picture),
-        ("twin", reference::render::<f32>(&scene).unwrap()),
+        ("reference", reference::render::<f32>(&scene).unwrap()),
     ]
 }
 
@@ -98,7 +98,7 @@ fn check_split(
     renderer: &mut Renderer,
     volume: &Volume,
     transfer: &TransferFunction,
-    shot: &Shot,
+    shot: &PictureCase,
     at: [f64; 3],
 ) {
     let far = shot.grid.far_corner();
@@ -121,7 +121,8 @@ fn check_split(
                 let Some(chord) = Chord::of(shot, pixel) else {
                     continue;
                 };
-                let hangs = |part: &Shot| Chord::of(part, pixel).is_some_and(|chord| chord.hangs);
+                let hangs =
+                    |part: &PictureCase| Chord::of(part, pixel).is_some_and(|chord| chord.hangs);
                 if hangs(&low) || hangs(&high) {
                     worst.leave_out();
                     continue;
@@ -181,7 +182,7 @@ fn every_slice_drawn_as_two_of_half_the_depth_is_the_same_picture() {
     for shot in straight_shots(grid, Mode::Composite) {
         let shot = shot.with(|settings| settings.filter = Filter::Nearest);
         // The smallest spacing is now 1/2: two samples where there was one.
-        let doubled = Shot {
+        let doubled = PictureCase {
             grid: double.grid(),
             ..shot.clone()
         };

@@ -103,7 +103,7 @@ fn assert_same_picture(volume: &Volume, camera: &Camera, settings: Vec<Settings>
     let mut whole = Renderer::new(device(), volume).unwrap();
     let mut bricked = Renderer::new(device_with(small()), volume).unwrap();
     for settings in settings {
-        // What rays leave out hangs on the bricks: tests/relations/skipping.rs has pictures of that. Here all samples are
+        // What rays leave out depends on the bricks: tests/relations/skipping.rs has pictures of that. Here all samples are
         // counted.
         let settings = Settings {
             skip: false,

@@ -1,11 +1,11 @@
 //! What is kept of a volume, and from where it is looked at: the eye inside with a wide lens, crop boxes with
 //! fractions, clip planes, holes, flat volumes, long voxels, a world far from its origin, several rays a
-//! pixel. Exact answers hold in all of them, and the device follows its twin.
+//! pixel. Exact answers hold in all of them, and the device follows its CPU reference.
 
 use crate::shared::oracle::{constant_color, homogeneous, linear_density};
 use crate::shared::{
-    Chord, Device, Shot, Twin, Way, Worst, device, inner_box, oblique_camera, oblique_shots, ramps,
-    sheared_affine, volume_of, waves,
+    Chord, Device, PictureCase, Reference, Way, Worst, device, inner_box, oblique_camera,
+    oblique_shots, ramps, sheared_affine, volume_of, waves,
 };
 use glam::{DAffine3, DMat3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
@@ -23,14 +23,14 @@ const SHEARED: fn() -> Grid = || Grid {
 
 fn ways() -> [Box<dyn Way>; 3] {
     [
-        Box::new(Twin::<f64>::new()),
-        Box::new(Twin::<f32>::new()),
+        Box::new(Reference::<f64>::new()),
+        Box::new(Reference::<f32>::new()),
         Box::new(Device),
     ]
 }
 
 /// A2 where nothing is cut yet: without the outer half voxel.
-fn inner(shot: &Shot) -> Shot {
+fn inner(shot: &PictureCase) -> PictureCase {
     let inner = inner_box(&shot.grid);
     shot.with(|settings| {
         let [low, high] = settings.crop.unwrap_or(inner);
@@ -38,7 +38,7 @@ fn inner(shot: &Shot) -> Shot {
     })
 }
 
-fn exact_answers_hold(shots: &[Shot]) {
+fn exact_answers_hold(shots: &[PictureCase]) {
     for way in ways() {
         for shot in shots {
             homogeneous(&*way, shot).assert_holds();
@@ -65,7 +65,7 @@ fn exact_answers_hold_with_the_eye_inside_and_a_wide_lens() {
         };
         for camera in [camera, parallel] {
             let all = oblique_shots(grid, Mode::Composite).into_iter().take(6);
-            shots.extend(all.map(|shot| Shot { camera, ..shot }));
+            shots.extend(all.map(|shot| PictureCase { camera, ..shot }));
         }
     }
     exact_answers_hold(&shots);
@@ -124,7 +124,7 @@ fn a_polytope_of_as_many_planes_as_there_may_be_is_cut_out_exactly() {
         let shots = shots.map(|shot| shot.with(|settings| settings.clip_planes = planes.clone()));
         for shot in shots {
             let extent = [16, 14];
-            let shot = Shot { extent, ..shot };
+            let shot = PictureCase { extent, ..shot };
             let lengths = shot
                 .pixels()
                 .filter_map(|pixel| Some(Chord::of(&shot, pixel)?.length()));
@@ -195,7 +195,7 @@ fn a_world_far_from_its_origin_is_the_same_picture() {
             target: shot.camera.target + far,
             ..shot.camera
         };
-        let away = Shot {
+        let away = PictureCase {
             grid: moved.grid(),
             camera,
             ..shot.clone()
@@ -285,7 +285,7 @@ fn a_sample_counts_where_its_whole_footprint_has_data() {
                     .unwrap()
                     .picture;
                 let on_cpu = reference::render::<f64>(&scene).unwrap();
-                for (way, picture) in [("device", on_device), ("twin", on_cpu)] {
+                for (way, picture) in [("device", on_device), ("reference", on_cpu)] {
                     let values = picture.layers.iter().find(|l| l.kind == LayerKind::Value);
                     let values = &values.unwrap().values;
                     let what = format!("holes, {filter:?}, {way}, {}", shot.what());
@@ -322,7 +322,7 @@ fn several_rays_a_pixel_are_the_mean_of_a_finer_picture() {
         for shot in oblique_shots(SHEARED(), mode) {
             for per_side in [2, 3] {
                 let together = shot.with(|settings| settings.rays_per_side = per_side);
-                let finer = Shot {
+                let finer = PictureCase {
                     extent: shot.extent.map(|n| n * per_side),
                     ..shot.clone()
                 };
@@ -352,7 +352,7 @@ fn several_rays_a_pixel_are_the_mean_of_a_finer_picture() {
                         .any(|chord| chord.hangs)
                 };
                 // The parameters differ in the last place, and with them where samples lie.
-                for (way, picture) in [("device", &found), ("twin", &cpu)] {
+                for (way, picture) in [("device", &found), ("reference", &cpu)] {
                     let what = format!("{per_side} rays a side, {way}, {}", shot.what());
                     let mut worst = Worst::new(what);
                     for (pixel, found) in shot.pixels().zip(&picture.pixels) {

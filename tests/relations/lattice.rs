@@ -1,9 +1,9 @@
-//! Slicer and caster on one lattice are one picture; 2D stacks follow their twin through a full turn; finer
+//! Slicer and caster on one lattice are one picture; 2D stacks follow their CPU reference through a full turn; finer
 //! steps converge as they should; scales of density, length and resolution do not matter.
 
 use crate::shared::{
-    Chord, Matter, Shot, Twin, Way, Worst, device, oblique_camera, oblique_shots, projections,
-    ramps, sheared_affine, straight_shots, volume_of, waves,
+    Chord, Matter, PictureCase, Reference, Way, Worst, device, oblique_camera, oblique_shots,
+    projections, ramps, sheared_affine, straight_shots, volume_of, waves,
 };
 use glam::{DAffine3, DQuat, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
@@ -42,7 +42,7 @@ fn slicer_and_caster_on_one_lattice_are_one_picture() {
         for samples_per_voxel in [1.0, 2.6] {
             let cameras = projections(&grid).map(|projection| oblique_camera(&grid, projection));
             for camera in cameras.into_iter().chain([inside]) {
-                let shot = |technique, order| Shot {
+                let shot = |technique, order| PictureCase {
                     grid,
                     camera,
                     extent: [48, 40],
@@ -77,7 +77,7 @@ fn slicer_and_caster_on_one_lattice_are_one_picture() {
 }
 
 #[test]
-fn stacks_follow_their_twin_through_a_full_turn_and_switch_at_45_degrees() {
+fn stacks_follow_their_reference_through_a_full_turn_and_switch_at_45_degrees() {
     let grid = Grid {
         dims: [14, 14, 14],
         world_from_voxel: DAffine3::from_translation(dvec3(5.0, -3.0, 40.0)),
@@ -108,7 +108,7 @@ fn stacks_follow_their_twin_through_a_full_turn_and_switch_at_45_degrees() {
                     projection,
                     zoom: 1.0,
                 };
-                let shot = Shot {
+                let shot = PictureCase {
                     grid,
                     camera,
                     extent: [24, 22],
@@ -127,7 +127,7 @@ fn stacks_follow_their_twin_through_a_full_turn_and_switch_at_45_degrees() {
                 }
                 let scene = shot.scene(&volume, Some(&transfer));
                 let found = renderer.render(&scene, &[]).unwrap().picture;
-                let twin = reference::render::<f32>(&scene).unwrap();
+                let reference = reference::render::<f32>(&scene).unwrap();
                 let mut worst = Worst::new(format!("at {angle} degrees, {}", shot.what()));
                 for (i, pixel) in shot.pixels().enumerate() {
                     if Chord::of(&shot, pixel).is_some_and(|chord| chord.hangs) {
@@ -135,7 +135,7 @@ fn stacks_follow_their_twin_through_a_full_turn_and_switch_at_45_degrees() {
                         continue;
                     }
                     for c in 0..4 {
-                        let error = found.pixels[i][c] - twin.pixels[i][c];
+                        let error = found.pixels[i][c] - reference.pixels[i][c];
                         worst.take(pixel, error.into(), 2e-6);
                     }
                 }
@@ -147,7 +147,7 @@ fn stacks_follow_their_twin_through_a_full_turn_and_switch_at_45_degrees() {
 }
 
 /// Root mean square over the pixels of how far opacity is from that of a step 64 times smaller.
-fn error_of(way: &dyn Way, shot: &Shot, matter: &Matter, wanted: &[[f64; 4]]) -> f64 {
+fn error_of(way: &dyn Way, shot: &PictureCase, matter: &Matter, wanted: &[[f64; 4]]) -> f64 {
     let found = way.picture(shot, matter);
     let squares = found.iter().zip(wanted).map(|(f, w)| (f[3] - w[3]).powi(2));
     (squares.sum::<f64>() / found.len() as f64).sqrt()
@@ -165,7 +165,7 @@ fn half_the_step_is_a_quarter_of_the_error_and_half_of_it_at_a_hard_edge() {
     type Field<'a> = &'a (dyn Fn(DVec3) -> f64 + Sync);
     let cases: [(&str, Field, f64, f64); 2] =
         [("smooth", &waves, 4.0, 0.4), ("hard", &ball, 2.0, 0.3)];
-    let twin = Twin::<f64>::new();
+    let reference = Reference::<f64>::new();
     for (what, value, wanted_ratio, allowed) in cases {
         let matter = Matter {
             value,
@@ -179,13 +179,14 @@ fn half_the_step_is_a_quarter_of_the_error_and_half_of_it_at_a_hard_edge() {
             shot.settings.technique == Technique::Raycast && shot.settings.lattice == Lattice::Ray
         });
         for shot in on_rays {
-            let shot = Shot {
+            let shot = PictureCase {
                 extent: [64, 56],
                 ..shot
             };
             let every = |n: f64| shot.with(|settings| settings.samples_per_voxel = n);
-            let wanted = twin.picture(&every(64.0), &matter);
-            let [coarse, fine] = [1.0, 2.0].map(|n| error_of(&twin, &every(n), &matter, &wanted));
+            let wanted = reference.picture(&every(64.0), &matter);
+            let [coarse, fine] =
+                [1.0, 2.0].map(|n| error_of(&reference, &every(n), &matter, &wanted));
             let ratio = coarse / fine;
             println!(
                 "{what}, {}: {coarse:.2e} / {fine:.2e} = {ratio:.3}",
@@ -220,7 +221,7 @@ fn density_times_k_and_length_over_k_is_the_same_picture() {
                 },
                 perspective => perspective,
             };
-            let other = Shot {
+            let other = PictureCase {
                 grid: scaled.grid(),
                 camera: Camera {
                     eye: shot.camera.eye / k,
@@ -271,7 +272,7 @@ fn a_linear_ramp_in_twice_as_many_voxels_is_the_same_picture() {
     let oblique = oblique.filter(|shot| shot.settings.technique != Technique::Slices2d);
     for shot in oblique.chain(straight_shots(grid, Mode::Xray)) {
         let shot = shot.with(|settings| settings.crop = Some(crop));
-        let finer = Shot {
+        let finer = PictureCase {
             grid: fine.grid(),
             ..shot.with(|settings| {
                 settings.crop = Some(crop.map(|corner| 2.0 * corner));

@@ -8,9 +8,11 @@ use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 use stratavox::gpu::{self, Buffer, Caps, Headless, Memory, Use, buffer_barrier};
 use stratavox::resident::{EmptySpace, GpuVolume, MacroCells, TextureLayout};
-use stratavox::shaders::{Frame, REACH, ROOMS_A_WORD};
+use stratavox::shaders::{CELLS_PER_WORD, Frame, REACH};
 use stratavox::technique::{Filter, Settings};
-use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, Seen, TransferFunction};
+use stratavox::transfer::{
+    ColorPoint, Interpolation, OpacityPoint, TransferFunction, VisibleRanges,
+};
 
 /// All words of a buffer, once what is recorded by `record` has run.
 fn read_back(
@@ -104,28 +106,28 @@ fn function() -> TransferFunction {
     }
 }
 
-/// `rooms` of `cells` along each axis are the distances to those that are 0, counted one by one.
-fn check_distances(rooms: &[u8], cells: [u32; 3]) {
+/// `distances` of `cells` along each axis are the distances to those that are 0, counted one by one.
+fn check_distances(distances: &[u8], cells: [u32; 3]) {
     let all = || {
         let [nx, ny, nz] = cells.map(|n| n as i32);
         let rows = (0..nz).flat_map(move |z| (0..ny).map(move |y| (y, z)));
         rows.flat_map(move |(y, z)| (0..nx).map(move |x| [x, y, z]))
     };
     let matter: Vec<_> = all()
-        .zip(rooms)
-        .filter(|(_, room)| **room == 0)
+        .zip(distances)
+        .filter(|(_, distance)| **distance == 0)
         .map(|(cell, _)| cell)
         .collect();
-    for (cell, &room) in all().zip(rooms) {
+    for (cell, &distance) in all().zip(distances) {
         let away = |other: &[i32; 3]| (0..3).map(|k| (other[k] - cell[k]).unsigned_abs()).max();
         let nearest = matter.iter().filter_map(away).min();
         let wanted = nearest.map_or(REACH, |nearest| nearest.min(REACH));
-        assert_eq!(u32::from(room), wanted, "{cell:?} of {cells:?}");
+        assert_eq!(u32::from(distance), wanted, "{cell:?} of {cells:?}");
     }
 }
 
 #[test]
-fn rooms_are_distances_to_the_nearest_cell_with_matter() {
+fn distance_maps_hold_distances_to_the_nearest_cell_with_matter() {
     let mut numbers = Numbers(31);
     // Rows of cells that end a word and that do not, longer than anything is looked for.
     for (dims, bright_count) in [
@@ -148,18 +150,19 @@ fn rooms_are_distances_to_the_nearest_cell_with_matter() {
         let made = GpuVolume::new(&gpu, &volume, TextureLayout::Texture3d).expect("textures");
         let apron = Settings::default().apron();
         let cells = MacroCells::of_voxels(&gpu, &made, apron, &volume).expect("cells");
-        let empty = EmptySpace::new(&gpu, &cells, &Seen::new(&function())).expect("rooms");
+        let empty =
+            EmptySpace::new(&gpu, &cells, &VisibleRanges::new(&function())).expect("distance_map");
         // SAFETY: recorded outside rendering; `run` waits, and all of it lives meanwhile.
         let record = |cmd| unsafe {
             cells.record(cmd)?;
             empty.record(cmd)
         };
-        let words = read_back(&mut device, empty.rooms(), record);
+        let words = read_back(&mut device, empty.distance_map(), record);
         let mut frame = Frame::zeroed();
         cells.tell(0, &mut frame);
         assert_eq!(frame.cells, dims.map(|n| n.div_ceil(8)));
-        let row = frame.cells[0].div_ceil(ROOMS_A_WORD) as usize;
-        let rooms: Vec<_> = words[frame.cells_first as usize..]
+        let row = frame.cells[0].div_ceil(CELLS_PER_WORD) as usize;
+        let distances: Vec<_> = words[frame.cells_first as usize..]
             .chunks_exact(row)
             .take((frame.cells[1] * frame.cells[2]) as usize)
             .flat_map(|row| {
@@ -167,10 +170,10 @@ fn rooms_are_distances_to_the_nearest_cell_with_matter() {
                 bytes.take(frame.cells[0] as usize).collect::<Vec<_>>()
             })
             .collect();
-        let with_matter = rooms.iter().filter(|room| **room == 0).count();
+        let with_matter = distances.iter().filter(|distance| **distance == 0).count();
         // A voxel is seen in its cell and at most in seven beside.
         let range = bright_count.min(1)..=8 * bright_count;
         assert!(range.contains(&with_matter), "{with_matter} of {dims:?}");
-        check_distances(&rooms, frame.cells);
+        check_distances(&distances, frame.cells);
     }
 }

@@ -2,8 +2,8 @@
 //! X-rays are linear, and all techniques see one Gaussian alike.
 
 use crate::shared::{
-    Chord, Device, Matter, Shot, Twin, Way, Worst, device, oblique_shots, ramps, sheared_affine,
-    volume_of, waves,
+    Chord, Device, Matter, PictureCase, Reference, Way, Worst, device, oblique_shots, ramps,
+    sheared_affine, volume_of, waves,
 };
 use glam::{DAffine3, DVec3};
 use stratavox::offscreen::Renderer;
@@ -33,14 +33,14 @@ fn of_values(value: &(dyn Fn(DVec3) -> f64 + Sync)) -> Matter<'_> {
 
 fn ways() -> [Box<dyn Way>; 3] {
     [
-        Box::new(Twin::<f64>::new()),
-        Box::new(Twin::<f32>::new()),
+        Box::new(Reference::<f64>::new()),
+        Box::new(Reference::<f32>::new()),
         Box::new(Device),
     ]
 }
 
 /// One order: both were compared elsewhere.
-fn shots(mode: Mode) -> impl Iterator<Item = Shot> {
+fn shots(mode: Mode) -> impl Iterator<Item = PictureCase> {
     let all = oblique_shots(SHEARED(), mode).into_iter();
     all.filter(|shot| shot.settings.order == Order::BackToFront)
 }
@@ -112,7 +112,7 @@ fn the_maximum_of_the_larger_field_is_the_larger_maximum() {
     }
 }
 
-fn nearest_values(renderer: &mut Renderer, volume: &Volume, shot: &Shot) -> Vec<f32> {
+fn nearest_values(renderer: &mut Renderer, volume: &Volume, shot: &PictureCase) -> Vec<f32> {
     let transfer = ramps();
     let scene = shot.scene(volume, Some(&transfer));
     let picture = renderer
@@ -169,7 +169,7 @@ fn an_xray_of_a_sum_is_the_sum_of_xrays() {
 fn an_average_is_the_xray_over_the_length() {
     for way in ways() {
         for (average, xray) in shots(Mode::Average).zip(shots(Mode::Xray)) {
-            let of = |shot: &Shot| way.values(shot, &of_values(&waves));
+            let of = |shot: &PictureCase| way.values(shot, &of_values(&waves));
             let mut worst = Worst::new(format!("average, {}, {}", way.name(), average.what()));
             let (means, sums) = (of(&average), of(&xray));
             for (i, pixel) in average.pixels().enumerate() {

@@ -7,7 +7,9 @@ use stratavox::gpu::Caps;
 use stratavox::offscreen::Renderer;
 use stratavox::scene::{Beside, Channel, Scene};
 use stratavox::technique::{ClipPlane, Filter, Lattice, Mode, Role, Settings, Shading, Technique};
-use stratavox::transfer::{Cells, Graded, OpacityPoint, Second, Shape, TransferFunction, Widget};
+use stratavox::transfer::{
+    Cells, GradientTransfer, OpacityPoint, SecondDerivative, Shape, TransferFunction, Widget,
+};
 use stratavox::volume::{Rescale, Volume, Voxels};
 
 /// In one piece, and in bricks.
@@ -154,7 +156,8 @@ fn widget(numbers: &mut Numbers, [low, high]: [f64; 2]) -> Widget {
         srgb: [None, Some([0.9, 0.4, 0.1])][numbers.below(2)],
         opacity: [0.0, 0.4, 1.0][numbers.below(3)],
         shape,
-        second: (numbers.below(4) == 0).then_some(Second::Trapezoid([-2.0, -0.5, 0.5, 2.0])),
+        second: (numbers.below(4) == 0)
+            .then_some(SecondDerivative::Trapezoid([-2.0, -0.5, 0.5, 2.0])),
     }
 }
 
@@ -166,7 +169,7 @@ fn functions_of_gradients_are_drawn_the_same_whatever_is_left_out() {
         if numbers.below(2) == 0 {
             function.opacity.clear();
         }
-        function.graded = Some(Graded {
+        function.graded = Some(GradientTransfer {
             steepest: Some(0.3 * (range[1] - range[0])),
             share: [vec![], vec![opacity((0.0, 0.2)), opacity((1.0, 0.9))]][numbers.below(2)]
                 .clone(),
@@ -200,7 +203,7 @@ fn contours_are_left_out_where_no_value_comes_near_them() {
             },
             second: None,
         };
-        function.graded = Some(Graded {
+        function.graded = Some(GradientTransfer {
             steepest: Some(0.3 * (high - low)),
             share: Vec::new(),
             widgets: vec![contour(), contour()],

@@ -12,7 +12,7 @@ use stratavox::scene::Scene;
 use stratavox::technique::{
     ClipPlane, Filter, Jitter, Lattice, Level, Mode, Settings, Shading, Technique,
 };
-use stratavox::volume::{Pick, Source, Volume};
+use stratavox::volume::{Source, TimeComponent, Volume};
 
 fn scene<'a>(
     volume: &'a Volume,
@@ -348,7 +348,7 @@ fn a_look_can_be_ended_and_an_overview_is_every_nth_voxel() {
     let source = Arc::new(Numbers::of([250, 170, 110], None, |p| p.x + 1000.0 * p.y));
     let ended = Stream::open(
         Arc::clone(&source) as _,
-        Pick::default(),
+        TimeComponent::default(),
         StreamOptions::default(),
         &mut |_, _| ControlFlow::Break(()),
     );
@@ -358,7 +358,9 @@ fn a_look_can_be_ended_and_an_overview_is_every_nth_voxel() {
     // 4.7 million voxels: every second one along each axis.
     assert_eq!(overview.header().dims, [125, 85, 55]);
     let whole = overview.header().whole();
-    let piece = overview.read(Pick::default(), whole).expect("in memory");
+    let piece = overview
+        .read(TimeComponent::default(), whole)
+        .expect("in memory");
     let place = overview.header().world_from_voxel;
     let from_world = source.header.world_from_voxel.inverse();
     for (i, j) in [(0, 0), (7, 3), (124, 84)] {

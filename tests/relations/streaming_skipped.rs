@@ -7,7 +7,7 @@ use std::sync::Arc;
 use stratavox::offscreen::{Renderer, StreamOptions};
 use stratavox::scene::Scene;
 use stratavox::technique::{Filter, Mode, Settings};
-use stratavox::transfer::{Graded, Shape, TransferFunction, Widget};
+use stratavox::transfer::{GradientTransfer, Shape, TransferFunction, Widget};
 
 /// Bricks of a few macro cells, which all have room.
 const ROOMY: StreamOptions = StreamOptions {
@@ -62,7 +62,7 @@ fn contours_and_slabs_are_left_out_of_bricks_too() {
     };
     let contours = TransferFunction {
         opacity: Vec::new(),
-        graded: Some(Graded {
+        graded: Some(GradientTransfer {
             steepest: Some(0.3 * (high - low)),
             share: Vec::new(),
             widgets: vec![contour(0.5), contour(0.9)],

@@ -2,7 +2,8 @@
 //! affine that undoes them, and of data and camera together.
 
 use crate::shared::{
-    Shot, Worst, device, oblique_camera, projections, ramps, sheared_affine, volume_of, waves,
+    PictureCase, Worst, device, oblique_camera, projections, ramps, sheared_affine, volume_of,
+    waves,
 };
 use glam::{DAffine3, DMat3, DVec3};
 use stratavox::camera::Camera;
@@ -85,21 +86,21 @@ fn pictures(
     volume: &Volume,
     mode: Mode,
     camera_of: impl Fn(usize) -> Camera,
-    twins: bool,
-) -> Vec<(Shot, Picture)> {
+    references: bool,
+) -> Vec<(PictureCase, Picture)> {
     let transfer = ramps();
     let mut renderer = Renderer::new(device(), volume).unwrap();
     let mut pictures = Vec::new();
     for settings in placements(mode) {
         for i in 0..2 {
-            let shot = Shot {
+            let shot = PictureCase {
                 grid: volume.grid(),
                 camera: camera_of(i),
                 extent: [32, 28],
                 settings: settings.clone(),
             };
             let scene = shot.scene(volume, Some(&transfer));
-            let picture = if twins {
+            let picture = if references {
                 reference::render::<f64>(&scene).unwrap()
             } else {
                 renderer.render(&scene, &[]).unwrap().picture
@@ -110,7 +111,7 @@ fn pictures(
     pictures
 }
 
-fn compare(what: &str, wanted: &[(Shot, Picture)], found: &[(Shot, Picture)]) {
+fn compare(what: &str, wanted: &[(PictureCase, Picture)], found: &[(PictureCase, Picture)]) {
     for ((shot, wanted), (_, found)) in wanted.iter().zip(found) {
         let what = format!("{what}, {}", shot.what());
         Worst::between(what, wanted.width, &wanted.pixels, &found.pixels, 1e-5).assert_holds();
@@ -124,14 +125,14 @@ fn a_volume_told_in_other_axes_is_the_same_picture() {
         world_from_voxel: sheared_affine(),
     };
     let camera = |i: usize| oblique_camera(&grid, projections(&grid)[i]);
-    for twins in [false, true] {
+    for references in [false, true] {
         let volume = volume_of(DIMS, sheared_affine(), waves);
-        let wanted = |mode| pictures(&volume, mode, camera, twins);
+        let wanted = |mode| pictures(&volume, mode, camera, references);
         let wanted = [Mode::Composite, Mode::Mip].map(|mode| (mode, wanted(mode)));
         for (i, symmetry) in symmetries().enumerate() {
             let volume = symmetry.volume(sheared_affine() * symmetry.old_from_new());
             let (mode, wanted) = &wanted[usize::from(mode_of(i) == Mode::Mip)];
-            let found = pictures(&volume, *mode, camera, twins);
+            let found = pictures(&volume, *mode, camera, references);
             compare(&format!("{symmetry:?}"), wanted, &found);
         }
     }

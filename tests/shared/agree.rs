@@ -1,13 +1,13 @@
-//! Whether a device computes what its twin computes.
+//! Whether a device computes what its CPU reference computes.
 //!
-//! How well a pixel is defined in f32 at all, the twin says itself: in f32 and in f64 it differs by what
+//! How well a pixel is defined in f32 at all, the CPU reference says itself: in f32 and in f64 it differs by what
 //! rounding does to this picture. Where that is a jump (a voxel border, a plane at the end of a chord) the
-//! pixel is left out; elsewhere the device may differ from the f32 twin by a few times the worst of it, and by
+//! pixel is left out; elsewhere the device may differ from the f32 CPU reference by a few times the worst of it, and by
 //! 2e-6 for its own exp, log and pow.
 
 use super::Worst;
 
-/// Numbers of one kind from the three: f64 twin, f32 twin, device. Of size `scale`.
+/// Numbers of one kind from the three: f64 CPU reference, f32 CPU reference, device. Of size `scale`.
 pub fn compare(what: &str, width: u32, lists: [&[f32]; 3], scale: f32) {
     let [double, single, found] = lists;
     assert!(double.len() == single.len() && single.len() == found.len());

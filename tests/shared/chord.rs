@@ -2,11 +2,11 @@
 //!
 //! It calls neither `src/ray.rs` nor `src/lattice.rs`, which the exact answers judge. The oracle of conformance has a
 //! `Chord` too, in voxel space and with wider blurs: those are proven for any device, and these, which tests allow
-//! twins and the drivers at hand, are narrower. It shares `places` with that oracle, so it is no independent judge of
+//! CPU references and the drivers at hand, are narrower. It shares `places` with that oracle, so it is no independent judge of
 //! it.
 
 use glam::DVec3;
-use stratavox::conformance::oracle::Shot;
+use stratavox::conformance::oracle::PictureCase;
 use stratavox::conformance::oracle::places::{planes, segments};
 use stratavox::technique::slices_2d::stack_axis;
 use stratavox::technique::{Lattice, Technique};
@@ -29,7 +29,7 @@ pub struct Chord {
 
 impl Chord {
     /// What the ray of a pixel meets; `None` where it misses the domain.
-    pub fn of(shot: &Shot, [x, y]: [u32; 2]) -> Option<Self> {
+    pub fn of(shot: &PictureCase, [x, y]: [u32; 2]) -> Option<Self> {
         let rays = shot.camera.rays(shot.extent);
         let (origin, direction) = rays.at(f64::from(x) + 0.5, f64::from(y) + 0.5);
         let voxel = shot.grid.world_from_voxel.inverse();

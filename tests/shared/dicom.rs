@@ -5,7 +5,7 @@ use crate::files::{Folder, message, numbers};
 use glam::DVec3;
 use std::collections::BTreeMap;
 use stratavox::format;
-use stratavox::volume::{Header, Limits, Pick, Source, Wanted};
+use stratavox::volume::{Header, Limits, Source, TimeComponent, VolumeSelection};
 
 pub const COLUMNS: usize = 6;
 pub const ROWS: usize = 4;
@@ -112,12 +112,15 @@ pub fn words(numbers: &[f64]) -> String {
 
 pub fn open(folder: &Folder) -> Result<Box<dyn Source>, String> {
     let path = folder.path("");
-    format::open(&path, &Wanted::default(), &Limits::default()).map_err(|e| message(&e))
+    format::open(&path, &VolumeSelection::default(), &Limits::default()).map_err(|e| message(&e))
 }
 
 /// The numbers of one time, x fastest.
 pub fn read(source: &dyn Source, time: u32) -> Vec<f32> {
-    let piece = source.read(Pick { time, component: 0 }, source.header().whole());
+    let piece = source.read(
+        TimeComponent { time, component: 0 },
+        source.header().whole(),
+    );
     numbers(&piece.unwrap().voxels)
 }
 

@@ -4,7 +4,7 @@
 use std::error::Error;
 use std::path::PathBuf;
 use stratavox::format;
-use stratavox::volume::{Header, Limits, Pick, Piece, ReadError, Voxels, Wanted};
+use stratavox::volume::{Header, Limits, Piece, ReadError, TimeComponent, VolumeSelection, Voxels};
 
 /// A folder that goes away with the test.
 pub struct Folder(tempfile::TempDir);
@@ -28,11 +28,11 @@ impl Folder {
     pub fn read(&self, name: &str, bytes: impl AsRef<[u8]>) -> Result<(Header, Piece), ReadError> {
         let source = format::open(
             &self.write(name, bytes),
-            &Wanted::default(),
+            &VolumeSelection::default(),
             &Limits::default(),
         )?;
         let header = source.header().clone();
-        let piece = source.read(Pick::default(), header.whole())?;
+        let piece = source.read(TimeComponent::default(), header.whole())?;
         Ok((header, piece))
     }
 

@@ -4,7 +4,7 @@
 use serde_json::Value;
 use std::path::PathBuf;
 use stratavox::format;
-use stratavox::volume::{Limits, Pick, ReadError, Source, Wanted};
+use stratavox::volume::{Limits, ReadError, Source, TimeComponent, VolumeSelection};
 
 /// A file under `tests/fixtures`.
 pub fn path(name: &str) -> PathBuf {
@@ -28,16 +28,16 @@ pub fn open_as(
     variable: Option<&str>,
     as_stored: bool,
 ) -> Result<Box<dyn Source>, ReadError> {
-    let wanted = Wanted {
+    let wanted = VolumeSelection {
         variable: variable.map(str::to_owned),
         as_stored,
-        ..Wanted::default()
+        ..VolumeSelection::default()
     };
     format::open(&path(name), &wanted, &Limits::default())
 }
 
 /// Values of one time, x fastest; `None` where there is no data.
-pub fn values(source: &dyn Source, pick: Pick) -> Vec<Option<f64>> {
+pub fn values(source: &dyn Source, pick: TimeComponent) -> Vec<Option<f64>> {
     let header = source.header();
     let piece = source.read(pick, header.whole()).expect("voxels");
     let fill = header.fill.map(|fill| fill as f32);

@@ -13,10 +13,10 @@ mod worst;
 pub use agree::compare;
 pub use chord::Chord;
 pub use limits::allowed;
-pub use way::{Device, Matter, Twin, Way};
+pub use way::{Device, Matter, Reference, Way};
 pub use worst::Worst;
 
-pub use stratavox::conformance::oracle::Shot;
+pub use stratavox::conformance::oracle::PictureCase;
 pub use stratavox::conformance::tree::{oblique_camera, ramps, waves};
 
 use glam::{DAffine3, DVec3, dvec3};
@@ -81,14 +81,14 @@ pub fn placements() -> Vec<Settings> {
 }
 
 /// Each placement in both projections, seen from where no axis is: all of `grid` in the picture.
-pub fn oblique_shots(grid: Grid, mode: Mode) -> Vec<Shot> {
+pub fn oblique_shots(grid: Grid, mode: Mode) -> Vec<PictureCase> {
     let views = projections(&grid).map(|projection| oblique_camera(&grid, projection));
     shots(grid, mode, &views)
 }
 
 /// Each placement along the last axis, every pixel through the centre of a column of voxels: so long as
 /// dims[2] is even, every sample of every placement is a voxel centre.
-pub fn straight_shots(grid: Grid, mode: Mode) -> Vec<Shot> {
+pub fn straight_shots(grid: Grid, mode: Mode) -> Vec<PictureCase> {
     let [nx, ny, nz] = grid.dims.map(f64::from);
     assert_eq!(
         grid.world_from_voxel,
@@ -105,12 +105,12 @@ pub fn straight_shots(grid: Grid, mode: Mode) -> Vec<Shot> {
     };
     let extent = [nx as u32, ny as u32];
     let shots = shots(grid, mode, &[camera]).into_iter();
-    shots.map(|shot| Shot { extent, ..shot }).collect()
+    shots.map(|shot| PictureCase { extent, ..shot }).collect()
 }
 
-fn shots(grid: Grid, mode: Mode, cameras: &[Camera]) -> Vec<Shot> {
+fn shots(grid: Grid, mode: Mode, cameras: &[Camera]) -> Vec<PictureCase> {
     let all = cameras.iter().flat_map(|&camera| {
-        placements().into_iter().map(move |settings| Shot {
+        placements().into_iter().map(move |settings| PictureCase {
             grid,
             camera,
             extent: [40, 36],

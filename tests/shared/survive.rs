@@ -6,7 +6,7 @@ use crate::memory;
 use crate::mutate::{self, Mutation, Random};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use stratavox::format;
-use stratavox::volume::{Limits, Pick, ReadError, Wanted};
+use stratavox::volume::{Limits, ReadError, TimeComponent, VolumeSelection};
 
 /// Small, so that a lie shows.
 pub const LIMITS: Limits = Limits {
@@ -30,13 +30,13 @@ pub fn read_all(folder: &Folder, base: &Base) -> Result<u64, ReadError> {
     } else {
         base[0].0
     };
-    let source = format::open(&folder.path(opened), &Wanted::default(), &LIMITS)?;
+    let source = format::open(&folder.path(opened), &VolumeSelection::default(), &LIMITS)?;
     let header = source.header();
     assert!(header.world_from_voxel.inverse().is_finite(), "{header:?}");
     let mut voxels = 0;
     for time in 0..header.times.min(4) {
         for component in 0..header.components.min(4) {
-            let piece = source.read(Pick { time, component }, header.whole())?;
+            let piece = source.read(TimeComponent { time, component }, header.whole())?;
             assert_eq!(piece.voxels.len() as u64, header.voxel_count(), "voxels");
             voxels += header.voxel_count();
         }

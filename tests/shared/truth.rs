@@ -5,7 +5,7 @@ use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::path::PathBuf;
 use stratavox::format;
-use stratavox::volume::{Limits, Pick, Voxels, Wanted};
+use stratavox::volume::{Limits, TimeComponent, VolumeSelection, Voxels};
 
 /// The folder of real volumes, if there is one.
 pub fn folder() -> Option<PathBuf> {
@@ -38,7 +38,7 @@ pub fn entries(kind: &str) -> Vec<Value> {
 pub fn check(entry: &Value, known_voxels: Option<usize>) -> [[f64; 4]; 3] {
     let id = entry["id"].as_str().unwrap();
     let path = folder().unwrap().join(entry["path"].as_str().unwrap());
-    let source = format::open(&path, &Wanted::default(), &Limits::default())
+    let source = format::open(&path, &VolumeSelection::default(), &Limits::default())
         .unwrap_or_else(|e| panic!("{id}: {e}"));
     let header = source.header();
     println!("{id}: {header:?}");
@@ -57,7 +57,9 @@ pub fn check(entry: &Value, known_voxels: Option<usize>) -> [[f64; 4]; 3] {
     };
     assert_eq!(header.stored.name(), dtype, "{id}");
 
-    let piece = source.read(Pick::default(), header.whole()).unwrap();
+    let piece = source
+        .read(TimeComponent::default(), header.whole())
+        .unwrap();
     assert!(piece.loss.is_none(), "{id}: {:?}", piece.loss);
     let count = piece.voxels.len();
     let known_voxels = known_voxels.unwrap_or(count);

@@ -4,7 +4,7 @@
 use serde_json::Value;
 use std::path::PathBuf;
 use stratavox::format;
-use stratavox::volume::{Header, Limits, Meaning, Pick, Wanted};
+use stratavox::volume::{ComponentKind, Header, Limits, TimeComponent, VolumeSelection};
 
 /// The folder of files of a format.
 pub fn folder(format: &str) -> PathBuf {
@@ -26,9 +26,9 @@ pub fn check_all(format: &str) -> usize {
 
 fn check(format: &str, key: &str, expected: &Value) {
     let file = key.split(':').next().expect("a name");
-    let wanted = Wanted {
+    let wanted = VolumeSelection {
         variable: key.split_once(':').map(|(_, name)| name.to_owned()),
-        ..Wanted::default()
+        ..VolumeSelection::default()
     };
     let path = folder(format).join(file);
     let source =
@@ -43,16 +43,16 @@ fn check(format: &str, key: &str, expected: &Value) {
         "{key}"
     );
     let meaning = match expected["meaning"].as_str() {
-        Some("vector") => Meaning::Vector,
-        Some("rgb") => Meaning::Rgb,
-        Some("rgba") => Meaning::Rgba,
-        _ if header.variables[0] == "flow" => Meaning::Vector,
-        _ => Meaning::Numbers,
+        Some("vector") => ComponentKind::Vector,
+        Some("rgb") => ComponentKind::Rgb,
+        Some("rgba") => ComponentKind::Rgba,
+        _ if header.variables[0] == "flow" => ComponentKind::Vector,
+        _ => ComponentKind::Numbers,
     };
     assert_eq!(header.meaning, meaning, "{key}");
     first_point(key, header, expected);
     for component in 0..header.components {
-        let pick = Pick { time: 0, component };
+        let pick = TimeComponent { time: 0, component };
         let piece = source
             .read(pick, header.whole())
             .unwrap_or_else(|e| panic!("{key}: {e}"));

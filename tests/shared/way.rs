@@ -1,6 +1,6 @@
-//! Ways to compute a picture of matter given by a formula: the twins, and the device.
+//! Ways to compute a picture of matter given by a formula: the CPU references, and the device.
 
-use super::{Shot, device, volume_of};
+use super::{PictureCase, device, volume_of};
 use glam::{DVec3, dvec3};
 use std::marker::PhantomData;
 use stratavox::offscreen::Renderer;
@@ -29,21 +29,21 @@ pub struct Matter<'a> {
 pub trait Way {
     fn name(&self) -> String;
     /// Premultiplied colour of each pixel.
-    fn picture(&self, shot: &Shot, matter: &Matter) -> Vec<[f64; 4]>;
+    fn picture(&self, shot: &PictureCase, matter: &Matter) -> Vec<[f64; 4]>;
     /// What a projecting mode projects; NaN without a sample.
-    fn values(&self, shot: &Shot, matter: &Matter) -> Vec<f64>;
+    fn values(&self, shot: &PictureCase, matter: &Matter) -> Vec<f64>;
 }
 
 /// The library's own functions a ray, in f32 or f64, on the formula itself.
 #[derive(Default)]
-pub struct Twin<R>(PhantomData<R>);
+pub struct Reference<R>(PhantomData<R>);
 
-impl<R: Real> Twin<R> {
+impl<R: Real> Reference<R> {
     pub fn new() -> Self {
         Self(PhantomData)
     }
 
-    fn gather(&self, shot: &Shot, matter: &Matter) -> Vec<[R; 4]> {
+    fn gather(&self, shot: &PictureCase, matter: &Matter) -> Vec<[R; 4]> {
         let (frame, slices) = shot.parameters();
         let formula = Formula {
             shot,
@@ -60,17 +60,17 @@ impl<R: Real> Twin<R> {
     }
 }
 
-impl<R: Real> Way for Twin<R> {
+impl<R: Real> Way for Reference<R> {
     fn name(&self) -> String {
-        format!("twin {}", std::any::type_name::<R>())
+        format!("reference {}", std::any::type_name::<R>())
     }
 
-    fn picture(&self, shot: &Shot, matter: &Matter) -> Vec<[f64; 4]> {
+    fn picture(&self, shot: &PictureCase, matter: &Matter) -> Vec<[f64; 4]> {
         let gathered = self.gather(shot, matter);
         gathered.into_iter().map(|p| p.map(R::to_f64)).collect()
     }
 
-    fn values(&self, shot: &Shot, matter: &Matter) -> Vec<f64> {
+    fn values(&self, shot: &PictureCase, matter: &Matter) -> Vec<f64> {
         let value = |left| projected_value(shot.settings.mode, left).map_or(f64::NAN, R::to_f64);
         self.gather(shot, matter).into_iter().map(value).collect()
     }
@@ -78,7 +78,7 @@ impl<R: Real> Way for Twin<R> {
 
 /// The formula in place of a volume.
 struct Formula<'a> {
-    shot: &'a Shot,
+    shot: &'a PictureCase,
     frame: &'a Frame,
     slices: u32,
     matter: &'a Matter<'a>,
@@ -152,7 +152,7 @@ pub struct Device;
 const OPACITY_POINTS: u32 = 2048;
 
 impl Device {
-    fn render(&self, shot: &Shot, matter: &Matter, layers: &[LayerKind]) -> Picture {
+    fn render(&self, shot: &PictureCase, matter: &Matter, layers: &[LayerKind]) -> Picture {
         let volume = volume_of(shot.grid.dims, shot.grid.world_from_voxel, matter.value);
         let transfer = transfer_of(matter);
         let settings = Settings {
@@ -178,12 +178,12 @@ impl Way for Device {
         "device".into()
     }
 
-    fn picture(&self, shot: &Shot, matter: &Matter) -> Vec<[f64; 4]> {
+    fn picture(&self, shot: &PictureCase, matter: &Matter) -> Vec<[f64; 4]> {
         let picture = self.render(shot, matter, &[]);
         picture.pixels.iter().map(|p| p.map(f64::from)).collect()
     }
 
-    fn values(&self, shot: &Shot, matter: &Matter) -> Vec<f64> {
+    fn values(&self, shot: &PictureCase, matter: &Matter) -> Vec<f64> {
         let picture = self.render(shot, matter, &[LayerKind::Value]);
         let values = &picture.layers[0].values;
         values.iter().copied().map(f64::from).collect()

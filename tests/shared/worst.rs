@@ -61,7 +61,7 @@ impl Worst {
         }
     }
 
-    /// A pixel whose answer hangs on rounding.
+    /// A pixel whose answer depends on rounding.
     pub fn leave_out(&mut self) {
         self.left_out += 1;
     }

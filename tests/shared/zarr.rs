@@ -4,7 +4,7 @@
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use stratavox::format;
-use stratavox::volume::{Limits, Pick, ReadError, Source, VoxelBox, Wanted};
+use stratavox::volume::{Limits, ReadError, Source, TimeComponent, VolumeSelection, VoxelBox};
 
 /// All stores, by name.
 pub fn variants() -> serde_json::Map<String, Value> {
@@ -84,9 +84,9 @@ impl Store {
 }
 
 pub fn open(path: &Path, variable: Option<&str>) -> Result<Box<dyn Source>, ReadError> {
-    let wanted = Wanted {
+    let wanted = VolumeSelection {
         variable: variable.map(str::to_owned),
-        ..Wanted::default()
+        ..VolumeSelection::default()
     };
     format::open(path, &wanted, &Limits::default())
 }
@@ -97,13 +97,21 @@ pub fn all(source: &dyn Source) -> Result<Vec<f64>, ReadError> {
     let mut numbers = Vec::new();
     for time in 0..header.times {
         for component in 0..header.components {
-            numbers.extend(region(source, Pick { time, component }, header.whole())?);
+            numbers.extend(region(
+                source,
+                TimeComponent { time, component },
+                header.whole(),
+            )?);
         }
     }
     Ok(numbers)
 }
 
-pub fn region(source: &dyn Source, pick: Pick, region: VoxelBox) -> Result<Vec<f64>, ReadError> {
+pub fn region(
+    source: &dyn Source,
+    pick: TimeComponent,
+    region: VoxelBox,
+) -> Result<Vec<f64>, ReadError> {
     let piece = source.read(pick, region)?;
     Ok((0..piece.voxels.len())
         .map(|i| f64::from(piece.voxels.stored(i)))

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use stratavox::offscreen::{Stream, StreamOptions};
 use stratavox::volume::{
-    Format, Header, Pick, Piece, ReadError, Source, Volume, VoxelBox, VoxelType, Voxels,
+    Format, Header, Piece, ReadError, Source, TimeComponent, Volume, VoxelBox, VoxelType, Voxels,
 };
 
 /// Numbers in memory that are handed out in parts, and counted.
@@ -57,7 +57,7 @@ impl Numbers {
 
     pub fn in_memory(&self) -> Volume {
         let whole = self.header.whole();
-        Volume::read(self, Pick::default(), whole, &Default::default()).expect("a volume")
+        Volume::read(self, TimeComponent::default(), whole, &Default::default()).expect("a volume")
     }
 }
 
@@ -74,7 +74,7 @@ impl Source for Numbers {
         self.has_rows
     }
 
-    fn read(&self, _: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, _: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         self.reads.fetch_add(1, Ordering::Relaxed);
         let [nx, ny, _] = self.header.dims.map(|n| n as usize);
         let mut found = Vec::new();
@@ -95,6 +95,6 @@ pub fn go_on(_: usize, _: usize) -> ControlFlow<()> {
 
 pub fn open(source: &Arc<Numbers>, options: StreamOptions) -> Stream {
     let source: Arc<dyn Source> = Arc::clone(source) as _;
-    let stream = Stream::open(source, Pick::default(), options, &mut go_on);
+    let stream = Stream::open(source, TimeComponent::default(), options, &mut go_on);
     stream.expect("readable").expect("not ended")
 }

@@ -8,7 +8,7 @@ use crate::painter::Painter;
 use ash::vk;
 use std::sync::Arc;
 use stratavox::camera::Camera;
-use stratavox::embed::{Class, Renderer, Shot, Volume};
+use stratavox::embed::{FrameInfo, Renderer, RendererDesc, Volume};
 use stratavox::gpu::{
     Bindings, Gpu, Image, ImageDesc, ImageKind, Load, Target, TargetState, Timer, Use,
 };
@@ -49,7 +49,7 @@ impl Drawing {
         unsafe { volume.record_upload(gpu, cmd)? };
         let volume = Arc::new(volume);
         let canvas = Canvas::new(gpu, painter, extent)?;
-        let class = Class {
+        let class = RendererDesc {
             // Of slices, rays would have to look for the depth of each frame.
             picks: settings.technique == Technique::Raycast && settings.mode.has_depth(),
             settings,
@@ -124,7 +124,7 @@ impl Drawing {
             // The window's shader reads it next.
             after: Use::FragmentSampled.into(),
         };
-        let shot = Shot {
+        let shot = FrameInfo {
             frame,
             camera,
             depth: None,

@@ -139,7 +139,7 @@ impl Eye {
         self.target += per_pixel * (down * frame.up - right * frame.right);
     }
 
-    /// Nearer (over 1) or farther; what lies `at` a pixel from the middle stays there.
+    /// DepthConvention (over 1) or farther; what lies `at` a pixel from the middle stays there.
     pub fn approach(&mut self, factor: f64, at: [f64; 2], extent: [u32; 2]) {
         let zoom = (self.zoom * factor).clamp(0.05, 500.0);
         let factor = zoom / self.zoom;

@@ -27,7 +27,7 @@ struct Frame {
 /// A frame that is free, and its image of the window.
 #[derive(Clone, Copy)]
 pub struct Begun {
-    /// Its number: that of a [`stratavox::embed::Shot`].
+    /// Its number: that of a [`stratavox::embed::FrameInfo`].
     pub frame: u32,
     pub cmd: vk::CommandBuffer,
     /// The number of the image.

@@ -8,14 +8,14 @@ use stratavox::gpu::{Buffer, Gpu, Memory, texel_bytes};
 use stratavox::picture::{ColorSpace, Picture, WriteOptions, write_picture};
 
 /// What a copy was recorded of, and where it will be.
-pub struct Shot {
+pub struct Screenshot {
     pub path: PathBuf,
     pub buffer: Buffer,
     format: vk::Format,
     extent: [u32; 2],
 }
 
-impl Shot {
+impl Screenshot {
     /// Room for the texels of an image.
     pub fn new(
         gpu: &Arc<Gpu>,

@@ -10,8 +10,8 @@ use stratavox::format;
 use stratavox::look::{context, face, first_variable, leave_out, summary};
 use stratavox::transfer::{Context, LabelTable, ValueSummary};
 use stratavox::volume::{
-    Grid, Header, Histogram, Limits, Magnitude, Meaning, Pick, Rescale, Source, Volume, Voxels,
-    Wanted, luma, phantom, read_colors,
+    ComponentKind, Grid, Header, Histogram, Limits, Magnitude, Rescale, Source, TimeComponent,
+    Volume, VolumeSelection, Voxels, luma, phantom, read_colors,
 };
 
 /// Bins of the histogram under the transfer function: one for each of its pixels.
@@ -51,7 +51,7 @@ impl Subject {
     pub fn open(words: &Words) -> Result<Self, Error> {
         let is_auto = words.look == LookWord::Auto;
         let limits = Limits::default();
-        let wanted = Wanted {
+        let wanted = VolumeSelection {
             variable: words.variable.clone(),
             series: words.series.clone(),
             level: words.level,
@@ -83,8 +83,8 @@ impl Subject {
             });
         }
         check(words, header)?;
-        let is_color = matches!(header.meaning, Meaning::Rgb | Meaning::Rgba);
-        let is_vector = header.meaning == Meaning::Vector && header.components > 1;
+        let is_color = matches!(header.meaning, ComponentKind::Rgb | ComponentKind::Rgba);
+        let is_vector = header.meaning == ComponentKind::Vector && header.components > 1;
         let source: Arc<dyn Source> = match words.component {
             None if is_vector => Arc::new(Magnitude::new(source)),
             _ => Arc::from(source),
@@ -169,7 +169,7 @@ impl Way {
     /// One time of the source, and the note that says what of it was left out.
     pub fn read(&self, source: &dyn Source, time: u32) -> Result<(Volume, Option<String>), Error> {
         let limits = Limits::default();
-        let pick = Pick {
+        let pick = TimeComponent {
             time,
             component: self.component,
         };

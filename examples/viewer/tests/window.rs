@@ -15,7 +15,7 @@ use stratavox::picture::{Picture, WriteOptions, read_image, write_picture};
 use stratavox::scene::{Beside, Scene};
 use stratavox::technique::{Settings, Technique};
 use stratavox::transfer::{Classified, TransferFunction, ValueSummary, automatic, automatic_in};
-use stratavox::volume::{Limits, Pick, Volume, phantom};
+use stratavox::volume::{Limits, TimeComponent, Volume, phantom};
 use tempfile::TempDir;
 
 impl Display {
@@ -102,7 +102,13 @@ fn codes_apart(a: &[[f32; 4]], b: &[[f32; 4]]) -> f32 {
 fn read(spec: &str) -> Volume {
     let source = phantom::open(spec, &Limits::default()).unwrap();
     let whole = source.header().whole();
-    Volume::read(source.as_ref(), Pick::default(), whole, &Limits::default()).unwrap()
+    Volume::read(
+        source.as_ref(),
+        TimeComponent::default(),
+        whole,
+        &Limits::default(),
+    )
+    .unwrap()
 }
 
 /// The picture that the library makes of the same volume by itself, without a background.

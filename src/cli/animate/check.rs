@@ -1,8 +1,8 @@
 //! Words of a film that go against each other.
 
-use super::shots::{self, Film, Shot};
+use super::shots::{self, Film, FilmFrame};
 use crate::{
-    cli::{Error, flags::SceneFlags, shown},
+    cli::{Error, flags::SceneFlags, scene_inputs},
     volume::Header,
 };
 
@@ -18,9 +18,9 @@ pub fn frame(scene: &SceneFlags, film: &Film) -> Result<(), Error> {
 }
 
 /// Refuses what changes one number a voxel where several are seen.
-pub fn several(scene: &SceneFlags, header: &Header, shots: &[Shot]) -> Result<(), Error> {
+pub fn several(scene: &SceneFlags, header: &Header, shots: &[FilmFrame]) -> Result<(), Error> {
     let is_still = shots::still_time(shots).is_some();
-    let is_between = |shot: &Shot| shot.time.fract() != 0.0;
+    let is_between = |shot: &FilmFrame| shot.time.fract() != 0.0;
     if scene.input.stream
         && let Some(number) = shots.iter().position(is_between)
     {
@@ -32,14 +32,14 @@ pub fn several(scene: &SceneFlags, header: &Header, shots: &[Shot]) -> Result<()
             "whole times: --times; --fit draws reduced volumes that fit into memory",
         ));
     }
-    let several = shown::shows_several(scene, header)?;
+    let several = scene_inputs::shows_several(scene, header)?;
     if !is_still && (several || scene.labels.label_tf.is_some()) {
         return Err(Error::usage(
             "several times are shown of one number a voxel, without colours, several channels, --labels and --label-tf",
             "--time N takes one time, --component N one number",
         ));
     }
-    let is_same = |shot: &Shot| shot.classification == scene.classification;
+    let is_same = |shot: &FilmFrame| shot.classification == scene.classification;
     if several && !shots.iter().all(is_same) {
         return Err(Error::usage(
             "`window` and `tf` of keyframes are for one number a voxel, and several are drawn",

@@ -8,7 +8,7 @@ use super::{
     kept::Kept,
     rate::Rate,
     ready::{self, Ready},
-    shots::{Film, Shot},
+    shots::{Film, FilmFrame},
     store::Store,
     volumes::{Moment, Volumes},
 };
@@ -22,7 +22,7 @@ use crate::{
         output,
         progress::Progress,
         renderer::{Device, Job, Renderer},
-        shown::{Parts, Shown},
+        scene_inputs::{Parts, SceneInputs},
         timings::{Timings, ms_since},
     },
     picture::{EncodedPicture, LayerKind, Picture, PictureFormat},
@@ -48,7 +48,7 @@ pub struct Drawing<'a> {
     /// The flags that stay the same.
     pub scene: &'a SceneFlags,
     /// All frames.
-    pub shots: &'a [Shot],
+    pub shots: &'a [FilmFrame],
     /// Layers that the pictures must have.
     pub layers: &'a [LayerKind],
     /// The volumes.
@@ -76,7 +76,7 @@ pub struct Drawing<'a> {
 /// What the frames show.
 pub enum Content {
     /// One time, of everything that `render` draws.
-    Still(Box<Shown>),
+    Still(Box<SceneInputs>),
     /// Several times of one number a voxel; with the device's memory, drawn brick by brick from their file.
     Times(Arc<dyn Source>, Option<DeviceMemory>),
 }
@@ -360,7 +360,7 @@ impl Drawing<'_> {
     }
 }
 
-/// Each name and driver once, in an order that does not hang on the words.
+/// Each name and driver once, in an order that does not depend on the words.
 fn names_of(devices: &[Device]) -> Result<(String, String), Error> {
     let names = devices
         .iter()

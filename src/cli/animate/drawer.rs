@@ -12,7 +12,7 @@ use crate::{
         line::Line,
         reasons::why_empty,
         renderer::{Device, Job, Renderer},
-        shown::Parts,
+        scene_inputs::Parts,
         timings::{FrameTime, Timings, ms_since, peak_rss_bytes},
     },
     picture::{LayerKind, Picture},

@@ -10,7 +10,7 @@ use super::{
     draw::Content,
     keeps_transparency,
     ready::{self, Ready},
-    shots::Shot,
+    shots::FilmFrame,
     sphere::{along_axes, around, around_corners, sphere_of},
     union::Union,
     volumes::Volumes,
@@ -143,7 +143,11 @@ fn lit(
 }
 
 /// How frames of several times are seen, without a word to anybody.
-fn of_times(content: &Content, shots: &[Shot], scene: &SceneFlags) -> Result<Vec<Ready>, Error> {
+fn of_times(
+    content: &Content,
+    shots: &[FilmFrame],
+    scene: &SceneFlags,
+) -> Result<Vec<Ready>, Error> {
     let Content::Times(source, bricks) = content else {
         unreachable!("of several times");
     };
@@ -155,8 +159,8 @@ fn of_times(content: &Content, shots: &[Shot], scene: &SceneFlags) -> Result<Vec
 }
 
 /// The frames of `shots` without light and grain, which change no opacity: those that differ in nothing else look alike.
-fn seen_alone(ready: Vec<Ready>, shots: &[Shot]) -> Vec<Ready> {
-    let dark = |(ready, shot): (Ready, &Shot)| Ready {
+fn seen_alone(ready: Vec<Ready>, shots: &[FilmFrame]) -> Vec<Ready> {
+    let dark = |(ready, shot): (Ready, &FilmFrame)| Ready {
         settings: Settings {
             per_mode: ready.settings.per_mode,
             filter: ready.settings.filter,
@@ -171,7 +175,7 @@ fn seen_alone(ready: Vec<Ready>, shots: &[Shot]) -> Vec<Ready> {
 }
 
 /// The box around what `--crop` leaves in any frame.
-fn cropped(shots: &[Shot]) -> Option<[DVec3; 2]> {
+fn cropped(shots: &[FilmFrame]) -> Option<[DVec3; 2]> {
     let crops = shots.iter().filter_map(|shot| shot.settings.crop);
     crops.reduce(|[low, high], [a, b]| [low.min(a), high.max(b)])
 }

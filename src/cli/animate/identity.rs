@@ -3,8 +3,9 @@
 use super::{Plan, keeps_transparency, target::Frames};
 use crate::{
     cli::{
-        Error, scene_file,
-        stamp::{hash_of, stamp_of},
+        Error,
+        resume_check::{hash_of, stamp_of},
+        scene_file,
     },
     picture::BitDepth,
 };

@@ -16,7 +16,7 @@
 use crate::{
     cli::{
         Error,
-        stamp::{difference, hash_of},
+        resume_check::{difference, hash_of},
     },
     picture::write_file,
     volume::{Volume, Voxels},

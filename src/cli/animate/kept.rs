@@ -3,13 +3,13 @@
 use super::{
     draw::Content,
     ready::Ready,
-    shots::{Film, Shot},
+    shots::{Film, FilmFrame},
 };
 use crate::{
     cli::{
         flags::{Classification, ClassificationFlags, SceneFlags},
         look::{Chosen, base_of, ends_of, without_parts},
-        shown::Parts,
+        scene_inputs::Parts,
     },
     technique::{Filter, Settings},
 };
@@ -38,11 +38,11 @@ impl Kept {
     }
 
     /// The shots, and behind them one as the flags alone say it, where its function is to be kept.
-    pub fn with_own(&self, shots: &[Shot], film: &Film, scene: &SceneFlags) -> Vec<Shot> {
+    pub fn with_own(&self, shots: &[FilmFrame], film: &Film, scene: &SceneFlags) -> Vec<FilmFrame> {
         let mut all = shots.to_vec();
         if let (true, Some(classification)) = (self.is_wanted, own(film, scene, &shots[0].settings))
         {
-            all.push(Shot {
+            all.push(FilmFrame {
                 classification,
                 ..shots[0].clone()
             });
@@ -66,7 +66,7 @@ impl Kept {
         &self,
         scene: &SceneFlags,
         content: &Content,
-        shots: &[Shot],
+        shots: &[FilmFrame],
         film: &Film,
         height_factor: f64,
     ) -> SceneFlags {

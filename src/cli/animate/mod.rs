@@ -39,7 +39,7 @@ use super::{
     progress::{Progress, ProgressWord},
     renderer::Device,
     scene_file,
-    shown::{self, Shown, wants_stream},
+    scene_inputs::{self, SceneInputs, wants_stream},
     signals::Gate,
     timings::Timings,
 };
@@ -53,7 +53,7 @@ use draw::{Content, Drawing, Sink};
 use film::{FilmFormat, Reel};
 use kept::Kept;
 use rate::Rate;
-use shots::{Film, Shot};
+use shots::{Film, FilmFrame};
 use std::{
     path::{Path, PathBuf},
     sync::Arc,
@@ -130,7 +130,7 @@ struct Plan {
     /// Of the input as it lies in its file.
     header: Header,
     film: Film,
-    shots: Vec<Shot>,
+    shots: Vec<FilmFrame>,
     depth: Depth,
     inputs: Vec<PathBuf>,
 }
@@ -225,7 +225,7 @@ impl Animate {
                     scene.input.time = Some(time.to_string());
                 }
                 let settings = &shots[0].settings;
-                let shown = Shown::of_source(source, &scene, settings, device, progress)?;
+                let shown = SceneInputs::of_source(source, &scene, settings, device, progress)?;
                 Content::Still(Box::new(shown.at_level(&scene)))
             }
             None => {
@@ -340,7 +340,7 @@ impl Animate {
             _ if scene.picture.bit_depth() == BitDepth::Sixteen => Depth::More,
             _ => Depth::Eight,
         };
-        let limits = shown::limits(&scene);
+        let limits = scene_inputs::limits(&scene);
         let source = load::open_first(&mut scene, &limits, progress)?;
         let header = source.header();
         scene.classification.context = scene.is_auto().then(|| context(header));
@@ -348,7 +348,7 @@ impl Animate {
         for shot in &mut shots {
             shot.settings.skip = !self.no_skip;
         }
-        shown::check(&scene, &shots[0].settings)?;
+        scene_inputs::check(&scene, &shots[0].settings)?;
         check::several(&scene, header, &shots)?;
         check::frame(&scene, &film)?;
         let plan = Plan {

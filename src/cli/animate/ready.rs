@@ -1,12 +1,12 @@
 //! How each frame of a film is computed and coloured, once values are known.
 
-use super::{shots::Shot, volumes::Volumes};
+use super::{shots::FilmFrame, volumes::Volumes};
 use crate::{
     cli::{
         Error,
         flags::{Classification, SceneFlags},
         progress::Progress,
-        shown::Shown,
+        scene_inputs::SceneInputs,
     },
     technique::{Filter, Settings},
     transfer::ValueSummary,
@@ -24,8 +24,12 @@ pub struct Ready {
 }
 
 /// Frames of one time: as `render` draws it, or as keys say of one number a voxel.
-pub fn of_still(shots: &[Shot], scene: &SceneFlags, shown: &Shown) -> Result<Vec<Ready>, Error> {
-    let ready = |shot: &Shot| {
+pub fn of_still(
+    shots: &[FilmFrame],
+    scene: &SceneFlags,
+    shown: &SceneInputs,
+) -> Result<Vec<Ready>, Error> {
+    let ready = |shot: &FilmFrame| {
         let mut settings = shot.settings.clone();
         let (classification, filter) = if shot.classification == scene.classification {
             (shown.classification.clone(), shown.filter)
@@ -51,7 +55,7 @@ pub fn of_still(shots: &[Shot], scene: &SceneFlags, shown: &Shown) -> Result<Vec
 
 /// Frames of several times; reads values only where they decide something.
 pub fn of_times(
-    shots: &[Shot],
+    shots: &[FilmFrame],
     scene: &SceneFlags,
     is_labels: bool,
     volumes: &mut Volumes,
@@ -111,8 +115,9 @@ pub fn of_times(
             times.len()
         ));
     }
-    let found_labels =
-        |(shot, ready): (&Shot, &Ready)| shot.classification.found_labels(&ready.classification);
+    let found_labels = |(shot, ready): (&FilmFrame, &Ready)| {
+        shot.classification.found_labels(&ready.classification)
+    };
     let are_labels = shots.iter().zip(&ready).all(found_labels);
     if are_labels && scene.sampling.filter.is_none() {
         ready

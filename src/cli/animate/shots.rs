@@ -33,7 +33,7 @@ pub struct Film {
 
 /// One frame.
 #[derive(Clone, Debug)]
-pub struct Shot {
+pub struct FilmFrame {
     /// Who looks.
     pub camera: Camera,
     /// What is computed.
@@ -109,7 +109,7 @@ impl Film {
         depth: Depth,
         header: &Header,
         grid: &Grid,
-    ) -> Result<Vec<Shot>, Error> {
+    ) -> Result<Vec<FilmFrame>, Error> {
         if self.times && (scene.input.time.is_some() || self.keys_change_time()) {
             return Err(Error::usage(
                 "--times shows all times, and --time or the keyframes name one",
@@ -160,7 +160,7 @@ struct Maker<'a> {
 }
 
 impl Maker<'_> {
-    fn shot(&self, k: u32) -> Result<Shot, Error> {
+    fn shot(&self, k: u32) -> Result<FilmFrame, Error> {
         let u = place_of_frame(k, self.count);
         let mut camera = self.scene.camera.clone();
         let mut sampling = self.scene.sampling.clone();
@@ -196,7 +196,7 @@ impl Maker<'_> {
             tracks.light(&mut settings.shading, u)?;
         }
         let extent_pixels = self.scene.picture.extent_pixels()?;
-        Ok(Shot {
+        Ok(FilmFrame {
             camera: section.camera(&camera, &self.subject, extent_pixels, &mut settings)?,
             settings,
             classification,
@@ -206,7 +206,7 @@ impl Maker<'_> {
 }
 
 /// The one time that all frames show, if it is one of the input's.
-pub fn still_time(shots: &[Shot]) -> Option<u32> {
+pub fn still_time(shots: &[FilmFrame]) -> Option<u32> {
     let time = shots.first()?.time;
     let is_still = time.fract() == 0.0 && shots.iter().all(|shot| shot.time == time);
     is_still.then_some(time as u32)
@@ -236,7 +236,7 @@ mod tests {
         Header { times, ..header }
     }
 
-    fn shots(film: &Film, scene: &SceneFlags, times: u32) -> Result<Vec<Shot>, Error> {
+    fn shots(film: &Film, scene: &SceneFlags, times: u32) -> Result<Vec<FilmFrame>, Error> {
         let header = header(times);
         film.shots(scene, Depth::Eight, &header, &grid(scene, &header)?)
     }

@@ -14,7 +14,7 @@ use crate::{
         flags::SceneFlags,
         progress::Progress,
         renderer::{Device, Job, Renderer},
-        shown::Parts,
+        scene_inputs::Parts,
     },
     look::{box_of, visible_in},
     volume::Volume,

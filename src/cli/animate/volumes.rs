@@ -5,11 +5,11 @@
 use crate::{
     cli::{
         Error, flags::SceneFlags, load, memory::DeviceMemory, progress::Progress,
-        shown::open_stream,
+        scene_inputs::open_stream,
     },
     offscreen::Stream,
     transfer::{Quantity, ValueSummary},
-    volume::{Limits, Pick, Problem, ReadError, Source, Volume, Voxels},
+    volume::{Limits, Problem, ReadError, Source, TimeComponent, Volume, Voxels},
 };
 use glam::DAffine3;
 use std::{collections::BTreeSet, sync::Arc};
@@ -55,7 +55,7 @@ pub struct Volumes<'a> {
     bricks: Option<DeviceMemory>,
     scene: SceneFlags,
     progress: &'a Progress,
-    first: Option<(Pick, DAffine3)>,
+    first: Option<(TimeComponent, DAffine3)>,
     kept: Vec<(u32, Arc<Moment>)>,
     /// Told of every volume that is read.
     saw: &'a (dyn Fn(u32, &Volume) -> Result<(), Error> + Sync),
@@ -123,7 +123,12 @@ impl<'a> Volumes<'a> {
         // What is seen of it is small, whatever the memory for volumes.
         let overview = stream.overview();
         let whole = overview.header().whole();
-        let seen = Volume::read(overview, Pick::default(), whole, &Limits::default())?;
+        let seen = Volume::read(
+            overview,
+            TimeComponent::default(),
+            whole,
+            &Limits::default(),
+        )?;
         if self.first.is_none() {
             let notes = self.source.header().notes.iter().chain(&note);
             notes
@@ -154,7 +159,7 @@ impl<'a> Volumes<'a> {
             Some((pick, world_from_voxel)) => {
                 let whole = self.source.header().whole();
                 let limits = self.scene.input.limits();
-                let pick = Pick { time, ..pick };
+                let pick = TimeComponent { time, ..pick };
                 let volume = Volume::read(self.source.as_ref(), pick, whole, &limits)?;
                 Volume {
                     // Stretched as the first is.

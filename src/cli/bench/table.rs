@@ -16,7 +16,7 @@ use crate::cli::{
     output::{say, say_aside},
     progress::Progress,
     renderer::{Device, Job, Renderer},
-    shown::Shown,
+    scene_inputs::SceneInputs,
     timings::{FrameTime, ms_since},
 };
 use crate::{
@@ -100,7 +100,7 @@ pub fn measured(bench: &Bench, scene: &SceneFlags) -> Result<String, Error> {
         let base = of_mode(&base, *mode);
         // What is shown depends on the mode: channels are read for each.
         let here = Device::find(scene.one_device()?)?;
-        let shown = Shown::read(&mut scene.clone(), &base, &here, &progress)?;
+        let shown = SceneInputs::read(&mut scene.clone(), &base, &here, &progress)?;
         if probes
             .last()
             .is_none_or(|last: &Probed| last.volume != **input)
@@ -186,7 +186,7 @@ impl Bench {
         &self,
         scene: &SceneFlags,
         base: &Settings,
-        shown: &Shown,
+        shown: &SceneInputs,
         way: Way,
         extent_pixels: [u32; 2],
     ) -> Result<Measured, Error> {

@@ -32,7 +32,7 @@ pub struct Conformance {
 enum Verb {
     /// Check that a package is a whole and unchanged run of its profile without a failure
     #[command(
-        after_help = "Example:\n  stratavox conformance --filter probe.math.exp --json a && stratavox conformance verify --part a"
+        after_help = "Example:\n  stratavox conformance --filter probe.math.exp --json a && stratavox conformance verify --partial a"
     )]
     Verify {
         /// Of what a filter or a shard was asked for: whole as far as it goes

@@ -18,9 +18,9 @@ use crate::conformance::in_process;
 use crate::conformance::measurement::hex;
 use crate::conformance::record::{Asked, Build, DeviceRecord, Package, Stress};
 use crate::conformance::selection::Selection;
-use crate::conformance::stand::Stand;
 use crate::conformance::stress;
 use crate::conformance::supervisor::{self, Plan};
+use crate::conformance::test_bed::TestBed;
 use crate::conformance::tree::cases;
 use crate::conformance::waiver::Waivers;
 use crate::conformance::worker::{self, Answers, Trouble};
@@ -130,7 +130,7 @@ impl Run {
     pub fn run(self, source: Source, gate: &Gate) -> Result<(), Error> {
         let all = cases();
         if self.worker {
-            return worker::serve(&all, &mut self.stand(), &self.answers())
+            return worker::serve(&all, &mut self.test_bed(), &self.answers())
                 .map_err(|cause| Error::output("the pipe to the supervisor", &cause));
         }
         let selection = self.cases.selection(&all)?;
@@ -163,9 +163,9 @@ impl Run {
         tell(&package)
     }
 
-    fn stand(&self) -> Stand {
+    fn test_bed(&self) -> TestBed {
         let (choice, caps) = (self.choice(), self.limits.caps());
-        Stand::new(self.seed, move |lower| {
+        TestBed::new(self.seed, move |lower| {
             let options = Options {
                 caps: lower(caps),
                 ..Options::default()
@@ -262,8 +262,8 @@ impl Run {
     fn ask(&self, chosen: &[&Case], hearing: &Hearing) -> Result<supervisor::Outcome, Error> {
         let heard = |done, record: &mut _| hearing.hear(done, record);
         if self.in_process {
-            let (answers, mut stand) = (self.answers(), self.stand());
-            return in_process::run(&answers, &mut stand, chosen, self.repeat, heard)
+            let (answers, mut bed) = (self.answers(), self.test_bed());
+            return in_process::run(&answers, &mut bed, chosen, self.repeat, heard)
                 .map_err(|cause| Error::output("the pictures of a failure", &cause));
         }
         let plan = Plan {
@@ -299,9 +299,9 @@ impl Run {
             ));
         }
         let (seed, caps) = (self.seed, self.limits.caps());
-        let stand = |number: usize| {
+        let bed = |number: usize| {
             let device = Arc::clone(&device);
-            Stand::new(seed, move |lower| {
+            TestBed::new(seed, move |lower| {
                 let options = Options {
                     caps: lower(caps),
                     ..Options::default()
@@ -310,7 +310,7 @@ impl Run {
             })
         };
         let heard = |done, record: &mut _| hearing.hear(done, record);
-        stress::run(&self.answers(), found, stand, chosen, heard)
+        stress::run(&self.answers(), found, bed, chosen, heard)
             .map_err(|cause| Error::output("what the threads have found", &cause))
     }
 

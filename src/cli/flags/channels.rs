@@ -3,7 +3,7 @@
 use super::{Component, Error, InputFlags, color::rgb};
 use crate::{
     shaders::MAX_CHANNELS,
-    volume::{Header, Meaning},
+    volume::{ComponentKind, Header},
 };
 use clap::Args;
 use serde::{Deserialize, Serialize};
@@ -85,8 +85,8 @@ impl ChannelFlags {
             return Ok((Plan::One, None));
         } else {
             return Ok(match header.meaning {
-                Meaning::Rgb | Meaning::Rgba => (Plan::Colors, None),
-                Meaning::Channels(_) => {
+                ComponentKind::Rgb | ComponentKind::Rgba => (Plan::Colors, None),
+                ComponentKind::Channels(_) => {
                     let mut words = all();
                     let note = (words.len() > room).then(|| {
                         format!(
@@ -97,7 +97,7 @@ impl ChannelFlags {
                     words.truncate(room);
                     (Plan::Channels(words), note)
                 }
-                Meaning::Numbers | Meaning::Vector => (Plan::One, None),
+                ComponentKind::Numbers | ComponentKind::Vector => (Plan::One, None),
             });
         };
         check(&words, header, room)?;

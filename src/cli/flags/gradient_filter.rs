@@ -1,6 +1,6 @@
 //! How gradients are made: flags to [`GradientFilter`].
 
-use crate::technique::{GradientFilter, Keep};
+use crate::technique::{GradientFilter, GradientStorage};
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
 
@@ -63,11 +63,11 @@ impl GradientFlags {
     }
 
     /// Whether they are kept.
-    pub fn keep(&self) -> Keep {
+    pub fn keep(&self) -> GradientStorage {
         match self.gradients.unwrap_or_default() {
-            KeepWord::Made => Keep::Never,
-            KeepWord::Kept => Keep::Always,
-            KeepWord::Auto => Keep::Auto,
+            KeepWord::Made => GradientStorage::OnTheFly,
+            KeepWord::Kept => GradientStorage::Precomputed,
+            KeepWord::Auto => GradientStorage::Auto,
         }
     }
 
@@ -100,6 +100,6 @@ mod tests {
         assert_eq!(said.filter(), GradientFilter::Cubic);
         assert_eq!((said.idle(false).len(), said.idle(true).len()), (2, 0));
         let kept = (GradientFlags::default().keep(), said.keep());
-        assert_eq!(kept, (Keep::Never, Keep::Auto));
+        assert_eq!(kept, (GradientStorage::OnTheFly, GradientStorage::Auto));
     }
 }

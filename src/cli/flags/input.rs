@@ -8,7 +8,7 @@ use crate::cli::stdin::{self, STANDARD};
 use crate::look::first_variable;
 use crate::{
     format,
-    volume::{Header, Limits, Magnitude, Pick, Series, Source, Wanted, phantom},
+    volume::{Header, Limits, Magnitude, Series, Source, TimeComponent, VolumeSelection, phantom},
 };
 use clap::Args;
 use serde::{Deserialize, Serialize};
@@ -191,12 +191,17 @@ impl InputFlags {
                     )
                 })?;
                 match self.untrusted {
-                    true => untrusted::open(path, self.raw.as_deref(), &Wanted::default(), limits)?,
+                    true => untrusted::open(
+                        path,
+                        self.raw.as_deref(),
+                        &VolumeSelection::default(),
+                        limits,
+                    )?,
                     false => format::raw::open(path, &layout, limits)?,
                 }
             }
             None => {
-                let wanted = Wanted {
+                let wanted = VolumeSelection {
                     variable: self.variable.clone(),
                     series: self.series.clone(),
                     level: self.level,
@@ -223,7 +228,7 @@ impl InputFlags {
     }
 
     /// Which of the volumes in the source to draw, and what a person should know about the choice.
-    pub fn pick(&self, header: &Header) -> Result<(Pick, Option<String>), Error> {
+    pub fn pick(&self, header: &Header) -> Result<(TimeComponent, Option<String>), Error> {
         self.check_one(header)?;
         let (time, note) = self.time(header)?;
         let components = self.components(header)?;
@@ -238,7 +243,7 @@ impl InputFlags {
             ));
         }
         let component = components.start;
-        Ok((Pick { time, component }, note))
+        Ok((TimeComponent { time, component }, note))
     }
 
     /// The components that the words leave: the one they name, else all.

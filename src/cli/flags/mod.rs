@@ -138,7 +138,7 @@ impl SceneFlags {
             shading: self.light.shading(settings.mode)?,
             ambient_occlusion: self.light.occlusion(settings.mode)?,
             gradient_filter: self.gradient.filter(),
-            keep_gradients: self.gradient.keep(),
+            gradient_storage: self.gradient.keep(),
             dim: self.labels.dim()?,
             ..settings
         };
@@ -157,7 +157,7 @@ impl SceneFlags {
         })
     }
 
-    /// False where nothing in the picture hangs on a gradient; a function that is read may make something of it.
+    /// False where nothing in the picture depends on a gradient; a function that is read may make something of it.
     fn may_have_gradients(&self) -> bool {
         let mode = self.sampling.mode.unwrap_or_default();
         self.light.is_lit(mode) || !mode.is_projection() && self.classification.names_a_function()

@@ -186,7 +186,7 @@ impl SamplingFlags {
             cut_faces: self.cut_faces.map(CutFacesWord::cut_faces),
             shading: None,
             gradient_filter: Default::default(),
-            keep_gradients: Default::default(),
+            gradient_storage: Default::default(),
             dim: DEFAULT_DIM,
             ambient_occlusion: None,
             conformance: self.conformance,

@@ -17,7 +17,7 @@ use crate::{
     figure::{self, Anchor, Color, Figure, INK, Ticks},
     technique::Mode,
     transfer::TransferFunction,
-    volume::{Format, Header, Pick, Volume},
+    volume::{Format, Header, TimeComponent, Volume},
 };
 use clap::Args;
 use serde_json::{Value, json};
@@ -114,7 +114,7 @@ struct Counted {
     /// Of lengths, where it is known.
     length_unit: Option<&'static str>,
     header: Header,
-    pick: Pick,
+    pick: TimeComponent,
 }
 
 impl Counted {
@@ -185,7 +185,7 @@ pub fn length_unit(format: Format) -> Option<&'static str> {
     }
 }
 
-fn name(input: &InputFlags, header: &Header, pick: Pick) -> String {
+fn name(input: &InputFlags, header: &Header, pick: TimeComponent) -> String {
     let file = input.file().and_then(Path::file_name);
     let file = file.map(|name| name.to_string_lossy().into_owned());
     let mut name = file.or(input.path.clone()).unwrap_or_default();

@@ -11,7 +11,7 @@
 use super::{Plot, color};
 use crate::{
     figure::{Figure, INK, Mark, Point},
-    transfer::{Graded, Shape, TransferFunction, Widget},
+    transfer::{GradientTransfer, Shape, TransferFunction, Widget},
 };
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
@@ -47,7 +47,12 @@ pub fn of(function: &TransferFunction, axes: Axes) -> Vec<Outline> {
     graded.widgets.iter().map(outline).collect()
 }
 
-fn outline(function: &TransferFunction, graded: &Graded, widget: &Widget, axes: Axes) -> Outline {
+fn outline(
+    function: &TransferFunction,
+    graded: &GradientTransfer,
+    widget: &Widget,
+    axes: Axes,
+) -> Outline {
     let steepest = graded.steepest.unwrap_or(axes.top);
     let middle = |[a, b]: [f64; 2]| 0.5 * (a + b);
     let (shape, value, lines) = match &widget.shape {

@@ -13,7 +13,9 @@ use super::{
     progress::{Progress, ProgressWord},
 };
 use crate::annotate::unit;
-use crate::volume::{Grid, Header, Limits, Meaning, Pick, Problem, ReadError, Source, Statistics};
+use crate::volume::{
+    ComponentKind, Grid, Header, Limits, Problem, ReadError, Source, Statistics, TimeComponent,
+};
 use clap::Args;
 use glam::DVec3;
 use serde::Serialize;
@@ -109,7 +111,7 @@ impl Info {
         let choice = match components.len() == 1 && statistics.valid_count > 0 && !self.json {
             true => {
                 let component = components.start;
-                values::choice(&source, Pick { time: 0, component }, &limits)?
+                values::choice(&source, TimeComponent { time: 0, component }, &limits)?
             }
             false => None,
         };
@@ -163,7 +165,7 @@ fn check_size(source: &dyn Source, limits: &Limits) -> Result<(), ReadError> {
 
 fn meaning(header: &Header) -> (&'static str, Vec<ChannelReport>) {
     let channels = match &header.meaning {
-        Meaning::Channels(channels) => channels.as_slice(),
+        ComponentKind::Channels(channels) => channels.as_slice(),
         _ => &[],
     };
     let channels = channels.iter().map(|channel| ChannelReport {
@@ -172,11 +174,11 @@ fn meaning(header: &Header) -> (&'static str, Vec<ChannelReport>) {
         window: channel.window,
     });
     let word = match header.meaning {
-        Meaning::Numbers => "numbers",
-        Meaning::Rgb => "rgb",
-        Meaning::Rgba => "rgba",
-        Meaning::Vector => "vector",
-        Meaning::Channels(_) => "channels",
+        ComponentKind::Numbers => "numbers",
+        ComponentKind::Rgb => "rgb",
+        ComponentKind::Rgba => "rgba",
+        ComponentKind::Vector => "vector",
+        ComponentKind::Channels(_) => "channels",
     };
     (word, channels.collect())
 }

@@ -3,7 +3,7 @@
 use crate::{
     look::context,
     transfer::{Choice, Quantity, ValueSummary},
-    volume::{Header, Limits, Pick, ReadError, Source, Voxels, slices_of_slab},
+    volume::{Header, Limits, ReadError, Source, TimeComponent, Voxels, slices_of_slab},
 };
 use glam::DVec3;
 use std::ops::ControlFlow;
@@ -11,7 +11,7 @@ use std::ops::ControlFlow;
 /// What the values of one time and component are taken for under `--look auto`; `None` where there are none.
 pub fn choice(
     source: &dyn Source,
-    pick: Pick,
+    pick: TimeComponent,
     limits: &Limits,
 ) -> Result<Option<Choice>, ReadError> {
     let header = source.header();

@@ -2,7 +2,7 @@
 
 use crate::{
     cli::progress::Progress,
-    volume::{Header, Pick, Piece, ReadError, Source, VoxelBox},
+    volume::{Header, Piece, ReadError, Source, TimeComponent, VoxelBox},
 };
 use std::{
     ops::ControlFlow,
@@ -52,7 +52,7 @@ impl Source for Watched<'_> {
         self.source.reads_parts()
     }
 
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         let piece = self.source.read(pick, region)?;
         self.tell(&piece);
         Ok(piece)
@@ -60,7 +60,7 @@ impl Source for Watched<'_> {
 
     fn read_slabs(
         &self,
-        pick: Pick,
+        pick: TimeComponent,
         region: VoxelBox,
         slices: u32,
         take: &mut dyn FnMut(VoxelBox, Piece) -> ControlFlow<()>,

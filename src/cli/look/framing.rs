@@ -9,7 +9,7 @@ use super::side::{side_words, turn_to_best, with_side};
 use crate::camera::Camera;
 use crate::cli::Error;
 use crate::cli::flags::{CameraFlags, Depth, FrameWord, Numbers, SceneFlags};
-use crate::cli::shown::Shown;
+use crate::cli::scene_inputs::SceneInputs;
 use crate::look::{
     MOST_SAMPLES, SHARE, SMALL_PIXELS, corners, fit_to_visible, frames_the_box, samples, small_of,
     visible_in,
@@ -41,7 +41,7 @@ pub struct Framing<'a> {
     chose_samples: bool,
     /// Whether the side to look from is.
     may_choose_side: bool,
-    shown: &'a Shown,
+    shown: &'a SceneInputs,
     /// Pixels of the picture.
     extent_pixels: [u32; 2],
     depth: Depth,
@@ -56,7 +56,7 @@ impl<'a> Framing<'a> {
     /// Of a picture that `scene` asks for, with the light, the samples and the background of its look.
     pub fn new(
         scene: &SceneFlags,
-        shown: &'a Shown,
+        shown: &'a SceneInputs,
         made_for: Use,
         extent_pixels: [u32; 2],
         skip: bool,
@@ -78,7 +78,7 @@ impl<'a> Framing<'a> {
     }
 
     /// What is framed.
-    pub fn shown(&self) -> &'a Shown {
+    pub fn shown(&self) -> &'a SceneInputs {
         self.shown
     }
 

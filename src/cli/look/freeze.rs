@@ -5,7 +5,7 @@ use crate::cli::flags::{
     ChannelWord, Classification, ClassificationFlags, ColorWord, Look, SceneFlags, ShadingWord,
     WindowWord, inlined,
 };
-use crate::cli::shown::Shown;
+use crate::cli::scene_inputs::SceneInputs;
 use crate::scene::{Beside, Channel};
 use crate::technique::{Filter, Level, Mode, Role};
 use crate::transfer::{ColorPoint, TransferFunction};
@@ -38,7 +38,7 @@ impl<'a> Chosen<'a> {
     /// window, `base` the function of [`base_of`], where there is one.
     pub fn of_picture(
         view: &'a View,
-        shown: &'a Shown,
+        shown: &'a SceneInputs,
         beside: Beside<'a>,
         integrals: Option<[f64; 2]>,
         base: Option<&'a Classification>,

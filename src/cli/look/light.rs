@@ -5,7 +5,7 @@
 use crate::cli::flags::{
     Background, Classification, Depth, LightWord, Numbers, SceneFlags, ShadingWord,
 };
-use crate::cli::shown::check;
+use crate::cli::scene_inputs::check;
 use crate::look::{
     BACKGROUND, LIGHT, MATERIAL, Origin, STILL_SAMPLES, half_gradient, is_lit, may_choose, summary,
 };

@@ -3,7 +3,7 @@
 use super::{Framing, View};
 use crate::cli::Error;
 use crate::cli::renderer::{Device, Job, Renderer};
-use crate::cli::shown::Parts;
+use crate::cli::scene_inputs::Parts;
 use crate::picture::LayerKind;
 use std::cell::OnceCell;
 

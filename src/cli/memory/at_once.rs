@@ -7,7 +7,7 @@ use crate::{
     volume::Header,
 };
 
-/// What knows, perhaps after a while, what a device has for textures; `None` of the CPU twins, which need none.
+/// What knows, perhaps after a while, what a device has for textures; `None` of the CPU references, which need none.
 pub trait DeviceRoom {
     /// It.
     fn memory(&self) -> Result<Option<DeviceMemory>, Error>;

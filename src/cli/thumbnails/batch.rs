@@ -2,7 +2,7 @@
 
 use super::{
     Became, Row,
-    item::{Item, Wanted},
+    item::{Item, WantedPicture},
     parts::Part,
     room::{Room, Share},
 };
@@ -19,7 +19,7 @@ use crate::{
         progress::Progress,
         reasons::why_empty,
         renderer::Device,
-        shown::Shown,
+        scene_inputs::SceneInputs,
         signals::Gate,
     },
     picture::{EncodedPicture, Picture, PictureFormat, WriteOptions},
@@ -68,7 +68,7 @@ struct Noted<T> {
 
 /// A volume in memory.
 struct Read<'a> {
-    shown: Shown,
+    shown: SceneInputs,
     scene: SceneFlags,
     /// Behind the volume: given back when that has gone.
     _share: Share<'a>,
@@ -76,12 +76,12 @@ struct Read<'a> {
 
 /// Pictures and the voxels that they show.
 struct Drawn<P> {
-    shots: Vec<Shot<P>>,
+    shots: Vec<PlannedPicture<P>>,
     dims: [u32; 3],
 }
 
 /// One of the pictures of a volume.
-struct Shot<P> {
+struct PlannedPicture<P> {
     /// Which.
     at: usize,
     picture: P,
@@ -217,7 +217,7 @@ impl Batch<'_> {
             is_opaque: true,
             depth: self.depth,
         };
-        let framing = |wanted: &Wanted| {
+        let framing = |wanted: &WantedPicture| {
             let mut scene = scene.clone();
             if let Some(view) = wanted.view {
                 scene.camera.view = Some(view);
@@ -270,7 +270,7 @@ impl Batch<'_> {
                 background,
                 format,
             )?;
-            shots.push(Shot {
+            shots.push(PlannedPicture {
                 at: *at,
                 picture,
                 notes: notes.collect(),
@@ -282,9 +282,9 @@ impl Batch<'_> {
     }
 
     fn encoded(&self, item: &Item, noted: Noted<Drawn<Picture>>) -> Noted<Drawn<EncodedPicture>> {
-        let encoded = |shot: Shot<Picture>| {
+        let encoded = |shot: PlannedPicture<Picture>| {
             let path = self.folder.join(&item.pictures[shot.at].picture);
-            Ok(Shot {
+            Ok(PlannedPicture {
                 at: shot.at,
                 picture: EncodedPicture::new(&shot.picture, &path, self.options)?,
                 notes: shot.notes,
@@ -395,7 +395,7 @@ impl<'a> Reading<'a> {
         let held = Held::of(&scene, source.header().components);
         let needed = needed_bytes(source.header(), &scene, self.memory, held);
         let share = self.room.share(needed);
-        let shown = Shown::of(source, &scene, self.batch.settings, &self.memory, progress)?;
+        let shown = SceneInputs::of(source, &scene, self.batch.settings, &self.memory, progress)?;
         Ok(Read {
             shown: shown.at_level(&scene),
             scene,

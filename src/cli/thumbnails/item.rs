@@ -16,12 +16,12 @@ pub struct Item {
     /// Which of the volumes that it holds.
     pub part: Part,
     /// Of each view one.
-    pub pictures: Vec<Wanted>,
+    pub pictures: Vec<WantedPicture>,
 }
 
 /// A picture of a volume.
 #[derive(Clone, Debug)]
-pub struct Wanted {
+pub struct WantedPicture {
     /// The side to stand on, where several are asked for.
     pub view: Option<ViewWord>,
     /// A name in the folder of pictures.
@@ -37,14 +37,14 @@ impl Item {
     }
 
     /// The pictures that are to be drawn, and which they are.
-    pub fn missing(&self) -> impl Iterator<Item = (usize, &Wanted)> {
+    pub fn missing(&self) -> impl Iterator<Item = (usize, &WantedPicture)> {
         let all = self.pictures.iter().enumerate();
         all.filter(|(_, wanted)| !wanted.is_kept)
     }
 
     /// What becomes of each, as long as nothing has.
     pub fn rows(&self) -> Vec<Row> {
-        let row = |wanted: &Wanted| Row {
+        let row = |wanted: &WantedPicture| Row {
             input: self.input.clone(),
             series: self.part.series.clone(),
             variable: self.part.variable.clone(),

@@ -18,14 +18,14 @@ use super::{
     memory::available_bytes,
     output::{self, say_aside, write_whole},
     progress::{Progress, ProgressWord},
-    scene_file, shown,
+    scene_file, scene_inputs,
     signals::Gate,
 };
 use crate::picture::{BitDepth, WriteOptions};
 use batch::Batch;
 use clap::Args;
 use index::{Became, Index, Row};
-use item::{Item, Wanted};
+use item::{Item, WantedPicture};
 use parts::{Part, Variables};
 use std::{
     fs,
@@ -114,7 +114,7 @@ impl Thumbnails {
         settings.skip = !self.no_skip;
         scene.classification.check()?;
         scene.annotate.check()?;
-        shown::check(&scene, &settings)?;
+        scene_inputs::check(&scene, &settings)?;
         let inputs = Inputs::find(&self.inputs, &scene.input, self.recursive)?;
         let passed_over = inputs.notes();
         let unnamed = inputs.failures.into_iter().next();
@@ -127,14 +127,14 @@ impl Thumbnails {
         let pictures = names::pictures_of(&names::with_views(&volumes, &views))?;
         let paths = pictures.iter().map(|name| self.output.join(name)).collect();
         let kept = self.check(paths, &volumes, &scene)?;
-        let of_view = |((picture, is_kept), &view)| Wanted {
+        let of_view = |((picture, is_kept), &view)| WantedPicture {
             view,
             picture,
             is_kept,
         };
         let pictures = pictures.into_iter().zip(kept);
         let wanted = pictures.zip(views.iter().cycle()).map(of_view);
-        let wanted: Vec<Wanted> = wanted.collect();
+        let wanted: Vec<WantedPicture> = wanted.collect();
 
         let progress = Progress::new(self.progress);
         for note in passed_over {

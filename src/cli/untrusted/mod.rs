@@ -31,7 +31,7 @@ pub const VERB: &str = "child-of-untrusted";
 pub fn open(
     path: &std::path::Path,
     _: Option<&str>,
-    _: &crate::volume::Wanted,
+    _: &crate::volume::VolumeSelection,
     _: &crate::volume::Limits,
 ) -> Result<Box<dyn crate::volume::Source>, crate::volume::ReadError> {
     Err(crate::volume::ReadError {

@@ -6,7 +6,10 @@ use super::{
 };
 use crate::{
     cli::memory::in_units,
-    volume::{Header, Limits, Loss, Pick, Piece, Problem, ReadError, Source, VoxelBox, Wanted},
+    volume::{
+        Header, Limits, Piece, PrecisionLoss, Problem, ReadError, Source, TimeComponent,
+        VolumeSelection, VoxelBox,
+    },
 };
 use std::{
     io::{self, BufReader, Read},
@@ -27,7 +30,7 @@ const FAULT: &str = "STRATAVOX_READER_FAULT";
 pub fn open(
     path: &Path,
     raw: Option<&str>,
-    wanted: &Wanted,
+    wanted: &VolumeSelection,
     limits: &Limits,
 ) -> Result<Box<dyn Source>, ReadError> {
     let failed = |problem| ReadError {
@@ -227,7 +230,7 @@ impl ReadElsewhere {
                     worst,
                 } if count == count_of(region) => {
                     let worst = f64::from_bits(worst);
-                    let loss = Loss { changed, worst };
+                    let loss = PrecisionLoss { changed, worst };
                     take_piece(&mut reader.from, r#type, count as usize, loss)
                         .map_err(|_| reader.ended(&self.path, most))?
                 }
@@ -268,7 +271,7 @@ impl Source for ReadElsewhere {
         self.opened.reads_whole_rows
     }
 
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         let mut read = None;
         let what = What::Piece;
         let asking = Asking { pick, region, what };
@@ -281,7 +284,7 @@ impl Source for ReadElsewhere {
 
     fn read_slabs(
         &self,
-        pick: Pick,
+        pick: TimeComponent,
         region: VoxelBox,
         slices: u32,
         take: &mut dyn FnMut(VoxelBox, Piece) -> ControlFlow<()>,
@@ -291,7 +294,11 @@ impl Source for ReadElsewhere {
         self.pieces(asking, &mut region.slabs(slices), take)
     }
 
-    fn read_bytes(&self, pick: Pick, region: VoxelBox) -> Result<Option<Vec<u8>>, ReadError> {
+    fn read_bytes(
+        &self,
+        pick: TimeComponent,
+        region: VoxelBox,
+    ) -> Result<Option<Vec<u8>>, ReadError> {
         let most = self.opening.limits.max_bytes;
         let mut kept = self.kept();
         let reader = self.reader(&mut kept)?;

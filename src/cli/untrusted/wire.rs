@@ -8,7 +8,8 @@
 
 use crate::format::geometry::is_invertible;
 use crate::volume::{
-    Header, Limits, Loss, Pick, Piece, Problem, ReadError, VoxelBox, VoxelType, Voxels, Wanted,
+    Header, Limits, Piece, PrecisionLoss, Problem, ReadError, TimeComponent, VolumeSelection,
+    VoxelBox, VoxelType, Voxels,
 };
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::DeserializeOwned};
 use std::io::{self, Read, Write};
@@ -21,14 +22,14 @@ const MAX_JSON_BYTES: u32 = 64 << 20;
 pub struct Opening {
     pub path: String,
     pub raw: Option<String>,
-    pub wanted: Wanted,
+    pub wanted: VolumeSelection,
     pub limits: Limits,
 }
 
 /// The messages to the reader that follow.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct Asking {
-    pub pick: Pick,
+    pub pick: TimeComponent,
     pub region: VoxelBox,
     pub what: What,
 }
@@ -229,7 +230,7 @@ pub fn take_piece(
     input: &mut impl Read,
     r#type: VoxelType,
     count: usize,
-    loss: Loss,
+    loss: PrecisionLoss,
 ) -> io::Result<Piece> {
     fn numbers<T: bytemuck::Pod>(input: &mut impl Read, count: usize) -> io::Result<Vec<T>> {
         let mut numbers = Vec::new();
@@ -257,7 +258,7 @@ pub fn take_piece(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::volume::{Channel, Format, Meaning, Rescale, Series};
+    use crate::volume::{Channel, ComponentKind, Format, Rescale, Series};
     use glam::DAffine3;
 
     #[test]
@@ -272,7 +273,7 @@ mod tests {
             fill: Some(f64::INFINITY),
             hounsfield: true,
             unit: Some("K".to_owned()),
-            meaning: Meaning::Channels(vec![
+            meaning: ComponentKind::Channels(vec![
                 Channel {
                     name: "a".to_owned(),
                     srgb: Some([0.1, 0.2, 0.3]),
@@ -318,7 +319,7 @@ mod tests {
     fn a_piece_crosses_unchanged_and_what_is_missing_is_an_error() {
         let piece = Piece {
             voxels: Voxels::F32(vec![0.1, f32::INFINITY, -0.0]),
-            loss: Loss {
+            loss: PrecisionLoss {
                 changed: 2,
                 worst: 0.1,
             },
@@ -335,7 +336,12 @@ mod tests {
                     worst,
                 }) => {
                     let worst = f64::from_bits(worst);
-                    take_piece(&mut input, r#type, count as usize, Loss { changed, worst })
+                    take_piece(
+                        &mut input,
+                        r#type,
+                        count as usize,
+                        PrecisionLoss { changed, worst },
+                    )
                 }
                 _ => Err(io::Error::other("no voxels")),
             });

@@ -7,7 +7,7 @@
 //!
 //! The derivation of the bounds is [`DERIVATION`], which goes into each record.
 
-use super::chord::{Chord, Shot};
+use super::chord::{Chord, PictureCase};
 use super::field::Field;
 use crate::picture::ColorSpace;
 use crate::technique::{Filter, Mode};
@@ -108,9 +108,9 @@ impl Answer {
     };
 }
 
-/// What the ray of a chord should show. `None` where it hangs on rounding. `bits`: of the device's sampler.
+/// What the ray of a chord should show. `None` where it depends on rounding. `bits`: of the device's sampler.
 pub fn answer(
-    shot: &Shot,
+    shot: &PictureCase,
     chord: &Chord,
     field: &Field,
     classes: &Classes,
@@ -130,7 +130,7 @@ pub fn answer(
 }
 
 /// Value and what it may be off by, of each sample.
-fn values(shot: &Shot, chord: &Chord, field: &Field, bits: u32) -> Option<Vec<(f64, f64)>> {
+fn values(shot: &PictureCase, chord: &Chord, field: &Field, bits: u32) -> Option<Vec<(f64, f64)>> {
     let settings = &shot.settings;
     let by_sampler = !settings.conformance && settings.filter != Filter::Nearest;
     let taps = match settings.filter {
@@ -150,7 +150,12 @@ fn values(shot: &Shot, chord: &Chord, field: &Field, bits: u32) -> Option<Vec<(f
     chord.samples.iter().map(sample).collect()
 }
 
-fn composite(shot: &Shot, chord: &Chord, values: &[(f64, f64)], classes: &Classes) -> Answer {
+fn composite(
+    shot: &PictureCase,
+    chord: &Chord,
+    values: &[(f64, f64)],
+    classes: &Classes,
+) -> Answer {
     let [opacity_slope, color_slope] = classes.slopes();
     let table = if shot.settings.conformance {
         0.0

@@ -22,7 +22,7 @@ const U: f64 = 1.0 / (1u32 << 24) as f64;
 /// A picture without its matter.
 #[derive(Clone, Debug)]
 #[allow(missing_docs, reason = "the names say it")]
-pub struct Shot {
+pub struct PictureCase {
     pub grid: Grid,
     pub camera: Camera,
     pub extent: [u32; 2],
@@ -48,7 +48,7 @@ pub struct Chord {
     pub blur_voxels: DVec3,
 }
 
-impl Shot {
+impl PictureCase {
     /// The library's own words for it.
     pub fn view(&self) -> View<'_> {
         View {
@@ -84,7 +84,7 @@ impl Shot {
         shot
     }
 
-    /// The parameters that the twins read, and how many slices there are.
+    /// The parameters that the CPU references read, and how many slices there are.
     pub fn parameters(&self) -> (Frame, u32) {
         let Recording { frame, slices, .. } =
             self.view().on_cpu().expect("settings that can be drawn");

@@ -8,7 +8,7 @@
 //! interpolation, and every B-spline and Catmull-Rom, is linear where the field is (their kernels sum to one and
 //! are even), as long as no tap lies outside the grid.
 
-use super::chord::{Chord, Shot};
+use super::chord::{Chord, PictureCase};
 use crate::technique::Filter;
 use crate::technique::slices_2d::stack_axis;
 use crate::volume::{Rescale, Volume, VoxelType, Voxels};
@@ -72,8 +72,8 @@ impl Field {
         self.slope.abs() / 256.0
     }
 
-    /// The value of a sample, and how far rounding may move it. `None` where which voxel it lies in hangs on rounding.
-    pub fn sampled(&self, shot: &Shot, chord: &Chord, t: f64) -> Option<(f64, f64)> {
+    /// The value of a sample, and how far rounding may move it. `None` where which voxel it lies in depends on rounding.
+    pub fn sampled(&self, shot: &PictureCase, chord: &Chord, t: f64) -> Option<(f64, f64)> {
         let mut place = chord.at(t);
         let mut blur = chord.blur_voxels;
         if shot.settings.technique.draws_stacks() {
@@ -93,7 +93,7 @@ impl Field {
     }
 
     /// The volume, in voxels of a type.
-    pub fn volume(&self, shot: &Shot, stored: VoxelType) -> Volume {
+    pub fn volume(&self, shot: &PictureCase, stored: VoxelType) -> Volume {
         let [nx, ny, nz] = shot.grid.dims;
         let code = |x: u32, y: u32, z: u32| {
             self.at_first + self.slope.dot(DVec3::new(x.into(), y.into(), z.into()))

@@ -8,7 +8,7 @@
 //! `open` is known at the corners of voxels and trilinear between. It is read a cell nearer to where light comes from,
 //! a cell being as long as the shortest spacing of voxels.
 
-use super::Shot;
+use super::PictureCase;
 use crate::technique::Shadows;
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::PI;
@@ -31,7 +31,7 @@ pub struct Open {
 
 impl Open {
     /// Where matter of one extinction fills what no crop cuts away.
-    pub fn new(shot: &Shot, extinction: f64) -> Self {
+    pub fn new(shot: &PictureCase, extinction: f64) -> Self {
         let voxel_from_world = shot.grid.world_from_voxel.matrix3.inverse();
         let crop = shot.settings.crop;
         let walls = crop.unwrap_or([DVec3::ZERO, shot.grid.far_corner()]);

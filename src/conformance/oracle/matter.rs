@@ -9,7 +9,7 @@
 //! triangle     max(0, 1 - |f - v| / (w s / top))              rectangle, bell: as they say
 //! ```
 
-use super::Shot;
+use super::PictureCase;
 use super::light::Open;
 use super::voxels::{Numbers, stack_of};
 use crate::technique::{Filter, Light, LightSpace, Role, Shading};
@@ -28,7 +28,7 @@ pub struct Part {
 /// All of them, as a shot sees them.
 #[derive(Clone, Copy, Debug)]
 pub struct Matter<'a> {
-    shot: &'a Shot,
+    shot: &'a PictureCase,
     parts: &'a [Part],
     stack: Option<usize>,
     open: Option<&'a Open>,
@@ -36,7 +36,7 @@ pub struct Matter<'a> {
 
 impl<'a> Matter<'a> {
     /// The first is the scene's volume.
-    pub fn new(shot: &'a Shot, parts: &'a [Part], open: Option<&'a Open>) -> Self {
+    pub fn new(shot: &'a PictureCase, parts: &'a [Part], open: Option<&'a Open>) -> Self {
         Self {
             shot,
             parts,

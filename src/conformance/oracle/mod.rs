@@ -1,7 +1,7 @@
-//! Exact answers, in f64 and from camera and grid alone: none of it calls the functions of the shaders' twins.
+//! Exact answers, in f64 and from camera and grid alone: none of it calls the functions of the shaders' CPU references.
 //!
 //! ```text
-//! Shot -> Chord (what a ray meets, where its samples lie) -> Answer (what the mode makes of them, and how exact f32 is)
+//! PictureCase -> Chord (what a ray meets, where its samples lie) -> Answer (what the mode makes of them, and how exact f32 is)
 //! ```
 
 mod answer;
@@ -15,7 +15,7 @@ mod tracked;
 mod voxels;
 
 pub use answer::{Answer, Classes, DERIVATION, answer};
-pub use chord::{Chord, Shot};
+pub use chord::{Chord, PictureCase};
 pub use field::{Field, Kind};
 pub use light::Open;
 pub use matter::Part;

@@ -13,7 +13,7 @@ pub fn segments(enter: f64, leave: f64, h: f64) -> Vec<(f64, f64)> {
     samples
 }
 
-/// Where `height + t slope` is a whole number and a half times `spacing`, and whether their number hangs on rounding: a
+/// Where `height + t slope` is a whole number and a half times `spacing`, and whether their number depends on rounding: a
 /// plane's own t may be off by `blur`, as the ends may.
 pub fn planes(
     ends: [f64; 2],

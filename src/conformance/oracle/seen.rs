@@ -10,7 +10,7 @@
 //! average      sum of v d over sum of d               xray         sum of v d
 //! ```
 
-use super::chord::{Chord, Shot};
+use super::chord::{Chord, PictureCase};
 use super::light::Open;
 use super::matter::{Matter, Part};
 use crate::technique::{Filter, Mode};
@@ -40,12 +40,17 @@ impl Seen {
 }
 
 /// One ray's.
-pub fn seen(shot: &Shot, chord: &Chord, parts: &[Part]) -> Seen {
+pub fn seen(shot: &PictureCase, chord: &Chord, parts: &[Part]) -> Seen {
     seen_through(shot, chord, parts, None)
 }
 
 /// The same where matter takes light away.
-pub fn seen_through(shot: &Shot, chord: &Chord, parts: &[Part], open: Option<&Open>) -> Seen {
+pub fn seen_through(
+    shot: &PictureCase,
+    chord: &Chord,
+    parts: &[Part],
+    open: Option<&Open>,
+) -> Seen {
     let mode = shot.settings.mode;
     if chord.samples.is_empty() {
         return Seen::NOTHING;
@@ -66,12 +71,12 @@ pub fn seen_through(shot: &Shot, chord: &Chord, parts: &[Part], open: Option<&Op
     }
 }
 
-fn unit(shot: &Shot, value: f64) -> f64 {
+fn unit(shot: &PictureCase, value: f64) -> f64 {
     let [low, high] = shot.settings.per_mode.unit_values;
     ((value - low) / (high - low)).clamp(0.0, 1.0)
 }
 
-fn absorbed(shot: &Shot, chord: &Chord, matter: &Matter) -> Seen {
+fn absorbed(shot: &PictureCase, chord: &Chord, matter: &Matter) -> Seen {
     let along = shot.grid.world_from_voxel.matrix3 * chord.direction;
     let is_mida = shot.settings.mode == Mode::Mida;
     let gamma = shot.settings.per_mode.mida_gamma;
@@ -109,7 +114,7 @@ fn absorbed(shot: &Shot, chord: &Chord, matter: &Matter) -> Seen {
     }
 }
 
-fn projected(shot: &Shot, chord: &Chord, matter: &Matter) -> (f64, f64) {
+fn projected(shot: &PictureCase, chord: &Chord, matter: &Matter) -> (f64, f64) {
     let per_mode = &shot.settings.per_mode;
     let value_at = |t: f64| matter.value(0, chord.at(t));
     let all = || chord.samples.iter().map(|&(t, d)| (value_at(t), t, d));

@@ -11,10 +11,10 @@
 //!
 //! What a device contracts has a rounding less. Where an operation's result is a number of f32 and its operands are
 //! exact, so is it. A comparison or a `floor` whose outcome lies inside of the error sets a mark, and all numbers of
-//! the pixel that come after are infinitely uncertain: the answer hangs on rounding. A minimum and a maximum do not:
+//! the pixel that come after are infinitely uncertain: the answer depends on rounding. A minimum and a maximum do not:
 //! they are as continuous as their operands.
 //!
-//! The twins that are written for [`Real`] run with it as they are. [`Real::to_f32`] gives the error, rounded up: a
+//! The CPU references that are written for [`Real`] run with it as they are. [`Real::to_f32`] gives the error, rounded up: a
 //! picture of these numbers is a picture of what is allowed.
 
 mod blended;
@@ -36,7 +36,7 @@ thread_local! {
 }
 
 /// A number and its uncertainty. `ROUNDED`: numbers that come as f32 are roundings of the true ones, which is what
-/// the parameters of a picture are to a closed form of the camera; else they are exact, as they are to a twin.
+/// the parameters of a picture are to a closed form of the camera; else they are exact, as they are to a CPU reference.
 /// `F16`: slices are blended in 16-bit floats, by batches.
 #[derive(Clone, Copy, Debug)]
 pub struct Tracked<const ROUNDED: bool, const F16: bool> {

@@ -8,7 +8,7 @@
 //! Catmull and Rom  1 - 5/2 d^2 + 3/2 d^3, d < 1;       2 - 4 d + 5/2 d^2 - d^3/2, d < 2
 //! ```
 
-use super::Shot;
+use super::PictureCase;
 use crate::technique::Filter;
 use crate::technique::slices_2d::stack_axis;
 use crate::volume::{Rescale, Volume, Voxels};
@@ -24,7 +24,7 @@ pub struct Numbers {
 
 impl Numbers {
     /// A field over voxel space, at voxel centres.
-    pub fn of(shot: &Shot, field: impl Fn(DVec3) -> f64) -> Self {
+    pub fn of(shot: &PictureCase, field: impl Fn(DVec3) -> f64) -> Self {
         let dims = shot.grid.dims;
         let [nx, ny, nz] = dims;
         let all = (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| [x, y, z])));
@@ -96,7 +96,7 @@ fn weight(filter: Filter, d: f64) -> f64 {
 }
 
 /// The axis of the stack that a shot draws, where it draws one.
-pub fn stack_of(shot: &Shot) -> Option<usize> {
+pub fn stack_of(shot: &PictureCase) -> Option<usize> {
     shot.settings
         .technique
         .draws_stacks()

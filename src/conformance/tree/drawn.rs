@@ -4,8 +4,8 @@
 use crate::conformance::case::Stop;
 use crate::conformance::judge::WIDE_ALLOWANCE;
 use crate::conformance::measurement::{Bound, Measurement, Pictures};
-use crate::conformance::oracle::{Chord, Seen, Shot, Tracked};
-use crate::conformance::stand::Stand;
+use crate::conformance::oracle::{Chord, PictureCase, Seen, Tracked};
+use crate::conformance::test_bed::TestBed;
 use crate::offscreen::reference;
 use crate::picture::{LayerKind, Picture};
 use crate::scene::Scene;
@@ -18,12 +18,12 @@ const OF_F64: f64 = 1e-9;
 pub const WIDEST: f32 = 0.1;
 
 /// How the bounds of running errors are made.
-pub const DERIVATION: &str = "Running error analysis: the twin of the shaders runs once over this scene with numbers that carry how far any \
+pub const DERIVATION: &str = "Running error analysis: the reference of the shaders runs once over this scene with numbers that carry how far any \
 device may be from them (oracle/tracked.rs). Each operation may round either way, 2^-23 of its result; division 5/2, square roots 5 of \
 these, exp 3 + 2 |x|, log 2^-21 near 1, pow exp2(y log2 x), mix x (1 - a) + y a (Vulkan specification, precision of SPIR-V \
 instructions). Errors of operands go through each operation at their worst, none against another. What comes as f32 is within 2^-24 \
 of what it stands for. allowed = that error of this channel of this pixel, a worst case. Where a comparison or a floor could turn \
-out otherwise the pixel hangs on rounding, and where the bound of a channel is a tenth of all light it says nothing: both are left out.";
+out otherwise the pixel depends on rounding, and where the bound of a channel is a tenth of all light it says nothing: both are left out.";
 
 /// The same where slices are blended in 16-bit floats.
 pub const DERIVATION_F16: &str = "Slices are blended in 16-bit floats, by batches of 64, which are merged in 32 bits: source, factor, \
@@ -32,10 +32,10 @@ specification, Blending: a precision no lower than that of the target), and by a
 each blend as any other, so it grows with the number of slices as the operator lets it. ";
 
 /// How far any device may be from the true picture of a scene: errors in place of numbers, infinite where the answer
-/// hangs on rounding. `ROUNDED` as in [`Tracked`].
-pub fn errors<const ROUNDED: bool>(stand: &mut Stand, scene: &Scene) -> Result<Picture, Stop> {
+/// depends on rounding. `ROUNDED` as in [`Tracked`].
+pub fn errors<const ROUNDED: bool>(bed: &mut TestBed, scene: &Scene) -> Result<Picture, Stop> {
     let wrong = |error: technique::Error| Stop::Suite(error.to_string());
-    let errors = match stand.is_merged(scene.settings)? {
+    let errors = match bed.is_merged(scene.settings)? {
         true => reference::render::<Tracked<ROUNDED, true>>(scene),
         false => reference::render::<Tracked<ROUNDED, false>>(scene),
     };
@@ -43,8 +43,8 @@ pub fn errors<const ROUNDED: bool>(stand: &mut Stand, scene: &Scene) -> Result<P
 }
 
 /// What [`errors`] are derived from.
-pub fn derivation(stand: &mut Stand, settings: &Settings) -> Result<String, Stop> {
-    let of_blending = match stand.is_merged(settings)? {
+pub fn derivation(bed: &mut TestBed, settings: &Settings) -> Result<String, Stop> {
+    let of_blending = match bed.is_merged(settings)? {
         true => DERIVATION_F16,
         false => "",
     };
@@ -59,38 +59,38 @@ pub fn layer(picture: &Picture, kind: LayerKind) -> Option<&[f32]> {
 
 /// Draws the scene of a shot and compares each ray with what it should see.
 pub fn measure(
-    stand: &mut Stand,
-    shot: &Shot,
+    bed: &mut TestBed,
+    shot: &PictureCase,
     scene: &Scene,
     layers: &[LayerKind],
     of: impl Fn(&Chord) -> Seen,
 ) -> Result<Measurement, Stop> {
-    let allowed = errors::<true>(stand, scene)?;
-    let bound = Bound::new("running-error", derivation(stand, scene.settings)?);
-    compare(stand, shot, scene, layers, (bound, Some(&allowed)), of)
+    let allowed = errors::<true>(bed, scene)?;
+    let bound = Bound::new("running-error", derivation(bed, scene.settings)?);
+    compare(bed, shot, scene, layers, (bound, Some(&allowed)), of)
 }
 
 /// The same where each answer says itself what it is allowed.
 pub fn measure_within(
-    stand: &mut Stand,
-    shot: &Shot,
+    bed: &mut TestBed,
+    shot: &PictureCase,
     scene: &Scene,
     layers: &[LayerKind],
     bound: Bound,
     of: impl Fn(&Chord) -> Seen,
 ) -> Result<Measurement, Stop> {
-    compare(stand, shot, scene, layers, (bound, None), of)
+    compare(bed, shot, scene, layers, (bound, None), of)
 }
 
 fn compare(
-    stand: &mut Stand,
-    shot: &Shot,
+    bed: &mut TestBed,
+    shot: &PictureCase,
     scene: &Scene,
     layers: &[LayerKind],
     (bound, allowed): (Bound, Option<&Picture>),
     of: impl Fn(&Chord) -> Seen,
 ) -> Result<Measurement, Stop> {
-    let found = stand.render(scene, layers)?;
+    let found = bed.render(scene, layers)?;
     let mut measurement = Measurement::new(bound, 1000);
     let mut expected = Vec::with_capacity(found.pixels.len());
     let mut widest = 0.0f64;

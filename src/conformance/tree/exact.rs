@@ -5,8 +5,8 @@ use super::drawn::{DERIVATION_F16, WIDEST, errors};
 use super::ground::{self, FILTERS, MODES, PLACEMENTS, PROJECTIONS, Placement, TYPES};
 use crate::conformance::case::{Case, Profile, Stop};
 use crate::conformance::measurement::{Bound, Measurement, Pictures};
-use crate::conformance::oracle::{Answer, Classes, Kind, Shot, answer};
-use crate::conformance::stand::Stand;
+use crate::conformance::oracle::{Answer, Classes, Kind, PictureCase, answer};
+use crate::conformance::test_bed::TestBed;
 use crate::picture::{LayerKind, Picture};
 use crate::technique::{Filter, Mode};
 use crate::volume::VoxelType;
@@ -79,14 +79,14 @@ impl Of {
     }
 
     fn case(self, name: String) -> Case {
-        let mut case = Case::new(name, move |stand| self.measure(stand));
+        let mut case = Case::new(name, move |bed| self.measure(bed));
         case.needs = ground::needs(self.placement, self.mode, self.stored, self.filter.1);
         case
     }
 
-    fn measure(self, stand: &mut Stand) -> Result<Measurement, Stop> {
+    fn measure(self, bed: &mut TestBed) -> Result<Measurement, Stop> {
         let mut shot = ground::shot(self.placement, self.mode, self.filter, self.is_perspective);
-        let is_merged = stand.is_merged(&shot.settings)?;
+        let is_merged = bed.is_merged(&shot.settings)?;
         if is_merged && self.kind == Kind::Homogeneous && !shot.settings.technique.draws_stacks() {
             // More slices than a batch has.
             shot.settings.samples_per_voxel = 3.0;
@@ -100,15 +100,12 @@ impl Of {
             true => &[LayerKind::Value],
             false => &[],
         };
-        let bits = stand.subtexel_bits()?;
-        let found = stand.render(&scene, layers)?;
+        let bits = bed.subtexel_bits()?;
+        let found = bed.render(&scene, layers)?;
         // By points and fetches: the answer is allowed what a table and a sampler may be off by.
         let exact = shot.with(|settings| settings.conformance = true);
         let of_blending = match is_merged {
-            true => Some(errors::<true>(
-                stand,
-                &exact.scene(&volume, Some(&function)),
-            )?),
+            true => Some(errors::<true>(bed, &exact.scene(&volume, Some(&function)))?),
             false => None,
         };
         Ok(compare(&shot, &found, of_blending, bits, |chord| {
@@ -123,7 +120,7 @@ and the blends. To its parts in 16-bit floats belong numbers that are off by the
 of four roundings of 2^-10 each is no more than the bound itself, which therefore counts twice. ";
 
 fn compare(
-    shot: &Shot,
+    shot: &PictureCase,
     found: &Picture,
     of_blending: Option<Picture>,
     bits: u32,

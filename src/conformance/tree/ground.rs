@@ -2,7 +2,7 @@
 //! along no axis, and the words of placements, projections, filters, types and modes.
 
 use crate::camera::{Camera, Projection};
-use crate::conformance::oracle::Shot;
+use crate::conformance::oracle::PictureCase;
 use crate::gpu::Item;
 use crate::named::Named;
 use crate::technique::{Filter, FilterBy, Lattice, Mode, Order, Settings, Technique};
@@ -167,7 +167,7 @@ pub fn shot(
     mode: Mode,
     (filter, by_sampler): (Filter, bool),
     is_perspective: bool,
-) -> Shot {
+) -> PictureCase {
     let grid = grid();
     let far = grid.far_corner();
     let size = (grid.world_from_voxel.matrix3 * far).length();
@@ -179,7 +179,7 @@ pub fn shot(
     };
     // No tap of any filter lies outside the grid, and no plane of a stack at an end.
     let margin = 2.125;
-    Shot {
+    PictureCase {
         grid,
         camera: oblique_camera(&grid, projection),
         extent: [32, 28],

@@ -4,12 +4,12 @@ mod drawn;
 mod exact;
 mod ground;
 mod probe;
+mod reference;
 mod relation;
 mod seen;
 mod shadow;
 mod slab;
 mod surface;
-mod twin;
 
 use super::case::Case;
 
@@ -25,6 +25,6 @@ pub fn cases() -> Vec<Case> {
     cases.extend(slab::cases());
     cases.extend(shadow::cases());
     cases.extend(relation::cases());
-    cases.extend(twin::cases());
+    cases.extend(reference::cases());
     cases
 }

@@ -6,9 +6,9 @@ use super::ground::{self, MODES, PLACEMENTS, PROJECTIONS, Placement, RAYS};
 use crate::conformance::case::{Case, Profile, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
 use crate::conformance::oracle::{
-    Chord, FILTERS, Numbers, Open, Part, Seen, Shot, seen, seen_through,
+    Chord, FILTERS, Numbers, Open, Part, PictureCase, Seen, seen, seen_through,
 };
-use crate::conformance::stand::Stand;
+use crate::conformance::test_bed::TestBed;
 use crate::named::Named;
 use crate::picture::LayerKind;
 use crate::scene::{Beside, Channel};
@@ -16,7 +16,7 @@ use crate::technique::{
     AmbientOcclusion, ClipPlane, Filter, Lattice, Light, LightSpace, Mode, Order, Role, Settings,
     Shading, Shadows,
 };
-use crate::transfer::{Graded, OpacityPoint, TransferFunction, Widget};
+use crate::transfer::{GradientTransfer, OpacityPoint, TransferFunction, Widget};
 use crate::volume::VoxelType;
 use glam::{DVec3, dvec3};
 
@@ -104,7 +104,7 @@ pub fn cases() -> Vec<Case> {
             all.push((placement, mode, Look::Clipped, linear));
         }
         let composite = MODES[0];
-        // By kernels of more weights, light may be off by so much that bounds say nothing: `twin` has it.
+        // By kernels of more weights, light may be off by so much that bounds say nothing: `reference` has it.
         for look in [Look::Lit, Look::Lamps] {
             all.push((placement, composite, look, linear));
         }
@@ -146,8 +146,8 @@ pub fn cases() -> Vec<Case> {
                 "{of}.{mode_word}.{}.{filter_word}.f32.{projection}",
                 look.word()
             );
-            let mut case = Case::new(name, move |stand| {
-                draw(stand, placement, mode, look, filter, is_perspective)
+            let mut case = Case::new(name, move |bed| {
+                draw(bed, placement, mode, look, filter, is_perspective)
             });
             case.needs = ground::needs(placement, mode, VoxelType::F32, false);
             case.profile = profile(placement, mode, look, filter, is_perspective);
@@ -176,7 +176,7 @@ fn is_thin(placement: Placement, look: Look) -> bool {
     is_of_lamps || look == Look::Lit && is_under
 }
 
-/// The baseline has each look in each technique, and the filters where something hangs on them.
+/// The baseline has each look in each technique, and the filters where something depends on them.
 fn profile(
     placement: Placement,
     mode: Mode,
@@ -203,7 +203,7 @@ fn profile(
 }
 
 fn draw(
-    stand: &mut Stand,
+    bed: &mut TestBed,
     placement: Placement,
     mode: Mode,
     look: Look,
@@ -250,14 +250,14 @@ fn draw(
             }
         };
         let bound = Bound::new("f32-extreme", EXTREME);
-        return measure_within(stand, &shot, &scene, &[LayerKind::Value], bound, of);
+        return measure_within(bed, &shot, &scene, &[LayerKind::Value], bound, of);
     }
     let function = &parts[0].function;
     let open = DIMMED.contains(&look).then(|| {
         let per_length = function.reference_length.expect("one all over has one");
         Open::new(&shot, -(-function.opacity[0].opacity).ln_1p() / per_length)
     });
-    measure(stand, &shot, &scene, layers, |chord| {
+    measure(bed, &shot, &scene, layers, |chord| {
         seen_through(&shot, chord, &parts, open.as_ref())
     })
 }
@@ -329,7 +329,7 @@ fn set(settings: &mut Settings, look: Look) {
     }
 }
 
-fn parts(shot: &Shot, look: Look) -> Vec<Part> {
+fn parts(shot: &PictureCase, look: Look) -> Vec<Part> {
     // A sample is never clear: what is divided by extinction has digits.
     let mut function = ground::ramps();
     function.opacity[0].opacity = 0.03;
@@ -376,7 +376,7 @@ fn parts(shot: &Shot, look: Look) -> Vec<Part> {
                 second: None,
                 shape: ground::widget_shape(WIDGETS[i]),
             };
-            let graded = Graded {
+            let graded = GradientTransfer {
                 steepest: Some(0.3),
                 share: Vec::new(),
                 widgets: vec![widget],

@@ -11,8 +11,8 @@ use super::ground;
 use crate::camera::{Camera, Projection};
 use crate::conformance::case::{Case, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
-use crate::conformance::oracle::{Classes, Numbers, Shot};
-use crate::conformance::stand::Stand;
+use crate::conformance::oracle::{Classes, Numbers, PictureCase};
+use crate::conformance::test_bed::TestBed;
 use crate::technique::{Light, Settings, Shading, Shadows, Technique};
 use crate::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
 use crate::volume::Grid;
@@ -35,14 +35,14 @@ pub fn cases() -> Vec<Case> {
     for (word, towards) in [("from_the_eye", DVec3::NEG_Z), ("from_behind", DVec3::Z)] {
         for per_voxel in [1, 2, 4] {
             let name = format!("slices_3d.half_angle.{word}.{}_slices", SIDE * per_voxel);
-            let case = Case::new(name, move |stand| draw(stand, towards, per_voxel));
+            let case = Case::new(name, move |bed| draw(bed, towards, per_voxel));
             cases.push(case.needing(ground::blended_floats()));
         }
     }
     cases
 }
 
-fn draw(stand: &mut Stand, towards: DVec3, per_voxel: u32) -> Result<Measurement, Stop> {
+fn draw(bed: &mut TestBed, towards: DVec3, per_voxel: u32) -> Result<Measurement, Stop> {
     let grid = Grid {
         dims: [SIDE; 3],
         world_from_voxel: DAffine3::IDENTITY,
@@ -54,7 +54,7 @@ fn draw(stand: &mut Stand, towards: DVec3, per_voxel: u32) -> Result<Measurement
         ..Shading::plain()
     };
     let ambient = shading.ambient;
-    let shot = Shot {
+    let shot = PictureCase {
         grid,
         camera: Camera {
             eye: grid.center() - dvec3(0.0, 0.0, 30.0),
@@ -89,7 +89,7 @@ fn draw(stand: &mut Stand, towards: DVec3, per_voxel: u32) -> Result<Measurement
         graded: None,
     };
     let numbers = Numbers::of(&shot, |_| 1.0);
-    let found = stand.render(&shot.scene(&numbers.volume, Some(&function)), &[])?;
+    let found = bed.render(&shot.scene(&numbers.volume, Some(&function)), &[])?;
     let (h, slices) = (1.0 / f64::from(per_voxel), SIDE * per_voxel);
     let (q, n) = ((-EXTINCTION * h).exp(), f64::from(slices));
     let direct = match towards == DVec3::Z {

@@ -10,7 +10,7 @@ use super::ground::{self, PLACEMENTS, PROJECTIONS, Placement};
 use crate::conformance::case::{Case, Profile, Stop};
 use crate::conformance::measurement::Measurement;
 use crate::conformance::oracle::{Chord, Classes, Kind, Seen};
-use crate::conformance::stand::Stand;
+use crate::conformance::test_bed::TestBed;
 use crate::technique::{Filter, Lattice, Mode, Order, Settings};
 use crate::transfer::{
     Absorption, ColorPoint, Interpolation, OpacityPoint, SlabTable, TransferFunction,
@@ -46,8 +46,8 @@ pub fn cases() -> Vec<Case> {
                     let of = placement.word;
                     let name =
                         format!("{of}.composite.{steps}_{word}.linear_fetch.f32.{projection}");
-                    let mut case = Case::new(name, move |stand| {
-                        draw(stand, placement, function, samples, is_perspective)
+                    let mut case = Case::new(name, move |bed| {
+                        draw(bed, placement, function, samples, is_perspective)
                     });
                     case.needs = ground::needs(placement, Mode::Composite, VoxelType::F32, false);
                     let is_first = placement.order == Order::BackToFront;
@@ -66,7 +66,7 @@ pub fn cases() -> Vec<Case> {
 }
 
 fn draw(
-    stand: &mut Stand,
+    bed: &mut TestBed,
     placement: Placement,
     opacity: &[(f64, f64)],
     samples_per_voxel: f64,
@@ -117,7 +117,7 @@ fn draw(
             ..Seen::NOTHING
         }
     };
-    measure(stand, &shot, &scene, &[], of)
+    measure(bed, &shot, &scene, &[], of)
 }
 
 /// T at a value, of a reference length of 1.

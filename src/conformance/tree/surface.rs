@@ -9,8 +9,8 @@ use super::drawn::layer;
 use super::ground::{self, FILTERS, PLACEMENTS, PROJECTIONS, TYPES};
 use crate::conformance::case::{Case, Profile, Stop};
 use crate::conformance::measurement::{Bound, Measurement, Pictures};
-use crate::conformance::oracle::{Chord, Kind, Numbers, Shot};
-use crate::conformance::stand::Stand;
+use crate::conformance::oracle::{Chord, Kind, Numbers, PictureCase};
+use crate::conformance::test_bed::TestBed;
 use crate::picture::LayerKind;
 use crate::technique::{Filter, Level, Mode, Shading};
 use crate::volume::VoxelType;
@@ -43,8 +43,8 @@ pub fn cases() -> Vec<Case> {
             for (of_type, stored) in TYPES {
                 for (look, is_lit) in [("plane", false), ("lit_plane", true)] {
                     let name = format!("raycast.ray.iso.{look}.{word}.{of_type}.{projection}");
-                    let mut case = Case::new(name, move |stand| {
-                        plane(stand, (filter, stored), is_lit, is_perspective)
+                    let mut case = Case::new(name, move |bed| {
+                        plane(bed, (filter, stored), is_lit, is_perspective)
                     });
                     let is_common = filter == Filter::Linear || stored == VoxelType::F32;
                     let is_in = is_common && is_lit == is_perspective;
@@ -58,7 +58,7 @@ pub fn cases() -> Vec<Case> {
             }
         }
         let name = format!("raycast.ray.iso.ball.linear_fetch.f32.{projection}");
-        cases.push(Case::new(name, move |stand| ball(stand, is_perspective)));
+        cases.push(Case::new(name, move |bed| ball(bed, is_perspective)));
     }
     cases
 }
@@ -71,18 +71,18 @@ fn level(value: f64, srgb: [f64; 3], opacity: f64) -> Level {
     }
 }
 
-/// A crossing, where nothing hangs on rounding.
+/// A crossing, where nothing depends on rounding.
 struct Hit {
     t: f64,
     off: f64,
     level: Level,
 }
 
-/// Depth and colour of a ray, and what each is allowed: `None` where that hangs on rounding.
+/// Depth and colour of a ray, and what each is allowed: `None` where that depends on rounding.
 type Answer = Option<(f64, f64, [f64; 4], f64)>;
 
 fn plane(
-    stand: &mut Stand,
+    bed: &mut TestBed,
     (filter, stored): (Filter, VoxelType),
     is_lit: bool,
     is_perspective: bool,
@@ -155,7 +155,7 @@ fn plane(
         ))
     };
     let bound = Bound::new("f32-crossing", PLANE);
-    compare(stand, &shot, &volume, bound, answer)
+    compare(bed, &shot, &volume, bound, answer)
 }
 
 /// How much a matrix may turn what is off, more than what is right.
@@ -167,7 +167,7 @@ fn condition(m: DMat3) -> f64 {
     size(m) * size(m.inverse())
 }
 
-fn ball(stand: &mut Stand, is_perspective: bool) -> Result<Measurement, Stop> {
+fn ball(bed: &mut TestBed, is_perspective: bool) -> Result<Measurement, Stop> {
     let shot = ground::shot(
         PLACEMENTS[0],
         Mode::Iso,
@@ -210,18 +210,18 @@ fn ball(stand: &mut Stand, is_perspective: bool) -> Result<Measurement, Stop> {
     let bound = Bound::new("interpolated-ball", BALL)
         .with("R", radius)
         .with("e", bend);
-    compare(stand, &shot, &numbers.volume, bound, answer)
+    compare(bed, &shot, &numbers.volume, bound, answer)
 }
 
 fn compare(
-    stand: &mut Stand,
-    shot: &Shot,
+    bed: &mut TestBed,
+    shot: &PictureCase,
     volume: &crate::volume::Volume,
     bound: Bound,
     answer: impl Fn(&Chord) -> Answer,
 ) -> Result<Measurement, Stop> {
     let scene = shot.scene(volume, None);
-    let found = stand.render(&scene, &[LayerKind::Depth])?;
+    let found = bed.render(&scene, &[LayerKind::Depth])?;
     let depths = layer(&found, LayerKind::Depth).ok_or(Stop::Suite("no depth".into()))?;
     let mut measurement = Measurement::new(bound, 1000);
     let mut expected = Vec::new();

@@ -4,7 +4,7 @@ use super::BRICKS;
 use super::lines::Lines;
 use crate::format::convert::to_u64;
 use crate::format::problem::{self, invalid, missing};
-use crate::volume::{Format, Header, Limits, Pick, Problem, Rescale, VoxelBox};
+use crate::volume::{Format, Header, Limits, Problem, Rescale, TimeComponent, VoxelBox};
 use glam::{DAffine3, DVec3};
 use std::io::{Read, Seek, SeekFrom};
 
@@ -148,7 +148,7 @@ impl Index {
     }
 
     /// The bricks of one time and component, x fastest.
-    pub(crate) fn entries_of(&self, level: u32, pick: Pick) -> Option<&[Entry]> {
+    pub(crate) fn entries_of(&self, level: u32, pick: TimeComponent) -> Option<&[Entry]> {
         let found = self.levels.get(level as usize)?;
         let count = usize::try_from(found.brick_count(self.side)).ok()?;
         let volume = u64::from(pick.time)

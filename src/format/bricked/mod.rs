@@ -21,8 +21,8 @@ use super::place::open_regular;
 use super::problem::{self, at};
 use super::request::wanted_count;
 use crate::volume::{
-    Header, Limits, Overview, Pick, Piece, Problem, ReadError, Source, Survey, Surveyed, VoxelBox,
-    Wanted,
+    Header, Limits, Overview, Piece, Problem, ReadError, Source, Survey, Surveyed, TimeComponent,
+    VolumeSelection, VoxelBox,
 };
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -38,7 +38,7 @@ pub(super) fn recognizes(first: &[u8]) -> bool {
 /// Opens one level of a file.
 pub(super) fn open(
     path: &Path,
-    wanted: &Wanted,
+    wanted: &VolumeSelection,
     limits: &Limits,
 ) -> Result<BrickSource, ReadError> {
     let (mut file, metadata) = open_regular(path).map_err(at(path))?;
@@ -82,7 +82,7 @@ pub(super) struct BrickSource {
 
 impl BrickSource {
     /// The finest level with at most so many voxels.
-    fn overview(&self, pick: Pick, most: u64) -> Result<Overview, Problem> {
+    fn overview(&self, pick: TimeComponent, most: u64) -> Result<Overview, Problem> {
         let index = self.bricks.index();
         let levels = index.levels.iter().zip(0_u32..).skip(self.level as usize);
         let mut fits = levels.filter(|(level, _)| level.voxel_count() <= most);
@@ -110,13 +110,13 @@ impl Source for BrickSource {
         &self.header
     }
 
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         wanted_count(BRICKS, &self.header, pick, region, self.max_bytes).map_err(at(&self.path))?;
         let voxels = self.bricks.read(self.level, pick, region);
         Ok(voxels.map_err(at(&self.path))?.into())
     }
 
-    fn surveyed(&self, pick: Pick, most_seen: u64) -> Result<Option<Surveyed>, ReadError> {
+    fn surveyed(&self, pick: TimeComponent, most_seen: u64) -> Result<Option<Surveyed>, ReadError> {
         let index = self.bricks.index();
         let Some(entries) = index.entries_of(self.level, pick) else {
             return Ok(None);

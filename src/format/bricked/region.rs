@@ -5,7 +5,7 @@ use super::{BRICKS, Coding, Entry, Index, Level, checksum};
 use crate::fence::fenced;
 use crate::format::convert::{Builder, Endian, to_u64};
 use crate::format::problem;
-use crate::volume::{Pick, Problem, VoxelBox, Voxels};
+use crate::volume::{Problem, TimeComponent, VoxelBox, Voxels};
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::sync::{Mutex, PoisonError};
 
@@ -32,7 +32,12 @@ impl<F: Read + Seek> Bricks<F> {
     }
 
     /// The stored numbers of a region of a level, which it lies in.
-    pub(crate) fn read(&self, level: u32, pick: Pick, region: VoxelBox) -> Result<Voxels, Problem> {
+    pub(crate) fn read(
+        &self,
+        level: u32,
+        pick: TimeComponent,
+        region: VoxelBox,
+    ) -> Result<Voxels, Problem> {
         let index = &self.index;
         let missing = || problem::missing(BRICKS, "level");
         let dims = index.levels.get(level as usize).ok_or_else(missing)?.dims;

@@ -5,7 +5,7 @@ use super::axes::{Axis, axes_of, says_place};
 use super::grid::Role;
 use super::model::{Arrays, Kind, Variable};
 use crate::format::problem::{escape, invalid};
-use crate::volume::{Problem, Wanted};
+use crate::volume::{Problem, VolumeSelection};
 
 /// A variable and the role of each of its dimensions.
 pub(super) struct Choice {
@@ -19,7 +19,7 @@ pub(super) struct Choice {
 /// More names help nobody.
 const MAX_NAMES: usize = 1000;
 
-pub(super) fn choose(arrays: &dyn Arrays, wanted: &Wanted) -> Result<Choice, Problem> {
+pub(super) fn choose(arrays: &dyn Arrays, wanted: &VolumeSelection) -> Result<Choice, Problem> {
     let format = arrays.format();
     let mut drawable = drawable(arrays);
     let (variable, indices, asked) = match &wanted.variable {

@@ -10,7 +10,7 @@
 use super::grid::check;
 use super::regular::{between, valid_numbers};
 use crate::format::problem::at;
-use crate::volume::{Header, Pick, Piece, ReadError, Source, VoxelBox, Voxels};
+use crate::volume::{Header, Piece, ReadError, Source, TimeComponent, VoxelBox, Voxels};
 use std::path::Path;
 
 /// Free fall as WRF has it, m s-2 (share/module_model_constants.F).
@@ -37,7 +37,7 @@ impl Heights {
             min: [min[0], min[1], 0],
             max: [max[0], max[1], first.header().dims[2]],
         };
-        let pick = Pick { time, component: 0 };
+        let pick = TimeComponent { time, component: 0 };
         let geopotential = |source: &dyn Source| {
             let piece = source.read(pick, region)?;
             Ok(valid_numbers(&piece.voxels, source.header().fill))
@@ -89,7 +89,7 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    fn read_checked(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read_checked(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         let [min, max] = [region.min, region.max];
         let (corner, end) = ([min[0], min[1]], [max[0], max[1]]);
         let inner = VoxelBox {
@@ -155,7 +155,7 @@ impl Source for Columns {
         &self.header
     }
 
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         check(&self.header, pick, region, self.max_bytes).map_err(at(self.path()))?;
         self.read_checked(pick, region)
     }

@@ -5,7 +5,8 @@ use super::model::{Arrays, Variable};
 use crate::format::convert::{bytes_in_memory, to_u64};
 use crate::format::problem::at;
 use crate::volume::{
-    Header, Loss, Pick, Piece, Problem, ReadError, Source, VoxelBox, VoxelType, Voxels,
+    Header, Piece, PrecisionLoss, Problem, ReadError, Source, TimeComponent, VoxelBox, VoxelType,
+    Voxels,
 };
 use std::path::Path;
 use std::sync::Arc;
@@ -40,7 +41,7 @@ const SLAB_BYTES: u64 = 32 << 20;
 /// An error where a pick or a box lies outside the header, or a box needs more memory than allowed.
 pub(super) fn check(
     header: &Header,
-    pick: Pick,
+    pick: TimeComponent,
     region: VoxelBox,
     max_bytes: u64,
 ) -> Result<(), Problem> {
@@ -94,7 +95,7 @@ impl Grid {
     }
 
     /// Where a slab begins and how many numbers it has, for each dimension.
-    fn slab(&self, pick: Pick, slab: VoxelBox) -> (Vec<u64>, Vec<u64>) {
+    fn slab(&self, pick: TimeComponent, slab: VoxelBox) -> (Vec<u64>, Vec<u64>) {
         let place = |role: &Role| match *role {
             Role::Space(k) => {
                 let min = slab.min.get(k).copied().unwrap_or(0);
@@ -123,7 +124,7 @@ impl Grid {
         strides
     }
 
-    fn read_checked(&self, pick: Pick, region: VoxelBox) -> Result<Piece, Problem> {
+    fn read_checked(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, Problem> {
         let [nx, ny, nz] = region.dims();
         let layer_bytes = u64::from(nx)
             .saturating_mul(ny.into())
@@ -131,7 +132,7 @@ impl Grid {
         let layers = SLAB_BYTES.checked_div(layer_bytes).unwrap_or(1).max(1);
         let layers = u32::try_from(layers).unwrap_or(u32::MAX).min(nz);
         let mut whole: Option<Voxels> = None;
-        let mut loss = Loss::default();
+        let mut loss = PrecisionLoss::default();
         let mut z = region.min[2];
         while z < region.max[2] {
             let end = z.saturating_add(layers).min(region.max[2]);
@@ -229,7 +230,7 @@ impl Source for Grid {
         &self.header
     }
 
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         check(&self.header, pick, region, self.max_bytes).map_err(at(self.path()))?;
         self.read_checked(pick, region).map_err(at(self.path()))
     }

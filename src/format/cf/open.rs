@@ -12,7 +12,9 @@ use super::time::Clock;
 use super::values::Values;
 use super::wrf;
 use crate::format::problem::{at, invalid};
-use crate::volume::{Format, Header, Limits, Problem, ReadError, Source, VoxelType, Wanted};
+use crate::volume::{
+    Format, Header, Limits, Problem, ReadError, Source, VolumeSelection, VoxelType,
+};
 use std::sync::Arc;
 
 /// The volume that `wanted` names. Uneven grids become even ones, unless `wanted` asks for the stored one.
@@ -20,7 +22,7 @@ pub(crate) fn open(
     arrays: Arc<dyn Arrays>,
     file_bytes: u64,
     format: Format,
-    wanted: &Wanted,
+    wanted: &VolumeSelection,
     limits: &Limits,
 ) -> Result<Box<dyn Source>, ReadError> {
     let path = arrays.path().to_owned();
@@ -31,7 +33,7 @@ fn open_checked(
     arrays: Arc<dyn Arrays>,
     file_bytes: u64,
     format: Format,
-    wanted: &Wanted,
+    wanted: &VolumeSelection,
     limits: &Limits,
 ) -> Result<Box<dyn Source>, Problem> {
     let choice = choose(arrays.as_ref(), wanted)?;

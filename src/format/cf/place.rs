@@ -105,7 +105,7 @@ fn on_earth(
         }
         _ => 0.0,
     };
-    // Nearer to a pole the formula has no width left.
+    // DepthConvention to a pole the formula has no width left.
     let middle = middle.clamp(-80.0, 80.0);
     if degrees(x) || degrees(y) {
         notes.push(format!(

@@ -12,7 +12,7 @@ use super::knots::{Knot, even_count, knots, step};
 use crate::format::convert::to_u64;
 use crate::format::problem::at;
 use crate::volume::{
-    Header, Limits, Pick, Piece, Problem, ReadError, Source, VoxelBox, VoxelType, Voxels,
+    Header, Limits, Piece, Problem, ReadError, Source, TimeComponent, VoxelBox, VoxelType, Voxels,
 };
 use glam::{DAffine3, DVec3};
 use std::path::Path;
@@ -77,7 +77,7 @@ impl Regular {
         }
     }
 
-    fn read_checked(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read_checked(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         let mut inner = region;
         for k in 0..3 {
             let Some(Some(axis)) = self.axes.get(k) else {
@@ -221,7 +221,7 @@ impl Source for Regular {
         &self.header
     }
 
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         check(&self.header, pick, region, self.max_bytes).map_err(at(self.path()))?;
         self.read_checked(pick, region)
     }

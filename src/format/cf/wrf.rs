@@ -14,8 +14,8 @@ use super::place::from_points;
 use super::regular::{between, valid_numbers, with_axis};
 use crate::format::problem::invalid;
 use crate::volume::{
-    Format, Header, Limits, Pick, Piece, Problem, ReadError, Source, VoxelBox, VoxelType, Voxels,
-    Wanted,
+    Format, Header, Limits, Piece, Problem, ReadError, Source, TimeComponent, VolumeSelection,
+    VoxelBox, VoxelType, Voxels,
 };
 use std::path::Path;
 use std::sync::Arc;
@@ -56,7 +56,7 @@ pub(super) fn open(
     file_bytes: u64,
     format: Format,
     choice: Choice,
-    wanted: &Wanted,
+    wanted: &VolumeSelection,
     limits: &Limits,
 ) -> Result<Box<dyn Source>, Problem> {
     let size = dims(arrays.as_ref(), &choice)?;
@@ -161,9 +161,9 @@ fn heights(
 ) -> Option<Heights> {
     let part = |name: &str| -> Option<Box<dyn Source>> {
         let variable: &Variable = arrays.variables().iter().find(|other| other.name == name)?;
-        let wanted = Wanted {
+        let wanted = VolumeSelection {
             variable: Some(variable.name.clone()),
-            ..Wanted::default()
+            ..VolumeSelection::default()
         };
         let choice = super::choose::choose(arrays.as_ref(), &wanted).ok()?;
         let size = dims(arrays.as_ref(), &choice).ok()?;
@@ -293,7 +293,7 @@ impl Source for Centered {
         &self.header
     }
 
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         let mut wider = region;
         if let Some(max) = wider.max.get_mut(self.axis) {
             *max = max.saturating_add(1);

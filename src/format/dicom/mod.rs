@@ -47,7 +47,8 @@ use super::convert::to_u64;
 use super::geometry::{RAS_FROM_LPS, world_from_voxel};
 use super::problem::{at, escape, invalid, unsupported};
 use crate::volume::{
-    Format, Header, Limits, Meaning, Problem, ReadError, Rescale, Series, Source, VoxelType, Wanted,
+    ComponentKind, Format, Header, Limits, Problem, ReadError, Rescale, Series, Source,
+    VolumeSelection, VoxelType,
 };
 use glam::DAffine3;
 use layout::{Color, Layout};
@@ -66,7 +67,7 @@ const DICOM: &str = "dicom";
 /// Opens a folder or a file.
 pub(super) fn open(
     path: &Path,
-    wanted: &Wanted,
+    wanted: &VolumeSelection,
     limits: &Limits,
 ) -> Result<Box<dyn Source>, ReadError> {
     let Contents {
@@ -205,9 +206,9 @@ fn open_group(
         modality: quantity.modality,
         unit: quantity.unit,
         meaning: if is_color {
-            Meaning::Rgb
+            ComponentKind::Rgb
         } else {
-            Meaning::Numbers
+            ComponentKind::Numbers
         },
         is_labels: quantity.is_labels,
         is_patient: pictures

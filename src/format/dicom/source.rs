@@ -8,7 +8,9 @@ use super::picture::Picture;
 use super::pixels::Frames;
 use crate::format::convert::{Builder, Endian, bytes_in_memory, to_u64};
 use crate::format::problem::at;
-use crate::volume::{Header, Limits, Pick, Piece, Problem, ReadError, Source, VoxelBox, VoxelType};
+use crate::volume::{
+    Header, Limits, Piece, Problem, ReadError, Source, TimeComponent, VoxelBox, VoxelType,
+};
 use std::path::{Path, PathBuf};
 
 /// The pictures of a series in their order.
@@ -66,7 +68,7 @@ impl DicomSource {
             })
     }
 
-    fn check(&self, pick: Pick, region: VoxelBox) -> Result<(), Problem> {
+    fn check(&self, pick: TimeComponent, region: VoxelBox) -> Result<(), Problem> {
         let sides = region.min.iter().zip(&region.max).zip(&self.header.dims);
         let inside = sides
             .into_iter()
@@ -248,7 +250,7 @@ impl Source for DicomSource {
         true
     }
 
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         self.check(pick, region).map_err(at(&self.path))?;
         let wanted = self.count(region).map_err(at(&self.path))?;
         let mut builder = Builder::new(self.header.stored, Endian::Little, wanted);

@@ -36,7 +36,7 @@ pub(super) fn times(
         return Ok(times);
     }
     let before: usize = places.iter().map(Vec::len).sum();
-    drop_twins(&mut places, same)?;
+    drop_references(&mut places, same)?;
     let after: usize = places.iter().map(Vec::len).sum();
     if after < before {
         let dropped = before.saturating_sub(after);
@@ -127,15 +127,15 @@ fn sorted_by(places: &Places, number: impl Fn(usize) -> Option<f64>) -> Option<P
 }
 
 /// Keeps the first of pictures in one place that have the same pixels.
-fn drop_twins(places: &mut Places, same: Same) -> Result<(), ReadError> {
+fn drop_references(places: &mut Places, same: Same) -> Result<(), ReadError> {
     for place in places {
         let mut kept: Vec<usize> = Vec::new();
         for index in place.iter().copied() {
-            let mut is_twin = false;
+            let mut is_reference = false;
             for other in &kept {
-                is_twin = is_twin || same(*other, index)?;
+                is_reference = is_reference || same(*other, index)?;
             }
-            if !is_twin {
+            if !is_reference {
                 kept.push(index);
             }
         }

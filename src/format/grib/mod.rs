@@ -36,7 +36,7 @@ mod section;
 
 use super::place::{first_bytes, open_regular};
 use super::problem::{at, invalid, unsupported};
-use crate::volume::{Limits, Problem, ReadError, Source, Wanted};
+use crate::volume::{Limits, Problem, ReadError, Source, VolumeSelection};
 use std::path::Path;
 
 /// The word of errors.
@@ -53,7 +53,7 @@ pub(super) fn recognizes(first: &[u8]) -> bool {
 /// Opens a variable of a file of edition 2; says of others what makes a file of them that is read.
 pub(super) fn open(
     path: &Path,
-    wanted: &Wanted,
+    wanted: &VolumeSelection,
     limits: &Limits,
 ) -> Result<Box<dyn Source>, ReadError> {
     let edition = edition(path).map_err(at(path))?;
@@ -92,14 +92,14 @@ fn refusal(edition: u8) -> Problem {
 }
 
 #[cfg(not(feature = "grib"))]
-fn open_second(path: &Path, _: &Wanted, _: &Limits) -> Result<Box<dyn Source>, ReadError> {
+fn open_second(path: &Path, _: &VolumeSelection, _: &Limits) -> Result<Box<dyn Source>, ReadError> {
     Err(at(path)(refusal(2)))
 }
 
 #[cfg(feature = "grib")]
 fn open_second(
     path: &Path,
-    wanted: &Wanted,
+    wanted: &VolumeSelection,
     limits: &Limits,
 ) -> Result<Box<dyn Source>, ReadError> {
     use crate::format::cf;

@@ -1,6 +1,6 @@
 //! A source with further notes in its header.
 
-use crate::volume::{Header, Pick, Piece, ReadError, Source, VoxelBox};
+use crate::volume::{Header, Piece, ReadError, Source, TimeComponent, VoxelBox};
 use std::path::Path;
 
 /// `source` with the notes that `notes` has of the variable it reads.
@@ -35,11 +35,15 @@ impl Source for Noted {
         &self.header
     }
 
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         self.source.read(pick, region)
     }
 
-    fn read_bytes(&self, pick: Pick, region: VoxelBox) -> Result<Option<Vec<u8>>, ReadError> {
+    fn read_bytes(
+        &self,
+        pick: TimeComponent,
+        region: VoxelBox,
+    ) -> Result<Option<Vec<u8>>, ReadError> {
         self.source.read_bytes(pick, region)
     }
 }

@@ -20,7 +20,7 @@ mod place;
 use super::cf::{Arrays, Grid, Kind, Missing, Role, Variable};
 use super::problem::{at, escape, invalid, unsupported};
 use crate::volume::{
-    Format, Header, Limits, Meaning, Problem, ReadError, Source, VoxelType, Wanted,
+    ComponentKind, Format, Header, Limits, Problem, ReadError, Source, VolumeSelection, VoxelType,
 };
 pub(super) use arrays::{Hdf5, problem_of};
 pub(super) use chunks::filters;
@@ -46,7 +46,7 @@ pub(super) fn recognizes(first: &[u8]) -> bool {
 /// Opens a data set; of a NetCDF-4 file a variable.
 pub(super) fn open(
     path: &Path,
-    wanted: &Wanted,
+    wanted: &VolumeSelection,
     limits: &Limits,
 ) -> Result<Box<dyn Source>, ReadError> {
     let (file, file_bytes) = Hdf5::open(path, limits).map_err(at(path))?;
@@ -58,7 +58,12 @@ pub(super) fn open(
     Ok(Box::new(grid))
 }
 
-fn grid(file: Hdf5, file_bytes: u64, wanted: &Wanted, limits: &Limits) -> Result<Grid, Problem> {
+fn grid(
+    file: Hdf5,
+    file_bytes: u64,
+    wanted: &VolumeSelection,
+    limits: &Limits,
+) -> Result<Grid, Problem> {
     let (variable, names) = choose(&file, wanted)?;
     let Kind::Numbers(stored) = variable.kind else {
         return Err(unsupported(HDF5, "a data set that holds no numbers"));
@@ -122,7 +127,7 @@ fn grid(file: Hdf5, file_bytes: u64, wanted: &Wanted, limits: &Limits) -> Result
 }
 
 /// The data set to read, and the names of all, that one first.
-fn choose(file: &Hdf5, wanted: &Wanted) -> Result<(Variable, Vec<String>), Problem> {
+fn choose(file: &Hdf5, wanted: &VolumeSelection) -> Result<(Variable, Vec<String>), Problem> {
     let of_rank = |least: usize| -> Vec<&Variable> {
         let all = file.variables().iter();
         all.filter(|variable| {
@@ -223,12 +228,12 @@ fn roles(variable: &Variable) -> Result<Vec<Role>, Problem> {
 
 /// What the components are, where the file (or their number) says so. HDF5 Image and Palette Specification 1.2:
 /// attributes `CLASS` and `IMAGE_SUBCLASS`.
-fn meaning(variable: &Variable, stored: VoxelType, components: u32) -> Meaning {
+fn meaning(variable: &Variable, stored: VoxelType, components: u32) -> ComponentKind {
     let is_true_color = variable.attributes.text("IMAGE_SUBCLASS") == Some("IMAGE_TRUECOLOR");
     match components {
-        3 if is_true_color => Meaning::Rgb,
-        4 if is_true_color => Meaning::Rgba,
-        3 if stored.is_float() => Meaning::Vector,
-        _ => Meaning::Numbers,
+        3 if is_true_color => ComponentKind::Rgb,
+        4 if is_true_color => ComponentKind::Rgba,
+        3 if stored.is_float() => ComponentKind::Vector,
+        _ => ComponentKind::Numbers,
     }
 }

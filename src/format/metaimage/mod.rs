@@ -16,7 +16,9 @@ use super::geometry::{RAS_FROM_LPS, with_missing_axes, world_from_voxel};
 use super::problem::{at, escape, invalid, unsupported};
 use super::select::{Axis, Role};
 use super::text::integers;
-use crate::volume::{Format, Header, Limits, Meaning, Problem, ReadError, Rescale, VoxelType};
+use crate::volume::{
+    ComponentKind, Format, Header, Limits, Problem, ReadError, Rescale, VoxelType,
+};
 use fields::Fields;
 use glam::{DAffine3, DVec3};
 use std::path::Path;
@@ -156,15 +158,15 @@ fn header(
 
 /// The format has no word for it. Its writers write colours as bytes, and vectors as floats of as many numbers as
 /// there are axes.
-fn meaning(array: &Array, stored: VoxelType, notes: &mut Vec<String>) -> Meaning {
+fn meaning(array: &Array, stored: VoxelType, notes: &mut Vec<String>) -> ComponentKind {
     let axes = array.dims.iter().filter(|&&size| size > 1).count();
     let (meaning, what) = match (array.components, stored) {
-        (3, VoxelType::U8) => (Meaning::Rgb, "colours"),
-        (4, VoxelType::U8) => (Meaning::Rgba, "colours with opacity"),
+        (3, VoxelType::U8) => (ComponentKind::Rgb, "colours"),
+        (4, VoxelType::U8) => (ComponentKind::Rgba, "colours with opacity"),
         (n @ 2..=3, VoxelType::F32 | VoxelType::F64) if usize::try_from(n) == Ok(axes) => {
-            (Meaning::Vector, "vectors")
+            (ComponentKind::Vector, "vectors")
         }
-        _ => return Meaning::Numbers,
+        _ => return ComponentKind::Numbers,
     };
     notes.push(format!(
         "{} channels of {} are taken as {what}",

@@ -12,7 +12,9 @@ use super::fence::fenced;
 use super::hdf5::{Hdf5, filters, problem_of as hdf5_problem};
 use super::place::open_regular;
 use super::problem::{at, escape, invalid, unsupported};
-use crate::volume::{Format, Limits, Piece, Problem, ReadError, Source, VoxelType, Wanted};
+use crate::volume::{
+    Format, Limits, Piece, Problem, ReadError, Source, VolumeSelection, VoxelType,
+};
 use netcdf_reader::{
     Error, NcAttrValue, NcAttribute, NcFile, NcGroup, NcOpenOptions, NcSliceInfo, NcSliceInfoElem,
     NcType, NcVariable,
@@ -31,7 +33,7 @@ pub(super) fn recognizes(first: &[u8]) -> bool {
 /// Opens a variable of a file of the classic formats.
 pub(super) fn open(
     path: &Path,
-    wanted: &Wanted,
+    wanted: &VolumeSelection,
     limits: &Limits,
 ) -> Result<Box<dyn Source>, ReadError> {
     opened(path, None, wanted, limits)
@@ -41,7 +43,7 @@ pub(super) fn open(
 pub(super) fn open_hdf5(
     path: &Path,
     hdf5: Hdf5,
-    wanted: &Wanted,
+    wanted: &VolumeSelection,
     limits: &Limits,
 ) -> Result<Box<dyn Source>, ReadError> {
     opened(path, Some(hdf5), wanted, limits)
@@ -50,7 +52,7 @@ pub(super) fn open_hdf5(
 fn opened(
     path: &Path,
     hdf5: Option<Hdf5>,
-    wanted: &Wanted,
+    wanted: &VolumeSelection,
     limits: &Limits,
 ) -> Result<Box<dyn Source>, ReadError> {
     let (file, file_bytes) = NetCdf::open(path, hdf5, limits).map_err(at(path))?;

@@ -16,7 +16,9 @@ use super::place::{first_bytes, open_regular};
 use super::problem::{at, invalid, unsupported};
 use super::select::{Axis, Role};
 use super::text::whole;
-use crate::volume::{Format, Header, Limits, Meaning, Problem, ReadError, Rescale, VoxelType};
+use crate::volume::{
+    ComponentKind, Format, Header, Limits, Problem, ReadError, Rescale, VoxelType,
+};
 use fields::{Fields, Version, is_gzip};
 use std::path::Path;
 
@@ -183,12 +185,12 @@ const VECTORS: [i64; 2] = [1006, 1007];
 const RGB: i64 = 2003;
 const RGBA: i64 = 2004;
 
-fn meaning(fields: &Fields, number: &Number, array: &Array) -> Meaning {
+fn meaning(fields: &Fields, number: &Number, array: &Array) -> ComponentKind {
     match (number.channels, array.components, fields.intent_code) {
-        (3, 3, _) | (1, 3, RGB) => Meaning::Rgb,
-        (4, 4, _) | (1, 4, RGBA) => Meaning::Rgba,
-        (1, 2.., code) if VECTORS.contains(&code) => Meaning::Vector,
-        _ => Meaning::Numbers,
+        (3, 3, _) | (1, 3, RGB) => ComponentKind::Rgb,
+        (4, 4, _) | (1, 4, RGBA) => ComponentKind::Rgba,
+        (1, 2.., code) if VECTORS.contains(&code) => ComponentKind::Vector,
+        _ => ComponentKind::Numbers,
     }
 }
 

@@ -5,7 +5,7 @@ use crate::format::convert::{Builder, Endian, to_u64};
 use crate::format::file_source::FileSource;
 use crate::format::problem::at;
 use crate::format::request::wanted_count;
-use crate::volume::{Header, Pick, Piece, ReadError, Source, VoxelBox};
+use crate::volume::{Header, Piece, ReadError, Source, TimeComponent, VoxelBox};
 use std::path::Path;
 
 /// Bytes of the file that are put in order at once.
@@ -33,7 +33,7 @@ impl FortranSource {
     }
 
     /// The numbers of `region`, x fastest, as little-endian bytes of the type in the file.
-    fn bytes(&self, pick: Pick, region: VoxelBox) -> Result<Vec<u8>, ReadError> {
+    fn bytes(&self, pick: TimeComponent, region: VoxelBox) -> Result<Vec<u8>, ReadError> {
         let mut in_file = region;
         in_file.min.reverse();
         in_file.max.reverse();
@@ -72,7 +72,7 @@ impl Source for FortranSource {
         &self.header
     }
 
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         let failed = |problem| at(self.path())(problem);
         let wanted =
             wanted_count(NPY, &self.header, pick, region, self.max_bytes).map_err(failed)?;
@@ -90,7 +90,11 @@ impl Source for FortranSource {
         Ok(builder.finish())
     }
 
-    fn read_bytes(&self, pick: Pick, region: VoxelBox) -> Result<Option<Vec<u8>>, ReadError> {
+    fn read_bytes(
+        &self,
+        pick: TimeComponent,
+        region: VoxelBox,
+    ) -> Result<Option<Vec<u8>>, ReadError> {
         self.bytes(pick, region).map(Some)
     }
 }

@@ -21,7 +21,7 @@ use super::geometry::world_from_voxel;
 use super::place::{first_bytes, open_regular};
 use super::problem::{at, escape, invalid, missing, unsupported};
 use super::select::{Axis, Role};
-use crate::volume::{Format, Header, Limits, Meaning, Problem, ReadError, Source, VoxelType};
+use crate::volume::{ComponentKind, Format, Header, Limits, Problem, ReadError, Source, VoxelType};
 use fortran::FortranSource;
 use glam::DVec3;
 use literal::Literal;
@@ -258,9 +258,9 @@ fn header(array: &Array, kind: Kind, fortran_order: bool) -> Result<Header, Prob
         components: array.components,
         times: array.times,
         meaning: match (array.is_color, array.components) {
-            (true, 3) => Meaning::Rgb,
-            (true, _) => Meaning::Rgba,
-            (false, _) => Meaning::Numbers,
+            (true, 3) => ComponentKind::Rgb,
+            (true, _) => ComponentKind::Rgba,
+            (false, _) => ComponentKind::Numbers,
         },
         notes,
         ..Header::new(Format::Npy, array.dims, kind.stored, world_from_voxel)

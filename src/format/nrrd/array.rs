@@ -24,14 +24,14 @@ pub(super) struct Array {
     pub components: u32,
     pub times: u32,
     /// What `kinds` says of the components; alone where there is one axis of them.
-    pub meaning: crate::volume::Meaning,
+    pub meaning: crate::volume::ComponentKind,
     /// What was guessed.
     pub notes: Vec<String>,
 }
 
 /// What one axis is, as far as the header says.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Meaning {
+enum AxisKind {
     Space,
     Time,
     Component,
@@ -45,12 +45,12 @@ impl Array {
         let mut notes = Vec::new();
         let mut meanings = meanings(fields, sizes.len())?;
         let spaces =
-            |meanings: &[Meaning]| meanings.iter().filter(|&&m| m == Meaning::Space).count();
-        if meanings.iter().all(|&m| m == Meaning::Open) {
+            |meanings: &[AxisKind]| meanings.iter().filter(|&&m| m == AxisKind::Space).count();
+        if meanings.iter().all(|&m| m == AxisKind::Open) {
             guess(&sizes, &mut meanings, &mut notes);
-        } else if spaces(&meanings) == 4 && !meanings.contains(&Meaning::Time) {
+        } else if spaces(&meanings) == 4 && !meanings.contains(&AxisKind::Time) {
             if let Some(last) = meanings.last_mut() {
-                *last = Meaning::Time;
+                *last = AxisKind::Time;
             }
             notes.push("of four space axes the slowest is taken as time".to_owned());
         }
@@ -65,16 +65,16 @@ impl Array {
             dims: [1; 3],
             components: 1,
             times: 1,
-            meaning: crate::volume::Meaning::Numbers,
+            meaning: crate::volume::ComponentKind::Numbers,
             notes,
         };
         for (index, (&size, meaning)) in sizes.iter().zip(meanings).enumerate() {
             let role = match meaning {
-                Meaning::Space => Role::Space(next_space.next().unwrap_or(0)),
-                Meaning::Time => Role::Time,
-                Meaning::Component => Role::Component,
-                Meaning::Open if fields.list_is_sequence || index == slowest => Role::Time,
-                Meaning::Open => Role::Component,
+                AxisKind::Space => Role::Space(next_space.next().unwrap_or(0)),
+                AxisKind::Time => Role::Time,
+                AxisKind::Component => Role::Component,
+                AxisKind::Open if fields.list_is_sequence || index == slowest => Role::Time,
+                AxisKind::Open => Role::Component,
             };
             array.add(role, size)?;
         }
@@ -101,13 +101,13 @@ impl Array {
 }
 
 /// Section 6 of the definition: what the one axis of components says that they are together.
-fn of_components(fields: &Fields, array: &Array) -> crate::volume::Meaning {
-    use crate::volume::Meaning;
+fn of_components(fields: &Fields, array: &Array) -> crate::volume::ComponentKind {
+    use crate::volume::ComponentKind;
     let roles = || array.axes.iter().map(|axis| &axis.role);
     let is_component = |role: &&Role| matches!(role, Role::Component);
     let place = roles().position(|role| is_component(&role));
     let (Some(place), 1) = (place, roles().filter(is_component).count()) else {
-        return Meaning::Numbers;
+        return ComponentKind::Numbers;
     };
     let kinds = fields.get("kinds").unwrap_or_default();
     let kind = kinds
@@ -115,14 +115,14 @@ fn of_components(fields: &Fields, array: &Array) -> crate::volume::Meaning {
         .nth(place)
         .unwrap_or_default();
     match (kind.to_ascii_lowercase().as_str(), array.components) {
-        ("rgb-color" | "3-color", 3) => Meaning::Rgb,
-        ("rgba-color" | "4-color", 4) => Meaning::Rgba,
+        ("rgb-color" | "3-color", 3) => ComponentKind::Rgb,
+        ("rgba-color" | "4-color", 4) => ComponentKind::Rgba,
         (
             "vector" | "covariant-vector" | "normal" | "2-vector" | "3-vector" | "4-vector"
             | "3-gradient" | "3-normal",
             2..,
-        ) => Meaning::Vector,
-        _ => Meaning::Numbers,
+        ) => ComponentKind::Vector,
+        _ => ComponentKind::Numbers,
     }
 }
 
@@ -146,10 +146,10 @@ fn sizes(fields: &Fields) -> Result<Vec<u64>, Problem> {
         })
 }
 
-fn meanings(fields: &Fields, dimension: usize) -> Result<Vec<Meaning>, Problem> {
+fn meanings(fields: &Fields, dimension: usize) -> Result<Vec<AxisKind>, Problem> {
     let mut meanings = match fields.get("kinds") {
         Some(text) => kinds(text, dimension)?,
-        None => vec![Meaning::Open; dimension],
+        None => vec![AxisKind::Open; dimension],
     };
     let spatial: Vec<bool> = if let Some(directions) = vectors(fields, "space directions")? {
         if directions.len() != dimension {
@@ -180,9 +180,9 @@ fn meanings(fields: &Fields, dimension: usize) -> Result<Vec<Meaning>, Problem> 
     if spatial.contains(&true) {
         for (meaning, spatial) in meanings.iter_mut().zip(spatial) {
             *meaning = match (spatial, *meaning) {
-                (true, Meaning::Time) => Meaning::Time,
-                (true, _) => Meaning::Space,
-                (false, Meaning::Space) => Meaning::Open,
+                (true, AxisKind::Time) => AxisKind::Time,
+                (true, _) => AxisKind::Space,
+                (false, AxisKind::Space) => AxisKind::Open,
                 (false, other) => other,
             };
         }
@@ -191,14 +191,14 @@ fn meanings(fields: &Fields, dimension: usize) -> Result<Vec<Meaning>, Problem> 
 }
 
 /// The names of section 6 of the definition, in any case.
-fn kinds(text: &str, dimension: usize) -> Result<Vec<Meaning>, Problem> {
-    let kinds: Vec<Meaning> = text
+fn kinds(text: &str, dimension: usize) -> Result<Vec<AxisKind>, Problem> {
+    let kinds: Vec<AxisKind> = text
         .split_ascii_whitespace()
         .map(|kind| match kind.to_ascii_lowercase().as_str() {
-            "domain" | "space" => Meaning::Space,
-            "time" => Meaning::Time,
-            "list" | "???" | "none" => Meaning::Open,
-            _ => Meaning::Component,
+            "domain" | "space" => AxisKind::Space,
+            "time" => AxisKind::Time,
+            "list" | "???" | "none" => AxisKind::Open,
+            _ => AxisKind::Component,
         })
         .collect();
     if kinds.len() == dimension {
@@ -210,17 +210,17 @@ fn kinds(text: &str, dimension: usize) -> Result<Vec<Meaning>, Problem> {
 
 /// Nothing is said: up to three axes are space; of more, a first one of up to four numbers is a component, and
 /// what follows three space axes is time.
-fn guess(sizes: &[u64], meanings: &mut [Meaning], notes: &mut Vec<String>) {
+fn guess(sizes: &[u64], meanings: &mut [AxisKind], notes: &mut Vec<String>) {
     let extra = sizes.len() > 3;
     let component_first = extra && sizes.first().is_some_and(|&size| size <= 4);
     let mut spaces = 0..3;
     for (index, meaning) in meanings.iter_mut().enumerate() {
         *meaning = if index == 0 && component_first {
-            Meaning::Component
+            AxisKind::Component
         } else if spaces.next().is_some() {
-            Meaning::Space
+            AxisKind::Space
         } else {
-            Meaning::Time
+            AxisKind::Time
         };
     }
     if extra {

@@ -6,7 +6,7 @@ use super::source::PageAt;
 use super::volume::Parts;
 use crate::format::place::{first_bytes, open_regular};
 use crate::format::problem::{self, at, invalid, unsupported};
-use crate::volume::{Limits, Problem, ReadError, Source, Wanted};
+use crate::volume::{Limits, Problem, ReadError, Source, VolumeSelection};
 use std::cmp::Ordering;
 use std::path::{Path, PathBuf};
 
@@ -50,7 +50,7 @@ fn is_dicom(path: &Path) -> bool {
 /// Opens a folder's slices as one volume.
 pub(crate) fn open_folder(
     path: &Path,
-    wanted: &Wanted,
+    wanted: &VolumeSelection,
     limits: &Limits,
 ) -> Result<Box<dyn Source>, ReadError> {
     let listing = Listing::read(path, limits.max_files).map_err(at(path))?;

@@ -26,7 +26,7 @@ mod volume;
 
 use super::place::Folder;
 use super::problem::{at, escape, invalid, unsupported};
-use crate::volume::{Limits, Meaning, ReadError, Source, Wanted};
+use crate::volume::{ComponentKind, Limits, ReadError, Source, VolumeSelection};
 use imagej::Hyperstack;
 use page::{Color, Look};
 use single::Single;
@@ -48,7 +48,7 @@ pub(super) fn recognizes(first: &[u8]) -> bool {
 /// Opens a file; of several images of an OME-TIFF `wanted` takes one.
 pub(super) fn open(
     path: &Path,
-    wanted: &Wanted,
+    wanted: &VolumeSelection,
     limits: &Limits,
 ) -> Result<Box<dyn Source>, ReadError> {
     let mut file = Single::open(path, limits).map_err(at(path))?;
@@ -135,7 +135,7 @@ fn open_ome(
     path: &Path,
     file: Single,
     description: &str,
-    wanted: &Wanted,
+    wanted: &VolumeSelection,
     limits: &Limits,
 ) -> Result<Box<dyn Source>, ReadError> {
     let mut image = ome::read(description, wanted.variable.as_deref()).map_err(at(path))?;
@@ -205,7 +205,7 @@ fn open_ome(
         };
         pages.push(PageAt { file, ifd, number });
     }
-    let meaning = (channel_pages > 1).then_some(Meaning::Channels(image.channels));
+    let meaning = (channel_pages > 1).then_some(ComponentKind::Channels(image.channels));
     let parts = Parts {
         channels: channel_pages,
         depth: image.depth,

@@ -9,7 +9,7 @@ use super::samples::{self, Band};
 use crate::format::convert::{Builder, Endian, to_u64};
 use crate::format::problem::{at, invalid};
 use crate::format::request::wanted_count;
-use crate::volume::{Header, Limits, Pick, Piece, Problem, ReadError, Source, VoxelBox};
+use crate::volume::{Header, Limits, Piece, Problem, ReadError, Source, TimeComponent, VoxelBox};
 use std::path::{Path, PathBuf};
 
 /// Where a page is.
@@ -40,7 +40,7 @@ pub(super) struct PageSource {
 }
 
 impl PageSource {
-    fn page_at(&self, z: u32, pick: Pick) -> Option<PageAt> {
+    fn page_at(&self, z: u32, pick: TimeComponent) -> Option<PageAt> {
         let channel = if self.channels > 1 { pick.component } else { 0 };
         let index = u64::from(pick.time)
             .checked_mul(self.channels.into())?
@@ -136,7 +136,7 @@ impl Source for PageSource {
         true
     }
 
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         let max_bytes = self.limits.max_bytes;
         let wanted =
             wanted_count(TIFF, &self.header, pick, region, max_bytes).map_err(at(&self.path))?;

@@ -10,7 +10,7 @@ use super::{clean, is_indexed};
 use crate::format::geometry::world_from_voxel;
 use crate::format::problem::{at, invalid, unsupported};
 use crate::volume::{
-    Channel, Format, Header, Limits, Meaning, Problem, ReadError, Rescale, VoxelType,
+    Channel, ComponentKind, Format, Header, Limits, Problem, ReadError, Rescale, VoxelType,
 };
 use glam::{DAffine3, DVec3};
 use std::path::{Path, PathBuf};
@@ -27,7 +27,7 @@ pub(super) struct Parts {
     pub times: u32,
     pub spacing: Spacing,
     /// Overrules what the pages' look says.
-    pub meaning: Option<Meaning>,
+    pub meaning: Option<ComponentKind>,
     pub time_names: Vec<String>,
     pub variables: Vec<String>,
     pub notes: Vec<String>,
@@ -128,13 +128,13 @@ impl Parts {
             return Err(unsupported(TIFF, what));
         }
         let meaning = match (look.color, samples) {
-            (Color::Rgb | Color::YCbCr | Color::Palette, 3) => Meaning::Rgb,
-            (Color::Rgb, 4) => Meaning::Rgba,
+            (Color::Rgb | Color::YCbCr | Color::Palette, 3) => ComponentKind::Rgb,
+            (Color::Rgb, 4) => ComponentKind::Rgba,
             _ if self.channels > 1 => {
                 let unnamed = vec![Channel::default(); super::to_usize(self.channels)];
-                Meaning::Channels(unnamed)
+                ComponentKind::Channels(unnamed)
             }
-            _ => Meaning::Numbers,
+            _ => ComponentKind::Numbers,
         };
         self.say(look, samples, &mut notes);
         let world_from_voxel = self.affine(&mut notes)?;
@@ -143,7 +143,7 @@ impl Parts {
             notes.push(format!("voxels are stored as {name} and kept as f32"));
         }
         let mut meaning = self.meaning.clone().unwrap_or(meaning);
-        if let Meaning::Channels(channels) = &mut meaning {
+        if let ComponentKind::Channels(channels) = &mut meaning {
             for channel in channels {
                 channel.name = clean(&channel.name);
             }

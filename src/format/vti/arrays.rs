@@ -4,7 +4,7 @@ use super::VTI;
 use super::xml::Element;
 use crate::format::problem::{escape, invalid};
 use crate::format::vtk::array::{Array, Attribute, choose, chosen_first, names};
-use crate::volume::{Problem, Wanted};
+use crate::volume::{Problem, VolumeSelection};
 
 /// The array that is taken, in the first piece.
 pub(super) struct Found<'a> {
@@ -19,7 +19,7 @@ pub(super) struct Found<'a> {
 }
 
 /// Finds the wanted array in a piece.
-pub(super) fn find<'a>(piece: &'a Element, wanted: &Wanted) -> Result<Found<'a>, Problem> {
+pub(super) fn find<'a>(piece: &'a Element, wanted: &VolumeSelection) -> Result<Found<'a>, Problem> {
     let mut notes = Vec::new();
     let mut arrays = Vec::new();
     for (of_cells, data) in [(false, "PointData"), (true, "CellData")] {

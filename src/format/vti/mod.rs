@@ -15,7 +15,9 @@ use super::pieces::Pieces;
 use super::problem::{at, escape, invalid, missing, unsupported};
 use super::select::{Axis, Role};
 use super::vtk::AS_THEY_STAND;
-use crate::volume::{Format, Header, Limits, Problem, ReadError, Source, VoxelBox, Wanted};
+use crate::volume::{
+    Format, Header, Limits, Problem, ReadError, Source, VolumeSelection, VoxelBox,
+};
 use lattice::Extent;
 use payload::Binary;
 use std::path::Path;
@@ -34,7 +36,7 @@ pub(super) fn recognizes(first: &[u8]) -> bool {
 /// Opens an image of one or several pieces.
 pub(super) fn open(
     path: &Path,
-    wanted: &Wanted,
+    wanted: &VolumeSelection,
     limits: &Limits,
 ) -> Result<Box<dyn Source>, ReadError> {
     let document = xml::read(path, limits.max_header_bytes).map_err(at(path))?;

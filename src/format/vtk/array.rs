@@ -2,7 +2,7 @@
 //! numbers of a voxel are to each other.
 
 use crate::format::problem::{escape, invalid};
-use crate::volume::{Meaning, Problem, VoxelType, Wanted};
+use crate::volume::{ComponentKind, Problem, VolumeSelection, VoxelType};
 
 /// What a file says about one array.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,16 +35,16 @@ impl Array {
     }
 
     /// What the numbers of a voxel are. VTK draws three or four bytes of active scalars as a color.
-    pub(in crate::format) fn meaning(&self, stored: VoxelType) -> Meaning {
+    pub(in crate::format) fn meaning(&self, stored: VoxelType) -> ComponentKind {
         let named = self.name.to_ascii_lowercase();
         let is_color = stored == VoxelType::U8
             && (matches!(self.attribute, Attribute::Scalars | Attribute::Colors)
                 || named.starts_with("rgb"));
         match self.components {
-            3 if is_color => Meaning::Rgb,
-            4 if is_color => Meaning::Rgba,
-            2 | 3 if self.attribute == Attribute::Vectors => Meaning::Vector,
-            _ => Meaning::Numbers,
+            3 if is_color => ComponentKind::Rgb,
+            4 if is_color => ComponentKind::Rgba,
+            2 | 3 if self.attribute == Attribute::Vectors => ComponentKind::Vector,
+            _ => ComponentKind::Numbers,
         }
     }
 }
@@ -75,7 +75,7 @@ pub(in crate::format) fn names(arrays: &[Array]) -> Vec<String> {
 pub(in crate::format) fn choose(
     arrays: &[Array],
     names: &[String],
-    wanted: &Wanted,
+    wanted: &VolumeSelection,
     format: &'static str,
 ) -> Result<usize, Problem> {
     if let Some(name) = &wanted.variable {
@@ -136,9 +136,9 @@ mod tests {
             ["v", "t", "t (2)", "s", "v (cells)", "v (cells) (2)"]
         );
         let choose = |name: Option<&str>| {
-            let wanted = Wanted {
+            let wanted = VolumeSelection {
                 variable: name.map(str::to_owned),
-                ..Wanted::default()
+                ..VolumeSelection::default()
             };
             choose(&arrays, &names, &wanted, "vti")
         };
@@ -153,10 +153,13 @@ mod tests {
     fn bytes_are_a_color_where_they_are_drawn_as_one_or_called_so() {
         let meaning = |name, attribute, stored| array(name, false, attribute).meaning(stored);
         use Attribute::{Other, Scalars, Vectors};
-        assert_eq!(meaning("x", Scalars, VoxelType::U8), Meaning::Rgb);
-        assert_eq!(meaning("RGB", Other, VoxelType::U8), Meaning::Rgb);
-        assert_eq!(meaning("x", Other, VoxelType::U8), Meaning::Numbers);
-        assert_eq!(meaning("RGB", Other, VoxelType::F32), Meaning::Numbers);
-        assert_eq!(meaning("x", Vectors, VoxelType::F32), Meaning::Vector);
+        assert_eq!(meaning("x", Scalars, VoxelType::U8), ComponentKind::Rgb);
+        assert_eq!(meaning("RGB", Other, VoxelType::U8), ComponentKind::Rgb);
+        assert_eq!(meaning("x", Other, VoxelType::U8), ComponentKind::Numbers);
+        assert_eq!(
+            meaning("RGB", Other, VoxelType::F32),
+            ComponentKind::Numbers
+        );
+        assert_eq!(meaning("x", Vectors, VoxelType::F32), ComponentKind::Vector);
     }
 }

@@ -17,7 +17,7 @@ use super::file_source::FileSource;
 use super::geometry::world_from_voxel;
 use super::problem::{at, invalid};
 use super::select::{Axis, Role};
-use crate::volume::{Format, Header, Limits, Problem, ReadError, Source, Wanted};
+use crate::volume::{Format, Header, Limits, Problem, ReadError, Source, VolumeSelection};
 use array::Attribute;
 use glam::{DMat3, DVec3};
 use header::Lattice;
@@ -40,7 +40,7 @@ pub(super) fn recognizes(first: &[u8]) -> bool {
 /// Opens structured points.
 pub(super) fn open(
     path: &Path,
-    wanted: &Wanted,
+    wanted: &VolumeSelection,
     limits: &Limits,
 ) -> Result<Box<dyn Source>, ReadError> {
     let mut scan = Scan::open(path, limits.max_header_bytes).map_err(at(path))?;
@@ -56,7 +56,7 @@ fn taken(
     path: &Path,
     lattice: &Lattice,
     sections: Sections,
-    wanted: &Wanted,
+    wanted: &VolumeSelection,
     is_binary: bool,
 ) -> Result<(Header, Data), Problem> {
     let described: Vec<array::Array> = sections.all.iter().map(|s| s.array.clone()).collect();

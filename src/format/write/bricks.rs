@@ -8,8 +8,8 @@ use super::{Selection, WriteVolumeError, Written};
 use crate::format::bricked::{Bricks, Coding, Entry, Index, Level, MAGIC, checksum, stored_box};
 use crate::format::convert::{Builder, Endian, to_u64};
 use crate::volume::{
-    Difference, Format, Header, Pick, Rescale, Source, VoxelBox, Voxels, difference, halved, held,
-    part_of,
+    Difference, Format, Header, Rescale, Source, TimeComponent, VoxelBox, Voxels, difference,
+    halved, held, part_of,
 };
 use std::io::{Read, Seek, Write};
 
@@ -30,7 +30,7 @@ struct Part<'a> {
 
 impl Part<'_> {
     /// The numbers of a box of the file.
-    fn read(&mut self, pick: Pick, region: VoxelBox) -> Result<Voxels, WriteVolumeError> {
+    fn read(&mut self, pick: TimeComponent, region: VoxelBox) -> Result<Voxels, WriteVolumeError> {
         let corner = self.selection.region.min;
         let moved = |at: [u32; 3]| {
             let mut at = at;
@@ -43,7 +43,7 @@ impl Part<'_> {
             min: moved(region.min),
             max: moved(region.max),
         };
-        let pick = Pick {
+        let pick = TimeComponent {
             time: pick.time.saturating_add(self.selection.times.start),
             component: pick
                 .component
@@ -168,7 +168,7 @@ impl<W: Read + Write + Seek> Writer<'_, W> {
         let mut apart = Difference::default();
         for time in 0..times {
             for component in 0..components {
-                let pick = Pick { time, component };
+                let pick = TimeComponent { time, component };
                 for row in rows(dims, part.layout.number.bytes()) {
                     let more = match self.course.done.rows.pop_front() {
                         Some(done) => self.take_row(done, row.len(), part, &mut made)?,
@@ -217,7 +217,7 @@ impl<W: Read + Write + Seek> Writer<'_, W> {
     fn add_row(
         &mut self,
         level: u32,
-        pick: Pick,
+        pick: TimeComponent,
         row: &[VoxelBox],
         part: &mut Part,
         made: &mut Level,

@@ -3,7 +3,7 @@
 use super::numbers::Map;
 use super::{NumberType, Selection, VolumeFormat, WriteVolumeError, WriteVolumeOptions};
 use crate::format::convert::to_u64;
-use crate::volume::{Header, Meaning, Rescale, VoxelType};
+use crate::volume::{ComponentKind, Header, Rescale, VoxelType};
 use glam::{DAffine3, DVec3};
 
 /// A volume as the file will describe it.
@@ -21,7 +21,7 @@ pub(super) struct Layout {
     pub world_from_voxel: DAffine3,
     /// What the file calls the unit of its lengths, where that is not the millimetre.
     pub length_unit: Option<&'static str>,
-    pub meaning: Meaning,
+    pub meaning: ComponentKind,
     pub unit: Option<String>,
     pub is_labels: bool,
     pub is_hounsfield: bool,
@@ -37,7 +37,7 @@ impl Layout {
         let mut notes = Vec::new();
         let is_part = selection.components != (0..header.components);
         let meaning = if is_part {
-            Meaning::Numbers
+            ComponentKind::Numbers
         } else {
             header.meaning.clone()
         };
@@ -111,7 +111,7 @@ impl Layout {
         if !header.time_names.is_empty() {
             lost.push("the moments of its times");
         }
-        if matches!(header.meaning, Meaning::Channels(_)) {
+        if matches!(header.meaning, ComponentKind::Channels(_)) {
             lost.push("names and colors of the channels");
         }
         if header.unit.is_some() && options.format != VolumeFormat::Nrrd && !is_bricks {

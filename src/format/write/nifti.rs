@@ -5,7 +5,7 @@
 use super::WriteVolumeError;
 use super::layout::Layout;
 use super::slabs::Slabs;
-use crate::volume::{Meaning, VoxelType};
+use crate::volume::{ComponentKind, VoxelType};
 use flate2::{Compression, write::GzEncoder};
 use glam::{DMat3, DQuat};
 use std::io::Write;
@@ -49,8 +49,8 @@ fn voxels(
 /// Bytes of a color are one voxel; every other component has an axis of its own.
 fn is_color(layout: &Layout) -> bool {
     let channels = match layout.meaning {
-        Meaning::Rgb => 3,
-        Meaning::Rgba => 4,
+        ComponentKind::Rgb => 3,
+        ComponentKind::Rgba => 4,
         _ => return false,
     };
     layout.number == VoxelType::U8 && layout.components == channels
@@ -105,7 +105,7 @@ fn header(layout: &mut Layout) -> Result<[u8; VOXELS_AT], WriteVolumeError> {
     }
     let intent = match (&layout.meaning, layout.is_labels) {
         (_, true) => LABEL,
-        (Meaning::Vector, _) => VECTOR,
+        (ComponentKind::Vector, _) => VECTOR,
         _ => 0,
     };
     fields.short(68, intent);

@@ -3,7 +3,7 @@
 use super::WriteVolumeError;
 use super::layout::Layout;
 use super::slabs::Slabs;
-use crate::volume::{Meaning, VoxelType};
+use crate::volume::{ComponentKind, VoxelType};
 use flate2::{Compression, write::GzEncoder};
 use glam::DVec3;
 use std::fmt::Write as _;
@@ -37,10 +37,10 @@ fn header(layout: &Layout, compress: bool) -> String {
         kinds.insert(
             0,
             match layout.meaning {
-                Meaning::Rgb => "RGB-color",
-                Meaning::Rgba => "RGBA-color",
-                Meaning::Vector => "vector",
-                Meaning::Numbers | Meaning::Channels(_) => "list",
+                ComponentKind::Rgb => "RGB-color",
+                ComponentKind::Rgba => "RGBA-color",
+                ComponentKind::Vector => "vector",
+                ComponentKind::Numbers | ComponentKind::Channels(_) => "list",
             },
         );
     }

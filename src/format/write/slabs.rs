@@ -4,7 +4,7 @@ use super::layout::Layout;
 use super::numbers::{Bytes, Tally};
 use super::{SLAB_BYTES, Selection, WriteVolumeError};
 use crate::format::convert::to_u64;
-use crate::volume::{Pick, Source, VoxelBox};
+use crate::volume::{Source, TimeComponent, VoxelBox};
 use std::io::Write;
 use std::ops::Range;
 
@@ -28,7 +28,7 @@ impl Slabs<'_> {
             for slab in &slabs {
                 let mut parts = Vec::new();
                 for component in components.clone() {
-                    parts.push(self.numbers(Pick { time, component }, slab)?);
+                    parts.push(self.numbers(TimeComponent { time, component }, slab)?);
                 }
                 out.write_all(&side_by_side(parts, self.layout.number.bytes()))?;
                 done = done.saturating_add(1);
@@ -49,7 +49,7 @@ impl Slabs<'_> {
         for component in self.selection.components.clone() {
             for time in self.selection.times.clone() {
                 for slab in &slabs {
-                    out.write_all(&self.numbers(Pick { time, component }, slab)?)?;
+                    out.write_all(&self.numbers(TimeComponent { time, component }, slab)?)?;
                     done = done.saturating_add(1);
                     (self.progress)(done, of);
                 }
@@ -81,7 +81,11 @@ impl Slabs<'_> {
     }
 
     /// The bytes of one component of a slab.
-    fn numbers(&mut self, pick: Pick, slab: &Range<u32>) -> Result<Vec<u8>, WriteVolumeError> {
+    fn numbers(
+        &mut self,
+        pick: TimeComponent,
+        slab: &Range<u32>,
+    ) -> Result<Vec<u8>, WriteVolumeError> {
         let VoxelBox { min, max } = self.selection.region;
         let ([x0, y0, _], [x1, y1, _]) = (min, max);
         let region = VoxelBox {

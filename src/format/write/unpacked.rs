@@ -11,7 +11,9 @@ use super::numbers::Bytes;
 use super::{Selection, WriteVolumeError};
 use crate::format::convert::{Builder, Endian, to_u64};
 use crate::format::problem::{at, io};
-use crate::volume::{Header, Loss, Pick, Piece, ReadError, Source, VoxelBox, VoxelType};
+use crate::volume::{
+    Header, Piece, PrecisionLoss, ReadError, Source, TimeComponent, VoxelBox, VoxelType,
+};
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::ops::ControlFlow;
@@ -29,7 +31,7 @@ pub struct Unpacked {
     number: VoxelType,
     file: Mutex<File>,
     /// What decoding changed, told with the first piece.
-    loss: Mutex<Loss>,
+    loss: Mutex<PrecisionLoss>,
 }
 
 impl std::fmt::Debug for Unpacked {
@@ -67,7 +69,7 @@ impl Unpacked {
         let mut file = tempfile::tempfile_in(folder)?;
         let picks = picks(selection);
         let of = picks.len().saturating_mul(z as usize);
-        let (mut done, mut loss) = (0_usize, Loss::default());
+        let (mut done, mut loss) = (0_usize, PrecisionLoss::default());
         for pick in picks {
             let mut failed = None;
             source.read_slabs(pick, selection.region, slices, &mut |slab, piece| {
@@ -103,7 +105,7 @@ impl Unpacked {
     /// Whole rows of the selection, of one slice.
     fn rows(
         &self,
-        pick: Pick,
+        pick: TimeComponent,
         z: u32,
         [y0, y1]: [u32; 2],
         bytes: &mut Vec<u8>,
@@ -127,13 +129,13 @@ impl Unpacked {
 }
 
 /// In the order of the file.
-fn picks(selection: &Selection) -> Vec<Pick> {
+fn picks(selection: &Selection) -> Vec<TimeComponent> {
     let components = selection.components.clone();
     let times = |component| {
         selection
             .times
             .clone()
-            .map(move |time| Pick { time, component })
+            .map(move |time| TimeComponent { time, component })
     };
     components.flat_map(times).collect()
 }
@@ -151,7 +153,7 @@ impl Source for Unpacked {
         true
     }
 
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         let whole = self.selection.region;
         let ([x0, y0, z0], [x1, y1, z1]) = (region.min, region.max);
         let count = region.dims().map(|n| n as usize).iter().product();

@@ -2,7 +2,7 @@
 
 use super::ZARR;
 use crate::format::convert::{Endian, round, round_float};
-use crate::volume::{Loss, Piece, Problem, VoxelType, Voxels};
+use crate::volume::{Piece, PrecisionLoss, Problem, VoxelType, Voxels};
 use half::f16;
 
 /// Voxels, all of them the fill value at first.
@@ -10,9 +10,9 @@ pub(super) struct Canvas {
     stored: VoxelType,
     endian: Endian,
     voxels: Voxels,
-    loss: Loss,
+    loss: PrecisionLoss,
     /// What rounding cost the fill value, and how many voxels still hold it.
-    fill_loss: Loss,
+    fill_loss: PrecisionLoss,
     unset: u64,
 }
 
@@ -65,7 +65,7 @@ impl Canvas {
             stored,
             endian,
             voxels,
-            loss: Loss::default(),
+            loss: PrecisionLoss::default(),
             fill_loss: fill.loss,
             unset: crate::format::convert::to_u64(count),
         })
@@ -170,7 +170,7 @@ impl Canvas {
     }
 
     pub(super) fn finish(self) -> Piece {
-        let filled = Loss {
+        let filled = PrecisionLoss {
             changed: self.fill_loss.changed.saturating_mul(self.unset),
             worst: match self.unset {
                 0 => 0.0,

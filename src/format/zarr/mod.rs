@@ -29,7 +29,7 @@ mod v2;
 mod v3;
 
 use super::problem::at;
-use crate::volume::{Limits, ReadError, Source, Wanted};
+use crate::volume::{Limits, ReadError, Source, VolumeSelection};
 use ngff::Level;
 use source::ArraySource;
 use std::path::Path;
@@ -47,7 +47,7 @@ pub(super) fn recognizes(folder: &Path) -> bool {
 /// Opens an array of the folder: of a multiscale image the finest level that the limits allow.
 pub(super) fn open(
     folder: &Path,
-    wanted: &Wanted,
+    wanted: &VolumeSelection,
     limits: &Limits,
 ) -> Result<Box<dyn Source>, ReadError> {
     let store = Store::open(folder)?;

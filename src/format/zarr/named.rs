@@ -15,7 +15,9 @@ use crate::format::base64::Base64;
 use crate::format::cf::{self, Arrays, Attributes, Contents, Dimension, Kind, Value, Variable};
 use crate::format::convert::{Endian, to_u64};
 use crate::format::problem::{at, invalid};
-use crate::volume::{Format, Limits, Piece, Problem, ReadError, Source, VoxelType, Wanted};
+use crate::volume::{
+    Format, Limits, Piece, Problem, ReadError, Source, VolumeSelection, VoxelType,
+};
 use std::io::Read;
 use std::sync::Arc;
 
@@ -44,7 +46,7 @@ fn arrays<'a>(tree: &'a Tree, limits: &'a Limits) -> impl Iterator<Item = Array>
 pub(super) fn open(
     store: Store,
     tree: &Tree,
-    wanted: &Wanted,
+    wanted: &VolumeSelection,
     limits: &Limits,
 ) -> Result<Box<dyn Source>, ReadError> {
     if let Some(name) = &wanted.variable {

@@ -16,7 +16,7 @@ use super::{ZARR, omero};
 use crate::format::convert::{bytes_in_memory, to_u64};
 use crate::format::geometry::{with_missing_axes, world_from_voxel};
 use crate::format::problem::{escape, invalid};
-use crate::volume::{Format, Header, Limits, Meaning, Problem, Wanted};
+use crate::volume::{ComponentKind, Format, Header, Limits, Problem, VolumeSelection};
 use glam::DVec3;
 use serde_json::Value;
 
@@ -59,7 +59,7 @@ pub(super) fn images(tree: &Tree) -> Vec<Image> {
 pub(super) fn choose(
     tree: &Tree,
     images: &[Image],
-    wanted: &Wanted,
+    wanted: &VolumeSelection,
     limits: &Limits,
 ) -> Result<Option<Level>, Problem> {
     let name = wanted.variable.as_deref();
@@ -305,8 +305,8 @@ fn header(
     }
     let channels = omero::channels(&image.facts, sizes.components);
     let meaning = match channels {
-        Some(channels) if !image.is_label => Meaning::Channels(channels),
-        _ => Meaning::Numbers,
+        Some(channels) if !image.is_label => ComponentKind::Channels(channels),
+        _ => ComponentKind::Numbers,
     };
     Ok(Header {
         times: sizes.times,

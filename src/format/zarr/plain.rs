@@ -7,12 +7,16 @@ use super::ngff::Level;
 use super::source::Role;
 use super::tree::Tree;
 use crate::format::problem::{escape, invalid, unsupported};
-use crate::volume::{Format, Header, Limits, Problem, Rescale, Wanted};
+use crate::volume::{Format, Header, Limits, Problem, Rescale, VolumeSelection};
 use glam::DAffine3;
 use serde_json::Value;
 
 /// The wanted array of a store, without a word the first.
-pub(super) fn choose(tree: &Tree, wanted: &Wanted, limits: &Limits) -> Result<Level, Problem> {
+pub(super) fn choose(
+    tree: &Tree,
+    wanted: &VolumeSelection,
+    limits: &Limits,
+) -> Result<Level, Problem> {
     let (array, names) = named(tree, wanted, limits)?;
     let roles = roles(&array);
     let header = header(&array, &roles, names)?;
@@ -24,7 +28,11 @@ pub(super) fn choose(tree: &Tree, wanted: &Wanted, limits: &Limits) -> Result<Le
 }
 
 /// The wanted array, and the names of all that may be wanted, its own first.
-fn named(tree: &Tree, wanted: &Wanted, limits: &Limits) -> Result<(Array, Vec<String>), Problem> {
+fn named(
+    tree: &Tree,
+    wanted: &VolumeSelection,
+    limits: &Limits,
+) -> Result<(Array, Vec<String>), Problem> {
     let mut names = Vec::new();
     let mut first = None;
     let mut refused = None;

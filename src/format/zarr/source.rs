@@ -7,7 +7,7 @@ use super::chunk::{Range, Unit, check_files, visit};
 use super::store::Store;
 use crate::format::convert::{bytes_in_memory, to_u64};
 use crate::format::problem::at;
-use crate::volume::{Header, Limits, Pick, Piece, Problem, ReadError, Source, VoxelBox};
+use crate::volume::{Header, Limits, Piece, Problem, ReadError, Source, TimeComponent, VoxelBox};
 use std::path::Path;
 
 /// What an axis of the array means.
@@ -132,7 +132,7 @@ impl ArraySource {
         self
     }
 
-    fn range(&self, pick: Pick, region: VoxelBox) -> Range {
+    fn range(&self, pick: TimeComponent, region: VoxelBox) -> Range {
         let mut range = Range::whole(&self.array);
         let mut component = u64::from(pick.component);
         let sides = self.roles.iter().zip(&self.array.shape);
@@ -200,7 +200,7 @@ impl Source for ArraySource {
         &self.header
     }
 
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         let header = &self.header;
         let is_inside = pick.time < header.times
             && pick.component < header.components

@@ -1,4 +1,4 @@
-//! Half-angle slices on the CPU: the eye's picture and the light's, slice by slice. Twin of
+//! Half-angle slices on the CPU: the eye's picture and the light's, slice by slice. CPU reference of
 //! [`crate::technique::slices_3d::HalfAngleSlicer`], `shaders/lib/lit_alone.wgsl` and `lit_graded.wgsl`.
 
 use super::{Walk, filtered, moved, steepness};

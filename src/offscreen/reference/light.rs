@@ -1,4 +1,4 @@
-//! The light volume of a scene on the CPU: twin of `src/offscreen/light.rs`.
+//! The light volume of a scene on the CPU: CPU reference of `src/offscreen/light.rs`.
 
 use super::{filtered, filtered_in_slice, gradient_at, moved, steepness};
 use crate::real::Real;

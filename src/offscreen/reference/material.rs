@@ -7,10 +7,10 @@ use crate::shaders::Frame;
 use crate::technique::gradient::gradient_of;
 use crate::technique::gradient_taps::weighted_gradient;
 use crate::technique::mixture::{color_of, colored, dimmed, material_of};
-use crate::technique::second::second_derivative_of;
+use crate::technique::second_derivative::second_derivative_of;
 use crate::technique::shading::{Lamps, shade};
 use crate::technique::{Filter, Operator, Role};
-use crate::transfer::{PackedWidgets, Steepness, classify_by_gradient};
+use crate::transfer::{GradientMagnitude, PackedWidgets, classify_by_gradient};
 use crate::volume::Volume;
 use crate::volume::labels::{DIMMED, marks_of};
 
@@ -123,12 +123,12 @@ pub(super) fn steepness<R: Real>(
     widgets: &PackedWidgets,
     gradient: [R; 3],
     tap: impl Fn([i32; 3]) -> Option<R>,
-) -> Steepness<R> {
+) -> GradientMagnitude<R> {
     let second = match widgets.needs_second() {
         true => second_derivative_of(frame, gradient, tap),
         false => R::from_f64(0.0),
     };
-    Steepness {
+    GradientMagnitude {
         magnitude: dot(gradient, gradient).sqrt(),
         second,
         smallest_spacing: R::from_f32(frame.smallest_spacing),

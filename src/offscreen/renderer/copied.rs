@@ -2,7 +2,7 @@
 
 use crate::resident::{KeptOperator, TextureLayout};
 use crate::scene::Scene;
-use crate::technique::{GradientSource, Keep};
+use crate::technique::{GradientSource, GradientStorage};
 use crate::volume::Spline;
 
 /// In which form the volumes are on the device.
@@ -16,7 +16,7 @@ pub(super) struct Copied {
     pub gradient_source: Option<GradientSource>,
     /// Gradients that are kept.
     pub kept: Option<KeptOperator>,
-    /// Corners in place of texels, where there can be any.
+    /// FootprintTexels in place of texels, where there can be any.
     pub is_by_corners: bool,
 }
 
@@ -24,14 +24,14 @@ impl Copied {
     pub fn of(scene: &Scene) -> Self {
         let layout = scene.view(&scene.volume.grid(), [0.0; 2]).texture_layout();
         let gradient_source = scene.settings.gradient_source_beside(layout);
-        let kept = match scene.settings.keep_gradients {
-            Keep::Always => scene.settings.kept_operator(),
-            Keep::Never | Keep::Auto => None,
+        let kept = match scene.settings.gradient_storage {
+            GradientStorage::Precomputed => scene.settings.kept_operator(),
+            GradientStorage::OnTheFly | GradientStorage::Auto => None,
         };
         Self {
             kept: kept.filter(|_| scene.has_gradients()),
             layout,
-            is_by_corners: scene.settings.reads_corners_alone(scene.mix())
+            is_by_corners: scene.settings.reads_footprint_texels_alone(scene.mix())
                 && scene.volumes().len() == 1,
             spline: scene.settings.filter.spline(),
             gradient_source: gradient_source.filter(|_| scene.has_gradients()),

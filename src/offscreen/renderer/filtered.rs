@@ -15,10 +15,10 @@ pub struct Filtered {
 impl Renderer<'_> {
     /// That of the last picture, which was one of these settings; `None` before there is one.
     pub fn filtered(&self, settings: &Settings) -> Option<Filtered> {
-        let (.., words) = self.passes.as_ref()?.key();
+        let (.., variant) = self.passes.as_ref()?.key();
         let has_slow_sampler = self.device.gpu().has_slow_sampler();
-        let by = match words.filter {
-            "corners8" | "corners16" => "corners",
+        let by = match variant.filter {
+            "footprint8" | "footprint16" => "corners",
             "linear" | "spline" => "sampler",
             _ => "fetch",
         };

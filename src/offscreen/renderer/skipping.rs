@@ -7,11 +7,11 @@ use crate::offscreen::keyed::Keyed;
 use crate::offscreen::stream::if_it_fits;
 use crate::offscreen::time_slices::Work;
 use crate::offscreen::upload::fill;
-use crate::resident::{Apron, Corners, EmptySpace, GpuVolume, MacroCells};
+use crate::resident::{EmptySpace, FootprintTexels, GpuVolume, Halo, MacroCells};
 use crate::scene::{Beside, Scene};
 use crate::technique::cost::ms_of_looks;
-use crate::technique::{Mix, Mode, Part, PatchRoom, Patches, Role, Skip, Skippable};
-use crate::transfer::{Alike, Seen, TransferFunction};
+use crate::technique::{Mode, Part, PatchRoom, Patches, Role, SampleInputs, Skip, Skippable};
+use crate::transfer::{HomogeneousRanges, TransferFunction, VisibleRanges};
 use crate::volume::Volume;
 use std::sync::Arc;
 
@@ -25,7 +25,7 @@ pub struct Skipped {
 }
 
 /// What functions show, by the numbers of their volumes, and between which values that looks alike.
-type Shown = (Vec<(usize, Seen)>, Option<Alike>);
+type Shown = (Vec<(usize, VisibleRanges)>, Option<HomogeneousRanges>);
 
 /// What macro cells are of: which of the volumes, in which form, for which filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +33,7 @@ struct Of {
     copied: Copied,
     shown: usize,
     volumes: usize,
-    apron: Apron,
+    apron: Halo,
 }
 
 impl Skipped {
@@ -63,10 +63,10 @@ impl Renderer<'_> {
     pub(super) fn keep_corners(&mut self, scene: &Scene, copied: Copied) -> Result<(), Error> {
         // Modes that project draw channels one by one.
         let mix = match scene.settings.mode.is_projection() {
-            true => Mix::Alone,
+            true => SampleInputs::Scalar,
             false => scene.mix(),
         };
-        if !scene.settings.reads_corners(mix) {
+        if !scene.settings.reads_footprint_texels(mix) {
             return Ok(());
         }
         let there = self.resident.get_mut(&copied).into_iter().flatten();
@@ -180,7 +180,7 @@ impl Renderer<'_> {
         &mut self,
         scene: &Scene,
         volumes: usize,
-        apron: Apron,
+        apron: Halo,
     ) -> Result<Option<Vec<MacroCells>>, Error> {
         let mut all = Vec::new();
         for number in 0..volumes {
@@ -232,13 +232,13 @@ impl Renderer<'_> {
         &self,
         scene: &Scene,
         number: usize,
-        apron: Apron,
+        apron: Halo,
     ) -> Result<MacroCells, gpu::Error> {
         let parts = parts_of(&self.resident, self.shown, scene);
         let Part { volume, role } = parts[number];
         let gpu = self.device.gpu();
         // Nothing lies between two labels.
-        let apron = Apron {
+        let apron = Halo {
             is_mixed: apron.is_mixed && role != Role::Labels,
             ..apron
         };
@@ -250,12 +250,12 @@ impl Renderer<'_> {
 }
 
 /// Complete ones, where the volume can have any.
-fn corners_of(device: &mut Headless, volume: &Volume) -> Result<Option<Corners>, Error> {
+fn corners_of(device: &mut Headless, volume: &Volume) -> Result<Option<FootprintTexels>, Error> {
     let gpu = &Arc::clone(device.gpu());
-    if !Corners::are_for(gpu, volume) {
+    if !FootprintTexels::are_for(gpu, volume) {
         return Ok(None);
     }
-    let made = if_it_fits(Corners::new(gpu, volume))?.flatten();
+    let made = if_it_fits(FootprintTexels::new(gpu, volume))?.flatten();
     if let Some(corners) = &made {
         // SAFETY: they live until they are dropped with their volume, long after the wait.
         device.run(|cmd| unsafe {
@@ -267,10 +267,12 @@ fn corners_of(device: &mut Headless, volume: &Volume) -> Result<Option<Corners>,
 }
 
 /// What pictures of `scene` need not look at, and what cells must know for it.
-pub(super) fn wanted(scene: &Scene) -> Option<(Skippable, Apron)> {
+pub(super) fn wanted(scene: &Scene) -> Option<(Skippable, Halo)> {
     let range = scene.volume.value_range;
     let wanted = match (scene.mix(), scene.beside) {
-        (Mix::Channels, _) | (_, Beside::Colors([_, _, _])) if scene.settings.mode != Mode::Iso => {
+        (SampleInputs::Channels, _) | (_, Beside::Colors([_, _, _]))
+            if scene.settings.mode != Mode::Iso =>
+        {
             let functions = opacities_of(scene).unwrap_or_default();
             scene.settings.skippable_in_all(&functions)
         }
@@ -281,7 +283,9 @@ pub(super) fn wanted(scene: &Scene) -> Option<(Skippable, Apron)> {
     };
     let alike = scene.alike().filter(|_| scene.settings.skip);
     let wanted = match (wanted, alike, scene.transfer) {
-        (_, Some(alike), Some(function)) => Skippable::UnseenOrAlike(Seen::new(function), alike),
+        (_, Some(alike), Some(function)) => {
+            Skippable::UnseenOrAlike(VisibleRanges::new(function), alike)
+        }
         (wanted, ..) => wanted,
     };
     let apron = scene.view(&scene.volume.grid(), [0.0; 2]).apron()?;

@@ -13,7 +13,7 @@ use crate::offscreen::Error;
 use crate::offscreen::stream::{Cache, Eye, Place, Stream};
 use crate::offscreen::submission::Submission;
 use crate::offscreen::time_slices::Spent;
-use crate::resident::Apron;
+use crate::resident::Halo;
 use crate::scene::Scene;
 use crate::technique::cost::{looks_of_picture, ms_of_looks};
 use crate::technique::gather::{Brick, LAYERS, PICTURE};
@@ -120,7 +120,7 @@ impl<'v> Renderer<'v> {
         &mut self,
         scene: &Scene,
         in_pixel: InPixel,
-        way: (&Skippable, Apron),
+        way: (&Skippable, Halo),
         streaming: &mut Streaming,
     ) -> Result<Option<f64>, Error> {
         let Streaming { stream, cache } = streaming;
@@ -217,7 +217,7 @@ impl<'v> Renderer<'v> {
         &mut self,
         scene: &Scene,
         in_pixel: InPixel,
-        (cache, way, expected_ms): (&mut Cache, (&Skippable, Apron), f64),
+        (cache, way, expected_ms): (&mut Cache, (&Skippable, Halo), f64),
         (chunk, tiles): (&[usize], &[Option<Tile>]),
         [is_first, is_last]: [bool; 2],
     ) -> Result<Spent, Error> {
@@ -364,13 +364,13 @@ impl Ahead {
 
 /// What a picture leaves out, and what is to be known of bricks for it. Their halos hold all that it may ask for: a
 /// voxel for the filter, and one for gradients or two for half a slab.
-fn skippable(scene: &Scene) -> (Skippable, Apron) {
+fn skippable(scene: &Scene) -> (Skippable, Halo) {
     let found = super::skipping::wanted(scene);
     found.unwrap_or((Skippable::Nothing, scene.settings.apron()))
 }
 
 /// What a picture shows, from front to back.
-fn shown(stream: &Stream, scene: &Scene, (skippable, apron): (&Skippable, Apron)) -> Vec<Shown> {
+fn shown(stream: &Stream, scene: &Scene, (skippable, apron): (&Skippable, Halo)) -> Vec<Shown> {
     let grid = scene.volume.grid();
     let view: View = scene.view(&grid, InPixel::CENTER);
     let cells = stream.cells();

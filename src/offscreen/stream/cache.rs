@@ -7,9 +7,9 @@ use super::Stream;
 use crate::gpu::{self, Headless};
 use crate::offscreen::Error;
 use crate::offscreen::upload::fill;
-use crate::resident::{Apron, EmptySpace, GpuVolume, MacroCells};
+use crate::resident::{EmptySpace, GpuVolume, Halo, MacroCells};
 use crate::technique::{Skip, Skippable};
-use crate::transfer::Seen;
+use crate::transfer::VisibleRanges;
 use crate::volume::Volume;
 use std::collections::{HashMap, HashSet};
 
@@ -21,7 +21,7 @@ const MOST_BRICKS: usize = 2048;
 pub struct Resident {
     /// Its one brick.
     pub volume: GpuVolume,
-    cells: Option<(Apron, MacroCells)>,
+    cells: Option<(Halo, MacroCells)>,
     empty: Option<EmptySpace>,
     /// As the driver counts them.
     bytes: u64,
@@ -33,7 +33,7 @@ pub struct Resident {
 
 impl Resident {
     /// What recordings are told of where not to look; nothing where the cells were made for a narrower filter.
-    pub fn skip(&self, (wanted, apron): (&Skippable, Apron)) -> Skip<'_> {
+    pub fn skip(&self, (wanted, apron): (&Skippable, Halo)) -> Skip<'_> {
         match (wanted, self.cells_for(apron), &self.empty) {
             (Skippable::Unseen(_), Some(cells), Some(empty)) => Skip::Unseen(cells, empty),
             (Skippable::Exceeded, Some(cells), _) => Skip::Exceeded(cells),
@@ -41,7 +41,7 @@ impl Resident {
         }
     }
 
-    fn cells_for(&self, apron: Apron) -> Option<&MacroCells> {
+    fn cells_for(&self, apron: Halo) -> Option<&MacroCells> {
         let cells = self.cells.as_ref().filter(|(of, _)| of.covers(apron));
         cells.map(|(_, cells)| cells)
     }
@@ -55,7 +55,7 @@ pub struct Cache {
     /// Of the largest brick so far, with all that was made of it.
     largest_bytes: u64,
     /// What the bricks' empty spaces are of.
-    seen: Option<Seen>,
+    seen: Option<VisibleRanges>,
     /// Bricks that the picture has not drawn yet.
     waiting: HashSet<usize>,
     picture: u64,
@@ -129,7 +129,7 @@ impl Cache {
         stream: &Stream,
         brick: usize,
         voxels: &Volume,
-        (wanted, apron): (&Skippable, Apron),
+        (wanted, apron): (&Skippable, Halo),
         kept: &[usize],
     ) -> Result<(), Error> {
         let cell = stream.cells()[brick];
@@ -171,7 +171,7 @@ impl Cache {
     pub fn find_empty_space(
         &mut self,
         device: &mut Headless,
-        (wanted, apron): (&Skippable, Apron),
+        (wanted, apron): (&Skippable, Halo),
         bricks: &[usize],
     ) -> Result<(), Error> {
         let Skippable::Unseen(seen) = wanted else {

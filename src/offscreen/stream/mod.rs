@@ -16,9 +16,9 @@ mod row;
 pub(super) use cache::{Cache, if_it_fits};
 pub(super) use places::{Eye, Place};
 
-use crate::resident::{Apron, Cell, Whole, cells_of_side};
+use crate::resident::{Cell, Halo, Whole, cells_of_side};
 use crate::volume::{
-    Overview, Pick, ReadError, Source, Survey, Surveyed, Volume, VoxelType, Voxels,
+    Overview, ReadError, Source, Survey, Surveyed, TimeComponent, Volume, VoxelType, Voxels,
 };
 use glam::DAffine3;
 use std::ops::ControlFlow;
@@ -28,7 +28,7 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub struct Stream {
     source: Arc<dyn Source>,
-    pick: Pick,
+    pick: TimeComponent,
     outline: Volume,
     whole: Whole,
     cells: Vec<Cell>,
@@ -86,7 +86,7 @@ impl Stream {
     /// Where `options.side` is 0.
     pub fn open(
         source: Arc<dyn Source>,
-        pick: Pick,
+        pick: TimeComponent,
         options: StreamOptions,
         tell: &mut dyn FnMut(usize, usize) -> ControlFlow<()>,
     ) -> Result<Option<Self>, ReadError> {
@@ -107,7 +107,7 @@ impl Stream {
 
     fn new(
         source: Arc<dyn Source>,
-        pick: Pick,
+        pick: TimeComponent,
         cells: Vec<Cell>,
         survey: Survey,
         options: StreamOptions,
@@ -179,7 +179,7 @@ impl Stream {
     }
 
     /// The values that filters may make in a brick; `None` where no sample has one.
-    pub(super) fn range(&self, brick: usize, apron: Apron) -> Option<[f32; 2]> {
+    pub(super) fn range(&self, brick: usize, apron: Halo) -> Option<[f32; 2]> {
         let [low, high] = self.ranges[brick]?;
         // Codes are mixed with the precision of their format, as in macro cells.
         let slack = match self.outline.voxels.voxel_type().is_float() {

@@ -2,7 +2,7 @@
 
 use super::Stream;
 use crate::volume::{
-    Header, Limits, Pick, Piece, ReadError, Source, Volume, VoxelBox, Voxels, part_of,
+    Header, Limits, Piece, ReadError, Source, TimeComponent, Volume, VoxelBox, Voxels, part_of,
 };
 use std::path::Path;
 
@@ -103,7 +103,7 @@ impl Source for Row<'_> {
         self.of.header()
     }
 
-    fn read(&self, _: Pick, part: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, _: TimeComponent, part: VoxelBox) -> Result<Piece, ReadError> {
         let within = VoxelBox {
             min: std::array::from_fn(|k| part.min[k] - self.region.min[k]),
             max: std::array::from_fn(|k| part.max[k] - self.region.min[k]),

@@ -26,7 +26,7 @@ pub(crate) use rays::{LAYERS, depth_of_slices};
 pub(super) use {rays::rays, slices::slices};
 
 use super::blend::Drawn;
-use super::{Inputs, Order, Settings, Sight, Words};
+use super::{DepthAccess, Inputs, Order, Settings, ShaderVariant};
 use crate::gpu::{Error, Gpu, Resource, Tile};
 use std::fmt::Debug;
 use std::ops::Range;
@@ -37,11 +37,11 @@ use std::sync::Arc;
 pub(crate) struct GatherDesc<'a> {
     pub gpu: &'a Arc<Gpu>,
     pub settings: &'a Settings,
-    pub words: &'a Words,
+    pub variant: &'a ShaderVariant,
     /// Of slices: the picture, or how many samples it takes.
     pub drawn: Drawn,
     /// What hides samples of slices.
-    pub sight: Sight,
+    pub sight: DepthAccess,
     /// Of slices only patches are drawn, which the canvas has lists for.
     pub is_patched: bool,
 }

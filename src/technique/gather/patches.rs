@@ -34,7 +34,7 @@ pub(super) fn patches(desc: &GatherDesc) -> Result<Box<dyn Gather>, Error> {
     let (gpu, drawn, settings) = (desc.gpu, desc.drawn, desc.settings);
     let (technique, order) = (settings.technique, settings.order);
     let format = blend_format(gpu, drawn);
-    let slicer = PatchSlicer::new(gpu, technique, drawn, order, desc.words, format)?;
+    let slicer = PatchSlicer::new(gpu, technique, drawn, order, desc.variant, format)?;
     let merge = || Merge::new(gpu, drawn, order).map(Arc::new);
     Ok(Box::new(PatchedSlices {
         gpu: Arc::clone(gpu),

@@ -8,7 +8,9 @@
 
 use super::super::projection::Projection;
 use super::super::raycast::Raycast;
-use super::super::{Inputs, Mix, RayBindings, RayTiles, Settings, Words, accumulation};
+use super::super::{
+    Inputs, RayBindings, RayTiles, SampleInputs, Settings, ShaderVariant, accumulation,
+};
 use super::{Bound, Brick, Canvas, CanvasDesc, Gather, GatherDesc, PICTURE, Part, Player};
 use crate::gpu::{Error, Gpu, Image, Resource, Tile, Use};
 use ash::vk;
@@ -22,17 +24,20 @@ pub(crate) const LAYERS: usize = 1;
 /// # Errors
 /// Where the device refuses.
 pub(in crate::technique) fn rays(desc: &GatherDesc) -> Result<Box<dyn Gather>, Error> {
-    let pass = RayPass::new(desc.gpu, desc.settings, desc.words)?;
+    let pass = RayPass::new(desc.gpu, desc.settings, desc.variant)?;
     Ok(Box::new(Rays::new(desc.gpu, pass)))
 }
 
 /// Rays that find the depth of slices: they take the samples of the slices one after the other
-/// ([`super::super::View::each_depth_recording`]). The words are those of the picture; what lights it has no say.
+/// ([`super::super::View::each_depth_recording`]). The variant is that of the picture; what lights it has no say.
 ///
 /// # Errors
 /// Where the device refuses.
-pub(crate) fn depth_of_slices(desc: &GatherDesc, mix: Mix) -> Result<Box<dyn Gather>, Error> {
-    let pass = RayPass::along_slices(desc.gpu, desc.settings, desc.words, mix)?;
+pub(crate) fn depth_of_slices(
+    desc: &GatherDesc,
+    mix: SampleInputs,
+) -> Result<Box<dyn Gather>, Error> {
+    let pass = RayPass::along_slices(desc.gpu, desc.settings, desc.variant, mix)?;
     Ok(Box::new(Rays::new(desc.gpu, pass)))
 }
 
@@ -139,37 +144,37 @@ enum RayPass {
 }
 
 impl RayPass {
-    /// Compiles the variant of the settings and these words.
-    fn new(gpu: &Arc<Gpu>, settings: &Settings, words: &Words) -> Result<Self, Error> {
+    /// Compiles the variant for the settings.
+    fn new(gpu: &Arc<Gpu>, settings: &Settings, variant: &ShaderVariant) -> Result<Self, Error> {
         let mode = settings.mode;
         Ok(match mode.is_projection() {
             _ if settings.per_mode.exact_maximum => {
-                Self::Projection(Projection::exact(gpu, mode, words)?)
+                Self::Projection(Projection::exact(gpu, mode, variant)?)
             }
-            true => Self::Projection(Projection::new(gpu, mode, words)?),
-            false => Self::Raycast(Raycast::of_mode(gpu, mode, words)?),
+            true => Self::Projection(Projection::new(gpu, mode, variant)?),
+            false => Self::Raycast(Raycast::of_mode(gpu, mode, variant)?),
         })
     }
 
     fn along_slices(
         gpu: &Arc<Gpu>,
         settings: &Settings,
-        words: &Words,
-        mix: Mix,
+        variant: &ShaderVariant,
+        mix: SampleInputs,
     ) -> Result<Self, Error> {
-        let words = Words { mix, ..*words };
-        let words = match settings.technique.draws_stacks() {
-            true => Words {
+        let variant = ShaderVariant { mix, ..*variant };
+        let variant = match settings.technique.draws_stacks() {
+            true => ShaderVariant {
                 lattice: "stack",
                 transfer: "table",
-                ..words
+                ..variant
             },
-            false => Words {
+            false => ShaderVariant {
                 lattice: "planes",
-                ..words
+                ..variant
             },
         };
-        Self::new(gpu, settings, &words)
+        Self::new(gpu, settings, &variant)
     }
 
     fn bind(

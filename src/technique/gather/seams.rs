@@ -4,8 +4,8 @@
 use super::super::blend::Drawn;
 use super::super::merge::Merge;
 use super::super::{
-    InPixel, Order, Recording, Settings, Sight, Skip, Technique, View, Words, accumulation,
-    parameter_ring,
+    DepthAccess, InPixel, Order, Recording, Settings, ShaderVariant, Skip, Technique, View,
+    accumulation, parameter_ring,
 };
 use super::slices::batch_image;
 use super::*;
@@ -243,13 +243,13 @@ fn a_picture_goes_on_from_what_a_box_of_bricks_has_left() {
         };
         let bricks: Vec<_> = recordings.iter().enumerate().map(brick).collect();
         assert!(bricks.len() > 7, "{} bricks", bricks.len());
-        let words = Words::of(&settings, &there);
+        let variant = ShaderVariant::of(&settings, &there);
         let desc = GatherDesc {
             gpu: &gpu,
             settings: &settings,
-            words: &words,
+            variant: &variant,
             drawn: Drawn::Picture(settings.mode),
-            sight: Sight::Open,
+            sight: DepthAccess::None,
             is_patched: false,
         };
         let gather = (technique.desc().gather)(&desc).expect("pipelines");

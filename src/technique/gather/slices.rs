@@ -14,7 +14,7 @@
 use super::super::blend::{Drawn, clear_color};
 use super::super::host_depth_copy::{FARTHEST, HostDepthCopy};
 use super::super::merge::{BATCH_FORMAT, MAX_BATCH_SLICES, Merge, is_merged};
-use super::super::{ACCUMULATION_FORMAT, Inputs, Settings, Sight, Slicer, accumulation};
+use super::super::{ACCUMULATION_FORMAT, DepthAccess, Inputs, Settings, Slicer, accumulation};
 use super::patches::patches;
 use super::{Bound, Brick, Canvas, CanvasDesc, Gather, GatherDesc, PICTURE, Part, Player};
 use crate::gpu::{Bindings, Error, Gpu, Image, ImageDesc, ImageKind, Load, Resource, Tile, Use};
@@ -37,14 +37,14 @@ pub(in crate::technique) fn slices(desc: &GatherDesc) -> Result<Box<dyn Gather>,
         technique, order, ..
     } = *desc.settings;
     let format = blend_format(gpu, drawn);
-    let is_tested = sight == Sight::Tested;
+    let is_tested = sight == DepthAccess::Tested;
     let target = match is_tested {
         true => HostDepthCopy::target(format),
         false => format.into(),
     };
     let merge = || Merge::new(gpu, drawn, order).map(Arc::new);
     let host_depth = || HostDepthCopy::new(gpu, format).map(Arc::new);
-    let slicer = Slicer::seen(gpu, technique, drawn, order, desc.words, target, sight)?;
+    let slicer = Slicer::seen(gpu, technique, drawn, order, desc.variant, target, sight)?;
     Ok(Box::new(Slices {
         gpu: Arc::clone(gpu),
         slicer: Arc::new(slicer),

@@ -1,4 +1,4 @@
-//! The exact extreme of the trilinear field along a ray: twin of `shaders/projection_cells.wgsl`.
+//! The exact extreme of the trilinear field along a ray: CPU reference of `shaders/projection_cells.wgsl`.
 //!
 //! ```text
 //! f(s) = A0 + A1 s + A2 s^2 + A3 s^3        along the ray in a cell between eight voxel centres

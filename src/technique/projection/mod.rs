@@ -6,7 +6,7 @@ pub mod exact;
 pub mod reference;
 
 use super::ray_tiles::{Nothing, TilePass};
-use super::{Inputs, Mode, RayBindings, RayTiles, Words};
+use super::{Inputs, Mode, RayBindings, RayTiles, ShaderVariant};
 use crate::gpu::{Error, Gpu, Image, Resource, Tile};
 use crate::shaders::{Shader, shader};
 use ash::vk;
@@ -19,30 +19,30 @@ pub struct Projection {
 }
 
 impl Projection {
-    /// Compiles the variant of this mode and these words.
+    /// Compiles this variant for the mode.
     ///
     /// # Errors
     /// Where the device refuses.
-    pub fn new(gpu: &Arc<Gpu>, mode: Mode, words: &Words) -> Result<Self, Error> {
-        let Words {
+    pub fn new(gpu: &Arc<Gpu>, mode: Mode, variant: &ShaderVariant) -> Result<Self, Error> {
+        let ShaderVariant {
             filter,
             holes,
             lattice,
             ..
-        } = words;
+        } = variant;
         let name = format!(
             "projection.{}.{lattice}.{filter}.{holes}",
             mode.shader_key()
         );
-        Self::of_shader(gpu, words.shader(&name))
+        Self::of_shader(gpu, variant.shader(&name))
     }
 
     /// The same for the exact extreme of the trilinear field, of [`Mode::Mip`] or [`Mode::Minip`].
     ///
     /// # Errors
     /// Where the device refuses.
-    pub fn exact(gpu: &Arc<Gpu>, mode: Mode, words: &Words) -> Result<Self, Error> {
-        let name = format!("projection_cells.{}.{}", mode.shader_key(), words.holes);
+    pub fn exact(gpu: &Arc<Gpu>, mode: Mode, variant: &ShaderVariant) -> Result<Self, Error> {
+        let name = format!("projection_cells.{}.{}", mode.shader_key(), variant.holes);
         Self::of_shader(gpu, shader(&name))
     }
 

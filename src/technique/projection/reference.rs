@@ -1,4 +1,4 @@
-//! MIP and its relatives on the CPU: twin of `shaders/projection.wgsl` and of its modes.
+//! MIP and its relatives on the CPU: CPU reference of `shaders/projection.wgsl` and of its modes.
 //!
 //! ```text
 //! mip, minip   value = extreme of v, of equal ones the first

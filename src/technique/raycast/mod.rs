@@ -6,7 +6,7 @@ pub mod reference;
 use super::gather::rays;
 use super::ray_tiles::{Nothing, TilePass};
 use super::registry::TechniqueDesc;
-use super::{Inputs, Mix, Mode, RayBindings, RayTiles, Take, Words};
+use super::{Inputs, Mode, RayBindings, RayTiles, SampleInputs, SampleKind, ShaderVariant};
 use crate::gpu::{Error, Gpu, Image, Resource, Tile};
 use crate::resident::TextureLayout;
 use ash::vk;
@@ -33,21 +33,21 @@ pub struct Raycast {
 }
 
 impl Raycast {
-    /// Compiles the variant of these words, for [`Mode::Composite`].
+    /// Compiles this variant, for [`Mode::Composite`].
     ///
     /// # Errors
     /// Where the device refuses.
-    pub fn new(gpu: &Arc<Gpu>, words: &Words) -> Result<Self, Error> {
-        Self::of_mode(gpu, Mode::Composite, words)
+    pub fn new(gpu: &Arc<Gpu>, variant: &ShaderVariant) -> Result<Self, Error> {
+        Self::of_mode(gpu, Mode::Composite, variant)
     }
 
     /// The same for a mode that composites: [`Mode::Composite`], or of one volume [`Mode::Mida`] and
-    /// [`Mode::Iso`]; surfaces of one volume are coloured by a second one where there are two ([`Mix::Channels`]).
+    /// [`Mode::Iso`]; surfaces of one volume are coloured by a second one where there are two ([`SampleInputs::Channels`]).
     ///
     /// # Errors
     /// Where the device refuses.
-    pub fn of_mode(gpu: &Arc<Gpu>, of: Mode, words: &Words) -> Result<Self, Error> {
-        let Words {
+    pub fn of_mode(gpu: &Arc<Gpu>, of: Mode, variant: &ShaderVariant) -> Result<Self, Error> {
+        let ShaderVariant {
             filter,
             holes,
             lattice,
@@ -56,7 +56,7 @@ impl Raycast {
             take,
             is_adaptive,
             ..
-        } = words;
+        } = variant;
         // Kernels, planes and exact control points have the general variant alone.
         let has_lean = of == Mode::Composite
             && *lattice == "ray"
@@ -65,13 +65,15 @@ impl Raycast {
         let mix = if has_lean { *mix } else { mix.general() };
         let mode = of.shader_key();
         let name = match take {
-            _ if of == Mode::Iso && mix == Mix::Channels => {
+            _ if of == Mode::Iso && mix == SampleInputs::Channels => {
                 format!("isosurface.by.{filter}.{holes}")
             }
             _ if of == Mode::Iso => format!("isosurface.{filter}.{holes}"),
-            Take::Slab => format!("raycast_slab.composite.{lattice}.{filter}.{holes}"),
+            SampleKind::Preintegrated => {
+                format!("raycast_slab.composite.{lattice}.{filter}.{holes}")
+            }
             // Of one volume without light or holes: nothing else is checked to be right.
-            Take::Point if *is_adaptive && of == Mode::Composite => {
+            SampleKind::Point if *is_adaptive && of == Mode::Composite => {
                 format!("raycast.composite.adaptive.{lattice}.{filter}.{holes}.{transfer}")
             }
             _ => format!(
@@ -85,7 +87,7 @@ impl Raycast {
             _ => Nothing::OfComposite,
         };
         Ok(Self {
-            pass: TilePass::new(gpu, words.shader(&name), nothing)?,
+            pass: TilePass::new(gpu, variant.shader(&name), nothing)?,
         })
     }
 

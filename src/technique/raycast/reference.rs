@@ -1,4 +1,4 @@
-//! Ray casting on the CPU: twin of `shaders/raycast.wgsl`.
+//! Ray casting on the CPU: CPU reference of `shaders/raycast.wgsl`.
 
 use crate::lattice::Segment;
 use crate::ray::pixel_ray;
@@ -64,7 +64,7 @@ pub fn radiance_in_runs<R: Real, V>(
     (so_far, samples)
 }
 
-/// The same of slabs: twin of `shaders/raycast_slab.wgsl`. `classify` takes the values at both ends.
+/// The same of slabs: CPU reference of `shaders/raycast_slab.wgsl`. `classify` takes the values at both ends.
 pub fn radiance_of_slabs<R: Real>(
     frame: &Frame,
     lattice: Lattice,

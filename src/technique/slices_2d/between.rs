@@ -1,4 +1,4 @@
-//! Between the slices of a stack: twin of `shaders/lib/between.wgsl`, `slices_2d_smooth.wgsl` and
+//! Between the slices of a stack: CPU reference of `shaders/lib/between.wgsl`, `slices_2d_smooth.wgsl` and
 //! `slices_2d_slab.wgsl`, and how many planes there are.
 //!
 //! ```text

@@ -1,4 +1,4 @@
-//! 2D texture slicing on the CPU: twin of `shaders/slices_2d.wgsl` and of its cover's order.
+//! 2D texture slicing on the CPU: CPU reference of `shaders/slices_2d.wgsl` and of its cover's order.
 
 use super::between::{self, Level};
 use crate::ray::{domain_interval, pixel_ray, voxel_ray};

@@ -1,4 +1,4 @@
-//! Where a plane cuts the enlarged domain: twin of `shaders/slices_3d_cover.wgsl`.
+//! Where a plane cuts the enlarged domain: CPU reference of `shaders/slices_3d_cover.wgsl`.
 //!
 //! Corners are numbered from the one nearest the eye along three paths to the farthest; a plane meets each
 //! path once, and the three edges between two paths at most once. Rezk-Salama and Kolb, "A Vertex Program

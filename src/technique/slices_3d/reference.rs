@@ -1,4 +1,4 @@
-//! View-aligned slicing on the CPU: twin of `shaders/slices_3d.wgsl`.
+//! View-aligned slicing on the CPU: CPU reference of `shaders/slices_3d.wgsl`.
 
 use crate::lattice::plane_slab;
 use crate::ray::{domain_interval, pixel_ray, plane_length, plane_t, voxel_ray};
@@ -50,7 +50,7 @@ pub fn fragment<R: Real, V>(
     Some(value_at(voxel.at(t)).map(|value| Fragment { value, length }))
 }
 
-/// The slab of a pixel's ray around one plane, its value the values at both ends: twin of
+/// The slab of a pixel's ray around one plane, its value the values at both ends: CPU reference of
 /// `shaders/slices_3d_slab.wgsl`.
 pub fn slab<R: Real>(
     frame: &Frame,

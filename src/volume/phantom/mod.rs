@@ -22,8 +22,8 @@ pub use spec::NAMES;
 use super::field::{Ball, Field, Fog, Gaussian, MarschnerLobb, Shells};
 use super::read::check_memory;
 use super::{
-    Format, Header, Limits, Meaning, Pick, Piece, Problem, ReadError, Rescale, Source, VoxelBox,
-    VoxelType, Voxels,
+    ComponentKind, Format, Header, Limits, Piece, Problem, ReadError, Rescale, Source,
+    TimeComponent, VoxelBox, VoxelType, Voxels,
 };
 use glam::{DAffine3, DMat3, DVec3};
 use spec::Spec;
@@ -53,7 +53,7 @@ struct Phantom {
 }
 
 /// The field of one time and component.
-type FieldAt = Box<dyn Fn(Pick) -> Box<dyn Field> + Send + Sync>;
+type FieldAt = Box<dyn Fn(TimeComponent) -> Box<dyn Field> + Send + Sync>;
 
 impl Source for Phantom {
     fn path(&self) -> &Path {
@@ -64,7 +64,7 @@ impl Source for Phantom {
         &self.header
     }
 
-    fn read(&self, pick: Pick, region: VoxelBox) -> Result<Piece, ReadError> {
+    fn read(&self, pick: TimeComponent, region: VoxelBox) -> Result<Piece, ReadError> {
         let field = (self.field_at)(pick);
         let Rescale { slope, intercept } = self.header.rescale;
         // A cast goes to the nearest end where a number does not fit.
@@ -150,7 +150,7 @@ fn build(text: &str) -> Result<Phantom, Problem> {
     let mut known = vec!["n", "type"];
     let (mut times, mut variables) = (1, Vec::new());
     let mut design = Design::cube(50.0);
-    let mut meaning = Meaning::Numbers;
+    let mut meaning = ComponentKind::Numbers;
     let field_at: FieldAt = match spec.name {
         "sphere" => {
             known.push("edge");
@@ -207,7 +207,7 @@ fn build(text: &str) -> Result<Phantom, Problem> {
             Box::new(move |pick| Box::new(storm::Storm::new(variable, pick.time, times)))
         }
         "cells" => {
-            meaning = Meaning::Channels(cells::channels());
+            meaning = ComponentKind::Channels(cells::channels());
             design.default_type = VoxelType::U8;
             Box::new(|pick| Box::new(cells::Cells::new(pick.component)))
         }
@@ -235,7 +235,7 @@ fn build(text: &str) -> Result<Phantom, Problem> {
         translation: design.min,
     };
     let components = match &meaning {
-        Meaning::Channels(channels) => channels.len() as u32,
+        ComponentKind::Channels(channels) => channels.len() as u32,
         _ => 1,
     };
     let header = Header {

@@ -1,7 +1,7 @@
 //! An opaque ball above a plate so thin that it hardly shades itself, seen from straight above.
 
 use super::{AMBIENT, half_angle, pictures, plain, white};
-use crate::shared::{Shot, Worst, volume_of};
+use crate::shared::{PictureCase, Worst, volume_of};
 use glam::{DAffine3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
 use stratavox::picture::Picture;
@@ -13,7 +13,7 @@ const BALL: DVec3 = DVec3::new(11.0, 16.0, 14.0);
 const RADIUS: f64 = 4.0;
 const PLATE: f64 = 4.0;
 
-fn ball_above_plate(towards: DVec3) -> (Volume, Shot, TransferFunction) {
+fn ball_above_plate(towards: DVec3) -> (Volume, PictureCase, TransferFunction) {
     let field = |p: DVec3| match () {
         () if p.distance(BALL) < RADIUS => 2.0,
         () if (2.0..PLATE).contains(&p.z) => 1.0,
@@ -21,7 +21,7 @@ fn ball_above_plate(towards: DVec3) -> (Volume, Shot, TransferFunction) {
     };
     let volume = volume_of([32, 32, 20], DAffine3::IDENTITY, field);
     let grid = volume.grid();
-    let shot = Shot {
+    let shot = PictureCase {
         grid,
         camera: Camera {
             eye: grid.center() + dvec3(0.0, 0.0, 40.0),
@@ -43,7 +43,7 @@ fn ball_above_plate(towards: DVec3) -> (Volume, Shot, TransferFunction) {
 }
 
 /// The part of the light that is left on what a pixel shows, and where on the plate that is.
-fn light_on_plate(picture: &Picture, shot: &Shot) -> Vec<([u32; 2], DVec3, f64)> {
+fn light_on_plate(picture: &Picture, shot: &PictureCase) -> Vec<([u32; 2], DVec3, f64)> {
     let rays = shot.camera.rays(shot.extent);
     let pixels = shot.pixels().zip(&picture.pixels);
     pixels

@@ -1,7 +1,7 @@
 //! A uniform medium: what is left of the light is an exponential.
 
 use super::{AMBIENT, half_angle, pictures, plain, white};
-use crate::shared::{Shot, Worst, volume_of};
+use crate::shared::{PictureCase, Worst, volume_of};
 use glam::{DAffine3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
 use stratavox::picture::Picture;
@@ -12,11 +12,11 @@ const SIGMA: f64 = 0.11;
 const LENGTH: f64 = 12.0;
 
 /// Unit voxels full of one medium; rays through the middles of columns of voxels, along +z.
-fn medium(samples_per_voxel: f64, towards: DVec3) -> (Volume, Shot) {
+fn medium(samples_per_voxel: f64, towards: DVec3) -> (Volume, PictureCase) {
     const SIDE: u32 = 12;
     let volume = volume_of([SIDE; 3], DAffine3::IDENTITY, |_| 1.0);
     let grid = volume.grid();
-    let shot = Shot {
+    let shot = PictureCase {
         grid,
         camera: Camera {
             eye: grid.center() - dvec3(0.0, 0.0, 30.0),

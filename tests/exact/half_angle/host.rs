@@ -7,7 +7,7 @@ use stratavox::gpu::{Blend, Use, image_barrier};
 use stratavox::resolve::Resolve;
 use stratavox::technique::slices_3d::HalfAngleSlicer;
 use stratavox::technique::slices_3d::half_angle::{HalfAngleSlices, light_buffer};
-use stratavox::technique::{Inputs, Mode, Words, accumulation, parameter_ring};
+use stratavox::technique::{Inputs, Mode, ShaderVariant, accumulation, parameter_ring};
 
 #[test]
 fn a_host_records_eye_and_light_into_its_own_commands() {
@@ -17,7 +17,8 @@ fn a_host_records_eye_and_light_into_its_own_commands() {
     stage.settings.shading = plain(ways_to_light(&stage.camera)[1]);
     let there = OnDevice::new(&host, &stage);
     let view = stage.view();
-    let slicer = HalfAngleSlicer::new(gpu, &Words::of(&stage.settings, &there.volume)).unwrap();
+    let slicer =
+        HalfAngleSlicer::new(gpu, &ShaderVariant::of(&stage.settings, &there.volume)).unwrap();
     let ring = parameter_ring(gpu, 2).unwrap();
     let seen = light_buffer(gpu, view.light_extent()).unwrap();
     let picture = accumulation(gpu, stage.extent, "picture").unwrap();
@@ -63,6 +64,6 @@ fn a_host_records_eye_and_light_into_its_own_commands() {
         host.device.cmd_end_rendering(cmd);
         image.fetch_drawn(cmd);
     });
-    let wanted: Vec<_> = stage.twin().iter().map(|&p| over(p, DRAWN)).collect();
+    let wanted: Vec<_> = stage.reference().iter().map(|&p| over(p, DRAWN)).collect();
     assert_close(&image, &wanted, slices.count, "half-angle slices of a host");
 }

@@ -1,13 +1,13 @@
-//! Shadows by half-angle slices: the device against its twin, and both against closed forms and geometry.
+//! Shadows by half-angle slices: the device against its CPU reference, and both against closed forms and geometry.
 
 mod ball;
 mod exact;
 mod host;
+mod references;
 mod refused;
 mod symmetry;
-mod twins;
 
-use crate::shared::{Shot, device, oblique_camera, projections, sheared_affine, waves};
+use crate::shared::{PictureCase, device, oblique_camera, projections, sheared_affine, waves};
 use glam::DVec3;
 use stratavox::camera::Camera;
 use stratavox::offscreen::{Renderer, reference};
@@ -54,8 +54,8 @@ fn ways_to_light(camera: &Camera) -> [DVec3; 3] {
 }
 
 /// In both projections, where half-angle slices can be.
-fn shots() -> [Shot; 2] {
-    projections(&GRID()).map(|projection| Shot {
+fn shots() -> [PictureCase; 2] {
+    projections(&GRID()).map(|projection| PictureCase {
         grid: GRID(),
         camera: oblique_camera(&GRID(), projection),
         extent: [28, 24],
@@ -89,8 +89,8 @@ fn white(steps: &[(f64, f64)]) -> TransferFunction {
     }
 }
 
-/// What twins in both precisions and the device make of a shot.
-fn pictures(volume: &Volume, shot: &Shot, transfer: &TransferFunction) -> [Picture; 3] {
+/// What CPU references in both precisions and the device make of a shot.
+fn pictures(volume: &Volume, shot: &PictureCase, transfer: &TransferFunction) -> [Picture; 3] {
     let scene = shot.scene(volume, Some(transfer));
     [
         reference::render::<f64>(&scene).unwrap(),
@@ -99,7 +99,7 @@ fn pictures(volume: &Volume, shot: &Shot, transfer: &TransferFunction) -> [Pictu
     ]
 }
 
-fn on_device(volume: &Volume, shot: &Shot, transfer: &TransferFunction) -> Picture {
+fn on_device(volume: &Volume, shot: &PictureCase, transfer: &TransferFunction) -> Picture {
     let mut renderer = Renderer::new(device(), volume).unwrap();
     let scene = shot.scene(volume, Some(transfer));
     renderer.render(&scene, &[]).unwrap().picture

@@ -1,7 +1,7 @@
 //! What half-angle slices cannot do.
 
 use super::{GRID, plain, shots};
-use crate::shared::{Shot, device, device_with, ramps, sheared_affine, volume_of, waves};
+use crate::shared::{PictureCase, device, device_with, ramps, sheared_affine, volume_of, waves};
 use glam::{DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
 use stratavox::gpu::Caps;
@@ -15,20 +15,20 @@ fn what_half_angle_slices_cannot_do_is_refused_by_name() {
     let volume = volume_of(GRID().dims, sheared_affine(), waves);
     let transfer = ramps();
     let [parallel, perspective] = shots();
-    let refused = |shot: &Shot, beside: Beside| -> Error {
+    let refused = |shot: &PictureCase, beside: Beside| -> Error {
         let scene = Scene {
             beside,
             ..shot.scene(&volume, Some(&transfer))
         };
-        let of_twin = reference::render::<f32>(&scene).unwrap_err();
+        let of_reference = reference::render::<f32>(&scene).unwrap_err();
         let mut renderer = Renderer::several(device(), scene.volumes()).unwrap();
         match renderer.render(&scene, &[]).unwrap_err() {
-            offscreen::Error::Technique(of_device) => assert_eq!(of_device, of_twin),
+            offscreen::Error::Technique(of_device) => assert_eq!(of_device, of_reference),
             other => panic!("{other}"),
         }
-        of_twin
+        of_reference
     };
-    let alone = |shot: &Shot| refused(shot, Beside::Nothing).to_string();
+    let alone = |shot: &PictureCase| refused(shot, Beside::Nothing).to_string();
     for (change, wanted) in [
         (
             (|s: &mut Settings| s.technique = Technique::Raycast) as fn(&mut Settings),
@@ -55,7 +55,7 @@ fn what_half_angle_slices_cannot_do_is_refused_by_name() {
     assert!(text.contains("one volume of numbers"), "{text}");
 
     // The eye beside the box, light across the view: rays at the rim run along the slices.
-    let wide = Shot {
+    let wide = PictureCase {
         camera: Camera {
             eye: GRID().center() + dvec3(2.0, -14.0, 0.0),
             target: GRID().center(),

@@ -1,7 +1,7 @@
 //! What does not change when scene and light are mirrored, and how far apart samples are.
 
 use super::{half_angle, on_device, plain, shots};
-use crate::shared::{Shot, Worst, oblique_camera, projections, ramps, volume_of, waves};
+use crate::shared::{PictureCase, Worst, oblique_camera, projections, ramps, volume_of, waves};
 use glam::{DAffine3, DVec3, dvec3};
 use stratavox::camera::Camera;
 use stratavox::technique::{Order, Settings};
@@ -22,7 +22,7 @@ fn a_mirrored_scene_in_mirrored_light_is_the_mirrored_picture() {
         for side in [1.0, -1.0] {
             let camera = oblique_camera(&grid, projection);
             let towards = dvec3(-0.7, -0.9 * side, 0.8);
-            let shot = Shot {
+            let shot = PictureCase {
                 grid,
                 camera,
                 extent: [30, 26],
@@ -31,7 +31,7 @@ fn a_mirrored_scene_in_mirrored_light_is_the_mirrored_picture() {
                     ..half_angle()
                 },
             };
-            let other = Shot {
+            let other = PictureCase {
                 camera: Camera {
                     eye: mirrored(camera.eye, 17.0),
                     target: mirrored(camera.target, 17.0),

@@ -80,7 +80,7 @@ fn the_colour_is_that_of_one_volume_and_the_opacity_that_of_the_other() {
 
 /// Between voxel centres, with holes, and beside another thing of its own.
 #[test]
-fn opacity_of_another_volume_is_drawn_as_the_twin_draws_it() {
+fn opacity_of_another_volume_is_drawn_as_the_reference_draws_it() {
     let first = with_holes(volume_of(GRID().dims, sheared_affine(), waves), 17);
     let (second, third) = (with_holes(ripples(), 23), ripples());
     let functions = [tinted([0.0, 0.9, 1.0]), tinted([1.0, 0.2, 0.9]), ramps()];
@@ -112,7 +112,7 @@ fn opacity_of_another_volume_is_refused_where_it_has_no_colour_or_is_not_composi
             .map(|&role| channel(&volume, &transfer, role))
             .collect();
         let shot = straight_shots(cubes(), settings.mode).swap_remove(0);
-        let shot = Shot { settings, ..shot };
+        let shot = PictureCase { settings, ..shot };
         let scene = scene(&shot, &volume, &transfer, Beside::Channels(&channels));
         scene.check().expect_err("refused")
     };

@@ -51,7 +51,7 @@ fn a_spike_between_two_voxels_is_seen_by_slabs_alone_and_an_edge_as_the_mean_of_
     // A stack has no samples between its slices.
     let rays = placements().into_iter().take(4);
     for settings in rays {
-        let shot = Shot {
+        let shot = PictureCase {
             grid: volume.grid(),
             camera,
             extent: [4, 4],
@@ -118,7 +118,7 @@ fn a_transparent_voxel_gives_its_colour_to_none() {
 }
 
 #[test]
-fn classified_voxels_are_drawn_as_the_twin_draws_them() {
+fn classified_voxels_are_drawn_as_the_reference_draws_them() {
     let volume = with_holes(volume_of(GRID().dims, sheared_affine(), waves), 37);
     let function = TransferFunction {
         reference_length: Some(1.7),

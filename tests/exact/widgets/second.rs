@@ -4,8 +4,8 @@ use super::*;
 use glam::DMat3;
 use stratavox::shaders::Frame;
 use stratavox::technique::gradient::gradient_of;
-use stratavox::technique::second::second_derivative_of;
-use stratavox::transfer::Second;
+use stratavox::technique::second_derivative::second_derivative_of;
+use stratavox::transfer::SecondDerivative;
 use stratavox::volume::sample::linear;
 
 /// Gradient and second derivative at a position in voxel space, in f64, trilinear.
@@ -113,17 +113,17 @@ fn widgets_weigh_by_the_second_derivative_as_they_say() {
     {
         let (volume, middle) = of_x(sides, |x| x.powi(3) + 40.0 * x);
         let (steepest, h) = (300.0 * sides.x, sides.min_element());
-        let weighted = |opacity: f64, second: Second| Widget {
+        let weighted = |opacity: f64, second: SecondDerivative| Widget {
             second: Some(second),
             ..widget(opacity, everywhere.clone())
         };
         let function = of_widgets(
             steepest * h / 2.0,
             vec![
-                weighted(0.1, Second::Trapezoid(corners)),
+                weighted(0.1, SecondDerivative::Trapezoid(corners)),
                 weighted(
                     0.05,
-                    Second::Bell {
+                    SecondDerivative::Bell {
                         middle: bell_at,
                         sigma,
                     },
@@ -147,12 +147,12 @@ fn weighted() -> TransferFunction {
     let ramp = [-0.6, -0.2, 0.1, 0.5];
     let widgets = vec![
         Widget {
-            second: Some(Second::Trapezoid(ramp)),
+            second: Some(SecondDerivative::Trapezoid(ramp)),
             srgb: Some([0.9, 0.3, 0.1]),
             ..contour(0.5, 2.0, 0.2)
         },
         Widget {
-            second: Some(Second::Bell {
+            second: Some(SecondDerivative::Bell {
                 middle: 0.2,
                 sigma: 0.3,
             }),
@@ -184,7 +184,7 @@ fn weighted() -> TransferFunction {
         ),
     ];
     TransferFunction {
-        graded: Some(Graded {
+        graded: Some(GradientTransfer {
             steepest: Some(0.3),
             share: Vec::new(),
             widgets,
@@ -194,7 +194,7 @@ fn weighted() -> TransferFunction {
 }
 
 #[test]
-fn every_technique_draws_second_derivatives_and_images_as_its_twin_does() {
+fn every_technique_draws_second_derivatives_and_images_as_its_reference_does() {
     let mut volume = volume_of(GRID().dims, sheared_affine(), waves);
     let function = weighted();
     let mut unweighted = function.clone();
@@ -208,7 +208,7 @@ fn every_technique_draws_second_derivatives_and_images_as_its_twin_does() {
         let mut renderer = Renderer::new(device(), &volume).unwrap();
         let shots = oblique_shots(GRID(), Mode::Composite).into_iter();
         for shot in shots.skip(usize::from(holes)).step_by(4) {
-            let shot = Shot {
+            let shot = PictureCase {
                 extent: [24, 20],
                 ..shot
             };

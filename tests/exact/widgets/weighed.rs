@@ -46,7 +46,7 @@ fn weighing(volume: &Volume) -> TransferFunction {
                 srgb: [0.2, 0.5, 1.0],
             },
         ],
-        ..only(Graded {
+        ..only(GradientTransfer {
             steepest: Some(steepest),
             share: points(&[(0.05, 0.0), (0.2, 0.3), (0.6, 1.0)]),
             widgets: Vec::new(),

@@ -13,8 +13,8 @@ use stratavox::offscreen::Renderer;
 use stratavox::picture::{LayerKind, Picture};
 use stratavox::scene::Scene;
 use stratavox::technique::{
-    AmbientOcclusion, Filter, Jitter, Keep, Lattice, Level, Light, Mode, Order, PerMode, Settings,
-    Shading, Shadows, Technique,
+    AmbientOcclusion, Filter, GradientStorage, Jitter, Lattice, Level, Light, Mode, Order, PerMode,
+    Settings, Shading, Shadows, Technique,
 };
 use stratavox::volume::Volume;
 
@@ -297,7 +297,7 @@ fn so_are_pictures_that_need_light_volumes_kept_gradients_and_macro_cells_of_coe
     };
     let kept = Settings {
         shading: Some(Shading::default()),
-        keep_gradients: Keep::Always,
+        gradient_storage: GradientStorage::Precomputed,
         ..Settings::default()
     };
     let cubic = Settings {

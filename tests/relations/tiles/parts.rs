@@ -15,8 +15,8 @@ use stratavox::resident::{GpuTransfer, GpuVolume};
 use stratavox::technique::blend::Drawn;
 use stratavox::technique::raycast::Raycast;
 use stratavox::technique::{
-    ACCUMULATION_FORMAT, InPixel, Inputs, Mode, Order, RayTiles, Settings, Skip, Slicer, Technique,
-    View, Words, accumulation, parameter_ring,
+    ACCUMULATION_FORMAT, InPixel, Inputs, Mode, Order, RayTiles, Settings, ShaderVariant, Skip,
+    Slicer, Technique, View, accumulation, parameter_ring,
 };
 
 /// Numbers that look random and are the same each time (Knuth's linear congruence).
@@ -70,7 +70,7 @@ struct Ready {
     ring: ParameterRing,
     /// Of each brick in its order: which, offset, slices.
     recorded: Vec<(usize, u32, u32)>,
-    words: Words,
+    words: ShaderVariant,
     picture: Image,
     layers: Image,
     readback: Buffer,
@@ -117,7 +117,7 @@ impl Ready {
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
         Self {
             recorded: recorded.collect(),
-            words: Words::of(settings, &volume),
+            words: ShaderVariant::of(settings, &volume),
             picture: accumulation(&gpu, EXTENT, "picture").unwrap(),
             layers: accumulation(&gpu, EXTENT, "layers").unwrap(),
             readback: Buffer::new(&gpu, bytes, usage, Memory::Readback, "read back").unwrap(),

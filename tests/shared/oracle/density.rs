@@ -1,7 +1,7 @@
 //! Media whose extinction, or colour, follows a height s(x) that rises evenly through the world: along a
 //! ray s = a + b t, and every integral over t is known.
 
-use super::super::{Chord, Matter, Shot, Way, Worst};
+use super::super::{Chord, Matter, PictureCase, Way, Worst};
 use super::what;
 use glam::{DAffine3, DVec3, dvec3};
 use stratavox::volume::Grid;
@@ -40,7 +40,7 @@ impl Height {
 }
 
 /// Is the picture taken along the last axis?
-fn is_straight(shot: &Shot) -> bool {
+fn is_straight(shot: &PictureCase) -> bool {
     let forward = shot.camera.frame().forward;
     forward.x.abs().max(forward.y.abs()) < 1e-12
 }
@@ -50,7 +50,7 @@ fn is_straight(shot: &Shot) -> bool {
 fn absorbed(
     answer: &str,
     way: &dyn Way,
-    shot: &Shot,
+    shot: &PictureCase,
     sigma: impl Fn(f64) -> f64 + Sync,
     depth: impl Fn(&Chord, [f64; 2], f64, f64) -> (f64, f64),
 ) -> Worst {
@@ -92,7 +92,7 @@ fn absorbed(
 }
 
 /// A2: sigma = p + q s. Midpoints are exact.
-pub fn linear_density(way: &dyn Way, shot: &Shot) -> Worst {
+pub fn linear_density(way: &dyn Way, shot: &PictureCase) -> Worst {
     const P: f64 = 0.02;
     const Q: f64 = 0.15;
     absorbed(
@@ -108,7 +108,7 @@ pub fn linear_density(way: &dyn Way, shot: &Shot) -> Worst {
 }
 
 /// A3: sigma = c s^2. Midpoints miss c b^2 d^3 / 12 in each segment, which is taken off the answer.
-pub fn quadratic_density(way: &dyn Way, shot: &Shot) -> Worst {
+pub fn quadratic_density(way: &dyn Way, shot: &PictureCase) -> Worst {
     const C: f64 = 0.3;
     absorbed(
         "A3",
@@ -126,7 +126,7 @@ pub fn quadratic_density(way: &dyn Way, shot: &Shot) -> Worst {
 
 /// A9: an exponential atmosphere, sigma = sigma0 exp(-s / H). Each midpoint is off by at most
 /// d^3/24 max|sigma''|.
-pub fn atmosphere(way: &dyn Way, shot: &Shot) -> Worst {
+pub fn atmosphere(way: &dyn Way, shot: &PictureCase) -> Worst {
     const SIGMA: f64 = 0.5;
     const H: f64 = 0.3;
     let sigma = |s: f64| SIGMA * (-s / H).exp();
@@ -150,11 +150,11 @@ pub fn atmosphere(way: &dyn Way, shot: &Shot) -> Worst {
 ///
 /// The root mean square of the errors of all pixels, for a grid and for the one of half its spacing: their
 /// ratio is 2 to the order.
-pub fn order_of_convergence(way: &dyn Way, shot: &Shot) -> [f64; 2] {
+pub fn order_of_convergence(way: &dyn Way, shot: &PictureCase) -> [f64; 2] {
     [1, 2].map(|factor| error_with_light_rising(way, &refined(shot, factor)))
 }
 
-fn error_with_light_rising(way: &dyn Way, shot: &Shot) -> f64 {
+fn error_with_light_rising(way: &dyn Way, shot: &PictureCase) -> f64 {
     let across = (shot.grid.world_from_voxel.matrix3 * shot.grid.far_corner()).length();
     let sigma = 3.0 / across;
     let height = Height::new(&shot.grid, is_straight(shot));
@@ -186,9 +186,9 @@ fn error_with_light_rising(way: &dyn Way, shot: &Shot) -> f64 {
 }
 
 /// The same world with `factor` times as many voxels an axis.
-fn refined(shot: &Shot, factor: u32) -> Shot {
+fn refined(shot: &PictureCase, factor: u32) -> PictureCase {
     let n = f64::from(factor);
-    Shot {
+    PictureCase {
         grid: Grid {
             dims: shot.grid.dims.map(|dim| dim * factor),
             world_from_voxel: shot.grid.world_from_voxel

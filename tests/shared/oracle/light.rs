@@ -1,6 +1,6 @@
 //! Media of one extinction, and media of one colour.
 
-use super::super::{Chord, Matter, Shot, Way, Worst, waves};
+use super::super::{Chord, Matter, PictureCase, Way, Worst, waves};
 use super::what;
 use stratavox::technique::{Lattice, Technique};
 
@@ -9,7 +9,7 @@ use stratavox::technique::{Lattice, Technique};
 /// ```text
 /// alpha = 1 - exp(-sigma L),  C = c alpha         L the chord, on planes their number times their distance
 /// ```
-pub fn homogeneous(way: &dyn Way, shot: &Shot) -> Worst {
+pub fn homogeneous(way: &dyn Way, shot: &PictureCase) -> Worst {
     const SIGMA: f64 = 0.11;
     const COLOR: [f64; 3] = [0.8, 0.5, 0.1];
     let matter = Matter {
@@ -38,7 +38,7 @@ pub fn homogeneous(way: &dyn Way, shot: &Shot) -> Worst {
 }
 
 /// Optical depth that may come and go with the ends of a chord in f32: on planes none, they are counted.
-fn moved_ends(shot: &Shot, chord: Option<&Chord>, sigma: f64) -> f64 {
+fn moved_ends(shot: &PictureCase, chord: Option<&Chord>, sigma: f64) -> f64 {
     let is_counted =
         shot.settings.technique != Technique::Raycast || shot.settings.lattice == Lattice::Planes;
     if is_counted {
@@ -48,7 +48,7 @@ fn moved_ends(shot: &Shot, chord: Option<&Chord>, sigma: f64) -> f64 {
 }
 
 /// A5: one colour, any density, any step: C = c alpha everywhere.
-pub fn constant_color(way: &dyn Way, shot: &Shot) -> Worst {
+pub fn constant_color(way: &dyn Way, shot: &PictureCase) -> Worst {
     const COLOR: [f64; 3] = [0.9, 0.6, 0.3];
     let matter = Matter {
         value: &waves,

@@ -11,8 +11,8 @@ pub use shapes::{
     Gaussian, absorbing_sphere, emissive_sphere, gaussian_maximum, gaussian_ratio, gaussian_xray,
 };
 
-use super::{Shot, Way};
+use super::{PictureCase, Way};
 
-fn what(answer: &str, way: &dyn Way, shot: &Shot) -> String {
+fn what(answer: &str, way: &dyn Way, shot: &PictureCase) -> String {
     format!("{answer}, {}, {}", way.name(), shot.what())
 }

@@ -1,6 +1,6 @@
 //! Spheres with a hard edge, and Gaussians.
 
-use super::super::{Chord, Matter, Shot, Way, Worst};
+use super::super::{Chord, Matter, PictureCase, Way, Worst};
 use super::what;
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
@@ -15,7 +15,7 @@ struct Sphere {
 }
 
 impl Sphere {
-    fn new(shot: &Shot, is_voxelized: bool) -> Self {
+    fn new(shot: &PictureCase, is_voxelized: bool) -> Self {
         let grid = &shot.grid;
         let m = grid.world_from_voxel.matrix3;
         // Opposite faces of the box are dims / |row of voxel_from_world| apart.
@@ -62,7 +62,7 @@ fn outside([low, high]: [f64; 2], found: f64) -> f64 {
 fn in_sphere(
     answer: &str,
     way: &dyn Way,
-    shot: &Shot,
+    shot: &PictureCase,
     is_voxelized: bool,
     found: impl Fn(&Matter) -> Vec<f64>,
     wanted: impl Fn(f64) -> f64,
@@ -97,7 +97,7 @@ fn in_sphere(
 const SPHERE_EXTINCTION: f64 = 0.2;
 
 /// A7: an absorbing sphere, alpha = 1 - exp(-2 sigma sqrt(R^2 - b^2)), to a sample at its hard edge.
-pub fn absorbing_sphere(way: &dyn Way, shot: &Shot, is_voxelized: bool) -> Worst {
+pub fn absorbing_sphere(way: &dyn Way, shot: &PictureCase, is_voxelized: bool) -> Worst {
     let found = |matter: &Matter| way.picture(shot, matter).iter().map(|p| p[3]).collect();
     in_sphere("A7", way, shot, is_voxelized, found, |length| {
         -(-SPHERE_EXTINCTION * length).exp_m1()
@@ -105,7 +105,7 @@ pub fn absorbing_sphere(way: &dyn Way, shot: &Shot, is_voxelized: bool) -> Worst
 }
 
 /// A8: an emitting sphere, 2 e sqrt(R^2 - b^2). `shot` is an X-ray.
-pub fn emissive_sphere(way: &dyn Way, shot: &Shot, is_voxelized: bool) -> Worst {
+pub fn emissive_sphere(way: &dyn Way, shot: &PictureCase, is_voxelized: bool) -> Worst {
     let found = |matter: &Matter| way.values(shot, matter);
     in_sphere("A8", way, shot, is_voxelized, found, |length| length)
 }
@@ -136,7 +136,7 @@ impl Gaussian {
         (2.0 * PI).sqrt() * self.width(r)
     }
 
-    fn values(&self, way: &dyn Way, shot: &Shot) -> Vec<f64> {
+    fn values(&self, way: &dyn Way, shot: &PictureCase) -> Vec<f64> {
         let world_from_voxel = shot.grid.world_from_voxel;
         let value = |voxel: DVec3| {
             let q = world_from_voxel.transform_point3(voxel) - self.center;
@@ -162,7 +162,7 @@ impl Gaussian {
 fn through(
     answer: &str,
     way: &dyn Way,
-    shot: &Shot,
+    shot: &PictureCase,
     gaussian: &Gaussian,
     check: impl Fn(&mut Worst, [u32; 2], &Chord, f64),
 ) -> Worst {
@@ -176,7 +176,7 @@ fn through(
 }
 
 /// A10: the X-ray of a Gaussian, sqrt(2 pi / r.Mr) exp(-(q.Mq - (r.Mq)^2 / r.Mr) / 2).
-pub fn gaussian_xray(way: &dyn Way, shot: &Shot, gaussian: &Gaussian) -> Worst {
+pub fn gaussian_xray(way: &dyn Way, shot: &PictureCase, gaussian: &Gaussian) -> Worst {
     through("A10", way, shot, gaussian, |worst, pixel, chord, found| {
         let peak = gaussian.peak(chord.direction);
         let [sum, _] = gaussian.allowed(chord);
@@ -190,7 +190,7 @@ pub fn gaussian_xray(way: &dyn Way, shot: &Shot, gaussian: &Gaussian) -> Worst {
 }
 
 /// A11: its MIP. A sample is at most half a spacing from the top.
-pub fn gaussian_maximum(way: &dyn Way, shot: &Shot, gaussian: &Gaussian) -> Worst {
+pub fn gaussian_maximum(way: &dyn Way, shot: &PictureCase, gaussian: &Gaussian) -> Worst {
     through("A11", way, shot, gaussian, |worst, pixel, chord, found| {
         let [_, missed] = gaussian.allowed(chord);
         let wanted = gaussian.maximum(chord);
@@ -203,7 +203,12 @@ pub fn gaussian_maximum(way: &dyn Way, shot: &Shot, gaussian: &Gaussian) -> Wors
 }
 
 /// A11: MIP over X-ray is sqrt(r.Mr / 2 pi) everywhere, here where the X-ray is over a tenth of its peak.
-pub fn gaussian_ratio(way: &dyn Way, mip: &Shot, xray: &Shot, gaussian: &Gaussian) -> Worst {
+pub fn gaussian_ratio(
+    way: &dyn Way,
+    mip: &PictureCase,
+    xray: &PictureCase,
+    gaussian: &Gaussian,
+) -> Worst {
     let sums = gaussian.values(way, xray);
     let index = |[x, y]: [u32; 2]| (y * mip.extent[0] + x) as usize;
     through("A11", way, mip, gaussian, |worst, pixel, chord, found| {

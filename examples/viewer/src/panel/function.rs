@@ -44,7 +44,7 @@ pub fn function(ui: &mut Ui, view: &mut View) {
     chosen(ui, view.curve.chosen, function);
     view.is_moving |= *function != before;
     if function.is_graded() {
-        ui.weak("Opacity hangs on the gradient too.");
+        ui.weak("Opacity depends on the gradient too.");
     }
 }
 

@@ -4,7 +4,7 @@ use super::{Save, Window};
 use crate::error::Error;
 use crate::frames::Begun;
 use crate::painter::pixels;
-use crate::shot::Shot;
+use crate::shot::Screenshot;
 use ash::vk;
 use egui::FullOutput;
 use stratavox::gpu::{
@@ -14,7 +14,11 @@ use stratavox::gpu::{
 
 impl Window {
     /// Records all of a frame; gives the screenshots that will be in it.
-    pub(super) fn record(&mut self, begun: Begun, output: FullOutput) -> Result<Vec<Shot>, Error> {
+    pub(super) fn record(
+        &mut self,
+        begun: Begun,
+        output: FullOutput,
+    ) -> Result<Vec<Screenshot>, Error> {
         let swapchain = self.swapchain.as_ref().expect("frames have one");
         let window = swapchain.extent;
         let per_point = output.pixels_per_point;
@@ -91,7 +95,7 @@ impl Window {
                     self.view.message = Some("the driver lets no window be copied".into());
                     continue;
                 }
-                let shot = Shot::new(gpu, path, swapchain.format, window)?;
+                let shot = Screenshot::new(gpu, path, swapchain.format, window)?;
                 if last == Use::ColorTarget {
                     let present = std::mem::replace(&mut target.after, Use::TransferRead.into());
                     target.leave(gpu, cmd, last);
@@ -124,7 +128,7 @@ impl Window {
     unsafe fn save_pictures(
         &mut self,
         cmd: vk::CommandBuffer,
-        shots: &mut Vec<Shot>,
+        shots: &mut Vec<Screenshot>,
     ) -> Result<(), Error> {
         let (gpu, Some(drawing)) = (self.host.gpu(), &self.drawing) else {
             return Ok(());
@@ -135,7 +139,7 @@ impl Window {
                 self.saves.push(save);
                 continue;
             };
-            let shot = Shot::new(gpu, path, image.format(), drawing.canvas.extent)?;
+            let shot = Screenshot::new(gpu, path, image.format(), drawing.canvas.extent)?;
             // SAFETY: the caller's promise; the picture is sampled before and after.
             unsafe {
                 image_barrier(gpu, cmd, image, Use::FragmentSampled, Use::TransferRead);

@@ -4,7 +4,7 @@ use super::kit;
 use super::raw::{self, RawImage, State, refused};
 use crate::conformance::case::{Case, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
-use crate::conformance::stand::Stand;
+use crate::conformance::test_bed::TestBed;
 use crate::gpu::owned::{Own, OwnMemory};
 use crate::gpu::{Gpu, Headless, Item, Use};
 use ash::vk;
@@ -77,8 +77,8 @@ fn aliased(gpu: &Arc<Gpu>, bytes: u64) -> Result<([Own<vk::Buffer>; 2], OwnMemor
     Ok(([a, b], memory))
 }
 
-fn buffers(stand: &mut Stand) -> Result<Measurement, Stop> {
-    let device = stand.device()?;
+fn buffers(bed: &mut TestBed) -> Result<Measurement, Stop> {
+    let device = bed.device()?;
     let gpu = Arc::clone(device.gpu());
     let (both, _memory) = aliased(&gpu, BYTES)?;
     let back = raw::copied(&gpu, BYTES, false)?;
@@ -151,24 +151,24 @@ unsafe fn there_and_back(
     }
 }
 
-fn numbers(stand: &Stand, count: usize) -> Vec<u8> {
+fn numbers(bed: &TestBed, count: usize) -> Vec<u8> {
     // Bytes of halves and of floats that are numbers, whatever their order.
-    let mut random = stand.random("aliased");
+    let mut random = bed.random("aliased");
     (0..count).map(|_| random.below(120) as u8).collect()
 }
 
-fn images(stand: &mut Stand) -> Result<Measurement, Stop> {
+fn images(bed: &mut TestBed) -> Result<Measurement, Stop> {
     let bytes = [16, 8].into_iter().zip(EXTENTS);
     let bytes: Vec<usize> = bytes
         .map(|(texel, [w, h, _])| texel * (w * h) as usize)
         .collect();
-    let all = numbers(stand, bytes[0] + bytes[1] + bytes[0]);
+    let all = numbers(bed, bytes[0] + bytes[1] + bytes[0]);
     let parts = [
         &all[..bytes[0]],
         &all[bytes[0]..bytes[0] + bytes[1]],
         &all[bytes[0] + bytes[1]..],
     ];
-    let device = stand.device()?;
+    let device = bed.device()?;
     let gpu = Arc::clone(device.gpu());
     let infos = [0, 1].map(|i| info(FORMATS[i], EXTENTS[i]));
     let (both, _memory) = RawImage::sharing(&gpu, [&infos[0], &infos[1]])?;
@@ -201,11 +201,11 @@ fn images(stand: &mut Stand) -> Result<Measurement, Stop> {
 }
 
 /// A buffer, an image in its place, and the buffer again.
-fn image_over_buffer(stand: &mut Stand) -> Result<Measurement, Stop> {
+fn image_over_buffer(bed: &mut TestBed) -> Result<Measurement, Stop> {
     let [width, height, _] = EXTENTS[0];
     let bytes = 16 * (width * height) as usize;
-    let texels = numbers(stand, bytes);
-    let device = stand.device()?;
+    let texels = numbers(bed, bytes);
+    let device = bed.device()?;
     let gpu = Arc::clone(device.gpu());
     let usage = vk::BufferUsageFlags::TRANSFER_DST | vk::BufferUsageFlags::TRANSFER_SRC;
     let (buffer, wants) = raw::unbound_buffer(&gpu, bytes as u64, usage)?;

@@ -3,7 +3,7 @@
 use super::{fits, fits::lacking, kit, raw};
 use crate::conformance::case::{Case, Profile, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
-use crate::conformance::stand::Stand;
+use crate::conformance::test_bed::TestBed;
 use crate::gpu::owned::{Own, OwnMemory};
 use crate::gpu::{Bindings, Buffer, ComputePipeline, Gpu, Headless, Memory, Resource, Use};
 use crate::shaders::shader;
@@ -33,9 +33,9 @@ pub fn cases() -> Vec<Case> {
     vec![case.of(Profile::Large)]
 }
 
-fn measure(stand: &mut Stand) -> Result<Measurement, Stop> {
-    let mut random = stand.random("beyond");
-    let device = stand.device()?;
+fn measure(bed: &mut TestBed) -> Result<Measurement, Stop> {
+    let mut random = bed.random("beyond");
+    let device = bed.device()?;
     let gpu = Arc::clone(device.gpu());
     let (memory, buffer) = large(&gpu)?;
     let large = buffer.get();

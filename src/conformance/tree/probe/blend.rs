@@ -8,7 +8,7 @@
 use super::kit::{self, Drawing};
 use crate::conformance::case::{Case, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
-use crate::conformance::stand::Stand;
+use crate::conformance::test_bed::TestBed;
 use crate::gpu::{Blend, Item};
 use ash::vk;
 
@@ -101,7 +101,7 @@ pub fn cases() -> Vec<Case> {
         let blendable = vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND;
         let case = Case::new(
             format!("probe.blend.{word}.rgba32_sfloat.infinities"),
-            move |stand| infinities(stand, blend),
+            move |bed| infinities(bed, blend),
         );
         cases.push(case.needing(Item::Format(format, blendable)));
     }
@@ -129,7 +129,7 @@ const COVER: [[f32; 4]; 3] = [
 const EXTENT: [u32; 2] = [16, 16];
 
 fn drawn(
-    stand: &mut Stand,
+    bed: &mut TestBed,
     format: vk::Format,
     blend: Blend,
     clear: [f32; 4],
@@ -150,7 +150,7 @@ fn drawn(
         colors,
         instances,
     };
-    kit::draw(stand, &drawing)
+    kit::draw(bed, &drawing)
 }
 
 impl Of {
@@ -160,7 +160,7 @@ impl Of {
             features |= vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND;
         }
         let seeded = name.clone();
-        let case = Case::new(name, move |stand| self.measure(stand, &seeded));
+        let case = Case::new(name, move |bed| self.measure(bed, &seeded));
         case.needing(Item::Format(self.format, features))
     }
 
@@ -183,9 +183,9 @@ impl Of {
         clippy::needless_range_loop,
         reason = "a channel is looked up in three arrays"
     )]
-    fn measure(self, stand: &mut Stand, name: &str) -> Result<Measurement, Stop> {
+    fn measure(self, bed: &mut TestBed, name: &str) -> Result<Measurement, Stop> {
         let is_codes = self.is_codes();
-        let mut random = stand.random(name);
+        let mut random = bed.random(name);
         // Premultiplied, so that sums of over and under stay under 1; what is added up stays there too.
         let share = if self.blend == Blend::Add {
             1.0 / f64::from(self.layers)
@@ -209,7 +209,7 @@ impl Of {
             _ => [0.0; 4],
         };
         let texels = drawn(
-            stand,
+            bed,
             self.format,
             self.blend,
             clear,
@@ -305,7 +305,7 @@ impl Of {
     }
 }
 
-fn infinities(stand: &mut Stand, blend: Blend) -> Result<Measurement, Stop> {
+fn infinities(bed: &mut TestBed, blend: Blend) -> Result<Measurement, Stop> {
     let format = vk::Format::R32G32B32A32_SFLOAT;
     let (low, high) = (f32::NEG_INFINITY, f32::INFINITY);
     let colors = [
@@ -317,7 +317,7 @@ fn infinities(stand: &mut Stand, blend: Blend) -> Result<Measurement, Stop> {
         Blend::Max => ([low; 4], [low, high, high, 3e38]),
         _ => ([high; 4], [low, 1.0, -3.0, -3e38]),
     };
-    let texels = drawn(stand, format, blend, clear, &colors, true)?;
+    let texels = drawn(bed, format, blend, clear, &colors, true)?;
     let text = "Infinities are numbers like others to maxima and minima of 32-bit floats: nothing is rounded.";
     let mut measurement = Measurement::new(Bound::new("infinities", text), 1000);
     for i in 0..4 * (EXTENT[0] * EXTENT[1]) as usize {

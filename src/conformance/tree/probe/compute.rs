@@ -3,7 +3,7 @@
 use super::kit;
 use crate::conformance::case::{Case, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
-use crate::conformance::stand::Stand;
+use crate::conformance::test_bed::TestBed;
 use crate::gpu::{Resource, Use, buffer_barrier};
 use std::sync::Arc;
 
@@ -18,17 +18,17 @@ pub fn cases() -> Vec<Case> {
     ];
     for (axis, word) in ["x", "y", "z"].into_iter().enumerate() {
         let name = format!("probe.compute.dispatch.most_along_{word}");
-        cases.push(Case::new(name, move |stand| dispatch(stand, axis)));
+        cases.push(Case::new(name, move |bed| dispatch(bed, axis)));
     }
     cases
 }
 
-fn shared_memory(stand: &mut Stand) -> Result<Measurement, Stop> {
+fn shared_memory(bed: &mut TestBed) -> Result<Measurement, Stop> {
     const GROUP: usize = 128;
     const COUNT: usize = 64 * GROUP;
-    let mut random = stand.random("shared_memory");
+    let mut random = bed.random("shared_memory");
     let numbers: Vec<u32> = (0..COUNT).map(|_| random.bits() as u32).collect();
-    let device = stand.device()?;
+    let device = bed.device()?;
     let gpu = Arc::clone(device.gpu());
     let given = kit::buffer(&gpu, &numbers, "numbers")?;
     let sums = kit::zeros::<u32>(&gpu, COUNT, "sums")?;
@@ -51,13 +51,13 @@ fn shared_memory(stand: &mut Stand) -> Result<Measurement, Stop> {
     Ok(measurement)
 }
 
-fn atomics(stand: &mut Stand) -> Result<Measurement, Stop> {
+fn atomics(bed: &mut TestBed) -> Result<Measurement, Stop> {
     const COUNT: usize = 1 << 16;
-    let mut random = stand.random("atomics");
+    let mut random = bed.random("atomics");
     let numbers: Vec<u32> = (0..COUNT)
         .map(|_| 1 + (random.bits() as u32 >> 1))
         .collect();
-    let device = stand.device()?;
+    let device = bed.device()?;
     let gpu = Arc::clone(device.gpu());
     let given = kit::buffer(&gpu, &numbers, "numbers")?;
     let tickets = kit::zeros::<u32>(&gpu, COUNT, "tickets")?;
@@ -99,8 +99,8 @@ fn atomics(stand: &mut Stand) -> Result<Measurement, Stop> {
 }
 
 /// As many workgroups along one axis as the device says, up to the 65 535 that every device has.
-fn dispatch(stand: &mut Stand, axis: usize) -> Result<Measurement, Stop> {
-    let device = stand.device()?;
+fn dispatch(bed: &mut TestBed, axis: usize) -> Result<Measurement, Stop> {
+    let device = bed.device()?;
     let gpu = Arc::clone(device.gpu());
     let most = gpu.limits().max_workgroup_count[axis].min(65_535);
     let mut groups = [1; 3];
@@ -127,12 +127,12 @@ fn dispatch(stand: &mut Stand, axis: usize) -> Result<Measurement, Stop> {
 }
 
 /// Dispatches that read what the one before wrote, with a barrier between each two.
-fn chain(stand: &mut Stand) -> Result<Measurement, Stop> {
+fn chain(bed: &mut TestBed) -> Result<Measurement, Stop> {
     const COUNT: usize = 1 << 14;
     const STEPS: usize = 64;
-    let mut random = stand.random("chain");
+    let mut random = bed.random("chain");
     let numbers: Vec<u32> = (0..COUNT).map(|_| random.below(1 << 20)).collect();
-    let device = stand.device()?;
+    let device = bed.device()?;
     let gpu = Arc::clone(device.gpu());
     let both = [
         kit::zeros::<u32>(&gpu, COUNT, "a")?,

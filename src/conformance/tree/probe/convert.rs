@@ -8,7 +8,7 @@
 use super::kit;
 use crate::conformance::case::{Case, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
-use crate::conformance::stand::Stand;
+use crate::conformance::test_bed::TestBed;
 use crate::gpu::{ImageKind, Item, Resource};
 use ash::vk;
 use half::f16;
@@ -25,7 +25,7 @@ them), which is a warning, and what is no number stays none.";
 pub fn cases() -> Vec<Case> {
     let sampled = |format| Item::Format(format, vk::FormatFeatureFlags::SAMPLED_IMAGE);
     let unorm = |name, format, bits| {
-        Case::new(name, move |stand| unorm(stand, format, bits)).needing(sampled(format))
+        Case::new(name, move |bed| unorm(bed, format, bits)).needing(sampled(format))
     };
     vec![
         unorm("probe.fetch.r8_unorm.every_code", vk::Format::R8_UNORM, 8),
@@ -43,12 +43,12 @@ pub fn cases() -> Vec<Case> {
 
 /// The first channels of texels, as bits of f32.
 fn fetched(
-    stand: &mut Stand,
+    bed: &mut TestBed,
     extent: [u32; 3],
     format: vk::Format,
     texels: &[u8],
 ) -> Result<Vec<u32>, Stop> {
-    let device = stand.device()?;
+    let device = bed.device()?;
     let gpu = Arc::clone(device.gpu());
     let probed = kit::image(device, ImageKind::D3, extent, format, texels)?;
     let count = extent.iter().product::<u32>();
@@ -64,13 +64,13 @@ fn fetched(
 /// As many texels as a format of 16 bits has codes.
 const WIDE: [u32; 3] = [64, 64, 16];
 
-fn unorm(stand: &mut Stand, format: vk::Format, bits: u32) -> Result<Measurement, Stop> {
+fn unorm(bed: &mut TestBed, format: vk::Format, bits: u32) -> Result<Measurement, Stop> {
     let count = 1u32 << bits;
     let (extent, texels): (_, Vec<u8>) = match bits {
         8 => ([16, 4, 4], (0..=u8::MAX).collect()),
         _ => (WIDE, (0..=u16::MAX).flat_map(u16::to_le_bytes).collect()),
     };
-    let found = fetched(stand, extent, format, &texels)?;
+    let found = fetched(bed, extent, format, &texels)?;
     let most = f64::from(count - 1);
     let mut measurement = Measurement::new(Bound::new("unorm", UNORM), count as usize);
     for (code, bits) in found.into_iter().enumerate() {
@@ -93,9 +93,9 @@ fn unorm(stand: &mut Stand, format: vk::Format, bits: u32) -> Result<Measurement
     Ok(measurement)
 }
 
-fn halves(stand: &mut Stand) -> Result<Measurement, Stop> {
+fn halves(bed: &mut TestBed) -> Result<Measurement, Stop> {
     let texels: Vec<u8> = (0..=u16::MAX).flat_map(u16::to_le_bytes).collect();
-    let found = fetched(stand, WIDE, vk::Format::R16_SFLOAT, &texels)?;
+    let found = fetched(bed, WIDE, vk::Format::R16_SFLOAT, &texels)?;
     let wanted = (0..=u16::MAX).map(f16::from_bits);
     let mut measurement = Measurement::new(Bound::new("float", FLOAT), 65_536);
     for (wanted, found) in wanted.zip(found) {
@@ -110,8 +110,8 @@ fn halves(stand: &mut Stand) -> Result<Measurement, Stop> {
     Ok(measurement)
 }
 
-fn singles(stand: &mut Stand) -> Result<Measurement, Stop> {
-    let mut random = stand.random("singles");
+fn singles(bed: &mut TestBed) -> Result<Measurement, Stop> {
+    let mut random = bed.random("singles");
     let mut numbers = vec![
         0.0,
         -0.0,
@@ -131,7 +131,7 @@ fn singles(stand: &mut Stand) -> Result<Measurement, Stop> {
         .iter()
         .flat_map(|number| number.to_le_bytes())
         .collect();
-    let found = fetched(stand, [16, 16, 16], vk::Format::R32_SFLOAT, &texels)?;
+    let found = fetched(bed, [16, 16, 16], vk::Format::R32_SFLOAT, &texels)?;
     let mut measurement = Measurement::new(Bound::new("float", FLOAT), 4096);
     for (&wanted, found) in numbers.iter().zip(found) {
         let is_tiny = wanted.is_subnormal();

@@ -8,7 +8,7 @@ use super::depth_draw::{Drawn, FORMATS, Kept, Picture, Source, WIDTH, draw};
 use super::plane::{self, DEMANDED, OPERATIONS, SINGLE};
 use crate::conformance::case::{Case, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
-use crate::conformance::stand::Stand;
+use crate::conformance::test_bed::TestBed;
 use crate::gpu::Item;
 use ash::vk;
 
@@ -54,25 +54,25 @@ pub fn cases() -> Vec<Case> {
         };
         add(
             format!("probe.depth.clear.{word}"),
-            Box::new(move |stand| cleared(stand, kept)),
+            Box::new(move |bed| cleared(bed, kept)),
         );
         add(
             format!("probe.depth.write.{word}"),
-            Box::new(move |stand| written(stand, kept)),
+            Box::new(move |bed| written(bed, kept)),
         );
         for (operator, compare) in OPERATORS {
             for writes in [true, false] {
                 let end = if writes { "" } else { ".unwritten" };
                 add(
                     format!("probe.depth.compare.{operator}.{word}{end}"),
-                    Box::new(move |stand| compared(stand, kept, compare, writes)),
+                    Box::new(move |bed| compared(bed, kept, compare, writes)),
                 );
             }
         }
         for (order, is_reversed) in [("nearest_is_0", false), ("nearest_is_1", true)] {
             add(
                 format!("probe.depth.order.{order}.{word}"),
-                Box::new(move |stand| ordered(stand, kept, is_reversed)),
+                Box::new(move |bed| ordered(bed, kept, is_reversed)),
             );
         }
         for (viewport, range) in [
@@ -82,18 +82,18 @@ pub fn cases() -> Vec<Case> {
         ] {
             add(
                 format!("probe.depth.plane.{viewport}.{word}"),
-                Box::new(move |stand| planes(stand, kept, range)),
+                Box::new(move |bed| planes(bed, kept, range)),
             );
         }
         add(
             format!("probe.depth.cut.{word}"),
-            Box::new(move |stand| cut(stand, kept)),
+            Box::new(move |bed| cut(bed, kept)),
         );
     }
     cases
 }
 
-type Run = dyn Fn(&mut Stand) -> Result<Measurement, Stop> + Send + Sync;
+type Run = dyn Fn(&mut TestBed) -> Result<Measurement, Stop> + Send + Sync;
 
 /// A triangle that covers everything.
 const COVER: [[f32; 4]; 3] = [
@@ -127,8 +127,8 @@ fn keep(measurement: &mut Measurement, kept: Kept, at: impl Fn() -> String, z: f
     }
 }
 
-fn cleared(stand: &mut Stand, kept: Kept) -> Result<Measurement, Stop> {
-    let mut random = stand.random("depth.clear");
+fn cleared(bed: &mut TestBed, kept: Kept) -> Result<Measurement, Stop> {
+    let mut random = bed.random("depth.clear");
     let mut measurement = Measurement::new(Bound::new("depth-kept", KEPT), 500);
     for z in [
         0.0,
@@ -148,7 +148,7 @@ fn cleared(stand: &mut Stand, kept: Kept) -> Result<Measurement, Stop> {
             before,
             ..picture(kept, 4, &corners)
         };
-        for (i, found) in draw(stand, &asked)?.depths.into_iter().enumerate() {
+        for (i, found) in draw(bed, &asked)?.depths.into_iter().enumerate() {
             let at = || format!("{z} at pixel {i}");
             keep(&mut measurement, kept, at, z.into(), found);
         }
@@ -156,8 +156,8 @@ fn cleared(stand: &mut Stand, kept: Kept) -> Result<Measurement, Stop> {
     Ok(measurement)
 }
 
-fn written(stand: &mut Stand, kept: Kept) -> Result<Measurement, Stop> {
-    let mut random = stand.random("depth.write");
+fn written(bed: &mut TestBed, kept: Kept) -> Result<Measurement, Stop> {
+    let mut random = bed.random("depth.write");
     let mut depths: Vec<f32> = (0..WIDTH * 16).map(|_| random.unit() as f32).collect();
     depths[..4].copy_from_slice(&[0.0, 1.0, 0.5, 0.25]);
     let asked = Picture {
@@ -165,7 +165,7 @@ fn written(stand: &mut Stand, kept: Kept) -> Result<Measurement, Stop> {
         ..picture(kept, 16, &COVER)
     };
     let mut measurement = Measurement::new(Bound::new("depth-kept", KEPT), depths.len());
-    let found = draw(stand, &asked)?.depths;
+    let found = draw(bed, &asked)?.depths;
     for (&z, found) in depths.iter().zip(found) {
         keep(&mut measurement, kept, || format!("{z}"), z.into(), found);
     }
@@ -173,12 +173,12 @@ fn written(stand: &mut Stand, kept: Kept) -> Result<Measurement, Stop> {
 }
 
 fn compared(
-    stand: &mut Stand,
+    bed: &mut TestBed,
     kept: Kept,
     compare: vk::CompareOp,
     writes: bool,
 ) -> Result<Measurement, Stop> {
-    let mut random = stand.random("depth.compare");
+    let mut random = bed.random("depth.compare");
     let mut before = Vec::new();
     let mut depths = Vec::new();
     for i in 0..WIDTH * 16 {
@@ -207,7 +207,7 @@ fn compared(
     let Drawn {
         colors,
         depths: found,
-    } = draw(stand, &asked)?;
+    } = draw(bed, &asked)?;
     let mut measurement = Measurement::new(Bound::new("depth-compared", COMPARED), 1000);
     for (i, (&there, &new)) in before.iter().zip(&depths).enumerate() {
         let there = kept.stored(there.into());
@@ -241,9 +241,9 @@ fn passes(compare: vk::CompareOp, new: f64, there: f64) -> bool {
     }
 }
 
-fn ordered(stand: &mut Stand, kept: Kept, is_reversed: bool) -> Result<Measurement, Stop> {
+fn ordered(bed: &mut TestBed, kept: Kept, is_reversed: bool) -> Result<Measurement, Stop> {
     const LAYERS: usize = 64;
-    let mut random = stand.random("depth.order");
+    let mut random = bed.random("depth.order");
     let mut order: Vec<usize> = (0..LAYERS).collect();
     for i in (1..LAYERS).rev() {
         order.swap(i, random.below(i as u32 + 1) as usize);
@@ -274,7 +274,7 @@ fn ordered(stand: &mut Stand, kept: Kept, is_reversed: bool) -> Result<Measureme
         },
         ..picture(kept, 16, &corners)
     };
-    let found = draw(stand, &asked)?.colors;
+    let found = draw(bed, &asked)?.colors;
     let mut measurement = Measurement::new(Bound::new("depth-order", ORDER), 1000);
     for (i, found) in found.into_iter().enumerate() {
         let [x, y] = [(i % WIDTH) as u32, (i / WIDTH) as u32];
@@ -297,8 +297,8 @@ fn ordered(stand: &mut Stand, kept: Kept, is_reversed: bool) -> Result<Measureme
 type Sloped = (Vec<(plane::Triangle, [f64; 3])>, Vec<[f32; 4]>);
 
 /// A mesh with depths at its corners.
-fn sloped(stand: &mut Stand, name: &str, height: u32, [low, high]: [f64; 2]) -> Sloped {
-    let mut random = stand.random(name);
+fn sloped(bed: &mut TestBed, name: &str, height: u32, [low, high]: [f64; 2]) -> Sloped {
+    let mut random = bed.random(name);
     let size = [WIDTH as f64, f64::from(height)];
     let mut corners = Vec::new();
     let mut all = Vec::new();
@@ -313,15 +313,15 @@ fn sloped(stand: &mut Stand, name: &str, height: u32, [low, high]: [f64; 2]) -> 
     (all, corners)
 }
 
-fn planes(stand: &mut Stand, kept: Kept, range: [f32; 2]) -> Result<Measurement, Stop> {
+fn planes(bed: &mut TestBed, kept: Kept, range: [f32; 2]) -> Result<Measurement, Stop> {
     const HEIGHT: u32 = 48;
-    let (all, corners) = sloped(stand, "depth.plane", HEIGHT, [0.0, 1.0]);
+    let (all, corners) = sloped(bed, "depth.plane", HEIGHT, [0.0, 1.0]);
     let asked = Picture {
         range,
         ..picture(kept, HEIGHT, &corners)
     };
-    let found = draw(stand, &asked)?.depths;
-    let gpu = stand.device()?.gpu();
+    let found = draw(bed, &asked)?.depths;
+    let gpu = bed.device()?.gpu();
     let size = [WIDTH as f64, f64::from(HEIGHT)];
     let displaced = plane::displacement(gpu, size[0]);
     let bits = plane::sub_pixel_bits(gpu);
@@ -350,12 +350,12 @@ fn planes(stand: &mut Stand, kept: Kept, range: [f32; 2]) -> Result<Measurement,
     Ok(measurement)
 }
 
-fn cut(stand: &mut Stand, kept: Kept) -> Result<Measurement, Stop> {
+fn cut(bed: &mut TestBed, kept: Kept) -> Result<Measurement, Stop> {
     const HEIGHT: u32 = 48;
-    let (all, corners) = sloped(stand, "depth.cut", HEIGHT, [-1.0, 2.0]);
-    let found = draw(stand, &picture(kept, HEIGHT, &corners))?.colors;
+    let (all, corners) = sloped(bed, "depth.cut", HEIGHT, [-1.0, 2.0]);
+    let found = draw(bed, &picture(kept, HEIGHT, &corners))?.colors;
     let size = [WIDTH as f64, f64::from(HEIGHT)];
-    let displaced = plane::displacement(stand.device()?.gpu(), size[0]);
+    let displaced = plane::displacement(bed.device()?.gpu(), size[0]);
     let mut measurement = Measurement::new(Bound::new("depth-cut", CUT), 2500);
     for (i, found) in found.into_iter().enumerate() {
         let [x, y] = [i % WIDTH, i / WIDTH];

@@ -3,7 +3,7 @@
 use super::kit;
 use super::raw::{self, DEPTH_TARGET, DepthPipeline, RawImage};
 use crate::conformance::case::Stop;
-use crate::conformance::stand::Stand;
+use crate::conformance::test_bed::TestBed;
 use crate::gpu::{Bindings, Resource, Use, image_barrier};
 use ash::vk;
 use std::sync::Arc;
@@ -117,8 +117,8 @@ pub struct Drawn {
 }
 
 /// Draws in one call.
-pub fn draw(stand: &mut Stand, picture: &Picture<'_>) -> Result<Drawn, Stop> {
-    let device = stand.device()?;
+pub fn draw(bed: &mut TestBed, picture: &Picture<'_>) -> Result<Drawn, Stop> {
+    let device = bed.device()?;
     let gpu = Arc::clone(device.gpu());
     let kept = picture.kept;
     let extent = [WIDTH as u32, picture.height];

@@ -11,7 +11,7 @@
 use super::kit;
 use crate::conformance::case::{Case, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
-use crate::conformance::stand::{Random, Stand};
+use crate::conformance::test_bed::{Random, TestBed};
 use crate::gpu::{Image, ImageKind, Item, Resource, Sampler};
 use ash::vk;
 use std::sync::Arc;
@@ -79,7 +79,7 @@ pub fn cases() -> Vec<Case> {
                         features |= vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR;
                     }
                     let seeded = name.clone();
-                    let case = Case::new(name, move |stand| of.measure(stand, &seeded));
+                    let case = Case::new(name, move |bed| of.measure(bed, &seeded));
                     cases.push(case.needing(Item::Format(format, features)));
                 }
             }
@@ -97,13 +97,13 @@ struct Of {
 }
 
 impl Of {
-    fn measure(self, stand: &mut Stand, name: &str) -> Result<Measurement, Stop> {
-        let mut random = stand.random(name);
+    fn measure(self, bed: &mut TestBed, name: &str) -> Result<Measurement, Stop> {
+        let mut random = bed.random(name);
         let count = (SIDE * SIDE * SIDE) as usize;
         let codes: Vec<u32> = (0..count).map(|_| random.below(65_536)).collect();
         let (bytes, values) = texels_of(self.format, &codes);
         let places = self.places(&mut random);
-        let device = stand.device()?;
+        let device = bed.device()?;
         let gpu = Arc::clone(device.gpu());
         let probed = kit::image(device, self.kind, [SIDE; 3], self.format, &bytes)?;
         let sampler = match self.is_linear {
@@ -111,8 +111,8 @@ impl Of {
             false => Sampler::nearest_clamp(&gpu)?,
         };
         let coordinates: Vec<[f32; 4]> = places.iter().map(|&p| self.coordinates(p)).collect();
-        let found = ask(stand, &self, &probed, &sampler, &coordinates)?;
-        let bits = stand.device()?.gpu().limits().subtexel_bits;
+        let found = ask(bed, &self, &probed, &sampler, &coordinates)?;
+        let bits = bed.device()?.gpu().limits().subtexel_bits;
         Ok(self.compare(&values, &places, &found, bits))
     }
 
@@ -253,13 +253,13 @@ fn layer_of(z: f64) -> f64 {
 }
 
 fn ask(
-    stand: &mut Stand,
+    bed: &mut TestBed,
     of: &Of,
     probed: &Image,
     sampler: &Sampler,
     coordinates: &[[f32; 4]],
 ) -> Result<Vec<f32>, Stop> {
-    let device = stand.device()?;
+    let device = bed.device()?;
     let gpu = Arc::clone(device.gpu());
     let places = kit::buffer(&gpu, coordinates, "places")?;
     let found = kit::zeros::<f32>(&gpu, coordinates.len(), "found")?;

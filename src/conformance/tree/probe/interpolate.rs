@@ -9,7 +9,7 @@ use super::kit;
 use super::plane::{self, DEMANDED, OPERATIONS, SINGLE, Triangle};
 use crate::conformance::case::{Case, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
-use crate::conformance::stand::Stand;
+use crate::conformance::test_bed::TestBed;
 use crate::gpu::Item;
 use ash::vk;
 
@@ -35,7 +35,7 @@ pub fn cases() -> Vec<Case> {
     {
         for nth in 0..4u32 {
             let name = format!("probe.interpolate.{word}.{nth}");
-            let case = Case::new(name, move |stand| measure(stand, channel, nth));
+            let case = Case::new(name, move |bed| measure(bed, channel, nth));
             cases.push(case.needing(Item::Format(FORMAT, color)));
         }
     }
@@ -49,12 +49,12 @@ struct Drawn {
     q: [f64; 3],
 }
 
-fn measure(stand: &mut Stand, channel: usize, nth: u32) -> Result<Measurement, Stop> {
+fn measure(bed: &mut TestBed, channel: usize, nth: u32) -> Result<Measurement, Stop> {
     let size = EXTENT.map(f64::from);
-    let mut random = stand.random(&format!("interpolate.{nth}"));
+    let mut random = bed.random(&format!("interpolate.{nth}"));
     let mut single = |low: f64, high: f64| f64::from((low + (high - low) * random.unit()) as f32);
     let mut all = Vec::new();
-    let mut seeded = stand.random(&format!("interpolate.mesh.{nth}"));
+    let mut seeded = bed.random(&format!("interpolate.mesh.{nth}"));
     for on_screen in plane::mesh(&mut seeded, size) {
         all.push(Drawn {
             on_screen,
@@ -74,8 +74,8 @@ fn measure(stand: &mut Stand, channel: usize, nth: u32) -> Result<Measurement, S
     }
     let shaders = ["probe/varyings", "probe/varied"];
     let given = [("corners", &corners[..]), ("numbers", &numbers[..])];
-    let texels = kit::draw_with(stand, shaders, FORMAT, EXTENT, &given)?;
-    let gpu = stand.device()?.gpu();
+    let texels = kit::draw_with(bed, shaders, FORMAT, EXTENT, &given)?;
+    let gpu = bed.device()?.gpu();
     let displaced = plane::displacement(gpu, size[0]);
     let bits = plane::sub_pixel_bits(gpu);
     let bound = Bound::new("interpolation", DERIVATION).with("subPixelPrecisionBits", bits.into());

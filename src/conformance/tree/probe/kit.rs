@@ -1,7 +1,7 @@
 //! Numbers to a device, through one dispatch or one draw, and back.
 
 use crate::conformance::case::Stop;
-use crate::conformance::stand::Stand;
+use crate::conformance::test_bed::TestBed;
 use crate::gpu::{
     Bindings, Blend, Buffer, ComputePipeline, DepthUse, Gpu, Headless, Image, ImageDesc, ImageKind,
     Load, Memory, RasterDesc, RasterPipeline, Region, Resource, Use, begin_rendering,
@@ -162,14 +162,14 @@ pub struct Drawing<'a> {
 }
 
 /// Draws in one call and gives the target's texels.
-pub fn draw(stand: &mut Stand, drawing: &Drawing<'_>) -> Result<Vec<u8>, Stop> {
+pub fn draw(bed: &mut TestBed, drawing: &Drawing<'_>) -> Result<Vec<u8>, Stop> {
     let given = [("corners", drawing.corners), ("colors", drawing.colors)];
-    render(stand, ["probe/shapes", "probe/color"], drawing, &given)
+    render(bed, ["probe/shapes", "probe/color"], drawing, &given)
 }
 
 /// The same with shaders of the caller's and what they read; the first is what vertices are counted by.
 pub fn draw_with(
-    stand: &mut Stand,
+    bed: &mut TestBed,
     shaders: [&str; 2],
     format: vk::Format,
     extent: [u32; 2],
@@ -184,16 +184,16 @@ pub fn draw_with(
         colors: &[],
         instances: 1,
     };
-    render(stand, shaders, &drawing, given)
+    render(bed, shaders, &drawing, given)
 }
 
 fn render(
-    stand: &mut Stand,
+    bed: &mut TestBed,
     [vertex, fragment]: [&str; 2],
     drawing: &Drawing<'_>,
     given: &[(&str, &[[f32; 4]])],
 ) -> Result<Vec<u8>, Stop> {
-    let device = stand.device()?;
+    let device = bed.device()?;
     let gpu = Arc::clone(device.gpu());
     let buffers = given
         .iter()

@@ -3,7 +3,7 @@
 use super::kit;
 use crate::conformance::case::{Case, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
-use crate::conformance::stand::Stand;
+use crate::conformance::test_bed::TestBed;
 use crate::gpu::{Buffer, Memory, Resource, Use, buffer_barrier};
 use ash::vk;
 use std::sync::Arc;
@@ -23,8 +23,8 @@ pub fn cases() -> Vec<Case> {
 /// What all words hold at first.
 const FILLED: u32 = 0x5a5a_0f0f;
 
-fn buffer(stand: &mut Stand) -> Result<Measurement, Stop> {
-    let device = stand.device()?;
+fn buffer(bed: &mut TestBed) -> Result<Measurement, Stop> {
+    let device = bed.device()?;
     let gpu = Arc::clone(device.gpu());
     let limits = gpu.limits();
     let most = u64::from(limits.max_storage_buffer_range)
@@ -97,11 +97,11 @@ fn buffer(stand: &mut Stand) -> Result<Measurement, Stop> {
     Ok(measurement)
 }
 
-fn many(stand: &mut Stand) -> Result<Measurement, Stop> {
+fn many(bed: &mut TestBed) -> Result<Measurement, Stop> {
     // Two million workgroups along three axes.
     const GROUPS: [u32; 3] = [512, 128, 32];
     let count = GROUPS.iter().product::<u32>();
-    let device = stand.device()?;
+    let device = bed.device()?;
     let gpu = Arc::clone(device.gpu());
     let bits = kit::zeros::<u32>(&gpu, count as usize / 32, "bits")?;
     let counter = kit::zeros::<u32>(&gpu, 1, "counter")?;

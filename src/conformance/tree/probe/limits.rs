@@ -3,7 +3,7 @@
 use super::kit;
 use crate::conformance::case::{Case, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
-use crate::conformance::stand::Stand;
+use crate::conformance::test_bed::TestBed;
 use crate::gpu::{ImageKind, Use};
 use ash::vk;
 
@@ -21,16 +21,16 @@ pub fn cases() -> Vec<Case> {
         ("3d.depth", ImageKind::D3, 2),
     ];
     let case = |(word, kind, axis): (&str, ImageKind, usize)| {
-        Case::new(format!("probe.limits.image_{word}"), move |stand| {
-            measure(stand, kind, axis)
+        Case::new(format!("probe.limits.image_{word}"), move |bed| {
+            measure(bed, kind, axis)
         })
     };
     all.map(case).into()
 }
 
-fn measure(stand: &mut Stand, kind: ImageKind, axis: usize) -> Result<Measurement, Stop> {
-    let mut random = stand.random("limits");
-    let device = stand.device()?;
+fn measure(bed: &mut TestBed, kind: ImageKind, axis: usize) -> Result<Measurement, Stop> {
+    let mut random = bed.random("limits");
+    let device = bed.device()?;
     let limits = *device.gpu().limits();
     let most = match (kind, axis) {
         (ImageKind::D3, _) => limits.max_image_dimension_3d,

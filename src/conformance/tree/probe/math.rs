@@ -3,7 +3,7 @@
 use super::kit;
 use crate::conformance::case::{Case, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
-use crate::conformance::stand::Stand;
+use crate::conformance::test_bed::TestBed;
 use crate::gpu::Resource;
 use std::sync::Arc;
 
@@ -32,16 +32,16 @@ const NAMES: [&str; 12] = [
 /// One a function.
 pub fn cases() -> Vec<Case> {
     let one = |(function, name): (usize, &&'static str)| {
-        Case::new(format!("probe.math.{name}"), move |stand| {
-            measure(stand, function)
+        Case::new(format!("probe.math.{name}"), move |bed| {
+            measure(bed, function)
         })
     };
     NAMES.iter().enumerate().map(one).collect()
 }
 
-fn measure(stand: &mut Stand, function: usize) -> Result<Measurement, Stop> {
+fn measure(bed: &mut TestBed, function: usize) -> Result<Measurement, Stop> {
     const COUNT: u32 = 8192;
-    let mut random = stand.random("math");
+    let mut random = bed.random("math");
     let numbers: Vec<f32> = (0..COUNT)
         .map(|i| match i % 3 {
             0 => (20.0 * random.unit()) as f32 + 1e-4,
@@ -49,7 +49,7 @@ fn measure(stand: &mut Stand, function: usize) -> Result<Measurement, Stop> {
             _ => 2f64.powf(24.0 * random.unit() - 20.0) as f32,
         })
         .collect();
-    let device = stand.device()?;
+    let device = bed.device()?;
     let gpu = Arc::clone(device.gpu());
     let given = kit::buffer(&gpu, &numbers, "numbers")?;
     let found = kit::zeros::<[f32; 4]>(&gpu, 3 * numbers.len(), "found")?;

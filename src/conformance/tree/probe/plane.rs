@@ -6,7 +6,7 @@
 //!
 //! So moved corners give numbers of the true triangle at places within D of p, exactly.
 
-use crate::conformance::stand::Random;
+use crate::conformance::test_bed::Random;
 use crate::gpu::Gpu;
 
 /// What Vulkan demands of floating-point computation outside of shaders: one part in 10^5 an operation.

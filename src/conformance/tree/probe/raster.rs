@@ -4,7 +4,7 @@
 use super::kit::{self, Drawing};
 use crate::conformance::case::{Case, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
-use crate::conformance::stand::Stand;
+use crate::conformance::test_bed::TestBed;
 use crate::gpu::{Blend, Item};
 use ash::vk;
 
@@ -22,12 +22,12 @@ pub fn cases() -> Vec<Case> {
     for nth in 0..4u32 {
         let name = format!("probe.raster.shared_edges.{nth}");
         let seeded = name.clone();
-        let case = Case::new(name, move |stand| shared_edges(stand, &seeded));
+        let case = Case::new(name, move |bed| shared_edges(bed, &seeded));
         cases.push(case.needing(Item::Format(format, blend)));
     }
     for (word, is_clockwise) in [("clockwise", true), ("counter_clockwise", false)] {
-        let case = Case::new(format!("probe.raster.cover.{word}"), move |stand| {
-            cover(stand, is_clockwise)
+        let case = Case::new(format!("probe.raster.cover.{word}"), move |bed| {
+            cover(bed, is_clockwise)
         });
         cases.push(case.needing(Item::Format(format, color)));
     }
@@ -47,9 +47,9 @@ fn ndc([x, y]: [f64; 2]) -> [f32; 4] {
 }
 
 /// A grid whose inner corners are moved, each cell cut along either diagonal, either way round.
-fn shared_edges(stand: &mut Stand, name: &str) -> Result<Measurement, Stop> {
+fn shared_edges(bed: &mut TestBed, name: &str) -> Result<Measurement, Stop> {
     const CELLS: [usize; 2] = [9, 7];
-    let mut random = stand.random(name);
+    let mut random = bed.random(name);
     let [w, h] = EXTENT.map(f64::from);
     let mut corner = Vec::new();
     for j in 0..=CELLS[1] {
@@ -82,7 +82,7 @@ fn shared_edges(stand: &mut Stand, name: &str) -> Result<Measurement, Stop> {
             }
         }
     }
-    let texels = kit::draw(stand, &drawing(&corners, Blend::Add))?;
+    let texels = kit::draw(bed, &drawing(&corners, Blend::Add))?;
     let mut measurement = Measurement::new(Bound::new("shared-edges", EDGES), 1000);
     for i in 0..texels.len() / 4 {
         let found = kit::number(vk::Format::R32G32B32A32_SFLOAT, &texels, i);
@@ -91,7 +91,7 @@ fn shared_edges(stand: &mut Stand, name: &str) -> Result<Measurement, Stop> {
     Ok(measurement)
 }
 
-fn cover(stand: &mut Stand, is_clockwise: bool) -> Result<Measurement, Stop> {
+fn cover(bed: &mut TestBed, is_clockwise: bool) -> Result<Measurement, Stop> {
     const INSIDE: [[f64; 2]; 2] = [[5.0, 9.0], [51.0, 40.0]];
     let [[x0, y0], [x1, y1]] = INSIDE;
     let [a, b, c, d] = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]].map(ndc);
@@ -99,7 +99,7 @@ fn cover(stand: &mut Stand, is_clockwise: bool) -> Result<Measurement, Stop> {
         true => [a, b, c, a, c, d],
         false => [a, c, b, a, d, c],
     };
-    let texels = kit::draw(stand, &drawing(&corners, Blend::Replace))?;
+    let texels = kit::draw(bed, &drawing(&corners, Blend::Replace))?;
     let mut measurement = Measurement::new(Bound::new("cover", COVER), 1000);
     for i in 0..texels.len() / 4 {
         let pixel = i / 4;

@@ -11,7 +11,7 @@ use super::kit;
 use super::raw::refused;
 use crate::conformance::case::{Case, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
-use crate::conformance::stand::Stand;
+use crate::conformance::test_bed::TestBed;
 use crate::gpu::owned::Own;
 use crate::gpu::{
     Bindings, Blend, Buffer, ComputePipeline, DepthUse, Feature, Gpu, Headless, Image, ImageDesc,
@@ -40,8 +40,8 @@ pub fn cases() -> Vec<Case> {
         vk::FormatFeatureFlags::COLOR_ATTACHMENT,
     );
     let case = |word, order| {
-        let case = Case::new(format!("probe.relay.{word}"), move |stand| {
-            measure(stand, order)
+        let case = Case::new(format!("probe.relay.{word}"), move |bed| {
+            measure(bed, order)
         });
         case.needing(target)
     };
@@ -61,11 +61,11 @@ const COVER: [[f32; 4]; 3] = [
     [-1.0, 3.0, 0.0, 1.0],
 ];
 
-fn measure(stand: &mut Stand, order: Order) -> Result<Measurement, Stop> {
-    let mut random = stand.random("relay");
+fn measure(bed: &mut TestBed, order: Order) -> Result<Measurement, Stop> {
+    let mut random = bed.random("relay");
     let count = (EXTENT[0] * EXTENT[1]) as usize;
     let mut numbers: Vec<f32> = (0..count).map(|_| random.below(256) as f32).collect();
-    let device = stand.device()?;
+    let device = bed.device()?;
     let gpu = Arc::clone(device.gpu());
     let relay = Relay::new(&gpu, &numbers)?;
     match order {

@@ -4,7 +4,7 @@ use super::kit;
 use super::raw::{self, rebind};
 use crate::conformance::case::{Case, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
-use crate::conformance::stand::Stand;
+use crate::conformance::test_bed::TestBed;
 use crate::gpu::owned::{Own, OwnMemory};
 use crate::gpu::{
     Bindings, ComputePipeline, Feature, Gpu, Headless, Image, ImageDesc, ImageKind, Item,
@@ -29,8 +29,8 @@ pub fn cases() -> Vec<Case> {
     let buffer = Item::Feature(Feature::RobustBufferAccess);
     let image = Item::Feature(Feature::RobustImageAccess);
     vec![
-        Case::new("probe.robust.buffer.whole.read", |stand| read(stand, false)).needing(buffer),
-        Case::new("probe.robust.buffer.part.read", |stand| read(stand, true)).needing(buffer),
+        Case::new("probe.robust.buffer.whole.read", |bed| read(bed, false)).needing(buffer),
+        Case::new("probe.robust.buffer.part.read", |bed| read(bed, true)).needing(buffer),
         written("whole.write", "probe/beyond_write", BYTES),
         written("part.write", "probe/beyond_write", BYTES / 2),
         written("whole.atomic", "probe/beyond_atomic", BYTES),
@@ -43,8 +43,8 @@ pub fn cases() -> Vec<Case> {
 
 /// What a shader writes beyond so many bytes that are bound.
 fn written(word: &str, name: &'static str, range: u64) -> Case {
-    let case = Case::new(format!("probe.robust.buffer.{word}"), move |stand| {
-        write(stand, name, range)
+    let case = Case::new(format!("probe.robust.buffer.{word}"), move |bed| {
+        write(bed, name, range)
     });
     case.needing(Item::Feature(Feature::RobustBufferAccess))
 }
@@ -116,8 +116,8 @@ impl Neighbours {
 }
 
 /// Inside, around the end, far beyond: also where four times the place has more than 32 bits.
-fn places(stand: &Stand, end: u32) -> Vec<u32> {
-    let mut random = stand.random("robust");
+fn places(bed: &TestBed, end: u32) -> Vec<u32> {
+    let mut random = bed.random("robust");
     let mut places: Vec<u32> = (0..end).collect();
     places.extend(end..end + 2048);
     places.extend((0..512).map(|_| random.bits() as u32));
@@ -149,11 +149,11 @@ fn dispatch(
     Ok(())
 }
 
-fn read(stand: &mut Stand, is_part: bool) -> Result<Measurement, Stop> {
+fn read(bed: &mut TestBed, is_part: bool) -> Result<Measurement, Stop> {
     let range = if is_part { BYTES / 2 } else { BYTES };
     let end = (range / 4) as u32;
-    let places = places(stand, end);
-    let device = stand.device()?;
+    let places = places(bed, end);
+    let device = bed.device()?;
     let gpu = Arc::clone(device.gpu());
     let neighbours = Neighbours::new(&gpu)?;
     let given = kit::buffer(&gpu, &places, "places")?;
@@ -186,11 +186,11 @@ fn read(stand: &mut Stand, is_part: bool) -> Result<Measurement, Stop> {
     Ok(measurement)
 }
 
-fn write(stand: &mut Stand, name: &'static str, range: u64) -> Result<Measurement, Stop> {
+fn write(bed: &mut TestBed, name: &'static str, range: u64) -> Result<Measurement, Stop> {
     let end = (range / 4) as u32;
-    let beyond = places(stand, end).into_iter().filter(|&place| place >= end);
+    let beyond = places(bed, end).into_iter().filter(|&place| place >= end);
     let places: Vec<u32> = beyond.collect();
-    let device = stand.device()?;
+    let device = bed.device()?;
     let gpu = Arc::clone(device.gpu());
     let neighbours = Neighbours::new(&gpu)?;
     let given = kit::buffer(&gpu, &places, "places")?;
@@ -213,13 +213,13 @@ fn write(stand: &mut Stand, name: &'static str, range: u64) -> Result<Measuremen
     Ok(measurement)
 }
 
-fn uniform(stand: &mut Stand) -> Result<Measurement, Stop> {
+fn uniform(bed: &mut TestBed) -> Result<Measurement, Stop> {
     const SLOTS: u32 = 8;
     const INSIDE: u32 = 16;
-    let mut random = stand.random("robust.uniform");
+    let mut random = bed.random("robust.uniform");
     let mut places: Vec<u32> = (0..2 * INSIDE).collect();
     places.extend((0..96).map(|_| random.bits() as u32 >> random.below(28)));
-    let device = stand.device()?;
+    let device = bed.device()?;
     let gpu = Arc::clone(device.gpu());
     let ring = ParameterRing::new(&gpu, 16 * INSIDE, SLOTS, "slots")?;
     let tag = |slot: u32, word: u32| 0x2200_0000 | slot << 16 | word;
@@ -266,8 +266,8 @@ fn uniform(stand: &mut Stand) -> Result<Measurement, Stop> {
 const SIDES: [i32; 3] = [8, 6, 5];
 
 /// Inside of an image, around its edges and far away.
-fn texel_places(stand: &Stand) -> Vec<[i32; 4]> {
-    let mut random = stand.random("robust.image");
+fn texel_places(bed: &TestBed) -> Vec<[i32; 4]> {
+    let mut random = bed.random("robust.image");
     let mut places = Vec::new();
     for z in -2..SIDES[2] + 2 {
         for y in -2..SIDES[1] + 2 {
@@ -282,9 +282,9 @@ fn is_inside(place: [i32; 4], axes: usize) -> bool {
     (0..axes).all(|k| (0..SIDES[k]).contains(&place[k]))
 }
 
-fn image_read(stand: &mut Stand) -> Result<Measurement, Stop> {
-    let places = texel_places(stand);
-    let device = stand.device()?;
+fn image_read(bed: &mut TestBed) -> Result<Measurement, Stop> {
+    let places = texel_places(bed);
+    let device = bed.device()?;
     let gpu = Arc::clone(device.gpu());
     let format = vk::Format::R32G32B32A32_SFLOAT;
     let [width, height, depth] = SIDES.map(|n| n as u32);
@@ -356,10 +356,10 @@ fn stored_image(device: &mut Headless, texels: &[f32]) -> Result<Image, Stop> {
     Ok(image)
 }
 
-fn image_write(stand: &mut Stand) -> Result<Measurement, Stop> {
-    let all = texel_places(stand).into_iter();
+fn image_write(bed: &mut TestBed) -> Result<Measurement, Stop> {
+    let all = texel_places(bed).into_iter();
     let places: Vec<[i32; 4]> = all.filter(|&place| !is_inside(place, 2)).collect();
-    let device = stand.device()?;
+    let device = bed.device()?;
     let gpu = Arc::clone(device.gpu());
     let count = 4 * SIDES[0] * SIDES[1];
     let texels: Vec<f32> = (0..count).map(|i| 100.0 + i as f32).collect();

@@ -5,7 +5,7 @@ use super::kit;
 use super::{fits, fits::lacking};
 use crate::conformance::case::{Case, Profile, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
-use crate::conformance::stand::{Random, Stand};
+use crate::conformance::test_bed::{Random, TestBed};
 use crate::gpu::{
     Buffer, Caps, Headless, Image, ImageDesc, ImageKind, Memory, Region, Resource, Use,
     buffer_to_image, image_barrier, image_to_buffer,
@@ -64,8 +64,8 @@ pub fn cases() -> Vec<Case> {
         }),
     ];
     let case = |(word, kind, profile, extent): (&str, ImageKind, Profile, Extent)| {
-        Case::new(format!("probe.limits.large_image_{word}"), move |stand| {
-            measure(stand, kind, extent)
+        Case::new(format!("probe.limits.large_image_{word}"), move |bed| {
+            measure(bed, kind, extent)
         })
         .of(profile)
     };
@@ -108,9 +108,9 @@ fn blocks(extent: [u32; 3]) -> Vec<Region> {
     blocks
 }
 
-fn measure(stand: &mut Stand, kind: ImageKind, extent: Extent) -> Result<Measurement, Stop> {
-    let mut random = stand.random("sparse");
-    let device = stand.device()?;
+fn measure(bed: &mut TestBed, kind: ImageKind, extent: Extent) -> Result<Measurement, Stop> {
+    let mut random = bed.random("sparse");
+    let device = bed.device()?;
     let extent = extent(device.gpu().limits());
     let bytes = TEXEL_BYTES * extent.iter().map(|&n| u64::from(n)).product::<u64>();
     let image = cleared(device, kind, extent, bytes)?;
@@ -298,7 +298,7 @@ mod tests {
         assert_eq!(blocks([16_384, 4096, 1]).len(), 9);
         assert_eq!(blocks([64, 64, 64]).len(), 27);
         assert_eq!(blocks([31, 2, 1]).len(), 1);
-        let mut random = Stand::without_device(1, |_| unreachable!()).random("");
+        let mut random = TestBed::without_device(1, |_| unreachable!()).random("");
         let all = brought(&blocks([32, 32, 32]), &mut random);
         let apart: BTreeMap<[u32; 3], f32> = all.iter().copied().collect();
         assert_eq!(apart.len(), all.len());

@@ -7,7 +7,7 @@
 use super::kit;
 use crate::conformance::case::{Case, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
-use crate::conformance::stand::{Random, Stand};
+use crate::conformance::test_bed::{Random, TestBed};
 use crate::gpu::{Headless, Image, ImageDesc, ImageKind, Item, Resource, Use, image_barrier};
 use ash::vk;
 use half::f16;
@@ -141,9 +141,9 @@ pub fn cases() -> Vec<Case> {
     for of in FORMATS {
         let need = Item::Format(of.format, vk::FormatFeatureFlags::STORAGE_IMAGE);
         let word = of.word;
-        let stored = Case::new(format!("probe.store.{word}"), move |stand| of.stored(stand));
+        let stored = Case::new(format!("probe.store.{word}"), move |bed| of.stored(bed));
         cases.push(stored.needing(need));
-        let loaded = Case::new(format!("probe.load.{word}"), move |stand| of.loaded(stand));
+        let loaded = Case::new(format!("probe.load.{word}"), move |bed| of.loaded(bed));
         cases.push(loaded.needing(need));
     }
     cases
@@ -152,13 +152,13 @@ pub fn cases() -> Vec<Case> {
 const EXTENT: [u32; 2] = [64, 32];
 
 impl Of {
-    fn stored(self, stand: &mut Stand) -> Result<Measurement, Stop> {
-        let mut random = stand.random("stored");
+    fn stored(self, bed: &mut TestBed) -> Result<Measurement, Stop> {
+        let mut random = bed.random("stored");
         let count = EXTENT[0] * EXTENT[1];
         let numbers: Vec<[u32; 4]> = (0..count)
             .map(|_| [0; 4].map(|_| self.channel.random(&mut random)))
             .collect();
-        let device = stand.device()?;
+        let device = bed.device()?;
         let gpu = Arc::clone(device.gpu());
         let image = self.image(device, Use::Nothing)?;
         let given = kit::buffer(&gpu, &numbers, "numbers")?;
@@ -185,14 +185,14 @@ impl Of {
         Ok(measurement)
     }
 
-    fn loaded(self, stand: &mut Stand) -> Result<Measurement, Stop> {
-        let mut random = stand.random("loaded");
+    fn loaded(self, bed: &mut TestBed) -> Result<Measurement, Stop> {
+        let mut random = bed.random("loaded");
         let count = (EXTENT[0] * EXTENT[1]) as usize;
         let mut texels = Vec::new();
         for _ in 0..count * self.channels {
             texels.extend(self.channel.encoded(&mut random));
         }
-        let device = stand.device()?;
+        let device = bed.device()?;
         let gpu = Arc::clone(device.gpu());
         let image = self.image(device, Use::TransferWrite)?;
         let from = super::raw::copied(&gpu, texels.len() as u64, true)?;

@@ -3,7 +3,7 @@
 use super::raw::refused;
 use crate::conformance::case::{Case, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
-use crate::conformance::stand::Stand;
+use crate::conformance::test_bed::TestBed;
 use crate::gpu::owned::Own;
 use crate::gpu::{Feature, Gpu, Headless, Item};
 use ash::vk;
@@ -36,8 +36,8 @@ fn made(gpu: &Arc<Gpu>, value: u64) -> Result<Own<vk::Semaphore>, Stop> {
     ))
 }
 
-fn timeline(stand: &mut Stand) -> Result<Measurement, Stop> {
-    let device = stand.device()?;
+fn timeline(bed: &mut TestBed) -> Result<Measurement, Stop> {
+    let device = bed.device()?;
     let gpu = Arc::clone(device.gpu());
     let semaphore = made(&gpu, 5)?;
     let asked = ask_timeline(device, semaphore.get());
@@ -47,9 +47,9 @@ fn timeline(stand: &mut Stand) -> Result<Measurement, Stop> {
 }
 
 /// Counters around half of what 64 bits hold, in the largest steps that every device takes.
-fn large(stand: &mut Stand) -> Result<Measurement, Stop> {
+fn large(bed: &mut TestBed) -> Result<Measurement, Stop> {
     const STEP: u64 = (1 << 31) - 1;
-    let gpu = Arc::clone(stand.device()?.gpu());
+    let gpu = Arc::clone(bed.device()?.gpu());
     let mut measurement = Measurement::new(Bound::new("large-timeline", LARGE), 9);
     // The validation layer (1.3.239) takes a signal beyond 2^63 as pending for ever: each counter has but one.
     for (start, steps) in [((1 << 63) - 2 * STEP + 5, 2), (u64::MAX - STEP - 1, 1)] {

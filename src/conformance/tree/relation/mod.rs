@@ -39,8 +39,8 @@ pub fn cases() -> Vec<Case> {
                     }
                     let mode_word = ground::word_of(mode);
                     let name = format!("relation.{word}.{of}.{mode_word}.{projection}");
-                    let mut case = Case::new(name, move |stand| {
-                        pair::measure(stand, kind, placement, mode, is_perspective)
+                    let mut case = Case::new(name, move |bed| {
+                        pair::measure(bed, kind, placement, mode, is_perspective)
                     });
                     case.needs = ground::needs(placement, mode, VoxelType::F32, false);
                     if kind.is_of_bricks() && placement.is_slicer() {

@@ -6,8 +6,8 @@ use super::Kind;
 use crate::camera::Projection;
 use crate::conformance::case::Stop;
 use crate::conformance::measurement::{Bound, Measurement, Pictures};
-use crate::conformance::oracle::{Numbers, Shot};
-use crate::conformance::stand::Stand;
+use crate::conformance::oracle::{Numbers, PictureCase};
+use crate::conformance::test_bed::TestBed;
 use crate::gpu::Caps;
 use crate::picture::{LayerKind, Picture};
 use crate::technique::{Filter, Lattice, Level, Mode, Order, Shading};
@@ -25,29 +25,29 @@ struct Rough {
 /// A shot, its numbers and its function.
 #[derive(Clone)]
 struct Sight {
-    shot: Shot,
+    shot: PictureCase,
     numbers: Numbers,
     function: TransferFunction,
 }
 
 impl Sight {
-    fn picture(&self, stand: &mut Stand, layers: &[LayerKind]) -> Result<Picture, Stop> {
+    fn picture(&self, bed: &mut TestBed, layers: &[LayerKind]) -> Result<Picture, Stop> {
         let scene = self.shot.scene(&self.numbers.volume, Some(&self.function));
-        stand.render(&scene, layers)
+        bed.render(&scene, layers)
     }
 
     /// With its errors, where those count.
-    fn rough(&self, stand: &mut Stand) -> Result<Rough, Stop> {
+    fn rough(&self, bed: &mut TestBed) -> Result<Rough, Stop> {
         let scene = self.shot.scene(&self.numbers.volume, Some(&self.function));
         let wide = |pixels: Vec<[f32; 4]>| pixels.iter().map(|p| p.map(f64::from)).collect();
         Ok(Rough {
-            pixels: wide(self.picture(stand, &[])?.pixels),
-            off: wide(errors::<true>(stand, &scene)?.pixels),
+            pixels: wide(self.picture(bed, &[])?.pixels),
+            off: wide(errors::<true>(bed, &scene)?.pixels),
         })
     }
 
-    fn exact(&self, stand: &mut Stand) -> Result<Rough, Stop> {
-        let picture = self.picture(stand, &[])?;
+    fn exact(&self, bed: &mut TestBed) -> Result<Rough, Stop> {
+        let picture = self.picture(bed, &[])?;
         Ok(Rough::exact(&picture))
     }
 }
@@ -75,7 +75,7 @@ impl Rough {
 
 /// Draws and compares.
 pub fn measure(
-    stand: &mut Stand,
+    bed: &mut TestBed,
     kind: Kind,
     placement: Placement,
     mode: Mode,
@@ -108,23 +108,23 @@ pub fn measure(
         function,
     };
     if kind == Kind::Summed {
-        return summed(stand, &sight);
+        return summed(bed, &sight);
     }
     let (first, second) = match kind.is_exact() {
-        true => same_bits(stand, kind, &sight)?,
-        false => roundings(stand, kind, &sight)?,
+        true => same_bits(bed, kind, &sight)?,
+        false => roundings(bed, kind, &sight)?,
     };
     let bound = match kind.is_exact() {
         true => Bound::new(
             "same-bytes",
             "the same operations on the same numbers, or on numbers times a power of two: no bit differs",
         ),
-        false => both_running_errors(stand, &sight.shot)?,
+        false => both_running_errors(bed, &sight.shot)?,
     };
     Ok(compare(kind, &sight.shot, bound, first, second))
 }
 
-fn same_bits(stand: &mut Stand, kind: Kind, sight: &Sight) -> Result<(Rough, Rough), Stop> {
+fn same_bits(bed: &mut TestBed, kind: Kind, sight: &Sight) -> Result<(Rough, Rough), Stop> {
     let mut first = sight.clone();
     let mut other = sight.clone();
     if kind == Kind::LitInBricks {
@@ -172,7 +172,7 @@ fn same_bits(stand: &mut Stand, kind: Kind, sight: &Sight) -> Result<(Rough, Rou
         }
         _ => {}
     }
-    let wanted = first.exact(stand)?;
+    let wanted = first.exact(bed)?;
     let mut found = match kind {
         Kind::WithLayers => {
             let is_projection = first.shot.settings.mode.is_projection();
@@ -180,19 +180,19 @@ fn same_bits(stand: &mut Stand, kind: Kind, sight: &Sight) -> Result<(Rough, Rou
                 true => &[LayerKind::Value, LayerKind::Samples],
                 false => &[LayerKind::Transmittance, LayerKind::Samples],
             };
-            Rough::exact(&other.picture(stand, layers)?)
+            Rough::exact(&other.picture(bed, layers)?)
         }
         Kind::InBricks | Kind::LitInBricks => {
             let scene = other
                 .shot
                 .scene(&other.numbers.volume, Some(&other.function));
-            Rough::exact(&stand.render_lowered(in_bricks, &scene)?)
+            Rough::exact(&bed.render_lowered(in_bricks, &scene)?)
         }
-        Kind::InSmallSubmissions if stand.wants_device() => {
+        Kind::InSmallSubmissions if bed.wants_device() => {
             let scene = other
                 .shot
                 .scene(&other.numbers.volume, Some(&other.function));
-            let picture = stand.with_renderer(&scene, |renderer| {
+            let picture = bed.with_renderer(&scene, |renderer| {
                 // Less than anything takes: as few rows or slices at once as there can be.
                 renderer.set_submission_ms(1e-3);
                 renderer.render(&scene, &[])?;
@@ -200,7 +200,7 @@ fn same_bits(stand: &mut Stand, kind: Kind, sight: &Sight) -> Result<(Rough, Rou
             })?;
             Rough::exact(&picture)
         }
-        _ => other.exact(stand)?,
+        _ => other.exact(bed)?,
     };
     if kind == Kind::PermutedColors {
         found.pixels.iter_mut().for_each(|p| p[..3].rotate_right(1));
@@ -217,7 +217,7 @@ fn in_bricks(caps: Caps) -> Caps {
     }
 }
 
-fn roundings(stand: &mut Stand, kind: Kind, sight: &Sight) -> Result<(Rough, Rough), Stop> {
+fn roundings(bed: &mut TestBed, kind: Kind, sight: &Sight) -> Result<(Rough, Rough), Stop> {
     let mut first = sight.clone();
     let mut other = sight.clone();
     let shot = &sight.shot;
@@ -253,8 +253,8 @@ fn roundings(stand: &mut Stand, kind: Kind, sight: &Sight) -> Result<(Rough, Rou
             let cut = dvec3(far.x, 11.2, far.z);
             first.shot.settings.crop = Some([DVec3::ZERO, cut]);
             other.shot.settings.crop = Some([dvec3(0.0, cut.y, 0.0), far]);
-            let [low, high] = [first.rough(stand)?, other.rough(stand)?];
-            let whole = sight.rough(stand)?;
+            let [low, high] = [first.rough(bed)?, other.rough(bed)?];
+            let whole = sight.rough(bed)?;
             let rays = shot.camera.rays(shot.extent);
             let (width, row) = (shot.extent[0] as usize, voxels.matrix3.inverse().row(1));
             let both = low.with(high, |i, low, high| {
@@ -282,7 +282,7 @@ fn roundings(stand: &mut Stand, kind: Kind, sight: &Sight) -> Result<(Rough, Rou
         Kind::Furnace => {
             let srgb = [0.8, 0.5, 0.25];
             first.function.color = vec![ColorPoint { value: 0.0, srgb }];
-            let seen = first.rough(stand)?;
+            let seen = first.rough(bed)?;
             let over = |p: &[f64; 4]| -> [f64; 4] {
                 std::array::from_fn(|c| match c {
                     3 => p[3],
@@ -309,18 +309,24 @@ fn roundings(stand: &mut Stand, kind: Kind, sight: &Sight) -> Result<(Rough, Rou
         }
         _ => {}
     }
-    Ok((first.rough(stand)?, other.rough(stand)?))
+    Ok((first.rough(bed)?, other.rough(bed)?))
 }
 
-fn both_running_errors(stand: &mut Stand, shot: &Shot) -> Result<Bound, Stop> {
-    let of_each = derivation(stand, &shot.settings)?;
+fn both_running_errors(bed: &mut TestBed, shot: &PictureCase) -> Result<Bound, Stop> {
+    let of_each = derivation(bed, &shot.settings)?;
     Ok(Bound::new(
         "both-running-errors",
         format!("{BOTH}{of_each}"),
     ))
 }
 
-fn compare(kind: Kind, shot: &Shot, bound: Bound, first: Rough, second: Rough) -> Measurement {
+fn compare(
+    kind: Kind,
+    shot: &PictureCase,
+    bound: Bound,
+    first: Rough,
+    second: Rough,
+) -> Measurement {
     let mut measurement = Measurement::new(bound, 1000);
     let mut widest = 0.0f64;
     for (i, pixel) in shot.pixels().enumerate() {
@@ -352,7 +358,7 @@ fn compare(kind: Kind, shot: &Shot, bound: Bound, first: Rough, second: Rough) -
 }
 
 /// X(f + g) = X(f) + X(g).
-fn summed(stand: &mut Stand, sight: &Sight) -> Result<Measurement, Stop> {
+fn summed(bed: &mut TestBed, sight: &Sight) -> Result<Measurement, Stop> {
     let shot = &sight.shot;
     // Numbers of 16 bits: their sums are numbers of f32.
     let coarse = |x: f64| (x * 65536.0).round() / 65536.0;
@@ -369,10 +375,7 @@ fn summed(stand: &mut Stand, sight: &Sight) -> Result<Measurement, Stop> {
         let numbers = Numbers::of(shot, field);
         let scene = shot.scene(&numbers.volume, Some(&function));
         let value = LayerKind::Value;
-        let pictures = [
-            stand.render(&scene, &[value])?,
-            errors::<true>(stand, &scene)?,
-        ];
+        let pictures = [bed.render(&scene, &[value])?, errors::<true>(bed, &scene)?];
         let missing = || Stop::Suite("no values".into());
         let mut numbers = Vec::new();
         for picture in &pictures {
@@ -380,7 +383,7 @@ fn summed(stand: &mut Stand, sight: &Sight) -> Result<Measurement, Stop> {
         }
         found.push(numbers);
     }
-    let bound = both_running_errors(stand, shot)?;
+    let bound = both_running_errors(bed, shot)?;
     let mut measurement = Measurement::new(bound, 200);
     for (i, pixel) in shot.pixels().enumerate() {
         let [a, b, sum] = [0, 1, 2].map(|k: usize| f64::from(found[k][0][i]));

@@ -26,7 +26,7 @@ const LIGHT: usize = 1;
 pub(in crate::technique) fn half_angle_slices(desc: &GatherDesc) -> Result<Box<dyn Gather>, Error> {
     Ok(Box::new(HalfAngleGather {
         gpu: Arc::clone(desc.gpu),
-        slicer: Arc::new(HalfAngleSlicer::new(desc.gpu, desc.words)?),
+        slicer: Arc::new(HalfAngleSlicer::new(desc.gpu, desc.variant)?),
     }))
 }
 

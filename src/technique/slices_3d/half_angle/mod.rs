@@ -26,7 +26,9 @@ use crate::gpu::{
 };
 use crate::shaders::shader;
 use crate::technique::blend::Drawn;
-use crate::technique::{ACCUMULATION_FORMAT, Inputs, Mode, Order, Slicer, Technique, Words};
+use crate::technique::{
+    ACCUMULATION_FORMAT, Inputs, Mode, Order, ShaderVariant, Slicer, Technique,
+};
 use ash::vk;
 use std::sync::Arc;
 
@@ -80,14 +82,14 @@ impl HalfAngleSlicer {
     ///
     /// # Errors
     /// Where the device does not blend R32G32B32A32_SFLOAT, by its name: halves would lose light slice by slice.
-    pub fn new(gpu: &Arc<Gpu>, words: &Words) -> Result<Self, Error> {
-        let Words {
+    pub fn new(gpu: &Arc<Gpu>, variant: &ShaderVariant) -> Result<Self, Error> {
+        let ShaderVariant {
             filter,
             holes,
             transfer,
             mix,
             ..
-        } = words;
+        } = variant;
         let fragment = format!(
             "slices_3d_half{}.{filter}.{holes}.{transfer}",
             mix.general().word()
@@ -112,7 +114,7 @@ impl HalfAngleSlicer {
                 Technique::Slices3d,
                 drawn,
                 Order::FrontToBack,
-                words,
+                variant,
                 ACCUMULATION_FORMAT,
             )?,
         })

@@ -1,5 +1,5 @@
-//! Half-angle slicing on the CPU: twin of `shaders/slices_3d_half.wgsl`, `shaders/lib/light_buffer.wgsl` and
-//! `dimmed.wgsl`.
+//! Half-angle slicing on the CPU: CPU reference of `shaders/slices_3d_half.wgsl`, `shaders/lib/light_buffer.wgsl` and
+//! `shadowed.wgsl`.
 
 use crate::ray::{domain_interval, pixel_ray, plane_length, plane_t, voxel_ray};
 use crate::real::{Real, add, dot, scale, sub};

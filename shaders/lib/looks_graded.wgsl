@@ -1,3 +1,0 @@
-// There is much to do at each sample.
-
-#import looks_one

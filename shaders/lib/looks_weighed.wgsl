@@ -1,3 +1,0 @@
-// As where gradients count for light alone: they are dear.
-
-#import looks_lit

@@ -1,7 +1,0 @@
-// A mode to which every sample matters.
-
-#import empty_space
-
-fn empty_room(so_far: Accumulator, cell: vec3<i32>) -> i32 {
-    return 0;
-}

@@ -1,0 +1,3 @@
+// There is much to do at each sample.
+
+#import unroll_one

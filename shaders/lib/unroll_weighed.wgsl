@@ -1,0 +1,3 @@
+// As where gradients count for light alone: they are dear.
+
+#import unroll_lit

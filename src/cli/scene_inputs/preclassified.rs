@@ -1,0 +1,81 @@
+//! `--preclassified`: what voxels are made of, in the place of their values.
+
+use super::super::{
+    Error,
+    flags::{Classification, Component, SceneFlags},
+};
+use super::{Others, SceneInputs};
+use crate::{
+    picture::ColorSpace,
+    technique::{CutFaces, Lattice, Mode, Settings, preclassified::preclassified},
+};
+use std::sync::Arc;
+
+/// What can be said wrong before anything is opened.
+pub fn check(scene: &SceneFlags, settings: &Settings) -> Result<(), Error> {
+    if !scene.sampling.preclassified {
+        return Ok(());
+    }
+    let refused = |found: &str, hint| {
+        Err(Error::usage(
+            format!("--preclassified is for one number a voxel in --mode composite, and {found}"),
+            hint,
+        ))
+    };
+    let several = scene.channels.are_given() || scene.input.component == Some(Component::All);
+    if settings.mode != Mode::Composite {
+        refused("this is another mode", "leave out --mode")
+    } else if settings.shading.is_some() {
+        refused(
+            "light falls on values",
+            "leave out --shading: materials have no gradient",
+        )
+    } else if settings.ambient_occlusion.is_some() {
+        refused("occlusion is of values", "leave out --ambient-occlusion")
+    } else if matches!(settings.cut_faces, Some(CutFaces::Grey(_))) {
+        refused(
+            "the greys of --cut-faces=LO,HI are of values",
+            "--cut-faces shows the colours of the picture",
+        )
+    } else if scene.labels.labels.is_some() {
+        refused("--labels lies over it", "leave out --labels")
+    } else if scene.opacity.are_given() {
+        refused("other numbers make it opaque", "leave out one of them")
+    } else if settings.smooth || settings.lattice == Lattice::Jitter {
+        refused(
+            "--smooth and --jitter sample values",
+            "leave out --preclassified",
+        )
+    } else if several {
+        refused("several are drawn", "--component 0 takes one")
+    } else {
+        Ok(())
+    }
+}
+
+/// The same volume, each of its voxels classified.
+pub fn classified(shown: SceneInputs, space: ColorSpace) -> Result<SceneInputs, Error> {
+    let Classification::Function(function) = &shown.classification else {
+        unreachable!("only integrals have no function yet")
+    };
+    if function.is_graded() {
+        return Err(Error::usage(
+            "--preclassified classifies voxels by their value, and widgets and gradient opacity need a gradient",
+            "leave out --preclassified, or take a function of the value alone",
+        ));
+    }
+    let volume = &shown.volume;
+    let length = function
+        .reference_length
+        .unwrap_or_else(|| volume.grid().smallest_spacing());
+    let made = preclassified(volume, function, length, space).map_err(|problem| Error::Limit {
+        message: problem.to_string(),
+        hint: "without --preclassified a volume takes less".into(),
+    })?;
+    let [red, green, blue, depth] = made;
+    Ok(SceneInputs {
+        volume: Arc::new(red),
+        others: Others::Classified(vec![green, blue, depth]),
+        ..shown
+    })
+}

@@ -1,0 +1,156 @@
+//! Ways to take samples of their own, and what does not go together with them.
+
+use super::{CutFaces, Error, Lattice, Mode, Settings};
+use std::fmt;
+
+impl Settings {
+    /// Whether technique and mode have the ways to sample that are asked for.
+    ///
+    /// # Errors
+    /// [`Error::NotFor`], [`Error::SeveralShadowLights`], and [`Error::OutOfRange`] for a window that is none.
+    pub fn check_ways(&self) -> Result<(), Error> {
+        let (mode, technique) = (self.mode, self.technique);
+        let desc = technique.desc();
+        let of_mode = |is_on: bool, wanted| {
+            let is_refused = is_on && mode != Mode::Composite;
+            refuse(is_refused, wanted, "composite", format_args!("mode {mode}"))
+        };
+        let of_technique =
+            |is_on: bool, wanted, has: bool, of| refuse(is_on && !has, wanted, of, technique);
+        let of_rays = |is_on, wanted| of_technique(is_on, wanted, desc.casts_rays, "ray casting");
+        let is_jittered = self.lattice == Lattice::Jitter;
+        of_mode(self.preintegrated, PREINTEGRATED)?;
+        of_technique(self.smooth, SMOOTH, desc.draws_stacks, "2D stacks")?;
+        of_mode(self.smooth, SMOOTH)?;
+        of_rays(is_jittered, JITTER)?;
+        of_rays(self.adaptive_steps.is_some(), ADAPTIVE)?;
+        of_mode(self.adaptive_steps.is_some(), ADAPTIVE)?;
+        if let Some(error) = self.adaptive_steps {
+            self.check_adaptive(error)?;
+        }
+        of_rays(self.cut_faces.is_some(), CUT_FACES)?;
+        of_mode(self.cut_faces.is_some(), CUT_FACES)?;
+        if let Some(CutFaces::Grey([low, high])) = self.cut_faces {
+            let name = "the upper end of the window of cut faces";
+            let wanted = "a higher number than the lower, both finite";
+            Error::unless(low < high && (high - low).is_finite(), name, wanted, high)?;
+        }
+        let surfaces = "surfaces, whose places do not depend on where steps begin";
+        let is_moved = is_jittered && mode == Mode::Iso;
+        refuse(is_moved, JITTER, "modes of samples", surfaces)?;
+        let is_half = self.is_half_angle();
+        let lights = self.shading.as_ref().map_or(0, |s| s.lights.len());
+        if is_half && lights > 1 {
+            return Err(Error::SeveralShadowLights { wanted: lights });
+        }
+        of_technique(is_half, HALF_ANGLE, desc.has_half_angle, "3D slices")?;
+        of_mode(is_half, HALF_ANGLE)?;
+        let (has_kernel, of_filter) =
+            (self.filter.kernel().is_some(), "nearest and linear filters");
+        let filter = format_args!("the filter {}", self.filter);
+        refuse(is_half && has_kernel, HALF_ANGLE, of_filter, filter)?;
+        let (is_occluded, around) = (
+            self.ambient_occlusion.is_some(),
+            "light from all around that is occluded",
+        );
+        refuse(
+            is_half && is_occluded,
+            HALF_ANGLE,
+            "the light of one lamp",
+            around,
+        )?;
+        if self.shading.is_some() || is_occluded {
+            self.refuse_way("samples without light", "shaded ones")?;
+        }
+        match has_kernel {
+            true => self.refuse_way(of_filter, filter),
+            false => Ok(()),
+        }
+    }
+
+    fn check_adaptive(&self, error: f64) -> Result<(), Error> {
+        let wanted = "a number over 0 and at most 1";
+        Error::unless(
+            error > 0.0 && error <= 1.0,
+            "the error of adaptive steps",
+            wanted,
+            error,
+        )?;
+        let refuse = |is_there, of, found| refuse(is_there, ADAPTIVE, of, found);
+        refuse(self.conformance, "pictures within an error", "conformance")?;
+        refuse(
+            self.lattice == Lattice::Planes,
+            "the lattice of rays",
+            "planes",
+        )?;
+        refuse(self.preintegrated, "samples that are points", PREINTEGRATED)
+    }
+
+    /// Whether steps may adapt to a volume.
+    ///
+    /// # Errors
+    /// [`Error::NotFor`].
+    pub(crate) fn check_holes(&self, has_holes: bool) -> Result<(), Error> {
+        let is_refused = self.adaptive_steps.is_some() && has_holes;
+        let of = "volumes that have data everywhere";
+        refuse(is_refused, ADAPTIVE, of, "one with voxels without")
+    }
+
+    /// A way to sample of its own that is asked for.
+    fn way(&self) -> Option<&'static str> {
+        let ways = [
+            (self.preintegrated, PREINTEGRATED),
+            (self.smooth, SMOOTH),
+            (self.adaptive_steps.is_some(), ADAPTIVE),
+        ];
+        ways.into_iter()
+            .find_map(|(is_on, name)| is_on.then_some(name))
+    }
+
+    /// The same for several volumes.
+    ///
+    /// # Errors
+    /// [`Error::NotFor`].
+    pub(crate) fn check_mixed(&self) -> Result<(), Error> {
+        self.refuse_way("one volume of numbers", "several that are mixed")
+    }
+
+    /// The same for functions of gradients.
+    ///
+    /// # Errors
+    /// [`Error::NotFor`].
+    pub(crate) fn check_graded(&self) -> Result<(), Error> {
+        self.refuse_way(
+            "functions of the value alone",
+            "one of the value and its gradient",
+        )
+    }
+
+    fn refuse_way(&self, of: &'static str, found: impl fmt::Display) -> Result<(), Error> {
+        let way = self.way();
+        refuse(way.is_some(), way.unwrap_or_default(), of, found)
+    }
+}
+
+fn refuse(
+    is_refused: bool,
+    wanted: &'static str,
+    of: &'static str,
+    found: impl fmt::Display,
+) -> Result<(), Error> {
+    match is_refused {
+        true => Err(Error::NotFor {
+            wanted,
+            of,
+            found: found.to_string(),
+        }),
+        false => Ok(()),
+    }
+}
+
+const PREINTEGRATED: &str = "pre-integrated classification";
+const ADAPTIVE: &str = "sampling by adaptive steps";
+const SMOOTH: &str = "interpolation between slices";
+const CUT_FACES: &str = "an opaque cut face";
+const JITTER: &str = "jitter";
+const HALF_ANGLE: &str = "half-angle slicing";

@@ -1,0 +1,150 @@
+//! How often the loops of a ray go round: some drivers end all loops of an invocation after so many turns, without a
+//! word ([`crate::gpu::Caps::max_loop_turns`]), and what lies behind would be missing from the picture.
+//!
+//! ```text
+//! turns of a sample = 3 + n (looks (1 + mask + filter) + weights + search + light)
+//! ```
+//!
+//! for n volumes: the sample itself, the search for it, what is left out on the way; with 7 looks where a gradient is
+//! made of differences, 28 more (with the turn that ends them) where there is a second derivative, two where there are
+//! slabs, and else one. A mask goes round for the layers and rows of the footprint, a kernel for those of its taps, a
+//! search for the halvings of the points, light for lamps and for the corners of a cell of the light volume. Clip
+//! planes are gone over once a ray, and once more for cut faces.
+
+use super::{Error, Filter, GradientStorage, Operator, SampleKind, Settings, ShaderVariant, View};
+
+/// Of what is rare: surfaces that are refined, the first turns of everything.
+const SPARE: f64 = 2048.0;
+
+/// What transfer functions have loops over.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Functions {
+    /// Control points of the longest one.
+    pub points: usize,
+    /// Whether one asks for second derivatives.
+    pub second: bool,
+}
+
+/// How often the loops of one sample go round, at most.
+pub fn turns_per_sample(
+    settings: &Settings,
+    variant: &ShaderVariant,
+    volumes: usize,
+    functions: Functions,
+) -> u64 {
+    let width = match settings.filter {
+        Filter::Nearest => 1,
+        Filter::Linear => 2,
+        Filter::Quadratic | Filter::QuadraticSmooth => 3,
+        Filter::Cubic | Filter::CubicSmooth | Filter::CatmullRom => 4,
+    };
+    // Two nested loops, with the turns that end them.
+    let layers_and_rows = (width + 1) * (width + 1);
+    // A function that returns early is a loop of one turn.
+    let mask = if variant.holes == "mask" {
+        layers_and_rows + 1
+    } else {
+        0
+    };
+    // Texels are made in a loop over taps.
+    let filter = if variant.filter == "kernel" {
+        layers_and_rows + 5
+    } else {
+        0
+    };
+    let are_kept = settings.gradient_storage == GradientStorage::Precomputed;
+    let is_weighted = settings.gradient_operator() != Operator::Central;
+    let looks = match (variant.mix, variant.take) {
+        (mix, _) if mix.is_graded() => {
+            let first = if is_weighted || are_kept { 1 } else { 7 };
+            first + if functions.second { 28 } else { 0 }
+        }
+        (_, SampleKind::Preintegrated) => 2,
+        _ => 1,
+    };
+    // Four layers of four rows, with the turns that end them, and the choice of the weights.
+    let weights = if variant.mix.is_graded() && is_weighted && !are_kept {
+        5 * 5 + 5
+    } else {
+        0
+    };
+    // Over lights, and over the corners of a cell of the light volume for each of them and for ambient light.
+    let light = if variant.mix.is_graded() {
+        let corners = if settings.wants_light_volume() { 9 } else { 1 };
+        let shading = settings.shading.as_ref();
+        let lights = shading.map_or(0, |shading| shading.lights.len().max(1)) as u64;
+        corners + lights * (1 + corners) + 1
+    } else {
+        0
+    };
+    let search = if variant.transfer == "points" {
+        2 * u64::from((functions.points + 1).ilog2() + 2)
+    } else {
+        0
+    };
+    // Channels are gone over when they are asked for data, looked at and classified.
+    let of_each = if volumes > 1 { 3 } else { 0 };
+    3 + volumes as u64 * (of_each + looks * (1 + mask + filter) + weights + search + light)
+}
+
+impl View<'_> {
+    /// Whether the loops of the longest ray end where they should on a device that counts their turns.
+    ///
+    /// # Errors
+    /// [`Error::LoopsEnd`].
+    pub fn check_turns(
+        &self,
+        variant: &ShaderVariant,
+        volumes: usize,
+        functions: Functions,
+        max_loop_turns: u32,
+    ) -> Result<(), Error> {
+        // Of a slicer every invocation takes one sample.
+        if !self.settings.technique.casts_rays() {
+            return Ok(());
+        }
+        let wanted = self.longest_sample_count();
+        self.check_loops(variant, volumes, functions, max_loop_turns, wanted)
+    }
+
+    /// The same for rays that find the depth of slices, one volume's.
+    ///
+    /// # Errors
+    /// [`Error::LoopsEnd`].
+    pub fn check_depth_turns(
+        &self,
+        variant: &ShaderVariant,
+        functions: Functions,
+        max_loop_turns: u32,
+    ) -> Result<(), Error> {
+        let wanted = (self.settings.technique.desc().longest_sample_count)(self);
+        self.check_loops(variant, 1, functions, max_loop_turns, wanted)
+    }
+
+    fn check_loops(
+        &self,
+        variant: &ShaderVariant,
+        volumes: usize,
+        functions: Functions,
+        max_loop_turns: u32,
+        wanted: f64,
+    ) -> Result<(), Error> {
+        if max_loop_turns == u32::MAX {
+            return Ok(());
+        }
+        let turns = turns_per_sample(self.settings, variant, volumes, functions);
+        let clip = 2.0 * self.settings.clip_planes.len() as f64;
+        let limit = (f64::from(max_loop_turns) - SPARE - clip).max(0.0) / turns as f64;
+        if wanted <= limit {
+            return Ok(());
+        }
+        let is_by_voxels = self.settings.technique.draws_stacks();
+        let samples_per_voxel =
+            (!is_by_voxels).then(|| self.settings.samples_per_voxel * limit / wanted);
+        Err(Error::LoopsEnd {
+            wanted,
+            limit,
+            samples_per_voxel,
+        })
+    }
+}

@@ -1,0 +1,559 @@
+//! The injected faults, and the case that must see each.
+
+use super::Fault::{self, Shader, State as Changed};
+use super::State;
+use ash::vk;
+use vk::{BlendFactor as Factor, BlendOp as Op};
+
+const CASTER: &str = "raycast.ray.composite.ramp.linear_fetch.u16.perspective";
+const SAMPLED: &str = "raycast.planes.mip.ramp.linear.u16.perspective";
+const PLANES: &str = "slices_3d.over.composite.ramp.linear_fetch.u16.perspective";
+const UNDER: &str = "slices_3d.under.composite.ramp.linear_fetch.u16.perspective";
+const STACK: &str = "slices_2d.over.composite.ramp.linear_fetch.u16.perspective";
+
+/// What is wrong, how, and the case that must see it.
+pub const FAULTS: &[(&str, Fault, &str)] = &[
+    (
+        "over blends by the target's alpha",
+        Changed(State::Factor(
+            Factor::ONE_MINUS_SRC_ALPHA,
+            Factor::ONE_MINUS_DST_ALPHA,
+        )),
+        PLANES,
+    ),
+    (
+        "over keeps all of the target",
+        Changed(State::Factor(Factor::ONE_MINUS_SRC_ALPHA, Factor::ONE)),
+        PLANES,
+    ),
+    (
+        "under blends by the source's alpha",
+        Changed(State::Factor(
+            Factor::ONE_MINUS_DST_ALPHA,
+            Factor::ONE_MINUS_SRC_ALPHA,
+        )),
+        UNDER,
+    ),
+    (
+        "the source is multiplied by its alpha once more",
+        Changed(State::Factor(Factor::ONE, Factor::SRC_ALPHA)),
+        PLANES,
+    ),
+    (
+        "alphas forget what was there",
+        Changed(State::AlphaFactor(
+            Factor::ONE_MINUS_SRC_ALPHA,
+            Factor::ZERO,
+        )),
+        "probe.blend.over.rgba32_sfloat.instances.8",
+    ),
+    (
+        "MAX is MIN",
+        Changed(State::BlendOp(Op::MAX, Op::MIN)),
+        "slices_3d.mip.ramp.nearest.u16.perspective",
+    ),
+    (
+        "MIN is MAX",
+        Changed(State::BlendOp(Op::MIN, Op::MAX)),
+        "probe.blend.min.rgba8_unorm.instances.8",
+    ),
+    (
+        "MAX adds",
+        Changed(State::BlendOp(Op::MAX, Op::ADD)),
+        "probe.blend.max.rgba16_sfloat.triangles.8",
+    ),
+    (
+        "ADD subtracts",
+        Changed(State::BlendOp(Op::ADD, Op::REVERSE_SUBTRACT)),
+        "probe.blend.add.rgba32_sfloat.instances.64",
+    ),
+    ("nothing is blended", Changed(State::NoBlending), STACK),
+    (
+        "alpha is not written",
+        Changed(State::ColorsOnly),
+        "probe.blend.replace.rgba8_unorm.instances.1",
+    ),
+    (
+        "triangles that go round one way are culled",
+        Changed(State::Cull(vk::CullModeFlags::BACK)),
+        "probe.raster.cover.*",
+    ),
+    (
+        "triangles that go round the other way are culled",
+        Changed(State::Cull(vk::CullModeFlags::FRONT)),
+        "probe.raster.cover.*",
+    ),
+    (
+        "the viewport lies a pixel to the right",
+        Changed(State::Viewport([1.0, 0.0, 0.0, 0.0])),
+        "probe.raster.cover.clockwise",
+    ),
+    (
+        "the viewport is a pixel narrower",
+        Changed(State::Viewport([0.0, 0.0, -1.0, 0.0])),
+        "probe.raster.shared_edges.0",
+    ),
+    (
+        "y points up",
+        Changed(State::UpsideDown),
+        "probe.raster.cover.clockwise",
+    ),
+    (
+        "the scissor misses a column",
+        Changed(State::ScissorNarrower),
+        "probe.raster.shared_edges.0",
+    ),
+    (
+        "the last instance is not drawn",
+        Changed(State::LastInstanceDropped),
+        "probe.blend.over.rgba32_sfloat.instances.8",
+    ),
+    (
+        "the first instance is not drawn",
+        Changed(State::FirstInstanceDropped),
+        "probe.blend.add.rgba16_sfloat.instances.8",
+    ),
+    (
+        "the last triangle is not drawn",
+        Changed(State::LastTriangleDropped),
+        "probe.raster.shared_edges.1",
+    ),
+    (
+        "everything is drawn twice",
+        Changed(State::DrawnTwice),
+        "probe.raster.shared_edges.2",
+    ),
+    (
+        "the last workgroup along x is not run",
+        Changed(State::LastGroupDropped(0)),
+        "probe.compute.dispatch.most_along_x",
+    ),
+    (
+        "the last workgroup along y is not run",
+        Changed(State::LastGroupDropped(1)),
+        "probe.store.rgba32_sfloat",
+    ),
+    (
+        "the last workgroup along z is not run",
+        Changed(State::LastGroupDropped(2)),
+        "probe.compute.dispatch.most_along_z",
+    ),
+    (
+        "clamp is repeat",
+        Changed(State::Address(vk::SamplerAddressMode::REPEAT)),
+        "probe.filter.3d.linear.r16_unorm.beyond_edges",
+    ),
+    (
+        "clamp is mirrored repeat",
+        Changed(State::Address(vk::SamplerAddressMode::MIRRORED_REPEAT)),
+        "probe.filter.3d.linear.r32_sfloat.beyond_edges",
+    ),
+    (
+        "clamp is a border",
+        Changed(State::Address(vk::SamplerAddressMode::CLAMP_TO_BORDER)),
+        "probe.filter.2d_array.linear.r16_unorm.beyond_edges",
+    ),
+    (
+        "linear is nearest",
+        Changed(State::SampledBy(vk::Filter::LINEAR, vk::Filter::NEAREST)),
+        SAMPLED,
+    ),
+    (
+        "nearest is linear",
+        Changed(State::SampledBy(vk::Filter::NEAREST, vk::Filter::LINEAR)),
+        "probe.filter.3d.nearest.r16_unorm.random",
+    ),
+    (
+        "the last column of a texture is not copied",
+        Changed(State::LastColumnNotCopied),
+        "probe.fetch.r16_unorm.every_code",
+    ),
+    (
+        "the last slice of a texture is not copied",
+        Changed(State::LastSliceNotCopied),
+        "probe.fetch.r8_unorm.every_code",
+    ),
+    (
+        "pictures come back a texel off",
+        Changed(State::ReadbackOneTexelOff),
+        CASTER,
+    ),
+    (
+        "targets are cleared to something else",
+        Changed(State::ClearedTo(0.25)),
+        PLANES,
+    ),
+    (
+        "buffers are filled with something else",
+        Changed(State::FillsWith(1)),
+        "probe.memory.aliased_buffers",
+    ),
+    (
+        "a timeline is ahead of itself",
+        Changed(State::CountersAhead),
+        "probe.timeline_semaphore",
+    ),
+    (
+        "a wrong exponent of opacity",
+        Shader(
+            "lib/opacity.wgsl",
+            "1.0 - exp(-depth)",
+            "1.0 - exp(-1.01 * depth)",
+        ),
+        CASTER,
+    ),
+    (
+        "opacity is depth",
+        Shader("lib/opacity.wgsl", "1.0 - exp(-depth)", "min(depth, 1.0)"),
+        STACK,
+    ),
+    (
+        "the last segment of a ray is dropped",
+        Shader("lib/lattice_ray.wgsl", "i32(full) + 1", "i32(full)"),
+        CASTER,
+    ),
+    (
+        "the last segment is as long as the others",
+        Shader(
+            "lib/lattice_ray.wgsl",
+            "let length = max(back - front, 0.0);",
+            "let length = frame.step_world;",
+        ),
+        "raycast.ray.composite.homogeneous.linear_fetch.u16.perspective",
+    ),
+    (
+        "samples lie at the front of their segments",
+        Shader(
+            "lib/lattice_ray.wgsl",
+            "(f32(k) + 0.5) * frame.step_world, frame",
+            "f32(k) * frame.step_world, frame",
+        ),
+        CASTER,
+    ),
+    (
+        "planes lie half a step off",
+        Shader(
+            "lib/ray.wgsl",
+            "((f32(k) + 0.5) * frame.step_world - dot",
+            "(f32(k) * frame.step_world - dot",
+        ),
+        PLANES,
+    ),
+    (
+        "slices are as long at the edge of the picture as in the middle",
+        Shader(
+            "lib/ray.wgsl",
+            "return frame.step_world / dot(frame.forward, world.direction);",
+            "return frame.step_world;",
+        ),
+        PLANES,
+    ),
+    (
+        "stacks have samples of length one",
+        Shader("slices_2d.wgsl", "1.0 / abs(slope)", "1.0"),
+        STACK,
+    ),
+    (
+        "directions are not of length one",
+        Shader(
+            "lib/ray.wgsl",
+            "direction_of(frame.direction + place.x * frame.direction_dx + place.y * frame.direction_dy)",
+            "frame.direction + place.x * frame.direction_dx + place.y * frame.direction_dy",
+        ),
+        CASTER,
+    ),
+    (
+        "one face of the box is not seen",
+        Shader("lib/ray.wgsl", "leave.y), leave.z)", "leave.y), leave.x)"),
+        "raycast.ray.composite.homogeneous.linear_fetch.u16.orthographic",
+    ),
+    (
+        "fetches are weighed half a texel off",
+        Shader(
+            "lib/filter_linear_fetch.wgsl",
+            "fract(voxel - 0.5)",
+            "fract(voxel)",
+        ),
+        CASTER,
+    ),
+    (
+        "the sampler is asked half a texel off",
+        Shader(
+            "lib/filter_linear.wgsl",
+            "(voxel - frame.brick_origin)",
+            "(voxel + 0.5 - frame.brick_origin)",
+        ),
+        SAMPLED,
+    ),
+    (
+        "axes of the sampler are swapped",
+        Shader(
+            "lib/filter_linear.wgsl",
+            "volume_sampler, texture, 0.0",
+            "volume_sampler, texture.yxz, 0.0",
+        ),
+        SAMPLED,
+    ),
+    (
+        "axes inside of a slice are swapped",
+        Shader(
+            "lib/stack_linear_fetch.wgsl",
+            "fract(in_stack(place.voxel).xy - 0.5)",
+            "fract(in_stack(place.voxel).yx - 0.5)",
+        ),
+        STACK,
+    ),
+    (
+        "codes are cut off and not rounded",
+        Shader("lib/value.wgsl", "round(code)", "floor(code)"),
+        "raycast.ray.mip.ramp.nearest.u16.*|raycast.ray.mip.ramp.nearest.u8.*",
+    ),
+    (
+        "signed codes keep their offset",
+        Shader(
+            "lib/value.wgsl",
+            "coding.is_integer != 0u) + coding.offset",
+            "coding.is_integer != 0u)",
+        ),
+        "raycast.ray.mip.ramp.nearest.i16.orthographic",
+    ),
+    (
+        "the intercept is forgotten",
+        Shader(
+            "lib/value.wgsl",
+            "code * coding.slope + coding.intercept",
+            "code * coding.slope",
+        ),
+        "raycast.ray.xray.ramp.nearest.f32.perspective",
+    ),
+    (
+        "the nearest voxel is the next one",
+        Shader("lib/nearest.wgsl", "floor(voxel)", "round(voxel)"),
+        "raycast.ray.mip.ramp.nearest.f32.perspective",
+    ),
+    (
+        "the maximum is the minimum",
+        Shader(
+            "lib/mode_mip.wgsl",
+            "value > so_far.value",
+            "value < so_far.value",
+        ),
+        "raycast.ray.mip.ramp.linear_fetch.f32.perspective",
+    ),
+    (
+        "sums do not count lengths",
+        Shader(
+            "lib/mode_sum.wgsl",
+            "so_far.value + value * segment.length",
+            "so_far.value + value",
+        ),
+        "raycast.ray.xray.ramp.linear_fetch.f32.perspective",
+    ),
+    (
+        "slices sum up without lengths",
+        Shader(
+            "lib/blend_number.wgsl",
+            "value * length_world, length_world",
+            "value, length_world",
+        ),
+        "slices_3d.xray.ramp.linear_fetch.f32.perspective",
+    ),
+    (
+        "a mean is a sum",
+        Shader("lib/resolve_mean.wgsl", "found.x / found.y", "found.x"),
+        "raycast.ray.average.ramp.linear_fetch.f32.perspective",
+    ),
+    (
+        "the reference length is forgotten",
+        Shader("lib/extinction.wgsl", ") / reference_length", ")"),
+        "reference.raycast.ray.composite.plain.linear_fetch.perspective",
+    ),
+    (
+        "colours are decoded by 2.2",
+        Shader("lib/color.wgsl", "vec3(2.4)", "vec3(2.2)"),
+        "reference.raycast.ray.mip.plain.linear_fetch.perspective",
+    ),
+    (
+        "functions are steps",
+        Shader("lib/points.wgsl", "left + part * (right - left)", "left"),
+        CASTER,
+    ),
+    (
+        "colours are not multiplied by opacity",
+        Shader(
+            "lib/mode_composite.wgsl",
+            "so_far.transmittance * opacity * material.color",
+            "so_far.transmittance * material.color",
+        ),
+        CASTER,
+    ),
+    (
+        "over for under in a ray",
+        Shader(
+            "lib/mode_composite.wgsl",
+            "next.color += so_far.transmittance * opacity * material.color",
+            "next.color = (1.0 - opacity) * so_far.color + opacity * material.color",
+        ),
+        CASTER,
+    ),
+    (
+        "rays end when half of the light is gone",
+        Shader(
+            "lib/mode_composite.wgsl",
+            "so_far.transmittance < frame.termination",
+            "so_far.transmittance < 0.5",
+        ),
+        CASTER,
+    ),
+    (
+        "holes are seen",
+        Shader(
+            "lib/holes_mask.wgsl",
+            "|| all_valid(validity, footprint)",
+            "|| true",
+        ),
+        "reference.raycast.ray.composite.holes.linear_fetch.perspective",
+    ),
+    (
+        "the specular light is too wide",
+        Shader(
+            "lib/shade.wgsl",
+            "pow(min(facing, 1.0), frame.shininess)",
+            "pow(min(facing, 1.0), 0.9 * frame.shininess)",
+        ),
+        "reference.raycast.ray.composite.lit.linear_fetch.perspective",
+    ),
+    (
+        "a wrong weight of the cubic",
+        Shader(
+            "lib/kernel.wgsl",
+            "2.0 / 3.0 - 0.5 * f * f",
+            "2.0 / 3.0 - 0.49 * f * f",
+        ),
+        "reference.raycast.ray.mip.plain.cubic.perspective",
+    ),
+    (
+        "weights of three bits",
+        Shader(
+            "probe/filter_3d.wgsl",
+            "places.d[id.x].xyz",
+            "floor(32.0 * places.d[id.x].xyz) / 32.0",
+        ),
+        "probe.filter.3d.linear.r16_unorm.along_x",
+    ),
+    (
+        "weights of six bits that are said to be more",
+        Shader(
+            "probe/filter_array.wgsl",
+            "place.xy,",
+            "floor(256.0 * place.xy) / 256.0,",
+        ),
+        "probe.filter.2d_array.linear.r16_unorm.along_y",
+    ),
+    (
+        "layers of a stack are one off",
+        Shader(
+            "probe/filter_array.wgsl",
+            "i32(place.z)",
+            "i32(place.z) + 1",
+        ),
+        "probe.filter.2d_array.linear.r16_unorm.centers",
+    ),
+    (
+        "a barrier in a workgroup is missing",
+        Shader(
+            "probe/shared_memory.wgsl",
+            "        workgroupBarrier();\n        sum += other;",
+            "        sum += other;",
+        ),
+        "probe.compute.shared_memory",
+    ),
+    (
+        "both barriers of a step are missing",
+        Shader(
+            "probe/shared_memory.wgsl",
+            "        workgroupBarrier();\n",
+            "",
+        ),
+        "probe.compute.shared_memory",
+    ),
+    (
+        "an atomic is none",
+        Shader(
+            "probe/atomics.wgsl",
+            "atomicAdd(&together.next, 1u)",
+            "atomicLoad(&together.next); atomicStore(&together.next, tickets.d[id.x] + 1u)",
+        ),
+        "probe.compute.atomics",
+    ),
+    (
+        "an atomic maximum adds",
+        Shader("probe/atomics.wgsl", "atomicMax(", "atomicAdd("),
+        "probe.compute.atomics",
+    ),
+    (
+        "exp is 2^x",
+        Shader("probe/math.wgsl", "exp(-x)", "exp2(-x)"),
+        "probe.math.exp",
+    ),
+    (
+        "sqrt has eleven bits",
+        Shader(
+            "probe/math.wgsl",
+            "sqrt(x), inverse",
+            "bitcast<f32>(bitcast<u32>(sqrt(x)) & 0xfffff000u), inverse",
+        ),
+        "probe.math.sqrt",
+    ),
+    (
+        "floats are stored as halves",
+        Shader(
+            "probe/store.wgsl",
+            "numbers.d[id.y * dims.x + id.x]",
+            "bitcast<vec4<f32>>(bitcast<vec4<u32>>(numbers.d[id.y * dims.x + id.x]) & vec4(0xffffe000u))",
+        ),
+        "probe.store.rgba32_sfloat",
+    ),
+];
+
+/// The same on a device of the least limits, which blends slices in 16-bit floats.
+pub const CLAMPED_FAULTS: &[(&str, Fault, &str)] = &[
+    (
+        "a batch does not hide those behind it",
+        Shader("lib/merge_over.wgsl", "(1.0 - batch.w) * before", "before"),
+        "slices_3d.over.composite.homogeneous.linear_fetch.u16.perspective",
+    ),
+    (
+        "a batch is not hidden by those before it",
+        Shader("lib/merge_under.wgsl", "(1.0 - before.w) * batch", "batch"),
+        "slices_3d.under.composite.homogeneous.linear_fetch.u16.perspective",
+    ),
+    (
+        "over keeps all of the target",
+        Changed(State::Factor(Factor::ONE_MINUS_SRC_ALPHA, Factor::ONE)),
+        PLANES,
+    ),
+    (
+        "under blends by the source's alpha",
+        Changed(State::Factor(
+            Factor::ONE_MINUS_DST_ALPHA,
+            Factor::ONE_MINUS_SRC_ALPHA,
+        )),
+        UNDER,
+    ),
+    ("nothing is blended", Changed(State::NoBlending), STACK),
+    (
+        "matter is a tenth denser",
+        Shader(
+            "lib/opacity.wgsl",
+            "1.0 - exp(-depth)",
+            "1.0 - exp(-1.1 * depth)",
+        ),
+        STACK,
+    ),
+    (
+        "stacks have samples of length one",
+        Shader("slices_2d.wgsl", "1.0 / abs(slope)", "1.0"),
+        STACK,
+    ),
+];
