@@ -289,7 +289,7 @@ LIBDIR ?= $(PREFIX)/lib
 VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -1)
 
 # Programs look for the name that the library says of itself; it changes where the interface does.
-SONAME := libstratavox.so.0
+SONAME := libstratavox.so.1
 
 capi:
 	$(CARGO) rustc --locked --release --lib --no-default-features --features capi --crate-type cdylib,staticlib -- \

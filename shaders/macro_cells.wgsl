@@ -1,6 +1,6 @@
 // Which values filters can make in a macro cell: smallest and largest of all voxels that a sample in it may touch, its
-// own and an apron around them (`algorithms.md` 3: without, border samples would be called empty). Several threads a
-// cell: they go along rows of texels beside each other.
+// own and a halo around them (without it, border samples would be called empty). Several threads a cell go along rows of
+// texels beside each other.
 // Where voxels have no value, what stands there counts, though no sample does.
 // CPU reference: src/resident/cell_ranges.rs.
 
@@ -25,9 +25,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_
     let cell = vec3(id.x / CELL_THREADS, id.yz);
     let thread = i32(place.x);
     let own = cell_grid.origin + vec3<i32>(cell * CELL_VOXELS);
-    let apron = vec3(cell_grid.apron);
-    let low = max(own - apron, cell_grid.stored_min) - cell_grid.stored_min;
-    let high = min(own + i32(CELL_VOXELS) - 1 + apron, cell_grid.stored_last) - cell_grid.stored_min;
+    let halo = vec3(cell_grid.halo);
+    let low = max(own - halo, cell_grid.stored_min) - cell_grid.stored_min;
+    let high = min(own + i32(CELL_VOXELS) - 1 + halo, cell_grid.stored_last) - cell_grid.stored_min;
     let size = max(high - low + 1, vec3(1));
     let is_cell = all(cell < cell_grid.cells);
     let rows = select(0, size.y * size.z, is_cell);

@@ -9,7 +9,7 @@ struct CellGrid {
     first: u32,
     // The brick's first voxel, and what its texture holds.
     origin: vec3<i32>,
-    apron: i32,
+    halo: i32,
     stored_min: vec3<i32>,
     code_scale: f32,
     stored_last: vec3<i32>,

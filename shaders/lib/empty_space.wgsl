@@ -4,7 +4,7 @@
 //
 // Where the nearest cell with matter is `distance` cells away, nothing is seen until the ray leaves the cube of cells that
 // are nearer. What is left out would have added nothing at all, and what comes next is a sample of the lattice: the
-// picture is the same to the bit (`sampling.md` 5). The apron of the cells has half a voxel to spare, more than f32
+// picture is the same to the bit (`sampling.md` 5). The halo of the cells has half a voxel to spare, more than f32
 // loses on the way.
 
 #import ray

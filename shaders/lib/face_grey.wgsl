@@ -3,7 +3,7 @@
 #import faces
 #import color
 
-// Greys leave as negative sRGB numbers, and become colours where the ray ends: powers are dear, and drivers on CPUs run
+// Greys leave as negative sRGB numbers, and become colours where the ray ends: powers are expensive, and drivers on CPUs run
 // both sides of an `if` for each sample.
 fn on_face(own: Classified, value: f32) -> Classified {
     if frame.cut_faces != FACES_GREY {

@@ -1,4 +1,4 @@
-// Classification by the law itself: sigma = -ln(1 - min(opacity, 1 - 2^-12)) / d0.
+// Classification by the specification itself: sigma = -ln(1 - min(opacity, 1 - 2^-12)) / d0.
 
 #import points
 #import extinction

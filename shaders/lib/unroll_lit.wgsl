@@ -1,4 +1,4 @@
-// Light is dear, and only what is seen has any: each ray goes on to its next sample that shows something, in a loop of
+// Light is expensive, and only what is seen has any: each ray goes on to its next sample that shows something, in a loop of
 // its own, and then those of all rays that are walked side by side are lit together. What lies between adds nothing and
 // is counted.
 

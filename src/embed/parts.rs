@@ -13,7 +13,7 @@ use super::frame::{Begun, Cut};
 use super::pieces::PIECE_MS;
 use super::{Error, FrameInfo, Renderer};
 use crate::gpu::{Blocks, Load, Target, Tile, Use, begin_rendering, end_rendering};
-use crate::technique::cost::{looks_of_dearest_pixel, looks_of_picture, ms_of_looks};
+use crate::technique::cost::{fetches_of_costliest_pixel, fetches_of_picture, ms_of_fetches};
 use crate::technique::gather::Part;
 use ash::vk;
 
@@ -43,15 +43,15 @@ impl Renderer {
         let (frame, recorded) = self.prepare(shot)?;
         let slices = recorded.picture.iter().map(|part| part.slices).sum();
         let view = self.view(shot);
-        let ms = |looks| ms_of_looks(&self.gpu, looks);
-        let expected_ms = ms(looks_of_picture(&view, slices, 1));
+        let ms = |looks| ms_of_fetches(&self.gpu, looks);
+        let expected_ms = ms(fetches_of_picture(&view, slices, 1));
         // A slice is drawn twice, and both are counted.
         let a_step = expected_ms / f64::from(slices.max(1));
         let bands = (a_step / PIECE_MS).ceil().max(1.0) as u32;
         let cut = match self.steps(frame, &recorded, bands) {
             Some(count) => Cut::Steps { count, bands },
             None => {
-                let side = side_of_block(ms(looks_of_dearest_pixel(&view, slices)));
+                let side = side_of_block(ms(fetches_of_costliest_pixel(&view, slices)));
                 let count = self.extent.map(|n| n.div_ceil(side));
                 Cut::Blocks(Blocks::new(self.extent, count))
             }

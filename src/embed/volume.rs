@@ -149,12 +149,12 @@ impl Volume {
         settings: &Settings,
     ) -> Result<(), Error> {
         let copy = &self.copies[0];
-        let apron = cells_apron(settings);
+        let halo = cells_halo(settings);
         let cells = match gpu.is_cpu() && copy.spline().is_none() {
-            true => MacroCells::of_voxels(gpu, copy, apron, voxels)?,
-            false => MacroCells::new(gpu, copy, apron)?,
+            true => MacroCells::of_voxels(gpu, copy, halo, voxels)?,
+            false => MacroCells::new(gpu, copy, halo)?,
         };
-        self.cells = Some((cells, apron));
+        self.cells = Some((cells, halo));
         Ok(())
     }
 
@@ -189,15 +189,15 @@ impl Volume {
 
     /// Whether the cells know of all voxels that samples of `view` touch.
     pub(super) fn knows_enough_for(&self, view: &View) -> bool {
-        let cells = self.cells.as_ref().zip(view.apron());
+        let cells = self.cells.as_ref().zip(view.halo());
         cells.is_some_and(|((_, known), wanted)| known.covers(wanted))
     }
 
     /// As on devices that do not compute on the CPU, before the upload.
     #[cfg(test)]
     pub(super) fn find_cells_on_device(&mut self, gpu: &Arc<Gpu>) -> Result<(), Error> {
-        if let Some((cells, apron)) = &mut self.cells {
-            *cells = MacroCells::new(gpu, &self.copies[0], *apron)?;
+        if let Some((cells, halo)) = &mut self.cells {
+            *cells = MacroCells::new(gpu, &self.copies[0], *halo)?;
         }
         Ok(())
     }
@@ -211,7 +211,7 @@ impl Volume {
             });
         }
         match &self.cells {
-            Some((_, apron)) if *apron != cells_apron(settings) => Err(Error::OtherClass {
+            Some((_, halo)) if *halo != cells_halo(settings) => Err(Error::OtherClass {
                 made: "a volume for another filter".into(),
                 wanted: what(settings),
             }),
@@ -222,11 +222,11 @@ impl Volume {
 
 /// What cells are to know of. Slabs reach farther than the filter, and how far depends on the camera too: where a voxel
 /// is not enough, nothing is left out of the picture.
-fn cells_apron(settings: &Settings) -> Halo {
-    let apron = settings.apron();
+fn cells_halo(settings: &Settings) -> Halo {
+    let halo = settings.halo();
     Halo {
-        voxels: apron.voxels + u32::from(settings.preintegrated),
-        ..apron
+        voxels: halo.voxels + u32::from(settings.preintegrated),
+        ..halo
     }
 }
 

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! A watchdog ends what holds a device for seconds (2 s on Windows), and a desktop stands still meanwhile. What
-//! follows may be dearer than what was measured: so work only doubles. Other programs make single times long: one of
+//! follows may be more expensive than what was measured: so work only doubles. Other programs make single times long: one of
 //! them alone does not make all that follows small.
 
 use std::ops::Range;
@@ -14,7 +14,7 @@ use std::ops::Range;
 /// How long a submission shall take.
 pub const TARGET_MS: f64 = 100.0;
 
-/// A submission that takes so many times what it should tells that the work has become dearer.
+/// A submission that takes so many times what it should tells that the work has become more expensive.
 const TOO_LONG: f64 = 1.5;
 
 /// Some work, counted in units that may lie in different submissions.
@@ -145,7 +145,7 @@ mod tests {
     fn a_part_a_hundred_times_as_dear_as_the_rest_does_not_make_one_long_submission() {
         use crate::gpu::Blocks;
         // Rows of a picture of 1024 x 1024 pixels, cheap but for a band of any height anywhere; first guesses are for
-        // the dear ones, as those of pictures are for rays that skip nothing.
+        // the expensive ones, as those of pictures are for rays that skip nothing.
         let blocks = Blocks::new([1024, 1024], [1, 128]);
         let rows = blocks.count();
         for height in [1, 2, 3, 5, 8, 16, 40, 128] {

@@ -5,7 +5,7 @@ use super::time_slices::{TimeSlices, Work};
 use crate::gpu::Headless;
 use crate::resident::GpuTransfer;
 use crate::scene::Scene;
-use crate::technique::cost::ms_of_looks;
+use crate::technique::cost::ms_of_fetches;
 use crate::technique::{
     ClipPlane, Filter, GradientFilter, Inputs, LightPlan, LightVolume, Part, Skip, parameter_ring,
 };
@@ -78,7 +78,7 @@ pub fn made_light(
     let of_nodes = plan.node_count() as f64 * of_node;
     let runs = light.group_runs(bound.len())?;
     for (run, looks) in runs.into_iter().zip([of_cells, of_nodes]) {
-        let work = Work::beside(run, ms_of_looks(&gpu, looks));
+        let work = Work::beside(run, ms_of_fetches(&gpu, looks));
         slices.run(device, None, work, |cmd, _, part| {
             // SAFETY: recorded outside rendering, parts in order; `run` waits, and all that is bound lives meanwhile.
             unsafe { light.record_part(cmd, bricks(), part) }

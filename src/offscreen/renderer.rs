@@ -34,7 +34,7 @@ use crate::gpu::{Headless, ParameterRing, Timer};
 use crate::picture::{ColorSpace, LayerKind, Picture};
 use crate::resident::{GpuTransfer, GpuVolume};
 use crate::scene::{Scene, positions_in_pixel};
-use crate::technique::cost::ms_of_looks;
+use crate::technique::cost::ms_of_fetches;
 use crate::technique::gather::{CanvasDesc, PICTURE};
 use crate::technique::{
     self, Functions, InPixel, LightPlan, LightVolume, Mode, Part, SampleInputs, ShaderVariant,
@@ -51,7 +51,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use streaming::{BRICKS_AT_ONCE, Streaming};
 
-/// A resolve reads one texel and classifies at most once, beside which a sample of a volume is dear.
+/// A resolve reads one texel and classifies at most once, beside which a sample of a volume is expensive.
 const LOOKS_OF_A_RESOLVE: f64 = 0.5;
 
 /// A picture and what it took.
@@ -366,7 +366,7 @@ impl<'v> Renderer<'v> {
     fn resolve_ms(&self) -> f64 {
         let targets = self.targets.as_ref().expect("prepared");
         let pixels = targets.extent().map(f64::from).iter().product::<f64>();
-        ms_of_looks(self.device.gpu(), LOOKS_OF_A_RESOLVE * pixels)
+        ms_of_fetches(self.device.gpu(), LOOKS_OF_A_RESOLVE * pixels)
     }
 
     /// The colours of what was gathered; the parameters are still in the ring.

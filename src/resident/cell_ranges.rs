@@ -29,7 +29,7 @@ impl CellBox {
             max: grid.stored_last.map(|n| n as u32 + 1),
         };
         let seen = region.and(&stored)?;
-        // Cell c looks at voxels from origin + 8 c - apron to origin + 8 c + 7 + apron.
+        // Cell c looks at voxels from origin + 8 c - halo to origin + 8 c + 7 + halo.
         let side = CELL_VOXELS as i32;
         let cell = |voxel: i32, axis: usize| {
             let last = grid.cells[axis] as i32 - 1;
@@ -37,16 +37,16 @@ impl CellBox {
         };
         let at = |voxel: u32, beyond: i32, axis: usize| cell(voxel as i32 + beyond, axis);
         Some(Self {
-            min: std::array::from_fn(|k| at(seen.min[k], -grid.apron, k)),
-            max: std::array::from_fn(|k| at(seen.max[k] - 1, grid.apron, k) + 1),
+            min: std::array::from_fn(|k| at(seen.min[k], -grid.halo, k)),
+            max: std::array::from_fn(|k| at(seen.max[k] - 1, grid.halo, k) + 1),
         })
     }
 
-    /// The voxels that they look at: their own and the apron, as far as the brick stores them.
+    /// The voxels that they look at: their own and the halo, as far as the brick stores them.
     pub fn looks_at(self, grid: &CellGrid) -> VoxelBox {
         let side = CELL_VOXELS as i32;
-        let first = |k: usize| grid.origin[k] + self.min[k] as i32 * side - grid.apron;
-        let end = |k: usize| grid.origin[k] + self.max[k] as i32 * side + grid.apron;
+        let first = |k: usize| grid.origin[k] + self.min[k] as i32 * side - grid.halo;
+        let end = |k: usize| grid.origin[k] + self.max[k] as i32 * side + grid.halo;
         VoxelBox {
             min: std::array::from_fn(|k| first(k).max(grid.stored_min[k]) as u32),
             max: std::array::from_fn(|k| end(k).min(grid.stored_last[k] + 1) as u32),
@@ -77,7 +77,7 @@ fn range_of(ends: [f32; 2], grid: &CellGrid) -> [f32; 2] {
     [low - beyond, high + beyond]
 }
 
-/// Smallest and largest code of each cell and its apron.
+/// Smallest and largest code of each cell and its halo.
 fn code_ranges<T: Copy + PartialOrd>(
     voxels: &[T],
     part: &VoxelPart,

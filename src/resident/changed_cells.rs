@@ -180,14 +180,14 @@ mod tests {
         let mut device = Headless::new(&DeviceChoice::Default, &Options::default())
             .expect("a Vulkan device (`make test` installs one)");
         let gpu = Arc::clone(device.gpu());
-        let apron = Halo {
+        let halo = Halo {
             voxels: 1,
             overshoot: 0.0,
             is_mixed: true,
         };
         let (old, new) = (volume(false), volume(true));
         let there = uploaded(&mut device, &gpu, &old);
-        let cells = MacroCells::new(&gpu, &there, apron).expect("cells");
+        let cells = MacroCells::new(&gpu, &there, halo).expect("cells");
         // SAFETY: outside rendering; `run` waits; the volume is uploaded.
         let before = found(&mut device, &cells, |cmd| unsafe { cells.record(cmd) });
         assert_eq!(cells.looks_at(REGION), REGION, "the device looks itself");
@@ -202,7 +202,7 @@ mod tests {
             }
         });
         let fresh = uploaded(&mut device, &gpu, &new);
-        let wanted = MacroCells::new(&gpu, &fresh, apron).expect("cells");
+        let wanted = MacroCells::new(&gpu, &fresh, halo).expect("cells");
         // SAFETY: as above.
         let wanted = found(&mut device, &wanted, |cmd| unsafe { wanted.record(cmd) });
         assert!(before != wanted && after == wanted);

@@ -1,7 +1,7 @@
 //! Macro cells: which values filters can make in each cube of 8^3 voxels, made once a volume is there.
 //!
 //! ```text
-//! volume -> MacroCells::record          ranges: least and most of a cell's voxels and an apron around them
+//! volume -> MacroCells::record          ranges: least and most of a cell's voxels and a halo around them
 //!        -> EmptySpace::record          rooms: how far away matter is, whenever the transfer function changes
 //! ```
 //!
@@ -88,12 +88,12 @@ impl MacroCells {
     ///
     /// # Errors
     /// Where the device gives no memory, or has no buffers of that size.
-    pub fn new(gpu: &Arc<Gpu>, volume: &GpuVolume, apron: Halo) -> Result<Self, Error> {
+    pub fn new(gpu: &Arc<Gpu>, volume: &GpuVolume, halo: Halo) -> Result<Self, Error> {
         let (name, values) = match volume.layout() {
             TextureLayout::Texture3d => ("macro_cells.box", "volume"),
             TextureLayout::Stack(_) => ("macro_cells.stack", "stack"),
         };
-        let mut made = Self::empty(gpu, volume, apron, Memory::Device)?;
+        let mut made = Self::empty(gpu, volume, halo, Memory::Device)?;
         let pipeline = ComputePipeline::new(gpu, shader(name))?;
         let ring = ring_of(gpu, &made.grids)?;
         let bound = volume.bricks().iter().map(|brick| {
@@ -124,12 +124,12 @@ impl MacroCells {
     pub fn of_voxels(
         gpu: &Arc<Gpu>,
         volume: &GpuVolume,
-        apron: Halo,
+        halo: Halo,
         voxels: &Volume,
     ) -> Result<Self, Error> {
         assert!(volume.spline().is_none(), "ranges of voxels");
         assert_eq!(volume.held.dims(), voxels.dims, "the same voxels");
-        let made = Self::empty(gpu, volume, apron, Memory::Upload)?;
+        let made = Self::empty(gpu, volume, halo, Memory::Upload)?;
         for grid in &made.grids {
             let part = VoxelPart {
                 held: volume.held,
@@ -146,13 +146,13 @@ impl MacroCells {
     fn empty(
         gpu: &Arc<Gpu>,
         volume: &GpuVolume,
-        apron: Halo,
+        halo: Halo,
         memory: Memory,
     ) -> Result<Self, Error> {
         let mut first = 0;
         let mut grids = Vec::new();
         for brick in volume.bricks() {
-            let grid = grid_of(volume, brick.cell.own, brick.cell.stored, apron, first);
+            let grid = grid_of(volume, brick.cell.own, brick.cell.stored, halo, first);
             first += grid.cells.iter().product::<u32>();
             grids.push(grid);
         }
@@ -270,7 +270,7 @@ fn grid_of(
     volume: &GpuVolume,
     own: VoxelBox,
     stored: VoxelBox,
-    apron: Halo,
+    halo: Halo,
     first: u32,
 ) -> CellGrid {
     let coding = volume.texel().coding;
@@ -279,7 +279,7 @@ fn grid_of(
         cells: own.dims().map(|n| n.div_ceil(CELL_VOXELS)),
         first,
         origin: signed(own.min),
-        apron: apron.voxels as i32,
+        halo: halo.voxels as i32,
         stored_min: signed(stored.min),
         stored_last: signed(stored.max.map(|n| n - 1)),
         code_scale: coding.scale,
@@ -287,9 +287,9 @@ fn grid_of(
         slope: coding.slope,
         intercept: coding.intercept,
         codes_are_integers: coding.is_integer.into(),
-        overshoot: apron.overshoot,
+        overshoot: halo.overshoot,
         // A sampler mixes integers with the precision of their format.
-        slack: if coding.is_integer && apron.is_mixed {
+        slack: if coding.is_integer && halo.is_mixed {
             coding.slope.abs()
         } else {
             0.0

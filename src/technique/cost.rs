@@ -24,7 +24,7 @@ const LONGEST_MS: f64 = 250.0;
 const MS_PER_LOOK_UNKNOWN: f64 = 1.25 * MS_PER_LOOK_ON_SLOWEST * TARGET_MS / LONGEST_MS;
 
 /// What so many looks are expected to take.
-pub fn ms_of_looks(gpu: &Gpu, looks: f64) -> f64 {
+pub fn ms_of_fetches(gpu: &Gpu, looks: f64) -> f64 {
     looks
         * match gpu.is_cpu() {
             true => MS_PER_LOOK_ON_PROCESSOR,
@@ -36,14 +36,14 @@ pub fn ms_of_looks(gpu: &Gpu, looks: f64) -> f64 {
 const RAYS: u32 = 16;
 
 /// Looks that one picture takes where nothing is skipped. `slices`: of a slicer, those of all bricks.
-pub fn looks_of_picture(view: &View, slices: u32, volumes: usize) -> f64 {
+pub fn fetches_of_picture(view: &View, slices: u32, volumes: usize) -> f64 {
     let [width, height] = view.extent_pixels.map(f64::from);
     let mean = looks_of_pixels(view, slices).sum::<f64>() / f64::from(RAYS * RAYS);
     mean * width * height * volumes as f64
 }
 
 /// The same of the pixel of one volume that takes most.
-pub fn looks_of_dearest_pixel(view: &View, slices: u32) -> f64 {
+pub fn fetches_of_costliest_pixel(view: &View, slices: u32) -> f64 {
     looks_of_pixels(view, slices).fold(0.0, f64::max)
 }
 

@@ -103,17 +103,17 @@ impl View<'_> {
 
     /// How far around a macro cell the voxels lie that samples touch which begin in it; `None` where that is too far to
     /// be worth knowing.
-    pub fn apron(&self) -> Option<Halo> {
-        let mut apron = self.settings.apron();
+    pub fn halo(&self) -> Option<Halo> {
+        let mut halo = self.settings.halo();
         if self.settings.preintegrated {
             // Both ends of a slab, from its middle.
             let reach = self.slab_reach().max_element();
             if reach.is_nan() || reach > LONGEST_SLAB_REACH {
                 return None;
             }
-            apron.voxels += reach.ceil() as u32;
+            halo.voxels += reach.ceil() as u32;
         }
-        Some(apron)
+        Some(halo)
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! settings.skippable(mix, function, ..)          what can be left out of such a picture
-//!     MacroCells::new(gpu, volume, settings.apron())     once a volume
+//!     MacroCells::new(gpu, volume, settings.halo())     once a volume
 //!     EmptySpace::new(gpu, &cells, &seen)                once a transfer function
 //! settings.skippable_in_all(functions)           the same of a mixture
 //!     EmptySpace::of_several(gpu, &[(&cells, &seen), ..])
@@ -45,7 +45,7 @@ pub enum Skippable {
 
 impl Settings {
     /// How far around a macro cell the filter looks.
-    pub fn apron(&self) -> Halo {
+    pub fn halo(&self) -> Halo {
         let voxels = match self.filter {
             Filter::Nearest | Filter::Linear => 1,
             _ => 2,

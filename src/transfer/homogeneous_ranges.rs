@@ -87,7 +87,7 @@ fn is_alike([low, high]: [Material; 2], tolerance: Tolerance) -> bool {
     (0..3).all(|c| apart(c) <= 0.5 * error) && apart(3) <= limit
 }
 
-/// The smallest and the largest of everything between two values. The law has its extremes at its points and at the
+/// The smallest and the largest of everything between two values. The specification has its extremes at its points and at the
 /// ends.
 fn extremes(
     function: &TransferFunction,

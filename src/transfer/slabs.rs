@@ -17,7 +17,7 @@
 //! whole cells between, the part of the last one. So values that are close lose no digits, and two values in one
 //! cell divide by nothing.
 //!
-//! The cells are those of [`super::Table`], and one more behind the last. Inside a cell the law is a line. Where it
+//! The cells are those of [`super::Table`], and one more behind the last. Inside a cell the specification is a line. Where it
 //! jumps there, a segment that ends in that cell misses a quarter of the jump over one cell at most; so the cells of a
 //! function that jumps where no cell begins are as small as 2^16 of them allow.
 
@@ -199,7 +199,7 @@ impl<'a> Law<'a> {
         [r * extinction, g * extinction, b * extinction, extinction]
     }
 
-    /// The law between control points, found by halving.
+    /// The specification between control points, found by halving.
     fn between<P, const C: usize>(
         &self,
         points: &[P],

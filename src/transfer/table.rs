@@ -1,7 +1,7 @@
 //! A transfer function as a table for nearest lookup.
 //!
 //! ```text
-//! i = clamp(floor((value - first) scale), 0, n - 1)       entry i holds the law at the middle of cell i
+//! i = clamp(floor((value - first) scale), 0, n - 1)       entry i holds the specification at the middle of cell i
 //! ```
 //!
 //! A cell is w = 1/scale wide, a power of two, and `first` is a multiple of w. So a control point at a whole
@@ -9,7 +9,7 @@
 //! its neighbour's colour. At least one cell lies before the first control point and one behind the last:
 //! beyond the ends the table is exact too.
 //!
-//! Where the law rises by s per unit of value, an entry is off by at most s w / 2; w is the largest that
+//! Where the specification rises by s per unit of value, an entry is off by at most s w / 2; w is the largest that
 //! keeps opacity and sRGB numbers within 1/4096, the rounding of `value - first` in f32 (2^-6 of a cell at
 //! most) counted in. Only the entry that holds a jump between multiples of w is off by more.
 
@@ -21,7 +21,7 @@ use crate::real::Real;
 pub const MIN_ENTRIES: usize = 1024;
 /// Entries of the largest table.
 pub const MAX_ENTRIES: usize = 262_144;
-/// How far an entry may be from the law.
+/// How far an entry may be from the specification.
 const TOLERANCE: f64 = 1.0 / 4096.0;
 /// Cells between a value and the middle of the cell it finds, at most.
 const CELLS_OFF: f64 = 0.5 + 1.0 / 64.0;
@@ -35,7 +35,7 @@ pub struct Table {
     pub first: f32,
     /// Entries per unit of value; a power of two.
     pub scale: f32,
-    /// How far opacity and sRGB numbers are from the law, jumps left out. Above 1/4096 only where a ramp is
+    /// How far opacity and sRGB numbers are from the specification, jumps left out. Above 1/4096 only where a ramp is
     /// too steep for [`MAX_ENTRIES`].
     pub off_by: f64,
 }
@@ -144,7 +144,7 @@ pub fn classify_by_table<N: Real>(table: &Table, value: N) -> [N; 4] {
     table.entries[(cell.max(0.0) as usize).min(last)].map(n)
 }
 
-/// Where the law jumps.
+/// Where the specification jumps.
 fn jumps(function: &TransferFunction) -> Vec<f64> {
     let step = function.interpolation == Interpolation::Step;
     let of = |pair: [f64; 2]| (step || pair[0] == pair[1]).then_some(pair[1]);

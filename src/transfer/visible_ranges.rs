@@ -5,8 +5,8 @@
 //!                                                                           where next(a) > b
 //! ```
 //!
-//! Cells are those of the function's [`super::Table`]; one counts as seen where the law has any opacity in it, ends
-//! included, so that neither the table nor the law itself shows what is called unseen.
+//! Cells are those of the function's [`super::Table`]; one counts as seen where the specification has any opacity in it, ends
+//! included, so that neither the table nor the specification itself shows what is called unseen.
 //!
 //! A contour around v of half-width r (in smallest spacings h, [`super::GradientTransfer`]) reaches r h |gradient| far. Where all
 //! values around a sample are in a range, its gradient is at most s (high - low) / h, s of the grid and of how

@@ -21,7 +21,7 @@ use stratavox::gpu::{Caps, DeviceChoice, Headless, Options, PipelineCache, Valid
 /// One lie at a time is told in a process.
 static ONE: Mutex<()> = Mutex::new(());
 
-fn stand(caps: Caps) -> TestBed {
+fn bed(caps: Caps) -> TestBed {
     TestBed::new(1, move |lower| {
         let options = Options {
             caps: lower(caps),

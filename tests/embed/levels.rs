@@ -370,7 +370,7 @@ fn a_volume_whose_cells_are_for_another_filter_is_refused() {
     wide.settings.filter = stratavox::technique::Filter::CubicSmooth;
     let function = Some(&linear.transfer);
     let made = Renderer::new(host.gpu(), &volume, function, wide, linear.extent, &[]);
-    let found = made.map(drop).expect_err("another apron").to_string();
+    let found = made.map(drop).expect_err("another halo").to_string();
     assert!(found.contains("another filter"), "{found}");
 }
 

@@ -41,7 +41,7 @@ fn patches_inside_the_hosts_rendering_are_the_picture_of_whole_slices() {
         let Skippable::Unseen(seen) = skippable else {
             panic!("{skippable:?}");
         };
-        let cells = MacroCells::new(gpu, &there.volume, view.apron().unwrap()).unwrap();
+        let cells = MacroCells::new(gpu, &there.volume, view.halo().unwrap()).unwrap();
         let empty = EmptySpace::new(gpu, &cells, &seen).unwrap();
         let skip = Skip::Unseen(&cells, &empty);
         let mut recording = view

@@ -1,4 +1,4 @@
-//! What software devices read in the place of a texture has the values of the law: pictures are those of the CPU reference, for
+//! What software devices read in the place of a texture has the values of the specification: pictures are those of the CPU reference, for
 //! every type that has corners and wherever words are folded.
 
 use crate::shared::{

@@ -312,7 +312,7 @@ fn a_cut_face_has_the_colour_of_what_lies_there_and_its_depth() {
                 let share = place.x / 12.0;
                 let wanted = [share, 1.0 - share, 0.25, 1.0];
                 for c in 0..4 {
-                    // A table is within 1/4096 of the law, and where a ray lies f32 says to 1e-5 here.
+                    // A table is within 1/4096 of the specification, and where a ray lies f32 says to 1e-5 here.
                     let allowed = if c < 2 { 1.0 / 4096.0 + 1e-5 } else { 1e-6 };
                     worst.take([x, y], f64::from(pixel[c]) - wanted[c], allowed);
                 }

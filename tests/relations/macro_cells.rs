@@ -45,12 +45,12 @@ fn read_back(
 #[test]
 fn ranges_are_the_same_from_voxels_and_from_textures() {
     let mut numbers = Numbers(23);
-    let apron = |filter| {
+    let halo = |filter| {
         Settings {
             filter,
             ..Settings::default()
         }
-        .apron()
+        .halo()
     };
     for (as_bytes, filter) in [
         (true, Filter::Linear),
@@ -69,9 +69,8 @@ fn ranges_are_the_same_from_voxels_and_from_textures() {
             // SAFETY: recorded outside rendering; `run` waits, and all of it lives meanwhile.
             let upload = |cmd| unsafe { made.record_upload_all(cmd, &staging) };
             device.run(upload).expect("uploaded");
-            let by_host =
-                MacroCells::of_voxels(&gpu, &made, apron(filter), &volume).expect("cells");
-            let by_device = MacroCells::new(&gpu, &made, apron(filter)).expect("cells");
+            let by_host = MacroCells::of_voxels(&gpu, &made, halo(filter), &volume).expect("cells");
+            let by_device = MacroCells::new(&gpu, &made, halo(filter)).expect("cells");
             let [found, wanted] = [&by_host, &by_device].map(|cells| {
                 // SAFETY: as above; the volume has been uploaded.
                 let record = |cmd| unsafe { cells.record(cmd) };
@@ -148,8 +147,8 @@ fn distance_maps_hold_distances_to_the_nearest_cell_with_matter() {
         let mut device = device();
         let gpu = Arc::clone(device.gpu());
         let made = GpuVolume::new(&gpu, &volume, TextureLayout::Texture3d).expect("textures");
-        let apron = Settings::default().apron();
-        let cells = MacroCells::of_voxels(&gpu, &made, apron, &volume).expect("cells");
+        let halo = Settings::default().halo();
+        let cells = MacroCells::of_voxels(&gpu, &made, halo, &volume).expect("cells");
         let empty =
             EmptySpace::new(&gpu, &cells, &VisibleRanges::new(&function())).expect("distance_map");
         // SAFETY: recorded outside rendering; `run` waits, and all of it lives meanwhile.

@@ -3,7 +3,7 @@
 use super::Renderer;
 use crate::offscreen::time_slices::Spent;
 use crate::scene::Scene;
-use crate::technique::cost::{looks_of_picture, ms_of_looks};
+use crate::technique::cost::{fetches_of_picture, ms_of_fetches};
 use crate::technique::{Jitter, Recording, Settings, Skip, View};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -75,7 +75,7 @@ impl<'v> Renderer<'v> {
             true => 2 * recordings[0].slices,
             false => recordings.iter().map(|one| one.slices).sum(),
         };
-        let looks = looks_of_picture(view, slices, volumes);
+        let looks = fetches_of_picture(view, slices, volumes);
         let like = Like {
             settings: Settings {
                 jitter: Jitter::default(),
@@ -97,7 +97,7 @@ impl<'v> Renderer<'v> {
             Skip::Unseen(..) if gpu.is_cpu() => MOST_SEEN,
             _ => 1.0,
         };
-        let guess = seen * ms_of_looks(gpu, looks);
+        let guess = seen * ms_of_fetches(gpu, looks);
         let ms = match self.known.as_ref().filter(is_similar) {
             Some(known) => known.ms * looks / known.looks,
             None => guess,

@@ -9,7 +9,7 @@ use crate::offscreen::time_slices::Work;
 use crate::offscreen::upload::fill;
 use crate::resident::{EmptySpace, FootprintTexels, GpuVolume, Halo, MacroCells};
 use crate::scene::{Beside, Scene};
-use crate::technique::cost::ms_of_looks;
+use crate::technique::cost::ms_of_fetches;
 use crate::technique::{Mode, Part, PatchRoom, Patches, Role, SampleInputs, Skip, Skippable};
 use crate::transfer::{HomogeneousRanges, TransferFunction, VisibleRanges};
 use crate::volume::Volume;
@@ -33,7 +33,7 @@ struct Of {
     copied: Copied,
     shown: usize,
     volumes: usize,
-    apron: Halo,
+    halo: Halo,
 }
 
 impl Skipped {
@@ -131,7 +131,7 @@ impl Renderer<'_> {
         self.skipped.wanted = None;
         // Bricks of a stream know their own.
         let is_streamed = self.streaming.is_some();
-        let Some((wanted, apron)) = wanted(scene).filter(|_| !is_streamed) else {
+        let Some((wanted, halo)) = wanted(scene).filter(|_| !is_streamed) else {
             return Ok(());
         };
         // One volume says nothing of the others.
@@ -143,10 +143,10 @@ impl Renderer<'_> {
             copied: Copied::of(scene),
             shown: self.shown,
             volumes,
-            apron,
+            halo,
         };
         let mut cells = std::mem::take(&mut self.skipped.cells);
-        let found = cells.of(of, |_| self.make_cells(scene, volumes, apron));
+        let found = cells.of(of, |_| self.make_cells(scene, volumes, halo));
         let is_there = found.map(|found| found.is_some());
         self.skipped.cells = cells;
         if !is_there? {
@@ -180,16 +180,16 @@ impl Renderer<'_> {
         &mut self,
         scene: &Scene,
         volumes: usize,
-        apron: Halo,
+        halo: Halo,
     ) -> Result<Option<Vec<MacroCells>>, Error> {
         let mut all = Vec::new();
         for number in 0..volumes {
-            let Some(made) = if_it_fits(self.cells_of(scene, number, apron))? else {
+            let Some(made) = if_it_fits(self.cells_of(scene, number, halo))? else {
                 return Ok(None);
             };
-            // A cell of 8^3 voxels with an apron around them, which are not filtered.
+            // A cell of 8^3 voxels with a halo around them, which are not filtered.
             let looks = 100.0 * made.cell_count() as f64;
-            let expected_ms = ms_of_looks(self.device.gpu(), looks);
+            let expected_ms = ms_of_fetches(self.device.gpu(), looks);
             let work = Work::beside(0..made.group_count()?, expected_ms);
             self.slices
                 .run(&mut self.device, None, work, |cmd, _, part| {
@@ -215,7 +215,7 @@ impl Renderer<'_> {
             return Ok(None);
         };
         // Most cells look at some ten others.
-        let expected_ms = ms_of_looks(self.device.gpu(), cells[0].cell_count() as f64);
+        let expected_ms = ms_of_fetches(self.device.gpu(), cells[0].cell_count() as f64);
         for pass in made.group_runs()? {
             let work = Work::beside(pass, expected_ms);
             self.slices
@@ -228,23 +228,18 @@ impl Renderer<'_> {
     }
 
     /// Objects for the cells of volume number `number` of the picture.
-    fn cells_of(
-        &self,
-        scene: &Scene,
-        number: usize,
-        apron: Halo,
-    ) -> Result<MacroCells, gpu::Error> {
+    fn cells_of(&self, scene: &Scene, number: usize, halo: Halo) -> Result<MacroCells, gpu::Error> {
         let parts = parts_of(&self.resident, self.shown, scene);
         let Part { volume, role } = parts[number];
         let gpu = self.device.gpu();
         // Nothing lies between two labels.
-        let apron = Halo {
-            is_mixed: apron.is_mixed && role != Role::Labels,
-            ..apron
+        let halo = Halo {
+            is_mixed: halo.is_mixed && role != Role::Labels,
+            ..halo
         };
         match gpu.is_cpu() && volume.spline().is_none() {
-            true => MacroCells::of_voxels(gpu, volume, apron, self.volumes[self.shown + number]),
-            false => MacroCells::new(gpu, volume, apron),
+            true => MacroCells::of_voxels(gpu, volume, halo, self.volumes[self.shown + number]),
+            false => MacroCells::new(gpu, volume, halo),
         }
     }
 }
@@ -288,12 +283,12 @@ pub(super) fn wanted(scene: &Scene) -> Option<(Skippable, Halo)> {
         }
         (wanted, ..) => wanted,
     };
-    let apron = scene.view(&scene.volume.grid(), [0.0; 2]).apron()?;
-    let apron = match &wanted {
-        Skippable::Unseen(seen) if !seen.contours.is_empty() => apron.of_gradients(),
-        _ => apron,
+    let halo = scene.view(&scene.volume.grid(), [0.0; 2]).halo()?;
+    let halo = match &wanted {
+        Skippable::Unseen(seen) if !seen.contours.is_empty() => halo.of_gradients(),
+        _ => halo,
     };
-    (wanted != Skippable::Nothing).then_some((wanted, apron))
+    (wanted != Skippable::Nothing).then_some((wanted, halo))
 }
 
 /// Which volumes of a mixture say how opaque it is, and by which function; `None` where one is missing.

@@ -15,7 +15,7 @@ use crate::offscreen::submission::Submission;
 use crate::offscreen::time_slices::Spent;
 use crate::resident::Halo;
 use crate::scene::Scene;
-use crate::technique::cost::{looks_of_picture, ms_of_looks};
+use crate::technique::cost::{fetches_of_picture, ms_of_fetches};
 use crate::technique::gather::{Brick, LAYERS, PICTURE};
 use crate::technique::{InPixel, Inputs, Mode, Part, Skippable, View};
 use crate::volume::Volume;
@@ -90,8 +90,8 @@ impl<'v> Renderer<'v> {
         if cache.any().is_some() {
             return Ok(());
         }
-        let (skippable, apron) = skippable(scene);
-        let way = (&skippable, apron);
+        let (skippable, halo) = skippable(scene);
+        let way = (&skippable, halo);
         let shown = shown(stream, scene, way);
         let first = shown.first().map_or(0, |shown| shown.brick);
         let voxels = stream.read(first)?;
@@ -104,8 +104,8 @@ impl<'v> Renderer<'v> {
         scene: &Scene,
         in_pixel: InPixel,
     ) -> Result<Option<f64>, Error> {
-        let (skippable, apron) = skippable(scene);
-        let way = (&skippable, apron);
+        let (skippable, halo) = skippable(scene);
+        let way = (&skippable, halo);
         let mut streaming = self.streaming.take().expect("a stream is drawn");
         let [done, of] = self.passes_done;
         let span = self.slices.enter(done, of);
@@ -127,7 +127,7 @@ impl<'v> Renderer<'v> {
         let stream: &Stream = stream;
         let shown = shown(stream, scene, way);
         let grid = scene.volume.grid();
-        let looks = looks_of_picture(&scene.view(&grid, in_pixel), 0, 1);
+        let looks = fetches_of_picture(&scene.view(&grid, in_pixel), 0, 1);
         let mut guess = Guess::new(self.device.gpu(), looks / shown.len().max(1) as f64);
         let numbers: Vec<_> = shown.iter().map(|shown| shown.brick).collect();
         cache.begin(&numbers);
@@ -326,7 +326,7 @@ impl Guess {
 
     fn new(gpu: &Gpu, looks_of_brick: f64) -> Self {
         Self {
-            ms_of_brick: ms_of_looks(gpu, looks_of_brick),
+            ms_of_brick: ms_of_fetches(gpu, looks_of_brick),
         }
     }
 
@@ -366,11 +366,11 @@ impl Ahead {
 /// voxel for the filter, and one for gradients or two for half a slab.
 fn skippable(scene: &Scene) -> (Skippable, Halo) {
     let found = super::skipping::wanted(scene);
-    found.unwrap_or((Skippable::Nothing, scene.settings.apron()))
+    found.unwrap_or((Skippable::Nothing, scene.settings.halo()))
 }
 
 /// What a picture shows, from front to back.
-fn shown(stream: &Stream, scene: &Scene, (skippable, apron): (&Skippable, Halo)) -> Vec<Shown> {
+fn shown(stream: &Stream, scene: &Scene, (skippable, halo): (&Skippable, Halo)) -> Vec<Shown> {
     let grid = scene.volume.grid();
     let view: View = scene.view(&grid, InPixel::CENTER);
     let cells = stream.cells();
@@ -381,7 +381,7 @@ fn shown(stream: &Stream, scene: &Scene, (skippable, apron): (&Skippable, Halo))
         if !(low.cmplt(high).all()) {
             return None;
         }
-        let range = stream.range(brick, apron)?;
+        let range = stream.range(brick, halo)?;
         // What is not seen may be the largest.
         let has_maximum = scene.settings.mode == Mode::Mida;
         if let Skippable::Unseen(seen) = skippable

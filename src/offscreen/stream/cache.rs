@@ -33,16 +33,16 @@ pub struct Resident {
 
 impl Resident {
     /// What recordings are told of where not to look; nothing where the cells were made for a narrower filter.
-    pub fn skip(&self, (wanted, apron): (&Skippable, Halo)) -> Skip<'_> {
-        match (wanted, self.cells_for(apron), &self.empty) {
+    pub fn skip(&self, (wanted, halo): (&Skippable, Halo)) -> Skip<'_> {
+        match (wanted, self.cells_for(halo), &self.empty) {
             (Skippable::Unseen(_), Some(cells), Some(empty)) => Skip::Unseen(cells, empty),
             (Skippable::Exceeded, Some(cells), _) => Skip::Exceeded(cells),
             _ => Skip::Nothing,
         }
     }
 
-    fn cells_for(&self, apron: Halo) -> Option<&MacroCells> {
-        let cells = self.cells.as_ref().filter(|(of, _)| of.covers(apron));
+    fn cells_for(&self, halo: Halo) -> Option<&MacroCells> {
+        let cells = self.cells.as_ref().filter(|(of, _)| of.covers(halo));
         cells.map(|(_, cells)| cells)
     }
 }
@@ -129,7 +129,7 @@ impl Cache {
         stream: &Stream,
         brick: usize,
         voxels: &Volume,
-        (wanted, apron): (&Skippable, Halo),
+        (wanted, halo): (&Skippable, Halo),
         kept: &[usize],
     ) -> Result<(), Error> {
         let cell = stream.cells()[brick];
@@ -146,7 +146,7 @@ impl Cache {
         fill(device, &made, voxels)?;
         let cells = match wanted {
             Skippable::Nothing | Skippable::UnseenOrAlike(..) => None,
-            _ => if_it_fits(MacroCells::of_voxels(device.gpu(), &made, apron, voxels))?,
+            _ => if_it_fits(MacroCells::of_voxels(device.gpu(), &made, halo, voxels))?,
         };
         let bytes = device.gpu().memory().used_bytes.saturating_sub(before);
         self.bytes += bytes;
@@ -154,7 +154,7 @@ impl Cache {
         self.uploaded_bytes += texels_bytes;
         let resident = Resident {
             volume: made,
-            cells: cells.map(|cells| (apron, cells)),
+            cells: cells.map(|cells| (halo, cells)),
             empty: None,
             bytes,
             empty_bytes: 0,
@@ -171,7 +171,7 @@ impl Cache {
     pub fn find_empty_space(
         &mut self,
         device: &mut Headless,
-        (wanted, apron): (&Skippable, Halo),
+        (wanted, halo): (&Skippable, Halo),
         bricks: &[usize],
     ) -> Result<(), Error> {
         let Skippable::Unseen(seen) = wanted else {
@@ -190,7 +190,7 @@ impl Cache {
         for brick in bricks {
             let there = self.bricks.get(brick);
             let there = there.filter(|there| there.empty.is_none());
-            let Some(cells) = there.and_then(|there| there.cells_for(apron)) else {
+            let Some(cells) = there.and_then(|there| there.cells_for(halo)) else {
                 continue;
             };
             let newest = made.last().map(|(_, empty, _)| empty);

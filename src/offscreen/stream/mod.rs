@@ -179,7 +179,7 @@ impl Stream {
     }
 
     /// The values that filters may make in a brick; `None` where no sample has one.
-    pub(super) fn range(&self, brick: usize, apron: Halo) -> Option<[f32; 2]> {
+    pub(super) fn range(&self, brick: usize, halo: Halo) -> Option<[f32; 2]> {
         let [low, high] = self.ranges[brick]?;
         // Codes are mixed with the precision of their format, as in macro cells.
         let slack = match self.outline.voxels.voxel_type().is_float() {
@@ -190,7 +190,7 @@ impl Stream {
             VoxelType::F16 => 2f64.powi(-9),
             _ => 2f64.powi(-18),
         };
-        let beyond = 0.5 * f64::from(apron.overshoot) * (high - low)
+        let beyond = 0.5 * f64::from(halo.overshoot) * (high - low)
             + slack
             + rounding * low.abs().max(high.abs());
         Some([(low - beyond) as f32, (high + beyond) as f32])

@@ -1,4 +1,4 @@
-//! Distances known roughly beforehand, so that the dear ones are worked out near their surface only.
+//! Distances known roughly beforehand, so that the expensive ones are worked out near their surface only.
 
 use super::HALF_SIDE;
 use glam::DVec3;
