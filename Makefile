@@ -13,7 +13,7 @@
 # make pictures README's pictures
 # make first-pictures   the volumes of make sheet and the phantoms, drawn without a flag and measured, into docs/first-pictures.md
 # make gallery six real volumes by the classic techniques, into docs/gallery
-# make conformance   whether the drivers here tell the truth, SwiftShader beside them, into target/conformance
+# make conformance   whether the drivers here conform, SwiftShader beside them, into target/conformance
 # make capi    the libraries for C, into target/release; make install PREFIX=/usr/local puts them, the header and a
 #              file for pkg-config there; make header writes include/stratavox.h anew
 # make api     compares what the library shows of itself with docs/public-api.txt

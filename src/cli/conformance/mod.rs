@@ -1,4 +1,4 @@
-//! `stratavox conformance`: whether a device tells the truth.
+//! `stratavox conformance`: whether a device conforms.
 
 mod cases;
 mod check;
