@@ -91,7 +91,7 @@ impl From<embed::Error> for Failure {
             Error::Gpu(error) => return error.into(),
             Error::Camera(error) => return error.into(),
             Error::NotEmbedded { .. } | Error::NoDepth { .. } => SV_E_UNSUPPORTED,
-            Error::OtherClass { .. }
+            Error::OtherDescription { .. }
             | Error::NotUploaded
             | Error::UpdateOrder { .. }
             | Error::HalfUpdated { .. }

@@ -22,7 +22,7 @@ pub enum Error {
     },
     /// Pipelines are of another kind of picture.
     #[error("the renderer was made for {made}, and {wanted} needs another one")]
-    OtherClass {
+    OtherDescription {
         /// What pipelines and textures are for.
         made: String,
         /// What was asked for.

@@ -43,7 +43,7 @@ impl Renderer {
         let (frame, recorded) = self.prepare(shot)?;
         let slices = recorded.picture.iter().map(|part| part.slices).sum();
         let view = self.view(shot);
-        let ms = |looks| ms_of_fetches(&self.gpu, looks);
+        let ms = |fetches| ms_of_fetches(&self.gpu, fetches);
         let expected_ms = ms(fetches_of_picture(&view, slices, 1));
         // A slice is drawn twice, and both are counted.
         let a_step = expected_ms / f64::from(slices.max(1));

@@ -92,7 +92,7 @@ impl Renderer {
     /// `target` says, with what it holds kept (or cleared, where `load` says so).
     ///
     /// # Errors
-    /// As those, and [`Error::OtherClass`] for a target of another format or size, and for a class with a depth
+    /// As those, and [`Error::OtherDescription`] for a target of another format or size, and for a class with a depth
     /// attachment or several samples, which only a host's own rendering has.
     ///
     /// # Safety
@@ -148,7 +148,7 @@ impl Renderer {
     pub(super) fn check_target(&self, target: &Target, load: Load) -> Result<(), Error> {
         let wanted = TargetClass::from(target.format);
         if self.class.target != wanted || self.extent != target.extent {
-            return Err(Error::OtherClass {
+            return Err(Error::OtherDescription {
                 made: format!("{:?} of {:?} pixels", self.class.target, self.extent),
                 wanted: format!("{wanted:?} of {:?} pixels", target.extent),
             });

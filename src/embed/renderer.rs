@@ -115,14 +115,14 @@ impl Renderer {
     /// compiled, nothing waits, and what frames in flight read of the one before stays until they are done.
     ///
     /// # Errors
-    /// [`Error::OtherClass`] where it asks for gradients and the one before did not, or the other way round; no memory.
+    /// [`Error::OtherDescription`] where it asks for gradients and the one before did not, or the other way round; no memory.
     pub fn set_function(&mut self, function: Option<&TransferFunction>) -> Result<(), Error> {
         let settings = &self.class.settings;
         let emptying = self.emptying.as_ref();
         let made = Function::new(&self.gpu, &self.volume, settings, function, emptying)?;
         let variant = variant_of(settings, &self.volume, &made)?;
         if variant != self.variant {
-            return Err(Error::OtherClass {
+            return Err(Error::OtherDescription {
                 made: format!("functions that are {:?}", self.function.mix),
                 wanted: format!("one that is {:?}", made.mix),
             });
@@ -133,7 +133,7 @@ impl Renderer {
     /// Other numbers in the settings from the next [`Renderer::record`] on: steps, crops, clip planes, levels, lights.
     ///
     /// # Errors
-    /// [`Error::OtherClass`] where other pipelines or textures would be needed; nothing has changed then.
+    /// [`Error::OtherDescription`] where other pipelines or textures would be needed; nothing has changed then.
     pub fn set_settings(&mut self, settings: Settings) -> Result<(), Error> {
         let class = RendererDesc {
             settings,
@@ -161,7 +161,7 @@ impl Renderer {
         let empties_other = class.settings.mode == Mode::Iso
             && levels(&class.settings) != levels(&self.class.settings);
         if !is_same {
-            return Err(Error::OtherClass {
+            return Err(Error::OtherDescription {
                 made: self.class.what(),
                 wanted: what(&class.settings),
             });
@@ -181,7 +181,7 @@ impl Renderer {
     /// the next time of a series. It has been uploaded by then, which may be recorded in the same command buffer.
     ///
     /// # Errors
-    /// [`Error::OtherClass`] where it lies in other textures; no memory.
+    /// [`Error::OtherDescription`] where it lies in other textures; no memory.
     pub fn set_volume(
         &mut self,
         volume: &Arc<Volume>,
@@ -204,7 +204,7 @@ impl Renderer {
             !settings.is_half_angle() || volume.grid().dims == self.volume.grid().dims;
         let lies_alike = layouts(volume) == layouts(&self.volume) && is_as_large;
         if !lies_alike || variant != self.variant || bricks(volume) > self.most_bricks {
-            return Err(Error::OtherClass {
+            return Err(Error::OtherDescription {
                 made: format!("{:?} in {} bricks", self.variant, self.most_bricks),
                 wanted: format!("{variant:?} in {} bricks", bricks(volume)),
             });

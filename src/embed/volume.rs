@@ -205,13 +205,13 @@ impl Volume {
     /// Whether it lies on that device, and its cells know what such a filter looks at.
     pub(super) fn check(&self, gpu: &Arc<Gpu>, settings: &Settings) -> Result<(), Error> {
         if !self.copies.iter().all(|copy| Arc::ptr_eq(copy.gpu(), gpu)) {
-            return Err(Error::OtherClass {
+            return Err(Error::OtherDescription {
                 made: "one device".into(),
                 wanted: "a volume on another".into(),
             });
         }
         match &self.cells {
-            Some((_, halo)) if *halo != cells_halo(settings) => Err(Error::OtherClass {
+            Some((_, halo)) if *halo != cells_halo(settings) => Err(Error::OtherDescription {
                 made: "a volume for another filter".into(),
                 wanted: what(settings),
             }),

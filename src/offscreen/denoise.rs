@@ -67,7 +67,7 @@ fn run(
         before.write(0, bytemuck::cast_slice(&numbers[slices]))?;
         let slab = [dims[0], dims[1], high - low];
         let own = [dims[0], dims[1], count];
-        for (origin, part) in parts(own, pass.looks()) {
+        for (origin, part) in parts(own, pass.fetches()) {
             let origin = [origin[0], origin[1], origin[2] + first - low];
             let parameters = parameters(pass, slab, origin, part);
             ring.write(0, bytemuck::bytes_of(&parameters))?;
@@ -90,9 +90,9 @@ fn run(
 }
 
 /// Slices of these dims in parts that are small enough: whole slices where those are, else rows of one.
-fn parts(dims: [u32; 3], looks: u64) -> Vec<([u32; 3], [u32; 3])> {
+fn parts(dims: [u32; 3], fetches: u64) -> Vec<([u32; 3], [u32; 3])> {
     let [width, height, depth] = dims;
-    let row = u64::from(width) * looks;
+    let row = u64::from(width) * fetches;
     let rows = (MAX_LOOKS / row).clamp(1, height.into()) as u32;
     let slices = match rows == height {
         true => (MAX_LOOKS / (row * u64::from(height))).clamp(1, depth.into()) as u32,

@@ -77,8 +77,8 @@ pub fn made_light(
     let of_node = LOOKS_OF_A_PIECE * plan.paths.len() as f64 / f64::from(plan.bundle_count.max(1));
     let of_nodes = plan.node_count() as f64 * of_node;
     let runs = light.group_runs(bound.len())?;
-    for (run, looks) in runs.into_iter().zip([of_cells, of_nodes]) {
-        let work = Work::beside(run, ms_of_fetches(&gpu, looks));
+    for (run, fetches) in runs.into_iter().zip([of_cells, of_nodes]) {
+        let work = Work::beside(run, ms_of_fetches(&gpu, fetches));
         slices.run(device, None, work, |cmd, _, part| {
             // SAFETY: recorded outside rendering, parts in order; `run` waits, and all that is bound lives meanwhile.
             unsafe { light.record_part(cmd, bricks(), part) }

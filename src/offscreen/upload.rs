@@ -4,7 +4,7 @@ use super::time_slices::{TimeSlices, Work};
 use crate::gpu::{Buffer, Error, Headless, Memory};
 use crate::resident::{GpuVolume, KeptGradients, KeptOperator, Slab, Texels, TextureLayout};
 use crate::technique::GradientSource;
-use crate::technique::cost::{looks_of_cells, ms_of_fetches};
+use crate::technique::cost::{fetches_of_cells, ms_of_fetches};
 use crate::volume::{Coefficients, Spline, Volume};
 use ash::vk;
 use std::panic::resume_unwind;
@@ -75,8 +75,8 @@ pub fn keep(
         KeptOperator::Sobel => 27.0,
     };
     let cells = volume.bricks().iter().map(|brick| &brick.cell);
-    let looks = LOOKS_OF_A_VALUE * looks_of_cells(cells, values);
-    let work = Work::beside(0..kept.group_count()?, ms_of_fetches(device.gpu(), looks));
+    let fetches = LOOKS_OF_A_VALUE * fetches_of_cells(cells, values);
+    let work = Work::beside(0..kept.group_count()?, ms_of_fetches(device.gpu(), fetches));
     slices.run(device, None, work, |cmd, _, part| {
         // SAFETY: recorded outside rendering, parts in order; the volume has been uploaded; `run` waits.
         unsafe { kept.record_part(cmd, part) }

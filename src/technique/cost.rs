@@ -7,11 +7,11 @@ use glam::DVec3;
 
 /// What a look-up of a voxel takes on the processor, with all that is done with it: a driver on two cores took 10 to
 /// 20 ns (`docs/log/performance.md`).
-const MS_PER_LOOK_ON_PROCESSOR: f64 = 25e-6;
+const MS_PER_FETCH_ON_PROCESSOR: f64 = 25e-6;
 
 /// The same on the slowest device that is provided for: none was measured, 1 ns is taken for a usual one and 20 times as
 /// much for this one.
-const MS_PER_LOOK_ON_SLOWEST: f64 = 20e-6;
+const MS_PER_FETCH_ON_SLOWEST: f64 = 20e-6;
 
 /// No submission shall last longer.
 const LONGEST_MS: f64 = 250.0;
@@ -21,13 +21,13 @@ const LONGEST_MS: f64 = 250.0;
 /// On the slowest device these last `1.25 * TARGET_MS * slowest / g`, which is `LONGEST_MS` for this g, 10 ns. What
 /// follows is cut by measurement: a device of 1 ns a look has a first submission of 10 ms, and comes to 100 ms with
 /// the fifth.
-const MS_PER_LOOK_UNKNOWN: f64 = 1.25 * MS_PER_LOOK_ON_SLOWEST * TARGET_MS / LONGEST_MS;
+const MS_PER_LOOK_UNKNOWN: f64 = 1.25 * MS_PER_FETCH_ON_SLOWEST * TARGET_MS / LONGEST_MS;
 
 /// What so many looks are expected to take.
-pub fn ms_of_fetches(gpu: &Gpu, looks: f64) -> f64 {
-    looks
+pub fn ms_of_fetches(gpu: &Gpu, fetches: f64) -> f64 {
+    fetches
         * match gpu.is_cpu() {
-            true => MS_PER_LOOK_ON_PROCESSOR,
+            true => MS_PER_FETCH_ON_PROCESSOR,
             false => MS_PER_LOOK_UNKNOWN,
         }
 }
@@ -38,17 +38,17 @@ const RAYS: u32 = 16;
 /// Looks that one picture takes where nothing is skipped. `slices`: of a slicer, those of all bricks.
 pub fn fetches_of_picture(view: &View, slices: u32, volumes: usize) -> f64 {
     let [width, height] = view.extent_pixels.map(f64::from);
-    let mean = looks_of_pixels(view, slices).sum::<f64>() / f64::from(RAYS * RAYS);
+    let mean = fetches_of_pixels(view, slices).sum::<f64>() / f64::from(RAYS * RAYS);
     mean * width * height * volumes as f64
 }
 
 /// The same of the pixel of one volume that takes most.
 pub fn fetches_of_costliest_pixel(view: &View, slices: u32) -> f64 {
-    looks_of_pixels(view, slices).fold(0.0, f64::max)
+    fetches_of_pixels(view, slices).fold(0.0, f64::max)
 }
 
 /// Those of some pixels, which lie evenly over the picture.
-fn looks_of_pixels(view: &View, slices: u32) -> impl Iterator<Item = f64> {
+fn fetches_of_pixels(view: &View, slices: u32) -> impl Iterator<Item = f64> {
     let settings = view.settings;
     let [width, height] = view.extent_pixels.map(f64::from);
     let rays = view.rays();
@@ -68,7 +68,7 @@ fn looks_of_pixels(view: &View, slices: u32) -> impl Iterator<Item = f64> {
             false if length > 0.0 => slices.into(),
             false => 0.0,
         };
-        samples * looks_of_sample(settings)
+        samples * fetches_of_sample(settings)
     })
 }
 
@@ -87,7 +87,7 @@ fn length_inside([low, high]: [DVec3; 2], origin: DVec3, direction: DVec3) -> f6
     }
 }
 
-fn looks_of_sample(settings: &Settings) -> f64 {
+fn fetches_of_sample(settings: &Settings) -> f64 {
     let of_value = match settings.filter.kernel() {
         Some(_) => 8.0,
         None => 1.0,
@@ -101,7 +101,7 @@ fn looks_of_sample(settings: &Settings) -> f64 {
 }
 
 /// Voxels of some cells, each looked at so often.
-pub fn looks_of_cells<'a>(cells: impl IntoIterator<Item = &'a Cell>, each: f64) -> f64 {
+pub fn fetches_of_cells<'a>(cells: impl IntoIterator<Item = &'a Cell>, each: f64) -> f64 {
     let voxels = |cell: &Cell| cell.stored.dims().map(f64::from).iter().product::<f64>();
     each * cells.into_iter().map(voxels).sum::<f64>()
 }
@@ -113,12 +113,12 @@ mod tests {
     use glam::dvec3;
 
     /// The times of the submissions of so many looks on a device of which nothing is known.
-    fn submissions(looks: f64, ms_per_look: f64) -> Vec<f64> {
+    fn submissions(fetches: f64, ms_per_look: f64) -> Vec<f64> {
         const UNITS: u64 = 1 << 16;
-        let mut pace = Pace::new(UNITS, looks * MS_PER_LOOK_UNKNOWN, TARGET_MS);
+        let mut pace = Pace::new(UNITS, fetches * MS_PER_LOOK_UNKNOWN, TARGET_MS);
         let mut times = Vec::new();
         while let Some(units) = pace.next() {
-            let ms = looks / UNITS as f64 * (units.end - units.start) as f64 * ms_per_look;
+            let ms = fetches / UNITS as f64 * (units.end - units.start) as f64 * ms_per_look;
             times.push(ms);
             pace.took(units, ms);
         }
@@ -127,21 +127,24 @@ mod tests {
 
     #[test]
     fn no_submission_of_the_slowest_device_lasts_too_long_from_the_first_on() {
-        for looks in [1e3, 1e6, 1e7, 1.24e7, 1.26e7, 1e8, 1e9, 1e10, 1e11] {
+        for fetches in [1e3, 1e6, 1e7, 1.24e7, 1.26e7, 1e8, 1e9, 1e10, 1e11] {
             for times_slower in [0.1, 1.0, 5.0, 10.0, 20.0] {
-                let times = submissions(looks, times_slower * 1e-6);
+                let times = submissions(fetches, times_slower * 1e-6);
                 let longest = times.iter().copied().fold(0.0, f64::max);
-                assert!(longest <= LONGEST_MS, "{looks}, {times_slower}: {times:?}");
+                assert!(
+                    longest <= LONGEST_MS,
+                    "{fetches}, {times_slower}: {times:?}"
+                );
             }
         }
     }
 
     #[test]
     fn a_usual_device_has_three_submissions_more_at_most() {
-        for looks in [1e6, 1e8, 1e9, 1e10] {
-            let times = submissions(looks, 1e-6);
-            let fewest = (looks * 1e-6 / TARGET_MS).ceil() as usize;
-            assert!(times.len() <= fewest + 3, "{looks}: {times:?}");
+        for fetches in [1e6, 1e8, 1e9, 1e10] {
+            let times = submissions(fetches, 1e-6);
+            let fewest = (fetches * 1e-6 / TARGET_MS).ceil() as usize;
+            assert!(times.len() <= fewest + 3, "{fetches}: {times:?}");
         }
     }
 

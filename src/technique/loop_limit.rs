@@ -54,7 +54,7 @@ pub fn turns_per_sample(
     };
     let are_kept = settings.gradient_storage == GradientStorage::Precomputed;
     let is_weighted = settings.gradient_operator() != Operator::Central;
-    let looks = match (variant.mix, variant.take) {
+    let fetches = match (variant.mix, variant.take) {
         (mix, _) if mix.is_graded() => {
             let first = if is_weighted || are_kept { 1 } else { 7 };
             first + if functions.second { 28 } else { 0 }
@@ -84,7 +84,7 @@ pub fn turns_per_sample(
     };
     // Channels are gone over when they are asked for data, looked at and classified.
     let of_each = if volumes > 1 { 3 } else { 0 };
-    3 + volumes as u64 * (of_each + looks * (1 + mask + filter) + weights + search + light)
+    3 + volumes as u64 * (of_each + fetches * (1 + mask + filter) + weights + search + light)
 }
 
 impl View<'_> {

@@ -260,7 +260,7 @@ impl Pass {
 
 impl Pass {
     /// How many numbers a voxel is made of: what a dispatch costs.
-    pub fn looks(&self) -> u64 {
+    pub fn fetches(&self) -> u64 {
         let across = |reach: u32| 2 * u64::from(reach) + 1;
         match self.kernel {
             "gaussian" => across(self.radius),

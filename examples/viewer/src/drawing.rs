@@ -83,7 +83,7 @@ impl Drawing {
         function: Option<&TransferFunction>,
     ) -> Result<(), Error> {
         match self.renderer.set_volume(volume, function) {
-            Err(stratavox::embed::Error::OtherClass { .. }) => {
+            Err(stratavox::embed::Error::OtherDescription { .. }) => {
                 let class = self.renderer.class().clone();
                 let extent = self.canvas.extent;
                 self.renderer = Renderer::new(&self.gpu, volume, function, class, extent, &[])?;

@@ -17,13 +17,13 @@ pub struct GradientFlags {
     /// Whether gradients are made for each sample or kept at the voxels, 8 bytes each on the device [default: made]
     #[arg(long, value_name = "WHERE", help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub gradients: Option<KeepWord>,
+    pub gradients: Option<GradientStorageWord>,
 }
 
 /// Every word of `--gradients`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum KeepWord {
+pub enum GradientStorageWord {
     /// Made for each sample
     #[default]
     Made,
@@ -65,9 +65,9 @@ impl GradientFlags {
     /// Whether they are kept.
     pub fn keep(&self) -> GradientStorage {
         match self.gradients.unwrap_or_default() {
-            KeepWord::Made => GradientStorage::OnTheFly,
-            KeepWord::Kept => GradientStorage::Precomputed,
-            KeepWord::Auto => GradientStorage::Auto,
+            GradientStorageWord::Made => GradientStorage::OnTheFly,
+            GradientStorageWord::Kept => GradientStorage::Precomputed,
+            GradientStorageWord::Auto => GradientStorage::Auto,
         }
     }
 
@@ -95,7 +95,7 @@ mod tests {
         assert_eq!(GradientFlags::default().filter(), GradientFilter::Central);
         let said = GradientFlags {
             gradient_filter: Some(GradientWord::Cubic),
-            gradients: Some(KeepWord::Auto),
+            gradients: Some(GradientStorageWord::Auto),
         };
         assert_eq!(said.filter(), GradientFilter::Cubic);
         assert_eq!((said.idle(false).len(), said.idle(true).len()), (2, 0));

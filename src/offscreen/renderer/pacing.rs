@@ -19,7 +19,7 @@ const MOST_SEEN: f64 = 0.3;
 #[derive(Debug)]
 pub struct Known {
     like: Like,
-    looks: f64,
+    fetches: f64,
     ms: f64,
 }
 
@@ -36,7 +36,7 @@ pub struct Like {
 #[derive(Debug)]
 pub struct Expected {
     like: Like,
-    looks: f64,
+    fetches: f64,
     /// All of it, rather too much than too little.
     pub ms: f64,
 }
@@ -75,7 +75,7 @@ impl<'v> Renderer<'v> {
             true => 2 * recordings[0].slices,
             false => recordings.iter().map(|one| one.slices).sum(),
         };
-        let looks = fetches_of_picture(view, slices, volumes);
+        let fetches = fetches_of_picture(view, slices, volumes);
         let like = Like {
             settings: Settings {
                 jitter: Jitter::default(),
@@ -88,8 +88,8 @@ impl<'v> Renderer<'v> {
             },
         };
         let is_similar = |known: &&Known| {
-            let range = known.looks / SIMILAR..=known.looks * SIMILAR;
-            known.like == like && range.contains(&looks)
+            let range = known.fetches / SIMILAR..=known.fetches * SIMILAR;
+            known.like == like && range.contains(&fetches)
         };
         let gpu = self.device.gpu();
         let seen = match self.skipped.skip() {
@@ -97,19 +97,19 @@ impl<'v> Renderer<'v> {
             Skip::Unseen(..) if gpu.is_cpu() => MOST_SEEN,
             _ => 1.0,
         };
-        let guess = seen * ms_of_fetches(gpu, looks);
+        let guess = seen * ms_of_fetches(gpu, fetches);
         let ms = match self.known.as_ref().filter(is_similar) {
-            Some(known) => known.ms * looks / known.looks,
+            Some(known) => known.ms * fetches / known.fetches,
             None => guess,
         };
-        Expected { like, looks, ms }
+        Expected { like, fetches, ms }
     }
 
     /// What it took.
     pub(super) fn learn(&mut self, expected: Expected, spent: &Spent) {
-        let Expected { like, looks, .. } = expected;
+        let Expected { like, fetches, .. } = expected;
         let ms = spent.wall_ms;
-        self.known = Some(Known { like, looks, ms });
+        self.known = Some(Known { like, fetches, ms });
     }
 }
 

@@ -188,8 +188,8 @@ impl Renderer<'_> {
                 return Ok(None);
             };
             // A cell of 8^3 voxels with a halo around them, which are not filtered.
-            let looks = 100.0 * made.cell_count() as f64;
-            let expected_ms = ms_of_fetches(self.device.gpu(), looks);
+            let fetches = 100.0 * made.cell_count() as f64;
+            let expected_ms = ms_of_fetches(self.device.gpu(), fetches);
             let work = Work::beside(0..made.group_count()?, expected_ms);
             self.slices
                 .run(&mut self.device, None, work, |cmd, _, part| {

@@ -127,8 +127,8 @@ impl<'v> Renderer<'v> {
         let stream: &Stream = stream;
         let shown = shown(stream, scene, way);
         let grid = scene.volume.grid();
-        let looks = fetches_of_picture(&scene.view(&grid, in_pixel), 0, 1);
-        let mut guess = Guess::new(self.device.gpu(), looks / shown.len().max(1) as f64);
+        let fetches = fetches_of_picture(&scene.view(&grid, in_pixel), 0, 1);
+        let mut guess = Guess::new(self.device.gpu(), fetches / shown.len().max(1) as f64);
         let numbers: Vec<_> = shown.iter().map(|shown| shown.brick).collect();
         cache.begin(&numbers);
         let missing: Vec<_> = numbers

@@ -157,7 +157,7 @@ impl Window {
             });
             is_other = match changed {
                 Ok(()) => false,
-                Err(None | Some(Refused::OtherClass { .. })) => true,
+                Err(None | Some(Refused::OtherDescription { .. })) => true,
                 Err(Some(error)) => return Err(error.into()),
             };
         }
