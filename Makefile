@@ -13,7 +13,7 @@
 # make pictures README's pictures
 # make first-pictures   the volumes of make sheet and the phantoms, drawn without a flag and measured, into docs/first-pictures.md
 # make gallery six real volumes by the classic techniques, into docs/gallery
-# make conformance   whether the drivers here tell the truth, SwiftShader beside them, into target/conformance
+# make conformance   whether the drivers here conform, SwiftShader beside them, into target/conformance
 # make capi    the libraries for C, into target/release; make install PREFIX=/usr/local puts them, the header and a
 #              file for pkg-config there; make header writes include/stratavox.h anew
 # make api     compares what the library shows of itself with docs/public-api.txt
@@ -291,7 +291,7 @@ LIBDIR ?= $(PREFIX)/lib
 VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -1)
 
 # Programs look for the name that the library says of itself; it changes where the interface does.
-SONAME := libstratavox.so.0
+SONAME := libstratavox.so.1
 
 capi:
 	$(CARGO) rustc --locked --release --lib --no-default-features --features capi --crate-type cdylib,staticlib -- \

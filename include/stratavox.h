@@ -95,7 +95,7 @@ typedef uint32_t sv_feature;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// Where samples lie.
+// The rendering technique.
 enum sv_technique
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t

@@ -1,6 +1,6 @@
 // Which values filters can make in a macro cell: smallest and largest of all voxels that a sample in it may touch, its
-// own and a halo around them (`algorithms.md` 3: without, border samples would be called empty). Several threads a
-// cell: they go along rows of texels beside each other.
+// own and a halo around them (without it, border samples would be called empty). Several threads a cell go along rows of
+// texels beside each other.
 // Where voxels have no value, what stands there counts, though no sample does.
 // CPU reference: src/resident/cell_ranges.rs.
 

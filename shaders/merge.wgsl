@@ -1,6 +1,6 @@
 // A batch of slices that was blended into a target of its own, laid onto what earlier batches have left.
 //
-// Blending in 16-bit floats loses thin slices after some hundred of them (`algorithms.md` 1.7); batches of at
+// Blending in 16-bit floats loses thin slices after some hundred of them (`sampling.md` 5); batches of at
 // most 64, put together here in f32, do not.
 
 #import merge_{operator}

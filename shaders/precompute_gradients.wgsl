@@ -3,7 +3,7 @@
 //     g_x = (v[x+1] - v[x-1]) / 2        and so on
 //
 // or Sobel's operator, which smooths each across its axis by 1/4, 1/2, 1/4. Both are linear in the voxels, so what is
-// interpolated between kept gradients is the gradient of the trilinear field (`algorithms.md` T7). One thread a voxel
+// interpolated between kept gradients is the gradient of the trilinear field (`sampling.md` 7). One thread a voxel
 // that the brick stores; the outermost of its halo are not those of the grid, and nothing reads them.
 // CPU reference: the linear and Sobel's operator of src/technique/gradient_taps.rs at voxel centres.
 

@@ -124,7 +124,7 @@ const HOLES: Slot = constant("holes", &["none", "mask"]);
 const LATTICE: Slot = constant("lattice", &["ray", "planes"]);
 /// One number a voxel, alone or with its gradient. The word `alone` is left out of names.
 const ONE: Slot = slot("mix", &["alone", "graded"]);
-/// Graded for no more than unhindered light and weights of opacity, by central differences.
+/// With a gradient for no more than unhindered light and weights of opacity, by central differences.
 const LEAN: Slot = slot("mix", &["lit", "weighed"]);
 const ALONE: Slot = slot("mix", &["alone"]);
 /// Steps that adapt to what is there, of volumes without holes.

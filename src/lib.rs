@@ -1,6 +1,15 @@
 //! A volume renderer that speaks Vulkan: two texture slicers, a ray caster and
 //! maximum intensity projection, each with a CPU reference and an exact answer.
 //!
+//! `docs/architecture.md` is the map of the sources: where a pixel comes from, how to add a technique, a mode or a format, and a
+//! glossary. `docs/sampling.md` defines what is computed.
+//!
+//! # Where a pixel comes from
+//!
+//! `format` reads a file into a [`volume::Volume`], [`resident`] puts it on the device, [`technique::View::recordings`] sets the
+//! parameters, `shaders/raycast.wgsl` (or a slicer's) walks the ray, `shaders/lib/mode_*.wgsl` says what a sample adds,
+//! `shaders/resolve.wgsl` makes it a colour, and [`offscreen::Renderer::render`] (or a host) puts the passes in order.
+//!
 //! # Floors
 //!
 //! A module uses lower floors only; `tests/host/floors.rs` holds us to it.
@@ -162,12 +171,6 @@
 //! Recording creates, destroys and waits for nothing. Only `gpu/headless.rs` makes a device. Files are
 //! touched by `format`, `picture` and `transfer/file.rs`, by the program, and by `gpu/cache.rs`, which keeps
 //! compiled pipelines. There is no global state. The same inputs give the same bytes.
-//!
-//! # Where a pixel comes from
-//!
-//! [`technique::View::recordings`] sets the parameters, `shaders/raycast.wgsl` (or a slicer's) walks the ray,
-//! `shaders/lib/mode_*.wgsl` says what a sample adds, `shaders/resolve.wgsl` makes it a colour, and
-//! [`offscreen::Renderer::render`] (or a host) puts the passes in order.
 
 #[cfg(feature = "png")]
 pub mod annotate;

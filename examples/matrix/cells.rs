@@ -51,7 +51,7 @@ pub enum Seen {
     /// One volume of numbers.
     Alone,
     /// One whose function is over value and gradient.
-    Graded,
+    GradientFunction,
     /// One with voxels that are no data.
     Holed,
     /// One that rises everywhere, so that its gradient has a direction everywhere.
@@ -190,7 +190,7 @@ pub const FEATURES: &[Feature] = &[
     feature(
         "value and gradient",
         "`widgets`, `gradient_opacity`, `--preset boundaries`",
-        Seen::Graded,
+        Seen::GradientFunction,
         |_| {},
     ),
     feature(
@@ -441,7 +441,7 @@ impl Matter {
             Seen::Classified => Beside::Classified(parts),
             Seen::Alone
             | Seen::Bricked
-            | Seen::Graded
+            | Seen::GradientFunction
             | Seen::Holed
             | Seen::Bowl
             | Seen::Denoised => Beside::Nothing,
@@ -455,7 +455,7 @@ impl Matter {
                 _ => &self.numbers,
             },
             transfer: Some(match seen {
-                Seen::Graded => &self.graded,
+                Seen::GradientFunction => &self.graded,
                 _ => &self.function,
             }),
             beside,

@@ -1,5 +1,5 @@
 // Corners of 16-bit voxels: a texel holds a voxel and, in its upper half, the next one in the row. A face as one texel
-// of 16 bytes would take a third more memory, and was hardly faster (docs/performance.md).
+// of 16 bytes would take a third more memory, and was hardly faster (docs/log/performance.md).
 
 #import footprint_texels
 

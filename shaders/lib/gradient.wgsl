@@ -4,7 +4,7 @@
 //     gradient = A^T g = sum of g_k (row k of A)
 //
 // so a grid that is oblique, sheared or not isotropic has the gradient of the field that was sampled on it
-// (`algorithms.md` T7). How steep: central differences of the chosen filter one voxel before and after,
+// (`sampling.md` 7). How steep: central differences of the chosen filter one voxel before and after,
 //
 //     g_k = (f(p + e_k) - f(p - e_k)) / 2
 //

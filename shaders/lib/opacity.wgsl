@@ -1,5 +1,5 @@
 // Opacity of a segment: alpha = 1 - exp(-sigma d). Under 0.01 the series, because 1 - exp(-x) cancels
-// (`algorithms.md` 1.4). CPU reference: src/transfer/law.rs.
+// (`sampling.md` 4). CPU reference: src/transfer/law.rs.
 
 fn opacity_over(extinction: f32, length_world: f32) -> f32 {
     let depth = extinction * length_world;

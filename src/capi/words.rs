@@ -3,7 +3,7 @@
 use super::status::Failure;
 use crate::volume::VoxelType;
 
-/// Where samples lie.
+/// The rendering technique.
 #[repr(u32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum sv_technique {

@@ -29,7 +29,7 @@ pub enum Error {
     Differs(String),
     /// The words are no command; the text says so at length and in colours of its own.
     #[error("{0}")]
-    Words(String),
+    Arguments(String),
     /// Another program that was started ended with this code, and has said why.
     #[error("exit code {0}")]
     Other(u8),
@@ -220,7 +220,7 @@ impl Error {
         match self {
             Self::Differs(_) => 1,
             Self::Other(code) => *code,
-            Self::Words(_)
+            Self::Arguments(_)
             | Self::Usage { .. }
             | Self::NotBuilt(_)
             | Self::NotInParts { is_usage: true, .. } => 2,
@@ -290,7 +290,7 @@ impl Error {
             Self::Device(_) => Some(
                 "`stratavox devices` says what is here; --device reference draws without Vulkan",
             ),
-            Self::Words(_)
+            Self::Arguments(_)
             | Self::Other(_)
             | Self::Differs(_)
             | Self::ReadPicture(_)
@@ -303,7 +303,7 @@ impl Error {
     /// a name can steer the terminal.
     pub fn lines(&self) -> String {
         match self {
-            Self::Words(text) => return text.clone(),
+            Self::Arguments(text) => return text.clone(),
             Self::Other(_) => return String::new(),
             _ => {}
         }

@@ -1,6 +1,6 @@
 //! The order of flags in the help of verbs that draw: first those that most pictures need, the others by topic.
 
-use super::Words;
+use super::Arguments;
 use clap::{Arg, Command, CommandFactory};
 
 /// The flags that people use most, in the order of the help.
@@ -30,7 +30,7 @@ const DRAWING: [&str; 4] = ["render", "animate", "thumbnails", "bench"];
 
 /// The words of the program, with its flags in the order of their use.
 pub fn command() -> Command {
-    let command = Words::command();
+    let command = Arguments::command();
     DRAWING.iter().fold(command, |command, verb| {
         command.mut_subcommand(verb, |verb| verb.mut_args(by_use))
     })

@@ -68,7 +68,7 @@ use std::path::Path;
 #[command(
     after_help = "Examples:\n  stratavox phantom:head\n  stratavox render phantom:head -o left.png --view left"
 )]
-struct Words {
+struct Arguments {
     #[command(subcommand)]
     verb: Verb,
 }
@@ -131,7 +131,7 @@ fn with_verb(mut words: Vec<OsString>) -> Vec<OsString> {
         return words;
     };
     let is_verb = |name: &str| {
-        let command = Words::command();
+        let command = Arguments::command();
         name == "help"
             || command
                 .get_subcommands()
@@ -151,11 +151,11 @@ fn with_verb(mut words: Vec<OsString>) -> Vec<OsString> {
 
 fn obey(words: Vec<OsString>, source: Source, gate: &Gate) -> Result<(), Error> {
     let matches = help::command().try_get_matches_from(words);
-    let words = match matches.and_then(|matches| Words::from_arg_matches(&matches)) {
+    let words = match matches.and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(words) => words,
         // Help and version are answers, not errors.
         Err(answer) if !answer.use_stderr() => return output::say(&answer.render().to_string()),
-        Err(error) => return Err(Error::Words(with_hint(&error))),
+        Err(error) => return Err(Error::Arguments(with_hint(&error))),
     };
     match words.verb {
         Verb::Render(render) => render.run(gate),
@@ -185,7 +185,7 @@ fn with_hint(error: &clap::Error) -> String {
     let end = text.find("\nFor more information").unwrap_or(text.len());
     let verb = std::env::args_os().nth(1).filter(|word| {
         let word = word.to_string_lossy();
-        let command = Words::command();
+        let command = Arguments::command();
         command
             .get_subcommands()
             .any(|verb| verb.get_name() == word)
@@ -203,12 +203,12 @@ mod tests {
 
     #[test]
     fn the_words_are_put_together_without_contradiction() {
-        Words::command().debug_assert();
+        Arguments::command().debug_assert();
     }
 
     #[test]
     fn every_verb_shows_an_example_in_its_help() {
-        for verb in Words::command().get_subcommands() {
+        for verb in Arguments::command().get_subcommands() {
             let help = verb.clone().render_long_help().to_string();
             assert!(help.contains("Example"), "{}: {help}", verb.get_name());
             assert!(help.contains("stratavox "), "{}: {help}", verb.get_name());

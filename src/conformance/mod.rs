@@ -1,4 +1,4 @@
-//! Whether a device tells the truth: cases with exact answers, and a verdict for each.
+//! Whether a device conforms: cases with exact answers, and a verdict for each.
 //!
 //! ```text
 //! tree::cases -> Case (name, profile, needs, run)

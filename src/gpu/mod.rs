@@ -304,7 +304,7 @@ impl Gpu {
     }
 
     /// Whether shaders that fetch and weigh voxels themselves were found to be faster than the driver's sampler: those
-    /// of llvmpipe are, by a half and more, and those of SwiftShader take twice as long (`docs/performance.md`).
+    /// of llvmpipe are, by a half and more, and those of SwiftShader take twice as long (`docs/log/performance.md`).
     pub fn has_slow_sampler(&self) -> bool {
         self.is_llvmpipe()
     }

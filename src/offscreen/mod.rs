@@ -38,7 +38,7 @@ pub enum Error {
     /// A layer that this technique and mode do not have.
     #[error("{technique} has no layer `{}` in mode {mode}", layer.name())]
     NoLayer {
-        /// Where samples lie.
+        /// The rendering technique.
         technique: crate::technique::Technique,
         /// What is done with them.
         mode: crate::technique::Mode,

@@ -1,5 +1,5 @@
 //! Ranges of macro cells from voxels in memory, where the device is a program on the same processor: vectors of a row
-//! are compared there, and texels fetched one by one here cost forty times as much (`docs/performance.md`). CPU reference of
+//! are compared there, and texels fetched one by one here cost forty times as much (`docs/log/performance.md`). CPU reference of
 //! `shaders/macro_cells.wgsl`, bit by bit.
 
 use crate::shaders::{CELL_VOXELS, CellGrid};

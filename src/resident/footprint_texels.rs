@@ -1,5 +1,5 @@
 //! The eight voxels around a sample in two texels or four, for devices that compute on the CPU: their sampler is a
-//! program that converts and weighs each voxel by itself, and takes twice as long (`docs/performance.md`).
+//! program that converts and weighs each voxel by itself, and takes twice as long (`docs/log/performance.md`).
 //!
 //! ```text
 //! of 8 bits:   texel(i, j, z) = codes of (3 i .. 3 i + 3, 3 j .. 3 j + 3, z), a row in each of four words

@@ -1,6 +1,6 @@
 //! Gradients at the voxels, made on the device and kept there.
 //!
-//! Interpolating kept central differences is what central differences of the trilinear field are (`algorithms.md` T7),
+//! Interpolating kept central differences is what central differences of the trilinear field are (`sampling.md` 7),
 //! by one look-up of four half floats in place of six of a value: memory for time. They are kept as parts of the range
 //! of values, along the grid axes, so that no volume's unit leaves what half floats hold; halves are off by 2^-11 of
 //! a gradient, and by 2^-25 of the range where it is under 2^-14 of it.

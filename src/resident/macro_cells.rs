@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! volume -> MacroCells::record          ranges: least and most of a cell's voxels and a halo around them
-//!        -> EmptySpace::record          rooms: how far away matter is, whenever the transfer function changes
+//!        -> EmptySpace::record          distances: how far away matter is, whenever the transfer function changes
 //! ```
 //!
 //! Techniques leave out what lies in cells that cannot matter; the picture stays the same to the bit.

@@ -6,7 +6,7 @@
 //! max, min, add           channel by channel
 //! ```
 //!
-//! All colours are premultiplied (Porter and Duff 1984); `algorithms.md` 1.6.
+//! All colours are premultiplied (Porter and Duff 1984); `sampling.md` 5.
 
 use super::{DepthAccess, Fold, Mode, Order, SampleKind, ShaderVariant};
 use crate::gpu::{Blend, Gpu};

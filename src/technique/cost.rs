@@ -6,7 +6,7 @@ use crate::resident::Cell;
 use glam::DVec3;
 
 /// What a look-up of a voxel takes on the processor, with all that is done with it: a driver on two cores took 10 to
-/// 20 ns (`docs/performance.md`).
+/// 20 ns (`docs/log/performance.md`).
 const MS_PER_FETCH_ON_PROCESSOR: f64 = 25e-6;
 
 /// The same on the slowest device that is provided for: none was measured, 1 ns is taken for a usual one and 20 times as

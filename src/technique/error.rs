@@ -105,7 +105,7 @@ pub enum Error {
     /// A mode whose samples must come from front to back, in a technique that blends them.
     #[error("{technique} has no mode {mode}, in which a sample depends on those before it")]
     NeedsRays {
-        /// Where samples lie.
+        /// The rendering technique.
         technique: Technique,
         /// The mode.
         mode: Mode,
@@ -131,7 +131,7 @@ pub enum Error {
         "{technique} in mode {mode}: an exact extreme is one of mip or minip along rays, filtered linearly"
     )]
     NotExact {
-        /// Where samples lie.
+        /// The rendering technique.
         technique: Technique,
         /// The mode.
         mode: Mode,
@@ -139,7 +139,7 @@ pub enum Error {
     /// Darkness by depth needs a depth.
     #[error("{technique} in mode {mode} has no one depth a ray: no depth cue")]
     NoDepth {
-        /// Where samples lie.
+        /// The rendering technique.
         technique: Technique,
         /// The mode.
         mode: Mode,

@@ -9,7 +9,7 @@
 //!
 //! Exact for a field that is quadratic along the grid axes, else off by the third derivative: of x^3 on a grid of
 //! side h it is 3 x^2 + h^2 at voxel centres. With trilinear filtering it equals the interpolation of a volume of
-//! central differences made beforehand, because both are linear in the voxels (`algorithms.md` T7).
+//! central differences made beforehand, because both are linear in the voxels (`sampling.md` 7).
 
 use crate::real::{Real, add, scale};
 use crate::shaders::Frame;

@@ -9,7 +9,7 @@ use ash::vk;
 use std::sync::Arc;
 
 /// Slices of one batch. The specification allows 512, which keeps an 8-bit code where blending rounds to nearest
-/// (`algorithms.md` 1.7); blending that truncates, as lavapipe's does, needs batches of an eighth.
+/// (`sampling.md` 5); blending that truncates, as lavapipe's does, needs batches of an eighth.
 pub const MAX_BATCH_SLICES: u32 = 64;
 
 /// The format of a batch.

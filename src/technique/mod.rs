@@ -90,7 +90,7 @@ pub use slicer::{DepthAccess, Slicer};
 
 use crate::volume::{Spline, kernel::Kernel};
 
-/// Where samples lie.
+/// The rendering technique.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Technique {
     /// One ray a pixel in a compute pass.
@@ -196,7 +196,7 @@ pub enum CutFaces {
 /// What to compute. Words of the command line, once checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Where samples lie.
+    /// The rendering technique.
     pub technique: Technique,
     /// What is done with them.
     pub mode: Mode,

@@ -9,7 +9,7 @@
 //!
 //! so colours are interpolated multiplied with what is there of them: a transparent voxel gives its colour to none
 //! (Wittenbrink, Malzbender & Goss 1998). Values between two voxels are classified by neither: of a spike of the
-//! function between them nothing is left, and an edge is as blurred as the filter (`algorithms.md` T5). Shader:
+//! function between them nothing is left, and an edge is as blurred as the filter (`sampling.md` 4). Shader:
 //! `shaders/lib/material_colors.wgsl`.
 
 use crate::color::ColorSpace;

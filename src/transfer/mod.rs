@@ -1,6 +1,6 @@
 //! Value to colour and opacity.
 //!
-//! With opacity `a0` per reference length `d0`, linear between control points (`algorithms.md` 1.4):
+//! With opacity `a0` per reference length `d0`, linear between control points (`sampling.md` 4):
 //!
 //! ```text
 //! sigma = -ln(1 - min(a0, 1 - 2^-12)) / d0        extinction, per world length

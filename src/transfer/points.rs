@@ -1,7 +1,7 @@
 //! A transfer function as an array that a shader searches: no table, no error but that of f32.
 //!
 //! Colour points come first, then opacity points; a shader that finds the last point at or below a value
-//! and mixes with the next one computes the law of `sampling.md` 4.
+//! and mixes with the next one computes the function of `sampling.md` 4.
 
 use super::{Absorption, Interpolation, TransferFunction};
 use crate::color::{ColorSpace, decode_srgb};

@@ -1,5 +1,5 @@
 //! Films from words: each frame is the picture that `render` draws with the flags of its moment, and what is
-//! refused is refused before anything is written. Drawn by the twins on the CPU, so that no device is needed.
+//! refused is refused before anything is written. Drawn by the CPU references, so that no device is needed.
 
 use crate::person::Folder;
 use std::fs;

@@ -1,5 +1,5 @@
 //! Films of several numbers a voxel and of label maps: each frame is the picture that `render` draws. Drawn by the
-//! twins on the CPU.
+//! CPU references.
 
 use crate::person::Folder;
 use std::fs;

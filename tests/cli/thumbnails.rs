@@ -1,5 +1,5 @@
 //! `stratavox thumbnails`: a folder of volumes to pictures, each of them what `render` draws with the same flags.
-//! Most are drawn by the twins on the CPU, so that no device is needed.
+//! Most are drawn by the CPU references, so that no device is needed.
 
 use crate::person::Folder;
 use serde_json::Value;

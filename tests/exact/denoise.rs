@@ -86,7 +86,7 @@ fn noise_lifts_a_maximum_less_once_it_is_taken_out() {
         }
         maxima.iter().flatten().sum::<f64>() / 4096.0
     };
-    // 2.35 deviations for the maximum of 64 (`algorithms.md` T11 has it by sampling a normal distribution; twelve
+    // 2.35 deviations for the maximum of 64 (by sampling a normal distribution; twelve
     // uniform numbers reach a little less far).
     let before = mean_of_maxima(&noisy);
     assert!((2.25..2.40).contains(&before), "{before}");

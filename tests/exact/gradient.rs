@@ -1,4 +1,4 @@
-//! World gradients against closed forms (`algorithms.md` T7, A19).
+//! World gradients against closed forms (`sampling.md` 7 and A19).
 
 #[path = "../../examples/quality/marschner_lobb.rs"]
 mod marschner_lobb;

@@ -1,4 +1,4 @@
-//! Pre-integrated classification against integrals in closed form (`algorithms.md`, A13 and its like).
+//! Pre-integrated classification against integrals in closed form (`sampling.md` 10, A13 and its like).
 //!
 //! Where a value runs linearly along a ray from f0 to f1 over the length L, whatever the steps,
 //!

@@ -118,6 +118,7 @@ mod transfer_import;
 mod transfer_law;
 mod transfer_materials;
 mod transfer_widgets;
+mod vocabulary;
 mod volume_filters;
 mod volume_joint;
 mod volume_mixtures;

@@ -1,4 +1,4 @@
-//! Named materials: control points against the law of `docs/transfer-functions.md`.
+//! Named materials: control points against `docs/transfer-functions.md`.
 
 #![cfg(feature = "json")]
 

@@ -194,7 +194,7 @@ fn an_average_is_the_xray_over_the_length() {
 
 #[test]
 fn all_techniques_see_one_gaussian_alike() {
-    // Width 6 voxels, at the tolerance of `algorithms.md` 5: 1.5 % of the peak between any two.
+    // Width 6 voxels, allowed: 1.5 % of the peak between any two.
     let grid = Grid {
         dims: [64; 3],
         world_from_voxel: DAffine3::IDENTITY,

@@ -5,7 +5,7 @@ use crate::script::{self, Step};
 use crate::subject::Subject;
 use crate::view::View;
 use crate::window::Window;
-use crate::words::Words;
+use crate::words::Arguments;
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -17,7 +17,7 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy}
 use winit::window::WindowId;
 
 /// Opens the volume, then a window, and stays until that is closed.
-pub fn run(words: Words) -> Result<(), Error> {
+pub fn run(words: Arguments) -> Result<(), Error> {
     let steps = match (&words.script, &words.screenshot) {
         (Some(path), _) => Some(script::read(path)?),
         (None, Some(path)) => Some([Step::Frame, Step::Frame, Step::Window(path.clone())].into()),
@@ -26,7 +26,7 @@ pub fn run(words: Words) -> Result<(), Error> {
     if let Some(marks) = &words.annotate {
         marks
             .check()
-            .map_err(|error| Error::Words(error.to_string()))?;
+            .map_err(|error| Error::Arguments(error.to_string()))?;
     }
     let subject = Subject::open(&words)?;
     let view = View::new(subject, !words.bare, words.annotate.as_ref());
@@ -56,7 +56,7 @@ pub fn run(words: Words) -> Result<(), Error> {
 }
 
 struct App {
-    words: Words,
+    words: Arguments,
     proxy: EventLoopProxy<()>,
     /// Until there is a window.
     view: Option<View>,

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     #[error("{0}")]
-    Words(String),
+    Arguments(String),
     #[error("{}, line {line}: {problem}", path.display())]
     Script {
         path: PathBuf,
@@ -45,7 +45,7 @@ impl Error {
         use stratavox::gpu::Error as Gpu;
         use stratavox::volume::Problem;
         match self {
-            Self::Words(_) | Self::Script { .. } => 2,
+            Self::Arguments(_) | Self::Script { .. } => 2,
             Self::Read(error) => match error.problem {
                 Problem::Limit { .. } => 6,
                 _ => 3,

@@ -198,7 +198,7 @@ unsafe fn instance(
     info = info.enabled_extension_names(&extensions);
     // SAFETY: every pointer lives until the call returns.
     unsafe { entry.create_instance(&info, None) }.map_err(|cause| match cause {
-        vk::Result::ERROR_LAYER_NOT_PRESENT => Error::Words(
+        vk::Result::ERROR_LAYER_NOT_PRESENT => Error::Arguments(
             "--validation: the layer is not installed (Debian and Ubuntu: vulkan-validationlayers)"
                 .into(),
         ),

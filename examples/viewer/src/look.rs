@@ -310,12 +310,12 @@ fn integrals(voxels: &Volume) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::words::Words;
+    use crate::words::Arguments;
     use clap::Parser;
 
     fn open(words: &[&str]) -> Subject {
         let all = ["viewer"].iter().chain(words);
-        Subject::open(&Words::parse_from(all)).expect("a phantom")
+        Subject::open(&Arguments::parse_from(all)).expect("a phantom")
     }
 
     #[test]

@@ -40,10 +40,10 @@ mod words;
 use clap::{Parser, ValueEnum};
 use error::Error;
 use std::process::ExitCode;
-use words::{Layer, Words};
+use words::{Arguments, Layer};
 
 fn main() -> ExitCode {
-    match run(Words::parse()) {
+    match run(Arguments::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("stratavox-viewer: {error}");
@@ -57,7 +57,7 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(mut words: Words) -> Result<(), Error> {
+fn run(mut words: Arguments) -> Result<(), Error> {
     if words.validation.is_none() {
         words.validation = layer_of_environment()?;
     }
@@ -72,6 +72,6 @@ fn layer_of_environment() -> Result<Option<Layer>, Error> {
     let layer = word
         .to_str()
         .and_then(|word| Layer::from_str(word, false).ok());
-    let wrong = || Error::Words(format!("{variable} is {word:?}, wanted core or sync"));
+    let wrong = || Error::Arguments(format!("{variable} is {word:?}, wanted core or sync"));
     layer.map(Some).ok_or_else(wrong)
 }

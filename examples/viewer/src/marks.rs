@@ -173,5 +173,5 @@ pub fn drawn(view: &View, camera: &Camera, extent: [u32; 2], parts: u32) -> Resu
     let em = annotation.em(height * parts) / f64::from(parts);
     annotation.size = Some(em);
     let drawn = annotation.draw(&background, &seen);
-    drawn.map_err(|error| Error::Words(error.to_string()))
+    drawn.map_err(|error| Error::Arguments(error.to_string()))
 }

@@ -1,7 +1,7 @@
 //! What is looked at: an open source, one volume of it in memory, and what its values look like as a whole.
 
 use crate::error::Error;
-use crate::words::{LookWord, Words};
+use crate::words::{Arguments, LookWord};
 use glam::{DAffine3, DVec3};
 use std::path::Path;
 use std::sync::Arc;
@@ -48,7 +48,7 @@ pub struct Way {
 impl Subject {
     /// What the words name. Of several variables the first is taken where none is named, under `--look auto` the first
     /// that is no coordinate: the panel has the others.
-    pub fn open(words: &Words) -> Result<Self, Error> {
+    pub fn open(words: &Arguments) -> Result<Self, Error> {
         let is_auto = words.look == LookWord::Auto;
         let limits = Limits::default();
         let wanted = VolumeSelection {
@@ -77,7 +77,7 @@ impl Subject {
             && Some(first) != variables.first()
         {
             let variable = Some(first.clone());
-            return Self::open(&Words {
+            return Self::open(&Arguments {
                 variable,
                 ..words.clone()
             });
@@ -188,18 +188,19 @@ impl Way {
 }
 
 /// The names that the words bring.
-fn names(words: &Words) -> Result<LabelTable, Error> {
+fn names(words: &Arguments) -> Result<LabelTable, Error> {
     let Some(path) = &words.label_tf else {
         return Ok(LabelTable::default());
     };
-    let wrong = |problem: String| Error::Words(format!("--label-tf {}: {problem}", path.display()));
+    let wrong =
+        |problem: String| Error::Arguments(format!("--label-tf {}: {problem}", path.display()));
     let text = std::fs::read(path).map_err(|cause| wrong(cause.to_string()))?;
     LabelTable::parse(&text).map_err(|problem| wrong(problem.to_string()))
 }
 
 /// Refuses words that name what is not there.
-fn check(words: &Words, header: &Header) -> Result<(), Error> {
-    let wrong = |text: String| Err(Error::Words(text));
+fn check(words: &Arguments, header: &Header) -> Result<(), Error> {
+    let wrong = |text: String| Err(Error::Arguments(text));
     if let Some(name) = &words.variable
         && !header.variables.contains(name)
     {
@@ -223,7 +224,7 @@ fn check(words: &Words, header: &Header) -> Result<(), Error> {
 }
 
 /// The last name of a path, or a phantom's word.
-fn file(words: &Words) -> String {
+fn file(words: &Arguments) -> String {
     let input = words.input.trim_end_matches('/');
     match Path::new(input).file_name() {
         Some(name) if !input.starts_with("phantom:") => name.to_string_lossy().into_owned(),
@@ -231,7 +232,7 @@ fn file(words: &Words) -> String {
     }
 }
 
-fn name(words: &Words, header: &Header) -> String {
+fn name(words: &Arguments, header: &Header) -> String {
     let file = file(words);
     let file = file.strip_prefix("phantom:").unwrap_or(&file).to_owned();
     match header.variables.first() {
@@ -262,5 +263,5 @@ fn luma_of(colors: &[Volume]) -> Result<Volume, Error> {
     let voxels = Voxels::F32(values.collect());
     let place = first.world_from_voxel;
     Volume::from_voxels(first.dims, place, voxels, Rescale::default(), None)
-        .map_err(|problem| Error::Words(problem.to_string()))
+        .map_err(|problem| Error::Arguments(problem.to_string()))
 }

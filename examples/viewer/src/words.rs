@@ -11,7 +11,7 @@ use stratavox::annotate::Marks;
     stratavox-viewer scan.nii.gz\n  \
     stratavox-viewer wrfout.nc --variable QVAPOR\n  \
     stratavox-viewer phantom:storm --annotate --screenshot storm.png")]
-pub struct Words {
+pub struct Arguments {
     /// A volume file, a folder of slices, or phantom:NAME[,n=256]
     #[arg(value_name = "INPUT", default_value = "phantom:head")]
     pub input: String,

@@ -72,7 +72,7 @@ use target::{Frames, Target};
     Keyframes, each word of a key with a course of its own:\n  \
     { \"stratavox_keyframes\": 1, \"frames\": 120, \"easing\": \"smooth\", \"keys\": [\n    \
     { \"at\": 0, \"azimuth\": 0, \"zoom\": 1 }, { \"at\": 1, \"azimuth\": 360, \"zoom\": 2 } ] }\n  \
-    Words of a key: azimuth, elevation, roll, zoom, fov, view_height, eye, target, up, window, tf, crop, clip, light, time")]
+    Keys of a keyframe: azimuth, elevation, roll, zoom, fov, view_height, eye, target, up, window, tf, crop, clip, light, time")]
 pub struct Animate {
     /// frames/%04d.png (or .exr, .npy), a film that ends in .apng, .gif, .y4m or .mp4, or - for Y4M on the standard
     /// output

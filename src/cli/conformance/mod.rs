@@ -1,4 +1,4 @@
-//! `stratavox conformance`: whether a device tells the truth.
+//! `stratavox conformance`: whether a device conforms.
 
 mod cases;
 mod check;
@@ -37,7 +37,7 @@ enum Verb {
     Verify {
         /// Of what a filter or a shard was asked for: whole as far as it goes
         #[arg(long)]
-        part: bool,
+        partial: bool,
         /// What `--json` has written
         package: PathBuf,
     },
@@ -58,7 +58,7 @@ impl Conformance {
     pub fn run(self, source: Source, gate: &Gate) -> Result<(), Error> {
         match self.verb {
             None => self.run.run(source, gate),
-            Some(Verb::Verify { part, package }) => check::verify(&package, part),
+            Some(Verb::Verify { partial, package }) => check::verify(&package, partial),
             Some(Verb::Diff { a, b }) => check::diff(&a, &b),
         }
     }

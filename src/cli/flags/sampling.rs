@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SamplingFlags {
-    /// Where samples lie [default: raycast]
+    /// Rendering technique [default: raycast]
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub technique: Option<Technique>,

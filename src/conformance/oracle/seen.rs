@@ -1,4 +1,4 @@
-//! What a mode shows of the samples of a ray (`sampling.md` 5 and 6, `algorithms.md` T11), written a second time in
+//! What a mode shows of the samples of a ray (`sampling.md` 5 and 6), written a second time in
 //! f64.
 //!
 //! ```text

@@ -1,7 +1,7 @@
 //! Which view-aligned planes are drawn, and in which order.
 //!
 //! Plane k is forward . x = (k + 1/2) h around the centre of the grid box: anchored there and not at the
-//! eye, planes stay with the volume while the eye moves (`algorithms.md` T2).
+//! eye, planes stay with the volume while the eye moves (`sampling.md` 3).
 
 use crate::shaders::FrameFields;
 use crate::technique::{Order, View};

@@ -28,7 +28,7 @@ use crate::script::Step;
 use crate::subject::Subject;
 use crate::swapchain::Swapchain;
 use crate::view::{Picked, View};
-use crate::words::Words;
+use crate::words::Arguments;
 use egui::ViewportId;
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -48,7 +48,7 @@ const PATIENCE: Duration = Duration::from_secs(5);
 
 pub struct Window {
     view: View,
-    words: Words,
+    words: Arguments,
     steps: Option<VecDeque<Step>>,
     drawn: Option<Drawn>,
     drawing: Option<Drawing>,
@@ -111,7 +111,7 @@ impl Next {
 impl Window {
     pub fn new(
         window: winit::window::Window,
-        words: &Words,
+        words: &Arguments,
         mut view: View,
         steps: Option<VecDeque<Step>>,
         wake: Arc<dyn Fn() + Send + Sync>,
