@@ -22,7 +22,7 @@ use stratavox::gpu::{
 };
 use stratavox::picture::{ColorSpace, Picture};
 use stratavox::scene::Beside;
-use stratavox::shaders::{BindingKind, BindingSlot, Shader, Stage};
+use stratavox::shaders::{BindingKind, BindingSlot, Code, Shader, Stage};
 
 const IMAGE: BindingSlot = BindingSlot {
     name: "image",
@@ -54,7 +54,8 @@ impl Marker {
         let shader = |stage, bytes: &'static [u8], bindings| Shader {
             name: "marks",
             stage,
-            spirv: words(bytes),
+            code: Code::Words(words(bytes)),
+            constants: &[],
             bindings,
         };
         let vertex = include_bytes!(concat!(env!("OUT_DIR"), "/marks.vertex.spv"));

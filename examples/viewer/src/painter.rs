@@ -12,7 +12,7 @@ use stratavox::gpu::{
     Bindings, Blend, Buffer, DepthUse, Gpu, Image, ImageDesc, ImageKind, Memory, RasterDesc,
     RasterPipeline, Region, Resource, Sampler, Use, buffer_to_image, image_barrier,
 };
-use stratavox::shaders::{BindingKind, BindingSlot, Shader, Stage};
+use stratavox::shaders::{BindingKind, BindingSlot, Code, Shader, Stage};
 
 const CORNERS: BindingSlot = slot("corners", 0, BindingKind::Storage);
 const IMAGE: BindingSlot = slot("image", 1, BindingKind::Texture);
@@ -69,7 +69,8 @@ impl Painter {
                     [(Stage::Vertex, 0), (Stage::Fragment, 1)].map(|(stage, k)| Shader {
                         name,
                         stage,
-                        spirv: words[k],
+                        code: Code::Words(words[k]),
+                        constants: &[],
                         bindings: slots[k],
                     });
                 RasterPipeline::new(
