@@ -8,12 +8,15 @@
 //! frame.lights[i]    ->    select(select(frame.lights[0], frame.lights[1], i == 1), frame.lights[2], i == 2)
 //! ```
 //!
-//! A number beyond the end, which nobody asks for, finds the first.
+//! A number beyond the end, which nobody asks for, finds the first. Other drivers read the one element: the
+//! specialization constant `software` chooses between the two.
 
+use crate::alternatives::id_of;
+use crate::constants::id_of_mark;
 use naga::{
-    AddressSpace, Arena, ArraySize, BinaryOperator, Block, Expression, Function, GlobalVariable,
-    Handle, Literal, LocalVariable, Module, Range, ScalarKind, ShaderStage, Span, Statement, Type,
-    TypeInner, UniqueArena,
+    AddressSpace, Arena, ArraySize, BinaryOperator, Block, Constant, Expression, Function,
+    GlobalVariable, Handle, Literal, LocalVariable, Module, Range, ScalarKind, ShaderStage, Span,
+    Statement, Type, TypeInner, UniqueArena,
 };
 use std::collections::BTreeMap;
 
@@ -31,8 +34,14 @@ pub fn choose_among_few(module: &mut Module) {
         .iter_mut()
         .map(|entry| &mut entry.function);
     let functions = module.functions.iter_mut().map(|(_, function)| function);
+    let software = software(&module.constants, &module.global_expressions);
     for function in functions.chain(entries) {
-        choose_in(function, &mut module.types, &module.global_variables);
+        choose_in(
+            function,
+            &mut module.types,
+            &module.global_variables,
+            software,
+        );
     }
 }
 
@@ -40,12 +49,13 @@ fn choose_in(
     function: &mut Function,
     types: &mut UniqueArena<Type>,
     globals: &Arena<GlobalVariable>,
+    software: Option<Handle<Constant>>,
 ) {
     let mut choices = BTreeMap::new();
     let handles: Vec<_> = function.expressions.iter().map(|(made, _)| made).collect();
     for made in handles {
         if let Some(choice) = Choice::of(made, function, types, globals) {
-            choices.insert(made, choice);
+            choices.insert(made, Choice { software, ..choice });
         }
     }
     for (&made, choice) in &choices {
@@ -66,6 +76,8 @@ struct Choice {
     count: u32,
     number: Handle<Expression>,
     chosen: Handle<LocalVariable>,
+    /// 1 where the driver is llvmpipe; `None`: as if it were.
+    software: Option<Handle<Constant>>,
 }
 
 impl Choice {
@@ -116,11 +128,55 @@ impl Choice {
             count,
             number: index,
             chosen: function.local_variables.append(chosen, Span::UNDEFINED),
+            software: None,
         })
     }
 
-    /// Chooses, where the place was asked for.
+    /// Chooses, where the place was asked for, or reads that element.
     fn chosen(&self, expressions: &mut Arena<Expression>) -> Block {
+        let among = self.among_all(expressions);
+        let Some(software) = self.software else {
+            return among;
+        };
+        let span = Span::UNDEFINED;
+        let mut add = |expression| expressions.append(expression, span);
+        let left = add(Expression::Constant(software));
+        let right = add(Expression::Literal(Literal::U32(1)));
+        let condition = add(Expression::Binary {
+            op: BinaryOperator::Equal,
+            left,
+            right,
+        });
+        let pointer = add(Expression::LocalVariable(self.chosen));
+        let buffer = add(Expression::GlobalVariable(self.uniform));
+        let mut all = buffer;
+        let mut first = None;
+        for &index in &self.path {
+            all = add(Expression::AccessIndex { base: all, index });
+            first.get_or_insert(all);
+        }
+        let place = add(Expression::Access {
+            base: all,
+            index: self.number,
+        });
+        let value = add(Expression::Load { pointer: place });
+        let made = Range::new_from_bounds(first.unwrap_or(place), value);
+        let mut straight = Block::new();
+        straight.push(Statement::Emit(made), span);
+        straight.push(Statement::Store { pointer, value }, span);
+        let mut block = Block::new();
+        let made = Range::new_from_bounds(condition, condition);
+        block.push(Statement::Emit(made), span);
+        let choice = Statement::If {
+            condition,
+            accept: among,
+            reject: straight,
+        };
+        block.push(choice, span);
+        block
+    }
+
+    fn among_all(&self, expressions: &mut Arena<Expression>) -> Block {
         let span = Span::UNDEFINED;
         let mut block = Block::new();
         let mut add = |expression| expressions.append(expression, span);
@@ -162,6 +218,21 @@ impl Choice {
         block.push(Statement::Store { pointer, value }, span);
         block
     }
+}
+
+/// The constant that says whether the driver is llvmpipe.
+fn software(
+    constants: &Arena<Constant>,
+    expressions: &Arena<Expression>,
+) -> Option<Handle<Constant>> {
+    let mut handles = constants.iter();
+    let found = handles.find(|(_, one)| match &expressions[one.init] {
+        Expression::Literal(Literal::U32(value)) => {
+            id_of_mark(*value) == Some(id_of("software") as u32)
+        }
+        _ => false,
+    });
+    found.map(|(handle, _)| handle)
 }
 
 /// The buffer that a place lies in, and the way from there, where all of that is by name.

@@ -62,10 +62,11 @@ pub fn marked(module: &mut Module, id: u16, name: Option<String>) -> Handle<Cons
 pub fn is_marked(module: &Module, constant: Handle<Constant>) -> bool {
     let init = module.constants[constant].init;
     let value = &module.global_expressions[init];
-    matches!(value, Expression::Literal(Literal::U32(value)) if id_of(*value).is_some())
+    matches!(value, Expression::Literal(Literal::U32(value)) if id_of_mark(*value).is_some())
 }
 
-fn id_of(value: u32) -> Option<u32> {
+/// The `SpecId` that a constant of this value stands for.
+pub fn id_of_mark(value: u32) -> Option<u32> {
     value.checked_sub(MARK).filter(|id| *id < 0x1000)
 }
 
@@ -90,7 +91,7 @@ pub fn specialized(words: &[u32]) -> (Vec<u32>, Vec<u32>) {
             types_at = Some(body.len());
         }
         let id = (op == Op::Constant as u32 && length == 4)
-            .then(|| id_of(instruction[3]))
+            .then(|| id_of_mark(instruction[3]))
             .flatten();
         if let Some(id) = id {
             assert!(!ids.contains(&id), "constant {id} is there twice");
