@@ -38,10 +38,7 @@ const FORBIDDEN: &[(&str, &str)] = &[
     ("dearest", "most expensive"),
     ("hang on", "depend on"),
     ("hangs on", "depends on"),
-    (
-        "keep_gradients",
-        "gradient_storage, or precompute_gradients",
-    ),
+    ("Settings::keep_gradients", "Settings::gradient_storage"),
     ("keeps_empty_space", "disable_space_skipping"),
     ("looks_of_picture", "fetches_of_picture"),
     ("room_of", "distance_to_occupied"),
