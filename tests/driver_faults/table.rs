@@ -353,8 +353,8 @@ pub const FAULTS: &[(&str, Fault, &str)] = &[
         "slices sum up without lengths",
         Shader(
             "lib/blend_number.wgsl",
-            "value * length_world, length_world",
-            "value, length_world",
+            "sample * length_world, length_world",
+            "sample, length_world",
         ),
         "slices_3d.xray.ramp.linear_fetch.f32.perspective",
     ),
