@@ -52,7 +52,7 @@ pub const ROWS: &[(&str, &[&str])] = &[
             "distance_map",
             "slice_patches.view",
             "slice_patches.stack",
-            "keep_gradients.box",
+            "precompute_gradients.box",
             "light_volume",
             "merge.over",
         ],
