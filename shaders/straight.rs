@@ -138,11 +138,11 @@ impl Choosing {
 
     /// An instruction of a function, and what is beside it.
     fn write(&mut self, of: &[u32], out: &mut Vec<u32>) {
-        if op(of) == Op::AccessChain as u32 {
-            if let Some(&uniform) = self.uniforms.get(&of[3]) {
-                let place = [&[uniform], &of[4..]].concat();
-                self.places.insert(of[2], (place, self.pointees[&of[1]]));
-            }
+        if op(of) == Op::AccessChain as u32
+            && let Some(&uniform) = self.uniforms.get(&of[3])
+        {
+            let place = [&[uniform], &of[4..]].concat();
+            self.places.insert(of[2], (place, self.pointees[&of[1]]));
         }
         let place = (op(of) == Op::Load as u32)
             .then(|| self.places.get(&of[3]))
