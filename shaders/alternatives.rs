@@ -87,9 +87,8 @@ impl File {
                 item.name = name.to_owned();
             }
             // A declaration ends with its block, or with a semicolon.
-            if !item.name.is_empty()
-                && (line == "}" || !line.starts_with([' ', '/']) && line.ends_with(';'))
-            {
+            let is_last = !line.starts_with([' ', '/']) && line.ends_with([';', '}']);
+            if !item.name.is_empty() && is_last {
                 items.push(Item::new(number + 2));
             }
         }

@@ -111,6 +111,7 @@ mod picture_files;
 mod picture_hostile;
 mod picture_output;
 mod public_api;
+mod shader_constants;
 mod shader_modules;
 mod transfer_choice;
 mod transfer_file;

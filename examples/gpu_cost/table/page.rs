@@ -29,11 +29,11 @@ passes before and after; variants that only software drivers use are not among t
 | straight | that over the inverse throughput of the straight form: the module whose constants `spirv-opt` has folded, with its dead branches, before the driver saw it | at most 1.03 |
 
 The estimate is of compiled code, not of a run: it knows neither caches nor how often a loop turns. It says which of two
-forms of one shader is dearer, and what a change of the shaders has done. Rows of different shaders are not to be compared. A raster
+forms of one shader is more expensive, and what a change of the shaders has done. Rows of different shaders are not to be compared. A raster
 pipeline has a row for each of its stages; its target is `R32G32B32A32_SFLOAT`, blended back to front.
 
-The test asserts no scratch, no spilled registers beyond *may spill*, waves as above, and that no row is over 3 % dearer
-than here or than its straight form. Where a change makes a row dearer with good reason, or shaders come and go, run `make gpu-cost`
+The test asserts no scratch, no spilled registers beyond *may spill*, waves as above, and that no row is over 3 % more expensive
+than here or than its straight form. Where a change makes a row more expensive with good reason, or shaders come and go, run `make gpu-cost`
 and commit the page with the change. The rows are in `examples/gpu_cost/table/rows.rs`, the rules in `rules.rs` beside it.
 ";
 

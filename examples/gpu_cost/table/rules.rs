@@ -6,7 +6,7 @@
 
 use super::{Table, null_device::FAMILIES};
 
-/// How much dearer than in the page, and than in its straight form, a pair may be.
+/// How much more expensive than in the page, and than in its straight form, a pair may be.
 pub const MOST_RATIO: f64 = 1.03;
 
 /// Waves that hide the latency of memory.
@@ -17,7 +17,8 @@ const FEW_REGISTERS: &str = "polaris10";
 
 /// Registers that a row may spill yet, by family in the order of [`FAMILIES`]. All others spill none.
 ///
-/// These are scalar registers of functions with many parameters; no cause was found for them yet.
+/// These are scalar registers, which the copy of the parameters that `shaders/read_once.rs` makes where an entry point
+/// begins keeps busy to its end: without that pass none spills on RDNA, and at most four on GCN 4.
 const SPILLS: &[(&str, [u64; FAMILIES.len()])] = &[
     (
         "raycast.composite.graded.ray.linear.none.table.picture",

@@ -1,0 +1,144 @@
+//! Variants in one module: what the build makes of files that stand for words of a constant, and of overrides.
+
+#[path = "../../shaders/alternatives.rs"]
+mod alternatives;
+#[path = "../../shaders/compose.rs"]
+#[allow(dead_code, reason = "the build asks for more")]
+mod compose;
+#[path = "../../shaders/constants.rs"]
+#[allow(dead_code, reason = "the build asks for more")]
+mod constants;
+#[path = "../../shaders/no_contraction.rs"]
+#[allow(dead_code, reason = "the build asks for more")]
+mod no_contraction;
+#[path = "../../shaders/variants.rs"]
+#[allow(dead_code, reason = "the build asks for more")]
+mod variants;
+
+use naga::back::spv;
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use spirv::Op;
+use std::collections::BTreeMap;
+use variants::Slot;
+
+const FILTER: Slot = Slot {
+    name: "filter",
+    words: &["low", "high"],
+    is_constant: true,
+};
+
+const MAIN: &str = "#import of_{filter}
+@group(0) @binding(0) var<storage, read_write> out: Numbers;
+@compute @workgroup_size(8)
+fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+    out.d[id.x] = end_of(f32(id.x));
+}
+";
+const LOW: &str = "struct Numbers { d: array<f32> }
+// Of this file alone.
+const SCALE: f32 = 2.0;
+fn end_of(x: f32) -> f32 {
+    return scaled(x, SCALE);
+}
+fn scaled(x: f32, by: f32) -> f32 {
+    return x / by;
+}
+";
+const HIGH: &str = "struct Numbers { d: array<f32> }
+const SCALE: f32 = 3.0;
+fn end_of(y: f32) -> f32 {
+    return scaled(y);
+}
+fn scaled(y: f32) -> f32 {
+    return y * SCALE;
+}
+";
+
+fn merged(main: &str, low: &str, high: &str) -> String {
+    let read = |path: &str| {
+        let text = match path {
+            "main.wgsl" => main,
+            "lib/of_low.wgsl" => low,
+            "lib/of_high.wgsl" => high,
+            other => panic!("{other}"),
+        };
+        text.to_owned()
+    };
+    alternatives::merged("main", &[FILTER], &BTreeMap::new(), &read).text
+}
+
+fn module(text: &str) -> naga::Module {
+    naga::front::wgsl::parse_str(text).unwrap_or_else(|e| panic!("{}", e.emit_to_string(text)))
+}
+
+fn words(module: &naga::Module) -> Vec<u32> {
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+    let info = validator.validate(module).expect("a valid module");
+    let options = spv::Options {
+        lang_version: (1, 5),
+        force_loop_bounding: false,
+        ..Default::default()
+    };
+    spv::write_vec(module, &info, &options, None).expect("SPIR-V")
+}
+
+fn count(words: &[u32], op: Op) -> usize {
+    let all = no_contraction::instructions(words);
+    all.filter(|(_, of)| of[0] & 0xffff == op as u32).count()
+}
+
+#[test]
+fn files_of_both_words_keep_their_functions_and_one_chooses() {
+    let text = merged(MAIN, LOW, HIGH);
+    for wanted in [
+        "override FILTER: u32",
+        "fn end_of_of_of_low(x: f32)",
+        "fn end_of_of_of_high(y: f32)",
+        "switch FILTER {",
+        "x / by",
+        "y * SCALEOf_of_high",
+    ] {
+        assert!(text.contains(wanted), "no {wanted:?} in\n{text}");
+    }
+    assert_eq!(text.matches("struct Numbers").count(), 1, "{text}");
+    assert_eq!(text.matches("fn scaled(").count(), 0, "{text}");
+    assert!(
+        module(&text)
+            .overrides
+            .iter()
+            .any(|(_, one)| one.id.is_some())
+    );
+}
+
+#[test]
+#[should_panic(expected = "has other parameters")]
+fn a_function_of_other_parameters_is_not_for_other_files() {
+    merged(&MAIN.replace("end_of(", "scaled("), LOW, HIGH);
+}
+
+#[test]
+#[should_panic(expected = "is no function")]
+fn a_structure_that_differs_is_not_for_other_files() {
+    merged(MAIN, LOW, &HIGH.replace("d: array", "e: u32, d: array"));
+}
+
+#[test]
+fn an_override_becomes_a_specialization_constant() {
+    let mut module = module(&merged(MAIN, LOW, HIGH));
+    constants::mark(&mut module);
+    let plain = words(&module);
+    let (words, ids) = constants::specialized(&plain);
+    assert_eq!(ids, [alternatives::id_of("filter") as u32]);
+    assert_eq!(count(&words, Op::SpecConstant), 1);
+    assert_eq!(count(&words, Op::Switch), count(&plain, Op::Switch));
+    assert_eq!(words.len(), plain.len() + 4, "one decoration more");
+}
+
+#[test]
+#[should_panic(expected = "computed with")]
+fn a_specialization_constant_is_not_computed_with() {
+    let text = merged(MAIN, LOW, HIGH).replace("f32(id.x)", "f32(id.x + FILTER)");
+    let mut module = module(&text);
+    constants::mark(&mut module);
+    constants::specialized(&words(&module));
+}
