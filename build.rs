@@ -36,6 +36,8 @@ mod opaque;
 mod point_size;
 #[path = "shaders/read_once.rs"]
 mod read_once;
+#[path = "shaders/straight.rs"]
+mod straight;
 #[path = "shaders/variants.rs"]
 mod variants;
 
@@ -174,6 +176,8 @@ impl Book {
         let info = check(&module, ValidationFlags::all().difference(uniformity));
 
         let (words, ids) = constants::specialized(&spirv(&module, &info, file));
+        let software = alternatives::id_of("software") as u32;
+        let words = straight::chosen_by(software, &words);
         let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
         let first = self.stored.len();
         self.stored

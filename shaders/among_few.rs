@@ -11,8 +11,7 @@
 //! A number beyond the end, which nobody asks for, finds the first. Other drivers read the one element: the
 //! specialization constant `software` chooses between the two.
 
-use crate::alternatives::id_of;
-use crate::constants::id_of_mark;
+use crate::constants::software;
 use naga::{
     AddressSpace, Arena, ArraySize, BinaryOperator, Block, Constant, Expression, Function,
     GlobalVariable, Handle, Literal, LocalVariable, Module, Range, ScalarKind, ShaderStage, Span,
@@ -29,12 +28,12 @@ pub fn choose_among_few(module: &mut Module) {
     if !module.entry_points.iter().all(|entry| is_pass(entry.stage)) {
         return;
     }
+    let software = software(module);
     let entries = module
         .entry_points
         .iter_mut()
         .map(|entry| &mut entry.function);
     let functions = module.functions.iter_mut().map(|(_, function)| function);
-    let software = software(&module.constants, &module.global_expressions);
     for function in functions.chain(entries) {
         choose_in(
             function,
@@ -218,21 +217,6 @@ impl Choice {
         block.push(Statement::Store { pointer, value }, span);
         block
     }
-}
-
-/// The constant that says whether the driver is llvmpipe.
-fn software(
-    constants: &Arena<Constant>,
-    expressions: &Arena<Expression>,
-) -> Option<Handle<Constant>> {
-    let mut handles = constants.iter();
-    let found = handles.find(|(_, one)| match &expressions[one.init] {
-        Expression::Literal(Literal::U32(value)) => {
-            id_of_mark(*value) == Some(id_of("software") as u32)
-        }
-        _ => false,
-    });
-    found.map(|(handle, _)| handle)
 }
 
 /// The buffer that a place lies in, and the way from there, where all of that is by name.

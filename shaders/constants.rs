@@ -58,6 +58,18 @@ pub fn marked(module: &mut Module, id: u16, name: Option<String>) -> Handle<Cons
     module.constants.append(constant, Span::UNDEFINED)
 }
 
+/// The constant with number 0, which says whether the driver is llvmpipe.
+pub fn software(module: &Module) -> Option<Handle<Constant>> {
+    let is_software = |one: &Constant| match &module.global_expressions[one.init] {
+        Expression::Literal(Literal::U32(value)) => id_of_mark(*value) == Some(0),
+        _ => false,
+    };
+    let mut constants = module.constants.iter();
+    constants
+        .find(|(_, one)| is_software(one))
+        .map(|(handle, _)| handle)
+}
+
 /// Whether a constant is a marked one.
 pub fn is_marked(module: &Module, constant: Handle<Constant>) -> bool {
     let init = module.constants[constant].init;

@@ -5,9 +5,11 @@
 //! a variable of the invocation; what is found by a number that is known only then stays where it is. Fragments gain
 //! nothing by it, since there the invocations are never sure to be at work: `handed.rs` is for them.
 
+use crate::constants::software;
 use naga::{
-    AddressSpace, Arena, Block, EntryPoint, Expression, Function, GlobalVariable, Handle,
-    MemoryDecorations, Module, Range, ShaderStage, Span, Statement, Type,
+    AddressSpace, Arena, BinaryOperator, Block, Constant, EntryPoint, Expression, Function,
+    GlobalVariable, Handle, Literal, MemoryDecorations, Module, Range, ShaderStage, Span,
+    Statement, Type,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -25,8 +27,12 @@ pub fn read_parameters_once(module: &mut Module) {
         .collect();
     for (uniform, ty, name) in uniforms {
         let (copy, members) = asked_of_a_copy(module, uniform, ty, name, |_| true);
+        let software = software(module);
         for entry in &mut module.entry_points {
-            let start = copied(&mut entry.function, uniform, copy, &members);
+            let mut start = copied(&mut entry.function, uniform, copy, &members);
+            if let Some(software) = software {
+                start = only_where(software, start, &mut entry.function.expressions);
+            }
             entry.function.body.splice(0..0, start);
         }
     }
@@ -111,6 +117,33 @@ fn redirect(
             members.extend(own);
         }
     }
+}
+
+/// What other drivers than llvmpipe leave out: they read parameters where they are asked for (`straight.rs`).
+fn only_where(
+    software: Handle<Constant>,
+    accept: Block,
+    expressions: &mut Arena<Expression>,
+) -> Block {
+    let span = Span::UNDEFINED;
+    let mut add = |expression| expressions.append(expression, span);
+    let left = add(Expression::Constant(software));
+    let right = add(Expression::Literal(Literal::U32(1)));
+    let condition = add(Expression::Binary {
+        op: BinaryOperator::Equal,
+        left,
+        right,
+    });
+    let mut block = Block::new();
+    let made = Range::new_from_bounds(condition, condition);
+    block.push(Statement::Emit(made), span);
+    let choice = Statement::If {
+        condition,
+        accept,
+        reject: Block::new(),
+    };
+    block.push(choice, span);
+    block
 }
 
 /// What an entry point begins with.

@@ -1,4 +1,5 @@
-//! Variants in one module: what the build makes of files that stand for words of a constant, and of overrides.
+//! Variants in one module: what the build makes of files that stand for words of a constant, of overrides, and of copies
+//! of parameters.
 
 #[path = "../../shaders/alternatives.rs"]
 mod alternatives;
@@ -11,6 +12,8 @@ mod constants;
 #[path = "../../shaders/no_contraction.rs"]
 #[allow(dead_code, reason = "the build asks for more")]
 mod no_contraction;
+#[path = "../../shaders/straight.rs"]
+mod straight;
 #[path = "../../shaders/variants.rs"]
 #[allow(dead_code, reason = "the build asks for more")]
 mod variants;
@@ -141,4 +144,30 @@ fn a_specialization_constant_is_not_computed_with() {
     let mut module = module(&text);
     constants::mark(&mut module);
     constants::specialized(&words(&module));
+}
+
+#[test]
+fn copies_of_parameters_are_chosen_against_their_buffers() {
+    let text = "struct Frame { scale: f32, offset: vec4<f32> }
+        struct Numbers { d: array<f32> }
+        @id(0) override SOFTWARE: u32 = 0u;
+        @group(0) @binding(0) var<uniform> frame: Frame;
+        @group(0) @binding(1) var<storage, read_write> out: Numbers;
+        var<private> copy: Frame;
+        @compute @workgroup_size(8)
+        fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+            copy.scale = frame.scale;
+            copy.offset = frame.offset;
+            out.d[id.x] = select(copy.scale, copy.offset.y, SOFTWARE == 7u);
+        }";
+    let mut module = module(text);
+    constants::mark(&mut module);
+    let (plain, ids) = constants::specialized(&words(&module));
+    assert_eq!(ids, [0]);
+    let chosen = straight::chosen_by(0, &plain);
+    // Each read of the copy is one of the buffer more.
+    assert_eq!(count(&chosen, Op::Select), count(&plain, Op::Select) + 2);
+    assert_eq!(count(&chosen, Op::Load), count(&plain, Op::Load) + 2);
+    assert_eq!(count(&chosen, Op::SpecConstantOp), 1);
+    assert_eq!(straight::chosen_by(3, &plain), plain, "another constant");
 }
