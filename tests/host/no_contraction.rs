@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use stratavox::shaders::{SHADERS, Shader, Stage};
 
 #[path = "../../shaders/no_contraction.rs"]
-mod pass;
+pub mod pass;
 
 use pass::{forbid_contraction, instructions, is_float_arithmetic};
 

@@ -9,15 +9,13 @@ mod compose;
 #[path = "../../shaders/constants.rs"]
 #[allow(dead_code, reason = "the build asks for more")]
 mod constants;
-#[path = "../../shaders/no_contraction.rs"]
-#[allow(dead_code, reason = "the build asks for more")]
-mod no_contraction;
 #[path = "../../shaders/straight.rs"]
 mod straight;
 #[path = "../../shaders/variants.rs"]
 #[allow(dead_code, reason = "the build asks for more")]
 mod variants;
 
+use crate::no_contraction::pass as no_contraction;
 use naga::back::spv;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use spirv::Op;
