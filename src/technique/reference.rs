@@ -51,7 +51,7 @@ pub trait Samples<R: Real> {
 pub struct Gathered<R> {
     /// Composite: premultiplied colour and alpha. Else (value, weight, unused, unused).
     pub accumulation: [R; 4],
-    /// Of what the depth layer tells; `None`: of nothing.
+    /// World length along the ray, as the layer of depths has it; `None`: no depth.
     pub depth: Option<R>,
     /// The value of a surface that was hit first.
     pub level: Option<R>,
