@@ -2,6 +2,8 @@
 //!
 //! Free of Vulkan: kinds of binding are words of our own that [`crate::gpu`] maps.
 
+mod fold;
+
 use std::ops::Range;
 use std::sync::OnceLock;
 
@@ -21,12 +23,18 @@ pub struct Shader {
 }
 
 impl Shader {
-    /// The words of the module.
+    /// The words of the module, of several variants.
     pub fn spirv(&self) -> &'static [u32] {
         match self.code {
             Code::Words(words) => words,
             Code::Stored(module) => OPENED[module].get_or_init(|| opened(MODULES[module].clone())),
         }
+    }
+
+    /// The words of this variant alone, for llvmpipe or for any other driver.
+    pub fn folded(&self, is_llvmpipe: bool) -> Vec<u32> {
+        let software = (SOFTWARE_ID, is_llvmpipe.into());
+        fold::folded(self.spirv(), &[&[software], self.constants].concat())
     }
 }
 

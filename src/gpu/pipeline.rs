@@ -6,7 +6,7 @@ use super::{
     Bindings, Buffer, Error, Gpu, Groups, Layout, Tile, boxes, error::within, layout::stage_flag,
     owned::Own,
 };
-use crate::shaders::{SOFTWARE_ID, Shader, Stage};
+use crate::shaders::{Shader, Stage};
 use ash::vk;
 use std::ops::Range;
 use std::sync::{Arc, atomic::Ordering};
@@ -52,12 +52,10 @@ impl ComputePipeline {
         )?;
         let layout = Layout::new(gpu, &[shader], shader.name)?;
         let module = module(gpu, shader)?;
-        let constants = Constants::of(gpu, shader);
-        let constants = constants.info();
         let info = vk::ComputePipelineCreateInfo::default()
             // Parts of a dispatch begin at workgroups of their own.
             .flags(vk::PipelineCreateFlags::DISPATCH_BASE)
-            .stage(stage(shader, &module, &constants))
+            .stage(stage(shader, &module))
             .layout(layout.raw());
         // SAFETY: module and layout were made of the same shader, whose SPIR-V `build.rs` has validated.
         let raw = first(gpu, doing, |device| unsafe {
@@ -252,7 +250,8 @@ pub(super) fn wrong_stage(doing: String, wanted: &str, shader: &Shader) -> Error
 
 /// The SPIR-V of a shader on the device; needed only until its pipeline is made.
 pub(crate) fn module(gpu: &Arc<Gpu>, shader: &Shader) -> Result<Own<vk::ShaderModule>, Error> {
-    let info = vk::ShaderModuleCreateInfo::default().code(shader.spirv());
+    let words = shader.folded(gpu.is_llvmpipe());
+    let info = vk::ShaderModuleCreateInfo::default().code(&words);
     // SAFETY: the SPIR-V was validated when it was built.
     let raw = gpu.call(
         || format!("load shader `{}`", shader.name),
@@ -260,56 +259,21 @@ pub(crate) fn module(gpu: &Arc<Gpu>, shader: &Shader) -> Result<Own<vk::ShaderMo
     )?;
     gpu.name(raw, shader.name);
     #[cfg(feature = "conformance")]
-    recorder::note(recorder::Event::Shader(shader));
+    recorder::note(recorder::Event::Shader {
+        shader,
+        words: &words,
+    });
     Ok(Own::new(gpu, raw))
 }
 
-pub(crate) fn stage<'a>(
+pub(crate) fn stage(
     shader: &Shader,
     module: &Own<vk::ShaderModule>,
-    constants: &'a vk::SpecializationInfo<'_>,
-) -> vk::PipelineShaderStageCreateInfo<'a> {
+) -> vk::PipelineShaderStageCreateInfo<'static> {
     vk::PipelineShaderStageCreateInfo::default()
         .stage(stage_flag(shader.stage))
         .module(module.get())
-        .specialization_info(constants)
         .name(c"main")
-}
-
-/// The specialization constants of a variant.
-pub(crate) struct Constants {
-    entries: Vec<vk::SpecializationMapEntry>,
-    values: Vec<u32>,
-}
-
-impl Constants {
-    /// Those of a shader on this device.
-    pub fn of(gpu: &Gpu, shader: &Shader) -> Self {
-        let software = u32::from(gpu.is_llvmpipe());
-        let all = [(SOFTWARE_ID, software)]
-            .into_iter()
-            .chain(shader.constants.iter().copied());
-        let (ids, values): (Vec<u32>, Vec<u32>) = all.unzip();
-        let entry = |(offset, id)| vk::SpecializationMapEntry {
-            constant_id: id,
-            offset,
-            size: size_of::<u32>(),
-        };
-        Self {
-            entries: (0..)
-                .step_by(size_of::<u32>())
-                .zip(ids)
-                .map(entry)
-                .collect(),
-            values,
-        }
-    }
-
-    pub fn info(&self) -> vk::SpecializationInfo<'_> {
-        vk::SpecializationInfo::default()
-            .map_entries(&self.entries)
-            .data(bytemuck::cast_slice(&self.values))
-    }
 }
 
 /// The one pipeline that was asked for.

@@ -3,8 +3,8 @@
 #[cfg(feature = "conformance")]
 use super::recorder;
 use super::{
-    Bindings, Buffer, Error, Gpu, Layout, owned::Own, pipeline::Constants, pipeline::first,
-    pipeline::module, pipeline::stage, pipeline::wrong_stage,
+    Bindings, Buffer, Error, Gpu, Layout, owned::Own, pipeline::first, pipeline::module,
+    pipeline::stage, pipeline::wrong_stage,
 };
 use crate::shaders::{Shader, Stage};
 use ash::vk;
@@ -141,12 +141,7 @@ impl RasterPipeline {
         check_formats(gpu, desc)?;
         let layout = Layout::new(gpu, &[desc.vertex, desc.fragment], name)?;
         let (vertex, fragment) = (module(gpu, desc.vertex)?, module(gpu, desc.fragment)?);
-        let constants = [desc.vertex, desc.fragment].map(|shader| Constants::of(gpu, shader));
-        let [of_vertex, of_fragment] = constants.each_ref().map(Constants::info);
-        let stages = [
-            stage(desc.vertex, &vertex, &of_vertex),
-            stage(desc.fragment, &fragment, &of_fragment),
-        ];
+        let stages = [stage(desc.vertex, &vertex), stage(desc.fragment, &fragment)];
         let vertex_input = vk::PipelineVertexInputStateCreateInfo::default();
         let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(topology);
         let viewport = vk::PipelineViewportStateCreateInfo::default()

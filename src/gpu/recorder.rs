@@ -8,7 +8,11 @@ use std::sync::{Mutex, PoisonError};
 #[derive(Clone, Copy, Debug)]
 pub enum Event<'a> {
     /// A shader was loaded.
-    Shader(&'a Shader),
+    Shader {
+        shader: &'a Shader,
+        /// Its SPIR-V, as the driver gets it.
+        words: &'a [u32],
+    },
     /// The host wrote to a buffer.
     Written {
         /// Its name.

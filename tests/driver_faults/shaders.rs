@@ -6,7 +6,7 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::cell::Cell;
 use std::ffi::CStr;
 use std::path::Path;
-use stratavox::shaders::SHADERS;
+use stratavox::shaders::{SHADERS, SOFTWARE_ID, Shader};
 
 #[path = "../../shaders/alternatives.rs"]
 mod alternatives;
@@ -16,6 +16,8 @@ mod compose;
 #[path = "../../shaders/constants.rs"]
 #[allow(dead_code, reason = "the build marks constants of its own")]
 mod constants;
+#[path = "../../src/shaders/fold.rs"]
+mod fold;
 #[path = "../../shaders/variants.rs"]
 mod variants;
 
@@ -58,7 +60,7 @@ unsafe extern "system" fn create(
 
 /// The words of the same shader with the change; `None` where it has no part in it.
 fn mutated(words: &[u32], file: &str, from: &str, to: &str) -> Option<Vec<u32>> {
-    let name = SHADERS.iter().find(|shader| shader.spirv() == words)?.name;
+    let (shader, is_llvmpipe) = variant_of(words)?;
     let is_changed = Cell::new(false);
     let read = |path: &str| {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
@@ -73,7 +75,7 @@ fn mutated(words: &[u32], file: &str, from: &str, to: &str) -> Option<Vec<u32>> 
         is_changed.set(true);
         text.replace(from, to)
     };
-    let (entry, slots, words) = entry_of(name);
+    let (entry, slots, words) = entry_of(shader.name);
     let fills = compose::fills(slots, &words);
     let chosen: Vec<_> = slots
         .iter()
@@ -81,7 +83,22 @@ fn mutated(words: &[u32], file: &str, from: &str, to: &str) -> Option<Vec<u32>> 
         .copied()
         .collect();
     let source = alternatives::merged(entry, &chosen, &fills, &read);
-    is_changed.get().then(|| compiled(&source.text))
+    let software = (SOFTWARE_ID, is_llvmpipe.into());
+    let values = [&[software], shader.constants].concat();
+    let folded = || fold::folded(&compiled(&source.text), &values);
+    is_changed.get().then(folded)
+}
+
+/// The variant with these words, and whether they are for llvmpipe.
+fn variant_of(words: &[u32]) -> Option<(&'static Shader, bool)> {
+    /// The word of the header that says how many ids there are, which folding leaves as it is.
+    const BOUND: usize = 3;
+    let of_module = SHADERS
+        .iter()
+        .filter(|shader| shader.spirv()[BOUND] == words[BOUND]);
+    of_module
+        .flat_map(|shader| [(shader, true), (shader, false)])
+        .find(|(shader, is_llvmpipe)| shader.folded(*is_llvmpipe) == words)
 }
 
 /// The file, the slots and the words of a variant.

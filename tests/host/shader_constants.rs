@@ -9,6 +9,8 @@ mod compose;
 #[path = "../../shaders/constants.rs"]
 #[allow(dead_code, reason = "the build asks for more")]
 mod constants;
+#[path = "../../src/shaders/fold.rs"]
+mod fold;
 #[path = "../../shaders/straight.rs"]
 mod straight;
 #[path = "../../shaders/variants.rs"]
@@ -20,6 +22,7 @@ use naga::back::spv;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use spirv::Op;
 use std::collections::BTreeMap;
+use std::process::Command;
 use variants::Slot;
 
 const FILTER: Slot = Slot {
@@ -168,4 +171,100 @@ fn copies_of_parameters_are_chosen_against_their_buffers() {
     assert_eq!(count(&chosen, Op::Load), count(&plain, Op::Load) + 2);
     assert_eq!(count(&chosen, Op::SpecConstantOp), 1);
     assert_eq!(straight::chosen_by(3, &plain), plain, "another constant");
+}
+
+/// Constants choose a branch, one of two loops, a case that breaks out of its switch early, and one that returns.
+const CHOOSING: &str = "struct Numbers { d: array<f32> }
+    @id(1) override WAY: u32 = 0u;
+    @id(2) override TURNS: u32 = 0u;
+    @group(0) @binding(0) var<storage, read_write> out: Numbers;
+    fn of_way(x: f32) -> f32 {
+        switch WAY {
+            case 0u: { return fast(x); }
+            default: { return slow(x); }
+        }
+    }
+    fn fast(x: f32) -> f32 { return x + x; }
+    fn slow(x: f32) -> f32 {
+        var sum = 0.0;
+        for (var k = 0u; k < 8u; k += 1u) {
+            if TURNS == 1u && sum > x { break; }
+            if TURNS == 2u { return sum; }
+            sum += out.d[k];
+        }
+        return sum;
+    }
+    @compute @workgroup_size(8)
+    fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+        var x = f32(id.x);
+        switch WAY {
+            case 0u: { x = 1.0; }
+            default: {
+                if x > 3.0 { break; }
+                x = 2.0 * x;
+            }
+        }
+        out.d[id.x] = of_way(x);
+    }";
+
+fn folded(way: u32, turns: u32) -> Vec<u32> {
+    let mut module = module(CHOOSING);
+    constants::mark(&mut module);
+    let (words, _) = constants::specialized(&words(&module));
+    fold::folded(&words, &[(1, way), (2, turns), (9, 9)])
+}
+
+#[test]
+fn folding_leaves_what_the_constants_choose() {
+    let fast = folded(0, 0);
+    let counts = |words: &[u32]| {
+        [Op::Function, Op::Switch, Op::LoopMerge, Op::SelectionMerge].map(|op| count(words, op))
+    };
+    assert_eq!(
+        counts(&fast)[..3],
+        [3, 1, 0],
+        "main with its switch, of_way, fast"
+    );
+    let slow = folded(1, 0);
+    assert_eq!(counts(&slow)[0], 3, "main, of_way, slow");
+    assert_eq!(counts(&slow)[2], 1, "a loop");
+    let leaves_early = folded(1, 1);
+    let compared = [&slow, &leaves_early].map(|words| count(words, Op::FOrdGreaterThan));
+    assert_eq!(compared, [1, 2], "x with 3, and the sum with x");
+    assert_eq!(
+        counts(&folded(1, 2))[2],
+        1,
+        "the loop is there, its end is not reached"
+    );
+    assert_eq!(count(&fast, Op::SpecConstant), 0);
+}
+
+#[test]
+fn what_folding_leaves_is_valid() {
+    if Command::new("spirv-val").arg("--version").output().is_err() {
+        println!("skipped: no spirv-val is installed");
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    for (way, turns) in [(0, 0), (1, 0), (1, 1), (1, 2), (7, 7)] {
+        let file = folder.path().join("folded.spv");
+        let words = folded(way, turns);
+        std::fs::write(&file, bytemuck::cast_slice(&words)).expect("a file");
+        let mut command = Command::new("spirv-val");
+        let run = command
+            .args(["--target-env", "vulkan1.2"])
+            .arg(&file)
+            .output();
+        let run = run.expect("spirv-val");
+        let said = String::from_utf8_lossy(&run.stderr);
+        assert!(run.status.success(), "{way} {turns}: {said}");
+    }
+}
+
+#[test]
+#[should_panic(expected = "constant 2 has no value")]
+fn a_constant_without_a_value_is_no_variant() {
+    let mut module = module(CHOOSING);
+    constants::mark(&mut module);
+    fold::folded(&constants::specialized(&words(&module)).0, &[(1, 0)]);
 }

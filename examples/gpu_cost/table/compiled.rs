@@ -5,11 +5,10 @@ use ash::vk;
 use std::collections::BTreeMap;
 use stratavox::shaders::{BindingKind, Shader, Stage};
 
-/// A shader with the words and the constants that it is compiled from.
+/// A shader with the words that it is compiled from.
 pub struct Code<'a> {
     pub shader: &'a Shader,
     pub words: &'a [u32],
-    pub constants: &'a [(u32, u32)],
 }
 
 /// The statistics of the first of `codes`: a compute shader, or two stages of a raster pipeline.
@@ -49,16 +48,12 @@ impl Made {
         let info = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets);
         // SAFETY: the set's layout is of this device.
         self.layout = unsafe { device.create_pipeline_layout(&info, None) }?;
-        let values = codes.iter().map(|code| Constants::of(code.constants));
-        let values: Vec<Constants> = values.collect();
-        let infos: Vec<vk::SpecializationInfo> = values.iter().map(Constants::info).collect();
-        let stages = codes.iter().zip(&self.modules).zip(&infos);
+        let stages = codes.iter().zip(&self.modules);
         let stages: Vec<vk::PipelineShaderStageCreateInfo> = stages
-            .map(|((code, &module), info)| {
+            .map(|(code, &module)| {
                 vk::PipelineShaderStageCreateInfo::default()
                     .stage(stage_flag(code.shader.stage))
                     .module(module)
-                    .specialization_info(info)
                     .name(c"main")
             })
             .collect();
@@ -145,33 +140,6 @@ impl Made {
                 device.destroy_shader_module(module, None);
             }
         }
-    }
-}
-
-/// Values of specialization constants, as Vulkan wants them.
-struct Constants {
-    entries: Vec<vk::SpecializationMapEntry>,
-    bytes: Vec<u8>,
-}
-
-impl Constants {
-    fn of(constants: &[(u32, u32)]) -> Self {
-        let entry = |(place, &(id, _)): (usize, &(u32, u32))| vk::SpecializationMapEntry {
-            constant_id: id,
-            offset: (place * size_of::<u32>()) as u32,
-            size: size_of::<u32>(),
-        };
-        let values = constants.iter();
-        Self {
-            entries: constants.iter().enumerate().map(entry).collect(),
-            bytes: values.flat_map(|(_, value)| value.to_ne_bytes()).collect(),
-        }
-    }
-
-    fn info(&self) -> vk::SpecializationInfo<'_> {
-        vk::SpecializationInfo::default()
-            .map_entries(&self.entries)
-            .data(&self.bytes)
     }
 }
 

@@ -106,18 +106,16 @@ pub fn child() -> Result<(), String> {
     for (beside, name) in rows::rows() {
         let names = [Some(name), beside];
         let shaders: Vec<_> = names.into_iter().flatten().map(shader).collect();
-        let constants: Vec<_> = shaders.iter().map(|of| straight::constants(of)).collect();
         let cost = |words: Vec<Vec<u32>>| {
             let codes = (0..shaders.len()).map(|k| Code {
                 shader: shaders[k],
                 words: &words[k],
-                constants: &constants[k],
             });
             compiled::cost(&null, &codes.collect::<Vec<_>>())
         };
-        let pair = cost(shaders.iter().map(|of| straight::words(of)).collect())?;
+        let pair = cost(shaders.iter().map(|of| of.folded(false)).collect())?;
         let folded: Result<Vec<_>, _> = match with_straight {
-            true => shaders.iter().map(|of| straight::folded(of)).collect(),
+            true => shaders.iter().map(|of| straight::words(of)).collect(),
             false => Ok(Vec::new()),
         };
         let folded = folded?;

@@ -7,12 +7,12 @@ const HEAD: &str = "# What pipelines cost on graphics cards
 
 `make gpu-cost` writes this page, without a graphics card: RADV, Mesa's driver for AMD's chips, has a device without hardware
 (`RADV_FORCE_FAMILY`) whose compiler is the real one, and `VK_KHR_pipeline_executable_properties` tells what it made. The
-same modules with the same specialization constants are compiled as on a card. The test `cost::` of the test program
+same SPIR-V is compiled as on a card. The test `cost::` of the test program
 `gpu` compiles them again where this version of Mesa is installed, and compares.
 
 ## How to read it
 
-A row is a variant: a SPIR-V module with its specialization constants. Rows are what `stratavox bench` draws with and the
+A row is a variant: what a SPIR-V module holds for some values of its specialization constants, which the library folds (`src/shaders/fold.rs`). Rows are what `stratavox bench` draws with and the
 defaults of each technique and mode on a card (filter `linear` by the sampler, transfer functions as a table), with the
 passes before and after; variants that only software drivers use are not among them.
 
@@ -25,7 +25,7 @@ passes before and after; variants that only software drivers use are not among t
 | waves | subgroups that a SIMD unit holds at a time, by registers and shared memory: while one waits for memory another runs | 8 or more; on GCN 4, with 256 registers a lane for all waves together, no fewer than here |
 | code | bytes of machine code; the instruction cache has 32 KiB | |
 | throughput | inverse throughput: estimated cycles for 64 invocations. A loop counts as 8 turns (one within it as 4, deeper ones as 2), what a uniform branch holds as half, what a divergent one holds as three quarters; waves that hide latency make it smaller | compare with the same row before |
-| straight | that over the inverse throughput of the straight form: the module whose constants `spirv-opt` has folded, with its dead branches, before the driver saw it | at most 1.03 |
+| straight | that over the inverse throughput of the straight form: the same variant as `spirv-opt` folds it and removes dead branches | at most 1.03 |
 
 The estimate is of compiled code, not of a run: it knows neither caches nor how often a loop turns. It says which of two
 forms of one shader is more expensive, and what a change of the shaders has done. Rows of different shaders are not to be compared. A raster

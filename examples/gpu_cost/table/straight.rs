@@ -1,5 +1,4 @@
-//! The straight form of a variant: `spirv-opt` has set its constants, folded them and removed dead branches, so that
-//! the driver sees a module of that variant alone.
+//! The straight form of a variant: its module as `spirv-opt` folds it, a judge of what the library gives the driver.
 
 use std::{
     io::Write,
@@ -22,21 +21,11 @@ pub fn is_installed() -> bool {
     asked.is_ok_and(|output| output.status.success())
 }
 
-/// The words of a variant's module.
-pub fn words(shader: &Shader) -> Vec<u32> {
-    shader.spirv().to_vec()
-}
-
-/// `SpecId` and value of each constant, for a graphics card.
-pub fn constants(shader: &Shader) -> Vec<(u32, u32)> {
+/// The words of that form, for a graphics card.
+pub fn words(shader: &Shader) -> Result<Vec<u32>, String> {
     let of_variant = shader.constants.iter().copied();
-    [(SOFTWARE_ID, 0)].into_iter().chain(of_variant).collect()
-}
-
-/// Folded.
-pub fn folded(shader: &Shader) -> Result<Vec<u32>, String> {
-    let values = constants(shader);
-    let values: Vec<String> = values.iter().map(|(id, v)| format!("{id}:{v}")).collect();
+    let values = [(SOFTWARE_ID, 0)].into_iter().chain(of_variant);
+    let values: Vec<String> = values.map(|(id, v)| format!("{id}:{v}")).collect();
     let mut child = Command::new("spirv-opt")
         .arg(format!(
             "--set-spec-const-default-value={}",
@@ -50,7 +39,8 @@ pub fn folded(shader: &Shader) -> Result<Vec<u32>, String> {
         .spawn()
         .map_err(|e| format!("spirv-opt: {e}"))?;
     let mut input = child.stdin.take().expect("a pipe");
-    let bytes: Vec<u8> = words(shader).iter().flat_map(|w| w.to_le_bytes()).collect();
+    let module = shader.spirv().iter();
+    let bytes: Vec<u8> = module.flat_map(|w| w.to_le_bytes()).collect();
     // Its output comes after the whole input: neither waits for the other.
     let written = input.write_all(&bytes);
     drop(input);

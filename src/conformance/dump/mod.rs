@@ -102,10 +102,10 @@ impl Files {
         let n = self.count;
         self.count += 1;
         let line = match *event {
-            Event::Shader(shader) => {
+            Event::Shader { shader, words } => {
                 let name = file_name(shader.name);
                 if self.shaders.insert(name.clone()) {
-                    self.write(&format!("{name}.spv"), bytemuck::cast_slice(shader.spirv()))?;
+                    self.write(&format!("{name}.spv"), bytemuck::cast_slice(words))?;
                     let text = wgsl(shader.name).unwrap_or_default();
                     self.write(&format!("{name}.wgsl"), text.as_bytes())?;
                 }

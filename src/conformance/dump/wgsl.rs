@@ -12,8 +12,7 @@ use variants::{ENTRIES, PROBES};
 include!(concat!(env!("OUT_DIR"), "/wgsl.rs"));
 
 /// The text of the variant of that name, its imports in their places. `build.rs` still changes what is compiled of it
-/// (`shaders/*.rs`), so that it says what the SPIR-V computes and not every instruction of it: the SPIR-V is that of all
-/// variants of a module, among which specialization constants choose.
+/// (`shaders/*.rs`), so that it says what the SPIR-V computes and not every instruction of it.
 pub fn wgsl(variant: &str) -> Option<String> {
     let text = |path: &str| {
         let found = FILES.iter().find(|(name, _)| *name == path);

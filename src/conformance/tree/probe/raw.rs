@@ -3,7 +3,7 @@
 
 use crate::conformance::case::Stop;
 use crate::gpu::owned::{Own, OwnMemory};
-use crate::gpu::pipeline::{Constants, first, module, stage};
+use crate::gpu::pipeline::{first, module, stage};
 use crate::gpu::{self, Bindings, Buffer, Gpu, Layout};
 use crate::shaders::shader;
 use ash::vk::{self, AccessFlags2 as Access, ImageLayout, PipelineStageFlags2 as Stage};
@@ -299,12 +299,7 @@ impl DepthPipeline {
         let (vertex, fragment) = (shader(vertex), shader(fragment));
         let layout = Layout::new(gpu, &[vertex, fragment], fragment.name)?;
         let modules = [module(gpu, vertex)?, module(gpu, fragment)?];
-        let constants = [vertex, fragment].map(|shader| Constants::of(gpu, shader));
-        let [of_vertex, of_fragment] = constants.each_ref().map(Constants::info);
-        let stages = [
-            stage(vertex, &modules[0], &of_vertex),
-            stage(fragment, &modules[1], &of_fragment),
-        ];
+        let stages = [stage(vertex, &modules[0]), stage(fragment, &modules[1])];
         let input = vk::PipelineVertexInputStateCreateInfo::default();
         let assembly = vk::PipelineInputAssemblyStateCreateInfo::default()
             .topology(vk::PrimitiveTopology::TRIANGLE_LIST);
