@@ -6,14 +6,14 @@ use std::fmt::Write as _;
 const HEAD: &str = "# What pipelines cost on graphics cards
 
 `make gpu-cost` writes this page, without a graphics card: RADV, Mesa's driver for AMD's chips, has a device without hardware
-(`RADV_FORCE_FAMILY`) whose compiler is the real one, and `VK_KHR_pipeline_executable_properties` tells what it made. The
-same SPIR-V is compiled as on a card. The test `cost::` of the test program
-`gpu` compiles them again where this version of Mesa is installed, and compares.
+(`RADV_FORCE_FAMILY`) whose compiler is the real one, and `VK_KHR_pipeline_executable_properties` tells what it made. It gets
+the SPIR-V that a card gets. The test `cost::` of the test program `gpu` compiles it again where this version of Mesa is
+installed, and compares.
 
 ## How to read it
 
-A row is a variant: what a SPIR-V module holds for some values of its specialization constants, which the library folds (`src/shaders/fold.rs`). Rows are what `stratavox bench` draws with and the
-defaults of each technique and mode on a card (filter `linear` by the sampler, transfer functions as a table), with the
+A row is a variant: what a SPIR-V module holds for some values of its specialization constants, which the library folds
+(`src/shaders/fold.rs`). Rows are what `stratavox bench` draws with and the defaults of each technique and mode on a card (filter `linear` by the sampler, transfer functions as a table), with the
 passes before and after; variants that only software drivers use are not among them.
 
 | column | meaning | good |
