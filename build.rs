@@ -69,7 +69,8 @@ fn main() {
     say_packaged_commit();
     fs::write(out.join("shaders.deflate"), &book.stored).expect("OUT_DIR can be written");
     fs::write(out.join("shaders.rs"), book.rust()).expect("OUT_DIR can be written");
-    let ranks = blue_noise::ranks().into_iter().flat_map(u32::to_le_bytes);
+    let ranks = blue_noise::ranks().into_iter();
+    let ranks = ranks.flat_map(|rank| (rank as u16).to_le_bytes());
     let ranks: Vec<u8> = ranks.collect();
     fs::write(out.join("blue_noise.bin"), ranks).expect("OUT_DIR can be written");
 }

@@ -8,18 +8,17 @@
 
 use crate::shaders::{BLUE_NOISE_SIDE, Frame};
 
-/// For a storage buffer: four bytes a number, row after row.
+/// For a texture: two bytes a number, row after row.
 pub static BLUE_NOISE: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/blue_noise.bin"));
 
-const _: () = assert!(BLUE_NOISE.len() == 4 * (BLUE_NOISE_SIDE * BLUE_NOISE_SIDE) as usize);
+const _: () = assert!(BLUE_NOISE.len() == 2 * (BLUE_NOISE_SIDE * BLUE_NOISE_SIDE) as usize);
 // Ranks are 12 bits.
 const _: () = assert!(BLUE_NOISE_SIDE == 64);
 
 /// The number of a place of the torus.
 fn rank([x, y]: [u32; 2]) -> u32 {
     let place = (y % BLUE_NOISE_SIDE * BLUE_NOISE_SIDE + x % BLUE_NOISE_SIDE) as usize;
-    let bytes = &BLUE_NOISE[4 * place..][..4];
-    u32::from_le_bytes(bytes.try_into().expect("four bytes"))
+    u16::from_le_bytes([BLUE_NOISE[2 * place], BLUE_NOISE[2 * place + 1]]).into()
 }
 
 /// Which part of a step lies in the domain at first, over 0 and at most 1.

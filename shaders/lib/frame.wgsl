@@ -63,6 +63,8 @@ struct Frame {
     extent_pixels: vec2<u32>,
     color_point_count: u32,
     opacity_point_count: u32,
+    // Where in the transfer function's numbers those begin that gradients ask for.
+    first_widget_entry: u32,
     interpolation_is_step: u32,
     color_space_is_display: u32,
     // Slices: instance i shows slice (or plane) slice_first + i * slice_direction; in a 2D stack that

@@ -7,18 +7,17 @@
 #import frame
 #import opacity
 #import extinction
+#import transfer_numbers
 
-struct Widgets {
-    // (1 / steepest, count of shares, count of widgets, 1 where second derivatives count), shares, five entries a
-    // widget, cells of images.
-    d: array<vec4<f32>>,
+// An entry of what gradients make of the function: (1 / steepest, count of shares, count of widgets, 1 where second
+// derivatives count), shares, five entries a widget, cells of images.
+fn widget_entry(entry: u32) -> vec4<f32> {
+    return transfer_numbers.d[frame.first_widget_entry + entry];
 }
-
-@group(0) @binding(20) var<storage, read> widgets: Widgets;
 
 // What is left of an extinction; all of it where there is no point.
 fn weighed(extinction: f32, steepness: f32) -> f32 {
-    let count = u32(widgets.d[0].y);
+    let count = u32(widget_entry(0).y);
     if count == 0u {
         return extinction;
     }
@@ -28,15 +27,15 @@ fn weighed(extinction: f32, steepness: f32) -> f32 {
 
 // Between the points that a steepness lies between, constant beyond them.
 fn share_at(count: u32, steepness: f32) -> f32 {
-    var share = widgets.d[1].y;
+    var share = widget_entry(1).y;
     for (var i = 1u; i <= count; i++) {
-        let left = widgets.d[i];
+        let left = widget_entry(i);
         if left.x > steepness {
             break;
         }
         share = left.y;
         if i < count {
-            let right = widgets.d[i + 1u];
+            let right = widget_entry(i + 1u);
             if right.x > steepness {
                 share = left.y + (steepness - left.x) / (right.x - left.x) * (right.y - left.y);
             }

@@ -12,16 +12,12 @@
 
 const BLUE_NOISE_SIDE: u32 = 64u;
 
-struct BlueNoise {
-    ranks: array<u32>,
-}
-
-@group(0) @binding(38) var<storage, read> blue_noise: BlueNoise;
+@group(0) @binding(38) var blue_noise: texture_2d<u32>;
 
 // Over 0, at most 1.
 fn jitter_of(pixel: vec2<f32>) -> f32 {
     let place = (vec2<u32>(pixel) + frame.jitter_shift) % vec2(BLUE_NOISE_SIDE);
-    let rank = blue_noise.ranks[place.y * BLUE_NOISE_SIDE + place.x];
+    let rank = textureLoad(blue_noise, place, 0).x;
     // In parts of 2^32, of which the ranks fill the first 12 bits.
     let part = (rank << 20u) + (1u << 19u) + frame.jitter;
     let folded = select(part << 1u, ~(part << 1u), part >= 0x80000000u);

@@ -15,7 +15,7 @@ fn material_of(sample: Sample) -> Classified {
         return material;
     }
     let gradient = gradient_of(central_slope(sample.place));
-    let extinction = weighed(material.extinction, norm(gradient) * widgets.d[0].x);
+    let extinction = weighed(material.extinction, norm(gradient) * widget_entry(0).x);
     // A cut face, seen along no direction, has its own colour, and without lights all light is ambient.
     if all(sample.ray_direction == vec3(0.0)) {
         return Classified(material.color, extinction);

@@ -4,13 +4,7 @@
 
 #import frame
 #import color
-
-struct Points {
-    // First the colour points (value, red, green, blue), then the opacity points (value, opacity, 0, 0).
-    d: array<vec4<f32>>,
-}
-
-@group(0) @binding(5) var<storage, read> points: Points;
+#import transfer_numbers
 
 fn opacity_at(value: f32) -> f32 {
     return between_points(value, frame.color_point_count, frame.opacity_point_count, frame.interpolation_is_step).y;
@@ -28,27 +22,28 @@ fn shown(srgb: vec3<f32>) -> vec3<f32> {
     return linear_from_srgb(srgb);
 }
 
-// Interpolates points[first .. first + count] at a value.
+// Interpolates numbers[first .. first + count] at a value: colour points (value, red, green, blue) come first, then
+// opacity points (value, opacity, 0, 0).
 fn between_points(value: f32, first: u32, count: u32, is_step: u32) -> vec4<f32> {
     // Invariant: points before `low` are at or below the value, points from `high` on are above it.
     var low = first;
     var high = first + count;
     while low < high {
         let middle = (low + high) / 2u;
-        if points.d[middle].x <= value {
+        if transfer_numbers.d[middle].x <= value {
             low = middle + 1u;
         } else {
             high = middle;
         }
     }
     if low == first {
-        return points.d[first];
+        return transfer_numbers.d[first];
     }
-    let left = points.d[low - 1u];
+    let left = transfer_numbers.d[low - 1u];
     if low == first + count || is_step != 0u {
         return left;
     }
-    let right = points.d[low];
+    let right = transfer_numbers.d[low];
     let part = (value - left.x) / (right.x - left.x);
     return left + part * (right - left);
 }

@@ -15,19 +15,19 @@ const WIDGET_ENTRIES: u32 = 5u;
 
 // False where the gradient makes nothing of the value.
 fn are_widgets() -> bool {
-    let head = widgets.d[0];
+    let head = widget_entry(0);
     return head.y + head.z > 0.0;
 }
 
 // True where some widget is weighted by the second derivative.
 fn wants_second() -> bool {
-    return widgets.d[0].w != 0.0;
+    return widget_entry(0).w != 0.0;
 }
 
 // What a value is made of where it rises by `magnitude` per world length, and that by `second`; `material` is what it
 // is made of anyway.
 fn classify_by_gradient(material: Classified, value: f32, magnitude: f32, second: f32) -> Classified {
-    let head = widgets.d[0];
+    let head = widget_entry(0);
     let share_count = u32(head.y);
     let steepness = magnitude * head.x;
     var sum = weighed(material.extinction, steepness);
@@ -38,16 +38,16 @@ fn classify_by_gradient(material: Classified, value: f32, magnitude: f32, second
     var light = sum * material.color;
     for (var i = 0u; i < u32(head.z); i++) {
         let first = 1u + share_count + WIDGET_ENTRIES * i;
-        let widget = widgets.d[first];
+        let widget = widget_entry(first);
         var share = widget_share(first, value, magnitude, steepness);
-        let painted = widgets.d[first + 2u];
+        let painted = widget_entry(first + 2u);
         var color = select(material.color, painted.xyz, widget.z != 0.0);
         if widget.z == 2.0 {
             color = image_color(first, value, steepness);
         }
         if painted.w != 0.0 {
             let bends = second * frame.smallest_spacing * head.x;
-            share *= second_share(painted.w, widgets.d[first + 4u], bends);
+            share *= second_share(painted.w, widget_entry(first + 4u), bends);
         }
         let own = extinction_of(widget.y * share, frame.reference_length);
         light += own * color;
@@ -61,8 +61,8 @@ fn classify_by_gradient(material: Classified, value: f32, magnitude: f32, second
 
 // What is opaque of the widget that begins at entry `first`.
 fn widget_share(first: u32, value: f32, magnitude: f32, steepness: f32) -> f32 {
-    let widget = widgets.d[first];
-    let n = widgets.d[first + 1u];
+    let widget = widget_entry(first);
+    let n = widget_entry(first + 1u);
     switch u32(widget.x) {
         // Contour: value, half-width in smallest spacings.
         case 0u: {
@@ -154,8 +154,8 @@ fn image_color(first: u32, value: f32, steepness: f32) -> vec3<f32> {
 
 // Between the middles of the cells of an image (first entry, columns, rows) in its rectangle.
 fn image_at(first: u32, value: f32, steepness: f32) -> vec4<f32> {
-    let n = widgets.d[first + 1u];
-    let image = widgets.d[first + 3u].xyz;
+    let n = widget_entry(first + 1u);
+    let image = widget_entry(first + 3u).xyz;
     let at = vec2((value - n.x) / (n.y - n.x), (steepness - n.z) / (n.w - n.z));
     let last = vec2<i32>(image.yz) - 1;
     let cell = at * image.yz - 0.5;
@@ -171,7 +171,7 @@ fn image_at(first: u32, value: f32, steepness: f32) -> vec4<f32> {
 }
 
 fn cell_at(entry: i32) -> vec4<f32> {
-    return widgets.d[entry];
+    return widget_entry(u32(entry));
 }
 
 fn between(a: vec4<f32>, b: vec4<f32>, part: f32) -> vec4<f32> {

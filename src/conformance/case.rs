@@ -3,7 +3,7 @@
 use super::measurement::Measurement;
 use super::need::Found;
 use super::test_bed::TestBed;
-use crate::gpu::{self, Item, Limit};
+use crate::gpu::{self, Item};
 use crate::offscreen;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -43,20 +43,6 @@ pub enum Stop {
     /// The suite did not do its work.
     #[error("{0}")]
     Suite(String),
-}
-
-impl Stop {
-    /// What the case needs, as it turned out when it made a program that binds more storage buffers than the run
-    /// allows. How many these are is in the interface that the build generates from the shader, and no other program
-    /// draws that picture. Any other refusal is none that a case may meet.
-    pub fn need(&self) -> Option<Item> {
-        let Self::Offscreen(offscreen::Error::Gpu(gpu::Error::Limit { limit, wanted, .. })) = self
-        else {
-            return None;
-        };
-        let buffers = Limit::MaxPerStageDescriptorStorageBuffers;
-        (*limit == buffers.name()).then_some(Item::Limit(buffers, *wanted))
-    }
 }
 
 impl From<gpu::Error> for Stop {

@@ -37,7 +37,7 @@ pub fn judge(case: &Case, bed: &mut TestBed) -> (Record, Option<Pictures>) {
 
 fn judged(case: &Case, bed: &mut TestBed) -> (Record, Option<Pictures>) {
     let of = |verdict, reason| Record::unmeasured(&case.name, case.profile, verdict, reason);
-    let mut needs: Vec<Found> = match bed.wants_device().then(|| bed.device()) {
+    let needs: Vec<Found> = match bed.wants_device().then(|| bed.device()) {
         Some(Ok(device)) => {
             let gpu = device.gpu();
             let needs = case.needs.iter().map(|&item| Found::of(gpu, item));
@@ -69,11 +69,6 @@ fn judged(case: &Case, bed: &mut TestBed) -> (Record, Option<Pictures>) {
             return (record, None);
         }
         Ok(Err(stop)) => {
-            if let Some(item) = stop.need()
-                && let Ok(device) = bed.device()
-            {
-                needs.push(Found::of(device.gpu(), item));
-            }
             let of_stop = match &stop {
                 Stop::Offscreen(offscreen::Error::Gpu(error)) => verdict_of(error),
                 Stop::Offscreen(_) | Stop::Lacking(_) | Stop::Suite(_) => Verdict::InternalError,

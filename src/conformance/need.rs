@@ -1,6 +1,5 @@
 //! What a case asks of a device, looked up twice: as the library knows the device, and by a query of its own. Of events,
-//! which the library does not use, the query alone says. How many storage buffers a case binds is known once it makes its
-//! programs ([`Stop::need`](super::case::Stop::need)).
+//! which the library does not use, the query alone says.
 //!
 //! | library | query | said |
 //! |---|---|---|

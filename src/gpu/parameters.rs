@@ -16,7 +16,6 @@ const LEAST_ALIGNMENT_BYTES: u64 = 256;
 #[derive(Debug)]
 pub struct ParameterRing {
     buffer: Buffer,
-    shared: Option<Buffer>,
     slot_bytes: u32,
     stride_bytes: u64,
     slots: u32,
@@ -41,28 +40,10 @@ impl ParameterRing {
         let buffer = Buffer::new(gpu, bytes, usage, Memory::Upload, name)?;
         Ok(Self {
             buffer,
-            shared: None,
             slot_bytes,
             stride_bytes,
             slots,
         })
-    }
-
-    /// The same ring with numbers beside it that recordings of all slots read from a storage buffer.
-    pub fn sharing(self, gpu: &Arc<Gpu>, numbers: &[u8]) -> Result<Self, Error> {
-        let name = format!("shared by {}", self.buffer.name());
-        let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
-        let shared = Buffer::new(gpu, numbers.len() as u64, usage, Memory::Upload, &name)?;
-        shared.write(0, numbers)?;
-        Ok(Self {
-            shared: Some(shared),
-            ..self
-        })
-    }
-
-    /// What recordings of all slots read, where there is such.
-    pub fn shared(&self) -> Option<&Buffer> {
-        self.shared.as_ref()
     }
 
     /// The Vulkan handle of the buffer of all slots.

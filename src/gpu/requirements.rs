@@ -202,11 +202,6 @@ pub const REQUIREMENTS: &[Requirement] = &[
         "volumes in which values are missing",
     ),
     recommended(
-        Item::Limit(Limit::MaxPerStageDescriptorStorageBuffers, 6),
-        "MIDA in light or with a function over gradients, and such pictures in conformance; without it they are refused \
-         by name",
-    ),
-    recommended(
         Item::Limit(Limit::MaxImageDimension3D, 2048),
         "volumes of up to so many voxels a side in one texture; larger ones come in bricks",
     ),

@@ -3,6 +3,7 @@
 //! Making them only creates objects. Their content is uploaded by recorded copies (or, where the host
 //! reaches the memory, written at once); nothing here submits or waits.
 
+mod blue_noise;
 mod bricks;
 mod cell_ranges;
 mod changed_cells;

@@ -22,6 +22,8 @@ pub struct TransferLayout {
     pub table_count: u32,
     pub color_point_count: u32,
     pub opacity_point_count: u32,
+    /// Where the numbers of [`PackedWidgets`] begin, behind all points.
+    pub first_widget_entry: u32,
     pub interpolation: Interpolation,
     pub reference_length: f32,
     /// Where the table begins in a texture of several, and the points in a list of several.
@@ -41,9 +43,8 @@ pub struct GpuTransfer {
     layouts: Vec<TransferLayout>,
     table: Image,
     staging: Buffer,
-    points: Buffer,
+    numbers: Buffer,
     slabs: Option<GpuSlabs>,
-    widgets: Buffer,
     is_graded: bool,
 }
 
@@ -77,7 +78,7 @@ impl GpuTransfer {
         let tables: Vec<_> = tables.collect();
         let longest = tables.iter().map(|table| table.entries.len()).max();
         let width = longest.unwrap_or(1).min(TABLE_WIDTH as usize);
-        let (mut entries, mut points, mut layouts) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut entries, mut numbers, mut layouts) = (Vec::new(), Vec::new(), Vec::new());
         for (table, &(function, length)) in tables.iter().zip(functions) {
             let own = Points::new(function, extinction(length), space);
             layouts.push(TransferLayout {
@@ -86,23 +87,30 @@ impl GpuTransfer {
                 table_count: table.entries.len() as u32,
                 color_point_count: own.color_count,
                 opacity_point_count: own.opacity_count,
+                first_widget_entry: 0,
                 interpolation: function.interpolation,
                 reference_length: length as f32,
                 table_row: (entries.len() / width) as u32,
-                point_first: points.len() as u32,
+                point_first: numbers.len() as u32,
                 slab_first: 0.0,
                 slab_scale: 0.0,
                 slab_count: 0,
             });
             entries.extend_from_slice(&table.entries);
             entries.resize(entries.len().next_multiple_of(width), [0.0; 4]);
-            points.extend_from_slice(&own.entries);
+            numbers.extend_from_slice(&own.entries);
         }
         // Gradients count where a function is alone.
         let widgets = functions.first();
         let widgets =
             widgets.map(|&(function, length)| PackedWidgets::new(function, length, space));
-        let widgets = widgets.map_or_else(|| vec![[0.0; 4]], |packed| packed.entries);
+        for layout in &mut layouts {
+            layout.first_widget_entry = numbers.len() as u32;
+        }
+        match widgets {
+            Some(widgets) => numbers.extend_from_slice(&widgets.entries),
+            None => numbers.push([0.0; 4]),
+        }
         let desc = ImageDesc {
             kind: ImageKind::D2,
             extent: [width as u32, (entries.len() / width) as u32, 1],
@@ -119,9 +127,8 @@ impl GpuTransfer {
             layouts,
             table: Image::new(gpu, &desc)?,
             staging: filled(gpu, &entries, copied, "transfer staging")?,
-            points: filled(gpu, &points, read, "transfer points")?,
+            numbers: filled(gpu, &numbers, read, "transfer numbers")?,
             slabs: None,
-            widgets: filled(gpu, &widgets, read, "transfer widgets")?,
             is_graded: functions.iter().any(|(function, _)| function.is_graded()),
         })
     }
@@ -166,14 +173,9 @@ impl GpuTransfer {
         self.slabs.as_ref().map(|slabs| &slabs.table)
     }
 
-    /// The control points.
-    pub fn points(&self) -> &Buffer {
-        &self.points
-    }
-
-    /// What the gradient makes of the (first) function.
-    pub fn widgets(&self) -> &Buffer {
-        &self.widgets
+    /// The control points of all functions, and behind them what the gradient makes of the first.
+    pub fn numbers(&self) -> &Buffer {
+        &self.numbers
     }
 
     /// Whether gradients count in a function.

@@ -195,6 +195,10 @@ impl GpuVolume {
                 // SAFETY: the caller's promises; the one texel is not looked at, but for its layout.
                 unsafe { image_barrier(self.gpu(), cmd, image, Use::Nothing, Use::Sampled) };
             }
+            if slab.brick == 0 {
+                // SAFETY: the caller's promises.
+                unsafe { self.blue_noise.record_upload(self.gpu(), cmd) }?;
+            }
         }
         let planes = [
             (self.has_texels.then_some(&brick.values), offset),

@@ -4,6 +4,7 @@
 //! across and axis (k + 2) mod 3 down.
 
 use super::TexelFormat;
+use super::blue_noise::BlueNoiseTexture;
 use super::bricks::Cell;
 use super::footprint_texels::FootprintTexels;
 use super::gradients::KeptGradients;
@@ -82,6 +83,7 @@ pub struct GpuVolume {
     /// looks at their texels.
     pub(super) no_mask: Image,
     pub(super) no_depth: Image,
+    pub(super) blue_noise: BlueNoiseTexture,
     /// Whether the values lie in the textures, and not in corners alone.
     pub(super) has_texels: bool,
 }
@@ -152,6 +154,7 @@ impl Plan {
             gpu: Arc::clone(gpu),
             no_mask: Image::new(gpu, &self.validity([1; 3]))?,
             no_depth: Image::new(gpu, &self.no_depth())?,
+            blue_noise: BlueNoiseTexture::new(gpu)?,
             layout: self.layout,
             texel: self.texel,
             value_range: volume.value_range,
@@ -385,6 +388,11 @@ impl GpuVolume {
     /// What is bound in the place of a host's depth buffer where there is none.
     pub(crate) fn no_depth(&self) -> &Image {
         &self.no_depth
+    }
+
+    /// Where the steps of jittered rays begin.
+    pub(crate) fn blue_noise(&self) -> &Image {
+        self.blue_noise.image()
     }
 
     /// How textures are read between texels.

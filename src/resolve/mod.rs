@@ -91,7 +91,9 @@ impl Resolve {
             ("picture", left),
             ("accumulation", left),
         ];
-        given.extend(transfer.map(|transfer| ("points", Resource::Storage(transfer.points()))));
+        given.extend(
+            transfer.map(|transfer| ("transfer_numbers", Resource::Storage(transfer.numbers()))),
+        );
         given.retain(|(name, _)| {
             self.pipeline
                 .layout()

@@ -123,6 +123,7 @@ impl View<'_> {
             reference_length: transfer.reference_length,
             color_point_count: transfer.color_point_count,
             opacity_point_count: transfer.opacity_point_count,
+            first_widget_entry: transfer.first_widget_entry,
             interpolation_is_step: (transfer.interpolation == Interpolation::Step).into(),
             color_space_is_display: (self.settings.color_space == ColorSpace::Display).into(),
             brick_min: [0.0; 3],

@@ -54,16 +54,14 @@ impl Inputs<'_> {
             let table = transfer.table();
             given.push(("transfer_table", Resource::sampled_or_read(table)));
             given.push(("stored_table", Resource::read(table)));
-            given.push(("points", Resource::Storage(transfer.points())));
+            given.push(("transfer_numbers", Resource::Storage(transfer.numbers())));
             let slabs = transfer.slab_table().map(Resource::sampled);
             given.extend(slabs.map(|table| ("slab_table", table)));
-            given.push(("widgets", Resource::Storage(transfer.widgets())));
         }
         // Where there is none, something stands in that is not looked at.
         let light = self.light.map(LightVolume::buffer);
         let light = light.unwrap_or(self.ring.buffer());
-        let shared = self.ring.shared().map(Resource::Storage);
-        given.extend(shared.map(|noise| ("blue_noise", noise)));
+        given.push(("blue_noise", Resource::sampled(self.volume.blue_noise())));
         given.push(("light_volume", Resource::Storage(light)));
         let [distance_map, ranges] = match self.skip {
             Skip::Nothing => [self.ring.buffer(); 2],

@@ -8,7 +8,6 @@
 
 use super::mixture::{Part, set_channels};
 use super::{Error, Order, View};
-use crate::blue_noise::BLUE_NOISE;
 use crate::camera::{DepthConvention, HostDepth};
 use crate::gpu::{self, Gpu, ParameterRing};
 use crate::resident::{
@@ -312,12 +311,10 @@ impl Recording {
     }
 }
 
-/// A ring for the parameters of `slots` recordings: bricks times views times frames in flight. They share the pattern
-/// of jittered rays.
+/// A ring for the parameters of `slots` recordings: bricks times views times frames in flight.
 ///
 /// # Errors
 /// Where the device gives no memory.
 pub fn parameter_ring(gpu: &Arc<Gpu>, slots: u32) -> Result<ParameterRing, gpu::Error> {
-    let ring = ParameterRing::new(gpu, size_of::<Frame>() as u32, slots, "frame parameters")?;
-    ring.sharing(gpu, BLUE_NOISE)
+    ParameterRing::new(gpu, size_of::<Frame>() as u32, slots, "frame parameters")
 }

@@ -3,12 +3,10 @@
 
 use stratavox::gpu::Caps;
 
-/// The least of every limit, but for two that `tests/matrix/minimum.rs` is for, since pictures that want more are refused by
-/// name: whether 32-bit floats are blended is a format's feature and no limit, and of storage buffers a stage there are
-/// the six that `gpu::REQUIREMENTS` recommends, where Vulkan's least is four.
+/// The least of every limit, but for one that `tests/matrix/minimum.rs` is for, since pictures that want more are refused by
+/// name: whether 32-bit floats are blended is a format's feature and no limit.
 const LEAST: Caps = Caps {
     float32_blend: true,
-    max_storage_buffers_per_stage: 6,
     ..Caps::VULKAN_MINIMUM
 };
 
