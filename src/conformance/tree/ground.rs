@@ -50,7 +50,7 @@ const fn placement(
 }
 
 /// All of them. Modes that project have no order.
-pub const PLACEMENTS: [Placement; 6] = [
+pub const PLACEMENTS: [Placement; 7] = [
     placement(
         "raycast.ray",
         Technique::Raycast,
@@ -61,6 +61,12 @@ pub const PLACEMENTS: [Placement; 6] = [
         "raycast.planes",
         Technique::Raycast,
         Lattice::Planes,
+        Order::BackToFront,
+    ),
+    placement(
+        "raycast.bresenham",
+        Technique::Raycast,
+        Lattice::Bresenham,
         Order::BackToFront,
     ),
     placement(
