@@ -80,7 +80,9 @@ pub fn placements() -> Vec<Settings> {
     };
     let along_axes = |placement: &Placement| placement.lattice == Lattice::Bresenham;
     let all = PLACEMENTS.into_iter();
-    all.filter(|placement| !along_axes(placement)).map(settings).collect()
+    all.filter(|placement| !along_axes(placement))
+        .map(settings)
+        .collect()
 }
 
 /// Each placement in both projections, seen from where no axis is: all of `grid` in the picture.

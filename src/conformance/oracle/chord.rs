@@ -174,7 +174,12 @@ impl PictureCase {
             (o[k], d[k], 1.0, (of_origin[k], of_direction[k]))
         } else if is_along_axis {
             let spacing = 1.0 / self.settings.samples_per_voxel;
-            (o[axis], d[axis], spacing, (of_origin[axis], of_direction[axis]))
+            (
+                o[axis],
+                d[axis],
+                spacing,
+                (of_origin[axis], of_direction[axis]),
+            )
         } else {
             let height = n.dot(origin - center);
             let sizes = n.abs().dot((origin - center).abs());

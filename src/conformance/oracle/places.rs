@@ -22,7 +22,9 @@ pub fn main_axis(direction: DVec3) -> (usize, bool) {
     let shares = (sizes / sizes.max_element()).to_array();
     let least = 1.0 - 2f64.powi(-16);
     let axis = shares.iter().position(|&share| share >= least);
-    let hangs = shares.iter().any(|share| (share - least).abs() < 2f64.powi(-17));
+    let hangs = shares
+        .iter()
+        .any(|share| (share - least).abs() < 2f64.powi(-17));
     (axis.unwrap_or(2), hangs)
 }
 

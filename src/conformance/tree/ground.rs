@@ -183,6 +183,11 @@ pub fn shot(
             view_height: 0.7 * size,
         },
     };
+    // One a voxel would lie where filters go from voxel to voxel, and rounding would say by which of them it is made.
+    let samples_per_voxel = match placement.lattice {
+        Lattice::Bresenham => 2.0,
+        _ => 1.0,
+    };
     // No tap of any filter lies outside the grid, and no plane of a stack at an end.
     let margin = 2.125;
     PictureCase {
@@ -194,6 +199,7 @@ pub fn shot(
             lattice: placement.lattice,
             order: placement.order,
             mode,
+            samples_per_voxel,
             filter,
             filter_by: match by_sampler {
                 true => FilterBy::Sampler,

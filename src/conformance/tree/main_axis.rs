@@ -3,17 +3,19 @@
 //! and a domain that begins on a sample, which belongs to it, and ends on one, which does not.
 
 use super::drawn::measure;
-use super::ground::{self, PROJECTIONS, RAYS};
+use super::ground::{self, PLACEMENTS, PROJECTIONS, Placement};
 use crate::camera::{Camera, Projection};
 use crate::conformance::case::{Case, Profile, Stop};
 use crate::conformance::measurement::{Bound, Measurement};
 use crate::conformance::oracle::{Classes, Numbers, Part, PictureCase, seen};
 use crate::conformance::test_bed::TestBed;
 use crate::picture::LayerKind;
-use crate::technique::{Filter, Lattice, Mode, Role, Settings};
+use crate::technique::{Filter, Mode, Role, Settings};
 use crate::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
 use crate::volume::Grid;
 use glam::{DAffine3, DMat3, DQuat, DVec3, dvec3};
+
+const AXES: Placement = PLACEMENTS[2];
 
 /// The distance of 1 from the next f32, and what log may be off by near 1.
 const EPS: f64 = 1.0 / (1u32 << 23) as f64;
@@ -65,11 +67,8 @@ fn draw(
     mode: Mode,
     is_perspective: bool,
 ) -> Result<Measurement, Stop> {
-    let shot = ground::shot(RAYS, mode, (Filter::Linear, false), is_perspective);
-    let mut shot = shot.with(|settings| {
-        settings.lattice = Lattice::Bresenham;
-        settings.crop = None;
-    });
+    let shot = ground::shot(AXES, mode, (Filter::Linear, false), is_perspective);
+    let mut shot = shot.with(|settings| settings.crop = None);
     match view {
         View::Flat => {
             shot.grid = Grid {
@@ -92,7 +91,7 @@ fn draw(
             shot.extent = [33, 29];
             look_along(&mut shot, turn * dvec3(-1.0, -1.0, 0.3), turn.z_axis);
         }
-        View::Fine => shot.settings.samples_per_voxel = 40.0,
+        View::Fine => shot.settings.samples_per_voxel = 10.0,
     }
     let part = Part {
         numbers: Numbers::of(&shot, ground::waves),
@@ -135,7 +134,7 @@ fn draw_on_faces(bed: &mut TestBed, towards: DVec3) -> Result<Measurement, Stop>
         dims: [12, 12, 14],
         world_from_voxel: DAffine3::IDENTITY,
     };
-    let mut shot = ground::shot(RAYS, Mode::Composite, (Filter::Linear, false), false);
+    let mut shot = ground::shot(AXES, Mode::Composite, (Filter::Linear, false), false);
     shot = PictureCase {
         grid,
         camera: Camera {
@@ -147,7 +146,7 @@ fn draw_on_faces(bed: &mut TestBed, towards: DVec3) -> Result<Measurement, Stop>
         },
         extent: [12; 2],
         settings: Settings {
-            lattice: Lattice::Bresenham,
+            samples_per_voxel: 1.0,
             crop: Some([dvec3(0.0, 0.0, 2.5), dvec3(12.0, 12.0, 2.5 + SAMPLES)]),
             color_space: Classes::SPACE,
             ..shot.settings
