@@ -19,7 +19,7 @@ const ADDED_UP: [&str; 2] = [
     return ((f32(k) + 0.5) / frame.samples_per_voxel - line.height) / line.slope;
 ",
     "var<private> last_t: f32;
-var<private> last_k: i32;
+var<private> last_k: i32 = -1000000;
 
 fn height_t(line: MainAxis, k: i32) -> f32 {
     if k == last_k + 1 {

@@ -214,12 +214,11 @@ pub fn shot(
 }
 
 /// Whether what weights may be off by hides which of two samples of a ray is the larger: those of Catmull and Rom, and those
-/// of smooth kernels where samples lie near each other.
+/// of all kernels where samples lie near each other.
 pub fn hides_maxima(placement: Placement, mode: Mode, filter: Filter) -> bool {
     let is_by_samples = matches!(mode, Mode::Mip | Mode::Minip) && !placement.is_slicer();
     let is_near = placement.lattice == Lattice::Bresenham;
-    let is_smooth = matches!(filter, Filter::QuadraticSmooth | Filter::CubicSmooth);
-    is_by_samples && (filter == Filter::CatmullRom || is_near && is_smooth)
+    is_by_samples && (filter == Filter::CatmullRom || is_near && filter.kernel().is_some())
 }
 
 /// What a picture asks of a device beyond what all need. Every device blends 16-bit floats, in which slices are
