@@ -121,7 +121,9 @@ const SQUARES: Slot = constant("squares", &["triangles", "points"]);
 /// What conformance pictures search, beside the table.
 const TRANSFER: Slot = constant("transfer", &["table", "points"]);
 const HOLES: Slot = constant("holes", &["none", "mask"]);
-const LATTICE: Slot = constant("lattice", &["ray", "planes"]);
+const LATTICE: Slot = constant("lattice", &["ray", "planes", "bresenham"]);
+/// Those that have slabs.
+const SLAB_LATTICE: Slot = constant("lattice", &["ray", "planes"]);
 /// One number a voxel, alone or with its gradient. The word `alone` is left out of names.
 const ONE: Slot = slot("mix", &["alone", "graded"]);
 /// With a gradient for no more than unhindered light and weights of opacity, by central differences.
@@ -308,7 +310,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
             SLABS,
             slot("mode", &["composite"]),
             SLAB,
-            LATTICE,
+            SLAB_LATTICE,
             NARROW,
             HOLES,
         ],

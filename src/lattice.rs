@@ -1,9 +1,11 @@
-//! Which samples a ray caster takes: CPU references of `shaders/lib/lattice_ray.wgsl` and `lattice_planes.wgsl`.
+//! Which samples a ray caster takes: CPU references of `shaders/lib/lattice_ray.wgsl`, `lattice_planes.wgsl` and
+//! `lattice_bresenham.wgsl`.
 //!
 //! ```text
-//! ray:     t = t0 + (k + 1/2) h, by multiplication; the last, shorter segment at its own middle
-//! jitter:  t0 less a part of h that depends on the pixel; the first, shorter segment at its own middle too
-//! planes:  n . (o + t r) = (k + 1/2) h, a sample stands for h / (n . r)
+//! ray:        t = t0 + (k + 1/2) h, by multiplication; the last, shorter segment at its own middle
+//! jitter:     t0 less a part of h that depends on the pixel; the first, shorter segment at its own middle too
+//! planes:     n . (o + t r) = (k + 1/2) h, a sample stands for h / (n . r)
+//! bresenham:  (o + t d)_k = (j + 1/2) / D, k the main axis of the ray in voxel space, a sample stands for 1 / (D |d_k|)
 //! ```
 
 use crate::blue_noise::jitter_of;
@@ -112,6 +114,44 @@ pub fn on_planes<R: Real>(
     let length = plane_length(frame, world);
     let segments = planes.map(move |k| Segment {
         t: plane_t(frame, world, k),
+        length,
+    });
+    segments.filter(move |segment| t0 <= segment.t && segment.t < t1)
+}
+
+/// Of axes whose slopes differ by less, in parts, the lowest is taken: rounding does not choose among those that are equal.
+const MAIN_AXIS_SHARE: f64 = 1.0 - 1.0 / 65536.0;
+
+/// The main axis of a ray of this direction in voxel space: the lowest of those that it runs along most.
+pub fn main_axis<R: Real>(direction: [R; 3]) -> usize {
+    let slopes = direction.map(R::abs);
+    let largest = slopes[0].max(slopes[1].max(slopes[2]));
+    let enough = R::from_f64(MAIN_AXIS_SHARE) * largest;
+    // Not a number is along no axis, and takes the one that is left.
+    (0..2).find(|&k| slopes[k] >= enough).unwrap_or(2)
+}
+
+/// Samples where the ray meets the heights (j + 1/2) / D of its main axis, D the samples per voxel.
+pub fn on_main_axis<R: Real>(
+    frame: &Frame,
+    voxel: &Ray<R>,
+    [t0, t1]: [R; 2],
+) -> impl Iterator<Item = Segment<R>> {
+    let k = main_axis(voxel.direction);
+    let (half, one) = (R::from_f64(0.5), R::from_f64(1.0));
+    let per_voxel = R::from_f32(frame.samples_per_voxel);
+    let slope = voxel.direction[k].abs();
+    // Along a ray that falls, heights count down: those of the mirrored axis are the same ones.
+    let height = match voxel.direction[k] < R::from_f64(0.0) {
+        true => -voxel.origin[k],
+        false => voxel.origin[k],
+    };
+    let index_at = |t: R| (height + t * slope) * per_voxel - half;
+    // One height more at each end: rounding may not lose one, the filter has the last word.
+    let indices = index_at(t0).floor().to_i32()..=index_at(t1).ceil().to_i32();
+    let length = one / (per_voxel * slope);
+    let segments = indices.map(move |i| Segment {
+        t: ((R::from_f64(f64::from(i)) + half) / per_voxel - height) / slope,
         length,
     });
     segments.filter(move |segment| t0 <= segment.t && segment.t < t1)

@@ -131,6 +131,14 @@ pub const FEATURES: &[Feature] = &[
             s.lattice = Lattice::Planes;
         },
     ),
+    feature(
+        "main axes of rays",
+        "`--lattice bresenham`",
+        Seen::Alone,
+        |s| {
+            s.lattice = Lattice::Bresenham;
+        },
+    ),
     feature("jitter", "`--jitter`", Seen::Alone, |s| {
         s.lattice = Lattice::Jitter;
     }),

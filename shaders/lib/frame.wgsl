@@ -150,6 +150,8 @@ struct Frame {
     kernel: u32,
     // World length of the shortest side of a voxel.
     smallest_spacing: f32,
+    // Samples that rays take for each voxel of their main axis.
+    samples_per_voxel: f32,
     // How gradients are made, and code (or slope) from the texels that they are made of: see gradient_taps.wgsl.
     gradient_operator: u32,
     gradient_scale: f32,

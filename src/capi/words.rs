@@ -69,6 +69,8 @@ pub enum sv_lattice {
     SV_LATTICE_PLANES = 1,
     /// Equal steps after a first one that depends on the pixel: grain in place of bands.
     SV_LATTICE_JITTER = 2,
+    /// Where the ray meets the heights (j + 1/2) / samples_per_voxel of its own main axis, in voxels.
+    SV_LATTICE_BRESENHAM = 3,
 }
 
 /// In which numbers colours are blended.

@@ -1,6 +1,7 @@
 //! Ways to take samples of their own, and what does not go together with them.
 
 use super::{CutFaces, Error, Lattice, Mode, Settings};
+use crate::named::Named;
 use std::fmt;
 
 impl Settings {
@@ -23,6 +24,8 @@ impl Settings {
         of_technique(self.smooth, SMOOTH, desc.draws_stacks, "2D stacks")?;
         of_mode(self.smooth, SMOOTH)?;
         of_rays(is_jittered, JITTER)?;
+        of_rays(self.lattice == Lattice::Bresenham, BRESENHAM)?;
+        self.check_main_axis()?;
         of_rays(self.adaptive_steps.is_some(), ADAPTIVE)?;
         of_mode(self.adaptive_steps.is_some(), ADAPTIVE)?;
         if let Some(error) = self.adaptive_steps {
@@ -78,12 +81,22 @@ impl Settings {
         )?;
         let refuse = |is_there, of, found| refuse(is_there, ADAPTIVE, of, found);
         refuse(self.conformance, "pictures within an error", "conformance")?;
-        refuse(
-            self.lattice == Lattice::Planes,
-            "the lattice of rays",
-            "planes",
-        )?;
+        let is_fixed = matches!(self.lattice, Lattice::Planes | Lattice::Bresenham);
+        refuse(is_fixed, "the lattice of rays", self.lattice.name())?;
         refuse(self.preintegrated, "samples that are points", PREINTEGRATED)
+    }
+
+    /// What samples at heights of the main axis do not go with.
+    fn check_main_axis(&self) -> Result<(), Error> {
+        if self.lattice != Lattice::Bresenham {
+            return Ok(());
+        }
+        let mode = self.mode;
+        let found = format_args!("mode {mode}");
+        refuse(mode.needs_rays(), BRESENHAM, MODES_OF_LATTICES, found)?;
+        let others = "the lattices ray, planes and jitter";
+        refuse(self.preintegrated, PREINTEGRATED, others, BRESENHAM)?;
+        refuse(self.cut_faces.is_some(), CUT_FACES, others, BRESENHAM)
     }
 
     /// Whether steps may adapt to a volume.
@@ -153,4 +166,6 @@ const ADAPTIVE: &str = "sampling by adaptive steps";
 const SMOOTH: &str = "interpolation between slices";
 const CUT_FACES: &str = "an opaque cut face";
 const JITTER: &str = "jitter";
+const BRESENHAM: &str = "the lattice bresenham";
+const MODES_OF_LATTICES: &str = "composite, mip, minip, average and xray";
 const HALF_ANGLE: &str = "half-angle slicing";

@@ -6,7 +6,7 @@
 
 use super::blend::extreme_sign;
 use super::shading::set_shading;
-use super::{Filter, InPixel, MAX_SAMPLES_PER_RAY, Settings};
+use super::{Filter, InPixel, Lattice, MAX_SAMPLES_PER_RAY, Settings};
 use crate::camera::{Camera, Rays};
 use crate::picture::ColorSpace;
 use crate::resident::{Cell, Coding, TransferLayout, front_to_back, front_to_back_by_rows};
@@ -193,6 +193,7 @@ impl View<'_> {
             shininess: 0.0,
             half_gradient: 0.0,
             smallest_spacing: self.grid.smallest_spacing() as f32,
+            samples_per_voxel: self.settings.samples_per_voxel as f32,
             gradient_operator: self.settings.gradient_operator().number(),
             gradient_scale: coding.scale,
             gradient_codes_are_integers: coding.is_integer.into(),
@@ -318,8 +319,12 @@ impl View<'_> {
         })
     }
 
-    /// How many steps the longest ray takes, which is the longest diagonal of the box.
+    /// How many steps the longest ray takes, which is the longest diagonal of the box; along their main axes rays take so
+    /// many for each of its voxels.
     pub(super) fn longest_sample_count(&self) -> f64 {
+        if self.settings.lattice == Lattice::Bresenham && self.settings.technique.casts_rays() {
+            return self.settings.samples_per_voxel * self.grid.far_corner().max_element();
+        }
         let m = self.world_from_voxel().matrix3;
         let far = self.grid.far_corner();
         let diagonals = [

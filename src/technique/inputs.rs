@@ -209,6 +209,7 @@ impl ShaderVariant {
             lattice: match settings.lattice {
                 Lattice::Ray | Lattice::Jitter => "ray",
                 Lattice::Planes => "planes",
+                Lattice::Bresenham => "bresenham",
             },
             take: match settings.preintegrated {
                 true => SampleKind::Preintegrated,

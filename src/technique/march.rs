@@ -1,7 +1,9 @@
 //! The walk along one ray that every compute pass shares: CPU reference of `shaders/lib/march.wgsl`.
 
 use super::Lattice;
-use crate::lattice::{Segment, Slab, along_ray, on_planes, slabs_along_ray, slabs_on_planes};
+use crate::lattice::{
+    Segment, Slab, along_ray, on_main_axis, on_planes, slabs_along_ray, slabs_on_planes,
+};
 use crate::ray::{domain_interval, pixel_ray, voxel_ray};
 use crate::real::Real;
 use crate::shaders::Frame;
@@ -37,6 +39,7 @@ pub fn march<R: Real, V>(
             .filter(has_length)
             .try_for_each(&mut take),
         Lattice::Planes => on_planes(frame, &world, interval).try_for_each(&mut take),
+        Lattice::Bresenham => on_main_axis(frame, &voxel, interval).try_for_each(&mut take),
     };
     samples
 }
@@ -116,6 +119,8 @@ pub fn march_slabs<R: Real>(
             slabs_along_ray(frame, pixel, interval).try_for_each(&mut take)
         }
         Lattice::Planes => slabs_on_planes(frame, &world, interval).try_for_each(&mut take),
+        // Settings that ask for it are refused.
+        Lattice::Bresenham => unreachable!("no slabs lie between heights of a main axis"),
     };
     samples
 }

@@ -154,6 +154,9 @@ pub enum Lattice {
     /// Equal steps, of which the first is cut short by a part that depends on the pixel ([`Jitter`]): grain in place
     /// of bands. Ray casting only, and not for surfaces.
     Jitter,
+    /// Where the ray meets the heights (j + 1/2) / D of its own main axis, that of its largest slope in voxel space, with
+    /// D [`Settings::samples_per_voxel`]: for D = 1 in the voxels of Bresenham's line. Ray casting only.
+    Bresenham,
 }
 
 /// What moves the patterns of [`Lattice::Jitter`] and of [`Settings::uneven_rays`]: same numbers, same picture.
@@ -217,7 +220,8 @@ pub struct Settings {
     pub smooth: bool,
     /// Composite: what lies between two samples counts, and not only the samples ([`crate::transfer::SlabTable`]).
     pub preintegrated: bool,
-    /// Samples per smallest voxel spacing; positive. 2D stacks have one a slice.
+    /// Samples per smallest voxel spacing; positive. 2D stacks have one a slice, [`Lattice::Bresenham`] so many a voxel
+    /// of the main axis.
     pub samples_per_voxel: f64,
     /// Composite by rays: where the transfer function hardly changes over the values of a macro cell, one sample stands
     /// for all of a ray in it. No channel of the picture, premultiplied as it is blended, is farther than this from

@@ -23,6 +23,7 @@ named!(Lattice {
     Ray "ray" "",
     Planes "planes" "",
     Jitter "jitter" "",
+    Bresenham "bresenham" "",
 });
 
 named!(Order {

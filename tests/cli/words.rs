@@ -244,6 +244,31 @@ fn ways_to_sample_are_refused_where_there_are_none() {
         ("--smooth", "between slices"),
         ("--technique slices-3d --jitter", "jitter"),
         ("--jitter --lattice planes", "--lattice planes"),
+        ("--jitter --lattice bresenham", "--lattice bresenham"),
+        (
+            "--lattice bresenham --technique slices-2d",
+            "the lattice bresenham is for ray casting, not for slices-2d",
+        ),
+        (
+            "--lattice bresenham --mode lmip",
+            "is for composite, mip, minip, average and xray, not for mode lmip",
+        ),
+        (
+            "--lattice bresenham --preintegrated",
+            "is for the lattices ray, planes and jitter, not for the lattice bresenham",
+        ),
+        (
+            "--lattice bresenham --cut-faces --crop 1,9,1,9,1,9",
+            "is for the lattices ray, planes and jitter, not for the lattice bresenham",
+        ),
+        (
+            "--lattice bresenham --adaptive-steps 0.01",
+            "is for the lattice of rays, not for bresenham",
+        ),
+        (
+            "--lattice bresenham --section axial",
+            "other lattices than that of rays",
+        ),
     ] {
         folder
             .run(&format!("render phantom:fog -o a.png {words}"))

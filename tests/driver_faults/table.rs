@@ -7,9 +7,30 @@ use vk::{BlendFactor as Factor, BlendOp as Op};
 
 const CASTER: &str = "raycast.ray.composite.ramp.linear_fetch.u16.perspective";
 const SAMPLED: &str = "raycast.planes.mip.ramp.linear.u16.perspective";
+const AXES: &str = "raycast.bresenham.composite.ramp.linear_fetch.u16.perspective";
+const FINE: &str = "raycast.bresenham.xray.fine.linear_fetch.f32.perspective";
 const PLANES: &str = "slices_3d.over.composite.ramp.linear_fetch.u16.perspective";
 const UNDER: &str = "slices_3d.under.composite.ramp.linear_fetch.u16.perspective";
 const STACK: &str = "slices_2d.over.composite.ramp.linear_fetch.u16.perspective";
+
+/// Where a height meets the ray: by a division, and from the height before it on.
+const ADDED_UP: [&str; 2] = [
+    "fn height_t(line: MainAxis, k: i32) -> f32 {
+    return ((f32(k) + 0.5) / frame.samples_per_voxel - line.height) / line.slope;
+",
+    "var<private> last_t: f32;
+var<private> last_k: i32 = -1000000;
+
+fn height_t(line: MainAxis, k: i32) -> f32 {
+    if k == last_k + 1 {
+        last_t += height_length(line);
+    } else if k != last_k {
+        last_t = ((f32(k) + 0.5) / frame.samples_per_voxel - line.height) / line.slope;
+    }
+    last_k = k;
+    return last_t;
+",
+];
 
 /// What is wrong, how, and the case that must see it.
 pub const FAULTS: &[(&str, Fault, &str)] = &[
@@ -229,6 +250,70 @@ pub const FAULTS: &[(&str, Fault, &str)] = &[
             "f32(k) * frame.step_world, frame",
         ),
         CASTER,
+    ),
+    (
+        "samples along a main axis are as long as a step",
+        Shader(
+            "lib/lattice_bresenham.wgsl",
+            "return 1.0 / (frame.samples_per_voxel * line.slope);",
+            "return frame.step_world;",
+        ),
+        AXES,
+    ),
+    (
+        "samples along a main axis are as long in all directions",
+        Shader(
+            "lib/lattice_bresenham.wgsl",
+            "return 1.0 / (frame.samples_per_voxel * line.slope);",
+            "return 1.0 / frame.samples_per_voxel;",
+        ),
+        AXES,
+    ),
+    (
+        "samples along a main axis lie between voxels",
+        Shader(
+            "lib/lattice_bresenham.wgsl",
+            "((f32(k) + 0.5) / frame",
+            "(f32(k) / frame",
+        ),
+        AXES,
+    ),
+    (
+        "the main axis is that of the world",
+        Shader(
+            "lib/lattice_bresenham.wgsl",
+            "abs(voxel.direction)",
+            "abs(world.direction)",
+        ),
+        "raycast.bresenham.xray.flat.linear_fetch.f32.perspective",
+    ),
+    (
+        "samples along a main axis are added up",
+        Shader("lib/lattice_bresenham.wgsl", ADDED_UP[0], ADDED_UP[1]),
+        "raycast.bresenham.mip.fine.linear_fetch.f32.perspective",
+    ),
+    (
+        "rounding chooses between axes that are alike",
+        Shader("lib/lattice_bresenham.wgsl", "0.9999847412109375", "1.0"),
+        "raycast.bresenham.xray.diagonal.linear_fetch.f32.perspective",
+    ),
+    (
+        "more samples a voxel are shorter and not nearer",
+        Shader(
+            "lib/lattice_bresenham.wgsl",
+            "((f32(k) + 0.5) / frame.samples_per_voxel - line.height)",
+            "(f32(k) + 0.5 - line.height)",
+        ),
+        FINE,
+    ),
+    (
+        "a sample where the ray enters is left out",
+        Shader(
+            "lib/lattice_bresenham.wgsl",
+            "lattice.t0 <= t",
+            "lattice.t0 < t",
+        ),
+        "raycast.bresenham.composite.on_faces.forwards",
     ),
     (
         "planes lie half a step off",

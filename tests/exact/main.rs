@@ -23,6 +23,7 @@ mod gradient;
 mod half_angle;
 mod light;
 mod long_rays;
+mod main_axis;
 mod maximum;
 mod mixtures;
 mod modes_along_rays;

@@ -71,7 +71,22 @@ fn settings() -> Vec<Settings> {
             ..Settings::default()
         })
     };
-    techniques.into_iter().flat_map(of_technique).collect()
+    let along_axes = [
+        (Mode::Composite, Filter::Linear, 1.0),
+        (Mode::Xray, Filter::Nearest, 2.3),
+        // Heights of every second voxel's border, some of which are borders of bricks.
+        (Mode::Mip, Filter::Linear, 0.5),
+    ];
+    let along_axes = along_axes.map(|(mode, filter, samples_per_voxel)| Settings {
+        mode,
+        filter,
+        samples_per_voxel,
+        lattice: Lattice::Bresenham,
+        conformance: true,
+        ..Settings::default()
+    });
+    let all = techniques.into_iter().flat_map(of_technique);
+    all.chain(along_axes).collect()
 }
 
 /// Gradients reach one voxel further than their filter, or as far as operators of their own.

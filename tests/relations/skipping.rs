@@ -31,12 +31,17 @@ fn settings(numbers: &mut Numbers, volume: &Volume) -> Settings {
         Filter::QuadraticSmooth,
         Filter::CatmullRom,
     ];
-    let lattices = [Lattice::Ray, Lattice::Planes, Lattice::Jitter];
+    let lattices = [
+        Lattice::Ray,
+        Lattice::Planes,
+        Lattice::Jitter,
+        Lattice::Bresenham,
+    ];
     let mode = modes[numbers.below(modes.len())];
     let mut settings = Settings {
         mode,
         filter: filters[numbers.below(filters.len())],
-        lattice: lattices[numbers.below(3)],
+        lattice: lattices[numbers.below(4)],
         jitter: Jitter { seed: 3, frame: 1 },
         samples_per_voxel: [0.3, 1.0, 2.3][numbers.below(3)],
         termination: [0.0, 0.02][numbers.below(2)],
@@ -68,7 +73,8 @@ fn settings(numbers: &mut Numbers, volume: &Volume) -> Settings {
             normal: dvec3(0.3, -0.2, 0.9),
             offset: dvec3(0.3, -0.2, 0.9).dot(grid.center()) - 4.0,
         }];
-        if is_composite && settings.shading.is_none() {
+        let has_faces = settings.lattice != Lattice::Bresenham;
+        if is_composite && settings.shading.is_none() && has_faces {
             settings.cut_faces = [None, Some(CutFaces::Own)][numbers.below(2)];
         }
     }
@@ -267,7 +273,12 @@ fn tiles_that_meet_nothing_are_left_out_and_no_others() {
         for number in 0..24 {
             let per_side = 1 + numbers.below(2) as u32;
             let mode = [Mode::Composite, Mode::Composite, Mode::Mida, Mode::Mip][numbers.below(4)];
-            let lattice = [Lattice::Ray, Lattice::Planes, Lattice::Jitter][numbers.below(3)];
+            let lattice = [
+                Lattice::Ray,
+                Lattice::Planes,
+                Lattice::Jitter,
+                Lattice::Bresenham,
+            ][numbers.below(4)];
             let settings = Settings {
                 mode,
                 lattice: match mode {

@@ -81,6 +81,10 @@ fn settings() -> Vec<Settings> {
         ..composite()
     });
     all.push(Settings {
+        lattice: Lattice::Bresenham,
+        ..composite()
+    });
+    all.push(Settings {
         lattice: Lattice::Jitter,
         jitter: Jitter { seed: 5, frame: 2 },
         rays_per_side: 2,

@@ -7,7 +7,7 @@
 
 use glam::DVec3;
 use stratavox::conformance::oracle::PictureCase;
-use stratavox::conformance::oracle::places::{planes, segments};
+use stratavox::conformance::oracle::places::{main_axis, planes, segments};
 use stratavox::technique::slices_2d::stack_axis;
 use stratavox::technique::{Lattice, Technique};
 
@@ -80,6 +80,12 @@ impl Chord {
         let h = shot.view().step_world();
         let (samples, hangs) = match (shot.settings.technique, shot.settings.lattice) {
             (Technique::Raycast, Lattice::Ray) => (segments(enter, leave, h), false),
+            (Technique::Raycast, Lattice::Bresenham) => {
+                let (k, has_two) = main_axis(d);
+                let spacing = 1.0 / shot.settings.samples_per_voxel;
+                let (samples, hangs) = planes([enter, leave], blur, o[k], d[k], spacing);
+                (samples, hangs || has_two)
+            }
             (Technique::Slices2d, _) => {
                 // Slice s lies where coordinate k is s + 1/2.
                 let k = stack_axis(&shot.view());

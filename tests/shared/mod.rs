@@ -23,7 +23,7 @@ use glam::{DAffine3, DVec3, dvec3};
 use stratavox::camera::{Camera, Projection};
 use stratavox::conformance::tree::{PLACEMENTS, Placement, grid};
 use stratavox::gpu::{Caps, DeviceChoice, Headless, Options, PipelineCache};
-use stratavox::technique::{Mode, Settings};
+use stratavox::technique::{Lattice, Mode, Settings};
 use stratavox::volume::{Grid, Rescale, Volume, Voxels};
 
 /// A device without a pipeline cache; dropping it panics on a validation message.
@@ -68,7 +68,8 @@ pub fn projections(grid: &Grid) -> [Projection; 2] {
     ]
 }
 
-/// Every place where samples can lie, and both orders of blending.
+/// Every place where samples can lie, and both orders of blending, but for the main axes of rays, which have tests of their
+/// own: `exact/main_axis.rs`.
 pub fn placements() -> Vec<Settings> {
     let settings = |placement: Placement| Settings {
         technique: placement.technique,
@@ -77,7 +78,11 @@ pub fn placements() -> Vec<Settings> {
         conformance: true,
         ..Settings::default()
     };
-    PLACEMENTS.map(settings).into()
+    let along_axes = |placement: &Placement| placement.lattice == Lattice::Bresenham;
+    let all = PLACEMENTS.into_iter();
+    all.filter(|placement| !along_axes(placement))
+        .map(settings)
+        .collect()
 }
 
 /// Each placement in both projections, seen from where no axis is: all of `grid` in the picture.

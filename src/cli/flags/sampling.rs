@@ -39,7 +39,8 @@ pub struct SamplingFlags {
     #[arg(long, value_name = "WAY")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub filter_by: Option<FilterBy>,
-    /// Samples at equal steps along the ray, or on the planes of the slicer [default: ray]
+    /// Samples at equal steps along the ray, on the planes of the slicer, or where the ray crosses the middle of each voxel
+    /// of the axis that it runs along most [default: ray]
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lattice: Option<Lattice>,
@@ -135,15 +136,18 @@ const TERMINATION_DISPLAY: f32 = 1.0 / 512.0;
 /// Which ways to sample go with which technique.
 const WAYS: &str = "--preintegrated is for --mode composite, --smooth for that with --technique slices-2d, --jitter for \
                     --technique raycast, and --cut-faces and --adaptive-steps for that with --mode composite";
+/// What samples along main axes go with.
+const MAIN_AXIS: &str = "--lattice bresenham is for --technique raycast and --mode composite, mip, minip, average and xray, \
+                         without --preintegrated, --adaptive-steps and --cut-faces";
 /// Rays along one side of a pixel.
 const MAX_RAYS_PER_SIDE: u32 = 64;
 
 /// Whether settings have the ways to sample that are asked for.
 pub fn check_ways(settings: &Settings) -> Result<(), Error> {
-    let hint = if settings.is_half_angle() {
-        HALF_ANGLE
-    } else {
-        WAYS
+    let hint = match settings.lattice {
+        _ if settings.is_half_angle() => HALF_ANGLE,
+        Lattice::Bresenham => MAIN_AXIS,
+        _ => WAYS,
     };
     settings
         .check_ways()
@@ -236,6 +240,10 @@ impl SamplingFlags {
         match (self.jitter, self.lattice) {
             (Some(_), Some(Lattice::Planes)) => Err(Error::usage(
                 "--jitter --lattice planes: planes begin at the same place for all rays",
+                "--jitter alone moves the steps of --lattice ray",
+            )),
+            (Some(_), Some(Lattice::Bresenham)) => Err(Error::usage(
+                "--jitter --lattice bresenham: its samples lie at heights of the grid, whatever the pixel",
                 "--jitter alone moves the steps of --lattice ray",
             )),
             (Some(_), _) => Ok(Lattice::Jitter),

@@ -66,7 +66,7 @@ impl SectionFlags {
         }
         if !settings.technique.casts_rays() || settings.lattice != Lattice::Ray {
             return Err(Error::usage(
-                "--section takes its samples on the cut: the lattices of slicers have none there",
+                "--section takes its samples on the cut: other lattices than that of rays have none there",
                 "leave out --technique and --lattice",
             ));
         }

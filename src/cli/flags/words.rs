@@ -45,8 +45,8 @@ by_name! {
     Mode: Self::ALL,
     Filter: Self::ALL,
     FilterBy: Self::ALL,
-    // `--jitter` chooses the third.
-    Lattice: &[Self::Ray, Self::Planes],
+    // `--jitter` chooses the other one.
+    Lattice: &[Self::Ray, Self::Planes, Self::Bresenham],
     Order: Self::ALL,
     ColorSpace: Self::ALL,
 }
@@ -95,7 +95,7 @@ mod tests {
         let refused = |text| serde_json::from_str::<SamplingFlags>(text).expect_err("refused");
         let jitter = refused("{\"lattice\": \"jitter\"}").to_string();
         assert!(
-            jitter.contains("expected one of `ray`, `planes`"),
+            jitter.contains("expected one of `ray`, `planes`, `bresenham`"),
             "{jitter}"
         );
         let late = refused("{\"mode\":\n\"splat\"\n\n}");

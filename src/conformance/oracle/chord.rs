@@ -3,10 +3,11 @@
 //! ```text
 //! lattice ray      t0 + (k + 1/2) h, a shorter last segment sampled at its own middle
 //! lattice planes   n . (x - c) = (k + 1/2) h, a sample stands for h / (n . r)
+//! bresenham        heights (j + 1/2) / D of the ray's own main axis k, a sample stands for 1 / (D |(voxel_from_world r)_k|)
 //! stack of axis k  planes through voxel centres, a sample stands for 1 / |(voxel_from_world r)_k|
 //! ```
 
-use super::places::{planes, segments};
+use super::places::{main_axis, planes, segments};
 use crate::camera::Camera;
 use crate::scene::Scene;
 use crate::shaders::Frame;
@@ -166,9 +167,19 @@ impl PictureCase {
         let is_stack = self.settings.technique.draws_stacks();
         let is_ray = self.settings.technique.casts_rays() && self.settings.lattice == Lattice::Ray;
         let n = rays.forward;
+        let is_along_axis = !is_stack && self.settings.lattice == Lattice::Bresenham;
+        let (axis, has_two) = main_axis(d);
         let (height, slope, spacing, of_plane) = if is_stack {
             let k = stack_axis(&self.view());
             (o[k], d[k], 1.0, (of_origin[k], of_direction[k]))
+        } else if is_along_axis {
+            let spacing = 1.0 / self.settings.samples_per_voxel;
+            (
+                o[axis],
+                d[axis],
+                spacing,
+                (of_origin[axis], of_direction[axis]),
+            )
         } else {
             let height = n.dot(origin - center);
             let sizes = n.abs().dot((origin - center).abs());
@@ -205,7 +216,7 @@ impl PictureCase {
             direction: d,
             ends: [t0, t1],
             samples,
-            hangs: hangs || is_edge,
+            hangs: hangs || is_edge || (is_along_axis && has_two),
             blur: 2.0 * blur,
             blur_voxels: of_origin + of_direction * farthest + d.abs() * (2.0 * blur),
         })

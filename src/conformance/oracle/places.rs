@@ -1,6 +1,8 @@
 //! Where the samples of a ray lie and the length that each stands for (`sampling.md` 3), in f64 and of nothing but
 //! numbers.
 
+use glam::DVec3;
+
 /// Equal steps, and a shorter one at the end.
 pub fn segments(enter: f64, leave: f64, h: f64) -> Vec<(f64, f64)> {
     let full = ((leave - enter) / h).floor() as usize;
@@ -11,6 +13,19 @@ pub fn segments(enter: f64, leave: f64, h: f64) -> Vec<(f64, f64)> {
         samples.push((start(full) + 0.5 * rest, rest));
     }
     samples
+}
+
+/// The axis that a ray of this direction runs along most, the lowest of those that are within 2^-16, and whether that depends
+/// on rounding.
+pub fn main_axis(direction: DVec3) -> (usize, bool) {
+    let sizes = direction.abs();
+    let shares = (sizes / sizes.max_element()).to_array();
+    let least = 1.0 - 2f64.powi(-16);
+    let axis = shares.iter().position(|&share| share >= least);
+    let hangs = shares
+        .iter()
+        .any(|share| (share - least).abs() < 2f64.powi(-17));
+    (axis.unwrap_or(2), hangs)
 }
 
 /// Where `height + t slope` is a whole number and a half times `spacing`, and whether their number depends on rounding: a

@@ -50,7 +50,7 @@ const fn placement(
 }
 
 /// All of them. Modes that project have no order.
-pub const PLACEMENTS: [Placement; 6] = [
+pub const PLACEMENTS: [Placement; 7] = [
     placement(
         "raycast.ray",
         Technique::Raycast,
@@ -61,6 +61,12 @@ pub const PLACEMENTS: [Placement; 6] = [
         "raycast.planes",
         Technique::Raycast,
         Lattice::Planes,
+        Order::BackToFront,
+    ),
+    placement(
+        "raycast.bresenham",
+        Technique::Raycast,
+        Lattice::Bresenham,
         Order::BackToFront,
     ),
     placement(
@@ -177,6 +183,11 @@ pub fn shot(
             view_height: 0.7 * size,
         },
     };
+    // One a voxel would lie where filters go from voxel to voxel, and rounding would say by which of them it is made.
+    let samples_per_voxel = match placement.lattice {
+        Lattice::Bresenham => 2.0,
+        _ => 1.0,
+    };
     // No tap of any filter lies outside the grid, and no plane of a stack at an end.
     let margin = 2.125;
     PictureCase {
@@ -188,6 +199,7 @@ pub fn shot(
             lattice: placement.lattice,
             order: placement.order,
             mode,
+            samples_per_voxel,
             filter,
             filter_by: match by_sampler {
                 true => FilterBy::Sampler,
@@ -201,10 +213,12 @@ pub fn shot(
     }
 }
 
-/// Whether what Catmull and Rom's weights may be off by hides which of two samples of a ray is the larger.
+/// Whether what weights may be off by hides which of two samples of a ray is the larger: those of Catmull and Rom, and those
+/// of all kernels where samples lie near each other.
 pub fn hides_maxima(placement: Placement, mode: Mode, filter: Filter) -> bool {
     let is_by_samples = matches!(mode, Mode::Mip | Mode::Minip) && !placement.is_slicer();
-    filter == Filter::CatmullRom && is_by_samples
+    let is_near = placement.lattice == Lattice::Bresenham;
+    is_by_samples && (filter == Filter::CatmullRom || is_near && filter.kernel().is_some())
 }
 
 /// What a picture asks of a device beyond what all need. Every device blends 16-bit floats, in which slices are

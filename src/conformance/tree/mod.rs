@@ -3,6 +3,7 @@
 mod drawn;
 mod exact;
 mod ground;
+mod main_axis;
 mod probe;
 mod reference;
 mod relation;
@@ -23,6 +24,7 @@ pub fn cases() -> Vec<Case> {
     cases.extend(seen::cases());
     cases.extend(surface::cases());
     cases.extend(slab::cases());
+    cases.extend(main_axis::cases());
     cases.extend(shadow::cases());
     cases.extend(relation::cases());
     cases.extend(reference::cases());

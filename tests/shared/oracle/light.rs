@@ -40,7 +40,7 @@ pub fn homogeneous(way: &dyn Way, shot: &PictureCase) -> Worst {
 /// Optical depth that may come and go with the ends of a chord in f32: on planes none, they are counted.
 fn moved_ends(shot: &PictureCase, chord: Option<&Chord>, sigma: f64) -> f64 {
     let is_counted =
-        shot.settings.technique != Technique::Raycast || shot.settings.lattice == Lattice::Planes;
+        shot.settings.technique != Technique::Raycast || shot.settings.lattice != Lattice::Ray;
     if is_counted {
         return 0.0;
     }

@@ -55,7 +55,7 @@ impl Kind {
         let is_composite = mode == Mode::Composite;
         let is_xray = mode == Mode::Xray;
         // Where the domain ends, samples of rays begin: another domain, other samples.
-        let is_fixed = placement.is_slicer() || placement.lattice == Lattice::Planes;
+        let is_fixed = placement.is_slicer() || placement.lattice != Lattice::Ray;
         match self {
             Self::Skipped => true,
             Self::InBricks => is_composite || is_xray || mode == Mode::Mip || mode == Mode::Lmip,
