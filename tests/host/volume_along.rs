@@ -27,8 +27,8 @@ fn walk(set: &VoxelSet, ray: Ray) -> Vec<RayInterval> {
     let mut t = 0.0;
     // Where all three coordinates are inside at the same time.
     let mut last = f64::INFINITY;
-    for k in 0..3 {
-        let inside: Vec<_> = (0..dims[k]).filter_map(|i| slab(ray, k, i)).collect();
+    for (k, &count) in dims.iter().enumerate() {
+        let inside: Vec<_> = (0..count).filter_map(|i| slab(ray, k, i)).collect();
         t = inside
             .iter()
             .map(|part| part[0])

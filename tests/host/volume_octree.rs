@@ -191,8 +191,8 @@ fn what_is_full_in_a_set_is_full_in_a_larger_one() {
             // The same node, or one around it that has become a leaf.
             let digits = leaf.address.to_string();
             let around = (0..=digits.len()).map(|n| digits[..n].parse().expect("digits"));
-            let states = around.filter_map(|address: Address| octree.at(&address));
-            assert_eq!(states.last(), Some(NodeState::Full), "{leaf:?}");
+            let mut states = around.filter_map(|address: Address| octree.at(&address));
+            assert_eq!(states.next_back(), Some(NodeState::Full), "{leaf:?}");
         }
     }
 }
