@@ -78,7 +78,7 @@ enum Verb {
     Render(Box<render::Render>),
     Animate(Box<animate::Animate>),
     Thumbnails(Box<thumbnails::Thumbnails>),
-    Info(info::Info),
+    Info(Box<info::Info>),
     Convert(convert::Convert),
     Devices(devices::Devices),
     Compare(compare::Compare),

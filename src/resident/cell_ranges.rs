@@ -70,10 +70,26 @@ pub(super) fn ranges(part: &VoxelPart, grid: &CellGrid, cells: CellBox) -> Vec<[
 /// The values that filters may make of codes between two ends.
 fn range_of(ends: [f32; 2], grid: &CellGrid) -> [f32; 2] {
     let [a, b] = ends.map(|code| code * grid.slope + grid.intercept);
-    let (low, high) = (a.min(b), a.max(b));
-    let beyond = grid.overshoot * 0.5 * (high - low)
-        + grid.slack
-        + grid.rounding * low.abs().max(high.abs());
+    let error = SamplerError {
+        slack: grid.slack,
+        rounding: grid.rounding,
+    };
+    filtered([a.min(b), a.max(b)], grid.overshoot, error)
+}
+
+/// How far a device's sampler may be off.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SamplerError {
+    /// In values.
+    pub slack: f32,
+    /// As a share of the larger value.
+    pub rounding: f32,
+}
+
+/// The values that filters may make of those from `low` to `high`; `overshoot` is that of their [`Halo`](super::Halo).
+pub(crate) fn filtered([low, high]: [f32; 2], overshoot: f32, error: SamplerError) -> [f32; 2] {
+    let beyond =
+        overshoot * 0.5 * (high - low) + error.slack + error.rounding * low.abs().max(high.abs());
     [low - beyond, high + beyond]
 }
 

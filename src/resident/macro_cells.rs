@@ -7,7 +7,7 @@
 //!
 //! Techniques leave out what lies in cells that cannot matter; the picture stays the same to the bit.
 
-use super::cell_ranges::{CellBox, ranges};
+use super::cell_ranges::{CellBox, SamplerError, ranges};
 use super::{GpuVolume, TextureLayout};
 use crate::gpu::{
     Bindings, Buffer, ComputePipeline, Error, Gpu, Memory, ParameterRing, Resource, Use,
@@ -47,6 +47,23 @@ impl Halo {
         self.voxels >= other.voxels
             && self.overshoot >= other.overshoot
             && self.is_mixed >= other.is_mixed
+    }
+
+    /// What a sampler makes of texels that stand for values `slope` apart where they are integers, or are floats of 16
+    /// bits.
+    pub(crate) fn sampler_error(self, slope: f32, is_integer: bool, is_half: bool) -> SamplerError {
+        SamplerError {
+            // It mixes integers with the precision of their format.
+            slack: if is_integer && self.is_mixed {
+                slope.abs()
+            } else {
+                0.0
+            },
+            rounding: match is_half {
+                true => 2f32.powi(-9),
+                false => 2f32.powi(-18),
+            },
+        }
     }
 }
 
@@ -275,6 +292,8 @@ fn grid_of(
 ) -> CellGrid {
     let coding = volume.texel().coding;
     let signed = |voxel: [u32; 3]| voxel.map(|n| n as i32);
+    let is_half = volume.texel().format == vk::Format::R16_SFLOAT;
+    let error = halo.sampler_error(coding.slope, coding.is_integer, is_half);
     let fields = CellGridFields {
         cells: own.dims().map(|n| n.div_ceil(CELL_VOXELS)),
         first,
@@ -288,16 +307,8 @@ fn grid_of(
         intercept: coding.intercept,
         codes_are_integers: coding.is_integer.into(),
         overshoot: halo.overshoot,
-        // A sampler mixes integers with the precision of their format.
-        slack: if coding.is_integer && halo.is_mixed {
-            coding.slope.abs()
-        } else {
-            0.0
-        },
-        rounding: match volume.texel().format {
-            vk::Format::R16_SFLOAT => 2f32.powi(-9),
-            _ => 2f32.powi(-18),
-        },
+        slack: error.slack,
+        rounding: error.rounding,
         axis: match volume.layout() {
             TextureLayout::Texture3d => 0,
             TextureLayout::Stack(axis) => axis as u32,

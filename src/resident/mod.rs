@@ -21,6 +21,7 @@ mod volume;
 
 pub(crate) use bricks::sort_front_to_back;
 pub use bricks::{Cell, cells_of_side, front_to_back, front_to_back_by_rows};
+pub(crate) use cell_ranges::filtered;
 pub(crate) use changed_cells::ChangedCells;
 pub use empty_space::EmptySpace;
 pub use footprint_texels::FootprintTexels;

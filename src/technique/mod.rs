@@ -13,6 +13,8 @@ pub mod faces;
 mod filter_by;
 mod frame;
 mod frame_of_mode;
+#[doc(hidden)]
+pub mod full_voxels;
 pub(crate) mod gather;
 #[doc(hidden)]
 pub mod gradient;

@@ -10,6 +10,7 @@
 
 mod colors;
 mod components;
+mod crossings;
 mod denoise;
 #[doc(hidden)]
 pub mod field;
@@ -25,6 +26,7 @@ pub mod kernel;
 pub mod labels;
 mod limits;
 mod magnitude;
+mod octree;
 mod part;
 #[cfg(feature = "phantoms")]
 pub mod phantom;
@@ -35,16 +37,19 @@ mod read;
 mod read_error;
 mod reduce;
 mod regrid;
+mod runs;
 #[doc(hidden)]
 pub mod sample;
 mod source;
 mod statistics;
 mod survey;
 mod voxel_box;
+mod voxel_set;
 mod voxels;
 
 pub use colors::{luma, read_all, read_colors};
 pub(crate) use components::{Component, Components};
+pub use crossings::RayInterval;
 pub use denoise::{Denoise, MAX_SIGMA_VOXELS, Pass, noise_of, with_numbers};
 pub use grid::Grid;
 pub use header::{Channel, ComponentKind, Format, Header, Rescale, Series, VolumeSelection};
@@ -52,6 +57,7 @@ pub use histogram::Histogram;
 pub use joint::{JointHistogram, steepest_gradient};
 pub use limits::Limits;
 pub use magnitude::Magnitude;
+pub use octree::{Address, AddressError, Leaf, LevelCount, MixedNode, NodeState, Octree};
 pub use part::VoxelPart;
 pub(crate) use part::part_of;
 pub use prefilter::{Coefficients, Spline};
@@ -60,12 +66,14 @@ pub(crate) use pyramid::{Difference, difference, halved, held};
 pub use read_error::{Problem, ReadError};
 pub use reduce::Reduced;
 pub use regrid::{is_same_grid, regridded};
+pub use runs::{RankWord, Run, RunBits, Runs};
 pub use source::{Piece, PrecisionLoss, Source, TimeComponent};
 pub use statistics::Statistics;
 #[cfg(feature = "cli")]
 pub(crate) use statistics::slices_of_slab;
 pub use survey::{Overview, Survey, Surveyed};
 pub use voxel_box::VoxelBox;
+pub use voxel_set::VoxelSet;
 pub use voxels::{VoxelType, Voxels};
 
 use glam::DAffine3;

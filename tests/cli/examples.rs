@@ -270,6 +270,26 @@ fn every_command_of_the_page_of_annotation_runs() {
     assert!(lines >= 4, "{lines} lines");
 }
 
+/// The page shows the file and what is printed of it.
+#[test]
+fn the_drawing_of_the_page_of_structure_has_the_addresses_that_are_shown() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/structure.md");
+    let text = fs::read_to_string(&page).expect("the page");
+    let drawing = fs::read_to_string(page.with_extension("nrrd")).expect("the drawing");
+    let (_, voxels) = drawing.split_once("\n\n").expect("a header");
+    assert!(
+        text.contains(voxels.trim_end()),
+        "another drawing: {voxels}"
+    );
+    let folder = Folder::new();
+    folder.file("structure.nrrd", drawing);
+    let examples = of_markdown(&text, "docs/structure.md");
+    assert!(examples.iter().any(|example| example.output.is_some()));
+    for example in &examples {
+        example.check(&folder);
+    }
+}
+
 /// No line of a recipe is passed over, and what the recipes are about is in their files.
 #[cfg(unix)]
 #[test]

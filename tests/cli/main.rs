@@ -30,6 +30,7 @@ mod errors;
 mod examples;
 mod figures;
 mod info;
+mod info_structure;
 #[cfg(unix)]
 mod interrupt;
 mod large;

@@ -18,7 +18,8 @@ const REFUSED: [(&str, &str); 2] = [
 /// Arrays, one for each variable of each entry: of the manifest's 32 entries, 26 hold one, 4 hold 18 in all.
 const ARRAYS: usize = 26 + 18;
 
-fn data() -> Option<PathBuf> {
+/// The folder, where it is there.
+pub fn data() -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
     let folder = std::env::var_os("STRATAVOX_DATA").map_or_else(beside, PathBuf::from);
     let found = folder.join("manifest.json").is_file();

@@ -98,6 +98,7 @@ mod format_zarr_mutations;
 mod format_zarr_ngff;
 #[cfg(feature = "zarr")]
 mod format_zarr_refused;
+mod full_voxels;
 mod isosurface;
 #[cfg(feature = "files")]
 mod mutations;
@@ -120,14 +121,18 @@ mod transfer_law;
 mod transfer_materials;
 mod transfer_widgets;
 mod vocabulary;
+mod volume_along;
 mod volume_filters;
 mod volume_joint;
 mod volume_mixtures;
+mod volume_octree;
 #[cfg(feature = "phantoms")]
 mod volume_read;
 mod volume_reduce;
+mod volume_runs;
 mod volume_sample;
 mod volume_statistics;
+mod voxel_sets;
 
 #[cfg(feature = "files")]
 #[global_allocator]

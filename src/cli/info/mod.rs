@@ -1,13 +1,14 @@
 //! `stratavox info`: what a volume is, before anything is drawn.
 
 mod place;
+mod structure;
 mod text;
 mod values;
 mod watched;
 
 use super::{
     Error,
-    flags::InputFlags,
+    flags::{ClassificationFlags, InputFlags},
     memory::{RenderBytes, software_device_bytes},
     output::{say, say_aside},
     progress::{Progress, ProgressWord},
@@ -23,10 +24,18 @@ use watched::Watched;
 
 /// Say what a volume holds
 #[derive(Args, Debug)]
-#[command(after_help = "Example:\n  stratavox info phantom:head --json")]
+#[command(after_help = "Examples:\n  \
+    stratavox info phantom:head --json\n  \
+    stratavox info phantom:head,n=64 --structure --preset ct-bone")]
 pub struct Info {
     #[command(flatten)]
     input: InputFlags,
+    /// Say too which voxels are full under a transfer function, and what run-length encoding and an octree take for them.
+    /// The function is that of `render`, or one by the flags of colour; the volume is read into memory
+    #[arg(long)]
+    structure: bool,
+    #[command(flatten)]
+    classification: ClassificationFlags,
     /// As JSON
     #[arg(long)]
     json: bool,
@@ -68,6 +77,9 @@ struct Report {
     time_names: Vec<String>,
     series: Vec<SeriesReport>,
     notes: Vec<String>,
+    /// With `--structure`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    structure: Option<structure::StructureReport>,
 }
 
 /// A thing seen in the same place as others.
@@ -88,7 +100,8 @@ struct SeriesReport {
 
 impl Info {
     /// Reads all of the input and prints what it is like.
-    pub fn run(self) -> Result<(), Error> {
+    pub fn run(mut self) -> Result<(), Error> {
+        self.check_function()?;
         let limits = self.input.limits();
         let progress = Progress::new(self.progress);
         let source = self.input.open_as_stored(&limits)?;
@@ -103,7 +116,12 @@ impl Info {
         let header = &header;
         self.input.time(header)?;
         if self.input.time.is_some() {
-            say_aside("--time has no effect on info, its numbers are those of all times");
+            say_aside(match self.structure {
+                true => {
+                    "--time is for --structure, the other numbers of info are those of all times"
+                }
+                false => "--time has no effect on info, its numbers are those of all times",
+            });
         }
         let components = self.input.components(header)?;
         let statistics = Statistics::of(&source, components.clone(), &limits)?;
@@ -115,10 +133,19 @@ impl Info {
             }
             false => None,
         };
-        // What follows is said without a line of progress beside it.
         drop(source);
+        let structure = match self.structure {
+            true => {
+                progress.stage("structure", 0, 1);
+                let read = structure::read(&self.input, &self.classification, &limits)?;
+                Some(read)
+            }
+            false => None,
+        };
+        // What follows is said without a line of progress beside it.
         drop(progress);
         let mut report = report(header, &statistics);
+        report.structure = structure;
         if header.is_earth {
             // Uneven levels are drawn from even ones, of which there are more.
             let drawn = self.input.open(&limits)?;
@@ -143,6 +170,20 @@ impl Info {
             };
             say(&page.text(&limits))
         }
+    }
+}
+
+impl Info {
+    /// Reads the files of the function, which is for `--structure` alone.
+    fn check_function(&mut self) -> Result<(), Error> {
+        if !self.structure && self.classification != ClassificationFlags::default() {
+            return Err(Error::usage(
+                "--preset, --tf, --window and the other flags of colour say what --structure takes for full",
+                "add --structure, or leave them out",
+            ));
+        }
+        self.classification.inline_file()?;
+        self.classification.check()
     }
 }
 
@@ -218,6 +259,7 @@ fn report(header: &Header, statistics: &Statistics) -> Report {
         time_names: header.time_names.clone(),
         series: series.collect(),
         notes: header.notes.clone(),
+        structure: None,
     }
 }
 

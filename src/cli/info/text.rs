@@ -1,6 +1,6 @@
 //! What a person reads: lines of a name and what is known, in groups.
 
-use super::{RenderBytes, Report, place};
+use super::{RenderBytes, Report, place, structure};
 use crate::{
     cli::{
         error::visible,
@@ -41,16 +41,18 @@ const MAX_LINES: usize = 40;
 
 /// Lines, groups of them apart.
 #[derive(Default)]
-struct Lines(String);
+pub struct Lines(String);
 
 impl Lines {
-    fn group(&mut self) {
+    /// What follows stands apart.
+    pub fn group(&mut self) {
         if !self.0.is_empty() {
             self.0.push('\n');
         }
     }
 
-    fn say(&mut self, name: &str, value: impl AsRef<str>) {
+    /// A line.
+    pub fn say(&mut self, name: &str, value: impl AsRef<str>) {
         let line = format!("{name:<13}{}", visible(value.as_ref()));
         // Writing to a String cannot fail.
         let _ = writeln!(self.0, "{}", line.trim_end());
@@ -75,6 +77,9 @@ impl Page<'_> {
         if !self.header.series.is_empty() {
             lines.group();
             self.series(&mut lines);
+        }
+        if let Some(structure) = &self.report.structure {
+            structure::say(structure, &mut lines);
         }
         if !self.header.notes.is_empty() {
             lines.group();
