@@ -3,6 +3,7 @@
 //! Free of Vulkan: kinds of binding are words of our own that [`crate::gpu`] maps.
 
 mod fold;
+mod whole;
 
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -35,6 +36,12 @@ impl Shader {
     pub fn folded(&self, is_llvmpipe: bool) -> Vec<u32> {
         let software = (SOFTWARE_ID, is_llvmpipe.into());
         fold::folded(self.spirv(), &[&[software], self.constants].concat())
+    }
+
+    /// The words of this variant for llvmpipe, where that takes long over conversions: they have none of floats to
+    /// whole numbers.
+    pub fn without_conversions(&self) -> Vec<u32> {
+        whole::converting_by_shifts(&self.folded(true))
     }
 }
 

@@ -101,6 +101,20 @@ impl Identity {
     }
 }
 
+impl Identity {
+    /// Whether this is llvmpipe of Mesa 24 or later, which converts floats with saturation: 22.3 and 23.2 do not.
+    pub(crate) fn saturates_conversions(&self) -> bool {
+        self.driver_id == vk::DriverId::MESA_LLVMPIPE
+            && mesa_major(&self.driver_info).is_some_and(|major| major >= 24)
+    }
+}
+
+/// The first number of Mesa's version. Only the text has it: lavapipe reports 1 as the version of the driver.
+fn mesa_major(driver_info: &str) -> Option<u32> {
+    let (major, _) = driver_info.strip_prefix("Mesa ")?.split_once('.')?;
+    major.parse().ok()
+}
+
 /// A driver's text, whatever bytes it holds; empty where it does not end.
 pub(super) fn text<E>(text: Result<&CStr, E>) -> String {
     text.map(|text| text.to_string_lossy().into_owned())
@@ -120,4 +134,49 @@ pub(super) fn version(packed: u32) -> [u32; 3] {
 pub(super) fn version_text(packed: u32) -> String {
     let [major, minor, patch] = version(packed);
     format!("{major}.{minor}.{patch}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn identity(driver_id: vk::DriverId, driver_info: &str) -> Identity {
+        Identity {
+            name: String::new(),
+            kind: DeviceKind::Cpu,
+            api_version: [1, 2, 0],
+            vendor_id: 0,
+            device_id: 0,
+            driver_id,
+            driver_name: String::new(),
+            driver_info: driver_info.into(),
+            driver_version: 1,
+            uuid: [0; 16],
+            pipeline_cache_uuid: [0; 16],
+        }
+    }
+
+    #[test]
+    fn llvmpipe_saturates_from_mesa_24_on() {
+        let saturates = |info| identity(vk::DriverId::MESA_LLVMPIPE, info).saturates_conversions();
+        for newer in [
+            "Mesa 25.0.7-2~bpo12+1 (LLVM 15.0.6)",
+            "Mesa 24.0.0 (LLVM 17.0.6)",
+            "Mesa 26.1.0-devel (git-0123456789) (LLVM 20.1.0)",
+            "Mesa 100.0.1",
+        ] {
+            assert!(saturates(newer), "{newer}");
+        }
+        for older_or_unknown in [
+            "Mesa 22.3.6 (LLVM 15.0.6)",
+            "Mesa 23.3.6 (LLVM 15.0.6)",
+            "Mesa",
+            "",
+            "25.0.7",
+        ] {
+            assert!(!saturates(older_or_unknown), "{older_or_unknown}");
+        }
+        let radv = identity(vk::DriverId::MESA_RADV, "Mesa 25.0.7");
+        assert!(!radv.saturates_conversions());
+    }
 }

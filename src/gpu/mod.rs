@@ -314,6 +314,13 @@ impl Gpu {
         self.identity().driver_id == vk::DriverId::MESA_LLVMPIPE
     }
 
+    /// Whether floats become whole numbers by shifts (`src/shaders/whole.rs`): some llvmpipe converts with saturation,
+    /// which processors of other families than x86 have an instruction for (`docs/performance.md`).
+    pub(crate) fn has_slow_conversions(&self) -> bool {
+        cfg!(any(target_arch = "x86", target_arch = "x86_64"))
+            && self.identity.saturates_conversions()
+    }
+
     /// Whether fragments were found to take long over each parameter that they ask for: llvmpipe reads it once for
     /// every pixel (`shaders/handed.rs`).
     pub fn has_slow_parameters(&self) -> bool {

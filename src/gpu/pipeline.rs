@@ -250,7 +250,10 @@ pub(super) fn wrong_stage(doing: String, wanted: &str, shader: &Shader) -> Error
 
 /// The SPIR-V of a shader on the device; needed only until its pipeline is made.
 pub(crate) fn module(gpu: &Arc<Gpu>, shader: &Shader) -> Result<Own<vk::ShaderModule>, Error> {
-    let words = shader.folded(gpu.is_llvmpipe());
+    let words = match gpu.has_slow_conversions() {
+        true => shader.without_conversions(),
+        false => shader.folded(gpu.is_llvmpipe()),
+    };
     let info = vk::ShaderModuleCreateInfo::default().code(&words);
     // SAFETY: the SPIR-V was validated when it was built.
     let raw = gpu.call(

@@ -15,7 +15,7 @@
 use spirv::{Decoration, Op};
 use std::collections::{BTreeMap, BTreeSet};
 
-const HEADER: usize = 5;
+pub(super) const HEADER: usize = 5;
 
 type Instruction<'w> = &'w [u32];
 
@@ -58,7 +58,7 @@ pub fn folded(words: &[u32], constants: &[(u32, u32)]) -> Vec<u32> {
     [&words[..HEADER], &head.copied().collect::<Vec<_>>(), &body].concat()
 }
 
-fn instructions(words: &[u32]) -> impl Iterator<Item = Instruction<'_>> {
+pub(super) fn instructions(words: &[u32]) -> impl Iterator<Item = Instruction<'_>> {
     let mut rest = words;
     std::iter::from_fn(move || {
         let length = (rest.first()? >> 16) as usize;
@@ -68,11 +68,11 @@ fn instructions(words: &[u32]) -> impl Iterator<Item = Instruction<'_>> {
     })
 }
 
-fn is(instruction: &[u32], op: Op) -> bool {
+pub(super) fn is(instruction: &[u32], op: Op) -> bool {
     instruction[0] & 0xffff == op as u32
 }
 
-fn instruction(op: Op, operands: &[u32]) -> Vec<u32> {
+pub(super) fn instruction(op: Op, operands: &[u32]) -> Vec<u32> {
     let length = operands.len() as u32 + 1;
     [&[length << 16 | op as u32], operands].concat()
 }

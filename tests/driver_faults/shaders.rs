@@ -96,9 +96,17 @@ fn variant_of(words: &[u32]) -> Option<(&'static Shader, bool)> {
     let of_module = SHADERS
         .iter()
         .filter(|shader| shader.spirv()[BOUND] == words[BOUND]);
-    of_module
+    let same = of_module
         .flat_map(|shader| [(shader, true), (shader, false)])
-        .find(|(shader, is_llvmpipe)| shader.folded(*is_llvmpipe) == words)
+        .find(|(shader, is_llvmpipe)| shader.folded(*is_llvmpipe) == words);
+    // What has no conversions has more ids.
+    same.or_else(|| {
+        let mut fewer = SHADERS
+            .iter()
+            .filter(|shader| shader.spirv()[BOUND] < words[BOUND]);
+        let found = fewer.find(|shader| shader.without_conversions() == words);
+        found.map(|shader| (shader, true))
+    })
 }
 
 /// The file, the slots and the words of a variant.

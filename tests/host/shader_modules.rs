@@ -91,17 +91,37 @@ fn some_variants() -> Vec<(&'static Shader, bool)> {
     modules().into_iter().flat_map(ends).collect()
 }
 
+/// How many instructions of a kind a module has.
+fn count(words: &[u32], op: spirv::Op) -> usize {
+    let mut rest = &words[5..];
+    let mut found = 0;
+    while let Some(&first) = rest.first() {
+        found += usize::from(first & 0xffff == op as u32);
+        rest = &rest[(first >> 16) as usize..];
+    }
+    found
+}
+
+#[test]
+fn words_without_conversions_have_none() {
+    let ops = [spirv::Op::ConvertFToU, spirv::Op::ConvertFToS];
+    let conversions = |words: &[u32]| ops.iter().map(|op| count(words, *op)).sum::<usize>();
+    let mut before = 0;
+    for shader in modules() {
+        before += conversions(&shader.folded(true));
+        assert_eq!(
+            conversions(&shader.without_conversions()),
+            0,
+            "{}",
+            shader.name
+        );
+    }
+    println!("{before} conversions");
+    assert!(before > 500, "{before}");
+}
+
 #[test]
 fn folded_variants_choose_nothing_by_constants() {
-    let count = |words: &[u32], op: spirv::Op| {
-        let mut rest = &words[5..];
-        let mut found = 0;
-        while let Some(&first) = rest.first() {
-            found += usize::from(first & 0xffff == op as u32);
-            rest = &rest[(first >> 16) as usize..];
-        }
-        found
-    };
     let (mut of_modules, mut of_variants) = (0, 0);
     for (shader, is_llvmpipe) in some_variants() {
         let folded = shader.folded(is_llvmpipe);
@@ -127,8 +147,14 @@ fn folded_variants_are_valid() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("folded.spv");
     let variants = some_variants();
-    for (shader, is_llvmpipe) in &variants {
-        let words = shader.folded(*is_llvmpipe);
+    let folded = variants
+        .iter()
+        .map(|(shader, is_llvmpipe)| (shader, shader.folded(*is_llvmpipe)));
+    let converting = variants
+        .iter()
+        .filter(|(_, is_llvmpipe)| *is_llvmpipe)
+        .map(|(shader, _)| (shader, shader.without_conversions()));
+    for (shader, words) in folded.chain(converting) {
         std::fs::write(&file, bytemuck::cast_slice(&words)).expect("a file");
         let mut command = Command::new("spirv-val");
         let run = command
