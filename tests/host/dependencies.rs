@@ -5,11 +5,12 @@ use std::env;
 use std::process::Command;
 
 /// By name: versions are those of the lock file. Of these `bytemuck_derive`, `thiserror-impl`, `zerocopy-derive` and
-/// what they need run in the compiler alone, `miniz_oxide` opens the stored shaders, `crunchy` is for one target of graphics cards, `windows-link` for another
-/// system.
-const EMBEDDER: [&str; 23] = [
+/// what they need run in the compiler alone, `miniz_oxide` opens the stored shaders, `spirv` and its `bitflags` name what is in
+/// them, `crunchy` is for one target of graphics cards, `windows-link` for another system.
+const EMBEDDER: [&str; 25] = [
     "adler2",
     "ash",
+    "bitflags",
     "bytemuck",
     "bytemuck_derive",
     "cfg-if",
@@ -23,6 +24,7 @@ const EMBEDDER: [&str; 23] = [
     "presser",
     "proc-macro2",
     "quote",
+    "spirv",
     "stratavox",
     "syn",
     "thiserror",
