@@ -8,20 +8,20 @@
 //!
 //! `format` reads a file into a [`volume::Volume`], [`resident`] puts it on the device, [`technique::View::recordings`] sets the
 //! parameters, `shaders/raycast.wgsl` (or a slicer's) walks the ray, `shaders/lib/mode_*.wgsl` says what a sample adds,
-//! `shaders/resolve.wgsl` makes it a colour, and [`offscreen::Renderer::render`] (or a host) puts the passes in order.
+//! `shaders/resolve.wgsl` makes a colour of what projects, and [`offscreen::Renderer::render`] (or a host) puts the passes in order.
 //!
-//! # Floors
+//! # Layers
 //!
-//! A module uses lower floors only; `tests/host/floors.rs` holds us to it.
+//! A module uses lower layers only, and some layers have steps inside; `tests/host/floors.rs` checks that.
 //!
-//! | floor | modules | what they know |
+//! | layer | modules | what they know |
 //! |---|---|---|
 //! | 0 | `shaders`, `real`, `ray`, `blue_noise`, `lattice`, [`color`], `fence`, `named` | arithmetic shared with the shaders, free of Vulkan |
 //! | 1 | [`gpu`], [`volume`], [`transfer`], [`camera`], [`picture`], [`mesh`], `figure` | Vulkan objects, or data; never both |
 //! | 2 | [`resident`], `isosurface`, `format` | data put on a device; a surface in a volume; bytes of files turned into a [`volume::Source`] |
 //! | 3 | [`technique`], [`resolve`], `look` | `new`, `bind`, `record`, and the CPU references; what suits a volume |
 //! | 4 | [`embed`] | a volume in a host's frames |
-//! | 5 | [`scene`], [`offscreen`], `annotate` | a scene to a [`picture::Picture`], the only place that waits; words and marks over it |
+//! | 5 | [`scene`], [`offscreen`], `annotate` | a scene to a [`picture::Picture`], which it waits for; words and marks over it |
 //! | 6 | `conformance` | cases with exact answers, and verdicts on devices |
 //! | 7 | `cli` | words to scenes, errors to exit codes |
 //! | 7 | `capi` | what [`embed`] does, for C |
@@ -43,7 +43,7 @@
 //!
 //! A host keeps its device, its queues, its command buffers and its images: it gives handles to
 //! [`gpu::Gpu::from_host`], and nothing is submitted or waited for behind its back. The device speaks Vulkan
-//! 1.3 and has `dynamicRendering` and `synchronization2` enabled, no more; the queues are of a family with
+//! 1.3 and has `dynamicRendering` and `synchronization2` enabled, and `timelineSemaphore` where we submit; the queues are of a family with
 //! graphics and compute. [`embed`] is the way in, on three levels: draw inside the host's rendering, record into an
 //! image of the host's, or let us submit.
 //!

@@ -45,7 +45,7 @@ impl Inputs {
             let found = format::find(path, search, &limits)?;
             inputs.left_alone += found.left_alone;
             if found.volumes.is_empty() {
-                return Err(Error::Input {
+                inputs.failures.push(Error::Input {
                     path: path.to_owned(),
                     problem: format!(
                         "the folder holds no volume, and {} files and folders that are none",

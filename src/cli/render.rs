@@ -74,7 +74,7 @@ pub struct Render {
     /// Draw from the coarsest resolution of the file to the finest, each written as soon as it is drawn
     #[arg(long, conflicts_with_all = ["level", "fit"], help_heading = "Run")]
     refine: bool,
-    /// No empty-space skipping: the picture is the same without
+    /// No empty-space skipping: slower, the same picture
     #[arg(long)]
     no_skip: bool,
 }

@@ -123,7 +123,7 @@ impl Volume {
         Ok(all)
     }
 
-    /// FootprintTexels, for pictures that read them.
+    /// Footprint texels, for pictures that read them.
     fn keep_corners(
         &mut self,
         gpu: &Arc<Gpu>,

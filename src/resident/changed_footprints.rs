@@ -1,4 +1,4 @@
-//! FootprintTexels after voxels of a box have changed: the cubes of texels that have some of them, and no others.
+//! Footprint texels after voxels of a box have changed: the cubes of texels that have some of them, and no others.
 
 use super::FootprintTexels;
 use super::footprint_texels::{CUBE_TEXELS, Code, RowPlace, SIDE, put_row};

@@ -1,4 +1,4 @@
-//! What a blending unit does with the fragments of one pixel, and its CPU reference on the CPU.
+//! What a blending unit does with the fragments of one pixel, and its CPU reference.
 //!
 //! ```text
 //! over    back to front   C = s + (1 - alpha_s) C

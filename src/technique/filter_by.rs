@@ -11,14 +11,14 @@ use super::{Filter, GradientStorage, Operator, SampleInputs, Settings};
 /// A wish for one of them. Conformance pictures fetch, whatever is wished.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum FilterBy {
-    /// FootprintTexels where there are any, else the sampler. Renderers of our own make corners for drivers that were found to
+    /// Footprint texels where there are any, else the sampler. Renderers of our own make corners for drivers that were found to
     /// be faster with them ([`Gpu::has_slow_sampler`](crate::gpu::Gpu::has_slow_sampler)): it follows from driver,
     /// volume and picture alone, so that the same picture always comes out the same (`docs/sampling-notes.md`).
     #[default]
     Auto,
     /// The sampler, where the device has one for the format.
     Sampler,
-    /// FootprintTexels where there can be any, else fetches.
+    /// Footprint texels where there can be any, else fetches.
     Fetch,
 }
 

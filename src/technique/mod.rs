@@ -203,7 +203,7 @@ pub enum CutFaces {
 pub struct Settings {
     /// The rendering technique.
     pub technique: Technique,
-    /// What is done with them.
+    /// What is done with the samples of a ray.
     pub mode: Mode,
     /// How values between voxels are made.
     pub filter: Filter,
@@ -241,7 +241,7 @@ pub struct Settings {
     pub color_space: crate::picture::ColorSpace,
     /// Voxel space box to keep, min and max; fractions allowed. `None`: all of it.
     pub crop: Option<[glam::DVec3; 2]>,
-    /// What is behind any of them is cut away. At most [`crate::shaders::MAX_CLIP_PLANES`], hundreds.
+    /// Half-spaces, of which the intersection is kept. At most [`crate::shaders::MAX_CLIP_PLANES`].
     pub clip_planes: Vec<ClipPlane>,
     /// Composite by rays: what the crop box and the clip planes lay bare is an opaque cross-section.
     pub cut_faces: Option<CutFaces>,

@@ -410,3 +410,11 @@ fn a_file_that_is_not_there_is_no_misspelt_verb_and_a_misspelt_verb_no_file() {
         .run("rendr phantom:fog")
         .assert_refused(2, &["rendr", "'render'", "hint: `stratavox --help`"]);
 }
+
+#[test]
+fn more_lights_than_there_may_be_are_refused_without_other_flags() {
+    let folder = Folder::new();
+    let lights = "--light 1,0,0 ".repeat(5);
+    let ran = folder.run(&format!("render phantom:head,n=8 -o a.png {lights}"));
+    ran.assert_refused(2, &["at most 4"]);
+}

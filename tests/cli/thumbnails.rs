@@ -365,6 +365,10 @@ fn words_that_cannot_be_followed_are_refused_before_anything_is_drawn() {
         let out = folder.path("out");
         assert!(!out.exists() || pictures(&out).is_empty(), "{words}");
     }
+    let ran = folder.run("thumbnails none a.nrrd -o out");
+    assert_eq!(ran.code, 3, "{ran:#?}");
+    assert!(ran.err.contains("holds no volume"), "{ran:#?}");
+    assert_eq!(pictures(&folder.path("out")).len(), 1, "the other is drawn");
     let ran = folder.run("render a.nrrd -o a.png --device reference --device reference");
     ran.assert_refused(2, &["--device", "2 are named", "thumbnails"]);
     let ran = folder.run("bench a.nrrd --device 0 --device 0 --json a.json");

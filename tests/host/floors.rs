@@ -6,7 +6,7 @@
 
 use std::{fs, path::Path};
 
-/// Modules by floor, as `src/lib.rs` tells them; floors 0, 3 and 4 have steps inside.
+/// Modules by floor, as `src/lib.rs` tells them; floors 0, 3 and 5 have steps inside.
 const FLOORS: &[&[&str]] = &[
     &["shaders", "real", "fence", "named"],
     &["ray", "color", "blue_noise"],

@@ -23,8 +23,8 @@ pub struct CameraFlags {
     #[arg(long, value_name = "WHAT", conflicts_with_all = ["eye", "target", "view_height"], help_heading = "Camera")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frame: Option<FrameWord>,
-    /// 1: what --frame says fits, without it the bounding sphere; more is nearer [default: 1, of what --frame says under
-    /// --look auto]
+    /// Magnification: at 1 what --frame names fits the picture, or without it the bounding sphere [default: 1, of what
+    /// --frame names under --look auto]
     #[arg(long, value_name = "F", value_parser = positive, help_heading = "Camera")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub zoom: Option<f64>,

@@ -31,13 +31,14 @@ pub struct LightFlags {
     #[arg(long, value_name = "[camera:]X,Y,Z[,R,G,B]", allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub light: Vec<LightWord>,
-    /// Light gradients under G, in values per world length, less as a surface and more evenly: half and half at G, so that
-    /// noise does not sparkle [default: 0; by the noise of the volume where --look auto lights]
+    /// Gradient magnitude, in values per world length, at which a sample is shaded half as a surface and half evenly;
+    /// weaker gradients are shaded more evenly, so that noise does not sparkle [default: 0; by the noise of the volume
+    /// where --look auto lights]
     #[arg(long, value_name = "G", value_parser = finite, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub half_gradient: Option<f64>,
-    /// Darkness where matter within RADIUS (world length) keeps light from all around away; of the ambient part with
-    /// --shading phong, of the whole colour without [default radius: a twentieth of the diagonal of the volume]
+    /// Darken where matter within RADIUS (world length) blocks light from all around: the ambient part with --shading
+    /// phong, the whole colour without [default radius: a twentieth of the diagonal of the volume]
     #[arg(long, value_name = "STRENGTH[,RADIUS]", allow_hyphen_values = true, help_heading = HEADING)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ambient_occlusion: Option<OcclusionWord>,

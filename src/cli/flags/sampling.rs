@@ -34,17 +34,17 @@ pub struct SamplingFlags {
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub filter: Option<Filter>,
-    /// What makes it: the device's sampler, or the shader from voxels that it fetches itself, as exactly as floats are
-    /// [default: auto]
+    /// What interpolates between voxels: the device's sampler, or the shader, from voxels that it fetches and with weights
+    /// in floats [default: auto]
     #[arg(long, value_name = "WAY")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub filter_by: Option<FilterBy>,
-    /// Samples at equal steps along the ray, on the planes of the slicer, or where the ray crosses the middle of each voxel
-    /// of the axis that it runs along most [default: ray]
+    /// Where samples are: ray, at equal steps; planes, on the planes of --technique slices-3d; bresenham, in the middle of
+    /// each voxel of the axis that the ray runs along most [default: ray]
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lattice: Option<Lattice>,
-    /// What lies between two samples counts: no bands where the transfer function is steep
+    /// Pre-integrated classification of what lies between two samples: no bands where the transfer function is steep
     #[arg(long)]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub preintegrated: bool,
@@ -96,7 +96,7 @@ pub struct SamplingFlags {
     #[arg(long, value_name = "X0,X1,Y0,Y1,Z0,Z1", allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crop: Option<Numbers<6>>,
-    /// Keep the world points with n.x >= D (repeatable, up to 512 planes)
+    /// Keep the world points p with (NX,NY,NZ) . p >= D (repeatable, up to 512 planes)
     #[arg(long, value_name = "NX,NY,NZ,D", allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub clip: Vec<Numbers<4>>,
@@ -114,7 +114,7 @@ pub struct SamplingFlags {
     #[arg(long, value_name = "LO,HI", num_args = 0..=1, default_missing_value = "own", require_equals = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cut_faces: Option<CutFacesWord>,
-    /// Float targets, no early termination, own filtering by texel fetch
+    /// As `stratavox conformance` draws: float targets, no early termination, filtering in the shader
     #[arg(long)]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub conformance: bool,

@@ -9,6 +9,7 @@ use crate::cli::scene_inputs::check;
 use crate::look::{
     BACKGROUND, LIGHT, MATERIAL, Origin, STILL_SAMPLES, half_gradient, is_lit, may_choose, summary,
 };
+use crate::shaders::MAX_LIGHTS;
 use crate::technique::Mode;
 use crate::transfer::{Context, Kind, Preset};
 use crate::volume::Volume;
@@ -55,7 +56,9 @@ pub fn with_light(scene: &SceneFlags, seen: Seen, made_for: Use) -> SceneFlags {
         let settings = scene.settings(made_for.depth);
         settings.is_ok_and(|settings| check(scene, &settings).is_ok())
     };
-    if let Some(lit) = lit.filter(is_drawable) {
+    // More lights than there may be are refused as they are asked for, not left out.
+    let is_asked = scene.light.light.len() > MAX_LIGHTS as usize;
+    if let Some(lit) = lit.filter(|lit| is_asked || is_drawable(lit)) {
         chosen = lit;
     }
     let mut slabs = chosen.clone();

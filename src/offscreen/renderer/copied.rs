@@ -16,7 +16,7 @@ pub(super) struct Copied {
     pub gradient_source: Option<GradientSource>,
     /// Gradients that are kept.
     pub kept: Option<KeptOperator>,
-    /// FootprintTexels in place of texels, where there can be any.
+    /// Footprint texels in place of texels, where there can be any.
     pub is_by_corners: bool,
 }
 
