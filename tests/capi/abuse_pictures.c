@@ -23,7 +23,7 @@ static void settings(void) {
     WITH(sv_settings, start, technique, UINT32_MAX, SV_E_ARGUMENT);
     WITH(sv_settings, start, mode, 9, SV_E_ARGUMENT);
     WITH(sv_settings, start, filter, 7, SV_E_ARGUMENT);
-    WITH(sv_settings, start, lattice, 3, SV_E_ARGUMENT);
+    WITH(sv_settings, start, lattice, 4, SV_E_ARGUMENT);
     WITH(sv_settings, start, color_space, 2, SV_E_ARGUMENT);
     WITH(sv_settings, start, samples_per_voxel, -1.0, SV_E_ARGUMENT);
     WITH(sv_settings, start, samples_per_voxel, nan, SV_E_ARGUMENT);
@@ -85,6 +85,7 @@ static void settings(void) {
     WITH(sv_settings, sliced, mode, SV_MODE_MIDA, SV_E_UNSUPPORTED);
     WITH(sv_settings, sliced, mode, SV_MODE_LMIP, SV_E_UNSUPPORTED);
     WITH(sv_settings, sliced, lattice, SV_LATTICE_JITTER, SV_E_UNSUPPORTED);
+    WITH(sv_settings, sliced, lattice, SV_LATTICE_BRESENHAM, SV_E_UNSUPPORTED);
     sv_settings mida = start;
     mida.mode = SV_MODE_MIDA;
     WITH(sv_settings, mida, mida_gamma, 2.0, SV_E_ARGUMENT);
