@@ -114,6 +114,7 @@ mod picture_output;
 mod public_api;
 mod shader_constants;
 mod shader_modules;
+mod spirv_words;
 mod transfer_choice;
 mod transfer_file;
 mod transfer_import;

@@ -18,11 +18,11 @@ mod straight;
 mod variants;
 
 use crate::no_contraction::pass as no_contraction;
+use crate::spirv_words::{SpirvVal, count};
 use naga::back::spv;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use spirv::Op;
 use std::collections::BTreeMap;
-use std::process::Command;
 use variants::Slot;
 
 const FILTER: Slot = Slot {
@@ -84,11 +84,6 @@ fn words(module: &naga::Module) -> Vec<u32> {
         ..Default::default()
     };
     spv::write_vec(module, &info, &options, None).expect("SPIR-V")
-}
-
-fn count(words: &[u32], op: Op) -> usize {
-    let all = no_contraction::instructions(words);
-    all.filter(|(_, of)| of[0] & 0xffff == op as u32).count()
 }
 
 #[test]
@@ -241,23 +236,11 @@ fn folding_leaves_what_the_constants_choose() {
 
 #[test]
 fn what_folding_leaves_is_valid() {
-    if Command::new("spirv-val").arg("--version").output().is_err() {
-        println!("skipped: no spirv-val is installed");
+    let Some(validator) = SpirvVal::new() else {
         return;
-    }
-    let folder = tempfile::tempdir().expect("a folder");
+    };
     for (way, turns) in [(0, 0), (1, 0), (1, 1), (1, 2), (7, 7)] {
-        let file = folder.path().join("folded.spv");
-        let words = folded(way, turns);
-        std::fs::write(&file, bytemuck::cast_slice(&words)).expect("a file");
-        let mut command = Command::new("spirv-val");
-        let run = command
-            .args(["--target-env", "vulkan1.2"])
-            .arg(&file)
-            .output();
-        let run = run.expect("spirv-val");
-        let said = String::from_utf8_lossy(&run.stderr);
-        assert!(run.status.success(), "{way} {turns}: {said}");
+        validator.assert_valid(&format!("{way} {turns}"), &folded(way, turns));
     }
 }
 

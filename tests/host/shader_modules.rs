@@ -1,7 +1,7 @@
 //! How many modules of shaders there are, how large they are, and that each variant is valid as a driver folds it.
 
+use crate::spirv_words::{SpirvVal, count};
 use std::collections::BTreeMap;
-use std::process::Command;
 use stratavox::shaders::{BindingKind, SHADERS, SOFTWARE_ID, Shader};
 
 fn is_probe(shader: &Shader) -> bool {
@@ -91,17 +91,6 @@ fn some_variants() -> Vec<(&'static Shader, bool)> {
     modules().into_iter().flat_map(ends).collect()
 }
 
-/// How many instructions of a kind a module has.
-fn count(words: &[u32], op: spirv::Op) -> usize {
-    let mut rest = &words[5..];
-    let mut found = 0;
-    while let Some(&first) = rest.first() {
-        found += usize::from(first & 0xffff == op as u32);
-        rest = &rest[(first >> 16) as usize..];
-    }
-    found
-}
-
 #[test]
 fn words_without_conversions_have_none() {
     let ops = [spirv::Op::ConvertFToU, spirv::Op::ConvertFToS];
@@ -140,12 +129,9 @@ fn folded_variants_choose_nothing_by_constants() {
 
 #[test]
 fn folded_variants_are_valid() {
-    if Command::new("spirv-val").arg("--version").output().is_err() {
-        println!("skipped: no spirv-val is installed");
+    let Some(validator) = SpirvVal::new() else {
         return;
-    }
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = folder.path().join("folded.spv");
+    };
     let every = SHADERS.iter().flat_map(|shader| {
         let of = move |is_llvmpipe| (shader, shader.folded(is_llvmpipe));
         [true, false].into_iter().map(of)
@@ -158,15 +144,7 @@ fn folded_variants_are_valid() {
     let mut checked = 0;
     for (shader, words) in every.chain(converting) {
         checked += 1;
-        std::fs::write(&file, bytemuck::cast_slice(&words)).expect("a file");
-        let mut command = Command::new("spirv-val");
-        let run = command
-            .args(["--target-env", "vulkan1.2"])
-            .arg(&file)
-            .output();
-        let run = run.expect("spirv-val");
-        let said = String::from_utf8_lossy(&run.stderr);
-        assert!(run.status.success(), "{}: {said}", shader.name);
+        validator.assert_valid(shader.name, &words);
     }
     println!("{checked} folded variants are valid");
     assert!(checked > 1800, "{checked}");
