@@ -384,7 +384,7 @@ fn bindings(module: &naga::Module) -> String {
     slots.into_values().collect::<Vec<_>>().join(", ")
 }
 
-/// Whole and float constants that a file gives as plain literals.
+/// Whole and float constants that a file gives as plain literals; specialization constants have no number of their own.
 fn named_constants(module: &naga::Module) -> Vec<(String, String)> {
     let literal = |(_, constant): (_, &naga::Constant)| {
         let name = constant.name.clone()?;
@@ -392,6 +392,7 @@ fn named_constants(module: &naga::Module) -> Vec<(String, String)> {
             return None;
         };
         let (kind, value) = match value {
+            naga::Literal::U32(v) if constants::id_of_mark(v).is_some() => return None,
             naga::Literal::U32(v) => ("u32", v.to_string()),
             naga::Literal::I32(v) => ("i32", v.to_string()),
             naga::Literal::F32(v) => ("f32", format!("{v:?}")),
