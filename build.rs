@@ -12,12 +12,8 @@
 
 #[path = "shaders/alternatives.rs"]
 mod alternatives;
-#[path = "shaders/among_few.rs"]
-mod among_few;
 #[path = "shaders/blue_noise.rs"]
 mod blue_noise;
-#[path = "shaders/both_sides.rs"]
-mod both_sides;
 #[path = "shaders/compose.rs"]
 #[allow(
     dead_code,
@@ -26,18 +22,22 @@ mod both_sides;
 mod compose;
 #[path = "shaders/constants.rs"]
 mod constants;
-#[path = "shaders/handed.rs"]
-mod handed;
+#[path = "shaders/dynamic_indexing.rs"]
+mod dynamic_indexing;
+#[path = "shaders/flat_varyings.rs"]
+mod flat_varyings;
 #[path = "shaders/no_contraction.rs"]
 mod no_contraction;
-#[path = "shaders/opaque.rs"]
-mod opaque;
+#[path = "shaders/opaque_predicates.rs"]
+mod opaque_predicates;
 #[path = "shaders/point_size.rs"]
 mod point_size;
 #[path = "shaders/read_once.rs"]
 mod read_once;
-#[path = "shaders/straight.rs"]
-mod straight;
+#[path = "shaders/short_circuit.rs"]
+mod short_circuit;
+#[path = "shaders/uniform_loads.rs"]
+mod uniform_loads;
 #[path = "shaders/variants.rs"]
 mod variants;
 
@@ -163,14 +163,14 @@ impl Book {
         };
         check(&module, ValidationFlags::all());
         if !is_probe(file) {
-            both_sides::ask_both_sides(&mut module);
-            opaque::hide_branches(&mut module);
+            short_circuit::evaluate_both_operands(&mut module);
+            opaque_predicates::hide_branches(&mut module);
         }
         point_size::name_point_size(&mut module);
         if let Some(&of @ ("planes" | "stack")) = fills.get("parameters") {
-            handed::hand_over(&mut module, of);
+            flat_varyings::hand_over(&mut module, of);
         }
-        among_few::choose_among_few(&mut module);
+        dynamic_indexing::index_by_selects(&mut module);
         read_once::read_parameters_once(&mut module);
         // What was uniform is so still, which nobody can know any longer.
         let uniformity = ValidationFlags::CONTROL_FLOW_UNIFORMITY;
@@ -178,7 +178,7 @@ impl Book {
 
         let (words, ids) = constants::specialized(&spirv(&module, &info, file));
         let software = alternatives::id_of("software") as u32;
-        let words = straight::chosen_by(software, &words);
+        let words = uniform_loads::read_directly(software, &words);
         let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
         let first = self.stored.len();
         self.stored

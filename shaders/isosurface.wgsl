@@ -12,7 +12,7 @@
 #import nearest
 #import mask
 #import holes_{holes}
-#import paint_{paint}
+#import color_by_{color_by}
 #import gradient
 #import shade
 #import light
@@ -70,7 +70,7 @@ fn met_before(pixel: vec2<u32>) -> Surfaces {
 fn surfaces(pixel: vec2<f32>, tile: RayTile, before: Surfaces) -> Surfaces {
     let world = pixel_ray(pixel);
     let voxel = voxel_ray(world);
-    let interval = in_sight(domain_interval(world, voxel), world, pixel);
+    let interval = visible_interval(domain_interval(world, voxel), world, pixel);
     var so_far = before;
     let inside = counted(brick_interval(voxel, interval), tile);
     if !(interval.x < interval.y && inside.x < inside.y) || is_finished(before) {
@@ -81,7 +81,7 @@ fn surfaces(pixel: vec2<f32>, tile: RayTile, before: Surfaces) -> Surfaces {
     let last = min(full + 1, i32(ceil((inside.y - interval.x) / frame.step_world)) + 1);
     // A segment that comes from another brick begins in cells that are not known here.
     let known = select(0, full + 1, frame.is_only_brick != 0u);
-    let walk = walk_of(voxel, vec2(interval.x, frame.step_world), vec2(0, known));
+    let line = sample_line(voxel, vec2(interval.x, frame.step_world), vec2(0, known));
     var near = End(0.0, 0.0, false);
     var far = near;
     // Whether the near end lies in a cell that no surface goes through, or there is none.
@@ -97,12 +97,12 @@ fn surfaces(pixel: vec2<f32>, tile: RayTile, before: Surfaces) -> Surfaces {
             var distance = 0;
             loop {
                 distance = 0;
-                if !may_skip(walk, k) {
+                if !may_skip(line, k) {
                     break;
                 }
-                let cell = cell_of(walk, k);
+                let cell = cell_of(line, k);
                 distance = distance_to_occupied(cell);
-                let landing = first_sample_beyond(walk, k, cell, max(distance, 1)) - 1;
+                let landing = first_sample_beyond(line, k, cell, max(distance, 1)) - 1;
                 if distance == 0 || !is_near_empty || landing <= k {
                     break;
                 }
@@ -215,7 +215,7 @@ fn crossing(bracket: Bracket, level: f32) -> f32 {
 fn passed(before: Surfaces, world: Ray, voxel: Ray, index: u32, t: f32) -> Surfaces {
     let opacity = frame.level_colors[index].w;
     let place = voxel.origin + t * voxel.direction;
-    var color = painted(index, place);
+    var color = surface_color(index, place);
     var gradient = vec3(0.0);
     if frame.light_count != 0u {
         gradient = gradient_at(place);

@@ -11,7 +11,7 @@
 #import light_grid
 #import brick
 #import cells_{layout}
-#import sample_graded
+#import sample_scalar_gradient
 #import transfer_{transfer}
 #import widgets
 #import norm

@@ -10,8 +10,8 @@
 // is not drawn. What is left out would have added nothing: the picture is the same to the bit (`sampling.md` 5).
 
 #import tile_frustum
-#import known_{known}
-#import nothing_{left}
+#import tile_bounds_{bounds}
+#import clear_{output}
 #import ray_tile
 
 // Tiles along the side of a block, which a workgroup looks through.
@@ -41,11 +41,11 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
         return;
     }
     let frustum = tile_frustum_of(vec2<f32>(TILE_PIXELS * tile) + 0.5 * f32(TILE_PIXELS));
-    let within = known_part(frustum, box_part(frustum));
+    let within = tile_bounds(frustum, box_part(frustum));
     if within.x < within.y {
         let index = atomicAdd(&ray_list.tiles, 1u);
         textureStore(ray_tiles, entry_of(index), vec4(vec2<f32>(tile), lengths(frustum, within)));
     } else if frame.is_first_brick != 0u {
-        leave_nothing(TILE_PIXELS * tile);
+        clear_tile(TILE_PIXELS * tile);
     }
 }

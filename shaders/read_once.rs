@@ -3,7 +3,7 @@
 //! llvmpipe reads a value of a uniform buffer by one instruction where all invocations are sure to be at work, and by
 //! thirty, one word for each of them, after the first branch. In compute passes what is asked for by name is copied to
 //! a variable of the invocation; what is found by a number that is known only then stays where it is. Fragments gain
-//! nothing by it, since there the invocations are never sure to be at work: `handed.rs` is for them.
+//! nothing by it, since there the invocations are never sure to be at work: `flat_varyings.rs` is for them.
 
 use crate::constants::software;
 use naga::{
@@ -26,7 +26,7 @@ pub fn read_parameters_once(module: &mut Module) {
         .map(|(handle, variable)| (handle, variable.ty, variable.name.clone()))
         .collect();
     for (uniform, ty, name) in uniforms {
-        let (copy, members) = asked_of_a_copy(module, uniform, ty, name, |_| true);
+        let (copy, members) = redirect_to_copy(module, uniform, ty, name, |_| true);
         let software = software(module);
         for entry in &mut module.entry_points {
             let mut start = copied(&mut entry.function, uniform, copy, &members);
@@ -40,7 +40,7 @@ pub fn read_parameters_once(module: &mut Module) {
 
 /// A variable of the invocation that is asked in the place of a uniform buffer, and for which of its members: those
 /// that are `wanted` and asked for by name. Nothing is in it yet.
-pub fn asked_of_a_copy(
+pub fn redirect_to_copy(
     module: &mut Module,
     uniform: Handle<GlobalVariable>,
     ty: Handle<Type>,
@@ -119,7 +119,7 @@ fn redirect(
     }
 }
 
-/// What other drivers than llvmpipe leave out: they read parameters where they are asked for (`straight.rs`).
+/// What other drivers than llvmpipe leave out: they read parameters where they are asked for (`uniform_loads.rs`).
 fn only_where(
     software: Handle<Constant>,
     accept: Block,

@@ -2,7 +2,7 @@
 // Legal inside a host's rendering.
 
 #import ray
-#import depth_of_{left}
+#import depth_of_{output}
 
 @group(0) @binding(1) var left: texture_2d<f32>;
 

@@ -3,12 +3,12 @@
 // CPU reference: src/technique/slices_2d/reference.rs.
 
 #import ray
-#import sight_{sight}
+#import ends_at_{end}
 #import brick
 #import stack_{filter}
 #import stack_at_nearest
 #import stack_mask
-#import sample_{mix}
+#import sample_{inputs}
 #import blend_{blend}
 
 @fragment
@@ -23,7 +23,7 @@ fn main(
     if abs(slope) < 1e-20 {
         discard;
     }
-    let interval = in_sight(domain_interval(world, voxel), world, position.xy);
+    let interval = visible_interval(domain_interval(world, voxel), world, position.xy);
     let t = (f32(slice) + 0.5 - voxel.origin[frame.slice_axis]) / slope;
     if !(interval.x <= t && t < interval.y) {
         discard;

@@ -3,7 +3,7 @@
 // CPU reference: src/technique/slices_2d/between.rs.
 
 #import stack_slab
-#import sight_{sight}
+#import ends_at_{end}
 #import blend_{blend}
 
 @fragment
@@ -18,7 +18,7 @@ fn main(
     if abs(slope) < 1e-20 {
         discard;
     }
-    let interval = in_sight(domain_interval(world, voxel), world, position.xy);
+    let interval = visible_interval(domain_interval(world, voxel), world, position.xy);
     let slab = stack_slab(voxel, slope, interval, plane);
     if !slab.has_data {
         discard;

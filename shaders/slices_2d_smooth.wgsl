@@ -7,7 +7,7 @@
 #import stack_{filter}
 #import stack_at_nearest
 #import stack_mask
-#import sample_{mix}
+#import sample_{inputs}
 #import between_{filter}
 #import blend_{blend}
 

@@ -4,12 +4,12 @@
 // CPU reference: src/technique/slices_3d/reference.rs.
 
 #import ray
-#import sight_{sight}
+#import ends_at_{end}
 #import brick
 #import filter_{filter}
 #import nearest
 #import mask
-#import sample_{mix}
+#import sample_{inputs}
 #import blend_{blend}
 
 @fragment
@@ -19,7 +19,7 @@ fn main(
 ) -> @location(0) vec4<f32> {
     let world = pixel_ray(position.xy);
     let voxel = voxel_ray(world);
-    let interval = in_sight(domain_interval(world, voxel), world, position.xy);
+    let interval = visible_interval(domain_interval(world, voxel), world, position.xy);
     let t = plane_t(world, plane);
     if !(interval.x <= t && t < interval.y) {
         discard;

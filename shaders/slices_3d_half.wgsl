@@ -13,10 +13,10 @@
 #import filter_{filter}
 #import nearest
 #import mask
-#import sample_{mix}
+#import sample_{inputs}
 #import opacity
 #import light_buffer
-#import lit_{mix}
+#import lit_{inputs}
 
 @fragment
 fn main(

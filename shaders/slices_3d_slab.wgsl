@@ -3,7 +3,7 @@
 // CPU reference: src/technique/slices_3d/reference.rs.
 
 #import ray
-#import sight_{sight}
+#import ends_at_{end}
 #import brick
 #import slab
 #import filter_{filter}
@@ -19,7 +19,7 @@ fn main(
 ) -> @location(0) vec4<f32> {
     let world = pixel_ray(position.xy);
     let voxel = voxel_ray(world);
-    let interval = in_sight(domain_interval(world, voxel), world, position.xy);
+    let interval = visible_interval(domain_interval(world, voxel), world, position.xy);
     let slab = plane_slab(world, interval, plane);
     let t = 0.5 * (slab.front + slab.back);
     if !(slab.length > 0.0) || !is_in_brick(voxel.origin + t * voxel.direction) {

@@ -38,10 +38,10 @@ impl Slot {
 }
 
 /// Names of the specialization constants: the place of one is its `SpecId`. The first says whether the driver is
-/// llvmpipe (`opaque.rs`).
+/// llvmpipe (`opaque_predicates.rs`).
 pub const CONSTANTS: &[&str] = &[
-    "software", "filter", "holes", "lattice", "cuts", "transfer", "sight", "mode", "kernel",
-    "operator", "blend", "left", "squares", "layers",
+    "software", "filter", "holes", "lattice", "cuts", "transfer", "end", "mode", "kernel",
+    "operator", "blend", "output", "topology", "layers",
 ];
 
 /// The name of an import with its slots filled. `{slot=word}` has that word where an entry has no such slot.
@@ -75,7 +75,7 @@ const TABLE: Slot = slot("transfer", &["table"]);
 const STORED: Slot = slot("transfer", &["stored"]);
 const POINTS: Slot = slot("transfer", &["points"]);
 /// One number at both ends of a segment. The word is left out of names.
-const SLAB: Slot = slot("mix", &["slab"]);
+const SLAB: Slot = slot("inputs", &["slab"]);
 /// What a compute pass walks along: a line of samples, one of slabs, or the slices of a stack, by points and by slabs.
 const LINE: Slot = slot("walk", &["march"]);
 const SLABS: Slot = slot("walk", &["march_slab"]);
@@ -83,31 +83,33 @@ const SLICES: Slot = slot("walk", &["march_stack"]);
 const SLICE_SLABS: Slot = slot("walk", &["march_stack_slab"]);
 /// The lattice of the slices of a stack, walked along for their depth.
 const STACK: Slot = slot("lattice", &["stack"]);
-/// Slices that a host's depth buffer is tested against hide by themselves what lies behind it, others read it.
-const TESTED: Slot = slot("sight", &["open"]);
-const SIGHT: Slot = constant("sight", &["open", "host"]);
-/// How central differences are made. The words are left out of names: corners have their own way, and it is theirs
-/// alone.
-const TAPS: Slot = slot("slope", &["taps"]);
-const SHARED: Slot = slot("slope", &["footprint"]);
+/// Where samples of slices end: where the domain does, or at a host's depth too. Slices that are tested against a host's
+/// depth buffer are hidden behind it without reading it.
+const TESTED: Slot = slot("end", &["domain"]);
+const END: Slot = constant("end", &["domain", "host_depth"]);
+/// How central differences are made. The words are left out of names: filters by footprint texels have their own way, and
+/// it is theirs alone.
+const TAPS: Slot = slot("differences", &["taps"]);
+const SHARED: Slot = slot("differences", &["footprint"]);
 /// Words that stand in no name.
 pub const SILENT: &[&str] = &[
-    "alone",
+    "scalar",
+    "level",
     "slab",
-    "open",
+    "domain",
     "march",
     "march_slab",
     "march_stack",
     "march_stack_slab",
     "taps",
     "footprint",
-    "asked",
+    "uniform",
     "cut",
     "triangles",
     "layers",
 ];
-/// Who reads the parameters of slices: the fragments, or the vertices for them (`handed.rs`).
-const PARAMETERS: Slot = slot("parameters", &["asked", "planes", "stack"]);
+/// Who reads the parameters of slices: the fragments, or the vertices for them (`flat_varyings.rs`).
+const PARAMETERS: Slot = slot("parameters", &["uniform", "planes", "stack"]);
 /// Whether clip planes cut the domain, cut faces are seen, rays have places of their own in their pixels or begin by a part
 /// of a step earlier: or nothing of it.
 const CUTS: Slot = constant("cuts", &["cut", "whole"]);
@@ -116,23 +118,23 @@ const CUTS: Slot = constant("cuts", &["cut", "whole"]);
 const LAYERS: Slot = constant("layers", &["layers", "picture"]);
 const PLANES: Slot = slot("parameters", &["planes"]);
 const STACKED: Slot = slot("parameters", &["stack"]);
-/// What squares of patches are drawn as.
-const SQUARES: Slot = constant("squares", &["triangles", "points"]);
+/// The primitives that patches are drawn as.
+const TOPOLOGY: Slot = constant("topology", &["triangles", "points"]);
 /// What conformance pictures search, beside the table.
 const TRANSFER: Slot = constant("transfer", &["table", "points"]);
 const HOLES: Slot = constant("holes", &["none", "mask"]);
 const LATTICE: Slot = constant("lattice", &["ray", "planes", "bresenham"]);
 /// Those that have slabs.
 const SLAB_LATTICE: Slot = constant("lattice", &["ray", "planes"]);
-/// One number a voxel, alone or with its gradient. The word `alone` is left out of names.
-const ONE: Slot = slot("mix", &["alone", "graded"]);
+/// One number a voxel, without or with its gradient. The word `scalar` is left out of names.
+const ONE: Slot = slot("inputs", &["scalar", "scalar_gradient"]);
 /// With a gradient for no more than unhindered light and weights of opacity, by central differences.
-const LEAN: Slot = slot("mix", &["lit", "weighed"]);
-const ALONE: Slot = slot("mix", &["alone"]);
+const LEAN: Slot = slot("inputs", &["shaded", "gradient_opacity"]);
+const SCALAR: Slot = slot("inputs", &["scalar"]);
 /// Steps that adapt to what is there, of volumes without holes.
-const ADAPTIVE: Slot = slot("mix", &["adaptive"]);
+const ADAPTIVE: Slot = slot("inputs", &["adaptive"]);
 const WHOLE: Slot = slot("holes", &["none"]);
-const MIXED: Slot = slot("mix", &["channels", "colors"]);
+const MIXED: Slot = slot("inputs", &["channels", "colors"]);
 const MODE: Slot = slot("mode", &["composite"]);
 /// Modes that slicers do not have leave the lattice of slicers to them.
 const RAY: Slot = slot("lattice", &["ray"]);
@@ -211,24 +213,27 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "isosurface",
-        &[slot("paint", &["alone"]), FILTER, HOLES, TAPS],
+        &[slot("color_by", &["level"]), FILTER, HOLES, TAPS],
     ),
     (
         "isosurface",
-        &[slot("paint", &["alone"]), CORNERS, HOLES, SHARED, CUTS],
+        &[slot("color_by", &["level"]), CORNERS, HOLES, SHARED, CUTS],
     ),
-    ("isosurface", &[slot("paint", &["by"]), NARROW, HOLES, TAPS]),
+    (
+        "isosurface",
+        &[slot("color_by", &["volume"]), NARROW, HOLES, TAPS],
+    ),
     (
         "projection_cells",
         &[constant("mode", &["mip", "minip"]), HOLES],
     ),
     (
         "projection",
-        &[LINE, PROJECTED, ALONE, LATTICE, FILTER, HOLES],
+        &[LINE, PROJECTED, SCALAR, LATTICE, FILTER, HOLES],
     ),
     (
         "projection",
-        &[LINE, PROJECTED, ALONE, LATTICE, CORNERS, HOLES, CUTS],
+        &[LINE, PROJECTED, SCALAR, LATTICE, CORNERS, HOLES, CUTS],
     ),
     // The depth of slices of a stack.
     (
@@ -244,7 +249,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         &[
             SLICES,
             constant("mode", &["mip", "minip"]),
-            ALONE,
+            SCALAR,
             STACK,
             FILTER,
             HOLES,
@@ -264,10 +269,10 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
             TESTED, BLEND, ONE, CORNERS, HOLES, STORED, SHARED, PLANES, CUTS,
         ],
     ),
-    ("slices_3d", &[NUMBER, ALONE, SIGHT, FILTER, HOLES]),
+    ("slices_3d", &[NUMBER, SCALAR, END, FILTER, HOLES]),
     (
         "slices_3d",
-        &[NUMBER, ALONE, SIGHT, CORNERS, HOLES, PLANES, CUTS],
+        &[NUMBER, SCALAR, END, CORNERS, HOLES, PLANES, CUTS],
     ),
     (
         "slices_3d",
@@ -275,11 +280,11 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "slices_3d",
-        &[NUMBER, ALONE, SIGHT, LINEAR, HOLES, PLANES, CUTS],
+        &[NUMBER, SCALAR, END, LINEAR, HOLES, PLANES, CUTS],
     ),
     (
         "slices_3d_cover",
-        &[slot("parameters", &["asked", "planes"])],
+        &[slot("parameters", &["uniform", "planes"])],
     ),
     (
         "slices_2d",
@@ -289,7 +294,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         "slices_2d",
         &[TESTED, BLEND, MIXED, NARROW, HOLES, TRANSFER],
     ),
-    ("slices_2d", &[NUMBER, ALONE, SIGHT, FILTER, HOLES]),
+    ("slices_2d", &[NUMBER, SCALAR, END, FILTER, HOLES]),
     (
         "slices_2d",
         &[
@@ -298,11 +303,11 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ),
     (
         "slices_2d",
-        &[NUMBER, ALONE, SIGHT, LINEAR, HOLES, STACKED, CUTS],
+        &[NUMBER, SCALAR, END, LINEAR, HOLES, STACKED, CUTS],
     ),
     (
         "slices_2d_cover",
-        &[slot("parameters", &["asked", "stack"])],
+        &[slot("parameters", &["uniform", "stack"])],
     ),
     (
         "raycast_slab",
@@ -315,7 +320,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
             HOLES,
         ],
     ),
-    ("slices_3d_slab", &[BLEND, SLAB, SIGHT, NARROW, HOLES]),
+    ("slices_3d_slab", &[BLEND, SLAB, END, NARROW, HOLES]),
     (
         "slices_3d_slab",
         &[
@@ -326,7 +331,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
             slot("holes", &["none"]),
         ],
     ),
-    ("slices_2d_slab", &[BLEND, SLAB, SIGHT, NARROW, HOLES]),
+    ("slices_2d_slab", &[BLEND, SLAB, END, NARROW, HOLES]),
     (
         "slices_2d_slab",
         &[
@@ -341,7 +346,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         "slices_2d_smooth",
         &[
             slot("blend", &["composite"]),
-            ALONE,
+            SCALAR,
             NARROW,
             HOLES,
             TRANSFER,
@@ -351,7 +356,7 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         "slices_2d_smooth",
         &[
             slot("blend", &["count"]),
-            ALONE,
+            SCALAR,
             slot("filter", &["nearest"]),
             slot("holes", &["none"]),
         ],
@@ -362,7 +367,10 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         &[slot("source", &["picture", "value", "mean", "cued"])],
     ),
     ("resolve_cover", &[]),
-    ("resolve_depth", &[constant("left", &["picture", "value"])]),
+    (
+        "resolve_depth",
+        &[constant("output", &["picture", "value"])],
+    ),
     ("host_depth_copy", &[]),
     ("precompute_gradients", &[slot("layout", &["box", "stack"])]),
     ("merge", &[constant("operator", &["over", "under", "add"])]),
@@ -390,28 +398,28 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     // Which tiles rays draw: all that they may meet something in, or all over the box.
     (
         "ray_tiles",
-        &[slot("known", &["distances"]), slot("left", &["picture"])],
+        &[slot("bounds", &["distances"]), slot("output", &["picture"])],
     ),
     (
         "ray_tiles",
         &[
-            slot("known", &["box"]),
-            constant("left", &["picture", "mida"]),
+            slot("bounds", &["box"]),
+            constant("output", &["picture", "mida"]),
         ],
     ),
     (
         "ray_tiles",
-        &[slot("known", &["box"]), slot("left", &["number"])],
+        &[slot("bounds", &["box"]), slot("output", &["number"])],
     ),
     ("macro_cells", &[slot("layout", &["box", "stack"])]),
     ("distance_map", &[]),
     (
         "slice_patches",
-        &[slot("planes", &["view", "stack"]), SQUARES],
+        &[slot("planes", &["view", "stack"]), TOPOLOGY],
     ),
     (
         "slice_patches_cover",
-        &[slot("squares", &["triangles", "points"]), PARAMETERS],
+        &[slot("topology", &["triangles", "points"]), PARAMETERS],
     ),
     ("opaque_patches", &[]),
 ];
@@ -438,7 +446,7 @@ const STORAGE_FORMATS: &[&str] = &[
 pub const PROBES: &[(&str, &[Slot])] = &[
     (
         "probe/fragment_caster",
-        &[ALONE, slot("holes", &["none"]), TABLE],
+        &[SCALAR, slot("holes", &["none"]), TABLE],
     ),
     ("probe/filter_3d", &[]),
     ("probe/filter_array", &[]),

@@ -80,14 +80,14 @@ impl<'a> Scene<'a> {
     }
 
     /// True where a transfer function asks for gradients.
-    fn is_graded(&self) -> bool {
+    fn uses_gradient(&self) -> bool {
         let functions = self.transfers().into_iter().flatten();
-        functions.into_iter().any(TransferFunction::is_graded)
+        functions.into_iter().any(TransferFunction::uses_gradient)
     }
 
     /// True where gradients make something of the picture.
     pub fn has_gradients(&self) -> bool {
-        self.settings.shading.is_some() || self.is_graded()
+        self.settings.shading.is_some() || self.uses_gradient()
     }
 
     /// Its volumes, that of the scene first.
@@ -132,7 +132,7 @@ impl<'a> Scene<'a> {
     ///
     /// # Errors
     /// [`Error::OtherGrid`], [`Error::TooManyChannels`], [`Error::NoColor`], [`Error::NotMixed`],
-    /// [`Error::NotShaded`], [`Error::NotShadedTogether`], [`Error::NotGraded`], [`Error::NotGradedTogether`],
+    /// [`Error::NotShaded`], [`Error::NotShadedTogether`], [`Error::NoGradientTransfer`], [`Error::GradientTransferAlone`],
     /// [`Error::NotOccluded`], [`Error::NotOccludedTogether`], [`Error::FilterAlone`], [`Error::OpacityOfNothing`],
     /// [`Error::NotFor`] and those of [`Settings::check`].
     pub fn check(&self) -> Result<(), Error> {
@@ -147,7 +147,7 @@ impl<'a> Scene<'a> {
         if !self.mix().is_of_one() {
             self.settings.check_mixed()?;
         }
-        if self.is_graded() {
+        if self.uses_gradient() {
             self.settings.check_graded()?;
         }
         self.settings.check_holes(self.volume.validity.is_some())?;
@@ -163,12 +163,12 @@ impl<'a> Scene<'a> {
         if self.settings.ambient_occlusion.is_some() && mode.is_projection() {
             return Err(Error::NotOccluded { mode });
         }
-        if self.is_graded() && mode.is_projection() {
-            return Err(Error::NotGraded { mode });
+        if self.uses_gradient() && mode.is_projection() {
+            return Err(Error::NoGradientTransfer { mode });
         }
         // The picture of the maximum has no gradient.
-        if self.is_graded() && mode == Mode::Mida && self.settings.per_mode.mida_gamma > 0.0 {
-            return Err(Error::NotGraded { mode });
+        if self.uses_gradient() && mode == Mode::Mida && self.settings.per_mode.mida_gamma > 0.0 {
+            return Err(Error::NoGradientTransfer { mode });
         }
         if let (Beside::Classified(_), Some(CutFaces::Grey(_))) =
             (self.beside, self.settings.cut_faces)
@@ -181,7 +181,7 @@ impl<'a> Scene<'a> {
         }
         match self.mix() {
             mix if mix.is_of_one() => Ok(()),
-            _ if self.is_graded() => Err(Error::NotGradedTogether),
+            _ if self.uses_gradient() => Err(Error::GradientTransferAlone),
             SampleInputs::Channels if mode == Mode::Iso => self.check_painted(),
             _ if self.settings.shading.is_some() => Err(Error::NotShadedTogether),
             _ if self.settings.ambient_occlusion.is_some() => Err(Error::NotOccludedTogether),
@@ -225,7 +225,7 @@ impl<'a> Scene<'a> {
                 }
                 match one.transfer {
                     None => Err(Error::NoTransferFunction),
-                    Some(function) if function.is_graded() => Err(Error::NotGradedTogether),
+                    Some(function) if function.uses_gradient() => Err(Error::GradientTransferAlone),
                     Some(_) => Ok(()),
                 }
             }

@@ -2,8 +2,8 @@
 //!
 //! Free of Vulkan: kinds of binding are words of our own that [`crate::gpu`] maps.
 
+mod float_to_int;
 mod fold;
-mod whole;
 
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -41,7 +41,7 @@ impl Shader {
     /// The words of this variant for llvmpipe, where that takes long over conversions: they have none of floats to
     /// whole numbers.
     pub fn without_conversions(&self) -> Vec<u32> {
-        whole::converting_by_shifts(&self.folded(true))
+        float_to_int::converting_by_shifts(&self.folded(true))
     }
 }
 
@@ -78,7 +78,7 @@ pub(crate) fn find(name: &str) -> Option<&'static Shader> {
     found.ok().map(|index| &SHADERS[index])
 }
 
-/// `SpecId` of the constant that says whether the driver is llvmpipe, whatever the variant (`shaders/opaque.rs`).
+/// `SpecId` of the constant that says whether the driver is llvmpipe, whatever the variant (`shaders/opaque_predicates.rs`).
 pub const SOFTWARE_ID: u32 = 0;
 
 /// The stage of an entry point.

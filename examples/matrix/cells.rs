@@ -345,7 +345,7 @@ pub struct Matter {
     classified: [Volume; 4],
     labels: Volume,
     function: TransferFunction,
-    graded: TransferFunction,
+    gradient_transfer: TransferFunction,
     label_function: TransferFunction,
     cameras: [Camera; 2],
 }
@@ -397,8 +397,8 @@ impl Matter {
             others: [volume(wave(0.5, 1.1)), volume(wave(1.2, 0.4))],
             labels: map,
             function: function(),
-            graded: TransferFunction {
-                graded: Some(GradientTransfer {
+            gradient_transfer: TransferFunction {
+                gradient_transfer: Some(GradientTransfer {
                     steepest: Some(0.4),
                     share: Vec::new(),
                     widgets: vec![Widget {
@@ -463,7 +463,7 @@ impl Matter {
                 _ => &self.numbers,
             },
             transfer: Some(match seen {
-                Seen::GradientFunction => &self.graded,
+                Seen::GradientFunction => &self.gradient_transfer,
                 _ => &self.function,
             }),
             beside,
@@ -500,7 +500,7 @@ fn function() -> TransferFunction {
         opacity: vec![opacity(0.3, 0.02), opacity(0.8, 0.35)],
         reference_length: None,
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     }
 }
 
@@ -526,6 +526,6 @@ fn label_function() -> TransferFunction {
             .collect(),
         reference_length: None,
         interpolation: Interpolation::Step,
-        graded: None,
+        gradient_transfer: None,
     }
 }

@@ -150,7 +150,7 @@ fn function() -> TransferFunction {
         ],
         reference_length: None,
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     }
 }
 

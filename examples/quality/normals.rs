@@ -130,7 +130,7 @@ fn cosines(
         }],
         reference_length: None,
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     };
     let scene = Scene {
         volume: signal,

@@ -60,7 +60,7 @@ pub fn transfer_of(
             .collect(),
         reference_length: Some(1.0),
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     }
 }
 

@@ -11,7 +11,7 @@
 
 const CELL_VOXELS: u32 = 8u;
 
-struct Walk {
+struct SampleLine {
     at: vec3<f32>,
     step: vec3<f32>,
     steps_per_cell: vec3<f32>,
@@ -24,13 +24,13 @@ struct Walk {
 }
 
 // With the samples at t = line.x + k line.y; from samples.x to samples.y they lie there.
-fn walk_of(voxel: Ray, line: vec2<f32>, samples: vec2<i32>) -> Walk {
+fn sample_line(voxel: Ray, line: vec2<f32>, samples: vec2<i32>) -> SampleLine {
     let cell = f32(CELL_VOXELS);
     let tiny = vec3(1e-20);
     let along = line.y * voxel.direction / cell;
     // Along an axis on which the ray stays where it is, it leaves no cube.
     let step = select(along, tiny, abs(along) < tiny);
-    return Walk(
+    return SampleLine(
         (voxel.origin + line.x * voxel.direction - frame.cells_origin) / cell,
         step,
         1.0 / step,
@@ -42,13 +42,13 @@ fn walk_of(voxel: Ray, line: vec2<f32>, samples: vec2<i32>) -> Walk {
 }
 
 // Whether sample k may be left out.
-fn may_skip(walk: Walk, k: i32) -> bool {
-    return walk.is_known && k >= walk.first && k < walk.end;
+fn may_skip(line: SampleLine, k: i32) -> bool {
+    return line.is_known && k >= line.first && k < line.end;
 }
 
 // The cell that sample k lies in.
-fn cell_of(walk: Walk, k: i32) -> vec3<i32> {
-    return vec3<i32>(clamp(walk.at + f32(k) * walk.step, vec3(0.0), walk.last_cell));
+fn cell_of(line: SampleLine, k: i32) -> vec3<i32> {
+    return vec3<i32>(clamp(line.at + f32(k) * line.step, vec3(0.0), line.last_cell));
 }
 
 fn cell_index(cell: vec3<i32>) -> u32 {
@@ -57,8 +57,8 @@ fn cell_index(cell: vec3<i32>) -> u32 {
 }
 
 // The first sample that lies outside of the distance around the cell of sample k.
-fn first_sample_beyond(walk: Walk, k: i32, cell: vec3<i32>, distance: i32) -> i32 {
-    let ahead = select(vec3(1 - distance), vec3(distance), walk.step > vec3(0.0));
-    let leaves = (vec3<f32>(cell + ahead) - walk.at) * walk.steps_per_cell;
+fn first_sample_beyond(line: SampleLine, k: i32, cell: vec3<i32>, distance: i32) -> i32 {
+    let ahead = select(vec3(1 - distance), vec3(distance), line.step > vec3(0.0));
+    let leaves = (vec3<f32>(cell + ahead) - line.at) * line.steps_per_cell;
     return max(k + 1, i32(ceil(min(leaves.x, min(leaves.y, leaves.z)))));
 }

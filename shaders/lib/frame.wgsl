@@ -12,7 +12,7 @@ const MAX_LIGHTS: u32 = 4u;
 const MAX_LEVELS: u32 = 8u;
 
 struct Frame {
-    // Beside vectors stand the numbers that fragments of slices ask for (`shaders/handed.rs`).
+    // Beside vectors stand the numbers that fragments of slices ask for (`shaders/flat_varyings.rs`).
     //
     // A pixel's ray: origin + x * origin_dx + y * origin_dy, and the same for its direction, which is
     // then made a unit vector. Pixel centres lie at +0.5.

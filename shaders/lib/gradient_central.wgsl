@@ -1,7 +1,7 @@
 // Central differences of the chosen filter, one voxel before and after (`gradient.wgsl`).
 
 #import frame
-#import slope_{slope}
+#import central_differences_{differences}
 
 // How steep the field is along each grid axis, and whether all of it is known.
 struct Slope {

@@ -16,7 +16,7 @@ fn widget_entry(entry: u32) -> vec4<f32> {
 }
 
 // What is left of an extinction; all of it where there is no point.
-fn weighed(extinction: f32, steepness: f32) -> f32 {
+fn weighted_extinction(extinction: f32, steepness: f32) -> f32 {
     let count = u32(widget_entry(0).y);
     if count == 0u {
         return extinction;

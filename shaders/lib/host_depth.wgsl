@@ -11,7 +11,7 @@
 @group(0) @binding(14) var host_depth: texture_2d<f32>;
 
 // The part of an interval of a ray that the host sees.
-fn in_sight(interval: vec2<f32>, world: Ray, pixel: vec2<f32>) -> vec2<f32> {
+fn visible_interval(interval: vec2<f32>, world: Ray, pixel: vec2<f32>) -> vec2<f32> {
     if frame.has_host_depth == 0u {
         return interval;
     }

@@ -10,16 +10,16 @@
 #import filter_{filter}
 #import nearest
 #import mask
-#import sample_{mix}
+#import sample_{inputs}
 #import mode_{mode}
 #import skipped
-#import unroll_{mix}
+#import unroll_{inputs}
 
 // `before` is what bricks nearer to the eye have gathered.
 fn march(pixel: vec2<f32>, tile: RayTile, before: Accumulator) -> Accumulator {
     let world = pixel_ray(pixel);
     let voxel = voxel_ray(world);
-    let interval = in_sight(domain_interval(world, voxel), world, pixel);
+    let interval = visible_interval(domain_interval(world, voxel), world, pixel);
     var so_far = before;
     let inside = counted(brick_interval(voxel, interval), tile);
     if !(interval.x < interval.y && inside.x < inside.y) || is_finished(before) {
@@ -38,8 +38,8 @@ fn march(pixel: vec2<f32>, tile: RayTile, before: Accumulator) -> Accumulator {
     // A cut face is seen before all samples.
     let is_cut = enters_a_cut(voxel, interval) && is_in_brick(voxel.origin + interval.x * voxel.direction);
     let whole = whole_samples(lattice);
-    let walk = walk_of(voxel, line_of(lattice, world), vec2(max(whole.x, first), min(whole.y, end)));
-    let segments = RaySegments(world, voxel, lattice, walk, interval.x, first, end);
+    let line = sample_line(voxel, line_of(lattice, world), vec2(max(whole.x, first), min(whole.y, end)));
+    let segments = RaySegments(world, voxel, lattice, line, interval.x, first, end);
     return gathered(so_far, segments, first - i32(is_cut));
 }
 
@@ -48,7 +48,7 @@ struct RaySegments {
     world: Ray,
     voxel: Ray,
     lattice: Lattice,
-    walk: Walk,
+    line: SampleLine,
     t_face: f32,
     first: i32,
     end: i32,

@@ -30,7 +30,7 @@ struct Corners {
 fn march(pixel: vec2<f32>, tile: RayTile, before: Accumulator) -> Accumulator {
     let world = pixel_ray(pixel);
     let voxel = voxel_ray(world);
-    let interval = in_sight(domain_interval(world, voxel), world, pixel);
+    let interval = visible_interval(domain_interval(world, voxel), world, pixel);
     let inside = counted(brick_interval(voxel, interval), tile);
     var so_far = before;
     if !(interval.x < interval.y && inside.x < inside.y) {

@@ -18,7 +18,7 @@
 fn march(pixel: vec2<f32>, tile: RayTile, before: Accumulator) -> Accumulator {
     let world = pixel_ray(pixel);
     let voxel = voxel_ray(world);
-    let interval = in_sight(domain_interval(world, voxel), world, pixel);
+    let interval = visible_interval(domain_interval(world, voxel), world, pixel);
     var so_far = before;
     let inside = counted(brick_interval(voxel, interval), tile);
     if !(interval.x < interval.y && inside.x < inside.y) || is_finished(before) {
@@ -33,10 +33,10 @@ fn march(pixel: vec2<f32>, tile: RayTile, before: Accumulator) -> Accumulator {
     let is_cut = enters_a_cut(voxel, interval);
     // The cells know of both ends of slabs whose middles lie on the line.
     let whole = whole_samples(lattice) + vec2(1, -1);
-    let walk = walk_of(voxel, line_of(lattice, world), vec2(max(whole.x, first), min(whole.y, end)));
+    let line = sample_line(voxel, line_of(lattice, world), vec2(max(whole.x, first), min(whole.y, end)));
     var next = first - i32(is_cut);
     loop {
-        let k = skipped(so_far, walk, next);
+        let k = skipped(so_far, line, next);
         if k >= end {
             break;
         }

@@ -9,7 +9,7 @@
 #import stack_{filter}
 #import stack_at_nearest
 #import stack_mask
-#import sample_{mix}
+#import sample_{inputs}
 #import mode_{mode}
 
 struct Segment {
@@ -23,7 +23,7 @@ fn march(pixel: vec2<f32>, tile: RayTile, before: Accumulator) -> Accumulator {
     let voxel = voxel_ray(world);
     let axis = frame.slice_axis;
     let slope = voxel.direction[axis];
-    let interval = in_sight(domain_interval(world, voxel), world, pixel);
+    let interval = visible_interval(domain_interval(world, voxel), world, pixel);
     var so_far = before;
     // A ray inside the planes of the slices never crosses one.
     if abs(slope) < 1e-20 || !(interval.x < interval.y) {

@@ -1,3 +1,3 @@
 // What a sample is made of, where steps adapt.
 
-#import material_alone
+#import material_scalar

@@ -5,7 +5,7 @@
 // CPU reference: src/technique/composite.rs.
 
 #import opacity
-#import material_{mix}
+#import material_{inputs}
 #import face_grey
 #import skip_empty
 

@@ -13,7 +13,7 @@
 // operations of mode_composite.wgsl. CPU reference: src/technique/mida.rs.
 
 #import opacity
-#import material_{mix}
+#import material_{inputs}
 #import unit
 #import skip_passed_over
 #import no_value

@@ -1,3 +1,3 @@
 // One number a sample, in steps that adapt to it.
 
-#import sample_alone
+#import sample_scalar

@@ -3,18 +3,18 @@
 
 #import empty_space
 
-fn skipped(so_far: Accumulator, walk: Walk, start: i32) -> i32 {
+fn skipped(so_far: Accumulator, line: SampleLine, start: i32) -> i32 {
     var k = start;
     loop {
-        if !may_skip(walk, k) {
+        if !may_skip(line, k) {
             break;
         }
-        let cell = cell_of(walk, k);
+        let cell = cell_of(line, k);
         let distance = empty_distance(so_far, cell);
         if distance == 0 {
             break;
         }
-        k = first_sample_beyond(walk, k, cell, distance);
+        k = first_sample_beyond(line, k, cell, distance);
     }
     return k;
 }

@@ -3,7 +3,7 @@
 //
 //     1 - (1 - a)^m = 1 - exp(-sigma m h)
 //
-// It is that in the middle of the run, a sample of the lattice. Runs of four cells at once: as in unroll_alone.wgsl no
+// It is that in the middle of the run, a sample of the lattice. Runs of four cells at once: as in unroll_scalar.wgsl no
 // way to memory depends on the one before. What is empty is a run too, of which the one sample adds nothing. CPU reference:
 // src/technique/march.rs (`march_in_runs`).
 
@@ -16,24 +16,24 @@ struct Run {
 fn gathered(before: Accumulator, segments: RaySegments, start: i32) -> Accumulator {
     var so_far = before;
     var k = start;
-    while k < min(segments.walk.first, segments.end) && !is_finished(so_far) {
+    while k < min(segments.line.first, segments.end) && !is_finished(so_far) {
         so_far = accumulate_sample(so_far, segments, k);
         k++;
     }
-    let last = segments.walk.end - 1;
+    let last = segments.line.end - 1;
     loop {
-        k = after_nothing(segments.walk, k);
+        k = after_nothing(segments.line, k);
         if k > last || is_finished(so_far) {
             break;
         }
-        let first = run_of(segments.walk, k);
-        let second = run_of(segments.walk, min(first.end, last));
-        let third = run_of(segments.walk, min(second.end, last));
-        let fourth = run_of(segments.walk, min(third.end, last));
-        let seen_first = look(segments, first);
-        let seen_second = look(segments, second);
-        let seen_third = look(segments, third);
-        let seen_fourth = look(segments, fourth);
+        let first = run_of(segments.line, k);
+        let second = run_of(segments.line, min(first.end, last));
+        let third = run_of(segments.line, min(second.end, last));
+        let fourth = run_of(segments.line, min(third.end, last));
+        let seen_first = fetched(segments, first);
+        let seen_second = fetched(segments, second);
+        let seen_third = fetched(segments, third);
+        let seen_fourth = fetched(segments, fourth);
         so_far = with_run(so_far, seen_first, true);
         so_far = with_run(so_far, seen_second, first.end <= last);
         so_far = with_run(so_far, seen_third, second.end <= last && first.end <= last);
@@ -47,45 +47,45 @@ fn gathered(before: Accumulator, segments: RaySegments, start: i32) -> Accumulat
     return so_far;
 }
 
-fn after_nothing(walk: Walk, start: i32) -> i32 {
+fn after_nothing(line: SampleLine, start: i32) -> i32 {
     var k = start;
     loop {
-        if !may_skip(walk, k) {
+        if !may_skip(line, k) {
             break;
         }
-        let cell = cell_of(walk, k);
+        let cell = cell_of(line, k);
         let distance = distance_to_occupied(cell);
         if distance == 0 || distance == i32(HOMOGENEOUS) {
             break;
         }
-        k = first_sample_beyond(walk, k, cell, distance);
+        k = first_sample_beyond(line, k, cell, distance);
     }
     return k;
 }
 
-fn run_of(walk: Walk, k: i32) -> Run {
+fn run_of(line: SampleLine, k: i32) -> Run {
     // Where nothing is known, there are no cells: something stands in for them.
-    let cell = max(cell_of(walk, k), vec3(0));
+    let cell = max(cell_of(line, k), vec3(0));
     let distance = distance_to_occupied(cell);
-    let leaves = first_sample_beyond(walk, k, cell, select(distance, 1, distance == i32(HOMOGENEOUS)));
-    return Run(k, select(k + 1, min(leaves, walk.end), walk.is_known && distance != 0));
+    let leaves = first_sample_beyond(line, k, cell, select(distance, 1, distance == i32(HOMOGENEOUS)));
+    return Run(k, select(k + 1, min(leaves, line.end), line.is_known && distance != 0));
 }
 
 // What a ray meets in a run.
-struct Look {
+struct SampleInFlight {
     sample: Sample,
     segment: Segment,
 }
 
-fn look(segments: RaySegments, run: Run) -> Look {
+fn fetched(segments: RaySegments, run: Run) -> SampleInFlight {
     let count = run.end - run.k;
     var segment = whole_segment(segments.lattice, segments.world, run.k + (count - 1) / 2);
     segment.length *= f32(count);
     let position = segments.voxel.origin + segment.t * segments.voxel.direction;
-    return Look(sample_at(position, segments.world.direction), segment);
+    return SampleInFlight(sample_at(position, segments.world.direction), segment);
 }
 
-fn with_run(before: Accumulator, seen: Look, is_ours: bool) -> Accumulator {
+fn with_run(before: Accumulator, seen: SampleInFlight, is_ours: bool) -> Accumulator {
     var so_far = before;
     let next = add(before, seen.sample, seen.segment);
     if is_ours && !is_finished(before) {

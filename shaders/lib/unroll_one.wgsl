@@ -4,7 +4,7 @@ fn gathered(before: Accumulator, segments: RaySegments, start: i32) -> Accumulat
     var so_far = before;
     var k = start;
     loop {
-        k = skipped(so_far, segments.walk, k);
+        k = skipped(so_far, segments.line, k);
         if k >= segments.end || is_finished(so_far) {
             break;
         }

@@ -1,5 +1,5 @@
 // What the vertices of the slices of a stack hand over: which slice it is, and the parameters of rays and voxels, since
-// a driver on the processor takes long over those that fragments ask for. `shaders/handed.rs` lets fragments take them
+// a driver on the processor takes long over those that fragments ask for. `shaders/flat_varyings.rs` lets fragments take them
 // from here.
 
 #import frame

@@ -30,8 +30,8 @@ fn classify_by_gradient(material: Classified, value: f32, magnitude: f32, second
     let head = widget_entry(0);
     let share_count = u32(head.y);
     let steepness = magnitude * head.x;
-    var sum = weighed(material.extinction, steepness);
-    // A mean of one is that one, to the bit: `material_weighed.wgsl` makes none.
+    var sum = weighted_extinction(material.extinction, steepness);
+    // A mean of one is that one, to the bit: `material_gradient_opacity.wgsl` makes none.
     if head.z == 0.0 {
         return Classified(material.color, sum);
     }

@@ -4,8 +4,8 @@
 #import ray
 #import lattice_planes
 #import filter_linear
-#import sample_alone
-#import material_alone
+#import sample_scalar
+#import material_scalar
 #import opacity
 
 @fragment

@@ -340,7 +340,7 @@ fn depth_of(function: &TransferFunction, seen: &Seen) -> Option<f64> {
         Beside::Channels(channels) => channels.iter().any(|other| other.role == Role::Opacity),
         _ => false,
     };
-    if function.is_graded() || is_other || function.opacity.is_empty() {
+    if function.uses_gradient() || is_other || function.opacity.is_empty() {
         return None;
     }
     if seen.settings.mode.is_projection() {

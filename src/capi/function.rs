@@ -178,7 +178,7 @@ unsafe fn made(desc: *const sv_transfer_function_desc) -> Result<TransferFunctio
             0 => Interpolation::Linear,
             _ => Interpolation::Step,
         },
-        graded: None,
+        gradient_transfer: None,
     })
 }
 

@@ -439,11 +439,23 @@ mod tests {
         assert_eq!(held(Held::Volumes(3), Filter::Quadratic), (10, 12));
         assert_eq!(held(Held::Blend, Filter::Linear), (8, 4));
         assert_eq!(held(Held::Blend, Filter::Cubic), (12, 4));
-        let graded = |filter, gradient| bytes(ONE, &filters(filter, gradient));
-        assert_eq!(graded(Filter::Linear, GradientFilter::Cubic), (6, 6));
-        assert_eq!(graded(Filter::Cubic, GradientFilter::Cubic), (6, 4));
-        assert_eq!(graded(Filter::Cubic, GradientFilter::Linear), (6, 6));
-        assert_eq!(graded(Filter::Nearest, GradientFilter::Sobel), (2, 2));
+        let gradient_transfer = |filter, gradient| bytes(ONE, &filters(filter, gradient));
+        assert_eq!(
+            gradient_transfer(Filter::Linear, GradientFilter::Cubic),
+            (6, 6)
+        );
+        assert_eq!(
+            gradient_transfer(Filter::Cubic, GradientFilter::Cubic),
+            (6, 4)
+        );
+        assert_eq!(
+            gradient_transfer(Filter::Cubic, GradientFilter::Linear),
+            (6, 6)
+        );
+        assert_eq!(
+            gradient_transfer(Filter::Nearest, GradientFilter::Sobel),
+            (2, 2)
+        );
     }
 
     #[test]

@@ -260,18 +260,18 @@ fn table(function: &TransferFunction) -> String {
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{}", visible(line.trim_end()));
     }
-    if let Some(graded) = &function.graded {
-        text += &gradients(graded);
+    if let Some(gradient_transfer) = &function.gradient_transfer {
+        text += &gradients(gradient_transfer);
     }
     text
 }
 
 /// What the gradient makes of the points, a line each.
-fn gradients(graded: &GradientTransfer) -> String {
+fn gradients(gradient_transfer: &GradientTransfer) -> String {
     let mut text = String::new();
-    let share = graded.share.iter();
+    let share = gradient_transfer.share.iter();
     let share = share.map(|p| format!("{} of it at gradient {}", short(p.opacity), short(p.value)));
-    let widgets = graded.widgets.iter().map(|widget| {
+    let widgets = gradient_transfer.widgets.iter().map(|widget| {
         let shape = match &widget.shape {
             Shape::Contour { value, half_width } => {
                 format!(

@@ -150,7 +150,7 @@ fn covers_nothing(settings: &Settings, function: &TransferFunction, volume: &Vol
     let inside = inside.filter(|value| (low..=high).contains(value));
     let opacity = |value| classify_by_points(&points, value)[3];
     settings.mode != Mode::Xray
-        && !function.is_graded()
+        && !function.uses_gradient()
         && [low, high]
             .into_iter()
             .chain(inside)

@@ -17,7 +17,7 @@ use super::{
     timings::{FrameTime, Timings, ms_since, peak_rss_bytes},
 };
 use crate::annotate::Annotation;
-use crate::format;
+use crate::format::{self, write::has_coarser_levels};
 use crate::picture::{
     BitDepth, EncodedPicture, LayerKind, PictureFormat, WriteOptions, write_picture,
 };
@@ -100,7 +100,14 @@ impl Render {
         if last == 0 {
             return Err(Error::usage(
                 "--refine is for files of several resolutions, and this one has one",
-                "`stratavox convert INPUT -o FILE.svb` makes them",
+                match has_coarser_levels(source.header().dims) {
+                    true => {
+                        "`stratavox convert INPUT -o FILE.svb` makes a file with coarser levels"
+                    }
+                    false => {
+                        "leave --refine out: a volume that fits into one brick is drawn at once"
+                    }
+                },
             ));
         }
         let coarse = |level: u32| {

@@ -7,7 +7,7 @@ use crate::camera::Camera;
 use crate::gpu::{Bindings, Blocks, Buffer, Gpu, Memory, ParameterRing, Resource};
 use crate::resident::GpuVolume;
 use crate::technique::Inputs;
-use crate::technique::gather::{Bound, Brick, Canvas, CanvasDesc, PICTURE};
+use crate::technique::gather::{Bound, BrickPass, Canvas, CanvasDesc, PICTURE};
 use ash::vk;
 use std::sync::Arc;
 
@@ -83,9 +83,9 @@ pub(super) struct Recorded {
     /// The camera, and which copy of the volume. `None`: nothing that may be drawn.
     pub shot: Option<(Camera, usize)>,
     /// Bricks in the order of the picture.
-    pub picture: Vec<Brick>,
+    pub picture: Vec<BrickPass>,
     /// Bricks of the depth of slices, from front to back.
-    pub depth: Vec<Brick>,
+    pub depth: Vec<BrickPass>,
     /// For sorting.
     pub order: Vec<usize>,
 }

@@ -67,7 +67,7 @@ impl Function {
             (Some(_), Skippable::Exceeded, _) => {}
             _ => skippable = Skippable::Nothing,
         }
-        let graded = function.and_then(|function| function.graded.as_ref());
+        let gradient_transfer = function.and_then(|function| function.gradient_transfer.as_ref());
         Ok(Self {
             made: made.transpose()?,
             skippable,
@@ -75,7 +75,7 @@ impl Function {
             mix,
             turns: crate::technique::Functions {
                 points: function.map_or(0, |f| f.color.len().max(f.opacity.len())),
-                second: graded.is_some_and(GradientTransfer::needs_second),
+                second: gradient_transfer.is_some_and(GradientTransfer::needs_second),
             },
             uploaded: Uploaded::default(),
         })
@@ -175,7 +175,7 @@ impl Function {
 
 /// Whether such settings draw such functions.
 pub(super) fn check(mix: SampleInputs, settings: &Settings) -> Result<(), Error> {
-    if !mix.is_graded() {
+    if !mix.uses_gradient() {
         return Ok(());
     }
     settings.check_graded()?;
@@ -183,7 +183,7 @@ pub(super) fn check(mix: SampleInputs, settings: &Settings) -> Result<(), Error>
     let mode = settings.mode;
     let has_maximum = mode == Mode::Mida && settings.per_mode.mida_gamma > 0.0;
     match mode.is_projection() || has_maximum {
-        true => Err(technique::Error::NotGraded { mode }.into()),
+        true => Err(technique::Error::NoGradientTransfer { mode }.into()),
         false => Ok(()),
     }
 }

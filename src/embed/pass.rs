@@ -32,7 +32,8 @@ impl Pass {
         variant: &ShaderVariant,
         mix: SampleInputs,
     ) -> Result<Self, Error> {
-        let (settings, target, sight) = (&class.settings, class.target, class.sight());
+        let (settings, target, depth_access) =
+            (&class.settings, class.target, class.depth_access());
         let (mode, technique, order) = (settings.mode, settings.technique, settings.order);
         let drawn = Drawn::Picture(mode);
         let desc = GatherDesc {
@@ -40,11 +41,11 @@ impl Pass {
             settings,
             variant,
             drawn,
-            sight,
+            depth_access,
             is_patched: false,
         };
         let is_in_target = class.slice_blending == SliceBlending::InTarget;
-        let slicer = || Slicer::seen(gpu, technique, drawn, order, variant, target, sight);
+        let slicer = || Slicer::seen(gpu, technique, drawn, order, variant, target, depth_access);
         let picture = || (technique.desc().gather)(&desc);
         let finds_depth = !technique.casts_rays() && class.finds_depth();
         let slice_depth = || depth_of_slices(&desc, mix);

@@ -4,7 +4,7 @@ use super::frame::{Frame, Recorded};
 use super::{Error, FrameInfo, Renderer};
 use crate::camera::{Camera, DepthConvention, HostDepth};
 use crate::gpu::{Load, Target, TargetClass, Tile, Use, begin_rendering, end_rendering};
-use crate::technique::gather::{Brick, Part, Player};
+use crate::technique::gather::{BrickPass, Part, Player};
 use crate::technique::{self, DepthAccess, InPixel, Recording, Skip, View};
 use ash::vk;
 
@@ -269,32 +269,33 @@ impl Renderer {
             false => Skip::Nothing,
         };
         let (class, center) = (&self.class, grid.center());
-        let sight = match class.settings.technique.casts_rays() {
-            false => class.sight(),
+        let depth_access = match class.settings.technique.casts_rays() {
+            false => class.depth_access(),
             true => DepthAccess::Sampled,
         };
-        let mut write = |mut recording: Recording, sight: DepthAccess| -> Result<Brick, Error> {
-            recording.skip(skip);
-            match (depth, sight) {
-                (Some(depth), _) if !class.host_depth => recording.in_depths_of(&depth, center),
-                (Some(depth), DepthAccess::Tested) if class.gathers() => {
-                    recording.tested_in_copy(&depth, center);
+        let mut write =
+            |mut recording: Recording, depth_access: DepthAccess| -> Result<BrickPass, Error> {
+                recording.skip(skip);
+                match (depth, depth_access) {
+                    (Some(depth), _) if !class.host_depth => recording.in_depths_of(&depth, center),
+                    (Some(depth), DepthAccess::Tested) if class.gathers() => {
+                        recording.tested_in_copy(&depth, center);
+                    }
+                    (Some(depth), DepthAccess::Tested) => recording.tested_in(&depth, center),
+                    (Some(depth), DepthAccess::None | DepthAccess::Sampled) => {
+                        recording.behind(&depth, center)
+                    }
+                    (None, _) => {}
                 }
-                (Some(depth), DepthAccess::Tested) => recording.tested_in(&depth, center),
-                (Some(depth), DepthAccess::None | DepthAccess::Sampled) => {
-                    recording.behind(&depth, center)
-                }
-                (None, _) => {}
-            }
-            slot += 1;
-            Ok(Brick {
-                number: recording.brick,
-                offset: recording.write(&self.ring, slot - 1)?,
-                slices: recording.slices,
-                order: recording.order,
-                seen: None,
-            })
-        };
+                slot += 1;
+                Ok(BrickPass {
+                    number: recording.brick,
+                    offset: recording.write(&self.ring, slot - 1)?,
+                    slices: recording.slices,
+                    order: recording.order,
+                    seen: None,
+                })
+            };
         let Recorded {
             shot: of,
             picture,
@@ -305,7 +306,7 @@ impl Renderer {
         picture.clear();
         of_slices.clear();
         view.each_recording(volume, transfer, order, |recording| {
-            picture.push(write(recording, sight)?);
+            picture.push(write(recording, depth_access)?);
             Ok::<_, Error>(())
         })?;
         if finds_depth {

@@ -302,10 +302,10 @@ fn variant_of(
     function: &Function,
 ) -> Result<ShaderVariant, Error> {
     let copy = &volume.copies()[0];
-    let is_graded = function.mix.is_graded();
+    let uses_gradient = function.mix.uses_gradient();
     let lacks_source = settings.gradient_source_beside(copy.layout()).is_some()
         && copy.gradient_source().is_none();
-    if is_graded && lacks_source {
+    if uses_gradient && lacks_source {
         return Err(Error::NotEmbedded {
             what: "a function of gradients that are made of other numbers than the filter reads",
             hint: "take a filter that reads voxels, or light with it",
@@ -314,6 +314,6 @@ fn variant_of(
     Ok(ShaderVariant::mixed(
         settings,
         function.mix,
-        &[technique::Part::numbers(copy)],
+        &[technique::GpuChannel::numbers(copy)],
     ))
 }

@@ -190,7 +190,7 @@ impl RendererDesc {
 
     /// What hides samples of slices. Slabs, which reach out of the slices that would be tested, and projections read the
     /// host's depth.
-    pub(super) fn sight(&self) -> DepthAccess {
+    pub(super) fn depth_access(&self) -> DepthAccess {
         let settings = &self.settings;
         let is_read = settings.mode != Mode::Composite || settings.preintegrated;
         match (self.host_depth, is_read) {

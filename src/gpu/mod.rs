@@ -314,7 +314,7 @@ impl Gpu {
         self.identity().driver_id == vk::DriverId::MESA_LLVMPIPE
     }
 
-    /// Whether floats become whole numbers by shifts (`src/shaders/whole.rs`): some llvmpipe converts with saturation,
+    /// Whether floats become whole numbers by shifts (`src/shaders/float_to_int.rs`): some llvmpipe converts with saturation,
     /// which processors of other families than x86 have an instruction for (`docs/performance.md`).
     pub(crate) fn has_slow_conversions(&self) -> bool {
         cfg!(any(target_arch = "x86", target_arch = "x86_64"))
@@ -322,13 +322,13 @@ impl Gpu {
     }
 
     /// Whether fragments were found to take long over each parameter that they ask for: llvmpipe reads it once for
-    /// every pixel (`shaders/handed.rs`).
+    /// every pixel (`shaders/flat_varyings.rs`).
     pub fn has_slow_parameters(&self) -> bool {
         self.has_slow_sampler()
     }
 
     /// Whether squares of a picture are drawn as points of at most so many pixels, not as two triangles: llvmpipe
-    /// shades twice what these share (`shaders/lib/square_points.wgsl`).
+    /// shades twice what these share (`shaders/lib/patch_points.wgsl`).
     pub(crate) fn draws_squares_as_points(&self, most_pixels: u32) -> bool {
         self.is_llvmpipe() && self.limits.max_point_pixels >= most_pixels
     }

@@ -7,7 +7,8 @@ use crate::resident::GpuTransfer;
 use crate::scene::Scene;
 use crate::technique::cost::ms_of_fetches;
 use crate::technique::{
-    ClipPlane, Filter, GradientFilter, Inputs, LightPlan, LightVolume, Part, Skip, parameter_ring,
+    ClipPlane, Filter, GpuChannel, GradientFilter, Inputs, LightPlan, LightVolume, Skip,
+    parameter_ring,
 };
 use crate::transfer::TransferFunction;
 use glam::DVec3;
@@ -46,7 +47,7 @@ pub fn made_light(
     slices: &mut TimeSlices,
     scene: &Scene,
     plan: LightPlan,
-    parts: &[Part],
+    parts: &[GpuChannel],
     transfer: Option<&GpuTransfer>,
 ) -> Result<LightVolume, Error> {
     let gpu = Arc::clone(device.gpu());

@@ -230,7 +230,7 @@ fn gather(
         settings,
         variant,
         drawn,
-        sight: DepthAccess::None,
+        depth_access: DepthAccess::None,
         is_patched: *is_patched,
     })
 }

@@ -73,13 +73,13 @@ fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     let gradients = source.map(|_| of_gradients);
     let light = light_of::<R>(scene, read, gradients, &grid)?;
     let gathered = |in_pixel: InPixel| -> Result<_, Error> {
-        let walk = Walk::new(scene, read, light.as_ref(), &grid, in_pixel)?;
-        let walk = Walk { gradients, ..walk };
+        let rays = ReferenceRays::new(scene, read, light.as_ref(), &grid, in_pixel)?;
+        let rays = ReferenceRays { gradients, ..rays };
         if scene.settings.is_half_angle() {
             let [_, light] = scene.view(&grid, in_pixel).half_angle_on_cpu()?;
-            return Ok(walk.gather_in_light(&light));
+            return Ok(rays.gather_in_light(&light));
         }
-        Ok(walk.gather_all())
+        Ok(rays.gather_all())
     };
     let centers = gathered(InPixel::CENTER)?;
     let transfer = match scene.transfer {
@@ -119,8 +119,8 @@ fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     })
 }
 
-/// One walk over the pixels of a picture.
-struct Walk<'a, R> {
+/// The rays of all pixels of a picture.
+struct ReferenceRays<'a, R> {
     scene: &'a Scene<'a>,
     volumes: Vec<&'a Volume>,
     roles: Vec<Role>,
@@ -151,7 +151,7 @@ enum Classifier {
     Slabs(SlabTable),
 }
 
-impl<'a, R: Real> Walk<'a, R> {
+impl<'a, R: Real> ReferenceRays<'a, R> {
     /// `read`: what is filtered in place of the volume, where there is but one.
     fn new(
         scene: &'a Scene<'a>,
@@ -180,7 +180,7 @@ impl<'a, R: Real> Walk<'a, R> {
             let functions = scene.transfers().into_iter();
             functions.map(classifier).collect::<Result<_, Error>>()?
         };
-        let widgets = scene.transfer.filter(|_| scene.mix().is_graded());
+        let widgets = scene.transfer.filter(|_| scene.mix().uses_gradient());
         let widgets = widgets.map(|f| PackedWidgets::new(f, scene.length_of(f), space));
         let Recording {
             mut frame, slices, ..
@@ -323,7 +323,7 @@ impl<'a, R: Real> Walk<'a, R> {
     }
 }
 
-impl<R: Real> Samples<R> for Walk<'_, R> {
+impl<R: Real> Samples<R> for ReferenceRays<'_, R> {
     fn frame(&self) -> &Frame {
         &self.frame
     }

@@ -37,8 +37,8 @@ use crate::scene::{Scene, positions_in_pixel};
 use crate::technique::cost::ms_of_fetches;
 use crate::technique::gather::{CanvasDesc, PICTURE};
 use crate::technique::{
-    self, Functions, InPixel, LightPlan, LightVolume, Mode, Part, SampleInputs, ShaderVariant,
-    parameter_ring,
+    self, Functions, GpuChannel, InPixel, LightPlan, LightVolume, Mode, SampleInputs,
+    ShaderVariant, parameter_ring,
 };
 use crate::transfer::{GradientTransfer, TransferFunction};
 use crate::volume::Volume;
@@ -326,10 +326,12 @@ impl<'v> Renderer<'v> {
         };
         let functions = scene.transfers().into_iter().flatten();
         let points = functions.map(|f| f.color.len().max(f.opacity.len())).max();
-        let graded = scene.transfer.and_then(|function| function.graded.as_ref());
+        let gradient_transfer = scene
+            .transfer
+            .and_then(|function| function.gradient_transfer.as_ref());
         let functions = Functions {
             points: points.unwrap_or(0),
-            second: graded.is_some_and(GradientTransfer::needs_second),
+            second: gradient_transfer.is_some_and(GradientTransfer::needs_second),
         };
         scene.view(&scene.volume.grid(), [0.0; 2]).check_turns(
             &variant,
@@ -399,11 +401,13 @@ fn parts_of<'a>(
     resident: &'a HashMap<Copied, Vec<GpuVolume>>,
     shown: usize,
     scene: &Scene,
-) -> Vec<Part<'a>> {
+) -> Vec<GpuChannel<'a>> {
     let copied = Copied::of(scene);
     let there = resident.get(&copied);
     let there = there.unwrap_or_else(|| &resident[&copied.with_texels()]);
     let there = &there[shown..];
     let parts = there.iter().zip(scene.roles());
-    parts.map(|(volume, role)| Part { volume, role }).collect()
+    parts
+        .map(|(volume, role)| GpuChannel { volume, role })
+        .collect()
 }

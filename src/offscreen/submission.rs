@@ -4,7 +4,7 @@ use super::passes::Finish;
 use super::time_slices::{Spent, TimeSlices, Work};
 use crate::gpu::{Blocks, Error, Gpu, Headless, Tile, Timer};
 use crate::technique::Inputs;
-use crate::technique::gather::{Brick, Canvas, Gather, PICTURE, Part, Player};
+use crate::technique::gather::{BrickPass, Canvas, Gather, PICTURE, Part, Player};
 use ash::vk;
 use std::ops::Range;
 
@@ -89,7 +89,7 @@ impl Submission<'_, '_> {
         self,
         gather: &dyn Gather,
         canvas: &mut Canvas,
-        (inputs, bricks): (&[Inputs], &[Brick]),
+        (inputs, bricks): (&[Inputs], &[BrickPass]),
         resumes: bool,
     ) -> Result<Spent, Error> {
         let bound = gather.bind(canvas, inputs, None)?;

@@ -45,7 +45,7 @@ pub struct GpuTransfer {
     staging: Buffer,
     numbers: Buffer,
     slabs: Option<GpuSlabs>,
-    is_graded: bool,
+    uses_gradient: bool,
 }
 
 impl GpuTransfer {
@@ -129,7 +129,9 @@ impl GpuTransfer {
             staging: filled(gpu, &entries, copied, "transfer staging")?,
             numbers: filled(gpu, &numbers, read, "transfer numbers")?,
             slabs: None,
-            is_graded: functions.iter().any(|(function, _)| function.is_graded()),
+            uses_gradient: functions
+                .iter()
+                .any(|(function, _)| function.uses_gradient()),
         })
     }
 
@@ -179,8 +181,8 @@ impl GpuTransfer {
     }
 
     /// Whether gradients count in a function.
-    pub fn is_graded(&self) -> bool {
-        self.is_graded
+    pub fn uses_gradient(&self) -> bool {
+        self.uses_gradient
     }
 
     /// Records the copy that fills the table.

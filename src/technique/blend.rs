@@ -44,16 +44,16 @@ pub enum Drawn {
 
 impl Drawn {
     /// The vertex and the fragment shader of a slicer. Where there is a variant of both in which the vertices hand over
-    /// the parameters (`shaders/handed.rs`), drivers on which fragments are slow to ask for them have that one, and all
+    /// the parameters (`shaders/flat_varyings.rs`), drivers on which fragments are slow to ask for them have that one, and all
     /// drivers where there is no other.
     pub(super) fn shaders(
         self,
         gpu: &Gpu,
         [cover, slicer]: [&str; 2],
         variant: &ShaderVariant,
-        sight: DepthAccess,
+        depth_access: DepthAccess,
     ) -> [&'static Shader; 2] {
-        let name = self.fragment_name(slicer, variant, sight);
+        let name = self.fragment_name(slicer, variant, depth_access);
         let of = match slicer {
             "slices_3d" => "planes",
             _ => "stack",
@@ -68,7 +68,12 @@ impl Drawn {
         }
     }
 
-    fn fragment_name(self, slicer: &str, variant: &ShaderVariant, sight: DepthAccess) -> String {
+    fn fragment_name(
+        self,
+        slicer: &str,
+        variant: &ShaderVariant,
+        depth_access: DepthAccess,
+    ) -> String {
         let ShaderVariant {
             filter,
             holes,
@@ -78,20 +83,20 @@ impl Drawn {
             ..
         } = variant;
         let mix = mix.general().word();
-        let sight = match sight {
+        let depth_access = match depth_access {
             DepthAccess::None | DepthAccess::Tested => "",
-            DepthAccess::Sampled => ".host",
+            DepthAccess::Sampled => ".host_depth",
         };
         let slicer = format!("{slicer}{}", take.word());
         match self {
             Self::Picture(Mode::Composite) if *take == SampleKind::Preintegrated => {
-                format!("{slicer}.composite{sight}.{filter}.{holes}")
+                format!("{slicer}.composite{depth_access}.{filter}.{holes}")
             }
             // Modes that need rays are refused where parameters are made: nothing is drawn by these.
             Self::Picture(Mode::Composite | Mode::Mida | Mode::Iso) => {
                 format!("{slicer}.composite{mix}.{filter}.{holes}.{transfer}")
             }
-            Self::Picture(_) => format!("{slicer}.number{sight}.{filter}.{holes}"),
+            Self::Picture(_) => format!("{slicer}.number{depth_access}.{filter}.{holes}"),
             Self::Count => format!("{slicer}.count.nearest.none"),
         }
     }

@@ -182,7 +182,7 @@ pub enum Error {
     #[error(
         "mode {mode} projects one number a ray, which has no gradient: widgets and gradient opacity are for composite"
     )]
-    NotGraded {
+    NoGradientTransfer {
         /// The mode.
         mode: Mode,
     },
@@ -190,7 +190,7 @@ pub enum Error {
     #[error(
         "widgets and gradient opacity are for one volume of numbers, not for several that are mixed"
     )]
-    NotGradedTogether,
+    GradientTransferAlone,
     /// Nearest and linear filters have no derivative that is of use.
     #[error(
         "the filter {filter} has no analytic gradient: its derivative is zero, or jumps from voxel to voxel"

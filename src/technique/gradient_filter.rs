@@ -157,7 +157,7 @@ impl View<'_> {
         fields: &mut FrameFields,
     ) -> Result<(), Error> {
         let counts =
-            self.settings.shading.is_some() || transfer.is_some_and(GpuTransfer::is_graded);
+            self.settings.shading.is_some() || transfer.is_some_and(GpuTransfer::uses_gradient);
         if !counts {
             return Ok(());
         }

@@ -2,8 +2,8 @@
 //! asks for.
 
 use super::{
-    Filter, FilterBy, GradientStorage, Lattice, LightVolume, Operator, Part, Role, SampleInputs,
-    Settings, Skip,
+    Filter, FilterBy, GpuChannel, GradientStorage, Lattice, LightVolume, Operator, Role,
+    SampleInputs, Settings, Skip,
 };
 use crate::gpu::{Bindings, Error, Gpu, Image, Layout, ParameterRing, Resource};
 use crate::resident::{Brick, FootprintTexels, GpuTransfer, GpuVolume, TextureLayout};
@@ -170,13 +170,17 @@ impl SampleKind {
 impl ShaderVariant {
     /// The variant for a picture of such a volume.
     pub fn of(settings: &Settings, volume: &GpuVolume) -> Self {
-        Self::mixed(settings, SampleInputs::Scalar, &[Part::numbers(volume)])
+        Self::mixed(
+            settings,
+            SampleInputs::Scalar,
+            &[GpuChannel::numbers(volume)],
+        )
     }
 
     /// The variant for a picture of several volumes.
-    pub fn mixed(settings: &Settings, mix: SampleInputs, parts: &[Part]) -> Self {
+    pub fn mixed(settings: &Settings, mix: SampleInputs, parts: &[GpuChannel]) -> Self {
         let is_fetched =
-            |part: &Part| part.role != Role::Labels && !part.volume.texel().is_filtered;
+            |part: &GpuChannel| part.role != Role::Labels && !part.volume.texel().is_filtered;
         let is_by_fetches = settings.conformance
             || settings.filter_by == FilterBy::Fetch
             || parts.iter().any(is_fetched);
@@ -262,7 +266,7 @@ impl ShaderVariant {
 }
 
 /// Those of the one volume.
-fn footprint_texels_of<'a>(parts: &[Part<'a>]) -> Option<&'a FootprintTexels> {
+fn footprint_texels_of<'a>(parts: &[GpuChannel<'a>]) -> Option<&'a FootprintTexels> {
     match parts {
         [part] => part.volume.corners(),
         _ => None,

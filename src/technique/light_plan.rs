@@ -224,7 +224,7 @@ impl View<'_> {
             opacity: [point(below, 0.0)].into_iter().chain(points).collect(),
             reference_length: None,
             interpolation: Interpolation::Step,
-            graded: None,
+            gradient_transfer: None,
         })
     }
 }

@@ -55,7 +55,7 @@ pub fn turns_per_sample(
     let are_kept = settings.gradient_storage == GradientStorage::Precomputed;
     let is_weighted = settings.gradient_operator() != Operator::Central;
     let fetches = match (variant.mix, variant.take) {
-        (mix, _) if mix.is_graded() => {
+        (mix, _) if mix.uses_gradient() => {
             let first = if is_weighted || are_kept { 1 } else { 7 };
             first + if functions.second { 28 } else { 0 }
         }
@@ -63,13 +63,13 @@ pub fn turns_per_sample(
         _ => 1,
     };
     // Four layers of four rows, with the turns that end them, and the choice of the weights.
-    let weights = if variant.mix.is_graded() && is_weighted && !are_kept {
+    let weights = if variant.mix.uses_gradient() && is_weighted && !are_kept {
         5 * 5 + 5
     } else {
         0
     };
     // Over lights, and over the corners of a cell of the light volume for each of them and for ambient light.
-    let light = if variant.mix.is_graded() {
+    let light = if variant.mix.uses_gradient() {
         let corners = if settings.wants_light_volume() { 9 } else { 1 };
         let shading = settings.shading.as_ref();
         let lights = shading.map_or(0, |shading| shading.lights.len().max(1)) as u64;

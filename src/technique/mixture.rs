@@ -40,9 +40,11 @@ pub enum SampleInputs {
 impl SampleInputs {
     /// How `function` goes with a volume that is alone.
     pub fn of_one(function: Option<&TransferFunction>) -> Self {
-        match function.and_then(|function| function.graded.as_ref()) {
+        match function.and_then(|function| function.gradient_transfer.as_ref()) {
             None => Self::Scalar,
-            Some(graded) if graded.widgets.is_empty() && !graded.share.is_empty() => {
+            Some(gradient_transfer)
+                if gradient_transfer.widgets.is_empty() && !gradient_transfer.share.is_empty() =>
+            {
                 Self::GradientOpacity
             }
             Some(_) => Self::ScalarGradient,
@@ -51,11 +53,11 @@ impl SampleInputs {
 
     /// Whether there is one volume.
     pub fn is_of_one(self) -> bool {
-        self == Self::Scalar || self.is_graded()
+        self == Self::Scalar || self.uses_gradient()
     }
 
     /// Whether gradients count.
-    pub fn is_graded(self) -> bool {
+    pub fn uses_gradient(self) -> bool {
         matches!(
             self,
             Self::ScalarGradient | Self::Shaded | Self::GradientOpacity
@@ -64,7 +66,7 @@ impl SampleInputs {
 
     /// With all that gradients may count for.
     pub(crate) fn general(self) -> Self {
-        match self.is_graded() {
+        match self.uses_gradient() {
             true => Self::ScalarGradient,
             false => self,
         }
@@ -74,9 +76,9 @@ impl SampleInputs {
     pub(super) fn word(self) -> &'static str {
         match self {
             Self::Scalar => "",
-            Self::ScalarGradient => ".graded",
-            Self::Shaded => ".lit",
-            Self::GradientOpacity => ".weighed",
+            Self::ScalarGradient => ".scalar_gradient",
+            Self::Shaded => ".shaded",
+            Self::GradientOpacity => ".gradient_opacity",
             Self::Channels => ".channels",
             Self::Colors => ".colors",
         }
@@ -100,14 +102,14 @@ pub enum Role {
 
 /// One of the volumes that are put together, on the device.
 #[derive(Clone, Copy, Debug)]
-pub struct Part<'a> {
+pub struct GpuChannel<'a> {
     /// Cut into the same bricks as the others: see [`GpuVolume::several`].
     pub volume: &'a GpuVolume,
     /// What it is.
     pub role: Role,
 }
 
-impl<'a> Part<'a> {
+impl<'a> GpuChannel<'a> {
     /// Numbers.
     pub fn numbers(volume: &'a GpuVolume) -> Self {
         Self {
@@ -119,7 +121,7 @@ impl<'a> Part<'a> {
 
 /// Fills the lanes of the parameters.
 pub(super) fn set_channels(
-    parts: &[Part],
+    parts: &[GpuChannel],
     transfer: Option<&GpuTransfer>,
     fields: &mut FrameFields,
 ) -> Result<(), Error> {
@@ -129,7 +131,7 @@ pub(super) fn set_channels(
         return Err(Error::TooManyChannels { wanted, limit });
     }
     fields.channel_count = parts.len() as u32;
-    fn cells<'a>(part: &Part<'a>) -> impl Iterator<Item = Cell> + 'a {
+    fn cells<'a>(part: &GpuChannel<'a>) -> impl Iterator<Item = Cell> + 'a {
         part.volume.bricks().iter().map(|brick| brick.cell)
     }
     let is_classified = parts.iter().any(|part| part.role == Role::Material);

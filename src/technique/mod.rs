@@ -78,7 +78,7 @@ pub use light_plan::{AmbientOcclusion, LightPlan, MAX_LIGHT_CELLS, MAX_RADIUS_CE
 pub use light_volume::LightVolume;
 #[doc(hidden)]
 pub use loop_limit::Functions;
-pub use mixture::{Part, Role, SampleInputs};
+pub use mixture::{GpuChannel, Role, SampleInputs};
 pub(crate) use modes::Fold;
 pub use modes::Mode;
 pub use patch_slicer::{PatchBindings, PatchSlicer};

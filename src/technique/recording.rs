@@ -6,7 +6,7 @@
 //!     a technique's record(cmd, ...)       with the bindings of recording.brick
 //! ```
 
-use super::mixture::{Part, set_channels};
+use super::mixture::{GpuChannel, set_channels};
 use super::{Error, Order, View};
 use crate::camera::{DepthConvention, HostDepth};
 use crate::gpu::{self, Gpu, ParameterRing};
@@ -30,9 +30,9 @@ pub struct Recording {
     pub frame: Frame,
 }
 
-/// What bricks are gone through for.
+/// What bricks are recorded for.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Walk {
+enum Purpose {
     /// The picture, in the order of its technique.
     Picture,
     /// The depth of slices, from front to back.
@@ -58,7 +58,7 @@ impl View<'_> {
         volume: &GpuVolume,
         transfer: Option<&GpuTransfer>,
     ) -> Result<Vec<Recording>, Error> {
-        self.recordings_of(&[Part::numbers(volume)], transfer)
+        self.recordings_of(&[GpuChannel::numbers(volume)], transfer)
     }
 
     /// The same for several volumes that are put together sample by sample; `transfer` holds a function for each.
@@ -67,11 +67,11 @@ impl View<'_> {
     /// Those of [`View::recordings`], [`Error::OtherGrid`], [`Error::FilterAlone`] and [`Error::TooManyChannels`].
     pub fn recordings_of(
         &self,
-        parts: &[Part],
+        parts: &[GpuChannel],
         transfer: Option<&GpuTransfer>,
     ) -> Result<Vec<Recording>, Error> {
         let mut all = Vec::new();
-        self.each_brick(parts, transfer, Walk::Picture, &mut Vec::new(), |one| {
+        self.each_brick(parts, transfer, Purpose::Picture, &mut Vec::new(), |one| {
             all.push(one);
             Ok::<_, Error>(())
         })?;
@@ -90,8 +90,8 @@ impl View<'_> {
         order: &mut Vec<usize>,
         each: impl FnMut(Recording) -> Result<(), E>,
     ) -> Result<(), E> {
-        let parts = [Part::numbers(volume)];
-        self.each_brick(&parts, transfer, Walk::Picture, order, each)
+        let parts = [GpuChannel::numbers(volume)];
+        self.each_brick(&parts, transfer, Purpose::Picture, order, each)
     }
 
     /// What is recorded for the depth of slices (`technique/gather/rays.rs`), which rays find that walk along the
@@ -106,15 +106,15 @@ impl View<'_> {
         order: &mut Vec<usize>,
         each: impl FnMut(Recording) -> Result<(), E>,
     ) -> Result<(), E> {
-        let parts = [Part::numbers(volume)];
-        self.each_brick(&parts, transfer, Walk::Depth, order, each)
+        let parts = [GpuChannel::numbers(volume)];
+        self.each_brick(&parts, transfer, Purpose::Depth, order, each)
     }
 
     fn each_brick<E: From<Error>>(
         &self,
-        parts: &[Part],
+        parts: &[GpuChannel],
         transfer: Option<&GpuTransfer>,
-        walk: Walk,
+        purpose: Purpose,
         order: &mut Vec<usize>,
         mut each: impl FnMut(Recording) -> Result<(), E>,
     ) -> Result<(), E> {
@@ -139,11 +139,11 @@ impl View<'_> {
         let eye_cell = self.eye_cell(bricks[0].cell.own.dims());
         sort_front_to_back(order, |i| &bricks[i].cell, eye_cell);
         let settings = self.settings;
-        let is_sliced = !settings.technique.casts_rays() && walk == Walk::Picture;
+        let is_sliced = !settings.technique.casts_rays() && purpose == Purpose::Picture;
         if is_sliced && settings.order == Order::BackToFront {
             order.reverse();
         }
-        if walk == Walk::Depth {
+        if purpose == Purpose::Depth {
             fields.termination = 0.5;
         }
         for (nth, &brick) in order.iter().enumerate() {
@@ -171,7 +171,7 @@ impl View<'_> {
         [is_first, is_last]: [bool; 2],
     ) -> Result<Recording, Error> {
         self.check_slabs(2)?;
-        let mut fields = self.fields_of(volume, &[Part::numbers(volume)], transfer)?;
+        let mut fields = self.fields_of(volume, &[GpuChannel::numbers(volume)], transfer)?;
         let cell = &volume.bricks()[0].cell;
         self.set_brick(cell, is_first, &mut fields);
         fields.is_last_brick = is_last.into();
@@ -182,7 +182,7 @@ impl View<'_> {
     fn fields_of(
         &self,
         volume: &GpuVolume,
-        parts: &[Part],
+        parts: &[GpuChannel],
         transfer: Option<&GpuTransfer>,
     ) -> Result<FrameFields, Error> {
         let (wanted, found) = (self.texture_layout(), volume.layout());
@@ -202,7 +202,7 @@ impl View<'_> {
     }
 
     /// The filter reads what the volumes hold.
-    fn check_coefficients(&self, parts: &[Part]) -> Result<(), Error> {
+    fn check_coefficients(&self, parts: &[GpuChannel]) -> Result<(), Error> {
         let filter = self.settings.filter;
         if filter.kernel().is_some() && parts.len() > 1 {
             return Err(Error::FilterAlone { filter });

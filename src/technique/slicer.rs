@@ -58,11 +58,11 @@ impl Slicer {
         target: impl Into<TargetClass>,
     ) -> Result<Self, Error> {
         let target = target.into();
-        let sight = match target.depth {
+        let depth_access = match target.depth {
             Some(_) => DepthAccess::Tested,
             None => DepthAccess::None,
         };
-        Self::seen(gpu, technique, drawn, order, variant, target, sight)
+        Self::seen(gpu, technique, drawn, order, variant, target, depth_access)
     }
 
     /// The same with another word on what hides samples.
@@ -76,16 +76,16 @@ impl Slicer {
         order: Order,
         variant: &ShaderVariant,
         target: TargetClass,
-        sight: DepthAccess,
+        depth_access: DepthAccess,
     ) -> Result<Self, Error> {
         let shaders = technique.slice_shaders();
         let names = [shaders.cover, shaders.fragment];
-        let [vertex, fragment] = drawn.shaders(gpu, names, variant, sight);
+        let [vertex, fragment] = drawn.shaders(gpu, names, variant, depth_access);
         let desc = RasterDesc {
             vertex,
             fragment,
             target,
-            depth: match sight {
+            depth: match depth_access {
                 DepthAccess::Tested => DepthUse::Tested,
                 DepthAccess::None | DepthAccess::Sampled => DepthUse::Ignored,
             },

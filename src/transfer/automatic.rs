@@ -193,7 +193,7 @@ pub(super) fn categorical(summary: &ValueSummary) -> TransferFunction {
         opacity: opacity.collect(),
         reference_length: reference_length(summary),
         interpolation: Interpolation::Step,
-        graded: None,
+        gradient_transfer: None,
     }
 }
 

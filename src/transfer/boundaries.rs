@@ -70,7 +70,7 @@ pub fn boundaries(joint: &JointCounts, reference_length: Option<f64>) -> Option<
         color,
         reference_length,
         interpolation: Interpolation::Linear,
-        graded: Some(GradientTransfer {
+        gradient_transfer: Some(GradientTransfer {
             steepest: None,
             share: Vec::new(),
             widgets,

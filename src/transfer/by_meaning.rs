@@ -254,7 +254,7 @@ fn field(summary: &ValueSummary) -> TransferFunction {
             .collect(),
         reference_length: reference_length(summary),
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     }
 }
 

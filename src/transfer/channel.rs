@@ -51,7 +51,7 @@ pub fn of_channel(
             .into(),
         reference_length: reference_length(summary),
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     }
 }
 
@@ -78,7 +78,7 @@ pub fn of_colors(diagonal: f64, by_alpha: bool, window: Option<Window>) -> Trans
         opacity: opacity.collect(),
         reference_length: (length > 0.0 && length.is_finite()).then_some(length),
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     };
     match window {
         Some(window) => function.spread_over(window),

@@ -1,7 +1,7 @@
 //! Transfer functions in files: the JSON of `cli.md`, "Transfer function file", and `docs/transfer-functions.md`.
 
 use super::field::{points, wrong};
-use super::file_widgets::{GradedKeys, graded, graded_to_json, materials};
+use super::file_widgets::{GradientKeys, gradient_transfer, gradient_transfer_to_json, materials};
 use super::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
 use serde::Deserialize;
 use serde_json::Value;
@@ -133,14 +133,16 @@ pub(super) fn transfer_function_in(
             _ => return Err(wrong("interpolation", "\"linear\" or \"step\"", found)),
         },
     };
-    let graded_keys = GradedKeys {
+    let gradient_keys = GradientKeys {
         gradient_opacity: keys.gradient_opacity,
         steepest: keys.steepest,
         widgets: keys.widgets,
     };
-    let graded = graded(graded_keys, folder)?;
+    let gradient_transfer = gradient_transfer(gradient_keys, folder)?;
     // Widgets may be all there is, each in a colour of its own.
-    let widgets = graded.iter().flat_map(|graded| &graded.widgets);
+    let widgets = gradient_transfer
+        .iter()
+        .flat_map(|gradient_transfer| &gradient_transfer.widgets);
     let (mut has_widgets, mut all_have_colors) = (false, true);
     for widget in widgets {
         has_widgets = true;
@@ -168,7 +170,7 @@ pub(super) fn transfer_function_in(
         opacity: opacity.collect(),
         reference_length,
         interpolation,
-        graded,
+        gradient_transfer,
     })
 }
 
@@ -217,9 +219,9 @@ pub fn transfer_function_to_json(function: &TransferFunction) -> String {
         opacity.collect::<Vec<_>>().join(",\n"),
         length.unwrap_or_default(),
         function
-            .graded
+            .gradient_transfer
             .as_ref()
-            .map(graded_to_json)
+            .map(gradient_transfer_to_json)
             .unwrap_or_default(),
     )
 }

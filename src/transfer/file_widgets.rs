@@ -75,20 +75,20 @@ fn material(place: String, found: &Value) -> Result<Material, FileProblem> {
 }
 
 /// The keys that speak of gradients.
-pub(super) struct GradedKeys {
+pub(super) struct GradientKeys {
     pub gradient_opacity: Option<Value>,
     pub steepest: Option<Value>,
     pub widgets: Option<Value>,
 }
 
 /// What they say; `None` where none is there. `folder` is where they look for images.
-pub(super) fn graded(
-    keys: GradedKeys,
+pub(super) fn gradient_transfer(
+    keys: GradientKeys,
     folder: Option<&Path>,
 ) -> Result<Option<GradientTransfer>, FileProblem> {
-    let mut graded = GradientTransfer::default();
+    let mut gradient_transfer = GradientTransfer::default();
     if let Some(found) = keys.gradient_opacity {
-        graded.share = opacity_points("gradient_opacity", "[gradient, share]", &found)?;
+        gradient_transfer.share = opacity_points("gradient_opacity", "[gradient, share]", &found)?;
     }
     if let Some(found) = keys.widgets {
         let rows = list(
@@ -99,10 +99,10 @@ pub(super) fn graded(
         )?;
         for (i, row) in rows.iter().enumerate() {
             let widget = widget(format!("widgets[{i}]"), row, folder)?;
-            graded.widgets.push(widget);
+            gradient_transfer.widgets.push(widget);
         }
     }
-    let says_nothing = graded.share.is_empty() && graded.widgets.is_empty();
+    let says_nothing = gradient_transfer.share.is_empty() && gradient_transfer.widgets.is_empty();
     match keys.steepest {
         Some(found) if says_nothing => Err(wrong(
             "steepest",
@@ -110,10 +110,10 @@ pub(super) fn graded(
             &found,
         )),
         Some(found) => {
-            graded.steepest = Some(number("steepest", &found, POSITIVE)?);
-            Ok(Some(graded))
+            gradient_transfer.steepest = Some(number("steepest", &found, POSITIVE)?);
+            Ok(Some(gradient_transfer))
         }
-        None => Ok((!says_nothing).then_some(graded)),
+        None => Ok((!says_nothing).then_some(gradient_transfer)),
     }
 }
 
@@ -253,17 +253,20 @@ fn second(fields: &mut Fields) -> Result<Option<SecondDerivative>, FileProblem> 
     Ok(Some(SecondDerivative::Trapezoid(corners)))
 }
 
-/// The lines of a file that state `graded`, each with a comma behind it.
-pub(super) fn graded_to_json(graded: &GradientTransfer) -> String {
+/// The lines of a file that state `gradient_transfer`, each with a comma behind it.
+pub(super) fn gradient_transfer_to_json(gradient_transfer: &GradientTransfer) -> String {
     let mut lines = String::new();
-    if let Some(steepest) = graded.steepest {
+    if let Some(steepest) = gradient_transfer.steepest {
         lines += &format!("  \"steepest\": {},\n", Value::from(steepest));
     }
-    if !graded.share.is_empty() {
-        lines += &format!("  \"gradient_opacity\": {},\n", rows(&graded.share));
+    if !gradient_transfer.share.is_empty() {
+        lines += &format!(
+            "  \"gradient_opacity\": {},\n",
+            rows(&gradient_transfer.share)
+        );
     }
-    if !graded.widgets.is_empty() {
-        let widgets = graded.widgets.iter();
+    if !gradient_transfer.widgets.is_empty() {
+        let widgets = gradient_transfer.widgets.iter();
         let widgets = widgets.map(|widget| format!("    {}", widget_to_json(widget)));
         let widgets: Vec<_> = widgets.collect();
         lines += &format!("  \"widgets\": [\n{}\n  ],\n", widgets.join(",\n"));

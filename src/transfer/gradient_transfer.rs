@@ -169,10 +169,10 @@ impl GradientTransfer {
 
     /// This with its values moved: `moved` is a straight line that rises by `slope`.
     pub(super) fn moved(&self, moved: impl Fn(f64) -> f64, slope: f64) -> Self {
-        let mut graded = self.clone();
+        let mut gradient_transfer = self.clone();
         // Where values are stretched, so are gradients.
-        graded.steepest = graded.steepest.map(|steepest| steepest * slope);
-        for widget in &mut graded.widgets {
+        gradient_transfer.steepest = gradient_transfer.steepest.map(|steepest| steepest * slope);
+        for widget in &mut gradient_transfer.widgets {
             match &mut widget.shape {
                 Shape::Contour { value, .. } => *value = moved(*value),
                 Shape::Region { points } => {
@@ -191,23 +191,23 @@ impl GradientTransfer {
                 }
             }
         }
-        graded
+        gradient_transfer
     }
 }
 
 impl TransferFunction {
     /// True where opacity or colour depends on the gradient.
-    pub fn is_graded(&self) -> bool {
-        self.graded.is_some()
+    pub fn uses_gradient(&self) -> bool {
+        self.gradient_transfer.is_some()
     }
 
     /// This function with `steepest` as the gradient that counts as 1, where it names none and needs one.
     pub fn with_steepest(mut self, steepest: impl FnOnce() -> f64) -> Self {
-        if let Some(graded) = &mut self.graded
-            && graded.steepest.is_none()
-            && graded.needs_steepest()
+        if let Some(gradient_transfer) = &mut self.gradient_transfer
+            && gradient_transfer.steepest.is_none()
+            && gradient_transfer.needs_steepest()
         {
-            graded.steepest = Some(steepest());
+            gradient_transfer.steepest = Some(steepest());
         }
         self
     }

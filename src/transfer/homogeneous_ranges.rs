@@ -263,7 +263,7 @@ mod tests {
                     .collect(),
                 reference_length: None,
                 interpolation: [Interpolation::Linear, Interpolation::Step][nth % 2],
-                graded: None,
+                gradient_transfer: None,
             };
             let space = ColorSpace::Linear;
             let alike = HomogeneousRanges::new(&function, 1.5, space, tolerance);

@@ -147,7 +147,7 @@ impl LabelTable {
             opacity,
             reference_length: own.or(Some(diagonal / 512.0)),
             interpolation: Interpolation::Step,
-            graded: None,
+            gradient_transfer: None,
         }
     }
 }

@@ -91,7 +91,7 @@ impl TransferFunction {
             opacity: Vec::new(),
             reference_length,
             interpolation: Interpolation::Linear,
-            graded: None,
+            gradient_transfer: None,
         };
         let mut before: Option<Mixture> = None;
         for &value in &corners {

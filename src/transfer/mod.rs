@@ -95,7 +95,7 @@ pub struct TransferFunction {
     /// What lies between two points.
     pub interpolation: Interpolation,
     /// What the gradient makes of it; `None`: nothing.
-    pub graded: Option<GradientTransfer>,
+    pub gradient_transfer: Option<GradientTransfer>,
 }
 
 /// sRGB colour at a value.

@@ -201,7 +201,7 @@ fn steep(summary: &ValueSummary) -> TransferFunction {
     let share = [(0.05, 0.0), (0.4, 1.0)];
     let share = share.map(|(value, opacity)| OpacityPoint { value, opacity });
     TransferFunction {
-        graded: Some(GradientTransfer {
+        gradient_transfer: Some(GradientTransfer {
             share: share.into(),
             ..GradientTransfer::default()
         }),
@@ -257,7 +257,7 @@ pub(super) fn spread(
         opacity: opacity.collect(),
         reference_length: reference_length(summary),
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     }
 }
 

@@ -99,7 +99,7 @@ impl VisibleRanges {
                 show(pair[0].value, pair[1].value);
             }
         }
-        let Some(graded) = &function.graded else {
+        let Some(gradient_transfer) = &function.gradient_transfer else {
             return Self::of_cells(first as f32, (1.0 / width) as f32, &is_seen);
         };
         // What the table shows is seen as far as its cells reach.
@@ -110,8 +110,10 @@ impl VisibleRanges {
         };
         let seen_cells = (0..count).filter(|&i| is_seen[i]);
         let of_values = seen_cells.map(|i| [end(i), end(i + 1)]);
-        let spans = of_values.chain(spans_of(graded, slope.is_some())).collect();
-        let contours = slope.map(|slope| contours_of(graded, slope));
+        let spans = of_values
+            .chain(spans_of(gradient_transfer, slope.is_some()))
+            .collect();
+        let contours = slope.map(|slope| contours_of(gradient_transfer, slope));
         Self {
             contours: contours.unwrap_or_default(),
             ..Self::of_spans(spans)
@@ -184,16 +186,16 @@ impl VisibleRanges {
 
 /// The values that widgets of any opacity reach, whatever the gradient; without those of contours, if these are told
 /// apart.
-fn spans_of(graded: &GradientTransfer, has_contours: bool) -> Vec<[f64; 2]> {
+fn spans_of(gradient_transfer: &GradientTransfer, has_contours: bool) -> Vec<[f64; 2]> {
     let is_left = |widget: &&Widget| {
         let is_contour = matches!(widget.shape, Shape::Contour { .. });
         widget.opacity > 0.0 && !(has_contours && is_contour)
     };
-    let seen = graded.widgets.iter().filter(is_left);
+    let seen = gradient_transfer.widgets.iter().filter(is_left);
     seen.flat_map(spans_of_widget).collect()
 }
 
-fn contours_of(graded: &GradientTransfer, slope: f64) -> Vec<ContourReach> {
+fn contours_of(gradient_transfer: &GradientTransfer, slope: f64) -> Vec<ContourReach> {
     let near = |widget: &Widget| match widget.shape {
         Shape::Contour { value, half_width } if widget.opacity > 0.0 => Some(ContourReach {
             value: value as f32,
@@ -202,7 +204,7 @@ fn contours_of(graded: &GradientTransfer, slope: f64) -> Vec<ContourReach> {
         }),
         _ => None,
     };
-    graded.widgets.iter().filter_map(near).collect()
+    gradient_transfer.widgets.iter().filter_map(near).collect()
 }
 
 fn spans_of_widget(widget: &Widget) -> Vec<[f64; 2]> {
@@ -261,7 +263,7 @@ mod tests {
             opacity: points.iter().map(point).collect(),
             reference_length: None,
             interpolation,
-            graded: None,
+            gradient_transfer: None,
         }
     }
 
@@ -326,7 +328,7 @@ mod tests {
             second: None,
         };
         let of = |opacity| TransferFunction {
-            graded: Some(GradientTransfer {
+            gradient_transfer: Some(GradientTransfer {
                 widgets: vec![contour(opacity)],
                 ..GradientTransfer::default()
             }),

@@ -46,28 +46,30 @@ impl PackedWidgets {
     /// of the value alone has none.
     pub fn new(function: &TransferFunction, reference_length: f64, space: ColorSpace) -> Self {
         let empty = GradientTransfer::default();
-        let graded = function.graded.as_ref().unwrap_or(&empty);
+        let gradient_transfer = function.gradient_transfer.as_ref().unwrap_or(&empty);
         // Where nothing is steep no gradient counts.
-        let steepest = graded.steepest.filter(|&g| g > 0.0 && g.is_finite());
+        let steepest = gradient_transfer
+            .steepest
+            .filter(|&g| g > 0.0 && g.is_finite());
         let mut packed = Packing {
             widgets: Vec::new(),
             cells: Vec::new(),
             space,
         };
-        for widget in &graded.widgets {
+        for widget in &gradient_transfer.widgets {
             packed.push(widget);
         }
         let count = packed.widgets.len();
-        let shares = graded.share.iter().map(point);
+        let shares = gradient_transfer.share.iter().map(point);
         let per_steepest = steepest.map_or(0.0, |steepest| (1.0 / steepest) as f32);
-        let wants_second = f32::from(graded.needs_second());
+        let wants_second = f32::from(gradient_transfer.needs_second());
         let head = [
             per_steepest,
-            graded.share.len() as f32,
+            gradient_transfer.share.len() as f32,
             count as f32,
             wants_second,
         ];
-        let first_cell = 1 + graded.share.len() + STRIDE * count;
+        let first_cell = 1 + gradient_transfer.share.len() + STRIDE * count;
         for [_, _, _, image, _] in &mut packed.widgets {
             image[0] += first_cell as f32;
         }

@@ -80,7 +80,7 @@ impl Window {
             opacity: opacity.collect(),
             reference_length: None,
             interpolation: Interpolation::Linear,
-            graded: None,
+            gradient_transfer: None,
         }
     }
 }
@@ -95,8 +95,9 @@ impl TransferFunction {
         for point in &mut placed.opacity {
             point.value = window.at(point.value);
         }
-        let graded = self.graded.as_ref();
-        placed.graded = graded.map(|graded| graded.moved(|v| window.at(v), window.length()));
+        let gradient_transfer = self.gradient_transfer.as_ref();
+        placed.gradient_transfer = gradient_transfer
+            .map(|gradient_transfer| gradient_transfer.moved(|v| window.at(v), window.length()));
         placed
     }
 
@@ -129,8 +130,9 @@ impl TransferFunction {
         } else {
             1.0
         };
-        let graded = self.graded.as_ref();
-        spread.graded = graded.map(|graded| graded.moved(moved, slope));
+        let gradient_transfer = self.gradient_transfer.as_ref();
+        spread.gradient_transfer =
+            gradient_transfer.map(|gradient_transfer| gradient_transfer.moved(moved, slope));
         spread
     }
 }

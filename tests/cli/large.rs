@@ -125,7 +125,16 @@ fn bricks_on_the_disk_have_levels_and_are_refined() {
         .assert_refused(3, &["level", "0 to 2"]);
     folder
         .run(&words("--refine -o no.npy"))
-        .assert_refused(2, &["--refine", "svb"]);
+        .assert_refused(2, &["--refine", "convert INPUT -o FILE.svb"]);
+    // One brick has no coarser levels, in whatever file.
+    folder
+        .run("convert phantom:sphere,n=32 -o small.svb")
+        .assert_done();
+    for small in ["small.svb", "phantom:sphere,n=32"] {
+        folder
+            .run(&format!("render {small} --refine -o no.npy"))
+            .assert_refused(2, &["one has one", "leave --refine out"]);
+    }
 }
 
 #[test]

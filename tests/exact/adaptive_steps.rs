@@ -44,7 +44,7 @@ fn terraces(numbers: &mut Numbers) -> TransferFunction {
         opacity: Vec::new(),
         reference_length: None,
         interpolation: [Interpolation::Linear, Interpolation::Step][numbers.below(2)],
-        graded: None,
+        gradient_transfer: None,
     };
     while value < 110.0 {
         if numbers.next() < 0.6 {
@@ -184,7 +184,7 @@ fn between(ends: [(f64, f64, [f64; 3]); 2], reference_length: f64) -> TransferFu
             .into(),
         reference_length: Some(reference_length),
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     }
 }
 

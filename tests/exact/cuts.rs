@@ -36,7 +36,7 @@ fn fog(srgb: [f64; 3], extinction: f64) -> TransferFunction {
         }],
         reference_length: Some(1.0),
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     }
 }
 
@@ -135,7 +135,7 @@ fn opaque_names() -> TransferFunction {
             .into(),
         reference_length: None,
         interpolation: Interpolation::Step,
-        graded: None,
+        gradient_transfer: None,
     }
 }
 
@@ -270,7 +270,7 @@ fn a_cut_face_has_the_colour_of_what_lies_there_and_its_depth() {
             .into(),
         reference_length: None,
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     };
     let mut renderer = Renderer::new(device(), &volume).unwrap();
     for preintegrated in [false, true] {

@@ -61,7 +61,7 @@ fn drawn(device: &mut Headless, format: vk::Format, order: Order, slices: u32) -
         }],
         reference_length: Some(VOXELS.into()),
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     };
     let gpu = Arc::clone(device.gpu());
     let voxels = uploaded(device, &volume);

@@ -33,7 +33,7 @@ fn fog(srgb: [f64; 3], extinction: f64) -> TransferFunction {
         }],
         reference_length: Some(1.0),
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     }
 }
 
@@ -91,7 +91,7 @@ fn label_colors() -> TransferFunction {
         opacity: opacity.collect(),
         reference_length: None,
         interpolation: Interpolation::Step,
-        graded: None,
+        gradient_transfer: None,
     }
 }
 

@@ -394,7 +394,7 @@ fn functions_of_the_gradient_cast_what_they_draw() {
             value: 0.0,
             opacity: 0.0,
         }],
-        graded: Some(GradientTransfer {
+        gradient_transfer: Some(GradientTransfer {
             steepest: Some(1.0),
             share: Vec::new(),
             widgets: vec![widget],
@@ -467,7 +467,7 @@ fn seen_from_above(volume: &Volume, change: impl FnOnce(&mut Settings)) -> Pictu
             .to_vec(),
         reference_length: None,
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     };
     let scene = Scene {
         volume,

@@ -40,7 +40,7 @@ fn function(opacity: &[(f64, f64)], interpolation: Interpolation) -> TransferFun
             .collect(),
         reference_length: Some(1.0),
         interpolation,
-        graded: None,
+        gradient_transfer: None,
     }
 }
 

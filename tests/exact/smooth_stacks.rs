@@ -187,7 +187,7 @@ fn shell() -> TransferFunction {
         opacity: vec![opacity(7.5, 0.0), opacity(9.0, 0.22), opacity(10.5, 0.0)],
         reference_length: Some(1.0),
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     }
 }
 

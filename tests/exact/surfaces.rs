@@ -402,7 +402,7 @@ fn painted_ball() -> (Volume, Volume, TransferFunction) {
         }],
         reference_length: None,
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     };
     (ball, other, function)
 }

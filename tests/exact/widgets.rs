@@ -1,7 +1,7 @@
 //! Opacity by value and gradient: closed forms on ramps and edges, and the device against its CPU reference.
 
+mod gradient_opacity;
 mod second;
-mod weighed;
 
 use crate::shared::{
     Chord, PictureCase, compare, device, oblique_shots, placements, ramps, sheared_affine,
@@ -39,7 +39,7 @@ fn points(points: &[(f64, f64)]) -> Vec<OpacityPoint> {
 }
 
 /// White, and nothing but what the gradient makes of it.
-fn only(graded: GradientTransfer) -> TransferFunction {
+fn only(gradient_transfer: GradientTransfer) -> TransferFunction {
     TransferFunction {
         color: vec![ColorPoint {
             value: 0.0,
@@ -48,7 +48,7 @@ fn only(graded: GradientTransfer) -> TransferFunction {
         opacity: points(&[(0.0, 0.0)]),
         reference_length: None,
         interpolation: Interpolation::Linear,
-        graded: Some(graded),
+        gradient_transfer: Some(gradient_transfer),
     }
 }
 
@@ -308,7 +308,7 @@ fn one_of_each() -> TransferFunction {
         second: None,
     });
     TransferFunction {
-        graded: Some(GradientTransfer {
+        gradient_transfer: Some(GradientTransfer {
             steepest: Some(0.3),
             share: points(&[(0.1, 0.2), (0.4, 1.0), (0.4, 0.5), (0.9, 0.0)]),
             widgets: widgets.collect(),
@@ -336,7 +336,7 @@ fn every_technique_filter_and_light_draws_widgets_as_its_reference_does() {
     let mut volume = volume_of(GRID().dims, sheared_affine(), waves);
     let function = one_of_each();
     let flat = TransferFunction {
-        graded: None,
+        gradient_transfer: None,
         ..function.clone()
     };
     for holes in [false, true] {
@@ -372,7 +372,7 @@ fn each_shape_alone_is_drawn_as_its_reference_draws_it() {
     let volume = volume_of(GRID().dims, sheared_affine(), waves);
     let mut renderer = Renderer::new(device(), &volume).unwrap();
     let shot = oblique_shots(GRID(), Mode::Composite).remove(0);
-    for widget in one_of_each().graded.unwrap().widgets {
+    for widget in one_of_each().gradient_transfer.unwrap().widgets {
         let what = format!("{:?}", widget.shape);
         let function = of_widgets(0.3, vec![widget]);
         let scene = shot.scene(&volume, Some(&function));

@@ -20,7 +20,7 @@ fn function(points: &[[f64; 2]]) -> TransferFunction {
         opacity: points.iter().map(point).collect(),
         reference_length: None,
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     }
 }
 

@@ -42,7 +42,6 @@ mod vtk;
 #[path = "../shared/zarr.rs"]
 mod zarr;
 
-mod both_sides;
 mod cf_wrf;
 #[cfg(unix)]
 mod ci_group;
@@ -114,6 +113,7 @@ mod picture_output;
 mod public_api;
 mod shader_constants;
 mod shader_modules;
+mod short_circuit;
 mod spirv_words;
 mod transfer_choice;
 mod transfer_file;

@@ -11,8 +11,8 @@ mod compose;
 mod constants;
 #[path = "../../src/shaders/fold.rs"]
 mod fold;
-#[path = "../../shaders/straight.rs"]
-mod straight;
+#[path = "../../shaders/uniform_loads.rs"]
+mod uniform_loads;
 #[path = "../../shaders/variants.rs"]
 #[allow(dead_code, reason = "the build asks for more")]
 mod variants;
@@ -160,12 +160,16 @@ fn copies_of_parameters_are_chosen_against_their_buffers() {
     constants::mark(&mut module);
     let (plain, ids) = constants::specialized(&words(&module));
     assert_eq!(ids, [0]);
-    let chosen = straight::chosen_by(0, &plain);
+    let chosen = uniform_loads::read_directly(0, &plain);
     // Each read of the copy is one of the buffer more.
     assert_eq!(count(&chosen, Op::Select), count(&plain, Op::Select) + 2);
     assert_eq!(count(&chosen, Op::Load), count(&plain, Op::Load) + 2);
     assert_eq!(count(&chosen, Op::SpecConstantOp), 1);
-    assert_eq!(straight::chosen_by(3, &plain), plain, "another constant");
+    assert_eq!(
+        uniform_loads::read_directly(3, &plain),
+        plain,
+        "another constant"
+    );
 }
 
 /// Constants choose a branch, one of two loops, a case that breaks out of its switch early, and one that returns.

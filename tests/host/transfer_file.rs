@@ -35,7 +35,7 @@ fn every_key_is_read() {
         }],
         reference_length: Some(0.75),
         interpolation: Interpolation::Step,
-        graded: None,
+        gradient_transfer: None,
     };
     assert_eq!(transfer_function_from_json(text).unwrap(), wanted);
 }

@@ -21,7 +21,7 @@ fn opacity_points(points: &[(f64, f64)], interpolation: Interpolation) -> Transf
         opacity: opacity.collect(),
         reference_length: None,
         interpolation,
-        graded: None,
+        gradient_transfer: None,
     }
 }
 

@@ -33,10 +33,10 @@ fn all() -> TransferFunction {
 #[test]
 fn every_shape_is_read_and_comes_back_as_it_was_written() {
     let function = all();
-    let graded = function.graded.as_ref().expect("widgets");
-    assert_eq!(graded.widgets.len(), 7);
-    assert_eq!(graded.steepest, Some(40.0));
-    assert_eq!(graded.widgets[0].srgb, Some([1.0, 0.5, 0.0]));
+    let gradient_transfer = function.gradient_transfer.as_ref().expect("widgets");
+    assert_eq!(gradient_transfer.widgets.len(), 7);
+    assert_eq!(gradient_transfer.steepest, Some(40.0));
+    assert_eq!(gradient_transfer.widgets[0].srgb, Some([1.0, 0.5, 0.0]));
     let cells = Cells::Shares(vec![0.0, 1.0, 0.5, 0.25, 1.0, 0.0]);
     let image = Shape::Image {
         values: [0.0, 80.0],
@@ -44,21 +44,21 @@ fn every_shape_is_read_and_comes_back_as_it_was_written() {
         columns: 2,
         cells,
     };
-    assert_eq!(graded.widgets[5].shape, image);
+    assert_eq!(gradient_transfer.widgets[5].shape, image);
     let (middle, sigma) = (0.1, 0.05);
     let bell = SecondDerivative::Bell { middle, sigma };
-    assert_eq!(graded.widgets[4].second, Some(bell));
+    assert_eq!(gradient_transfer.widgets[4].second, Some(bell));
     let corners = SecondDerivative::Trapezoid([-0.5, -0.2, 0.0, 0.3]);
-    assert_eq!(graded.widgets[5].second, Some(corners));
+    assert_eq!(gradient_transfer.widgets[5].second, Some(corners));
     let box_shaped = SecondDerivative::Trapezoid([-1.0, -1.0, 1.0, 1.0]);
-    assert_eq!(graded.widgets[6].second, Some(box_shaped));
+    assert_eq!(gradient_transfer.widgets[6].second, Some(box_shaped));
     let colors = [
         [255, 0, 0, 128],
         [255, 255, 255, 0],
         [1, 2, 3, 4],
         [5, 6, 7, 8],
     ];
-    let Shape::Image { columns, cells, .. } = &graded.widgets[6].shape else {
+    let Shape::Image { columns, cells, .. } = &gradient_transfer.widgets[6].shape else {
         panic!("no image");
     };
     assert_eq!((*columns, cells), (2, &Cells::Rgba(colors.into())));
@@ -74,8 +74,8 @@ fn widgets_in_colours_of_their_own_need_no_points() {
     let function = transfer_function_from_json(text.as_bytes()).expect("a good file");
     assert_eq!(function.opacity(5.0), 0.0);
     let Some(Shape::Contour { half_width, .. }) = function
-        .graded
-        .map(|graded| graded.widgets[0].shape.clone())
+        .gradient_transfer
+        .map(|gradient_transfer| gradient_transfer.widgets[0].shape.clone())
     else {
         panic!("no contour");
     };
@@ -260,9 +260,13 @@ fn wrong_fields_of_widgets_are_named_with_what_was_wanted_and_found() {
 fn a_window_moves_widgets_with_the_points_and_gradients_with_the_values() {
     // 0 to 100 onto 1000 to 1200: twice as steep.
     let moved = all().spread_over(Window::new(1000.0, 1200.0).expect("a window"));
-    let graded = moved.graded.expect("widgets");
-    assert_eq!(graded.steepest, Some(80.0));
-    let shapes: Vec<_> = graded.widgets.into_iter().map(|w| w.shape).collect();
+    let gradient_transfer = moved.gradient_transfer.expect("widgets");
+    assert_eq!(gradient_transfer.steepest, Some(80.0));
+    let shapes: Vec<_> = gradient_transfer
+        .widgets
+        .into_iter()
+        .map(|w| w.shape)
+        .collect();
     let contour = Shape::Contour {
         value: 1100.0,
         half_width: 1.5,
@@ -303,7 +307,7 @@ fn colour_of_one_file_and_opacity_of_another_keep_their_own_laws() {
         opacity: vec![opacity(0.0, 1.0)],
         reference_length: Some(3.0),
         interpolation: Interpolation::Step,
-        graded: None,
+        gradient_transfer: None,
     };
     let lines = all();
     for (both, own_length) in [
@@ -319,7 +323,7 @@ fn colour_of_one_file_and_opacity_of_another_keep_their_own_laws() {
             None => [&steps, &lines],
             Some(_) => [&lines, &steps],
         };
-        assert_eq!(both.graded, of_opacity.graded);
+        assert_eq!(both.gradient_transfer, of_opacity.gradient_transfer);
         for value in [-5.0, 0.0, 3.0, 9.999, 10.0, 15.0, 20.0, 99.0] {
             assert_eq!(both.srgb(value), of_color.srgb(value), "at {value}");
             assert_eq!(both.opacity(value), of_opacity.opacity(value), "at {value}");
@@ -363,7 +367,7 @@ fn boundaries_are_found_half_way_between_substances() {
             counts: &joint.counts,
         };
         let function = boundaries(&counts, Some(1.0)).expect("boundaries");
-        let widgets = function.graded.expect("widgets").widgets;
+        let widgets = function.gradient_transfer.expect("widgets").widgets;
         let found = widgets.iter().map(|widget| match widget.shape {
             Shape::Contour { value, .. } => (value, widget.opacity),
             ref other => panic!("{other:?}"),
@@ -435,7 +439,11 @@ fn an_image_is_read_from_a_png_beside_the_file_and_stands_in_what_is_written() {
     let (rgba, eight) = (png::ColorType::Rgba, png::BitDepth::Eight);
     let (red, blue) = ([255, 0, 0, 255], [0, 0, 255, 128]);
     let function = png("two.png", rgba, eight, [1, 2], &[red, blue].concat()).expect("an image");
-    let widgets = &function.graded.as_ref().expect("widgets").widgets;
+    let widgets = &function
+        .gradient_transfer
+        .as_ref()
+        .expect("widgets")
+        .widgets;
     let wanted = Shape::Image {
         values: [0.0, 9.0],
         gradients: [0.0, 1.0],
@@ -448,7 +456,8 @@ fn an_image_is_read_from_a_png_beside_the_file_and_stands_in_what_is_written() {
     let again = transfer_function_from_json(back.as_bytes()).expect(&back);
     assert_eq!(again, function);
     let grey = png("grey.png", png::ColorType::Grayscale, eight, [1, 1], &[7]).expect("an image");
-    let Shape::Image { cells, .. } = &grey.graded.expect("widgets").widgets[0].shape else {
+    let Shape::Image { cells, .. } = &grey.gradient_transfer.expect("widgets").widgets[0].shape
+    else {
         panic!("no image");
     };
     assert_eq!(

@@ -101,7 +101,7 @@ fn function() -> TransferFunction {
         opacity: [(1.0, 0.0), (100.0, 0.9)].map(point).into(),
         reference_length: None,
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     }
 }
 

@@ -138,7 +138,7 @@ fn of_a_ball_in_empty_space_few_samples_are_taken() {
         opacity: [(0.0, 0.0), (20.0, 0.0), (100.0, 0.5)].map(point).into(),
         reference_length: None,
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     };
     let camera = oblique_camera(&volume.grid(), projections(&volume.grid())[0]);
     let settings = Settings::default();
@@ -195,7 +195,7 @@ fn a_voxel_at_the_border_of_a_cell_is_seen_from_the_cells_beside() {
         opacity: [(0.1, 0.0), (0.2, 0.5), (100.0, 0.9)].map(point).into(),
         reference_length: None,
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     };
     let camera = oblique_camera(&volume.grid(), projections(&volume.grid())[0]);
     let mut renderer = Renderer::new(device(), &volume).expect("a renderer");
@@ -259,7 +259,7 @@ fn tiles_that_meet_nothing_are_left_out_and_no_others() {
         opacity: [(20.0, 0.0), (100.0, 0.7)].map(point).into(),
         reference_length: None,
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     };
     for caps in [
         Caps::UNLIMITED,

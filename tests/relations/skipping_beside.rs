@@ -174,7 +174,7 @@ fn functions_of_gradients_are_drawn_the_same_whatever_is_left_out() {
         if numbers.below(2) == 0 {
             function.opacity.clear();
         }
-        function.graded = Some(GradientTransfer {
+        function.gradient_transfer = Some(GradientTransfer {
             steepest: Some(0.3 * (range[1] - range[0])),
             share: [vec![], vec![opacity((0.0, 0.2)), opacity((1.0, 0.9))]][numbers.below(2)]
                 .clone(),
@@ -208,7 +208,7 @@ fn contours_are_left_out_where_no_value_comes_near_them() {
             },
             second: None,
         };
-        function.graded = Some(GradientTransfer {
+        function.gradient_transfer = Some(GradientTransfer {
             steepest: Some(0.3 * (high - low)),
             share: Vec::new(),
             widgets: vec![contour(), contour()],

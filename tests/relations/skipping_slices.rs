@@ -137,7 +137,7 @@ fn white(points: &[(f64, f64)]) -> TransferFunction {
         opacity: points.iter().map(point).collect(),
         reference_length: None,
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     }
 }
 

@@ -62,7 +62,7 @@ fn contours_and_slabs_are_left_out_of_bricks_too() {
     };
     let contours = TransferFunction {
         opacity: Vec::new(),
-        graded: Some(GradientTransfer {
+        gradient_transfer: Some(GradientTransfer {
             steepest: Some(0.3 * (high - low)),
             share: Vec::new(),
             widgets: vec![contour(0.5), contour(0.9)],

@@ -209,6 +209,6 @@ fn transfer_of(matter: &Matter) -> TransferFunction {
         opacity: (0..=OPACITY_POINTS).map(opacity).collect(),
         reference_length: Some(1.0),
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     }
 }

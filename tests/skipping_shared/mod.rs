@@ -95,7 +95,7 @@ pub fn hills(numbers: &mut Numbers, range: [f64; 2]) -> TransferFunction {
             0 => Interpolation::Linear,
             _ => Interpolation::Step,
         },
-        graded: None,
+        gradient_transfer: None,
     }
 }
 

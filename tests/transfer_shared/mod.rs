@@ -56,7 +56,7 @@ pub fn function(random: &mut Random) -> TransferFunction {
         opacity: opacity.collect(),
         reference_length: None,
         interpolation,
-        graded: None,
+        gradient_transfer: None,
     }
 }
 

@@ -143,7 +143,7 @@ impl Look {
     /// What a hand says of light, else what `stratavox render` chooses.
     pub fn wants_light(&self) -> bool {
         let is_chosen =
-            |kind| !self.samples.is_graded() && is_lit(self.mode, self.origin(), || kind);
+            |kind| !self.samples.uses_gradient() && is_lit(self.mode, self.origin(), || kind);
         self.light_by_hand
             .unwrap_or_else(|| self.kind.is_some_and(is_chosen))
     }
@@ -162,7 +162,7 @@ impl Look {
             && !is_lit
             && matches!(self.filter, Filter::Linear | Filter::Nearest)
             && self.technique != Technique::Slices2d
-            && !self.samples.is_graded();
+            && !self.samples.uses_gradient();
         // A function that is thinner than samples lie apart.
         let is_layered = self.kind == Some(Kind::Field) && self.preset.is_none();
         let preintegrated = is_layered && self.samples_by_hand.is_none() && can_be_slabs;
@@ -231,10 +231,16 @@ impl Look {
     pub fn change_from(&self, drawn: &Self) -> Change {
         let kind = |look: &Self| {
             let function = look.function();
-            let is_graded = function.is_some_and(TransferFunction::is_graded);
+            let uses_gradient = function.is_some_and(TransferFunction::uses_gradient);
             let settings = look.settings();
             let pipelines = (settings.shading.is_some(), settings.preintegrated);
-            (look.technique, look.mode, look.filter, pipelines, is_graded)
+            (
+                look.technique,
+                look.mode,
+                look.filter,
+                pipelines,
+                uses_gradient,
+            )
         };
         if kind(self) != kind(drawn) {
             return Change::Kind;

@@ -53,7 +53,7 @@ pub fn mixed(a: &TransferFunction, b: &TransferFunction, s: f64, spacing: f64) -
             .collect(),
         reference_length,
         interpolation: a.interpolation,
-        graded: None,
+        gradient_transfer: None,
     }
 }
 
@@ -154,7 +154,7 @@ pub fn of_key(
 
 /// Between two functions of gradients there is none.
 fn of_value(function: TransferFunction) -> Result<TransferFunction, String> {
-    if function.is_graded() {
+    if function.uses_gradient() {
         return Err(
             "widgets and gradient opacity have no keys: --tf gives them to the whole film"
                 .to_owned(),
@@ -182,7 +182,7 @@ mod tests {
                 .collect(),
             reference_length: None,
             interpolation: Interpolation::Linear,
-            graded: None,
+            gradient_transfer: None,
         }
     }
 

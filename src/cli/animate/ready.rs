@@ -79,7 +79,7 @@ pub fn of_times(
         let classification = shot.classification.classification_of(mode, &mut summary)?;
         if let Classification::Function(function) = &classification
             && function
-                .graded
+                .gradient_transfer
                 .as_ref()
                 .is_some_and(|g| g.steepest.is_none() && g.needs_steepest())
         {

@@ -163,10 +163,10 @@ impl ClassificationFlags {
     pub fn wants_slabs(&self) -> bool {
         let function = self.transfer_function.as_ref();
         let key = |key: &str| function.and_then(|function| function.get(key));
-        let is_graded = ["widgets", "gradient_opacity"]
+        let uses_gradient = ["widgets", "gradient_opacity"]
             .iter()
             .any(|name| key(name).is_some());
-        key("preintegrated") == Some(&serde_json::Value::Bool(true)) && !is_graded
+        key("preintegrated") == Some(&serde_json::Value::Bool(true)) && !uses_gradient
     }
 
     /// True where this program alone has found that the volume holds labels: no value lies between two of them.
@@ -299,7 +299,7 @@ impl ClassificationFlags {
         };
         let range = || Ok(Window::of_range(summary()?.range));
         let function = self.with_parts(function, range)?;
-        if function.is_graded() {
+        if function.uses_gradient() {
             refuse_gradients_in(mode)?;
         }
         Ok(Classification::Function(function))
@@ -341,7 +341,10 @@ impl ClassificationFlags {
 
 /// What is read of a file whose widgets alone have colours: black everywhere.
 fn has_no_color(function: &TransferFunction) -> bool {
-    let widgets = function.graded.iter().flat_map(|graded| &graded.widgets);
+    let widgets = function
+        .gradient_transfer
+        .iter()
+        .flat_map(|gradient_transfer| &gradient_transfer.widgets);
     let is_black = function.color.len() == 1 && function.color[0].srgb == [0.0; 3];
     is_black && widgets.count() > 0
 }

@@ -40,20 +40,20 @@ pub struct Outline {
 
 /// One outline a widget.
 pub fn of(function: &TransferFunction, axes: Axes) -> Vec<Outline> {
-    let Some(graded) = &function.graded else {
+    let Some(gradient_transfer) = &function.gradient_transfer else {
         return Vec::new();
     };
-    let outline = |widget| outline(function, graded, widget, axes);
-    graded.widgets.iter().map(outline).collect()
+    let outline = |widget| outline(function, gradient_transfer, widget, axes);
+    gradient_transfer.widgets.iter().map(outline).collect()
 }
 
 fn outline(
     function: &TransferFunction,
-    graded: &GradientTransfer,
+    gradient_transfer: &GradientTransfer,
     widget: &Widget,
     axes: Axes,
 ) -> Outline {
-    let steepest = graded.steepest.unwrap_or(axes.top);
+    let steepest = gradient_transfer.steepest.unwrap_or(axes.top);
     let middle = |[a, b]: [f64; 2]| 0.5 * (a + b);
     let (shape, value, lines) = match &widget.shape {
         Shape::Contour { value, half_width } => {

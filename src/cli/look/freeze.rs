@@ -126,7 +126,7 @@ impl<'a> Chosen<'a> {
 
     /// The function in the place of the words that made it.
     fn keep_function(&self, scene: &mut SceneFlags, function: &TransferFunction) {
-        if function.is_graded() {
+        if function.uses_gradient() {
             return;
         }
         let mut function = function.clone();

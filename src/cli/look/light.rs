@@ -123,7 +123,7 @@ fn lit(scene: &SceneFlags, mode: Mode, seen: Seen) -> Option<SceneFlags> {
             None => Kind::of(&summary),
         }
     };
-    if function.is_graded() || !is_lit(mode, origin(scene), kind) {
+    if function.uses_gradient() || !is_lit(mode, origin(scene), kind) {
         return None;
     }
     let mut lit = scene.clone();

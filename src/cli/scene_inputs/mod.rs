@@ -236,7 +236,7 @@ impl SceneInputs {
                 unreachable!("one number a voxel is no colour");
             };
             if let Classification::Function(function) = &shown.classification
-                && function.is_graded()
+                && function.uses_gradient()
             {
                 return Err(Error::usage(
                     format!(
@@ -256,7 +256,7 @@ impl SceneInputs {
                 ));
             };
             if let Classification::Function(function) = &shown.classification
-                && function.is_graded()
+                && function.uses_gradient()
             {
                 return Err(Error::usage(
                     "--labels lies over a volume, and widgets and gradient opacity are for one volume alone",

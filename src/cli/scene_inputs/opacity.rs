@@ -132,7 +132,7 @@ impl Reader<'_> {
         else {
             unreachable!("only integrals have no function yet")
         };
-        if function.is_graded() {
+        if function.uses_gradient() {
             return Err(Error::usage(
                 "widgets and gradient opacity are for one volume alone, and the opacity is of other numbers",
                 "take a function of the value alone for --opacity-tf",

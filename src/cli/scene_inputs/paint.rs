@@ -52,7 +52,7 @@ impl Reader<'_> {
                 Window::of_range(volume.value_range).grey(Classified::Samples)
             }
         };
-        if function.is_graded() {
+        if function.uses_gradient() {
             return Err(Error::usage(
                 "--iso-color-by takes the colours of values, and this function is of their gradient too",
                 "take a function of the value alone",

@@ -58,7 +58,7 @@ pub fn classified(shown: SceneInputs, space: ColorSpace) -> Result<SceneInputs, 
     let Classification::Function(function) = &shown.classification else {
         unreachable!("only integrals have no function yet")
     };
-    if function.is_graded() {
+    if function.uses_gradient() {
         return Err(Error::usage(
             "--preclassified classifies voxels by their value, and widgets and gradient opacity need a gradient",
             "leave out --preclassified, or take a function of the value alone",

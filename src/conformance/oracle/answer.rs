@@ -77,7 +77,7 @@ impl Classes {
             opacity: vec![opacity(0), opacity(1)],
             reference_length: Some(1.0),
             interpolation: Interpolation::Linear,
-            graded: None,
+            gradient_transfer: None,
         }
     }
 

@@ -96,13 +96,13 @@ impl<'a> Matter<'a> {
             return (color, self.extinction(of, opacity));
         }
         let own = self.extinction(function, function.opacity(value));
-        let Some(graded) = &function.graded else {
+        let Some(gradient_transfer) = &function.gradient_transfer else {
             return (color, own);
         };
         let slope = self.gradient(place).length();
-        let steepest = graded.steepest.expect("said by whoever asks");
+        let steepest = gradient_transfer.steepest.expect("said by whoever asks");
         let (mut light, mut all) = (own * color, own);
-        for widget in &graded.widgets {
+        for widget in &gradient_transfer.widgets {
             let share = self.share(widget, value, slope, slope / steepest);
             let extinction = self.extinction(function, widget.opacity * share);
             let color = widget.srgb.map_or(color, DVec3::from_array);

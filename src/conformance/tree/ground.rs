@@ -280,7 +280,7 @@ pub fn ramps() -> TransferFunction {
         opacity: vec![opacity(0.2, 0.0), opacity(0.6, 0.15), opacity(0.9, 0.4)],
         reference_length: None,
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     }
 }
 

@@ -376,13 +376,13 @@ fn parts(shot: &PictureCase, look: Look) -> Vec<Part> {
                 second: None,
                 shape: ground::widget_shape(WIDGETS[i]),
             };
-            let graded = GradientTransfer {
+            let gradient_transfer = GradientTransfer {
                 steepest: Some(0.3),
                 share: Vec::new(),
                 widgets: vec![widget],
             };
             let function = TransferFunction {
-                graded: Some(graded),
+                gradient_transfer: Some(gradient_transfer),
                 ..function.clone()
             };
             vec![part(function, Role::Numbers, &ground::waves)]

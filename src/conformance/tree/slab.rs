@@ -93,7 +93,7 @@ fn draw(
         opacity: opacity.iter().map(point).collect(),
         reference_length: Some(1.0),
         interpolation: Interpolation::Linear,
-        graded: None,
+        gradient_transfer: None,
     };
     let absorption = Absorption::Extinction {
         reference_length: 1.0,

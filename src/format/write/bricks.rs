@@ -138,6 +138,11 @@ pub(super) fn write(
     })
 }
 
+/// Whether a file of bricks of such a volume has coarser levels.
+pub(crate) fn has_coarser_levels(dims: [u32; 3]) -> bool {
+    level_dims(dims).len() > 1
+}
+
 /// From the volume to what fits into one brick.
 fn level_dims(dims: [u32; 3]) -> Vec<[u32; 3]> {
     let mut all = vec![dims];

@@ -1,7 +1,7 @@
 //! Half-angle slices on the CPU: the eye's picture and the light's, slice by slice. CPU reference of
-//! [`crate::technique::slices_3d::HalfAngleSlicer`], `shaders/lib/lit_alone.wgsl` and `lit_graded.wgsl`.
+//! [`crate::technique::slices_3d::HalfAngleSlicer`], `shaders/lib/lit_scalar.wgsl` and `lit_scalar_gradient.wgsl`.
 
-use super::{Walk, filtered, moved, steepness};
+use super::{ReferenceRays, filtered, moved, steepness};
 use crate::ray::pixel_ray;
 use crate::real::Real;
 use crate::shaders::Frame;
@@ -15,7 +15,7 @@ use crate::technique::slices_3d::reference::plane_of;
 use crate::technique::{Order, Recording};
 use crate::transfer::{classify_by_gradient, opacity_over};
 
-impl<R: Real> Walk<'_, R> {
+impl<R: Real> ReferenceRays<'_, R> {
     /// All pixels of the picture, in the light of `light`, the recording of the light's pass.
     pub(super) fn gather_in_light(&self, light: &Recording) -> Vec<Gathered<R>> {
         let zero = R::from_f64(0.0);

@@ -27,8 +27,8 @@ pub fn light_of<R: Real>(
     let function = function.ok_or(Error::NoTransferFunction)?;
     let (reference_length, space) = (scene.length_of(function), scene.settings.color_space);
     let points = Points::new(function, Absorption::Extinction { reference_length }, space);
-    let is_graded = function.is_graded();
-    let widgets = is_graded.then(|| PackedWidgets::new(function, reference_length, space));
+    let uses_gradient = function.uses_gradient();
+    let widgets = uses_gradient.then(|| PackedWidgets::new(function, reference_length, space));
     let frame = view.on_cpu()?.frame;
     let volume = read.unwrap_or(scene.volume);
     let filter = match scene.settings.filter {

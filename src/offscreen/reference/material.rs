@@ -1,6 +1,6 @@
 //! What the volumes of a scene are made of in one place: classified, by gradients where they count, and lit.
 
-use super::Walk;
+use super::ReferenceRays;
 use crate::real::{Real, dot, scale};
 use crate::scene::{Beside, Scene};
 use crate::shaders::Frame;
@@ -14,7 +14,7 @@ use crate::transfer::{GradientMagnitude, PackedWidgets, classify_by_gradient};
 use crate::volume::Volume;
 use crate::volume::labels::{DIMMED, marks_of};
 
-impl<R: Real> Walk<'_, R> {
+impl<R: Real> ReferenceRays<'_, R> {
     /// The gradient at `p`; `tap` filters values so many voxels away.
     pub(super) fn gradient(&self, p: [R; 3], tap: impl Fn([i32; 3]) -> Option<R>) -> [R; 3] {
         let operator = self.scene.settings.gradient_operator();

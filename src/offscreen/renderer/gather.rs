@@ -6,7 +6,7 @@ use crate::offscreen::Error;
 use crate::offscreen::submission::Submission;
 use crate::offscreen::time_slices::Spent;
 use crate::scene::Scene;
-use crate::technique::gather::{Brick, PICTURE};
+use crate::technique::gather::{BrickPass, PICTURE};
 use crate::technique::{InPixel, Inputs, Recording};
 use std::sync::Arc;
 
@@ -99,7 +99,7 @@ impl Renderer<'_> {
         let with_others = recordings.iter().zip(beside.iter().map(Vec::as_slice));
         let inputs: Vec<_> = with_others.map(of_recording).collect();
         let brick = |(number, recording): (usize, &Recording)| {
-            Ok(Brick {
+            Ok(BrickPass {
                 number,
                 offset: recording.write(&self.ring, number as u32)?,
                 slices: recording.slices,

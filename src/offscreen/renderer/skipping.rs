@@ -10,7 +10,7 @@ use crate::offscreen::upload::fill;
 use crate::resident::{EmptySpace, FootprintTexels, GpuVolume, Halo, MacroCells};
 use crate::scene::{Beside, Scene};
 use crate::technique::cost::ms_of_fetches;
-use crate::technique::{Mode, Part, PatchRoom, Patches, Role, SampleInputs, Skip, Skippable};
+use crate::technique::{GpuChannel, Mode, PatchRoom, Patches, Role, SampleInputs, Skip, Skippable};
 use crate::transfer::{HomogeneousRanges, TransferFunction, VisibleRanges};
 use crate::volume::Volume;
 use std::sync::Arc;
@@ -230,7 +230,7 @@ impl Renderer<'_> {
     /// Objects for the cells of volume number `number` of the picture.
     fn cells_of(&self, scene: &Scene, number: usize, halo: Halo) -> Result<MacroCells, gpu::Error> {
         let parts = parts_of(&self.resident, self.shown, scene);
-        let Part { volume, role } = parts[number];
+        let GpuChannel { volume, role } = parts[number];
         let gpu = self.device.gpu();
         // Nothing lies between two labels.
         let halo = Halo {

@@ -16,8 +16,8 @@ use crate::offscreen::time_slices::Spent;
 use crate::resident::Halo;
 use crate::scene::Scene;
 use crate::technique::cost::{fetches_of_picture, ms_of_fetches};
-use crate::technique::gather::{Brick, LAYERS, PICTURE};
-use crate::technique::{InPixel, Inputs, Mode, Part, Skippable, View};
+use crate::technique::gather::{BrickPass, LAYERS, PICTURE};
+use crate::technique::{GpuChannel, InPixel, Inputs, Mode, Skippable, View};
 use crate::volume::Volume;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -241,7 +241,7 @@ impl<'v> Renderer<'v> {
                 light: None,
                 skip,
             });
-            bricks.push(Brick {
+            bricks.push(BrickPass {
                 number: nth,
                 offset: recording.write(&self.ring, nth as u32)?,
                 slices: recording.slices,
@@ -307,9 +307,9 @@ impl<'v> Renderer<'v> {
 
 impl Streaming<'_> {
     /// A part that is there, to choose pipelines by.
-    pub fn part(&self) -> Part<'_> {
+    pub fn part(&self) -> GpuChannel<'_> {
         let any = self.cache.any().expect("`upload` brings one in");
-        Part::numbers(&any.volume)
+        GpuChannel::numbers(&any.volume)
     }
 }
 

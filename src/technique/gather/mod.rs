@@ -41,7 +41,7 @@ pub(crate) struct GatherDesc<'a> {
     /// Of slices: the picture, or how many samples it takes.
     pub drawn: Drawn,
     /// What hides samples of slices.
-    pub sight: DepthAccess,
+    pub depth_access: DepthAccess,
     /// Of slices only patches are drawn, which the canvas has lists for.
     pub is_patched: bool,
 }
@@ -70,7 +70,7 @@ pub(crate) trait Gather: Debug + Send + Sync {
 pub(crate) trait Bound: Debug + Send + Sync {
     /// How many steps make a picture that is no sum of tiles, where steps that can be are cut into so many bands;
     /// `None`: it is cut by tiles.
-    fn steps(&self, _: &Canvas, _: &[Brick], _bands: u32) -> Option<u64> {
+    fn steps(&self, _: &Canvas, _: &[BrickPass], _bands: u32) -> Option<u64> {
         None
     }
 
@@ -87,14 +87,14 @@ pub(crate) trait Bound: Debug + Send + Sync {
     unsafe fn record(
         &self,
         player: &mut Player,
-        bricks: &[Brick],
+        bricks: &[BrickPass],
         part: &Part,
     ) -> Result<(), Error>;
 }
 
 /// What is recorded for one brick.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Brick {
+pub(crate) struct BrickPass {
     /// Which of those that were bound.
     pub number: usize,
     /// Of its parameters in the ring.

@@ -15,7 +15,7 @@ use super::super::{
     BATCH_SLICES, Inputs, Order, PatchBindings, PatchRoom, PatchSlicer, Patches, accumulation,
 };
 use super::slices::{batch_image, batches, blend_format, clear_of};
-use super::{Bound, Brick, Canvas, CanvasDesc, Gather, GatherDesc, PICTURE, Part, Player};
+use super::{Bound, BrickPass, Canvas, CanvasDesc, Gather, GatherDesc, PICTURE, Part, Player};
 use crate::gpu::{Bindings, Error, Gpu, Load, Resource, Tile, Use};
 use std::ops::Range;
 use std::sync::Arc;
@@ -100,14 +100,14 @@ struct BoundPatches {
 }
 
 impl Bound for BoundPatches {
-    fn steps(&self, _: &Canvas, bricks: &[Brick], _: u32) -> Option<u64> {
+    fn steps(&self, _: &Canvas, bricks: &[BrickPass], _: u32) -> Option<u64> {
         Some((self.all_steps(bricks).count() as u64).max(1))
     }
 
     unsafe fn record(
         &self,
         player: &mut Player,
-        bricks: &[Brick],
+        bricks: &[BrickPass],
         part: &Part,
     ) -> Result<(), Error> {
         let is_picture = self.drawn != Drawn::Count;
@@ -146,10 +146,10 @@ impl Bound for BoundPatches {
 }
 
 /// Some slices of a brick that are drawn at once.
-type Step<'a> = (&'a Brick, Range<u32>);
+type Step<'a> = (&'a BrickPass, Range<u32>);
 
 impl BoundPatches {
-    fn all_steps<'a>(&self, bricks: &'a [Brick]) -> impl Iterator<Item = Step<'a>> {
+    fn all_steps<'a>(&self, bricks: &'a [BrickPass]) -> impl Iterator<Item = Step<'a>> {
         let is_merged = self.merge.is_some();
         bricks.iter().flat_map(move |brick| {
             let at_once = match is_merged || brick.order == Order::FrontToBack {
@@ -162,7 +162,7 @@ impl BoundPatches {
 
     /// # Safety
     /// As [`Bound::record`].
-    unsafe fn start(&self, player: &mut Player, bricks: &[Brick], is_picture: bool) {
+    unsafe fn start(&self, player: &mut Player, bricks: &[BrickPass], is_picture: bool) {
         // SAFETY: the caller's promises.
         unsafe {
             // What has been opaque in the picture is not counted either.

@@ -11,7 +11,7 @@ use super::super::raycast::Raycast;
 use super::super::{
     Inputs, RayBindings, RayTiles, SampleInputs, Settings, ShaderVariant, accumulation,
 };
-use super::{Bound, Brick, Canvas, CanvasDesc, Gather, GatherDesc, PICTURE, Part, Player};
+use super::{Bound, BrickPass, Canvas, CanvasDesc, Gather, GatherDesc, PICTURE, Part, Player};
 use crate::gpu::{Error, Gpu, Image, Resource, Tile, Use};
 use ash::vk;
 use std::sync::Arc;
@@ -104,7 +104,7 @@ impl Bound for BoundRays {
     unsafe fn record(
         &self,
         player: &mut Player,
-        bricks: &[Brick],
+        bricks: &[BrickPass],
         part: &Part,
     ) -> Result<(), Error> {
         let (cmd, extent) = (player.cmd, player.canvas.extent());

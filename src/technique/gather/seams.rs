@@ -104,11 +104,16 @@ impl Gather for Sum {
 }
 
 impl Bound for BoundSum {
-    fn steps(&self, _: &Canvas, _: &[Brick], _: u32) -> Option<u64> {
+    fn steps(&self, _: &Canvas, _: &[BrickPass], _: u32) -> Option<u64> {
         Some(STEPS)
     }
 
-    unsafe fn record(&self, player: &mut Player, _: &[Brick], part: &Part) -> Result<(), Error> {
+    unsafe fn record(
+        &self,
+        player: &mut Player,
+        _: &[BrickPass],
+        part: &Part,
+    ) -> Result<(), Error> {
         let extent = player.canvas.extent();
         // SAFETY: the caller's promises.
         unsafe {
@@ -234,7 +239,7 @@ fn a_picture_goes_on_from_what_a_box_of_bricks_has_left() {
             skip: Skip::Nothing,
         };
         let inputs: Vec<_> = recordings.iter().map(inputs).collect();
-        let brick = |(number, recording): (usize, &Recording)| Brick {
+        let brick = |(number, recording): (usize, &Recording)| BrickPass {
             number,
             offset: recording.write(&ring, number as u32).expect("a slot"),
             slices: recording.slices,
@@ -249,7 +254,7 @@ fn a_picture_goes_on_from_what_a_box_of_bricks_has_left() {
             settings: &settings,
             variant: &variant,
             drawn: Drawn::Picture(settings.mode),
-            sight: DepthAccess::None,
+            depth_access: DepthAccess::None,
             is_patched: false,
         };
         let gather = (technique.desc().gather)(&desc).expect("pipelines");
@@ -262,7 +267,7 @@ fn a_picture_goes_on_from_what_a_box_of_bricks_has_left() {
             })
             .expect("images");
         let bound = gather.bind(&canvas, &inputs, None).expect("sets");
-        let mut picture = |boxes: &[&[Brick]]| {
+        let mut picture = |boxes: &[&[BrickPass]]| {
             for (number, bricks) in boxes.iter().enumerate() {
                 match number {
                     0 => canvas.begin(),

@@ -16,7 +16,7 @@ use super::super::host_depth_copy::{FARTHEST, HostDepthCopy};
 use super::super::merge::{BATCH_FORMAT, MAX_BATCH_SLICES, Merge, is_merged};
 use super::super::{ACCUMULATION_FORMAT, DepthAccess, Inputs, Settings, Slicer, accumulation};
 use super::patches::patches;
-use super::{Bound, Brick, Canvas, CanvasDesc, Gather, GatherDesc, PICTURE, Part, Player};
+use super::{Bound, BrickPass, Canvas, CanvasDesc, Gather, GatherDesc, PICTURE, Part, Player};
 use crate::gpu::{Bindings, Error, Gpu, Image, ImageDesc, ImageKind, Load, Resource, Tile, Use};
 use ash::vk;
 use std::ops::Range;
@@ -31,20 +31,31 @@ pub(in crate::technique) fn slices(desc: &GatherDesc) -> Result<Box<dyn Gather>,
         return patches(desc);
     }
     let GatherDesc {
-        gpu, drawn, sight, ..
+        gpu,
+        drawn,
+        depth_access,
+        ..
     } = *desc;
     let Settings {
         technique, order, ..
     } = *desc.settings;
     let format = blend_format(gpu, drawn);
-    let is_tested = sight == DepthAccess::Tested;
+    let is_tested = depth_access == DepthAccess::Tested;
     let target = match is_tested {
         true => HostDepthCopy::target(format),
         false => format.into(),
     };
     let merge = || Merge::new(gpu, drawn, order).map(Arc::new);
     let host_depth = || HostDepthCopy::new(gpu, format).map(Arc::new);
-    let slicer = Slicer::seen(gpu, technique, drawn, order, desc.variant, target, sight)?;
+    let slicer = Slicer::seen(
+        gpu,
+        technique,
+        drawn,
+        order,
+        desc.variant,
+        target,
+        depth_access,
+    )?;
     Ok(Box::new(Slices {
         gpu: Arc::clone(gpu),
         slicer: Arc::new(slicer),
@@ -155,7 +166,7 @@ impl Bound for BoundSlices {
     unsafe fn record(
         &self,
         player: &mut Player,
-        bricks: &[Brick],
+        bricks: &[BrickPass],
         part: &Part,
     ) -> Result<(), Error> {
         let cleared = Load::Clear(self.clear);
@@ -207,7 +218,7 @@ impl BoundSlices {
     unsafe fn draw<'a>(
         &self,
         player: &mut Player,
-        slices: impl Iterator<Item = (&'a Brick, Range<u32>)> + Clone,
+        slices: impl Iterator<Item = (&'a BrickPass, Range<u32>)> + Clone,
         target: (usize, Load),
         tiles: &[Tile],
     ) {

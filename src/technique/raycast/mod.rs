@@ -66,7 +66,7 @@ impl Raycast {
         let mode = of.shader_key();
         let name = match take {
             _ if of == Mode::Iso && mix == SampleInputs::Channels => {
-                format!("isosurface.by.{filter}.{holes}")
+                format!("isosurface.volume.{filter}.{holes}")
             }
             _ if of == Mode::Iso => format!("isosurface.{filter}.{holes}"),
             SampleKind::Preintegrated => {

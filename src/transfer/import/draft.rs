@@ -170,7 +170,7 @@ impl Draft {
                 opacity: opacity.collect(),
                 reference_length: self.reference_length,
                 interpolation: Interpolation::Linear,
-                graded: None,
+                gradient_transfer: None,
             },
             origin: self.origin,
             name: self.name,

@@ -85,7 +85,7 @@ fn white(steps: &[(f64, f64)]) -> TransferFunction {
         opacity: steps.iter().map(point).collect(),
         reference_length: Some(1.0),
         interpolation: Interpolation::Step,
-        graded: None,
+        gradient_transfer: None,
     }
 }
 

@@ -92,8 +92,8 @@ fn holes_cuts_and_widgets_throw_the_shadows_of_their_references() {
             half_width: 2.0,
         },
     };
-    let graded = TransferFunction {
-        graded: Some(GradientTransfer {
+    let gradient_transfer = TransferFunction {
+        gradient_transfer: Some(GradientTransfer {
             steepest: Some(0.3),
             share: Vec::new(),
             widgets: vec![widget],
@@ -120,7 +120,7 @@ fn holes_cuts_and_widgets_throw_the_shadows_of_their_references() {
     check(&mut renderer, &cut.scene(&volume, Some(&ramps())), "cut");
     check(
         &mut renderer,
-        &whole.scene(&volume, Some(&graded)),
+        &whole.scene(&volume, Some(&gradient_transfer)),
         "widgets, headlight",
     );
 }

@@ -184,7 +184,7 @@ fn weighted() -> TransferFunction {
         ),
     ];
     TransferFunction {
-        graded: Some(GradientTransfer {
+        gradient_transfer: Some(GradientTransfer {
             steepest: Some(0.3),
             share: Vec::new(),
             widgets,
@@ -198,7 +198,7 @@ fn every_technique_draws_second_derivatives_and_images_as_its_reference_does() {
     let mut volume = volume_of(GRID().dims, sheared_affine(), waves);
     let function = weighted();
     let mut unweighted = function.clone();
-    for widget in &mut unweighted.graded.as_mut().unwrap().widgets {
+    for widget in &mut unweighted.gradient_transfer.as_mut().unwrap().widgets {
         widget.second = None;
     }
     for holes in [false, true] {

@@ -43,7 +43,7 @@ pub fn function(ui: &mut Ui, view: &mut View) {
     ends(ui, values);
     chosen(ui, view.curve.chosen, function);
     view.is_moving |= *function != before;
-    if function.is_graded() {
+    if function.uses_gradient() {
         ui.weak("Opacity depends on the gradient too.");
     }
 }

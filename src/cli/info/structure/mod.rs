@@ -113,7 +113,7 @@ pub fn read(
         filter,
         ..Settings::default()
     };
-    let before = (!function.is_graded()).then(|| full_before_filtering(&volume, &function));
+    let before = (!function.uses_gradient()).then(|| full_before_filtering(&volume, &function));
     let after = full_after_filtering(&volume, &function, settings.halo());
     Ok(StructureReport {
         filter: filter.to_string(),

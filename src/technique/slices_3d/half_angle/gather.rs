@@ -11,7 +11,7 @@
 use super::{HalfAngleBindings, HalfAngleSlicer, HalfAngleSlices, light_buffer, light_extent};
 use crate::gpu::{Error, Gpu, Load, Resource, Tile, Use};
 use crate::technique::gather::{
-    Bound, Brick, Canvas, CanvasDesc, Gather, GatherDesc, PICTURE, Part, Player,
+    Bound, BrickPass, Canvas, CanvasDesc, Gather, GatherDesc, PICTURE, Part, Player,
 };
 use crate::technique::{Inputs, accumulation};
 use std::sync::Arc;
@@ -94,7 +94,7 @@ impl Bands {
 
 impl Bound for BoundHalfAngle {
     /// At least one, which clears.
-    fn steps(&self, canvas: &Canvas, bricks: &[Brick], bands: u32) -> Option<u64> {
+    fn steps(&self, canvas: &Canvas, bricks: &[BrickPass], bands: u32) -> Option<u64> {
         let a_slice = [PICTURE, LIGHT].map(|image| Bands::new(canvas, image, bands).count());
         let steps = a_slice.iter().sum::<u64>() * u64::from(bricks[0].slices);
         Some(steps.max(1))
@@ -103,7 +103,7 @@ impl Bound for BoundHalfAngle {
     unsafe fn record(
         &self,
         player: &mut Player,
-        bricks: &[Brick],
+        bricks: &[BrickPass],
         part: &Part,
     ) -> Result<(), Error> {
         let [eye, light] = bricks else {

@@ -1,6 +1,6 @@
 // What a sample is made of where light falls on it unhindered, by central differences, and no more: most of what
-// material_graded.wgsl can do is not wanted most of the time, and drivers on CPUs go through it for each sample.
-// CPU reference: that of material_graded.wgsl.
+// material_scalar_gradient.wgsl can do is not wanted most of the time, and drivers on CPUs go through it for each sample.
+// CPU reference: that of material_scalar_gradient.wgsl.
 
 #import transfer_{transfer}
 #import gradient_central

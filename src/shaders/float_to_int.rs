@@ -1,4 +1,4 @@
-//! Floats to whole numbers by shifts, for drivers that take long over the instruction for it.
+//! Converts floats to integers by shifts, for drivers that take long over the instruction for it.
 //!
 //! ```text
 //! |x| = 2^(e - 150) m      e: bits 23 to 30 of x; m: those below, behind a one

@@ -1,7 +1,7 @@
-//! Asks both sides of `&&` and `||` where the second costs nothing.
+//! Evaluates both operands of `&&` and `||` where the second costs nothing (if-conversion of short-circuit operators).
 //!
-//! naga makes a branch of each, so that the second side is asked only where the first leaves it open. Most second sides
-//! are a comparison: on devices that run both arms under a mask such a branch costs more than it spares. And
+//! naga makes a branch of each, so that the second operand is evaluated only where the first leaves it open. Most second
+//! operands are a comparison: on devices that run both arms under a mask such a branch costs more than it spares. And
 //! SwiftShader takes, for each loop, as many steps as there are shortest ways through it (`Function::ExistsPath`, which
 //! marks a block when it leaves it and not when it comes to it): twice as many for each branch with arms of the same
 //! length (`docs/conformance.md`).
@@ -10,7 +10,7 @@
 //! var r; if a { r = b } else { r = false }    ->    r = select(false, b, a)
 //! ```
 //!
-//! Answers are the same, bit for bit. A second side that calls, reads a texture, or reads at a place that the first may
+//! Answers are the same, bit for bit. A second operand that calls, reads a texture, or reads at a place that the first may
 //! have to allow stays behind its branch.
 
 use naga::{
@@ -19,7 +19,7 @@ use naga::{
 };
 
 /// Replaces such branches of the whole module.
-pub fn ask_both_sides(module: &mut Module) {
+pub fn evaluate_both_operands(module: &mut Module) {
     let globals = &module.global_variables;
     let functions = module.functions.iter_mut().map(|(_, function)| function);
     let entries = module
@@ -33,43 +33,45 @@ pub fn ask_both_sides(module: &mut Module) {
             local_variables: locals,
             ..
         } = function;
-        Asking { globals, locals }.ask_in(body, expressions);
+        Flattening { globals, locals }.flatten_in(body, expressions);
     }
 }
 
 /// What names and places of variables depend on.
-struct Asking<'m> {
+struct Flattening<'m> {
     globals: &'m Arena<GlobalVariable>,
     locals: &'m Arena<LocalVariable>,
 }
 
-impl Asking<'_> {
-    fn ask_in(&self, block: &mut Block, expressions: &mut Arena<Expression>) {
+impl Flattening<'_> {
+    fn flatten_in(&self, block: &mut Block, expressions: &mut Arena<Expression>) {
         for (mut statement, span) in std::mem::take(block).span_into_iter() {
             match &mut statement {
-                Statement::Block(inner) => self.ask_in(inner, expressions),
+                Statement::Block(inner) => self.flatten_in(inner, expressions),
                 Statement::If {
                     condition,
                     accept,
                     reject,
                 } => {
-                    self.ask_in(accept, expressions);
-                    self.ask_in(reject, expressions);
-                    if let Some(mut asked) = self.asked(*condition, accept, reject, expressions) {
-                        block.append(&mut asked);
+                    self.flatten_in(accept, expressions);
+                    self.flatten_in(reject, expressions);
+                    if let Some(mut flattened) =
+                        self.flattened(*condition, accept, reject, expressions)
+                    {
+                        block.append(&mut flattened);
                         continue;
                     }
                 }
                 Statement::Switch { cases, .. } => {
                     for case in cases {
-                        self.ask_in(&mut case.body, expressions);
+                        self.flatten_in(&mut case.body, expressions);
                     }
                 }
                 Statement::Loop {
                     body, continuing, ..
                 } => {
-                    self.ask_in(body, expressions);
-                    self.ask_in(continuing, expressions);
+                    self.flatten_in(body, expressions);
+                    self.flatten_in(continuing, expressions);
                 }
                 _ => {}
             }
@@ -78,7 +80,7 @@ impl Asking<'_> {
     }
 
     /// What stands in the place of the branch, where it is one of those.
-    fn asked(
+    fn flattened(
         &self,
         condition: Handle<Expression>,
         accept: &Block,
@@ -95,7 +97,8 @@ impl Asking<'_> {
         let (same, otherwise) = answer(left_open)?;
         let (last, before) = accept.split_last()?;
         let (pointer, value) = answer(last)?;
-        let is_one = self.answer_of(pointer, expressions)? == self.answer_of(same, expressions)?;
+        let is_one = self.result_variable(pointer, expressions)?
+            == self.result_variable(same, expressions)?;
         let is_literal = matches!(expressions[otherwise], Expression::Literal(_));
         let is_free = before
             .iter()
@@ -119,8 +122,8 @@ impl Asking<'_> {
         Some(block)
     }
 
-    /// The variable of an answer. Those have no name: what a shader calls by one may be read elsewhere.
-    fn answer_of(
+    /// The variable of a result. Those have no name: what a shader calls by one may be read elsewhere.
+    fn result_variable(
         &self,
         pointer: Handle<Expression>,
         expressions: &Arena<Expression>,
@@ -131,7 +134,7 @@ impl Asking<'_> {
         }
     }
 
-    /// Arithmetic, loads from places that are always there, and answers inside of the second side.
+    /// Arithmetic, loads from places that are always there, and results inside of the second operand.
     fn costs_nothing(&self, statement: &Statement, expressions: &Arena<Expression>) -> bool {
         match statement {
             Statement::Emit(range) => range.clone().all(|made| match expressions[made] {
@@ -148,7 +151,9 @@ impl Asking<'_> {
                 | Expression::As { .. } => true,
                 _ => false,
             }),
-            Statement::Store { pointer, .. } => self.answer_of(*pointer, expressions).is_some(),
+            Statement::Store { pointer, .. } => {
+                self.result_variable(*pointer, expressions).is_some()
+            }
             _ => false,
         }
     }

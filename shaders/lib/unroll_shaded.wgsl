@@ -8,7 +8,7 @@ fn gathered(before: Accumulator, segments: RaySegments, start: i32) -> Accumulat
     loop {
         var found = Met(Sample(0.0, vec3(0.0), vec3(0.0)), Segment(0.0, 0.0), false);
         loop {
-            k = skipped(so_far, segments.walk, k);
+            k = skipped(so_far, segments.line, k);
             if k >= segments.end || is_finished(so_far) {
                 break;
             }

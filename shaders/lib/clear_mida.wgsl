@@ -1,6 +1,6 @@
 // What rays of MIDA leave that meet nothing.
 
-#import nothing_images
+#import clear_images
 #import no_value
 
 fn kept() -> f32 {

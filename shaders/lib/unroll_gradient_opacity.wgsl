@@ -1,3 +1,3 @@
 // As where gradients count for light alone: they are expensive.
 
-#import unroll_lit
+#import unroll_shaded

@@ -1,6 +1,6 @@
 //! What the build makes of `&&` and `||`: no branch where the second side costs nothing, and a branch where it does.
 
-#[path = "../../shaders/both_sides.rs"]
+#[path = "../../shaders/short_circuit.rs"]
 mod pass;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -46,7 +46,7 @@ fn branches(block: &Block) -> usize {
 fn counts(question: &str) -> [usize; 2] {
     let mut module = module(question);
     let before = branches(&module.entry_points[0].function.body);
-    pass::ask_both_sides(&mut module);
+    pass::evaluate_both_operands(&mut module);
     Validator::new(ValidationFlags::all(), Capabilities::empty())
         .validate(&module)
         .unwrap_or_else(|e| panic!("{question}: {e:?}"));

@@ -1,6 +1,6 @@
 // What rays of composites and surfaces leave that meet nothing.
 
-#import nothing_images
+#import clear_images
 
 fn kept() -> f32 {
     return 0.0;

@@ -1,4 +1,4 @@
-//! Keeps drivers from compiling a program anew for the parameters of each picture.
+//! Ties branches to opaque predicates: keeps drivers from compiling a program anew for the parameters of each picture.
 //!
 //! lavapipe of Mesa 22 puts the values of a uniform buffer that branches depend on into the program before each dispatch
 //! and each draw (`lvp_inline_uniforms.c`), compiles that, and keeps what it compiled as long as the device lives. It

@@ -1,4 +1,4 @@
-//! Reads parameters from their uniform buffer on every driver but llvmpipe: undoes `read_once.rs` where the
+//! Loads parameters from their uniform buffer on every driver but llvmpipe: undoes `read_once.rs` where the
 //! specialization constant `software` is not 1. Part of `build.rs`.
 //!
 //! ```text
@@ -20,7 +20,7 @@ const BOUND: usize = 3;
 
 /// The words of a module with these choices; `software` is the `SpecId` of the constant. As they are where there is no
 /// such constant, or no copy of a uniform buffer.
-pub fn chosen_by(software: u32, words: &[u32]) -> Vec<u32> {
+pub fn read_directly(software: u32, words: &[u32]) -> Vec<u32> {
     let Some(mut module) = Choosing::of(software, words) else {
         return words.to_vec();
     };

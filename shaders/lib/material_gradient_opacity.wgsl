@@ -1,6 +1,6 @@
 // What a sample is made of where its opacity is weighed by how steep it is there, by central differences, and light
-// falls on it unhindered: of what material_graded.wgsl can do, what is wanted most of the time. CPU reference: that of
-// material_graded.wgsl.
+// falls on it unhindered: of what material_scalar_gradient.wgsl can do, what is wanted most of the time. CPU reference: that of
+// material_scalar_gradient.wgsl.
 
 #import transfer_{transfer}
 #import gradient_central
@@ -15,7 +15,7 @@ fn material_of(sample: Sample) -> Classified {
         return material;
     }
     let gradient = gradient_of(central_slope(sample.place));
-    let extinction = weighed(material.extinction, norm(gradient) * widget_entry(0).x);
+    let extinction = weighted_extinction(material.extinction, norm(gradient) * widget_entry(0).x);
     // A cut face, seen along no direction, has its own colour, and without lights all light is ambient.
     if all(sample.ray_direction == vec3(0.0)) {
         return Classified(material.color, extinction);

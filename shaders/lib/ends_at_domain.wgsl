@@ -2,6 +2,6 @@
 
 #import ray
 
-fn in_sight(interval: vec2<f32>, world: Ray, pixel: vec2<f32>) -> vec2<f32> {
+fn visible_interval(interval: vec2<f32>, world: Ray, pixel: vec2<f32>) -> vec2<f32> {
     return interval;
 }

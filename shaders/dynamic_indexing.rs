@@ -1,4 +1,4 @@
-//! Chooses among few parameters the one that is found by a number.
+//! Replaces dynamic indexing of a few parameters by selects.
 //!
 //! What a compute pass asks of its parameters by name is read once (`read_once.rs`). What it finds by a number that is
 //! known only then, an element of an array or a component of a vector, llvmpipe reads word by word for each invocation,
@@ -23,7 +23,7 @@ use std::collections::BTreeMap;
 const MOST: u32 = 8;
 
 /// Rewrites each such place of a compute pass.
-pub fn choose_among_few(module: &mut Module) {
+pub fn index_by_selects(module: &mut Module) {
     let is_pass = |stage| stage == ShaderStage::Compute;
     if !module.entry_points.iter().all(|entry| is_pass(entry.stage)) {
         return;
@@ -35,7 +35,7 @@ pub fn choose_among_few(module: &mut Module) {
         .map(|entry| &mut entry.function);
     let functions = module.functions.iter_mut().map(|(_, function)| function);
     for function in functions.chain(entries) {
-        choose_in(
+        rewrite(
             function,
             &mut module.types,
             &module.global_variables,
@@ -44,7 +44,7 @@ pub fn choose_among_few(module: &mut Module) {
     }
 }
 
-fn choose_in(
+fn rewrite(
     function: &mut Function,
     types: &mut UniqueArena<Type>,
     globals: &Arena<GlobalVariable>,
@@ -58,13 +58,13 @@ fn choose_in(
         }
     }
     for (&made, choice) in &choices {
-        // Who asks for the place asks for the variable.
+        // What reads the place reads the variable.
         function.expressions[made] = Expression::LocalVariable(choice.chosen);
     }
     let Function {
         body, expressions, ..
     } = function;
-    choose_in_block(body, expressions, &choices);
+    rewrite_block(body, expressions, &choices);
 }
 
 /// What one place is replaced by.
@@ -131,11 +131,11 @@ impl Choice {
         })
     }
 
-    /// Chooses, where the place was asked for, or reads that element.
+    /// Chooses, where the place was read, or reads that element.
     fn chosen(&self, expressions: &mut Arena<Expression>) -> Block {
-        let among = self.among_all(expressions);
+        let selects = self.selects(expressions);
         let Some(software) = self.software else {
-            return among;
+            return selects;
         };
         let span = Span::UNDEFINED;
         let mut add = |expression| expressions.append(expression, span);
@@ -160,22 +160,22 @@ impl Choice {
         });
         let value = add(Expression::Load { pointer: place });
         let made = Range::new_from_bounds(first.unwrap_or(place), value);
-        let mut straight = Block::new();
-        straight.push(Statement::Emit(made), span);
-        straight.push(Statement::Store { pointer, value }, span);
+        let mut direct = Block::new();
+        direct.push(Statement::Emit(made), span);
+        direct.push(Statement::Store { pointer, value }, span);
         let mut block = Block::new();
         let made = Range::new_from_bounds(condition, condition);
         block.push(Statement::Emit(made), span);
         let choice = Statement::If {
             condition,
-            accept: among,
-            reject: straight,
+            accept: selects,
+            reject: direct,
         };
         block.push(choice, span);
         block
     }
 
-    fn among_all(&self, expressions: &mut Arena<Expression>) -> Block {
+    fn selects(&self, expressions: &mut Arena<Expression>) -> Block {
         let span = Span::UNDEFINED;
         let mut block = Block::new();
         let mut add = |expression| expressions.append(expression, span);
@@ -235,7 +235,7 @@ fn path_to(
     }
 }
 
-fn choose_in_block(
+fn rewrite_block(
     block: &mut Block,
     expressions: &mut Arena<Expression>,
     choices: &BTreeMap<Handle<Expression>, Choice>,
@@ -257,21 +257,21 @@ fn choose_in_block(
                 }
                 continue;
             }
-            Statement::Block(inner) => choose_in_block(inner, expressions, choices),
+            Statement::Block(inner) => rewrite_block(inner, expressions, choices),
             Statement::If { accept, reject, .. } => {
-                choose_in_block(accept, expressions, choices);
-                choose_in_block(reject, expressions, choices);
+                rewrite_block(accept, expressions, choices);
+                rewrite_block(reject, expressions, choices);
             }
             Statement::Switch { cases, .. } => {
                 for case in cases {
-                    choose_in_block(&mut case.body, expressions, choices);
+                    rewrite_block(&mut case.body, expressions, choices);
                 }
             }
             Statement::Loop {
                 body, continuing, ..
             } => {
-                choose_in_block(body, expressions, choices);
-                choose_in_block(continuing, expressions, choices);
+                rewrite_block(body, expressions, choices);
+                rewrite_block(continuing, expressions, choices);
             }
             _ => {}
         }

@@ -66,9 +66,13 @@ fn pictures_of_the_program_for_weights_are_those_of_the_general_one() {
                 gradients: [0.0, 1e6],
             },
         );
-        general.graded.as_mut().expect("graded").widgets = vec![nothing];
+        general
+            .gradient_transfer
+            .as_mut()
+            .expect("gradient_transfer")
+            .widgets = vec![nothing];
         let mut even = weighing.clone();
-        even.graded = None;
+        even.gradient_transfer = None;
         for filter in [Filter::Linear, Filter::Nearest] {
             for shading in [None, Some(Shading::default())] {
                 let camera = oblique_shots(volume.grid(), Mode::Composite)[0].camera;

@@ -1,4 +1,4 @@
-//! Lets fragments take parameters from the vertices in place of the uniform buffer.
+//! Gives fragments parameters as flat varyings of the vertices, in place of the uniform buffer.
 //!
 //! llvmpipe reads a value of a uniform buffer by one instruction where the first of eight invocations is sure to be at
 //! work. Of fragments it never is, and each value takes thirty (`invocation_0_must_be_active` in Mesa's
@@ -12,7 +12,7 @@
 //! Together they are the least that Vulkan allows for, 64 components. `shaders/lib/vertex_planes.wgsl` and
 //! `vertex_stack.wgsl` hand them over.
 
-use crate::read_once::asked_of_a_copy;
+use crate::read_once::redirect_to_copy;
 use naga::{
     AddressSpace, Binding, Block, Expression, Function, FunctionArgument, GlobalVariable, Handle,
     Interpolation, Module, Range, Scalar, ScalarKind, ShaderStage, Span, Statement, StructMember,
@@ -100,7 +100,7 @@ fn take(module: &mut Module, names: &[&str]) {
     };
     let is_handed = |index: u32| argument_of(&members[index as usize]).is_some();
     let name = module.global_variables[uniform].name.clone();
-    let (copy, asked) = asked_of_a_copy(module, uniform, ty, name, is_handed);
+    let (copy, asked) = redirect_to_copy(module, uniform, ty, name, is_handed);
     let types = module.types.clone();
     let function = &mut module.entry_points[0].function;
     let first = function.arguments.len() as u32;

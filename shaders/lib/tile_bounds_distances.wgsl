@@ -6,7 +6,7 @@
 // The least way that is worth a look, in voxels.
 const LEAST_VOXELS: f32 = 2.0;
 
-fn known_part(frustum: TileFrustum, within: vec2<f32>) -> vec2<f32> {
+fn tile_bounds(frustum: TileFrustum, within: vec2<f32>) -> vec2<f32> {
     // Cut faces are seen in empty space too, and surfaces that a ray meets between two bricks belong to the farther
     // one.
     let is_known = frame.cells.x != 0u && frame.cut_faces == 0u && (frame.level_count == 0u || frame.is_only_brick != 0u);

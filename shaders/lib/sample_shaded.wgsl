@@ -1,3 +1,3 @@
 // As where gradients count for more than light.
 
-#import sample_graded
+#import sample_scalar_gradient

@@ -4,7 +4,7 @@
 #import channels
 #import transfer_points
 
-fn painted(index: u32, place: Place) -> vec3<f32> {
+fn surface_color(index: u32, place: Place) -> vec3<f32> {
     if !channel_has_data(1u, place) {
         return frame.level_colors[index].xyz;
     }
