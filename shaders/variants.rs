@@ -364,8 +364,12 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     ("slices_3d_half", &[ONE, NARROW, HOLES, TRANSFER, TAPS]),
     (
         "resolve",
-        &[slot("source", &["picture", "value", "mean", "cued"])],
+        &[slot(
+            "source",
+            &["picture", "value", "covered", "mean", "cued"],
+        )],
     ),
+    ("warp", &[slot("source", &["mean", "value"])]),
     ("resolve_cover", &[]),
     (
         "resolve_depth",

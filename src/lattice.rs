@@ -4,12 +4,12 @@
 //! ```text
 //! ray:        t = t0 + (k + 1/2) h, by multiplication; the last, shorter segment at its own middle
 //! jitter:     t0 less a part of h that depends on the pixel; the first, shorter segment at its own middle too
-//! planes:     n . (o + t r) = (k + 1/2) h, a sample stands for h / (n . r)
+//! planes:     n . (o + t r) = (k + 1/2) h + c, a sample stands for h / (n . r)
 //! bresenham:  (o + t d)_k = (j + 1/2) / D, k the main axis of the ray in voxel space, a sample stands for 1 / (D |d_k|)
 //! ```
 
 use crate::blue_noise::jitter_of;
-use crate::ray::{Ray, plane_length, plane_t, vector};
+use crate::ray::{Ray, plane_height, plane_length, plane_t, vector};
 use crate::real::{Real, dot};
 use crate::shaders::Frame;
 
@@ -106,7 +106,7 @@ pub fn on_planes<R: Real>(
     [t0, t1]: [R; 2],
 ) -> impl Iterator<Item = Segment<R>> {
     let forward = vector(frame.forward);
-    let origin = dot(forward, world.origin);
+    let origin = plane_height(frame, world);
     let slope = dot(forward, world.direction);
     let plane_at = |t: R| (origin + t * slope) / R::from_f32(frame.step_world) - R::from_f64(0.5);
     // One plane more at each end: rounding may not lose one, the filter has the last word.
@@ -199,7 +199,7 @@ pub fn slabs_along_ray<R: Real>(
 /// The slab around plane `k`, cut to the interval. CPU reference of `slab.wgsl`.
 pub fn plane_slab<R: Real>(frame: &Frame, world: &Ray<R>, interval: [R; 2], k: i32) -> Slab<R> {
     let forward = vector(frame.forward);
-    let (origin, slope) = (dot(forward, world.origin), dot(forward, world.direction));
+    let (origin, slope) = (plane_height(frame, world), dot(forward, world.direction));
     let step = R::from_f32(frame.step_world);
     let edge = |k: i32| (R::from_f64(f64::from(k)) * step - origin) / slope;
     Slab::cut([edge(k), edge(k + 1)], interval, plane_length(frame, world))
@@ -212,7 +212,7 @@ pub fn slabs_on_planes<R: Real>(
     [t0, t1]: [R; 2],
 ) -> impl Iterator<Item = Slab<R>> {
     let forward = vector(frame.forward);
-    let (origin, slope) = (dot(forward, world.origin), dot(forward, world.direction));
+    let (origin, slope) = (plane_height(frame, world), dot(forward, world.direction));
     let plane_at = |t: R| (origin + t * slope) / R::from_f32(frame.step_world) - R::from_f64(0.5);
     let planes = plane_at(t0).floor().to_i32()..=plane_at(t1).ceil().to_i32();
     planes.map(move |k| plane_slab(frame, world, [t0, t1], k))

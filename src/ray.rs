@@ -113,11 +113,16 @@ fn clip_interval<R: Real>(interval: [R; 2], &[x, y, z, w]: &[f32; 4], world: &Ra
     }
 }
 
-/// Where plane k of the view-aligned lattice meets the ray: forward . x = (k + 1/2) step.
+/// How far the origin of a ray lies along the planes' normal, which they count from.
+pub fn plane_height<R: Real>(frame: &Frame, world: &Ray<R>) -> R {
+    dot(vector(frame.forward), world.origin) - R::from_f32(frame.plane_offset)
+}
+
+/// Where plane k of a lattice of planes meets the ray: forward . x = (k + 1/2) step + offset.
 pub fn plane_t<R: Real>(frame: &Frame, world: &Ray<R>, k: i32) -> R {
     let height = (R::from_f64(f64::from(k)) + R::from_f64(0.5)) * R::from_f32(frame.step_world);
     let forward = vector(frame.forward);
-    (height - dot(forward, world.origin)) / dot(forward, world.direction)
+    (height - plane_height(frame, world)) / dot(forward, world.direction)
 }
 
 /// The length that a sample of the view-aligned lattice stands for.

@@ -194,8 +194,12 @@ struct Frame {
     has_host_depth: u32,
     host_near: f32,
     flips_host_depth: u32,
+    // Planes with samples lie at forward . x = (k + 1/2) step_world + plane_offset.
+    plane_offset: f32,
     host_z: vec4<f32>,
     host_w: vec4<f32>,
+    // Where pixel (x, y) of a picture lies in its intermediate image: (x, y, 1, 0) to homogeneous coordinates.
+    base_from_pixel: mat3x4<f32>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -1,11 +1,11 @@
-// Samples where the ray meets the planes that a view-aligned slicer draws. CPU reference: src/lattice.rs.
+// Samples where the ray meets the planes that a view-aligned slicer draws, or the slices of a base plane. CPU reference: src/lattice.rs.
 
 #import ray
 #import lattice
 
 // One plane more at each end: rounding may not lose one, and `segment_of` has the last word.
 fn lattice_of(world: Ray, interval: vec2<f32>, pixel: vec2<f32>) -> Lattice {
-    let origin = dot(frame.forward, world.origin);
+    let origin = plane_height(world);
     let slope = dot(frame.forward, world.direction);
     let first = i32(floor((origin + interval.x * slope) / frame.step_world - 0.5));
     let last = i32(ceil((origin + interval.y * slope) / frame.step_world - 0.5));
@@ -36,6 +36,6 @@ fn whole_samples(lattice: Lattice) -> vec2<i32> {
 
 // Which sample lies at t, as a fraction.
 fn index_at(lattice: Lattice, world: Ray, t: f32) -> f32 {
-    let height = dot(frame.forward, world.origin) + t * dot(frame.forward, world.direction);
+    let height = plane_height(world) + t * dot(frame.forward, world.direction);
     return height / frame.step_world - 0.5;
 }

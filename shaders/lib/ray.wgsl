@@ -47,9 +47,14 @@ fn domain_interval(world: Ray, voxel: Ray) -> vec2<f32> {
     return clipped(interval, world.origin, world.direction);
 }
 
-// Where plane k of the view-aligned lattice meets the ray: forward . x = (k + 1/2) step.
+// How far the origin of a ray lies along the planes' normal, which they count from.
+fn plane_height(world: Ray) -> f32 {
+    return dot(frame.forward, world.origin) - frame.plane_offset;
+}
+
+// Where plane k of a lattice of planes meets the ray: forward . x = (k + 1/2) step + offset.
 fn plane_t(world: Ray, k: i32) -> f32 {
-    return ((f32(k) + 0.5) * frame.step_world - dot(frame.forward, world.origin))
+    return ((f32(k) + 0.5) * frame.step_world - plane_height(world))
         / dot(frame.forward, world.direction);
 }
 

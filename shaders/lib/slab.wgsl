@@ -19,7 +19,7 @@ fn plane_slab(world: Ray, interval: vec2<f32>, k: i32) -> Slab {
     return Slab(front, back, select(back - front, plane_length(world), is_whole));
 }
 
-// Half way between planes k - 1 and k: forward . x = k step.
+// Half way between planes k - 1 and k: forward . x = k step + offset.
 fn edge_t(world: Ray, k: i32) -> f32 {
-    return (f32(k) * frame.step_world - dot(frame.forward, world.origin)) / dot(frame.forward, world.direction);
+    return (f32(k) * frame.step_world - plane_height(world)) / dot(frame.forward, world.direction);
 }

@@ -7,7 +7,8 @@ use crate::color::ColorSpace;
 use crate::named::Named;
 use crate::shaders::{MAX_CLIP_PLANES, MAX_LEVELS, MAX_LIGHTS};
 use crate::technique::{
-    ClipPlane, Filter, Jitter, Lattice, Level, Light, Mode, PerMode, Settings, Shading, Technique,
+    ClipPlane, Filter, Intermediate, Jitter, Lattice, Level, Light, Mode, PerMode, Settings,
+    Shading, Technique,
 };
 use glam::DVec3;
 use std::ffi::c_void;
@@ -114,6 +115,8 @@ pub struct sv_settings {
     pub jitter_seed: u32,
     /// SV_LATTICE_JITTER: the number of the picture in a film.
     pub jitter_frame: u32,
+    /// SV_TECHNIQUE_SHEAR_WARP: rays a voxel along each side of the plane. 0 is 1; less than 0: as fine as the picture.
+    pub rays_per_voxel: f64,
 }
 
 // SAFETY: as the trait wants it.
@@ -172,6 +175,10 @@ pub(super) unsafe fn settings(
         jitter: Jitter {
             seed: c.jitter_seed,
             frame: c.jitter_frame,
+        },
+        intermediate: match c.rays_per_voxel {
+            as_pixels if as_pixels < 0.0 => Intermediate::Pixels,
+            rays => Intermediate::PerVoxel(or(rays, 1.0)),
         },
         preintegrated: c.is_preintegrated != 0,
         skip: c.disable_space_skipping == 0,

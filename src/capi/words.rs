@@ -13,6 +13,8 @@ pub enum sv_technique {
     SV_TECHNIQUE_SLICES_3D = 1,
     /// The volume's own slices along the axis that faces the eye most.
     SV_TECHNIQUE_SLICES_2D = 2,
+    /// Rays through a plane between these slices, warped to the picture. No depth.
+    SV_TECHNIQUE_SHEAR_WARP = 3,
 }
 
 /// What is done with the samples of a ray.

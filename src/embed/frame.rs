@@ -6,8 +6,9 @@ use super::{Error, HostDepthImage, Volume};
 use crate::camera::Camera;
 use crate::gpu::{Bindings, Blocks, Buffer, Gpu, Memory, ParameterRing, Resource};
 use crate::resident::GpuVolume;
-use crate::technique::Inputs;
 use crate::technique::gather::{Bound, BrickPass, Canvas, CanvasDesc, PICTURE};
+use crate::technique::shear_warp::intermediate_room;
+use crate::technique::{Inputs, Settings};
 use ash::vk;
 use std::sync::Arc;
 
@@ -94,6 +95,7 @@ pub(super) struct Recorded {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Given<'a> {
     pub gpu: &'a Arc<Gpu>,
+    pub settings: &'a Settings,
     pub pass: &'a Pass,
     pub ring: &'a ParameterRing,
     pub volume: &'a Volume,
@@ -132,6 +134,7 @@ impl Frame {
         let desc = |beside| CanvasDesc {
             extent: size.extent,
             dims: given.volume.grid().dims,
+            intermediate_room: intermediate_room(given.volume.grid(), given.settings, size.extent),
             keeps_layers: size.keeps_layers,
             beside,
         };

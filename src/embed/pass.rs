@@ -49,10 +49,7 @@ impl Pass {
         let picture = || (technique.desc().gather)(&desc);
         let finds_depth = !technique.casts_rays() && class.finds_depth();
         let slice_depth = || depth_of_slices(&desc, mix);
-        let resolve = || match settings.per_mode.depth_cue == 0.0 {
-            true => Resolve::new(gpu, mode, Blend::Over, target),
-            false => Resolve::cued(gpu, Blend::Over, target),
-        };
+        let resolve = || Resolve::of_settings(gpu, settings, Blend::Over, target);
         let depth = || DepthResolve::new(gpu, mode, target);
         Ok(Self {
             picture: (!is_in_target).then(picture).transpose()?,

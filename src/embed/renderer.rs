@@ -149,7 +149,7 @@ impl Renderer {
         let variant = variant_of(&class.settings, &self.volume, &self.function)?;
         let kind = |settings: &Settings| {
             (
-                settings.technique,
+                (settings.technique, settings.intermediate),
                 settings.mode,
                 settings.order,
                 settings.color_space,
@@ -230,6 +230,7 @@ impl Renderer {
     fn given(&self, host_depth: Option<HostDepthImage>) -> Given<'_> {
         Given {
             gpu: &self.gpu,
+            settings: &self.class.settings,
             pass: &self.pass,
             ring: &self.ring,
             volume: &self.volume,

@@ -116,6 +116,11 @@ impl RendererDesc {
                 "its slices face neither eye nor light: take rays",
             ),
             (
+                settings.technique.is_warped() && (self.host_depth || self.finds_depth()),
+                "shear-warp behind what a host has drawn, or with its depth",
+                "its pixels are means of four rays, which have no one depth: take ray casting",
+            ),
+            (
                 settings.adaptive_steps.is_some(),
                 "a picture with adaptive steps",
                 "take the step that it needs, or `EmptySpace::with_alike` and record it",

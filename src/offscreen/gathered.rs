@@ -33,7 +33,7 @@ pub(super) fn layers<R: Real>(
         values: gathered.iter().map(number).collect(),
     };
     let number = |found: Option<R>| found.map_or(f32::NAN, R::to_f32);
-    let mut layers = vec![layer(LayerKind::Samples, &|g| g.samples as f32)];
+    let mut layers = vec![layer(LayerKind::Samples, &|g| g.samples)];
     if mode.is_projection() {
         layers.push(layer(LayerKind::Value, &|g| {
             number(projected_value(mode, g.accumulation))
@@ -46,7 +46,7 @@ pub(super) fn layers<R: Real>(
     if mode == Mode::Iso {
         layers.push(layer(LayerKind::Value, &|g| number(g.level)));
     }
-    if scene.settings.technique.casts_rays() {
+    if scene.settings.technique.has_depth() {
         let depth = layer(LayerKind::Depth, &|g| number(g.depth));
         if mode.has_depth() {
             layers.push(Layer {

@@ -64,13 +64,12 @@ impl Passes {
             settings: settings.clone(),
             resolve: match mode.is_projection() {
                 false => None,
-                true if settings.per_mode.depth_cue == 0.0 => Some(Resolve::new(
+                true => Some(Resolve::of_settings(
                     gpu,
-                    mode,
+                    settings,
                     Blend::Replace,
                     ACCUMULATION_FORMAT,
                 )?),
-                true => Some(Resolve::cued(gpu, Blend::Replace, ACCUMULATION_FORMAT)?),
             },
         })
     }

@@ -88,11 +88,17 @@ fn render_one<R: Real>(scene: &Scene) -> Result<Picture, Error> {
     };
     let space = scene.settings.color_space;
     let points = Points::new(&transfer, Absorption::Opacity, space);
+    let is_shared = scene.settings.technique.is_warped() && mode.projects_one_place();
     let resolve = |g: &Gathered<R>| {
         R::begin();
         let [red, green, blue, alpha] =
             premultiplied(mode, g.accumulation, |v| classify_by_points(&points, v));
-        [g.light * red, g.light * green, g.light * blue, alpha]
+        let lit = [g.light * red, g.light * green, g.light * blue, alpha];
+        match is_shared {
+            // `resolve_covered.wgsl`.
+            true => lit.map(|number| g.accumulation[1] * number),
+            false => lit,
+        }
     };
 
     let per_side = scene.settings.rays_per_side;
@@ -290,7 +296,7 @@ impl<'a, R: Real> ReferenceRays<'a, R> {
             return Gathered::of_composite((face, 1));
         }
         let mut found = self.samples(pixel);
-        found.samples += 1;
+        found.samples += 1.0;
         found
     }
 

@@ -36,6 +36,7 @@ use crate::resident::{GpuTransfer, GpuVolume};
 use crate::scene::{Scene, positions_in_pixel};
 use crate::technique::cost::ms_of_fetches;
 use crate::technique::gather::{CanvasDesc, PICTURE};
+use crate::technique::shear_warp::intermediate_room;
 use crate::technique::{
     self, Functions, GpuChannel, InPixel, LightPlan, LightVolume, Mode, SampleInputs,
     ShaderVariant, parameter_ring,
@@ -348,6 +349,11 @@ impl<'v> Renderer<'v> {
         let desc = CanvasDesc {
             extent: scene.extent_pixels,
             dims: scene.volume.dims,
+            intermediate_room: intermediate_room(
+                &scene.volume.grid(),
+                scene.settings,
+                scene.extent_pixels,
+            ),
             keeps_layers,
             beside: None,
         };

@@ -21,6 +21,7 @@ pub struct Targets {
     keeps_layers: bool,
     /// Voxels of what is shown.
     dims: [u32; 3],
+    intermediate_room: [u32; 2],
     /// Where a slicer counts samples, once that was wanted.
     pub count: Option<Canvas>,
     /// Where it becomes a picture.
@@ -49,6 +50,7 @@ impl Targets {
             canvas: passes.picture().canvas(desc)?,
             keeps_layers: desc.keeps_layers,
             dims: desc.dims,
+            intermediate_room: desc.intermediate_room,
             count: None,
             output: Output {
                 extent: desc.extent,
@@ -61,7 +63,9 @@ impl Targets {
     /// Whether they serve pictures of another canvas that the same passes fill.
     pub fn serve(&self, desc: &CanvasDesc) -> bool {
         let has_layers = self.keeps_layers || !desc.keeps_layers;
-        self.extent() == desc.extent && self.dims == desc.dims && has_layers
+        let is_as_large =
+            self.extent() == desc.extent && self.intermediate_room == desc.intermediate_room;
+        is_as_large && self.dims == desc.dims && has_layers
     }
 
     /// Pixels across and down.
@@ -76,6 +80,7 @@ impl Targets {
             None => passes.count(gpu)?.canvas(&CanvasDesc {
                 extent: self.extent(),
                 dims: self.dims,
+                intermediate_room: self.intermediate_room,
                 keeps_layers: false,
                 beside: None,
             })?,

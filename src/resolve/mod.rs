@@ -12,7 +12,7 @@ use crate::gpu::{
 };
 use crate::resident::GpuTransfer;
 use crate::shaders::shader;
-use crate::technique::Mode;
+use crate::technique::{Mode, Settings};
 use ash::vk;
 use std::sync::Arc;
 
@@ -42,6 +42,39 @@ impl Resolve {
             _ => "resolve.picture",
         };
         Self::of_shader(gpu, fragment, blend, target.into())
+    }
+
+    /// The same for a mode that projects one place of each of several rays, whose values are warped to one
+    /// ([`shear_warp`](crate::technique::shear_warp)).
+    ///
+    /// # Errors
+    /// Where the device does not blend that format, by its name.
+    pub fn covered(
+        gpu: &Arc<Gpu>,
+        blend: Blend,
+        target: impl Into<TargetClass>,
+    ) -> Result<Self, Error> {
+        Self::of_shader(gpu, "resolve.covered", blend, target.into())
+    }
+
+    /// What resolves pictures of these settings.
+    ///
+    /// # Errors
+    /// Where the device does not blend that format, by its name.
+    pub(crate) fn of_settings(
+        gpu: &Arc<Gpu>,
+        settings: &Settings,
+        blend: Blend,
+        target: impl Into<TargetClass>,
+    ) -> Result<Self, Error> {
+        let Settings {
+            technique, mode, ..
+        } = *settings;
+        match mode.projects_one_place() {
+            true if settings.per_mode.depth_cue != 0.0 => Self::cued(gpu, blend, target),
+            true if technique.is_warped() => Self::covered(gpu, blend, target),
+            _ => Self::new(gpu, mode, blend, target),
+        }
     }
 
     /// The same for a mode that projects one place of a ray, darker with its depth.

@@ -38,6 +38,19 @@ pub enum Error {
         /// How the volume lies.
         found: crate::resident::TextureLayout,
     },
+    /// A base plane has an eye on one side.
+    #[error(
+        "the eye lies among the slices that it sees: shear-warp has no base plane there, take raycast"
+    )]
+    EyeAmongSlices,
+    /// Base rays fill an image of a fixed size.
+    #[error("the view asks for an intermediate image of {:.0} x {:.0} base pixels, the limit is {} x {}: take fewer base pixels per voxel, another stack, or raycast", .wanted[0], .wanted[1], .limit[0], .limit[1])]
+    IntermediateTooLarge {
+        /// Base pixels across and down.
+        wanted: [f64; 2],
+        /// What there is room for.
+        limit: [u32; 2],
+    },
     /// Several volumes in a mode that has no mixture of them.
     #[error("mode {mode} shows one volume: several are mixed in composite")]
     NotMixed {

@@ -6,6 +6,8 @@
 
 use super::blend::extreme_sign;
 use super::shading::set_shading;
+use super::shear_warp::BasePlane;
+use super::slices_2d::stack_axis;
 use super::{Filter, InPixel, Lattice, MAX_SAMPLES_PER_RAY, Settings};
 use crate::camera::{Camera, Rays};
 use crate::picture::ColorSpace;
@@ -16,7 +18,7 @@ use crate::shaders::{
 use crate::technique::Error;
 use crate::transfer::Interpolation;
 use crate::volume::{Grid, kernel::Kernel};
-use glam::{DAffine3, DVec3, dvec3};
+use glam::{DAffine3, DMat3, DVec3, dvec3};
 
 /// What one picture is taken of, and how.
 #[derive(Clone, Copy, Debug)]
@@ -43,8 +45,13 @@ fn kernel_number(filter: Filter) -> u32 {
 }
 
 impl View<'_> {
-    /// World length of a step: the smallest spacing over the samples per voxel.
+    /// World length of a step: the smallest spacing over the samples per voxel. Of rays through a base plane the distance of the
+    /// heights with samples is that of slices, in place of the smallest spacing.
     pub fn step_world(&self) -> f64 {
+        if self.settings.technique.is_warped() {
+            let row = self.grid.voxel_rows()[stack_axis(self)];
+            return 1.0 / (row.length() * self.settings.samples_per_voxel);
+        }
         self.grid.smallest_spacing() / self.settings.samples_per_voxel
     }
 
@@ -74,10 +81,12 @@ impl View<'_> {
     /// # Errors
     /// [`Error::TooManySamples`], [`Error::TooManyClipPlanes`], those of lights and of [`Settings::check`].
     pub fn fields(&self, coding: &Coding, transfer: &TransferLayout) -> Result<FrameFields, Error> {
-        let rays = self.rays();
+        self.settings.check()?;
+        let base = self.base_plane()?;
+        let rays = base.map_or_else(|| self.rays(), |base| base.rays);
+        let extent_pixels = base.map_or(self.extent_pixels, |base| base.extent);
         let world_from_voxel = self.world_from_voxel();
         let [domain_min, domain_max] = self.domain();
-        self.settings.check()?;
         self.check_sample_count()?;
         let of_mode = self.of_mode();
         let of_faces = self.settings.of_faces();
@@ -114,7 +123,7 @@ impl View<'_> {
             dims: self.grid.dims.map(|n| n as f32),
             voxel_from_world: affine_rows(&world_from_voxel.inverse()),
             world_from_voxel: affine_rows(&world_from_voxel),
-            clip_from_world: clip_rows(&rays, self.extent_pixels),
+            clip_from_world: clip_rows(&rays, extent_pixels),
             clip_planes,
             clip_plane_count,
             table_count: transfer.table_count,
@@ -132,7 +141,7 @@ impl View<'_> {
             brick_dims: self.grid.dims.map(|n| n as f32),
             is_first_brick: 1,
             is_only_brick: 1,
-            extent_pixels: self.extent_pixels,
+            extent_pixels,
             slice_first: 0,
             slice_direction: 1,
             slice_turn: 0,
@@ -223,6 +232,8 @@ impl View<'_> {
             has_host_depth: 0,
             host_near: 0.5,
             flips_host_depth: 0,
+            plane_offset: base.map_or(0.0, |base| base.offset_world as f32),
+            base_from_pixel: base.map_or([[0.0; 4]; 3], |base| rows_of(base.base_from_pixel)),
             host_z: [0.0; 4],
             host_w: [0.0; 4],
         };
@@ -232,6 +243,15 @@ impl View<'_> {
             set_shading(shading, &camera, self.settings.color_space, &mut fields)?;
         }
         Ok(fields)
+    }
+
+    /// The plane whose points rays go through, where they are not the pixels of the picture.
+    ///
+    /// # Errors
+    /// Those of [`shear_warp::base_plane`](super::shear_warp::base_plane).
+    pub(crate) fn base_plane(&self) -> Result<Option<BasePlane>, Error> {
+        let of = self.settings.technique.desc().base_plane;
+        of.map(|base_plane| base_plane(self)).transpose()
     }
 
     /// Narrows the parameters to one of several bricks. `is_first`: no nearer one has been recorded.
@@ -381,6 +401,10 @@ impl View<'_> {
         }
         Ok((planes, wanted.len() as u32))
     }
+}
+
+fn rows_of(m: DMat3) -> [[f32; 4]; 3] {
+    [0, 1, 2].map(|k| m.row(k).extend(0.0).as_vec4().to_array())
 }
 
 fn affine_rows(affine: &DAffine3) -> [[f32; 4]; 3] {

@@ -210,7 +210,7 @@ impl ShaderVariant {
                 _ => "spline",
             },
             holes: if has_holes { "mask" } else { "none" },
-            lattice: match settings.lattice {
+            lattice: match settings.ray_lattice() {
                 Lattice::Ray | Lattice::Jitter => "ray",
                 Lattice::Planes => "planes",
                 Lattice::Bresenham => "bresenham",

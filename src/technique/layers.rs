@@ -13,7 +13,7 @@ pub(crate) enum Lack {
     OneValue,
     /// A mode that composites.
     Transmittance,
-    /// Rays.
+    /// Rays of pixels.
     Rays,
     /// A mode with one depth a ray.
     Depth,
@@ -33,7 +33,7 @@ impl Settings {
             Value | Depth | Position | Normal | Label if is_sum => Some(Lack::OneNumber),
             Value => (!mode.has_value()).then_some(Lack::OneValue),
             Transmittance => mode.is_projection().then_some(Lack::Transmittance),
-            Depth | Position | Normal | Label if !technique.casts_rays() => Some(Lack::Rays),
+            Depth | Position | Normal | Label if !technique.has_depth() => Some(Lack::Rays),
             Position | Normal | Label if !mode.has_depth() => Some(Lack::Depth),
             Depth | Position | Normal | Label | Samples => None,
             Annotation => Some(Lack::Annotation),

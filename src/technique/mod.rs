@@ -57,6 +57,7 @@ mod registry;
 pub mod second_derivative;
 #[doc(hidden)]
 pub mod shading;
+pub mod shear_warp;
 mod skip;
 mod slab;
 mod slicer;
@@ -87,6 +88,7 @@ pub use per_mode::{DEFAULT_ATTENUATION, Level, PerMode};
 pub use ray_tiles::{RayBindings, RayTiles};
 pub use recording::{Recording, parameter_ring};
 pub use shading::{Light, LightSpace, Shading};
+pub use shear_warp::Intermediate;
 pub use skip::{Skip, Skippable};
 pub use slicer::{DepthAccess, Slicer};
 
@@ -102,6 +104,8 @@ pub enum Technique {
     Slices3d,
     /// The volume's own slices along the axis that faces the eye most.
     Slices2d,
+    /// Rays through a plane between these slices, warped to the picture.
+    ShearWarp,
 }
 
 /// How a value between voxel centres is made.
@@ -215,7 +219,9 @@ pub struct Settings {
     pub jitter: Jitter,
     /// How slicers blend.
     pub order: Order,
-    /// Which of the three stacks 2D slicing draws; `None`: the one that faces the eye most.
+    /// How fine the intermediate image of shear-warp is.
+    pub intermediate: Intermediate,
+    /// Which of the three stacks 2D slicing draws, and shear-warp casts rays through; `None`: the one that faces the eye most.
     pub stack: Option<usize>,
     /// 2D stacks with slices interpolated between their own, so that samples keep their distance, and a cross-fade
     /// of both stacks ([`slices_2d::stack_shares`]) where the eye changes from one to the other.
@@ -267,6 +273,16 @@ pub const DEFAULT_DIM: f64 = 0.2;
 /// Samples that one ray may take: no wish of a host makes a shader run without end.
 pub const MAX_SAMPLES_PER_RAY: u32 = 1 << 20;
 
+impl Settings {
+    /// Which samples rays take: of shear-warp those on planes, which are slices of the volume.
+    pub(crate) fn ray_lattice(&self) -> Lattice {
+        match self.technique.is_warped() {
+            true => Lattice::Planes,
+            false => self.lattice,
+        }
+    }
+}
+
 impl Default for Settings {
     fn default() -> Self {
         Self {
@@ -277,6 +293,7 @@ impl Default for Settings {
             lattice: Lattice::default(),
             jitter: Jitter::default(),
             order: Order::default(),
+            intermediate: Intermediate::default(),
             stack: None,
             smooth: false,
             preintegrated: false,

@@ -130,13 +130,13 @@ impl Settings {
         if self.lattice == Lattice::Planes && mode.needs_rays() {
             return Err(Error::NeedsRayLattice { mode });
         }
-        let has_depth = technique.casts_rays() && mode.projects_one_place();
+        let has_depth = technique.has_depth() && mode.projects_one_place();
         if self.per_mode.depth_cue != 0.0 && !has_depth {
             return Err(Error::NoDepth { technique, mode });
         }
         let is_trilinear = self.filter == Filter::Linear;
         let has_extreme = matches!(mode, Mode::Mip | Mode::Minip);
-        let is_along_rays = technique.casts_rays() && self.lattice == Lattice::Ray;
+        let is_along_rays = technique.has_depth() && self.lattice == Lattice::Ray;
         if self.per_mode.exact_maximum && !(is_trilinear && has_extreme && is_along_rays) {
             return Err(Error::NotExact { technique, mode });
         }

@@ -57,7 +57,8 @@ pub struct Gathered<R> {
     pub level: Option<R>,
     /// What a depth cue leaves of the colour.
     pub light: R,
-    pub samples: u32,
+    /// How many it took; of several rays the mean.
+    pub samples: f32,
 }
 
 impl<R: Real> Gathered<R> {
@@ -69,7 +70,7 @@ impl<R: Real> Gathered<R> {
             depth: found.depth,
             level: None,
             light: R::from_f64(1.0),
-            samples,
+            samples: samples as f32,
         }
     }
 
@@ -81,12 +82,12 @@ impl<R: Real> Gathered<R> {
             depth: found.first.map(|(_, t)| t),
             level: found.first.map(|(level, _)| level),
             light: one,
-            samples: found.samples,
+            samples: found.samples as f32,
         }
     }
 
     /// Of what a blending unit has made of so many fragments.
-    pub fn of_blended(accumulation: [R; 4], samples: u32) -> Self {
+    pub fn of_blended(accumulation: [R; 4], samples: f32) -> Self {
         Self {
             accumulation,
             depth: None,
@@ -124,7 +125,7 @@ pub(super) fn blended<R: Real, V>(
     let batches = (0..slices).step_by(at_once as usize);
     let batches = batches.map(|first| of_batch(first..(first + at_once).min(slices)));
     let merged = batches.reduce(|before, batch| merge(settings.order, before, batch));
-    Gathered::of_blended(merged.unwrap_or(clear), samples)
+    Gathered::of_blended(merged.unwrap_or(clear), samples as f32)
 }
 
 /// The fragments of slices of one volume's values, blended as the mode says. It classifies when it is resolved.

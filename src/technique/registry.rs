@@ -2,7 +2,10 @@
 
 use super::gather::{Gather, GatherDesc};
 use super::reference::{Gathered, Samples};
-use super::{Error, Settings, Technique, View, projection, raycast, slices_2d, slices_3d};
+use super::shear_warp::BasePlane;
+use super::{
+    Error, Settings, Technique, View, projection, raycast, shear_warp, slices_2d, slices_3d,
+};
 use crate::gpu;
 use crate::named::named;
 use crate::real::Real;
@@ -14,6 +17,7 @@ named!(Technique {
     Raycast "raycast" "",
     Slices3d "slices-3d" "",
     Slices2d "slices-2d" "",
+    ShearWarp "shear-warp" "",
 });
 
 /// What a technique says of itself.
@@ -28,6 +32,8 @@ pub(crate) struct TechniqueDesc {
     pub supports: fn(&Settings) -> Result<(), Error>,
     /// Its slices may lie half way between the eye and a light.
     pub has_half_angle: bool,
+    /// The plane whose points its rays go through, where they are not the pixels of the picture.
+    pub base_plane: Option<fn(&View) -> Result<BasePlane, Error>>,
     /// How a volume lies in textures so that it can be seen from everywhere.
     pub layouts: &'static [TextureLayout],
     /// Which of these a view reads.
@@ -62,6 +68,7 @@ impl Technique {
             Self::Raycast => &raycast::DESC,
             Self::Slices3d => &slices_3d::DESC,
             Self::Slices2d => &slices_2d::DESC,
+            Self::ShearWarp => &shear_warp::DESC,
         }
     }
 
@@ -82,6 +89,16 @@ impl Technique {
         self.desc().draws_stacks
     }
 
+    /// Whether its pixels are means of what several rays have gathered ([`TechniqueDesc::base_plane`]).
+    pub(crate) fn is_warped(self) -> bool {
+        self.desc().base_plane.is_some()
+    }
+
+    /// Whether a pixel has a ray of its own, with a place where it ends.
+    pub(crate) fn has_depth(self) -> bool {
+        self.casts_rays() && !self.is_warped()
+    }
+
     /// What its CPU reference gathers for one pixel, of all modes but surfaces.
     #[doc(hidden)]
     pub fn pixel<R: Real>(self, of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R> {
@@ -92,6 +109,7 @@ impl Technique {
             Self::Raycast => raycast::reference::pixel(of, pixel),
             Self::Slices3d => slices_3d::reference::pixel(of, pixel),
             Self::Slices2d => slices_2d::reference::pixel(of, pixel),
+            Self::ShearWarp => shear_warp::reference::pixel(of, pixel),
         }
     }
 }

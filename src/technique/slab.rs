@@ -44,7 +44,7 @@ impl View<'_> {
         let rows = self.grid.voxel_rows();
         if !self.settings.technique.draws_stacks() {
             let is_on_planes = !self.settings.technique.casts_rays()
-                || self.settings.lattice == super::Lattice::Planes;
+                || self.settings.ray_lattice() == super::Lattice::Planes;
             let longest = match is_on_planes {
                 true => corners.map(DVec3::length).into_iter().fold(1.0, f64::max),
                 false => 1.0,

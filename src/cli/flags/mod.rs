@@ -16,6 +16,7 @@ mod gradient_filter;
 mod gradients;
 mod inlined;
 mod input;
+mod intermediate;
 mod labels;
 mod levels;
 mod light;

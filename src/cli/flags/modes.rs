@@ -193,7 +193,7 @@ fn refused(problem: technique::Error) -> Error {
             ),
             "leave out --lattice",
         ),
-        Problem::NoDepth { technique, .. } if !technique.casts_rays() => (
+        Problem::NoDepth { technique, .. } if !technique.has_depth() => (
             "--depth-cue needs --technique raycast: blending keeps no depth".to_owned(),
             "leave out --technique",
         ),

@@ -3,6 +3,7 @@
 use super::{
     Error, Numbers,
     cuts::{ClipBox, CutFacesWord},
+    intermediate::IntermediateWord,
     positive,
     shadows::HALF_ANGLE,
 };
@@ -65,6 +66,11 @@ pub struct SamplingFlags {
     #[arg(long, value_name = "SEED", num_args = 0..=1, default_missing_value = "0", require_equals = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub jitter: Option<u32>,
+    /// Base pixels of --technique shear-warp: voxels, one a voxel; pixels, as fine as the picture; or so many a voxel
+    /// [default: voxels]
+    #[arg(long, value_name = "voxels|pixels|F")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub intermediate: Option<IntermediateWord>,
     /// How slicers blend [default: back-to-front]
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -174,6 +180,7 @@ impl SamplingFlags {
                 seed: self.jitter.unwrap_or_default(),
                 frame: 0,
             },
+            intermediate: self.intermediate.unwrap_or_default().0,
             stack: None,
             smooth: self.smooth,
             preintegrated: self.preintegrated,
@@ -260,6 +267,9 @@ impl SamplingFlags {
         let technique = self.technique.unwrap_or_default();
         if self.order.is_some() && technique.casts_rays() {
             notes.push("--order has no effect on rays, they go front to back");
+        }
+        if self.intermediate.is_some() && !technique.is_warped() {
+            notes.push("--intermediate has no effect without --technique shear-warp");
         }
         let is_cut = self.crop.is_some() || self.clip_box.is_some() || !self.clip.is_empty();
         if self.cut_faces.is_some() && !is_cut {

@@ -64,7 +64,7 @@ impl SectionFlags {
         if sampling.mode.is_none() {
             settings.mode = Mode::Average;
         }
-        if !settings.technique.casts_rays() || settings.lattice != Lattice::Ray {
+        if !settings.technique.has_depth() || settings.lattice != Lattice::Ray {
             return Err(Error::usage(
                 "--section takes its samples on the cut: other lattices than that of rays have none there",
                 "leave out --technique and --lattice",

@@ -26,7 +26,9 @@ pub fn is_wanted(
         () if plan(scene, header)?.0 != Plan::One => Some("several numbers a voxel"),
         () if has_beside(scene) => Some("--labels and what else is seen together with a volume"),
         () if scene.denoise.is_some() => Some("--denoise"),
-        () if !settings.technique.casts_rays() => Some("--technique slices-3d and slices-2d"),
+        () if !settings.technique.has_depth() => {
+            Some("--technique slices-3d, slices-2d and shear-warp")
+        }
         () if settings.filter.spline().is_some() => Some("--filter quadratic and cubic"),
         () if settings.wants_light_volume() => Some("--ambient-occlusion and --shadows"),
         () if header.is_labels => Some("labels in their own colours"),

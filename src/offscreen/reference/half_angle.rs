@@ -19,7 +19,7 @@ impl<R: Real> ReferenceRays<'_, R> {
     /// All pixels of the picture, in the light of `light`, the recording of the light's pass.
     pub(super) fn gather_in_light(&self, light: &Recording) -> Vec<Gathered<R>> {
         let zero = R::from_f64(0.0);
-        let nothing = Gathered::of_blended([zero; 4], 0);
+        let nothing = Gathered::of_blended([zero; 4], 0.0);
         let [width, height] = self.scene.extent_pixels;
         let mut pixels = vec![nothing; width as usize * height as usize];
         let mut buffer = LightBuffer::new(light.frame.extent_pixels);
@@ -52,7 +52,7 @@ impl<R: Real> ReferenceRays<'_, R> {
             self.lit_material(place, light, ray_direction)
         };
         if let Some(sample) = fragment(frame, pixel, plane, material_at) {
-            found.samples += 1;
+            found.samples += 1.0;
             if let Some(Fragment { value, length }) = sample {
                 found.accumulation = blend_material(order, found.accumulation, value, length);
             }

@@ -65,7 +65,7 @@ impl<'v> Renderer<'v> {
             return Err(Error::Outline);
         }
         let refused = match () {
-            () if !settings.technique.casts_rays() => "another technique than ray casting",
+            () if !settings.technique.has_depth() => "another technique than ray casting",
             () if scene.volumes().len() > 1 => "several volumes",
             () if settings.filter.spline().is_some() => "a filter that reads coefficients",
             () if settings.wants_light_volume() => "occlusion or shadows",

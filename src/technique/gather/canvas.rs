@@ -14,6 +14,8 @@ pub(crate) struct CanvasDesc<'a> {
     pub extent: [u32; 2],
     /// Voxels of what is shown.
     pub dims: [u32; 3],
+    /// Pixels of an intermediate image, where there is one.
+    pub intermediate_room: [u32; 2],
     /// What rays that composite leave beside the picture is kept: a depth or another layer is asked for, or a brick goes
     /// on where another has ended.
     pub keeps_layers: bool,

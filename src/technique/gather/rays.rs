@@ -92,7 +92,12 @@ impl Gather for Rays {
         host_depth: Option<Resource>,
     ) -> Result<Box<dyn Bound>, Error> {
         let tiles = canvas.tiles.as_ref().expect("made with the canvas");
-        let bind = |inputs| self.pass.bind(inputs, canvas, tiles, host_depth);
+        let picture = canvas.image(PICTURE);
+        let layers = match *self.pass {
+            RayPass::Raycast(_) => canvas.image(LAYERS),
+            RayPass::Projection(_) => picture,
+        };
+        let bind = |inputs| self.pass.bind(inputs, [picture, layers], tiles, host_depth);
         Ok(Box::new(BoundRays {
             pass: Arc::clone(&self.pass),
             bricks: bricks.iter().map(bind).collect::<Result<_, _>>()?,
@@ -136,7 +141,7 @@ impl Bound for BoundRays {
 
 /// Rays that composite, or that project.
 #[derive(Debug)]
-enum RayPass {
+pub(in crate::technique) enum RayPass {
     /// Colours, and what lies beside them.
     Raycast(Raycast),
     /// One number a ray, which the resolve classifies.
@@ -145,7 +150,11 @@ enum RayPass {
 
 impl RayPass {
     /// Compiles the variant for the settings.
-    fn new(gpu: &Arc<Gpu>, settings: &Settings, variant: &ShaderVariant) -> Result<Self, Error> {
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        settings: &Settings,
+        variant: &ShaderVariant,
+    ) -> Result<Self, Error> {
         let mode = settings.mode;
         Ok(match mode.is_projection() {
             _ if settings.per_mode.exact_maximum => {
@@ -181,19 +190,18 @@ impl RayPass {
         Self::new(gpu, settings, &variant)
     }
 
-    fn bind(
+    /// Binds inputs and the images that the rays fill, of projections the first alone.
+    pub fn bind(
         &self,
         inputs: &Inputs,
-        canvas: &Canvas,
+        [picture, layers]: [&Image; 2],
         tiles: &RayTiles,
         host_depth: Option<Resource>,
     ) -> Result<RayBindings, Error> {
-        let picture = canvas.image(PICTURE);
         // In place of a depth that is not looked at.
         let stand_in = |image: &Image| host_depth.unwrap_or(Resource::sampled_or_read(image));
         match self {
             Self::Raycast(pass) => {
-                let layers = canvas.image(LAYERS);
                 pass.bind_behind(inputs, picture, layers, tiles, stand_in(layers))
             }
             Self::Projection(pass) => pass.bind_behind(inputs, picture, tiles, stand_in(picture)),
@@ -202,7 +210,7 @@ impl RayPass {
 
     /// # Safety
     /// As [`Raycast::record_tiles`].
-    unsafe fn record_tiles(
+    pub unsafe fn record_tiles(
         &self,
         cmd: vk::CommandBuffer,
         bindings: &RayBindings,

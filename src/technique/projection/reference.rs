@@ -25,12 +25,12 @@ pub(crate) fn pixel<R: Real>(of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R>
     let (found, samples) = if settings.per_mode.exact_maximum {
         project_exactly(frame, mode, pixel, |index| of.voxel(index))
     } else {
-        project(frame, settings.lattice, mode, pixel, |p| of.value(p))
+        project(frame, settings.ray_lattice(), mode, pixel, |p| of.value(p))
     };
     let zero = R::from_f64(0.0);
     Gathered {
         depth: found.depth,
-        ..Gathered::of_blended([found.value, found.weight, zero, zero], samples)
+        ..Gathered::of_blended([found.value, found.weight, zero, zero], samples as f32)
     }
 }
 

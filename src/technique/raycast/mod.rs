@@ -18,6 +18,7 @@ pub(super) static DESC: TechniqueDesc = TechniqueDesc {
     draws_stacks: false,
     supports: |_| Ok(()),
     has_half_angle: false,
+    base_plane: None,
     layouts: &[TextureLayout::Texture3d],
     layout_of: |_| TextureLayout::Texture3d,
     longest_sample_count: |view| view.longest_sample_count(),

@@ -20,6 +20,7 @@ pub(super) static DESC: TechniqueDesc = TechniqueDesc {
     draws_stacks: true,
     supports: slicer_supports,
     has_half_angle: false,
+    base_plane: None,
     layouts: &[
         TextureLayout::Stack(0),
         TextureLayout::Stack(1),

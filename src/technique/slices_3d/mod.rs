@@ -23,6 +23,7 @@ pub(super) static DESC: TechniqueDesc = TechniqueDesc {
     draws_stacks: false,
     supports: slicer_supports,
     has_half_angle: true,
+    base_plane: None,
     layouts: &[TextureLayout::Texture3d],
     layout_of: |_| TextureLayout::Texture3d,
     longest_sample_count: |view| view.longest_sample_count(),

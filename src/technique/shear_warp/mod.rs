@@ -1,0 +1,117 @@
+//! Shear-warp: rays through the points of a base plane between the slices of the volume, then a warp of what they leave
+//! to the picture.
+//!
+//! ```text
+//! I(U, V)    what a ray through base pixel (U, V) gathers, with samples on the slices
+//! picture    bilinear mean of the four I around where a pixel's ray meets the base plane
+//! ```
+//!
+//! The base plane is a camera ([`base_plane`]): its rays are those of the ray caster, on the lattice of planes with the slices as
+//! planes. Lacroute and Levoy, SIGGRAPH 1994, without their classification before interpolation and their 8 bits.
+
+mod base_plane;
+mod gather;
+#[doc(hidden)]
+pub mod reference;
+
+pub(crate) use base_plane::intermediate_room;
+pub use base_plane::{BasePlane, base_plane};
+
+use super::registry::TechniqueDesc;
+use super::{Error, Lattice, Settings};
+use crate::resident::TextureLayout;
+
+/// How fine an intermediate image is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Intermediate {
+    /// So many base pixels a voxel; positive.
+    PerVoxel(f64),
+    /// As fine as the picture, where that is finest.
+    Pixels,
+}
+
+impl Default for Intermediate {
+    fn default() -> Self {
+        Self::PerVoxel(1.0)
+    }
+}
+
+/// Shear-warp, to those who ask.
+pub(super) static DESC: TechniqueDesc = TechniqueDesc {
+    casts_rays: true,
+    draws_stacks: false,
+    supports,
+    has_half_angle: false,
+    base_plane: Some(base_plane),
+    layouts: &[TextureLayout::Texture3d],
+    layout_of: |_| TextureLayout::Texture3d,
+    longest_sample_count: |view| view.longest_sample_count(),
+    set_slices: |_, _, _| 0,
+    gather: gather::shear_warp,
+    slice_shaders: None,
+};
+
+fn supports(settings: &Settings) -> Result<(), Error> {
+    let mode = settings.mode;
+    let refused = [
+        (
+            mode.needs_rays(),
+            "shear-warp",
+            "composite, mip, minip, average and xray",
+            format!("mode {mode}"),
+        ),
+        (
+            settings.lattice != Lattice::Ray,
+            "a lattice of rays",
+            "ray casting",
+            WARPED.into(),
+        ),
+        (
+            settings.uneven_rays,
+            "rays at uneven places of their pixels",
+            "ray casting and slicing",
+            WARPED.into(),
+        ),
+        (
+            settings.cut_faces.is_some(),
+            "an opaque cut face",
+            "ray casting",
+            WARPED.into(),
+        ),
+        (
+            settings.adaptive_steps.is_some(),
+            "sampling by adaptive steps",
+            "ray casting",
+            WARPED.into(),
+        ),
+        (
+            settings.per_mode.exact_maximum,
+            "the exact extreme of a field",
+            "ray casting",
+            WARPED.into(),
+        ),
+        (
+            settings.per_mode.depth_cue != 0.0,
+            "a depth cue",
+            "ray casting",
+            WARPED.into(),
+        ),
+    ];
+    for (is_wanted, wanted, of, found) in refused {
+        if is_wanted {
+            return Err(Error::NotFor { wanted, of, found });
+        }
+    }
+    let Intermediate::PerVoxel(per_voxel) = settings.intermediate else {
+        return Ok(());
+    };
+    let is_fine = per_voxel > 0.0 && per_voxel.is_finite();
+    Error::unless(
+        is_fine,
+        "the number of base pixels per voxel",
+        "a number over 0",
+        per_voxel,
+    )
+}
+
+const WARPED: &str = "shear-warp, whose pixels are means of four rays";
