@@ -5,6 +5,7 @@ use super::{Error, FrameInfo, Renderer};
 use crate::camera::{Camera, DepthConvention, HostDepth};
 use crate::gpu::{Load, Target, TargetClass, Tile, Use, begin_rendering, end_rendering};
 use crate::technique::gather::{BrickPass, Part, Player};
+use crate::technique::shear_warp::intermediate_room;
 use crate::technique::{self, DepthAccess, InPixel, Recording, Skip, View};
 use ash::vk;
 
@@ -249,6 +250,9 @@ impl Renderer {
     ) -> Result<(), Error> {
         let view = self.view(shot);
         let grid = view.grid;
+        if let Some(base) = view.base_plane()? {
+            base.check_room(intermediate_room(grid, view.settings, self.extent))?;
+        }
         let layout = view.texture_layout();
         let mut copies = self.volume.copies().iter();
         let copy = copies.position(|copy| copy.layout() == layout);

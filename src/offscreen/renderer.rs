@@ -36,7 +36,6 @@ use crate::resident::{GpuTransfer, GpuVolume};
 use crate::scene::{Scene, positions_in_pixel};
 use crate::technique::cost::ms_of_fetches;
 use crate::technique::gather::{CanvasDesc, PICTURE};
-use crate::technique::shear_warp::intermediate_room;
 use crate::technique::{
     self, Functions, GpuChannel, InPixel, LightPlan, LightVolume, Mode, SampleInputs,
     ShaderVariant, parameter_ring,
@@ -346,14 +345,12 @@ impl<'v> Renderer<'v> {
         let patches = self.patches_for(scene)?;
         let is_patched = patches.is_some();
         let key = key_of(scene.settings, &variant, is_patched);
+        let grid = scene.volume.grid();
+        let view = scene.view(&grid, [0.0; 2]);
         let desc = CanvasDesc {
             extent: scene.extent_pixels,
             dims: scene.volume.dims,
-            intermediate_room: intermediate_room(
-                &scene.volume.grid(),
-                scene.settings,
-                scene.extent_pixels,
-            ),
+            intermediate_room: view.intermediate_room()?,
             keeps_layers,
             beside: None,
         };

@@ -63,8 +63,8 @@ impl Targets {
     /// Whether they serve pictures of another canvas that the same passes fill.
     pub fn serve(&self, desc: &CanvasDesc) -> bool {
         let has_layers = self.keeps_layers || !desc.keeps_layers;
-        let is_as_large =
-            self.extent() == desc.extent && self.intermediate_room == desc.intermediate_room;
+        let is_as_large = self.extent() == desc.extent
+            && (0..2).all(|k| self.intermediate_room[k] >= desc.intermediate_room[k]);
         is_as_large && self.dims == desc.dims && has_layers
     }
 

@@ -6,7 +6,7 @@
 
 use super::blend::extreme_sign;
 use super::shading::set_shading;
-use super::shear_warp::BasePlane;
+use super::shear_warp::{BasePlane, intermediate_room};
 use super::slices_2d::stack_axis;
 use super::{Filter, InPixel, Lattice, MAX_SAMPLES_PER_RAY, Settings};
 use crate::camera::{Camera, Rays};
@@ -252,6 +252,18 @@ impl View<'_> {
     pub(crate) fn base_plane(&self) -> Result<Option<BasePlane>, Error> {
         let of = self.settings.technique.desc().base_plane;
         of.map(|base_plane| base_plane(self)).transpose()
+    }
+
+    /// Pixels of the intermediate image, or more; one where there is none.
+    ///
+    /// # Errors
+    /// As [`Self::base_plane`].
+    pub(crate) fn intermediate_room(&self) -> Result<[u32; 2], Error> {
+        let Some(base) = self.base_plane()? else {
+            return Ok([1; 2]);
+        };
+        let room = intermediate_room(self.grid, self.settings, self.extent_pixels);
+        Ok([0, 1].map(|k| room[k].max(base.extent[k])))
     }
 
     /// Narrows the parameters to one of several bricks. `is_first`: no nearer one has been recorded.

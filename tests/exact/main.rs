@@ -33,6 +33,7 @@ mod occlusion;
 mod quality;
 mod references;
 mod shapes;
+mod shear_warp;
 mod slabs;
 mod slabs_references;
 mod smooth_stacks;

@@ -71,13 +71,13 @@ fn settings() -> Vec<Settings> {
             ..Settings::default()
         })
     };
-    let along_axes = [
+    const MODES_OF_BRICKS: [(Mode, Filter, f64); 3] = [
         (Mode::Composite, Filter::Linear, 1.0),
         (Mode::Xray, Filter::Nearest, 2.3),
         // Heights of every second voxel's border, some of which are borders of bricks.
         (Mode::Mip, Filter::Linear, 0.5),
     ];
-    let along_axes = along_axes.map(|(mode, filter, samples_per_voxel)| Settings {
+    let along_axes = MODES_OF_BRICKS.map(|(mode, filter, samples_per_voxel)| Settings {
         mode,
         filter,
         samples_per_voxel,
@@ -85,8 +85,16 @@ fn settings() -> Vec<Settings> {
         conformance: true,
         ..Settings::default()
     });
+    let warped = MODES_OF_BRICKS.map(|(mode, filter, samples_per_voxel)| Settings {
+        technique: Technique::ShearWarp,
+        mode,
+        filter,
+        samples_per_voxel,
+        conformance: true,
+        ..Settings::default()
+    });
     let all = techniques.into_iter().flat_map(of_technique);
-    all.chain(along_axes).collect()
+    all.chain(along_axes).chain(warped).collect()
 }
 
 /// Gradients reach one voxel further than their filter, or as far as operators of their own.

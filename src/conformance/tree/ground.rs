@@ -95,6 +95,19 @@ pub const PLACEMENTS: [Placement; 7] = [
     ),
 ];
 
+/// Rays through a base plane: pixels have no rays of their own, and no closed form of one.
+pub const SHEAR_WARP: Placement = placement(
+    "shear_warp",
+    Technique::ShearWarp,
+    Lattice::Ray,
+    Order::BackToFront,
+);
+
+/// All of them.
+pub fn all_placements() -> impl Iterator<Item = Placement> {
+    PLACEMENTS.into_iter().chain([SHEAR_WARP])
+}
+
 /// One ray a pixel, at equal steps from where it enters the volume.
 pub const RAYS: Placement = PLACEMENTS[0];
 
@@ -135,6 +148,22 @@ impl Placement {
     /// True where the rasterizer blends.
     pub fn is_slicer(&self) -> bool {
         !self.technique.casts_rays()
+    }
+
+    /// True where samples lie at heights of the grid.
+    fn is_on_heights(&self) -> bool {
+        self.lattice == Lattice::Bresenham || self.technique.is_warped()
+    }
+
+    /// True where what is seen of a part of the grid does not depend on how much there is of it: samples of rays begin
+    /// where the domain does, and its middle is where a base plane lies.
+    pub fn is_fixed(&self) -> bool {
+        self.is_slicer() || self.lattice != Lattice::Ray
+    }
+
+    /// True where modes are drawn in which a sample depends on those before it.
+    pub fn has_rays(&self) -> bool {
+        self.technique.has_depth() && self.lattice == Lattice::Ray
     }
 
     /// The first part of names: modes that project have no order.
@@ -184,9 +213,9 @@ pub fn shot(
         },
     };
     // One a voxel would lie where filters go from voxel to voxel, and rounding would say by which of them it is made.
-    let samples_per_voxel = match placement.lattice {
-        Lattice::Bresenham => 2.0,
-        _ => 1.0,
+    let samples_per_voxel = match placement.is_on_heights() {
+        true => 2.0,
+        false => 1.0,
     };
     // No tap of any filter lies outside the grid, and no plane of a stack at an end.
     let margin = 2.125;
@@ -217,7 +246,7 @@ pub fn shot(
 /// of all kernels where samples lie near each other.
 pub fn hides_maxima(placement: Placement, mode: Mode, filter: Filter) -> bool {
     let is_by_samples = matches!(mode, Mode::Mip | Mode::Minip) && !placement.is_slicer();
-    let is_near = placement.lattice == Lattice::Bresenham;
+    let is_near = placement.is_on_heights();
     is_by_samples && (filter == Filter::CatmullRom || is_near && filter.kernel().is_some())
 }
 

@@ -5,7 +5,7 @@
 //! it that a device rounds about as well as the CPU reference in f32 does: what lies outside of that is a warning.
 
 use super::drawn;
-use super::ground::{self, FILTERS, MODES, PLACEMENTS, PROJECTIONS, Placement, RAYS};
+use super::ground::{self, FILTERS, MODES, PROJECTIONS, Placement, RAYS};
 use crate::conformance::case::{Case, Profile, Stop};
 use crate::conformance::measurement::{Bound, Measurement, Pictures};
 use crate::conformance::oracle::PictureCase;
@@ -76,7 +76,7 @@ pub fn cases() -> Vec<Case> {
         .filter(|filter| !filter.2)
         .map(|f| (f.0, f.1));
     let filters: Vec<_> = fetched.chain(wide).collect();
-    for placement in PLACEMENTS {
+    for placement in ground::all_placements() {
         for mode in MODES {
             let word = &ground::word_of(mode);
             for &filter in &filters {

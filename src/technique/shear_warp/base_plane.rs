@@ -19,12 +19,14 @@ use crate::technique::slices_2d::stack_axis;
 use crate::technique::{Error, Settings, View};
 use crate::volume::Grid;
 use glam::{DMat3, DVec2, DVec3, dvec2, dvec3};
+use std::cmp::Ordering;
 
 /// Base pixels around what a picture sees: of bilinear warps one, and one for rounding.
 const MARGIN: f64 = 2.0;
-/// An intermediate image is no larger than what parallel rays at any angle up to 45 degrees beside the slices need, and
-/// this share more.
+/// What a host makes room for, beyond what parallel rays at any angle up to 45 degrees beside the slices need.
 const ROOM: f64 = 1.25;
+/// Base pixels along a side at most: rays that run beside the slices meet the plane anywhere.
+const MOST_ACROSS: u32 = 1 << 14;
 
 /// The rays of the intermediate image, its slices and its place in the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,11 +76,10 @@ pub fn base_plane(view: &View) -> Result<BasePlane, Error> {
     let first = (seen[0] * per_voxel - 0.5).floor() - MARGIN;
     let last = (seen[1] * per_voxel - 0.5).ceil() + MARGIN;
     let extent = (last - first + 1.0).max(DVec2::ONE);
-    let room = intermediate_room(view.grid, view.settings, view.extent_pixels);
-    if !(extent.x <= f64::from(room[0]) && extent.y <= f64::from(room[1])) {
+    if extent.max_element().partial_cmp(&MOST_ACROSS.into()) != Some(Ordering::Less) {
         return Err(Error::IntermediateTooLarge {
             wanted: extent.to_array(),
-            limit: room,
+            limit: [MOST_ACROSS; 2],
         });
     }
     let in_pixel = VoxelRays::new(view, &view.rays());
@@ -95,7 +96,8 @@ pub fn base_plane(view: &View) -> Result<BasePlane, Error> {
     })
 }
 
-/// The largest intermediate image of a view's grid and picture, from wherever it is seen: base pixels across and down.
+/// Room for the intermediate images of a grid and a picture from wherever they are seen, base pixels across and down. Few views
+/// ask for more: in perspective those from very near, and those of a stack that is not the one that faces the eye.
 ///
 /// A parallel ray runs beside its main axis by at most as much as along it, in world lengths, so that the shadow of n_k slices on
 /// the plane is longer than that by n_k times the ratio of spacings.
@@ -119,7 +121,23 @@ pub(crate) fn intermediate_room(
             [2.0 * width.hypot(height); 2]
         }
     };
-    room.map(|n| (ROOM * n + 2.0 * MARGIN + 2.0).ceil() as u32)
+    room.map(|n| ((ROOM * n + 2.0 * MARGIN + 2.0).ceil() as u32).min(MOST_ACROSS))
+}
+
+impl BasePlane {
+    /// Whether its image lies in one of so many base pixels.
+    ///
+    /// # Errors
+    /// [`Error::IntermediateTooLarge`].
+    pub(crate) fn check_room(&self, limit: [u32; 2]) -> Result<(), Error> {
+        match self.extent[0] <= limit[0] && self.extent[1] <= limit[1] {
+            true => Ok(()),
+            false => Err(Error::IntermediateTooLarge {
+                wanted: self.extent.map(f64::from),
+                limit,
+            }),
+        }
+    }
 }
 
 /// The rays of the picture as if it had one ray a pixel: the intermediate image does not depend on where in its pixel a ray is.

@@ -10,7 +10,7 @@
 use crate::gpu::{Bindings, ComputePipeline, Error, Gpu, Image, Resource, Tile, Use};
 use crate::shaders::shader;
 use crate::technique::gather::{
-    Bound, Brick, Canvas, CanvasDesc, Gather, GatherDesc, LAYERS, PICTURE, Part, Player, RayPass,
+    Bound, BrickPass, Canvas, CanvasDesc, Gather, GatherDesc, LAYERS, PICTURE, Part, Player, RayPass,
 };
 use crate::technique::{Inputs, RayBindings, RayTiles, accumulation};
 use std::sync::Arc;
@@ -144,7 +144,7 @@ fn extent_of(image: &Image) -> [u32; 2] {
 }
 
 impl Bound for BoundShearWarp {
-    fn steps(&self, canvas: &Canvas, _: &[Brick], count: u32) -> Option<u64> {
+    fn steps(&self, canvas: &Canvas, _: &[BrickPass], count: u32) -> Option<u64> {
         let of = |image| bands(canvas.image(image), count).count() as u64;
         Some(of(BASE) + of(PICTURE))
     }
@@ -152,7 +152,7 @@ impl Bound for BoundShearWarp {
     unsafe fn record(
         &self,
         player: &mut Player,
-        bricks: &[Brick],
+        bricks: &[BrickPass],
         part: &Part,
     ) -> Result<(), Error> {
         let base_bands = bands(player.image(BASE), part.bands);

@@ -161,7 +161,7 @@ fn every_mode_of_the_ray_caster_is_the_same_in_parts() {
 fn so_are_jittered_rays_several_rays_a_pixel_slabs_planes_and_exact_maxima() {
     let volume = small();
     type Change<'a> = (&'a str, &'a dyn Fn(&mut Settings));
-    let changes: [Change; 7] = [
+    let changes: [Change; 9] = [
         ("jitter", &|s| {
             s.lattice = Lattice::Jitter;
             s.jitter = Jitter { seed: 3, frame: 5 };
@@ -173,6 +173,11 @@ fn so_are_jittered_rays_several_rays_a_pixel_slabs_planes_and_exact_maxima() {
         ("slabs", &|s| s.preintegrated = true),
         ("planes", &|s| s.lattice = Lattice::Planes),
         ("main axes", &|s| s.lattice = Lattice::Bresenham),
+        ("a warp", &|s| s.technique = Technique::ShearWarp),
+        ("a warp of maxima", &|s| {
+            s.technique = Technique::ShearWarp;
+            s.mode = Mode::Mip;
+        }),
         ("an exact maximum", &|s| {
             s.mode = Mode::Mip;
             s.per_mode.exact_maximum = true;

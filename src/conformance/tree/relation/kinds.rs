@@ -1,7 +1,7 @@
 //! The relations, and for which pictures each holds.
 
 use super::super::ground::Placement;
-use crate::technique::{Lattice, Mode, Order};
+use crate::technique::{Mode, Order};
 
 /// What is done to a picture that leaves it as it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,8 +54,7 @@ impl Kind {
     pub fn is_for(self, placement: Placement, mode: Mode) -> bool {
         let is_composite = mode == Mode::Composite;
         let is_xray = mode == Mode::Xray;
-        // Where the domain ends, samples of rays begin: another domain, other samples.
-        let is_fixed = placement.is_slicer() || placement.lattice != Lattice::Ray;
+        let is_fixed = placement.is_fixed();
         match self {
             Self::Skipped => true,
             Self::InBricks => is_composite || is_xray || mode == Mode::Mip || mode == Mode::Lmip,

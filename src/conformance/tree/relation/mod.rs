@@ -17,17 +17,17 @@
 mod kinds;
 mod pair;
 
-use super::ground::{self, PLACEMENTS, PROJECTIONS, Placement};
+use super::ground::{self, PROJECTIONS, Placement};
 use crate::conformance::case::{Case, Profile};
 use crate::named::Named;
-use crate::technique::{Lattice, Mode, Order};
+use crate::technique::{Mode, Order};
 use crate::volume::VoxelType;
 pub use kinds::Kind;
 
 /// Every relation for every placement, mode and projection that has it.
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
-    for placement in PLACEMENTS {
+    for placement in ground::all_placements() {
         for (projection, is_perspective) in PROJECTIONS {
             for (word, kind) in Kind::ALL {
                 for &mode in Mode::ALL {
@@ -57,7 +57,7 @@ pub fn cases() -> Vec<Case> {
 }
 
 fn has(placement: Placement, mode: Mode) -> bool {
-    !mode.needs_rays() || (!placement.is_slicer() && placement.lattice == Lattice::Ray)
+    !mode.needs_rays() || placement.has_rays()
 }
 
 /// The baseline has each relation in each placement, and the modes where they are other shaders.
