@@ -21,10 +21,11 @@ use stratavox::volume::{Limits, Source, TimeComponent, Volume, VolumeSelection, 
 const EXTENT: [u32; 2] = [256, 256];
 const RUNS: usize = 5;
 
-const TECHNIQUES: [(Technique, &str); 3] = [
+const TECHNIQUES: [(Technique, &str); 4] = [
     (Technique::Raycast, "raycast"),
     (Technique::Slices3d, "slices-3d"),
     (Technique::Slices2d, "slices-2d"),
+    (Technique::ShearWarp, "shear-warp"),
 ];
 const MODES: [(Mode, &str); 5] = [
     (Mode::Composite, "composite"),

@@ -170,7 +170,12 @@ fn a_frame_of_many_bricks_takes_nothing_from_the_heap() {
         ..Caps::UNLIMITED
     });
     // Of each technique one: bricks are gone through in the same way by all modes.
-    for technique in [Technique::Raycast, Technique::Slices3d, Technique::Slices2d] {
+    for technique in [
+        Technique::Raycast,
+        Technique::Slices3d,
+        Technique::Slices2d,
+        Technique::ShearWarp,
+    ] {
         let settings = Settings {
             technique,
             ..Settings::default()

@@ -200,7 +200,12 @@ fn level_c_draws_in_all_settings_what_offscreen_makes() {
 #[test]
 fn bytes_are_drawn_as_offscreen_too() {
     let host = Host::new();
-    for technique in [Technique::Raycast, Technique::Slices3d, Technique::Slices2d] {
+    for technique in [
+        Technique::Raycast,
+        Technique::Slices3d,
+        Technique::Slices2d,
+        Technique::ShearWarp,
+    ] {
         let mut stage = stage(&Settings {
             technique,
             ..Settings::default()
@@ -309,7 +314,12 @@ fn drawn(host: &Host, renderer: &mut Renderer, stage: &Stage) -> Vec<[f64; 4]> {
 #[test]
 fn a_renderer_goes_on_with_another_size_another_volume_and_other_numbers() {
     let host = Host::new();
-    for technique in [Technique::Raycast, Technique::Slices3d, Technique::Slices2d] {
+    for technique in [
+        Technique::Raycast,
+        Technique::Slices3d,
+        Technique::Slices2d,
+        Technique::ShearWarp,
+    ] {
         let mut stage = stage(&Settings {
             technique,
             ..Settings::default()

@@ -23,6 +23,8 @@ fn ways() -> Vec<Settings> {
         (Technique::Slices3d, Mode::Composite),
         (Technique::Slices2d, Mode::Composite),
         (Technique::Slices3d, Mode::Mip),
+        (Technique::ShearWarp, Mode::Composite),
+        (Technique::ShearWarp, Mode::Mip),
     ];
     let settings = ways.map(|(technique, mode)| Settings {
         technique,

@@ -42,6 +42,7 @@ fn stages() -> Vec<Stage> {
         (Technique::Raycast, Mode::Mip),
         (Technique::Slices3d, Mode::Composite),
         (Technique::Slices2d, Mode::Composite),
+        (Technique::ShearWarp, Mode::Composite),
     ];
     let made = (1..).zip(ways).map(|(n, (technique, mode))| {
         let mut stage = Stage::new(Settings {

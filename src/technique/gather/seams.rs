@@ -145,6 +145,7 @@ fn what_frames_add_up_is_kept_until_a_picture_begins_and_chunks_of_any_size_add_
         merge: Arc::new(merge),
     };
     let desc = CanvasDesc {
+        intermediate_room: [1; 2],
         extent: EXTENT,
         dims: [1; 3],
         keeps_layers: false,
@@ -260,6 +261,7 @@ fn a_picture_goes_on_from_what_a_box_of_bricks_has_left() {
         let gather = (technique.desc().gather)(&desc).expect("pipelines");
         let mut canvas = gather
             .canvas(&CanvasDesc {
+                intermediate_room: [1; 2],
                 extent: EXTENT,
                 dims,
                 keeps_layers: true,

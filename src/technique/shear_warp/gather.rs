@@ -10,7 +10,8 @@
 use crate::gpu::{Bindings, ComputePipeline, Error, Gpu, Image, Resource, Tile, Use};
 use crate::shaders::shader;
 use crate::technique::gather::{
-    Bound, BrickPass, Canvas, CanvasDesc, Gather, GatherDesc, LAYERS, PICTURE, Part, Player, RayPass,
+    Bound, BrickPass, Canvas, CanvasDesc, Gather, GatherDesc, LAYERS, PICTURE, Part, Player,
+    RayPass,
 };
 use crate::technique::{Inputs, RayBindings, RayTiles, accumulation};
 use std::sync::Arc;
