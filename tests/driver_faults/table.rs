@@ -7,6 +7,7 @@ use vk::{BlendFactor as Factor, BlendOp as Op};
 
 const CASTER: &str = "raycast.ray.composite.ramp.linear_fetch.u16.perspective";
 const SAMPLED: &str = "raycast.planes.mip.ramp.linear.u16.perspective";
+const WARP: &str = "reference.shear_warp.composite.plain.linear_fetch.perspective";
 const AXES: &str = "raycast.bresenham.composite.ramp.linear_fetch.u16.perspective";
 const FINE: &str = "raycast.bresenham.xray.fine.linear_fetch.f32.perspective";
 const PLANES: &str = "slices_3d.over.composite.ramp.linear_fetch.u16.perspective";
@@ -296,6 +297,43 @@ pub const FAULTS: &[(&str, Fault, &str)] = &[
         "rounding chooses between axes that are alike",
         Shader("lib/lattice_bresenham.wgsl", "0.9999847412109375", "1.0"),
         "raycast.bresenham.xray.diagonal.linear_fetch.f32.perspective",
+    ),
+    (
+        "a warp takes the nearest base pixel",
+        Shader(
+            "warp.wgsl",
+            "let part = middles - low;",
+            "let part = round(middles - low);",
+        ),
+        WARP,
+    ),
+    (
+        "a warp mixes in the wrong order",
+        Shader(
+            "warp.wgsl",
+            "vec2<i32>(low) + vec2(1, 0)",
+            "vec2<i32>(low) + vec2(0, 1)",
+        ),
+        WARP,
+    ),
+    (
+        "a warp is as if all base pixels were as near",
+        Shader("warp.wgsl", "place.xy / place.z", "place.xy"),
+        WARP,
+    ),
+    (
+        "a warp of maxima counts rays without a value",
+        Shader("lib/warp_value.wgsl", "sum.x / sum.y", "sum.x"),
+        "reference.shear_warp.mip.plain.linear_fetch.perspective",
+    ),
+    (
+        "slices lie half their distance off",
+        Shader(
+            "lib/ray.wgsl",
+            " - frame.plane_offset",
+            " - frame.plane_offset - 0.5 * frame.step_world",
+        ),
+        WARP,
     ),
     (
         "more samples a voxel are shorter and not nearer",

@@ -186,7 +186,10 @@ fn bricks_leave_a_picture_bit_identical_from_inside() {
         projection: Projection::Perspective { fov_degrees: 100.0 },
         zoom: 1.0,
     };
-    assert_same_picture(&volume, &camera, settings());
+    // A base plane has the eye on one side.
+    let is_seen = |settings: &Settings| settings.technique != Technique::ShearWarp;
+    let settings = settings().into_iter().filter(is_seen).collect();
+    assert_same_picture(&volume, &camera, settings);
 }
 
 /// Few holes: a cubic sample has no data where one of 64 voxels has none.

@@ -251,11 +251,10 @@ impl OnPlane {
         let [width, height] = extent.map(f64::from);
         let corners = [[0.0, 0.0], [width, 0.0], [0.0, height], [width, height]];
         let met = corners.map(|[x, y]| self.meets(rays, dvec2(x, y)));
-        let met: Option<Vec<DVec2>> = met.into_iter().collect();
-        let Some(met) = met else {
+        if met.iter().any(Option::is_none) {
             return shadow;
-        };
-        let picture = rectangle(met.into_iter());
+        }
+        let picture = rectangle(met.into_iter().flatten());
         // Beside each other: nothing is seen, and one place is as good as another.
         let low = shadow[0].max(picture[0]).min(shadow[1]);
         [low, shadow[1].min(picture[1]).max(low)]

@@ -14,6 +14,7 @@ use crate::technique::gather::{
     RayPass,
 };
 use crate::technique::{Inputs, RayBindings, RayTiles, accumulation};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// What base rays leave, in place of [`PICTURE`] and of [`LAYERS`].
@@ -129,14 +130,38 @@ impl Gather for ShearWarp {
     }
 }
 
-/// An image from top to bottom in so many parts, as far as workgroups go.
-fn bands(image: &Image, count: u32) -> impl Iterator<Item = Tile> + Clone + use<> {
-    let [width, height] = extent_of(image);
-    let rows = height.div_ceil(count.max(1)).next_multiple_of(Tile::STEP);
-    (0..height.div_ceil(rows)).map(move |band| Tile {
-        origin: [0, band * rows],
-        extent: [width, rows.min(height - band * rows)],
-    })
+/// Rows of a band at most.
+const BAND_ROWS: u32 = 32;
+
+/// An image from top to bottom in so many parts, or more where they are high.
+#[derive(Clone, Copy)]
+struct Bands {
+    extent: [u32; 2],
+    rows: u32,
+}
+
+impl Bands {
+    fn new(image: &Image, count: u32) -> Self {
+        let extent = extent_of(image);
+        let rows = extent[1].div_ceil(count.max(1)).min(BAND_ROWS);
+        let rows = rows.next_multiple_of(Tile::STEP);
+        Self { extent, rows }
+    }
+
+    fn count(&self) -> u64 {
+        self.extent[1].div_ceil(self.rows).into()
+    }
+
+    /// Those of a range that begins at `first`; `None` where it has none of them.
+    fn tile(&self, steps: &Range<u64>, first: u64) -> Option<Tile> {
+        let number = |step: u64| step.saturating_sub(first).min(self.count()) as u32;
+        let top = number(steps.start) * self.rows;
+        let bottom = (number(steps.end) * self.rows).min(self.extent[1]);
+        (top < bottom).then(|| Tile {
+            origin: [0, top],
+            extent: [self.extent[0], bottom - top],
+        })
+    }
 }
 
 fn extent_of(image: &Image) -> [u32; 2] {
@@ -146,7 +171,7 @@ fn extent_of(image: &Image) -> [u32; 2] {
 
 impl Bound for BoundShearWarp {
     fn steps(&self, canvas: &Canvas, _: &[BrickPass], count: u32) -> Option<u64> {
-        let of = |image| bands(canvas.image(image), count).count() as u64;
+        let of = |image| Bands::new(canvas.image(image), count).count();
         Some(of(BASE) + of(PICTURE))
     }
 
@@ -156,35 +181,25 @@ impl Bound for BoundShearWarp {
         bricks: &[BrickPass],
         part: &Part,
     ) -> Result<(), Error> {
-        let base_bands = bands(player.image(BASE), part.bands);
-        let cast = base_bands.clone().count();
-        let warped = bands(player.image(PICTURE), part.bands);
-        let range = part.steps.start as usize..part.steps.end as usize;
-        let rays = base_bands.take(range.end).skip(range.start);
-        let warps = warped
-            .take(range.end.saturating_sub(cast))
-            .skip(range.start.saturating_sub(cast));
+        let [base, picture] =
+            [BASE, PICTURE].map(|image| Bands::new(player.image(image), part.bands));
+        let cast = base.tile(&part.steps, 0);
+        let warped = picture.tile(&part.steps, base.count());
         // SAFETY: the caller's promises.
         unsafe {
-            if range.start < cast {
+            if let Some(tile) = cast {
                 player.bring([BASE, BASE_LAYERS].map(|image| (image, Use::ComputeWrite)));
-                let extent = extent_of(player.image(BASE));
                 for brick in bricks {
                     let (bound, offset) = (&self.bricks[brick.number], brick.offset);
-                    let cmd = player.cmd;
-                    let rays = rays.clone();
-                    self.passes
-                        .rays
-                        .record_tiles(cmd, bound, offset, extent, rays)?;
+                    let rays = &self.passes.rays;
+                    rays.record_tiles(player.cmd, bound, offset, base.extent, [tile])?;
                 }
             }
-            if range.end > cast {
+            if let Some(tile) = warped {
                 let read = [BASE, BASE_LAYERS].map(|image| (image, Use::ComputeSampled));
                 let written = [PICTURE, LAYERS].map(|image| (image, Use::ComputeWrite));
                 player.bring(read.into_iter().chain(written));
-                for tile in warps {
-                    self.warp(player, bricks[0].offset, tile)?;
-                }
+                self.warp(player, bricks[0].offset, tile)?;
             }
             if part.is_last {
                 player.bring([PICTURE, LAYERS].map(|image| (image, Use::FragmentSampled)));

@@ -53,54 +53,34 @@ pub(super) static DESC: TechniqueDesc = TechniqueDesc {
 
 fn supports(settings: &Settings) -> Result<(), Error> {
     let mode = settings.mode;
+    if mode.needs_rays() {
+        return Err(Error::NotFor {
+            wanted: "shear-warp",
+            of: "composite, mip, minip, average and xray",
+            found: format!("mode {mode}"),
+        });
+    }
+    let per_mode = &settings.per_mode;
     let refused = [
-        (
-            mode.needs_rays(),
-            "shear-warp",
-            "composite, mip, minip, average and xray",
-            format!("mode {mode}"),
-        ),
-        (
-            settings.lattice != Lattice::Ray,
-            "a lattice of rays",
-            "ray casting",
-            WARPED.into(),
-        ),
+        (settings.lattice != Lattice::Ray, "a lattice of rays"),
         (
             settings.uneven_rays,
             "rays at uneven places of their pixels",
-            "ray casting and slicing",
-            WARPED.into(),
         ),
-        (
-            settings.cut_faces.is_some(),
-            "an opaque cut face",
-            "ray casting",
-            WARPED.into(),
-        ),
+        (settings.cut_faces.is_some(), "an opaque cut face"),
         (
             settings.adaptive_steps.is_some(),
             "sampling by adaptive steps",
-            "ray casting",
-            WARPED.into(),
         ),
-        (
-            settings.per_mode.exact_maximum,
-            "the exact extreme of a field",
-            "ray casting",
-            WARPED.into(),
-        ),
-        (
-            settings.per_mode.depth_cue != 0.0,
-            "a depth cue",
-            "ray casting",
-            WARPED.into(),
-        ),
+        (per_mode.exact_maximum, "the exact extreme of a field"),
+        (per_mode.depth_cue != 0.0, "a depth cue"),
     ];
-    for (is_wanted, wanted, of, found) in refused {
-        if is_wanted {
-            return Err(Error::NotFor { wanted, of, found });
-        }
+    if let Some((_, wanted)) = refused.into_iter().find(|(is_wanted, _)| *is_wanted) {
+        return Err(Error::NotFor {
+            wanted,
+            of: "ray casting",
+            found: "shear-warp, whose pixels are means of four rays".into(),
+        });
     }
     let Intermediate::PerVoxel(per_voxel) = settings.intermediate else {
         return Ok(());
@@ -113,5 +93,3 @@ fn supports(settings: &Settings) -> Result<(), Error> {
         per_voxel,
     )
 }
-
-const WARPED: &str = "shear-warp, whose pixels are means of four rays";
