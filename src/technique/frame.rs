@@ -7,7 +7,7 @@
 use super::blend::extreme_sign;
 use super::shading::set_shading;
 use super::shear_warp::{BasePlane, intermediate_room};
-use super::slices_2d::stack_axis;
+use super::stack_axis::stack_axis;
 use super::{Filter, InPixel, Lattice, MAX_SAMPLES_PER_RAY, Settings};
 use crate::camera::{Camera, Rays};
 use crate::picture::ColorSpace;

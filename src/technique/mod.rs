@@ -63,6 +63,7 @@ mod slab;
 mod slicer;
 pub mod slices_2d;
 pub mod slices_3d;
+mod stack_axis;
 
 pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 #[doc(hidden)]

@@ -109,7 +109,9 @@ impl Technique {
             Self::Raycast => raycast::reference::pixel(of, pixel),
             Self::Slices3d => slices_3d::reference::pixel(of, pixel),
             Self::Slices2d => slices_2d::reference::pixel(of, pixel),
-            Self::ShearWarp => shear_warp::reference::pixel(of, pixel),
+            Self::ShearWarp => {
+                shear_warp::reference::pixel(of, pixel, |base| Self::Raycast.pixel(of, base))
+            }
         }
     }
 }

@@ -250,6 +250,12 @@ pub fn hides_maxima(placement: Placement, mode: Mode, filter: Filter) -> bool {
     is_by_samples && (filter == Filter::CatmullRom || is_near && filter.kernel().is_some())
 }
 
+/// Whether more pixels depend on rounding than a case may leave out: of a composite by kernels, each of the four rays that a
+/// pixel of a warp depends on.
+pub fn is_unsure(placement: Placement, mode: Mode, filter: Filter) -> bool {
+    placement.technique.is_warped() && mode == Mode::Composite && filter.kernel().is_some()
+}
+
 /// What a picture asks of a device beyond what all need. Every device blends 16-bit floats, in which slices are
 /// composited where it does not blend those of 32 bits.
 pub fn needs(placement: Placement, mode: Mode, stored: VoxelType, by_sampler: bool) -> Vec<Item> {

@@ -47,7 +47,8 @@ pub fn cases() -> Vec<Case> {
             let Some(of) = placement.word_in(mode) else {
                 return;
             };
-            if ground::hides_maxima(placement, mode, filter.1) {
+            let is_hidden = ground::hides_maxima(placement, mode, filter.1);
+            if is_hidden || ground::is_unsure(placement, mode, filter.1) {
                 return;
             }
             for (projection, is_perspective) in PROJECTIONS {

@@ -15,7 +15,7 @@
 
 use super::Intermediate;
 use crate::camera::Rays;
-use crate::technique::slices_2d::stack_axis;
+use crate::technique::stack_axis::stack_axis;
 use crate::technique::{Error, Settings, View};
 use crate::volume::Grid;
 use glam::{DMat3, DVec2, DVec3, dvec2, dvec3};

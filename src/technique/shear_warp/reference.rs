@@ -1,12 +1,15 @@
-//! Shear-warp on the CPU: CPU reference of `shaders/warp.wgsl` over that of the ray caster.
+//! Shear-warp on the CPU: CPU reference of `shaders/warp.wgsl` over that of the rays.
 
 use crate::real::Real;
 use crate::shaders::Frame;
 use crate::technique::reference::{Gathered, Samples};
-use crate::technique::{projection, raycast};
 
-/// The mean of what the four base rays around a pixel gather, as it is blended.
-pub(crate) fn pixel<R: Real>(of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R> {
+/// The mean of what the four base rays around a pixel gather, as it is blended; `ray` is what that of one base pixel does.
+pub(crate) fn pixel<R: Real>(
+    of: &impl Samples<R>,
+    pixel: [R; 2],
+    ray: impl Fn([R; 2]) -> Gathered<R>,
+) -> Gathered<R> {
     let settings = of.settings();
     let zero = R::from_f64(0.0);
     let nothing = Gathered::of_blended([zero; 4], 0.0);
@@ -16,10 +19,7 @@ pub(crate) fn pixel<R: Real>(of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R>
     let is_extreme = settings.mode.projects_one_place();
     let mut sum = nothing;
     for (base_pixel, weight) in around {
-        let found = match settings.mode.is_projection() {
-            true => projection::reference::pixel(of, base_pixel),
-            false => raycast::reference::pixel(of, base_pixel),
-        };
+        let found = ray(base_pixel);
         let mut given = found.accumulation;
         if is_extreme {
             // A ray without a value has no say, and leaves alpha to the others.
@@ -44,7 +44,8 @@ fn base_pixels<R: Real>(frame: &Frame, [x, y]: [R; 2]) -> Option<Vec<([R; 2], R)
         x * a + y * b + c
     };
     let [u, v, w] = frame.base_from_pixel.map(row);
-    if !(w > R::from_f64(0.0)) {
+    // Not a number is nowhere either.
+    if w.partial_cmp(&R::from_f64(0.0)) != Some(std::cmp::Ordering::Greater) {
         return None;
     }
     let (half, one) = (R::from_f64(0.5), R::from_f64(1.0));
@@ -52,8 +53,7 @@ fn base_pixels<R: Real>(frame: &Frame, [x, y]: [R; 2]) -> Option<Vec<([R; 2], R)
     let low = place.map(R::floor);
     let part = [place[0] - low[0], place[1] - low[1]];
     let mut around = Vec::new();
-    for (n, [i, j]) in [[0, 0], [1, 0], [0, 1], [1, 1]].into_iter().enumerate() {
-        let _ = n;
+    for [i, j] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
         let weight = |k: usize, at: i32| if at == 0 { one - part[k] } else { part[k] };
         let index = [low[0].to_i32() + i, low[1].to_i32() + j];
         let is_inside = (0..2).all(|k| index[k] >= 0 && index[k] < frame.extent_pixels[k] as i32);
