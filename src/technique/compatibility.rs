@@ -19,6 +19,9 @@ impl Settings {
         let of_technique =
             |is_on: bool, wanted, has: bool, of| refuse(is_on && !has, wanted, of, technique);
         let of_rays = |is_on, wanted| of_technique(is_on, wanted, desc.casts_rays, "ray casting");
+        if technique.is_warped() {
+            (desc.supports)(self)?;
+        }
         let is_jittered = self.lattice == Lattice::Jitter;
         of_mode(self.preintegrated, PREINTEGRATED)?;
         of_technique(self.smooth, SMOOTH, desc.draws_stacks, "2D stacks")?;

@@ -20,6 +20,9 @@ named!(Technique {
     ShearWarp "shear-warp" "",
 });
 
+/// The base plane of a view.
+type BasePlaneOf = fn(&View) -> Result<BasePlane, Error>;
+
 /// What a technique says of itself.
 #[derive(Debug)]
 pub(crate) struct TechniqueDesc {
@@ -33,7 +36,7 @@ pub(crate) struct TechniqueDesc {
     /// Its slices may lie half way between the eye and a light.
     pub has_half_angle: bool,
     /// The plane whose points its rays go through, where they are not the pixels of the picture.
-    pub base_plane: Option<fn(&View) -> Result<BasePlane, Error>>,
+    pub base_plane: Option<BasePlaneOf>,
     /// How a volume lies in textures so that it can be seen from everywhere.
     pub layouts: &'static [TextureLayout],
     /// Which of these a view reads.

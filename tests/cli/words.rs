@@ -269,6 +269,23 @@ fn ways_to_sample_are_refused_where_there_are_none() {
             "--lattice bresenham --section axial",
             "other lattices than that of rays",
         ),
+        (
+            "--technique shear-warp --mode lmip",
+            "shear-warp is for composite, mip, minip, average and xray, not for mode lmip",
+        ),
+        (
+            "--technique shear-warp --lattice planes",
+            "a lattice of rays is for ray casting, not for shear-warp",
+        ),
+        ("--technique shear-warp --jitter", "not for shear-warp"),
+        (
+            "--technique shear-warp --section axial",
+            "leave out --technique",
+        ),
+        (
+            "--technique shear-warp --intermediate 0",
+            "wanted voxels, pixels or a number over 0",
+        ),
     ] {
         folder
             .run(&format!("render phantom:fog -o a.png {words}"))

@@ -357,8 +357,8 @@ pub const FAULTS: &[(&str, Fault, &str)] = &[
         "planes lie half a step off",
         Shader(
             "lib/ray.wgsl",
-            "((f32(k) + 0.5) * frame.step_world - dot",
-            "(f32(k) * frame.step_world - dot",
+            "((f32(k) + 0.5) * frame.step_world - plane",
+            "(f32(k) * frame.step_world - plane",
         ),
         PLANES,
     ),

@@ -145,6 +145,9 @@ const WAYS: &str = "--preintegrated is for --mode composite, --smooth for that w
 /// What samples along main axes go with.
 const MAIN_AXIS: &str = "--lattice bresenham is for --technique raycast and --mode composite, mip, minip, average and xray, \
                          without --preintegrated, --adaptive-steps and --cut-faces";
+/// What shear-warp goes with.
+const WARP: &str = "--technique shear-warp is for --mode composite, mip, minip, average and xray, without --lattice, --jitter, \
+                    --aa-uneven, --adaptive-steps and --cut-faces";
 /// Rays along one side of a pixel.
 const MAX_RAYS_PER_SIDE: u32 = 64;
 
@@ -152,6 +155,7 @@ const MAX_RAYS_PER_SIDE: u32 = 64;
 pub fn check_ways(settings: &Settings) -> Result<(), Error> {
     let hint = match settings.lattice {
         _ if settings.is_half_angle() => HALF_ANGLE,
+        _ if settings.technique.is_warped() => WARP,
         Lattice::Bresenham => MAIN_AXIS,
         _ => WAYS,
     };
