@@ -41,7 +41,7 @@ pub const ROWS: &[(&str, &[&str])] = &[
             "isosurface.linear.none",
             "isosurface.nearest.none",
             "isosurface.kernel.none",
-            "isosurface.by.linear.none",
+            "isosurface.volume.linear.none",
             // Before a picture.
             "ray_tiles.distances.picture",
             "ray_tiles.box.picture",
@@ -55,6 +55,7 @@ pub const ROWS: &[(&str, &[&str])] = &[
             "precompute_gradients.box",
             "light_volume",
             "merge.over",
+            "warp.mean",
         ],
     ),
     (
