@@ -107,6 +107,8 @@ enum sv_technique
     SV_TECHNIQUE_SLICES_3D = 1,
     // The volume's own slices along the axis that faces the eye most.
     SV_TECHNIQUE_SLICES_2D = 2,
+    // Every voxel is a Gaussian, of which rays take the integral.
+    SV_TECHNIQUE_SPLAT = 3,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

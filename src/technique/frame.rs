@@ -43,9 +43,10 @@ fn kernel_number(filter: Filter) -> u32 {
 }
 
 impl View<'_> {
-    /// World length of a step: the smallest spacing over the samples per voxel.
+    /// World length of a step: the smallest spacing over the samples per voxel; as much longer as pixels make splats wider.
     pub fn step_world(&self) -> f64 {
-        self.grid.smallest_spacing() / self.settings.samples_per_voxel
+        let spacing = self.grid.smallest_spacing() * self.splat_widening();
+        spacing / self.settings.samples_per_voxel
     }
 
     /// The part of the grid that is kept, in voxel space.
@@ -81,6 +82,7 @@ impl View<'_> {
         self.check_sample_count()?;
         let of_mode = self.of_mode();
         let of_faces = self.settings.of_faces();
+        let of_splats = self.of_splats()?;
         let patterns = self.of_patterns();
         let reach = self.cover_reach();
         let margin = self.cover_margin(&rays, &world_from_voxel) + reach.voxels;
@@ -225,6 +227,13 @@ impl View<'_> {
             flips_host_depth: 0,
             host_z: [0.0; 4],
             host_w: [0.0; 4],
+            splat_diagonal: of_splats.splat_diagonal,
+            splat_reach: of_splats.splat_reach,
+            splat_mixed: of_splats.splat_mixed,
+            splat_peak: of_splats.splat_peak,
+            splat_first: of_splats.splat_first,
+            splat_last: of_splats.splat_last,
+            splat_apron: of_splats.splat_apron,
         };
         self.set_light(&mut fields);
         if let Some(shading) = &self.settings.shading {

@@ -62,6 +62,7 @@ mod slab;
 mod slicer;
 pub mod slices_2d;
 pub mod slices_3d;
+pub mod splat;
 
 pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 #[doc(hidden)]
@@ -102,6 +103,8 @@ pub enum Technique {
     Slices3d,
     /// The volume's own slices along the axis that faces the eye most.
     Slices2d,
+    /// Every voxel is a Gaussian, of which rays take the integral.
+    Splat,
 }
 
 /// How a value between voxel centres is made.
@@ -259,6 +262,8 @@ pub struct Settings {
     pub per_mode: PerMode,
     /// What is left of the extinction and of the colour of a dimmed label ([`crate::volume::labels::dim`]), 0 to 1.
     pub dim: f64,
+    /// What splats are.
+    pub splat: splat::Splat,
 }
 
 /// Faint, and still seen.
@@ -297,6 +302,7 @@ impl Default for Settings {
             conformance: false,
             per_mode: PerMode::default(),
             dim: DEFAULT_DIM,
+            splat: splat::Splat::default(),
         }
     }
 }

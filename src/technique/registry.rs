@@ -2,7 +2,7 @@
 
 use super::gather::{Gather, GatherDesc};
 use super::reference::{Gathered, Samples};
-use super::{Error, Settings, Technique, View, projection, raycast, slices_2d, slices_3d};
+use super::{Error, Settings, Technique, View, projection, raycast, slices_2d, slices_3d, splat};
 use crate::gpu;
 use crate::named::named;
 use crate::real::Real;
@@ -14,6 +14,7 @@ named!(Technique {
     Raycast "raycast" "",
     Slices3d "slices-3d" "",
     Slices2d "slices-2d" "",
+    Splat "splat" "",
 });
 
 /// What a technique says of itself.
@@ -62,6 +63,7 @@ impl Technique {
             Self::Raycast => &raycast::DESC,
             Self::Slices3d => &slices_3d::DESC,
             Self::Slices2d => &slices_2d::DESC,
+            Self::Splat => &splat::DESC,
         }
     }
 
@@ -92,6 +94,7 @@ impl Technique {
             Self::Raycast => raycast::reference::pixel(of, pixel),
             Self::Slices3d => slices_3d::reference::pixel(of, pixel),
             Self::Slices2d => slices_2d::reference::pixel(of, pixel),
+            Self::Splat => splat::reference::pixel(of, pixel),
         }
     }
 }

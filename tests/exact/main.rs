@@ -36,5 +36,6 @@ mod shapes;
 mod slabs;
 mod slabs_references;
 mod smooth_stacks;
+mod splat;
 mod surfaces;
 mod widgets;

@@ -8,7 +8,7 @@ use crate::cli::memory::{DeviceMemory, DeviceRoom, Held, for_bricks, is_too_larg
 use crate::cli::progress::Progress;
 use crate::format;
 use crate::offscreen::{Stream, StreamOptions};
-use crate::technique::Settings;
+use crate::technique::{Settings, Technique};
 use crate::volume::{Source, TimeComponent};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -26,7 +26,9 @@ pub fn is_wanted(
         () if plan(scene, header)?.0 != Plan::One => Some("several numbers a voxel"),
         () if has_beside(scene) => Some("--labels and what else is seen together with a volume"),
         () if scene.denoise.is_some() => Some("--denoise"),
-        () if !settings.technique.casts_rays() => Some("--technique slices-3d and slices-2d"),
+        () if settings.technique != Technique::Raycast => {
+            Some("--technique slices-3d, slices-2d and splat")
+        }
         () if settings.filter.spline().is_some() => Some("--filter quadratic and cubic"),
         () if settings.wants_light_volume() => Some("--ambient-occlusion and --shadows"),
         () if header.is_labels => Some("labels in their own colours"),

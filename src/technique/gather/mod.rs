@@ -23,7 +23,10 @@ mod slices;
 pub(crate) use canvas::{Canvas, CanvasDesc, PICTURE};
 pub(crate) use player::Player;
 pub(crate) use rays::{LAYERS, depth_of_slices};
-pub(super) use {rays::rays, slices::slices};
+pub(super) use {
+    rays::{RayPass, rays, rays_of},
+    slices::slices,
+};
 
 use super::blend::Drawn;
 use super::{DepthAccess, Inputs, Order, Settings, ShaderVariant};

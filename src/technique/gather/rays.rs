@@ -28,6 +28,11 @@ pub(in crate::technique) fn rays(desc: &GatherDesc) -> Result<Box<dyn Gather>, E
     Ok(Box::new(Rays::new(desc.gpu, pass)))
 }
 
+/// Rays of such a pass.
+pub(in crate::technique) fn rays_of(gpu: &Arc<Gpu>, pass: RayPass) -> Box<dyn Gather> {
+    Box::new(Rays::new(gpu, pass))
+}
+
 /// Rays that find the depth of slices: they take the samples of the slices one after the other
 /// ([`super::super::View::each_depth_recording`]). The variant is that of the picture; what lights it has no say.
 ///
@@ -136,7 +141,7 @@ impl Bound for BoundRays {
 
 /// Rays that composite, or that project.
 #[derive(Debug)]
-enum RayPass {
+pub(in crate::technique) enum RayPass {
     /// Colours, and what lies beside them.
     Raycast(Raycast),
     /// One number a ray, which the resolve classifies.
