@@ -109,6 +109,8 @@ enum sv_technique
     SV_TECHNIQUE_SLICES_2D = 2,
     // Rays through a plane between these slices, warped to the picture. No depth.
     SV_TECHNIQUE_SHEAR_WARP = 3,
+    // Every voxel is a Gaussian, of which rays take the integral.
+    SV_TECHNIQUE_SPLAT = 4,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

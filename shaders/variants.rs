@@ -41,7 +41,7 @@ impl Slot {
 /// llvmpipe (`opaque_predicates.rs`).
 pub const CONSTANTS: &[&str] = &[
     "software", "filter", "holes", "lattice", "cuts", "transfer", "end", "mode", "kernel",
-    "operator", "blend", "output", "topology", "layers",
+    "operator", "blend", "output", "topology", "layers", "sheets", "take",
 ];
 
 /// The name of an import with its slots filled. `{slot=word}` has that word where an entry has no such slot.
@@ -144,6 +144,9 @@ const MIDA: Slot = slot("mode", &["mida"]);
 const BLEND: Slot = slot("blend", &["composite"]);
 /// What projections have blended, an extreme or a sum, and the number of samples.
 const NUMBER: Slot = constant("blend", &["number", "count"]);
+
+/// How splats are put together.
+const SHEETS: Slot = constant("sheets", &["image", "axis", "each"]);
 
 /// The wanted combinations. Order of the slots is the order of words in a variant's name.
 pub const ENTRIES: &[(&str, &[Slot])] = &[
@@ -426,6 +429,14 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         &[slot("topology", &["triangles", "points"]), PARAMETERS],
     ),
     ("opaque_patches", &[]),
+    (
+        "splat",
+        &[SHEETS, constant("take", &["post", "pre"]), HOLES, TRANSFER],
+    ),
+    (
+        "splat_projection",
+        &[SHEETS, constant("mode", &["mip", "minip", "sum"]), HOLES],
+    ),
 ];
 
 /// Formats whose storage images every device has (Vulkan specification, required format support), and that shaders may

@@ -144,9 +144,12 @@ impl<'a> Scene<'a> {
         let only_composite = |role: &Role| matches!(role, Role::Labels | Role::Opacity);
         let Settings { mode, filter, .. } = *self.settings;
         self.settings.check()?;
-        if !self.mix().is_of_one() {
+        let are_several = !self.mix().is_of_one();
+        if are_several {
             self.settings.check_mixed()?;
         }
+        let is_classified = matches!(self.beside, Beside::Classified(_));
+        self.settings.check_splatted(are_several, is_classified)?;
         if self.uses_gradient() {
             self.settings.check_graded()?;
         }

@@ -15,11 +15,12 @@ use stratavox::transfer::{
 use stratavox::volume::{Denoise, Rescale, Volume, Voxels, labels::dim};
 
 /// Where samples lie.
-pub const TECHNIQUES: [(Technique, &str); 4] = [
+pub const TECHNIQUES: [(Technique, &str); 5] = [
     (Technique::Raycast, "raycast"),
     (Technique::Slices3d, "slices-3d"),
     (Technique::Slices2d, "slices-2d"),
     (Technique::ShearWarp, "shear-warp"),
+    (Technique::Splat, "splat"),
 ];
 
 /// What is done with them.

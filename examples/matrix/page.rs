@@ -1,6 +1,6 @@
 //! The matrix as a page of Markdown: what the checks of the code say, in a table for each technique.
 
-use super::cells::{FEATURES, FILTERS, Feature, MODES, Matter, TECHNIQUES, settings};
+use super::cells::{FEATURES, FILTERS, Feature, MODES, Matter, Seen, TECHNIQUES, settings};
 use std::fmt::Write as _;
 use stratavox::technique::{Filter, Mode, Technique};
 
@@ -48,7 +48,9 @@ pub fn refusal(
     let settings = settings(technique, mode, filter, feature);
     let (channels, parts) = (matter.channels(feature.seen), matter.parts(feature.seen));
     let scene = matter.scene(0, feature.seen, &settings, &channels, &parts);
-    scene.check().err().map(|error| error.to_string())
+    let bricks = if feature.seen == Seen::Bricked { 2 } else { 1 };
+    let checked = scene.check().and_then(|()| settings.check_bricks(bricks));
+    checked.err().map(|error| error.to_string())
 }
 
 /// The same words for every technique, mode and filter that a reason is said of.

@@ -200,6 +200,16 @@ struct Frame {
     host_w: vec4<f32>,
     // Where pixel (x, y) of a picture lies in its intermediate image: (x, y, 1, 0) to homogeneous coordinates.
     base_from_pixel: mat3x4<f32>,
+    // Splats: the precision matrix of the kernel in voxel space, xx, yy, zz and yz, xz, xy; where it is cut, in
+    // deviations; what makes its integral 1; the voxels whose centres are kept, the last included; and by how many
+    // voxels tiles look around the box.
+    splat_diagonal: vec3<f32>,
+    splat_reach: f32,
+    splat_mixed: vec3<f32>,
+    splat_peak: f32,
+    splat_first: vec3<i32>,
+    splat_last: vec3<i32>,
+    splat_apron: vec3<f32>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -7,9 +7,7 @@
 
 #import ray
 #import lattice
-
-// Of axes whose slopes differ by less the lowest is taken: rounding does not choose among those that are equal.
-const MAIN_AXIS_SHARE: f32 = 0.9999847412109375;
+#import main_axis
 
 // A ray along its main axis: s o_k and |d_k|.
 struct MainAxis {

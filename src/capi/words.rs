@@ -15,6 +15,8 @@ pub enum sv_technique {
     SV_TECHNIQUE_SLICES_2D = 2,
     /// Rays through a plane between these slices, warped to the picture. No depth.
     SV_TECHNIQUE_SHEAR_WARP = 3,
+    /// Every voxel is a Gaussian, of which rays take the integral.
+    SV_TECHNIQUE_SPLAT = 4,
 }
 
 /// What is done with the samples of a ray.

@@ -361,6 +361,19 @@ impl<R: Real> Samples<R> for ReferenceRays<'_, R> {
         )
     }
 
+    fn is_classified(&self) -> bool {
+        matches!(self.scene.beside, Beside::Classified(_))
+    }
+
+    fn classified_voxel(&self, index: [i32; 3]) -> Option<[R; 4]> {
+        let center = index.map(|i| R::from_f64(f64::from(i) + 0.5));
+        let mut found = [R::from_f64(0.0); 4];
+        for (number, volume) in found.iter_mut().zip(&self.volumes) {
+            *number = nearest(volume, center)?;
+        }
+        Some(found)
+    }
+
     fn material(&self, p: [R; 3], ray_direction: [R; 3]) -> Option<[R; 4]> {
         let look = |volume: &_, filter, step| filtered(volume, filter, moved(p, step));
         self.mixed(look, p, ray_direction)

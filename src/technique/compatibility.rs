@@ -10,6 +10,7 @@ impl Settings {
     /// # Errors
     /// [`Error::NotFor`], [`Error::SeveralShadowLights`], and [`Error::OutOfRange`] for a window that is none.
     pub fn check_ways(&self) -> Result<(), Error> {
+        self.check_splats()?;
         let (mode, technique) = (self.mode, self.technique);
         let desc = technique.desc();
         let of_mode = |is_on: bool, wanted| {
@@ -136,6 +137,7 @@ impl Settings {
     /// # Errors
     /// [`Error::NotFor`].
     pub(crate) fn check_graded(&self) -> Result<(), Error> {
+        self.check_splatted_function()?;
         self.refuse_way(
             "functions of the value alone",
             "one of the value and its gradient",

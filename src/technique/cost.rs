@@ -1,6 +1,6 @@
 //! What work will take, guessed before anything like it was measured: rather too much than too little.
 
-use super::{MAX_SAMPLES_PER_RAY, Mode, Settings, View};
+use super::{MAX_SAMPLES_PER_RAY, Mode, Settings, Technique, View};
 use crate::gpu::{Gpu, TARGET_MS};
 use crate::resident::Cell;
 use glam::DVec3;
@@ -87,7 +87,13 @@ fn length_inside([low, high]: [DVec3; 2], origin: DVec3, direction: DVec3) -> f6
     }
 }
 
+/// Some twenty voxels of a slice, each with its part in some five sheets.
+const FETCHES_OF_SHEET: f64 = 60.0;
+
 fn fetches_of_sample(settings: &Settings) -> f64 {
+    if settings.technique == Technique::Splat {
+        return FETCHES_OF_SHEET;
+    }
     let of_value = match settings.filter.kernel() {
         Some(_) => 8.0,
         None => 1.0,

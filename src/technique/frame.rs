@@ -45,14 +45,15 @@ fn kernel_number(filter: Filter) -> u32 {
 }
 
 impl View<'_> {
-    /// World length of a step: the smallest spacing over the samples per voxel. Of rays through a base plane the distance of the
+    /// World length of a step: the smallest spacing over the samples per voxel; as much longer as pixels make splats wider. Of rays through a base plane the distance of the
     /// heights with samples is that of slices, in place of the smallest spacing.
     pub fn step_world(&self) -> f64 {
         if self.settings.technique.is_warped() {
             let row = self.grid.voxel_rows()[stack_axis(self)];
             return 1.0 / (row.length() * self.settings.samples_per_voxel);
         }
-        self.grid.smallest_spacing() / self.settings.samples_per_voxel
+        let spacing = self.grid.smallest_spacing() * self.splat_widening();
+        spacing / self.settings.samples_per_voxel
     }
 
     /// The part of the grid that is kept, in voxel space.
@@ -90,6 +91,7 @@ impl View<'_> {
         self.check_sample_count()?;
         let of_mode = self.of_mode();
         let of_faces = self.settings.of_faces();
+        let of_splats = self.of_splats()?;
         let patterns = self.of_patterns();
         let reach = self.cover_reach();
         let margin = self.cover_margin(&rays, &world_from_voxel) + reach.voxels;
@@ -236,6 +238,13 @@ impl View<'_> {
             base_from_pixel: base.map_or([[0.0; 4]; 3], |base| rows_of(base.base_from_pixel)),
             host_z: [0.0; 4],
             host_w: [0.0; 4],
+            splat_diagonal: of_splats.splat_diagonal,
+            splat_reach: of_splats.splat_reach,
+            splat_mixed: of_splats.splat_mixed,
+            splat_peak: of_splats.splat_peak,
+            splat_first: of_splats.splat_first,
+            splat_last: of_splats.splat_last,
+            splat_apron: of_splats.splat_apron,
         };
         self.set_light(&mut fields);
         if let Some(shading) = &self.settings.shading {

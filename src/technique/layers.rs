@@ -1,7 +1,7 @@
 //! Which layers a picture has beside its colours: blending keeps no depth, a projection no transmittance, and a composite
 //! has no one value.
 
-use super::Settings;
+use super::{Settings, Technique};
 use crate::picture::LayerKind;
 
 /// What a picture lacks for a layer.
@@ -34,6 +34,12 @@ impl Settings {
             Value => (!mode.has_value()).then_some(Lack::OneValue),
             Transmittance => mode.is_projection().then_some(Lack::Transmittance),
             Depth | Position | Normal | Label if !technique.has_depth() => Some(Lack::Rays),
+            // Sheets are thick: only an extreme has the depth of one.
+            Depth | Position | Normal | Label
+                if technique == Technique::Splat && !mode.projects_one_place() =>
+            {
+                Some(Lack::Depth)
+            }
             Position | Normal | Label if !mode.has_depth() => Some(Lack::Depth),
             Depth | Position | Normal | Label | Samples => None,
             Annotation => Some(Lack::Annotation),

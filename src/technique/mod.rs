@@ -63,6 +63,7 @@ mod slab;
 mod slicer;
 pub mod slices_2d;
 pub mod slices_3d;
+pub mod splat;
 mod stack_axis;
 
 pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
@@ -107,6 +108,8 @@ pub enum Technique {
     Slices2d,
     /// Rays through a plane between these slices, warped to the picture.
     ShearWarp,
+    /// Every voxel is a Gaussian, of which rays take the integral.
+    Splat,
 }
 
 /// How a value between voxel centres is made.
@@ -266,6 +269,8 @@ pub struct Settings {
     pub per_mode: PerMode,
     /// What is left of the extinction and of the colour of a dimmed label ([`crate::volume::labels::dim`]), 0 to 1.
     pub dim: f64,
+    /// What splats are.
+    pub splat: splat::Splat,
 }
 
 /// Faint, and still seen.
@@ -315,6 +320,7 @@ impl Default for Settings {
             conformance: false,
             per_mode: PerMode::default(),
             dim: DEFAULT_DIM,
+            splat: splat::Splat::default(),
         }
     }
 }

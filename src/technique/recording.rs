@@ -6,7 +6,7 @@
 //!     a technique's record(cmd, ...)       with the bindings of recording.brick
 //! ```
 
-use super::mixture::{GpuChannel, set_channels};
+use super::mixture::{GpuChannel, Role, set_channels};
 use super::{Error, Order, View};
 use crate::camera::{DepthConvention, HostDepth};
 use crate::gpu::{self, Gpu, ParameterRing};
@@ -122,6 +122,7 @@ impl View<'_> {
         let mut fields = self.fields_of(volume, parts, transfer)?;
         let bricks = volume.bricks();
         self.check_slabs(bricks.len())?;
+        self.settings.check_bricks(bricks.len())?;
         if self.settings.is_half_angle() {
             if parts.len() > 1 {
                 return Err(Error::NotShadedTogether.into());
@@ -171,6 +172,7 @@ impl View<'_> {
         [is_first, is_last]: [bool; 2],
     ) -> Result<Recording, Error> {
         self.check_slabs(2)?;
+        self.settings.check_bricks(2)?;
         let mut fields = self.fields_of(volume, &[GpuChannel::numbers(volume)], transfer)?;
         let cell = &volume.bricks()[0].cell;
         self.set_brick(cell, is_first, &mut fields);
@@ -196,6 +198,9 @@ impl View<'_> {
         if parts.len() > 1 {
             self.settings.check_mixed()?;
         }
+        let is_classified = parts.iter().any(|part| part.role == Role::Material);
+        self.settings
+            .check_splatted(parts.len() > 1, is_classified)?;
         fields.flat_gradient = self.flat_gradient(volume.value_range());
         self.set_gradients(volume, transfer, &mut fields)?;
         Ok(fields)

@@ -28,6 +28,14 @@ pub trait Samples<R: Real> {
     fn value_in_slice(&self, axis: usize, slice: u32, p: [R; 3]) -> Option<R>;
     /// A voxel, by its index.
     fn voxel(&self, index: [i32; 3]) -> Option<R>;
+    /// Whether voxels are classified already.
+    fn is_classified(&self) -> bool {
+        false
+    }
+    /// The four numbers of such a voxel: light, and optical depth over the reference length.
+    fn classified_voxel(&self, _index: [i32; 3]) -> Option<[R; 4]> {
+        None
+    }
     /// Colour and extinction of what is there, lit.
     fn material(&self, p: [R; 3], ray_direction: [R; 3]) -> Option<[R; 4]>;
     /// The same of the voxels of one slice across an axis.

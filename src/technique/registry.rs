@@ -4,7 +4,7 @@ use super::gather::{Gather, GatherDesc};
 use super::reference::{Gathered, Samples};
 use super::shear_warp::BasePlane;
 use super::{
-    Error, Settings, Technique, View, projection, raycast, shear_warp, slices_2d, slices_3d,
+    Error, Settings, Technique, View, projection, raycast, shear_warp, slices_2d, slices_3d, splat,
 };
 use crate::gpu;
 use crate::named::named;
@@ -18,6 +18,7 @@ named!(Technique {
     Slices3d "slices-3d" "",
     Slices2d "slices-2d" "",
     ShearWarp "shear-warp" "",
+    Splat "splat" "",
 });
 
 /// The base plane of a view.
@@ -72,6 +73,7 @@ impl Technique {
             Self::Slices3d => &slices_3d::DESC,
             Self::Slices2d => &slices_2d::DESC,
             Self::ShearWarp => &shear_warp::DESC,
+            Self::Splat => &splat::DESC,
         }
     }
 
@@ -115,6 +117,7 @@ impl Technique {
             Self::ShearWarp => {
                 shear_warp::reference::pixel(of, pixel, |base| Self::Raycast.pixel(of, base))
             }
+            Self::Splat => splat::reference::pixel(of, pixel),
         }
     }
 }

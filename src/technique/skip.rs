@@ -77,7 +77,10 @@ impl Settings {
             None => VisibleRanges::new(function),
         };
         let is_one = mix.is_of_one() || self.mode == Mode::Iso;
-        if !self.skip || !is_one {
+        // Sheets of values: a projection of splats goes through all.
+        let is_splatted = self.technique == super::Technique::Splat;
+        let is_refused = is_splatted && self.mode != Mode::Composite;
+        if !self.skip || !is_one || is_refused {
             return Skippable::Nothing;
         }
         if !self.technique.casts_rays() {
@@ -126,7 +129,8 @@ impl Settings {
     pub fn skippable_in_all(&self, functions: &[(usize, &TransferFunction)]) -> Skippable {
         // Patches of mixed slices cost more than they have been seen to leave out.
         let is_mixed = self.technique.casts_rays() && self.mode == Mode::Composite;
-        if !self.skip || !is_mixed || self.preintegrated || functions.is_empty() {
+        let is_splatted = self.technique == super::Technique::Splat;
+        if !self.skip || !is_mixed || self.preintegrated || functions.is_empty() || is_splatted {
             return Skippable::Nothing;
         }
         let seen = functions.iter().map(|&(n, f)| (n, VisibleRanges::new(f)));

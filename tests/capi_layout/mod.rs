@@ -61,8 +61,8 @@ pub fn asserts() -> Vec<String> {
         ),
         ("SV_VOXEL_F64", sv_voxel_type::SV_VOXEL_F64 as i32),
         (
-            "SV_TECHNIQUE_SLICES_2D",
-            sv_technique::SV_TECHNIQUE_SLICES_2D as i32,
+            "SV_TECHNIQUE_SPLAT",
+            sv_technique::SV_TECHNIQUE_SPLAT as i32,
         ),
         ("SV_ABI_VERSION", sv_version::SV_ABI_VERSION as i32),
     ] {

@@ -37,5 +37,6 @@ mod shear_warp;
 mod slabs;
 mod slabs_references;
 mod smooth_stacks;
+mod splat;
 mod surfaces;
 mod widgets;

@@ -110,8 +110,9 @@ impl<R: Real> Samples<R> for Formula<'_> {
         self.value(p)
     }
 
-    fn voxel(&self, _index: [i32; 3]) -> Option<R> {
-        panic!("a formula has no voxels")
+    /// What the formula is at its centre.
+    fn voxel(&self, index: [i32; 3]) -> Option<R> {
+        self.value(index.map(|i| R::from_f64(f64::from(i) + 0.5)))
     }
 
     fn material(&self, p: [R; 3], _ray_direction: [R; 3]) -> Option<[R; 4]> {

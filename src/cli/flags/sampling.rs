@@ -11,7 +11,9 @@ use crate::{
     picture::ColorSpace,
     shaders::MAX_CLIP_PLANES,
     technique::{
-        ClipPlane, DEFAULT_DIM, Filter, FilterBy, Jitter, Lattice, Mode, Order, Settings, Technique,
+        ClipPlane, DEFAULT_DIM, Filter, FilterBy, Jitter, Lattice, Mode, Order, Settings,
+        Technique,
+        splat::{Sheets, Splat},
     },
 };
 use clap::Args;
@@ -120,6 +122,20 @@ pub struct SamplingFlags {
     #[arg(long, value_name = "LO,HI", num_args = 0..=1, default_missing_value = "own", require_equals = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cut_faces: Option<CutFacesWord>,
+    /// Splats: sheets that they are put together in [default: image]
+    #[arg(long)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sheets: Option<Sheets>,
+    /// Splats: standard deviation of the Gaussian that a voxel is, in voxels [default: 0.6]; less shows the voxels, more
+    /// blurs
+    #[arg(long, value_name = "VOXELS", value_parser = positive)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub splat_std: Option<f64>,
+    /// Splats: no splat is thinner than so many pixels, as they are at the centre of the box; 0 never widens them
+    /// [default: 0.6]
+    #[arg(long, value_name = "PIXELS")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub splat_low_pass: Option<f64>,
     /// As `stratavox conformance` draws: float targets, no early termination, filtering in the shader
     #[arg(long)]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
@@ -139,6 +155,8 @@ pub enum Depth {
 const TERMINATION_LINEAR: f32 = 1.0 / 8192.0;
 /// Early termination of an 8-bit picture in display space.
 const TERMINATION_DISPLAY: f32 = 1.0 / 512.0;
+/// Where splats of an 8-bit picture end: what is cut off of a constant is 0.12 %, and made up for.
+const CUT_BITS_EIGHT: u32 = 8;
 /// Which ways to sample go with which technique.
 const WAYS: &str = "--preintegrated is for --mode composite, --smooth for that with --technique slices-2d, --jitter for \
                     --technique raycast, and --cut-faces and --adaptive-steps for that with --mode composite";
@@ -148,6 +166,9 @@ const MAIN_AXIS: &str = "--lattice bresenham is for --technique raycast and --mo
 /// What shear-warp goes with.
 const WARP: &str = "--technique shear-warp is for --mode composite, mip, minip, average and xray, without --lattice, --jitter, \
                     --aa-uneven, --adaptive-steps and --cut-faces";
+/// What splats go with.
+const SPLATS: &str = "--technique splat is for --mode composite, mip, minip, average and xray, with a kernel (--splat-std) and \
+                      sheets (--sheets) of its own: leave out the other flag, or take --technique raycast";
 /// Rays along one side of a pixel.
 const MAX_RAYS_PER_SIDE: u32 = 64;
 
@@ -156,6 +177,7 @@ pub fn check_ways(settings: &Settings) -> Result<(), Error> {
     let hint = match settings.lattice {
         _ if settings.is_half_angle() => HALF_ANGLE,
         _ if settings.technique.is_warped() => WARP,
+        _ if settings.technique == Technique::Splat => SPLATS,
         Lattice::Bresenham => MAIN_AXIS,
         _ => WAYS,
     };
@@ -203,13 +225,36 @@ impl SamplingFlags {
             gradient_filter: Default::default(),
             gradient_storage: Default::default(),
             dim: DEFAULT_DIM,
+            splat: self.splat(depth),
             ambient_occlusion: None,
             conformance: self.conformance,
             // Of the values, which are not known yet.
             per_mode: Default::default(),
         };
         check_ways(&settings)?;
+        let is_alone =
+            settings.technique == Technique::Splat && settings.splat.sheets == Sheets::None;
+        if is_alone && settings.mode == Mode::Composite && !self.preclassified {
+            return Err(Error::usage(
+                "--sheets none composites each voxel by itself, and values are classified sheet by sheet",
+                "add --preclassified, or take --sheets image",
+            ));
+        }
         Ok(settings)
+    }
+
+    /// What splats are, in a picture kept so exactly.
+    fn splat(&self, depth: Depth) -> Splat {
+        let default = Splat::default();
+        Splat {
+            sheets: self.sheets.unwrap_or_default(),
+            std: self.splat_std.unwrap_or(default.std),
+            low_pass: self.splat_low_pass.unwrap_or(default.low_pass),
+            cut_bits: match depth {
+                Depth::Eight if !self.conformance => CUT_BITS_EIGHT,
+                _ => default.cut_bits,
+            },
+        }
     }
 
     /// Those of `--clip`, then those of `--clip-box`.
@@ -274,6 +319,14 @@ impl SamplingFlags {
         }
         if self.intermediate.is_some() && !technique.is_warped() {
             notes.push("--intermediate has no effect without --technique shear-warp");
+        }
+        let is_of_splats =
+            self.sheets.is_some() || self.splat_std.is_some() || self.splat_low_pass.is_some();
+        if is_of_splats && technique != Technique::Splat {
+            notes.push("--sheets, --splat-std and --splat-low-pass have no effect without --technique splat");
+        }
+        if self.sheets.is_some() && matches!(self.mode, Some(Mode::Average | Mode::Xray)) {
+            notes.push("--sheets has no effect on --mode average and xray, which add all splats");
         }
         let is_cut = self.crop.is_some() || self.clip_box.is_some() || !self.clip.is_empty();
         if self.cut_faces.is_some() && !is_cut {

@@ -3,7 +3,7 @@
 use crate::{
     named::Named,
     picture::ColorSpace,
-    technique::{Filter, FilterBy, Lattice, Mode, Order, Technique},
+    technique::{Filter, FilterBy, Lattice, Mode, Order, Technique, splat::Sheets},
 };
 use clap::{ValueEnum, builder::PossibleValue};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
@@ -49,6 +49,7 @@ by_name! {
     Lattice: &[Self::Ray, Self::Planes, Self::Bresenham],
     Order: Self::ALL,
     ColorSpace: Self::ALL,
+    Sheets: Self::ALL,
 }
 
 /// Takes a name while the deserializer stands at it: what is wrong with it has the line that it is on.

@@ -10,6 +10,7 @@ mod relation;
 mod seen;
 mod shadow;
 mod slab;
+mod splat;
 mod surface;
 
 use super::case::Case;
@@ -28,5 +29,6 @@ pub fn cases() -> Vec<Case> {
     cases.extend(shadow::cases());
     cases.extend(relation::cases());
     cases.extend(reference::cases());
+    cases.extend(splat::cases());
     cases
 }

@@ -135,7 +135,17 @@ fn measure(
             opacity: 0.6,
         }];
     });
-    let volume = volume(&shot, look == Look::Holes);
+    of_shot(bed, &shot, look == Look::Holes)
+}
+
+/// The picture of a shot, of waves, against the CPU references.
+pub(super) fn of_shot(
+    bed: &mut TestBed,
+    shot: &PictureCase,
+    has_holes: bool,
+) -> Result<Measurement, Stop> {
+    let mode = shot.settings.mode;
+    let volume = volume(shot, has_holes);
     let function = ground::ramps();
     let scene = shot.scene(&volume, Some(&function));
     let found = bed.render(&scene, &[])?;

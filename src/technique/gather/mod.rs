@@ -24,7 +24,7 @@ pub(crate) use canvas::{Canvas, CanvasDesc, PICTURE};
 pub(crate) use player::Player;
 pub(crate) use rays::{LAYERS, depth_of_slices};
 pub(super) use {
-    rays::{RayPass, rays},
+    rays::{RayPass, rays, rays_of},
     slices::slices,
 };
 

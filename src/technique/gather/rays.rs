@@ -28,6 +28,11 @@ pub(in crate::technique) fn rays(desc: &GatherDesc) -> Result<Box<dyn Gather>, E
     Ok(Box::new(Rays::new(desc.gpu, pass)))
 }
 
+/// Rays of such a pass.
+pub(in crate::technique) fn rays_of(gpu: &Arc<Gpu>, pass: RayPass) -> Box<dyn Gather> {
+    Box::new(Rays::new(gpu, pass))
+}
+
 /// Rays that find the depth of slices: they take the samples of the slices one after the other
 /// ([`super::super::View::each_depth_recording`]). The variant is that of the picture; what lights it has no say.
 ///

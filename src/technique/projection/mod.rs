@@ -34,7 +34,7 @@ impl Projection {
             "projection.{}.{lattice}.{filter}.{holes}",
             mode.shader_key()
         );
-        Self::of_shader(gpu, variant.shader(&name))
+        Self::of_rays(gpu, variant.shader(&name))
     }
 
     /// The same for the exact extreme of the trilinear field, of [`Mode::Mip`] or [`Mode::Minip`].
@@ -43,10 +43,15 @@ impl Projection {
     /// Where the device refuses.
     pub fn exact(gpu: &Arc<Gpu>, mode: Mode, variant: &ShaderVariant) -> Result<Self, Error> {
         let name = format!("projection_cells.{}.{}", mode.shader_key(), variant.holes);
-        Self::of_shader(gpu, shader(&name))
+        Self::of_shader(gpu, &name)
     }
 
-    fn of_shader(gpu: &Arc<Gpu>, rays: &Shader) -> Result<Self, Error> {
+    /// Rays of another kind that leave one number a ray.
+    pub(super) fn of_shader(gpu: &Arc<Gpu>, name: &str) -> Result<Self, Error> {
+        Self::of_rays(gpu, shader(name))
+    }
+
+    fn of_rays(gpu: &Arc<Gpu>, rays: &Shader) -> Result<Self, Error> {
         Ok(Self {
             pass: TilePass::new(gpu, rays, Nothing::BeyondProjection)?,
         })

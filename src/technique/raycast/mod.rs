@@ -9,6 +9,7 @@ use super::registry::TechniqueDesc;
 use super::{Inputs, Mode, RayBindings, RayTiles, SampleInputs, SampleKind, ShaderVariant};
 use crate::gpu::{Error, Gpu, Image, Resource, Tile};
 use crate::resident::TextureLayout;
+use crate::shaders::shader;
 use ash::vk;
 use std::sync::Arc;
 
@@ -89,6 +90,13 @@ impl Raycast {
         };
         Ok(Self {
             pass: TilePass::new(gpu, variant.shader(&name), nothing)?,
+        })
+    }
+
+    /// Rays of another kind that leave a picture and what lies beside it.
+    pub(super) fn of_shader(gpu: &Arc<Gpu>, name: &str) -> Result<Self, Error> {
+        Ok(Self {
+            pass: TilePass::new(gpu, shader(name), Nothing::Beyond)?,
         })
     }
 

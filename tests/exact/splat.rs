@@ -1,0 +1,193 @@
+//! Splats against closed forms, and against sums over all voxels in f64: on the CPU reference and on the device.
+
+mod classified;
+mod laws;
+mod sheets;
+mod sums;
+
+use crate::shared::{PictureCase, device, oblique_camera, projections, sheared_affine};
+use glam::{DAffine3, DVec3, dvec3};
+use stratavox::camera::{Camera, Projection};
+use stratavox::offscreen::{Renderer, reference};
+use stratavox::picture::{ColorSpace, LayerKind, Picture};
+use stratavox::scene::{Beside, Scene};
+use stratavox::technique::splat::{Sheets, Splat, oracle};
+use stratavox::technique::{Mode, Settings, Technique};
+use stratavox::transfer::{ColorPoint, Interpolation, OpacityPoint, TransferFunction};
+use stratavox::volume::{Grid, Volume};
+
+const DIMS: [u32; 3] = [14, 12, 13];
+
+/// Cubes, far from the origin.
+fn cubes() -> Grid {
+    Grid {
+        dims: DIMS,
+        world_from_voxel: DAffine3::from_translation(dvec3(5.0, -3.0, 40.0)),
+    }
+}
+
+/// No angle is right, and no two sides are alike.
+fn sheared() -> Grid {
+    Grid {
+        dims: DIMS,
+        world_from_voxel: sheared_affine(),
+    }
+}
+
+fn settings(mode: Mode, sheets: Sheets) -> Settings {
+    Settings {
+        technique: Technique::Splat,
+        mode,
+        conformance: true,
+        color_space: ColorSpace::Display,
+        splat: Splat {
+            sheets,
+            ..Splat::default()
+        },
+        ..Settings::default()
+    }
+}
+
+/// Both projections, from where no axis is.
+fn shots(grid: Grid, settings: &Settings) -> [PictureCase; 2] {
+    projections(&grid).map(|projection| PictureCase {
+        grid,
+        camera: oblique_camera(&grid, projection),
+        extent: [24, 22],
+        settings: settings.clone(),
+    })
+}
+
+/// From a direction of voxel space, seeing all of the grid.
+fn seen_from(grid: Grid, towards: DVec3, settings: &Settings) -> PictureCase {
+    let size = (grid.world_from_voxel.matrix3 * grid.far_corner()).length();
+    PictureCase {
+        grid,
+        camera: Camera {
+            eye: grid.center() + 2.0 * size * towards.normalize(),
+            target: grid.center(),
+            up: dvec3(0.1, 0.2, 1.0),
+            projection: Projection::Orthographic {
+                view_height: 0.8 * size,
+            },
+            zoom: 1.0,
+        },
+        extent: [24, 22],
+        settings: settings.clone(),
+    }
+}
+
+fn function() -> TransferFunction {
+    let color = |value, srgb| ColorPoint { value, srgb };
+    let opacity = |value, opacity| OpacityPoint { value, opacity };
+    TransferFunction {
+        color: vec![color(0.0, [0.1, 0.2, 0.9]), color(1.0, [1.0, 0.5, 0.1])],
+        opacity: vec![opacity(0.2, 0.0), opacity(0.8, 0.4)],
+        reference_length: Some(1.0),
+        interpolation: Interpolation::Linear,
+        gradient_transfer: None,
+    }
+}
+
+/// Numbers without a pattern.
+fn noise(p: DVec3) -> f64 {
+    let seed = p.dot(dvec3(12.9898, 78.233, 37.719)).sin() * 43758.5453;
+    seed - seed.floor()
+}
+
+/// A ray in centred world space and in voxel space.
+struct Ray {
+    origin: DVec3,
+    direction: DVec3,
+    line: oracle::Line,
+    forward: DVec3,
+}
+
+fn ray_of(shot: &PictureCase, [x, y]: [u32; 2]) -> Ray {
+    let rays = shot.camera.rays(shot.extent);
+    let (origin, direction) = rays.at(f64::from(x) + 0.5, f64::from(y) + 0.5);
+    let voxel = shot.grid.world_from_voxel.inverse();
+    Ray {
+        origin: origin - shot.grid.center(),
+        direction,
+        line: oracle::Line {
+            origin: voxel.transform_point3(origin),
+            direction: voxel.transform_vector3(direction),
+        },
+        forward: rays.forward,
+    }
+}
+
+impl Ray {
+    fn edge(&self, height: f64) -> f64 {
+        (height - self.forward.dot(self.origin)) / self.forward.dot(self.direction)
+    }
+
+    /// Where it is in the box of a grid, from the eye on.
+    fn inside(&self, grid: &Grid) -> Option<[f64; 2]> {
+        let [mut enter, mut leave] = [0.0f64, f64::INFINITY];
+        let (o, d) = (self.line.origin, self.line.direction);
+        for k in 0..3 {
+            let ends = [0.0, grid.far_corner()[k]].map(|face| (face - o[k]) / d[k]);
+            enter = enter.max(ends[0].min(ends[1]));
+            leave = leave.min(ends[0].max(ends[1]));
+        }
+        (enter < leave).then_some([enter, leave])
+    }
+}
+
+/// All voxels with their centres, in an order that is no one's: value, 1 where there is one, 1.
+fn voxels(volume: &Volume) -> impl Iterator<Item = (DVec3, [f64; 3])> {
+    let [nx, ny, _] = volume.dims.map(|n| n as usize);
+    let count = volume.voxels.len();
+    (0..count).map(move |n| {
+        let i = (n * 5 + 3) % count;
+        let center = dvec3(
+            (i % nx) as f64,
+            (i / nx % ny) as f64,
+            (i / (nx * ny)) as f64,
+        ) + 0.5;
+        let is_there = volume.validity.as_ref().is_none_or(|v| v[i] != 0);
+        let value = f64::from(volume.voxels.stored(i));
+        match is_there {
+            true => (center, [value, 1.0, 1.0]),
+            false => (center, [0.0, 0.0, 1.0]),
+        }
+    })
+}
+
+fn scene<'a>(shot: &'a PictureCase, volume: &'a Volume, f: &'a TransferFunction) -> Scene<'a> {
+    Scene {
+        volume,
+        transfer: Some(f),
+        beside: Beside::Nothing,
+        camera: &shot.camera,
+        extent_pixels: shot.extent,
+        settings: &shot.settings,
+    }
+}
+
+/// By the CPU reference in f64 and in f32, and by the device.
+fn pictures(scene: &Scene, layers: &[LayerKind]) -> [(&'static str, Picture); 3] {
+    let mut renderer = Renderer::several(device(), scene.volumes()).unwrap();
+    [
+        ("f64", reference::render::<f64>(scene).unwrap()),
+        ("f32", reference::render::<f32>(scene).unwrap()),
+        ("device", renderer.render(scene, layers).unwrap().picture),
+    ]
+}
+
+fn values(picture: &Picture) -> &[f32] {
+    let layer = picture
+        .layers
+        .iter()
+        .find(|layer| layer.kind == LayerKind::Value);
+    &layer.expect("values").values
+}
+
+/// Both sides of 45 degrees between two axes, and a diagonal.
+const DIRECTIONS: [DVec3; 3] = [
+    dvec3(1.0, 0.998, 0.13),
+    dvec3(0.998, 1.0, 0.13),
+    dvec3(1.0, -1.1, 0.9),
+];
