@@ -46,6 +46,7 @@ mod patches;
 mod per_mode;
 #[doc(hidden)]
 pub mod preclassified;
+mod projected;
 pub mod projection;
 mod ray_tiles;
 pub mod raycast;
@@ -63,6 +64,7 @@ mod slicer;
 pub mod slices_2d;
 pub mod slices_3d;
 pub mod splat;
+mod stack_axis;
 
 pub use accumulation::{ACCUMULATION_FORMAT, accumulation};
 #[doc(hidden)]

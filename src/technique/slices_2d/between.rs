@@ -9,13 +9,13 @@
 //! Rezk-Salama et al., "Interactive Volume Rendering on Standard PC Graphics Hardware Using Multi-Textures and
 //! Multi-Stage Rasterization", Graphics Hardware 2000.
 
-use super::stack::facing;
 use crate::lattice::Slab;
 use crate::ray::{Ray, domain_interval, pixel_ray, voxel_ray};
 use crate::real::Real;
 use crate::shaders::Frame;
 use crate::technique::View;
 use crate::technique::blend::Fragment;
+use crate::technique::stack_axis::facing;
 
 /// More planes than these show nothing new.
 const MAX_PLANES_PER_SLICE: u32 = 64;

@@ -6,8 +6,9 @@ pub mod between;
 pub mod reference;
 mod stack;
 
+pub use super::stack_axis::stack_axis;
 pub use between::planes_per_slice;
-pub use stack::{set_slices, stack_axis, stack_shares};
+pub use stack::{set_slices, stack_shares};
 
 use super::gather::slices;
 use super::registry::{SliceShaders, TechniqueDesc};

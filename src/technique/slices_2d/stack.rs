@@ -1,16 +1,10 @@
-//! Which of the three stacks is drawn, which of its slices, and in which order (`sampling.md` 3).
-//!
-//! The axis k of the largest |n_k . v|: n_k the normalized row k of `voxel_from_world`, v the unit vector
-//! from the eye to the centre of the box (orthographic, or the eye at the centre: the forward vector). On
-//! orthogonal grids that switches at 45 degrees; spacing does not weigh.
+//! Which slices of a stack are drawn, and in which order (`sampling.md` 3).
 
 use super::planes_per_slice;
 use crate::shaders::FrameFields;
+use crate::technique::stack_axis::{facing, stack_axis};
 use crate::technique::{Order, View};
 use glam::DVec3;
-
-/// Two axes that face the eye alike by this much are a tie: the lower one wins.
-const TIE: f64 = 1e-12;
 
 impl View<'_> {
     /// How many slices (or planes between them) the longest stack has that is drawn.
@@ -19,32 +13,6 @@ impl View<'_> {
             |axis: usize| f64::from(self.grid.dims[axis]) * f64::from(planes_per_slice(self, axis));
         planes(stack_axis(self))
     }
-}
-
-/// The axis whose slices face the eye most, or the one that the settings name.
-pub fn stack_axis(view: &View) -> usize {
-    if let Some(axis) = view.settings.stack {
-        return axis.min(2);
-    }
-    let facing = facing(view);
-    let largest = facing.into_iter().fold(0.0, f64::max);
-    (0..3)
-        .find(|&k| facing[k] >= largest - TIE)
-        .expect("one of three is the largest")
-}
-
-/// |n_k . v| of each axis.
-pub(super) fn facing(view: &View) -> [f64; 3] {
-    let forward = view.rays().forward;
-    let towards = match view.camera.projection.is_perspective() {
-        false => forward,
-        true => (view.grid.center() - view.camera.eye)
-            .try_normalize()
-            .unwrap_or(forward),
-    };
-    view.grid
-        .voxel_rows()
-        .map(|row| row.normalize().dot(towards).abs())
 }
 
 /// Half the band, in degrees of the eye's way, in which both stacks are seen.
