@@ -46,6 +46,7 @@ mod patches;
 mod per_mode;
 #[doc(hidden)]
 pub mod preclassified;
+mod projected;
 pub mod projection;
 mod ray_tiles;
 pub mod raycast;

@@ -253,7 +253,7 @@ static void test_levels(void) {
     expect(drawn_pixels(other) < drawn_pixels(b) && drawn_pixels(other) > 20, "the next time of a series");
     CHECK(sv_renderer_destroy(renderer, &diagnostic));
 
-    for (uint32_t technique = 0; technique < 4; ++technique) {
+    for (uint32_t technique = 0; technique < 5; ++technique) {
         const sv_settings settings = {.struct_size = sizeof settings, .technique = technique};
         static uint8_t voxel = 200;
         const sv_volume_desc one = {.struct_size = sizeof one,

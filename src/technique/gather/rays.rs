@@ -154,6 +154,16 @@ pub(in crate::technique) enum RayPass {
 }
 
 impl RayPass {
+    /// A pass that projects, by a shader that another technique has of its own.
+    pub(in crate::technique) fn projection_of(gpu: &Arc<Gpu>, shader: &str) -> Result<Self, Error> {
+        Ok(Self::Projection(Projection::of_shader(gpu, shader)?))
+    }
+
+    /// The same for one that composites.
+    pub(in crate::technique) fn picture_of(gpu: &Arc<Gpu>, shader: &str) -> Result<Self, Error> {
+        Ok(Self::Raycast(Raycast::of_shader(gpu, shader)?))
+    }
+
     /// Compiles the variant for the settings.
     pub fn new(
         gpu: &Arc<Gpu>,

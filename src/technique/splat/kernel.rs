@@ -13,7 +13,7 @@
 
 use super::line::{Line, main_axis};
 use super::{Sheets, sheets_of, uses_stack};
-use crate::technique::slices_2d::stack_axis;
+use crate::technique::stack_axis::stack_axis;
 use crate::technique::{Error, Technique, View};
 use glam::{DMat3, DVec3};
 

@@ -19,10 +19,8 @@ mod rules;
 pub use kernel::MAX_OPEN_SHEETS;
 
 use super::gather::{Gather, GatherDesc, RayPass, rays_of};
-use super::projection::Projection;
-use super::raycast::Raycast;
 use super::registry::TechniqueDesc;
-use super::slices_2d::stack_axis;
+use super::stack_axis::stack_axis;
 use super::{Mode, SampleInputs, Settings};
 use crate::gpu::Error;
 use crate::named::named;
@@ -115,7 +113,7 @@ fn gather(desc: &GatherDesc) -> Result<Box<dyn Gather>, Error> {
     };
     let pass = if mode.is_projection() {
         let name = format!("splat_projection.{sheets}.{}.{holes}", mode.shader_key());
-        RayPass::Projection(Projection::of_shader(gpu, &name)?)
+        RayPass::projection_of(gpu, &name)?
     } else {
         let take = match desc.variant.mix {
             SampleInputs::Colors => "pre",
@@ -126,7 +124,7 @@ fn gather(desc: &GatherDesc) -> Result<Box<dyn Gather>, Error> {
             _ => "table",
         };
         let name = format!("splat.{sheets}.{take}.{holes}.{transfer}");
-        RayPass::Raycast(Raycast::of_shader(gpu, &name)?)
+        RayPass::picture_of(gpu, &name)?
     };
     Ok(rays_of(gpu, pass))
 }

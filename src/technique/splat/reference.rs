@@ -24,7 +24,7 @@ use crate::real::{Real, dot};
 use crate::shaders::Frame;
 use crate::technique::Mode;
 use crate::technique::composite::Composite;
-use crate::technique::projection::reference::Projected;
+use crate::technique::projected::Projected;
 use crate::technique::reference::{Gathered, Samples};
 
 /// Beyond all rays.
