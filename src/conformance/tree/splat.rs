@@ -1,5 +1,5 @@
-//! Splats, against the same sums on the CPU in f64: values in sheets that face the eye and in slices, extremes and sums, and with
-//! voxels without data.
+//! Splats, against the same sums on the CPU in f64: values and extremes in sheets that are slices, sums, and with voxels without
+//! data.
 
 use super::ground::{self, MODES, PROJECTIONS, RAYS};
 use super::reference;
@@ -19,8 +19,10 @@ pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     for sheets in [Sheets::Image, Sheets::Axis] {
         for mode in MODES {
-            // Sums have no sheets.
-            if sheets != Sheets::Image && matches!(mode, Mode::Average | Mode::Xray) {
+            // Sums have no sheets; into which sheet that faces the eye a slice first reaches depends on rounding, in more pixels
+            // than a case may leave out: `tests/exact/splat` has those.
+            let is_sum = matches!(mode, Mode::Average | Mode::Xray);
+            if is_sum != (sheets == Sheets::Image) {
                 continue;
             }
             for (look, has_holes) in [("plain", false), ("holes", true)] {
