@@ -209,7 +209,7 @@ struct Frame {
     splat_peak: f32,
     splat_first: vec3<i32>,
     splat_last: vec3<i32>,
-    splat_apron: vec3<f32>,
+    splat_halo: vec3<f32>,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

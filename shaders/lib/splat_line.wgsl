@@ -170,6 +170,6 @@ fn part_within(line: SplatLine, range: SplatRange, t_densest: f32) -> f32 {
 // has voxels as far again.
 fn passed_reach(line: SplatLine, sheet: f32) -> f32 {
     let along = (2.0 * line.reach + sheet) * max(abs(line.direction.z), max(abs(line.direction.x), abs(line.direction.y)));
-    let apron = frame.splat_apron;
-    return along + max(apron.x, max(apron.y, apron.z));
+    let halo = frame.splat_halo;
+    return along + max(halo.x, max(halo.y, halo.z));
 }

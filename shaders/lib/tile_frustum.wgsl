@@ -91,8 +91,8 @@ fn not_over(interval: vec2<f32>, p: f32, q: f32) -> vec2<f32> {
 // Where samples of this recording may lie: in the domain and in its brick.
 fn box_part(frustum: TileFrustum) -> vec2<f32> {
     // Splats reach out of the box.
-    var low = frame.domain_min - frame.splat_apron;
-    var high = frame.domain_max + frame.splat_apron;
+    var low = frame.domain_min - frame.splat_halo;
+    var high = frame.domain_max + frame.splat_halo;
     if frame.is_only_brick == 0u {
         low = max(low, frame.brick_min);
         high = min(high, frame.brick_max);

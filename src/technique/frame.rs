@@ -244,7 +244,7 @@ impl View<'_> {
             splat_peak: of_splats.splat_peak,
             splat_first: of_splats.splat_first,
             splat_last: of_splats.splat_last,
-            splat_apron: of_splats.splat_apron,
+            splat_halo: of_splats.splat_halo,
         };
         self.set_light(&mut fields);
         if let Some(shading) = &self.settings.shading {

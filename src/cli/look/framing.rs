@@ -121,7 +121,11 @@ impl<'a> Framing<'a> {
 
 impl Framing<'_> {
     /// The view with the camera fitted, where a word or the look asks for it, and with the samples that the work allows.
+    ///
+    /// Small frames are drawn by rays of pixels where the technique casts other ones: what is visible is nearly the same.
     pub fn fit(&self, draw: &mut Small) -> Result<View, Error> {
+        let draw: &mut Small =
+            &mut |camera, settings, extent| draw(camera, &settings.by_rays(), extent);
         let mut notes = Vec::new();
         let mut scene = self.scene.clone();
         if self.may_choose_side && self.word().is_some() {

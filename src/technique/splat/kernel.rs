@@ -58,7 +58,7 @@ impl Kernel {
     }
 
     /// How far it reaches along each axis, in voxels.
-    pub fn apron(&self) -> DVec3 {
+    pub fn halo(&self) -> DVec3 {
         let covariance = self.precision.inverse();
         let deviations = [0, 1, 2].map(|k| covariance.col(k)[k].sqrt());
         self.reach * DVec3::from_array(deviations)
@@ -74,7 +74,7 @@ pub(in crate::technique) struct OfSplats {
     pub splat_peak: f32,
     pub splat_first: [i32; 3],
     pub splat_last: [i32; 3],
-    pub splat_apron: [f32; 3],
+    pub splat_halo: [f32; 3],
 }
 
 impl View<'_> {
@@ -151,7 +151,7 @@ impl View<'_> {
         let m = kernel.precision;
         let [low, high] = self.domain();
         // A little more than it reaches: rounding loses nothing.
-        let apron = kernel.apron() + 0.01;
+        let halo = kernel.halo() + 0.01;
         Ok(OfSplats {
             splat_diagonal: [0, 1, 2].map(|k| m.col(k)[k] as f32),
             splat_mixed: [m.col(1)[2] as f32, m.col(0)[2] as f32, m.col(0)[1] as f32],
@@ -159,7 +159,7 @@ impl View<'_> {
             splat_peak: kernel.peak() as f32,
             splat_first: (low - 0.5).ceil().as_ivec3().to_array(),
             splat_last: ((high - 0.5).ceil() - 1.0).as_ivec3().to_array(),
-            splat_apron: apron.as_vec3().to_array(),
+            splat_halo: halo.as_vec3().to_array(),
         })
     }
 
