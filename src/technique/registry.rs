@@ -121,17 +121,3 @@ impl Technique {
         }
     }
 }
-
-impl Settings {
-    /// The same by the rays of pixels, where the technique casts other ones.
-    pub(crate) fn by_rays(&self) -> Self {
-        let technique = match self.technique.casts_rays() {
-            true => Technique::Raycast,
-            false => self.technique,
-        };
-        Self {
-            technique,
-            ..self.clone()
-        }
-    }
-}

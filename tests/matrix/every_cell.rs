@@ -102,7 +102,7 @@ fn is_drawn(renderer: &mut Renderer, [scene, of_reference]: [Scene; 2], feature:
         && let Err(refused) = settings.check_bricks(2)
     {
         // How many bricks there are is for the device to say.
-        let reason = text_of(&found.err().expect("refused by the device"));
+        let reason = text_of(&found.expect_err("refused by the device"));
         let of_two = refused.to_string();
         let [start, _] = of_two.split(" in 2 ").collect::<Vec<_>>()[..] else {
             panic!("{of_two}");

@@ -15,7 +15,7 @@ use crate::look::{
     visible_in,
 };
 use crate::picture::Picture;
-use crate::technique::Settings;
+use crate::technique::{Settings, Technique};
 
 /// Everything about a picture that a renderer wants to know.
 #[derive(Clone, Debug)]
@@ -119,13 +119,25 @@ impl<'a> Framing<'a> {
     }
 }
 
+/// The same by the rays of pixels, where the technique casts other ones.
+fn by_rays(settings: &Settings) -> Settings {
+    let technique = match settings.technique.casts_rays() {
+        true => Technique::Raycast,
+        false => settings.technique,
+    };
+    Settings {
+        technique,
+        ..settings.clone()
+    }
+}
+
 impl Framing<'_> {
     /// The view with the camera fitted, where a word or the look asks for it, and with the samples that the work allows.
     ///
     /// Small frames are drawn by rays of pixels where the technique casts other ones: what is visible is nearly the same.
     pub fn fit(&self, draw: &mut Small) -> Result<View, Error> {
         let draw: &mut Small =
-            &mut |camera, settings, extent| draw(camera, &settings.by_rays(), extent);
+            &mut |camera, settings, extent| draw(camera, &by_rays(settings), extent);
         let mut notes = Vec::new();
         let mut scene = self.scene.clone();
         if self.may_choose_side && self.word().is_some() {

@@ -134,8 +134,7 @@ impl<R: Real> Rectangle<R> {
             count: [0; 2],
             from: [half; 2],
         };
-        for a in 0..2 {
-            let k = line.axes[a];
+        for (a, &k) in line.axes.iter().take(2).enumerate() {
             let number = |i: i32| R::from_f64(f64::from(i));
             let low = (at[a] - line.half_widths[a] - half).max(number(range.kept[0][k]));
             let high = (at[a] + line.half_widths[a] - half).min(number(range.kept[1][k]));
@@ -224,9 +223,9 @@ impl<'a, R: Real, S: Samples<R>> Walk<'a, R, S> {
                 let mut at = [n % columns, n / columns];
                 if sheets == Sheets::None {
                     // Front to back.
-                    for a in 0..2 {
+                    for (a, at) in at.iter_mut().enumerate() {
                         if line.direction[a] < R::from_f64(0.0) {
-                            at[a] = rectangle.count[a] - 1 - at[a];
+                            *at = rectangle.count[a] - 1 - *at;
                         }
                     }
                 }

@@ -181,7 +181,8 @@ mod tests {
             ..Settings::default()
         };
         assert_eq!(splats.check(), Ok(()));
-        let changes: [(&str, fn(&mut Settings)); 12] = [
+        type Change = (&'static str, fn(&mut Settings));
+        let changes: [Change; 12] = [
             ("mode lmip", |s| s.mode = Mode::Lmip),
             ("mode iso", |s| s.mode = Mode::Iso),
             ("the filter cubic", |s| s.filter = Filter::Cubic),

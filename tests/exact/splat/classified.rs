@@ -131,8 +131,9 @@ fn voxels_in_two_volumes_let_through_the_product() {
         };
         through.push(pictures(&scene, &[]).map(|(_, picture)| picture));
     }
-    for way in 0..3 {
-        let mut worst = Worst::new(format!("way {way}"));
+    let ways = ["f64", "f32", "device"];
+    for (way, name) in ways.into_iter().enumerate() {
+        let mut worst = Worst::new(name.to_owned());
         let [a, b, both] = [0, 1, 2].map(|n| &through[n][way].pixels);
         for (i, pixel) in shot.pixels().enumerate() {
             let t = |p: &[[f32; 4]]| 1.0 - f64::from(p[i][3]);

@@ -67,8 +67,8 @@ fn an_x_ray_is_linear_and_keeps_mass() {
     for shot in [&shot, &perspective] {
         let x_rays =
             [&a, &b, &both].map(|volume| pictures(&scene(shot, volume, &f), &[LayerKind::Value]));
-        for way in 0..3 {
-            let mut worst = Worst::new(format!("{}: {}", x_rays[0][way].0, shot.what()));
+        for (way, (name, _)) in x_rays[0].iter().enumerate() {
+            let mut worst = Worst::new(format!("{name}: {}", shot.what()));
             let [a, b, both] = [0, 1, 2].map(|n| values(&x_rays[n][way].1));
             for (i, pixel) in shot.pixels().enumerate() {
                 if !both[i].is_nan() {
