@@ -1,6 +1,7 @@
 //! Splats against closed forms, and against sums over all voxels in f64: on the CPU reference and on the device.
 
 mod classified;
+mod defaults;
 mod laws;
 mod sheets;
 mod sums;
