@@ -588,8 +588,8 @@ typedef struct sv_pick {
     double distance;
     // The place in the world.
     double position[3];
-    // The projected value, that of the surface, or of the sample that made a composite half opaque; of a map of labels the
-    // label.
+    // The projected value, that of the surface, or of the sample that made a composite half opaque; of a map of labels
+    // the label.
     double value;
     // Premultiplied colour and alpha.
     float color[4];
@@ -707,8 +707,8 @@ typedef struct sv_volume_desc {
     const void *voxels;
     // Bytes of them.
     uint64_t voxel_bytes;
-    // Voxel space, in which voxel (i, j, k) covers [i, i + 1) and so on, to the world: columns of a matrix, the last row
-    // of which is (0, 0, 0, 1). All zero: the two are the same.
+    // Voxel space, in which voxel (i, j, k) covers [i, i + 1) and so on, to the world: columns of a matrix, the last
+    // row of which is (0, 0, 0, 1). All zero: the two are the same.
     double world_from_voxel[16];
     // 0 is 1.
     double slope;
@@ -718,7 +718,8 @@ typedef struct sv_volume_desc {
     uint32_t has_fill;
     // What stands where there is no data.
     double fill;
-    // The settings of the renderers that will draw it, of which technique, filter, light and empty space count; or NULL.
+    // The settings of the renderers that will draw it, of which technique, filter, light and empty space count; or
+    // NULL.
     const struct sv_settings *settings;
     // Not 0: `value_range` holds all values that the volume has and will get by updates. 0: it is that of the voxels.
     uint32_t has_value_range;
@@ -879,11 +880,9 @@ sv_status sv_device_retire(sv_device device, uint64_t completed, struct sv_diagn
 // How much memory the library uses on the device. Threads: any.
 sv_status sv_device_memory(sv_device device, struct sv_memory *memory, struct sv_diagnostic *diagnostic);
 
-// Takes no more memory from the driver than so many bytes from now on: what would is SV_E_LIMIT, before the driver is asked.
-// 0: no budget. Threads: any.
-sv_status sv_device_set_memory_budget(sv_device device,
-                                      uint64_t bytes,
-                                      struct sv_diagnostic *diagnostic);
+// Takes no more memory from the driver than so many bytes from now on: what would is SV_E_LIMIT, before the driver is
+// asked. 0: no budget. Threads: any.
+sv_status sv_device_set_memory_budget(sv_device device, uint64_t bytes, struct sv_diagnostic *diagnostic);
 
 // The host has heard that its device is lost, as it submits and waits itself: from now on every call for work is
 // SV_E_DEVICE_LOST, and nothing calls the device but what destroys. `device_lost` is not called for it. Threads: any.
@@ -892,34 +891,34 @@ sv_status sv_device_declare_lost(sv_device device, struct sv_diagnostic *diagnos
 // How many pipelines were made so far: after the last sv_renderer_create it stays. Threads: any.
 sv_status sv_device_pipelines_made(sv_device device, uint32_t *count, struct sv_diagnostic *diagnostic);
 
-// What the driver has compiled so far, for sv_host_device of a later run. With `data` NULL, `bytes` is set to what there
-// is; else as many bytes are written, where `bytes` says that there is room for them. Threads: any.
-sv_status sv_device_pipeline_cache(sv_device device,
-                                   uint64_t *bytes,
-                                   void *data,
-                                   struct sv_diagnostic *diagnostic);
+// What the driver has compiled so far, for sv_host_device of a later run. With `data` NULL, `bytes` is set to what
+// there is; else as many bytes are written, where `bytes` says that there is room for them. Threads: any.
+sv_status sv_device_pipeline_cache(sv_device device, uint64_t *bytes, void *data, struct sv_diagnostic *diagnostic);
 
 // Takes control points in. Nothing of it lies on the device. Threads: any.
 sv_status sv_transfer_function_create(sv_device device,
-                             const struct sv_transfer_function_desc *desc,
-                             sv_transfer_function *function,
-                             struct sv_diagnostic *diagnostic);
+                                      const struct sv_transfer_function_desc *desc,
+                                      sv_transfer_function *function,
+                                      struct sv_diagnostic *diagnostic);
 
 // Destroys it. Renderers that were made with it have a copy. Threads: any.
 sv_status sv_transfer_function_destroy(sv_transfer_function function, struct sv_diagnostic *diagnostic);
 
-// Begins a frame that is recorded in parts, and tells how many pieces it has: blocks of 64 x 64 pixels, smaller where those
-// are thought to take long, slices of half-angle slicing, and what a new function has to be found empty. What else is recorded
-// for the frame, another function, volume or size, and an update of the volume, ends it. Threads: one at a time for one renderer.
+// Begins a frame that is recorded in parts, and tells how many pieces it has: blocks of 64 x 64 pixels, smaller where
+// those are thought to take long, slices of half-angle slicing, and what a new function has to be found empty. What
+// else is recorded for the frame, another function, volume or size, and an update of the volume, ends it. Threads: one
+// at a time for one renderer.
 sv_status sv_renderer_begin_parts(sv_renderer renderer,
                                   const struct sv_frame_info *shot,
                                   uint64_t *pieces,
                                   struct sv_diagnostic *diagnostic);
 
-// Level B in parts: records the next `count` pieces, one at least, and tells how many are left. The same `target` each time.
+// Level B in parts: records the next `count` pieces, one at least, and tells how many are left. The same `target` each
+// time.
 //
-// Rays, and slices in other modes than composite, touch the target with the last part alone. Composites by slices draw each part
-// into it, and leave it in its state `after`. As sv_renderer_record_into; parts are submitted in their order to one queue.
+// Rays, and slices in other modes than composite, touch the target with the last part alone. Composites by slices draw
+// each part into it, and leave it in its state `after`. As sv_renderer_record_into; parts are submitted in their order
+// to one queue.
 sv_status sv_renderer_record_part_into(sv_renderer renderer,
                                        void *command_buffer,
                                        uint32_t frame,
@@ -928,10 +927,10 @@ sv_status sv_renderer_record_part_into(sv_renderer renderer,
                                        uint64_t *left,
                                        struct sv_diagnostic *diagnostic);
 
-// Level C in parts: as sv_submitter_submit, in as many submissions as it takes for each to last no longer than `pacing`
-// says (NULL: 100 ms). Between them it waits for the device, for the host's `waits` too. `is_done` is set to 0 where the host
-// ended the frame: none of the signals will be reached then, and the target is as sv_renderer_record_part_into says.
-// Threads: one at a time for one submitter and for one renderer.
+// Level C in parts: as sv_submitter_submit, in as many submissions as it takes for each to last no longer than
+// `pacing` says (NULL: 100 ms). Between them it waits for the device, for the host's `waits` too. `is_done` is set to
+// 0 where the host ended the frame: none of the signals will be reached then, and the target is as
+// sv_renderer_record_part_into says. Threads: one at a time for one submitter and for one renderer.
 sv_status sv_submitter_submit_in_parts(sv_submitter submitter,
                                        sv_renderer renderer,
                                        const struct sv_frame_info *shot,
@@ -941,9 +940,10 @@ sv_status sv_submitter_submit_in_parts(sv_submitter submitter,
                                        uint32_t *is_done,
                                        struct sv_diagnostic *diagnostic);
 
-// sv_submitter_upload in as many submissions as it takes for each to last no longer than `pacing` says (NULL: 100 ms). Between
-// them it waits for the device, for the host's `waits` too. `is_done` is set to 0 where the host ended it: none of the signals
-// will be reached then, and the rest of the upload is still to be recorded. As sv_submitter_submit_in_parts.
+// sv_submitter_upload in as many submissions as it takes for each to last no longer than `pacing` says (NULL: 100 ms).
+// Between them it waits for the device, for the host's `waits` too. `is_done` is set to 0 where the host ended it:
+// none of the signals will be reached then, and the rest of the upload is still to be recorded. As
+// sv_submitter_submit_in_parts.
 sv_status sv_submitter_upload_in_parts(sv_submitter submitter,
                                        sv_volume volume,
                                        uint32_t frame,
@@ -952,8 +952,9 @@ sv_status sv_submitter_upload_in_parts(sv_submitter submitter,
                                        uint32_t *is_done,
                                        struct sv_diagnostic *diagnostic);
 
-// sv_volume_record_update in submissions of the library's own, in parts. `is_done` is set to 0 where the host ended it: none of
-// the signals will be reached then, and the rest of the update is still to be recorded. As sv_submitter_upload_in_parts.
+// sv_volume_record_update in submissions of the library's own, in parts. `is_done` is set to 0 where the host ended
+// it: none of the signals will be reached then, and the rest of the update is still to be recorded. As
+// sv_submitter_upload_in_parts.
 sv_status sv_submitter_update_in_parts(sv_submitter submitter,
                                        sv_volume volume,
                                        sv_update update,
@@ -981,8 +982,8 @@ sv_status sv_renderer_pick(sv_renderer renderer,
                            struct sv_pick *pick,
                            struct sv_diagnostic *diagnostic);
 
-// What a volume will take: of `desc`, `dims`, `voxel_type`, `has_fill` (there will be holes) and `settings` count, and `voxels`
-// may be NULL. Threads: any.
+// What a volume will take: of `desc`, `dims`, `voxel_type`, `has_fill` (there will be holes) and `settings` count, and
+// `voxels` may be NULL. Threads: any.
 sv_status sv_volume_plan(sv_device device,
                          const struct sv_volume_desc *desc,
                          struct sv_plan *plan,
@@ -1031,8 +1032,8 @@ sv_status sv_renderer_create(sv_device device,
                              sv_renderer *renderer,
                              struct sv_diagnostic *diagnostic);
 
-// Frames of another size, or with other depth images, from now on. Nothing waits; what frames in flight use is freed by
-// sv_device_retire. Threads: one at a time for one renderer.
+// Frames of another size, or with other depth images, from now on. Nothing waits; what frames in flight use is freed
+// by sv_device_retire. Threads: one at a time for one renderer.
 sv_status sv_renderer_resize(sv_renderer renderer,
                              uint32_t width,
                              uint32_t height,
@@ -1040,9 +1041,11 @@ sv_status sv_renderer_resize(sv_renderer renderer,
                              uint64_t depth_image_count,
                              struct sv_diagnostic *diagnostic);
 
-// Another transfer function from the next recording on; 0 is the ramp of greys. It may be called each frame: nothing is
-// compiled, nothing waits. Threads: one at a time for one renderer.
-sv_status sv_renderer_set_transfer_function(sv_renderer renderer, sv_transfer_function function, struct sv_diagnostic *diagnostic);
+// Another transfer function from the next recording on; 0 is the ramp of greys. It may be called each frame: nothing
+// is compiled, nothing waits. Threads: one at a time for one renderer.
+sv_status sv_renderer_set_transfer_function(sv_renderer renderer,
+                                            sv_transfer_function function,
+                                            struct sv_diagnostic *diagnostic);
 
 // Other numbers in the settings from the next recording on: steps, crops, planes, levels, lights. What needs other
 // pipelines is refused. Threads: one at a time for one renderer.
@@ -1050,8 +1053,8 @@ sv_status sv_renderer_set_settings(sv_renderer renderer,
                                    const struct sv_settings *settings,
                                    struct sv_diagnostic *diagnostic);
 
-// Another volume of the same size and kind from the next recording on: the next time of a series. It is uploaded, or its
-// upload is recorded. Threads: one at a time for one renderer.
+// Another volume of the same size and kind from the next recording on: the next time of a series. It is uploaded, or
+// its upload is recorded. Threads: one at a time for one renderer.
 sv_status sv_renderer_set_volume(sv_renderer renderer,
                                  sv_volume volume,
                                  sv_transfer_function function,
@@ -1060,15 +1063,13 @@ sv_status sv_renderer_set_volume(sv_renderer renderer,
 // Destroys the handle; what frames in flight use is freed by sv_device_retire. Threads: any.
 sv_status sv_renderer_destroy(sv_renderer renderer, struct sv_diagnostic *diagnostic);
 
-// All that is required and recommended, before there is a device. With `requirements` NULL, `count` is set to how many there
-// are; else as many are written, where `count` says that there is room for them. Threads: any.
-sv_status sv_requirements(struct sv_requirement *requirements,
-                          uint64_t *count,
-                          struct sv_diagnostic *diagnostic);
+// All that is required and recommended, before there is a device. With `requirements` NULL, `count` is set to how many
+// there are; else as many are written, where `count` says that there is room for them. Threads: any.
+sv_status sv_requirements(struct sv_requirement *requirements, uint64_t *count, struct sv_diagnostic *diagnostic);
 
-// The same, and what a physical device has of it: `instance`, `physical_device` and `get_instance_proc_addr` of `host` are
-// asked, and `device`, which may be NULL, is not. Where it is not NULL, `features` are those enabled; else those that the device
-// supports count. A version that is too old is all that is told of a device. Threads: any.
+// The same, and what a physical device has of it: `instance`, `physical_device` and `get_instance_proc_addr` of `host`
+// are asked, and `device`, which may be NULL, is not. Where it is not NULL, `features` are those enabled; else those
+// that the device supports count. A version that is too old is all that is told of a device. Threads: any.
 sv_status sv_check_device(const struct sv_host_device *host,
                           struct sv_requirement *requirements,
                           uint64_t *count,
@@ -1102,30 +1103,30 @@ sv_status sv_submitter_upload(sv_submitter submitter,
 // Destroys the handle; what it has submitted is done, or is waited for by sv_device_retire. Threads: any.
 sv_status sv_submitter_destroy(sv_submitter submitter, struct sv_diagnostic *diagnostic);
 
-// Stages new voxels of a box of a volume that was uploaded: a copy of them, where the recording finds it. Their values lie
-// in the volume's `value_range`; where it was made without holes they have none; filters that read coefficients of a
-// spline are SV_E_UNSUPPORTED. Threads: any.
+// Stages new voxels of a box of a volume that was uploaded: a copy of them, where the recording finds it. Their values
+// lie in the volume's `value_range`; where it was made without holes they have none; filters that read coefficients of
+// a spline are SV_E_UNSUPPORTED. Threads: any.
 sv_status sv_volume_stage_update(sv_volume volume,
                                  const struct sv_update_desc *desc,
                                  sv_update *update,
                                  struct sv_diagnostic *diagnostic);
 
-// Records an update between the frames that were recorded before, which show the old voxels, and those recorded later, which
-// show the new ones. Updates of one volume are recorded as they were staged: SV_E_STATE where another comes first, or was
-// destroyed, and this was staged after it. The handle of one that is recorded is used up; what it is staged in is freed by
-// sv_device_retire, if sv_device_announce came before.
+// Records an update between the frames that were recorded before, which show the old voxels, and those recorded later,
+// which show the new ones. Updates of one volume are recorded as they were staged: SV_E_STATE where another comes
+// first, or was destroyed, and this was staged after it. The handle of one that is recorded is used up; what it is
+// staged in is freed by sv_device_retire, if sv_device_announce came before.
 //
-// `command_buffer` (`VkCommandBuffer`) is recording, outside rendering, and is submitted to the queue that draws the volume, in
-// the order of recording. Threads: any, one at a time for one volume.
+// `command_buffer` (`VkCommandBuffer`) is recording, outside rendering, and is submitted to the queue that draws the
+// volume, in the order of recording. Threads: any, one at a time for one volume.
 sv_status sv_volume_record_update(sv_volume volume,
                                   void *command_buffer,
                                   sv_update update,
                                   struct sv_diagnostic *diagnostic);
 
-// Records the next `count` pieces of an update, one at least and none of them long, and tells how many are left. Where there are
-// none, the handle is used up. Until then the volume is not drawn (SV_E_STATE); where the update is destroyed before, that lasts
-// until another one is recorded that changes all of its voxels. As sv_volume_record_update, of all parts, which are submitted in
-// their order.
+// Records the next `count` pieces of an update, one at least and none of them long, and tells how many are left. Where
+// there are none, the handle is used up. Until then the volume is not drawn (SV_E_STATE); where the update is
+// destroyed before, that lasts until another one is recorded that changes all of its voxels. As
+// sv_volume_record_update, of all parts, which are submitted in their order.
 sv_status sv_volume_record_update_part(sv_volume volume,
                                        void *command_buffer,
                                        sv_update update,
@@ -1133,10 +1134,9 @@ sv_status sv_volume_record_update_part(sv_volume volume,
                                        uint64_t *left,
                                        struct sv_diagnostic *diagnostic);
 
-// Destroys the handle of an update that is not recorded: those that were staged after it will not be recorded any more, for
-// they were staged from voxels that hold these. Threads: any.
-sv_status sv_update_destroy(sv_update update,
-                            struct sv_diagnostic *diagnostic);
+// Destroys the handle of an update that is not recorded: those that were staged after it will not be recorded any
+// more, for they were staged from voxels that hold these. Threads: any.
+sv_status sv_update_destroy(sv_update update, struct sv_diagnostic *diagnostic);
 
 // Makes textures for voxels, which are copied to where the upload finds them. Threads: any.
 sv_status sv_volume_create(sv_device device,
@@ -1151,8 +1151,9 @@ sv_status sv_volume_create(sv_device device,
 // Threads: any, one at a time for one volume.
 sv_status sv_volume_record_upload(sv_volume volume, void *command_buffer, struct sv_diagnostic *diagnostic);
 
-// Records the next `count` pieces of the upload, one at least and none of them long, and tells how many are left. Where there
-// are none, the volume is uploaded. As sv_volume_record_upload, of all parts, which are submitted in their order.
+// Records the next `count` pieces of the upload, one at least and none of them long, and tells how many are left.
+// Where there are none, the volume is uploaded. As sv_volume_record_upload, of all parts, which are submitted in their
+// order.
 sv_status sv_volume_record_upload_part(sv_volume volume,
                                        void *command_buffer,
                                        uint64_t count,
