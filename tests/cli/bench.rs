@@ -39,7 +39,7 @@ fn a_table_has_every_technique_mode_and_projection() {
     }
     names.sort_unstable();
     names.dedup();
-    assert_eq!(names.len(), 12, "{table}");
+    assert_eq!(names.len(), 20, "{table}");
     assert!(names.contains(&Some("slices-2d mip orthographic")));
     let device = table["device"].as_str().expect("a device");
     assert!(ran.out.contains(device), "{ran:#?}");
@@ -86,7 +86,9 @@ fn samples_are_those_that_a_picture_takes() {
     let words = "phantom:gauss,n=8 --view anterior --view-height 100 --size 16x16";
     let table = table_of(
         &folder,
-        &format!("{words} --modes mip --projections orthographic"),
+        &format!(
+            "{words} --modes mip --projections orthographic --techniques raycast,slices-3d,slices-2d"
+        ),
     );
     assert_eq!(rows(&table).len(), 3, "{table}");
     for row in rows(&table) {

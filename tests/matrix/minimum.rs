@@ -95,13 +95,18 @@ fn every_technique_and_mode_draws_the_same_bytes_under_the_least_limits_and_in_b
             settings.conformance = true;
         };
         let cells = (&["one volume"][..], &MODES.map(|(mode, _)| mode)[..]);
-        let ways = each_cell(technique, cells, &caps, dress, same);
+        // Splats of a volume lie in one texture.
+        let caps = match technique {
+            Technique::Splat => &caps[..1],
+            _ => &caps[..],
+        };
+        let ways = each_cell(technique, cells, caps, dress, same);
         let modes = if technique == Technique::Raycast {
             9
         } else {
             5
         };
-        assert_eq!(ways, BTreeMap::from([(SAME, 2 * modes)]), "{word}");
+        assert_eq!(ways, BTreeMap::from([(SAME, caps.len() * modes)]), "{word}");
     }
 }
 
@@ -124,7 +129,7 @@ fn what_is_beside_a_volume_is_drawn_the_same() {
 #[test]
 fn slices_composite_or_say_what_lacks_where_floats_are_not_blended() {
     let cells = (&["one volume"][..], &MODES.map(|(mode, _)| mode)[..]);
-    for (technique, word) in &TECHNIQUES[1..] {
+    for (technique, word) in &TECHNIQUES[1..3] {
         let ways = each_cell(*technique, cells, &[MINIMUM], |_| {}, halves_or_refused);
         assert_eq!(
             ways,
