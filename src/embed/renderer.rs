@@ -149,7 +149,11 @@ impl Renderer {
         let variant = variant_of(&class.settings, &self.volume, &self.function)?;
         let kind = |settings: &Settings| {
             (
-                (settings.technique, settings.intermediate),
+                (
+                    settings.technique,
+                    settings.intermediate,
+                    settings.splat.sheets,
+                ),
                 settings.mode,
                 settings.order,
                 settings.color_space,

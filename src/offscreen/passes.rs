@@ -10,6 +10,7 @@ use crate::resident::GpuTransfer;
 use crate::resolve::Resolve;
 use crate::technique::blend::Drawn;
 use crate::technique::gather::{Gather, GatherDesc};
+use crate::technique::splat::Sheets;
 use crate::technique::{
     ACCUMULATION_FORMAT, DepthAccess, Mode, Order, Settings, ShaderVariant, Technique,
 };
@@ -18,7 +19,7 @@ use std::cell::OnceCell;
 use std::sync::Arc;
 
 /// What pipelines depend on.
-pub type Key = (Technique, Mode, Order, [bool; 4], ShaderVariant);
+pub type Key = (Technique, Mode, Order, [bool; 4], Sheets, ShaderVariant);
 
 /// The key of such pictures.
 pub fn key_of(settings: &Settings, variant: &ShaderVariant, is_patched: bool) -> Key {
@@ -32,7 +33,14 @@ pub fn key_of(settings: &Settings, variant: &ShaderVariant, is_patched: bool) ->
     let is_cued = per_mode.depth_cue != 0.0;
     let is_half = settings.is_half_angle();
     let marks = [is_cued, per_mode.exact_maximum, is_half, is_patched];
-    (technique, mode, order, marks, *variant)
+    (
+        technique,
+        mode,
+        order,
+        marks,
+        settings.splat.sheets,
+        *variant,
+    )
 }
 
 /// The pipelines of one kind of picture.
@@ -223,7 +231,7 @@ fn gather(
     key: &Key,
     drawn: Drawn,
 ) -> Result<Box<dyn Gather>, Error> {
-    let (.., [.., is_patched], variant) = key;
+    let (.., [.., is_patched], _, variant) = key;
     (settings.technique.desc().gather)(&GatherDesc {
         gpu,
         settings,
