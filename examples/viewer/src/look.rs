@@ -14,13 +14,8 @@ use stratavox::volume::{JointHistogram, Rescale, Volume, steepest_gradient};
 /// What an 8-bit picture in linear light cannot show: 0.4 of a code where sRGB is steepest.
 const TERMINATION: f32 = 1.0 / 8192.0;
 
-pub const TECHNIQUES: [Technique; 5] = [
-    Technique::Raycast,
-    Technique::Slices3d,
-    Technique::Slices2d,
-    Technique::ShearWarp,
-    Technique::Splat,
-];
+pub const TECHNIQUES: [Technique; 3] =
+    [Technique::Raycast, Technique::Slices3d, Technique::Slices2d];
 pub const MODES: [Mode; 9] = [
     Mode::Composite,
     Mode::Mip,
