@@ -45,8 +45,8 @@ fn kernel_number(filter: Filter) -> u32 {
 }
 
 impl View<'_> {
-    /// World length of a step: the smallest spacing over the samples per voxel; as much longer as pixels make splats wider. Of rays through a base plane the distance of the
-    /// heights with samples is that of slices, in place of the smallest spacing.
+    /// World length of a step: the smallest spacing over the samples per voxel, as much longer as pixels make splats wider;
+    /// of rays through a base plane the distance of slices over that.
     pub fn step_world(&self) -> f64 {
         if self.settings.technique.is_warped() {
             let row = self.grid.voxel_rows()[stack_axis(self)];

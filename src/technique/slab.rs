@@ -4,6 +4,7 @@
 //! equal steps         h / 2 to both ends from the middle
 //! planes              h / (2 cos phi), phi the angle of the ray to the forward direction
 //! stack along k       1 / (2 n) of a slice along k, and that times tan of the ray's angle to the axis beside it
+//! base plane          the same of its rays
 //! ```
 //!
 //! Slicers draw covers in the middle of slabs: they are larger than the domain by as much, and those around the eye
@@ -42,9 +43,15 @@ impl View<'_> {
         let corners =
             corners.map(|[x, y]| rays.direction + x * rays.direction_dx + y * rays.direction_dy);
         let rows = self.grid.voxel_rows();
+        match self.base_plane() {
+            Ok(Some(base)) => return base.slab_reach(self),
+            Ok(None) => {}
+            // What is refused is not drawn.
+            Err(_) => return DVec3::INFINITY,
+        }
         if !self.settings.technique.draws_stacks() {
             let is_on_planes = !self.settings.technique.casts_rays()
-                || self.settings.ray_lattice() == super::Lattice::Planes;
+                || self.settings.lattice == super::Lattice::Planes;
             let longest = match is_on_planes {
                 true => corners.map(DVec3::length).into_iter().fold(1.0, f64::max),
                 false => 1.0,

@@ -1,5 +1,5 @@
-//! Which axis of the grid faces the eye (`sampling.md` 3): the stack that 2D slicing draws, and the one whose slices shear-warp
-//! casts rays through.
+//! Which axis of the grid faces the eye (`sampling.md` 3): that of the stack that 2D slicing draws, that shear-warp casts
+//! rays through, and whose slices are axis-aligned sheets of splats.
 //!
 //! The axis k of the largest |n_k . v|: n_k the normalized row k of `voxel_from_world`, v the unit vector
 //! from the eye to the centre of the box (orthographic, or the eye at the centre: the forward vector). On
@@ -20,6 +20,11 @@ pub fn stack_axis(view: &View) -> usize {
     (0..3)
         .find(|&k| facing[k] >= largest - TIE)
         .expect("one of three is the largest")
+}
+
+/// The two axes across axis `k`, in order.
+pub(super) fn axes_across(k: usize) -> [usize; 2] {
+    [[1, 2], [0, 2], [0, 1]][k]
 }
 
 /// |n_k . v| of each axis.

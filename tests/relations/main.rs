@@ -21,3 +21,4 @@ mod streaming;
 mod streaming_skipped;
 mod symmetry;
 mod tiles;
+mod warped;

@@ -11,6 +11,7 @@
 
 mod base_plane;
 mod gather;
+mod on_plane;
 #[doc(hidden)]
 pub mod reference;
 

@@ -11,8 +11,9 @@
 //! A splat that is widened keeps its integral: it is less high (Zwicker et al. 2001 widen the picture of a splat, here
 //! it is the splat itself).
 
-use super::line::{Line, main_axis};
+use super::line::Line;
 use super::{Sheets, sheets_of, uses_stack};
+use crate::lattice::main_axis;
 use crate::technique::stack_axis::stack_axis;
 use crate::technique::{Error, Technique, View};
 use glam::{DMat3, DVec3};

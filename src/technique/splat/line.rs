@@ -17,6 +17,7 @@ use super::kernel::Kernel;
 use crate::ray::Ray;
 use crate::real::Real;
 use crate::shaders::Frame;
+use crate::technique::stack_axis::axes_across;
 
 /// A ray among splats. Vectors have the two axes across its slices first, the lower one before the other.
 #[derive(Clone, Copy, Debug)]
@@ -40,20 +41,6 @@ pub(super) struct Line<R> {
     pub cut: R,
 }
 
-/// Of axes whose slopes differ by less, in parts, the lowest is taken.
-pub(super) fn main_axis<R: Real>(direction: [R; 3]) -> usize {
-    crate::lattice::main_axis(direction)
-}
-
-/// The axes across the slices of axis `k`, and that.
-fn axes_of(k: usize) -> [usize; 3] {
-    match k {
-        0 => [1, 2, 0],
-        1 => [0, 2, 1],
-        _ => [0, 1, 2],
-    }
-}
-
 impl<R: Real> Line<R> {
     /// Among the slices of axis `k`, with the kernel of the parameters.
     pub fn new(frame: &Frame, k: usize, voxel: &Ray<R>) -> Self {
@@ -75,7 +62,8 @@ impl<R: Real> Line<R> {
         origin: [R; 3],
         direction: [R; 3],
     ) -> Self {
-        let axes = axes_of(k);
+        let [i, j] = axes_across(k);
+        let axes = [i, j, k];
         let [x, y, z] = direction;
         // (Md): of the mixed numbers, each stands at the axis that it does not mix.
         let turned = [

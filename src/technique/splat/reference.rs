@@ -15,10 +15,10 @@
 //!
 //! Where voxels without data have more than half of the weight there is none.
 
-use super::line::{Line, main_axis};
+use super::line::Line;
 use super::open_sheets::{OpenSheets, edge_of};
 use super::{Sheets, sheets_of};
-use crate::lattice::{Segment, Slab};
+use crate::lattice::{Segment, Slab, main_axis};
 use crate::ray::{Ray, domain_interval, pixel_ray, plane_length, plane_t, vector, voxel_ray};
 use crate::real::{Real, dot};
 use crate::shaders::Frame;
