@@ -27,9 +27,9 @@ pub fn judge(case: &Case, bed: &mut TestBed) -> (Record, Option<Pictures>) {
         let messages = device.take_validation_messages();
         record.validation_messages = messages.iter().map(ToString::to_string).collect();
     }
-    if !record.validation_messages.is_empty() && record.verdict.is_good() {
+    if let (Some(first), true) = (record.validation_messages.first(), record.verdict.is_good()) {
         record.verdict = Verdict::InternalError;
-        record.reason = "the validation layer complains".to_owned();
+        record.reason = format!("the validation layer complains: {first}");
     }
     record.ms = 1e3 * start.elapsed().as_secs_f64();
     (record, pictures)
