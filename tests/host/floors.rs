@@ -6,7 +6,7 @@
 
 use std::{fs, path::Path};
 
-/// Modules by floor, as `src/lib.rs` tells them; floors 0, 3 and 5 have steps inside.
+/// Modules by floor, as `src/lib.rs` tells them; floors 0, 1, 3 and 5 have steps inside.
 const FLOORS: &[&[&str]] = &[
     &["shaders", "real", "fence", "named"],
     &["ray", "color", "blue_noise"],
@@ -14,6 +14,7 @@ const FLOORS: &[&[&str]] = &[
     &[
         "gpu", "volume", "transfer", "camera", "picture", "mesh", "figure",
     ],
+    &["points"],
     &["resident", "isosurface", "format"],
     &["technique"],
     &["resolve", "look"],
@@ -40,6 +41,7 @@ const FREE_OF_VULKAN: &[&str] = &[
     "picture",
     "mesh",
     "figure",
+    "points",
     "isosurface",
     "format",
     "scene",

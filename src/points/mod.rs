@@ -1,0 +1,125 @@
+//! Scattered points: places in the world, each with a value.
+//!
+//! ```text
+//! x_s, f_s, h_s, m_s        place, value, standard deviation, weight of point s
+//! ```
+//!
+//! Knows nothing of files, and nothing of Vulkan.
+
+mod binned;
+mod distances;
+
+use glam::DVec3;
+
+/// Points with a value each. They cannot be wrong: there is at least one, all lists are as long as that of places, all
+/// numbers are finite, standard deviations are over 0 and weights at least 0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Points {
+    places: Vec<DVec3>,
+    values: Vec<f32>,
+    stds: Vec<f32>,
+    weights: Option<Vec<f32>>,
+}
+
+/// Why there are no points.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("point {index}: {what}")]
+pub struct NoPoint {
+    /// Of the first that is none.
+    pub index: usize,
+    /// What is wrong with it.
+    pub what: &'static str,
+}
+
+impl Points {
+    /// Points in the world, in its length. Without `stds` they have half the median distance to the nearest neighbour,
+    /// all the same; without `weights` they have 1.
+    ///
+    /// # Errors
+    /// Where there is no point, lists have different lengths, or a number is out of its range.
+    pub fn new(
+        places: Vec<DVec3>,
+        values: Vec<f32>,
+        stds: Option<Vec<f32>>,
+        weights: Option<Vec<f32>>,
+    ) -> Result<Self, NoPoint> {
+        let count = places.len();
+        let fail = |index, what| Err(NoPoint { index, what });
+        let lengths = [Some(&values), stds.as_ref(), weights.as_ref()];
+        if count == 0 {
+            return fail(0, "there is none");
+        }
+        if let Some(short) = lengths.into_iter().flatten().find(|l| l.len() != count) {
+            return fail(short.len().min(count), "lists have different lengths");
+        }
+        let first = |is_wrong: &dyn Fn(usize) -> bool| (0..count).find(|&i| is_wrong(i));
+        if let Some(i) = first(&|i| !places[i].is_finite()) {
+            return fail(i, "its place is not finite");
+        }
+        if let Some(i) = first(&|i| !values[i].is_finite()) {
+            return fail(i, "its value is not finite");
+        }
+        let of = |list: &Option<Vec<f32>>, i: usize| list.as_ref().map_or(1.0, |list| list[i]);
+        if let Some(i) = first(&|i| !(of(&stds, i) > 0.0 && of(&stds, i).is_finite())) {
+            return fail(i, "its standard deviation is no number over 0");
+        }
+        if let Some(i) = first(&|i| !(of(&weights, i) >= 0.0 && of(&weights, i).is_finite())) {
+            return fail(i, "its weight is no number from 0");
+        }
+        let stds = match stds {
+            Some(stds) => stds,
+            None => vec![distances::default_std(&places) as f32; count],
+        };
+        Ok(Self {
+            places,
+            values,
+            stds,
+            weights,
+        })
+    }
+
+    /// How many there are: at least one.
+    #[expect(clippy::len_without_is_empty, reason = "there is at least one")]
+    pub fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Where they are.
+    pub fn places(&self) -> &[DVec3] {
+        &self.places
+    }
+
+    /// Their values.
+    pub fn values(&self) -> &[f32] {
+        &self.values
+    }
+
+    /// Their standard deviations, in world length.
+    pub fn stds(&self) -> &[f32] {
+        &self.stds
+    }
+
+    /// Their weights.
+    pub fn weight(&self, index: usize) -> f32 {
+        self.weights.as_ref().map_or(1.0, |weights| weights[index])
+    }
+
+    /// The same with one standard deviation for all, in world length; over 0.
+    #[must_use]
+    pub fn with_std(mut self, std: f32) -> Self {
+        assert!(std > 0.0 && std.is_finite(), "a length over 0");
+        self.stds.fill(std);
+        self
+    }
+
+    /// The median of standard deviations.
+    pub fn median_std(&self) -> f64 {
+        f64::from(distances::median(self.stds.clone()))
+    }
+
+    /// Smallest and largest value.
+    pub fn value_range(&self) -> [f64; 2] {
+        let fold = |of: fn(f32, f32) -> f32| self.values.iter().copied().reduce(of);
+        [fold(f32::min), fold(f32::max)].map(|value| f64::from(value.expect("at least one")))
+    }
+}
