@@ -199,6 +199,7 @@ impl Caster {
             transfer: Some(&transfer),
             beside: &[],
             light: None,
+            points: None,
             skip: Skip::Nothing,
         };
         let bound = inputs.bind(&gpu, pipeline.layout(), &[])?;

@@ -418,6 +418,13 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
         "ray_tiles",
         &[slot("bounds", &["box"]), slot("output", &["number"])],
     ),
+    (
+        "ray_tiles",
+        &[
+            slot("bounds", &["everywhere"]),
+            slot("output", &["picture", "number"]),
+        ],
+    ),
     ("macro_cells", &[slot("layout", &["box", "stack"])]),
     ("distance_map", &[]),
     (
@@ -436,6 +443,11 @@ pub const ENTRIES: &[(&str, &[Slot])] = &[
     (
         "splat_projection",
         &[SHEETS, constant("mode", &["mip", "minip", "sum"]), HOLES],
+    ),
+    ("splat_points", &[TRANSFER]),
+    (
+        "splat_points_projection",
+        &[constant("mode", &["mip", "minip", "sum"])],
     ),
 ];
 

@@ -1,8 +1,10 @@
 //! Everything that makes one picture.
 
 use crate::camera::Camera;
+use crate::points::Points;
 use crate::shaders::MAX_CHANNELS;
 use crate::technique::mixture::opacities_have_colors;
+use crate::technique::splat::points::reference_length;
 use crate::technique::{
     CutFaces, Error, GradientStorage, InPixel, Mode, Role, SampleInputs, Settings, View,
 };
@@ -38,13 +40,16 @@ pub enum Beside<'a> {
     /// ([`crate::technique::preclassified::preclassified`] makes them). Of the transfer function only the reference
     /// length is used, which must be that of the depths. Composite only.
     Classified(&'a [&'a Volume]),
+    /// Scattered points, which are drawn in place of the volume: that is [`Points::binned`] of them, and says where they are
+    /// and which values they have. Splatting alone, with [`Splat::of_points`](crate::technique::splat::Splat::of_points).
+    Points(&'a Points),
 }
 
 impl<'a> Beside<'a> {
     /// The volumes, in their order.
     pub fn volumes(&self) -> Vec<&'a Volume> {
         match *self {
-            Beside::Nothing => Vec::new(),
+            Beside::Nothing | Beside::Points(_) => Vec::new(),
             Beside::Channels(channels) => channels.iter().map(|c| c.volume).collect(),
             Beside::Colors(volumes) | Beside::Classified(volumes) => volumes.to_vec(),
         }
@@ -75,7 +80,9 @@ impl<'a> Scene<'a> {
         match self.beside {
             Beside::Channels(channels) if !channels.is_empty() => SampleInputs::Channels,
             Beside::Colors(_) | Beside::Classified(_) => SampleInputs::Colors,
-            Beside::Nothing | Beside::Channels(_) => SampleInputs::of_one(self.transfer),
+            Beside::Nothing | Beside::Channels(_) | Beside::Points(_) => {
+                SampleInputs::of_one(self.transfer)
+            }
         }
     }
 
@@ -100,7 +107,7 @@ impl<'a> Scene<'a> {
     pub fn roles(&self) -> Vec<Role> {
         let beside = match self.beside {
             Beside::Channels(channels) => channels.iter().map(|c| c.role).collect(),
-            Beside::Nothing => Vec::new(),
+            Beside::Nothing | Beside::Points(_) => Vec::new(),
             Beside::Colors(volumes) => vec![Role::Numbers; volumes.len()],
             Beside::Classified(volumes) => vec![Role::Material; volumes.len()],
         };
@@ -111,7 +118,9 @@ impl<'a> Scene<'a> {
     pub fn transfers(&self) -> Vec<Option<&'a TransferFunction>> {
         let beside = match self.beside {
             Beside::Channels(channels) => channels.iter().map(|c| c.transfer).collect(),
-            Beside::Nothing | Beside::Colors(_) | Beside::Classified(_) => Vec::new(),
+            Beside::Nothing | Beside::Colors(_) | Beside::Classified(_) | Beside::Points(_) => {
+                Vec::new()
+            }
         };
         [self.transfer].into_iter().chain(beside).collect()
     }
@@ -150,6 +159,8 @@ impl<'a> Scene<'a> {
         }
         let is_classified = matches!(self.beside, Beside::Classified(_));
         self.settings.check_splatted(are_several, is_classified)?;
+        self.settings
+            .check_points(matches!(self.beside, Beside::Points(_)))?;
         if self.uses_gradient() {
             self.settings.check_graded()?;
         }
@@ -236,17 +247,18 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// World length that opacities are for: the transfer function's own, else the smallest spacing.
+    /// World length that opacities are for: the transfer function's own, else the smallest spacing; of scattered points as
+    /// much as lies along a ray through the centre of one of the median standard deviation.
     pub fn reference_length(&self) -> f64 {
         self.transfer
-            .map_or_else(|| self.smallest_spacing(), |f| self.length_of(f))
+            .map_or_else(|| self.default_length(), |f| self.length_of(f))
     }
 
     /// World length that the opacities of `function` are for.
     pub fn length_of(&self, function: &TransferFunction) -> f64 {
         function
             .reference_length
-            .unwrap_or_else(|| self.smallest_spacing())
+            .unwrap_or_else(|| self.default_length())
     }
 
     /// Between which values samples look alike, where steps adapt to that.
@@ -265,8 +277,11 @@ impl<'a> Scene<'a> {
         ))
     }
 
-    fn smallest_spacing(&self) -> f64 {
-        self.volume.grid().smallest_spacing()
+    fn default_length(&self) -> f64 {
+        match self.beside {
+            Beside::Points(points) => reference_length(points.median_std()),
+            _ => self.volume.grid().smallest_spacing(),
+        }
     }
 }
 

@@ -411,7 +411,7 @@ fn has_labels(job: &Job) -> bool {
                 && labels_of(job.volume).is_some()
         }
         Beside::Channels(channels) => channels.iter().any(|one| one.role == Role::Labels),
-        Beside::Colors(_) | Beside::Classified(_) => false,
+        Beside::Colors(_) | Beside::Classified(_) | Beside::Points(_) => false,
     }
 }
 

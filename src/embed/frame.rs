@@ -216,6 +216,7 @@ fn inputs<'a>(given: &Given<'a>, copy: &'a GpuVolume, brick: usize) -> Inputs<'a
         transfer: given.function.transfer(),
         beside: &[],
         light: None,
+        points: None,
         skip: given.function.skip(given.volume),
     }
 }

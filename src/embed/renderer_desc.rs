@@ -101,6 +101,11 @@ impl RendererDesc {
         let is_in_target = self.slice_blending == SliceBlending::InTarget;
         let refused = [
             (
+                settings.splat.of_points,
+                "scattered points",
+                "draw their picture by `offscreen::Renderer`",
+            ),
+            (
                 settings.wants_light_volume(),
                 "a picture with a light volume (shadows, ambient occlusion)",
                 "take `technique::LightVolume` and record it",

@@ -64,6 +64,7 @@ pub fn made_light(
             transfer,
             beside: &[],
             light: None,
+            points: None,
             skip: Skip::Nothing,
         };
         Ok((light.bind(&inputs)?, recording.write(&ring, slot)?))

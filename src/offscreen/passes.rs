@@ -19,7 +19,14 @@ use std::cell::OnceCell;
 use std::sync::Arc;
 
 /// What pipelines depend on.
-pub type Key = (Technique, Mode, Order, [bool; 4], Sheets, ShaderVariant);
+pub type Key = (
+    Technique,
+    Mode,
+    Order,
+    [bool; 4],
+    (Sheets, bool),
+    ShaderVariant,
+);
 
 /// The key of such pictures.
 pub fn key_of(settings: &Settings, variant: &ShaderVariant, is_patched: bool) -> Key {
@@ -38,7 +45,7 @@ pub fn key_of(settings: &Settings, variant: &ShaderVariant, is_patched: bool) ->
         mode,
         order,
         marks,
-        settings.splat.sheets,
+        (settings.splat.sheets, settings.splat.of_points),
         *variant,
     )
 }

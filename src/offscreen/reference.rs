@@ -18,6 +18,7 @@ use crate::technique::faces::{FACE_LENGTH, cut_face, on_face};
 use crate::technique::mixture::color_of;
 use crate::technique::reference::{Gathered, Samples};
 use crate::technique::shading::shade;
+use crate::technique::splat::ViewPoints;
 use crate::technique::{
     AlikeCells, Error, Filter, GradientSource, InPixel, LightField, Mode, Recording, Role,
     SampleInputs, Settings, isosurface,
@@ -145,6 +146,8 @@ struct ReferenceRays<'a, R> {
     alike: Option<AlikeCells>,
     /// What comes through to samples, where occlusion or shadows are asked for.
     light: Option<&'a LightField<R>>,
+    /// The scattered points that are splatted.
+    points: Option<ViewPoints>,
     /// Slices to draw; a ray caster has none.
     slices: u32,
 }
@@ -207,6 +210,10 @@ impl<'a, R: Real> ReferenceRays<'a, R> {
                 .map(|alike| AlikeCells::new(scene.volume, &alike)),
             frame,
             light,
+            points: match scene.beside {
+                Beside::Points(points) => Some(ViewPoints::new(&view, points, u32::MAX)?),
+                _ => None,
+            },
             slices,
         })
     }
@@ -372,6 +379,10 @@ impl<R: Real> Samples<R> for ReferenceRays<'_, R> {
             *number = nearest(volume, center)?;
         }
         Some(found)
+    }
+
+    fn points(&self) -> Option<&ViewPoints> {
+        self.points.as_ref()
     }
 
     fn material(&self, p: [R; 3], ray_direction: [R; 3]) -> Option<[R; 4]> {

@@ -1,6 +1,7 @@
 //! What every technique reads, by the names that the shaders give it, and which variant of a shader that
 //! asks for.
 
+use super::splat::GpuViewPoints;
 use super::{
     Filter, FilterBy, GpuChannel, GradientStorage, Lattice, LightVolume, Operator, Role,
     SampleInputs, Settings, Skip,
@@ -25,6 +26,8 @@ pub struct Inputs<'a> {
     pub beside: &'a [&'a Brick],
     /// What comes through to a sample, where the settings ask for occlusion or shadows.
     pub light: Option<&'a LightVolume>,
+    /// The scattered points of the view, where the settings ask for them.
+    pub points: Option<&'a GpuViewPoints>,
     /// Where not to look. Its [`Recording`](super::Recording::skip) must be told the same.
     pub skip: Skip<'a>,
 }
@@ -63,6 +66,10 @@ impl Inputs<'_> {
         let light = light.unwrap_or(self.ring.buffer());
         given.push(("blue_noise", Resource::sampled(self.volume.blue_noise())));
         given.push(("light_volume", Resource::Storage(light)));
+        if let Some(points) = self.points {
+            given.push(("view_points", Resource::Storage(points.points())));
+            given.push(("tile_points", Resource::Storage(points.tiles())));
+        }
         let [distance_map, ranges] = match self.skip {
             Skip::Nothing => [self.ring.buffer(); 2],
             Skip::Unseen(cells, empty) => [empty.distance_map(), cells.ranges()],

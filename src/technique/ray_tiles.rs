@@ -87,6 +87,10 @@ pub(super) enum Nothing {
     BeyondMida,
     /// The same; no number.
     BeyondProjection,
+    /// No tile.
+    Nowhere,
+    /// The same of projections.
+    NowhereOfProjection,
 }
 
 impl Nothing {
@@ -96,6 +100,8 @@ impl Nothing {
             Self::Beyond => "ray_tiles.box.picture",
             Self::BeyondMida => "ray_tiles.box.mida",
             Self::BeyondProjection => "ray_tiles.box.number",
+            Self::Nowhere => "ray_tiles.everywhere.picture",
+            Self::NowhereOfProjection => "ray_tiles.everywhere.number",
         }
     }
 }

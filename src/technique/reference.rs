@@ -8,6 +8,7 @@ use super::blend::{Fragment, clear_color, merge};
 use super::composite::Composite;
 use super::isosurface::Surfaces;
 use super::merge::MAX_BATCH_SLICES;
+use super::splat::ViewPoints;
 use super::{AlikeCells, Settings};
 use crate::real::Real;
 use crate::shaders::Frame;
@@ -34,6 +35,10 @@ pub trait Samples<R: Real> {
     }
     /// The four numbers of such a voxel: light, and optical depth over the reference length.
     fn classified_voxel(&self, _index: [i32; 3]) -> Option<[R; 4]> {
+        None
+    }
+    /// The scattered points that are splatted in place of voxels.
+    fn points(&self) -> Option<&ViewPoints> {
         None
     }
     /// Colour and extinction of what is there, lit.

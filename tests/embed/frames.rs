@@ -44,6 +44,7 @@ impl<'h> Ready<'h> {
         let inputs = Inputs {
             beside: &[],
             light: None,
+            points: None,
             skip: stratavox::technique::Skip::Nothing,
             ring: &ring,
             volume: &there.volume,

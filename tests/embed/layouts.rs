@@ -52,6 +52,7 @@ fn drawn_and_left_in(layout: vk::ImageLayout) {
     let inputs = Inputs {
         beside: &[],
         light: None,
+        points: None,
         skip: stratavox::technique::Skip::Nothing,
         ring: &ring,
         volume: &there.volume,

@@ -52,6 +52,7 @@ fn patches_inside_the_hosts_rendering_are_the_picture_of_whole_slices() {
         let inputs = Inputs {
             beside: &[],
             light: None,
+            points: None,
             skip,
             ring: &ring,
             volume: &there.volume,

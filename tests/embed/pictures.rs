@@ -35,6 +35,7 @@ fn inputs<'a>(ring: &'a ParameterRing, there: &'a OnDevice, brick: usize) -> Inp
     Inputs {
         beside: &[],
         light: None,
+        points: None,
         skip: stratavox::technique::Skip::Nothing,
         ring,
         volume: &there.volume,

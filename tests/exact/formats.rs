@@ -89,6 +89,7 @@ fn drawn(device: &mut Headless, format: vk::Format, order: Order, slices: u32) -
     let inputs = Inputs {
         beside: &[],
         light: None,
+        points: None,
         skip: stratavox::technique::Skip::Nothing,
         ring: &ring,
         volume: &voxels,

@@ -80,6 +80,7 @@ impl Stage {
         let inputs = Inputs {
             beside: &[],
             light: None,
+            points: None,
             skip: Skip::Nothing,
             ring: &ring,
             volume: &voxels,

@@ -136,6 +136,10 @@ pub struct SamplingFlags {
     #[arg(long, value_name = "PIXELS")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub splat_low_pass: Option<f64>,
+    /// The input is scattered points.
+    #[arg(skip)]
+    #[serde(skip)]
+    pub of_points: bool,
     /// As `stratavox conformance` draws: float targets, no early termination, filtering in the shader
     #[arg(long)]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
@@ -245,15 +249,23 @@ impl SamplingFlags {
 
     /// What splats are, in a picture kept so exactly.
     fn splat(&self, depth: Depth) -> Splat {
-        let default = Splat::default();
+        let default = match self.of_points {
+            true => Splat::of_points(),
+            false => Splat::default(),
+        };
         Splat {
             sheets: self.sheets.unwrap_or_default(),
-            std: self.splat_std.unwrap_or(default.std),
+            // Of points it is a world length, which the points themselves keep.
+            std: self
+                .splat_std
+                .filter(|_| !self.of_points)
+                .unwrap_or(default.std),
             low_pass: self.splat_low_pass.unwrap_or(default.low_pass),
             cut_bits: match depth {
                 Depth::Eight if !self.conformance => CUT_BITS_EIGHT,
                 _ => default.cut_bits,
             },
+            of_points: self.of_points,
         }
     }
 

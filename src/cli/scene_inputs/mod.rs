@@ -364,7 +364,7 @@ impl Parts<'_> {
     pub fn only<'a>(&self, classification: &'a Classification) -> &'a Classification {
         match self.beside() {
             Beside::Nothing => classification,
-            Beside::Channels(_) | Beside::Colors(_) | Beside::Classified(_) => {
+            Beside::Channels(_) | Beside::Colors(_) | Beside::Classified(_) | Beside::Points(_) => {
                 &Classification::RangeOfPicture
             }
         }

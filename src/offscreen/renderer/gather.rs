@@ -5,8 +5,9 @@ use super::{Renderer, parts_of};
 use crate::offscreen::Error;
 use crate::offscreen::submission::Submission;
 use crate::offscreen::time_slices::Spent;
-use crate::scene::Scene;
+use crate::scene::{Beside, Scene};
 use crate::technique::gather::{BrickPass, PICTURE};
+use crate::technique::splat::{GpuViewPoints, ViewPoints};
 use crate::technique::{InPixel, Inputs, Recording};
 use std::sync::Arc;
 
@@ -79,6 +80,14 @@ impl Renderer<'_> {
         for recording in &mut recordings {
             recording.skip(skip);
         }
+        let points = match scene.beside {
+            Beside::Points(points) => {
+                let gpu = self.device.gpu();
+                let seen = ViewPoints::new(&view, points, gpu.limits().max_loop_turns)?;
+                Some(GpuViewPoints::new(gpu, &seen)?)
+            }
+            _ => None,
+        };
         let beside = |recording: &Recording| -> Vec<_> {
             let others = parts[1..].iter();
             others
@@ -94,6 +103,7 @@ impl Renderer<'_> {
             transfer,
             beside,
             light: self.light.get(),
+            points: points.as_ref(),
             skip,
         };
         let with_others = recordings.iter().zip(beside.iter().map(Vec::as_slice));

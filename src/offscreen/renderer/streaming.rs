@@ -239,6 +239,7 @@ impl<'v> Renderer<'v> {
                 transfer,
                 beside: &[],
                 light: None,
+                points: None,
                 skip,
             });
             bricks.push(BrickPass {

@@ -164,6 +164,22 @@ impl RayPass {
         Ok(Self::Raycast(Raycast::of_shader(gpu, shader)?))
     }
 
+    /// Both of what may be seen outside of the box of the volume too.
+    pub(in crate::technique) fn projection_everywhere(
+        gpu: &Arc<Gpu>,
+        shader: &str,
+    ) -> Result<Self, Error> {
+        Ok(Self::Projection(Projection::everywhere(gpu, shader)?))
+    }
+
+    /// See above.
+    pub(in crate::technique) fn picture_everywhere(
+        gpu: &Arc<Gpu>,
+        shader: &str,
+    ) -> Result<Self, Error> {
+        Ok(Self::Raycast(Raycast::everywhere(gpu, shader)?))
+    }
+
     /// Compiles the variant for the settings.
     pub fn new(
         gpu: &Arc<Gpu>,

@@ -51,6 +51,13 @@ impl Projection {
         Self::of_rays(gpu, shader(name))
     }
 
+    /// The same of what may be seen outside of the box of the volume too.
+    pub(super) fn everywhere(gpu: &Arc<Gpu>, name: &str) -> Result<Self, Error> {
+        Ok(Self {
+            pass: TilePass::new(gpu, shader(name), Nothing::NowhereOfProjection)?,
+        })
+    }
+
     fn of_rays(gpu: &Arc<Gpu>, rays: &Shader) -> Result<Self, Error> {
         Ok(Self {
             pass: TilePass::new(gpu, rays, Nothing::BeyondProjection)?,

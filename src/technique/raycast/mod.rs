@@ -100,6 +100,13 @@ impl Raycast {
         })
     }
 
+    /// The same of what may be seen outside of the box of the volume too.
+    pub(super) fn everywhere(gpu: &Arc<Gpu>, name: &str) -> Result<Self, Error> {
+        Ok(Self {
+            pass: TilePass::new(gpu, shader(name), Nothing::Nowhere)?,
+        })
+    }
+
     /// Binds inputs and the two images that a recording fills, both R32G32B32A32_SFLOAT storage images:
     /// `picture` gets premultiplied colour and alpha, `layers` (what the mode keeps, depth or -1,
     /// transmittance, samples). `tiles` has room for as many pixels, and is used by no unfinished recording.

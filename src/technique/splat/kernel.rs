@@ -12,7 +12,7 @@
 //! it is the splat itself).
 
 use super::line::Line;
-use super::{Sheets, sheets_of, uses_stack};
+use super::{Sheets, Splat, sheets_of, uses_stack};
 use crate::lattice::main_axis;
 use crate::technique::stack_axis::stack_axis;
 use crate::technique::{Error, Technique, View};
@@ -47,7 +47,7 @@ impl Kernel {
             + inverse * inverse.transpose() * widened;
         Self {
             precision: covariance.inverse(),
-            reach: (2.0 * f64::from(splat.cut_bits) * std::f64::consts::LN_2).sqrt(),
+            reach: reach_of(&splat),
         }
     }
 
@@ -66,6 +66,11 @@ impl Kernel {
     }
 }
 
+/// Standard deviations at which a splat has fallen to its last part.
+pub(super) fn reach_of(splat: &Splat) -> f64 {
+    (2.0 * f64::from(splat.cut_bits) * std::f64::consts::LN_2).sqrt()
+}
+
 /// Fields of the frame by the same names.
 #[derive(Default)]
 pub(in crate::technique) struct OfSplats {
@@ -82,7 +87,8 @@ impl View<'_> {
     /// By how much the low pass makes a splat wider than it is along the smallest spacing, max(1, rho p / (h D)); 1 for
     /// other techniques. Sheets are as much thicker: wider splats need no thinner ones, and reach into as many.
     pub(in crate::technique) fn splat_widening(&self) -> f64 {
-        if self.settings.technique != Technique::Splat {
+        // Scattered points are widened one by one.
+        if self.settings.technique != Technique::Splat || self.settings.splat.of_points {
             return 1.0;
         }
         let splat = self.settings.splat;
@@ -96,11 +102,15 @@ impl View<'_> {
     }
 
     /// Whether the loops of the longest ray end where they should on a device that counts their turns: over slices,
-    /// over the voxels near the ray in each, and over clip planes for these.
+    /// over the voxels near the ray in each, and over clip planes for these. Of scattered points [`super::ViewPoints`]
+    /// knows.
     ///
     /// # Errors
     /// [`Error::LoopsEnd`].
     pub(in crate::technique) fn check_splat_turns(&self, max_loop_turns: u32) -> Result<(), Error> {
+        if self.settings.splat.of_points {
+            return Ok(());
+        }
         let kernel = Kernel::of(self);
         let clips = self.settings.clip_planes.len() as f64;
         let of_each = 1.0 + if clips > 0.0 { clips + 1.0 } else { 0.0 };
@@ -142,6 +152,12 @@ impl View<'_> {
     pub(in crate::technique) fn of_splats(&self) -> Result<OfSplats, Error> {
         if self.settings.technique != Technique::Splat {
             return Ok(OfSplats::default());
+        }
+        if self.settings.splat.of_points {
+            return Ok(OfSplats {
+                splat_reach: reach_of(&self.settings.splat) as f32,
+                ..OfSplats::default()
+            });
         }
         let kernel = Kernel::of(self);
         if uses_stack(self.settings) {

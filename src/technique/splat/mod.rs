@@ -12,11 +12,13 @@ pub mod kernel;
 mod line;
 mod open_sheets;
 pub mod oracle;
+pub mod points;
 #[doc(hidden)]
 pub mod reference;
 mod rules;
 
 pub use kernel::MAX_OPEN_SHEETS;
+pub use points::{GpuViewPoints, ViewPoints};
 
 use super::gather::{Gather, GatherDesc, RayPass, rays_of};
 use super::registry::TechniqueDesc;
@@ -55,6 +57,19 @@ pub struct Splat {
     pub low_pass: f64,
     /// Where a splat ends: what it has fallen to, of its peak, is a power of 1/2.
     pub cut_bits: u32,
+    /// What is splatted are scattered points, with standard deviations of their own, in place of voxels: no sheets.
+    pub of_points: bool,
+}
+
+impl Splat {
+    /// Of scattered points. On any grid of pixels their sums are those of integrals to 6e-5: so wide they are at least.
+    pub fn of_points() -> Self {
+        Self {
+            low_pass: 0.75,
+            of_points: true,
+            ..Self::default()
+        }
+    }
 }
 
 impl Default for Splat {
@@ -64,6 +79,7 @@ impl Default for Splat {
             std: 0.6,
             low_pass: 0.6,
             cut_bits: 20,
+            of_points: false,
         }
     }
 }
@@ -100,10 +116,13 @@ fn sheets_of(mode: Mode, sheets: Sheets) -> Sheets {
 /// Whether its slices are those of a stack, the same for all rays.
 fn uses_stack(settings: &Settings) -> bool {
     let is_sum = matches!(settings.mode, Mode::Average | Mode::Xray);
-    settings.splat.sheets != Sheets::Image && !is_sum
+    settings.splat.sheets != Sheets::Image && !is_sum && !settings.splat.of_points
 }
 
 fn gather(desc: &GatherDesc) -> Result<Box<dyn Gather>, Error> {
+    if desc.settings.splat.of_points {
+        return points::gather(desc);
+    }
     let (gpu, mode) = (desc.gpu, desc.settings.mode);
     let (holes, transfer) = (desc.variant.holes, desc.variant.transfer);
     let sheets = match sheets_of(mode, desc.settings.splat.sheets) {

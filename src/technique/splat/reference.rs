@@ -17,7 +17,7 @@
 
 use super::line::Line;
 use super::open_sheets::{OpenSheets, edge_of};
-use super::{Sheets, sheets_of};
+use super::{Sheets, points, sheets_of};
 use crate::lattice::{Segment, Slab, main_axis};
 use crate::ray::{Ray, domain_interval, pixel_ray, plane_length, plane_t, vector, voxel_ray};
 use crate::real::{Real, dot};
@@ -32,6 +32,9 @@ const ENDLESS: f32 = 1e15;
 
 /// What the splats of a pixel gather.
 pub(crate) fn pixel<R: Real>(of: &impl Samples<R>, pixel: [R; 2]) -> Gathered<R> {
+    if let Some(points) = of.points() {
+        return points::reference::pixel(of, points, pixel);
+    }
     let (frame, settings) = (of.frame(), of.settings());
     let world = pixel_ray(frame, pixel);
     let voxel = voxel_ray(frame, &world);

@@ -70,7 +70,13 @@ fn refusals(settings: &Settings) -> Result<(), Error> {
         std,
         low_pass,
         cut_bits,
+        of_points,
     } = settings.splat;
+    refuse(
+        of_points && sheets != Sheets::default(),
+        "scattered points each by itself",
+        &format_args!("sheets {sheets}"),
+    )?;
     let is_alone = sheets == Sheets::None && matches!(mode, Mode::Mip | Mode::Minip);
     refuse(
         is_alone,
@@ -139,6 +145,28 @@ impl Settings {
             }),
             false => Ok(()),
         }
+    }
+
+    /// Whether scattered points are drawn as such, and nothing else is.
+    ///
+    /// # Errors
+    /// [`Error::NotFor`].
+    pub(crate) fn check_points(&self, are_points: bool) -> Result<(), Error> {
+        let splats_points = self.technique == Technique::Splat && self.splat.of_points;
+        let (wanted, of, found) = match (are_points, splats_points) {
+            (true, false) => (
+                "scattered points",
+                "splatting",
+                format!("technique {}", self.technique),
+            ),
+            (false, true) => (
+                "splatting of scattered points",
+                "points",
+                "a volume".to_owned(),
+            ),
+            _ => return Ok(()),
+        };
+        Err(Error::NotFor { wanted, of, found })
     }
 
     /// The same for functions of gradients.

@@ -25,6 +25,7 @@ fn a_host_records_eye_and_light_into_its_own_commands() {
     let inputs = Inputs {
         beside: &[],
         light: None,
+        points: None,
         skip: stratavox::technique::Skip::Nothing,
         ring: &ring,
         volume: &there.volume,

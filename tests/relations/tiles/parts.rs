@@ -138,6 +138,7 @@ impl Ready {
                 transfer: Some(&self.transfer),
                 beside: &[],
                 light: None,
+                points: None,
                 skip: Skip::Nothing,
             })
             .unwrap()

@@ -1,0 +1,254 @@
+//! Points as a view sees them: sorted by depth, and listed by the tiles of the picture that they may be seen in.
+//!
+//! ```text
+//! depth = n . (x - eye)       pixel at depth z: as large as that of the plane at z
+//! ```
+//!
+//! A point is seen in the pixels whose rays pass through its ball of R h'. In perspective its outline is bounded, along
+//! each axis of the picture, by the two tangents from the eye to the circle that the ball leaves in the plane of that axis
+//! and the forward direction.
+
+use crate::points::Points;
+use crate::technique::{Error, View};
+use glam::{DVec2, DVec3, dvec2};
+
+/// Pixels along the side of a tile.
+pub(super) const TILE_PIXELS: u32 = 8;
+/// Rounding, and rays that go through other places of a pixel than its centre.
+const MARGIN_PIXELS: f64 = 1.0;
+
+/// A point as the shader reads it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewPoint {
+    /// In the world, from the centre of the box.
+    pub center: [f32; 3],
+    /// 1 / h'.
+    pub inverse_std: f32,
+    /// f.
+    pub value: f32,
+    /// sqrt(2 pi) h (h / h')^2: the length of matter along a ray through its centre.
+    pub length: f32,
+    /// m / (2 pi h'^2): what of it a ray through its centre meets.
+    pub density: f32,
+}
+
+/// The points of one view.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ViewPoints {
+    /// Those that may be seen, from front to back; of equal depths the first of the file first.
+    pub points: Vec<ViewPoint>,
+    /// For each tile, row by row, where its list begins, and the end of the last.
+    pub starts: Vec<u32>,
+    /// The lists: indices of points, ascending.
+    pub lists: Vec<u32>,
+}
+
+impl ViewPoints {
+    /// Of points that a view's clip planes and crop box leave, by their centres. `turns` is how often a loop of the device
+    /// goes round at most.
+    ///
+    /// # Errors
+    /// [`Error::LoopsEnd`] where more points lie before one tile; [`Error::OutOfRange`] where all lists together are too
+    /// long.
+    pub fn new(view: &View, points: &Points, turns: u32) -> Result<Self, Error> {
+        let eye = EyeSpace::new(view);
+        let reach = super::super::kernel::reach_of(&view.settings.splat);
+        let center = view.grid.center();
+        let mut seen: Vec<Seen> = (0..points.len())
+            .filter_map(|index| {
+                let world = points.places()[index] - center;
+                is_kept(view, world).then_some(())?;
+                let std = f64::from(points.stds()[index]);
+                Seen::of(&eye, index, world, std, reach)
+            })
+            .collect();
+        // Stable: ties stay as the file has them.
+        seen.sort_by(|a, b| a.depth.total_cmp(&b.depth));
+        let [starts, lists] = lists(&seen, eye.tiles)?;
+        let longest = starts.windows(2).map(|ends| ends[1] - ends[0]).max();
+        let longest = longest.unwrap_or(0);
+        if longest >= turns {
+            return Err(Error::LoopsEnd {
+                wanted: f64::from(longest),
+                limit: f64::from(turns),
+                samples_per_voxel: None,
+            });
+        }
+        let shown = |seen: &Seen| {
+            let world = points.places()[seen.index] - center;
+            let std = f64::from(points.stds()[seen.index]);
+            let ratio = std / seen.std;
+            let density = f64::from(points.weight(seen.index))
+                / (std::f64::consts::TAU * seen.std * seen.std);
+            ViewPoint {
+                center: world.as_vec3().to_array(),
+                inverse_std: seen.std.recip() as f32,
+                value: points.values()[seen.index],
+                length: (super::reference_length(std) * ratio * ratio) as f32,
+                density: density as f32,
+            }
+        };
+        Ok(Self {
+            points: seen.iter().map(shown).collect(),
+            starts,
+            lists,
+        })
+    }
+
+    /// The points that a pixel of a picture so wide may see, from front to back.
+    pub fn of_pixel(&self, pixel: [u32; 2], width: u32) -> impl Iterator<Item = &ViewPoint> {
+        let [x, y] = pixel.map(|n| n / TILE_PIXELS);
+        let tile = (x + y * width.div_ceil(TILE_PIXELS)) as usize;
+        let list = self.starts[tile] as usize..self.starts[tile + 1] as usize;
+        self.lists[list].iter().map(|&i| &self.points[i as usize])
+    }
+}
+
+/// Whether crop box and clip planes leave a point of the centred world.
+fn is_kept(view: &View, world: DVec3) -> bool {
+    let settings = view.settings;
+    let of_planes = settings
+        .clip_planes
+        .iter()
+        .all(|plane| plane.normal.dot(world + view.grid.center()) >= plane.offset);
+    let of_box = settings.crop.is_none_or(|[low, high]| {
+        let voxel = view.world_from_voxel().inverse().transform_point3(world);
+        voxel.cmpge(low).all() && voxel.cmplt(high).all()
+    });
+    of_planes && of_box
+}
+
+/// Where the rays of a picture are.
+struct EyeSpace {
+    is_perspective: bool,
+    /// The eye, or the ray through the upper left corner.
+    origin: DVec3,
+    forward: DVec3,
+    /// Unit vectors along rows and columns of pixels.
+    across: [DVec3; 2],
+    /// Length of a pixel along these: in perspective at depth 1.
+    pixel: DVec2,
+    /// The upper left corner of the picture, in these lengths: in perspective at depth 1.
+    corner: DVec2,
+    /// How many there are across and down.
+    tiles: [u32; 2],
+    low_pass: f64,
+}
+
+impl EyeSpace {
+    fn new(view: &View) -> Self {
+        let rays = view.rays();
+        let is_perspective = view.camera.projection.is_perspective();
+        // In perspective directions end on a plane across the forward direction.
+        let depth = rays.direction.dot(rays.forward);
+        let [dx, dy] = match is_perspective {
+            true => [rays.direction_dx / depth, rays.direction_dy / depth],
+            false => [rays.origin_dx, rays.origin_dy],
+        };
+        let across = [dx.normalize(), dy.normalize()];
+        let on_plane = match is_perspective {
+            true => rays.direction / depth,
+            false => DVec3::ZERO,
+        };
+        Self {
+            is_perspective,
+            origin: rays.origin,
+            forward: rays.forward,
+            across,
+            pixel: dvec2(dx.length(), dy.length()),
+            corner: dvec2(on_plane.dot(across[0]), on_plane.dot(across[1])),
+            tiles: view.extent_pixels.map(|n| n.div_ceil(TILE_PIXELS)),
+            low_pass: view.settings.splat.low_pass,
+        }
+    }
+}
+
+/// A point that may be seen.
+struct Seen {
+    index: usize,
+    depth: f64,
+    /// h'.
+    std: f64,
+    /// Columns and rows of tiles, the ends not included.
+    tiles: [[u32; 2]; 2],
+}
+
+impl Seen {
+    fn of(eye: &EyeSpace, index: usize, world: DVec3, std: f64, reach: f64) -> Option<Self> {
+        let from_eye = world - eye.origin;
+        let depth = from_eye.dot(eye.forward);
+        // By its centre; that of NaN is nowhere.
+        (depth > 0.0).then_some(())?;
+        let at_depth = if eye.is_perspective { depth } else { 1.0 };
+        let std = std.max(eye.low_pass * eye.pixel.max_element() * at_depth);
+        let mut tiles = [[0; 2]; 2];
+        for axis in 0..2 {
+            let lateral = from_eye.dot(eye.across[axis]);
+            let ends = match eye.is_perspective {
+                true => tangents(lateral, depth, reach * std)?,
+                false => [lateral - reach * std, lateral + reach * std],
+            };
+            let pixels = ends.map(|end| (end - eye.corner[axis]) / eye.pixel[axis]);
+            let tile = f64::from(TILE_PIXELS);
+            let most = f64::from(eye.tiles[axis]);
+            let first = ((pixels[0] - MARGIN_PIXELS) / tile)
+                .floor()
+                .clamp(0.0, most);
+            let end = ((pixels[1] + MARGIN_PIXELS) / tile).ceil().clamp(0.0, most);
+            tiles[axis] = [first as u32, end as u32];
+            (first < end).then_some(())?;
+        }
+        Some(Self {
+            index,
+            depth,
+            std,
+            tiles,
+        })
+    }
+
+    fn each_tile(&self, across: u32) -> impl Iterator<Item = usize> {
+        let [columns, rows] = self.tiles;
+        (rows[0]..rows[1])
+            .flat_map(move |y| (columns[0]..columns[1]).map(move |x| (x + y * across) as usize))
+    }
+}
+
+/// The smallest and the largest u / z of a circle of radius `r` around (u, z); all where it reaches the eye's plane.
+fn tangents(u: f64, z: f64, r: f64) -> Option<[f64; 2]> {
+    if z <= 1.000_001 * r {
+        return Some([f64::NEG_INFINITY, f64::INFINITY]);
+    }
+    let (angle, half) = (u.atan2(z), (r / u.hypot(z)).asin());
+    Some([(angle - half).tan(), (angle + half).tan()])
+}
+
+/// Where the list of each tile begins, and the lists.
+fn lists(seen: &[Seen], [across, down]: [u32; 2]) -> Result<[Vec<u32>; 2], Error> {
+    let mut starts = vec![0_u64; (across * down) as usize + 1];
+    for tile in seen.iter().flat_map(|seen| seen.each_tile(across)) {
+        starts[tile + 1] += 1;
+    }
+    for tile in 1..starts.len() {
+        starts[tile] += starts[tile - 1];
+    }
+    let count = starts[starts.len() - 1];
+    Error::unless(
+        count <= MOST_LISTED,
+        "the number of points in tiles of the picture",
+        "2^28 at most: a smaller picture has fewer",
+        count as f64,
+    )?;
+    let starts: Vec<u32> = starts.iter().map(|&start| start as u32).collect();
+    let mut next = starts.clone();
+    let mut lists = vec![0; count as usize];
+    for (i, seen) in seen.iter().enumerate() {
+        for tile in seen.each_tile(across) {
+            lists[next[tile] as usize] = i as u32;
+            next[tile] += 1;
+        }
+    }
+    Ok([starts, lists])
+}
+
+/// A gibibyte of lists.
+const MOST_LISTED: u64 = 1 << 28;
