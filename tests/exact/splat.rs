@@ -3,6 +3,7 @@
 mod classified;
 mod defaults;
 mod laws;
+mod points;
 mod sheets;
 mod sums;
 

@@ -1,0 +1,412 @@
+//! Splats of scattered points against sums over all points in f64, on the CPU reference and on the device.
+
+use super::{function, values};
+use crate::shared::{Worst, device};
+use glam::{DVec3, dvec3};
+use std::f64::consts::TAU;
+use stratavox::camera::{Camera, Projection};
+use stratavox::offscreen::{Renderer, reference};
+use stratavox::picture::{ColorSpace, LayerKind, Picture};
+use stratavox::points::Points;
+use stratavox::scene::{Beside, Scene};
+use stratavox::technique::splat::{Sheets, Splat};
+use stratavox::technique::{ClipPlane, Mode, Settings, Technique};
+use stratavox::transfer::{Absorption, TransferFunction, classify_by_points};
+use stratavox::volume::Volume;
+
+const EXTENT: [u32; 2] = [37, 29];
+const SUMS: [Mode; 2] = [Mode::Xray, Mode::Average];
+
+struct Shot {
+    camera: Camera,
+    settings: Settings,
+}
+
+fn settings(mode: Mode) -> Settings {
+    Settings {
+        technique: Technique::Splat,
+        mode,
+        conformance: true,
+        color_space: ColorSpace::Display,
+        splat: Splat::of_points(),
+        ..Settings::default()
+    }
+}
+
+/// From an oblique direction, both projections; in perspective from among the points.
+fn shots(mode: Mode) -> [Shot; 3] {
+    let looking = |eye: DVec3, projection| Shot {
+        camera: Camera {
+            eye,
+            target: dvec3(5.0, 5.0, 5.0),
+            up: DVec3::Z,
+            projection,
+            zoom: 1.0,
+        },
+        settings: settings(mode),
+    };
+    let degrees = |n: f64| Projection::Perspective { fov_degrees: n };
+    [
+        looking(
+            dvec3(25.0, -13.0, 18.0),
+            Projection::Orthographic { view_height: 13.0 },
+        ),
+        looking(dvec3(17.0, -9.0, 12.0), degrees(38.0)),
+        looking(dvec3(5.5, 4.0, 2.0), degrees(95.0)),
+    ]
+}
+
+/// Numbers from 0 to 1 without a pattern.
+fn random(seed: u32) -> impl FnMut() -> f64 {
+    let mut state = seed.wrapping_mul(2_654_435_761) | 1;
+    move || {
+        state ^= state << 13;
+        state ^= state >> 17;
+        state ^= state << 5;
+        f64::from(state) / f64::from(u32::MAX)
+    }
+}
+
+/// From much thinner than a pixel to as wide as the picture.
+fn cloud(count: usize, seed: u32) -> Points {
+    let mut unit = random(seed);
+    let places = (0..count).map(|_| 10.0 * dvec3(unit(), unit(), unit()));
+    let places = places.collect();
+    let mut list = |of: fn(f64) -> f64| (0..count).map(|_| of(unit()) as f32).collect::<Vec<_>>();
+    let values = list(|u| u);
+    let stds = list(|u| 0.01 * 300f64.powf(u * u * u));
+    let weights = list(|u| 2.0 * u);
+    Points::new(places, values, Some(stds), Some(weights)).expect("points")
+}
+
+fn scene<'a>(
+    shot: &'a Shot,
+    volume: &'a Volume,
+    points: &'a Points,
+    f: &'a TransferFunction,
+) -> Scene<'a> {
+    Scene {
+        volume,
+        transfer: Some(f),
+        beside: Beside::Points(points),
+        camera: &shot.camera,
+        extent_pixels: EXTENT,
+        settings: &shot.settings,
+    }
+}
+
+fn pictures(shot: &Shot, points: &Points, layers: &[LayerKind]) -> [(&'static str, Picture); 3] {
+    let (volume, f) = (points.binned(), function());
+    let scene = scene(shot, &volume, points, &f);
+    let mut renderer = Renderer::new(device(), &volume).expect("a renderer");
+    [
+        ("f64", reference::render::<f64>(&scene).expect("drawn")),
+        ("f32", reference::render::<f32>(&scene).expect("drawn")),
+        (
+            "device",
+            renderer.render(&scene, layers).expect("drawn").picture,
+        ),
+    ]
+}
+
+/// What a ray meets of a point.
+struct Met {
+    index: usize,
+    depth: f64,
+    /// In standard deviations, and how far rounding to f32 may move it.
+    off: f64,
+    blur: f64,
+    /// Of the splat, as it is drawn.
+    std: f64,
+}
+
+impl Met {
+    fn share(&self) -> f64 {
+        (-0.5 * self.off * self.off).exp()
+    }
+
+    /// Of the share: the steepest slope of e^(-b^2 / 2) is e^(-1/2); rounding of e^x at x to R^2 / 2 = 14, and of factors.
+    fn share_error(&self) -> f64 {
+        0.61 * self.blur + 24.0 * f64::from(f32::EPSILON)
+    }
+}
+
+/// All points before the eye of a pixel's ray, from front to back. Of the eye and of pixels it takes the camera's word
+/// alone.
+fn met(shot: &Shot, points: &Points, [x, y]: [u32; 2]) -> Vec<Met> {
+    let rays = shot.camera.rays(EXTENT);
+    let (origin, direction) = rays.at(f64::from(x) + 0.5, f64::from(y) + 0.5);
+    let direction = direction.normalize();
+    let height = f64::from(EXTENT[1]);
+    let reach = (2.0 * f64::from(shot.settings.splat.cut_bits) * 2f64.ln()).sqrt();
+    let mut all: Vec<_> = (0..points.len())
+        .filter_map(|index| {
+            let to = points.places()[index] - origin;
+            let from_eye = points.places()[index] - shot.camera.eye;
+            let depth = from_eye.dot(rays.forward);
+            let pixel = match shot.camera.projection {
+                Projection::Orthographic { view_height } => view_height / height,
+                Projection::Perspective { fov_degrees } => {
+                    2.0 * (0.5 * fov_degrees.to_radians()).tan() * depth / height
+                }
+                ref other => panic!("{other:?}"),
+            };
+            let std = f64::from(points.stds()[index]);
+            let std = std.max(shot.settings.splat.low_pass * pixel);
+            let along = to.dot(direction);
+            let off = (to - along * direction).length() / std;
+            // Of origin, direction, centre, and the difference of two long vectors.
+            let blur = 8.0 * f64::from(f32::EPSILON) * (to.length() + 20.0) / std;
+            let is_met = depth > 0.0 && along > 0.0 && off <= reach;
+            is_met.then_some(Met {
+                index,
+                depth,
+                off,
+                blur,
+                std,
+            })
+        })
+        .collect();
+    all.sort_by(|a, b| a.depth.total_cmp(&b.depth));
+    all
+}
+
+fn pixels() -> impl Iterator<Item = [u32; 2]> {
+    (0..EXTENT[1]).flat_map(|y| (0..EXTENT[0]).map(move |x| [x, y]))
+}
+
+#[test]
+fn sums_are_those_over_all_points() {
+    let points = cloud(400, 3);
+    for mode in SUMS {
+        for (number, shot) in shots(mode).iter().enumerate() {
+            for (name, picture) in pictures(shot, &points, &[LayerKind::Value]) {
+                let mut worst = Worst::new(format!("{mode} {number} {name}"));
+                for (pixel, &found) in pixels().zip(values(&picture)) {
+                    // Sum of m f F, of m F, and what rounding makes of both.
+                    let mut sums = [0.0; 4];
+                    for met in met(shot, &points, pixel) {
+                        let value = f64::from(points.values()[met.index]);
+                        let weight =
+                            f64::from(points.weight(met.index)) / (TAU * met.std * met.std);
+                        sums[0] += weight * value * met.share();
+                        sums[1] += weight * met.share();
+                        sums[2] += weight * value * met.share_error();
+                        sums[3] += weight * met.share_error();
+                    }
+                    let found = f64::from(found);
+                    if mode == Mode::Xray {
+                        let found = if found.is_nan() { 0.0 } else { found };
+                        // What is cut off by rounding at the rim is 2^-20 of a peak.
+                        worst.take(pixel, found - sums[0], sums[2] + 2e-6 * sums[0] + 1e-9);
+                    } else if sums[1] > 100.0 * sums[3] {
+                        let wanted = sums[0] / sums[1];
+                        let allowed = (sums[2] + wanted * sums[3]) / (sums[1] - sums[3]) + 1e-6;
+                        worst.take(pixel, found - wanted, allowed);
+                    }
+                }
+                worst.assert_holds();
+            }
+        }
+    }
+}
+
+#[test]
+fn a_composite_is_that_of_all_points_by_depth() {
+    let (points, f) = (cloud(400, 4), function());
+    let table = stratavox::transfer::Points::new(
+        &f,
+        Absorption::Extinction {
+            reference_length: f.reference_length.expect("a length"),
+        },
+        ColorSpace::Display,
+    );
+    for (number, shot) in shots(Mode::Composite).iter().enumerate() {
+        for (name, picture) in pictures(shot, &points, &[]) {
+            let mut worst = Worst::new(format!("composite {number} {name}"));
+            for (pixel, found) in pixels().zip(&picture.pixels) {
+                let (mut color, mut left, mut error) = ([0.0; 3], 1.0, 0.0);
+                for met in met(shot, &points, pixel) {
+                    let value = f64::from(points.values()[met.index]);
+                    let [r, g, b, extinction] = classify_by_points(&table, value);
+                    let std = f64::from(points.stds()[met.index]);
+                    let length = TAU.sqrt() * std * (std / met.std).powi(2);
+                    let opacity = -(-extinction * length * met.share()).exp_m1();
+                    for (sum, c) in color.iter_mut().zip([r, g, b]) {
+                        *sum += left * opacity * c;
+                    }
+                    left *= 1.0 - opacity;
+                    error += extinction * length * met.share_error() + 4e-7 * opacity + 2e-7;
+                }
+                let wanted = [color[0], color[1], color[2], 1.0 - left];
+                for (found, wanted) in found.iter().zip(wanted) {
+                    worst.take(pixel, f64::from(*found) - wanted, error + 1e-6);
+                }
+            }
+            worst.assert_holds();
+        }
+    }
+}
+
+#[test]
+fn extremes_are_those_of_points_within_two_deviations() {
+    let points = cloud(300, 5);
+    for mode in [Mode::Mip, Mode::Minip] {
+        for shot in &shots(mode) {
+            for (name, picture) in pictures(shot, &points, &[LayerKind::Value]) {
+                let mut drawn = 0;
+                for (pixel, &found) in pixels().zip(values(&picture)) {
+                    let all = met(shot, &points, pixel);
+                    let extreme = |within: f64| {
+                        let inside = all.iter().filter(|met| met.off + within * met.blur <= 2.0);
+                        let values = inside.map(|met| points.values()[met.index]);
+                        match mode {
+                            Mode::Mip => values.reduce(f32::max),
+                            _ => values.reduce(f32::min),
+                        }
+                    };
+                    let wanted = [extreme(1.0), extreme(-1.0)].map(|v| v.unwrap_or(f32::NAN));
+                    let is_one = |v: f32| v == found || v.is_nan() && found.is_nan();
+                    assert!(
+                        wanted.into_iter().any(is_one),
+                        "{mode} {name} {pixel:?} {found} {wanted:?}"
+                    );
+                    drawn += u32::from(!found.is_nan());
+                }
+                assert!(drawn > 100, "{drawn}");
+            }
+        }
+    }
+}
+
+/// One point somewhere in a pixel, its X-ray added up over all pixels: the error in parts.
+fn error_of_mass(std_pixels: f64, low_pass: f64, seed: u32) -> f64 {
+    let mut unit = random(seed);
+    let [mut shot, ..] = shots(Mode::Xray);
+    shot.settings.splat.low_pass = low_pass;
+    let pixel = 13.0 / f64::from(EXTENT[1]);
+    let place = dvec3(5.0, 5.0, 5.0) + pixel * dvec3(unit(), unit(), unit());
+    let stds = Some(vec![(std_pixels * pixel) as f32]);
+    let points = Points::new(vec![place], vec![3.0], stds, Some(vec![0.7])).expect("a point");
+    let mut worst = 0.0f64;
+    for (_, picture) in pictures(&shot, &points, &[LayerKind::Value]) {
+        let sum: f64 = values(&picture)
+            .iter()
+            .filter(|v| !v.is_nan())
+            .map(|&v| f64::from(v))
+            .sum();
+        worst = worst.max((sum * pixel * pixel / 2.1 - 1.0).abs());
+    }
+    worst
+}
+
+#[test]
+fn the_mass_of_a_point_does_not_depend_on_where_pixels_are() {
+    for (seed, std_pixels) in [0.01, 0.3, 0.75, 1.0, 1.7].into_iter().enumerate() {
+        // Poisson's sum: 4 e^(-2 pi^2 0.75^2), 6e-5; the rim that is cut off: 2^-20; rounding.
+        let error = error_of_mass(std_pixels, 0.75, seed as u32 + 1);
+        assert!(error < 6.1e-5 + 1e-6 + 2e-6, "{std_pixels}: {error}");
+    }
+    let thin = (1..9).map(|seed| error_of_mass(0.01, 0.5, seed));
+    assert!(thin.fold(0.0, f64::max) > 1e-2, "half a pixel is too thin");
+}
+
+#[test]
+fn the_order_of_the_file_does_not_matter_and_two_in_one_place_are_one_of_twice_the_depth() {
+    let points = cloud(200, 6);
+    let pick = |order: &[usize]| {
+        let of = |list: &[f32]| order.iter().map(|&i| list[i]).collect::<Vec<_>>();
+        let places = order.iter().map(|&i| points.places()[i]).collect();
+        let weights = order.iter().map(|&i| points.weight(i)).collect();
+        Points::new(
+            places,
+            of(points.values()),
+            Some(of(points.stds())),
+            Some(weights),
+        )
+        .expect("points")
+    };
+    let shuffled = pick(&(0..200).map(|i| i * 77 % 200).collect::<Vec<_>>());
+    let [_, shot, _] = shots(Mode::Composite);
+    let both = [&points, &shuffled].map(|points| pictures(&shot, points, &[]));
+    for ((name, one), (_, other)) in both[0].iter().zip(&both[1]) {
+        assert_eq!(one.pixels, other.pixels, "{name}");
+    }
+    let twice = pick(&(0..400).map(|i| i / 2).collect::<Vec<_>>());
+    let volume = points.binned();
+    let mut f = function();
+    let once = |f: &TransferFunction, points: &Points| {
+        let scene = scene(&shot, &volume, points, f);
+        reference::render::<f64>(&scene).expect("drawn")
+    };
+    let of_two = once(&f, &twice);
+    // A step of opacity: between its points alpha is not what is doubled.
+    f.interpolation = stratavox::transfer::Interpolation::Step;
+    let of_two_steps = once(&f, &twice);
+    for point in &mut f.opacity {
+        point.opacity = 1.0 - (1.0 - point.opacity).powi(2);
+    }
+    let of_one = once(&f, &points);
+    for (two, one) in of_two_steps.pixels.iter().zip(&of_one.pixels) {
+        for (two, one) in two.iter().zip(one) {
+            assert!((two - one).abs() < 2e-6, "{two} {one}");
+        }
+    }
+    assert_ne!(of_two.pixels, of_one.pixels);
+}
+
+#[test]
+fn the_average_of_a_constant_is_it_and_clips_go_by_centres() {
+    let mut unit = random(8);
+    let places: Vec<_> = (0..60)
+        .map(|_| 10.0 * dvec3(unit(), unit(), unit()))
+        .collect();
+    let points = Points::new(places, vec![0.625; 60], None, None).expect("points");
+    for shot in &shots(Mode::Average) {
+        for (name, picture) in pictures(shot, &points, &[LayerKind::Value]) {
+            let found = values(&picture).iter().filter(|v| !v.is_nan());
+            assert!(found.clone().all(|v| (v - 0.625).abs() < 1e-6), "{name}");
+            assert!(found.count() > 100);
+        }
+    }
+    let [mut shot, ..] = shots(Mode::Xray);
+    let plane = ClipPlane {
+        normal: DVec3::X,
+        offset: 4.0,
+    };
+    let is_left = |i: &usize| points.places()[*i].x >= 4.0;
+    let left: Vec<_> = (0..60).filter(is_left).collect();
+    let places = left.iter().map(|&i| points.places()[i]).collect();
+    let stds = left.iter().map(|&i| points.stds()[i]).collect();
+    let alone = Points::new(places, vec![0.625; left.len()], Some(stds), None).expect("points");
+    let volume = points.binned();
+    let f = function();
+    let wanted = reference::render::<f64>(&scene(&shot, &volume, &alone, &f)).expect("drawn");
+    shot.settings.clip_planes = vec![plane];
+    let found = reference::render::<f64>(&scene(&shot, &volume, &points, &f)).expect("drawn");
+    assert_eq!(wanted.pixels, found.pixels);
+}
+
+#[test]
+fn points_are_refused_where_they_are_not_drawn() {
+    let (points, f) = (cloud(5, 9), function());
+    let volume = points.binned();
+    let [mut shot, ..] = shots(Mode::Composite);
+    let refused = |shot: &Shot, beside: Beside| {
+        let scene = Scene {
+            beside,
+            ..scene(shot, &volume, &points, &f)
+        };
+        scene.check().expect_err("refused").to_string()
+    };
+    let text = refused(&shot, Beside::Nothing);
+    assert!(text.contains("scattered points"), "{text}");
+    shot.settings.splat.sheets = Sheets::Axis;
+    assert!(refused(&shot, Beside::Points(&points)).contains("axis"));
+    shot.settings = Settings::default();
+    let text = refused(&shot, Beside::Points(&points));
+    assert!(
+        text.contains("raycast") && text.contains("splatting"),
+        "{text}"
+    );
+}
