@@ -34,6 +34,7 @@ mod data;
 mod decode;
 #[cfg(feature = "dicom")]
 mod dicom;
+mod earth;
 #[cfg(any(feature = "grib", feature = "netcdf"))]
 mod fence;
 mod file_source;
@@ -50,6 +51,7 @@ mod npy;
 mod nrrd;
 mod pieces;
 mod place;
+mod points;
 mod problem;
 pub mod raw;
 mod request;
@@ -78,6 +80,7 @@ use absent::{hdf5, netcdf};
 pub(crate) use sequence::expand as numbered_name;
 
 pub use find::{Found, Search, find, stem};
+pub use points::{NoColumns, PointColumns, PointFile, holds_points, open_npy, open_points};
 
 use crate::volume::{Limits, Problem, ReadError, Source, VolumeSelection};
 use problem::at;
@@ -187,8 +190,14 @@ const READERS: &[Reader] = &[
         open: hdf5::open,
     },
     Reader {
+        recognizes: |first| points::recognizes_ply(first) || points::recognizes_vtp(first),
+        // A table of text has no mark of its own.
+        endings: &["csv", "tsv", "ply", "vtp"],
+        open: points::open,
+    },
+    Reader {
         recognizes: vti::recognizes,
-        endings: &["vti", "pvti", "vtr", "vts", "vtu", "vtp"],
+        endings: &["vti", "pvti", "vtr", "vts", "vtu"],
         open: vti::open,
     },
     Reader {
@@ -257,7 +266,7 @@ fn unknown(first: &[u8]) -> Problem {
         .map(|byte| format!("{byte:02x}"))
         .collect();
     Problem::UnknownFormat(format!(
-        ": the file begins with the bytes {}; we read nifti, nrrd, metaimage, dicom, tiff, vti, vtk, npy, hdf5, netcdf, zarr, bricks, and raw voxels that a spec or a sidecar describes",
+        ": the file begins with the bytes {}; we read nifti, nrrd, metaimage, dicom, tiff, vti, vtk, npy, hdf5, netcdf, zarr, bricks, points in csv, ply and vtp, and raw voxels that a spec or a sidecar describes",
         shown.join(" ")
     ))
 }

@@ -12,8 +12,8 @@
 use super::axes::in_scope;
 use super::coordinates::Coordinate;
 use super::model::{Arrays, Variable};
-use super::place::RADIUS_KM;
 use super::units::{Measure, is_east, is_north};
+use crate::format::earth::RADIUS_KM;
 
 /// Larger arrays of coordinates are not read.
 const MAX_POINTS: u64 = 1 << 24;

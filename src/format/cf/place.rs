@@ -9,12 +9,10 @@
 
 use super::coordinates::Coordinate;
 use super::knots::{is_even, is_monotone, step};
-use super::units::{GRAVITY, Measure, standard_height};
+use super::units::Measure;
+use crate::format::earth::{GRAVITY, WIDEST_LATITUDE, kilometres_of_degree, standard_height};
 use crate::format::geometry::world_from_voxel;
 use glam::{DAffine3, DVec3};
-
-/// The mean radius of the Earth, km (IUGG).
-pub(super) const RADIUS_KM: f64 = 6371.0088;
 
 /// Levels that are only numbers are spread over this part of the longer horizontal side.
 const HEIGHT_OF_NUMBERS: f64 = 0.25;
@@ -105,8 +103,7 @@ fn on_earth(
         }
         _ => 0.0,
     };
-    // DepthConvention to a pole the formula has no width left.
-    let middle = middle.clamp(-80.0, 80.0);
+    let middle = middle.clamp(-WIDEST_LATITUDE, WIDEST_LATITUDE);
     if degrees(x) || degrees(y) {
         notes.push(format!(
             "the world is in kilometres: degrees are lengths at latitude {middle}"
@@ -114,11 +111,11 @@ fn on_earth(
     } else {
         notes.push("the world is in kilometres".to_owned());
     }
-    let per_degree = RADIUS_KM.to_radians();
-    let horizontal = |c: Option<&Coordinate>, cosine: f64| {
+    let [along_x, along_y] = kilometres_of_degree(middle);
+    let horizontal = |c: Option<&Coordinate>, degree: f64| {
         let c = c?;
         let factor = match c.measure {
-            Measure::Degrees => per_degree * cosine,
+            Measure::Degrees => degree,
             Measure::Length(metres) => metres / 1000.0,
             _ => return None,
         };
@@ -129,13 +126,9 @@ fn on_earth(
                 .collect::<Vec<_>>(),
         )
     };
-    let cosine = middle.to_radians().cos();
-    let lengths = [
-        degrees(x).then_some(per_degree * cosine),
-        degrees(y).then_some(per_degree),
-    ];
-    let east = horizontal(x, cosine);
-    let north = horizontal(y, 1.0);
+    let lengths = [degrees(x).then_some(along_x), degrees(y).then_some(along_y)];
+    let east = horizontal(x, along_x);
+    let north = horizontal(y, along_y);
     // A horizontal axis without coordinates has the step of the other one.
     let step_of = |points: &Option<Vec<f64>>| {
         let points = points.as_ref()?;

@@ -14,9 +14,14 @@ pub(super) struct Literal {
 
 impl Literal {
     pub(super) fn shape_text(&self) -> String {
-        let sizes: Vec<String> = self.shape.iter().map(u64::to_string).collect();
-        format!("({})", sizes.join(", "))
+        shape_text(&self.shape)
     }
+}
+
+/// As Python writes a tuple, nearly.
+pub(super) fn shape_text(shape: &[u64]) -> String {
+    let sizes: Vec<String> = shape.iter().map(u64::to_string).collect();
+    format!("({})", sizes.join(", "))
 }
 
 /// Axes that are counted before a shape is refused; NumPy has at most 64.

@@ -28,7 +28,7 @@ use literal::Literal;
 use std::path::Path;
 
 /// The word of errors.
-const NPY: &str = "npy";
+pub(super) const NPY: &str = "npy";
 
 const MAGIC: &[u8] = b"\x93NUMPY";
 
@@ -44,12 +44,21 @@ pub(super) fn open(path: &Path, limits: &Limits) -> Result<Box<dyn Source>, Read
     let kind = Kind::of(&literal).map_err(at(path))?;
     let array = Array::of(&literal, kind.stored).map_err(at(path))?;
     let header = header(&array, kind, literal.fortran_order).map_err(at(path))?;
-    let promise = Promise {
+    let data = Data::find(promise(path, kind, array.axes, data_begins), path)?;
+    let file = FileSource::new(path, header, data, limits);
+    Ok(match literal.fortran_order {
+        true => Box::new(FortranSource::new(file, limits.max_bytes)),
+        false => Box::new(file),
+    })
+}
+
+fn promise(path: &Path, kind: Kind, axes: Vec<Axis>, data_begins: u64) -> Promise {
+    Promise {
         format: NPY,
         stored: kind.stored,
         endian: kind.endian,
         encoding: Encoding::Raw,
-        axes: array.axes,
+        axes,
         parts: vec![Part {
             path: path.to_owned(),
             start: Start::Skip {
@@ -58,13 +67,42 @@ pub(super) fn open(path: &Path, limits: &Limits) -> Result<Box<dyn Source>, Read
             },
             encoded_bytes: None,
         }],
-    };
-    let data = Data::find(promise, path)?;
-    let file = FileSource::new(path, header, data, limits);
-    Ok(match literal.fortran_order {
-        true => Box::new(FortranSource::new(file, limits.max_bytes)),
-        false => Box::new(file),
-    })
+    }
+}
+
+/// What a header says, for those who know what its axes are.
+pub(super) struct Plain {
+    pub stored: VoxelType,
+    pub shape: Vec<u64>,
+    /// True where the first axis lies closest in memory.
+    pub fortran_order: bool,
+    kind: Kind,
+    data_begins: u64,
+}
+
+impl Plain {
+    pub(super) fn open(path: &Path, limits: &Limits) -> Result<Self, Problem> {
+        let (text, data_begins) = text(path, limits.max_header_bytes)?;
+        let literal = literal::parse(&text)?;
+        let kind = Kind::of(&literal)?;
+        Ok(Self {
+            stored: kind.stored,
+            shape: literal.shape,
+            fortran_order: literal.fortran_order,
+            kind,
+            data_begins,
+        })
+    }
+
+    /// As a person writes it.
+    pub(super) fn shape_text(&self) -> String {
+        literal::shape_text(&self.shape)
+    }
+
+    /// The numbers, seen to be there; the fastest axis first.
+    pub(super) fn data(&self, path: &Path, axes: Vec<Axis>) -> Result<Data, ReadError> {
+        Data::find(promise(path, self.kind, axes, self.data_begins), path)
+    }
 }
 
 /// The literal, and where the numbers begin.

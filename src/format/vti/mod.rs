@@ -6,8 +6,8 @@
 
 mod arrays;
 mod lattice;
-mod payload;
-mod xml;
+pub(super) mod payload;
+pub(super) mod xml;
 
 use super::data::Data;
 use super::file_source::FileSource;

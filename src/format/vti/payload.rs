@@ -15,14 +15,14 @@ use std::path::Path;
 
 /// What the root says about all numbers.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Binary {
+pub(in crate::format) struct Binary {
     endian: Endian,
     wide_sizes: bool,
     codec: Codec,
 }
 
 impl Binary {
-    pub(super) fn of(root: &Element) -> Result<Self, Problem> {
+    pub(in crate::format) fn of(root: &Element) -> Result<Self, Problem> {
         let endian = match root.get("byte_order") {
             Some("LittleEndian") | None => Endian::Little,
             Some("BigEndian") => Endian::Big,
@@ -57,7 +57,7 @@ impl Binary {
 }
 
 /// The type of the numbers of an array.
-pub(super) fn stored_type(array: &Element) -> Result<VoxelType, Problem> {
+pub(in crate::format) fn stored_type(array: &Element) -> Result<VoxelType, Problem> {
     let text = array.required("type")?;
     Ok(match text {
         "Int8" => VoxelType::I8,
@@ -76,7 +76,7 @@ pub(super) fn stored_type(array: &Element) -> Result<VoxelType, Problem> {
 }
 
 /// The numbers of an array, seen to be there.
-pub(super) fn find(
+pub(in crate::format) fn find(
     path: &Path,
     document: &Document,
     binary: Binary,
@@ -219,7 +219,7 @@ fn part_of(path: &Path, span: Span) -> Result<BufReader<std::io::Take<std::fs::F
 }
 
 /// The one number of an array of `FieldData`; `None` where it holds something else.
-pub(super) fn one_number(
+pub(in crate::format) fn one_number(
     path: &Path,
     document: &Document,
     binary: Binary,

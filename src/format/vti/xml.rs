@@ -20,7 +20,7 @@ const MOST_ELEMENTS: usize = 1 << 16;
 
 /// One element with all that is in it.
 #[derive(Debug, Default)]
-pub(super) struct Element {
+pub(in crate::format) struct Element {
     pub name: String,
     attributes: Vec<(String, String)>,
     pub children: Vec<Element>,
@@ -30,14 +30,14 @@ pub(super) struct Element {
 
 /// Bytes of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Span {
+pub(in crate::format) struct Span {
     pub start: u64,
     pub end: u64,
 }
 
 /// A file taken apart.
 #[derive(Debug)]
-pub(super) struct Document {
+pub(in crate::format) struct Document {
     pub root: Element,
     /// The element `AppendedData` and the place of what it holds, behind the `_`.
     pub appended: Option<(Element, Span)>,
@@ -45,26 +45,26 @@ pub(super) struct Document {
 
 impl Element {
     /// What stands behind the attribute, if it is there.
-    pub(super) fn get(&self, name: &str) -> Option<&str> {
+    pub(in crate::format) fn get(&self, name: &str) -> Option<&str> {
         let mut all = self.attributes.iter();
         all.find(|(found, _)| found == name)
             .map(|(_, value)| value.as_str())
     }
 
     /// What stands behind an attribute that must be there.
-    pub(super) fn required(&self, name: &str) -> Result<&str, Problem> {
+    pub(in crate::format) fn required(&self, name: &str) -> Result<&str, Problem> {
         self.get(name)
             .ok_or_else(|| problem::missing(VTI, &format!("{} {name}", self.name)))
     }
 
     /// The children of a name.
-    pub(super) fn all<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a Element> {
+    pub(in crate::format) fn all<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a Element> {
         self.children.iter().filter(move |child| child.name == name)
     }
 }
 
 /// Reads the markup of a file, at most `limit_bytes` of it, to its end or to where appended data begin.
-pub(super) fn read(path: &Path, limit_bytes: usize) -> Result<Document, Problem> {
+pub(in crate::format) fn read(path: &Path, limit_bytes: usize) -> Result<Document, Problem> {
     // The parser is not ours: whatever it does, it is this file that is wrong.
     fenced(|| parse(path, limit_bytes)).unwrap_or_else(|words| {
         let wanted = "XML that the parser can take";

@@ -1,0 +1,101 @@
+//! Files of scattered points to [`PointFile`]s.
+//!
+//! ```text
+//! names, rows -> which column is which -> numbers of rows -> places in the world -> Points -> a volume of their means
+//! ```
+//!
+//! | file | points |
+//! |---|---|
+//! | `.csv`, `.tsv` | rows under a row of names |
+//! | `.npy` | rows of an array `[N, 4]` to `[N, 6]` ([`open_npy`]) |
+//! | `.ply` | vertices, with the first other property as their value |
+//! | `.vtp` | points of PolyData, with an array of point data |
+//!
+//! A row without a finite number where one is wanted is dropped and counted. Points at one place are kept and counted.
+
+mod columns;
+mod gathered;
+mod npy;
+mod numbers;
+mod place;
+mod ply;
+mod quantity;
+mod roles;
+mod rows;
+mod source;
+mod table;
+mod vtp;
+
+pub use columns::{NoColumns, PointColumns};
+pub use source::PointFile;
+
+use super::problem::{at, invalid};
+use crate::volume::{Limits, ReadError, Source, VolumeSelection};
+use std::path::Path;
+
+pub(super) use ply::recognizes as recognizes_ply;
+pub(super) use vtp::recognizes as recognizes_vtp;
+
+/// What names of files of points end with.
+const ENDINGS: [&str; 4] = ["csv", "tsv", "ply", "vtp"];
+
+/// True where a file holds scattered points, by its name.
+pub fn holds_points(path: &Path) -> bool {
+    ENDINGS.iter().any(|ending| ends_with(path, ending))
+}
+
+fn ends_with(path: &Path, ending: &str) -> bool {
+    path.extension()
+        .is_some_and(|found| found.eq_ignore_ascii_case(ending))
+}
+
+/// Opens scattered points: PLY, VTP and NumPy arrays by content, else a table, of tabs where the name ends with `.tsv`.
+///
+/// # Errors
+/// The file cannot be read, names no columns that make a place and a value, has rows of several lengths, or promises more
+/// than there is. The error names the file, the field or line, what was wanted and what was found.
+pub fn open_points(
+    path: &Path,
+    columns: &PointColumns,
+    limits: &Limits,
+) -> Result<PointFile, ReadError> {
+    let first = super::first_bytes(path).map_err(at(path))?;
+    if super::npy::recognizes(&first) {
+        return match columns.first_named() {
+            None => npy::open(path, limits),
+            Some(key) => {
+                let wanted = "no names: columns of an array have none";
+                Err(at(path)(invalid("npy", key, wanted, "one")))
+            }
+        };
+    }
+    if ply::recognizes(&first) || ends_with(path, "ply") {
+        ply::open(path, columns, limits)
+    } else if vtp::recognizes(&first) || ends_with(path, "vtp") {
+        vtp::open(path, columns, limits)
+    } else {
+        let delimiter = if ends_with(path, "tsv") { b'\t' } else { b',' };
+        table::open(path, delimiter, columns, limits)
+    }
+}
+
+/// Opens an array of rows x, y, z, value and, where there are more, standard deviation and weight.
+///
+/// # Errors
+/// The file cannot be read, is no array of floats of this shape, or is shorter than it promises.
+pub fn open_npy(path: &Path, limits: &Limits) -> Result<PointFile, ReadError> {
+    npy::open(path, limits)
+}
+
+/// The volume of points, of which a selection names the value.
+pub(super) fn open(
+    path: &Path,
+    wanted: &VolumeSelection,
+    limits: &Limits,
+) -> Result<Box<dyn Source>, ReadError> {
+    let columns = PointColumns {
+        value: wanted.variable.clone(),
+        ..PointColumns::default()
+    };
+    Ok(Box::new(open_points(path, &columns, limits)?))
+}
