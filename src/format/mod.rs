@@ -51,7 +51,7 @@ mod npy;
 mod nrrd;
 mod pieces;
 mod place;
-mod points;
+pub mod points;
 mod problem;
 pub mod raw;
 mod request;

@@ -1,8 +1,10 @@
 //! How far points are from their nearest neighbours.
 //!
 //! ```text
-//! default standard deviation = median over points of |x_s - nearest other place| / 2
+//! default standard deviation = max(median over points of |x_s - nearest other place| / 2, diagonal of the box / 400)
 //! ```
+//!
+//! The second is what is seen of points that are much nearer to each other than the pixels of a picture.
 //!
 //! Points are sorted into cells of about one each; around a point, shells of cells are searched until no nearer one can
 //! lie beyond. Of many points some stand for all.
@@ -12,6 +14,8 @@ use std::collections::HashMap;
 
 /// So many points are looked at.
 const MOST_ASKED: usize = 4096;
+/// Parts of the diagonal of the box that a standard deviation is at least.
+const THINNEST: f64 = 400.0;
 /// Cells along an edge of the box, at most.
 const MOST_CELLS: f64 = 1024.0;
 
@@ -60,7 +64,8 @@ pub(super) fn default_std(places: &[DVec3]) -> f64 {
     };
     let step = places.len().div_ceil(MOST_ASKED);
     let found = places.iter().step_by(step).map(|&place| nearest(place));
-    0.5 * f64::from(median(found.collect()))
+    let half = 0.5 * f64::from(median(found.collect()));
+    half.max(extent.length() / THINNEST)
 }
 
 /// Cells at Chebyshev distance `shell` from `home`, as far as there are any.

@@ -18,6 +18,8 @@ pub struct Points {
     places: Vec<DVec3>,
     values: Vec<f32>,
     stds: Vec<f32>,
+    /// Whether these are by distances to neighbours.
+    has_default_stds: bool,
     weights: Option<Vec<f32>>,
 }
 
@@ -33,7 +35,7 @@ pub struct NoPoint {
 
 impl Points {
     /// Points in the world, in its length. Without `stds` they have half the median distance to the nearest neighbour,
-    /// all the same; without `weights` they have 1.
+    /// all the same, and at least 1/400 of the diagonal of their box; without `weights` they have 1.
     ///
     /// # Errors
     /// Where there is no point, lists have different lengths, or a number is out of its range.
@@ -66,16 +68,28 @@ impl Points {
         if let Some(i) = first(&|i| !(of(&weights, i) >= 0.0 && of(&weights, i).is_finite())) {
             return fail(i, "its weight is no number from 0");
         }
-        let stds = match stds {
-            Some(stds) => stds,
-            None => vec![distances::default_std(&places) as f32; count],
-        };
+        let has_default_stds = stds.is_none();
         Ok(Self {
+            stds: stds.unwrap_or_else(|| default_stds(&places)),
             places,
             values,
-            stds,
+            has_default_stds,
             weights,
         })
+    }
+
+    /// The same with heights stretched along z; widths that are by distances are those of the new places.
+    #[must_use]
+    pub fn stretched(mut self, factor: f64) -> Self {
+        if factor != 1.0 {
+            for place in &mut self.places {
+                place.z *= factor;
+            }
+            if self.has_default_stds {
+                self.stds = default_stds(&self.places);
+            }
+        }
+        self
     }
 
     /// How many there are: at least one.
@@ -109,6 +123,7 @@ impl Points {
     pub fn with_std(mut self, std: f32) -> Self {
         assert!(std > 0.0 && std.is_finite(), "a length over 0");
         self.stds.fill(std);
+        self.has_default_stds = false;
         self
     }
 
@@ -122,4 +137,8 @@ impl Points {
         let fold = |of: fn(f32, f32) -> f32| self.values.iter().copied().reduce(of);
         [fold(f32::min), fold(f32::max)].map(|value| f64::from(value.expect("at least one")))
     }
+}
+
+fn default_stds(places: &[DVec3]) -> Vec<f32> {
+    vec![distances::default_std(places) as f32; places.len()]
 }

@@ -209,7 +209,7 @@ impl ClassificationFlags {
 
     /// `function` with the colours and the opacity of the files that say them; `range` is where points at fractions
     /// lie without a window.
-    fn with_parts(
+    pub fn with_parts(
         &self,
         mut function: TransferFunction,
         range: impl FnOnce() -> Result<Window, Error>,

@@ -2,7 +2,9 @@
 
 use super::{
     super::{memory, untrusted},
-    Component, Error, time,
+    Component, Error,
+    points::PointsAs,
+    time,
 };
 use crate::cli::stdin::{self, STANDARD};
 use crate::look::first_variable;
@@ -21,7 +23,7 @@ use std::{
 #[derive(Args, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct InputFlags {
-    /// A volume file, a folder of slices, - for a file on the standard input, or phantom:NAME[,n=256][,type=u8|u16|f32] with NAME of sphere, gauss,
+    /// A volume file, a file of scattered points, a folder of slices, - for a file on the standard input, or phantom:NAME[,n=256][,type=u8|u16|f32] with NAME of sphere, gauss,
     /// marschner-lobb, head, fog, shells, storm, cells
     #[arg(value_name = "INPUT")]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -47,6 +49,20 @@ pub struct InputFlags {
     #[arg(long, value_name = "UID", help_heading = "Input")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub series: Option<String>,
+    /// Scattered points: splats, each a Gaussian; grid, a volume of means, which all techniques draw [default: splats, of
+    /// .csv, .tsv, .ply and .vtp; of .npy where the flag is given]
+    #[arg(long, value_name = "splats|grid", help_heading = "Input")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub points_as: Option<PointsAs>,
+    /// Scattered points: which columns are what, by their names [default: by names such as x, longitude, depth_km; the
+    /// value is the first other one of numbers]
+    #[arg(
+        long,
+        value_name = "x=..,y=..,z=..,value=..[,std=..][,weight=..]",
+        help_heading = "Input"
+    )]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub point_columns: Option<String>,
     /// One of several resolutions of a file that has them: 0 the finest, each next with half as many voxels along each
     /// axis
     #[arg(long, value_name = "N", help_heading = "Input")]
@@ -176,6 +192,9 @@ impl InputFlags {
             let source = phantom::open(&self.phantom_spec(path), limits)?;
             self.check_series(source.header())?;
             return Ok(source);
+        }
+        if self.holds_points() {
+            return Ok(Box::new(self.open_points(limits)?));
         }
         let spooled = match path {
             STANDARD => Some(stdin::file(limits.max_bytes)?),

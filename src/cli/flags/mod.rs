@@ -26,6 +26,7 @@ mod numbers;
 mod occlusion;
 mod opacity;
 mod picture;
+mod points;
 mod sampling;
 mod section;
 mod shadows;

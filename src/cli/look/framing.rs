@@ -119,9 +119,9 @@ impl<'a> Framing<'a> {
     }
 }
 
-/// The same by the rays of pixels, where the technique casts other ones.
+/// The same by the rays of pixels, where the technique casts other ones; scattered points are splatted.
 fn by_rays(settings: &Settings) -> Settings {
-    let technique = match settings.technique.casts_rays() {
+    let technique = match settings.technique.casts_rays() && !settings.splat.of_points {
         true => Technique::Raycast,
         false => settings.technique,
     };

@@ -5,6 +5,7 @@ mod check;
 mod colors;
 mod opacity;
 mod paint;
+mod points;
 mod preclassified;
 mod reader;
 mod streamed;
@@ -24,6 +25,7 @@ use super::{
 use crate::{
     camera::Camera,
     offscreen::Stream,
+    points::Points,
     scene::{Beside, Channel},
     technique::{Filter, FilterBy, Mode, PerMode, Role, Settings},
     transfer::{Classified, Context, TransferFunction},
@@ -64,6 +66,7 @@ enum Others {
     Channels(Vec<Other>),
     Colors(Vec<Volume>),
     Classified(Vec<Volume>),
+    Points(Points),
 }
 
 /// A volume that is seen together with the first.
@@ -175,6 +178,9 @@ impl SceneInputs {
         progress: &Progress,
     ) -> Result<Self, Error> {
         check(scene, settings)?;
+        if scene.sampling.of_points {
+            return points::read(scene, settings.mode, progress);
+        }
         let said = scene.is_auto().then(|| context(source.header()));
         let (plan, note) = plan(scene, source.header())?;
         if scene.opacity.are_given() && plan != Plan::One {
@@ -344,6 +350,7 @@ impl SceneInputs {
             ),
             Others::Colors(volumes) => Parts::Colors(volumes.iter().collect()),
             Others::Classified(volumes) => Parts::Classified(volumes.iter().collect()),
+            Others::Points(points) => Parts::Points(points),
         }
     }
 }
@@ -357,6 +364,8 @@ pub enum Parts<'a> {
     Colors(Vec<&'a Volume>),
     /// Green, blue and depth of classified voxels.
     Classified(Vec<&'a Volume>),
+    /// Scattered points, for which the volume stands.
+    Points(&'a Points),
 }
 
 impl Parts<'_> {
@@ -377,6 +386,7 @@ impl Parts<'_> {
             Self::Channels(channels) => Beside::Channels(channels),
             Self::Colors(volumes) => Beside::Colors(volumes),
             Self::Classified(volumes) => Beside::Classified(volumes),
+            Self::Points(points) => Beside::Points(points),
         }
     }
 }

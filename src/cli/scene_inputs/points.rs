@@ -1,0 +1,103 @@
+//! Scattered points, read, and how their values are seen.
+
+use super::{Others, SceneInputs, has_beside};
+use crate::cli::{
+    Error, exaggerate,
+    flags::{Classification, ClassificationFlags, SceneFlags, summary},
+    progress::Progress,
+};
+use crate::technique::Mode;
+use crate::transfer::{
+    ColorPoint, Colormap, Interpolation, OpacityPoint, TransferFunction, Window,
+};
+use crate::volume::{Source, Volume};
+use glam::{DAffine3, DVec3};
+
+/// How opaque a point is along a ray through its centre, where nothing says it.
+const OPACITY: f64 = 0.8;
+const COLORMAP: &str = "viridis";
+
+/// The points that the words name, stretched upward as volumes are.
+pub fn read(scene: &SceneFlags, mode: Mode, progress: &Progress) -> Result<SceneInputs, Error> {
+    let of_volumes = has_beside(scene) || scene.channels.are_given() || scene.denoise.is_some();
+    if of_volumes {
+        return Err(Error::usage(
+            "--labels, --channel, --component, --opacity-variable, --denoise and --preclassified are for volumes, and scattered points are splatted",
+            "leave it out, or --points-as grid draws the volume of their means",
+        ));
+    }
+    let file = scene.input.open_points(&scene.input.limits())?;
+    let mut header = file.header().clone();
+    for note in &header.notes {
+        progress.note(note);
+    }
+    let points = (**file.points()).clone();
+    let (factor, note) = exaggerate::factor(scene, &points.binned().grid(), header.is_earth)?;
+    if let Some(note) = &note {
+        progress.note(note);
+    }
+    let mut points = points.stretched(factor);
+    if let Some(std) = scene.sampling.splat_std {
+        points = points.with_std(std as f32);
+    }
+    let volume = Volume {
+        unit: header.unit.clone(),
+        ..points.binned()
+    };
+    header.dims = volume.dims;
+    header.world_from_voxel =
+        DAffine3::from_scale(DVec3::new(1.0, 1.0, factor.recip())) * volume.world_from_voxel;
+    let classification = classification(&scene.classification, &volume, mode)?;
+    let (per_mode, note) = scene.modes.per_mode(
+        mode,
+        scene.classification.window()?,
+        scene.classification.named(&classification),
+        || Ok(summary(&volume)),
+    )?;
+    if let Some(note) = note {
+        progress.note(&note);
+    }
+    Ok(SceneInputs {
+        others: Others::Points(points),
+        ..SceneInputs::new(volume, header, factor, classification, per_mode)
+    })
+}
+
+/// As of a volume; composites that no word classifies show all points alike, in colours over the range of their values.
+fn classification(
+    flags: &ClassificationFlags,
+    volume: &Volume,
+    mode: Mode,
+) -> Result<Classification, Error> {
+    if mode.is_projection() || flags.preset.is_some() || flags.function_of_file()?.is_some() {
+        return flags.classification(volume, mode);
+    }
+    let flags = flags.with_window_of(mode, || Ok(summary(volume)))?;
+    let range = Window::of_range(volume.value_range);
+    let window = flags.window()?.unwrap_or(range);
+    let colormap = Colormap::from_name(COLORMAP).expect("one of ours");
+    let function = alike(volume.value_range).with_colormap(colormap, Some(window));
+    let function = flags.with_parts(function, || Ok(range))?;
+    Ok(Classification::Function(function))
+}
+
+fn alike([low, high]: [f64; 2]) -> TransferFunction {
+    let ends = [low, high];
+    TransferFunction {
+        color: ends
+            .map(|value| ColorPoint {
+                value,
+                srgb: [1.0; 3],
+            })
+            .to_vec(),
+        opacity: ends
+            .map(|value| OpacityPoint {
+                value,
+                opacity: OPACITY,
+            })
+            .to_vec(),
+        reference_length: None,
+        interpolation: Interpolation::Linear,
+        gradient_transfer: None,
+    }
+}
