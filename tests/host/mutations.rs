@@ -321,6 +321,55 @@ fn vtk_survives_mutations() {
     );
 }
 
+#[test]
+fn points_survive_mutations() {
+    let table = "x_km,y_m,depth_km,v,std,weight\r\n0,\"0\",0,1,.5,1\r\n5,0,0,2,.5,1\r\n9,,0,3,.5,1\r\n9,0,0,3,.5,1\r\n";
+    let degrees = "# c\nlon\tlat\tpressure_hPa\tname\tv\n0\t0\t500\ta\t1\n1\t0\t500\tb\t2\n";
+    let head = |encoding| {
+        format!(
+            "ply\nformat {encoding} 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+             property float v\nend_header\n"
+        )
+    };
+    let words = head("ascii") + "0 0 0 1\n5 0 0 2\n9 0 0 3\n";
+    let numbers: [[f32; 4]; 3] = [[0., 0., 0., 1.], [5., 0., 0., 2.], [9., 0., 0., 3.]];
+    let bytes = |big: bool| -> Vec<u8> {
+        let all = numbers.iter().flatten();
+        all.flat_map(|n| {
+            if big {
+                n.to_be_bytes()
+            } else {
+                n.to_le_bytes()
+            }
+        })
+        .collect()
+    };
+    let little = [head("binary_little_endian").into_bytes(), bytes(false)].concat();
+    let big = [head("binary_big_endian").into_bytes(), bytes(true)].concat();
+    let array = |name: &str, components: u32, numbers: &str| {
+        format!(
+            "<DataArray type=\"Float32\" Name=\"{name}\" NumberOfComponents=\"{components}\">{numbers}</DataArray>"
+        )
+    };
+    let vtp = format!(
+        "<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"3\"><PointData>{}</PointData><Points>{}</Points>\
+         </Piece></PolyData></VTKFile>",
+        array("v", 1, "1 2 3 "),
+        array("Points", 3, "0 0 0 5 0 0 9 0 0 "),
+    );
+    survive(
+        "points",
+        &[
+            vec![("a.csv", table.into())],
+            vec![("a.tsv", degrees.into())],
+            vec![("a.ply", words.into_bytes())],
+            vec![("b.ply", little)],
+            vec![("c.ply", big)],
+            vec![("a.vtp", vtp.into_bytes())],
+        ],
+    );
+}
+
 /// Files of an independent writer, tests/fixtures.
 fn unpadded(format: &str, name: &'static str) -> Base {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");
