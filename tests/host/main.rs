@@ -83,6 +83,7 @@ mod format_npy;
 mod format_nrrd;
 mod format_nrrd_meaning;
 mod format_nrrd_refused;
+mod format_points;
 mod format_raw;
 mod format_tiff;
 #[cfg(feature = "tiff")]

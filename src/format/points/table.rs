@@ -102,14 +102,19 @@ fn roles(
     let names = names(&mut rows)?;
     // All that is said in a column is a number, and something is.
     let mut columns = vec![(true, false); names.len()];
+    let mut has_rows = false;
     for _ in 0..ROWS_LOOKED_AT {
         let Some(row) = rows.next()? else { break };
         check_count(&row, names.len())?;
+        has_rows = true;
         for ((are_numbers, is_said), text) in columns.iter_mut().zip(&row.fields) {
             let is_empty = text.trim().is_empty();
             *are_numbers &= is_empty || number(text).is_some();
             *is_said |= !is_empty;
         }
+    }
+    if !has_rows {
+        return Err(invalid(CSV, "rows", "at least one row of numbers", "none"));
     }
     let are_numbers: Vec<bool> = columns
         .iter()
