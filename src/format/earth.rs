@@ -7,7 +7,7 @@
 /// The mean radius of the Earth, km (IUGG).
 pub(crate) const RADIUS_KM: f64 = 6371.0088;
 
-/// Nearer to a pole the formula has no width left.
+/// Beyond it, towards a pole, the formula has no width left.
 pub(crate) const WIDEST_LATITUDE: f64 = 80.0;
 
 /// Kilometres of a degree of longitude at a middle latitude, which is brought into [`WIDEST_LATITUDE`], and of a degree of

@@ -79,7 +79,7 @@ fn vertices_of(head: &Head) -> Result<&Element, Problem> {
     let vertices = all.find(|element| element.name == "vertex");
     let vertices = vertices.ok_or_else(|| missing(PLY, "element vertex"))?;
     let has = |name: &&str| vertices.properties.iter().any(|p| p.name == *name);
-    if OF_SPLATS.iter().all(|name| has(&name)) {
+    if OF_SPLATS.iter().all(has) {
         let what = "a scene of Gaussian splats (3DGS, with f_dc_0, scale_0 and rot_0)";
         return Err(unsupported(PLY, what));
     }
