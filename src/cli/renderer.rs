@@ -430,7 +430,7 @@ fn one_number(beside: &Beside) -> &'static str {
 
 /// Layers that the picture does not have, with what would give them.
 fn check_layers(job: &Job) -> Result<(), Error> {
-    let is_of_one = matches!(job.beside, Beside::Nothing);
+    let is_of_one = matches!(job.beside, Beside::Nothing | Beside::Points(_));
     for &layer in job.layers {
         let missing = match job.settings.lack(layer, !is_of_one) {
             Some(Lack::OneNumber) => one_number(&job.beside),

@@ -113,6 +113,11 @@ impl Points {
         &self.stds
     }
 
+    /// Whether these are by distances to neighbours, and not given.
+    pub fn has_default_stds(&self) -> bool {
+        self.has_default_stds
+    }
+
     /// Their weights.
     pub fn weight(&self, index: usize) -> f32 {
         self.weights.as_ref().map_or(1.0, |weights| weights[index])

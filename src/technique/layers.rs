@@ -22,6 +22,11 @@ pub(crate) enum Lack {
 }
 
 impl Settings {
+    /// Whether it splats scattered points, which are thick.
+    fn has_balls(&self) -> bool {
+        self.technique == Technique::Splat && self.splat.of_points
+    }
+
     /// What pictures of these settings lack for a layer, one volume's or, with `are_several`, that of several.
     pub(crate) fn lack(&self, layer: LayerKind, are_several: bool) -> Option<Lack> {
         use LayerKind::{
@@ -33,7 +38,9 @@ impl Settings {
             Value | Depth | Position | Normal | Label if is_sum => Some(Lack::OneNumber),
             Value => (!mode.has_value()).then_some(Lack::OneValue),
             Transmittance => mode.is_projection().then_some(Lack::Transmittance),
-            Depth | Position | Normal | Label if !technique.has_depth() => Some(Lack::Rays),
+            Depth | Position | Normal | Label if !technique.has_depth() || self.has_balls() => {
+                Some(Lack::Rays)
+            }
             // Sheets are thick: only an extreme has the depth of one.
             Depth | Position | Normal | Label
                 if technique == Technique::Splat && !mode.projects_one_place() =>

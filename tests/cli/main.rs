@@ -45,6 +45,7 @@ mod mixed;
 mod opacity;
 mod person;
 mod pictures;
+mod points;
 mod presets;
 mod real;
 mod section;

@@ -189,6 +189,12 @@ impl InputFlags {
                     "leave out --raw",
                 ));
             }
+            if self.points_are_named() {
+                return Err(Error::usage(
+                    "--points-as and --point-columns are of files of points, and the input is a built-in volume",
+                    "leave them out",
+                ));
+            }
             let source = phantom::open(&self.phantom_spec(path), limits)?;
             self.check_series(source.header())?;
             return Ok(source);

@@ -2,7 +2,7 @@
 
 use super::SceneFlags;
 use crate::cli::progress::Progress;
-use crate::technique::{Mode, Technique};
+use crate::technique::Mode;
 use crate::volume::Header;
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
@@ -44,10 +44,7 @@ impl SceneFlags {
     ///
     /// Scattered points are splatted, whatever the look is.
     pub fn default_to_auto(&mut self) {
-        if self.input.splats_points() {
-            self.sampling.of_points = true;
-            self.sampling.technique.get_or_insert(Technique::Splat);
-        }
+        self.splat_points();
         self.look.get_or_insert(match self.sampling.conformance {
             true => Look::Plain,
             false => Look::Auto,

@@ -1,8 +1,9 @@
 //! Scattered points as an input: whether it is such, and as what it is drawn.
 
-use super::{Error, InputFlags};
-use crate::cli::stdin::STANDARD;
+use super::{Error, InputFlags, PHANTOM, SceneFlags};
+use crate::cli::stdin::{self, STANDARD};
 use crate::format::points::{self, PointColumns, PointFile};
+use crate::technique::Technique;
 use crate::volume::Limits;
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
@@ -21,19 +22,31 @@ pub enum PointsAs {
 impl InputFlags {
     /// True where the input is scattered points.
     pub fn holds_points(&self) -> bool {
-        let is_named = self.points_as.is_some() || self.point_columns.is_some();
-        self.file()
-            .is_some_and(|path| is_named || points::holds_points(path))
+        self.points_are_named() || self.file().is_some_and(points::holds_points)
+    }
+
+    /// True where a flag is for points alone.
+    pub fn points_are_named(&self) -> bool {
+        self.points_as.is_some() || self.point_columns.is_some()
     }
 
     /// True where they are splatted.
     pub fn splats_points(&self) -> bool {
-        self.holds_points() && self.points_as != Some(PointsAs::Grid)
+        let is_phantom = self
+            .path
+            .as_deref()
+            .is_some_and(|path| path.starts_with(PHANTOM));
+        !is_phantom && self.holds_points() && self.points_as != Some(PointsAs::Grid)
     }
 
     /// The points that the words name.
     pub fn open_points(&self, limits: &Limits) -> Result<PointFile, Error> {
-        let path = self.file().unwrap_or(Path::new(STANDARD));
+        let spooled = match self.path.as_deref() {
+            Some(STANDARD) => Some(stdin::file(limits.max_bytes)?),
+            _ => None,
+        };
+        let path = spooled.as_deref().or(self.file());
+        let path = path.unwrap_or(Path::new(STANDARD));
         if self.untrusted {
             return Err(Error::usage(
                 "--untrusted is for volumes, and the input is scattered points",
@@ -55,5 +68,15 @@ impl InputFlags {
             ..columns
         };
         Ok(points::open_points(path, &columns, limits)?)
+    }
+}
+
+impl SceneFlags {
+    /// Splatting, where the input is scattered points and no word takes another technique.
+    pub fn splat_points(&mut self) {
+        if self.input.splats_points() {
+            self.sampling.of_points = true;
+            self.sampling.technique.get_or_insert(Technique::Splat);
+        }
     }
 }

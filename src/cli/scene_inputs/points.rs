@@ -4,9 +4,10 @@ use super::{Others, SceneInputs, has_beside};
 use crate::cli::{
     Error, exaggerate,
     flags::{Classification, ClassificationFlags, SceneFlags, summary},
+    look::short,
     progress::Progress,
 };
-use crate::technique::Mode;
+use crate::technique::{Mode, Technique};
 use crate::transfer::{
     ColorPoint, Colormap, Interpolation, OpacityPoint, TransferFunction, Window,
 };
@@ -19,11 +20,22 @@ const COLORMAP: &str = "viridis";
 
 /// The points that the words name, stretched upward as volumes are.
 pub fn read(scene: &SceneFlags, mode: Mode, progress: &Progress) -> Result<SceneInputs, Error> {
-    let of_volumes = has_beside(scene) || scene.channels.are_given() || scene.denoise.is_some();
+    let technique = scene.sampling.technique.unwrap_or_default();
+    if technique != Technique::Splat {
+        return Err(Error::usage(
+            format!("--technique {technique} is for volumes, and scattered points are splatted"),
+            "leave it out, or --points-as grid makes a volume of them",
+        ));
+    }
+    let of_volumes = has_beside(scene)
+        || scene.channels.are_given()
+        || scene.input.component.is_some()
+        || scene.denoise.is_some()
+        || scene.section.section.is_some();
     if of_volumes {
         return Err(Error::usage(
-            "--labels, --channel, --component, --opacity-variable, --denoise and --preclassified are for volumes, and scattered points are splatted",
-            "leave it out, or --points-as grid draws the volume of their means",
+            "--labels, --channel, --component, --opacity-variable, --denoise, --section and --preclassified are for volumes, and scattered points are splatted",
+            "leave it out, or --points-as grid makes a volume of them",
         ));
     }
     let file = scene.input.open_points(&scene.input.limits())?;
@@ -39,6 +51,12 @@ pub fn read(scene: &SceneFlags, mode: Mode, progress: &Progress) -> Result<Scene
     let mut points = points.stretched(factor);
     if let Some(std) = scene.sampling.splat_std {
         points = points.with_std(std as f32);
+    }
+    if points.has_default_stds() {
+        progress.note(&format!(
+            "no standard deviations are given: all points have {}, by the distances of neighbours; --splat-std takes another",
+            short(points.median_std())
+        ));
     }
     let volume = Volume {
         unit: header.unit.clone(),

@@ -127,16 +127,13 @@ impl Gathered {
         let duplicates = duplicates(&self.places);
         let count = self.places.len();
         let some = |list: Vec<f32>| (!list.is_empty()).then_some(list);
-        let has_std = !self.stds.is_empty();
         let (stds, weights) = (some(self.stds), some(self.weights));
         let points = Points::new(self.places, self.values, stds, weights).map_err(|cause| {
             let wanted = "points of finite numbers";
             invalid(self.format, "points", wanted, &cause.to_string())
         })?;
         check_extent(self.format, &points)?;
-        let mut notes = vec![format!(
-            "{count} points were read: a voxel has the mean of those in it, or no data"
-        )];
+        let mut notes = vec![format!("{count} points were read")];
         if self.dropped > 0 {
             let rows = rows(self.dropped);
             notes.push(format!(
@@ -145,13 +142,7 @@ impl Gathered {
         }
         if duplicates > 0 {
             notes.push(format!(
-                "{duplicates} of the points lie at the place of one before them; all are kept"
-            ));
-        }
-        if !has_std {
-            notes.push(format!(
-                "the file gives no standard deviations: all points have half the median distance to the nearest other place, {}",
-                points.median_std()
+                "points at the place of one before them: {duplicates}; all are kept"
             ));
         }
         Ok(Finished {

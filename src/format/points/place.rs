@@ -130,7 +130,7 @@ impl Axes {
         let mut notes = Vec::new();
         if let Some(middle) = middle {
             notes.push(format!(
-                "the world is in kilometres: degrees are lengths at latitude {middle}"
+                "the world is in kilometres: degrees are lengths at latitude {middle:.2}"
             ));
         } else if self.is_in_kilometres() {
             notes.push("the world is in kilometres".to_owned());

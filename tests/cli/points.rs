@@ -1,0 +1,117 @@
+//! Scattered points from a file to a picture. Drawn by the CPU reference.
+
+use crate::person::{Folder, Ran};
+
+const SMALL: &str = "--size 40x30 --device reference --force";
+
+/// Points on a spiral; the later, the larger the value.
+fn table(separator: char) -> String {
+    let row = |i: u32| {
+        let t = f64::from(i);
+        let numbers = [(0.3 * t).cos() * t, (0.3 * t).sin() * t, 0.5 * t, t];
+        numbers.map(|n| format!("{n}")).join(&separator.to_string())
+    };
+    let names = ["x", "y", "z", "strength"].join(&separator.to_string());
+    let rows: Vec<_> = [names].into_iter().chain((0..60).map(row)).collect();
+    rows.join("\n")
+}
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.file("p.csv", table(','));
+    folder
+}
+
+/// How many pixels of a picture are drawn.
+fn drawn(folder: &Folder, words: &str) -> (usize, Ran) {
+    let ran = folder.run(&format!("render --look plain {words} -o p.npy {SMALL}"));
+    ran.assert_done();
+    let bytes = std::fs::read(folder.path("p.npy")).expect("a picture");
+    let start = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
+    let alphas = bytes[start..].chunks_exact(16).map(|pixel| &pixel[12..]);
+    let alphas = alphas.map(|b| f32::from_le_bytes(b.try_into().expect("four")));
+    (alphas.filter(|&alpha| alpha > 1e-3).count(), ran)
+}
+
+#[test]
+fn points_are_splatted_without_a_flag_and_what_was_chosen_is_said() {
+    let folder = folder();
+    let (count, ran) = drawn(&folder, "p.csv");
+    assert!(count > 100, "{count}");
+    for words in [
+        "the value of a point is strength",
+        "60 points were read",
+        "by the distances of neighbours",
+    ] {
+        assert!(ran.err.contains(words), "{}", ran.err);
+    }
+    folder.file("p.tsv", table('\t'));
+    assert_eq!(drawn(&folder, "p.tsv").0, count);
+    let (wide, ran) = drawn(&folder, "p.csv --splat-std 4");
+    assert!(
+        wide > count && !ran.err.contains("distances"),
+        "{wide} {count}"
+    );
+    let (other, _) = drawn(&folder, "p.csv --point-columns x=z,y=x,z=y,value=x");
+    assert!(other > 100, "{other}");
+    // As a volume of means other techniques draw them.
+    let (grid, ran) = drawn(&folder, "p.csv --points-as grid --technique slices-3d");
+    assert!(grid > 10 && ran.err.contains("hold no data"), "{grid}");
+    for mode in ["mip", "minip", "average", "xray"] {
+        assert!(
+            drawn(&folder, &format!("p.csv --mode {mode}")).0 > 50,
+            "{mode}"
+        );
+    }
+}
+
+#[test]
+fn a_saved_scene_of_points_draws_the_same_picture() {
+    let folder = folder();
+    folder
+        .run(&format!(
+            "render p.csv -o a.png --save-scene s.json {SMALL}"
+        ))
+        .assert_done();
+    folder
+        .run("render --scene s.json -o b.png --device reference")
+        .assert_done();
+    let read = |name| std::fs::read(folder.path(name)).expect("a picture");
+    assert!(read("a.png") == read("b.png"));
+}
+
+#[test]
+fn what_points_do_not_have_is_refused_by_name() {
+    let folder = folder();
+    for (words, said) in [
+        ("p.csv --technique raycast", "--points-as grid"),
+        ("p.csv --section axial", "--section"),
+        ("p.csv --labels p.csv", "--labels"),
+        ("p.csv --component 0", "--component"),
+        ("p.csv --sheets axis", "sheets axis"),
+        ("p.csv --shading phong", "not lit"),
+        ("p.csv --untrusted", "--untrusted"),
+        ("p.csv --mode mip --aov depth", "--aov depth"),
+        ("p.csv --point-columns x=", "--point-columns"),
+        ("phantom:sphere,n=8 --points-as splats", "--points-as"),
+    ] {
+        let ran = folder.run(&format!("render {words} -o q.exr {SMALL}"));
+        ran.assert_refused(2, &[said]);
+    }
+    let ran = folder.run(&format!(
+        "render p.csv --point-columns value=weight -o q.png {SMALL}"
+    ));
+    ran.assert_refused(3, &["p.csv", "weight", "strength"]);
+    assert_eq!(folder.names(), ["p.csv"]);
+}
+
+#[test]
+fn thumbnails_and_sheets_splat_points_too() {
+    let folder = folder();
+    let ran = folder.run("thumbnails p.csv -o t --size 40x30 --device reference");
+    ran.assert_done();
+    assert!(!ran.err.contains("hold no data"), "{}", ran.err);
+    let ran = folder.run("sheet p.csv -o s.png --device reference");
+    ran.assert_done();
+    assert!(!ran.err.contains("hold no data"), "{}", ran.err);
+}
