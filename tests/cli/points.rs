@@ -54,9 +54,14 @@ fn points_are_splatted_without_a_flag_and_what_was_chosen_is_said() {
     );
     let (other, _) = drawn(&folder, "p.csv --point-columns x=z,y=x,z=y,value=x");
     assert!(other > 100, "{other}");
-    // As a volume of means other techniques draw them.
-    let (grid, ran) = drawn(&folder, "p.csv --points-as grid --technique slices-3d");
-    assert!(grid > 10 && ran.err.contains("hold no data"), "{grid}");
+    // The header of version 1.0 and six rows of four floats.
+    let header = "{'descr': '<f4', 'fortran_order': False, 'shape': (6, 4), }";
+    let mut npy = b"\x93NUMPY\x01\x00\x76\x00".to_vec();
+    npy.extend(format!("{header:<117}\n").bytes());
+    let numbers = (0..24).map(|i| (i * i % 17) as f32);
+    npy.extend(numbers.flat_map(f32::to_le_bytes));
+    folder.file("p6.npy", npy);
+    assert!(drawn(&folder, "p6.npy --points").0 > 10);
     for mode in ["mip", "minip", "average", "xray"] {
         assert!(
             drawn(&folder, &format!("p.csv --mode {mode}")).0 > 50,
@@ -84,7 +89,7 @@ fn a_saved_scene_of_points_draws_the_same_picture() {
 fn what_points_do_not_have_is_refused_by_name() {
     let folder = folder();
     for (words, said) in [
-        ("p.csv --technique raycast", "--points-as grid"),
+        ("p.csv --technique raycast", "scattered points are splatted"),
         ("p.csv --section axial", "--section"),
         ("p.csv --labels p.csv", "--labels"),
         ("p.csv --component 0", "--component"),
@@ -93,7 +98,7 @@ fn what_points_do_not_have_is_refused_by_name() {
         ("p.csv --untrusted", "--untrusted"),
         ("p.csv --mode mip --aov depth", "--aov depth"),
         ("p.csv --point-columns x=", "--point-columns"),
-        ("phantom:sphere,n=8 --points-as splats", "--points-as"),
+        ("phantom:sphere,n=8 --points", "--points"),
     ] {
         let ran = folder.run(&format!("render {words} -o q.exr {SMALL}"));
         ran.assert_refused(2, &[said]);

@@ -2,9 +2,7 @@
 
 use super::{
     super::{memory, untrusted},
-    Component, Error,
-    points::PointsAs,
-    time,
+    Component, Error, time,
 };
 use crate::cli::stdin::{self, STANDARD};
 use crate::look::first_variable;
@@ -49,11 +47,10 @@ pub struct InputFlags {
     #[arg(long, value_name = "UID", help_heading = "Input")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub series: Option<String>,
-    /// Scattered points: splats, each a Gaussian; grid, a volume of means, which all techniques draw [default: splats, of
-    /// .csv, .tsv, .ply and .vtp; of .npy where the flag is given]
-    #[arg(long, value_name = "splats|grid", help_heading = "Input")]
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub points_as: Option<PointsAs>,
+    /// The input is scattered points, as .csv, .tsv, .ply and .vtp files are: rows x, y, z, value[, std[, weight]] of .npy
+    #[arg(long, help_heading = "Input")]
+    #[serde(skip_serializing_if = "is_false")]
+    pub points: bool,
     /// Scattered points: which columns are what, by their names [default: by names such as x, longitude, depth_km; the
     /// value is the first other one of numbers]
     #[arg(
@@ -191,7 +188,7 @@ impl InputFlags {
             }
             if self.points_are_named() {
                 return Err(Error::usage(
-                    "--points-as and --point-columns are of files of points, and the input is a built-in volume",
+                    "--points and --point-columns are for files of points, and the input is a built-in volume",
                     "leave them out",
                 ));
             }

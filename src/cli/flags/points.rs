@@ -1,23 +1,11 @@
-//! Scattered points as an input: whether it is such, and as what it is drawn.
+//! Scattered points as an input.
 
 use super::{Error, InputFlags, PHANTOM, SceneFlags};
 use crate::cli::stdin::{self, STANDARD};
 use crate::format::points::{self, PointColumns, PointFile};
 use crate::technique::Technique;
 use crate::volume::Limits;
-use clap::ValueEnum;
-use serde::{Deserialize, Serialize};
 use std::path::Path;
-
-/// What is drawn of scattered points.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum PointsAs {
-    /// A Gaussian each
-    Splats,
-    /// The volume of their means
-    Grid,
-}
 
 impl InputFlags {
     /// True where the input is scattered points.
@@ -27,7 +15,7 @@ impl InputFlags {
 
     /// True where a flag is for points alone.
     pub fn points_are_named(&self) -> bool {
-        self.points_as.is_some() || self.point_columns.is_some()
+        self.points || self.point_columns.is_some()
     }
 
     /// True where they are splatted.
@@ -36,23 +24,23 @@ impl InputFlags {
             .path
             .as_deref()
             .is_some_and(|path| path.starts_with(PHANTOM));
-        !is_phantom && self.holds_points() && self.points_as != Some(PointsAs::Grid)
+        !is_phantom && self.holds_points()
     }
 
     /// The points that the words name.
     pub fn open_points(&self, limits: &Limits) -> Result<PointFile, Error> {
-        let spooled = match self.path.as_deref() {
-            Some(STANDARD) => Some(stdin::file(limits.max_bytes)?),
-            _ => None,
-        };
-        let path = spooled.as_deref().or(self.file());
-        let path = path.unwrap_or(Path::new(STANDARD));
         if self.untrusted {
             return Err(Error::usage(
                 "--untrusted is for volumes, and the input is scattered points",
                 "leave out --untrusted",
             ));
         }
+        let spooled = match self.path.as_deref() {
+            Some(STANDARD) => Some(stdin::file(limits.max_bytes)?),
+            _ => None,
+        };
+        let path = spooled.as_deref().or(self.file());
+        let path = path.unwrap_or(Path::new(STANDARD));
         let text = self.point_columns.as_deref().unwrap_or_default();
         let columns = match text {
             "" => PointColumns::default(),

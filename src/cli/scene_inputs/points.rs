@@ -24,7 +24,7 @@ pub fn read(scene: &SceneFlags, mode: Mode, progress: &Progress) -> Result<Scene
     if technique != Technique::Splat {
         return Err(Error::usage(
             format!("--technique {technique} is for volumes, and scattered points are splatted"),
-            "leave it out, or --points-as grid makes a volume of them",
+            "leave it out",
         ));
     }
     let of_volumes = has_beside(scene)
@@ -35,7 +35,7 @@ pub fn read(scene: &SceneFlags, mode: Mode, progress: &Progress) -> Result<Scene
     if of_volumes {
         return Err(Error::usage(
             "--labels, --channel, --component, --opacity-variable, --denoise, --section and --preclassified are for volumes, and scattered points are splatted",
-            "leave it out, or --points-as grid makes a volume of them",
+            "leave it out",
         ));
     }
     let file = scene.input.open_points(&scene.input.limits())?;
