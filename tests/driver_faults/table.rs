@@ -14,6 +14,33 @@ const PLANES: &str = "slices_3d.over.composite.ramp.linear_fetch.u16.perspective
 const UNDER: &str = "slices_3d.under.composite.ramp.linear_fetch.u16.perspective";
 const STACK: &str = "slices_2d.over.composite.ramp.linear_fetch.u16.perspective";
 
+const SHEETS: &str = "splat.image.composite.plain.perspective";
+const SLICES: &str = "splat.axis.composite.plain.perspective";
+const SUMS: &str = "splat.image.xray.plain.perspective";
+const WIDE: &str = "splat.image.composite.wide.perspective";
+const CLASSIFIED: &str = "splat.axis.composite.classified.perspective";
+
+/// The precision of a splat of 0.6 voxels that no pixel widens.
+const NOT_WIDENED: [&str; 2] = [
+    "    let mixed = frame.splat_mixed;
+    let turned = frame.splat_diagonal * d + (mixed.zzy * d.yxx + mixed.yxx * d.zzy);
+    let along = d.x * turned.x + d.y * turned.y + d.z * turned.z;
+    let diagonal = across(k, frame.splat_diagonal).xy;
+",
+    "    let mixed = vec3(0.0);
+    let turned = 2.7777778 * d;
+    let along = d.x * turned.x + d.y * turned.y + d.z * turned.z;
+    let diagonal = vec2(2.7777778);
+",
+];
+
+/// What a splat adds to its slice, and the same with opacities in the place of depths.
+const OPACITIES: [&str; 2] = [
+    "sums += part * (splat_weight(line, square) * numbers_of(voxel));",
+    "let more = part * (splat_weight(line, square) * numbers_of(voxel));
+            sums += more * select(1.0, (1.0 - exp(-more.w)) / more.w, more.w > 0.0);",
+];
+
 /// Where a height meets the ray: by a division, and from the height before it on.
 const ADDED_UP: [&str; 2] = [
     "fn height_t(line: MainAxis, k: i32) -> f32 {
@@ -295,7 +322,7 @@ pub const FAULTS: &[(&str, Fault, &str)] = &[
     ),
     (
         "rounding chooses between axes that are alike",
-        Shader("lib/lattice_bresenham.wgsl", "0.9999847412109375", "1.0"),
+        Shader("lib/main_axis.wgsl", "0.9999847412109375", "1.0"),
         "raycast.bresenham.xray.diagonal.linear_fetch.f32.perspective",
     ),
     (
@@ -325,6 +352,162 @@ pub const FAULTS: &[(&str, Fault, &str)] = &[
         "a warp of maxima counts rays without a value",
         Shader("lib/warp_value.wgsl", "sum.x / sum.y", "sum.x"),
         "reference.shear_warp.mip.plain.linear_fetch.perspective",
+    ),
+    (
+        "splats are as narrow as if pixels were narrow",
+        Shader("lib/splat_line.wgsl", NOT_WIDENED[0], NOT_WIDENED[1]),
+        WIDE,
+    ),
+    (
+        "splats that pixels widen are wide along the axes alone",
+        Shader(
+            "lib/splat_line.wgsl",
+            "let mixed = frame.splat_mixed;",
+            "let mixed = vec3(0.0);",
+        ),
+        WIDE,
+    ),
+    (
+        "splats that pixels widen are as high as narrow ones",
+        Shader(
+            "lib/splat_line.wgsl",
+            "frame.splat_peak / kappa",
+            "0.7368284 / kappa",
+        ),
+        "splat.image.xray.wide.perspective",
+    ),
+    (
+        "splats are as high whatever way they are seen",
+        Shader(
+            "lib/splat_line.wgsl",
+            "frame.splat_peak / kappa",
+            "frame.splat_peak",
+        ),
+        SUMS,
+    ),
+    (
+        "splats are looked for too near the ray",
+        Shader(
+            "lib/splat_line.wgsl",
+            "let cut = frame.splat_reach;",
+            "let cut = 0.6 * frame.splat_reach;",
+        ),
+        SUMS,
+    ),
+    (
+        "the last column and row near the ray are left out",
+        Shader(
+            "lib/splat_line.wgsl",
+            "max(last - first + 1, vec2(0))",
+            "max(last - first, vec2(0))",
+        ),
+        SUMS,
+    ),
+    (
+        "slices of splats come from back to front",
+        Shader(
+            "lib/splat_line.wgsl",
+            "SplatSlices(select(last, first, is_up), select(-1, 1, is_up), ",
+            "SplatSlices(select(first, last, is_up), select(1, -1, is_up), ",
+        ),
+        SLICES,
+    ),
+    (
+        "splats are cut as if they were densest before their slice",
+        Shader(
+            "lib/splat_image.wgsl",
+            "line.kappa * dot(line.drift, w)",
+            "-line.kappa * dot(line.drift, w)",
+        ),
+        SHEETS,
+    ),
+    (
+        "splats are cut as if they were densest in their slice",
+        Shader(
+            "lib/splat_image.wgsl",
+            "line.kappa * dot(line.drift, w)",
+            "0.0",
+        ),
+        SHEETS,
+    ),
+    (
+        "splats are cut by sheets that lie a half of one off",
+        Shader(
+            "lib/splat_image.wgsl",
+            "vec4(0.0, 1.0, 2.0, 3.0)",
+            "vec4(0.5, 1.5, 2.5, 3.5)",
+        ),
+        SHEETS,
+    ),
+    (
+        "sheets have all of a splat before their ends",
+        Shader(
+            "lib/splat_image.wgsl",
+            "upper - vec4(lower, upper.xyz)",
+            "upper",
+        ),
+        SHEETS,
+    ),
+    (
+        "sheets are closed before all slices are in them",
+        Shader("lib/splat_image.wgsl", " - SLACK;", " + 1.0;"),
+        SHEETS,
+    ),
+    (
+        "the fifth open sheet is the fourth",
+        Shader(
+            "lib/splat_image.wgsl",
+            "open[4] += part.x * numbers;",
+            "open[3] += part.x * numbers;",
+        ),
+        "splat.image.composite.*.perspective",
+    ),
+    (
+        "the normal distribution is another",
+        Shader("lib/normal.wgsl", "0.231641888", "0.24"),
+        SHEETS,
+    ),
+    (
+        "voxels without data are zeros to splats",
+        Shader(
+            "lib/splat_voxel.wgsl",
+            "vec4(0.0, 0.0, 1.0, 0.0)",
+            "vec4(0.0, 1.0, 1.0, 0.0)",
+        ),
+        "splat.image.composite.holes.perspective",
+    ),
+    (
+        "slices of splats have length one",
+        Shader("lib/splat_axis.wgsl", "1.0 / abs(line.direction.z)", "1.0"),
+        SLICES,
+    ),
+    (
+        "classified splats add opacities",
+        Shader("lib/splat_axis.wgsl", OPACITIES[0], OPACITIES[1]),
+        CLASSIFIED,
+    ),
+    (
+        "a sheet of classified splats has the light of all of them",
+        Shader("lib/splat_pre.wgsl", "sums.xyz / sums.w", "sums.xyz"),
+        CLASSIFIED,
+    ),
+    (
+        "rows and columns of splats come from back to front",
+        Shader(
+            "lib/splat_each.wgsl",
+            "line.direction.xy < vec2(0.0)",
+            "line.direction.xy > vec2(0.0)",
+        ),
+        "splat.none.composite.classified.perspective",
+    ),
+    (
+        "sheets are compared where they begin",
+        Shader(
+            "lib/splat_value.wgsl",
+            "range.t.x <= edges.z && edges.z < range.t.y",
+            "range.t.x <= edges.x && edges.x < range.t.y",
+        ),
+        "splat.image.mip.plain.perspective",
     ),
     (
         "slices lie half their distance off",

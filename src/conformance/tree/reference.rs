@@ -13,6 +13,7 @@ use crate::conformance::test_bed::TestBed;
 use crate::named::Named;
 use crate::offscreen::reference;
 use crate::picture::ColorSpace;
+use crate::scene::Scene;
 use crate::technique::{Filter, Level, Mode, Shading};
 use crate::volume::{Rescale, Volume, VoxelType, Voxels};
 use glam::{DVec3, dvec3};
@@ -144,14 +145,22 @@ pub(super) fn of_shot(
     shot: &PictureCase,
     has_holes: bool,
 ) -> Result<Measurement, Stop> {
-    let mode = shot.settings.mode;
     let volume = volume(shot, has_holes);
     let function = ground::ramps();
-    let scene = shot.scene(&volume, Some(&function));
-    let found = bed.render(&scene, &[])?;
+    of_scene(bed, shot, &shot.scene(&volume, Some(&function)))
+}
+
+/// The picture of a scene that a shot has, against the CPU references.
+pub(super) fn of_scene(
+    bed: &mut TestBed,
+    shot: &PictureCase,
+    scene: &Scene,
+) -> Result<Measurement, Stop> {
+    let mode = shot.settings.mode;
+    let found = bed.render(scene, &[])?;
     let wrong = |error: crate::technique::Error| Stop::Suite(error.to_string());
-    let double = reference::render::<f64>(&scene).map_err(wrong)?;
-    let single = reference::render::<f32>(&scene).map_err(wrong)?;
+    let double = reference::render::<f64>(scene).map_err(wrong)?;
+    let single = reference::render::<f32>(scene).map_err(wrong)?;
     let apart = |i: usize, c: usize| {
         (f64::from(double.pixels[i][c]) - f64::from(single.pixels[i][c])).abs()
     };
@@ -168,7 +177,7 @@ pub(super) fn of_shot(
     // The last steps of a search are decided inside of any error, and where they end is as good as anywhere near.
     let worst_case = match mode {
         Mode::Iso => None,
-        _ => Some(drawn::errors::<false>(bed, &scene)?),
+        _ => Some(drawn::errors::<false>(bed, scene)?),
     };
     let is_merged = bed.is_merged(scene.settings)?;
     let (id, derivation) = match &worst_case {
@@ -226,7 +235,8 @@ pub(super) fn of_shot(
     Ok(measurement)
 }
 
-fn volume(shot: &PictureCase, has_holes: bool) -> Volume {
+/// Waves on the grid of a shot.
+pub(super) fn volume(shot: &PictureCase, has_holes: bool) -> Volume {
     let [nx, ny, nz] = shot.grid.dims;
     let place = |x: u32, y: u32, z: u32| dvec3(x.into(), y.into(), z.into()) + DVec3::splat(0.5);
     let voxels = (0..nz).flat_map(|z| (0..ny).flat_map(move |y| (0..nx).map(move |x| (x, y, z))));

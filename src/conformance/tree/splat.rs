@@ -1,36 +1,70 @@
-//! Splats, against the same sums on the CPU in f64: values and extremes in sheets that are slices, sums, and with voxels without
-//! data.
+//! Splats, against the same sums on the CPU in f64: values and extremes in sheets, sums, voxels that are classified before, voxels
+//! without data, and splats that wide pixels widen.
 
 use super::ground::{self, MODES, PROJECTIONS, RAYS};
 use super::reference;
 use crate::conformance::case::{Case, Profile, Stop};
 use crate::conformance::measurement::Measurement;
+use crate::conformance::oracle::PictureCase;
 use crate::conformance::test_bed::TestBed;
 use crate::named::Named;
 use crate::picture::ColorSpace;
+use crate::scene::{Beside, Scene};
+use crate::technique::preclassified::preclassified;
 use crate::technique::splat::Sheets;
 use crate::technique::{Filter, Mode, Technique};
+use crate::volume::Volume;
 
 /// Thickness of sheets, in steps: a slice of the grid at hand reaches into fewer than there is room for.
 const SAMPLES_PER_VOXEL: f64 = 0.5;
+/// No splat is thinner than so many pixels, about twice as wide as that of a voxel: along no axis of the grid is it as wide as along
+/// another, so its precision is no diagonal.
+const WIDE: f64 = 1.2;
 
-/// The product of sheets and modes.
+/// What splats are made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Look {
+    Plain,
+    Holes,
+    Wide,
+    Classified,
+}
+
+impl Look {
+    const ALL: [(Self, &str); 4] = [
+        (Self::Plain, "plain"),
+        (Self::Holes, "holes"),
+        (Self::Wide, "wide"),
+        (Self::Classified, "classified"),
+    ];
+
+    /// Whether there is such a picture: sums have no sheets, and only classified voxels are composited without them.
+    fn is_drawn(self, sheets: Sheets, mode: Mode) -> bool {
+        let is_sum = matches!(mode, Mode::Average | Mode::Xray);
+        match (self, sheets) {
+            (Self::Classified, _) => mode == Mode::Composite,
+            (Self::Wide, _) if !matches!(mode, Mode::Composite | Mode::Xray) => false,
+            (_, Sheets::Image) => true,
+            (_, Sheets::Axis) => !is_sum,
+            (_, Sheets::None) => false,
+        }
+    }
+}
+
+/// The product of sheets, modes and looks.
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
-    for sheets in [Sheets::Image, Sheets::Axis] {
+    for &sheets in Sheets::ALL {
         for mode in MODES {
-            // Sums have no sheets; into which sheet that faces the eye a slice first reaches depends on rounding, in more pixels
-            // than a case may leave out: `tests/exact/splat` has those.
-            let is_sum = matches!(mode, Mode::Average | Mode::Xray);
-            if is_sum != (sheets == Sheets::Image) {
-                continue;
-            }
-            for (look, has_holes) in [("plain", false), ("holes", true)] {
+            for (look, word) in Look::ALL {
+                if !look.is_drawn(sheets, mode) {
+                    continue;
+                }
                 for (projection, is_perspective) in PROJECTIONS {
-                    let word = ground::word_of(mode);
-                    let name = format!("splat.{}.{word}.{look}.{projection}", sheets.name());
+                    let of_mode = ground::word_of(mode);
+                    let name = format!("splat.{}.{of_mode}.{word}.{projection}", sheets.name());
                     let mut case = Case::new(name, move |bed| {
-                        measure(bed, sheets, mode, has_holes, is_perspective)
+                        measure(bed, sheets, mode, look, is_perspective)
                     });
                     case.profile = match is_perspective {
                         true => Profile::Baseline,
@@ -48,7 +82,7 @@ fn measure(
     bed: &mut TestBed,
     sheets: Sheets,
     mode: Mode,
-    has_holes: bool,
+    look: Look,
     is_perspective: bool,
 ) -> Result<Measurement, Stop> {
     let shot = ground::shot(RAYS, mode, (Filter::Linear, false), is_perspective);
@@ -58,6 +92,28 @@ fn measure(
         settings.samples_per_voxel = SAMPLES_PER_VOXEL;
         settings.crop = None;
         settings.color_space = ColorSpace::Linear;
+        if look == Look::Wide {
+            settings.splat.low_pass = WIDE;
+        }
     });
-    reference::of_shot(bed, &shot, has_holes)
+    match look {
+        Look::Classified => classified(bed, &shot),
+        _ => reference::of_shot(bed, &shot, look == Look::Holes),
+    }
+}
+
+/// The picture of a shot, of waves that are classified before.
+fn classified(bed: &mut TestBed, shot: &PictureCase) -> Result<Measurement, Stop> {
+    let volume = reference::volume(shot, false);
+    let function = ground::ramps();
+    let length = shot.scene(&volume, Some(&function)).length_of(&function);
+    let space = shot.settings.color_space;
+    let parts = preclassified(&volume, &function, length, space)
+        .map_err(|problem| Stop::Suite(problem.to_string()))?;
+    let beside: Vec<&Volume> = parts[1..].iter().collect();
+    let scene = Scene {
+        beside: Beside::Classified(&beside),
+        ..shot.scene(&parts[0], Some(&function))
+    };
+    reference::of_scene(bed, shot, &scene)
 }

@@ -113,28 +113,58 @@ impl<R: Real> Line<R> {
         [0, 1, 2].map(|k| self.origin[k] + t * self.direction[k])
     }
 
-    /// The splat of the voxel that lies so far from the crossing: F, and t* after the crossing; `None` beyond R.
+    /// The splat of the voxel that lies so far from the crossing: F, and t* after the crossing; `None` beyond R. Where
+    /// rounding may choose a side of R, F is as uncertain as it is large there, which is little.
     pub fn splat(&self, [u, v]: [R; 2]) -> Option<[R; 2]> {
         let two = R::from_f64(2.0);
         let [qii, qij, qjj] = self.form;
         let square = qii * u * u + two * qij * u * v + qjj * v * v;
-        (square <= self.cut * self.cut).then(|| {
+        let end = self.cut * self.cut;
+        let ([low, high], [least, most]) = (square.range(), end.range());
+        (low <= most).then(|| {
             let weight = self.peak * (R::from_f64(-0.5) * square).exp();
+            let is_within = square.to_f64() <= end.to_f64();
+            let weight = either([high <= least, false], is_within, weight, R::from_f64(0.0));
             [weight, self.drift[0] * u + self.drift[1] * v]
         })
     }
 
-    /// The part of a splat before `x` deviations of it along the ray.
+    /// The part of a splat before `x` deviations of it along the ray. Where rounding may choose a side of an end, it is as
+    /// uncertain as the step there, which is small.
     pub fn before(&self, x: R) -> R {
         let (zero, one) = (R::from_f64(0.0), R::from_f64(1.0));
-        if x <= -self.cut {
+        if self.is_before(x) {
             return zero;
         }
-        if x >= self.cut {
+        if self.is_behind(x) {
             return one;
         }
+        let ([low, high], [least, _]) = (x.range(), self.cut.range());
+        let [at, cut] = [x, self.cut].map(R::to_f64);
         let tail = tail_of(x.abs());
-        if x > zero { one - tail } else { tail }
+        let part = either([low > 0.0, high <= 0.0], at > 0.0, one - tail, tail);
+        let part = either([low > -least, false], at > -cut, part, zero);
+        either([high < least, false], at < cut, part, one)
+    }
+
+    /// Whether a splat surely has no part before `x` deviations.
+    pub fn is_before(&self, x: R) -> bool {
+        x.range()[1] <= -self.cut.range()[1]
+    }
+
+    /// Whether it surely has none behind that.
+    pub fn is_behind(&self, x: R) -> bool {
+        x.range()[0] >= self.cut.range()[1]
+    }
+}
+
+/// `yes` where it is sure, `no` where that is, else what is chosen, or as well the other.
+fn either<R: Real>([is_yes, is_no]: [bool; 2], is_chosen: bool, yes: R, no: R) -> R {
+    match is_chosen {
+        _ if is_yes => yes,
+        _ if is_no => no,
+        true => yes.or(no),
+        false => no.or(yes),
     }
 }
 

@@ -93,10 +93,17 @@ impl<R: Real> OpenSheets<R> {
 
     /// Adds the parts of a splat.
     pub fn add(&mut self, line: &Line<R>, drift: R, weight: R, numbers: [R; 4]) {
-        let before = |edge: R| line.before(edge - line.kappa * drift);
-        let mut lower = before(self.edges[0]);
-        for (s, sums) in self.sums.iter_mut().enumerate() {
-            let upper = before(self.edges[s + 1]);
+        let densest = line.kappa * drift;
+        let mut lower = line.before(self.edges[0] - densest);
+        for (sums, ends) in self.sums.iter_mut().zip(self.edges.windows(2)) {
+            if line.is_behind(ends[0] - densest) {
+                break;
+            }
+            let x = ends[1] - densest;
+            if line.is_before(x) {
+                continue;
+            }
+            let upper = line.before(x);
             // Rounding makes no weight negative: a sheet lies between its voxels.
             let part = weight * (upper - lower).max(R::from_f64(0.0));
             *sums = std::array::from_fn(|c| sums[c] + part * numbers[c]);

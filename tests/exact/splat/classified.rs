@@ -1,16 +1,20 @@
 //! Splats of voxels that are classified before: optical depths are added.
 
 use super::{
-    DIMS, DIRECTIONS, cubes, function, noise, pictures, scene, seen_from, settings, values,
+    DIMS, DIRECTIONS, cubes, function, noise, of_sheets, over, pictures, ray_of, scene, seen_from,
+    settings, sheared, shots, values, voxels,
 };
-use crate::shared::{Worst, volume_of};
+use crate::shared::{PictureCase, Worst, volume_of};
 use glam::{DVec3, dvec3};
 use stratavox::offscreen::reference;
 use stratavox::picture::ColorSpace;
 use stratavox::scene::{Beside, Scene};
 use stratavox::technique::Mode;
 use stratavox::technique::preclassified::preclassified;
+use stratavox::technique::slices_2d::stack_axis;
 use stratavox::technique::splat::Sheets;
+use stratavox::technique::splat::kernel::Kernel;
+use stratavox::technique::splat::oracle::{self, Footprint};
 use stratavox::transfer::ColorPoint;
 use stratavox::volume::Volume;
 
@@ -140,5 +144,85 @@ fn voxels_in_two_volumes_let_through_the_product() {
             worst.take(pixel, t(a) * t(b) - t(both), 5e-6);
         }
         worst.assert_holds();
+    }
+}
+
+/// Light and depth of sheets of all voxels, front to back.
+fn sheets_of_all_voxels(
+    shot: &PictureCase,
+    parts: &[Volume; 4],
+    pixel: [u32; 2],
+    sheets: Sheets,
+) -> Vec<[f64; 4]> {
+    let ray = ray_of(shot, pixel);
+    let kernel = Kernel::of(&shot.view());
+    let stored = |of: &Volume| voxels(of).map(|(_, [value, ..])| value).collect();
+    let [red, green, blue, depth] = parts.each_ref().map(stored) as [Vec<f64>; 4];
+    let all = voxels(&parts[0])
+        .enumerate()
+        .map(|(i, (center, _))| (center, [red[i], green[i], blue[i], depth[i]]));
+    if sheets == Sheets::Image {
+        let step = shot.view().step_world();
+        let edges: Vec<f64> = (-90..=90).map(|k| ray.edge(f64::from(k) * step)).collect();
+        return oracle::sheets(&kernel, &ray.line, all, &edges);
+    }
+    // Slices, rows and columns, each from front to back.
+    let k = stack_axis(&shot.view());
+    let [i, j] = [[1, 2], [0, 2], [0, 1]][k];
+    let place = |center: DVec3| {
+        [k, j, i].map(|axis| (ray.line.direction[axis].signum() * 2.0 * center[axis]) as i32)
+    };
+    let mut splats: Vec<_> = all
+        .filter_map(|(center, numbers)| {
+            let integral = Footprint::new(&kernel, &ray.line, center)?.integral;
+            Some((place(center), numbers.map(|n| n * integral)))
+        })
+        .collect();
+    splats.sort_by_key(|&(place, _)| place);
+    let is_same = |a: &[i32; 3], b: &[i32; 3]| match sheets {
+        Sheets::Axis => a[0] == b[0],
+        _ => a == b,
+    };
+    let sums = splats.chunk_by(|(a, _), (b, _)| is_same(a, b));
+    sums.map(|sheet| {
+        let add = |sum: [f64; 4], (_, more): &([i32; 3], [f64; 4])| {
+            std::array::from_fn(|c| sum[c] + more[c])
+        };
+        sheet.iter().fold([0.0; 4], add)
+    })
+    .collect()
+}
+
+#[test]
+fn colours_of_classified_voxels_are_those_of_all_voxels_in_their_order() {
+    let f = function();
+    for grid in [cubes(), sheared()] {
+        let volume = volume_of(DIMS, grid.world_from_voxel, noise);
+        let parts = classified(&volume);
+        let beside: Vec<&Volume> = parts[1..].iter().collect();
+        for sheets in [Sheets::Image, Sheets::Axis, Sheets::None] {
+            let mut settings = settings(Mode::Composite, sheets);
+            settings.samples_per_voxel = 0.5;
+            let [_, perspective] = shots(grid, &settings);
+            for shot in [perspective, seen_from(grid, DIRECTIONS[0], &settings)] {
+                let scene = Scene {
+                    beside: Beside::Classified(&beside),
+                    ..scene(&shot, &parts[0], &f)
+                };
+                for (name, picture) in pictures(&scene, &[]) {
+                    let mut worst = Worst::new(format!("{name}: {sheets}, {}", shot.what()));
+                    for (pixel, found) in shot.pixels().zip(&picture.pixels).step_by(5) {
+                        let matter = sheets_of_all_voxels(&shot, &parts, pixel, sheets);
+                        let wanted = over(matter.into_iter().filter(|sums| sums[3] > 0.0).map(
+                            |[r, g, b, depth]| (1.0, [r / depth, g / depth, b / depth, depth]),
+                        ));
+                        for c in 0..4 {
+                            worst.take(pixel, f64::from(found[c]) - wanted[c], of_sheets());
+                        }
+                    }
+                    worst.assert_holds();
+                }
+            }
+        }
     }
 }

@@ -1,7 +1,8 @@
 //! Sheets of values, classified: matter of one value, all voxels in any order, a field that is linear.
 
 use super::{
-    DIMS, cubes, function, noise, pictures, ray_of, scene, settings, sheared, shots, values, voxels,
+    DIMS, cubes, function, noise, of_sheets, over, pictures, ray_of, scene, settings, sheared,
+    shots, values, voxels,
 };
 use crate::shared::oracle::constant_color;
 use crate::shared::{Device, Matter, PictureCase, Reference, Way, Worst, device, volume_of};
@@ -9,6 +10,7 @@ use glam::{DAffine3, DMat3, DVec3, dvec3};
 use stratavox::offscreen::{Renderer, reference};
 use stratavox::picture::{ColorSpace, LayerKind, Picture};
 use stratavox::technique::Mode;
+use stratavox::technique::slices_2d::stack_axis;
 use stratavox::technique::splat::kernel::Kernel;
 use stratavox::technique::splat::{Sheets, oracle};
 use stratavox::transfer::{Absorption, Points, classify_by_points};
@@ -53,20 +55,6 @@ fn homogeneous(way: &dyn Way, shot: &PictureCase) {
         }
     }
     worst.assert_holds();
-}
-
-/// Emission and absorption of sheets (length, colour, extinction), front to back.
-fn over(sheets: impl Iterator<Item = (f64, [f64; 4])>) -> [f64; 4] {
-    let (mut color, mut through) = ([0.0; 3], 1.0);
-    for (length, [r, g, b, extinction]) in sheets {
-        let opacity = -(-extinction * length).exp_m1();
-        for (sum, c) in color.iter_mut().zip([r, g, b]) {
-            *sum += through * opacity * c;
-        }
-        through *= 1.0 - opacity;
-    }
-    let [r, g, b] = color;
-    [r, g, b, 1.0 - through]
 }
 
 /// A picture of classified sheets that face the eye, sheet by sheet over all voxels.
@@ -122,7 +110,74 @@ fn classified_sheets_are_those_of_all_voxels_in_any_order() {
                 for (pixel, found) in shot.pixels().zip(&picture.pixels) {
                     let wanted = composite_of_all_voxels(&shot, &volume, pixel).unwrap_or_default();
                     for c in 0..4 {
-                        worst.take(pixel, f64::from(found[c]) - wanted[c], 2e-5);
+                        worst.take(pixel, f64::from(found[c]) - wanted[c], of_sheets());
+                    }
+                }
+                worst.assert_holds();
+            }
+        }
+    }
+}
+
+/// The same of slices: each stands for as much of the ray as lies between two of them, where the ray meets it in the box.
+/// Without an answer where it meets one at a face.
+fn composite_of_slices(shot: &PictureCase, volume: &Volume, pixel: [u32; 2]) -> Option<[f64; 4]> {
+    let ray = ray_of(shot, pixel);
+    let Some([enter, leave]) = ray.inside(&shot.grid) else {
+        return Some([0.0; 4]);
+    };
+    let kernel = Kernel::of(&shot.view());
+    let absorption = Absorption::Extinction {
+        reference_length: 1.0,
+    };
+    let points = Points::new(&function(), absorption, ColorSpace::Display);
+    let k = stack_axis(&shot.view());
+    let (o, d) = (ray.line.origin[k], ray.line.direction[k]);
+    let mut sums = vec![[0.0; 3]; volume.dims[k] as usize];
+    for (center, numbers) in voxels(volume) {
+        if let Some(footprint) = oracle::Footprint::new(&kernel, &ray.line, center) {
+            let sum = &mut sums[center[k] as usize];
+            *sum = std::array::from_fn(|c| sum[c] + footprint.integral * numbers[c]);
+        }
+    }
+    let mut met: Vec<(f64, [f64; 3])> = (0..)
+        .zip(sums)
+        .map(|(m, sum)| ((f64::from(m) + 0.5 - o) / d, sum))
+        .collect();
+    if met
+        .iter()
+        .any(|(t, _)| (t - enter).abs() < 1e-3 || (t - leave).abs() < 1e-3)
+    {
+        return None;
+    }
+    met.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let inside = met.into_iter().filter(|(t, [_, weight, all])| {
+        enter < *t && *t < leave && *weight > 0.0 && *weight >= 0.5 * all
+    });
+    let sheets = inside.map(|(_, [sum, weight, _])| {
+        (
+            1.0 / d.abs(),
+            classify_by_points::<f64>(&points, sum / weight),
+        )
+    });
+    Some(over(sheets))
+}
+
+#[test]
+fn classified_slices_are_those_of_all_voxels() {
+    let f = function();
+    for grid in [cubes(), sheared()] {
+        let volume = volume_of(grid.dims, grid.world_from_voxel, noise);
+        for shot in shots(grid, &settings(Mode::Composite, Sheets::Axis)) {
+            for (name, picture) in pictures(&scene(&shot, &volume, &f), &[]) {
+                let mut worst = Worst::new(format!("{name}: {}", shot.what()));
+                for (pixel, found) in shot.pixels().zip(&picture.pixels) {
+                    let Some(wanted) = composite_of_slices(&shot, &volume, pixel) else {
+                        worst.leave_out();
+                        continue;
+                    };
+                    for c in 0..4 {
+                        worst.take(pixel, f64::from(found[c]) - wanted[c], of_sheets());
                     }
                 }
                 worst.assert_holds();
@@ -238,8 +293,14 @@ fn matter_looks_the_same_whatever_the_order_and_direction_of_its_axes() {
                 false => reference::render::<f32>(&scene).unwrap(),
             };
             let what = format!("{order:?} {flips:?}");
-            Worst::between(what, shot.extent[0], &wanted.pixels, &found.pixels, 2e-5)
-                .assert_holds();
+            Worst::between(
+                what,
+                shot.extent[0],
+                &wanted.pixels,
+                &found.pixels,
+                of_sheets(),
+            )
+            .assert_holds();
         }
     }
 }

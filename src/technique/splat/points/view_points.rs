@@ -181,23 +181,21 @@ impl Seen {
         (depth > 0.0).then_some(())?;
         let at_depth = if eye.is_perspective { depth } else { 1.0 };
         let std = std.max(eye.low_pass * eye.pixel.max_element() * at_depth);
-        let mut tiles = [[0; 2]; 2];
-        for axis in 0..2 {
+        let of_axis = |axis: usize| {
             let lateral = from_eye.dot(eye.across[axis]);
             let ends = match eye.is_perspective {
-                true => tangents(lateral, depth, reach * std)?,
+                true => tangents(lateral, depth, reach * std),
                 false => [lateral - reach * std, lateral + reach * std],
             };
             let pixels = ends.map(|end| (end - eye.corner[axis]) / eye.pixel[axis]);
             let tile = f64::from(TILE_PIXELS);
             let most = f64::from(eye.tiles[axis]);
-            let first = ((pixels[0] - MARGIN_PIXELS) / tile)
-                .floor()
-                .clamp(0.0, most);
-            let end = ((pixels[1] + MARGIN_PIXELS) / tile).ceil().clamp(0.0, most);
-            tiles[axis] = [first as u32, end as u32];
-            (first < end).then_some(())?;
-        }
+            let first = ((pixels[0] - MARGIN_PIXELS) / tile).floor();
+            let end = ((pixels[1] + MARGIN_PIXELS) / tile).ceil();
+            let tiles = [first, end].map(|n| n.clamp(0.0, most) as u32);
+            (tiles[0] < tiles[1]).then_some(tiles)
+        };
+        let tiles = [of_axis(0)?, of_axis(1)?];
         Some(Self {
             index,
             depth,
@@ -214,12 +212,12 @@ impl Seen {
 }
 
 /// The smallest and the largest u / z of a circle of radius `r` around (u, z); all where it reaches the eye's plane.
-fn tangents(u: f64, z: f64, r: f64) -> Option<[f64; 2]> {
+fn tangents(u: f64, z: f64, r: f64) -> [f64; 2] {
     if z <= 1.000_001 * r {
-        return Some([f64::NEG_INFINITY, f64::INFINITY]);
+        return [f64::NEG_INFINITY, f64::INFINITY];
     }
     let (angle, half) = (u.atan2(z), (r / u.hypot(z)).asin());
-    Some([(angle - half).tan(), (angle + half).tan()])
+    [(angle - half).tan(), (angle + half).tan()]
 }
 
 /// Where the list of each tile begins, and the lists.
