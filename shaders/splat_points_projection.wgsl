@@ -23,6 +23,10 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) o
     let list = list_of(tile.corner);
     let reach = select(EXTREME_SQUARE, frame.splat_reach * frame.splat_reach, frame.extreme_sign == 0.0);
     var so_far = begin();
+    if frame.is_first_brick == 0u {
+        let before = textureLoad(accumulation, pixel);
+        so_far = Accumulator(before.x, before.y, before.z, before.w);
+    }
     for (var i = list.x; i < list.y; i++) {
         let point = listed(i);
         let square = square_of(point, ray);

@@ -210,6 +210,9 @@ struct Frame {
     splat_first: vec3<i32>,
     splat_last: vec3<i32>,
     splat_halo: vec3<f32>,
+    // Scattered points: which of the list of a tile this recording takes.
+    points_first: u32,
+    points_end: u32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

@@ -26,13 +26,14 @@ struct TilePoints {
 @group(0) @binding(44) var<storage, read> view_points: ViewPoints;
 @group(0) @binding(45) var<storage, read> tile_points: TilePoints;
 
-// First and end of a tile's list.
+// First and end of what this recording takes of a tile's list.
 fn list_of(corner: vec2<u32>) -> vec2<u32> {
     let tiles = (frame.extent_pixels + TILE_PIXELS - 1u) / TILE_PIXELS;
     let tile = corner / TILE_PIXELS;
     let lists = tiles.x * tiles.y + 1u;
     let i = tile.x + tiles.x * tile.y;
-    return lists + vec2(tile_points.numbers[i], tile_points.numbers[i + 1u]);
+    let list = lists + vec2(tile_points.numbers[i], tile_points.numbers[i + 1u]);
+    return min(list.x + vec2(frame.points_first, frame.points_end), list.yy);
 }
 
 // The point at that place of the lists.

@@ -211,7 +211,7 @@ impl<'a, R: Real> ReferenceRays<'a, R> {
             frame,
             light,
             points: match scene.beside {
-                Beside::Points(points) => Some(ViewPoints::new(&view, points, u32::MAX)?),
+                Beside::Points(points) => Some(ViewPoints::new(&view, points)?),
                 _ => None,
             },
             slices,

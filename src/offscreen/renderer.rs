@@ -33,9 +33,10 @@ use super::upload::{keep, upload, upload_with_gradient_source};
 use crate::gpu::{Headless, ParameterRing, Timer};
 use crate::picture::{ColorSpace, LayerKind, Picture};
 use crate::resident::{GpuTransfer, GpuVolume};
-use crate::scene::{Scene, positions_in_pixel};
+use crate::scene::{Beside, Scene, positions_in_pixel};
 use crate::technique::cost::ms_of_fetches;
 use crate::technique::gather::{CanvasDesc, PICTURE};
+use crate::technique::splat::points::most_at_once;
 use crate::technique::{
     self, Functions, GpuChannel, InPixel, LightPlan, LightVolume, Mode, SampleInputs,
     ShaderVariant, parameter_ring,
@@ -44,6 +45,7 @@ use crate::transfer::{GradientTransfer, TransferFunction};
 use crate::volume::Volume;
 use copied::Copied;
 pub use filtered::Filtered;
+use gather::turns_of_point;
 pub use kept::Kept;
 use pacing::{Known, passes_of};
 use skipping::Skipped;
@@ -318,8 +320,16 @@ impl<'v> Renderer<'v> {
         let is_half = scene.settings.is_half_angle();
         let at_once = if is_half { 2 } else { BRICKS_AT_ONCE };
         let bricks = parts[0].volume.bricks().len();
-        let slots = bricks.max(at_once) as u32;
-        let keeps_layers = has_layers || bricks > 1 || self.streaming.is_some();
+        let of_points = match scene.beside {
+            Beside::Points(points) => {
+                let turns = gpu.limits().max_loop_turns;
+                points.len() / most_at_once(turns, turns_of_point(scene)) as usize + 1
+            }
+            _ => 0,
+        };
+        let slots = bricks.max(at_once).max(of_points) as u32;
+        let are_several = bricks > 1 || self.streaming.is_some() || of_points > 1;
+        let keeps_layers = has_layers || are_several;
         let variant = ShaderVariant {
             writes_layers: keeps_layers,
             ..ShaderVariant::mixed(scene.settings, scene.mix(), &parts).of_whole(scene.settings)

@@ -245,6 +245,8 @@ impl View<'_> {
             splat_first: of_splats.splat_first,
             splat_last: of_splats.splat_last,
             splat_halo: of_splats.splat_halo,
+            points_first: 0,
+            points_end: 0,
         };
         self.set_light(&mut fields);
         if let Some(shading) = &self.settings.shading {

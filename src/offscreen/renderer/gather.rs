@@ -82,8 +82,10 @@ impl Renderer<'_> {
         }
         let points = match scene.beside {
             Beside::Points(points) => {
+                let seen = ViewPoints::new(&view, points)?;
                 let gpu = self.device.gpu();
-                let seen = ViewPoints::new(&view, points, gpu.limits().max_loop_turns)?;
+                let turns = gpu.limits().max_loop_turns;
+                recordings = seen.parts(recordings[0], turns, turns_of_point(scene));
                 Some(GpuViewPoints::new(gpu, &seen)?)
             }
             _ => None,
@@ -151,6 +153,13 @@ impl Renderer<'_> {
         let spent = submission.gather(gather, canvas, (&inputs, &bricks), false)?;
         Ok((spent, expected))
     }
+}
+
+/// Turns of loops that a point takes: its own, and those of a search among the control points of its function.
+pub(super) fn turns_of_point(scene: &Scene) -> u32 {
+    let functions = scene.transfers().into_iter().flatten();
+    let points = functions.map(|f| f.color.len() + f.opacity.len()).max();
+    2 + points.unwrap_or(0) as u32
 }
 
 /// A resolve of its own submission takes more than this part of one.

@@ -1,10 +1,11 @@
 //! Splats of scattered points against sums over all points in f64, on the CPU reference and on the device.
 
 use super::{function, values};
-use crate::shared::{Worst, device};
+use crate::shared::{Worst, device, device_with};
 use glam::{DVec3, dvec3};
 use std::f64::consts::TAU;
 use stratavox::camera::{Camera, Projection};
+use stratavox::gpu::Caps;
 use stratavox::offscreen::{Renderer, reference};
 use stratavox::picture::{ColorSpace, LayerKind, Picture};
 use stratavox::points::Points;
@@ -419,4 +420,29 @@ fn points_are_refused_where_they_are_not_drawn() {
         text.contains("raycast") && text.contains("splatting"),
         "{text}"
     );
+}
+
+#[test]
+fn lists_longer_than_loops_may_be_are_drawn_in_parts() {
+    let [shot, ..] = shots(Mode::Composite);
+    let points = cloud(2000, 10);
+    let (volume, f) = (points.binned(), function());
+    let parts = |settings: &Settings, turns| {
+        let shot = Shot {
+            camera: shot.camera.clone(),
+            settings: settings.clone(),
+        };
+        let caps = Caps {
+            max_loop_turns: turns,
+            ..Caps::UNLIMITED
+        };
+        let scene = scene(&shot, &volume, &points, &f);
+        let mut renderer = Renderer::new(device_with(caps), &volume).expect("a renderer");
+        renderer.render(&scene, &[]).expect("drawn").picture
+    };
+    for mode in [Mode::Composite, Mode::Mip, Mode::Xray, Mode::Average] {
+        let settings = settings(mode);
+        let [whole, cut] = [u32::MAX, 300].map(|turns| parts(&settings, turns));
+        assert_eq!(whole.pixels, cut.pixels, "{mode}");
+    }
 }

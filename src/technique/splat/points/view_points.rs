@@ -9,7 +9,7 @@
 //! and the forward direction.
 
 use crate::points::Points;
-use crate::technique::{Error, View};
+use crate::technique::{Error, Recording, View};
 use glam::{DVec2, DVec3, dvec2};
 
 /// Pixels along the side of a tile.
@@ -44,13 +44,11 @@ pub struct ViewPoints {
 }
 
 impl ViewPoints {
-    /// Of points that a view's clip planes and crop box leave, by their centres. `turns` is how often a loop of the device
-    /// goes round at most.
+    /// Of points that a view's clip planes and crop box leave, by their centres.
     ///
     /// # Errors
-    /// [`Error::LoopsEnd`] where more points lie before one tile; [`Error::OutOfRange`] where all lists together are too
-    /// long.
-    pub fn new(view: &View, points: &Points, turns: u32) -> Result<Self, Error> {
+    /// [`Error::OutOfRange`] where all lists together are too long.
+    pub fn new(view: &View, points: &Points) -> Result<Self, Error> {
         let eye = EyeSpace::new(view);
         let reach = super::super::kernel::reach_of(&view.settings.splat);
         let center = view.grid.center();
@@ -65,15 +63,6 @@ impl ViewPoints {
         // Stable: ties stay as the file has them.
         seen.sort_by(|a, b| a.depth.total_cmp(&b.depth));
         let [starts, lists] = lists(&seen, eye.tiles)?;
-        let longest = starts.windows(2).map(|ends| ends[1] - ends[0]).max();
-        let longest = longest.unwrap_or(0);
-        if longest >= turns {
-            return Err(Error::LoopsEnd {
-                wanted: f64::from(longest),
-                limit: f64::from(turns),
-                samples_per_voxel: None,
-            });
-        }
         let shown = |seen: &Seen| {
             let world = points.places()[seen.index] - center;
             let std = f64::from(points.stds()[seen.index]);
@@ -95,6 +84,27 @@ impl ViewPoints {
         })
     }
 
+    /// Points in the longest list.
+    fn longest_list(&self) -> u32 {
+        let lengths = self.starts.windows(2).map(|ends| ends[1] - ends[0]);
+        lengths.max().unwrap_or(0)
+    }
+
+    /// `whole` in parts of no more turns of a loop than a device goes round, one after the other: each goes on with
+    /// what those before have left. A point takes `turns_of_each`.
+    pub fn parts(&self, whole: Recording, max_turns: u32, turns_of_each: u32) -> Vec<Recording> {
+        let at_once = most_at_once(max_turns, turns_of_each);
+        let firsts = (0..self.longest_list().max(1)).step_by(at_once as usize);
+        let part = |first: u32| {
+            let mut part = whole;
+            part.frame.is_first_brick = u32::from(first == 0);
+            part.frame.points_first = first;
+            part.frame.points_end = first.saturating_add(at_once);
+            part
+        };
+        firsts.map(part).collect()
+    }
+
     /// The points that a pixel of a picture so wide may see, from front to back.
     pub fn of_pixel(&self, pixel: [u32; 2], width: u32) -> impl Iterator<Item = &ViewPoint> {
         let [x, y] = pixel.map(|n| n / TILE_PIXELS);
@@ -102,6 +112,11 @@ impl ViewPoints {
         let list = self.starts[tile] as usize..self.starts[tile + 1] as usize;
         self.lists[list].iter().map(|&i| &self.points[i as usize])
     }
+}
+
+/// How many points of a list a recording takes.
+pub(crate) fn most_at_once(max_turns: u32, turns_of_each: u32) -> u32 {
+    (max_turns / turns_of_each.max(1)).max(2) - 1
 }
 
 /// Whether crop box and clip planes leave a point of the centred world.
