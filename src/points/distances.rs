@@ -1,10 +1,11 @@
 //! How far points are from their nearest neighbours.
 //!
 //! ```text
-//! default standard deviation = max(median over points of |x_s - nearest other place| / 2, diagonal of the box / 400)
+//! default standard deviation = max(median over points of |x_s - nearest other place| / 2, d / 400 min(1, (4096 / n)^(1/3)))
 //! ```
 //!
-//! The second is what is seen of points that are much nearer to each other than the pixels of a picture.
+//! with d the diagonal of the box of n points. The second is what is seen of points that lie in clusters, much nearer to
+//! each other than the pixels of a picture.
 //!
 //! Points are sorted into cells of about one each; around a point, shells of cells are searched until no nearer one can
 //! lie beyond. Of many points some stand for all.
@@ -14,8 +15,10 @@ use std::collections::HashMap;
 
 /// So many points are looked at.
 const MOST_ASKED: usize = 4096;
-/// Parts of the diagonal of the box that a standard deviation is at least.
+/// Parts of the diagonal of the box that a standard deviation of few points is at least.
 const THINNEST: f64 = 400.0;
+/// So many are few.
+const FEW: f64 = 4096.0;
 /// Cells along an edge of the box, at most.
 const MOST_CELLS: f64 = 1024.0;
 
@@ -65,7 +68,8 @@ pub(super) fn default_std(places: &[DVec3]) -> f64 {
     let step = places.len().div_ceil(MOST_ASKED);
     let found = places.iter().step_by(step).map(|&place| nearest(place));
     let half = 0.5 * f64::from(median(found.collect()));
-    half.max(extent.length() / THINNEST)
+    let share = (FEW / places.len() as f64).cbrt().min(1.0);
+    half.max(extent.length() / THINNEST * share)
 }
 
 /// Cells at Chebyshev distance `shell` from `home`, as far as there are any.

@@ -35,7 +35,7 @@ pub struct NoPoint {
 
 impl Points {
     /// Points in the world, in its length. Without `stds` they have half the median distance to the nearest neighbour,
-    /// all the same, and at least 1/400 of the diagonal of their box; without `weights` they have 1.
+    /// all the same, and of few points at least 1/400 of the diagonal of their box; without `weights` they have 1.
     ///
     /// # Errors
     /// Where there is no point, lists have different lengths, or a number is out of its range.

@@ -9,13 +9,16 @@ use super::side::{side_words, turn_to_best, with_side};
 use crate::camera::Camera;
 use crate::cli::Error;
 use crate::cli::flags::{CameraFlags, Depth, FrameWord, Numbers, SceneFlags};
-use crate::cli::scene_inputs::SceneInputs;
+use crate::cli::scene_inputs::{Parts, SceneInputs};
 use crate::look::{
     MOST_SAMPLES, SHARE, SMALL_PIXELS, corners, fit_to_visible, frames_the_box, samples, small_of,
     visible_in,
 };
 use crate::picture::Picture;
 use crate::technique::{Settings, Technique};
+
+/// More points than this are framed by their box.
+const MANY_POINTS: usize = 50_000;
 
 /// Everything about a picture that a renderer wants to know.
 #[derive(Clone, Debug)]
@@ -111,6 +114,14 @@ impl<'a> Framing<'a> {
         })
     }
 
+    /// A frame of many points takes as long however small it is.
+    fn draws_small_frames(&self) -> bool {
+        match self.shown.parts() {
+            Parts::Points(points) => points.len() <= MANY_POINTS,
+            _ => true,
+        }
+    }
+
     /// What the camera is to be fitted to.
     fn word(&self) -> Option<FrameWord> {
         let camera = &self.scene.camera;
@@ -140,7 +151,7 @@ impl Framing<'_> {
             &mut |camera, settings, extent| draw(camera, &by_rays(settings), extent);
         let mut notes = Vec::new();
         let mut scene = self.scene.clone();
-        if self.may_choose_side && self.word().is_some() {
+        if self.may_choose_side && self.word().is_some() && self.draws_small_frames() {
             turn_to_best(
                 &mut scene,
                 |scene| self.boxed(scene),
@@ -155,7 +166,9 @@ impl Framing<'_> {
             let boxed = self.boxed(scene.clone())?;
             let (mut camera, mode) = (boxed.camera, view.settings.mode);
             let is_cropped = view.settings.crop.is_some();
-            let is_box = word == FrameWord::Box || frames_the_box(mode, is_cropped);
+            let is_box = word == FrameWord::Box
+                || frames_the_box(mode, is_cropped)
+                || !self.draws_small_frames();
             if !is_box {
                 visible = fit_to_visible(&mut camera, self.extent_pixels, |camera, small| {
                     draw(camera, &view.settings, small)
