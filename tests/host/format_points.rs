@@ -297,7 +297,7 @@ fn rows_without_a_number_are_dropped_and_counted() {
     let dropped = format!("{} rows were dropped", bad.len());
     assert!(notes(&file).contains(&dropped), "{}", notes(&file));
     assert!(
-        notes(&file).contains("1 of the points lie"),
+        notes(&file).contains("points at the place of one before them: 1;"),
         "{}",
         notes(&file)
     );

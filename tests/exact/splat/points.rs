@@ -18,7 +18,7 @@ use stratavox::volume::Volume;
 const EXTENT: [u32; 2] = [37, 29];
 const SUMS: [Mode; 2] = [Mode::Xray, Mode::Average];
 
-struct Shot {
+struct Case {
     camera: Camera,
     settings: Settings,
 }
@@ -35,8 +35,8 @@ fn settings(mode: Mode) -> Settings {
 }
 
 /// From an oblique direction, both projections; in perspective from among the points.
-fn shots(mode: Mode) -> [Shot; 3] {
-    let looking = |eye: DVec3, projection| Shot {
+fn shots(mode: Mode) -> [Case; 3] {
+    let looking = |eye: DVec3, projection| Case {
         camera: Camera {
             eye,
             target: dvec3(5.0, 5.0, 5.0),
@@ -81,7 +81,7 @@ fn cloud(count: usize, seed: u32) -> Points {
 }
 
 fn scene<'a>(
-    shot: &'a Shot,
+    shot: &'a Case,
     volume: &'a Volume,
     points: &'a Points,
     f: &'a TransferFunction,
@@ -96,7 +96,7 @@ fn scene<'a>(
     }
 }
 
-fn pictures(shot: &Shot, points: &Points, layers: &[LayerKind]) -> [(&'static str, Picture); 3] {
+fn pictures(shot: &Case, points: &Points, layers: &[LayerKind]) -> [(&'static str, Picture); 3] {
     let (volume, f) = (points.binned(), function());
     let scene = scene(shot, &volume, points, &f);
     let mut renderer = Renderer::new(device(), &volume).expect("a renderer");
@@ -134,7 +134,7 @@ impl Met {
 
 /// All points before the eye of a pixel's ray, from front to back. Of the eye and of pixels it takes the camera's word
 /// alone.
-fn met(shot: &Shot, points: &Points, [x, y]: [u32; 2]) -> Vec<Met> {
+fn met(shot: &Case, points: &Points, [x, y]: [u32; 2]) -> Vec<Met> {
     let rays = shot.camera.rays(EXTENT);
     let (origin, direction) = rays.at(f64::from(x) + 0.5, f64::from(y) + 0.5);
     let direction = direction.normalize();
@@ -403,7 +403,7 @@ fn points_are_refused_where_they_are_not_drawn() {
     let (points, f) = (cloud(5, 9), function());
     let volume = points.binned();
     let [mut shot, ..] = shots(Mode::Composite);
-    let refused = |shot: &Shot, beside: Beside| {
+    let refused = |shot: &Case, beside: Beside| {
         let scene = Scene {
             beside,
             ..scene(shot, &volume, &points, &f)
@@ -428,8 +428,8 @@ fn lists_longer_than_loops_may_be_are_drawn_in_parts() {
     let points = cloud(2000, 10);
     let (volume, f) = (points.binned(), function());
     let parts = |settings: &Settings, turns| {
-        let shot = Shot {
-            camera: shot.camera.clone(),
+        let shot = Case {
+            camera: shot.camera,
             settings: settings.clone(),
         };
         let caps = Caps {
