@@ -38,6 +38,11 @@ pub fn why_empty(
         (Seen::Clipped, _) => {
             "everything that the camera sees is cut away by --crop or --clip".to_owned()
         }
+        (Seen::Volume, _) if settings.splat.of_points => {
+            format!(
+                "no point that is left is seen, or the transfer function covers none of their values; {values}"
+            )
+        }
         (Seen::Volume, _) if settings.mode == Mode::Iso => {
             let levels = settings.per_mode.levels.iter();
             let levels: Vec<String> = levels.map(|level| short(level.value)).collect();

@@ -36,7 +36,6 @@ use crate::resident::{GpuTransfer, GpuVolume};
 use crate::scene::{Beside, Scene, positions_in_pixel};
 use crate::technique::cost::ms_of_fetches;
 use crate::technique::gather::{CanvasDesc, PICTURE};
-use crate::technique::splat::points::most_at_once;
 use crate::technique::{
     self, Functions, GpuChannel, InPixel, LightPlan, LightVolume, Mode, SampleInputs,
     ShaderVariant, parameter_ring,
@@ -45,7 +44,7 @@ use crate::transfer::{GradientTransfer, TransferFunction};
 use crate::volume::Volume;
 use copied::Copied;
 pub use filtered::Filtered;
-use gather::turns_of_point;
+use gather::points_at_once;
 pub use kept::Kept;
 use pacing::{Known, passes_of};
 use skipping::Skipped;
@@ -321,10 +320,7 @@ impl<'v> Renderer<'v> {
         let at_once = if is_half { 2 } else { BRICKS_AT_ONCE };
         let bricks = parts[0].volume.bricks().len();
         let of_points = match scene.beside {
-            Beside::Points(points) => {
-                let turns = gpu.limits().max_loop_turns;
-                points.len() / most_at_once(turns, turns_of_point(scene)) as usize + 1
-            }
+            Beside::Points(points) => points.len() / points_at_once(&gpu, scene) as usize + 1,
             _ => 0,
         };
         let slots = bricks.max(at_once).max(of_points) as u32;

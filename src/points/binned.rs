@@ -1,19 +1,20 @@
 //! The volume that stands for points where a volume is asked for: each voxel has the mean value of the points in it, those
 //! without a point have no data.
 //!
-//! The grid is as large as what the points show: their box, and [`REACH_STDS`] of the widest around.
+//! The grid is the box of the points and three standard deviations of the widest around. Splats reach farther, and are drawn
+//! outside of it too.
 
 use super::{Points, distances};
 use crate::volume::{PrecisionLoss, Rescale, Volume, Voxels};
 use glam::{DAffine3, DMat3, DVec3};
 
-/// Where a point is seen: so many of its standard deviations around it.
-pub(crate) const REACH_STDS: f64 = 3.0;
+/// Standard deviations around the box.
+const REACH_STDS: f64 = 3.0;
 /// Voxels along the longest edge.
 const MOST_VOXELS: f64 = 64.0;
 
 impl Points {
-    /// Corners of the box that the points fill, in the world.
+    /// Corners of the box of [`Self::binned`], in the world.
     pub fn bounds(&self) -> [DVec3; 2] {
         let widest = self.stds.iter().copied().fold(0.0, f32::max);
         let [low, high] = distances::bounds(&self.places);

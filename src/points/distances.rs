@@ -8,13 +8,15 @@
 //! each other than the pixels of a picture.
 //!
 //! Points are sorted into cells of about one each; around a point, shells of cells are searched until no nearer one can
-//! lie beyond. Of many points some stand for all.
+//! lie beyond. Of many points some stand for all, fewer the more there are: a search may look at all points.
 
 use glam::{DVec3, IVec3};
 use std::collections::HashMap;
 
-/// So many points are looked at.
+/// So many points are asked for their neighbours.
 const MOST_ASKED: usize = 4096;
+/// Distances that are taken at most, where all points lie in one cell.
+const MOST_DISTANCES: usize = 1 << 28;
 /// Parts of the diagonal of the box that a standard deviation of few points is at least.
 const THINNEST: f64 = 400.0;
 /// So many are few.
@@ -22,7 +24,7 @@ const FEW: f64 = 4096.0;
 /// Cells along an edge of the box, at most.
 const MOST_CELLS: f64 = 1024.0;
 
-/// Half the median distance to the nearest neighbour at another place; of points that all lie at one place, 1.
+/// The formula above; of points that all lie at one place, 1.
 pub(super) fn default_std(places: &[DVec3]) -> f64 {
     let [low, high] = bounds(places);
     let extent = high - low;
@@ -65,11 +67,19 @@ pub(super) fn default_std(places: &[DVec3]) -> f64 {
         }
         best as f32
     };
-    let step = places.len().div_ceil(MOST_ASKED);
-    let found = places.iter().step_by(step).map(|&place| nearest(place));
+    let found = places
+        .iter()
+        .step_by(step_of(places.len()))
+        .map(|&place| nearest(place));
     let half = 0.5 * f64::from(median(found.collect()));
     let share = (FEW / places.len() as f64).cbrt().min(1.0);
     half.max(extent.length() / THINNEST * share)
+}
+
+/// Of so many points one in this many is asked.
+fn step_of(count: usize) -> usize {
+    let asked = MOST_ASKED.min(MOST_DISTANCES / count).max(1);
+    count.div_ceil(asked)
 }
 
 /// Cells at Chebyshev distance `shell` from `home`, as far as there are any.
@@ -132,6 +142,18 @@ mod tests {
                 half.max((high - low).length() / 400.0)
             );
         }
+    }
+
+    #[test]
+    fn many_points_in_one_cell_are_not_all_asked_for_all_others() {
+        for count in [1_usize, 1707, 65_536, 1_000_000, 300_000_000] {
+            let asked = count.div_ceil(step_of(count));
+            assert!(
+                asked == 1 || asked * count <= MOST_DISTANCES,
+                "{count}: {asked}"
+            );
+        }
+        assert_eq!([1, 1707, 4096].map(step_of), [1; 3]);
     }
 
     #[test]

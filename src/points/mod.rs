@@ -147,3 +147,38 @@ impl Points {
 fn default_stds(places: &[DVec3]) -> Vec<f32> {
     vec![distances::default_std(places) as f32; places.len()]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stretched_points_are_as_wide_as_their_new_places_ask_for_unless_it_is_given() {
+        let places: Vec<_> = (0..20).map(|i| DVec3::Z * f64::from(i)).collect();
+        let values = vec![1.0; 20];
+        let default = Points::new(places.clone(), values.clone(), None, None).expect("points");
+        let high = default.clone().stretched(3.0);
+        assert_eq!(high.places()[5], DVec3::Z * 15.0);
+        assert_eq!((default.median_std(), high.median_std()), (0.5, 1.5));
+        let given = Points::new(places, values, Some(vec![0.25; 20]), None).expect("points");
+        assert_eq!(given.stretched(3.0).median_std(), 0.25);
+        assert!(default.has_default_stds() && !default.with_std(2.0).has_default_stds());
+    }
+
+    #[test]
+    fn what_is_no_point_is_refused_by_its_number() {
+        let two = || vec![DVec3::ZERO, DVec3::ONE];
+        let refused = |places, values, stds, weights| {
+            Points::new(places, values, stds, weights)
+                .expect_err("no point")
+                .to_string()
+        };
+        assert!(refused(vec![], vec![], None, None).contains("none"));
+        assert!(refused(two(), vec![1.0], None, None).contains("lengths"));
+        let text = refused(vec![DVec3::ZERO, DVec3::NAN], vec![1.0; 2], None, None);
+        assert_eq!(text, "point 1: its place is not finite");
+        assert!(refused(two(), vec![1.0, f32::NAN], None, None).contains("point 1: its value"));
+        assert!(refused(two(), vec![1.0; 2], Some(vec![1.0, 0.0]), None).contains("deviation"));
+        assert!(refused(two(), vec![1.0; 2], None, Some(vec![-1.0, 0.0])).contains("point 0"));
+    }
+}

@@ -1,6 +1,6 @@
 //! What work will take, guessed before anything like it was measured: rather too much than too little.
 
-use super::{MAX_SAMPLES_PER_RAY, Mode, Settings, Technique, View};
+use super::{MAX_SAMPLES_PER_RAY, Mode, Settings, View};
 use crate::gpu::{Gpu, TARGET_MS};
 use crate::resident::Cell;
 use glam::DVec3;
@@ -91,7 +91,7 @@ fn length_inside([low, high]: [DVec3; 2], origin: DVec3, direction: DVec3) -> f6
 const FETCHES_OF_SHEET: f64 = 60.0;
 
 fn fetches_of_sample(settings: &Settings) -> f64 {
-    if settings.technique == Technique::Splat {
+    if settings.technique.splats() {
         return FETCHES_OF_SHEET;
     }
     let of_value = match settings.filter.kernel() {

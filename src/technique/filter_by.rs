@@ -6,7 +6,7 @@
 //! corners    the same, on devices that compute on the CPU, from four words beside the texture or in its place (`resident::FootprintTexels`)
 //! ```
 
-use super::{Filter, GradientStorage, Operator, SampleInputs, Settings, Technique};
+use super::{Filter, GradientStorage, Operator, SampleInputs, Settings};
 
 /// A wish for one of them. Conformance pictures fetch, whatever is wished.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -28,7 +28,7 @@ impl Settings {
     pub fn reads_footprint_texels(&self, mix: SampleInputs) -> bool {
         let is_point = !self.preintegrated && !self.conformance;
         // Splats read voxels one by one, from the texture itself.
-        let is_splatted = self.technique == Technique::Splat;
+        let is_splatted = self.technique.splats();
         let has_such = !self.technique.draws_stacks() && !self.is_half_angle() && !is_splatted;
         let is_wished = self.filter_by != FilterBy::Sampler;
         mix.is_of_one() && has_such && is_point && is_wished && self.filter == Filter::Linear

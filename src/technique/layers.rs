@@ -1,7 +1,7 @@
 //! Which layers a picture has beside its colours: blending keeps no depth, a projection no transmittance, and a composite
 //! has no one value.
 
-use super::{Settings, Technique};
+use super::Settings;
 use crate::picture::LayerKind;
 
 /// What a picture lacks for a layer.
@@ -24,7 +24,7 @@ pub(crate) enum Lack {
 impl Settings {
     /// Whether it splats scattered points, which are thick.
     fn has_balls(&self) -> bool {
-        self.technique == Technique::Splat && self.splat.of_points
+        self.technique.splats() && self.splat.of_points
     }
 
     /// What pictures of these settings lack for a layer, one volume's or, with `are_several`, that of several.
@@ -43,7 +43,7 @@ impl Settings {
             }
             // Sheets are thick: only an extreme has the depth of one.
             Depth | Position | Normal | Label
-                if technique == Technique::Splat && !mode.projects_one_place() =>
+                if technique.splats() && !mode.projects_one_place() =>
             {
                 Some(Lack::Depth)
             }

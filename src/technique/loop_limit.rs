@@ -103,7 +103,7 @@ impl View<'_> {
         if !self.settings.technique.casts_rays() {
             return Ok(());
         }
-        if self.settings.technique == super::Technique::Splat && max_loop_turns != u32::MAX {
+        if self.settings.technique.splats() && max_loop_turns != u32::MAX {
             return self.check_splat_turns(max_loop_turns);
         }
         let wanted = self.longest_sample_count();

@@ -32,6 +32,10 @@ pub(crate) struct TechniqueDesc {
     pub casts_rays: bool,
     /// The slices are those of the volume's own grid: one sample a slice, whatever the step is.
     pub draws_stacks: bool,
+    /// Rays take integrals of Gaussians, and no samples.
+    pub splats: bool,
+    /// A volume may come brick by brick from its file.
+    pub streams: bool,
     /// Refuses what it has no passes for.
     pub supports: fn(&Settings) -> Result<(), Error>,
     /// Its slices may lie half way between the eye and a light.
@@ -92,6 +96,16 @@ impl Technique {
     /// [`TechniqueDesc::draws_stacks`].
     pub(crate) fn draws_stacks(self) -> bool {
         self.desc().draws_stacks
+    }
+
+    /// [`TechniqueDesc::splats`].
+    pub(crate) fn splats(self) -> bool {
+        self.desc().splats
+    }
+
+    /// [`TechniqueDesc::streams`].
+    pub(crate) fn streams(self) -> bool {
+        self.desc().streams
     }
 
     /// Whether its pixels are means of what several rays have gathered ([`TechniqueDesc::base_plane`]).

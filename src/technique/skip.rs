@@ -78,8 +78,7 @@ impl Settings {
         };
         let is_one = mix.is_of_one() || self.mode == Mode::Iso;
         // Sheets of values: a projection of splats goes through all.
-        let is_splatted = self.technique == super::Technique::Splat;
-        let is_refused = is_splatted && self.mode != Mode::Composite;
+        let is_refused = self.technique.splats() && self.mode != Mode::Composite;
         if !self.skip || !is_one || is_refused {
             return Skippable::Nothing;
         }
@@ -129,8 +128,12 @@ impl Settings {
     pub fn skippable_in_all(&self, functions: &[(usize, &TransferFunction)]) -> Skippable {
         // Patches of mixed slices cost more than they have been seen to leave out.
         let is_mixed = self.technique.casts_rays() && self.mode == Mode::Composite;
-        let is_splatted = self.technique == super::Technique::Splat;
-        if !self.skip || !is_mixed || self.preintegrated || functions.is_empty() || is_splatted {
+        if !self.skip
+            || !is_mixed
+            || self.preintegrated
+            || functions.is_empty()
+            || self.technique.splats()
+        {
             return Skippable::Nothing;
         }
         let seen = functions.iter().map(|&(n, f)| (n, VisibleRanges::new(f)));

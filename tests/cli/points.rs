@@ -71,6 +71,42 @@ fn points_are_splatted_without_a_flag_and_what_was_chosen_is_said() {
 }
 
 #[test]
+fn many_points_are_framed_by_their_box_and_few_by_what_is_seen() {
+    let folder = folder();
+    let framed = |name: &str| {
+        let ran = folder.run(&format!("render {name} -o q.png {SMALL}"));
+        ran.assert_done();
+        ran.err
+    };
+    assert!(framed("p.csv").contains("framed to what is visible"));
+    let row = |i: u32| format!("{},{},{},1\n", i % 37, i % 41, i % 43);
+    let rows: String = (0..50_001).map(row).collect();
+    folder.file("many.csv", format!("x,y,z,v\n{rows}"));
+    let said = framed("many.csv");
+    assert!(said.contains("framed to the box"), "{said}");
+}
+
+#[test]
+fn where_a_volume_is_asked_for_it_is_said_that_it_is_one_of_means() {
+    let folder = folder();
+    for words in ["info p.csv", "convert p.csv -o p.nrrd"] {
+        let ran = folder.run(words);
+        ran.assert_done();
+        let all = format!("{}{}", ran.out, ran.err);
+        assert!(all.contains("volume of their means"), "{words}: {all}");
+    }
+    let (_, ran) = drawn(&folder, "p.csv");
+    assert!(!ran.err.contains("volume of their means"), "{}", ran.err);
+    let ran = folder.run(&format!("render p.csv --clip 1,0,0,1000 -o e.png {SMALL}"));
+    ran.assert_done();
+    assert!(
+        ran.err.contains("is cut away") || ran.err.contains("no point"),
+        "{}",
+        ran.err
+    );
+}
+
+#[test]
 fn a_saved_scene_of_points_draws_the_same_picture() {
     let folder = folder();
     folder

@@ -28,7 +28,7 @@ fn modules_are_few_and_small() {
         probes.len(),
         SHADERS.len()
     );
-    // 110, and three of shear-warp and two of splats.
+    // 106, three of shear-warp and six of splats.
     assert!((50..=115).contains(&drawing.len()), "{}", drawing.len());
     assert!(probes.len() <= 70, "{}", probes.len());
     assert!(bytes <= 12_000_000, "{bytes}");

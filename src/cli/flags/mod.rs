@@ -28,6 +28,7 @@ mod opacity;
 mod picture;
 mod points;
 mod sampling;
+mod sampling_numbers;
 mod section;
 mod shadows;
 mod subject;

@@ -5,6 +5,7 @@ use super::{
     cuts::{ClipBox, CutFacesWord},
     intermediate::IntermediateWord,
     positive,
+    sampling_numbers::{clip_planes, crop_box, rays_per_side, samples_per_voxel},
     shadows::HALF_ANGLE,
 };
 use crate::{
@@ -17,7 +18,6 @@ use crate::{
     },
 };
 use clap::Args;
-use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 /// The flags, none of them filled in.
@@ -126,13 +126,13 @@ pub struct SamplingFlags {
     #[arg(long)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sheets: Option<Sheets>,
-    /// Splats: standard deviation of the Gaussian that a voxel is, in voxels [default: 0.6]; less shows the voxels, more
-    /// blurs
-    #[arg(long, value_name = "VOXELS", value_parser = positive)]
+    /// Splats: standard deviation of the Gaussian that a voxel is, in voxels [default: 0.6], less shows the voxels, more
+    /// blurs; of scattered points in world length [default: their column, or by the distances of neighbours]
+    #[arg(long, value_name = "LENGTH", value_parser = positive)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub splat_std: Option<f64>,
-    /// Splats: no splat is thinner than so many pixels, as they are at the centre of the box; 0 never widens them
-    /// [default: 0.6]
+    /// Splats: no splat is thinner than so many pixels, as they are at the centre of the box, or where a scattered point
+    /// is; 0 never widens them [default: 0.6, of scattered points 0.75]
     #[arg(long, value_name = "PIXELS")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub splat_low_pass: Option<f64>,
@@ -173,15 +173,13 @@ const WARP: &str = "--technique shear-warp is for --mode composite, mip, minip, 
 /// What splats go with.
 const SPLATS: &str = "--technique splat is for --mode composite, mip, minip, average and xray, with a kernel (--splat-std) and \
                       sheets (--sheets) of its own: leave out the other flag, or take --technique raycast";
-/// Rays along one side of a pixel.
-const MAX_RAYS_PER_SIDE: u32 = 64;
 
 /// Whether settings have the ways to sample that are asked for.
 pub fn check_ways(settings: &Settings) -> Result<(), Error> {
     let hint = match settings.lattice {
         _ if settings.is_half_angle() => HALF_ANGLE,
         _ if settings.technique.is_warped() => WARP,
-        _ if settings.technique == Technique::Splat => SPLATS,
+        _ if settings.technique.splats() => SPLATS,
         Lattice::Bresenham => MAIN_AXIS,
         _ => WAYS,
     };
@@ -236,8 +234,7 @@ impl SamplingFlags {
             per_mode: Default::default(),
         };
         check_ways(&settings)?;
-        let is_alone =
-            settings.technique == Technique::Splat && settings.splat.sheets == Sheets::None;
+        let is_alone = settings.technique.splats() && settings.splat.sheets == Sheets::None;
         if is_alone && settings.mode == Mode::Composite && !self.preclassified {
             return Err(Error::usage(
                 "--sheets none composites each voxel by itself, and values are classified sheet by sheet",
@@ -334,7 +331,7 @@ impl SamplingFlags {
         }
         let is_of_splats =
             self.sheets.is_some() || self.splat_std.is_some() || self.splat_low_pass.is_some();
-        if is_of_splats && technique != Technique::Splat {
+        if is_of_splats && !technique.splats() {
             notes.push("--sheets, --splat-std and --splat-low-pass have no effect without --technique splat");
         }
         if self.sheets.is_some() && matches!(self.mode, Some(Mode::Average | Mode::Xray)) {
@@ -356,70 +353,10 @@ impl SamplingFlags {
     }
 }
 
-/// A scene file can say what the command line would have refused.
-fn samples_per_voxel(samples: f64) -> Result<f64, Error> {
-    if samples > 0.0 && samples.is_finite() {
-        Ok(samples)
-    } else {
-        Err(Error::usage(
-            format!("--samples-per-voxel {samples}: wanted a number over 0"),
-            "--samples-per-voxel 2",
-        ))
-    }
-}
-
-fn rays_per_side(rays: u32) -> Result<u32, Error> {
-    (1..=MAX_RAYS_PER_SIDE)
-        .find(|side| side * side == rays)
-        .ok_or_else(|| {
-            Error::usage(
-                format!("--aa {rays}: wanted a square number from 1 to 4096"),
-                "--aa 4 sends 2 x 2 rays through each pixel",
-            )
-        })
-}
-
-fn crop_box(Numbers([x0, x1, y0, y1, z0, z1]): Numbers<6>) -> Result<[DVec3; 2], Error> {
-    let [min, max] = [DVec3::new(x0, y0, z0), DVec3::new(x1, y1, z1)];
-    if min.cmple(max).all() {
-        Ok([min, max])
-    } else {
-        Err(Error::usage(
-            format!("--crop {x0},{x1},{y0},{y1},{z0},{z1}: a lower bound is over its upper one"),
-            "the order is X0,X1,Y0,Y1,Z0,Z1, in voxels",
-        ))
-    }
-}
-
-fn clip_planes(clips: &[Numbers<4>]) -> Result<Vec<ClipPlane>, Error> {
-    if clips.len() > MAX_CLIP_PLANES as usize {
-        return Err(Error::TooMany {
-            message: format!(
-                "{} clip planes, at most {MAX_CLIP_PLANES} are possible",
-                clips.len()
-            ),
-            hint: "leave planes out; --crop cuts along the axes of the grid",
-        });
-    }
-    let plane = |Numbers([x, y, z, offset]): &Numbers<4>| {
-        let normal = DVec3::new(*x, *y, *z);
-        if normal == DVec3::ZERO {
-            return Err(Error::usage(
-                format!("--clip 0,0,0,{offset}: a plane needs a direction"),
-                "--clip 1,0,0,10 keeps the world points with x >= 10",
-            ));
-        }
-        Ok(ClipPlane {
-            normal,
-            offset: *offset,
-        })
-    };
-    clips.iter().map(plane).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec3;
 
     fn flags(change: impl FnOnce(&mut SamplingFlags)) -> SamplingFlags {
         let mut flags = SamplingFlags::default();

@@ -10,7 +10,7 @@ use crate::look::{
     BACKGROUND, LIGHT, MATERIAL, Origin, STILL_SAMPLES, half_gradient, is_lit, may_choose, summary,
 };
 use crate::shaders::MAX_LIGHTS;
-use crate::technique::{Mode, Technique};
+use crate::technique::Mode;
 use crate::transfer::{Context, Kind, Preset};
 use crate::volume::Volume;
 
@@ -69,7 +69,9 @@ pub fn with_light(scene: &SceneFlags, seen: Seen, made_for: Use) -> SceneFlags {
     let sampling = &mut chosen.sampling;
     let is_plain = !sampling.preintegrated && sampling.adaptive_steps.is_none();
     // What is between two sheets of splats lies in both.
-    let is_splatted = sampling.technique == Some(Technique::Splat);
+    let is_splatted = sampling
+        .technique
+        .is_some_and(|technique| technique.splats());
     if !made_for.is_film && is_plain && sampling.has_steps() && !is_splatted {
         sampling.samples_per_voxel.get_or_insert(STILL_SAMPLES);
     }

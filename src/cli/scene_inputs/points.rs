@@ -7,7 +7,7 @@ use crate::cli::{
     look::short,
     progress::Progress,
 };
-use crate::technique::{Mode, Technique};
+use crate::technique::Mode;
 use crate::transfer::{
     ColorPoint, Colormap, Interpolation, OpacityPoint, TransferFunction, Window,
 };
@@ -21,7 +21,7 @@ const COLORMAP: &str = "viridis";
 /// The points that the words name, stretched upward as volumes are.
 pub fn read(scene: &SceneFlags, mode: Mode, progress: &Progress) -> Result<SceneInputs, Error> {
     let technique = scene.sampling.technique.unwrap_or_default();
-    if technique != Technique::Splat {
+    if !technique.splats() {
         return Err(Error::usage(
             format!("--technique {technique} is for volumes, and scattered points are splatted"),
             "leave it out",
@@ -40,7 +40,7 @@ pub fn read(scene: &SceneFlags, mode: Mode, progress: &Progress) -> Result<Scene
     }
     let file = scene.input.open_points(&scene.input.limits())?;
     let mut header = file.header().clone();
-    for note in &header.notes {
+    for note in file.notes() {
         progress.note(note);
     }
     let points = (**file.points()).clone();

@@ -8,7 +8,7 @@ use crate::cli::memory::{DeviceMemory, DeviceRoom, Held, for_bricks, is_too_larg
 use crate::cli::progress::Progress;
 use crate::format;
 use crate::offscreen::{Stream, StreamOptions};
-use crate::technique::{Settings, Technique};
+use crate::technique::Settings;
 use crate::volume::{Source, TimeComponent};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -26,7 +26,7 @@ pub fn is_wanted(
         () if plan(scene, header)?.0 != Plan::One => Some("several numbers a voxel"),
         () if has_beside(scene) => Some("--labels and what else is seen together with a volume"),
         () if scene.denoise.is_some() => Some("--denoise"),
-        () if settings.technique != Technique::Raycast => {
+        () if !settings.technique.streams() => {
             Some("--technique slices-3d, slices-2d, shear-warp and splat")
         }
         () if settings.filter.spline().is_some() => Some("--filter quadratic and cubic"),

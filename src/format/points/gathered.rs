@@ -28,6 +28,16 @@ pub(super) struct Row {
     pub weight: Option<f64>,
 }
 
+/// The numbers of many rows, each column by itself.
+#[derive(Debug)]
+pub(super) struct Columns {
+    pub place: [Vec<f64>; 3],
+    pub value: Vec<f64>,
+    /// `None` where the file has none.
+    pub std: Option<Vec<f64>>,
+    pub weight: Option<Vec<f64>>,
+}
+
 /// Points so far.
 #[derive(Debug)]
 pub(super) struct Gathered {
@@ -112,6 +122,30 @@ impl Gathered {
         }
         if row.weight.is_some() {
             self.weights.push(weight);
+        }
+        Ok(())
+    }
+
+    /// Rows whose numbers stand in columns, as far as the shortest of place and value goes.
+    pub(super) fn push_columns(&mut self, columns: &Columns) -> Result<(), Problem> {
+        let Columns {
+            place: [x, y, z],
+            value,
+            std,
+            weight,
+        } = columns;
+        let optional = |column: &Option<Vec<f64>>, row: usize| {
+            let column = column.as_ref()?;
+            Some(column.get(row).copied().unwrap_or(f64::NAN))
+        };
+        let rows = x.iter().zip(y).zip(z).zip(value).enumerate();
+        for (row, (((x, y), z), value)) in rows {
+            self.push(Row {
+                place: DVec3::new(*x, *y, *z),
+                value: *value,
+                std: optional(std, row),
+                weight: optional(weight, row),
+            })?;
         }
         Ok(())
     }

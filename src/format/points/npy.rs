@@ -1,6 +1,6 @@
 //! NumPy arrays of points, `[N, 4]` to `[N, 6]`: x, y, z, value, standard deviation, weight.
 
-use super::gathered::{Gathered, Row};
+use super::gathered::{Columns, Gathered};
 use super::numbers;
 use super::place::Axes;
 use super::source::{Names, PointFile};
@@ -9,7 +9,7 @@ use crate::format::npy::{NPY, Plain};
 use crate::format::problem::{at, invalid};
 use crate::format::select::{Axis, Role};
 use crate::volume::{Format, Header, Limits, Problem, ReadError, VoxelType};
-use glam::{DAffine3, DVec3};
+use glam::DAffine3;
 use std::path::Path;
 
 /// Opens an array of f32 or f64.
@@ -37,26 +37,17 @@ pub(super) fn open(path: &Path, limits: &Limits) -> Result<PointFile, ReadError>
     let source = FileSource::new(path, header, data, limits);
     let mut gathered = Gathered::new(NPY, Axes::plain(), None, limits);
     let column = |index: u32| numbers::component(&source, index);
-    let [x, y, z, value] = [column(0)?, column(1)?, column(2)?, column(3)?];
     let optional = |index: u32| match index < columns {
         true => column(index).map(Some),
         false => Ok(None),
     };
-    let [std, weight] = [optional(4)?, optional(5)?];
-    let at_row = |column: &Option<Vec<f64>>, row: usize| {
-        let column = column.as_ref()?;
-        Some(column.get(row).copied().unwrap_or(f64::NAN))
+    let columns_of_file = Columns {
+        place: [column(0)?, column(1)?, column(2)?],
+        value: column(3)?,
+        std: optional(4)?,
+        weight: optional(5)?,
     };
-    let rows = x.iter().zip(&y).zip(&z).zip(&value).enumerate();
-    for (row, (((x, y), z), value)) in rows {
-        let row = Row {
-            place: DVec3::new(*x, *y, *z),
-            value: *value,
-            std: at_row(&std, row),
-            weight: at_row(&weight, row),
-        };
-        gathered.push(row).map_err(at(path))?;
-    }
+    gathered.push_columns(&columns_of_file).map_err(at(path))?;
     let names = Names {
         value: String::new(),
         others: Vec::new(),

@@ -18,10 +18,15 @@ use std::sync::Arc;
 pub struct PointFile {
     path: PathBuf,
     header: Header,
+    notes: Vec<String>,
     points: Arc<Points>,
     voxels: Vec<f32>,
     max_bytes: u64,
 }
+
+/// What a person should know of the volume.
+const OF_VOLUME: &str =
+    "this is the volume of their means: a voxel has the mean of the points in it, or no data";
 
 /// What the numbers of points are called.
 #[derive(Debug)]
@@ -73,13 +78,21 @@ impl PointFile {
         }
         let all = [names.notes, notes, world.notes];
         header.notes.extend(all.into_iter().flatten());
+        let notes = header.notes.clone();
+        header.notes.push(OF_VOLUME.to_owned());
         Ok(Self {
             path: path.to_owned(),
             header,
+            notes,
             points: Arc::new(points),
             voxels,
             max_bytes: limits.max_bytes,
         })
+    }
+
+    /// What a person should know of the points; [`Header::notes`] has also what that volume is.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
     }
 
     /// The points.

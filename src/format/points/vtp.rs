@@ -4,7 +4,7 @@
 //! vertices are not looked at.
 
 use super::PointColumns;
-use super::gathered::{Gathered, Row};
+use super::gathered::{Columns, Gathered};
 use super::numbers;
 use super::quantity::without_unit;
 use super::roles::{Column, Roles, Table};
@@ -16,7 +16,7 @@ use crate::format::vti;
 use crate::format::vti::payload::{self, Binary};
 use crate::format::vti::xml::{self, Document, Element};
 use crate::volume::{Format, Header, Limits, Problem, ReadError};
-use glam::{DAffine3, DVec3};
+use glam::DAffine3;
 use std::path::Path;
 
 /// The word of errors.
@@ -179,28 +179,17 @@ impl PolyData<'_> {
         }
         let places = self.source(places, 3, piece.points)?;
         let coordinate = |index: u32| numbers::component(&places, index);
-        let [x, y, z] = [coordinate(0)?, coordinate(1)?, coordinate(2)?];
-        let value = self.array(piece, &roles.value)?;
         let optional = |column: &Option<Column>| match column {
             Some(column) => self.array(piece, column).map(Some),
             None => Ok(None),
         };
-        let [std, weight] = [optional(&roles.std)?, optional(&roles.weight)?];
-        let at_row = |column: &Option<Vec<f64>>, row: usize| {
-            let column = column.as_ref()?;
-            Some(column.get(row).copied().unwrap_or(f64::NAN))
+        let columns = Columns {
+            place: [coordinate(0)?, coordinate(1)?, coordinate(2)?],
+            value: self.array(piece, &roles.value)?,
+            std: optional(&roles.std)?,
+            weight: optional(&roles.weight)?,
         };
-        let rows = x.iter().zip(&y).zip(&z).zip(&value).enumerate();
-        for (row, (((x, y), z), value)) in rows {
-            let row = Row {
-                place: DVec3::new(*x, *y, *z),
-                value: *value,
-                std: at_row(&std, row),
-                weight: at_row(&weight, row),
-            };
-            gathered.push(row).map_err(at(self.path))?;
-        }
-        Ok(())
+        gathered.push_columns(&columns).map_err(at(self.path))
     }
 
     /// The numbers of a named array of a piece.

@@ -2,6 +2,7 @@
 
 use super::pacing::Expected;
 use super::{Renderer, parts_of};
+use crate::gpu::Gpu;
 use crate::offscreen::Error;
 use crate::offscreen::submission::Submission;
 use crate::offscreen::time_slices::Spent;
@@ -84,8 +85,7 @@ impl Renderer<'_> {
             Beside::Points(points) => {
                 let seen = ViewPoints::new(&view, points)?;
                 let gpu = self.device.gpu();
-                let turns = gpu.limits().max_loop_turns;
-                recordings = seen.parts(recordings[0], turns, turns_of_point(scene));
+                recordings = seen.parts(recordings[0], points_at_once(gpu, scene));
                 Some(GpuViewPoints::new(gpu, &seen)?)
             }
             _ => None,
@@ -155,11 +155,14 @@ impl Renderer<'_> {
     }
 }
 
-/// Turns of loops that a point takes: its own, and those of a search among the control points of its function.
-pub(super) fn turns_of_point(scene: &Scene) -> u32 {
+/// How many scattered points one recording goes through, so that the loops of no pixel are longer than the device allows: a
+/// point takes a turn, and those of a search among the control points of its function.
+pub(super) fn points_at_once(gpu: &Gpu, scene: &Scene) -> u32 {
     let functions = scene.transfers().into_iter().flatten();
-    let points = functions.map(|f| f.color.len() + f.opacity.len()).max();
-    2 + points.unwrap_or(0) as u32
+    let searched = functions.map(|f| f.color.len() + f.opacity.len()).max();
+    let turns = 2 + searched.unwrap_or(0) as u32;
+    // One turn finds that the list has ended.
+    (gpu.limits().max_loop_turns / turns).max(2) - 1
 }
 
 /// A resolve of its own submission takes more than this part of one.

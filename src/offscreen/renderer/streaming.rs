@@ -17,7 +17,7 @@ use crate::resident::Halo;
 use crate::scene::Scene;
 use crate::technique::cost::{fetches_of_picture, ms_of_fetches};
 use crate::technique::gather::{BrickPass, LAYERS, PICTURE};
-use crate::technique::{GpuChannel, InPixel, Inputs, Mode, Skippable, Technique, View};
+use crate::technique::{GpuChannel, InPixel, Inputs, Mode, Skippable, View};
 use crate::volume::Volume;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -65,7 +65,7 @@ impl<'v> Renderer<'v> {
             return Err(Error::Outline);
         }
         let refused = match () {
-            () if settings.technique != Technique::Raycast => "another technique than ray casting",
+            () if !settings.technique.streams() => "another technique than ray casting",
             () if scene.volumes().len() > 1 => "several volumes",
             () if settings.filter.spline().is_some() => "a filter that reads coefficients",
             () if settings.wants_light_volume() => "occlusion or shadows",

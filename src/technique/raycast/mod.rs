@@ -17,6 +17,8 @@ use std::sync::Arc;
 pub(super) static DESC: TechniqueDesc = TechniqueDesc {
     casts_rays: true,
     draws_stacks: false,
+    splats: false,
+    streams: true,
     supports: |_| Ok(()),
     has_half_angle: false,
     base_plane: None,

@@ -41,6 +41,8 @@ impl Default for Intermediate {
 pub(super) static DESC: TechniqueDesc = TechniqueDesc {
     casts_rays: true,
     draws_stacks: false,
+    splats: false,
+    streams: false,
     supports,
     has_half_angle: false,
     base_plane: Some(base_plane),

@@ -19,6 +19,8 @@ use crate::resident::TextureLayout;
 pub(super) static DESC: TechniqueDesc = TechniqueDesc {
     casts_rays: false,
     draws_stacks: true,
+    splats: false,
+    streams: false,
     supports: slicer_supports,
     has_half_angle: false,
     base_plane: None,

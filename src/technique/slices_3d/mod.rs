@@ -21,6 +21,8 @@ use crate::resident::TextureLayout;
 pub(super) static DESC: TechniqueDesc = TechniqueDesc {
     casts_rays: false,
     draws_stacks: false,
+    splats: false,
+    streams: false,
     supports: slicer_supports,
     has_half_angle: true,
     base_plane: None,

@@ -88,6 +88,8 @@ impl Default for Splat {
 pub(super) static DESC: TechniqueDesc = TechniqueDesc {
     casts_rays: true,
     draws_stacks: false,
+    splats: true,
+    streams: false,
     // `Settings::check_splats` refuses by name.
     supports: |_| Ok(()),
     has_half_angle: false,

@@ -155,7 +155,7 @@ impl Settings {
         let splats_points = self.technique == Technique::Splat && self.splat.of_points;
         let (wanted, of, found) = match (are_points, splats_points) {
             (true, false) => (
-                "scattered points",
+                "drawing scattered points",
                 "splatting",
                 format!("technique {}", self.technique),
             ),

@@ -18,7 +18,7 @@
 
 use crate::camera::Rays;
 use crate::shaders::FrameFields;
-use crate::technique::frame::clip_rows;
+use crate::technique::clip_rows::clip_rows;
 use crate::technique::{Error, Order, View};
 use glam::{DVec3, dvec3};
 

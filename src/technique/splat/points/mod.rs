@@ -17,7 +17,6 @@ mod view_points;
 
 pub use gpu::GpuViewPoints;
 pub use view_points::ViewPoints;
-pub(crate) use view_points::most_at_once;
 
 use crate::gpu::Error;
 use crate::technique::gather::{Gather, GatherDesc, RayPass, rays_of};

@@ -90,10 +90,9 @@ impl ViewPoints {
         lengths.max().unwrap_or(0)
     }
 
-    /// `whole` in parts of no more turns of a loop than a device goes round, one after the other: each goes on with
-    /// what those before have left. A point takes `turns_of_each`.
-    pub fn parts(&self, whole: Recording, max_turns: u32, turns_of_each: u32) -> Vec<Recording> {
-        let at_once = most_at_once(max_turns, turns_of_each);
+    /// `whole` in parts of at most so many points of a list, one after the other: each goes on with what those before have
+    /// left.
+    pub fn parts(&self, whole: Recording, at_once: u32) -> Vec<Recording> {
         let firsts = (0..self.longest_list().max(1)).step_by(at_once as usize);
         let part = |first: u32| {
             let mut part = whole;
@@ -112,11 +111,6 @@ impl ViewPoints {
         let list = self.starts[tile] as usize..self.starts[tile + 1] as usize;
         self.lists[list].iter().map(|&i| &self.points[i as usize])
     }
-}
-
-/// How many points of a list a recording takes.
-pub(crate) fn most_at_once(max_turns: u32, turns_of_each: u32) -> u32 {
-    (max_turns / turns_of_each.max(1)).max(2) - 1
 }
 
 /// Whether crop box and clip planes leave a point of the centred world.
